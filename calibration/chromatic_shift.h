@@ -1,0 +1,35 @@
+// calibration/chromatic_shift.h — how far red or blue lies from green.
+#pragma once
+#include <array>
+#include <vector>
+
+#include "calibration/curve.h"
+#include "engine/optics/vec.h"
+
+namespace lensproof {
+
+/// The same chart point in green and in another channel, px.
+struct ChromaticPair {
+    Vec2d green_px;
+    Vec2d channel_px;
+};
+
+/// Displacement of a channel against green at q = (green − centre) / half-diagonal, ρ = |q|:
+///     d(q) = q (c1 + c3 ρ² + c5 ρ⁴) + t,
+/// so radially Δr(ρ) = c1 ρ + c3 ρ³ + c5 ρ⁵ px, positive outwards: a difference of focal length, then of distortion.
+/// The translation t is what a tilted filter or a decentred element adds.
+struct ChromaticShift {
+    std::array<double, 3> radial_px{};  // c1, c3, c5
+    Vec2d translation_px;
+    std::array<double, 25> covariance{};  // of c1, c3, c5, t_x, t_y
+    double rms_px = 0.0;                  // of one coordinate of one pair
+    int pairs_used = 0;
+    Curve curve;  // Δr, px; sampled as far as pairs reach
+};
+
+/// Linear least squares; pairs beyond 4.5 robust standard deviations (a corner found wrongly in one channel) are left
+/// out. Throws InputError for fewer than six usable pairs or pairs that do not determine the terms (all at one radius).
+ChromaticShift fit_chromatic_shift(const std::vector<ChromaticPair>& pairs, const Vec2d& centre_px,
+                                   double half_diagonal_px);
+
+}  // namespace lensproof

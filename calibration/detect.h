@@ -1,0 +1,23 @@
+// calibration/detect.h — finds a chart in a picture, to about a pixel.
+#pragma once
+#include <optional>
+#include <vector>
+
+#include "engine/io/image.h"
+#include "engine/optics/vec.h"
+#include "engine/scene/chart.h"
+
+namespace lensproof {
+
+/// Pixel coordinates of `feature_points(chart)`, in that order; none when the whole chart is not visible.
+///
+/// OpenCV's detectors search an 8-bit working copy; where the lens bends the chart too much for them, copies that
+/// undo a guessed fisheye projection are searched too. Accurate to a pixel or so: `refine` gives the final positions.
+///
+/// Which corner is the first: the one whose square is black, as the chart says. Where that leaves a choice (a half
+/// turn of a board with an even number of columns + rows, every disc grid) the rows run to the right as far as
+/// possible. Mirror images are never taken. A checkerboard needs at least 3 × 3 inner corners, a disc grid 3 × 3 discs.
+/// Throws InputError for a chart without features or too few of them.
+std::optional<std::vector<Vec2d>> detect(const Image& image, const Chart& chart);
+
+}  // namespace lensproof

@@ -1,0 +1,259 @@
+#include "calibration/measure.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <utility>
+
+#include "calibration/chromatic_shift.h"
+#include "calibration/detect.h"
+#include "calibration/geometry_curves.h"
+#include "calibration/light_samples.h"
+#include "calibration/refine.h"
+#include "calibration/vignetting.h"
+#include "calibration/working_copy.h"
+#include "engine/io/input_error.h"
+
+namespace lensproof {
+namespace {
+
+constexpr double kLeastFoundShare = 0.6;  // of a chart's points; with fewer the detection itself is doubtful
+
+// What is kept of the pictures once they are gone.
+struct Observations {
+    int width = 0;
+    int height = 0;
+    std::vector<std::string> channels;
+    bool grey = true;  // every picture has one channel, or all channels alike
+    std::vector<ProfileView> views;
+    std::vector<ChartView> chart_views;                                  // of the views found
+    std::map<std::string, std::vector<ChromaticPair>> chromatic_pairs;   // by channel
+    std::map<std::string, std::vector<LightGroup>> flat_fields, whites;  // by channel
+};
+
+std::string describe(const Chart& chart) {
+    const GridSize grid = feature_grid(chart);
+    return std::to_string(grid.columns) + " × " + std::to_string(grid.rows) + " " + kind_name(chart);
+}
+
+std::string joined(const std::vector<std::string>& words) {
+    std::string text;
+    for (const std::string& word : words) {
+        text += (text.empty() ? "" : ", ") + word;
+    }
+    return text;
+}
+
+void check_alike(const Observations& seen, const Image& image, const std::string& name) {
+    const auto size = [](int width, int height) { return std::to_string(width) + " × " + std::to_string(height); };
+    if (image.width < 1 || image.height < 1 || image.channels.empty() ||
+        image.pixels.size() != static_cast<std::size_t>(image.width) * image.height * image.channels.size()) {
+        throw InputError(name + ": the picture is " + size(image.width, image.height) + " with " +
+                         std::to_string(image.channels.size()) + " channels: expected pixels");
+    }
+    if (seen.width != 0 && (image.width != seen.width || image.height != seen.height)) {
+        throw InputError(name + ": the picture is " + size(image.width, image.height) + " pixels: expected " +
+                         size(seen.width, seen.height) + " like the pictures before it");
+    }
+    if (!seen.channels.empty() && image.channels != seen.channels) {
+        throw InputError(name + ": the picture has the channels " + joined(image.channels) + ": expected " +
+                         joined(seen.channels) + " like the pictures before it");
+    }
+}
+
+bool all_channels_alike(const Image& image) {
+    const auto count = static_cast<std::size_t>(image.channel_count());
+    for (std::size_t i = 0; i < image.pixels.size(); i += count) {
+        for (std::size_t c = 1; c < count; ++c) {
+            if (image.pixels[i + c] != image.pixels[i]) {
+                return false;
+            }
+        }
+    }
+    return true;
+}
+
+void observe_chart(Observations& seen, const Image& image, const std::string& name, const Chart& chart) {
+    ProfileView view{.image = name, .found = false, .pose = {}, .points = {}};
+    const std::vector<Vec2d> features = feature_points(chart);
+    const auto approximate = detect(image, chart);
+    const int reference = reference_channel(image);
+    const ChartPoints points = approximate ? refine(image, reference, *approximate, chart) : ChartPoints{};
+    view.found = approximate && count_found(points) >= kLeastFoundShare * static_cast<double>(features.size());
+    if (view.found) {
+        ChartView own{.name = name, .chart_mm = {}, .image_px = {}};
+        for (std::size_t i = 0; i < features.size(); ++i) {
+            if (points.found[i]) {
+                own.chart_mm.push_back(features[i]);
+                own.image_px.push_back(points.image_px[i]);
+            }
+        }
+        seen.chart_views.push_back(std::move(own));
+        const bool grey = all_channels_alike(image);
+        for (int channel = 0; channel < image.channel_count(); ++channel) {
+            const std::string& channel_name = image.channels[channel];
+            seen.whites[channel_name].push_back(chart_white_samples(image, channel, points, chart));
+            if (channel == reference || grey) {
+                continue;
+            }
+            const ChartPoints other = refine(image, channel, points.image_px, chart);
+            for (std::size_t i = 0; i < features.size(); ++i) {
+                if (points.found[i] && other.found[i]) {
+                    seen.chromatic_pairs[channel_name].push_back({points.image_px[i], other.image_px[i]});
+                }
+            }
+        }
+    }
+    seen.views.push_back(std::move(view));
+}
+
+Observations observe(const MeasureInput& input) {
+    Observations seen;
+    for (const Picture& picture : input.pictures) {
+        if (!picture.load) {
+            throw InputError(picture.name + ": the picture cannot be loaded");
+        }
+        const Image image = picture.load();
+        check_alike(seen, image, picture.name);
+        seen.width = image.width;
+        seen.height = image.height;
+        seen.channels = image.channels;
+        seen.grey = seen.grey && all_channels_alike(image);
+        if (picture.role == PictureRole::flat_field) {
+            for (int channel = 0; channel < image.channel_count(); ++channel) {
+                seen.flat_fields[image.channels[channel]].push_back(flat_field_samples(image, channel));
+            }
+        } else {
+            observe_chart(seen, image, picture.name, input.chart);
+        }
+    }
+    return seen;
+}
+
+GeometryFit fit(const MeasureInput& input, const Observations& seen) {
+    GeometryOptions options = input.geometry;
+    const auto* discs = std::get_if<DiscGrid>(&input.chart.pattern);
+    options.disc_diameter_mm = discs ? discs->diameter_mm : 0.0;
+    const auto with = [&](ModelKind kind) {
+        options.model = kind;
+        return fit_geometry(seen.chart_views, seen.width, seen.height, options);
+    };
+    if (input.model) {
+        return with(*input.model);
+    }
+    std::optional<GeometryFit> best;
+    std::optional<InputError> refusal;
+    for (const ModelKind kind : {ModelKind::brown_conrady, ModelKind::kannala_brandt}) {
+        try {
+            GeometryFit candidate = with(kind);
+            // Outliers are a model's failure too: the one that uses more points is not punished for it.
+            const double own = candidate.sigma_px / candidate.points_used;
+            if (!best || own < best->sigma_px / best->points_used) {
+                best = std::move(candidate);
+            }
+        } catch (const InputError& e) {
+            refusal = refusal ? refusal : e;
+        }
+    }
+    if (!best) {
+        throw *refusal;
+    }
+    return *best;
+}
+
+void add_geometry(Profile& profile, const Observations& seen, const GeometryFit& geometry) {
+    const double half_diagonal = half_diagonal_px(profile);
+    profile.geometry = ProfileGeometry{.model = geometry.model,
+                                       .covariance = geometry.covariance,
+                                       .reprojection_rms_px = geometry.rms_px,
+                                       .views_used = static_cast<int>(geometry.views.size()),
+                                       .points_used = geometry.points_used,
+                                       .covered_image_height = geometry.covered_radius_px / half_diagonal};
+    std::size_t next = 0;
+    for (ProfileView& view : profile.views) {
+        if (!view.found) {
+            continue;
+        }
+        const ChartView& measured = seen.chart_views[next];
+        const FittedView& fitted = geometry.views[next];
+        ++next;
+        view.pose = fitted.pose;
+        for (const PointResidual& r : fitted.residuals) {
+            const auto i = static_cast<std::size_t>(r.index);
+            view.points.push_back({measured.chart_mm[i], measured.image_px[i], r.measured_minus_model_px, r.used});
+        }
+    }
+    profile.curves["field_angle_deg"] = field_angle_curve(geometry, half_diagonal);
+    profile.curves["distortion_percent"] = rectilinear_distortion_curve(geometry, half_diagonal);
+    profile.curves["distortion_equidistant_percent"] = equidistant_distortion_curve(geometry, half_diagonal);
+}
+
+void add_vignetting(Profile& profile, const Observations& seen, const Vec2d& centre) {
+    const auto& groups = seen.flat_fields.empty() ? seen.whites : seen.flat_fields;
+    for (const auto& [channel, samples] : groups) {
+        try {
+            Vignetting vignetting = fit_vignetting(samples, centre, half_diagonal_px(profile));
+            profile.curves["vignetting_" + channel] = std::move(vignetting.ratio);
+            profile.curves["vignetting_" + channel + "_ev"] = std::move(vignetting.ev);
+        } catch (const InputError& e) {
+            profile.not_measured["vignetting"] = e.what();
+        }
+    }
+}
+
+void add_chromatic_shift(Profile& profile, const Observations& seen, const Vec2d& centre) {
+    if (seen.grey) {
+        profile.not_measured["chromatic_shift"] = "the pictures are grey";
+        return;
+    }
+    if (seen.chromatic_pairs.empty()) {
+        profile.not_measured["chromatic_shift"] = "no chart was found in a picture in colour";
+        return;
+    }
+    for (const auto& [channel, pairs] : seen.chromatic_pairs) {
+        try {
+            profile.curves["chromatic_shift_" + channel + "_px"] =
+                fit_chromatic_shift(pairs, centre, half_diagonal_px(profile)).curve;
+        } catch (const InputError& e) {
+            profile.not_measured["chromatic_shift"] = e.what();
+        }
+    }
+}
+
+}  // namespace
+
+Profile measure(const MeasureInput& input) {
+    if (input.pictures.empty()) {
+        throw InputError("measuring " + input.name + ": no pictures given: expected at least one");
+    }
+    const Observations seen = observe(input);
+    if (!seen.views.empty() && seen.chart_views.empty()) {
+        throw InputError(input.name + ": no " + describe(input.chart) + " found in any of " +
+                         std::to_string(seen.views.size()) + (seen.views.size() == 1 ? " picture" : " pictures"));
+    }
+    Profile profile;
+    profile.name = input.name;
+    profile.source = input.source;
+    profile.source.images.clear();
+    for (const Picture& picture : input.pictures) {
+        profile.source.images.push_back(picture.name);
+    }
+    profile.width_px = seen.width;
+    profile.height_px = seen.height;
+    profile.pixel_pitch_um = input.pixel_pitch_um;
+    profile.views = seen.views;
+
+    Vec2d centre{(seen.width - 1) / 2.0, (seen.height - 1) / 2.0};
+    if (seen.chart_views.empty()) {
+        profile.not_measured["geometry"] = "there are flat fields only";
+    } else {
+        const GeometryFit geometry = fit(input, seen);
+        centre = centre_px(geometry.model);
+        add_geometry(profile, seen, geometry);
+    }
+    add_vignetting(profile, seen, centre);
+    add_chromatic_shift(profile, seen, centre);
+    return profile;
+}
+
+}  // namespace lensproof

@@ -1,0 +1,83 @@
+// calibration/profile.h — what was measured about a lens in a picture, as a value and as a JSON file.
+#pragma once
+#include <filesystem>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "calibration/camera_model.h"
+#include "calibration/curve.h"
+#include "calibration/planar_pose.h"
+
+namespace lensproof {
+
+/// Where the pictures come from. What is unknown is empty.
+struct ProfileSource {
+    std::string kind;  // "render" or "photo"
+    std::vector<std::string> images;
+    std::string camera;
+    std::string lens;
+};
+
+/// The camera model with its uncertainty.
+struct ProfileGeometry {
+    CameraModel model;
+    std::vector<double> covariance;  // row by row, in the order of parameter_names(model)
+    double reprojection_rms_px = 0.0;
+    int views_used = 0;
+    int points_used = 0;
+    double covered_image_height = 0.0;
+
+    [[nodiscard]] double standard_error(std::size_t parameter) const;
+};
+
+struct ProfilePoint {
+    Vec2d chart_mm;
+    Vec2d image_px;
+    Vec2d residual_px;  // measured minus model
+    bool used = true;   // false: an outlier that the fit left out
+};
+
+/// A picture in which a chart was looked for.
+struct ProfileView {
+    std::string image;
+    bool found = false;
+    Pose pose;
+    std::vector<ProfilePoint> points;
+};
+
+/// Curves by name: "field_angle_deg", "distortion_percent" (against f tan θ), "distortion_equidistant_percent"
+/// (against f θ), and for a channel C "vignetting_C" (ratio to the axis), "vignetting_C_ev", "chromatic_shift_C_px".
+/// What could not be measured is absent there and has its reason in `not_measured`, under "geometry", "vignetting" or
+/// "chromatic_shift".
+struct Profile {
+    std::string name;
+    ProfileSource source;
+    int width_px = 0;
+    int height_px = 0;
+    std::optional<double> pixel_pitch_um;
+    std::optional<ProfileGeometry> geometry;
+    std::vector<ProfileView> views;
+    std::map<std::string, Curve> curves;
+    std::map<std::string, std::string> not_measured;
+};
+
+/// Half the picture's diagonal, px: the unit of image heights.
+double half_diagonal_px(const Profile& profile);
+
+/// The profile as JSON, schema "lensproof-profile/1"; numbers are written so that reading returns the same bits.
+nlohmann::ordered_json to_json(const Profile& profile);
+
+/// Reads what `to_json` wrote. Unknown keys are ignored. Throws InputError naming `file`, the key, what was found and
+/// what is expected.
+Profile parse_profile(std::string_view text, const std::string& file);
+
+Profile read_profile(const std::filesystem::path& file);
+
+/// Whole or not at all.
+void write_profile(const Profile& profile, const std::filesystem::path& file);
+
+}  // namespace lensproof

@@ -1,0 +1,240 @@
+#include "calibration/refine.h"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <opencv2/imgproc.hpp>
+#include <optional>
+
+#include "calibration/corner_fit.h"
+#include "calibration/working_copy.h"
+#include "engine/io/input_error.h"
+
+namespace lensproof {
+namespace {
+
+constexpr double kWindowShare = 0.25;  // half window of the distance to the nearest corner
+constexpr int kSmallestWindow_px = 2;  // half window: 5 × 5 pixels
+constexpr int kLargestWindow_px = 14;  // half window; more pixels than noise asks for, and lines bend
+constexpr int kFitFrom_px = 3;         // half window; in a smaller one the edge model has too few pixels to hold it
+constexpr double kBlur_px = 1.0;
+constexpr double kAgreement_px = 0.05;  // of two searches from different starts
+constexpr double kLeastContrast = 0.1;  // (white − black) / (white + black) around a corner
+
+bool all_finite(const Image& image, int channel, const Vec2d& at, double reach) {
+    const int x0 = static_cast<int>(std::floor(at.x - reach));
+    const int x1 = static_cast<int>(std::ceil(at.x + reach));
+    const int y0 = static_cast<int>(std::floor(at.y - reach));
+    const int y1 = static_cast<int>(std::ceil(at.y + reach));
+    if (x0 < 0 || y0 < 0 || x1 >= image.width || y1 >= image.height) {
+        return false;
+    }
+    for (int y = y0; y <= y1; ++y) {
+        for (int x = x0; x <= x1; ++x) {
+            if (!std::isfinite(image.at(x, y, channel))) {
+                return false;
+            }
+        }
+    }
+    return true;
+}
+
+Vec2d difference(const Vec2d& a, const Vec2d& b) {
+    return {a.x - b.x, a.y - b.y};
+}
+double norm(const Vec2d& v) {
+    return std::hypot(v.x, v.y);
+}
+
+// The grid around a point: differences to its neighbours per step of a column and of a row, px.
+struct Lattice {
+    Vec2d column_step;
+    Vec2d row_step;
+    double nearest = std::numeric_limits<double>::infinity();
+};
+
+Lattice lattice_at(const std::vector<Vec2d>& points, GridSize grid, int column, int row) {
+    const auto at = [&](int c, int r) { return points[static_cast<std::size_t>(r) * grid.columns + c]; };
+    const int c0 = std::max(column - 1, 0);
+    const int c1 = std::min(column + 1, grid.columns - 1);
+    const int r0 = std::max(row - 1, 0);
+    const int r1 = std::min(row + 1, grid.rows - 1);
+    Lattice lattice;
+    const Vec2d dc = difference(at(c1, row), at(c0, row));
+    const Vec2d dr = difference(at(column, r1), at(column, r0));
+    lattice.column_step = {dc.x / (c1 - c0), dc.y / (c1 - c0)};
+    lattice.row_step = {dr.x / (r1 - r0), dr.y / (r1 - r0)};
+    for (int r = r0; r <= r1; ++r) {
+        for (int c = c0; c <= c1; ++c) {
+            if (c != column || r != row) {
+                lattice.nearest = std::min(lattice.nearest, norm(difference(at(c, r), at(column, row))));
+            }
+        }
+    }
+    return lattice;
+}
+
+// (white − black) / (white + black) of the four squares that meet in a corner, sampled on their diagonals.
+double corner_contrast(const cv::Mat& plane, const Vec2d& corner, const Lattice& lattice, double share) {
+    double diagonal[2] = {0.0, 0.0};
+    for (const int i : {-1, 1}) {
+        for (const int j : {-1, 1}) {
+            const double x = corner.x + share * (i * lattice.column_step.x + j * lattice.row_step.x);
+            const double y = corner.y + share * (i * lattice.column_step.y + j * lattice.row_step.y);
+            const int px = std::clamp(static_cast<int>(std::lround(x)), 0, plane.cols - 1);
+            const int py = std::clamp(static_cast<int>(std::lround(y)), 0, plane.rows - 1);
+            diagonal[i == j ? 0 : 1] += plane.at<float>(py, px);
+        }
+    }
+    const double sum = diagonal[0] + diagonal[1];
+    return sum > 0.0 ? std::abs(diagonal[0] - diagonal[1]) / sum : 0.0;
+}
+
+Vec2d corner_search(const cv::Mat& plane, const Vec2d& start, int half_window) {
+    std::vector<cv::Point2f> point{{static_cast<float>(start.x), static_cast<float>(start.y)}};
+    cv::cornerSubPix(plane, point, {half_window, half_window}, {-1, -1},
+                     {cv::TermCriteria::EPS + cv::TermCriteria::COUNT, 60, 1e-4});
+    return {point[0].x, point[0].y};
+}
+
+std::optional<Vec2d> refine_corner(const Image& image, const cv::Mat& plane, int channel, const Vec2d& start,
+                                   const Lattice& lattice) {
+    const int half_window =
+        std::clamp(static_cast<int>(kWindowShare * lattice.nearest), kSmallestWindow_px, kLargestWindow_px);
+    if (!all_finite(image, channel, start, half_window + 4.0)) {
+        return std::nullopt;
+    }
+    // cornerSubPix hands back its start when it runs away, so the second start must differ from the first's result.
+    const Vec2d first = corner_search(plane, start, half_window);
+    const double displacement = 0.25 * half_window;
+    const Vec2d second = corner_search(plane, {first.x + displacement, first.y - 0.6 * displacement}, half_window);
+    if (norm(difference(first, second)) > kAgreement_px || norm(difference(second, start)) > half_window ||
+        !all_finite(image, channel, second, half_window + 3.0) ||
+        corner_contrast(plane, second, lattice, 0.25) < kLeastContrast) {
+        return std::nullopt;
+    }
+    if (half_window < kFitFrom_px) {
+        return second;
+    }
+    return fit_corner(plane,
+                      {.corner_px = second, .along_first = lattice.column_step, .along_second = lattice.row_step},
+                      half_window);
+}
+
+// In units of the pitch: discs end at `disc`, light that belongs to the paper alone is taken from `inner` to `outer`.
+struct DiscWindow {
+    double disc = 0.0;
+    double inner = 0.0;
+    double outer = 0.5;
+};
+
+std::optional<Vec2d> disc_centroid(const Image& image, int channel, const Vec2d& start, const Lattice& lattice,
+                                   const DiscWindow& window) {
+    const double determinant = lattice.column_step.x * lattice.row_step.y - lattice.column_step.y * lattice.row_step.x;
+    const double reach = window.outer * (norm(lattice.column_step) + norm(lattice.row_step));
+    if (!(std::abs(determinant) > 1.0) || !all_finite(image, channel, start, reach)) {
+        return std::nullopt;
+    }
+    const auto distance = [&](double dx, double dy) {  // from the disc's centre, in pitches
+        const double u = (dx * lattice.row_step.y - dy * lattice.row_step.x) / determinant;
+        const double v = (dy * lattice.column_step.x - dx * lattice.column_step.y) / determinant;
+        return std::hypot(u, v);
+    };
+    const int x0 = static_cast<int>(std::ceil(start.x - reach));
+    const int x1 = static_cast<int>(std::floor(start.x + reach));
+    const int y0 = static_cast<int>(std::ceil(start.y - reach));
+    const int y1 = static_cast<int>(std::floor(start.y + reach));
+
+    Eigen::Matrix3d normal = Eigen::Matrix3d::Zero();
+    Eigen::Vector3d right = Eigen::Vector3d::Zero();
+    for (int y = y0; y <= y1; ++y) {
+        for (int x = x0; x <= x1; ++x) {
+            const double d = distance(x - start.x, y - start.y);
+            if (d > window.inner && d < window.outer) {
+                const Eigen::Vector3d row(1.0, x - start.x, y - start.y);
+                normal += row * row.transpose();
+                right += row * static_cast<double>(image.at(x, y, channel));
+            }
+        }
+    }
+    const Eigen::LDLT<Eigen::Matrix3d> paper(normal);
+    if (normal(0, 0) < 6.0 || paper.info() != Eigen::Success || paper.rcond() < 1e-9) {
+        return std::nullopt;
+    }
+    const Eigen::Vector3d plane = paper.solve(right);
+
+    double mass = 0.0;
+    Vec2d moment;
+    for (int y = y0; y <= y1; ++y) {
+        for (int x = x0; x <= x1; ++x) {
+            const double dx = x - start.x;
+            const double dy = y - start.y;
+            const double white = plane(0) + plane(1) * dx + plane(2) * dy;
+            if (!(white > 0.0) || distance(dx, dy) > window.inner) {
+                continue;
+            }
+            const double darkness = 1.0 - image.at(x, y, channel) / white;
+            mass += darkness;
+            moment.x += darkness * dx;
+            moment.y += darkness * dy;
+        }
+    }
+    const double area_px = std::numbers::pi * window.disc * window.disc * std::abs(determinant);
+    if (mass < kLeastContrast * area_px || mass > 1.5 * area_px) {
+        return std::nullopt;
+    }
+    const Vec2d centre{start.x + moment.x / mass, start.y + moment.y / mass};
+    return distance(centre.x - start.x, centre.y - start.y) < window.outer ? std::optional(centre) : std::nullopt;
+}
+
+std::optional<Vec2d> refine_disc(const Image& image, int channel, const Vec2d& start, const Lattice& lattice,
+                                 const DiscGrid& discs) {
+    const double radius = 0.5 * discs.diameter_mm / discs.pitch_mm;
+    const DiscWindow window{.disc = radius, .inner = 0.6 * radius + 0.4 * 0.5, .outer = 0.5};
+    std::optional<Vec2d> centre = start;
+    for (int iteration = 0; iteration < 5 && centre; ++iteration) {  // the window follows the disc
+        centre = disc_centroid(image, channel, *centre, lattice, window);
+    }
+    return centre;
+}
+
+}  // namespace
+
+ChartPoints refine(const Image& image, int channel, const std::vector<Vec2d>& approximate, const Chart& chart) {
+    const GridSize grid = feature_grid(chart);
+    if (approximate.size() != static_cast<std::size_t>(grid.columns) * grid.rows || grid.columns < 2 || grid.rows < 2) {
+        throw InputError("refining a " + kind_name(chart) + ": " + std::to_string(approximate.size()) +
+                         " points given, expected " + std::to_string(grid.columns * grid.rows));
+    }
+    if (channel < 0 || channel >= image.channel_count()) {
+        throw InputError("refining a " + kind_name(chart) + ": the picture has no channel " + std::to_string(channel));
+    }
+    const auto* discs = std::get_if<DiscGrid>(&chart.pattern);
+    cv::Mat plane;
+    if (!discs) {
+        // Edges sharper than a pixel are aliased, which biases the search and the fit alike; the blur takes that away.
+        cv::GaussianBlur(channel_plane(image, channel), plane, {}, kBlur_px);
+    }
+    ChartPoints result{.image_px = approximate, .found = std::vector<bool>(approximate.size(), false)};
+    for (int row = 0; row < grid.rows; ++row) {
+        for (int column = 0; column < grid.columns; ++column) {
+            const std::size_t i = static_cast<std::size_t>(row) * grid.columns + column;
+            const Lattice lattice = lattice_at(approximate, grid, column, row);
+            const auto refined = discs ? refine_disc(image, channel, approximate[i], lattice, *discs)
+                                       : refine_corner(image, plane, channel, approximate[i], lattice);
+            if (refined) {
+                result.image_px[i] = *refined;
+                result.found[i] = true;
+            }
+        }
+    }
+    return result;
+}
+
+int count_found(const ChartPoints& points) {
+    return static_cast<int>(std::count(points.found.begin(), points.found.end(), true));
+}
+
+}  // namespace lensproof

@@ -1,0 +1,207 @@
+#include "engine/io/image.h"
+
+#include <OpenImageIO/filesystem.h>
+#include <OpenImageIO/imagebuf.h>
+#include <OpenImageIO/imagebufalgo.h>
+#include <OpenImageIO/imageio.h>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "engine/io/file.h"
+#include "engine/io/input_error.h"
+
+namespace lensproof {
+
+namespace {
+
+constexpr double kMostPixels = 200e6;
+
+/// IEC 61966-2-1, full scale 1.
+float srgb_to_linear(float encoded) {
+    return encoded <= 0.04045F ? encoded / 12.92F : std::pow((encoded + 0.055F) / 1.055F, 2.4F);
+}
+
+float linear_to_srgb(float linear) {
+    const float clipped = std::clamp(linear, 0.0F, 1.0F);
+    return clipped <= 0.0031308F ? 12.92F * clipped : 1.055F * std::pow(clipped, 1.0F / 2.4F) - 0.055F;
+}
+
+void linearise(Image& image, const std::string& colour_space) {
+    // OpenImageIO writes a stated gamma as "GammaX.Y" (older) or "gamma"; PNG's gAMA of 1/2.2 stands for sRGB in
+    // practice.
+    float gamma = 0.0F;
+    if (colour_space.rfind("Gamma", 0) == 0) {
+        try {
+            gamma = std::stof(colour_space.substr(5));
+        } catch (const std::exception&) {
+            gamma = 0.0F;
+        }
+    }
+    const bool linear = colour_space == "linear" || colour_space == "Linear";
+    for (float& value : image.pixels) {
+        if (gamma > 0.0F && std::abs(gamma - 2.2F) > 0.05F) {
+            value = std::pow(std::max(value, 0.0F), gamma);
+        } else if (!linear) {
+            value = srgb_to_linear(value);
+        }
+    }
+}
+
+std::vector<std::string> channel_names(const OIIO::ImageSpec& spec) {
+    std::vector<std::string> names = spec.channelnames;
+    if (names.size() == 1) {
+        names[0] = "Y";
+    }
+    return names;
+}
+
+void drop_channel(Image& image, int dropped) {
+    Image kept = make_image(image.width, image.height, [&] {
+        std::vector<std::string> names = image.channels;
+        names.erase(names.begin() + dropped);
+        return names;
+    }());
+    kept.metadata = image.metadata;
+    for (int y = 0; y < image.height; ++y) {
+        for (int x = 0; x < image.width; ++x) {
+            for (int from = 0, to = 0; from < image.channel_count(); ++from) {
+                if (from != dropped) {
+                    kept.at(x, y, to++) = image.at(x, y, from);
+                }
+            }
+        }
+    }
+    image = std::move(kept);
+}
+
+void write_with_oiio(const OIIO::ImageSpec& spec, OIIO::TypeDesc type, const void* pixels,
+                     const std::filesystem::path& file) {
+    write_whole(file, [&](const std::filesystem::path& temporary) {
+        const auto output = OIIO::ImageOutput::create(temporary.string());
+        if (!output || !output->open(temporary.string(), spec) || !output->write_image(type, pixels) ||
+            !output->close()) {
+            throw std::runtime_error(fmt::format("{}: cannot be written: {}", file.string(),
+                                                 output ? output->geterror() : OIIO::geterror()));
+        }
+    });
+}
+
+struct EncodedPng {
+    int channels = 0;
+    std::vector<unsigned char> pixels;
+};
+
+EncodedPng encode_srgb(const Image& image) {
+    std::vector<int> sources;
+    for (const char* name : {"R", "G", "B"}) {
+        sources.push_back(find_channel(image, name));
+    }
+    if (std::find(sources.begin(), sources.end(), -1) != sources.end()) {
+        sources = {std::max(0, find_channel(image, "Y"))};
+    }
+    EncodedPng encoded{.channels = static_cast<int>(sources.size()), .pixels = {}};
+    encoded.pixels.reserve(static_cast<std::size_t>(image.width) * image.height * sources.size());
+    for (int y = 0; y < image.height; ++y) {
+        for (int x = 0; x < image.width; ++x) {
+            for (const int source : sources) {
+                encoded.pixels.push_back(
+                    static_cast<unsigned char>(std::lround(255.0F * linear_to_srgb(image.at(x, y, source)))));
+            }
+        }
+    }
+    return encoded;
+}
+
+}  // namespace
+
+Image make_image(int width, int height, std::vector<std::string> channels) {
+    Image image{.width = width, .height = height, .channels = std::move(channels), .pixels = {}, .metadata = {}};
+    image.pixels.assign(static_cast<std::size_t>(width) * height * image.channels.size(), 0.0F);
+    return image;
+}
+
+int find_channel(const Image& image, const std::string& name) {
+    const auto found = std::find(image.channels.begin(), image.channels.end(), name);
+    return found == image.channels.end() ? -1 : static_cast<int>(found - image.channels.begin());
+}
+
+Image read_image(const std::filesystem::path& file) {
+    // Read first: a missing file or a folder is told apart from a picture of an unknown kind.
+    read_file(file);
+    auto input = OIIO::ImageInput::open(file.string());
+    if (!input) {
+        throw InputError(fmt::format("{}: not a picture that can be read: {}", file.string(), OIIO::geterror()));
+    }
+    const OIIO::ImageSpec spec = input->spec();
+    if (spec.width < 1 || spec.height < 1 || spec.depth > 1 || spec.nchannels < 1) {
+        throw InputError(fmt::format("{}: a picture of {} × {} pixels with {} channels, expected a flat picture",
+                                     file.string(), spec.width, spec.height, spec.nchannels));
+    }
+    if (static_cast<double>(spec.width) * spec.height > kMostPixels) {
+        throw InputError(fmt::format("{}: {} × {} pixels, expected at most {:.0f} million", file.string(), spec.width,
+                                     spec.height, kMostPixels / 1e6));
+    }
+    Image image = make_image(spec.width, spec.height, channel_names(spec));
+    if (!input->read_image(0, 0, 0, spec.nchannels, OIIO::TypeDesc::FLOAT, image.pixels.data())) {
+        throw InputError(fmt::format("{}: the picture is damaged: {}", file.string(), input->geterror()));
+    }
+    input->close();
+
+    const int orientation = spec.get_int_attribute("Orientation", 1);
+    if (orientation != 1) {
+        OIIO::ImageBuf stored(spec, image.pixels.data());
+        const OIIO::ImageBuf upright = OIIO::ImageBufAlgo::reorient(stored);
+        Image turned = make_image(upright.spec().width, upright.spec().height, image.channels);
+        upright.get_pixels(OIIO::ROI::All(), OIIO::TypeDesc::FLOAT, turned.pixels.data());
+        image = std::move(turned);
+    }
+    const int alpha = find_channel(image, "A");
+    if (alpha >= 0 && image.channel_count() > 1) {
+        drop_channel(image, alpha);
+    }
+    if (!spec.format.is_floating_point()) {
+        linearise(image, spec.get_string_attribute("oiio:ColorSpace", "sRGB"));
+    }
+    for (const auto& attribute : spec.extra_attribs) {
+        image.metadata[attribute.name().string()] = attribute.get_string();
+    }
+    return image;
+}
+
+void write_exr(const Image& image, const std::filesystem::path& file) {
+    OIIO::ImageSpec spec(image.width, image.height, image.channel_count(), OIIO::TypeDesc::FLOAT);
+    spec.channelnames = image.channels;
+    spec.attribute("compression", "zip");
+    spec.attribute("oiio:ColorSpace", "linear");
+    spec.attribute("DateTime",
+                   "1970:01:01 00:00:00");  // else the library writes the clock's: the same render, other bytes
+    for (const auto& [name, value] : image.metadata) {
+        spec.attribute(name, value);
+    }
+    write_with_oiio(spec, OIIO::TypeDesc::FLOAT, image.pixels.data(), file);
+}
+
+void write_png(const Image& image, const std::filesystem::path& file) {
+    const std::string bytes = encode_png(image);
+    write_file(file, bytes);
+}
+
+std::string encode_png(const Image& image) {
+    const EncodedPng encoded = encode_srgb(image);
+    OIIO::ImageSpec spec(image.width, image.height, encoded.channels, OIIO::TypeDesc::UINT8);
+    spec.attribute("oiio:ColorSpace", "sRGB");
+    std::vector<unsigned char> bytes;
+    OIIO::Filesystem::IOVecOutput sink(bytes);
+    const auto output = OIIO::ImageOutput::create("png", &sink);
+    if (!output || !output->open("picture.png", spec) ||
+        !output->write_image(OIIO::TypeDesc::UINT8, encoded.pixels.data()) || !output->close()) {
+        throw std::runtime_error(
+            fmt::format("a PNG cannot be made: {}", output ? output->geterror() : OIIO::geterror()));
+    }
+    return {bytes.begin(), bytes.end()};
+}
+
+}  // namespace lensproof

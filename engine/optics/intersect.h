@@ -1,0 +1,53 @@
+// engine/optics/intersect.h — where a ray meets a spherical or flat surface.
+#pragma once
+#include <cmath>
+
+#include "engine/optics/ray.h"
+#include "engine/optics/select.h"
+
+namespace lensproof {
+
+/// The outcome of `intersect`. Where `hit` is false the numbers are finite and meaningless.
+template <class T>
+struct Intersection {
+    Vec3<T> point;    // relative to the surface's vertex, mm
+    T distance;       // along the ray, signed, mm
+    T cos_incidence;  // positive; between the ray and the surface's normal
+    decltype(T() < T()) hit;
+};
+
+/// Where `ray` crosses a sphere of curvature `c` (1/mm), whose vertex is the origin, from the side of negative z to
+/// that of positive z (`heading` = +1, light towards the sensor) or back (`heading` = −1).
+///
+/// Solved about the ray's closest approach to the vertex, in curvature form:
+///     c s² − 2 d_z s + f = 0,   f = c p·p − 2 p_z,   p = o − (o·d) d,
+/// so that flat (c = 0) and nearly flat surfaces lose no digits and far-away origins do not matter
+/// (Feder 1951; Welford, Aberrations of Optical Systems, ch. 4). Of the two roots the one is taken at which d·n has the
+/// heading's sign, each in the form that does not cancel: f / q or q / c with q = d_z ± cos i of equal signs. So a ray
+/// that enters a fisheye from more than 90° off the axis (d_z < 0, heading +1) finds the front of the sphere too. Only
+/// the half of the sphere that carries the vertex counts (1 − c z > 0).
+///
+/// T: float, double, long double, a multiprecision number, ceres::Jet or a packet. A ray that misses, or only
+/// touches, has `hit` false and finite, meaningless numbers elsewhere; nothing is NaN.
+template <class T>
+Intersection<T> intersect(const Ray<T>& ray, const T& c, const T& heading) {
+    using std::copysign;
+    using std::sqrt;
+    const T to_vertex = -dot(ray.origin, ray.direction);
+    const Vec3<T> p = ray.origin + to_vertex * ray.direction;
+    const T f = c * dot(p, p) - T(2) * p.z;
+    const T discriminant = ray.direction.z * ray.direction.z - c * f;
+    const auto meets_sphere = discriminant > T(0);
+    const T cos_incidence = sqrt(select(meets_sphere, discriminant, T(1)));
+    const T q = ray.direction.z + copysign(cos_incidence, ray.direction.z);
+    const auto along = ray.direction.z * heading > T(0);
+    const auto curved = c * c > T(0);
+    const T s = select(along, f / q, q / select(curved, c, T(1)));
+    const Vec3<T> point = p + s * ray.direction;
+    return {.point = point,
+            .distance = to_vertex + s,
+            .cos_incidence = cos_incidence,
+            .hit = meets_sphere && (along || curved) && T(1) - c * point.z > T(0)};
+}
+
+}  // namespace lensproof

@@ -1,0 +1,73 @@
+// engine/optics/lens.h — a lens as it was meant: glasses looked up, stop and focus set, ready to be traced.
+#pragma once
+#include <map>
+#include <string>
+#include <vector>
+
+#include "engine/optics/glass.h"
+#include "engine/optics/prescription.h"
+#include "engine/optics/trace.h"
+
+namespace lensproof {
+
+/// A surface of a `Lens`. Lens space, mm.
+struct LensSurface {
+    double curvature = 0.0;
+    double vertex_z = 0.0;
+    double semi_diameter = 0.0;
+    Glass medium;  // behind the surface
+    bool is_stop = false;
+};
+
+/// A traceable lens. The scene lies in air in front of the first surface, the sensor at `image_z` in air behind the
+/// last.
+struct Lens {
+    std::string name;
+    std::string id;  // the file's stem
+    std::string source;
+    Projection projection = Projection::rectilinear;
+    StatedData stated;
+    std::vector<LensSurface> surfaces;
+    double image_z = 0.0;
+
+    [[nodiscard]] int stop_index() const;
+    [[nodiscard]] double last_vertex_z() const { return surfaces.back().vertex_z; }
+};
+
+/// Constant indices that stand for glasses, by catalogue name: `--index LAK9=1.691`.
+using IndexOverrides = std::map<std::string, double>;
+
+/// Looks the prescription's glasses up. Throws InputError naming the file, the line and the name of an unknown glass,
+/// and for an override of a glass that the lens does not have.
+Lens make_lens(const Prescription& prescription, const std::vector<Glass>& glasses,
+               const IndexOverrides& overrides = {});
+
+/// find_lens_file, read_prescription and make_lens with the glasses that ship.
+Lens load_lens(const std::string& lens, const IndexOverrides& overrides = {});
+
+/// The lens with its stop opened or closed to f-number `f_number` (paraxial: EFL over entrance pupil diameter, at the d
+/// line, object at infinity). Throws InputError where that is wider than the prescription's stop.
+Lens with_f_number(Lens lens, double f_number);
+
+/// The lens with the sensor moved to the paraxial image at the d line of an object `object_distance_mm` in front of the
+/// first vertex; infinity is allowed. Throws InputError for an object at or inside the front focal point, which has no
+/// real image.
+Lens focused_at(Lens lens, double object_distance_mm);
+
+/// The range of wavelengths that every glass's formula covers, nm.
+struct WavelengthRange {
+    double min_nm = 0.0;
+    double max_nm = 0.0;
+};
+WavelengthRange wavelength_range(const Lens& lens);
+
+/// The lens at one wavelength in precision T. Throws InputError naming the glass whose formula does not cover it.
+template <class T>
+TraceLens<T> at_wavelength(const Lens& lens, double wavelength_nm);
+
+/// Which precisions exist: `double` is the reference, `float` the fast path, `long double` judges both.
+extern template TraceLens<float> at_wavelength(const Lens&, double);
+extern template TraceLens<double> at_wavelength(const Lens&, double);
+extern template TraceLens<long double> at_wavelength(const Lens&, double);
+
+}  // namespace lensproof

@@ -1,0 +1,41 @@
+// engine/optics/ray.h — a ray in lens space, and what became of it.
+#pragma once
+#include "engine/optics/vec.h"
+
+namespace lensproof {
+
+/// A half-line: `origin` in mm, `direction` of unit length. Lens space: +z runs from the scene to the sensor along the
+/// optical axis, the origin is the vertex of the first surface, light from the scene travels towards +z.
+template <class T>
+struct Ray {
+    Vec3<T> origin;
+    Vec3<T> direction;
+};
+
+/// Why a ray ended, or `ok`.
+enum class RayStatus {
+    ok,
+    missed,                     // does not meet the surface's sphere, or only its far side
+    clipped,                    // meets a refracting surface beyond its rim
+    total_internal_reflection,  // beyond the critical angle
+    stopped,                    // meets the aperture stop outside its opening
+};
+
+/// The status as files spell it: "ok", "missed", "clipped", "total-internal-reflection", "stopped".
+constexpr const char* status_name(RayStatus status) {
+    switch (status) {
+        case RayStatus::ok:
+            return "ok";
+        case RayStatus::missed:
+            return "missed";
+        case RayStatus::clipped:
+            return "clipped";
+        case RayStatus::total_internal_reflection:
+            return "total-internal-reflection";
+        case RayStatus::stopped:
+            return "stopped";
+    }
+    return "unknown";
+}
+
+}  // namespace lensproof

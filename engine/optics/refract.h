@@ -1,0 +1,48 @@
+// engine/optics/refract.h — Snell's law and Fresnel's equations at one surface.
+#pragma once
+#include <cmath>
+
+#include "engine/optics/select.h"
+#include "engine/optics/vec.h"
+
+namespace lensproof {
+
+/// The outcome of `refract`. Where `transmitted` is false (total internal reflection) the numbers are finite and
+/// meaningless.
+template <class T>
+struct Refraction {
+    Vec3<T> direction;
+    T cos_refraction;
+    decltype(T() < T()) transmitted;
+};
+
+/// The direction after a surface, by Snell's law in vector form: d' = μ d + (cos i' − μ cos i) n with μ = n₁/n₂
+/// (Welford, Aberrations of Optical Systems, §4.3). `normal` has unit length and points along the ray (d·n = cos i >
+/// 0).
+///
+/// cos² i' = 1 − μ² (1 − cos² i) is formed as cos² i + (1 − μ²) sin² i, which is exact for μ = 1.
+template <class T>
+Refraction<T> refract(const Vec3<T>& direction, const Vec3<T>& normal, const T& cos_incidence, const T& index_ratio) {
+    using std::sqrt;
+    const T sin2_incidence = T(1) - cos_incidence * cos_incidence;
+    const T cos2_refraction =
+        cos_incidence * cos_incidence + (T(1) - index_ratio) * (T(1) + index_ratio) * sin2_incidence;
+    const auto transmitted = cos2_refraction > T(0);
+    const T cos_refraction = sqrt(select(transmitted, cos2_refraction, T(1)));
+    return {.direction = index_ratio * direction + (cos_refraction - index_ratio * cos_incidence) * normal,
+            .cos_refraction = cos_refraction,
+            .transmitted = transmitted};
+}
+
+/// The share of unpolarised light that passes an uncoated surface: 1 − (R_s + R_p) / 2
+/// (Fresnel; Born & Wolf, Principles of Optics, 7th ed., §1.5.2, eqs. 21a, 21b).
+template <class T>
+T fresnel_transmittance(const T& index_before, const T& index_after, const T& cos_incidence, const T& cos_refraction) {
+    const T s = (index_before * cos_incidence - index_after * cos_refraction) /
+                (index_before * cos_incidence + index_after * cos_refraction);
+    const T p = (index_after * cos_incidence - index_before * cos_refraction) /
+                (index_after * cos_incidence + index_before * cos_refraction);
+    return T(1) - (s * s + p * p) / T(2);
+}
+
+}  // namespace lensproof

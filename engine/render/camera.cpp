@@ -1,0 +1,166 @@
+#include "engine/render/camera.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "engine/spectral/illuminant.h"
+#include "engine/spectral/spectral_exr.h"
+#include "engine/spectral/wavelengths.h"
+
+namespace lensproof {
+
+namespace {
+
+constexpr Bounds kSensorSide{.min = 0.0, .max = 1e4, .min_excluded = true};
+constexpr double kMostPixels = 200e6;
+
+Sensor read_sensor(TomlTable& table) {
+    const std::vector<double> size = table.numbers("sensor_mm", 2, kSensorSide);
+    const std::vector<double> pixels = table.numbers("pixels", 2, {.min = 1.0, .max = 1e5});
+    const Sensor sensor{.width = static_cast<int>(pixels[0]),
+                        .height = static_cast<int>(pixels[1]),
+                        .pixel_pitch_mm = size[0] / pixels[0]};
+    if (sensor.width != pixels[0] || sensor.height != pixels[1] || pixels[0] * pixels[1] > kMostPixels) {
+        table.fail("pixels", fmt::format("is [{}, {}], expected two whole numbers, {:.0f} million pixels at most",
+                                         pixels[0], pixels[1], kMostPixels / 1e6));
+    }
+    if (std::abs(size[1] / pixels[1] / sensor.pixel_pitch_mm - 1.0) > 1e-6) {
+        table.fail("pixels", fmt::format("makes pixels of {} × {} mm with sensor_mm, expected square ones",
+                                         sensor.pixel_pitch_mm, size[1] / pixels[1]));
+    }
+    return sensor;
+}
+
+/// Wavelengths that the pupil's bounds are found at: the ends and the middle of the band.
+std::vector<TraceLens<double>> bounding_lenses(const std::vector<WavelengthStratum>& strata) {
+    return {strata.front().lens, strata[strata.size() / 2].lens, strata.back().lens};
+}
+
+SpectralStrata make_strata(const Camera& camera, const Lens& lens, const Light& light,
+                           const SpectralSampling& spectral) {
+    const WavelengthRange range = wavelength_range(lens);
+    const double min_nm = std::max(spectral.min_nm, range.min_nm);
+    const double max_nm = std::min(spectral.max_nm, range.max_nm);
+    SpectralStrata made;
+    if (min_nm != spectral.min_nm || max_nm != spectral.max_nm) {
+        made.clamp_note = fmt::format("wavelengths clamped to {} to {} nm, where the glasses of {} are known", min_nm,
+                                      max_nm, lens.name);
+    }
+    const WavelengthStrata bands = wavelength_strata(min_nm, max_nm, spectral.layers * spectral.strata_per_layer);
+    const Illuminant source = illuminant(light.illuminant);
+    const Spectrum radiance = radiance_of(source, light.luminance_cd_m2);
+    const SensorResponse response = sensor_response(camera.response, camera.exposure, source);
+    const std::vector<Vec3d> all_weights = stratum_weights(response, bands, source);
+    for (int i = 0; i < bands.count; ++i) {
+        const double nm = bands.midpoint(i);
+        const Vec3d& weights = all_weights[i];
+        made.strata.push_back(
+            {.wavelength_nm = nm,
+             .lens = at_wavelength<double>(lens, nm),
+             .white_radiance = radiance(nm),
+             .rgb_weights = response.channels.size() == 1 ? Vec3d{weights.x, weights.x, weights.x} : weights});
+    }
+    made.width_nm = bands.width_nm();
+    made.layer_nm = WavelengthStrata{min_nm, max_nm, spectral.layers}.midpoints();
+    return made;
+}
+
+}  // namespace
+
+Camera read_camera(TomlTable& table) {
+    Camera camera;
+    camera.lens = table.text("lens");
+    camera.f_number = table.number("f_number", {.min = 0.1, .max = 1000.0});
+    camera.focus_distance_mm = table.is_infinite("focus_distance_mm") ? std::numeric_limits<double>::infinity()
+                                                                      : table.number("focus_distance_mm", kPositive);
+    camera.sensor = read_sensor(table);
+    camera.exposure.time_s = table.number("shutter_s", kPositive);
+    camera.exposure.iso = table.number("iso", kPositive);
+    camera.response = table.choice("response", known_sensors());
+    table.finish();
+    return camera;
+}
+
+Light read_light(TomlTable& table) {
+    Light light;
+    light.illuminant = table.text_or("illuminant", light.illuminant);
+    light.luminance_cd_m2 = table.number_or("luminance_cd_m2", light.luminance_cd_m2, kPositive);
+    illuminant(light.illuminant);  // an unknown name is an error here, not when the render has begun
+    table.finish();
+    return light;
+}
+
+void read_render_table(TomlTable& table, ChartScene& scene) {
+    scene.samples_per_pixel = table.integer_or("samples_per_pixel", scene.samples_per_pixel, 1, 1 << 20);
+    if (table.has("wavelengths_nm")) {
+        const std::vector<double> range = table.numbers("wavelengths_nm", 2, {.min = 100.0, .max = 20000.0});
+        scene.spectral.min_nm = range[0];
+        scene.spectral.max_nm = range[1];
+        if (!(range[0] < range[1])) {
+            table.fail("wavelengths_nm", fmt::format("is [{}, {}], expected the shorter first", range[0], range[1]));
+        }
+    }
+    scene.spectral.layers = table.integer_or("layers", scene.spectral.layers, 1, 1000);
+    scene.spectral.strata_per_layer = table.integer_or("strata_per_layer", scene.spectral.strata_per_layer, 1, 100);
+    table.finish();
+}
+
+ChartScene read_chart_scene(const std::filesystem::path& file) {
+    TomlTable top = TomlTable::read(file);
+    ChartScene scene;
+    TomlTable camera = top.table("camera");
+    scene.camera = read_camera(camera);
+    TomlTable chart = top.table("chart");
+    scene.chart = read_chart(chart);
+    if (!std::holds_alternative<FlatField>(scene.chart.pattern)) {
+        TomlTable pose = top.table("pose");
+        scene.placement = read_placement(pose);
+    }
+    if (auto light = top.optional_table("light")) {
+        scene.light = read_light(*light);
+    }
+    if (auto render = top.optional_table("render")) {
+        read_render_table(*render, scene);
+    }
+    top.finish();
+    return scene;
+}
+
+Lens camera_lens(const Camera& camera) {
+    return focused_at(with_f_number(load_lens(camera.lens), camera.f_number), camera.focus_distance_mm);
+}
+
+ChartCamera::ChartCamera(const Camera& camera, const Light& light, const SpectralSampling& spectral)
+    : camera_(camera),
+      lens_(camera_lens(camera)),
+      spectral_(make_strata(camera, lens_, light, spectral)),
+      // Pixels are areas: the corner pixel's own corner is the farthest point sampled.
+      pupil_(bounding_lenses(spectral_.strata), camera.sensor.half_diagonal_mm()) {
+    metadata_ = spectral_attributes(kFilmIrradianceUnits);
+    metadata_["lensproof:lens"] = lens_.name;
+    metadata_["lensproof:fNumber"] = fmt::format("{}", camera.f_number);
+    metadata_["lensproof:focusDistance_mm"] = fmt::format("{}", camera.focus_distance_mm);
+    metadata_["lensproof:pixelPitch_um"] = fmt::format("{}", 1e3 * camera.sensor.pixel_pitch_mm);
+    metadata_["lensproof:shutter_s"] = fmt::format("{}", camera.exposure.time_s);
+    metadata_["lensproof:iso"] = fmt::format("{}", camera.exposure.iso);
+    metadata_["lensproof:response"] = camera.response;
+    metadata_["lensproof:illuminant"] = light.illuminant;
+}
+
+Image ChartCamera::render(const Chart& chart, const Placement& placement, const RenderSettings& settings,
+                          const std::function<void(double)>& progress) const {
+    const SeenChart view{.chart = chart,
+                         .pose = place(placement),
+                         .sensor = camera_.sensor,
+                         .strata = spectral_.strata,
+                         .stratum_width_nm = spectral_.width_nm,
+                         .layer_nm = spectral_.layer_nm};
+    Image image = render_chart(view, pupil_, settings, progress);
+    image.metadata = metadata_;
+    return image;
+}
+
+}  // namespace lensproof

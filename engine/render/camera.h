@@ -1,0 +1,92 @@
+// engine/render/camera.h — a camera, its light and its spectral sampling as files state them, and a chart scene from
+// them.
+#pragma once
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "engine/io/toml.h"
+#include "engine/optics/lens.h"
+#include "engine/render/chart_render.h"
+#include "engine/scene/chart_file.h"
+#include "engine/spectral/sensor_response.h"
+
+namespace lensproof {
+
+struct Camera {
+    std::string lens;  // a file, or the name of a lens that ships
+    double f_number = 0.0;
+    double focus_distance_mm = 0.0;  // from the first vertex; may be infinite
+    Sensor sensor;
+    Exposure exposure;
+    std::string response;
+};
+
+/// Reads a camera's table: lens, f_number, focus_distance_mm (inf allowed), sensor_mm = [w, h], pixels = [w, h],
+/// shutter_s, iso, response. Throws InputError naming file, line and key; pixels have to be square.
+Camera read_camera(TomlTable& table);
+
+struct Light {
+    std::string illuminant = "D65";
+    double luminance_cd_m2 = 1000.0;  // of a perfect white in it
+};
+
+Light read_light(TomlTable& table);
+
+/// How a render samples wavelengths: `layers` spectral layers of equal width, each made of `strata_per_layer` strata.
+struct SpectralSampling {
+    double min_nm = 400.0;
+    double max_nm = 700.0;
+    int layers = 30;
+    int strata_per_layer = 2;
+};
+
+/// What is rendered and how finely.
+struct ChartScene {
+    Camera camera;
+    Light light;
+    SpectralSampling spectral;
+    int samples_per_pixel = 64;
+    Chart chart;
+    Placement placement;
+};
+
+/// Reads the optional table [render]: samples_per_pixel, wavelengths_nm = [from, to], layers, strata_per_layer.
+void read_render_table(TomlTable& table, ChartScene& scene);
+
+/// Reads a scene file: [camera], [light], [chart], [pose], [render]; the last two optional for a flat field.
+ChartScene read_chart_scene(const std::filesystem::path& file);
+
+/// The camera's lens: loaded, stopped down and focused.
+Lens camera_lens(const Camera& camera);
+
+/// A lens at the wavelengths that a render samples.
+struct SpectralStrata {
+    std::vector<WavelengthStratum> strata;
+    double width_nm = 0.0;
+    std::vector<double> layer_nm;
+    std::string clamp_note;  // says so where wavelengths were clamped to the range of the lens's glasses
+};
+
+/// A camera with everything about its lens computed once, ready for any number of charts.
+class ChartCamera {
+  public:
+    ChartCamera(const Camera& camera, const Light& light, const SpectralSampling& spectral);
+
+    [[nodiscard]] Image render(const Chart& chart, const Placement& placement, const RenderSettings& settings,
+                               const std::function<void(double)>& progress = {}) const;
+
+    [[nodiscard]] const Lens& lens() const { return lens_; }
+    [[nodiscard]] const Sensor& sensor() const { return camera_.sensor; }
+    [[nodiscard]] const SpectralStrata& spectral() const { return spectral_; }
+
+  private:
+    Camera camera_;
+    Lens lens_;
+    SpectralStrata spectral_;
+    PupilBounds pupil_;
+    std::map<std::string, std::string> metadata_;
+};
+
+}  // namespace lensproof

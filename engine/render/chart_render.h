@@ -1,0 +1,61 @@
+// engine/render/chart_render.h — a chart seen through a lens: the camera-path pass for flat, evenly lit targets.
+#pragma once
+#include <cstdint>
+#include <functional>
+#include <vector>
+
+#include "engine/io/image.h"
+#include "engine/optics/pupil_bounds.h"
+#include "engine/optics/trace.h"
+#include "engine/scene/chart.h"
+#include "engine/scene/pose.h"
+
+namespace lensproof {
+
+/// The sensor behind a lens: square pixels, centred on the axis. The picture is turned upright, as a camera does it:
+/// pixel (u, v) lies at x = −(u − (width − 1)/2) pitch, y = (v − (height − 1)/2) pitch in lens space.
+struct Sensor {
+    int width = 0;
+    int height = 0;
+    double pixel_pitch_mm = 0.0;
+
+    [[nodiscard]] Vec2d position(double u, double v) const {
+        return {-(u - 0.5 * (width - 1)) * pixel_pitch_mm, (v - 0.5 * (height - 1)) * pixel_pitch_mm};
+    }
+    [[nodiscard]] double half_diagonal_mm() const;
+};
+
+/// One of the wavelength strata that a render samples evenly.
+struct WavelengthStratum {
+    double wavelength_nm = 0.0;
+    TraceLens<double> lens;
+    double white_radiance = 0.0;  // of a perfect white diffuser in the scene's light, W·m⁻²·sr⁻¹·nm⁻¹
+    Vec3d rgb_weights;  // linear RGB a film irradiance of 1 W·m⁻²·nm⁻¹ yields per nm, exposure included
+};
+
+/// What is seen. The world around the chart is as white as its white, in every direction.
+struct SeenChart {
+    Chart chart;
+    RigidMotion pose;  // of the chart
+    Sensor sensor;
+    std::vector<WavelengthStratum> strata;  // of equal width
+    double stratum_width_nm = 0.0;
+    std::vector<double> layer_nm;  // centres of the spectral layers; strata.size() is a multiple of layer_nm.size()
+};
+
+struct RenderSettings {
+    int samples_per_pixel = 64;
+    std::uint64_t seed = 0;
+    int threads = 0;
+};
+
+/// Renders the view. Channels: R, G, B (linear, 1 = saturation), their standard errors error.R, error.G, error.B
+/// (as if samples were independent: an upper bound, since they are stratified), then one spectral layer a wavelength:
+/// mean film irradiance over its band, W·m⁻²·nm⁻¹.
+///
+/// The estimator of the measurement equation at film point x (Kolb et al. 1995, eq. 4): E = ∫ L τ cos⁴θ / Z² dA over
+/// the pupil ellipse; pixels integrate over their whole area. The result depends on view, samples and seed alone.
+Image render_chart(const SeenChart& view, const PupilBounds& pupil, const RenderSettings& settings,
+                   const std::function<void(double done)>& progress = {});
+
+}  // namespace lensproof

@@ -1,0 +1,47 @@
+// engine/render/parallel.h — independent pieces of work on several threads.
+#pragma once
+#include <algorithm>
+#include <atomic>
+#include <exception>
+#include <mutex>
+#include <thread>
+#include <vector>
+
+namespace lensproof {
+
+/// Calls work(i) for every i in [0, count) on up to `threads` threads (0: one a core), in no particular order, then
+/// done(finished) under a lock after each. The first exception stops the rest and is thrown here.
+template <class Work, class Done>
+void parallel_for(int count, int threads, const Work& work, const Done& done) {
+    const int available = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
+    const int workers = std::clamp(threads > 0 ? threads : available, 1, std::max(1, count));
+    std::atomic<int> next{0};
+    std::mutex mutex;
+    int finished = 0;
+    std::exception_ptr failure;
+    const auto run = [&] {
+        try {
+            for (int i = next++; i < count; i = next++) {
+                work(i);
+                const std::scoped_lock lock(mutex);
+                done(++finished);
+            }
+        } catch (...) {
+            const std::scoped_lock lock(mutex);
+            failure = std::current_exception();
+            next = count;
+        }
+    };
+    {
+        std::vector<std::jthread> pool;
+        for (int i = 1; i < workers; ++i) {
+            pool.emplace_back(run);
+        }
+        run();
+    }
+    if (failure) {
+        std::rethrow_exception(failure);
+    }
+}
+
+}  // namespace lensproof

@@ -1,0 +1,80 @@
+#include "engine/scene/chart.h"
+
+#include <cmath>
+
+namespace lensproof {
+
+namespace {
+
+/// Calls the overload that fits the pattern.
+template <class... Fs>
+struct Overloaded : Fs... {
+    using Fs::operator()...;
+};
+
+bool is_black(const Checkerboard& board, double x_mm, double y_mm) {
+    const double column = std::floor(x_mm / board.square_mm + 0.5 * board.columns);
+    const double row = std::floor(y_mm / board.square_mm + 0.5 * board.rows);
+    const bool on_board = column >= 0 && column < board.columns && row >= 0 && row < board.rows;
+    return on_board && std::fmod(column + row, 2.0) == 0.0;
+}
+
+bool is_black(const DiscGrid& grid, double x_mm, double y_mm) {
+    const double first_x = -0.5 * (grid.columns - 1) * grid.pitch_mm;
+    const double first_y = -0.5 * (grid.rows - 1) * grid.pitch_mm;
+    const double column = std::round((x_mm - first_x) / grid.pitch_mm);
+    const double row = std::round((y_mm - first_y) / grid.pitch_mm);
+    const bool on_grid = column >= 0 && column < grid.columns && row >= 0 && row < grid.rows;
+    return on_grid && std::hypot(x_mm - first_x - column * grid.pitch_mm, y_mm - first_y - row * grid.pitch_mm) <
+                          0.5 * grid.diameter_mm;
+}
+
+bool is_black(const FlatField&, double, double) {
+    return false;
+}
+
+double feature_pitch_mm(const Chart& chart) {
+    return std::visit(
+        Overloaded{[](const Checkerboard& board) { return board.square_mm; },
+                   [](const DiscGrid& grid) { return grid.pitch_mm; }, [](const FlatField&) { return 0.0; }},
+        chart.pattern);
+}
+
+}  // namespace
+
+double reflectance(const Chart& chart, double x_mm, double y_mm) {
+    const bool black = std::visit([&](const auto& pattern) { return is_black(pattern, x_mm, y_mm); }, chart.pattern);
+    return black ? chart.black_reflectance : chart.white_reflectance;
+}
+
+GridSize feature_grid(const Chart& chart) {
+    return std::visit(Overloaded{[](const Checkerboard& board) {
+                                     return GridSize{board.columns - 1, board.rows - 1};
+                                 },
+                                 [](const DiscGrid& grid) {
+                                     return GridSize{grid.columns, grid.rows};
+                                 },
+                                 [](const FlatField&) { return GridSize{}; }},
+                      chart.pattern);
+}
+
+std::vector<Vec2d> feature_points(const Chart& chart) {
+    const GridSize size = feature_grid(chart);
+    const double pitch = feature_pitch_mm(chart);
+    std::vector<Vec2d> points;
+    for (int row = 0; row < size.rows; ++row) {
+        for (int column = 0; column < size.columns; ++column) {
+            points.push_back({(column - 0.5 * (size.columns - 1)) * pitch, (row - 0.5 * (size.rows - 1)) * pitch});
+        }
+    }
+    return points;
+}
+
+std::string kind_name(const Chart& chart) {
+    return std::visit(
+        Overloaded{[](const Checkerboard&) { return "checkerboard"; }, [](const DiscGrid&) { return "disc-grid"; },
+                   [](const FlatField&) { return "flat-field"; }},
+        chart.pattern);
+}
+
+}  // namespace lensproof

@@ -1,0 +1,85 @@
+#include "engine/spectral/illuminant.h"
+
+#include <fmt/format.h>
+
+#include <charconv>
+#include <string_view>
+
+#include "engine/io/input_error.h"
+#include "engine/spectral/colour_matching.h"
+#include "engine/spectral/planck.h"
+
+namespace lensproof {
+
+namespace {
+
+// What is computed, not tabulated, covers all that silicon sees.
+constexpr int kFirstNm = 300;
+constexpr int kLastNm = 1100;
+constexpr double kColdest = 500.0;
+constexpr double kHottest = 100000.0;
+constexpr std::string_view kBlackbody = "blackbody:";
+
+Spectrum tabulated(const std::string& file) {
+    return read_spectra(spectral_data(file), {"relative_power"}).front();
+}
+
+Spectrum blackbody(double temperature_k) {
+    Spectrum spectrum;
+    for (int wavelength_nm = kFirstNm; wavelength_nm <= kLastNm; ++wavelength_nm) {
+        spectrum.wavelength_nm.push_back(wavelength_nm);
+        spectrum.value.push_back(planck_radiance(wavelength_nm, temperature_k));
+    }
+    return spectrum;
+}
+
+double temperature_in(const std::string& name) {
+    double temperature_k = 0.0;
+    const char* const begin = name.data() + kBlackbody.size();
+    const char* const end = name.data() + name.size();
+    const auto [parsed, error] = std::from_chars(begin, end, temperature_k);
+    if (error != std::errc() || parsed != end || !(temperature_k >= kColdest && temperature_k <= kHottest)) {
+        throw InputError(fmt::format("illuminant '{}': expected a temperature from {} to {} K after '{}'", name,
+                                     kColdest, kHottest, kBlackbody));
+    }
+    return temperature_k;
+}
+
+/// `light` such that K_m ∫ S V dλ = `luminous`: cd/m² for a radiance, lx for an irradiance.
+Spectrum at_luminous(const Illuminant& light, double luminous) {
+    return luminous / (kMaximumLuminousEfficacy * integral_of_product(light.relative, photopic_efficiency())) *
+           light.relative;
+}
+
+}  // namespace
+
+std::vector<std::string> known_illuminants() {
+    return {"D65", "A", "E", "blackbody:<kelvin>"};
+}
+
+Illuminant illuminant(const std::string& name) {
+    if (name == "D65") {
+        return {.name = name, .relative = tabulated("illuminant-d65.csv")};
+    }
+    if (name == "A") {
+        return {.name = name, .relative = tabulated("illuminant-a.csv")};
+    }
+    if (name == "E") {
+        return {.name = name, .relative = {.wavelength_nm = {kFirstNm, kLastNm}, .value = {1.0, 1.0}}};
+    }
+    if (name.starts_with(kBlackbody)) {
+        return {.name = name, .relative = blackbody(temperature_in(name))};
+    }
+    throw InputError(
+        fmt::format("illuminant '{}' is not known: expected one of {}", name, fmt::join(known_illuminants(), ", ")));
+}
+
+Spectrum radiance_of(const Illuminant& light, double luminance_cd_m2) {
+    return at_luminous(light, luminance_cd_m2);
+}
+
+Spectrum irradiance_of(const Illuminant& light, double illuminance_lx) {
+    return at_luminous(light, illuminance_lx);
+}
+
+}  // namespace lensproof

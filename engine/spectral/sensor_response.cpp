@@ -1,0 +1,137 @@
+#include "engine/spectral/sensor_response.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <utility>
+
+#include "engine/io/input_error.h"
+#include "engine/spectral/colour_matching.h"
+
+namespace lensproof {
+
+namespace {
+
+/// Relative sensitivities, a channel's scale being free: the white balance sets it.
+struct Sensitivities {
+    std::vector<std::string> channels;
+    std::vector<Spectrum> relative;
+};
+
+/// The x, y, z chromaticities of the Rec. 709 primaries (ITU-R BT.709-6; the same in IEC 61966-2-1).
+constexpr Vec3d kRed{0.640, 0.330, 0.030};
+constexpr Vec3d kGreen{0.300, 0.600, 0.100};
+constexpr Vec3d kBlue{0.150, 0.060, 0.790};
+
+/// The row of XYZ → RGB that is blind to the primaries `a` and `b`: up to scale, a row of the inverse of the matrix
+/// whose columns are the primaries. (red, green, blue) is right-handed, so cyclic order gives positive scales.
+Spectrum blind_to(const Vec3d& a, const Vec3d& b, const ColourMatching& observer) {
+    const Vec3d row = cross(a, b);
+    Spectrum sensitivity = observer.x_bar;
+    for (std::size_t i = 0; i < sensitivity.value.size(); ++i) {
+        sensitivity.value[i] =
+            dot(row, Vec3d{observer.x_bar.value[i], observer.y_bar.value[i], observer.z_bar.value[i]});
+    }
+    return sensitivity;
+}
+
+Sensitivities colorimetric() {
+    const ColourMatching observer = cie_1931();
+    return {.channels = {"R", "G", "B"},
+            .relative = {blind_to(kGreen, kBlue, observer), blind_to(kBlue, kRed, observer),
+                         blind_to(kRed, kGreen, observer)}};
+}
+
+Sensitivities measured_camera() {
+    return {.channels = {"R", "G", "B"},
+            .relative = read_spectra(spectral_data("camera-nikon-d5100.csv"), {"red", "green", "blue"})};
+}
+
+Sensitivities photometer() {
+    return {.channels = {"Y"}, .relative = {photopic_efficiency()}};
+}
+
+Sensitivities flat() {
+    return {.channels = {"Y"}, .relative = {{.wavelength_nm = {400.0, 700.0}, .value = {1.0, 1.0}}}};
+}
+
+struct Sensor {
+    const char* name;
+    Sensitivities (*sensitivities)();
+};
+
+constexpr std::array<Sensor, 4> kSensors{
+    {{"cie-1931", colorimetric}, {"camera", measured_camera}, {"luminance", photometer}, {"monochrome", flat}}};
+
+Sensitivities sensitivities_of(const std::string& name) {
+    for (const Sensor& sensor : kSensors) {
+        if (sensor.name == name) {
+            return sensor.sensitivities();
+        }
+    }
+    throw InputError(
+        fmt::format("sensor '{}' is not known: expected one of {}", name, fmt::join(known_sensors(), ", ")));
+}
+
+void require_positive(double value, const char* what, const char* unit) {
+    if (!(value > 0.0 && std::isfinite(value))) {
+        throw InputError(fmt::format("{} is {}{}: expected a positive number", what, value, unit));
+    }
+}
+
+}  // namespace
+
+double saturation_exposure_lx_s(double iso) {
+    return 78.0 / iso;
+}
+
+Vec3d SensorResponse::weights(double wavelength_nm) const {
+    return {weight[0](wavelength_nm), weight[1](wavelength_nm), weight[2](wavelength_nm)};
+}
+
+Vec3d SensorResponse::values(const Spectrum& film_irradiance) const {
+    return {integral_of_product(film_irradiance, weight[0]), integral_of_product(film_irradiance, weight[1]),
+            integral_of_product(film_irradiance, weight[2])};
+}
+
+std::vector<std::string> known_sensors() {
+    std::vector<std::string> names;
+    names.reserve(kSensors.size());
+    for (const Sensor& sensor : kSensors) {
+        names.emplace_back(sensor.name);
+    }
+    return names;
+}
+
+SensorResponse sensor_response(const std::string& name, const Exposure& exposure, const Illuminant& white) {
+    require_positive(exposure.time_s, "exposure time", " s");
+    require_positive(exposure.iso, "ISO", "");
+    Sensitivities sensitivities = sensitivities_of(name);
+    const Spectrum saturating = irradiance_of(white, saturation_exposure_lx_s(exposure.iso) / exposure.time_s);
+    SensorResponse response{.name = name, .channels = sensitivities.channels, .weight = {}};
+    for (std::size_t channel = 0; channel < response.channels.size(); ++channel) {
+        const double of_white = integral_of_product(saturating, sensitivities.relative[channel]);
+        if (!(of_white > 0.0)) {
+            throw InputError(
+                fmt::format("sensor '{}' cannot be balanced to illuminant '{}': its channel {} does not see it", name,
+                            white.name, response.channels[channel]));
+        }
+        response.weight[channel] = 1.0 / of_white * std::move(sensitivities.relative[channel]);
+    }
+    return response;
+}
+
+std::vector<Vec3d> stratum_weights(const SensorResponse& sensor, const WavelengthStrata& strata,
+                                   const Illuminant& light) {
+    std::vector<Vec3d> weights(static_cast<std::size_t>(strata.count));
+    for (int i = 0; i < strata.count; ++i) {
+        const double at_midpoint = light.relative(strata.midpoint(i));
+        if (at_midpoint > 0.0) {
+            const Spectrum inside = clipped(light.relative, strata.at(i, 0.0), strata.at(i, 1.0));
+            weights[static_cast<std::size_t>(i)] = 1.0 / (at_midpoint * strata.width_nm()) * sensor.values(inside);
+        }
+    }
+    return weights;
+}
+
+}  // namespace lensproof

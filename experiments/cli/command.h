@@ -1,0 +1,41 @@
+// experiments/cli/command.h — what the program's commands share.
+#pragma once
+#include <CLI/CLI.hpp>
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <nlohmann/json.hpp>
+#include <string>
+
+namespace lensproof {
+
+/// Exit statuses, as the command line's contract has them.
+enum ExitStatus { kDone = 0, kCheckFailed = 1, kUnusableInput = 2, kInternalFailure = 3 };
+
+/// The options that every command takes.
+struct CommonOptions {
+    std::string json_file;  // "-": standard output, and nothing else there
+    bool quiet = false;
+    int threads = 0;
+    std::uint64_t seed = 0;
+};
+
+/// Adds --json, --quiet, --threads and --seed to `command`.
+void add_common_options(CLI::App& command, CommonOptions& options);
+
+/// Writes the machine-readable result where --json asked for it.
+void write_json_result(const CommonOptions& options, const nlohmann::ordered_json& result);
+
+/// Whether a person-readable result may go to standard output (not when the JSON goes there).
+bool prints_text(const CommonOptions& options);
+
+/// Each adds its subcommand to `app`; running it stores the exit status in `status`.
+void add_trace_command(CLI::App& app, int& status);
+void add_render_command(CLI::App& app, int& status);
+void add_measure_command(CLI::App& app, int& status);
+void add_compare_command(CLI::App& app, int& status);
+void add_run_command(CLI::App& app, int& status);
+void add_lenses_command(CLI::App& app, int& status);
+void add_glasses_command(CLI::App& app, int& status);
+
+}  // namespace lensproof

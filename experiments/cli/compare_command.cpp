@@ -1,0 +1,224 @@
+// experiments/cli/compare_command.cpp — `lensproof compare A B`: two profiles, two images, or a lens with a profile.
+#include <fmt/format.h>
+
+#include <cmath>
+#include <limits>
+#include <memory>
+
+#include "calibration/profile.h"
+#include "engine/io/image.h"
+#include "engine/io/input_error.h"
+#include "experiments/cli/command.h"
+#include "experiments/curve_difference.h"
+#include "experiments/lens_profile.h"
+#include "experiments/verdict.h"
+
+namespace lensproof {
+
+namespace {
+
+struct CompareOptions {
+    CommonOptions common;
+    std::string a;
+    std::string b;
+    double distortion_limit_percent = 0.0;  // 0: no limit, here and below
+    double position_limit_px = 0.0;
+    double vignetting_limit_ev = 0.0;
+    double chromatic_limit_px = 0.0;
+    double rms_limit = 0.0;
+    double f_number = 8.0;
+    double focus_mm = std::numeric_limits<double>::infinity();
+    std::string response = "camera";
+};
+
+bool has_extension(const std::string& name, const char* extension) {
+    return std::filesystem::path(name).extension() == extension;
+}
+
+bool is_lens(const std::string& name) {
+    return name.find('.') == std::string::npos || has_extension(name, ".toml") || has_extension(name, ".csv");
+}
+
+/// The lens seen by the camera that `like` was taken with.
+Profile profile_of_lens(const std::string& lens, const Profile& like, const CompareOptions& options) {
+    if (!like.pixel_pitch_um) {
+        throw InputError(
+            fmt::format("{} has no pixel_pitch_um, which {} needs to be compared with it: measure with "
+                        "--pixel-pitch",
+                        like.name, lens));
+    }
+    const Camera camera{.lens = lens,
+                        .f_number = options.f_number,
+                        .focus_distance_mm = options.focus_mm,
+                        .sensor = {like.width_px, like.height_px, *like.pixel_pitch_um / 1e3},
+                        .exposure = {},
+                        .response = options.response};
+    return lens_profile(ChartCamera(camera, Light{}, SpectralSampling{}));
+}
+
+struct Row {
+    Check check;
+    bool limited = false;
+};
+
+Row make_row(const std::string& label, const std::string& unit, const std::optional<CurveDifference>& difference,
+             double limit) {
+    Row row;
+    row.limited = limit > 0.0;
+    row.check.id = label;
+    row.check.label = label;
+    row.check.unit = unit;
+    row.check.limit = limit;
+    row.check.value = difference ? difference->rms : std::nan("");
+    row.check.sigma = difference ? difference->rms_sigma : 0.0;
+    return row;
+}
+
+/// The JSON key of a number in this unit, as the contract spells units.
+std::string unit_key(const std::string& unit) {
+    return unit == "%" ? "_percent" : unit == "EV" ? "_ev" : unit == "px" ? "_px" : "";
+}
+
+int report(const std::vector<Row>& rows, const nlohmann::ordered_json& curves, const CompareOptions& options) {
+    nlohmann::ordered_json json{{"a", options.a}, {"b", options.b}, {"differences", nlohmann::ordered_json::array()}};
+    int status = kDone;
+    for (const Row& row : rows) {
+        const Check& check = row.check;
+        if (!std::isfinite(check.value)) {
+            continue;
+        }
+        const Verdict verdict = check.verdict();
+        nlohmann::ordered_json entry{{"quantity", check.label},
+                                     {"rms" + unit_key(check.unit), check.value},
+                                     {"standard_error" + unit_key(check.unit), check.sigma}};
+        if (row.limited) {
+            entry["limit" + unit_key(check.unit)] = check.limit;
+            entry["verdict"] = verdict_name(verdict);
+            status = verdict == Verdict::pass ? status : kCheckFailed;
+        }
+        json["differences"].push_back(entry);
+        if (prints_text(options.common)) {
+            fmt::print(
+                "{:32} rms {:.5g} ± {:.2g} {}{}\n", check.label, check.value, check.sigma, check.unit,
+                row.limited ? fmt::format("  limit {:g}: {}", check.limit, verdict_name(verdict)) : std::string());
+        }
+    }
+    if (!curves.is_null()) {
+        json["curves"] = curves;
+    }
+    write_json_result(options.common, json);
+    return status;
+}
+
+int compare_profiles(const Profile& a, const Profile& b, const CompareOptions& options) {
+    std::vector<Row> rows;
+    nlohmann::ordered_json curves;
+    const auto add = [&](const std::string& name, const std::string& unit, const std::optional<CurveDifference>& found,
+                         double limit) {
+        rows.push_back(make_row(name, unit, found, limit));
+        if (found) {
+            curves[name] = {{"image_height", found->curve.image_height},
+                            {"difference", found->curve.value},
+                            {"lower_95", found->curve.lower_95},
+                            {"upper_95", found->curve.upper_95}};
+        }
+        if (!found && limit > 0.0) {
+            throw InputError(
+                fmt::format("{} and {}: no common {} to hold against its limit", options.a, options.b, name));
+        }
+    };
+    const bool same_camera =
+        a.width_px == b.width_px && a.height_px == b.height_px && a.pixel_pitch_um == b.pixel_pitch_um;
+    add("image position", "px", same_camera ? radial_difference_px(a, b) : std::nullopt, options.position_limit_px);
+    add("distortion_percent", "%", difference(a, b, "distortion_percent"), options.distortion_limit_percent);
+    for (const char* channel : {"R", "G", "B", "Y"}) {
+        const std::string name = fmt::format("vignetting_{}_ev", channel);
+        const auto found = difference(a, b, name);
+        add(name, "EV", found, found ? options.vignetting_limit_ev : 0.0);
+    }
+    for (const char* channel : {"R", "B"}) {
+        const std::string name = fmt::format("chromatic_shift_{}_px", channel);
+        const auto found = difference(a, b, name);
+        add(name, "px", found, found ? options.chromatic_limit_px : 0.0);
+    }
+    return report(rows, curves, options);
+}
+
+int compare_images(const CompareOptions& options) {
+    const Image a = read_image(options.a);
+    const Image b = read_image(options.b);
+    if (a.width != b.width || a.height != b.height || a.channels != b.channels) {
+        throw InputError(
+            fmt::format("{} is {} × {} with {} channels and {} is {} × {} with {}: expected pictures alike", options.a,
+                        a.width, a.height, a.channel_count(), options.b, b.width, b.height, b.channel_count()));
+    }
+    std::vector<Row> rows;
+    for (int c = 0; c < a.channel_count(); ++c) {
+        double squares = 0.0;
+        double fourths = 0.0;
+        for (std::size_t i = static_cast<std::size_t>(c); i < a.pixels.size(); i += a.channels.size()) {
+            const double square = std::pow(static_cast<double>(a.pixels[i]) - static_cast<double>(b.pixels[i]), 2);
+            squares += square;
+            fourths += square * square;
+        }
+        const double n = static_cast<double>(a.width) * a.height;
+        const double mean = squares / n;
+        Row row;
+        row.limited = options.rms_limit > 0.0;
+        row.check.label = "channel " + a.channels[c];
+        row.check.value = std::sqrt(mean);
+        // The mean square's standard error over pixels, carried to its root.
+        row.check.sigma =
+            mean > 0.0 ? std::sqrt(std::max(0.0, fourths / n - mean * mean) / n) / (2.0 * std::sqrt(mean)) : 0.0;
+        row.check.limit = options.rms_limit;
+        rows.push_back(row);
+    }
+    return report(rows, nullptr, options);
+}
+
+int run_compare(const CompareOptions& options) {
+    const bool a_is_profile = has_extension(options.a, ".json");
+    const bool b_is_profile = has_extension(options.b, ".json");
+    if (a_is_profile && b_is_profile) {
+        return compare_profiles(read_profile(options.a), read_profile(options.b), options);
+    }
+    if (a_is_profile && is_lens(options.b)) {
+        const Profile a = read_profile(options.a);
+        return compare_profiles(a, profile_of_lens(options.b, a, options), options);
+    }
+    if (b_is_profile && is_lens(options.a)) {
+        const Profile b = read_profile(options.b);
+        return compare_profiles(profile_of_lens(options.a, b, options), b, options);
+    }
+    return compare_images(options);
+}
+
+}  // namespace
+
+void add_compare_command(CLI::App& app, int& status) {
+    const auto options = std::make_shared<CompareOptions>();
+    CLI::App* command = app.add_subcommand("compare", "Compare two profiles, two images, or a lens with a profile");
+    command->footer("Example: lensproof compare tessar profile.json --f-number 8 --position-limit 0.5");
+    command->add_option("A", options->a, "A profile (.json), an image, or a lens")->required();
+    command->add_option("B", options->b, "Likewise")->required();
+    command->add_option("--position-limit", options->position_limit_px, "Limit of image position, rms, px")
+        ->check(CLI::PositiveNumber);
+    command->add_option("--distortion-limit", options->distortion_limit_percent, "Limit of distortion, rms, %")
+        ->check(CLI::PositiveNumber);
+    command->add_option("--vignetting-limit", options->vignetting_limit_ev, "Limit of vignetting, rms, EV")
+        ->check(CLI::PositiveNumber);
+    command->add_option("--chromatic-limit", options->chromatic_limit_px, "Limit of chromatic shift, rms, px")
+        ->check(CLI::PositiveNumber);
+    command->add_option("--rms-limit", options->rms_limit, "Limit of images' rms difference, full scale 1")
+        ->check(CLI::PositiveNumber);
+    command->add_option("--f-number", options->f_number, "f-number of a lens")
+        ->check(CLI::PositiveNumber)
+        ->capture_default_str();
+    command->add_option("--focus", options->focus_mm, "Focus distance of a lens, mm (default: infinity)")
+        ->check(CLI::PositiveNumber);
+    command->add_option("--response", options->response, "Sensor response behind a lens")->capture_default_str();
+    add_common_options(*command, options->common);
+    command->callback([options, &status] { status = run_compare(*options); });
+}
+
+}  // namespace lensproof

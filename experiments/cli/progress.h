@@ -1,0 +1,28 @@
+// experiments/cli/progress.h — a progress line on standard error, on a terminal only.
+#pragma once
+#include <chrono>
+#include <functional>
+#include <string>
+
+namespace lensproof {
+
+/// Draws "label [####....] 42 %, 12 s left" while work goes on; clears the line at the end of its life.
+class ProgressBar {
+  public:
+    /// Silent when `quiet`, or when standard error is not a terminal.
+    ProgressBar(std::string label, bool quiet);
+    ~ProgressBar();
+    ProgressBar(const ProgressBar&) = delete;
+    ProgressBar& operator=(const ProgressBar&) = delete;
+
+    /// `done` from 0 to 1. To be called by one thread at a time.
+    void update(double done);
+
+  private:
+    std::string label_;
+    bool shown_;
+    std::chrono::steady_clock::time_point start_;
+    std::chrono::steady_clock::time_point drawn_;
+};
+
+}  // namespace lensproof

@@ -1,0 +1,100 @@
+// experiments/cli/run_command.cpp — `lensproof run EXPERIMENT`: end to end, to a report.
+#include <fmt/format.h>
+
+#include <memory>
+
+#include "engine/io/file.h"
+#include "experiments/cli/command.h"
+#include "experiments/cli/progress.h"
+#include "experiments/report/report.h"
+#include "experiments/report_content.h"
+
+namespace lensproof {
+
+namespace {
+
+struct RunOptions {
+    CommonOptions common;
+    std::string experiment;
+    std::string output;
+};
+
+/// A new progress bar for every new step.
+class StepProgress {
+  public:
+    explicit StepProgress(bool quiet) : quiet_(quiet) {}
+
+    void operator()(const std::string& step, double done) {
+        if (step != step_) {
+            bar_.reset();
+            step_ = step;
+            bar_ = std::make_unique<ProgressBar>(step, quiet_);
+        }
+        bar_->update(done);
+    }
+
+  private:
+    bool quiet_;
+    std::string step_;
+    std::unique_ptr<ProgressBar> bar_;
+};
+
+void print_checks(const std::vector<Check>& checks) {
+    std::string group;
+    for (const Check& check : checks) {
+        if (check.group != group) {
+            group = check.group;
+            fmt::print("{}\n", group);
+        }
+        const std::string bound = check.expectation == Expectation::within
+                                      ? fmt::format("{:g} ± {:g}", check.target, check.limit)
+                                  : check.expectation == Expectation::differs ? fmt::format("> {:g}", check.limit)
+                                                                              : fmt::format("≤ {:g}", check.limit);
+        fmt::print("  {:13} {:44} {:.4g} ± {:.2g} {} (wanted {})\n", verdict_name(check.verdict()), check.label,
+                   check.value, check.sigma, check.unit, bound);
+    }
+}
+
+int run(const RunOptions& options) {
+    const Experiment experiment = read_experiment(options.experiment);
+    const std::filesystem::path folder =
+        options.output.empty() ? std::filesystem::path("output") / std::filesystem::path(options.experiment).stem()
+                               : std::filesystem::path(options.output);
+    const RunSettings settings{.seed = options.common.seed, .threads = options.common.threads};
+    const auto progress = std::make_shared<StepProgress>(options.common.quiet);
+    const ExperimentResult result = run_experiment(
+        experiment, settings, [progress](const std::string& step, double done) { (*progress)(step, done); });
+
+    const nlohmann::ordered_json report = report_json(experiment, result, settings);
+    const std::map<std::string, std::string> pictures = report_pictures(result);
+    for (const auto& [name, bytes] : pictures) {
+        write_file(folder / "images" / name, bytes);
+    }
+    for (const Subject& subject : result.subjects) {
+        write_profile(subject.profile, folder / "profiles" / (subject.name + ".json"));
+    }
+    write_file(folder / "report.json", report.dump(2) + "\n");
+    write_file(folder / "report.html", report_html(report, pictures));
+
+    write_json_result(options.common, report);
+    if (prints_text(options.common)) {
+        print_checks(result.checks);
+        fmt::print("{}: {}\n", verdict_name(overall(result.checks)), (folder / "report.html").string());
+    }
+    return overall(result.checks) == Verdict::pass ? kDone : kCheckFailed;
+}
+
+}  // namespace
+
+void add_run_command(CLI::App& app, int& status) {
+    const auto options = std::make_shared<RunOptions>();
+    CLI::App* command = app.add_subcommand("run", "Run an experiment end to end and write its report");
+    command->footer("Example: lensproof run experiments/first_light.toml -o output/first_light");
+    command->add_option("EXPERIMENT", options->experiment, "An experiment file")->required();
+    command->add_option("-o,--output", options->output, "Folder to write (default: output/EXPERIMENT)")
+        ->type_name("DIR");
+    add_common_options(*command, options->common);
+    command->callback([options, &status] { status = run(*options); });
+}
+
+}  // namespace lensproof

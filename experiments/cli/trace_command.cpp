@@ -1,0 +1,230 @@
+// experiments/cli/trace_command.cpp — `lensproof trace LENS --rays FILE`: every intersection of given rays.
+#include <fmt/format.h>
+
+#include <cmath>
+#include <map>
+#include <memory>
+#include <sstream>
+
+#include "engine/io/file.h"
+#include "engine/io/input_error.h"
+#include "engine/optics/lens.h"
+#include "experiments/cli/command.h"
+
+namespace lensproof {
+
+namespace {
+
+constexpr const char* kRayHeader = "id,x_mm,y_mm,z_mm,dx,dy,dz,wavelength_nm";
+constexpr const char* kResultHeader = "id,surface,x_mm,y_mm,z_mm,dx,dy,dz,optical_path_mm,transmittance,status";
+
+struct GivenRay {
+    std::string id;
+    Ray<double> ray;
+    double wavelength_nm = 0.0;
+};
+
+struct TraceOptions {
+    CommonOptions common;
+    std::string lens;
+    std::string rays_file;
+    std::string output_file;
+    std::string precision = "double";
+    std::vector<std::string> indices;
+    bool reverse = false;
+    bool no_clip = false;
+};
+
+double parse_number(const std::string& text, const std::string& where) {
+    char* end = nullptr;
+    const double value = std::strtod(text.c_str(), &end);
+    if (text.empty() || end != text.c_str() + text.size() || !std::isfinite(value)) {
+        throw InputError(fmt::format("{} is \"{}\", expected a finite number", where, text));
+    }
+    return value;
+}
+
+GivenRay parse_ray(const std::string& line, const std::string& where) {
+    std::vector<std::string> cells;
+    std::istringstream stream(line);
+    for (std::string cell; std::getline(stream, cell, ',');) {
+        cells.push_back(cell);
+    }
+    if (cells.size() != 8) {
+        throw InputError(fmt::format("{}: {} cells, expected 8: {}", where, cells.size(), kRayHeader));
+    }
+    const auto number = [&](std::size_t column, const char* name) {
+        return parse_number(cells[column], fmt::format("{}: {}", where, name));
+    };
+    const Vec3d direction{number(4, "dx"), number(5, "dy"), number(6, "dz")};
+    const double norm = length(direction);
+    if (!(norm > 0.0) || !std::isfinite(norm)) {
+        throw InputError(fmt::format("{}: the direction has length {}, expected a direction", where, norm));
+    }
+    GivenRay given{.id = cells[0],
+                   .ray = {{number(1, "x_mm"), number(2, "y_mm"), number(3, "z_mm")}, (1.0 / norm) * direction},
+                   .wavelength_nm = number(7, "wavelength_nm")};
+    if (!(given.wavelength_nm > 0.0)) {
+        throw InputError(
+            fmt::format("{}: wavelength_nm is {}, expected a positive number", where, given.wavelength_nm));
+    }
+    return given;
+}
+
+std::vector<GivenRay> read_rays(const std::string& file) {
+    std::istringstream content(read_file(file));
+    std::vector<GivenRay> rays;
+    std::string line;
+    bool header_read = false;
+    for (int number = 1; std::getline(content, line); ++number) {
+        if (!line.empty() && line.back() == '\r') {
+            line.pop_back();
+        }
+        if (line.empty()) {
+            continue;
+        }
+        const std::string where = fmt::format("{}:{}", file, number);
+        if (header_read) {
+            rays.push_back(parse_ray(line, where));
+        } else if (line != kRayHeader) {
+            throw InputError(fmt::format("{}: the header is \"{}\", expected \"{}\"", where, line, kRayHeader));
+        }
+        header_read = true;
+    }
+    if (rays.empty()) {
+        throw InputError(fmt::format("{}: holds no ray", file));
+    }
+    return rays;
+}
+
+IndexOverrides parse_indices(const std::vector<std::string>& texts) {
+    IndexOverrides overrides;
+    for (const std::string& text : texts) {
+        const std::size_t equals = text.find('=');
+        if (equals == 0 || equals == std::string::npos) {
+            throw InputError(fmt::format("--index is \"{}\", expected NAME=VALUE", text));
+        }
+        const double index = parse_number(text.substr(equals + 1), "--index " + text.substr(0, equals));
+        if (!(index >= 1.0 && index <= 10.0)) {
+            throw InputError(fmt::format("--index {}: expected an index from 1 to 10", text));
+        }
+        overrides[text.substr(0, equals)] = index;
+    }
+    return overrides;
+}
+
+/// Collects a row a surface, as CSV or JSON.
+class TraceTable {
+  public:
+    template <class T>
+    void add(const std::string& id, const std::string& surface, const Ray<T>& ray, T optical_path, T transmittance,
+             RayStatus status) {
+        fmt::format_to(std::back_inserter(csv_), "{},{},{},{},{},{},{},{},{},{},{}\n", id, surface, ray.origin.x,
+                       ray.origin.y, ray.origin.z, ray.direction.x, ray.direction.y, ray.direction.z, optical_path,
+                       transmittance, status_name(status));
+        json_.push_back({{"id", id},
+                         {"surface", surface},
+                         {"point_mm", {ray.origin.x, ray.origin.y, ray.origin.z}},
+                         {"direction", {ray.direction.x, ray.direction.y, ray.direction.z}},
+                         {"optical_path_mm", optical_path},
+                         {"transmittance", transmittance},
+                         {"status", status_name(status)}});
+    }
+
+    [[nodiscard]] std::string csv() const { return std::string(kResultHeader) + "\n" + csv_; }
+    [[nodiscard]] const nlohmann::ordered_json& json() const { return json_; }
+
+  private:
+    std::string csv_;
+    nlohmann::ordered_json json_ = nlohmann::ordered_json::array();
+};
+
+template <class T, Direction direction, Rims rims>
+void trace_one(const TraceLens<T>& lens, const GivenRay& given, TraceTable& table) {
+    const auto cast = [](const Vec3d& v) {
+        return Vec3<T>{static_cast<T>(v.x), static_cast<T>(v.y), static_cast<T>(v.z)};
+    };
+    // Normalised in the working precision: a double's unit vector is not one to long double's last digits.
+    const Ray<T> ray{cast(given.ray.origin), normalized(cast(given.ray.direction))};
+    const TracedRay<T> traced = trace<direction, rims>(lens, ray, [&](const SurfaceEvent<T>& event) {
+        table.add(given.id, std::to_string(event.surface + 1), event.ray, event.optical_path, event.transmittance,
+                  event.status);
+    });
+    const bool ended = traced.status == RayStatus::missed || traced.status == RayStatus::total_internal_reflection ||
+                       (rims == Rims::clip && traced.status != RayStatus::ok);
+    if (ended || direction == Direction::reverse) {
+        return;
+    }
+    if (traced.ray.direction.z > T(0)) {
+        const PlanePoint<T> image = meet_plane(traced.ray, lens.image_z);
+        table.add(given.id, "image", Ray<T>{image.point, traced.ray.direction}, traced.optical_path + image.distance,
+                  traced.transmittance, RayStatus::ok);
+    } else {
+        table.add(given.id, "image", traced.ray, traced.optical_path, traced.transmittance, RayStatus::missed);
+    }
+}
+
+template <class T>
+void trace_all(const Lens& lens, const std::vector<GivenRay>& rays, const TraceOptions& options, TraceTable& table) {
+    std::map<double, TraceLens<T>> lenses;
+    for (const GivenRay& given : rays) {
+        if (!lenses.contains(given.wavelength_nm)) {
+            lenses.emplace(given.wavelength_nm, at_wavelength<T>(lens, given.wavelength_nm));
+        }
+        const TraceLens<T>& at = lenses.at(given.wavelength_nm);
+        if (options.reverse) {
+            options.no_clip ? trace_one<T, Direction::reverse, Rims::follow>(at, given, table)
+                            : trace_one<T, Direction::reverse, Rims::clip>(at, given, table);
+        } else {
+            options.no_clip ? trace_one<T, Direction::forward, Rims::follow>(at, given, table)
+                            : trace_one<T, Direction::forward, Rims::clip>(at, given, table);
+        }
+    }
+}
+
+int run_trace(const TraceOptions& options) {
+    const Lens lens = load_lens(options.lens, parse_indices(options.indices));
+    const std::vector<GivenRay> rays = read_rays(options.rays_file);
+    TraceTable table;
+    if (options.precision == "float") {
+        trace_all<float>(lens, rays, options, table);
+    } else if (options.precision == "extended") {
+        trace_all<long double>(lens, rays, options, table);
+    } else {
+        trace_all<double>(lens, rays, options, table);
+    }
+    if (!options.output_file.empty()) {
+        write_file(options.output_file, table.csv());
+    } else if (options.common.json_file.empty()) {
+        fmt::print("{}", table.csv());
+    }
+    write_json_result(options.common, {{"lens", lens.id}, {"rows", table.json()}});
+    return kDone;
+}
+
+}  // namespace
+
+void add_trace_command(CLI::App& app, int& status) {
+    const auto options = std::make_shared<TraceOptions>();
+    CLI::App* command = app.add_subcommand("trace", "Trace given rays and write every intersection");
+    command->footer(
+        "Example: lensproof trace tessar --rays rays.csv -o traced.csv\n"
+        "rays.csv has the header id,x_mm,y_mm,z_mm,dx,dy,dz,wavelength_nm");
+    command->add_option("LENS", options->lens, "A prescription file, or the name of a lens that ships")->required();
+    command->add_option("--rays", options->rays_file, "CSV of rays")->required()->type_name("FILE");
+    command->add_option("-o,--output", options->output_file, "CSV to write (default: standard output)")
+        ->type_name("FILE");
+    command->add_option("--precision", options->precision, "float, double or extended")
+        ->check(CLI::IsMember({"float", "double", "extended"}))
+        ->capture_default_str();
+    command
+        ->add_option("--index", options->indices, "NAME=VALUE: a constant index in place of a glass; may be repeated")
+        ->type_name("NAME=VALUE");
+    command->add_flag("--reverse", options->reverse, "Rays run from the sensor outwards");
+    command->add_flag("--no-clip", options->no_clip,
+                      "Follow rays beyond the rims; the first rim passed is still named");
+    add_common_options(*command, options->common);
+    command->callback([options, &status] { status = run_trace(*options); });
+}
+
+}  // namespace lensproof

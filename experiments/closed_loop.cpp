@@ -1,0 +1,73 @@
+#include "experiments/closed_loop.h"
+
+#include <fmt/format.h>
+
+#include <limits>
+
+#include "experiments/curve_difference.h"
+
+namespace lensproof {
+
+namespace {
+
+struct Quantity {
+    const char* id;
+    const char* label;
+    const char* unit;
+    double scale;  // from the curve's unit to the check's
+    bool use_rms;
+};
+
+Check make_check(const Quantity& quantity, const std::optional<CurveDifference>& difference, double limit) {
+    Check check{.id = quantity.id, .label = quantity.label, .unit = quantity.unit, .limit = limit};
+    if (!difference) {
+        check.value = std::numeric_limits<double>::quiet_NaN();
+        check.explanation = "The curve was not measured.";
+        return check;
+    }
+    check.value = quantity.scale * (quantity.use_rms ? difference->rms : difference->largest);
+    check.sigma = quantity.scale * (quantity.use_rms ? difference->rms_sigma : difference->largest_sigma);
+    check.explanation =
+        quantity.use_rms
+            ? fmt::format(
+                  "Measured minus traced, over the picture's area as far as the chart's points reach: image "
+                  "heights from 0 to {:.2f} of the half-diagonal.",
+                  difference->curve.covered_image_height)
+            : fmt::format("Largest difference, measured minus traced; it stands at image height {:.2f} of 0 to {:.2f}.",
+                          difference->largest_at, difference->curve.covered_image_height);
+    return check;
+}
+
+}  // namespace
+
+std::vector<Check> closed_loop_checks(const std::string& subject, const std::string& label, const Profile& measured,
+                                      const Profile& traced, const ClosedLoopLimits& limits) {
+    std::vector<Check> checks;
+    const auto radial = radial_difference_px(measured, traced);
+    if (limits.distortion_rms_px) {
+        checks.push_back(
+            make_check({"distortion-rms", "image position, rms", "px", 1.0, true}, radial, *limits.distortion_rms_px));
+    }
+    if (limits.distortion_largest_px) {
+        checks.push_back(make_check({"distortion-largest", "image position, largest", "px", 1.0, false}, radial,
+                                    *limits.distortion_largest_px));
+    }
+    if (limits.vignetting_percent) {
+        checks.push_back(make_check({"vignetting", "relative illumination, largest", "%", 100.0, false},
+                                    difference(measured, traced, "vignetting_G"), *limits.vignetting_percent));
+    }
+    if (limits.chromatic_shift_px) {
+        checks.push_back(make_check({"chromatic-shift-R", "chromatic shift of red, largest", "px", 1.0, false},
+                                    difference(measured, traced, "chromatic_shift_R_px"), *limits.chromatic_shift_px));
+        checks.push_back(make_check({"chromatic-shift-B", "chromatic shift of blue, largest", "px", 1.0, false},
+                                    difference(measured, traced, "chromatic_shift_B_px"), *limits.chromatic_shift_px));
+    }
+    for (Check& check : checks) {
+        check.id = subject + "-" + check.id;
+        check.subject = subject;
+        check.group = label + ": measured render against the lens's own rays";
+    }
+    return checks;
+}
+
+}  // namespace lensproof

@@ -1,0 +1,142 @@
+#include "experiments/experiment.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <set>
+
+namespace lensproof {
+
+namespace {
+
+std::optional<ModelKind> read_model(TomlTable& table) {
+    if (!table.has("model")) {
+        return std::nullopt;
+    }
+    const bool perspective = table.choice("model", {"brown-conrady", "kannala-brandt"}) == "brown-conrady";
+    return perspective ? ModelKind::brown_conrady : ModelKind::kannala_brandt;
+}
+
+std::string read_name(TomlTable& table) {
+    std::string name = table.text("name");
+    // Names become files' names.
+    const bool plain = std::ranges::all_of(
+        name, [](unsigned char letter) { return std::isalnum(letter) != 0 || letter == '-' || letter == '_'; });
+    if (name.empty() || !plain) {
+        table.fail("name", fmt::format("is \"{}\", expected letters, digits, - and _", name));
+    }
+    return name;
+}
+
+ClosedLoopLimits read_limits(TomlTable& table) {
+    const ClosedLoopLimits limits{.distortion_rms_px = table.optional_number("distortion_rms_px", kPositive),
+                                  .distortion_largest_px = table.optional_number("distortion_largest_px", kPositive),
+                                  .vignetting_percent = table.optional_number("vignetting_percent", kPositive),
+                                  .chromatic_shift_px = table.optional_number("chromatic_shift_px", kPositive)};
+    table.finish();
+    return limits;
+}
+
+Simulation read_simulation(TomlTable& table, TomlTable& top) {
+    Simulation simulation;
+    simulation.name = read_name(table);
+    simulation.model = read_model(table);
+    simulation.flat_field = table.boolean_or("flat_field", true);
+    TomlTable camera = table.table("camera");
+    simulation.scene.camera = read_camera(camera);
+    TomlTable chart = table.table("chart");
+    simulation.scene.chart = read_chart(chart);
+    if (std::holds_alternative<FlatField>(simulation.scene.chart.pattern)) {
+        chart.fail("kind", "is a flat field, expected a chart with points; the flat field is rendered besides");
+    }
+    if (auto light = top.optional_table("light")) {
+        simulation.scene.light = read_light(*light);
+    }
+    if (auto render = top.optional_table("render")) {
+        read_render_table(*render, simulation.scene);
+    }
+    for (TomlTable& view : table.tables("views")) {
+        simulation.views.push_back(read_placement(view));
+    }
+    if (simulation.views.empty()) {
+        table.fail("views", "holds no view of the chart");
+    }
+    if (auto limits = table.optional_table("limits")) {
+        simulation.limits = read_limits(*limits);
+    }
+    table.finish();
+    return simulation;
+}
+
+PhotoSubject read_photos(TomlTable& table) {
+    PhotoSubject subject;
+    subject.name = read_name(table);
+    subject.manifest = table.file().parent_path() / table.text("manifest");
+    subject.model = read_model(table);
+    if (auto expected = table.optional_table("expected")) {
+        if (expected->has("focal_length_px")) {
+            subject.expected.focal_length_px = expected->number("focal_length_px", kPositive);
+            subject.expected.focal_length_within_percent = expected->number("focal_length_within_percent", kPositive);
+            subject.expected.focal_length_source = expected->text("focal_length_source");
+        }
+        subject.expected.reprojection_rms_px = expected->optional_number("reprojection_rms_px", kPositive);
+        expected->finish();
+    }
+    table.finish();
+    return subject;
+}
+
+Comparison read_comparison(TomlTable& table, const std::set<std::string>& subjects) {
+    Comparison comparison;
+    for (const auto& [key, name] : {std::pair{"of", &comparison.of}, std::pair{"with", &comparison.with}}) {
+        *name = table.text(key);
+        if (!subjects.contains(*name)) {
+            table.fail(key,
+                       fmt::format("is \"{}\", which is neither a simulation nor a photo set of this file", *name));
+        }
+    }
+    comparison.curve = table.text("curve");
+    comparison.limit = table.optional_number("limit", kPositive);
+    if (table.has("expect")) {
+        comparison.expectation =
+            table.choice("expect", {"agrees", "differs"}) == "agrees" ? Expectation::at_most : Expectation::differs;
+    }
+    table.finish();
+    return comparison;
+}
+
+}  // namespace
+
+Experiment read_experiment(const std::filesystem::path& file) {
+    TomlTable top = TomlTable::read(file);
+    Experiment experiment;
+    experiment.file = file;
+    experiment.title = top.text("title");
+    experiment.summary = top.text_or("summary", "");
+    std::set<std::string> names;
+    for (TomlTable& table : top.tables("simulations")) {
+        experiment.simulations.push_back(read_simulation(table, top));
+        if (!names.insert(experiment.simulations.back().name).second) {
+            table.fail("name", "stands in the file twice");
+        }
+    }
+    for (TomlTable& table : top.tables("photos")) {
+        experiment.photos.push_back(read_photos(table));
+        if (!names.insert(experiment.photos.back().name).second) {
+            table.fail("name", "stands in the file twice");
+        }
+    }
+    for (TomlTable& table : top.tables("comparisons")) {
+        experiment.comparisons.push_back(read_comparison(table, names));
+    }
+    // Without a simulation that read them, they would be refused as unknown keys.
+    top.optional_table("light");
+    top.optional_table("render");
+    top.finish();
+    if (names.empty()) {
+        top.fail("", "holds neither [[simulations]] nor [[photos]]");
+    }
+    return experiment;
+}
+
+}  // namespace lensproof

@@ -1,0 +1,69 @@
+// experiments/experiment.h — an experiment as its file states it: what is rendered, what is photographed, what is
+// expected.
+#pragma once
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "calibration/fit_geometry.h"
+#include "engine/render/camera.h"
+#include "experiments/verdict.h"
+
+namespace lensproof {
+
+/// How far a measured render may be from what the lens's own rays say; each that is stated becomes a check.
+struct ClosedLoopLimits {
+    std::optional<double> distortion_rms_px;
+    std::optional<double> distortion_largest_px;
+    std::optional<double> vignetting_percent;  // of the relative illumination, largest over the covered heights
+    std::optional<double> chromatic_shift_px;  // red and blue against green, largest over the covered heights
+};
+
+/// A simulated camera, the views of a chart that it renders, and its limits.
+struct Simulation {
+    std::string name;
+    ChartScene scene;  // the camera, light and chart; its placement is not used
+    std::vector<Placement> views;
+    bool flat_field = true;
+    std::optional<ModelKind> model;
+    ClosedLoopLimits limits;
+};
+
+/// What is known about a photographed camera from elsewhere.
+struct PhotoExpectations {
+    std::optional<double> focal_length_px;
+    double focal_length_within_percent = 0.0;
+    std::string focal_length_source;
+    std::optional<double> reprojection_rms_px;
+};
+
+struct PhotoSubject {
+    std::string name;
+    std::filesystem::path manifest;
+    std::optional<ModelKind> model;
+    PhotoExpectations expected;
+};
+
+/// Two subjects set against each other in one curve.
+struct Comparison {
+    std::string of;
+    std::string with;
+    std::string curve;  // as in calibration/profile.h; "radial_px" for positions of the same camera
+    std::optional<double> limit;
+    Expectation expectation = Expectation::at_most;
+};
+
+struct Experiment {
+    std::filesystem::path file;
+    std::string title;
+    std::string summary;
+    std::vector<Simulation> simulations;
+    std::vector<PhotoSubject> photos;
+    std::vector<Comparison> comparisons;
+};
+
+/// Reads an experiment file (described in experiments/README.md). Throws InputError naming file, line and key.
+Experiment read_experiment(const std::filesystem::path& file);
+
+}  // namespace lensproof

@@ -1,0 +1,302 @@
+#include "experiments/report_content.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+
+#include "experiments/provenance.h"
+
+namespace lensproof {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json number(double value) {
+    return std::isfinite(value) ? Json(value) : Json(nullptr);
+}
+
+Json check_json(const Check& check) {
+    return {{"id", check.id},
+            {"group", check.group},
+            {"subject", check.subject},
+            {"label", check.label},
+            {"value", number(check.value)},
+            {"sigma", number(check.sigma)},
+            {"unit", check.unit},
+            {"limit", number(check.limit)},
+            {"expect", expectation_name(check.expectation)},
+            {"target", check.expectation == Expectation::within ? Json(check.target) : Json(nullptr)},
+            {"verdict", verdict_name(check.verdict())},
+            {"explanation", check.explanation}};
+}
+
+Json points_json(const ProfileView& view) {
+    Json points = Json::array();
+    for (const ProfilePoint& point : view.points) {
+        points.push_back({point.image_px.x, point.image_px.y, point.residual_px.x, point.residual_px.y});
+    }
+    return points;
+}
+
+Json subject_json(const Subject& subject) {
+    Json json{{"id", subject.name}, {"kind", subject.simulated ? "simulation" : "photos"}, {"label", subject.label}};
+    for (const Fact& fact : subject.facts) {
+        json["facts"].push_back({{"label", fact.label}, {"value", fact.value}});
+    }
+    if (subject.profile.geometry) {
+        json["focal_length_px"] = {{"value", focal_length_px(subject.profile.geometry->model)},
+                                   {"sigma", subject.profile.geometry->standard_error(0)}};
+    }
+    for (const ShownPicture& picture : subject.pictures) {
+        Json entry{
+            {"name", picture.name}, {"caption", picture.caption}, {"width", picture.width}, {"height", picture.height}};
+        if (picture.view >= 0) {
+            const ProfileView& view = subject.profile.views.at(picture.view);
+            entry["points"] = points_json(view);
+            if (!view.found) {
+                entry["caption"] = picture.caption + " (no chart found)";
+            }
+        }
+        json["pictures"].push_back(std::move(entry));
+    }
+    return json;
+}
+
+Json series_json(const std::string& label, const std::string& subject, const char* style, const Curve& curve) {
+    return {{"label", label},          {"subject", subject},
+            {"style", style},          {"x", curve.image_height},
+            {"y", curve.value},        {"lower", curve.lower_95},
+            {"upper", curve.upper_95}, {"covered_to", curve.covered_image_height}};
+}
+
+struct Plot {
+    std::string id;
+    std::string title;
+    std::string subtitle;
+    std::string y_label;
+    std::string y_unit;
+    Json series = Json::array();
+    std::optional<double> limit;
+};
+
+void append_plot(Json& plots, const Plot& plot) {
+    if (plot.series.empty()) {
+        return;
+    }
+    Json json{{"id", plot.id},
+              {"title", plot.title},
+              {"subtitle", plot.subtitle},
+              {"x_label", "image height (of the half-diagonal)"},
+              {"y_label", plot.y_label},
+              {"x_unit", ""},
+              {"y_unit", plot.y_unit},
+              {"series", plot.series}};
+    if (plot.limit) {
+        json["limit"] = *plot.limit;
+    }
+    plots.push_back(std::move(json));
+}
+
+void add_measured(Plot& plot, const Subject& subject, const std::string& curve, const std::string& suffix = "") {
+    const auto found = subject.profile.curves.find(curve);
+    if (found != subject.profile.curves.end()) {
+        plot.series.push_back(series_json(subject.name + suffix, subject.name, "measured", found->second));
+    }
+    if (subject.traced && subject.traced->curves.contains(curve)) {
+        plot.series.push_back(series_json(subject.name + suffix + ", traced", subject.name, "reference",
+                                          subject.traced->curves.at(curve)));
+    }
+}
+
+/// Photos of one channel have their vignetting under that channel's name.
+std::string luminance_curve(const Subject& subject) {
+    for (const char* name : {"vignetting_G_ev", "vignetting_Y_ev"}) {
+        if (subject.profile.curves.contains(name)) {
+            return name;
+        }
+    }
+    return "vignetting_G_ev";
+}
+
+Plot measured_plot(const ExperimentResult& result, Plot plot, const std::function<bool(const Subject&)>& belongs,
+                   const std::string& curve) {
+    for (const Subject& subject : result.subjects) {
+        if (belongs(subject)) {
+            add_measured(plot, subject, curve);
+        }
+    }
+    return plot;
+}
+
+/// Measured minus traced, for every simulation, with the tightest limit of its check.
+Plot closed_loop_plot(const ExperimentResult& result, const std::vector<Simulation>& simulations, Plot plot,
+                      const std::function<std::optional<CurveDifference>(const Subject&)>& compare,
+                      const std::function<std::optional<double>(const ClosedLoopLimits&)>& limit) {
+    for (const Subject& subject : result.subjects) {
+        if (!subject.traced) {
+            continue;
+        }
+        if (const std::optional<CurveDifference> difference = compare(subject)) {
+            plot.series.push_back(series_json(subject.name, subject.name, "difference", difference->curve));
+        }
+        const std::optional<double> own =
+            limit(std::ranges::find(simulations, subject.name, &Simulation::name)->limits);
+        if (own) {
+            plot.limit = plot.limit ? std::min(*plot.limit, *own) : *own;
+        }
+    }
+    return plot;
+}
+
+bool is_fisheye(const Subject& subject) {
+    return subject.profile.geometry && std::holds_alternative<KannalaBrandt>(subject.profile.geometry->model);
+}
+
+Json plots_json(const Experiment& experiment, const ExperimentResult& result) {
+    Json plots = Json::array();
+    const auto& simulations = experiment.simulations;
+    append_plot(plots, measured_plot(
+                           result,
+                           {.id = "distortion",
+                            .title = "Distortion",
+                            .subtitle = "against f·tan θ, f being the slope on the axis",
+                            .y_label = "distortion",
+                            .y_unit = "%"},
+                           [](const Subject& s) { return !is_fisheye(s); }, "distortion_percent"));
+    append_plot(plots, measured_plot(result,
+                                     {.id = "distortion-fisheye",
+                                      .title = "Distortion of fisheyes",
+                                      .subtitle = "against f·θ, f being the slope on the axis",
+                                      .y_label = "distortion",
+                                      .y_unit = "%"},
+                                     is_fisheye, "distortion_equidistant_percent"));
+    append_plot(plots, closed_loop_plot(
+                           result, simulations,
+                           {.id = "distortion-difference",
+                            .title = "Image position: measured minus traced",
+                            .subtitle = "radial distance of the image of one direction",
+                            .y_label = "difference",
+                            .y_unit = "px"},
+                           [](const Subject& s) { return radial_difference_px(s.profile, *s.traced); },
+                           [](const ClosedLoopLimits& l) { return l.distortion_largest_px; }));
+
+    Plot vignetting{.id = "vignetting",
+                    .title = "Vignetting",
+                    .subtitle = "light relative to the axis, green (grey photos: their one channel)",
+                    .y_label = "relative illumination",
+                    .y_unit = "EV"};
+    for (const Subject& subject : result.subjects) {
+        add_measured(vignetting, subject, luminance_curve(subject));
+    }
+    append_plot(plots, vignetting);
+    append_plot(plots,
+                closed_loop_plot(
+                    result, simulations,
+                    {.id = "vignetting-difference",
+                     .title = "Vignetting: measured minus traced",
+                     .subtitle = "relative illumination, as a share of the axis",
+                     .y_label = "difference",
+                     .y_unit = "%"},
+                    [](const Subject& s) -> std::optional<CurveDifference> {
+                        auto d = difference(s.profile, *s.traced, "vignetting_G");
+                        for (auto* values : d ? std::vector{&d->curve.value, &d->curve.lower_95, &d->curve.upper_95}
+                                              : std::vector<std::vector<double>*>{}) {
+                            std::ranges::transform(*values, values->begin(), [](double v) { return 100.0 * v; });
+                        }
+                        return d;
+                    },
+                    [](const ClosedLoopLimits& l) { return l.vignetting_percent; }));
+
+    for (const auto& [channel, colour] : {std::pair{"R", "red"}, std::pair{"B", "blue"}}) {
+        const std::string curve = fmt::format("chromatic_shift_{}_px", channel);
+        append_plot(plots, measured_plot(
+                               result,
+                               {.id = fmt::format("chromatic-{}", colour),
+                                .title = fmt::format("Chromatic shift of {}", colour),
+                                .subtitle = fmt::format("radial position of {} minus green", colour),
+                                .y_label = "shift",
+                                .y_unit = "px"},
+                               [](const Subject&) { return true; }, curve));
+        append_plot(plots, closed_loop_plot(
+                               result, simulations,
+                               {.id = fmt::format("chromatic-{}-difference", colour),
+                                .title = fmt::format("Chromatic shift of {}: measured minus traced", colour),
+                                .subtitle = "",
+                                .y_label = "difference",
+                                .y_unit = "px"},
+                               [&](const Subject& s) { return difference(s.profile, *s.traced, curve); },
+                               [](const ClosedLoopLimits& l) { return l.chromatic_shift_px; }));
+    }
+
+    Plot against{.id = "comparisons",
+                 .title = "Lenses against each other",
+                 .subtitle = "distortion, difference of the measured curves",
+                 .y_label = "difference",
+                 .y_unit = "%"};
+    for (const ComparisonResult& compared : result.comparisons) {
+        if (compared.difference && compared.comparison.curve.ends_with("_percent")) {
+            against.series.push_back(series_json(compared.comparison.of + " − " + compared.comparison.with,
+                                                 compared.comparison.of, "difference", compared.difference->curve));
+            against.limit = compared.comparison.limit;
+        }
+    }
+    append_plot(plots, against);
+    return plots;
+}
+
+std::string summary_of(const Experiment& experiment, const ExperimentResult& result) {
+    int passed = 0;
+    for (const Check& check : result.checks) {
+        passed += check.verdict() == Verdict::pass ? 1 : 0;
+    }
+    return fmt::format("{} {} of {} checks hold.", experiment.summary, passed, result.checks.size());
+}
+
+Json provenance_json(const ExperimentResult& result, const RunSettings& settings) {
+    Json provenance{{"program", "lensproof"}, {"version", LENSPROOF_VERSION}, {"commit", source_commit()}};
+    provenance["settings"] = {{"seed", settings.seed}};
+    std::vector<std::filesystem::path> inputs = result.inputs;
+    std::ranges::sort(inputs);
+    inputs.erase(std::unique(inputs.begin(), inputs.end()), inputs.end());
+    for (const std::filesystem::path& input : inputs) {
+        provenance["inputs"].push_back({{"file", portable_path(input)}, {"sha256", sha256(input)}});
+    }
+    return provenance;
+}
+
+}  // namespace
+
+nlohmann::ordered_json report_json(const Experiment& experiment, const ExperimentResult& result,
+                                   const RunSettings& settings) {
+    Json report{{"schema", "lensproof-report/1"},
+                {"title", experiment.title},
+                {"summary", summary_of(experiment, result)},
+                {"verdict", verdict_name(overall(result.checks))},
+                {"checks", Json::array()},
+                {"subjects", Json::array()}};
+    for (const Check& check : result.checks) {
+        report["checks"].push_back(check_json(check));
+    }
+    for (const Subject& subject : result.subjects) {
+        report["subjects"].push_back(subject_json(subject));
+    }
+    report["plots"] = plots_json(experiment, result);
+    report["provenance"] = provenance_json(result, settings);
+    report["reproduce"] = fmt::format("./lensproof run {} --seed {}", portable_path(experiment.file), settings.seed);
+    return report;
+}
+
+std::map<std::string, std::string> report_pictures(const ExperimentResult& result) {
+    std::map<std::string, std::string> pictures;
+    for (const Subject& subject : result.subjects) {
+        for (const ShownPicture& picture : subject.pictures) {
+            pictures[picture.name] = picture.png;
+        }
+    }
+    return pictures;
+}
+
+}  // namespace lensproof

@@ -1,0 +1,18 @@
+// experiments/report_content.h — an experiment's result as the report's JSON, in the schema of
+// experiments/report/report.h.
+#pragma once
+#include <map>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "experiments/run_experiment.h"
+
+namespace lensproof {
+
+nlohmann::ordered_json report_json(const Experiment& experiment, const ExperimentResult& result,
+                                   const RunSettings& settings);
+
+/// The pictures' bytes by the names that the JSON uses.
+std::map<std::string, std::string> report_pictures(const ExperimentResult& result);
+
+}  // namespace lensproof

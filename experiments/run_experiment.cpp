@@ -1,0 +1,331 @@
+#include "experiments/run_experiment.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "calibration/measure.h"
+#include "engine/io/image.h"
+#include "engine/io/input_error.h"
+#include "engine/optics/paraxial.h"
+#include "engine/spectral/wavelengths.h"
+#include "experiments/closed_loop.h"
+#include "experiments/lens_profile.h"
+
+namespace lensproof {
+
+namespace {
+
+constexpr int kShownWidth = 480;  // px, at most: a report holds many pictures
+
+/// The picture's colours (or grey) alone.
+Image colours_only(const Image& image) {
+    std::vector<std::string> kept;
+    for (const char* name : {"R", "G", "B"}) {
+        if (find_channel(image, name) >= 0) {
+            kept.emplace_back(name);
+        }
+    }
+    if (kept.empty()) {
+        kept = {image.channels.front()};
+    }
+    Image colours = make_image(image.width, image.height, kept);
+    for (int c = 0; c < colours.channel_count(); ++c) {
+        const int from = find_channel(image, kept[c]);
+        for (int y = 0; y < image.height; ++y) {
+            for (int x = 0; x < image.width; ++x) {
+                colours.at(x, y, c) = image.at(x, y, from);
+            }
+        }
+    }
+    return colours;
+}
+
+/// A smaller copy for the report: means of whole blocks of pixels.
+Image shrunk(const Image& image) {
+    const int factor = std::max(1, (image.width + kShownWidth - 1) / kShownWidth);
+    Image small = make_image(std::max(1, image.width / factor), std::max(1, image.height / factor), image.channels);
+    for (int y = 0; y < small.height; ++y) {
+        for (int x = 0; x < small.width; ++x) {
+            for (int c = 0; c < image.channel_count(); ++c) {
+                float sum = 0.0F;
+                for (int dy = 0; dy < factor; ++dy) {
+                    for (int dx = 0; dx < factor; ++dx) {
+                        sum += image.at(x * factor + dx, y * factor + dy, c);
+                    }
+                }
+                small.at(x, y, c) = sum / static_cast<float>(factor * factor);
+            }
+        }
+    }
+    return small;
+}
+
+ShownPicture shown(const std::string& name, const std::string& caption, const Image& image, int view) {
+    return {.name = name,
+            .caption = caption,
+            .width = image.width,
+            .height = image.height,
+            .png = encode_png(shrunk(image)),
+            .view = view};
+}
+
+std::string describe(const Placement& placement) {
+    std::string text = fmt::format("chart at {:g} m", placement.distance_mm / 1000.0);
+    if (placement.towards_right_deg != 0.0 || placement.towards_down_deg != 0.0) {
+        text += fmt::format(", {:g}° right and {:g}° down", placement.towards_right_deg, placement.towards_down_deg);
+    }
+    const auto& tilt = placement.tilt_deg;
+    if (tilt[0] != 0.0 || tilt[1] != 0.0 || tilt[2] != 0.0) {
+        text += fmt::format(", tilted {:g}°, {:g}°, {:g}°", tilt[0], tilt[1], tilt[2]);
+    }
+    return text;
+}
+
+void add_profile_facts(Subject& subject) {
+    const Profile& profile = subject.profile;
+    if (profile.geometry) {
+        const ProfileGeometry& geometry = *profile.geometry;
+        subject.facts.push_back({"camera model", kind_name(geometry.model)});
+        subject.facts.push_back({"focal length", fmt::format("{:.3f} ± {:.3f} px", focal_length_px(geometry.model),
+                                                             geometry.standard_error(0))});
+        if (profile.pixel_pitch_um) {
+            subject.facts.push_back(
+                {"focal length",
+                 fmt::format("{:.4f} ± {:.4f} mm", focal_length_px(geometry.model) * *profile.pixel_pitch_um / 1e3,
+                             geometry.standard_error(0) * *profile.pixel_pitch_um / 1e3)});
+        }
+        subject.facts.push_back({"reprojection rms", fmt::format("{:.4f} px", geometry.reprojection_rms_px)});
+        subject.facts.push_back({"points, views", fmt::format("{}, {}", geometry.points_used, geometry.views_used)});
+        subject.facts.push_back({"covered image height", fmt::format("{:.3f}", geometry.covered_image_height)});
+    }
+    for (const auto& [what, why] : profile.not_measured) {
+        subject.facts.push_back({what + " not measured", why});
+    }
+}
+
+class SimulationRun {
+  public:
+    SimulationRun(const Simulation& simulation, const RunSettings& settings, const RunProgress& progress)
+        : simulation_(simulation),
+          settings_(settings),
+          progress_(progress),
+          camera_(simulation.scene.camera, simulation.scene.light, simulation.scene.spectral) {}
+
+    Subject run() {
+        Subject subject{.name = simulation_.name, .label = camera_.lens().name, .simulated = true};
+        std::vector<Picture> pictures;
+        const std::size_t count = simulation_.views.size();
+        for (std::size_t i = 0; i < count; ++i) {
+            const std::string name = fmt::format("{}/view-{}.png", simulation_.name, i + 1);
+            Image image = render(simulation_.scene.chart, simulation_.views[i],
+                                 fmt::format("{}, view {} of {}", simulation_.name, i + 1, count));
+            subject.pictures.push_back(shown(name, describe(simulation_.views[i]), image, static_cast<int>(i)));
+            pictures.push_back(
+                {.name = name, .role = PictureRole::chart, .load = [image = std::move(image)] { return image; }});
+        }
+        if (simulation_.flat_field) {
+            const std::string name = simulation_.name + "/flat-field.png";
+            const Chart white{.pattern = FlatField{}};
+            Image image = render(white, Placement{.distance_mm = 1000.0}, simulation_.name + ", flat field");
+            subject.pictures.push_back(shown(name, "flat field", image, -1));
+            pictures.push_back(
+                {.name = name, .role = PictureRole::flat_field, .load = [image = std::move(image)] { return image; }});
+        }
+        progress_(simulation_.name + ", measuring", 0.0);
+        subject.profile =
+            measure({.name = simulation_.name,
+                     .pictures = std::move(pictures),
+                     .chart = simulation_.scene.chart,
+                     .model = simulation_.model,
+                     .geometry = {.fit_tangential = false},  // a centred lens
+                     .source = {.kind = "render", .images = {}, .camera = "simulated", .lens = subject.label},
+                     .pixel_pitch_um = 1e3 * camera_.sensor().pixel_pitch_mm});
+        progress_(simulation_.name + ", tracing", 0.0);
+        subject.traced = lens_profile(camera_);
+        add_facts(subject);
+        return subject;
+    }
+
+  private:
+    Image render(const Chart& chart, const Placement& placement, const std::string& step) {
+        const RenderSettings settings{.samples_per_pixel = simulation_.scene.samples_per_pixel,
+                                      .seed = settings_.seed + views_rendered_++,  // views do not share their noise
+                                      .threads = settings_.threads};
+        return colours_only(camera_.render(chart, placement, settings, [&](double done) { progress_(step, done); }));
+    }
+
+    void add_facts(Subject& subject) const {
+        const Camera& camera = simulation_.scene.camera;
+        const ParaxialData data = paraxial_data(at_wavelength<double>(camera_.lens(), kLineD));
+        subject.facts.push_back({"prescription", camera_.lens().source});
+        subject.facts.push_back({"effective focal length (d)", fmt::format("{:.4f} mm", data.efl)});
+        subject.facts.push_back({"f-number", fmt::format("f/{:g}", camera.f_number)});
+        subject.facts.push_back({"focused at", std::isinf(camera.focus_distance_mm)
+                                                   ? std::string("infinity")
+                                                   : fmt::format("{:g} m", camera.focus_distance_mm / 1e3)});
+        subject.facts.push_back({"sensor", fmt::format("{} × {} px of {:g} µm", camera.sensor.width,
+                                                       camera.sensor.height, 1e3 * camera.sensor.pixel_pitch_mm)});
+        subject.facts.push_back(
+            {"sensor response, light", camera.response + ", " + simulation_.scene.light.illuminant});
+        add_profile_facts(subject);
+        if (!camera_.spectral().clamp_note.empty()) {
+            subject.facts.push_back({"note", camera_.spectral().clamp_note});
+        }
+    }
+
+    const Simulation& simulation_;
+    const RunSettings& settings_;
+    const RunProgress& progress_;
+    ChartCamera camera_;
+    std::uint64_t views_rendered_ = 0;
+};
+
+Subject run_photos(const PhotoSubject& photos, const PhotoSet& set, const RunProgress& progress) {
+    Subject subject{.name = photos.name, .label = set.name, .simulated = false};
+    MeasureInput input{.name = photos.name,
+                       .pictures = {},
+                       .chart = set.chart,
+                       .model = photos.model,
+                       .geometry = {},
+                       .source = {.kind = "photo", .images = {}, .camera = set.camera, .lens = set.lens},
+                       .pixel_pitch_um = set.pixel_pitch_um};
+    const auto add = [&](const std::filesystem::path& file, PictureRole role, int view) {
+        progress(fmt::format("{}, {}", photos.name, file.filename().string()), 0.0);
+        const Image image = read_image(file);
+        subject.pictures.push_back(
+            shown(fmt::format("{}/{}.png", photos.name, file.stem().string()), file.filename().string(), image, view));
+        input.pictures.push_back({.name = file.string(), .role = role, .load = [file] { return read_image(file); }});
+    };
+    for (std::size_t i = 0; i < set.photos.size(); ++i) {
+        add(set.photos[i], PictureRole::chart, static_cast<int>(i));
+    }
+    for (const std::filesystem::path& flat_field : set.flat_fields) {
+        add(flat_field, PictureRole::flat_field, -1);
+    }
+    progress(photos.name + ", measuring", 0.0);
+    subject.profile = measure(input);
+    subject.facts = {{"camera", set.camera}, {"lens", set.lens}, {"licence", set.licence}, {"from", set.source}};
+    add_profile_facts(subject);
+    return subject;
+}
+
+std::vector<Check> photo_checks(const Subject& subject, const PhotoExpectations& expected) {
+    std::vector<Check> checks;
+    if (!subject.profile.geometry) {
+        return checks;
+    }
+    const ProfileGeometry& geometry = *subject.profile.geometry;
+    const std::string group = subject.label + ": against independent calibrations";
+    if (expected.focal_length_px) {
+        checks.push_back({.id = subject.name + "-focal-length",
+                          .group = group,
+                          .subject = subject.name,
+                          .label = "focal length",
+                          .value = focal_length_px(geometry.model),
+                          .sigma = geometry.standard_error(0),
+                          .unit = "px",
+                          .limit = *expected.focal_length_px * expected.focal_length_within_percent / 100.0,
+                          .expectation = Expectation::within,
+                          .target = *expected.focal_length_px,
+                          .explanation = fmt::format("Within {} % of {} px: {}.", expected.focal_length_within_percent,
+                                                     *expected.focal_length_px, expected.focal_length_source)});
+    }
+    if (expected.reprojection_rms_px) {
+        checks.push_back(
+            {.id = subject.name + "-reprojection-rms",
+             .group = group,
+             .subject = subject.name,
+             .label = "reprojection error, rms",
+             .value = geometry.reprojection_rms_px,
+             // An rms of 2N residuals is known to 1 / √(4N) of itself.
+             .sigma = geometry.reprojection_rms_px / std::sqrt(4.0 * geometry.points_used),
+             .unit = "px",
+             .limit = *expected.reprojection_rms_px,
+             .explanation = fmt::format("Over {} corners in {} photos.", geometry.points_used, geometry.views_used)});
+    }
+    return checks;
+}
+
+const Subject& find_subject(const std::vector<Subject>& subjects, const std::string& name) {
+    return *std::ranges::find(subjects, name, &Subject::name);
+}
+
+ComparisonResult compare_subjects(const Comparison& comparison, const std::vector<Subject>& subjects,
+                                  std::vector<Check>& checks) {
+    const Subject& of = find_subject(subjects, comparison.of);
+    const Subject& with = find_subject(subjects, comparison.with);
+    ComparisonResult result{.comparison = comparison,
+                            .difference = comparison.curve == "radial_px"
+                                              ? radial_difference_px(of.profile, with.profile)
+                                              : difference(of.profile, with.profile, comparison.curve)};
+    if (!comparison.limit) {
+        return result;
+    }
+    Check check{.id = fmt::format("{}-{}-{}", comparison.of, comparison.with, comparison.curve),
+                .group = "Simulated lenses against the photographed one",
+                .subject = comparison.of,
+                .label = fmt::format("{} against {}: {}, rms", comparison.of, comparison.with, comparison.curve),
+                .value = std::nan(""),
+                .unit = comparison.curve.ends_with("_percent") ? "%"
+                        : comparison.curve.ends_with("_ev")    ? "EV"
+                                                               : "px",
+                .limit = *comparison.limit,
+                .expectation = comparison.expectation,
+                .explanation = "The curve was not measured in both."};
+    if (result.difference) {
+        check.value = result.difference->rms;
+        check.sigma = result.difference->rms_sigma;
+        check.explanation =
+            fmt::format("Over image heights from 0 to {:.2f} of the half-diagonal, where both are covered. {}",
+                        result.difference->curve.covered_image_height,
+                        comparison.expectation == Expectation::differs
+                            ? "A negative control: these are different lenses, and have to be told apart."
+                            : "");
+    }
+    checks.push_back(check);
+    return result;
+}
+
+void append(std::vector<Check>& checks, const std::vector<Check>& more) {
+    checks.insert(checks.end(), more.begin(), more.end());
+}
+
+}  // namespace
+
+ExperimentResult run_experiment(const Experiment& experiment, const RunSettings& settings,
+                                const RunProgress& progress) {
+    ExperimentResult result;
+    result.inputs.push_back(experiment.file);
+    // Whatever is missing is found before the long part begins.
+    std::vector<PhotoSet> sets;
+    for (const PhotoSubject& photos : experiment.photos) {
+        sets.push_back(read_photo_set(photos.manifest));
+    }
+    std::vector<SimulationRun> runs;
+    for (const Simulation& simulation : experiment.simulations) {
+        runs.emplace_back(simulation, settings, progress);
+        result.inputs.push_back(find_lens_file(simulation.scene.camera.lens));
+    }
+    for (std::size_t i = 0; i < runs.size(); ++i) {
+        Subject subject = runs[i].run();
+        append(result.checks, closed_loop_checks(subject.name, subject.label, subject.profile, *subject.traced,
+                                                 experiment.simulations[i].limits));
+        result.subjects.push_back(std::move(subject));
+    }
+    for (std::size_t i = 0; i < sets.size(); ++i) {
+        Subject subject = run_photos(experiment.photos[i], sets[i], progress);
+        append(result.checks, photo_checks(subject, experiment.photos[i].expected));
+        result.subjects.push_back(std::move(subject));
+        result.inputs.push_back(experiment.photos[i].manifest);
+        result.inputs.insert(result.inputs.end(), sets[i].photos.begin(), sets[i].photos.end());
+        result.inputs.insert(result.inputs.end(), sets[i].flat_fields.begin(), sets[i].flat_fields.end());
+    }
+    for (const Comparison& comparison : experiment.comparisons) {
+        result.comparisons.push_back(compare_subjects(comparison, result.subjects, result.checks));
+    }
+    return result;
+}
+
+}  // namespace lensproof

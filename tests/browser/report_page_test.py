@@ -1,0 +1,331 @@
+"""Drives the report page in headless Chromium: report_page_test.py REPORT_PAGE_SAMPLE [FOLDER]
+
+REPORT_PAGE_SAMPLE is the program built beside this file. With FOLDER, the pages and a screenshot of each stay there.
+Needs Python's standard library and Chromium; without Chromium it says so and exits with 77 (skipped).
+"""
+import base64, json, math, os, shutil, struct, subprocess, sys, tempfile, time, zlib
+
+ATTACK = '</script><img src=x onerror="window.pwned=1"><b>'
+
+
+# ---- A Chromium to talk to -------------------------------------------------------------------------------------------
+
+class Browser:
+    """The DevTools protocol over a pipe (--remote-debugging-pipe): JSON messages that end with a zero byte."""
+
+    def __init__(self, chromium, profile):
+        page_in, self.to_page = os.pipe()
+        self.from_page, page_out = os.pipe()
+        # The browser expects the pipes as 3 and 4; the shell sets them so, whatever numbers they have here.
+        command = (f'exec "$0" --headless=new --no-sandbox --disable-gpu --disable-dev-shm-usage --no-first-run '
+                   f'--disable-background-networking --disable-component-update --hide-scrollbars '
+                   f'--host-resolver-rules="MAP * ~NOTFOUND" --user-data-dir="{profile}" --remote-debugging-pipe '
+                   f'3<&{page_in} 4>&{page_out} about:blank')
+        self.process = subprocess.Popen(["bash", "-c", command, chromium], pass_fds=(page_in, page_out),
+                                        stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        os.close(page_in)
+        os.close(page_out)
+        self.buffer, self.count, self.events, self.session = b"", 0, [], None
+        target = self.call("Target.createTarget", url="about:blank")["targetId"]
+        self.session = self.call("Target.attachToTarget", targetId=target, flatten=True)["sessionId"]
+        for domain in ("Page", "Runtime", "Log", "Network"):
+            self.call(domain + ".enable")
+
+    def receive(self):
+        while b"\0" not in self.buffer:
+            more = os.read(self.from_page, 1 << 20)
+            if not more:
+                raise RuntimeError("Chromium went away")
+            self.buffer += more
+        message, self.buffer = self.buffer.split(b"\0", 1)
+        return json.loads(message)
+
+    def call(self, method, **params):
+        self.count += 1
+        message = {"id": self.count, "method": method, "params": params}
+        if self.session:
+            message["sessionId"] = self.session
+        payload = memoryview(json.dumps(message).encode() + b"\0")
+        while payload:
+            payload = payload[os.write(self.to_page, payload):]
+        while True:
+            answer = self.receive()
+            if answer.get("id") == self.count:
+                if "error" in answer:
+                    raise RuntimeError(f"{method}: {answer['error']['message']}")
+                return answer["result"]
+            self.events.append(answer)
+
+    def open(self, file, width=1280, height=900, dark=False, script=True):
+        self.events = []
+        self.call("Emulation.setDeviceMetricsOverride", width=width, height=height, deviceScaleFactor=1, mobile=False)
+        self.call("Emulation.setEmulatedMedia",
+                  features=[{"name": "prefers-color-scheme", "value": "dark" if dark else "light"}])
+        self.call("Emulation.setScriptExecutionDisabled", value=not script)
+        self.call("Page.navigate", url="file://" + os.path.abspath(file))
+        while not any(event.get("method") == "Page.loadEventFired" for event in self.events):
+            self.events.append(self.receive())
+        if script:
+            self.js("new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done)))")
+
+    def js(self, expression):
+        answer = self.call("Runtime.evaluate", expression=expression, returnByValue=True, awaitPromise=True)
+        if "exceptionDetails" in answer:
+            raise RuntimeError(expression + ": " + json.dumps(answer["exceptionDetails"]))
+        return answer["result"].get("value")
+
+    def mouse(self, kind, x, y, **more):
+        self.call("Input.dispatchMouseEvent", type=kind, x=x, y=y, **more)
+
+    def key(self, key):
+        for kind in ("keyDown", "keyUp"):
+            self.call("Input.dispatchKeyEvent", type=kind, key=key)
+
+    def screenshot(self, file, whole=True):
+        picture = self.call("Page.captureScreenshot", format="png", captureBeyondViewport=whole)
+        with open(file, "wb") as out:
+            out.write(base64.b64decode(picture["data"]))
+
+    def complaints(self):
+        """What went wrong since open(): errors, and requests that leave the page."""
+        found = []
+        for event in self.events:
+            method, params = event.get("method"), event.get("params", {})
+            if method == "Network.requestWillBeSent" and not params["request"]["url"].startswith(("file://", "data:")):
+                found.append("request " + params["request"]["url"])
+            elif method == "Runtime.exceptionThrown":
+                details = params["exceptionDetails"]
+                found.append("exception " + details.get("exception", {}).get("description", details["text"]))
+            elif method == "Runtime.consoleAPICalled" and params["type"] in ("error", "warning", "assert"):
+                found.append("console " + json.dumps(params["args"]))
+            elif method == "Log.entryAdded" and params["entry"]["level"] in ("error", "warning"):
+                found.append("log " + params["entry"]["text"])
+        files = [event["params"]["request"]["url"] for event in self.events
+                 if event.get("method") == "Network.requestWillBeSent"
+                 and event["params"]["request"]["url"].startswith("file://")]
+        return found + ["request " + url for url in files[1:]]  # the first is the page itself
+
+    def close(self):
+        try:
+            self.session = None
+            self.call("Browser.close")
+        except (RuntimeError, OSError):
+            pass
+        try:
+            self.process.wait(timeout=10)
+        except subprocess.TimeoutExpired:
+            self.process.kill()
+            self.process.wait()
+
+
+# ---- Reports to show -------------------------------------------------------------------------------------------------
+
+def png(width, height):
+    rows = b"".join(b"\0" + bytes(60 + (x * 5 ^ y * 3) % 140 for x in range(width)) for y in range(height))
+
+    def chunk(kind, data):
+        return struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
+    return (b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", struct.pack(">IIBBBBB", width, height, 8, 0, 0, 0, 0)) +
+            chunk(b"IDAT", zlib.compress(rows)) + chunk(b"IEND", b""))
+
+
+def check(i, **more):
+    return {"id": f"c{i}", "group": f"group {i % 5} {ATTACK}", "label": f"check {i}", "value": 0.1 * (i % 9),
+            "sigma": 0.03, "unit": "px", "limit": 0.5, "expect": "at most", "verdict": "PASS",
+            "explanation": "because", **more}
+
+
+def reports():
+    """By name: a usual one with hostile texts, a large one, and one in which everything is missing."""
+    x = [0.5 * i for i in range(61)]
+    curve = {"x": x, "y": [0.002 * v * v for v in x], "lower": [0.002 * v * v - 0.02 for v in x],
+             "upper": [0.002 * v * v + 0.02 for v in x]}
+    plot = {"id": "distortion", "title": "Distortion", "x_label": "field angle", "y_label": "distortion", "x_unit": "°",
+            "y_unit": "%", "limit": 0.5, "series": [
+                {"label": "measured", "subject": "a", "style": "measured", "covered_to": 24, **curve},
+                {"label": "traced " + ATTACK, "subject": "a", "style": "reference", "x": x, "y": curve["y"]},
+                {"label": "second", "subject": "a", "style": "measured", "x": [0, 10, 20, 30], "y": [0, None, 1, 2]}]}
+    points = [[20 + 10 * i % 600, 20 + 10 * (i // 58), 0.1 * math.sin(i), 0.1 * math.cos(i)] for i in range(2000)]
+    subject = {"id": "a", "kind": "simulation", "label": "Lens " + ATTACK, "facts": [{"label": "f", "value": "100 mm"}],
+               "pictures": [{"name": "a/1.png", "caption": "one", "width": 640, "height": 400, "points": points},
+                            {"name": "gone.png", "caption": "absent", "width": 640, "height": 400,
+                             "points": [[9, 9, None, 1]]},
+                            {"name": "a/1.png", "caption": "no size"}]}
+    usual = {"schema": "lensproof-report/1", "title": "Title " + ATTACK, "summary": ATTACK, "verdict": "FAIL",
+             "checks": [check(0), check(1, expect="at least", verdict="FAIL"), check(2, expect="within", target=0.2),
+                        check(3, expect="differs", value=9), check(4, value=None, verdict="INCONCLUSIVE"),
+                        check(5, limit=0), check(6, limit=None), check(7, expect=ATTACK, value=-1, sigma=1e9)],
+             "subjects": [subject], "plots": [plot, {**plot, "id": "again"}],
+             "provenance": {"program": ATTACK, "inputs": [{"file": ATTACK, "sha256": "0" * 64}],
+                            "settings": {"a": {"b": 1}}},
+             "reproduce": "./lensproof run x.toml"}
+    long = "a very long name without a place to break_" * 8
+    large = {"title": long, "summary": long, "verdict": "PASS",
+             "checks": [check(i, label=long if i % 7 == 0 else f"check {i}") for i in range(60)],
+             "subjects": [{"id": str(i), "kind": "photos", "label": long} for i in range(9)],
+             "plots": [{"id": long, "title": long, "x_label": long, "y_label": long, "series": [
+                 {"label": long, "subject": str(i), "style": "difference", "x": x, "y": [i * v for v in x]}
+                 for i in range(9)]}]}
+    empty = {"title": None, "checks": [None, {}], "subjects": [None, {}, {"pictures": [None]}],
+             "plots": [None, {}, {"series": [None, {}, {"x": [None], "y": [1]}, {"x": [1, 1], "y": [2, 3]}]}]}
+    return {"usual": usual, "large": large, "empty": empty, "nothing": {}}
+
+
+# ---- What must hold --------------------------------------------------------------------------------------------------
+
+failures = []
+
+
+def expect(holds, what):
+    if not holds:
+        failures.append(what)
+    print(("ok      " if holds else "FAILED  ") + what)
+
+
+def box(browser, selector):
+    return browser.js(f"(() => {{ const e = document.querySelector({json.dumps(selector)});"
+                      "e.scrollIntoView({block: 'center'});"
+                      "const b = e.getBoundingClientRect(); return [b.left, b.top, b.width, b.height]; })()")
+
+
+def readouts(browser):
+    outputs = "document.querySelectorAll('[data-plot=distortion] .legend output')"
+    return browser.js(f"[...{outputs}].map((o) => o.textContent)")
+
+
+def ticks(browser):
+    return browser.js("[...document.querySelectorAll('[data-plot=distortion] .tick')].map((t) => t.textContent).join()")
+
+
+def test_curves(browser):
+    expect(browser.js("document.querySelectorAll('[data-plot=distortion] path.line').length") >= 4, "curves are drawn")
+    expect(browser.js("document.querySelector('[data-plot=distortion] path.line.measured').getTotalLength()") > 200,
+           "a curve has length")
+    expect(browser.js("document.querySelectorAll('[data-plot=distortion] path.band').length") == 1,
+           "the 95 % band is drawn")
+    expect(browser.js("document.querySelectorAll('[data-plot=distortion] .beyond').length") == 1,
+           "the extrapolated part stands apart")
+    left, top, width, height = box(browser, "[data-plot=distortion] .canvas")
+    browser.mouse("mouseMoved", left + width * 0.3, top + height / 2)
+    values = readouts(browser)
+    expect(values[0].endswith("± 0.020\u00a0%"), f"hovering gives a value ± half the band: {values}")
+    expect(browser.js("document.querySelectorAll('[data-plot=distortion] .point').length") == 2,
+           "a dot on each curve that is defined there")
+    browser.mouse("mouseMoved", 2, 2)
+    expect(readouts(browser) == ["", "", ""], "leaving clears the readout")
+
+    before = ticks(browser)
+    browser.mouse("mousePressed", left + width * 0.3, top + height * 0.3, button="left", clickCount=1)
+    browser.mouse("mouseMoved", left + width * 0.5, top + height * 0.6, button="left", buttons=1)
+    browser.mouse("mouseReleased", left + width * 0.5, top + height * 0.6, button="left", clickCount=1)
+    dragged = ticks(browser)
+    expect(dragged != before, "dragging zooms")
+    browser.mouse("mouseWheel", left + width * 0.4, top + height * 0.5, deltaX=0, deltaY=-200)
+    deadline = time.monotonic() + 5
+    while ticks(browser) == dragged and time.monotonic() < deadline:
+        time.sleep(0.05)
+    expect(ticks(browser) != dragged, "the wheel zooms the plot that was clicked")
+    for clicks in (1, 2):
+        browser.mouse("mousePressed", left + width * 0.4, top + height * 0.5, button="left", clickCount=clicks)
+        browser.mouse("mouseReleased", left + width * 0.4, top + height * 0.5, button="left", clickCount=clicks)
+    expect(ticks(browser) == before, "a double click resets")
+
+    browser.js("document.querySelector('[data-plot=distortion] .canvas').focus()")
+    browser.key("ArrowRight")
+    expect(readouts(browser)[0] != "", "an arrow key reads values")
+    expect("measured" in browser.js("document.querySelector('[data-plot=distortion] [aria-live]').textContent"),
+           "and they are announced")
+    browser.key("+")
+    expect(not browser.js("document.querySelector('[aria-label=\"Reset zoom: Distortion\"]').disabled"),
+           "the + key zooms")
+    browser.js("document.querySelector('[aria-label=\"Reset zoom: Distortion\"]').click()")
+    expect(ticks(browser) == before, "the reset button resets")
+    browser.js("document.querySelector('[data-plot=distortion] .legend input').click()")
+    expect(browser.js("document.querySelectorAll('[data-plot=distortion] [data-series=\"0\"]').length") == 0,
+           "the legend hides a curve")
+    browser.js("document.querySelector('[data-plot=distortion] .legend input').click()")
+    browser.js("document.querySelector('[data-plot=distortion] details').open = true")
+    browser.js("new Promise((done) => setTimeout(done, 100))")
+    expect(browser.js("document.querySelectorAll('[data-plot=distortion] details td').length") >= 9,
+           "the values are listed")
+
+
+def test_checks(browser):
+    expect(browser.js("document.querySelectorAll('td.scale > svg').length") == 7, "each limit has its scale")
+    left, top, width, height = box(browser, ".check.pass")
+    browser.js("document.querySelector('.check.pass').focus()")
+    browser.js("new Promise((done) => setTimeout(done, 300))")
+    why = "getComputedStyle(document.querySelector('.check.pass .why')).visibility"
+    expect(browser.js(why) == "visible", "focus shows an explanation")
+    browser.key("Escape")
+    browser.js("new Promise((done) => setTimeout(done, 300))")
+    expect(browser.js(why) == "hidden", "Escape sends it away")
+    expect(browser.js("getComputedStyle(document.querySelector('.check.fail .why')).position") == "static",
+           "a check that fails shows its own")
+
+
+def test_pictures(browser):
+    arrows = "document.querySelector('#picture-0-0 path.arrows:last-of-type').getAttribute('d')"
+    expect(browser.js(arrows).count("M") >= 2000, "2000 points are drawn")
+    before = browser.js(arrows)
+    browser.js("(() => { const s = document.querySelector('.tools [type=range]'); s.value = s.max;"
+               "s.dispatchEvent(new Event('input')); })()")
+    expect(browser.js(arrows) != before, "the slider magnifies the residuals")
+    expect("×500" in browser.js("document.querySelector('.tools output').textContent"), "and the scale is said")
+    browser.js("document.querySelector('.tools [type=checkbox]').click()")
+    expect(browser.js("document.querySelectorAll('.stage > svg').length") == 0, "the overlay can be switched off")
+    browser.js("document.querySelector('.tools [type=checkbox]').click()")
+    browser.js("document.querySelector('#picture-0-0 .enlarge').click()")
+    expect(browser.js("document.querySelector('dialog').open && document.querySelectorAll('dialog .stage svg').length")
+           == 1,
+           "a click enlarges the picture with its overlay")
+    browser.js("document.querySelector('dialog button').click()")
+    expect(not browser.js("document.querySelector('dialog').open"), "and it closes")
+
+
+def main():
+    chromium = next(filter(None, map(shutil.which, ("chromium", "chromium-browser", "google-chrome"))), None)
+    if chromium is None:
+        print("SKIPPED: no Chromium on this machine (chromium, chromium-browser, google-chrome), so the report page "
+              "was not looked at")
+        return 77
+    with tempfile.TemporaryDirectory(ignore_cleanup_errors=True) as temporary:
+        folder = sys.argv[2] if len(sys.argv) > 2 else temporary
+        os.makedirs(os.path.join(folder, "pictures/a"), exist_ok=True)
+        with open(os.path.join(folder, "pictures/a/1.png"), "wb") as out:
+            out.write(png(320, 200))
+        for name, report in reports().items():
+            with open(os.path.join(folder, name + ".json"), "w", encoding="utf-8") as out:
+                json.dump(report, out)
+            subprocess.run([sys.argv[1], os.path.join(folder, name + ".json"), os.path.join(folder, "pictures"),
+                            os.path.join(folder, name + ".html")], check=True)
+        browser = Browser(chromium, os.path.join(temporary, "profile"))
+        try:
+            for name in reports():
+                page = os.path.join(folder, name + ".html")
+                for width, dark in ((400, True), (1600, False)):
+                    browser.open(page, width=width, dark=dark)
+                    across = browser.js("document.scrollingElement.scrollWidth")
+                    expect(across <= width, f"{name}: {width} px wide, nothing sticks out ({across} px)")
+                    expect(browser.complaints() == [], f"{name}: no error and no request {browser.complaints()}")
+                    browser.screenshot(os.path.join(folder, f"{name}-{width}.png"))
+            browser.open(os.path.join(folder, "usual.html"))
+            test_checks(browser)
+            test_curves(browser)
+            test_pictures(browser)
+            expect(browser.js("window.pwned === undefined && !document.querySelector('[onerror], img[src=x], h1 b')"),
+                   "hostile texts stay texts")
+            blocked = browser.js("new Promise((done) => { const i = new Image(); i.onerror = () => done(true); "
+                                 "i.onload = () => done(false); i.src = 'pictures/a/1.png'; })")
+            expect(blocked, "the page's own policy blocks a request, even one that would succeed")
+            browser.open(os.path.join(folder, "usual.html"), script=False)
+            browser.screenshot(os.path.join(folder, "no-script.png"))
+            expect(browser.complaints() == [], "without script: no complaint")
+        finally:
+            browser.close()
+    print(f"{len(failures)} failures" if failures else "all good")
+    return 1 if failures else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
