@@ -42,7 +42,7 @@ Intersection<T> intersect(const Ray<T>& ray, const T& c, const T& heading) {
     const T q = ray.direction.z + copysign(cos_incidence, ray.direction.z);
     const auto along = ray.direction.z * heading > T(0);
     const auto curved = c * c > T(0);
-    const T s = select(along, f / q, q / select(curved, c, T(1)));
+    const T s = select(along, f, q) / select(along, q, select(curved, c, T(1)));
     const Vec3<T> point = p + s * ray.direction;
     return {.point = point,
             .distance = to_vertex + s,

@@ -157,13 +157,9 @@ TraceLens<T> at_wavelength(const Lens& lens, double wavelength_nm) {
                                          surface.medium.max_wavelength_nm));
         }
         const double index_after = refractive_index(surface.medium.formula, wavelength_nm);
-        traced.surfaces.push_back(
-            {.curvature = static_cast<T>(surface.curvature),
-             .vertex_z = static_cast<T>(surface.vertex_z),
-             .semi_diameter_squared = static_cast<T>(surface.semi_diameter) * static_cast<T>(surface.semi_diameter),
-             .index_before = static_cast<T>(index_before),
-             .index_after = static_cast<T>(index_after),
-             .is_stop = surface.is_stop});
+        traced.surfaces.push_back(make_trace_surface<T>(
+            static_cast<T>(surface.curvature), static_cast<T>(surface.vertex_z), static_cast<T>(surface.semi_diameter),
+            static_cast<T>(index_before), static_cast<T>(index_after), surface.is_stop));
         index_before = index_after;
     }
     return traced;

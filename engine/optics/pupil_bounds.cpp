@@ -2,10 +2,15 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 namespace lensproof {
 
 namespace {
+
+// Between two azimuths of an outline a circle bulges by (π/96)² / 2 = 0.05 %; between two radii of the sensor the
+// outline moves smoothly, and both ends and the middle are looked at.
+constexpr double kMargin = 1.003;
 
 /// z of the circle where the rear surface ends. Every path that leaves the element passes inside that circle.
 double rear_rim_z(const TraceLens<double>& lens) {
@@ -20,58 +25,52 @@ double rear_radius(const TraceLens<double>& lens) {
     return std::sqrt(lens.surfaces.back().semi_diameter_squared);
 }
 
-/// |x| ≤ half_width by the lens's symmetry.
-struct Rectangle {
-    double half_width;
-    double y_min;
-    double y_max;
-};
-
-/// Cells of a grid (their centres, x ≥ 0) through which a sensor point sees the scene.
-struct PassingCells {
-    std::vector<Vec2d> centres;
-    Vec2d cell;
-
-    /// The smallest rectangle around the cells, widened by a cell.
-    [[nodiscard]] Rectangle bounds() const {
-        Rectangle found{.half_width = 0.0, .y_min = centres.front().y, .y_max = centres.front().y};
-        for (const Vec2d& centre : centres) {
-            found.half_width = std::max(found.half_width, centre.x + 1.5 * cell.x);
-            found.y_min = std::min(found.y_min, centre.y - 1.5 * cell.y);
-            found.y_max = std::max(found.y_max, centre.y + 1.5 * cell.y);
-        }
-        return found;
-    }
-};
-
 bool passes(const TraceLens<double>& lens, double sensor_radius, Vec2d at, double plane_z) {
     const Vec3d from{0.0, sensor_radius, lens.image_z};
     const Vec3d direction = normalized(Vec3d{at.x, at.y, plane_z} - from);
     return trace<Direction::reverse>(lens, Ray<double>{from, direction}).status == RayStatus::ok;
 }
 
-PassingCells passing_cells(const TraceLens<double>& lens, double sensor_radius, double plane_z,
-                           const Rectangle& searched) {
-    constexpr int kCells = 32;
-    PassingCells found{.centres = {},
-                       .cell = {searched.half_width / kCells, (searched.y_max - searched.y_min) / kCells}};
-    for (int i = 0; i < kCells; ++i) {
-        for (int k = 0; k < kCells; ++k) {
-            const Vec2d centre{found.cell.x * (i + 0.5), searched.y_min + found.cell.y * (k + 0.5)};
-            if (passes(lens, sensor_radius, centre, plane_z)) {
-                found.centres.push_back(centre);
+/// The mean of the passing points on a grid over the rear element, which by symmetry lies on x = 0; nothing where none
+/// passes.
+std::optional<double> passing_centre(const TraceLens<double>& lens, double sensor_radius, double plane_z) {
+    const double radius = rear_radius(lens);
+    for (const int cells : {24, 96}) {
+        double sum = 0.0;
+        int passed = 0;
+        for (int i = 0; i < cells / 2; ++i) {
+            for (int k = 0; k < cells; ++k) {
+                const Vec2d at{2.0 * radius * (i + 0.5) / cells, radius * (2.0 * (k + 0.5) / cells - 1.0)};
+                if (passes(lens, sensor_radius, at, plane_z)) {
+                    sum += at.y;
+                    ++passed;
+                }
             }
         }
+        if (passed > 0 && passes(lens, sensor_radius, {0.0, sum / passed}, plane_z)) {
+            return sum / passed;
+        }
     }
-    return found;
+    return std::nullopt;
 }
 
-/// The corners of all cells, and one cell more on the outside.
-void append_outlines(const PassingCells& cells, std::vector<Vec2d>& outline) {
-    for (const Vec2d& centre : cells.centres) {
-        for (const double side : {-1.5, 1.5}) {
-            outline.push_back({centre.x + 1.5 * cells.cell.x, centre.y + side * cells.cell.y});
+/// Appends the half outline (x ≥ 0) of the passing region, found by bisection outwards from its centre.
+void append_outline(const TraceLens<double>& lens, double sensor_radius, double plane_z, double centre_y,
+                    std::vector<Vec2d>& outline) {
+    constexpr int kAzimuths = 48;
+    constexpr int kHalvings = 20;
+    for (int i = 0; i <= kAzimuths; ++i) {
+        const double azimuth = std::numbers::pi * (static_cast<double>(i) / kAzimuths - 0.5);
+        const auto at = [&](double distance) {
+            return Vec2d{distance * std::cos(azimuth), centre_y + distance * std::sin(azimuth)};
+        };
+        double inside = 0.0;
+        double outside = 2.0 * rear_radius(lens);
+        for (int halving = 0; halving < kHalvings; ++halving) {
+            const double middle = 0.5 * (inside + outside);
+            (passes(lens, sensor_radius, at(middle), plane_z) ? inside : outside) = middle;
         }
+        outline.push_back(at(outside));
     }
 }
 
@@ -92,6 +91,7 @@ PupilEllipse enclosing_ellipse(const std::vector<Vec2d>& points) {
     for (const Vec2d& point : points) {
         scale = std::max(scale, std::hypot(point.x / half_width, (point.y - centre_y) / half_height));
     }
+    scale *= kMargin;
     return {.centre_y = centre_y, .semi_axis_x = scale * half_width, .semi_axis_y = scale * half_height};
 }
 
@@ -112,7 +112,6 @@ Vec2d PupilEllipse::warped(double u, double v) const {
 
 PupilBounds::PupilBounds(const std::vector<TraceLens<double>>& lenses, double largest_radius_mm, int ranges) {
     const double radius = rear_radius(lenses.front());
-    const Rectangle whole{.half_width = radius, .y_min = -radius, .y_max = radius};
     plane_z_ = rear_rim_z(lenses.front());
     ranges_per_mm_ = ranges / largest_radius_mm;
 
@@ -122,12 +121,12 @@ PupilBounds::PupilBounds(const std::vector<TraceLens<double>>& lenses, double la
     for (std::size_t i = 0; i < outlines.size(); ++i) {
         const double sensor_radius = 0.5 * static_cast<double>(i) / ranges_per_mm_;
         for (const TraceLens<double>& lens : lenses) {
-            const PassingCells coarse = passing_cells(lens, sensor_radius, plane_z_, whole);
-            if (coarse.centres.empty()) {
+            const std::optional<double> centre_y = passing_centre(lens, sensor_radius, plane_z_);
+            if (!centre_y) {
                 outlines[i].clear();
                 break;
             }
-            append_outlines(passing_cells(lens, sensor_radius, plane_z_, coarse.bounds()), outlines[i]);
+            append_outline(lens, sensor_radius, plane_z_, *centre_y, outlines[i]);
         }
     }
     for (std::size_t i = 0; i + 2 < outlines.size(); i += 2) {

@@ -38,10 +38,11 @@ Refraction<T> refract(const Vec3<T>& direction, const Vec3<T>& normal, const T& 
 /// (Fresnel; Born & Wolf, Principles of Optics, 7th ed., §1.5.2, eqs. 21a, 21b).
 template <class T>
 T fresnel_transmittance(const T& index_before, const T& index_after, const T& cos_incidence, const T& cos_refraction) {
-    const T s = (index_before * cos_incidence - index_after * cos_refraction) /
-                (index_before * cos_incidence + index_after * cos_refraction);
-    const T p = (index_after * cos_incidence - index_before * cos_refraction) /
-                (index_after * cos_incidence + index_before * cos_refraction);
+    const T s_sum = index_before * cos_incidence + index_after * cos_refraction;
+    const T p_sum = index_after * cos_incidence + index_before * cos_refraction;
+    const T inverse = T(1) / (s_sum * p_sum);
+    const T s = (index_before * cos_incidence - index_after * cos_refraction) * p_sum * inverse;
+    const T p = (index_after * cos_incidence - index_before * cos_refraction) * s_sum * inverse;
     return T(1) - (s * s + p * p) / T(2);
 }
 

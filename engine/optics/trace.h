@@ -16,8 +16,23 @@ struct TraceSurface {
     T semi_diameter_squared;  // mm²
     T index_before;           // of the medium on the scene's side
     T index_after;            // of the medium on the sensor's side
+    T forward_ratio;          // index_before / index_after, and its inverse: divisions that the inner loop is spared
+    T reverse_ratio;
     bool is_stop;
 };
+
+template <class T>
+TraceSurface<T> make_trace_surface(T curvature, T vertex_z, T semi_diameter, T index_before, T index_after,
+                                   bool is_stop) {
+    return {.curvature = curvature,
+            .vertex_z = vertex_z,
+            .semi_diameter_squared = semi_diameter * semi_diameter,
+            .index_before = index_before,
+            .index_after = index_after,
+            .forward_ratio = index_before / index_after,
+            .reverse_ratio = index_after / index_before,
+            .is_stop = is_stop};
+}
 
 /// A lens at one wavelength and in one precision: its surfaces from the scene to the sensor.
 template <class T>
@@ -99,7 +114,9 @@ TracedRay<T> trace(const TraceLens<T>& lens, const Ray<T>& ray, Visitor&& visit)
         // The sphere's unit normal at the point, turned along the ray.
         const T c = surface.curvature;
         const Vec3<T> normal = heading * Vec3<T>{-c * point.x, -c * point.y, T(1) - c * point.z};
-        const Refraction<T> bent = refract(local.direction, normal, meeting.cos_incidence, index_before / index_after);
+        const Refraction<T> bent =
+            refract(local.direction, normal, meeting.cos_incidence,
+                    direction == Direction::forward ? surface.forward_ratio : surface.reverse_ratio);
         if (!any(bent.transmitted)) {
             state.status = RayStatus::total_internal_reflection;
             state.surface = index;

@@ -38,7 +38,7 @@ Light read_light(TomlTable& table);
 struct SpectralSampling {
     double min_nm = 400.0;
     double max_nm = 700.0;
-    int layers = 30;
+    int layers = 32;  // with two strata each, as many as the default samples: each sample then has its own wavelength
     int strata_per_layer = 2;
 };
 

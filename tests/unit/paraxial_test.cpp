@@ -13,7 +13,7 @@ namespace {
 
 TraceSurface<double> surface(double curvature, double z, double before, double after, double semi_diameter = 10.0,
                              bool is_stop = false) {
-    return {curvature, z, semi_diameter * semi_diameter, before, after, is_stop};
+    return make_trace_surface(curvature, z, semi_diameter, before, after, is_stop);
 }
 
 // A ball lens with the stop at its middle: efl = n R / (2 (n − 1)), bfl = efl − R (Hecht, Optics, §6.1).

@@ -27,9 +27,9 @@ TraceLens<T> build(const std::vector<Row>& rows, double image_z = 100.0) {
     TraceLens<T> lens{.surfaces = {}, .image_z = static_cast<T>(image_z)};
     T before = T(1);
     for (const Row& row : rows) {
-        const T semi_diameter = static_cast<T>(row.semi_diameter);
-        lens.surfaces.push_back({static_cast<T>(row.curvature), static_cast<T>(row.z), semi_diameter * semi_diameter,
-                                 before, static_cast<T>(row.index_after), false});
+        lens.surfaces.push_back(make_trace_surface<T>(static_cast<T>(row.curvature), static_cast<T>(row.z),
+                                                      static_cast<T>(row.semi_diameter), before,
+                                                      static_cast<T>(row.index_after), false));
         before = static_cast<T>(row.index_after);
     }
     return lens;
