@@ -42,6 +42,8 @@ Simulation read_simulation(TomlTable& table, TomlTable& top) {
     simulation.name = read_name(table);
     simulation.model = read_model(table);
     simulation.flat_field = table.boolean_or("flat_field", true);
+    simulation.flat_field_samples_per_pixel =
+        table.integer_or("flat_field_samples_per_pixel", simulation.flat_field_samples_per_pixel, 1, 1 << 20);
     TomlTable camera = table.table("camera");
     simulation.scene.camera = read_camera(camera);
     TomlTable chart = table.table("chart");

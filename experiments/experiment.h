@@ -26,6 +26,7 @@ struct Simulation {
     ChartScene scene;  // the camera, light and chart; its placement is not used
     std::vector<Placement> views;
     bool flat_field = true;
+    int flat_field_samples_per_pixel = 128;  // an even field shows the noise that edges hide
     std::optional<ModelKind> model;
     ClosedLoopLimits limits;
 };

@@ -119,7 +119,7 @@ class SimulationRun {
         const std::size_t count = simulation_.views.size();
         for (std::size_t i = 0; i < count; ++i) {
             const std::string name = fmt::format("{}/view-{}.png", simulation_.name, i + 1);
-            Image image = render(simulation_.scene.chart, simulation_.views[i],
+            Image image = render(simulation_.scene.chart, simulation_.views[i], simulation_.scene.samples_per_pixel,
                                  fmt::format("{}, view {} of {}", simulation_.name, i + 1, count));
             subject.pictures.push_back(shown(name, describe(simulation_.views[i]), image, static_cast<int>(i)));
             pictures.push_back(
@@ -128,7 +128,8 @@ class SimulationRun {
         if (simulation_.flat_field) {
             const std::string name = simulation_.name + "/flat-field.png";
             const Chart white{.pattern = FlatField{}};
-            Image image = render(white, Placement{.distance_mm = 1000.0}, simulation_.name + ", flat field");
+            Image image = render(white, Placement{.distance_mm = 1000.0}, simulation_.flat_field_samples_per_pixel,
+                                 simulation_.name + ", flat field");
             subject.pictures.push_back(shown(name, "flat field", image, -1));
             pictures.push_back(
                 {.name = name, .role = PictureRole::flat_field, .load = [image = std::move(image)] { return image; }});
@@ -149,8 +150,8 @@ class SimulationRun {
     }
 
   private:
-    Image render(const Chart& chart, const Placement& placement, const std::string& step) {
-        const RenderSettings settings{.samples_per_pixel = simulation_.scene.samples_per_pixel,
+    Image render(const Chart& chart, const Placement& placement, int samples_per_pixel, const std::string& step) {
+        const RenderSettings settings{.samples_per_pixel = samples_per_pixel,
                                       .seed = settings_.seed + views_rendered_++,  // views do not share their noise
                                       .threads = settings_.threads};
         return colours_only(camera_.render(chart, placement, settings, [&](double done) { progress_(step, done); }));

@@ -2,9 +2,34 @@
 
 #include <fmt/format.h>
 
+#include <charconv>
+#include <cmath>
+#include <cstdlib>
+
 #include "engine/io/file.h"
 
 namespace lensproof {
+
+namespace {
+
+/// Digits only: the library turns -1 and 1e30 into some other seed.
+std::string complain_unless_seed(const std::string& text) {
+    std::uint64_t seed = 0;
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), seed);
+    const bool good = error == std::errc() && end == text.data() + text.size();
+    return good ? "" : fmt::format("\"{}\", expected a whole number from 0 to 2^64 - 1", text);
+}
+
+std::string complain_unless_positive(const std::string& text) {
+    char* end = nullptr;
+    const double value = std::strtod(text.c_str(), &end);
+    const bool good = !text.empty() && end == text.c_str() + text.size() && std::isfinite(value) && value > 0.0;
+    return good ? "" : fmt::format("\"{}\", expected a finite number above 0", text);
+}
+
+}  // namespace
+
+const CLI::Validator kPositiveOption(complain_unless_positive, "POSITIVE");
 
 void add_common_options(CLI::App& command, CommonOptions& options) {
     command.add_option("--json", options.json_file, "Write the machine-readable result to FILE (-: standard output)")
@@ -13,14 +38,22 @@ void add_common_options(CLI::App& command, CommonOptions& options) {
     command.add_option("--threads", options.threads, "Threads to use (0: one a core)")
         ->check(CLI::Range(0, 1024))
         ->capture_default_str();
-    command.add_option("--seed", options.seed, "Seed of everything random")->capture_default_str();
+    command.add_option("--seed", options.seed, "Seed of everything random")
+        ->check(CLI::Validator(complain_unless_seed, "UINT"))
+        ->capture_default_str();
+}
+
+void check_json_name(const CommonOptions& options) {
+    if (!options.json_file.empty() && options.json_file != "-") {
+        check_output_name(options.json_file);
+    }
 }
 
 void write_json_result(const CommonOptions& options, const nlohmann::ordered_json& result) {
     if (options.json_file.empty()) {
         return;
     }
-    const std::string text = result.dump(2) + "\n";
+    const std::string text = result.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
     if (options.json_file == "-") {
         fmt::print("{}", text);
     } else {

@@ -23,7 +23,14 @@ struct CommonOptions {
 /// Adds --json, --quiet, --threads and --seed to `command`.
 void add_common_options(CLI::App& command, CommonOptions& options);
 
-/// Writes the machine-readable result where --json asked for it.
+/// Whether an option's text is a finite number above 0. (CLI::PositiveNumber lets nan pass.)
+extern const CLI::Validator kPositiveOption;
+
+/// Throws InputError where --json cannot be written, before long work begins.
+void check_json_name(const CommonOptions& options);
+
+/// Writes the machine-readable result where --json asked for it. Bytes that are not UTF-8, as in some files' names, are
+/// replaced.
 void write_json_result(const CommonOptions& options, const nlohmann::ordered_json& result);
 
 /// Whether a person-readable result may go to standard output (not when the JSON goes there).

@@ -1,6 +1,7 @@
 // experiments/cli/compare_command.cpp — `lensproof compare A B`: two profiles, two images, or a lens with a profile.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <memory>
@@ -85,6 +86,11 @@ int report(const std::vector<Row>& rows, const nlohmann::ordered_json& curves, c
     for (const Row& row : rows) {
         const Check& check = row.check;
         if (!std::isfinite(check.value)) {
+            if (row.limited) {
+                throw InputError(fmt::format("{} and {}: their difference in {} is {}, expected a finite number to "
+                                             "hold against its limit",
+                                             options.a, options.b, check.label, check.value));
+            }
             continue;
         }
         const Verdict verdict = check.verdict();
@@ -131,17 +137,40 @@ int compare_profiles(const Profile& a, const Profile& b, const CompareOptions& o
         a.width_px == b.width_px && a.height_px == b.height_px && a.pixel_pitch_um == b.pixel_pitch_um;
     add("image position", "px", same_camera ? radial_difference_px(a, b) : std::nullopt, options.position_limit_px);
     add("distortion_percent", "%", difference(a, b, "distortion_percent"), options.distortion_limit_percent);
-    for (const char* channel : {"R", "G", "B", "Y"}) {
-        const std::string name = fmt::format("vignetting_{}_ev", channel);
-        const auto found = difference(a, b, name);
-        add(name, "EV", found, found ? options.vignetting_limit_ev : 0.0);
-    }
-    for (const char* channel : {"R", "B"}) {
-        const std::string name = fmt::format("chromatic_shift_{}_px", channel);
-        const auto found = difference(a, b, name);
-        add(name, "px", found, found ? options.chromatic_limit_px : 0.0);
+    // A channel that one of the two lacks is no failure, as long as another can be held against the limit.
+    const auto add_channels = [&](const std::string& before, const std::vector<std::string>& channels,
+                                  const std::string& after, const std::string& unit, double limit) {
+        bool any_found = false;
+        for (const std::string& channel : channels) {
+            const std::string name = before + channel + after;
+            const auto found = difference(a, b, name);
+            add(name, unit, found, found ? limit : 0.0);
+            any_found = any_found || found;
+        }
+        if (!any_found && limit > 0.0) {
+            throw InputError(fmt::format("{} and {}: no common {}…{} to hold against its limit", options.a, options.b,
+                                         before, after));
+        }
+    };
+    add_channels("vignetting_", {"R", "G", "B", "Y"}, "_ev", "EV", options.vignetting_limit_ev);
+    add_channels("chromatic_shift_", {"R", "B"}, "_px", "px", options.chromatic_limit_px);
+    if (std::ranges::none_of(rows, [](const Row& row) { return std::isfinite(row.check.value); })) {
+        throw InputError(fmt::format("{} and {}: they have no curve in common, expected profiles of pictures in which "
+                                     "a chart was found",
+                                     options.a, options.b));
     }
     return report(rows, curves, options);
+}
+
+void check_finite(const Image& image, const std::string& file) {
+    const auto found = std::ranges::find_if_not(image.pixels, [](float value) { return std::isfinite(value); });
+    if (found != image.pixels.end()) {
+        const auto index = static_cast<std::size_t>(found - image.pixels.begin());
+        const std::size_t pixel = index / image.channels.size();
+        throw InputError(fmt::format("{}: channel {} of pixel ({}, {}) is {}, expected a finite number", file,
+                                     image.channels[index % image.channels.size()], pixel % image.width,
+                                     pixel / image.width, *found));
+    }
 }
 
 int compare_images(const CompareOptions& options) {
@@ -152,6 +181,8 @@ int compare_images(const CompareOptions& options) {
             fmt::format("{} is {} × {} with {} channels and {} is {} × {} with {}: expected pictures alike", options.a,
                         a.width, a.height, a.channel_count(), options.b, b.width, b.height, b.channel_count()));
     }
+    check_finite(a, options.a);
+    check_finite(b, options.b);
     std::vector<Row> rows;
     for (int c = 0; c < a.channel_count(); ++c) {
         double squares = 0.0;
@@ -177,6 +208,7 @@ int compare_images(const CompareOptions& options) {
 }
 
 int run_compare(const CompareOptions& options) {
+    check_json_name(options.common);
     const bool a_is_profile = has_extension(options.a, ".json");
     const bool b_is_profile = has_extension(options.b, ".json");
     if (a_is_profile && b_is_profile) {
@@ -202,20 +234,21 @@ void add_compare_command(CLI::App& app, int& status) {
     command->add_option("A", options->a, "A profile (.json), an image, or a lens")->required();
     command->add_option("B", options->b, "Likewise")->required();
     command->add_option("--position-limit", options->position_limit_px, "Limit of image position, rms, px")
-        ->check(CLI::PositiveNumber);
+        ->check(kPositiveOption);
     command->add_option("--distortion-limit", options->distortion_limit_percent, "Limit of distortion, rms, %")
-        ->check(CLI::PositiveNumber);
+        ->check(kPositiveOption);
     command->add_option("--vignetting-limit", options->vignetting_limit_ev, "Limit of vignetting, rms, EV")
-        ->check(CLI::PositiveNumber);
+        ->check(kPositiveOption);
     command->add_option("--chromatic-limit", options->chromatic_limit_px, "Limit of chromatic shift, rms, px")
-        ->check(CLI::PositiveNumber);
+        ->check(kPositiveOption);
     command->add_option("--rms-limit", options->rms_limit, "Limit of images' rms difference, full scale 1")
-        ->check(CLI::PositiveNumber);
+        ->check(kPositiveOption);
     command->add_option("--f-number", options->f_number, "f-number of a lens")
-        ->check(CLI::PositiveNumber)
+        ->check(kPositiveOption)
         ->capture_default_str();
-    command->add_option("--focus", options->focus_mm, "Focus distance of a lens, mm (default: infinity)")
-        ->check(CLI::PositiveNumber);
+    command->add_option("--focus", options->focus_mm, "Focus distance of a lens, mm, or inf")
+        ->check(kPositiveOption | CLI::IsMember({"inf"}))
+        ->default_str("inf");
     command->add_option("--response", options->response, "Sensor response behind a lens")->capture_default_str();
     add_common_options(*command, options->common);
     command->callback([options, &status] { status = run_compare(*options); });

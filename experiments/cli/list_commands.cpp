@@ -60,7 +60,10 @@ void add_list_command(CLI::App& app, int& status, const char* name, const char* 
     CLI::App* command = app.add_subcommand(name, description);
     command->footer(fmt::format("Example: lensproof {} --json -", name));
     add_common_options(*command, *options);
-    command->callback([options, list, &status] { status = list(*options); });
+    command->callback([options, list, &status] {
+        check_json_name(*options);
+        status = list(*options);
+    });
 }
 
 }  // namespace

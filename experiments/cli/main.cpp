@@ -1,15 +1,53 @@
 // experiments/cli/main.cpp — the program `lensproof`: picks the command, turns failures into exit statuses.
+#include <fcntl.h>
 #include <fmt/format.h>
+#include <unistd.h>
 
+#include <cerrno>
 #include <csignal>
 #include <cstdio>
+#include <cstring>
 #include <exception>
+#include <filesystem>
+#include <iostream>
 
 #include "engine/io/input_error.h"
 #include "experiments/cli/command.h"
 
 namespace lensproof {
 namespace {
+
+/// Says why the program ends. Where standard error is closed too, the exit status has to do.
+void say(const std::string& message) {
+    std::fputs(fmt::format("lensproof: {}\n", message).c_str(), stderr);
+}
+
+/// A standard stream that is closed would lend its number to the next file opened, and that file would get the text.
+/// In its place stands one that refuses to be written.
+void occupy_standard_streams() {
+    for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {
+        if (::fcntl(stream, F_GETFD) == -1 && ::open("/dev/null", O_RDONLY) == -1) {
+            return;
+        }
+    }
+}
+
+/// Whether the path in the message, which came from the command line or a file, is what is wrong.
+bool is_unusable_path(const std::error_code& code) {
+    return code == std::errc::filename_too_long || code == std::errc::not_a_directory ||
+           code == std::errc::too_many_symbolic_link_levels;
+}
+
+/// What is left in the buffers may still fail to be written: a full disk, a reader that has gone.
+int flushed(int status) {
+    errno = 0;
+    std::cout.flush();
+    if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0 && std::cout.good()) {
+        return status;
+    }
+    say(fmt::format("standard output cannot be written: {}", std::strerror(errno != 0 ? errno : EIO)));
+    return kInternalFailure;
+}
 
 int run(int argc, char** argv) {
     int status = kDone;
@@ -30,7 +68,8 @@ int run(int argc, char** argv) {
     } catch (const CLI::Success& success) {
         return app.exit(success);  // --help, --version
     } catch (const CLI::ParseError& error) {
-        fmt::print(stderr, "lensproof: {}\nTry: lensproof --help\n", error.what());
+        const std::string asked = app.get_subcommands().empty() ? "" : app.get_subcommands().front()->get_name() + " ";
+        say(fmt::format("{}\nTry: lensproof {}--help", error.what(), asked));
         return kUnusableInput;
     }
     return status;
@@ -42,15 +81,19 @@ int run(int argc, char** argv) {
 int main(int argc, char** argv) {
     // A reader that closes the pipe early (`| head`) is no reason to die by a signal in the middle of a file.
     std::signal(SIGPIPE, SIG_IGN);
+    lensproof::occupy_standard_streams();
     try {
-        return lensproof::run(argc, argv);
+        return lensproof::flushed(lensproof::run(argc, argv));
     } catch (const lensproof::InputError& error) {
-        fmt::print(stderr, "lensproof: {}\n", error.what());
+        lensproof::say(error.what());
         return lensproof::kUnusableInput;
+    } catch (const std::filesystem::filesystem_error& error) {
+        lensproof::say(error.what());
+        return lensproof::is_unusable_path(error.code()) ? lensproof::kUnusableInput : lensproof::kInternalFailure;
     } catch (const std::bad_alloc&) {
-        fmt::print(stderr, "lensproof: out of memory\n");
+        lensproof::say("out of memory");
     } catch (const std::exception& error) {
-        fmt::print(stderr, "lensproof: {}\n", error.what());
+        lensproof::say(error.what());
     }
     return lensproof::kInternalFailure;
 }

@@ -4,6 +4,7 @@
 #include <memory>
 
 #include "calibration/measure.h"
+#include "engine/io/file.h"
 #include "engine/scene/chart_file.h"
 #include "experiments/cli/command.h"
 
@@ -70,6 +71,10 @@ void print_profile(const Profile& profile) {
 }
 
 int run_measure(const MeasureOptions& options) {
+    if (!options.output.empty()) {
+        check_output_name(options.output);
+    }
+    check_json_name(options.common);
     MeasureInput input;
     input.name = options.images.front();
     input.chart = read_chart_file(options.chart);
@@ -114,7 +119,7 @@ void add_measure_command(CLI::App& app, int& status) {
     command->add_option("--model", options->model, "brown-conrady or kannala-brandt (default: what fits better)")
         ->check(CLI::IsMember({"brown-conrady", "kannala-brandt"}));
     command->add_option("--pixel-pitch", options->pixel_pitch_um, "Pixel pitch in µm, for lengths in mm")
-        ->check(CLI::PositiveNumber);
+        ->check(kPositiveOption);
     command->add_option("--lens", options->lens, "The lens's name, noted in the profile")->capture_default_str();
     command->add_option("--camera", options->camera, "The camera's name, noted in the profile")->capture_default_str();
     command->add_option("--kind", options->kind, "photo or render, noted in the profile")

@@ -1,0 +1,60 @@
+// The whole chain against the lens's own rays: render a chart, measure it as a photo, compare with traced curves.
+// Renders are of the demo's scenes at half their resolution, which keeps them quick; limits in pixels are therefore of
+// larger pixels.
+#include "experiments/closed_loop.h"
+
+#include <gtest/gtest.h>
+
+#include "engine/io/file.h"
+#include "experiments/curve_difference.h"
+#include "experiments/run_experiment.h"
+
+namespace lensproof {
+namespace {
+
+class ClosedLoop : public testing::TestWithParam<const char*> {};
+
+TEST_P(ClosedLoop, MeasurementFindsWhatTheRaysSay) {
+    Experiment half = read_experiment(data_root() / "experiments" / "first_light.toml");
+    half.photos.clear();
+    half.comparisons.clear();
+    std::erase_if(half.simulations, [](const Simulation& s) { return s.name != GetParam(); });
+    ASSERT_EQ(half.simulations.size(), 1U);
+    Sensor& sensor = half.simulations[0].scene.camera.sensor;
+    sensor = {sensor.width / 2, sensor.height / 2, 2.0 * sensor.pixel_pitch_mm};
+
+    const ExperimentResult result = run_experiment(half, {}, [](const std::string&, double) {});
+    const Subject& subject = result.subjects.at(0);
+    const ClosedLoopLimits& limits = half.simulations[0].limits;
+    for (const ProfileView& view : subject.profile.views) {
+        EXPECT_TRUE(view.found) << view.image;
+    }
+    ASSERT_TRUE(subject.profile.geometry);
+    EXPECT_GT(subject.profile.geometry->covered_image_height, 0.7);
+
+    const auto radial = radial_difference_px(subject.profile, *subject.traced);
+    ASSERT_TRUE(radial);
+    EXPECT_LT(radial->rms, limits.distortion_rms_px.value());
+    EXPECT_LT(radial->largest, limits.distortion_largest_px.value());
+
+    const auto vignetting = difference(subject.profile, *subject.traced, "vignetting_G");
+    ASSERT_TRUE(vignetting);
+    EXPECT_GT(vignetting->curve.covered_image_height, 0.9);
+    EXPECT_LT(100.0 * vignetting->largest, limits.vignetting_percent.value());
+
+    for (const char* curve : {"chromatic_shift_R_px", "chromatic_shift_B_px"}) {
+        const auto shift = difference(subject.profile, *subject.traced, curve);
+        ASSERT_TRUE(shift) << curve;
+        EXPECT_LT(shift->largest, limits.chromatic_shift_px.value()) << curve << " at " << shift->largest_at;
+    }
+}
+
+INSTANTIATE_TEST_SUITE_P(Lenses, ClosedLoop, testing::Values("tessar", "petzval", "muller-fisheye"),
+                         [](const auto& suite) {
+                             std::string name = suite.param;
+                             std::erase(name, '-');
+                             return name;
+                         });
+
+}  // namespace
+}  // namespace lensproof
