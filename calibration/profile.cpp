@@ -135,7 +135,7 @@ class Node {
         return result;
     }
     [[nodiscard]] std::vector<double> numbers(std::size_t count) const {
-        const std::vector<double> result = numbers();
+        std::vector<double> result = numbers();
         if (result.size() != count) {
             throw error("a list of " + std::to_string(count) + " numbers");
         }

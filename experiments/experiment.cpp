@@ -5,9 +5,27 @@
 #include <algorithm>
 #include <set>
 
+#include "engine/io/input_error.h"
+
 namespace lensproof {
 
 namespace {
+
+/// Curves that two subjects may have in common: calibration/profile.h's, and positions in pixels.
+const std::vector<std::string> kComparedCurves = {"radial_px",
+                                                  "field_angle_deg",
+                                                  "distortion_percent",
+                                                  "distortion_equidistant_percent",
+                                                  "vignetting_R",
+                                                  "vignetting_G",
+                                                  "vignetting_B",
+                                                  "vignetting_Y",
+                                                  "vignetting_R_ev",
+                                                  "vignetting_G_ev",
+                                                  "vignetting_B_ev",
+                                                  "vignetting_Y_ev",
+                                                  "chromatic_shift_R_px",
+                                                  "chromatic_shift_B_px"};
 
 std::optional<ModelKind> read_model(TomlTable& table) {
     if (!table.has("model")) {
@@ -46,6 +64,11 @@ Simulation read_simulation(TomlTable& table, TomlTable& top) {
         table.integer_or("flat_field_samples_per_pixel", simulation.flat_field_samples_per_pixel, 1, 1 << 20);
     TomlTable camera = table.table("camera");
     simulation.scene.camera = read_camera(camera);
+    try {
+        camera_lens(simulation.scene.camera);
+    } catch (const InputError& error) {
+        table.fail("camera", error.what());
+    }
     TomlTable chart = table.table("chart");
     simulation.scene.chart = read_chart(chart);
     if (std::holds_alternative<FlatField>(simulation.scene.chart.pattern)) {
@@ -56,6 +79,9 @@ Simulation read_simulation(TomlTable& table, TomlTable& top) {
     }
     if (auto render = top.optional_table("render")) {
         read_render_table(*render, simulation.scene);
+    }
+    if (auto own = table.optional_table("render")) {
+        read_render_table(*own, simulation.scene);
     }
     for (TomlTable& view : table.tables("views")) {
         simulation.views.push_back(read_placement(view));
@@ -97,7 +123,7 @@ Comparison read_comparison(TomlTable& table, const std::set<std::string>& subjec
                        fmt::format("is \"{}\", which is neither a simulation nor a photo set of this file", *name));
         }
     }
-    comparison.curve = table.text("curve");
+    comparison.curve = table.choice("curve", kComparedCurves);
     comparison.limit = table.optional_number("limit", kPositive);
     if (table.has("expect")) {
         comparison.expectation =

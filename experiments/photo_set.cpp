@@ -19,9 +19,11 @@ fs::path find_folder(const TomlTable& manifest, const std::vector<std::string>& 
                      const std::vector<std::string>& files, const std::string& source) {
     std::vector<std::string> missing;
     for (const std::string& folder : folders) {
-        const fs::path path = manifest.file().parent_path() / folder;
-        const auto absent =
-            std::ranges::find_if(files, [&](const std::string& file) { return !fs::exists(path / file); });
+        fs::path path = manifest.file().parent_path() / folder;
+        const auto absent = std::ranges::find_if(files, [&](const std::string& file) {
+            std::error_code error;  // a name that is too long is a file that is not there
+            return !fs::exists(path / file, error);
+        });
         if (absent == files.end()) {
             return path;
         }
@@ -50,6 +52,9 @@ PhotoSet read_photo_set(const fs::path& manifest) {
     top.finish();
     if (photos.empty()) {
         top.fail("photos", "names no photo");
+    }
+    if (folders.empty()) {
+        top.fail("folders", "names no folder");
     }
     std::vector<std::string> all = photos;
     all.insert(all.end(), flat_fields.begin(), flat_fields.end());

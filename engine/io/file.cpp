@@ -4,9 +4,9 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <cstddef>
 #include <cstdlib>
 #include <fstream>
-#include <iterator>
 #include <system_error>
 
 #include "engine/io/input_error.h"
@@ -15,7 +15,15 @@ namespace lensproof {
 
 namespace fs = std::filesystem;
 
-std::string read_file(const fs::path& file) {
+namespace {
+
+// No text, table or photo comes near; /dev/zero would go on for ever.
+constexpr std::size_t kLargestFile = std::size_t{256} << 20;
+constexpr std::size_t kChunk = std::size_t{1} << 20;
+
+}  // namespace
+
+void check_readable(const fs::path& file) {
     std::error_code error;
     const fs::file_status status = fs::status(file, error);
     if (!fs::exists(status)) {
@@ -24,24 +32,52 @@ std::string read_file(const fs::path& file) {
     if (fs::is_directory(status)) {
         throw InputError(fmt::format("{}: is a folder, expected a file", file.string()));
     }
+}
+
+std::string read_file(const fs::path& file) {
+    check_readable(file);
     std::ifstream stream(file, std::ios::binary);
-    std::string content{std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
-    if (!stream) {
+    std::string content;
+    while (stream.good()) {
+        const std::size_t before = content.size();
+        if (before > kLargestFile) {
+            throw InputError(fmt::format("{}: is larger than 256 MiB, expected a smaller file", file.string()));
+        }
+        content.resize(before + kChunk);
+        stream.read(content.data() + before, static_cast<std::streamsize>(kChunk));
+        content.resize(before + static_cast<std::size_t>(stream.gcount()));
+    }
+    if (!stream.eof()) {
         throw InputError(fmt::format("{}: cannot be read", file.string()));
     }
     return content;
 }
 
-void write_whole(const fs::path& file, const std::function<void(const fs::path&)>& write) {
+void check_output_name(const fs::path& file) {
     std::error_code error;
-    if (fs::is_directory(file, error)) {
+    if (!file.has_filename() || fs::is_directory(file, error)) {
         throw InputError(fmt::format("{}: is a folder, expected a file name to write", file.string()));
     }
+    fs::path folder = file.parent_path();
+    while (!folder.empty() && folder != folder.parent_path() && !fs::exists(folder, error)) {
+        folder = folder.parent_path();
+    }
+    if (!folder.empty() && fs::exists(folder, error) && !fs::is_directory(folder, error)) {
+        throw InputError(
+            fmt::format("{}: {} is a file, expected a folder to write into", file.string(), folder.string()));
+    }
+}
+
+void write_whole(const fs::path& named, const std::function<void(const fs::path&)>& write) {
+    check_output_name(named);
+    std::error_code error;
+    if (fs::exists(named, error) && !fs::is_regular_file(named, error)) {
+        write(named);  // a rename would put a file in the place of /dev/null
+        return;
+    }
+    const fs::path file = fs::is_symlink(named, error) && fs::exists(named, error) ? fs::canonical(named) : named;
     if (file.has_parent_path()) {
-        fs::create_directories(file.parent_path(), error);
-        if (error) {
-            throw InputError(fmt::format("{}: the folder cannot be made: {}", file.string(), error.message()));
-        }
+        fs::create_directories(file.parent_path());
     }
     // The extension stays last: image libraries choose the format by it.
     fs::path temporary = file;
@@ -58,11 +94,13 @@ void write_whole(const fs::path& file, const std::function<void(const fs::path&)
 
 void write_file(const fs::path& file, std::string_view content) {
     write_whole(file, [&](const fs::path& temporary) {
+        errno = 0;
         std::ofstream stream(temporary, std::ios::binary);
         stream.write(content.data(), static_cast<std::streamsize>(content.size()));
         stream.close();
         if (!stream) {
-            throw std::system_error(errno, std::generic_category(), file.string() + " cannot be written");
+            throw std::system_error(errno != 0 ? errno : EIO, std::generic_category(),
+                                    file.string() + " cannot be written");
         }
     });
 }

@@ -18,6 +18,16 @@ namespace lensproof {
 namespace {
 
 constexpr double kMostPixels = 200e6;
+constexpr double kMostValues = 2e9;  // in all channels
+
+/// The library's message without its line breaks.
+std::string one_line(std::string message) {
+    while (!message.empty() && message.back() == '\n') {
+        message.pop_back();
+    }
+    std::ranges::replace(message, '\n', ';');
+    return message;
+}
 
 /// IEC 61966-2-1, full scale 1.
 float srgb_to_linear(float encoded) {
@@ -129,11 +139,14 @@ int find_channel(const Image& image, const std::string& name) {
 }
 
 Image read_image(const std::filesystem::path& file) {
-    // Read first: a missing file or a folder is told apart from a picture of an unknown kind.
-    read_file(file);
+    check_readable(file);
+    if (!std::filesystem::is_regular_file(file)) {
+        throw InputError(fmt::format("{}: is a device or a pipe, expected a picture's file", file.string()));
+    }
     auto input = OIIO::ImageInput::open(file.string());
     if (!input) {
-        throw InputError(fmt::format("{}: not a picture that can be read: {}", file.string(), OIIO::geterror()));
+        throw InputError(
+            fmt::format("{}: not a picture that can be read: {}", file.string(), one_line(OIIO::geterror())));
     }
     const OIIO::ImageSpec spec = input->spec();
     if (spec.width < 1 || spec.height < 1 || spec.depth > 1 || spec.nchannels < 1) {
@@ -144,9 +157,13 @@ Image read_image(const std::filesystem::path& file) {
         throw InputError(fmt::format("{}: {} × {} pixels, expected at most {:.0f} million", file.string(), spec.width,
                                      spec.height, kMostPixels / 1e6));
     }
+    if (static_cast<double>(spec.width) * spec.height * spec.nchannels > kMostValues) {
+        throw InputError(fmt::format("{}: {} × {} pixels with {} channels, expected at most {:.0f} million values",
+                                     file.string(), spec.width, spec.height, spec.nchannels, kMostValues / 1e6));
+    }
     Image image = make_image(spec.width, spec.height, channel_names(spec));
     if (!input->read_image(0, 0, 0, spec.nchannels, OIIO::TypeDesc::FLOAT, image.pixels.data())) {
-        throw InputError(fmt::format("{}: the picture is damaged: {}", file.string(), input->geterror()));
+        throw InputError(fmt::format("{}: the picture is damaged: {}", file.string(), one_line(input->geterror())));
     }
     input->close();
 

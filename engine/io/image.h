@@ -36,7 +36,8 @@ int find_channel(const Image& image, const std::string& name);
 
 /// Reads a picture and linearises it: float formats (EXR) are linear already, integer formats are taken as sRGB unless
 /// the file states another gamma. Full scale is 1. EXIF orientation is applied; an alpha channel is dropped.
-/// Throws InputError for a file that is missing, not a picture, truncated, or larger than 200 megapixels.
+/// Throws InputError for a file that is missing, not a picture, truncated, or larger than 200 megapixels or 2·10⁹
+/// values.
 Image read_image(const std::filesystem::path& file);
 
 /// Writes a linear EXR (32-bit float, every channel, metadata as attributes); whole or not at all.

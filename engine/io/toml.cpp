@@ -158,7 +158,7 @@ std::string TomlTable::text_or(const std::string& key, const std::string& fallba
 }
 
 std::string TomlTable::choice(const std::string& key, const std::vector<std::string>& choices) {
-    const std::string value = text(key);
+    std::string value = text(key);
     if (std::find(choices.begin(), choices.end(), value) == choices.end()) {
         fail(key, fmt::format("is \"{}\", expected one of: {}", value, fmt::join(choices, ", ")));
     }

@@ -16,8 +16,9 @@ struct Intersection {
     decltype(T() < T()) hit;
 };
 
-/// Where `ray` crosses a sphere of curvature `c` (1/mm), whose vertex is the origin, from the side of negative z to
-/// that of positive z (`heading` = +1, light towards the sensor) or back (`heading` = −1).
+/// Where the ray from `origin` along `direction` crosses a sphere of curvature `c` (1/mm), whose vertex is (0, 0, 0),
+/// from the side of negative z to that of positive z (`heading` = +1, light towards the sensor) or back (`heading` =
+/// −1).
 ///
 /// Solved about the ray's closest approach to the vertex, in curvature form:
 ///     c s² − 2 d_z s + f = 0,   f = c p·p − 2 p_z,   p = o − (o·d) d,
@@ -30,24 +31,29 @@ struct Intersection {
 /// T: float, double, long double, a multiprecision number, ceres::Jet or a packet. A ray that misses, or only
 /// touches, has `hit` false and finite, meaningless numbers elsewhere; nothing is NaN.
 template <class T>
-Intersection<T> intersect(const Ray<T>& ray, const T& c, const T& heading) {
+Intersection<T> intersect(const Vec3<T>& origin, const Vec3<T>& direction, const T& c, const T& heading) {
     using std::copysign;
     using std::sqrt;
-    const T to_vertex = -dot(ray.origin, ray.direction);
-    const Vec3<T> p = ray.origin + to_vertex * ray.direction;
+    const T to_vertex = -dot(origin, direction);
+    const Vec3<T> p = origin + to_vertex * direction;
     const T f = c * dot(p, p) - T(2) * p.z;
-    const T discriminant = ray.direction.z * ray.direction.z - c * f;
+    const T discriminant = direction.z * direction.z - c * f;
     const auto meets_sphere = discriminant > T(0);
     const T cos_incidence = sqrt(select(meets_sphere, discriminant, T(1)));
-    const T q = ray.direction.z + copysign(cos_incidence, ray.direction.z);
-    const auto along = ray.direction.z * heading > T(0);
+    const T q = direction.z + copysign(cos_incidence, direction.z);
+    const auto along = direction.z * heading > T(0);
     const auto curved = c * c > T(0);
     const T s = select(along, f, q) / select(along, q, select(curved, c, T(1)));
-    const Vec3<T> point = p + s * ray.direction;
-    return {.point = point,
+    const T z = p.z + s * direction.z;
+    return {.point = {p.x + s * direction.x, p.y + s * direction.y, z},
             .distance = to_vertex + s,
             .cos_incidence = cos_incidence,
-            .hit = meets_sphere && (along || curved) && T(1) - c * point.z > T(0)};
+            .hit = meets_sphere && (along || curved) && T(1) - c * z > T(0)};
+}
+
+template <class T>
+Intersection<T> intersect(const Ray<T>& ray, const T& c, const T& heading) {
+    return intersect(ray.origin, ray.direction, c, heading);
 }
 
 }  // namespace lensproof

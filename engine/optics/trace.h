@@ -74,7 +74,20 @@ struct SurfaceEvent {
 /// A missed surface has no point: its event repeats the ray as it was.
 template <Direction direction = Direction::forward, Rims rims = Rims::clip, class T, class Visitor>
 TracedRay<T> trace(const TraceLens<T>& lens, const Ray<T>& ray, Visitor&& visit) {
-    TracedRay<T> state{.ray = ray, .optical_path = T(0), .transmittance = T(1), .status = RayStatus::ok, .surface = -1};
+    // The state in single variables, made a TracedRay only at the end, and two vectors for `intersect` rather than a
+    // Ray: g++ 12 keeps the aggregates in memory, written 8 bytes at a time and copied 16 at a time, which processors
+    // do not forward from store to load. That doubled the time of a surface (lensproof_benchmark, trace/tessar).
+    Vec3<T> origin = ray.origin;
+    Vec3<T> way = ray.direction;
+    T optical_path = T(0);
+    T transmittance = T(1);
+    RayStatus status = RayStatus::ok;
+    int ended_at = -1;
+    const auto report = [&](int index, RayStatus here) {
+        visit(SurfaceEvent<T>{index, {origin, way}, optical_path, transmittance, here});
+    };
+    const auto traced = [&] { return TracedRay<T>{{origin, way}, optical_path, transmittance, status, ended_at}; };
+
     const int count = static_cast<int>(lens.surfaces.size());
     const T heading = direction == Direction::forward ? T(1) : T(-1);
     for (int step = 0; step < count; ++step) {
@@ -82,56 +95,52 @@ TracedRay<T> trace(const TraceLens<T>& lens, const Ray<T>& ray, Visitor&& visit)
         const TraceSurface<T>& surface = lens.surfaces[index];
         const T& index_before = direction == Direction::forward ? surface.index_before : surface.index_after;
         const T& index_after = direction == Direction::forward ? surface.index_after : surface.index_before;
-        RayStatus here = RayStatus::ok;
+        const T& ratio = direction == Direction::forward ? surface.forward_ratio : surface.reverse_ratio;
+        const T& c = surface.curvature;
 
-        Ray<T> local = state.ray;
-        local.origin.z = local.origin.z - surface.vertex_z;
-        const Intersection<T> meeting = intersect(local, surface.curvature, heading);
+        const Vec3<T> from_vertex{origin.x, origin.y, origin.z - surface.vertex_z};
+        const Intersection<T> meeting = intersect(from_vertex, way, c, heading);
         if (!any(meeting.hit)) {
-            state.status = RayStatus::missed;
-            state.surface = index;
-            visit(SurfaceEvent<T>{index, state.ray, state.optical_path, state.transmittance, state.status});
-            return state;
+            status = RayStatus::missed;
+            ended_at = index;
+            report(index, status);
+            return traced();
         }
         const Vec3<T>& point = meeting.point;
-        state.optical_path = state.optical_path + index_before * meeting.distance;
-        state.ray.origin = {point.x, point.y, point.z + surface.vertex_z};
+        optical_path = optical_path + index_before * meeting.distance;
+        origin = {point.x, point.y, point.z + surface.vertex_z};
 
+        RayStatus here = RayStatus::ok;
         if (any(point.x * point.x + point.y * point.y > surface.semi_diameter_squared)) {
-            here = surface.is_stop ? RayStatus::stopped : RayStatus::clipped;
-            if (state.status == RayStatus::ok) {
-                state.status = here;
-                state.surface = index;
-            } else {
-                here = RayStatus::ok;  // only the first rim passed is named
+            if (status == RayStatus::ok) {  // only the first rim passed is named
+                here = surface.is_stop ? RayStatus::stopped : RayStatus::clipped;
+                status = here;
+                ended_at = index;
             }
             if (rims == Rims::clip) {
-                visit(SurfaceEvent<T>{index, state.ray, state.optical_path, state.transmittance, here});
-                return state;
+                report(index, here);
+                return traced();
             }
         }
 
         // The sphere's unit normal at the point, turned along the ray.
-        const T c = surface.curvature;
         const Vec3<T> normal = heading * Vec3<T>{-c * point.x, -c * point.y, T(1) - c * point.z};
-        const Refraction<T> bent =
-            refract(local.direction, normal, meeting.cos_incidence,
-                    direction == Direction::forward ? surface.forward_ratio : surface.reverse_ratio);
+        const Refraction<T> bent = refract(way, normal, meeting.cos_incidence, ratio);
         if (!any(bent.transmitted)) {
-            state.status = RayStatus::total_internal_reflection;
-            state.surface = index;
-            visit(SurfaceEvent<T>{index, state.ray, state.optical_path, state.transmittance, state.status});
-            return state;
+            status = RayStatus::total_internal_reflection;
+            ended_at = index;
+            report(index, status);
+            return traced();
         }
-        state.ray.direction = bent.direction;
-        state.transmittance = state.transmittance * fresnel_transmittance(index_before, index_after,
-                                                                          meeting.cos_incidence, bent.cos_refraction);
-        visit(SurfaceEvent<T>{index, state.ray, state.optical_path, state.transmittance, here});
+        way = bent.direction;
+        transmittance = transmittance *
+                        fresnel_transmittance(index_before, index_after, meeting.cos_incidence, bent.cos_refraction);
+        report(index, here);
     }
-    if (state.status == RayStatus::ok) {
-        state.surface = direction == Direction::forward ? count - 1 : 0;
+    if (status == RayStatus::ok) {
+        ended_at = direction == Direction::forward ? count - 1 : 0;
     }
-    return state;
+    return traced();
 }
 
 template <Direction direction = Direction::forward, Rims rims = Rims::clip, class T>

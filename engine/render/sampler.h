@@ -89,13 +89,15 @@ class PixelSampler {
     }
 
     [[nodiscard]] constexpr std::array<double, kDimensions> point(std::uint32_t sample) const {
+        std::array<std::uint32_t, kDimensions> x{};
+        for (std::uint32_t rest = sample; rest != 0; rest &= rest - 1) {
+            for (int d = 0; d < kDimensions; ++d) {
+                x[d] ^= sampler_detail::kDirections[d][std::countr_zero(rest)];
+            }
+        }
         std::array<double, kDimensions> values{};
         for (int d = 0; d < kDimensions; ++d) {
-            std::uint32_t x = 0;
-            for (std::uint32_t rest = sample; rest != 0; rest &= rest - 1) {
-                x ^= sampler_detail::kDirections[d][std::countr_zero(rest)];
-            }
-            values[d] = (sampler_detail::owen_scrambled(x, scramble_[d]) + 0.5) * 0x1p-32;
+            values[d] = (sampler_detail::owen_scrambled(x[d], scramble_[d]) + 0.5) * 0x1p-32;
         }
         return values;
     }

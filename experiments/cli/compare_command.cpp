@@ -87,9 +87,10 @@ int report(const std::vector<Row>& rows, const nlohmann::ordered_json& curves, c
         const Check& check = row.check;
         if (!std::isfinite(check.value)) {
             if (row.limited) {
-                throw InputError(fmt::format("{} and {}: their difference in {} is {}, expected a finite number to "
-                                             "hold against its limit",
-                                             options.a, options.b, check.label, check.value));
+                throw InputError(
+                    fmt::format("{} and {}: their difference in {} is {}, expected a finite number to "
+                                "hold against its limit",
+                                options.a, options.b, check.label, check.value));
             }
             continue;
         }
@@ -155,9 +156,10 @@ int compare_profiles(const Profile& a, const Profile& b, const CompareOptions& o
     add_channels("vignetting_", {"R", "G", "B", "Y"}, "_ev", "EV", options.vignetting_limit_ev);
     add_channels("chromatic_shift_", {"R", "B"}, "_px", "px", options.chromatic_limit_px);
     if (std::ranges::none_of(rows, [](const Row& row) { return std::isfinite(row.check.value); })) {
-        throw InputError(fmt::format("{} and {}: they have no curve in common, expected profiles of pictures in which "
-                                     "a chart was found",
-                                     options.a, options.b));
+        throw InputError(
+            fmt::format("{} and {}: they have no curve in common, expected profiles of pictures in which "
+                        "a chart was found",
+                        options.a, options.b));
     }
     return report(rows, curves, options);
 }
@@ -207,10 +209,38 @@ int compare_images(const CompareOptions& options) {
     return report(rows, nullptr, options);
 }
 
+/// A limit that nothing is held against would look like one that held.
+void check_limits(bool profiles, const CompareOptions& options) {
+    const std::vector<std::pair<const char*, double>> of_profiles = {
+        {"--position-limit", options.position_limit_px},
+        {"--distortion-limit", options.distortion_limit_percent},
+        {"--vignetting-limit", options.vignetting_limit_ev},
+        {"--chromatic-limit", options.chromatic_limit_px}};
+    const std::vector<std::pair<const char*, double>> of_images = {{"--rms-limit", options.rms_limit}};
+    for (const auto& [name, limit] : profiles ? of_images : of_profiles) {
+        if (limit > 0.0) {
+            throw InputError(fmt::format("{} is given, which is a limit of {}; {} and {} are {}", name,
+                                         profiles ? "pictures" : "profiles", options.a, options.b,
+                                         profiles ? "not" : "not profiles"));
+        }
+    }
+}
+
 int run_compare(const CompareOptions& options) {
     check_json_name(options.common);
     const bool a_is_profile = has_extension(options.a, ".json");
     const bool b_is_profile = has_extension(options.b, ".json");
+    const bool profiles =
+        (a_is_profile && (b_is_profile || is_lens(options.b))) || (b_is_profile && is_lens(options.a));
+    check_limits(profiles, options);
+    if (!profiles) {
+        for (const std::string& name : {options.a, options.b}) {
+            if (is_lens(name) || has_extension(name, ".json")) {
+                throw InputError(fmt::format("{} and {}: expected two profiles, two pictures, or a lens and a profile",
+                                             options.a, options.b));
+            }
+        }
+    }
     if (a_is_profile && b_is_profile) {
         return compare_profiles(read_profile(options.a), read_profile(options.b), options);
     }

@@ -1,6 +1,7 @@
 // experiments/cli/main.cpp — the program `lensproof`: picks the command, turns failures into exit statuses.
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <glog/logging.h>
 #include <unistd.h>
 
 #include <cerrno>
@@ -82,6 +83,7 @@ int main(int argc, char** argv) {
     // A reader that closes the pipe early (`| head`) is no reason to die by a signal in the middle of a file.
     std::signal(SIGPIPE, SIG_IGN);
     lensproof::occupy_standard_streams();
+    FLAGS_minloglevel = google::GLOG_FATAL;  // Ceres warns of steps that it then takes otherwise
     try {
         return lensproof::flushed(lensproof::run(argc, argv));
     } catch (const lensproof::InputError& error) {

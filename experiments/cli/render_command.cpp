@@ -3,6 +3,8 @@
 
 #include <memory>
 
+#include "engine/io/file.h"
+#include "engine/io/input_error.h"
 #include "engine/render/camera.h"
 #include "experiments/cli/command.h"
 #include "experiments/cli/progress.h"
@@ -18,9 +20,35 @@ struct RenderOptions {
     int samples = 0;
 };
 
+/// The EXR's name; by default the scene's, in the current folder.
+std::filesystem::path exr_name(const RenderOptions& options) {
+    if (options.output.empty()) {
+        return std::filesystem::path(options.scene).filename().replace_extension(".exr");
+    }
+    std::filesystem::path exr(options.output);
+    if (exr.has_filename() && exr.extension() != ".exr") {
+        throw InputError(fmt::format("--output is \"{}\", expected a name that ends in .exr", options.output));
+    }
+    return exr;
+}
+
+/// The scene's camera. What its lens refuses is said of the scene's file.
+ChartCamera make_camera(const ChartScene& scene, const std::string& file) {
+    try {
+        return {scene.camera, scene.light, scene.spectral};
+    } catch (const InputError& error) {
+        throw InputError(fmt::format("{}: camera: {}", file, error.what()));
+    }
+}
+
 int run_render(const RenderOptions& options) {
+    const std::filesystem::path exr = exr_name(options);
+    const std::filesystem::path png = std::filesystem::path(exr).replace_extension(".png");
+    check_output_name(exr);
+    check_output_name(png);
+    check_json_name(options.common);
     const ChartScene scene = read_chart_scene(options.scene);
-    const ChartCamera camera(scene.camera, scene.light, scene.spectral);
+    const ChartCamera camera = make_camera(scene, options.scene);
     if (!camera.spectral().clamp_note.empty()) {
         fmt::print(stderr, "lensproof: {}\n", camera.spectral().clamp_note);
     }
@@ -30,10 +58,6 @@ int run_render(const RenderOptions& options) {
     ProgressBar bar("rendering", options.common.quiet);
     const Image image = camera.render(scene.chart, scene.placement, settings, [&](double done) { bar.update(done); });
 
-    std::filesystem::path exr = options.output.empty()
-                                    ? std::filesystem::path(options.scene).filename().replace_extension(".exr")
-                                    : std::filesystem::path(options.output);
-    const std::filesystem::path png = std::filesystem::path(exr).replace_extension(".png");
     write_exr(image, exr);
     write_png(image, png);
     write_json_result(options.common, {{"scene", options.scene},

@@ -60,6 +60,10 @@ int run(const RunOptions& options) {
     const std::filesystem::path folder =
         options.output.empty() ? std::filesystem::path("output") / std::filesystem::path(options.experiment).stem()
                                : std::filesystem::path(options.output);
+    // A folder that cannot be made is better known before the long part than after it.
+    check_output_name(folder / "report.html");
+    check_output_name(folder / "report.json");
+    check_json_name(options.common);
     const RunSettings settings{.seed = options.common.seed, .threads = options.common.threads};
     const auto progress = std::make_shared<StepProgress>(options.common.quiet);
     const ExperimentResult result = run_experiment(
@@ -73,7 +77,8 @@ int run(const RunOptions& options) {
     for (const Subject& subject : result.subjects) {
         write_profile(subject.profile, folder / "profiles" / (subject.name + ".json"));
     }
-    write_file(folder / "report.json", report.dump(2) + "\n");
+    write_file(folder / "report.json",
+               report.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n");
     write_file(folder / "report.html", report_html(report, pictures));
 
     write_json_result(options.common, report);

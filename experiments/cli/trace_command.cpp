@@ -1,10 +1,12 @@
 // experiments/cli/trace_command.cpp — `lensproof trace LENS --rays FILE`: every intersection of given rays.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <map>
 #include <memory>
 #include <sstream>
+#include <string_view>
 
 #include "engine/io/file.h"
 #include "engine/io/input_error.h"
@@ -35,26 +37,50 @@ struct TraceOptions {
     bool no_clip = false;
 };
 
+/// A cell for a message: the start of it, without what a terminal would act upon.
+std::string printable(const std::string& text) {
+    constexpr std::size_t kShown = 100;
+    std::string shown = text.substr(0, kShown);
+    std::ranges::replace_if(
+        shown, [](unsigned char letter) { return letter < 0x20 || letter >= 0x7f; }, '?');
+    return text.size() > kShown ? shown + "…" : shown;
+}
+
 double parse_number(const std::string& text, const std::string& where) {
     char* end = nullptr;
     const double value = std::strtod(text.c_str(), &end);
     if (text.empty() || end != text.c_str() + text.size() || !std::isfinite(value)) {
-        throw InputError(fmt::format("{} is \"{}\", expected a finite number", where, text));
+        throw InputError(fmt::format("{} is \"{}\", expected a finite number", where, printable(text)));
+    }
+    return value;
+}
+
+// Far beyond any scene, far below what would overflow when squared, in a float too.
+constexpr double kLargestCoordinate = 1e12;
+
+double parse_coordinate(const std::string& text, const std::string& where) {
+    const double value = parse_number(text, where);
+    if (std::abs(value) > kLargestCoordinate) {
+        throw InputError(fmt::format("{} is {}, expected a number between -{:g} and {:g}", where, value,
+                                     kLargestCoordinate, kLargestCoordinate));
     }
     return value;
 }
 
 GivenRay parse_ray(const std::string& line, const std::string& where) {
-    std::vector<std::string> cells;
-    std::istringstream stream(line);
-    for (std::string cell; std::getline(stream, cell, ',');) {
-        cells.push_back(cell);
+    std::vector<std::string> cells(1);
+    for (const char letter : line) {
+        if (letter == ',') {
+            cells.emplace_back();
+        } else {
+            cells.back() += letter;
+        }
     }
     if (cells.size() != 8) {
         throw InputError(fmt::format("{}: {} cells, expected 8: {}", where, cells.size(), kRayHeader));
     }
     const auto number = [&](std::size_t column, const char* name) {
-        return parse_number(cells[column], fmt::format("{}: {}", where, name));
+        return parse_coordinate(cells[column], fmt::format("{}: {}", where, name));
     };
     const Vec3d direction{number(4, "dx"), number(5, "dy"), number(6, "dz")};
     const double norm = length(direction);
@@ -77,6 +103,10 @@ std::vector<GivenRay> read_rays(const std::string& file) {
     std::string line;
     bool header_read = false;
     for (int number = 1; std::getline(content, line); ++number) {
+        constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
+        if (number == 1 && line.starts_with(kByteOrderMark)) {
+            line.erase(0, kByteOrderMark.size());
+        }
         if (!line.empty() && line.back() == '\r') {
             line.pop_back();
         }
@@ -87,7 +117,8 @@ std::vector<GivenRay> read_rays(const std::string& file) {
         if (header_read) {
             rays.push_back(parse_ray(line, where));
         } else if (line != kRayHeader) {
-            throw InputError(fmt::format("{}: the header is \"{}\", expected \"{}\"", where, line, kRayHeader));
+            throw InputError(
+                fmt::format("{}: the header is \"{}\", expected \"{}\"", where, printable(line), kRayHeader));
         }
         header_read = true;
     }
@@ -183,6 +214,10 @@ void trace_all(const Lens& lens, const std::vector<GivenRay>& rays, const TraceO
 }
 
 int run_trace(const TraceOptions& options) {
+    if (!options.output_file.empty()) {
+        check_output_name(options.output_file);
+    }
+    check_json_name(options.common);
     const Lens lens = load_lens(options.lens, parse_indices(options.indices));
     const std::vector<GivenRay> rays = read_rays(options.rays_file);
     TraceTable table;
@@ -195,7 +230,7 @@ int run_trace(const TraceOptions& options) {
     }
     if (!options.output_file.empty()) {
         write_file(options.output_file, table.csv());
-    } else if (options.common.json_file.empty()) {
+    } else if (prints_text(options.common)) {
         fmt::print("{}", table.csv());
     }
     write_json_result(options.common, {{"lens", lens.id}, {"rows", table.json()}});
@@ -219,7 +254,8 @@ void add_trace_command(CLI::App& app, int& status) {
         ->capture_default_str();
     command
         ->add_option("--index", options->indices, "NAME=VALUE: a constant index in place of a glass; may be repeated")
-        ->type_name("NAME=VALUE");
+        ->type_name("NAME=VALUE")
+        ->allow_extra_args(false);  // what follows is the lens
     command->add_flag("--reverse", options->reverse, "Rays run from the sensor outwards");
     command->add_flag("--no-clip", options->no_clip,
                       "Follow rays beyond the rims; the first rim passed is still named");

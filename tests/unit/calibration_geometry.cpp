@@ -20,6 +20,7 @@ constexpr int kHeight = 480;
 std::vector<ChartView> views_of(const CameraModel& camera, const std::vector<Pose>& poses,
                                 const Chart& chart = kBoard) {
     std::vector<ChartView> views;
+    views.reserve(poses.size());
     for (const Pose& pose : poses) {
         views.push_back(view_of(camera, pose, chart));
     }

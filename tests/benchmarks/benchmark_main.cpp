@@ -1,0 +1,80 @@
+// lensproof_benchmark: times the hot paths, then prints their ratios, which say more than times on a shared machine.
+#include <benchmark/benchmark.h>
+#include <fmt/format.h>
+
+#include <map>
+
+#include "tests/benchmarks/benchmarks.h"
+
+namespace lensproof {
+
+namespace {
+
+struct Ratio {
+    const char* what;
+    const char* of;
+    const char* to;
+};
+
+constexpr Ratio kRatios[] = {
+    {"float / double, clip", "trace/tessar/reverse/clip/float", "trace/tessar/reverse/clip/double"},
+    {"follow / clip, every ray passes", "trace/tessar/reverse/follow/double", "trace/tessar/reverse/clip/double"},
+    {"forward / reverse", "trace/tessar/forward/clip/double", "trace/tessar/reverse/clip/double"},
+    {"Fresnel on / off, plain loop", "trace/tessar/reverse/plain_fresnel", "trace/tessar/reverse/plain"},
+    {"trace / plain loop with Fresnel", "trace/tessar/reverse/clip/double", "trace/tessar/reverse/plain_fresnel"},
+    {"checkerboard / flat field, Tessar", "render/tessar/checkerboard", "render/tessar/flat-field"},
+    {"disc grid / flat field, Tessar", "render/tessar/disc-grid", "render/tessar/flat-field"},
+    {"fisheye / Tessar, flat field", "render/muller-fisheye/flat-field", "render/tessar/flat-field"},
+    {"discs / corners, refinement", "refine/disc-grid", "refine/checkerboard"},
+};
+
+/// The usual console output, and every benchmark's CPU time in seconds: the median where it was repeated.
+class RatioReporter : public benchmark::ConsoleReporter {
+  public:
+    void ReportRuns(const std::vector<Run>& runs) override {
+        benchmark::ConsoleReporter::ReportRuns(runs);
+        for (const Run& run : runs) {
+            const bool is_median = run.run_type == Run::RT_Aggregate && run.aggregate_name == "median";
+            if (!run.error_occurred && (is_median || run.run_type == Run::RT_Iteration)) {
+                seconds_[run.run_name.str()] =
+                    run.GetAdjustedCPUTime() / benchmark::GetTimeUnitMultiplier(run.time_unit);
+            }
+            failed_ = failed_ || run.error_occurred;
+        }
+    }
+
+    void Finalize() override {
+        fmt::print("\nRatios of CPU time\n");
+        for (const Ratio& ratio : kRatios) {
+            const auto of = seconds_.find(ratio.of);
+            const auto to = seconds_.find(ratio.to);
+            if (of != seconds_.end() && to != seconds_.end()) {
+                fmt::print("  {:<36} {:6.2f}\n", ratio.what, of->second / to->second);
+            }
+        }
+    }
+
+    [[nodiscard]] bool failed() const { return failed_; }
+
+  private:
+    std::map<std::string, double> seconds_;
+    bool failed_ = false;
+};
+
+}  // namespace
+
+}  // namespace lensproof
+
+int main(int argc, char** argv) {
+    benchmark::Initialize(&argc, argv);
+    if (benchmark::ReportUnrecognizedArguments(argc, argv)) {
+        return 2;
+    }
+    lensproof::register_trace_benchmarks();
+    lensproof::register_render_benchmarks();
+    lensproof::register_measure_benchmarks();
+    lensproof::RatioReporter reporter;
+    benchmark::RunSpecifiedBenchmarks(&reporter);
+    benchmark::Shutdown();
+    return reporter.failed() ? 1 : 0;
+}

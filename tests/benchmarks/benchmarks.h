@@ -1,0 +1,20 @@
+// tests/benchmarks/benchmarks.h — the hot paths, registered with Google Benchmark by name.
+#pragma once
+#include <string>
+
+namespace lensproof {
+
+/// trace/LENS/WAY/RIMS/TYPE: a bundle that fills the lens, over 70 % of its field. trace/tessar/reverse/plain and
+/// …/plain_fresnel are the floor: the same intersections and refractions in a loop without rims, statuses or path
+/// lengths, and the same with Fresnel's equations. Counters: rays and ray-surfaces per second.
+void register_trace_benchmarks();
+
+/// render/LENS/CHART: camera paths of the chart renderer on one thread (counter: paths per second);
+/// pupil_bounds/LENS: the whole table.
+void register_render_benchmarks();
+
+/// chief_rays/LENS/…: construction and aiming; refine/CHART: sub-pixel positions of all points of one chart in one
+/// channel (counter: points per second).
+void register_measure_benchmarks();
+
+}  // namespace lensproof

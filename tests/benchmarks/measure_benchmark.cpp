@@ -1,0 +1,96 @@
+#include <benchmark/benchmark.h>
+
+#include "calibration/refine.h"
+#include "engine/optics/chief_ray.h"
+#include "engine/scene/chart.h"
+#include "tests/benchmarks/benchmarks.h"
+
+namespace lensproof {
+
+namespace {
+
+constexpr double kWavelengthNm = 550.0;
+
+void time_chief_ray_construction(benchmark::State& state, const std::string& name) {
+    const Lens lens = load_lens(name);
+    while (state.KeepRunning()) {
+        benchmark::DoNotOptimize(ChiefRays(lens, kWavelengthNm));
+    }
+}
+
+void time_chief_ray_aiming(benchmark::State& state, const std::string& name) {
+    const ChiefRays rays(load_lens(name), kWavelengthNm);
+    const double field = 0.7 * rays.largest_field();
+    while (state.KeepRunning()) {
+        benchmark::DoNotOptimize(rays.at_field(field));
+    }
+}
+
+constexpr int kWidth = 640;
+constexpr int kHeight = 480;
+constexpr double kPixelsPerMm = 1.4;
+constexpr double kTurn = 0.03;  // slope, so that edges do not run along pixel rows
+
+Vec2d to_pixel(const Vec2d& mm) {
+    return {0.5 * kWidth + kPixelsPerMm * (mm.x - kTurn * mm.y), 0.5 * kHeight + kPixelsPerMm * (mm.y + kTurn * mm.x)};
+}
+
+/// The chart seen straight on, slightly turned, with edges a pixel wide (4 × 4 samples a pixel).
+Image painted(const Chart& chart) {
+    constexpr int kSub = 4;
+    const double norm = kPixelsPerMm * (1.0 + kTurn * kTurn);
+    Image image = make_image(kWidth, kHeight, {"Y"});
+    for (int v = 0; v < kHeight; ++v) {
+        for (int u = 0; u < kWidth; ++u) {
+            double sum = 0.0;
+            for (int row = 0; row < kSub; ++row) {
+                for (int column = 0; column < kSub; ++column) {
+                    const double x = u + (column + 0.5) / kSub - 0.5 - 0.5 * kWidth;
+                    const double y = v + (row + 0.5) / kSub - 0.5 - 0.5 * kHeight;
+                    sum += reflectance(chart, (x + kTurn * y) / norm, (y - kTurn * x) / norm);
+                }
+            }
+            image.at(u, v, 0) = static_cast<float>(sum / (kSub * kSub));
+        }
+    }
+    return image;
+}
+
+void time_refinement(benchmark::State& state, const Chart& chart) {
+    const Image image = painted(chart);
+    std::vector<Vec2d> approximate;
+    for (const Vec2d& point : feature_points(chart)) {
+        const Vec2d exact = to_pixel(point);
+        approximate.push_back({exact.x + 0.4, exact.y - 0.3});  // as far off as a detector is
+    }
+    int found = 0;
+    while (state.KeepRunning()) {
+        found = count_found(refine(image, 0, approximate, chart));
+        benchmark::DoNotOptimize(found);
+    }
+    if (found != static_cast<int>(approximate.size())) {
+        state.SkipWithError("not every point was found");
+    }
+    state.counters["points/s"] = benchmark::Counter(
+        static_cast<double>(state.iterations()) * static_cast<double>(approximate.size()), benchmark::Counter::kIsRate);
+}
+
+}  // namespace
+
+void register_measure_benchmarks() {
+    for (const std::string lens : {"tessar", "petzval", "muller-fisheye"}) {
+        benchmark::RegisterBenchmark(("chief_rays/" + lens + "/construct").c_str(),
+                                     [lens](benchmark::State& state) { time_chief_ray_construction(state, lens); });
+        benchmark::RegisterBenchmark(("chief_rays/" + lens + "/at_field").c_str(),
+                                     [lens](benchmark::State& state) { time_chief_ray_aiming(state, lens); });
+    }
+    const Chart board{.pattern = Checkerboard{10, 7, 40.0}};
+    const Chart discs{.pattern = DiscGrid{9, 6, 40.0, 20.0}};
+    for (const Chart& chart : {board, discs}) {
+        benchmark::RegisterBenchmark(("refine/" + kind_name(chart)).c_str(), [chart](benchmark::State& state) {
+            time_refinement(state, chart);
+        })->Unit(benchmark::kMillisecond);
+    }
+}
+
+}  // namespace lensproof

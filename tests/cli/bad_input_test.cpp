@@ -1,0 +1,321 @@
+// tests/cli/bad_input_test.cpp — an input that cannot be used ends in exit status 2, one message that says where and
+// what, and no file.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstdint>
+#include <tuple>
+
+#include "tests/cli/program.h"
+
+namespace lensproof {
+
+namespace {
+
+constexpr const char* kRayHeader = "id,x_mm,y_mm,z_mm,dx,dy,dz,wavelength_nm\n";
+constexpr const char* kAxialRay = "a,0,1,-10,0,0,1,587.5618\n";
+
+/// A biconvex singlet in the project's form; line 5 is its first surface.
+constexpr const char* kSinglet = R"(name = "singlet"
+source = "made up for a test"
+
+surfaces = [
+  { radius_mm =  50.0, thickness_mm =  5.0, glass = "BK7", semi_diameter_mm = 10.0 },
+  { radius_mm = -50.0, thickness_mm =  5.0,                semi_diameter_mm = 10.0 },
+  { stop = true,       thickness_mm = 40.0,                semi_diameter_mm =  8.0 },
+]
+)";
+
+constexpr const char* kChart = R"([chart]
+kind = "checkerboard"
+squares = [12, 9]
+square_mm = 560.0
+)";
+
+std::string noise(std::size_t size) {
+    std::string bytes(size, '\0');
+    std::uint32_t state = 1;
+    std::ranges::generate(bytes, [&] { return static_cast<char>((state = 1664525U * state + 1013904223U) >> 24U); });
+    return bytes;
+}
+
+/// A PPM of one grey: a picture without a chart.
+std::string grey_picture(int width, int height) {
+    return "P6\n" + std::to_string(width) + " " + std::to_string(height) + "\n255\n" +
+           std::string(static_cast<std::size_t>(3 * width * height), '\x80');
+}
+
+/// Status 2, nothing on standard output, one message that holds every one of `words`, and no new file.
+void expect_refused(const Workplace& place, const std::vector<std::string>& arguments,
+                    const std::vector<std::string>& words) {
+    const std::vector<std::string> before = place.names();
+    const Outcome outcome = place.run(arguments);
+    EXPECT_EQ(outcome.status, 2) << outcome.err;
+    EXPECT_EQ(outcome.out, "");
+    EXPECT_EQ(outcome.err.rfind("lensproof: ", 0), 0U) << outcome.err;
+    EXPECT_EQ(std::ranges::count(outcome.err, '\n'), outcome.err.find("\nTry: ") == std::string::npos ? 1 : 2)
+        << outcome.err;
+    for (const std::string& word : words) {
+        EXPECT_NE(outcome.err.find(word), std::string::npos) << "no \"" << word << "\" in: " << outcome.err;
+    }
+    EXPECT_EQ(place.names(), before);
+}
+
+/// One edit to a good file, and what the message has to say of it.
+struct BadEdit {
+    const char* what;
+    std::string from;
+    std::string to;
+    std::vector<std::string> words;
+};
+
+TEST(BadCommandLine, NamesTheOption) {
+    const Workplace place;
+    const std::vector<std::pair<std::vector<std::string>, std::string>> cases = {
+        {{}, "subcommand"},
+        {{"trace", "tessar", "--rays"}, "--rays"},
+        {{"trace", "tessar", "--rays", "r.csv", "--precision", "half"}, "--precision"},
+        {{"lenses", "--json"}, "--json"},
+        {{"lenses", "--threads", "many"}, "--threads"},
+        {{"lenses", "--seed", "-1"}, "--seed"},
+        {{"render", "scene.toml", "--samples", "0"}, "--samples"},
+        {{"measure", "a.png"}, "--chart"},
+        {{"compare", "a.json", "b.json", "--position-limit", "nan"}, "--position-limit"},
+    };
+    for (const auto& [arguments, word] : cases) {
+        SCOPED_TRACE(word);
+        expect_refused(place, arguments, {word});
+    }
+}
+
+TEST(BadFile, EveryCommandNamesAFileThatItCannotRead) {
+    const Workplace place;
+    place.file("folder.toml/inside", "");
+    place.file("rays.csv", std::string(kRayHeader) + kAxialRay);
+    place.file("chart.toml", kChart);
+    place.file("file", "");
+    const std::string long_name = std::string(300, 'x') + ".toml";
+    const std::vector<std::vector<std::string>> cases = {
+        {"trace", "missing.toml", "--rays", "rays.csv"},
+        {"trace", long_name, "--rays", "rays.csv"},
+        {"trace", "", "--rays", "rays.csv"},
+        {"render", "missing.toml", "-o", "out.exr"},
+        {"render", "folder.toml", "-o", "out.exr"},
+        {"measure", "missing.png", "--chart", "chart.toml", "-o", "out.json"},
+        {"measure", "folder.toml", "--chart", "chart.toml", "-o", "out.json"},
+        {"compare", "missing.json", "missing.json"},
+        {"run", "missing.toml", "-o", "out"},
+        {"run", "file/in.toml", "-o", "out"},
+    };
+    for (const std::vector<std::string>& arguments : cases) {
+        SCOPED_TRACE(arguments[0] + " " + arguments[1]);
+        expect_refused(place, arguments, {arguments[1]});
+    }
+    expect_refused(place, {"trace", "tessar", "--rays", "folder.toml"}, {"folder.toml", "folder"});
+    expect_refused(place, {"measure", "missing.png", "--chart", "folder.toml"}, {"folder.toml", "folder"});
+}
+
+TEST(BadFile, EveryCommandRefusesAFileOfNoise) {
+    const Workplace place;
+    place.file("rays.csv", std::string(kRayHeader) + kAxialRay);
+    place.file("chart.toml", kChart);
+    for (const char* file : {"noise.toml", "noise.csv", "noise.json", "noise.png", "noise.exr", "noise.jpg"}) {
+        place.file(file, noise(3000));
+    }
+    place.file("empty.png", "");
+    place.file("empty.toml", "");
+    expect_refused(place, {"trace", "noise.toml", "--rays", "rays.csv"}, {"noise.toml:1", "not TOML"});
+    expect_refused(place, {"trace", "noise.csv", "--rays", "rays.csv"}, {"noise.csv:1", "header"});
+    expect_refused(place, {"trace", "tessar", "--rays", "noise.csv"}, {"noise.csv:1", "header"});
+    expect_refused(place, {"render", "noise.png", "-o", "out.exr"}, {"noise.png:1", "not TOML"});
+    expect_refused(place, {"render", "empty.toml", "-o", "out.exr"}, {"empty.toml:1", "camera", "missing"});
+    expect_refused(place, {"run", "noise.toml", "-o", "out"}, {"noise.toml:1", "not TOML"});
+    expect_refused(place, {"compare", "noise.json", "noise.json"}, {"noise.json", "not JSON"});
+    for (const char* picture : {"noise.png", "noise.exr", "noise.jpg", "empty.png"}) {
+        expect_refused(place, {"measure", picture, "--chart", "chart.toml", "-o", "out.json"}, {picture, "picture"});
+    }
+}
+
+TEST(BadFile, AnEndlessDeviceIsNotReadToItsEnd) {
+    const Workplace place;
+    place.file("chart.toml", kChart);
+    expect_refused(place, {"measure", "/dev/zero", "--chart", "chart.toml"}, {"/dev/zero"});
+}
+
+TEST(BadRays, NameTheLineAndTheCell) {
+    const Workplace place;
+    const std::vector<std::pair<std::string, std::string>> cases = {
+        {"a,nan,0,0,0,0,1,550", "x_mm"},  {"a,0,0,1e999,0,0,1,550", "z_mm"},  {"a,0,0,1e300,0,0,1,550", "z_mm"},
+        {"a,0,0,0,x,0,1,550", "dx"},      {"a,0,0,0,0,0,0,550", "direction"}, {"a,0,0,0,0,0,1,-550", "wavelength"},
+        {"a,0,0,0,0,0,1,", "wavelength"}, {"a,0,0,0,0,0,1,550,", "9 cells"}};
+    for (const auto& [row, word] : cases) {
+        SCOPED_TRACE(row);
+        place.file("rays.csv", std::string(kRayHeader) + kAxialRay + row + "\n");
+        expect_refused(place, {"trace", "tessar", "--rays", "rays.csv", "-o", "out.csv"}, {"rays.csv:3", word});
+    }
+    place.file("rays.csv", kRayHeader);
+    expect_refused(place, {"trace", "tessar", "--rays", "rays.csv"}, {"rays.csv", "no ray"});
+    place.file("rays.csv", "x,y\n1,2\n");
+    expect_refused(place, {"trace", "tessar", "--rays", "rays.csv"}, {"rays.csv:1", "x,y", "id,x_mm"});
+}
+
+TEST(BadRays, AWavelengthOutsideAGlassNamesTheGlassAndItsRange) {
+    const Workplace place;
+    place.file("rays.csv", std::string(kRayHeader) + "a,0,0,-10,0,0,1,300\n");
+    expect_refused(place, {"trace", "tessar", "--rays", "rays.csv"}, {"300 nm", "LAK9", "320"});
+}
+
+TEST(BadIndex, IsRefused) {
+    const Workplace place;
+    place.file("rays.csv", std::string(kRayHeader) + kAxialRay);
+    for (const char* index : {"LAK9", "LAK9=nan", "LAK9=0.5", "NOPE=1.5"}) {
+        SCOPED_TRACE(index);
+        const std::string name = std::string(index).substr(0, 4);
+        expect_refused(place, {"trace", "tessar", "--rays", "rays.csv", "--index", index}, {"--index", name});
+    }
+}
+
+TEST(BadLens, NamesTheLineTheKeyAndWhatItHolds) {
+    const Workplace place;
+    place.file("rays.csv", std::string(kRayHeader) + kAxialRay);
+    const std::vector<BadEdit> edits = {
+        {"negative rim", "semi_diameter_mm = 10.0", "semi_diameter_mm = -10.0", {":5:", "semi_diameter_mm", "-10"}},
+        {"no rim's number", "semi_diameter_mm = 10.0", "semi_diameter_mm = nan", {":5:", "semi_diameter_mm", "nan"}},
+        {"negative thickness", "thickness_mm =  5.0", "thickness_mm = -5.0", {":5:", "thickness_mm", "-5"}},
+        {"radius of zero", "radius_mm =  50.0", "radius_mm = 0.0", {":5:", "radius_mm", "0", "inf"}},
+        {"unknown glass", "BK7", "UNOBTAINIUM", {":5:", "glass", "UNOBTAINIUM", "BK7"}},
+        {"unknown key", "radius_mm =  50.0", "radus_mm = 50.0", {":5:", "radus_mm", "not a key", "thickness_mm"}},
+        {"no stop", "stop = true", "radius_mm = inf", {"0 aperture stops"}},
+        {"glass to the end", "semi_diameter_mm =  8.0", "semi_diameter_mm = 8.0, glass = 'BK7'", {"BK7", "air"}},
+        {"cut off", "]\n", "", {"not TOML"}},
+        {"a key twice", "name = ", "name = 'x'\nname = ", {":2:", "not TOML"}},
+    };
+    for (const BadEdit& edit : edits) {
+        SCOPED_TRACE(edit.what);
+        place.file("lens.toml", with(kSinglet, edit.from, edit.to));
+        std::vector<std::string> words = edit.words;
+        words.emplace_back("lens.toml");
+        expect_refused(place, {"trace", "lens.toml", "--rays", "rays.csv"}, words);
+    }
+    expect_refused(place, {"trace", "nonesuch", "--rays", "rays.csv"}, {"nonesuch", "tessar"});
+}
+
+TEST(BadScene, NamesTheLineTheKeyAndWhatItHolds) {
+    const Workplace place;
+    const std::vector<BadEdit> edits = {
+        {"wider than the lens opens", "f_number = 8.0", "f_number = 1.0", {"camera", "f/1 ", "f/2.7"}},
+        {"inside the focal point", "focus_distance_mm = 10000.0", "focus_distance_mm = 50.0", {"camera", "50", "78.4"}},
+        {"too many pixels", "[8, 6]", "[100000, 100000]", {":6:", "pixels", "100000"}},
+        {"no pixels", "[8, 6]", "[0, 0]", {":6:", "pixels"}},
+        {"oblong pixels", "[8, 6]", "[8, 7]", {":6:", "pixels", "square"}},
+        {"unknown lens", "\"tessar\"", "\"nonesuch\"", {"camera", "nonesuch", "petzval"}},
+        {"misspelt key", "iso = 100.0", "iso = 100.0\nisso = 1", {":9:", "isso"}},
+        {"no size of squares", "560.0", "nan", {":14:", "square_mm", "nan"}},
+        {"no distance", "distance_mm = 10000.0\n\n[render]", "distance_mm = 0\n[render]", {"distance_mm"}},
+        {"no samples", "samples_per_pixel = 4", "samples_per_pixel = 0", {":20:", "samples_per_pixel", "0"}},
+        {"no glass passes", "layers = 4", "wavelengths_nm = [1000, 1100]", {"1000"}},
+    };
+    for (const BadEdit& edit : edits) {
+        SCOPED_TRACE(edit.what);
+        place.file("scene.toml", with(small_scene(), edit.from, edit.to));
+        std::vector<std::string> words = edit.words;
+        words.emplace_back("scene.toml");
+        expect_refused(place, {"render", "scene.toml", "-o", "out.exr"}, words);
+    }
+}
+
+TEST(BadPicture, IsNamed) {
+    const Workplace place;
+    place.file("chart.toml", kChart);
+    place.file("grey.ppm", grey_picture(64, 48));
+    place.file("wide.ppm", grey_picture(80, 48));
+    place.file("one.ppm", grey_picture(1, 1));
+    place.file("cut.ppm", grey_picture(64, 48).substr(0, 400));
+    place.file("huge.ppm", "P6\n100000 100000\n255\n\1\2\3");
+    const std::vector<std::string> chart = {"--chart", "chart.toml", "-o", "out.json"};
+    const auto measure = [&](std::vector<std::string> pictures, const std::vector<std::string>& words) {
+        SCOPED_TRACE(pictures.front());
+        pictures.insert(pictures.begin(), "measure");
+        pictures.insert(pictures.end(), chart.begin(), chart.end());
+        expect_refused(place, pictures, words);
+    };
+    measure({"grey.ppm"}, {"grey.ppm", "no 11 × 8 checkerboard"});
+    measure({"one.ppm"}, {"one.ppm", "no 11 × 8 checkerboard"});
+    measure({"grey.ppm", "wide.ppm"}, {"wide.ppm", "80 × 48", "64 × 48"});
+    measure({"cut.ppm"}, {"cut.ppm"});
+    measure({"huge.ppm"}, {"huge.ppm", "100000 × 100000"});
+    measure({"chart.toml"}, {"chart.toml", "not a picture"});
+    expect_refused(place, {"compare", "grey.ppm", "wide.ppm"}, {"64 × 48", "80 × 48"});
+    expect_refused(place, {"compare", "grey.ppm", "grey.ppm", "--position-limit", "1"}, {"--position-limit"});
+    expect_refused(place, {"compare", "tessar", "grey.ppm"}, {"tessar", "grey.ppm"});
+    expect_refused(place, {"compare", "tessar", "petzval"}, {"tessar", "petzval"});
+}
+
+TEST(BadChart, IsRefusedBeforeAnyPictureIsRead) {
+    const Workplace place;
+    for (const auto& [from, to, word] :
+         std::vector<std::tuple<std::string, std::string, std::string>>{{"[12, 9]", "[0, 0]", "squares"},
+                                                                        {"\"checkerboard\"", "\"mona lisa\"", "kind"},
+                                                                        {"[chart]", "[charts]", "chart"}}) {
+        SCOPED_TRACE(to);
+        place.file("chart.toml", with(kChart, from, to));
+        expect_refused(place, {"measure", "missing.png", "--chart", "chart.toml"}, {"chart.toml:", word});
+    }
+}
+
+/// The scene above as an experiment of one view.
+std::string small_experiment() {
+    std::string text = with(small_scene(), "[camera]", "[[simulations]]\nname = \"a\"\n[simulations.camera]");
+    text = with(text, "[chart]", "[simulations.chart]");
+    text = with(text, "[pose]", "[[simulations.views]]");
+    return "title = \"An experiment\"\n" + text;
+}
+
+TEST(BadExperiment, NamesTheLineAndTheKeyBeforeAnythingIsRendered) {
+    const Workplace place;
+    const std::string good = small_experiment();
+    const std::string comparison = "[[comparisons]]\nof = \"a\"\nwith = \"a\"\nlimit = 1.0\ncurve = ";
+    const std::string twin = good.substr(good.find("[[simulations]]"), good.find("[render]") - good.find("[[simul"));
+    const std::vector<std::tuple<std::string, std::string, std::vector<std::string>>> cases = {
+        {"a name twice", good + twin, {"name", "twice"}},
+        {"no view", with(good, "[[simulations.views]]\ndistance_mm = 10000.0\n", ""), {"view"}},
+        {"wider than the lens opens", with(good, "f_number = 8.0", "f_number = 1.0"), {"camera", "f/1 ", "f/2.7"}},
+        {"an unknown lens", with(good, "\"tessar\"", "\"nonesuch\""), {"camera", "nonesuch"}},
+        {"an unknown curve", good + comparison + "\"distorsion\"\n", {"curve", "distorsion", "distortion_percent"}},
+        {"an unknown subject",
+         with(good + comparison, "of = \"a\"", "of = \"b\"") + "\"radial_px\"\n",
+         {"of", "\"b\""}},
+        {"a manifest that is not there", good + "[[photos]]\nname = \"p\"\nmanifest = \"m.toml\"\n", {"m.toml"}},
+    };
+    for (const auto& [what, text, words] : cases) {
+        SCOPED_TRACE(what);
+        place.file("experiment.toml", text);
+        expect_refused(place, {"run", "experiment.toml", "-o", "out"}, words);
+    }
+    place.file("experiment.toml", good);
+    place.file("file", "");
+    expect_refused(place, {"run", "experiment.toml", "-o", "file"}, {"file"});
+}
+
+TEST(BadOutput, IsRefusedBeforeTheWork) {
+    const Workplace place;
+    place.file("rays.csv", std::string(kRayHeader) + kAxialRay);
+    place.file("scene.toml", small_scene());
+    place.file("folder/inside", "");
+    place.file("folder.exr/inside", "");
+    place.file("beside.png/inside", "");
+    for (const char* out : {"folder", "new/", "rays.csv/out.csv"}) {
+        SCOPED_TRACE(out);
+        expect_refused(place, {"trace", "tessar", "--rays", "rays.csv", "-o", out}, {out});
+    }
+    expect_refused(place, {"lenses", "--json", "folder"}, {"folder"});
+    for (const char* out : {"folder.exr", "out.png"}) {
+        SCOPED_TRACE(out);
+        expect_refused(place, {"render", "scene.toml", "-o", out}, {out});
+    }
+    expect_refused(place, {"render", "scene.toml", "-o", "beside.exr"}, {"beside.png"});
+}
+
+}  // namespace
+
+}  // namespace lensproof

@@ -1,0 +1,341 @@
+// tests/cli/command_line_test.cpp — what the program promises on its command line: statuses, streams, bytes.
+#include <gtest/gtest.h>
+#include <sys/stat.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "tests/cli/program.h"
+
+namespace lensproof {
+
+namespace {
+
+using Json = nlohmann::json;
+
+constexpr const char* kRayHeader = "id,x_mm,y_mm,z_mm,dx,dy,dz,wavelength_nm\n";
+constexpr const char* kAxialRay = "a,0,1,-10,0,0,1,587.5618\n";
+const std::vector<std::string> kCommands = {"trace", "render", "measure", "compare", "run", "lenses", "glasses"};
+
+std::string rays_text() {
+    return std::string(kRayHeader) + kAxialRay + "b,0,19,-10,0,0,1,486.1327\nc,0,40,-10,0,0,1,587.5618\n";
+}
+
+std::vector<std::vector<std::string>> cells_of(const std::string& csv) {
+    std::vector<std::vector<std::string>> rows;
+    std::istringstream lines(csv);
+    for (std::string line; std::getline(lines, line);) {
+        std::istringstream stream(line);
+        rows.emplace_back();
+        for (std::string cell; std::getline(stream, cell, ',');) {
+            rows.back().push_back(cell);
+        }
+    }
+    return rows;
+}
+
+TEST(Help, ListsEveryCommandAndShowsAnExampleOfEach) {
+    const Workplace place;
+    const Outcome all = place.run({"--help"});
+    EXPECT_EQ(all.status, 0);
+    for (const std::string& command : kCommands) {
+        SCOPED_TRACE(command);
+        EXPECT_NE(all.out.find("\n  " + command + " "), std::string::npos);
+        const Outcome one = place.run({command, "--help"});
+        EXPECT_EQ(one.status, 0);
+        EXPECT_EQ(one.err, "");
+        EXPECT_NE(one.out.find("Example: lensproof " + command), std::string::npos);
+    }
+}
+
+TEST(Lists, NameWhatShipsWithItsSource) {
+    const Workplace place;
+    const Json lenses = Json::parse(place.run({"lenses", "--json", "-"}).out)["lenses"];
+    std::vector<std::string> names;
+    for (const Json& lens : lenses) {
+        names.push_back(lens["lens"]);
+        EXPECT_FALSE(lens["source"].get<std::string>().empty());
+    }
+    for (const char* name : {"muller-fisheye", "petzval", "tessar"}) {
+        EXPECT_NE(std::ranges::find(names, name), names.end()) << name;
+    }
+    for (const Json& glass : Json::parse(place.run({"glasses", "--json", "-"}).out)["glasses"]) {
+        EXPECT_FALSE(glass["source"].get<std::string>().empty()) << glass;
+    }
+}
+
+TEST(StandardOutput, HoldsOnlyTheJsonWhereItIsAskedFor) {
+    const Workplace place;
+    place.file("rays.csv", rays_text());
+    place.file("scene.toml", small_scene());
+    for (const std::vector<std::string>& arguments : {std::vector<std::string>{"lenses"},
+                                                      {"trace", "tessar", "--rays", "rays.csv"},
+                                                      {"render", "scene.toml", "-o", "out.exr"},
+                                                      {"compare", "out.png", "out.png"}}) {
+        SCOPED_TRACE(arguments.front());
+        std::vector<std::string> asking = arguments;
+        asking.insert(asking.end(), {"--json", "-"});
+        const Outcome outcome = place.run(asking);
+        EXPECT_EQ(outcome.status, 0);
+        EXPECT_EQ(outcome.err, "") << "a progress bar is for terminals";
+        EXPECT_TRUE(Json::accept(outcome.out)) << outcome.out;
+    }
+}
+
+TEST(StandardOutput, KeepsItsTextWhereTheJsonGoesToAFile) {
+    const Workplace place;
+    const std::string json = place.run({"glasses", "--json", "-"}).out;
+    const std::string text = place.run({"glasses"}).out;
+    EXPECT_EQ(place.run({"glasses", "--json", "result.json"}).out, text);
+    EXPECT_EQ(place.content("result.json"), json);
+}
+
+TEST(StandardOutput, ThatCannotBeWrittenIsStatus3) {
+    const Workplace place;
+    place.file("rays.csv", rays_text());
+    for (const std::vector<std::string>& arguments :
+         {std::vector<std::string>{"--help"}, {"trace", "tessar", "--rays", "rays.csv"}}) {
+        SCOPED_TRACE(arguments.front());
+        const Outcome full = place.run(arguments, Stream::full_disk);
+        EXPECT_EQ(full.status, 3);
+        EXPECT_NE(full.err.find("No space left"), std::string::npos) << full.err;
+        const Outcome closed = place.run(arguments, Stream::closed);
+        EXPECT_EQ(closed.status, 3);
+        EXPECT_NE(closed.err.find("standard output"), std::string::npos) << closed.err;
+        EXPECT_EQ(place.run(arguments, Stream::closed, Stream::closed).status, 3);
+    }
+}
+
+TEST(StandardOutput, ThatIsClosedDoesNotSpoilAFile) {
+    const Workplace place;
+    place.file("rays.csv", rays_text());
+    ASSERT_EQ(place.run({"trace", "tessar", "--rays", "rays.csv", "-o", "open.csv"}).status, 0);
+    EXPECT_EQ(place.run({"trace", "tessar", "--rays", "rays.csv", "-o", "closed.csv"}, Stream::closed).status, 0);
+    EXPECT_EQ(place.content("closed.csv"), place.content("open.csv"));
+}
+
+TEST(StandardError, ThatCannotBeWrittenLeavesTheStatus) {
+    const Workplace place;
+    for (const Stream err : {Stream::closed, Stream::full_disk}) {
+        EXPECT_EQ(place.run({"frobnicate"}, Stream::captured, err).status, 2);
+        EXPECT_EQ(place.run({"trace", "nonesuch", "--rays", "rays.csv"}, Stream::captured, err).status, 2);
+    }
+}
+
+TEST(Output, ToAFullDiskIsStatus3) {
+    const Workplace place;
+    place.file("rays.csv", rays_text());
+    struct stat before {};
+    ASSERT_EQ(::stat("/dev/full", &before), 0);
+    const Outcome outcome = place.run({"trace", "tessar", "--rays", "rays.csv", "-o", "/dev/full"});
+    EXPECT_EQ(outcome.status, 3);
+    EXPECT_NE(outcome.err.find("/dev/full"), std::string::npos) << outcome.err;
+    struct stat after {};
+    ASSERT_EQ(::stat("/dev/full", &after), 0);
+    EXPECT_EQ(after.st_rdev, before.st_rdev) << "the device is still a device";
+    EXPECT_TRUE(S_ISCHR(after.st_mode));
+}
+
+TEST(Output, MakesTheFoldersOnItsWayAndLeavesNothingBeside) {
+    const Workplace place;
+    place.file("rays.csv", rays_text());
+    EXPECT_EQ(place.run({"trace", "tessar", "--rays", "rays.csv", "-o", "new/er/out.csv"}).status, 0);
+    EXPECT_EQ(place.names(), (std::vector<std::string>{"new", "new/er", "new/er/out.csv", "rays.csv"}));
+}
+
+TEST(Paths, MayHoldSpacesAndAnyLetters) {
+    const Workplace place;
+    place.file("my läns/stråle 1.csv", rays_text());
+    place.file("my läns/scène é.toml", small_scene());
+    EXPECT_EQ(place.run({"trace", "tessar", "--rays", "my läns/stråle 1.csv", "-o", "ut put/ø.csv"}).status, 0);
+    EXPECT_EQ(cells_of(place.content("ut put/ø.csv")).front().front(), "id");
+    EXPECT_EQ(place.run({"render", "my läns/scène é.toml", "--samples", "1"}).status, 0);
+    EXPECT_TRUE(place.has("scène é.exr"));
+    EXPECT_TRUE(place.has("scène é.png"));
+}
+
+// What Windows' editors and spreadsheets make of a text file: lines that end in CR LF, a byte order mark in front.
+TEST(Trace, ReadsFilesAsWindowsWritesThem) {
+    const Workplace place;
+    place.file("rays.csv", rays_text());
+    const std::string plain = place.run({"trace", "tessar", "--rays", "rays.csv"}).out;
+    std::string windows = rays_text();
+    for (std::size_t at = 0; (at = windows.find('\n', at)) != std::string::npos; at += 2) {
+        windows.replace(at, 1, "\r\n");
+    }
+    place.file("rays.csv", "\xEF\xBB\xBF" + windows);
+    EXPECT_EQ(place.run({"trace", "tessar", "--rays", "rays.csv"}).out, plain);
+}
+
+TEST(Trace, NamesWhereEachRayEnds) {
+    const Workplace place;
+    place.file("rays.csv", std::string(kRayHeader) +
+                               "through,0,1,-10,0,0,1,587.5618\n"
+                               "rim,0,19.5,-10,0,0,1,587.5618\n"
+                               "stop,0,18.5,-10,0,0,1,587.5618\n"
+                               "beside,0,60,-10,0,0,1,587.5618\n");
+    std::map<std::string, std::string> last;
+    for (const auto& row : cells_of(place.run({"trace", "tessar", "--rays", "rays.csv"}).out)) {
+        last[row.front()] = row[1] + " " + row.back();
+    }
+    EXPECT_EQ(last["through"], "image ok");
+    EXPECT_EQ(last["rim"], "1 clipped");
+    EXPECT_EQ(last["stop"], "4 stopped");
+    EXPECT_EQ(last["beside"], "1 missed");
+}
+
+// Light's way can be turned: the image row's ray, sent back, leaves the front along the line that it came by. The
+// image point is printed to the last digit, so that what remains is the tracing's own rounding over 10² mm.
+TEST(Trace, SentBackFromTheImageReturnsToWhereItCameFrom) {
+    const Workplace place;
+    place.file("there.csv", std::string(kRayHeader) + "a,3,11,-10,0.01,-0.02,1,587.5618\n");
+    const auto there = cells_of(place.run({"trace", "tessar", "--rays", "there.csv"}).out);
+    const std::vector<std::string>& image = there.back();
+    ASSERT_EQ(image[1], "image");
+    const auto turned = [](const std::string& number) {
+        return number.front() == '-' ? number.substr(1) : "-" + number;
+    };
+    place.file("back.csv", std::string(kRayHeader) + "a," + image[2] + "," + image[3] + "," + image[4] + "," +
+                               turned(image[5]) + "," + turned(image[6]) + "," + turned(image[7]) + ",587.5618\n");
+    const auto back = cells_of(place.run({"trace", "tessar", "--rays", "back.csv", "--reverse"}).out);
+    ASSERT_EQ(back.size(), there.size() - 1) << "every surface, and no image plane";
+    const std::vector<std::string>& front = back.back();
+    ASSERT_EQ(front[1], "1");
+    for (std::size_t i = 2; i < 5; ++i) {
+        EXPECT_NEAR(std::stod(front[i]), std::stod(there[1][i]), 1e-11);
+    }
+    const double norm = std::sqrt(0.01 * 0.01 + 0.02 * 0.02 + 1.0);
+    EXPECT_NEAR(std::stod(front[5]), -0.01 / norm, 1e-13);
+    EXPECT_NEAR(std::stod(front[6]), 0.02 / norm, 1e-13);
+    EXPECT_NEAR(std::stod(front[7]), -1.0 / norm, 1e-13);
+}
+
+TEST(Trace, HasTheSameRowsInEveryPrecisionAndInJson) {
+    const Workplace place;
+    place.file("rays.csv", std::string(kRayHeader) + "a,3,11,-10,0.01,-0.02,1,587.5618\n");
+    const auto in = [&](const char* precision) {
+        return cells_of(place.run({"trace", "tessar", "--rays", "rays.csv", "--precision", precision}).out);
+    };
+    const auto exact = in("extended");
+    const auto doubles = in("double");
+    const auto floats = in("float");
+    const Json rows = Json::parse(place.run({"trace", "tessar", "--rays", "rays.csv", "--json", "-"}).out)["rows"];
+    ASSERT_EQ(doubles.size(), exact.size());
+    ASSERT_EQ(floats.size(), exact.size());
+    ASSERT_EQ(rows.size() + 1, exact.size());
+    for (std::size_t i = 1; i < exact.size(); ++i) {
+        for (std::size_t k = 2; k < 5; ++k) {
+            EXPECT_NEAR(std::stod(doubles[i][k]), std::stod(exact[i][k]), 1e-12);
+            EXPECT_NEAR(std::stod(floats[i][k]), std::stod(exact[i][k]), 1e-3);
+            EXPECT_EQ(rows[i - 1]["point_mm"][k - 2].get<double>(), std::stod(doubles[i][k])) << "not a digit is lost";
+        }
+    }
+    EXPECT_NE(doubles, floats);
+}
+
+TEST(Trace, TakesABytewiseIdIntoItsJson) {
+    const Workplace place;
+    place.file("rays.csv", std::string(kRayHeader) + "\xE9,0,1,-10,0,0,1,587.5618\n");
+    const Outcome outcome = place.run({"trace", "tessar", "--rays", "rays.csv", "--json", "-"});
+    EXPECT_EQ(outcome.status, 0) << outcome.err;
+    EXPECT_TRUE(Json::accept(outcome.out));
+}
+
+TEST(Render, GivesTheSameBytesForEveryNumberOfThreadsAndOtherBytesForAnotherSeed) {
+    const Workplace place;
+    place.file("scene.toml", small_scene());
+    const auto render = [&](const char* name, const char* threads, const char* seed) {
+        EXPECT_EQ(place.run({"render", "scene.toml", "--threads", threads, "--seed", seed, "-o", name}).status, 0);
+    };
+    render("one.exr", "1", "7");
+    render("two.exr", "2", "7");
+    render("other.exr", "1", "8");
+    for (const char* kind : {".exr", ".png"}) {
+        SCOPED_TRACE(kind);
+        const auto bytes = [&](const std::string& name) { return place.content(name + kind); };
+        EXPECT_FALSE(bytes("one").empty());
+        EXPECT_EQ(bytes("one"), bytes("two"));
+        EXPECT_NE(bytes("one"), bytes("other"));
+    }
+}
+
+TEST(Render, SaysWhereWavelengthsWereClampedToTheGlasses) {
+    const Workplace place;
+    place.file("scene.toml", with(small_scene(), "layers = 4", "layers = 4\nwavelengths_nm = [300, 1000]"));
+    const Outcome outcome = place.run({"render", "scene.toml", "-o", "out.exr"});
+    EXPECT_EQ(outcome.status, 0);
+    EXPECT_NE(outcome.err.find("400 to 700 nm"), std::string::npos) << outcome.err;
+}
+
+TEST(Render, OfASinglePixelIsAPicture) {
+    const Workplace place;
+    place.file("scene.toml", with(with(small_scene(), "[8, 6]", "[1, 1]"), "[72.0, 54.0]", "[1.0, 1.0]"));
+    EXPECT_EQ(place.run({"render", "scene.toml", "-o", "out.exr"}).status, 0);
+    EXPECT_EQ(place.run({"compare", "out.exr", "out.exr", "--rms-limit", "1e-9"}).status, 0);
+}
+
+TEST(Compare, EndsIn1WhereALimitIsBroken) {
+    const Workplace place;
+    place.file("scene.toml", small_scene());
+    ASSERT_EQ(place.run({"render", "scene.toml", "--seed", "1", "-o", "a.exr"}).status, 0);
+    ASSERT_EQ(place.run({"render", "scene.toml", "--seed", "2", "-o", "b.exr"}).status, 0);
+    EXPECT_EQ(place.run({"compare", "a.exr", "b.exr"}).status, 0) << "no limit, no failure";
+    EXPECT_EQ(place.run({"compare", "a.exr", "a.exr", "--rms-limit", "1e-9"}).status, 0);
+    EXPECT_EQ(place.run({"compare", "a.exr", "b.exr", "--rms-limit", "1e-9"}).status, 1);
+}
+
+// Three views of a chart, 160 × 120 pixels: about the smallest experiment that measures something.
+TEST(Run, WritesItsReportAndItsProfileReadsBack) {
+    const Workplace place;
+    std::string text = with(small_scene(), "[camera]",
+                            "[[simulations]]\nname = \"a\"\nmodel = \"brown-conrady\"\n"
+                            "flat_field = false\n[simulations.camera]");
+    text = with(with(text, "[chart]", "[simulations.chart]"), "[8, 6]", "[160, 120]");
+    text = with(text, "[pose]\ndistance_mm = 10000.0",
+                "[[simulations.views]]\ndistance_mm = 10000.0\n"
+                "[[simulations.views]]\ndistance_mm = 10500.0\ntilt_deg = [30.0, 0.0, 0.0]\n"
+                "[[simulations.views]]\ndistance_mm = 10500.0\ntilt_deg = [0.0, 30.0, 0.0]");
+    const std::string limit = "[simulations.limits]\ndistortion_rms_px = ";
+    place.file("good.toml", "title = \"t\"\n" + text + limit + "50.0\n");
+    place.file("bad.toml", "title = \"t\"\n" + text + limit + "1e-9\n");
+    const Outcome good = place.run({"run", "good.toml", "-o", "good", "--json", "-"});
+    EXPECT_EQ(good.status, 0) << good.err;
+    EXPECT_EQ(good.err, "");
+    EXPECT_EQ(good.out, place.content("good/report.json"));
+    EXPECT_TRUE(place.has("good/report.html"));
+    EXPECT_EQ(place.run({"run", "bad.toml", "-o", "bad"}).status, 1) << "no measurement is that good";
+    EXPECT_EQ(place.content("good/profiles/a.json"), place.content("bad/profiles/a.json"));
+
+    const std::string profile = "good/profiles/a.json";
+    EXPECT_EQ(place.run({"compare", profile, profile, "--position-limit", "50"}).status, 0);
+    EXPECT_EQ(place.run({"compare", "tessar", profile, "--focus", "10000", "--position-limit", "50"}).status, 0);
+    const std::string whole = place.content(profile);
+    const Json parsed = Json::parse(whole);
+    Json edited = parsed;
+    edited["image_size_px"] = {0, 0};
+    for (const auto& [content, word] :
+         std::vector<std::pair<std::string, std::string>>{{whole.substr(0, whole.size() / 2), "not JSON"},
+                                                          {with(whole, "lensproof-profile/1", "other/1"), "schema"},
+                                                          {edited.dump(), "image_size_px"}}) {
+        SCOPED_TRACE(word);
+        place.file("broken.json", content);
+        const Outcome outcome = place.run({"compare", "broken.json", profile});
+        EXPECT_EQ(outcome.status, 2);
+        EXPECT_NE(outcome.err.find("broken.json"), std::string::npos) << outcome.err;
+        EXPECT_NE(outcome.err.find(word), std::string::npos) << outcome.err;
+    }
+    edited = parsed;
+    edited["curves"] = Json::object();
+    place.file("bare.json", edited.dump());
+    for (const char* limit_option : {"--position-limit", "--vignetting-limit", "--chromatic-limit"}) {
+        EXPECT_EQ(place.run({"compare", "bare.json", profile, limit_option, "1"}).status, 2)
+            << limit_option << " cannot be held against nothing";
+    }
+}
+
+}  // namespace
+
+}  // namespace lensproof

@@ -1,0 +1,143 @@
+#include "tests/cli/program.h"
+
+#include <fcntl.h>
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <fstream>
+#include <iterator>
+#include <stdexcept>
+
+namespace lensproof {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+std::string bytes_of(const fs::path& file) {
+    std::ifstream stream(file, std::ios::binary);
+    return {std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
+}
+
+/// In the child: puts what `stream` asks for in the place of a descriptor.
+void redirect(int descriptor, Stream stream, const char* capture) {
+    if (stream == Stream::closed) {
+        ::close(descriptor);
+        return;
+    }
+    const int to = stream == Stream::captured ? ::open(capture, O_WRONLY | O_CREAT | O_TRUNC, 0600)
+                                              : ::open("/dev/full", O_WRONLY);
+    ::dup2(to, descriptor);
+    ::close(to);
+}
+
+fs::path new_folder() {
+    std::string name = (fs::temp_directory_path() / "lensproof-cli-XXXXXX").string();
+    if (::mkdtemp(name.data()) == nullptr) {
+        throw std::runtime_error("no temporary folder");
+    }
+    return name;
+}
+
+}  // namespace
+
+Outcome run_program(const std::vector<std::string>& arguments, const fs::path& where, Stream out, Stream err) {
+    // Files rather than pipes: neither stream can fill up and block the program.
+    const fs::path captures = new_folder();
+    const std::string out_file = (captures / "out").string();
+    const std::string err_file = (captures / "err").string();
+    const std::string folder = where.string();
+    std::vector<std::string> words = {LENSPROOF_PROGRAM};
+    words.insert(words.end(), arguments.begin(), arguments.end());
+    std::vector<char*> argv;
+    std::ranges::transform(words, std::back_inserter(argv), [](std::string& word) { return word.data(); });
+    argv.push_back(nullptr);
+
+    const pid_t child = ::fork();
+    if (child == 0) {
+        redirect(STDOUT_FILENO, out, out_file.c_str());
+        redirect(STDERR_FILENO, err, err_file.c_str());
+        if (::chdir(folder.c_str()) == 0) {
+            ::execv(argv[0], argv.data());
+        }
+        ::_exit(127);
+    }
+    int status = 0;
+    ::waitpid(child, &status, 0);
+    Outcome outcome{.status = WIFEXITED(status) ? WEXITSTATUS(status) : -WTERMSIG(status),
+                    .out = bytes_of(out_file),
+                    .err = bytes_of(err_file)};
+    fs::remove_all(captures);
+    return outcome;
+}
+
+Workplace::Workplace() : folder_(new_folder()) {}
+
+Workplace::~Workplace() {
+    std::error_code ignored;
+    fs::remove_all(folder_, ignored);
+}
+
+std::string Workplace::file(const std::string& name, std::string_view content) const {
+    fs::create_directories((folder_ / name).parent_path());
+    std::ofstream stream(folder_ / name, std::ios::binary);
+    stream.write(content.data(), static_cast<std::streamsize>(content.size()));
+    return name;
+}
+
+std::string Workplace::content(const std::string& name) const {
+    return bytes_of(folder_ / name);
+}
+
+bool Workplace::has(const std::string& name) const {
+    return fs::exists(folder_ / name);
+}
+
+std::vector<std::string> Workplace::names() const {
+    std::vector<std::string> names;
+    for (const auto& entry : fs::recursive_directory_iterator(folder_)) {
+        names.push_back(entry.path().lexically_relative(folder_).string());
+    }
+    std::ranges::sort(names);
+    return names;
+}
+
+Outcome Workplace::run(const std::vector<std::string>& arguments, Stream out, Stream err) const {
+    return run_program(arguments, folder_, out, err);
+}
+
+std::string with(std::string text, const std::string& from, const std::string& to) {
+    const std::size_t at = text.find(from);
+    EXPECT_NE(at, std::string::npos) << "no \"" << from << "\" to replace";
+    return at == std::string::npos ? text : text.replace(at, from.size(), to);
+}
+
+std::string small_scene() {
+    return R"([camera]
+lens = "tessar"
+f_number = 8.0
+focus_distance_mm = 10000.0
+sensor_mm = [72.0, 54.0]
+pixels = [8, 6]
+shutter_s = 0.08
+iso = 100.0
+response = "camera"
+
+[chart]
+kind = "checkerboard"
+squares = [12, 9]
+square_mm = 560.0
+
+[pose]
+distance_mm = 10000.0
+
+[render]
+samples_per_pixel = 4
+layers = 4
+)";
+}
+
+}  // namespace lensproof

@@ -1,0 +1,52 @@
+// tests/cli/program.h — runs the program `lensproof` and keeps what it said.
+#pragma once
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace lensproof {
+
+/// Where a spawned program's standard stream goes.
+enum class Stream { captured, closed, full_disk };
+
+struct Outcome {
+    int status = -1;  // the exit status; minus the signal's number where one ended it
+    std::string out;
+    std::string err;
+};
+
+/// Runs the program with `arguments` in the folder `where` and waits for it. A stream that is not captured stays empty.
+Outcome run_program(const std::vector<std::string>& arguments, const std::filesystem::path& where,
+                    Stream out = Stream::captured, Stream err = Stream::captured);
+
+/// A folder of its own for a test; gone with all that is in it at the end of its life.
+class Workplace {
+  public:
+    Workplace();
+    ~Workplace();
+    Workplace(const Workplace&) = delete;
+    Workplace& operator=(const Workplace&) = delete;
+
+    /// Writes `content` to `name` (folders on the way are made) and returns the name.
+    std::string file(const std::string& name, std::string_view content) const;
+    /// The bytes of `name`; empty where there is none.
+    [[nodiscard]] std::string content(const std::string& name) const;
+    [[nodiscard]] bool has(const std::string& name) const;
+    /// Everything in it, sorted.
+    [[nodiscard]] std::vector<std::string> names() const;
+    /// Runs the program here.
+    [[nodiscard]] Outcome run(const std::vector<std::string>& arguments, Stream out = Stream::captured,
+                              Stream err = Stream::captured) const;
+
+  private:
+    std::filesystem::path folder_;
+};
+
+/// `text` with its first `from` replaced by `to`; fails the test where there is none.
+std::string with(std::string text, const std::string& from, const std::string& to);
+
+/// A scene of 8 × 6 pixels that renders in no time: a checkerboard through the Tessar.
+std::string small_scene();
+
+}  // namespace lensproof
