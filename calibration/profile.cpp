@@ -360,7 +360,7 @@ Profile read_profile(const std::filesystem::path& file) {
 }
 
 void write_profile(const Profile& profile, const std::filesystem::path& file) {
-    write_file(file, to_json(profile).dump(1) + "\n");
+    write_file(file, to_json(profile).dump(1, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n");
 }
 
 }  // namespace lensproof

@@ -15,7 +15,7 @@
 namespace lensproof {
 namespace {
 
-constexpr double kWindowShare = 0.25;  // half window of the distance to the nearest corner
+constexpr double kWindowShare = 0.4;   // half window of the distance to the nearest corner
 constexpr int kSmallestWindow_px = 2;  // half window: 5 × 5 pixels
 constexpr int kLargestWindow_px = 14;  // half window; more pixels than noise asks for, and lines bend
 constexpr int kFitFrom_px = 3;         // half window; in a smaller one the edge model has too few pixels to hold it

@@ -71,14 +71,13 @@ std::optional<CurveDifference> radial_difference_px(const Profile& a, const Prof
         return std::nullopt;
     }
     const Curve& reference = b.curves.at("field_angle_deg");
+    const std::vector<double>& heights = angles->curve.image_height;
     CurveDifference radii;
-    for (std::size_t i = 0; i < angles->curve.value.size(); ++i) {
-        // Standard heights, so both curves have the neighbours that the slope is taken from.
-        const std::size_t next = std::min(i + 1, reference.value.size() - 1);
-        const std::size_t previous = i == 0 ? 0 : i - 1;
-        const double px_per_deg = half_diagonal_px(b) *
-                                  (reference.image_height[next] - reference.image_height[previous]) /
-                                  (reference.value[next] - reference.value[previous]);
+    for (std::size_t i = 0; i < heights.size(); ++i) {
+        const double from = heights[i == 0 ? 0 : i - 1];
+        const double to = heights[std::min(i + 1, heights.size() - 1)];
+        const double px_per_deg =
+            half_diagonal_px(b) * (to - from) / (sample(reference, to)->value - sample(reference, from)->value);
         append(radii.curve, angles->curve.image_height[i],
                {.value = -px_per_deg * angles->curve.value[i],
                 .lower_95 = -px_per_deg * angles->curve.upper_95[i],

@@ -196,7 +196,8 @@ Subject run_photos(const PhotoSubject& photos, const PhotoSet& set, const RunPro
         progress(fmt::format("{}, {}", photos.name, file.filename().string()), 0.0);
         const Image image = read_image(file);
         subject.pictures.push_back(
-            shown(fmt::format("{}/{}.png", photos.name, file.stem().string()), file.filename().string(), image, view));
+            shown(fmt::format("{}/{:02}-{}.png", photos.name, subject.pictures.size() + 1, file.stem().string()),
+                  file.filename().string(), image, view));
         input.pictures.push_back({.name = file.string(), .role = role, .load = [file] { return read_image(file); }});
     };
     for (std::size_t i = 0; i < set.photos.size(); ++i) {

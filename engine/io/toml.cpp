@@ -114,8 +114,9 @@ std::optional<double> TomlTable::optional_number(const std::string& key, const B
     return node == nullptr ? std::nullopt : std::optional(checked_number(*node, key, bounds));
 }
 
-bool TomlTable::is_infinite(const std::string& key) {
-    return std::isinf(require(key).value<double>().value_or(0.0));
+int TomlTable::infinity(const std::string& key) {
+    const double value = require(key).value<double>().value_or(0.0);
+    return std::isinf(value) ? (value > 0.0 ? 1 : -1) : 0;
 }
 
 int TomlTable::integer(const std::string& key, int min, int max) {

@@ -43,8 +43,8 @@ class TomlTable {
     double number(const std::string& key, const Bounds& bounds = kAnyNumber);
     double number_or(const std::string& key, double fallback, const Bounds& bounds = kAnyNumber);
     std::optional<double> optional_number(const std::string& key, const Bounds& bounds = kAnyNumber);
-    /// Whether the key's value is the number inf or -inf.
-    bool is_infinite(const std::string& key);
+    /// 1 where the key's value is inf, -1 where it is -inf, else 0.
+    int infinity(const std::string& key);
     int integer(const std::string& key, int min, int max);
     int integer_or(const std::string& key, int fallback, int min, int max);
     bool boolean_or(const std::string& key, bool fallback);

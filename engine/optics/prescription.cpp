@@ -34,7 +34,7 @@ double read_curvature(TomlTable& row) {
     if (!row.has("radius_mm")) {
         return 0.0;
     }
-    if (row.is_infinite("radius_mm")) {
+    if (row.infinity("radius_mm") != 0) {
         return 0.0;
     }
     const double radius = row.number("radius_mm");
@@ -54,7 +54,7 @@ PrescribedSurface read_surface(TomlTable& row) {
         row.number("semi_diameter_mm", {.min = 0.0, .max = kLargestLength, .min_excluded = true});
     surface.medium.glass = row.text_or("glass", "");
     surface.medium.n_d = row.optional_number("n_d", {.min = 1.0, .max = 4.0});
-    surface.medium.V_d = row.optional_number("V_d", kPositive);
+    surface.medium.V_d = row.optional_number("V_d", {.min = 1.0, .max = 1000.0});
     surface.where = row.where();
     if (!surface.medium.glass.empty() && surface.medium.n_d) {
         row.fail("n_d", "stands beside a glass name: expected one of the two");
@@ -125,12 +125,13 @@ class CsvRow {
         return cells_[std::ranges::find(header_, column) - header_.begin()];
     }
 
-    [[nodiscard]] double number(const std::string& column, const std::string& expected, double min) const {
+    [[nodiscard]] double number(const std::string& column, const std::string& expected, double min,
+                                double max = kLargestLength) const {
         const std::string text = cell(column);
         std::istringstream stream(text);
         double value = 0.0;
         stream >> value;
-        if (stream.fail() || !stream.eof() || !std::isfinite(value) || value < min || value > kLargestLength) {
+        if (stream.fail() || !stream.eof() || !std::isfinite(value) || value < min || value > max) {
             throw InputError(fmt::format("{} is \"{}\", expected {}", where(column), text, expected));
         }
         return value;
@@ -150,21 +151,29 @@ class CsvRow {
 PrescribedSurface read_csv_surface(const CsvRow& row) {
     PrescribedSurface surface;
     surface.where = row.where("surface " + row.cell("surface"));
-    surface.is_stop = row.cell("kind") == "stop";
+    const std::string kind = row.cell("kind");
+    if (kind != "stop" && kind != "glass" && kind != "air") {
+        throw InputError(fmt::format("{} is \"{}\", expected stop, glass or air", row.where("kind"), kind));
+    }
+    surface.is_stop = kind == "stop";
     const std::string radius = row.cell("radius_mm");
     const bool flat = radius == "inf" || radius == "-inf" || radius == "Infinity" || radius.empty();
     if (!flat) {
         const double value = row.number("radius_mm", "a radius in mm, or inf for a flat", -kLargestLength);
-        surface.curvature = value == 0.0 ? 0.0 : 1.0 / value;
+        if (std::abs(value) < 1e-3 && !surface.is_stop) {  // lens tables write a stop's plane as 0
+            throw InputError(
+                fmt::format("{} is {}, expected a radius in mm, or inf for a flat", row.where("radius_mm"), value));
+        }
+        surface.curvature = surface.is_stop ? 0.0 : 1.0 / value;
     }
     surface.thickness_mm = row.number("thickness_mm", "a length that is not negative", 0.0);
     surface.semi_diameter_mm = row.number("semi_aperture_mm", "a positive length", 1e-9);
     const std::string n_d = row.cell("n_d");
-    const double index = n_d.empty() ? 1.0 : row.number("n_d", "a refractive index of at least 1", 1.0);
+    const double index = n_d.empty() ? 1.0 : row.number("n_d", "a refractive index from 1 to 4", 1.0, 4.0);
     if (index != 1.0) {
         surface.medium.n_d = index;
         if (!row.cell("V_d").empty()) {
-            surface.medium.V_d = row.number("V_d", "a positive Abbe number", 1e-9);
+            surface.medium.V_d = row.number("V_d", "an Abbe number from 1 to 1000", 1.0, 1000.0);
         }
     }
     return surface;
@@ -181,6 +190,9 @@ Prescription read_csv(const std::filesystem::path& file) {
     std::vector<std::string> header;
     std::string line;
     for (int number = 1; std::getline(content, line); ++number) {
+        if (number == 1 && line.starts_with("\xEF\xBB\xBF")) {
+            line.erase(0, 3);  // a byte order mark
+        }
         if (line.empty() || line == "\r" || line.front() == '#') {
             continue;
         }

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "engine/io/input_error.h"
 #include "engine/spectral/illuminant.h"
 #include "engine/spectral/spectral_exr.h"
 #include "engine/spectral/wavelengths.h"
@@ -16,6 +17,7 @@ namespace {
 
 constexpr Bounds kSensorSide{.min = 0.0, .max = 1e4, .min_excluded = true};
 constexpr double kMostPixels = 200e6;
+constexpr double kMostValues = 2e9;  // 8 GB of floats
 
 Sensor read_sensor(TomlTable& table) {
     const std::vector<double> size = table.numbers("sensor_mm", 2, kSensorSide);
@@ -44,6 +46,10 @@ SpectralStrata make_strata(const Camera& camera, const Lens& lens, const Light& 
     const WavelengthRange range = wavelength_range(lens);
     const double min_nm = std::max(spectral.min_nm, range.min_nm);
     const double max_nm = std::min(spectral.max_nm, range.max_nm);
+    if (!(min_nm < max_nm)) {
+        throw InputError(fmt::format("wavelengths of {} to {} nm: the glasses of {} are known from {} to {} nm only",
+                                     spectral.min_nm, spectral.max_nm, lens.name, range.min_nm, range.max_nm));
+    }
     SpectralStrata made;
     if (min_nm != spectral.min_nm || max_nm != spectral.max_nm) {
         made.clamp_note = fmt::format("wavelengths clamped to {} to {} nm, where the glasses of {} are known", min_nm,
@@ -74,8 +80,8 @@ Camera read_camera(TomlTable& table) {
     Camera camera;
     camera.lens = table.text("lens");
     camera.f_number = table.number("f_number", {.min = 0.1, .max = 1000.0});
-    camera.focus_distance_mm = table.is_infinite("focus_distance_mm") ? std::numeric_limits<double>::infinity()
-                                                                      : table.number("focus_distance_mm", kPositive);
+    camera.focus_distance_mm = table.infinity("focus_distance_mm") > 0 ? std::numeric_limits<double>::infinity()
+                                                                       : table.number("focus_distance_mm", kPositive);
     camera.sensor = read_sensor(table);
     camera.exposure.time_s = table.number("shutter_s", kPositive);
     camera.exposure.iso = table.number("iso", kPositive);
@@ -88,7 +94,11 @@ Light read_light(TomlTable& table) {
     Light light;
     light.illuminant = table.text_or("illuminant", light.illuminant);
     light.luminance_cd_m2 = table.number_or("luminance_cd_m2", light.luminance_cd_m2, kPositive);
-    illuminant(light.illuminant);  // an unknown name is an error here, not when the render has begun
+    try {
+        illuminant(light.illuminant);
+    } catch (const InputError& error) {
+        table.fail("illuminant", error.what());
+    }
     table.finish();
     return light;
 }
@@ -139,6 +149,14 @@ ChartCamera::ChartCamera(const Camera& camera, const Light& light, const Spectra
       spectral_(make_strata(camera, lens_, light, spectral)),
       // Pixels are areas: the corner pixel's own corner is the farthest point sampled.
       pupil_(bounding_lenses(spectral_.strata), camera.sensor.half_diagonal_mm()) {
+    const double values =
+        static_cast<double>(camera.sensor.width) * camera.sensor.height * (6.0 + static_cast<double>(spectral.layers));
+    if (values > kMostValues) {
+        throw InputError(
+            fmt::format("{} × {} pixels with {} spectral layers are {:.1f} billion values, expected {:.0f} billion "
+                        "at most: fewer pixels or layers",
+                        camera.sensor.width, camera.sensor.height, spectral.layers, values / 1e9, kMostValues / 1e9));
+    }
     metadata_ = spectral_attributes(kFilmIrradianceUnits);
     metadata_["lensproof:lens"] = lens_.name;
     metadata_["lensproof:fNumber"] = fmt::format("{}", camera.f_number);

@@ -5,6 +5,7 @@
 
 #include "calibration/measure.h"
 #include "engine/io/file.h"
+#include "engine/io/input_error.h"
 #include "engine/scene/chart_file.h"
 #include "experiments/cli/command.h"
 
@@ -78,6 +79,12 @@ int run_measure(const MeasureOptions& options) {
     MeasureInput input;
     input.name = options.images.front();
     input.chart = read_chart_file(options.chart);
+    if (std::holds_alternative<FlatField>(input.chart.pattern)) {
+        throw InputError(
+            fmt::format("{}: the chart is a flat field, expected a checkerboard or a disc grid; pictures of an "
+                        "even surface are given with --flat-field",
+                        options.chart));
+    }
     input.model = model_kind(options.model);
     input.source = {.kind = options.kind, .images = {}, .camera = options.camera, .lens = options.lens};
     if (options.pixel_pitch_um > 0.0) {

@@ -22,6 +22,9 @@ TEST_P(ClosedLoop, MeasurementFindsWhatTheRaysSay) {
     ASSERT_EQ(half.simulations.size(), 1U);
     Sensor& sensor = half.simulations[0].scene.camera.sensor;
     sensor = {sensor.width / 2, sensor.height / 2, 2.0 * sensor.pixel_pitch_mm};
+    // Squares keep enough pixels for a corner fit.
+    auto& board = std::get<Checkerboard>(half.simulations[0].scene.chart.pattern);
+    board = {.columns = 11, .rows = 8, .square_mm = board.square_mm * board.columns / 11.0};
 
     const ExperimentResult result = run_experiment(half, {}, [](const std::string&, double) {});
     const Subject& subject = result.subjects.at(0);
