@@ -193,6 +193,12 @@ void add_vignetting(Profile& profile, const Observations& seen, const Vec2d& cen
     for (const auto& [channel, samples] : groups) {
         try {
             Vignetting vignetting = fit_vignetting(samples, centre, half_diagonal_px(profile));
+            FittedTerms& terms = profile.terms["vignetting_" + channel];
+            for (std::size_t i = 0; i < vignetting.coefficients.size(); ++i) {
+                terms.names.push_back("spline_" + std::to_string(i));
+            }
+            terms.values = std::move(vignetting.coefficients);
+            terms.covariance = std::move(vignetting.covariance);
             profile.curves["vignetting_" + channel] = std::move(vignetting.ratio);
             profile.curves["vignetting_" + channel + "_ev"] = std::move(vignetting.ev);
         } catch (const InputError& e) {
@@ -212,8 +218,13 @@ void add_chromatic_shift(Profile& profile, const Observations& seen, const Vec2d
     }
     for (const auto& [channel, pairs] : seen.chromatic_pairs) {
         try {
-            profile.curves["chromatic_shift_" + channel + "_px"] =
-                fit_chromatic_shift(pairs, centre, half_diagonal_px(profile)).curve;
+            ChromaticShift shift = fit_chromatic_shift(pairs, centre, half_diagonal_px(profile));
+            const auto& [c1, c3, c5] = shift.radial_px;
+            profile.terms["chromatic_shift_" + channel] = {
+                .names = {"c1_px", "c3_px", "c5_px", "translation_x_px", "translation_y_px"},
+                .values = {c1, c3, c5, shift.translation_px.x, shift.translation_px.y},
+                .covariance = {shift.covariance.begin(), shift.covariance.end()}};
+            profile.curves["chromatic_shift_" + channel + "_px"] = std::move(shift.curve);
         } catch (const InputError& e) {
             profile.not_measured["chromatic_shift"] = e.what();
         }

@@ -58,6 +58,19 @@ Json view_json(const ProfileView& view) {
     return json;
 }
 
+Json terms_json(const FittedTerms& terms) {
+    const std::size_t count = terms.names.size();
+    Json json{{"parameters", Json::object()}, {"covariance", Json::array()}};
+    for (std::size_t i = 0; i < count; ++i) {
+        const double variance = terms.covariance[i * (count + 1)];
+        json["parameters"][terms.names[i]] = {{"value", terms.values[i]},
+                                              {"standard_error", std::sqrt(std::max(variance, 0.0))}};
+        const auto row = terms.covariance.begin() + static_cast<std::ptrdiff_t>(i * count);
+        json["covariance"].push_back(std::vector<double>(row, row + static_cast<std::ptrdiff_t>(count)));
+    }
+    return json;
+}
+
 Json curve_json(const Curve& curve) {
     return {{"covered_image_height", curve.covered_image_height},
             {"image_height", curve.image_height},
@@ -229,6 +242,23 @@ ProfileGeometry parse_geometry(const Node& root) {
     return geometry;
 }
 
+FittedTerms parse_terms(const Node& node) {
+    FittedTerms terms;
+    const Node parameters = node.at("parameters");
+    terms.names = parameters.keys();
+    for (const std::string& name : terms.names) {
+        terms.values.push_back(parameters.at(name).at("value").number());
+    }
+    for (const Node& row : node.at("covariance").elements()) {
+        const std::vector<double> values = row.numbers(terms.names.size());
+        terms.covariance.insert(terms.covariance.end(), values.begin(), values.end());
+    }
+    if (terms.covariance.size() != terms.names.size() * terms.names.size()) {
+        throw node.at("covariance").error("a row and a column per parameter");
+    }
+    return terms;
+}
+
 ProfileView parse_view(const Node& node) {
     ProfileView view{.image = node.at("image").text(), .found = node.at("found").truth(), .pose = {}, .points = {}};
     if (!view.found) {
@@ -305,6 +335,10 @@ Json to_json(const Profile& profile) {
     for (const auto& [name, curve] : profile.curves) {
         json["curves"][name] = curve_json(curve);
     }
+    json["terms"] = Json::object();
+    for (const auto& [name, terms] : profile.terms) {
+        json["terms"][name] = terms_json(terms);
+    }
     json["not_measured"] = Json::object();
     for (const auto& [name, reason] : profile.not_measured) {
         json["not_measured"][name] = reason;
@@ -347,6 +381,12 @@ Profile parse_profile(std::string_view text, const std::string& file) {
     const Node curves = root.at("curves");
     for (const std::string& name : curves.keys()) {
         profile.curves[name] = parse_curve(curves.at(name));
+    }
+    if (root.has("terms")) {
+        const Node terms = root.at("terms");
+        for (const std::string& name : terms.keys()) {
+            profile.terms[name] = parse_terms(terms.at(name));
+        }
     }
     const Node reasons = root.at("not_measured");
     for (const std::string& name : reasons.keys()) {

@@ -49,6 +49,15 @@ struct ProfileView {
     std::vector<ProfilePoint> points;
 };
 
+/// The terms of a fit, with their covariance (row by row, in the order of the names).
+struct FittedTerms {
+    std::vector<std::string> names;
+    std::vector<double> values;
+    std::vector<double> covariance;
+
+    friend bool operator==(const FittedTerms&, const FittedTerms&) = default;
+};
+
 /// Curves by name: "field_angle_deg", "distortion_percent" (against f tan θ), "distortion_equidistant_percent"
 /// (against f θ), and for a channel C "vignetting_C" (ratio to the axis), "vignetting_C_ev", "chromatic_shift_C_px".
 /// What could not be measured is absent there and has its reason in `not_measured`, under "geometry", "vignetting" or
@@ -62,6 +71,9 @@ struct Profile {
     std::optional<ProfileGeometry> geometry;
     std::vector<ProfileView> views;
     std::map<std::string, Curve> curves;
+    /// Behind the curves, by the curve's name without its unit: "chromatic_shift_C" (calibration/chromatic_shift.h) and
+    /// "vignetting_C" (the spline of ln V, calibration/vignetting.h).
+    std::map<std::string, FittedTerms> terms;
     std::map<std::string, std::string> not_measured;
 };
 

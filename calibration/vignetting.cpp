@@ -193,6 +193,12 @@ Vignetting sampled(const Chosen& chosen, double covered) {
                {log_band.value * std::numbers::log2e, log_band.lower_95 * std::numbers::log2e,
                 log_band.upper_95 * std::numbers::log2e});
     }
+    for (int i = 0; i < size; ++i) {
+        result.coefficients.push_back(chosen.fit.parameters(i));
+        for (int k = 0; k < size; ++k) {
+            result.covariance.push_back(chosen.fit.covariance(i, k));
+        }
+    }
     double squares = 0.0;
     for (std::size_t i = 0; i < chosen.fit.used.size(); ++i) {
         const double residual = chosen.fit.residuals(static_cast<Eigen::Index>(i));

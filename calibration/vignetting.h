@@ -11,9 +11,11 @@ namespace lensproof {
 /// Relative illumination V of one channel against the image height, V = 1 on the axis. It is what a picture of an
 /// even tone shows: what the rims cut, cos⁴, and whatever the sensor adds, together.
 struct Vignetting {
-    Curve ratio;    // V
-    Curve ev;       // log2 V
-    int spans = 0;  // of the spline
+    Curve ratio;                       // V
+    Curve ev;                          // log2 V
+    int spans = 0;                     // of the spline
+    std::vector<double> coefficients;  // of the spline of ln V, from the axis outwards
+    std::vector<double> covariance;    // theirs, row by row
     int samples_used = 0;
     double relative_rms = 0.0;  // of the samples about the fit
 };
