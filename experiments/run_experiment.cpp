@@ -88,8 +88,6 @@ void add_profile_facts(Subject& subject) {
     if (profile.geometry) {
         const ProfileGeometry& geometry = *profile.geometry;
         subject.facts.push_back({"camera model", kind_name(geometry.model)});
-        subject.facts.push_back({"focal length", fmt::format("{:.3f} ± {:.3f} px", focal_length_px(geometry.model),
-                                                             geometry.standard_error(0))});
         if (profile.pixel_pitch_um) {
             subject.facts.push_back(
                 {"focal length",
@@ -254,6 +252,16 @@ const Subject& find_subject(const std::vector<Subject>& subjects, const std::str
     return *std::ranges::find(subjects, name, &Subject::name);
 }
 
+/// What a curve shows, in words.
+std::string curve_title(const std::string& curve) {
+    if (curve == "radial_px") {
+        return "image position";
+    }
+    std::string title = curve.substr(0, curve.rfind('_'));
+    std::ranges::replace(title, '_', ' ');
+    return title;
+}
+
 ComparisonResult compare_subjects(const Comparison& comparison, const std::vector<Subject>& subjects,
                                   std::vector<Check>& checks) {
     const Subject& of = find_subject(subjects, comparison.of);
@@ -265,17 +273,18 @@ ComparisonResult compare_subjects(const Comparison& comparison, const std::vecto
     if (!comparison.limit) {
         return result;
     }
-    Check check{.id = fmt::format("{}-{}-{}", comparison.of, comparison.with, comparison.curve),
-                .group = "Simulated lenses against the photographed one",
-                .subject = comparison.of,
-                .label = fmt::format("{} against {}: {}, rms", comparison.of, comparison.with, comparison.curve),
-                .value = std::nan(""),
-                .unit = comparison.curve.ends_with("_percent") ? "%"
-                        : comparison.curve.ends_with("_ev")    ? "EV"
-                                                               : "px",
-                .limit = *comparison.limit,
-                .expectation = comparison.expectation,
-                .explanation = "The curve was not measured in both."};
+    Check check{
+        .id = fmt::format("{}-{}-{}", comparison.of, comparison.with, comparison.curve),
+        .group = "Simulated lenses against the photographed one",
+        .subject = comparison.of,
+        .label = fmt::format("{} against {}: {}, rms", comparison.of, comparison.with, curve_title(comparison.curve)),
+        .value = std::nan(""),
+        .unit = comparison.curve.ends_with("_percent") ? "%"
+                : comparison.curve.ends_with("_ev")    ? "EV"
+                                                       : "px",
+        .limit = *comparison.limit,
+        .expectation = comparison.expectation,
+        .explanation = "The curve was not measured in both."};
     if (result.difference) {
         check.value = result.difference->rms;
         check.sigma = result.difference->rms_sigma;

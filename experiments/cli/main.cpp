@@ -56,6 +56,7 @@ int run(int argc, char** argv) {
         "lensproof: does the simulated lens behave like the real one, where not, by how much, and how sure are we?",
         "lensproof"};
     app.set_version_flag("--version", LENSPROOF_VERSION);
+    app.footer("The launcher also has: ./lensproof demo, the demo experiment, and ./lensproof test, every test.");
     app.require_subcommand(1);
     add_trace_command(app, status);
     add_render_command(app, status);
