@@ -143,7 +143,7 @@ int compare_profiles(const Profile& a, const Profile& b, const CompareOptions& o
                                   const std::string& after, const std::string& unit, double limit) {
         bool any_found = false;
         for (const std::string& channel : channels) {
-            const std::string name = before + channel + after;
+            const std::string name = fmt::format("{}{}{}", before, channel, after);
             const auto found = difference(a, b, name);
             add(name, unit, found, found ? limit : 0.0);
             any_found = any_found || found;

@@ -18,15 +18,6 @@ namespace {
 
 constexpr double kDegree = std::numbers::pi / 180.0;
 
-struct Reference {
-    Lens lens;
-    nlohmann::json data;
-
-    [[nodiscard]] double wavelength(const std::string& line) const {
-        return data["index_model"]["wavelengths_nm"][line].get<double>();
-    }
-};
-
 class OpticsReference : public testing::TestWithParam<const char*> {
   protected:
     void SetUp() override {
@@ -35,26 +26,31 @@ class OpticsReference : public testing::TestWithParam<const char*> {
         if (!std::filesystem::exists(file)) {
             GTEST_SKIP() << "no reference numbers beside the checkout: " << file.lexically_normal().filename();
         }
-        reference_.data = nlohmann::json::parse(read_file(file));
+        data_ = nlohmann::json::parse(read_file(file));
         IndexOverrides overrides;
         if (std::string(GetParam()) == "const") {
-            for (const auto& surface : reference_.data["surfaces"]) {
+            for (const auto& surface : data_["surfaces"]) {
                 if (surface["material"] != "air") {
                     overrides[surface["material"]] = surface["n_after"]["d"];
                 }
             }
         }
-        reference_.lens = load_lens("tessar", overrides);
+        lens_ = load_lens("tessar", overrides);
     }
 
-    Reference reference_;
+    [[nodiscard]] double wavelength(const std::string& line) const {
+        return data_["index_model"]["wavelengths_nm"][line].get<double>();
+    }
+
+    Lens lens_;
+    nlohmann::json data_;
 };
 
 // A dozen surfaces' worth of double arithmetic: 1e-12 relative leaves room for a hundred roundings.
 TEST_P(OpticsReference, FirstOrderData) {
     for (const char* line : {"F", "d", "C", "g"}) {
-        const nlohmann::json& expected = reference_.data["paraxial"][line];
-        const ParaxialData data = paraxial_data(at_wavelength<double>(reference_.lens, reference_.wavelength(line)));
+        const nlohmann::json& expected = data_["paraxial"][line];
+        const ParaxialData data = paraxial_data(at_wavelength<double>(lens_, wavelength(line)));
         const auto near = [&](double value, const char* key) {
             EXPECT_NEAR(value / expected[key].get<double>(), 1.0, 1e-12) << line << " " << key;
         };
@@ -72,15 +68,15 @@ TEST_P(OpticsReference, FirstOrderData) {
 // Image heights of chief rays aimed from the stop: 1e-9 mm, as the reference asks of a good double tracer. Every field
 // whose chief ray passes the rims; the reference follows them beyond, the aiming does not.
 TEST_P(OpticsReference, ChiefRayHeights) {
-    const double image_z = reference_.data["image_planes"]["nominal"]["z"];
-    Lens lens = reference_.lens;
+    const double image_z = data_["image_planes"]["nominal"]["z"];
+    Lens lens = lens_;
     lens.image_z = image_z;
     int compared = 0;
-    for (const auto& row : reference_.data["chief_rays"]["rows"]) {
+    for (const auto& row : data_["chief_rays"]["rows"]) {
         if (!row["first_clipped_surface"].is_null()) {
             continue;
         }
-        const ChiefRays rays(lens, reference_.wavelength(row["wavelength"]));
+        const ChiefRays rays(lens, wavelength(row["wavelength"]));
         const double field = row["field_deg"].get<double>() * kDegree;
         const auto ray = rays.at_field(field);
         ASSERT_TRUE(ray) << row["field_deg"];
@@ -95,11 +91,11 @@ TEST_P(OpticsReference, ChiefRayHeights) {
 // to 1e-8, but a corner between two rims' arcs costs up to half a wedge of the difference in slope: (2π/256)² / 8 ≈
 // 8e-5.
 TEST_P(OpticsReference, ProjectedSolidAngle) {
-    Lens lens = reference_.lens;
-    lens.image_z = reference_.data["image_planes"]["paraxial_d"]["z"];
-    const TraceLens<double> traced = at_wavelength<double>(lens, reference_.wavelength("d"));
+    Lens lens = lens_;
+    lens.image_z = data_["image_planes"]["paraxial_d"]["z"];
+    const TraceLens<double> traced = at_wavelength<double>(lens, wavelength("d"));
     int compared = 0;
-    for (const auto& row : reference_.data["relative_illumination"]["rows"]) {
+    for (const auto& row : data_["relative_illumination"]["rows"]) {
         const double expected = row["projected_solid_angle"];
         const Bundle bundle = image_bundle(traced, row["image_y"], 256);
         EXPECT_NEAR(bundle.projected_solid_angle / expected, 1.0, 1e-4) << row["field_deg"];

@@ -56,13 +56,11 @@ TEST(PupilBounds, MissNoLight) {
         const Lens focused = camera_lens(camera);
         const Illuminant light = illuminant("D65");
         std::vector<WavelengthStratum> strata;
+        strata.reserve(3);
         for (const double nm : {450.0, 550.0, 650.0}) {
             strata.push_back({nm, at_wavelength<double>(focused, nm), 1.0, Vec3d{1.0, 1.0, 1.0}});
         }
-        std::vector<TraceLens<double>> lenses;
-        for (const WavelengthStratum& stratum : strata) {
-            lenses.push_back(stratum.lens);
-        }
+        const std::vector<TraceLens<double>> lenses = {strata[0].lens, strata[1].lens, strata[2].lens};
         const SeenChart view{.chart = {.pattern = FlatField{}, .white_reflectance = 1.0},
                              .pose = place({.distance_mm = 1000.0}),
                              .sensor = camera.sensor,
