@@ -62,7 +62,8 @@ TEST(Lists, NameWhatShipsWithItsSource) {
     for (const char* name : {"muller-fisheye", "petzval", "tessar"}) {
         EXPECT_NE(std::ranges::find(names, name), names.end()) << name;
     }
-    for (const Json& glass : Json::parse(place.run({"glasses", "--json", "-"}).out)["glasses"]) {
+    const Json glasses = Json::parse(place.run({"glasses", "--json", "-"}).out)["glasses"];
+    for (const Json& glass : glasses) {
         EXPECT_FALSE(glass["source"].get<std::string>().empty()) << glass;
     }
 }
