@@ -16,6 +16,9 @@ namespace lensproof {
 namespace {
 
 std::string shown(const toml::node& node) {
+    if (const std::optional<double> number = node.value_exact<double>()) {
+        return fmt::format("{}", *number);  // the shortest that reads back, not seventeen digits
+    }
     std::ostringstream stream;
     node.visit([&](const auto& value) { stream << value; });
     return stream.str();
