@@ -54,7 +54,7 @@ std::string source_commit() {
     if (!fs::exists(git / "HEAD")) {
         return "unknown";
     }
-    const std::string head = first_line(git / "HEAD");
+    std::string head = first_line(git / "HEAD");
     const std::string prefix = "ref: ";
     if (head.rfind(prefix, 0) != 0) {
         return head;

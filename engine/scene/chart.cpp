@@ -11,6 +11,8 @@ template <class... Fs>
 struct Overloaded : Fs... {
     using Fs::operator()...;
 };
+template <class... Fs>
+Overloaded(Fs...) -> Overloaded<Fs...>;  // clang before 17 does not deduce it for an aggregate
 
 bool is_black(const Checkerboard& board, double x_mm, double y_mm) {
     const double column = std::floor(x_mm / board.square_mm + 0.5 * board.columns);
