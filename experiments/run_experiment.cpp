@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "calibration/measure.h"
+#include "engine/io/file.h"
 #include "engine/io/image.h"
 #include "engine/io/input_error.h"
 #include "engine/optics/paraxial.h"
@@ -309,6 +310,9 @@ ExperimentResult run_experiment(const Experiment& experiment, const RunSettings&
                                 const RunProgress& progress) {
     ExperimentResult result;
     result.inputs.push_back(experiment.file);
+    if (!experiment.simulations.empty()) {
+        result.inputs.push_back(data_root() / "lenses" / "glasses.toml");
+    }
     // Whatever is missing is found before the long part begins.
     std::vector<PhotoSet> sets;
     for (const PhotoSubject& photos : experiment.photos) {
