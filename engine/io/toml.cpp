@@ -63,6 +63,19 @@ bool TomlTable::has(const std::string& key) const {
     return table_->contains(key);
 }
 
+std::vector<std::string> TomlTable::keys() const {
+    std::vector<std::string> names;
+    for (const auto& [key, node] : *table_) {
+        names.emplace_back(key.str());
+    }
+    return names;
+}
+
+bool TomlTable::is_number(const std::string& key) const {
+    const toml::node* node = table_->get(key);
+    return node != nullptr && node->is_number();
+}
+
 std::string TomlTable::qualified(const std::string& key) const {
     if (path_.empty() || key.empty()) {
         return path_ + key;
@@ -115,6 +128,15 @@ double TomlTable::number_or(const std::string& key, double fallback, const Bound
 std::optional<double> TomlTable::optional_number(const std::string& key, const Bounds& bounds) {
     const toml::node* node = find(key);
     return node == nullptr ? std::nullopt : std::optional(checked_number(*node, key, bounds));
+}
+
+double TomlTable::any_number(const std::string& key) {
+    const toml::node& node = require(key);
+    const std::optional<double> value = node.value<double>();
+    if (!value || !node.is_number()) {
+        fail(key, fmt::format("is {}, expected a number", shown(node)));
+    }
+    return *value;
 }
 
 int TomlTable::infinity(const std::string& key) {
@@ -181,6 +203,26 @@ std::vector<double> TomlTable::numbers(const std::string& key, std::size_t count
         values.push_back(checked_number(element, key, bounds));
     }
     return values;
+}
+
+std::vector<std::vector<double>> TomlTable::number_lists(const std::string& key) {
+    const toml::node& node = require(key);
+    const toml::array* array = node.as_array();
+    if (array == nullptr) {
+        fail(key, fmt::format("is {}, expected lists of numbers in brackets", shown(node)));
+    }
+    std::vector<std::vector<double>> lists;
+    for (const toml::node& inner : *array) {
+        const toml::array* list = inner.as_array();
+        if (list == nullptr) {
+            fail(key, fmt::format("holds {}, expected a list of numbers", shown(inner)));
+        }
+        lists.emplace_back();
+        for (const toml::node& element : *list) {
+            lists.back().push_back(checked_number(element, key, kAnyNumber));
+        }
+    }
+    return lists;
 }
 
 std::vector<std::string> TomlTable::texts(const std::string& key) {

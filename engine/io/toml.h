@@ -39,10 +39,15 @@ class TomlTable {
     static TomlTable parse(const std::string& text, const std::filesystem::path& name);
 
     [[nodiscard]] bool has(const std::string& key) const;
+    /// Every key of the table, for a table whose keys are names.
+    [[nodiscard]] std::vector<std::string> keys() const;
 
     double number(const std::string& key, const Bounds& bounds = kAnyNumber);
     double number_or(const std::string& key, double fallback, const Bounds& bounds = kAnyNumber);
     std::optional<double> optional_number(const std::string& key, const Bounds& bounds = kAnyNumber);
+    /// Whatever number stands there, nan and inf included.
+    double any_number(const std::string& key);
+    [[nodiscard]] bool is_number(const std::string& key) const;
     /// 1 where the key's value is inf, -1 where it is -inf, else 0.
     int infinity(const std::string& key);
     int integer(const std::string& key, int min, int max);
@@ -54,6 +59,8 @@ class TomlTable {
     std::string choice(const std::string& key, const std::vector<std::string>& choices);
     /// `count` numbers (0: any count).
     std::vector<double> numbers(const std::string& key, std::size_t count, const Bounds& bounds = kAnyNumber);
+    /// Lists of numbers in a list: [[1, 2], [3, 4]].
+    std::vector<std::vector<double>> number_lists(const std::string& key);
     std::vector<std::string> texts(const std::string& key);
     TomlTable table(const std::string& key);
     std::optional<TomlTable> optional_table(const std::string& key);

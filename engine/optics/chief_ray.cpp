@@ -15,8 +15,8 @@ constexpr int kHalvings = 60;
 ChiefRays::ChiefRays(const Lens& lens, double wavelength_nm) {
     const TraceLens<double> whole = at_wavelength<double>(lens, wavelength_nm);
     const auto stop = whole.surfaces.begin() + lens.stop_index();
-    front_ = {.surfaces = {whole.surfaces.begin(), stop}, .image_z = 0.0};
-    rear_ = {.surfaces = {stop + 1, whole.surfaces.end()}, .image_z = whole.image_z};
+    front_ = {.surfaces = {whole.surfaces.begin(), stop}, .image_z = 0.0, .specials = whole.specials};
+    rear_ = {.surfaces = {stop + 1, whole.surfaces.end()}, .image_z = whole.image_z, .specials = whole.specials};
     stop_z_ = stop->vertex_z;
 
     double passing = 0.0;

@@ -6,16 +6,23 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <set>
 
 #include "engine/io/file.h"
 #include "engine/io/input_error.h"
+#include "engine/io/prescription_file.h"
 #include "engine/optics/paraxial.h"
 #include "engine/spectral/wavelengths.h"
 
 namespace lensproof {
 
 namespace {
+
+constexpr double kUnlimited = std::numeric_limits<double>::infinity();
+// Far beyond any lens, far below what would cost digits.
+constexpr double kLargestLength = 1e7;
+constexpr double kSmallestRadius = 1e-3;
 
 Glass everywhere(std::string name, DispersionFormula formula) {
     Glass glass;
@@ -25,14 +32,15 @@ Glass everywhere(std::string name, DispersionFormula formula) {
     return glass;
 }
 
-bool is_air(const StatedMedium& medium) {
-    return (medium.glass.empty() && !medium.n_d) || medium.glass == "air" || medium.glass == "AIR";
-}
-
 Glass resolve_medium(const PrescribedSurface& surface, const std::vector<Glass>& glasses) {
     const StatedMedium& medium = surface.medium;
-    if (is_air(medium)) {
+    if (medium.is_air()) {
         return everywhere("air", ConstantIndex{1.0});
+    }
+    if (!medium.glass.empty()) {
+        if (const std::optional<Glass> found = find_glass(glasses, medium.glass)) {
+            return *found;
+        }
     }
     if (medium.n_d && !medium.V_d) {
         return everywhere(fmt::format("n={}", *medium.n_d), ConstantIndex{*medium.n_d});
@@ -46,15 +54,149 @@ Glass resolve_medium(const PrescribedSurface& surface, const std::vector<Glass>&
         glass.max_wavelength_nm = 1014.0;
         return glass;
     }
-    if (const std::optional<Glass> found = find_glass(glasses, medium.glass)) {
-        return *found;
-    }
     std::vector<std::string> names;
     std::ranges::transform(glasses, std::back_inserter(names), &Glass::name);
     throw InputError(
         fmt::format("{}.glass is \"{}\", which is not in the catalogue lenses/glasses.toml; it has: {}. "
                     "Or state n_d and V_d.",
                     surface.where, medium.glass, fmt::join(names, ", ")));
+}
+
+void require(bool holds, const PrescribedSurface& row, const char* key, double found, const char* expected) {
+    if (!holds) {
+        throw InputError(fmt::format("{}.{} is {}, expected {}", row.where, key, found, expected));
+    }
+}
+
+/// Refuses what cannot be traced; `check` says more about it.
+void require_traceable(const Prescription& prescription) {
+    for (const PrescribedSurface& row : prescription.surfaces) {
+        require(row.is_flat() || (std::isfinite(row.radius_mm) && std::abs(row.radius_mm) >= kSmallestRadius), row,
+                "radius_mm", row.radius_mm, "a radius in mm; a flat surface has inf, or no radius_mm");
+        require(std::isfinite(row.conic), row, "conic", row.conic, "a conic constant");
+        for (const double term : row.asphere) {
+            require(std::isfinite(term), row, "A2 … A20", term, "aspheric coefficients");
+        }
+        require(!row.radius_x_mm || (!std::isnan(*row.radius_x_mm) && *row.radius_x_mm != 0.0), row, "radius_x_mm",
+                row.radius_x_mm.value_or(0.0), "a radius in mm, or inf for a cylinder");
+        require(row.thickness_mm >= 0.0 && row.thickness_mm <= kLargestLength, row, "thickness_mm", row.thickness_mm,
+                "a length that is not negative");
+        for (const auto& [key, length] : {std::pair{"semi_diameter_mm", row.semi_diameter_mm},
+                                          {"rim_mm", row.rim_mm},
+                                          {"barrel_mm", row.barrel_mm}}) {
+            require(!length || (*length > 0.0 && *length <= kLargestLength), row, key, length.value_or(0.0),
+                    "a positive length");
+        }
+        require(!row.medium.n_d || (*row.medium.n_d >= 1.0 && *row.medium.n_d <= 5.0), row, "n_d",
+                row.medium.n_d.value_or(0.0), "a refractive index from 1 to 5");
+        require(!row.medium.V_d || (*row.medium.V_d >= 1.0 && *row.medium.V_d <= 1000.0), row, "V_d",
+                row.medium.V_d.value_or(0.0), "an Abbe number from 1 to 1000");
+    }
+    const auto stops = std::ranges::count_if(prescription.surfaces, &PrescribedSurface::is_stop);
+    if (stops != 1) {
+        throw InputError(fmt::format("{}: the prescription has {} aperture stops, expected exactly one",
+                                     prescription.file.string(), stops));
+    }
+}
+
+constexpr double kDegree = std::numbers::pi / 180.0;
+
+/// The axes x, y, z after the tilts: about x, then the turned y, then the twice turned z.
+std::array<Vec3d, 3> tilted_axes(const std::array<double, 3>& tilt_deg) {
+    std::array<Vec3d, 3> axes{{{1.0, 0.0, 0.0}, {0.0, 1.0, 0.0}, {0.0, 0.0, 1.0}}};
+    for (std::size_t about = 0; about < 3; ++about) {
+        const double sine = std::sin(tilt_deg[about] * kDegree);
+        const double cosine = std::cos(tilt_deg[about] * kDegree);
+        Vec3d& u = axes[(about + 1) % 3];
+        Vec3d& v = axes[(about + 2) % 3];
+        const Vec3d turned = cosine * u + sine * v;
+        v = cosine * v - sine * u;
+        u = turned;
+    }
+    return axes;
+}
+
+/// `row` with its vertex at z, by its own misalignment.
+LensSurface placed_surface(const PrescribedSurface& row, double z) {
+    LensSurface surface;
+    surface.curvature = row.curvature();
+    surface.vertex_z = z;
+    surface.semi_diameter = row.semi_diameter_mm.value_or(row.rim_mm.value_or(kUnlimited));
+    surface.is_stop = row.is_stop;
+    surface.has_shape = row.conic != 0.0 || row.is_asphere() || row.radius_x_mm.has_value();
+    surface.shape = {.curvature = row.curvature(),
+                     .conic = row.conic,
+                     .asphere = row.asphere,
+                     .is_toroid = row.radius_x_mm.has_value(),
+                     .curvature_x = row.radius_x_mm ? 1.0 / *row.radius_x_mm : 0.0};
+    for (int term = 0; term < kAsphereTerms; ++term) {
+        if (row.asphere[term] != 0.0) {
+            surface.shape.terms = term + 1;
+        }
+    }
+    if (row.misalignment != Misalignment{}) {
+        surface.vertex = {row.misalignment.decentre_mm[0], row.misalignment.decentre_mm[1]};
+        surface.axes = tilted_axes(row.misalignment.tilt_deg);
+    }
+    return surface;
+}
+
+/// Turns the group's surfaces about its pivot, and shifts them.
+void misalign(Lens& lens, const MisalignedGroup& group) {
+    const std::array<Vec3d, 3> turned = tilted_axes(group.misalignment.tilt_deg);
+    const auto rotate = [&](const Vec3d& v) { return v.x * turned[0] + (v.y * turned[1] + v.z * turned[2]); };
+    const double pivot_z = lens.surfaces[group.first - 1].vertex_z + group.pivot_mm;
+    for (int i = group.first - 1; i < group.last; ++i) {
+        LensSurface& surface = lens.surfaces[i];
+        const Vec3d vertex = rotate({surface.vertex.x, surface.vertex.y, surface.vertex_z - pivot_z});
+        surface.vertex = {vertex.x + group.misalignment.decentre_mm[0], vertex.y + group.misalignment.decentre_mm[1]};
+        surface.vertex_z = vertex.z + pivot_z;
+        for (Vec3d& axis : surface.axes) {
+            axis = rotate(axis);
+        }
+    }
+}
+
+/// Where no semi-diameter is stated: the heights of the marginal and of the chief ray, added, as design programs do.
+/// Throws InputError where the aperture is not stated either.
+void estimate_semi_diameters(Lens& lens) {
+    if (std::ranges::none_of(lens.surfaces, [](const LensSurface& s) { return std::isinf(s.semi_diameter); })) {
+        return;
+    }
+    const TraceLens<double> at_d = at_wavelength<double>(lens, kLineD);
+    const ParaxialData data = paraxial_data(at_d);
+    double pupil = lens.stated.entrance_pupil_diameter_mm.value_or(data.entrance_pupil_diameter);
+    if (!std::isfinite(pupil) && lens.stated.f_number) {
+        pupil = std::abs(data.efl) / *lens.stated.f_number;
+    }
+    if (!std::isfinite(pupil)) {
+        throw InputError(
+            fmt::format("{}: no semi-diameter is stated for some surfaces, and no f-number that they could "
+                        "be found from; expected semi_diameter_mm, or stated.f_number",
+                        lens.name));
+    }
+    double tangent = 0.0;
+    if (lens.stated.half_field_deg && *lens.stated.half_field_deg < 80.0) {
+        tangent = std::tan(*lens.stated.half_field_deg * kDegree);
+    } else if (lens.stated.image_circle_mm) {
+        tangent = 0.5 * *lens.stated.image_circle_mm / std::abs(data.efl);
+    }
+    ParaxialRay marginal{0.5 * pupil, 0.0};
+    ParaxialRay chief{-tangent * data.entrance_pupil_z, tangent};
+    for (std::size_t i = 0; i < lens.surfaces.size(); ++i) {
+        LensSurface& surface = lens.surfaces[i];
+        if (i > 0) {
+            const double gap = surface.vertex_z - lens.surfaces[i - 1].vertex_z;
+            marginal.height += gap * marginal.slope;
+            chief.height += gap * chief.slope;
+        }
+        if (std::isinf(surface.semi_diameter)) {
+            surface.semi_diameter = std::abs(marginal.height) + (surface.is_stop ? 0.0 : std::abs(chief.height));
+        }
+        const int here = static_cast<int>(i);
+        marginal = trace_paraxial(at_d, marginal, here, here);
+        chief = trace_paraxial(at_d, chief, here, here);
+    }
 }
 
 }  // namespace
@@ -64,28 +206,41 @@ int Lens::stop_index() const {
 }
 
 Lens make_lens(const Prescription& prescription, const std::vector<Glass>& glasses, const IndexOverrides& overrides) {
+    require_traceable(prescription);
     Lens lens;
     lens.name = prescription.name;
     lens.id = prescription.file.stem().string();
     lens.source = prescription.source;
     lens.projection = prescription.projection;
     lens.stated = prescription.stated;
+    lens.stop_mask = StopMask(prescription.stop_shape, prescription.file.parent_path());
+    lens.focus_groups = prescription.focus_groups;
+    lens.surroundings = prescription.surroundings;
+    lens.is_rotationally_symmetric = prescription.is_rotationally_symmetric();
     std::set<std::string> used;
     double z = 0.0;
+    double barrel_before = kUnlimited;
     for (const PrescribedSurface& row : prescription.surfaces) {
         const auto override_index = overrides.find(row.medium.glass);
         Glass medium = override_index != overrides.end()
                            ? everywhere(row.medium.glass, ConstantIndex{override_index->second})
                            : resolve_medium(row, glasses);
         used.insert(row.medium.glass);
-        lens.surfaces.push_back({.curvature = row.curvature,
-                                 .vertex_z = z,
-                                 .semi_diameter = row.semi_diameter_mm,
-                                 .medium = std::move(medium),
-                                 .is_stop = row.is_stop});
+        LensSurface surface = placed_surface(row, z);
+        // A barrel is convex, so a path runs inside it where it does so at both ends.
+        surface.semi_diameter = std::min({surface.semi_diameter, barrel_before, row.barrel_mm.value_or(kUnlimited)});
+        surface.medium = std::move(medium);
+        if (!row.coating.empty()) {
+            surface.coating = prescription.coatings.at(row.coating);
+        }
+        lens.surfaces.push_back(std::move(surface));
+        barrel_before = row.barrel_mm.value_or(kUnlimited);
         z += row.thickness_mm;
     }
     lens.image_z = z;
+    for (const MisalignedGroup& group : prescription.groups) {
+        misalign(lens, group);
+    }
     for (const auto& [name, index] : overrides) {
         if (!used.contains(name)) {
             used.erase("");
@@ -98,6 +253,7 @@ Lens make_lens(const Prescription& prescription, const std::vector<Glass>& glass
         throw InputError(fmt::format("{}: the last surface is followed by {}, expected air", prescription.file.string(),
                                      last.medium.name));
     }
+    estimate_semi_diameters(lens);
     return lens;
 }
 
@@ -118,10 +274,73 @@ Lens with_f_number(Lens lens, double f_number) {
     return lens;
 }
 
+namespace {
+
+/// The lens with its focusing groups driven by `drive` mm, or nothing where surfaces would meet or leave the space
+/// between front and sensor.
+std::optional<Lens> driven(const Lens& lens, double drive) {
+    Lens moved = lens;
+    for (const FocusGroup& group : lens.focus_groups) {
+        for (int i = group.first - 1; i < group.last; ++i) {
+            moved.surfaces[i].vertex_z -= group.travel * drive;
+        }
+    }
+    for (std::size_t i = 0; i + 1 < moved.surfaces.size(); ++i) {
+        if (moved.surfaces[i + 1].vertex_z < moved.surfaces[i].vertex_z) {
+            return std::nullopt;
+        }
+    }
+    return moved.last_vertex_z() <= moved.image_z ? std::optional(moved) : std::nullopt;
+}
+
+/// How far behind the sensor the paraxial image at the d line of an object in front of the table's first vertex lies.
+double defocus(const Lens& lens, double object_distance_mm) {
+    const double distance = object_distance_mm + lens.surfaces.front().vertex_z;
+    return lens.last_vertex_z() + paraxial_image_distance(at_wavelength<double>(lens, kLineD), distance) - lens.image_z;
+}
+
+/// The lens with its focusing groups where the image of the object is as far from the sensor as infinity's is in the
+/// table, which is where the table's own sensor stands.
+Lens focused_by_groups(const Lens& lens, double object_distance_mm) {
+    const double aim = defocus(lens, kUnlimited);
+    const auto error = [&](double drive) -> std::optional<double> {
+        const std::optional<Lens> moved = driven(lens, drive);
+        return moved ? std::optional(defocus(*moved, object_distance_mm) - aim) : std::nullopt;
+    };
+    // Outwards in steps until the sign changes, then bisection.
+    const double step = 1e-3 * (lens.image_z - lens.surfaces.front().vertex_z);
+    for (const double direction : {1.0, -1.0}) {
+        double near = 0.0;
+        std::optional<double> last = error(near);
+        for (int i = 1; i <= 1000 && last; ++i) {
+            const double far = direction * i * step;
+            const std::optional<double> here = error(far);
+            if (here && (*here <= 0.0) != (*last <= 0.0) && std::abs(*here - *last) < lens.image_z) {
+                double low = near;
+                double high = far;
+                for (int halving = 0; halving < 60; ++halving) {
+                    const double middle = 0.5 * (low + high);
+                    ((*error(middle) <= 0.0) == (*last <= 0.0) ? low : high) = middle;
+                }
+                return *driven(lens, low);
+            }
+            last = here;
+            near = far;
+        }
+    }
+    throw InputError(fmt::format("{} cannot be focused at {} mm: its focusing groups do not reach so far", lens.name,
+                                 object_distance_mm));
+}
+
+}  // namespace
+
 Lens focused_at(Lens lens, double object_distance_mm) {
     const TraceLens<double> at_d = at_wavelength<double>(lens, kLineD);
     const double image_distance = paraxial_image_distance(at_d, object_distance_mm);
     const double front_focus = -paraxial_data(at_d).ffl;
+    if (!lens.focus_groups.empty() && object_distance_mm > 0.0) {
+        return std::isinf(object_distance_mm) ? lens : focused_by_groups(lens, object_distance_mm);
+    }
     if (!(object_distance_mm > front_focus) || !std::isfinite(image_distance)) {
         throw InputError(
             fmt::format("{} cannot be focused at {} mm: its front focal point lies {:.2f} mm in front of it", lens.name,
@@ -146,6 +365,46 @@ WavelengthRange wavelength_range(const Lens& lens) {
     return range;
 }
 
+namespace {
+
+template <class T>
+Vec3<T> converted(const Vec3d& v) {
+    return {static_cast<T>(v.x), static_cast<T>(v.y), static_cast<T>(v.z)};
+}
+
+template <class T>
+TraceCoating<T> traced_coating(const Coating& coating, double wavelength_nm) {
+    TraceCoating<T> traced;
+    if (const auto* layers = std::get_if<std::vector<CoatingLayer>>(&coating)) {
+        for (const CoatingLayer& layer : *layers) {
+            traced.layers.push_back({static_cast<T>(layer.index), static_cast<T>(layer.thickness_nm / wavelength_nm)});
+        }
+    } else {
+        traced.reflectance =
+            static_cast<T>(interpolated(std::get<std::vector<WavelengthValue>>(coating), wavelength_nm));
+    }
+    return traced;
+}
+
+template <class T>
+SpecialSurface<T> special_surface(const LensSurface& surface, double wavelength_nm) {
+    SpecialSurface<T> special;
+    special.has_shape = surface.has_shape;
+    special.shape = {.curvature = static_cast<T>(surface.shape.curvature),
+                     .conic = static_cast<T>(surface.shape.conic),
+                     .terms = surface.shape.terms,
+                     .is_toroid = surface.shape.is_toroid,
+                     .curvature_x = static_cast<T>(surface.shape.curvature_x)};
+    std::ranges::transform(surface.shape.asphere, special.shape.asphere.begin(),
+                           [](double term) { return static_cast<T>(term); });
+    special.vertex = {static_cast<T>(surface.vertex.x), static_cast<T>(surface.vertex.y)};
+    std::ranges::transform(surface.axes, special.axes.begin(), converted<T>);
+    special.coating = traced_coating<T>(surface.coating, wavelength_nm);
+    return special;
+}
+
+}  // namespace
+
 template <class T>
 TraceLens<T> at_wavelength(const Lens& lens, double wavelength_nm) {
     TraceLens<T> traced{.surfaces = {}, .image_z = static_cast<T>(lens.image_z)};
@@ -157,9 +416,20 @@ TraceLens<T> at_wavelength(const Lens& lens, double wavelength_nm) {
                                          surface.medium.max_wavelength_nm));
         }
         const double index_after = refractive_index(surface.medium.formula, wavelength_nm);
+        // At the vertex an r² term bends like the curvature: A2 r² = c r² / 2.
+        const double vertex_curvature = surface.curvature + 2.0 * surface.shape.asphere[0];
         traced.surfaces.push_back(make_trace_surface<T>(
-            static_cast<T>(surface.curvature), static_cast<T>(surface.vertex_z), static_cast<T>(surface.semi_diameter),
+            static_cast<T>(vertex_curvature), static_cast<T>(surface.vertex_z), static_cast<T>(surface.semi_diameter),
             static_cast<T>(index_before), static_cast<T>(index_after), surface.is_stop));
+        const bool is_masked = surface.is_stop && !lens.stop_mask.is_full_circle();
+        SpecialSurface<T> special = special_surface<T>(surface, wavelength_nm);
+        if (is_masked) {
+            special.mask = lens.stop_mask;
+        }
+        if (special.has_shape || surface.is_misaligned() || !special.coating.is_bare() || is_masked) {
+            traced.surfaces.back().special = static_cast<int>(traced.specials.size());
+            traced.specials.push_back(std::move(special));
+        }
         index_before = index_after;
     }
     return traced;

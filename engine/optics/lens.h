@@ -14,9 +14,18 @@ namespace lensproof {
 struct LensSurface {
     double curvature = 0.0;
     double vertex_z = 0.0;
-    double semi_diameter = 0.0;
-    Glass medium;  // behind the surface
+    double semi_diameter = 0.0;  // of what passes: the clear aperture, or the barrel where that is narrower
+    Glass medium;                // behind the surface
     bool is_stop = false;
+    SurfaceShape<double> shape{};  // of a surface that is no sphere; its curvature is the one above
+    bool has_shape = false;
+    Vec2d vertex{};                                                                  // x, y of a displaced vertex
+    std::array<Vec3d, 3> axes{{{1.0, 0.0, 0.0}, {0.0, 1.0, 0.0}, {0.0, 0.0, 1.0}}};  // of its frame, in lens space
+    Coating coating{};                                                               // empty layers: bare
+
+    [[nodiscard]] bool is_misaligned() const {
+        return axes[2] != Vec3d{0.0, 0.0, 1.0} || axes[0] != Vec3d{1.0, 0.0, 0.0} || vertex != Vec2d{};
+    }
 };
 
 /// A traceable lens. The scene lies in air in front of the first surface, the sensor at `image_z` in air behind the
@@ -28,6 +37,10 @@ struct Lens {
     Projection projection = Projection::rectilinear;
     StatedData stated;
     std::vector<LensSurface> surfaces;
+    StopMask stop_mask;
+    std::vector<FocusGroup> focus_groups;
+    Surroundings surroundings = Surroundings::air;
+    bool is_rotationally_symmetric = true;
     double image_z = 0.0;
 
     [[nodiscard]] int stop_index() const;

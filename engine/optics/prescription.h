@@ -1,35 +1,85 @@
 // engine/optics/prescription.h — a lens as its file states it: the table, the source, what the source claims.
 #pragma once
+#include <array>
+#include <cmath>
 #include <filesystem>
+#include <limits>
+#include <map>
 #include <optional>
 #include <string>
+#include <variant>
 #include <vector>
+
+#include "engine/optics/finding.h"
 
 namespace lensproof {
 
 /// The mapping from field angle θ to image height that a lens is designed for.
 enum class Projection { rectilinear, equidistant, equisolid, stereographic, orthographic };
 
+inline constexpr std::array kProjections = {Projection::rectilinear, Projection::equidistant, Projection::equisolid,
+                                            Projection::stereographic, Projection::orthographic};
+
 std::string projection_name(Projection projection);
 
 /// r / f of a projection at field angle θ (radians): tan θ, θ, 2 sin(θ/2), 2 tan(θ/2), sin θ.
 double projected_radius(Projection projection, double field_angle);
 
-/// What a table states about the medium behind a surface.
-struct StatedMedium {
-    std::string glass;  // catalogue name; empty: air, or n_d below
-    std::optional<double> n_d;
-    std::optional<double> V_d;  // without it, n_d holds at every wavelength
+/// A wavelength in nm and a value there.
+struct WavelengthValue {
+    double wavelength_nm = 0.0;
+    double value = 0.0;
 };
 
-/// One row of a prescription.
+/// Linear between the values, the first and the last one kept beyond them. `values`: at least one, by rising
+/// wavelength.
+double interpolated(const std::vector<WavelengthValue>& values, double wavelength_nm);
+
+/// What a table states about the medium behind a surface: nothing (air), a glass's name, n_d with or without V_d, or
+/// indices at wavelengths.
+struct StatedMedium {
+    std::string glass;          // catalogue name; may carry a maker: "SCHOTT LAK9"
+    std::optional<double> n_d;  // beside a glass: what the source says of it, which the checker compares
+    std::optional<double> V_d;  // without it, n_d holds at every wavelength
+    std::vector<WavelengthValue> indices;
+
+    [[nodiscard]] bool is_air() const;
+};
+
+/// Coefficients of r², r⁴, … r²⁰: the even asphere's departure from its conic, mm^(1−2i).
+inline constexpr int kAsphereTerms = 10;
+using AsphereTerms = std::array<double, kAsphereTerms>;
+
+/// A rotation by `tilt_deg` about x, then about the turned y, then about the twice turned z, each by the right-hand
+/// rule, and a shift across the axis before it.
+struct Misalignment {
+    std::array<double, 2> decentre_mm{};
+    std::array<double, 3> tilt_deg{};
+
+    friend bool operator==(const Misalignment&, const Misalignment&) = default;
+};
+
+/// One row of a prescription. Numbers are as stated, NaN and absurd ones included: the checker names those, and
+/// `make_lens` refuses them.
 struct PrescribedSurface {
-    double curvature = 0.0;     // 1/mm
-    double thickness_mm = 0.0;  // to the next surface; for the last one: to the sensor
-    double semi_diameter_mm = 0.0;
-    StatedMedium medium;  // behind the surface
+    double radius_mm = std::numeric_limits<double>::infinity();  // infinite or 0: flat
+    double conic = 0.0;                                          // 0 a sphere, −1 a paraboloid
+    AsphereTerms asphere{};
+    std::optional<double> radius_x_mm;  // a toroid: the curve in y–z turned about an axis at this distance; inf: a
+                                        // cylinder
+    double thickness_mm = 0.0;          // to the next surface; for the last one: to the sensor
+    std::optional<double> semi_diameter_mm;  // of the clear aperture
+    std::optional<double> rim_mm;            // mechanical semi-diameter of the glass, where it is larger
+    std::optional<double> barrel_mm;         // inner radius of the barrel over the space behind the surface
+    StatedMedium medium;                     // behind the surface
     bool is_stop = false;
-    std::string where;  // "file:line: surfaces[3]", for messages
+    std::string coating;        // a name in Prescription::coatings; empty: bare
+    Misalignment misalignment;  // of this surface alone, about its vertex
+    std::string where;          // "file:line: surfaces[3]", for messages
+
+    [[nodiscard]] bool is_flat() const { return radius_mm == 0.0 || std::isinf(radius_mm); }
+    [[nodiscard]] double curvature() const { return is_flat() ? 0.0 : 1.0 / radius_mm; }  // 1/mm
+    [[nodiscard]] bool is_asphere() const { return asphere != AsphereTerms{}; }
 };
 
 /// What the source claims about the lens as a whole; each is optional.
@@ -38,8 +88,64 @@ struct StatedData {
     std::optional<double> bfl_mm;
     std::optional<double> f_number;
     std::optional<double> half_field_deg;
-    std::optional<double> image_circle_mm;  // diameter
+    std::optional<double> image_circle_mm;             // diameter
+    std::optional<double> total_track_mm;              // first vertex to image
+    std::optional<double> entrance_pupil_diameter_mm;  // as design programs say the aperture
+    std::string source;                                // where these claims stand, if not in the lens's source
 };
+
+/// A stop whose blades leave a regular polygon. Its corners lie on the circle of the stop's semi-diameter.
+struct PolygonStop {
+    int blades = 6;
+    double curvature = 0.0;     // of the blades' edges: 0 straight, 1 the circle through the corners
+    double rotation_deg = 0.0;  // of a corner from +x towards +y
+};
+
+/// A stop with a picture's linear brightness as its transmittance, over the square around the stop's circle.
+struct TexturedStop {
+    std::string image;  // relative to the prescription's file
+};
+
+using StopShape = std::variant<std::monostate, PolygonStop, TexturedStop>;  // monostate: the full circle
+
+/// A layer of a thin-film stack.
+struct CoatingLayer {
+    double index = 1.0;
+    double thickness_nm = 0.0;
+};
+
+/// What lies on a surface: layers from the scene's side to the sensor's, or the reflectance that a maker states.
+/// One value of the latter holds at every wavelength; between values it is interpolated, beyond them kept.
+using Coating = std::variant<std::vector<CoatingLayer>, std::vector<WavelengthValue>>;
+
+/// A range of surfaces that is shifted and tilted as one, about the vertex of its first surface plus `pivot_mm` along
+/// the axis. Surfaces are counted from 1.
+struct MisalignedGroup {
+    int first = 1;
+    int last = 1;
+    Misalignment misalignment;
+    double pivot_mm = 0.0;
+};
+
+/// A setting of a zoom lens: the gaps that differ from the table's, by the surface that they follow (from 1).
+struct ZoomPosition {
+    std::string name;
+    std::map<int, double> gaps_mm;
+    std::optional<double> stop_semi_diameter_mm;
+    StatedData stated;
+};
+
+/// Surfaces (from 1) that move along the axis to focus: by `travel` mm towards the scene for each mm of the focusing
+/// drive, 1 for the only group.
+struct FocusGroup {
+    int first = 1;
+    int last = 1;
+    double travel = 1.0;
+};
+
+/// What the glass touches. Catalogue indices are relative to air: in air its index is taken as 1 and theirs as they
+/// are; in vacuum they are multiplied by the index of standard air (Ciddor 1996).
+enum class Surroundings { air, vacuum };
 
 struct Prescription {
     std::string name;
@@ -48,19 +154,29 @@ struct Prescription {
     Projection projection = Projection::rectilinear;
     StatedData stated;
     std::vector<PrescribedSurface> surfaces;
+    StopShape stop_shape;
+    std::map<std::string, Coating> coatings;
+    std::vector<MisalignedGroup> groups;
+    std::vector<ZoomPosition> zoom;        // empty: a lens of one focal length
+    std::vector<FocusGroup> focus_groups;  // empty: the lens focuses as a whole, that is, the sensor moves
+    Surroundings surroundings = Surroundings::air;
+    double object_distance_mm = std::numeric_limits<double>::infinity();  // that the table is set to
+    std::vector<double> wavelengths_nm;                                   // that a design program's file names, the
+                                                                          // reference first; may be empty
+    std::vector<std::filesystem::path> catalogues;                        // glass files of its own
+    std::vector<std::string> preferred_makers;                            // whose glass a bare name means first
+    std::vector<Finding> remarks;  // what its reader could not carry over, and what it took upon itself
     std::filesystem::path file;
+
+    /// Of the surfaces; the stop may have blades all the same.
+    [[nodiscard]] bool is_rotationally_symmetric() const;
 };
 
-/// Reads the project's TOML form (described in lenses/README.md) or, for a file called *.csv, the plain table of
-/// `surface,radius_mm,thickness_mm,n_d,V_d,semi_aperture_mm,kind`. What can be read and traced is checked here: finite
-/// numbers, positive semi-diameters, no negative thickness, exactly one stop. Throws InputError otherwise.
-Prescription read_prescription(const std::filesystem::path& file);
+/// The prescription with its gaps (and stop and claims) at one of its zoom positions, which it then no longer lists.
+/// Throws InputError naming the positions where there is no such one. A lens without positions has only position 0.
+Prescription at_zoom_position(Prescription prescription, std::size_t position);
 
-/// The file of a LENS argument: a path, or the name of a lens that ships in lenses/. Throws InputError listing the
-/// names.
-std::filesystem::path find_lens_file(const std::string& lens);
-
-/// Names of the lenses that ship, sorted.
-std::vector<std::string> shipped_lens_names();
+/// The position called `name`, or with that number (from 1). Throws InputError naming those that there are.
+std::size_t find_zoom_position(const Prescription& prescription, const std::string& name);
 
 }  // namespace lensproof

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <optional>
 
 namespace lensproof {
@@ -12,13 +13,29 @@ namespace {
 // outline moves smoothly, and both ends and the middle are looked at.
 constexpr double kMargin = 1.003;
 
-/// z of the circle where the rear surface ends. Every path that leaves the element passes inside that circle.
+/// The farthest z of the circle where the rear surface ends. Every path that leaves the element passes inside that
+/// circle.
 double rear_rim_z(const TraceLens<double>& lens) {
     const TraceSurface<double>& rear = lens.surfaces.back();
-    const double c = rear.curvature;
-    const double r2 = rear.semi_diameter_squared;
-    const double root = 1.0 - c * c * r2;
-    return rear.vertex_z + (root > 0.0 ? c * r2 / (1.0 + std::sqrt(root)) : 1.0 / c);
+    SurfaceShape<double> shape{.curvature = rear.curvature};
+    if (rear.special >= 0 && lens.specials[rear.special].has_shape) {
+        shape = lens.specials[rear.special].shape;
+    }
+    const double radius = std::sqrt(rear.semi_diameter_squared);
+    double z = -std::numeric_limits<double>::infinity();
+    for (const Vec2d rim : {Vec2d{radius, 0.0}, Vec2d{0.0, radius}}) {
+        const double at_rim = sag(shape, rim.x, rim.y);
+        z = std::max(z, std::isfinite(at_rim) ? at_rim : 1.0 / rear.curvature);  // beyond the equator
+    }
+    return rear.vertex_z + z;
+}
+
+/// A lens with its stop opened to the full circle, which holds what any blades leave.
+TraceLens<double> with_round_stop(TraceLens<double> lens) {
+    for (SpecialSurface<double>& special : lens.specials) {
+        special.mask = {};
+    }
+    return lens;
 }
 
 double rear_radius(const TraceLens<double>& lens) {
@@ -110,7 +127,8 @@ Vec2d PupilEllipse::warped(double u, double v) const {
     return {semi_axis_x * radius * std::cos(angle), centre_y + semi_axis_y * radius * std::sin(angle)};
 }
 
-PupilBounds::PupilBounds(const std::vector<TraceLens<double>>& lenses, double largest_radius_mm, int ranges) {
+PupilBounds::PupilBounds(std::vector<TraceLens<double>> lenses, double largest_radius_mm, int ranges) {
+    std::ranges::transform(lenses, lenses.begin(), with_round_stop);
     const double radius = rear_radius(lenses.front());
     plane_z_ = rear_rim_z(lenses.front());
     ranges_per_mm_ = ranges / largest_radius_mm;
@@ -140,11 +158,28 @@ PupilBounds::PupilBounds(const std::vector<TraceLens<double>>& lenses, double la
     }
 }
 
-PupilBounds PupilBounds::whole_element(const TraceLens<double>& lens) {
+PupilBounds PupilBounds::whole_element(const TraceLens<double>& lens, double sensor_radius_mm) {
     PupilBounds bounds;
-    const double radius = rear_radius(lens);
-    bounds.ellipses_ = {PupilEllipse{0.0, radius, radius}};
+    double radius = rear_radius(lens);
     bounds.plane_z_ = rear_rim_z(lens);
+    const TraceSurface<double>& rear = lens.surfaces.back();
+    if (rear.special >= 0) {
+        // Paths may run from the sensor's disc to a rim that lies askew: the plane through the rim's nearest point, and
+        // a disc there that holds both.
+        const SpecialSurface<double>& special = lens.specials[rear.special];
+        const double rim_z = bounds.plane_z_ - rear.vertex_z;
+        bounds.plane_z_ = -std::numeric_limits<double>::infinity();
+        constexpr int kAzimuths = 64;
+        double rim_radius = sensor_radius_mm;
+        for (int i = 0; i < kAzimuths; ++i) {
+            const double azimuth = 2.0 * std::numbers::pi * i / kAzimuths;
+            const Vec3d rim = special.from_own({radius * std::cos(azimuth), radius * std::sin(azimuth), rim_z});
+            bounds.plane_z_ = std::max(bounds.plane_z_, rear.vertex_z + rim.z);
+            rim_radius = std::max(rim_radius, std::hypot(rim.x + special.vertex.x, rim.y + special.vertex.y));
+        }
+        radius = kMargin * rim_radius;
+    }
+    bounds.ellipses_ = {PupilEllipse{0.0, radius, radius}};
     return bounds;
 }
 

@@ -20,8 +20,9 @@ struct PupilEllipse {
     [[nodiscard]] Vec2d warped(double u, double v) const;
 };
 
-/// For a rotationally symmetric lens: ellipses that hold every passing path, by the sensor point's distance from the
-/// axis (after Steinert et al. 2011, "pixel pupil sampling", and Kolb, Mitchell, Hanrahan 1995).
+/// For a rotationally symmetric lens (its stop's blades aside, whose corners' circle is taken): ellipses that hold
+/// every passing path, by the sensor point's distance from the axis (after Steinert et al. 2011, "pixel pupil
+/// sampling", and Kolb, Mitchell, Hanrahan 1995).
 ///
 /// Each ellipse holds the outlines of the passing region found at both ends and the middle of its range of radii, at
 /// every lens given (one a wavelength), and 0.3 % more. An outline is found by bisection from a passing point, so the
@@ -29,10 +30,12 @@ struct PupilEllipse {
 /// whole element, so that nothing is lost. A test holds the film irradiance against that of the whole element.
 class PupilBounds {
   public:
-    PupilBounds(const std::vector<TraceLens<double>>& lenses, double largest_radius_mm, int ranges = 64);
+    PupilBounds(std::vector<TraceLens<double>> lenses, double largest_radius_mm, int ranges = 64);
 
-    /// The whole rear element for every sensor point: the baseline that bounds are judged against.
-    static PupilBounds whole_element(const TraceLens<double>& lens);
+    /// The whole rear element for every sensor point: the baseline that bounds are judged against, and what a lens
+    /// without rotational symmetry is sampled by. Sensor points lie within `sensor_radius_mm` of the axis, which counts
+    /// where the rear surface is tilted.
+    static PupilBounds whole_element(const TraceLens<double>& lens, double sensor_radius_mm = 0.0);
 
     [[nodiscard]] const PupilEllipse& at(double radius_mm) const {
         const auto range = static_cast<std::size_t>(radius_mm * ranges_per_mm_);

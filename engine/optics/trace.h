@@ -1,24 +1,45 @@
 // engine/optics/trace.h — a ray through a lens, surface by surface: the one tracer that everything else uses.
 #pragma once
+#include <tuple>
 #include <vector>
 
+#include "engine/optics/coating.h"
 #include "engine/optics/intersect.h"
 #include "engine/optics/ray.h"
 #include "engine/optics/refract.h"
+#include "engine/optics/stop_mask.h"
+#include "engine/optics/surface_shape.h"
 
 namespace lensproof {
 
 /// One surface as the tracer sees it, at one wavelength. Flat, immutable, no look-up behind it.
 template <class T>
 struct TraceSurface {
-    T curvature;              // 1/mm, positive where the centre of curvature lies at larger z
-    T vertex_z;               // mm
+    T curvature;  // 1/mm, at the vertex (of a toroid: in y–z), positive where the centre of curvature lies at larger z
+    T vertex_z;   // mm
     T semi_diameter_squared;  // mm²
     T index_before;           // of the medium on the scene's side
     T index_after;            // of the medium on the sensor's side
     T forward_ratio;          // index_before / index_after, and its inverse: divisions that the inner loop is spared
     T reverse_ratio;
     bool is_stop;
+    int special = -1;  // into TraceLens::specials; -1: a bare, centred sphere with a round aperture
+};
+
+/// What a surface has beyond a centred sphere's curvature and rim. Kept apart, so that a lens of spheres walks a short
+/// array.
+template <class T>
+struct SpecialSurface {
+    bool has_shape = false;
+    SurfaceShape<T> shape{};
+    Vec2<T> vertex{};  // x, y of the displaced vertex
+    std::array<Vec3<T>, 3> axes{{{T(1), T(0), T(0)}, {T(0), T(1), T(0)}, {T(0), T(0), T(1)}}};  // its frame's x, y, z
+    TraceCoating<T> coating{};
+    StopMask mask{};
+
+    /// From lens space to the surface's own axes, and back.
+    [[nodiscard]] Vec3<T> to_own(const Vec3<T>& v) const { return {dot(axes[0], v), dot(axes[1], v), dot(axes[2], v)}; }
+    [[nodiscard]] Vec3<T> from_own(const Vec3<T>& v) const { return v.x * axes[0] + (v.y * axes[1] + v.z * axes[2]); }
 };
 
 template <class T>
@@ -39,6 +60,7 @@ template <class T>
 struct TraceLens {
     std::vector<TraceSurface<T>> surfaces;
     T image_z;  // the sensor's plane, mm
+    std::vector<SpecialSurface<T>> specials{};
 };
 
 /// The way a ray walks: from the scene to the sensor, or from the sensor outwards.
@@ -68,12 +90,10 @@ struct SurfaceEvent {
     RayStatus status;
 };
 
-/// Traces `ray` (global lens space, direction of unit length) through `lens`. In air before the first surface.
-///
-/// `visit(const SurfaceEvent<T>&)` is called at every surface reached, the one where the ray ends included.
-/// A missed surface has no point: its event repeats the ray as it was.
-template <Direction direction = Direction::forward, Rims rims = Rims::clip, class T, class Visitor>
-TracedRay<T> trace(const TraceLens<T>& lens, const Ray<T>& ray, Visitor&& visit) {
+/// `trace`, compiled once for lenses of centred, bare spheres alone and once for all others, so that the former pay for
+/// nothing.
+template <Direction direction, Rims rims, bool has_specials, class T, class Visitor>
+TracedRay<T> trace_through(const TraceLens<T>& lens, const Ray<T>& ray, Visitor&& visit) {
     // The state in single variables, made a TracedRay only at the end, and two vectors for `intersect` rather than a
     // Ray: g++ 12 keeps the aggregates in memory, written 8 bytes at a time and copied 16 at a time, which processors
     // do not forward from store to load. That doubled the time of a surface (lensproof_benchmark, trace/tessar).
@@ -98,8 +118,26 @@ TracedRay<T> trace(const TraceLens<T>& lens, const Ray<T>& ray, Visitor&& visit)
         const T& ratio = direction == Direction::forward ? surface.forward_ratio : surface.reverse_ratio;
         const T& c = surface.curvature;
 
-        const Vec3<T> from_vertex{origin.x, origin.y, origin.z - surface.vertex_z};
-        const Intersection<T> meeting = intersect(from_vertex, way, c, heading);
+        // In the surface's own frame, until the ray leaves it.
+        Vec3<T> from_vertex{origin.x, origin.y, origin.z - surface.vertex_z};
+        Vec3<T> own_way = way;
+        const SpecialSurface<T>* special = nullptr;
+        if constexpr (has_specials) {
+            if (surface.special >= 0) {
+                special = &lens.specials[surface.special];
+                from_vertex =
+                    special->to_own({origin.x - special->vertex.x, origin.y - special->vertex.y, from_vertex.z});
+                own_way = special->to_own(way);
+            }
+        }
+        Intersection<T> meeting;
+        Vec3<T> normal;  // of unit length, turned along the ray
+        if (has_specials && special != nullptr && special->has_shape) {
+            std::tie(meeting, normal) = intersect(special->shape, from_vertex, own_way, heading);
+        } else {
+            meeting = intersect(from_vertex, own_way, c, heading);
+            normal = heading * Vec3<T>{-c * meeting.point.x, -c * meeting.point.y, T(1) - c * meeting.point.z};
+        }
         if (!any(meeting.hit)) {
             status = RayStatus::missed;
             ended_at = index;
@@ -109,9 +147,25 @@ TracedRay<T> trace(const TraceLens<T>& lens, const Ray<T>& ray, Visitor&& visit)
         const Vec3<T>& point = meeting.point;
         optical_path = optical_path + index_before * meeting.distance;
         origin = {point.x, point.y, point.z + surface.vertex_z};
+        if constexpr (has_specials) {
+            if (special != nullptr) {
+                const Vec3<T> turned = special->from_own(point);
+                origin = {turned.x + special->vertex.x, turned.y + special->vertex.y, turned.z + surface.vertex_z};
+            }
+        }
 
         RayStatus here = RayStatus::ok;
-        if (any(point.x * point.x + point.y * point.y > surface.semi_diameter_squared)) {
+        T open_share = T(1);  // of the stop's texture
+        if constexpr (has_specials) {
+            if (special != nullptr && !special->mask.is_full_circle()) {
+                using std::sqrt;
+                const T scale = T(1) / sqrt(surface.semi_diameter_squared);
+                open_share = static_cast<T>(special->mask.transmittance(static_cast<double>(scale * point.x),
+                                                                        static_cast<double>(scale * point.y)));
+            }
+        }
+        const T r2 = point.x * point.x + point.y * point.y;
+        if (any(r2 > surface.semi_diameter_squared) || (has_specials && !(open_share > T(0)))) {
             if (status == RayStatus::ok) {  // only the first rim passed is named
                 here = surface.is_stop ? RayStatus::stopped : RayStatus::clipped;
                 status = here;
@@ -123,9 +177,7 @@ TracedRay<T> trace(const TraceLens<T>& lens, const Ray<T>& ray, Visitor&& visit)
             }
         }
 
-        // The sphere's unit normal at the point, turned along the ray.
-        const Vec3<T> normal = heading * Vec3<T>{-c * point.x, -c * point.y, T(1) - c * point.z};
-        const Refraction<T> bent = refract(way, normal, meeting.cos_incidence, ratio);
+        const Refraction<T> bent = refract(own_way, normal, meeting.cos_incidence, ratio);
         if (!any(bent.transmitted)) {
             status = RayStatus::total_internal_reflection;
             ended_at = index;
@@ -133,14 +185,38 @@ TracedRay<T> trace(const TraceLens<T>& lens, const Ray<T>& ray, Visitor&& visit)
             return traced();
         }
         way = bent.direction;
-        transmittance = transmittance *
-                        fresnel_transmittance(index_before, index_after, meeting.cos_incidence, bent.cos_refraction);
+        T passing = T(1);
+        if (has_specials && special != nullptr && !special->coating.is_bare()) {
+            const bool forward = direction == Direction::forward;
+            passing = coating_transmittance(special->coating, surface.index_before, surface.index_after,
+                                            forward ? meeting.cos_incidence : bent.cos_refraction,
+                                            forward ? bent.cos_refraction : meeting.cos_incidence);
+        } else {
+            passing = fresnel_transmittance(index_before, index_after, meeting.cos_incidence, bent.cos_refraction);
+        }
+        if constexpr (has_specials) {
+            if (special != nullptr) {
+                way = special->from_own(way);
+                passing = passing * open_share;
+            }
+        }
+        transmittance = transmittance * passing;
         report(index, here);
     }
     if (status == RayStatus::ok) {
         ended_at = direction == Direction::forward ? count - 1 : 0;
     }
     return traced();
+}
+
+/// Traces `ray` (global lens space, direction of unit length) through `lens`. In air before the first surface.
+///
+/// `visit(const SurfaceEvent<T>&)` is called at every surface reached, the one where the ray ends included.
+/// A missed surface has no point: its event repeats the ray as it was.
+template <Direction direction = Direction::forward, Rims rims = Rims::clip, class T, class Visitor>
+TracedRay<T> trace(const TraceLens<T>& lens, const Ray<T>& ray, Visitor&& visit) {
+    return lens.specials.empty() ? trace_through<direction, rims, false>(lens, ray, visit)
+                                 : trace_through<direction, rims, true>(lens, ray, visit);
 }
 
 template <Direction direction = Direction::forward, Rims rims = Rims::clip, class T>

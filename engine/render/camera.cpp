@@ -148,7 +148,9 @@ ChartCamera::ChartCamera(const Camera& camera, const Light& light, const Spectra
       lens_(camera_lens(camera)),
       spectral_(make_strata(camera, lens_, light, spectral)),
       // Pixels are areas: the corner pixel's own corner is the farthest point sampled.
-      pupil_(bounding_lenses(spectral_.strata), camera.sensor.half_diagonal_mm()) {
+      pupil_(lens_.is_rotationally_symmetric
+                 ? PupilBounds(bounding_lenses(spectral_.strata), camera.sensor.half_diagonal_mm())
+                 : PupilBounds::whole_element(spectral_.strata.front().lens, camera.sensor.half_diagonal_mm())) {
     const double values =
         static_cast<double>(camera.sensor.width) * camera.sensor.height * (6.0 + static_cast<double>(spectral.layers));
     if (values > kMostValues) {

@@ -3,6 +3,7 @@
 
 #include <memory>
 
+#include "engine/io/prescription_file.h"
 #include "engine/optics/lens.h"
 #include "engine/optics/paraxial.h"
 #include "engine/spectral/wavelengths.h"

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "engine/io/input_error.h"
+#include "engine/io/prescription_file.h"
 #include "engine/optics/lens.h"
 #include "engine/spectral/wavelengths.h"
 

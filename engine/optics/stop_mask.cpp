@@ -1,0 +1,62 @@
+#include "engine/optics/stop_mask.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "engine/io/image.h"
+
+namespace lensproof {
+
+StopMask::StopMask(const StopShape& shape, const std::filesystem::path& folder) {
+    if (const auto* polygon = std::get_if<PolygonStop>(&shape)) {
+        const double half = std::numbers::pi / polygon->blades;
+        const double rotation = polygon->rotation_deg * std::numbers::pi / 180.0;
+        for (int i = 0; i < polygon->blades; ++i) {
+            const double azimuth = rotation + (2 * i + 1) * half;
+            Arc arc{.x = std::cos(azimuth), .y = std::sin(azimuth), .centre = std::cos(half)};
+            if (polygon->curvature > 0.0) {
+                // Through both corners (cos half, ± sin half), with the unit circle's curvature times the stated one.
+                const double radius = 1.0 / polygon->curvature;
+                arc.centre -= std::sqrt(radius * radius - std::sin(half) * std::sin(half));
+                arc.radius_squared = radius * radius;
+            }
+            arcs_.push_back(arc);
+        }
+    } else if (const auto* textured = std::get_if<TexturedStop>(&shape)) {
+        const Image image = read_image(folder / textured->image);
+        auto texture = std::make_shared<Texture>(Texture{.size_x = image.width, .size_y = image.height, .values = {}});
+        for (int y = 0; y < image.height; ++y) {
+            for (int x = 0; x < image.width; ++x) {
+                float sum = 0.0F;
+                for (int channel = 0; channel < image.channel_count(); ++channel) {
+                    sum += image.at(x, y, channel);
+                }
+                texture->values.push_back(std::clamp(sum / static_cast<float>(image.channel_count()), 0.0F, 1.0F));
+            }
+        }
+        texture_ = std::move(texture);
+    }
+}
+
+double StopMask::transmittance(double x, double y) const {
+    const auto is_inside = [&](const Arc& arc) {
+        const double along = arc.x * x + arc.y * y - arc.centre;
+        const double across = arc.x * y - arc.y * x;
+        return arc.radius_squared > 0.0 ? along * along + across * across <= arc.radius_squared : along <= 0.0;
+    };
+    if (!std::ranges::all_of(arcs_, is_inside)) {
+        return 0.0;
+    }
+    if (!texture_) {
+        return 1.0;
+    }
+    const auto cell = [](double position, int size) {
+        return std::clamp(static_cast<int>(0.5 * (position + 1.0) * size), 0, size - 1);
+    };
+    const int column = cell(x, texture_->size_x);
+    const int row = cell(-y, texture_->size_y);
+    return texture_->values[static_cast<std::size_t>(row) * texture_->size_x + column];
+}
+
+}  // namespace lensproof

@@ -1,0 +1,43 @@
+// engine/optics/stop_mask.h — what a stop that is no full circle lets through.
+#pragma once
+#include <filesystem>
+#include <memory>
+#include <vector>
+
+#include "engine/optics/prescription.h"
+
+namespace lensproof {
+
+/// The part of a stop's circle that is open, at a given semi-diameter.
+class StopMask {
+  public:
+    /// The full circle.
+    StopMask() = default;
+
+    /// Reads a texture's picture, relative to `folder`. Throws InputError naming a picture that cannot be read.
+    StopMask(const StopShape& shape, const std::filesystem::path& folder);
+
+    [[nodiscard]] bool is_full_circle() const { return arcs_.empty() && !texture_; }
+
+    /// The transmittance, 0 to 1, at a point of the stop's plane in units of its semi-diameter, inside the unit circle.
+    [[nodiscard]] double transmittance(double x, double y) const;
+
+  private:
+    struct Texture {
+        int size_x = 0;
+        int size_y = 0;
+        std::vector<float> values;  // rows from +y downwards
+    };
+    /// An edge of the polygon: the disc (curved blade) or half plane (straight) that it bounds.
+    struct Arc {
+        double x = 0.0;  // towards the middle of the edge, a unit vector
+        double y = 0.0;
+        double centre = 0.0;          // along it, of the disc
+        double radius_squared = 0.0;  // of the disc; 0: the half plane up to `centre`
+    };
+
+    std::vector<Arc> arcs_;
+    std::shared_ptr<const Texture> texture_;
+};
+
+}  // namespace lensproof

@@ -1,0 +1,168 @@
+// engine/optics/surface_shape.h — conics, even aspheres, toroids and cylinders: sag, and where a ray meets them.
+#pragma once
+#include <array>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "engine/optics/intersect.h"
+
+namespace lensproof {
+
+/// A surface that is no sphere. In y–z it is the even asphere
+///     g(y) = c y² / (1 + √(1 − (1 + k) c² y²)) + Σ A_2i y^2i,   i = 1 … 10
+/// (Welford, Aberrations of Optical Systems, §4.5), turned about the axis, or, for a toroid, about the line parallel to
+/// y through (0, 0, 1 / c_x): curvature c_x in x–z, 0 for a cylinder. Lengths in mm, the vertex is the origin.
+template <class T>
+struct SurfaceShape {
+    T curvature = T(0);
+    T conic = T(0);
+    std::array<T, 10> asphere{};
+    int terms = 0;  // how many of them may differ from 0
+    bool is_toroid = false;
+    T curvature_x = T(0);  // of a toroid
+
+    /// Whether a quadratic gives the intersection.
+    [[nodiscard]] bool is_conic() const { return terms == 0 && !is_toroid; }
+};
+
+/// The profile at r² and its derivative dg/d(r²). Beyond the equator of an ellipsoid, where there is no sag, `defined`
+/// is false and the values are those of the conic's tangent cone there, finite.
+template <class T>
+struct SagProfile {
+    T sag;
+    T slope;  // dg / d(r²)
+    bool defined;
+};
+
+template <class T>
+SagProfile<T> sag_profile(const SurfaceShape<T>& shape, const T& r2) {
+    using std::sqrt;
+    const T& c = shape.curvature;
+    const T root2 = T(1) - (T(1) + shape.conic) * c * c * r2;
+    const bool defined = root2 > T(0);
+    const T root = defined ? sqrt(root2) : T(0);
+    T sag = c * r2 / (T(1) + root);
+    T slope = defined ? c / (T(2) * root) : T(0);
+    T power = T(1);  // r^(2i)
+    for (int i = 0; i < shape.terms; ++i) {
+        slope += T(i + 1) * shape.asphere[i] * power;
+        power *= r2;
+        sag += shape.asphere[i] * power;
+    }
+    return {sag, slope, defined};
+}
+
+/// The surface as the zero of F, which rises towards +z, with its gradient.
+template <class T>
+struct Implicit {
+    T value;
+    Vec3<T> gradient;
+    bool defined;
+};
+
+/// F = z − g(r²), or for a toroid F = z − g − c_x (x² + z² − g²) / 2, the curvature form of x² + (z − R)² = (R − g)².
+template <class T>
+Implicit<T> implicit_surface(const SurfaceShape<T>& shape, const Vec3<T>& p) {
+    if (!shape.is_toroid) {
+        const SagProfile<T> g = sag_profile(shape, p.x * p.x + p.y * p.y);
+        return {p.z - g.sag, {T(-2) * p.x * g.slope, T(-2) * p.y * g.slope, T(1)}, g.defined};
+    }
+    const SagProfile<T> g = sag_profile(shape, p.y * p.y);
+    const T& c = shape.curvature_x;
+    return {p.z - g.sag - c / T(2) * (p.x * p.x + p.z * p.z - g.sag * g.sag),
+            {-c * p.x, T(-2) * p.y * g.slope * (T(1) - c * g.sag), T(1) - c * p.z},
+            g.defined && T(1) - c * p.z > T(0)};
+}
+
+/// Where the surface is at (x, y): z above the vertex's plane. Not a number where there is no surface.
+template <class T>
+T sag(const SurfaceShape<T>& shape, const T& x, const T& y) {
+    using std::sqrt;
+    const SagProfile<T> g = sag_profile(shape, shape.is_toroid ? y * y : x * x + y * y);
+    const T nowhere = std::numeric_limits<T>::quiet_NaN();
+    if (!g.defined || !shape.is_toroid) {
+        return g.defined ? g.sag : nowhere;
+    }
+    // c_x z² − 2 z + (2 g + c_x (x² − g²)) = 0, the root on the vertex's side.
+    const T& c = shape.curvature_x;
+    const T constant = T(2) * g.sag + c * (x * x - g.sag * g.sag);
+    const T root2 = T(1) - c * constant;
+    return root2 >= T(0) ? constant / (T(1) + sqrt(root2)) : nowhere;
+}
+
+/// `intersect` for a conic: c (x² + y² + (1 + k) z²) − 2 z = 0 along the ray from its closest approach p to the vertex,
+///     A s² + 2 B s + C = 0,   A = c (1 + k d_z²),   B = c k p_z d_z − d_z,   C = c (p·p + k p_z²) − 2 p_z.
+/// d·∇F at a root is −(B + A s) = ±√(B² − A C), so the heading picks the root as it does for the sphere.
+template <class T>
+Intersection<T> intersect_conic(const Vec3<T>& origin, const Vec3<T>& d, const T& c, const T& k, const T& heading) {
+    using std::copysign;
+    using std::sqrt;
+    const T to_vertex = -dot(origin, d);
+    const Vec3<T> p = origin + to_vertex * d;
+    const T a = c * (T(1) + k * d.z * d.z);
+    const T minus_b = d.z - c * k * p.z * d.z;
+    const T constant = c * (dot(p, p) + k * p.z * p.z) - T(2) * p.z;
+    const T discriminant = minus_b * minus_b - a * constant;
+    const bool meets = discriminant > T(0);
+    const T root = sqrt(meets ? discriminant : T(1));
+    const T q = minus_b + copysign(root, minus_b);
+    const bool along = minus_b * heading > T(0);
+    const bool curved = a * a > T(0);
+    const T s = (along ? constant : q) / (along ? q : (curved ? a : T(1)));
+    const Vec3<T> point = p + s * d;
+    const T gradient_z = T(1) - c * (T(1) + k) * point.z;
+    const T gradient = sqrt(c * c * (point.x * point.x + point.y * point.y) + gradient_z * gradient_z);
+    return {.point = point,
+            .distance = to_vertex + s,
+            .cos_incidence = root / gradient,
+            .hit = meets && (along || curved) && gradient_z > T(0)};
+}
+
+/// `intersect` for any shape. What is no conic is found by Newton's method from the conic's intersection (from the
+/// vertex's tangent plane where the ray misses that), until a step is below the precision of T. A surface that turns
+/// over may be met more than once; the root found is then the one next to the start. Returned with the unit normal
+/// there, turned along the ray.
+template <class T>
+std::pair<Intersection<T>, Vec3<T>> intersect(const SurfaceShape<T>& shape, const Vec3<T>& origin, const Vec3<T>& d,
+                                              const T& heading) {
+    using std::abs;
+    using std::sqrt;
+    Intersection<T> meeting = intersect_conic(origin, d, shape.curvature, shape.conic, heading);
+    if (shape.is_conic()) {
+        const T& c = shape.curvature;
+        const Vec3<T>& at = meeting.point;
+        const Vec3<T> gradient{-c * at.x, -c * at.y, T(1) - c * (T(1) + shape.conic) * at.z};
+        return {meeting, heading / sqrt(dot(gradient, gradient)) * gradient};
+    }
+    if (!meeting.hit || shape.is_toroid) {
+        const bool parallel = !(d.z * d.z > T(0));
+        meeting.distance = parallel ? T(0) : -origin.z / d.z;
+        meeting.point = origin + meeting.distance * d;
+    }
+    constexpr int kMostSteps = 50;
+    const T precision = T(16) * std::numeric_limits<T>::epsilon();
+    meeting.hit = false;
+    Vec3<T> gradient{T(0), T(0), T(1)};
+    for (int step = 0; step < kMostSteps && !meeting.hit; ++step) {
+        const Implicit<T> here = implicit_surface(shape, meeting.point);
+        const T rise = dot(here.gradient, d);
+        if (!here.defined || !(rise * heading > T(0))) {
+            break;
+        }
+        const T ahead = -here.value / rise;
+        meeting.point = meeting.point + ahead * d;
+        meeting.distance += ahead;
+        const T size = sqrt(dot(meeting.point, meeting.point)) + T(1);
+        meeting.hit = abs(ahead) <= precision * size;
+        gradient = here.gradient;
+    }
+    if (!meeting.hit) {
+        return {{.point = {}, .distance = T(0), .cos_incidence = T(1), .hit = false}, {T(0), T(0), heading}};
+    }
+    const Vec3<T> normal = heading / sqrt(dot(gradient, gradient)) * gradient;
+    meeting.cos_incidence = dot(d, normal);
+    return {meeting, normal};
+}
+
+}  // namespace lensproof
