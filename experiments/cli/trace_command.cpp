@@ -29,6 +29,7 @@ struct GivenRay {
 struct TraceOptions {
     CommonOptions common;
     std::string lens;
+    std::string zoom;
     std::string rays_file;
     std::string output_file;
     std::string precision = "double";
@@ -218,7 +219,7 @@ int run_trace(const TraceOptions& options) {
         check_output_name(options.output_file);
     }
     check_json_name(options.common);
-    const Lens lens = load_lens(options.lens, parse_indices(options.indices));
+    const Lens lens = load_lens(options.lens, parse_indices(options.indices), options.zoom);
     const std::vector<GivenRay> rays = read_rays(options.rays_file);
     TraceTable table;
     if (options.precision == "float") {
@@ -256,6 +257,8 @@ void add_trace_command(CLI::App& app, int& status) {
         ->add_option("--index", options->indices, "NAME=VALUE: a constant index in place of a glass; may be repeated")
         ->type_name("NAME=VALUE")
         ->allow_extra_args(false);  // what follows is the lens
+    command->add_option("--zoom", options->zoom, "Position of a zoom lens, by name or number (default: the first)")
+        ->type_name("POSITION");
     command->add_flag("--reverse", options->reverse, "Rays run from the sensor outwards");
     command->add_flag("--no-clip", options->no_clip,
                       "Follow rays beyond the rims; the first rim passed is still named");
