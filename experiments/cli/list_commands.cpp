@@ -1,4 +1,4 @@
-// experiments/cli/list_commands.cpp — `lensproof lenses` and `lensproof glasses`: what ships.
+// experiments/cli/list_commands.cpp — `lensproof lenses`: the lenses that ship.
 #include <fmt/format.h>
 
 #include <memory>
@@ -34,47 +34,17 @@ int list_lenses(const CommonOptions& options) {
     return kDone;
 }
 
-int list_glasses(const CommonOptions& options) {
-    nlohmann::ordered_json glasses = nlohmann::ordered_json::array();
-    for (const Glass& glass : shipped_glasses()) {
-        const double n_d = refractive_index(glass.formula, kLineD);
-        const double V_d = abbe_number(glass.formula);
-        glasses.push_back({{"glass", glass.name},
-                           {"catalogue", glass.catalogue},
-                           {"n_d", n_d},
-                           {"V_d", V_d},
-                           {"min_wavelength_nm", glass.min_wavelength_nm},
-                           {"max_wavelength_nm", glass.max_wavelength_nm},
-                           {"source", glass.source}});
-        if (prints_text(options)) {
-            fmt::print("{:8} {:8} n_d {:.5f}  V_d {:5.2f}  {:.0f} to {:.0f} nm  {}\n", glass.name, glass.catalogue, n_d,
-                       V_d, glass.min_wavelength_nm, glass.max_wavelength_nm, glass.source);
-        }
-    }
-    write_json_result(options, {{"glasses", glasses}});
-    return kDone;
-}
-
-void add_list_command(CLI::App& app, int& status, const char* name, const char* description,
-                      int (*list)(const CommonOptions&)) {
-    const auto options = std::make_shared<CommonOptions>();
-    CLI::App* command = app.add_subcommand(name, description);
-    command->footer(fmt::format("Example: lensproof {} --json -", name));
-    add_common_options(*command, *options);
-    command->callback([options, list, &status] {
-        check_json_name(*options);
-        status = list(*options);
-    });
-}
-
 }  // namespace
 
 void add_lenses_command(CLI::App& app, int& status) {
-    add_list_command(app, status, "lenses", "List the lenses that ship, with their sources", list_lenses);
-}
-
-void add_glasses_command(CLI::App& app, int& status) {
-    add_list_command(app, status, "glasses", "List the glasses that ship, with their sources", list_glasses);
+    const auto options = std::make_shared<CommonOptions>();
+    CLI::App* command = app.add_subcommand("lenses", "List the lenses that ship, with their sources");
+    command->footer("Example: lensproof lenses --json -");
+    add_common_options(*command, *options);
+    command->callback([options, &status] {
+        check_json_name(*options);
+        status = list_lenses(*options);
+    });
 }
 
 }  // namespace lensproof
