@@ -256,7 +256,7 @@ double draw_glass_names(Svg& svg, const SectionView& view, const SectionGeometry
         return top;
     }
     const auto [first, last] = std::ranges::minmax(targets, {}, &SvgPoint::x);
-    const bool is_upright = total > 1.3 * (last.x - first.x) + 160.0 || total > page_width - kMargin;
+    const bool is_upright = total > 1.15 * (last.x - first.x) + 120.0 || total > page_width - kMargin;
     const std::vector<double> x =
         spread_labels(is_upright ? upright : across, 0.4 * kMargin, page_width - 0.4 * kMargin);
     svg.open_group("glass-names");
