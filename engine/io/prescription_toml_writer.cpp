@@ -251,16 +251,8 @@ class Writer {
         add_texts(table, [](const Row& row) {
             return row.coating.empty() ? std::string() : "coating = " + toml_string(row.coating);
         });
-        add_texts(table, [](const Row& row) {
-            return row.misalignment.decentre_mm == std::array<double, 2>{}
-                       ? std::string()
-                       : "decentre_mm = " + number_list(row.misalignment.decentre_mm);
-        });
-        add_texts(table, [](const Row& row) {
-            return row.misalignment.tilt_deg == std::array<double, 3>{}
-                       ? std::string()
-                       : "tilt_deg = " + number_list(row.misalignment.tilt_deg);
-        });
+        add_texts(table, [&](const Row& row) { return shift_cell("decentre_mm", row.misalignment.decentre_mm, row); });
+        add_texts(table, [&](const Row& row) { return shift_cell("tilt_deg", row.misalignment.tilt_deg, row); });
         text_ += "\nsurfaces = [\n" + table.text() + "]\n";
     }
 
@@ -281,12 +273,31 @@ class Writer {
         return cells;
     }
 
+    /// A decentre or a tilt; nothing where it is zero.
+    template <std::size_t count>
+    std::string shift_cell(const std::string& key, const std::array<double, count>& values,
+                           const PrescribedSurface& row) {
+        if (values == std::array<double, count>{}) {
+            return {};
+        }
+        if (!std::ranges::all_of(values, [](double value) { return std::isfinite(value); })) {
+            lose("lost-misalignment", surface_number(row),
+                 fmt::format("{} = {} is left out", key, number_list(values)));
+            return {};
+        }
+        return key + " = " + number_list(values);
+    }
+
     std::string indices_cell(const PrescribedSurface& row) {
         if (row.medium.indices.empty()) {
             return {};
         }
-        if (!row.medium.glass.empty()) {
-            lose("lost-indices", surface_number(row), "the indices beside a glass name are not written");
+        const bool readable = std::ranges::all_of(row.medium.indices, [](const WavelengthValue& at) {
+            return at.wavelength_nm > 0.0 && at.value >= 1.0 && at.value <= 5.0;
+        });
+        if (!row.medium.glass.empty() || !readable) {
+            lose("lost-indices", surface_number(row),
+                 "its indices are left out: they stand beside a glass name, or are not between 1 and 5");
             return {};
         }
         return "indices = " + pairs(row.medium.indices);
@@ -298,18 +309,20 @@ class Writer {
 
     void write_claims(const std::string& table, const StatedData& stated) {
         std::string claims;
-        const auto claim = [&](const char* key, const std::optional<double>& value) {
-            if (value) {
+        const auto claim = [&](const char* key, const std::optional<double>& value, bool positive) {
+            if (value && std::isfinite(*value) && (*value > 0.0 || !positive)) {
                 claims += fmt::format("{} = {}\n", key, number(*value));
+            } else if (value) {
+                lose("lost-stated", 0, fmt::format("{} = {} is left out of [{}]", key, *value, table));
             }
         };
-        claim("efl_mm", stated.efl_mm);
-        claim("bfl_mm", stated.bfl_mm);
-        claim("f_number", stated.f_number);
-        claim("half_field_deg", stated.half_field_deg);
-        claim("image_circle_mm", stated.image_circle_mm);
-        claim("total_track_mm", stated.total_track_mm);
-        claim("entrance_pupil_diameter_mm", stated.entrance_pupil_diameter_mm);
+        claim("efl_mm", stated.efl_mm, false);
+        claim("bfl_mm", stated.bfl_mm, false);
+        claim("f_number", stated.f_number, true);
+        claim("half_field_deg", stated.half_field_deg, true);
+        claim("image_circle_mm", stated.image_circle_mm, true);
+        claim("total_track_mm", stated.total_track_mm, true);
+        claim("entrance_pupil_diameter_mm", stated.entrance_pupil_diameter_mm, true);
         if (!stated.source.empty()) {
             claims += fmt::format("source = {}\n", toml_string(stated.source));
         }

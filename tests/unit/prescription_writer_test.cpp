@@ -190,6 +190,19 @@ TEST(TomlWriter, KeepsATexturedStopAndReplacesWhatIsNotUtf8) {
     EXPECT_EQ(back.name, "M\xEF\xBF\xBDller");
 }
 
+TEST(TomlWriter, LeavesOutWhatItsReaderRefusesAndSaysSo) {
+    Prescription lens = everything();
+    lens.stated.f_number = 0.0;
+    lens.stated.efl_mm = std::nan("");
+    lens.surfaces[0].misalignment.tilt_deg[0] = kInfinity;
+    lens.surfaces[0].medium.indices = {{587.5618, 1.5}};
+    lens.surfaces[1].medium.indices[0].value = 0.0;
+    lens.object_distance_mm = -1.0;
+    const WrittenPrescription written = to_toml(lens);
+    EXPECT_EQ(written.lost.size(), 6U);
+    EXPECT_NO_THROW(parse_toml_prescription(written.text, lens.file));
+}
+
 TEST(TomlWriter, AlignsTheTable) {
     Prescription lens;
     lens.name = "x";
