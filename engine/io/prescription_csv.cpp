@@ -140,6 +140,7 @@ class CsvPrescription {
         std::vector<std::string> notes;
         bool named = false;
         bool sourced = false;
+        bool has_hidden_terms = false;
         for (std::size_t begin = 0; begin < text.size();) {
             const std::size_t end = std::min(text.find('\n', begin), text.size());
             std::string_view line = trimmed(without_byte_order_mark(text.substr(begin, end - begin)));
@@ -159,7 +160,9 @@ class CsvPrescription {
                 sourced = true;
             } else if (!line.empty()) {
                 notes.emplace_back(line);
-                if (key.find("surface") != std::string_view::npos && line.find("A4") != std::string_view::npos) {
+                if (!has_hidden_terms && key.find("surface") != std::string_view::npos &&
+                    line.find("A4") != std::string_view::npos) {
+                    has_hidden_terms = true;
                     remark("comment-not-read", 0,
                            fmt::format("aspheric terms in a comment are not read, expected them in columns conic, A4, "
                                        "A6, …: {}",

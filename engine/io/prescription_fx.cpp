@@ -23,7 +23,8 @@ namespace lensproof {
 namespace {
 
 constexpr std::size_t kMostSurfaces = 1000;
-constexpr std::size_t kMostPositions = 3;  // short, mid and long
+constexpr std::size_t kMostPositions = 3;   // short, mid and long
+constexpr std::size_t kMostRemarks = 1000;  // a file of nothing else says no more
 constexpr std::string_view kBlanks = " \t\r";
 constexpr std::string_view kAspheric = "#!aspheric=";
 
@@ -78,6 +79,9 @@ class FxTable {
 
   private:
     void remark(const std::string& code, Severity severity, int surface, const std::string& message) {
+        if (lens_.remarks.size() == kMostRemarks) {
+            return;
+        }
         lens_.remarks.push_back({.code = code, .severity = severity, .surface = surface, .message = message});
     }
 

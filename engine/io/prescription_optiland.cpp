@@ -6,11 +6,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <nlohmann/json.hpp>
 #include <numbers>
 #include <set>
 
 #include "engine/io/input_error.h"
+#include "engine/io/json_value.h"
 #include "engine/io/prescription_forms.h"
 #include "engine/io/text.h"
 
@@ -18,137 +18,11 @@ namespace lensproof {
 
 namespace {
 
-using Json = nlohmann::json;
 using Matrix = std::array<std::array<double, 3>, 3>;
 
 constexpr std::size_t kMostSurfaces = 1000;
-constexpr int kDeepest = 64;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr Matrix kIdentity{{{1.0, 0.0, 0.0}, {0.0, 1.0, 0.0}, {0.0, 0.0, 1.0}}};
-
-/// Python writes NaN and Infinity, which JSON has not: here they become texts, which `Value::number` reads.
-std::string with_quoted_numbers(const std::string& text) {
-    std::string json;
-    json.reserve(text.size() + 64);
-    bool quoted = false;
-    for (std::size_t i = 0; i < text.size(); ++i) {
-        const std::string_view rest = std::string_view(text).substr(i);
-        if (quoted && text[i] == '\\' && i + 1 < text.size()) {
-            json += text[i++];
-        } else if (text[i] == '"') {
-            quoted = !quoted;
-        } else if (!quoted) {
-            std::size_t size = 0;
-            for (const std::string_view name : {"-Infinity", "Infinity", "NaN"}) {
-                size = size == 0 && rest.starts_with(name) ? name.size() : size;
-            }
-            if (size > 0) {
-                json += fmt::format("\"{}\"", rest.substr(0, size));
-                i += size - 1;
-                continue;
-            }
-        }
-        json += text[i];
-    }
-    return json;
-}
-
-/// A value in the file, with the way to it for messages.
-class Value {
-  public:
-    Value(const Json& json, std::string where) : json_(&json), where_(std::move(where)) {}
-
-    [[noreturn]] void fail(std::string_view expected) const {
-        throw InputError(
-            fmt::format("{} is {}, expected {}", where_,
-                        printable(json_->is_structured() ? json_->type_name()
-                                                         : json_->dump(-1, ' ', false, Json::error_handler_t::replace)),
-                        expected));
-    }
-
-    [[nodiscard]] bool has(const std::string& key) const {
-        return json_->is_object() && json_->contains(key) && !json_->at(key).is_null();
-    }
-
-    [[nodiscard]] Value at(const std::string& key) const {
-        if (!json_->is_object() || !json_->contains(key)) {
-            throw InputError(fmt::format("{} has no \"{}\", which lenses saved by Optiland have", where_, key));
-        }
-        return {json_->at(key), fmt::format("{}.{}", where_, key)};
-    }
-
-    [[nodiscard]] std::vector<Value> list() const {
-        if (!json_->is_array()) {
-            fail("a list");
-        }
-        std::vector<Value> values;
-        for (std::size_t i = 0; i < json_->size(); ++i) {
-            values.emplace_back((*json_)[i], fmt::format("{}[{}]", where_, i));
-        }
-        return values;
-    }
-
-    /// A number, also as a text ("Infinity") or in a list of its own, as arrays of one are saved.
-    [[nodiscard]] double number() const {
-        const Json* json = json_;
-        while (json->is_array() && json->size() == 1) {
-            json = &json->front();
-        }
-        if (json->is_number()) {
-            return json->get<double>();
-        }
-        const std::optional<double> named =
-            json->is_string() ? parse_number(json->get_ref<const std::string&>()) : std::nullopt;
-        if (!named) {
-            fail("a number");
-        }
-        return *named;
-    }
-
-    [[nodiscard]] double number_or(const std::string& key, double fallback) const {
-        return has(key) ? at(key).number() : fallback;
-    }
-
-    [[nodiscard]] std::string text() const {
-        if (!json_->is_string()) {
-            fail("a text");
-        }
-        return json_->get<std::string>();
-    }
-
-    [[nodiscard]] std::string text_or(const std::string& key, const std::string& fallback) const {
-        return has(key) ? at(key).text() : fallback;
-    }
-
-    [[nodiscard]] bool is_true(const std::string& key) const {
-        return has(key) && json_->at(key).is_boolean() && json_->at(key).get<bool>();
-    }
-
-    /// Whether something stands there: not null, false, nor an empty list, object or text.
-    [[nodiscard]] bool says(const std::string& key) const {
-        return has(key) && json_->at(key) != false && !(json_->at(key).is_structured() && json_->at(key).empty()) &&
-               json_->at(key) != "";
-    }
-
-    [[nodiscard]] std::vector<std::string> keys_beside(const std::set<std::string>& known) const {
-        std::vector<std::string> keys;
-        if (!json_->is_object()) {
-            fail("an object");
-        }
-        for (const auto& [key, value] : json_->items()) {
-            if (!known.contains(key)) {
-                keys.push_back(key);
-            }
-        }
-        return keys;
-    }
-
-    [[nodiscard]] const std::string& where() const { return where_; }
-
-  private:
-    const Json* json_;
-    std::string where_;
-};
 
 /// Where a surface stands in the whole lens.
 struct Frame {
@@ -174,7 +48,7 @@ Matrix rotation(double rx, double ry, double rz) {
     return product(z, product(y, x));
 }
 
-Frame read_frame(const Value& system) {
+Frame read_frame(const JsonValue& system) {
     Frame frame{{system.number_or("x", 0.0), system.number_or("y", 0.0), system.number_or("z", 0.0)},
                 rotation(system.number_or("rx", 0.0), system.number_or("ry", 0.0), system.number_or("rz", 0.0))};
     if (!system.has("reference_cs")) {
@@ -211,9 +85,8 @@ class OptilandLens {
         lens_.source = "the file " + file.filename().string() + ", saved by Optiland";
     }
 
-    Prescription read(const Json& json) {
-        const Value top(json, lens_.file.string() + ": the lens");
-        const std::vector<Value> surfaces = top.at("surface_group").at("surfaces").list();
+    Prescription read(const JsonValue& top) {
+        const std::vector<JsonValue> surfaces = top.at("surface_group").at("surfaces").list();
         if (surfaces.size() < 3 || surfaces.size() > kMostSurfaces) {
             throw InputError(
                 fmt::format("{}: {} surfaces, expected from 3, the object's and the image's included, to {}",
@@ -223,7 +96,8 @@ class OptilandLens {
             lens_.name = name;
         }
         std::vector<Frame> frames;
-        for (const Value& surface : surfaces) {
+        frames.reserve(surfaces.size());
+        for (const JsonValue& surface : surfaces) {
             frames.push_back(read_frame(surface.at("geometry").at("cs")));
         }
         for (std::size_t i = 1; i + 1 < surfaces.size(); ++i) {
@@ -257,13 +131,13 @@ class OptilandLens {
         lens_.remarks.push_back({.code = code, .severity = severity, .surface = surface, .message = message});
     }
 
-    void name_unknown_keys(const Value& value, int surface, const std::set<std::string>& known) {
+    void name_unknown_keys(const JsonValue& value, int surface, const std::set<std::string>& known) {
         for (const std::string& key : value.keys_beside(known)) {
             remark("not-read", surface, fmt::format("\"{}\" is not understood", printable(key)));
         }
     }
 
-    void add_surface(const Value& value, const Frame& frame, double thickness) {
+    void add_surface(const JsonValue& value, const Frame& frame, double thickness) {
         const int number = static_cast<int>(lens_.surfaces.size()) + 1;
         PrescribedSurface surface;
         surface.where = value.where();
@@ -283,7 +157,7 @@ class OptilandLens {
         lens_.surfaces.push_back(std::move(surface));
     }
 
-    void read_geometry(const Value& geometry, int number, PrescribedSurface& surface) {
+    void read_geometry(const JsonValue& geometry, int number, PrescribedSurface& surface) {
         const std::string type = geometry.text_or("type", "");
         surface.radius_mm = geometry.number_or("radius", kInfinity);
         surface.conic = geometry.number_or("conic", 0.0);
@@ -306,11 +180,11 @@ class OptilandLens {
         }
     }
 
-    void read_terms(const Value& geometry, const std::string& key, int number, PrescribedSurface& surface) {
+    void read_terms(const JsonValue& geometry, const std::string& key, int number, PrescribedSurface& surface) {
         if (!geometry.has(key)) {
             return;
         }
-        const std::vector<Value> terms = geometry.at(key).list();
+        const std::vector<JsonValue> terms = geometry.at(key).list();
         for (std::size_t term = 0; term < terms.size(); ++term) {
             const double coefficient = terms[term].number();
             if (term < kAsphereTerms) {
@@ -322,7 +196,7 @@ class OptilandLens {
         }
     }
 
-    void read_material(const Value& material, int number, StatedMedium& medium) {
+    void read_material(const JsonValue& material, int number, StatedMedium& medium) {
         const std::string type = material.text_or("type", "");
         if (type == "IdealMaterial") {
             const double index = material.at("index").number();
@@ -353,7 +227,7 @@ class OptilandLens {
     }
 
     /// "SCHOTT N-BK7", with the maker that Optiland found, which stands in the path of its file.
-    static std::string glass_name(const Value& material) {
+    static std::string glass_name(const JsonValue& material) {
         std::string path = material.text_or("filename", "");
         std::ranges::replace(path, '\\', '/');
         const std::filesystem::path file(path);
@@ -366,11 +240,11 @@ class OptilandLens {
         return maker + " " + name;
     }
 
-    void read_rim(const Value& value, int number, PrescribedSurface& surface) {
+    void read_rim(const JsonValue& value, int number, PrescribedSurface& surface) {
         if (!value.has("aperture")) {
             return;
         }
-        const Value aperture = value.at("aperture");
+        const JsonValue aperture = value.at("aperture");
         const std::string type = aperture.text_or("type", "");
         if (type != "RadialAperture") {
             remark("aperture-not-read", number,
@@ -383,7 +257,7 @@ class OptilandLens {
         }
     }
 
-    void read_interaction(const Value& model, int number) {
+    void read_interaction(const JsonValue& model, int number) {
         if (model.is_true("is_reflective")) {
             remark("mirror", number, "a mirror: it is taken as a refracting surface", Severity::error);
         }
@@ -399,7 +273,7 @@ class OptilandLens {
         }
     }
 
-    void read_image(const Value& image, const Frame& frame) {
+    void read_image(const JsonValue& image, const Frame& frame) {
         const double radius = image.at("geometry").number_or("radius", kInfinity);
         if (std::isfinite(radius) && radius != 0.0) {
             remark("curved-image", 0,
@@ -410,11 +284,11 @@ class OptilandLens {
         }
     }
 
-    void read_aperture(const Value& top) {
+    void read_aperture(const JsonValue& top) {
         if (!top.has("aperture")) {
             return;
         }
-        const Value aperture = top.at("aperture");
+        const JsonValue aperture = top.at("aperture");
         const std::string type = aperture.has("type") ? aperture.at("type").text() : aperture.text_or("ap_type", "");
         const double value = aperture.at("value").number();
         const auto stop = std::ranges::find_if(lens_.surfaces, &PrescribedSurface::is_stop);
@@ -429,17 +303,17 @@ class OptilandLens {
         }
     }
 
-    void read_fields(const Value& top) {
+    void read_fields(const JsonValue& top) {
         if (!top.has("fields")) {
             return;
         }
-        const Value fields = top.at("fields");
+        const JsonValue fields = top.at("fields");
         const std::string type = fields.has("field_definition")
                                      ? fields.at("field_definition").text_or("field_type", "")
                                      : fields.text_or("field_type", "");
         double largest = 0.0;
         bool vignetted = false;
-        for (const Value& field : fields.at("fields").list()) {
+        for (const JsonValue& field : fields.at("fields").list()) {
             largest = std::max(largest, std::hypot(field.number_or("x", 0.0), field.number_or("y", 0.0)));
             vignetted = vignetted || field.number_or("vx", 0.0) != 0.0 || field.number_or("vy", 0.0) != 0.0;
         }
@@ -458,11 +332,11 @@ class OptilandLens {
         }
     }
 
-    void read_wavelengths(const Value& top) {
+    void read_wavelengths(const JsonValue& top) {
         if (!top.has("wavelengths")) {
             return;
         }
-        for (const Value& wavelength : top.at("wavelengths").at("wavelengths").list()) {
+        for (const JsonValue& wavelength : top.at("wavelengths").at("wavelengths").list()) {
             const std::string unit = wavelength.text_or("unit", "um");
             // Rounded to what a wavelength in µm can have been written with: 0.5875618 is 587.5618.
             const double nm = std::round(wavelength.at("value").number() * (unit == "nm" ? 1.0 : 1e3) * 1e9) / 1e9;
@@ -486,20 +360,7 @@ class OptilandLens {
 }  // namespace
 
 Prescription parse_optiland(const std::string& text, const std::filesystem::path& file) {
-    const auto bounded = [&](int depth, Json::parse_event_t, Json&) {
-        if (depth > kDeepest) {
-            throw InputError(fmt::format("{}: more than {} brackets inside one another", file.string(), kDeepest));
-        }
-        return true;
-    };
-    try {
-        return OptilandLens(file).read(Json::parse(with_quoted_numbers(text), bounded));
-    } catch (const Json::parse_error& error) {
-        throw InputError(
-            fmt::format("{}: not JSON at byte {}, expected a lens saved by Optiland", file.string(), error.byte));
-    } catch (const Json::exception&) {
-        throw InputError(fmt::format("{}: holds a number or a text that cannot be read", file.string()));
-    }
+    return OptilandLens(file).read(JsonValue::parse(text, file));
 }
 
 }  // namespace lensproof
