@@ -23,7 +23,8 @@ struct Form {
 constexpr Form kForms[] = {
     {".toml", parse_toml_prescription, to_toml},
     {".csv", parse_csv_prescription, to_csv},
-    {".zmx", parse_zmx, nullptr},
+    {".zmx", parse_zmx, to_zmx},
+    {".seq", parse_seq, nullptr},
     {".dat", parse_pbrt_lens, to_pbrt_lens},
     {".json", parse_optiland, nullptr},
     {".fx", parse_fx, nullptr},
