@@ -53,37 +53,6 @@ Glass tabulated_glass(const std::vector<WavelengthValue>& indices) {
     return glass;
 }
 
-Glass resolve_medium(const PrescribedSurface& surface, const GlassCatalogue& glasses,
-                     const std::vector<std::string>& preferred_makers) {
-    const StatedMedium& medium = surface.medium;
-    if (medium.is_air()) {
-        return everywhere("air", ConstantIndex{1.0});
-    }
-    if (!medium.indices.empty()) {
-        return tabulated_glass(medium.indices);
-    }
-    GlassMatch match;
-    if (!medium.glass.empty()) {
-        match = glasses.resolve(medium.glass, preferred_makers);
-        if (match.glass) {
-            return std::move(*match.glass);
-        }
-    }
-    if (medium.n_d && !medium.V_d) {
-        return everywhere(fmt::format("n={}", *medium.n_d), ConstantIndex{*medium.n_d});
-    }
-    if (medium.n_d) {
-        Glass glass;
-        glass.name = fmt::format("n_d={} V_d={}", *medium.n_d, *medium.V_d);
-        glass.formula = normal_line(*medium.n_d, *medium.V_d);
-        glass.min_wavelength_nm = kNormalLineMinNm;
-        glass.max_wavelength_nm = kNormalLineMaxNm;
-        return glass;
-    }
-    throw InputError(fmt::format("{}.glass is \"{}\", which no catalogue has; {}. Or state n_d and V_d.", surface.where,
-                                 printable(medium.glass), suggestion_text(match.suggestions)));
-}
-
 void require(bool holds, const PrescribedSurface& row, const char* key, double found, const char* expected) {
     if (!holds) {
         throw InputError(fmt::format("{}.{} is {}, expected {}", row.where, key, found, expected));
@@ -189,6 +158,37 @@ void estimate_semi_diameters(Lens& lens) {
 
 }  // namespace
 
+Glass resolved_medium(const PrescribedSurface& surface, const GlassCatalogue& glasses,
+                      const std::vector<std::string>& preferred_makers) {
+    const StatedMedium& medium = surface.medium;
+    if (medium.is_air()) {
+        return everywhere("air", ConstantIndex{1.0});
+    }
+    if (!medium.indices.empty()) {
+        return tabulated_glass(medium.indices);
+    }
+    GlassMatch match;
+    if (!medium.glass.empty()) {
+        match = glasses.resolve(medium.glass, preferred_makers);
+        if (match.glass) {
+            return std::move(*match.glass);
+        }
+    }
+    if (medium.n_d && !medium.V_d) {
+        return everywhere(fmt::format("n={}", *medium.n_d), ConstantIndex{*medium.n_d});
+    }
+    if (medium.n_d) {
+        Glass glass;
+        glass.name = fmt::format("n_d={} V_d={}", *medium.n_d, *medium.V_d);
+        glass.formula = normal_line(*medium.n_d, *medium.V_d);
+        glass.min_wavelength_nm = kNormalLineMinNm;
+        glass.max_wavelength_nm = kNormalLineMaxNm;
+        return glass;
+    }
+    throw InputError(fmt::format("{}.glass is \"{}\", which no catalogue has; {}. Or state n_d and V_d.", surface.where,
+                                 printable(medium.glass), suggestion_text(match.suggestions)));
+}
+
 int Lens::stop_index() const {
     return static_cast<int>(std::ranges::find_if(surfaces, &LensSurface::is_stop) - surfaces.begin());
 }
@@ -212,7 +212,7 @@ Lens make_lens(const Prescription& prescription, const GlassCatalogue& glasses, 
         const auto override_index = overrides.find(row.medium.glass);
         Glass medium = override_index != overrides.end()
                            ? everywhere(row.medium.glass, ConstantIndex{override_index->second})
-                           : resolve_medium(row, glasses, prescription.preferred_makers);
+                           : resolved_medium(row, glasses, prescription.preferred_makers);
         used.insert(row.medium.glass);
         LensSurface surface = placed_surface(row, frames[lens.surfaces.size()]);
         // A barrel is convex, so a path runs inside it where it does so at both ends.

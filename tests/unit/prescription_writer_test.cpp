@@ -266,7 +266,7 @@ TEST(WritePrescription, NamesTheFormsThatItCanWrite) {
             write_prescription(everything(), name);
             FAIL() << name;
         } catch (const InputError& error) {
-            EXPECT_NE(std::string(error.what()).find(".toml, .csv, .dat"), std::string::npos) << error.what();
+            EXPECT_NE(std::string(error.what()).find(".toml, .csv, .zmx, .dat"), std::string::npos) << error.what();
         }
     }
 }
