@@ -20,7 +20,7 @@ namespace lensproof {
 namespace {
 
 constexpr double kTolerance_mm = 1e-9;
-const std::vector<std::string> kForms = {".toml", ".csv", ".dat"};
+const std::vector<std::string> kForms = {".toml", ".csv", ".zmx", ".dat"};
 
 /// A path of a ray: its points and states at every surface, and where it meets the sensor's plane.
 struct Path {
@@ -165,6 +165,7 @@ TEST_F(Conversion, KeepsEveryRayOfALensThatEveryFormCanSay) {
     dispersive.surfaces[2].medium.V_d = 32.21;
     expect_form_keeps(dispersive, ".toml", {});
     expect_form_keeps(dispersive, ".csv", {});
+    expect_form_keeps(dispersive, ".zmx", {});
     expect_form_keeps(dispersive, ".dat", {"lost-dispersion"});
 }
 
@@ -173,6 +174,7 @@ TEST_F(Conversion, KeepsEveryRayOfEveryLensThatShips) {
         Prescription lens = read_prescription(find_lens_file(name));
         std::set<std::string> csv;
         std::set<std::string> pbrt;
+        std::set<std::string> zmx;
         double before = 1.0;
         for (const PrescribedSurface& row : lens.surfaces) {
             const bool is_air = row.medium.is_air();
@@ -194,6 +196,7 @@ TEST_F(Conversion, KeepsEveryRayOfEveryLensThatShips) {
             }
             if (!row.coating.empty()) {
                 csv.insert("lost-coating");
+                zmx.insert("lost-coating");
             }
             before = after;
         }
@@ -212,6 +215,7 @@ TEST_F(Conversion, KeepsEveryRayOfEveryLensThatShips) {
         pbrt.insert(csv.begin(), csv.end());
         expect_form_keeps(lens, ".toml", {});
         expect_form_keeps(lens, ".csv", csv);
+        expect_form_keeps(lens, ".zmx", zmx);
         if (!pbrt.contains("lost-stop")) {  // which is a row more
             expect_form_keeps(lens, ".dat", pbrt);
         }
@@ -224,6 +228,7 @@ TEST_F(Conversion, KeepsConicsAndAspheresWhereThereAreColumns) {
     lens.surfaces[3].asphere = {1e-5, -3.3e-6, 2.1e-8, 0.0, 1e-13};
     expect_form_keeps(lens, ".toml", {});
     expect_form_keeps(lens, ".csv", {});
+    expect_form_keeps(lens, ".zmx", {});
     expect_form_keeps(lens, ".dat", {"lost-asphere"});
 }
 
