@@ -15,6 +15,7 @@
 #include "engine/io/prescription_file.h"
 #include "engine/optics/lens.h"
 #include "engine/spectral/wavelengths.h"
+#include "tests/test_folder.h"
 
 namespace lensproof {
 namespace {
@@ -82,14 +83,9 @@ double furthest_apart(const Lens& a, const Lens& b, double wavelength_nm, int& p
 
 class Conversion : public testing::Test {
   protected:
-    Conversion() : folder_(std::filesystem::path(testing::TempDir()) / "conversion") {
-        std::filesystem::create_directories(folder_);
-    }
-    ~Conversion() override { std::filesystem::remove_all(folder_); }
-
     /// Writes the lens in a form and reads it back. `warnings`: the codes of what the form could not say of its rays.
     Prescription there_and_back(const Prescription& lens, const std::string& form, std::set<std::string>& warnings) {
-        const std::filesystem::path file = folder_ / ("lens" + form);
+        const std::filesystem::path file = folder_.path() / ("lens" + form);
         for (const Finding& lost : write_prescription(lens, file)) {
             if (lost.severity != Severity::info) {
                 warnings.insert(lost.code);
@@ -129,7 +125,7 @@ class Conversion : public testing::Test {
         EXPECT_GT(points, 1000);
     }
 
-    std::filesystem::path folder_;
+    TestFolder folder_;
 };
 
 PrescribedSurface surface(double radius_mm, double thickness_mm, double n_d, double semi_diameter_mm) {
