@@ -123,7 +123,7 @@ class SeqReader {
             if (const std::optional<int> named = surface_named(name)) {
                 surface_ = *named;
             } else if (name.size() > 1 && name[0] == 'Z' && parse_number(name.substr(1))) {
-                zoom_position_ = static_cast<int>(std::clamp(*parse_number(name.substr(1)), 0.0, 1e6));
+                zoom_position_ = whole_number_within(*parse_number(name.substr(1)), 0, kMostZoomPositions);
             } else if (name == "CLR" || name == "EDG" || name == "OBS" || name == "HOL") {
                 qualifier_ = name;
             } else {

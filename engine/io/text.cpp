@@ -51,6 +51,10 @@ std::optional<double> parse_number(std::string_view text) {
     return error == std::errc() && end == text.data() + text.size() ? std::optional(number) : std::nullopt;
 }
 
+int whole_number_within(double value, int low, int high) {
+    return value > low ? static_cast<int>(std::min(value, static_cast<double>(high))) : low;
+}
+
 std::string printable(std::string_view text) {
     constexpr std::size_t kShown = 100;
     std::string shown(text.substr(0, kShown));

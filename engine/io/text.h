@@ -23,6 +23,9 @@ std::vector<std::string_view> words_of(std::string_view line);
 /// Nothing where it is no number, or one that a double cannot hold.
 std::optional<double> parse_number(std::string_view text);
 
+/// A count that a file states as any number: its whole part, held within [low, high]; NaN counts as low.
+int whole_number_within(double value, int low, int high);
+
 /// The start of a text for a message, without what a terminal would act upon.
 std::string printable(std::string_view text);
 

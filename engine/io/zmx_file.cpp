@@ -175,9 +175,9 @@ class ZmxReader {
     }
 
     void read_field_type() {
-        file_.field_type = static_cast<int>(std::clamp(here_.number(0, "a kind of field"), -1.0, 100.0));
-        file_.fields = static_cast<int>(std::clamp(here_.number_or_zero(2), 0.0, 1e6));
-        file_.wavelengths = static_cast<int>(std::clamp(here_.number_or_zero(3), 0.0, 1e6));
+        file_.field_type = whole_number_within(here_.number(0, "a kind of field"), -1, 100);
+        file_.fields = whole_number_within(here_.number_or_zero(2), 0, kMostWavelengths);
+        file_.wavelengths = whole_number_within(here_.number_or_zero(3), 0, kMostWavelengths);
     }
 
     void read_fields() {
