@@ -24,20 +24,6 @@ std::string shown(const toml::node& node) {
     return stream.str();
 }
 
-std::string expectation(const Bounds& bounds) {
-    if (bounds.min == 0.0 && bounds.min_excluded && bounds.max >= 1e300) {
-        return "a positive number";
-    }
-    if (bounds.min <= -1e300 && bounds.max >= 1e300) {
-        return "a finite number";
-    }
-    if (bounds.max >= 1e300) {
-        return fmt::format("a number of at least {}", bounds.min);
-    }
-    return fmt::format("a number {} {} and at most {}", bounds.min_excluded ? "above" : "of at least", bounds.min,
-                       bounds.max);
-}
-
 }  // namespace
 
 TomlTable::TomlTable(std::shared_ptr<const toml::table> root, const toml::table* table, std::filesystem::path file,
@@ -109,10 +95,8 @@ const toml::node& TomlTable::require(const std::string& key) {
 
 double TomlTable::checked_number(const toml::node& node, const std::string& key, const Bounds& bounds) const {
     const std::optional<double> value = node.value<double>();
-    const bool good = value && std::isfinite(*value) && node.is_number() && *value <= bounds.max &&
-                      (bounds.min_excluded ? *value > bounds.min : *value >= bounds.min);
-    if (!good) {
-        fail(key, fmt::format("is {}, expected {}", shown(node), expectation(bounds)));
+    if (!value || !node.is_number() || !bounds.hold(*value)) {
+        fail(key, fmt::format("is {}, expected {}", shown(node), bounds.expectation()));
     }
     return *value;
 }

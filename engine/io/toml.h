@@ -7,6 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "engine/io/bounds.h"
+
 // The library's include is kept to toml.cpp.
 namespace toml {
 inline namespace v3 {
@@ -16,17 +18,6 @@ class node;
 }  // namespace toml
 
 namespace lensproof {
-
-/// Bounds on a number, both inclusive unless said otherwise.
-struct Bounds {
-    double min = -1e300;
-    double max = 1e300;
-    bool min_excluded = false;
-};
-
-inline constexpr Bounds kAnyNumber{};
-inline constexpr Bounds kPositive{.min = 0.0, .min_excluded = true};
-inline constexpr Bounds kNotNegative{.min = 0.0};
 
 /// One table of a TOML file. Keys are taken one by one; `finish` then refuses those that nobody asked for, since a
 /// misspelt key that is silently ignored is worse than an error. All members throw InputError naming file, line and

@@ -18,6 +18,7 @@ ChiefRays::ChiefRays(const Lens& lens, double wavelength_nm) {
     front_ = {.surfaces = {whole.surfaces.begin(), stop}, .image_z = 0.0, .specials = whole.specials};
     rear_ = {.surfaces = {stop + 1, whole.surfaces.end()}, .image_z = whole.image_z, .specials = whole.specials};
     stop_z_ = stop->vertex_z;
+    stop_ratio_ = stop->reverse_ratio;
 
     double passing = 0.0;
     double blocked = 0.5 * std::numbers::pi;
@@ -31,7 +32,12 @@ ChiefRays::ChiefRays(const Lens& lens, double wavelength_nm) {
 
 std::optional<ChiefRay> ChiefRays::from_stop(double stop_angle) const {
     const Vec3d direction{0.0, std::sin(stop_angle), std::cos(stop_angle)};
-    const Ray<double> outwards{{0.0, 0.0, stop_z_}, -1.0 * direction};
+    // Where the stop is a glass surface, the ray bends at its vertex.
+    const double sine = stop_ratio_ * direction.y;
+    if (!(sine < 1.0)) {
+        return std::nullopt;
+    }
+    const Ray<double> outwards{{0.0, 0.0, stop_z_}, {0.0, -sine, -std::sqrt(1.0 - sine * sine)}};
     const Ray<double> inwards{{0.0, 0.0, stop_z_}, direction};
     const TracedRay<double> front = trace<Direction::reverse>(front_, outwards);
     const TracedRay<double> rear = trace<Direction::forward>(rear_, inwards);

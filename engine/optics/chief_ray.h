@@ -15,8 +15,9 @@ struct ChiefRay {
 };
 
 /// The chief rays of a lens at one wavelength, as a one-parameter family: the angle u under which the ray crosses the
-/// axis at the stop's centre. Aiming from the front through the paraxial entrance pupil stops converging for a fisheye,
-/// whose pupil moves by more than its own diameter; from the stop the map is one to one over the whole field.
+/// axis at the stop's centre (in the medium behind it, where the stop is a glass surface). Aiming from the front
+/// through the paraxial entrance pupil stops converging for a fisheye, whose pupil moves by more than its own diameter;
+/// from the stop the map is one to one over the whole field.
 class ChiefRays {
   public:
     ChiefRays(const Lens& lens, double wavelength_nm);
@@ -40,6 +41,7 @@ class ChiefRays {
     TraceLens<double> front_;  // the surfaces before the stop
     TraceLens<double> rear_;   // those behind it
     double stop_z_ = 0.0;
+    double stop_ratio_ = 1.0;  // index behind the stop over that before it
     double largest_stop_angle_ = 0.0;
     double largest_field_ = 0.0;
 };

@@ -257,8 +257,10 @@ Lens make_lens(const Prescription& prescription, const std::vector<Glass>& glass
     return lens;
 }
 
-Lens load_lens(const std::string& lens, const IndexOverrides& overrides) {
-    const Prescription prescription = read_prescription(find_lens_file(lens));
+Lens load_lens(const std::string& lens, const IndexOverrides& overrides, const std::string& zoom) {
+    Prescription prescription = read_prescription(find_lens_file(lens));
+    const std::size_t position = zoom.empty() ? 0 : find_zoom_position(prescription, zoom);
+    prescription = at_zoom_position(std::move(prescription), position);
     return make_lens(prescription, shipped_glasses(), overrides);
 }
 

@@ -55,8 +55,9 @@ using IndexOverrides = std::map<std::string, double>;
 Lens make_lens(const Prescription& prescription, const std::vector<Glass>& glasses,
                const IndexOverrides& overrides = {});
 
-/// find_lens_file, read_prescription and make_lens with the glasses that ship.
-Lens load_lens(const std::string& lens, const IndexOverrides& overrides = {});
+/// find_lens_file, read_prescription and make_lens with the glasses that ship, at the zoom position called `zoom` (its
+/// name or number; empty: the first).
+Lens load_lens(const std::string& lens, const IndexOverrides& overrides = {}, const std::string& zoom = "");
 
 /// The lens with its stop opened or closed to f-number `f_number` (paraxial: EFL over entrance pupil diameter, at the d
 /// line, object at infinity). Throws InputError where that is wider than the prescription's stop.

@@ -79,6 +79,7 @@ SpectralStrata make_strata(const Camera& camera, const Lens& lens, const Light& 
 Camera read_camera(TomlTable& table) {
     Camera camera;
     camera.lens = table.text("lens");
+    camera.zoom = table.text_or("zoom", "");
     camera.f_number = table.number("f_number", {.min = 0.1, .max = 1000.0});
     camera.focus_distance_mm = table.infinity("focus_distance_mm") > 0 ? std::numeric_limits<double>::infinity()
                                                                        : table.number("focus_distance_mm", kPositive);
@@ -140,7 +141,8 @@ ChartScene read_chart_scene(const std::filesystem::path& file) {
 }
 
 Lens camera_lens(const Camera& camera) {
-    return focused_at(with_f_number(load_lens(camera.lens), camera.f_number), camera.focus_distance_mm);
+    return focused_at(with_f_number(load_lens(camera.lens, {}, camera.zoom), camera.f_number),
+                      camera.focus_distance_mm);
 }
 
 ChartCamera::ChartCamera(const Camera& camera, const Light& light, const SpectralSampling& spectral)

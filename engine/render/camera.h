@@ -16,6 +16,7 @@ namespace lensproof {
 
 struct Camera {
     std::string lens;  // a file, or the name of a lens that ships
+    std::string zoom;  // the position's name or number; empty: the first
     double f_number = 0.0;
     double focus_distance_mm = 0.0;  // from the first vertex; may be infinite
     Sensor sensor;
@@ -23,8 +24,8 @@ struct Camera {
     std::string response;
 };
 
-/// Reads a camera's table: lens, f_number, focus_distance_mm (inf allowed), sensor_mm = [w, h], pixels = [w, h],
-/// shutter_s, iso, response. Throws InputError naming file, line and key; pixels have to be square.
+/// Reads a camera's table: lens, zoom (optional), f_number, focus_distance_mm (inf allowed), sensor_mm = [w, h], pixels
+/// = [w, h], shutter_s, iso, response. Throws InputError naming file, line and key; pixels have to be square.
 Camera read_camera(TomlTable& table);
 
 struct Light {

@@ -1,15 +1,14 @@
 // experiments/cli/trace_command.cpp — `lensproof trace LENS --rays FILE`: every intersection of given rays.
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <cmath>
 #include <map>
 #include <memory>
-#include <sstream>
-#include <string_view>
+#include <optional>
 
+#include "engine/io/csv.h"
 #include "engine/io/file.h"
 #include "engine/io/input_error.h"
+#include "engine/io/text.h"
 #include "engine/optics/lens.h"
 #include "experiments/cli/command.h"
 
@@ -17,7 +16,6 @@ namespace lensproof {
 
 namespace {
 
-constexpr const char* kRayHeader = "id,x_mm,y_mm,z_mm,dx,dy,dz,wavelength_nm";
 constexpr const char* kResultHeader = "id,surface,x_mm,y_mm,z_mm,dx,dy,dz,optical_path_mm,transmittance,status";
 
 struct GivenRay {
@@ -29,6 +27,7 @@ struct GivenRay {
 struct TraceOptions {
     CommonOptions common;
     std::string lens;
+    std::string zoom;
     std::string rays_file;
     std::string output_file;
     std::string precision = "double";
@@ -37,90 +36,29 @@ struct TraceOptions {
     bool no_clip = false;
 };
 
-/// A cell for a message: the start of it, without what a terminal would act upon.
-std::string printable(const std::string& text) {
-    constexpr std::size_t kShown = 100;
-    std::string shown = text.substr(0, kShown);
-    std::ranges::replace_if(
-        shown, [](unsigned char letter) { return letter < 0x20 || letter >= 0x7f; }, '?');
-    return text.size() > kShown ? shown + "…" : shown;
-}
-
-double parse_number(const std::string& text, const std::string& where) {
-    char* end = nullptr;
-    const double value = std::strtod(text.c_str(), &end);
-    if (text.empty() || end != text.c_str() + text.size() || !std::isfinite(value)) {
-        throw InputError(fmt::format("{} is \"{}\", expected a finite number", where, printable(text)));
-    }
-    return value;
-}
-
 // Far beyond any scene, far below what would overflow when squared, in a float too.
-constexpr double kLargestCoordinate = 1e12;
+constexpr Bounds kCoordinate{.min = -1e12, .max = 1e12};
 
-double parse_coordinate(const std::string& text, const std::string& where) {
-    const double value = parse_number(text, where);
-    if (std::abs(value) > kLargestCoordinate) {
-        throw InputError(fmt::format("{} is {}, expected a number between -{:g} and {:g}", where, value,
-                                     kLargestCoordinate, kLargestCoordinate));
-    }
-    return value;
-}
-
-GivenRay parse_ray(const std::string& line, const std::string& where) {
-    std::vector<std::string> cells(1);
-    for (const char letter : line) {
-        if (letter == ',') {
-            cells.emplace_back();
-        } else {
-            cells.back() += letter;
-        }
-    }
-    if (cells.size() != 8) {
-        throw InputError(fmt::format("{}: {} cells, expected 8: {}", where, cells.size(), kRayHeader));
-    }
-    const auto number = [&](std::size_t column, const char* name) {
-        return parse_coordinate(cells[column], fmt::format("{}: {}", where, name));
+GivenRay read_ray(const CsvRow& row) {
+    const auto vector = [&](const char* x, const char* y, const char* z) {
+        return Vec3d{row.number(x, kCoordinate), row.number(y, kCoordinate), row.number(z, kCoordinate)};
     };
-    const Vec3d direction{number(4, "dx"), number(5, "dy"), number(6, "dz")};
+    const Vec3d direction = vector("dx", "dy", "dz");
     const double norm = length(direction);
-    if (!(norm > 0.0) || !std::isfinite(norm)) {
-        throw InputError(fmt::format("{}: the direction has length {}, expected a direction", where, norm));
+    if (!(norm > 0.0)) {
+        throw InputError(fmt::format("{} has length {}, expected a direction", row.where("the direction"), norm));
     }
-    GivenRay given{.id = cells[0],
-                   .ray = {{number(1, "x_mm"), number(2, "y_mm"), number(3, "z_mm")}, (1.0 / norm) * direction},
-                   .wavelength_nm = number(7, "wavelength_nm")};
-    if (!(given.wavelength_nm > 0.0)) {
-        throw InputError(
-            fmt::format("{}: wavelength_nm is {}, expected a positive number", where, given.wavelength_nm));
-    }
-    return given;
+    return {.id = row.text("id"),
+            .ray = {vector("x_mm", "y_mm", "z_mm"), (1.0 / norm) * direction},
+            .wavelength_nm = row.number("wavelength_nm", kPositive)};
 }
 
 std::vector<GivenRay> read_rays(const std::string& file) {
-    std::istringstream content(read_file(file));
+    CsvTable table = CsvTable::read(file);
+    table.expect_columns({"id", "x_mm", "y_mm", "z_mm", "dx", "dy", "dz", "wavelength_nm"});
     std::vector<GivenRay> rays;
-    std::string line;
-    bool header_read = false;
-    for (int number = 1; std::getline(content, line); ++number) {
-        constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
-        if (number == 1 && line.starts_with(kByteOrderMark)) {
-            line.erase(0, kByteOrderMark.size());
-        }
-        if (!line.empty() && line.back() == '\r') {
-            line.pop_back();
-        }
-        if (line.empty()) {
-            continue;
-        }
-        const std::string where = fmt::format("{}:{}", file, number);
-        if (header_read) {
-            rays.push_back(parse_ray(line, where));
-        } else if (line != kRayHeader) {
-            throw InputError(
-                fmt::format("{}: the header is \"{}\", expected \"{}\"", where, printable(line), kRayHeader));
-        }
-        header_read = true;
+    while (const std::optional<CsvRow> row = table.next()) {
+        rays.push_back(read_ray(*row));
     }
     if (rays.empty()) {
         throw InputError(fmt::format("{}: holds no ray", file));
@@ -135,11 +73,11 @@ IndexOverrides parse_indices(const std::vector<std::string>& texts) {
         if (equals == 0 || equals == std::string::npos) {
             throw InputError(fmt::format("--index is \"{}\", expected NAME=VALUE", text));
         }
-        const double index = parse_number(text.substr(equals + 1), "--index " + text.substr(0, equals));
-        if (!(index >= 1.0 && index <= 10.0)) {
-            throw InputError(fmt::format("--index {}: expected an index from 1 to 10", text));
+        const std::optional<double> index = parse_number(text.substr(equals + 1));
+        if (!index || !(*index >= 1.0 && *index <= 10.0)) {
+            throw InputError(fmt::format("--index {}: expected an index from 1 to 10", printable(text)));
         }
-        overrides[text.substr(0, equals)] = index;
+        overrides[text.substr(0, equals)] = *index;
     }
     return overrides;
 }
@@ -218,7 +156,7 @@ int run_trace(const TraceOptions& options) {
         check_output_name(options.output_file);
     }
     check_json_name(options.common);
-    const Lens lens = load_lens(options.lens, parse_indices(options.indices));
+    const Lens lens = load_lens(options.lens, parse_indices(options.indices), options.zoom);
     const std::vector<GivenRay> rays = read_rays(options.rays_file);
     TraceTable table;
     if (options.precision == "float") {
@@ -256,6 +194,8 @@ void add_trace_command(CLI::App& app, int& status) {
         ->add_option("--index", options->indices, "NAME=VALUE: a constant index in place of a glass; may be repeated")
         ->type_name("NAME=VALUE")
         ->allow_extra_args(false);  // what follows is the lens
+    command->add_option("--zoom", options->zoom, "Position of a zoom lens, by name or number (default: the first)")
+        ->type_name("POSITION");
     command->add_flag("--reverse", options->reverse, "Rays run from the sensor outwards");
     command->add_flag("--no-clip", options->no_clip,
                       "Follow rays beyond the rims; the first rim passed is still named");

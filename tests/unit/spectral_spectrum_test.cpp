@@ -75,21 +75,23 @@ TEST(SpectrumFile, ReadsTheNamedColumnsInTheOrderAsked) {
 TEST(SpectrumFile, MalformedTablesAreRefusedByLine) {
     const std::string head = "# source\nwavelength_nm,a\n";
     EXPECT_EQ(complaint_about(head + "400,1\n500,2\n"), "no complaint");
-    EXPECT_EQ(complaint_about(head + "400,1\n500,two\n"), "table.csv:4: cell 2 is 'two': expected a number");
-    EXPECT_EQ(complaint_about(head + "400,1\n500,nan\n"), "table.csv:4: cell 2 is 'nan': expected a number");
-    EXPECT_EQ(complaint_about(head + "400,1\n500,\n"), "table.csv:4: cell 2 is '': expected a number");
-    EXPECT_EQ(complaint_about(head + "400,1\n500,1 2\n"), "table.csv:4: cell 2 is '1 2': expected a number");
-    EXPECT_EQ(complaint_about(head + "400,1\n500\n"), "table.csv:4: 1 cells: expected 2, as in the header");
+    EXPECT_EQ(complaint_about(head + "400,1\n500,two\n"), "table.csv:4: a is \"two\", expected a finite number");
+    EXPECT_EQ(complaint_about(head + "400,1\n500,nan\n"), "table.csv:4: a is \"nan\", expected a finite number");
+    EXPECT_EQ(complaint_about(head + "400,1\n500,\n"), "table.csv:4: a is \"\", expected a finite number");
+    EXPECT_EQ(complaint_about(head + "400,1\n500,1 2\n"), "table.csv:4: a is \"1 2\", expected a finite number");
+    EXPECT_EQ(complaint_about(head + "400,1\n500\n"),
+              "table.csv:4: 1 cells, expected 2 as in the header: wavelength_nm,a");
     EXPECT_EQ(complaint_about(head + "500,1\n400,2\n"),
-              "table.csv:4: wavelength_nm is 400: expected more than 500, as wavelengths ascend");
+              "table.csv:4: wavelength_nm is \"400\", expected more than 500, as wavelengths ascend");
     EXPECT_EQ(complaint_about(head + "0,1\n400,2\n"),
-              "table.csv:3: wavelength_nm is 0: expected more than 0, as wavelengths ascend");
-    EXPECT_EQ(complaint_about(head + "400,1\n"), "table.csv: 1 rows of numbers: expected at least 2");
+              "table.csv:3: wavelength_nm is \"0\", expected more than 0, as wavelengths ascend");
+    EXPECT_EQ(complaint_about(head + "400,1\n"), "table.csv: 1 rows of numbers, expected at least 2");
     EXPECT_EQ(complaint_about("wavelength_nm,b\n400,1\n500,1\n"),
-              "table.csv:1: columns are wavelength_nm, b: expected one called a");
-    EXPECT_EQ(complaint_about("nm,a\n400,1\n500,1\n"), "table.csv:1: the first column is 'nm': expected wavelength_nm");
-    EXPECT_EQ(complaint_about("# only\n\n"), "table.csv: no line but comments: expected a header 'wavelength_nm,...'");
-    EXPECT_EQ(complaint_about(""), "table.csv: no line but comments: expected a header 'wavelength_nm,...'");
+              "table.csv:1: the header is \"wavelength_nm,b\", expected a column a in it");
+    EXPECT_EQ(complaint_about("nm,a\n400,1\n500,1\n"),
+              "table.csv:1: the first column is \"nm\", expected wavelength_nm");
+    EXPECT_EQ(complaint_about("# only\n\n"), "table.csv: is empty, expected a table with a header");
+    EXPECT_EQ(complaint_about(""), "table.csv: is empty, expected a table with a header");
 }
 
 TEST(SpectrumFile, AMissingFileIsAnInputError) {
