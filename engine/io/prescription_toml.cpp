@@ -242,6 +242,7 @@ Prescription parse_toml_prescription(const std::string& text, const std::filesys
     prescription.name = top.text("name");
     prescription.source = top.text("source");
     prescription.notes = top.text_or("notes", "");
+    prescription.design = top.text_or("design", "");
     if (top.has("projection")) {
         std::vector<std::string> names;
         std::ranges::transform(kProjections, std::back_inserter(names), projection_name);

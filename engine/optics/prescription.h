@@ -151,6 +151,7 @@ struct Prescription {
     std::string name;
     std::string source;
     std::string notes;
+    std::string design;  // the family it belongs to, for lists: "Tessar", "double Gauss"; may be empty
     Projection projection = Projection::rectilinear;
     StatedData stated;
     std::vector<PrescribedSurface> surfaces;

@@ -1,9 +1,13 @@
 // experiments/cli/list_commands.cpp — `lensproof lenses` and `lensproof glasses`: what ships.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <memory>
+#include <numbers>
+#include <sstream>
 
 #include "engine/io/prescription_file.h"
+#include "engine/optics/chief_ray.h"
 #include "engine/optics/lens.h"
 #include "engine/optics/paraxial.h"
 #include "engine/spectral/wavelengths.h"
@@ -13,21 +17,100 @@ namespace lensproof {
 
 namespace {
 
+/// A lens's figures at one setting, computed from its table at the d line, object at infinity.
+struct Figures {
+    double efl_mm;
+    double bfl_mm;
+    double f_number;
+    double half_field_deg;  // of the last chief ray that passes every rim
+};
+
+Figures figures_of(const Lens& lens) {
+    const ParaxialData data = paraxial_data(at_wavelength<double>(lens, kLineD));
+    return {.efl_mm = data.efl,
+            .bfl_mm = data.bfl,
+            .f_number = data.f_number,
+            .half_field_deg = ChiefRays(lens, kLineD).largest_field() * 180.0 / std::numbers::pi};
+}
+
+void add_figures(nlohmann::ordered_json& json, const Figures& figures) {
+    json["efl_mm"] = figures.efl_mm;
+    json["bfl_mm"] = figures.bfl_mm;
+    json["f_number"] = figures.f_number;
+    json["half_field_deg"] = figures.half_field_deg;
+}
+
+nlohmann::ordered_json lens_json(const std::string& id, const Prescription& prescription) {
+    nlohmann::ordered_json json{{"lens", id}, {"name", prescription.name}};
+    add_figures(json, figures_of(load_lens(id)));
+    json["projection"] = projection_name(prescription.projection);
+    json["source"] = prescription.source;
+    json["design"] = prescription.design;
+    json["elements"] =
+        std::ranges::count_if(prescription.surfaces, [](const auto& row) { return !row.medium.is_air(); });
+    json["surfaces"] = prescription.surfaces.size();
+    if (prescription.stated.half_field_deg) {
+        json["stated_half_field_deg"] = *prescription.stated.half_field_deg;
+    }
+    for (const ZoomPosition& zoom : prescription.zoom) {
+        nlohmann::ordered_json position{{"name", zoom.name}};
+        add_figures(position, figures_of(load_lens(id, {}, zoom.name)));
+        json["zoom"].push_back(position);
+    }
+    return json;
+}
+
+constexpr std::size_t kTextWidth = 118;
+constexpr const char* kIndent = "   ";
+
+/// `text` in lines of at most kTextWidth bytes, broken at spaces, each indented.
+std::string indented_lines(const std::string& text) {
+    std::string lines;
+    std::string line = kIndent;
+    std::istringstream words(text);
+    for (std::string word; words >> word;) {
+        if (line.size() + word.size() > kTextWidth) {
+            lines += line + '\n';
+            line = kIndent;
+        }
+        line += ' ' + word;
+    }
+    return lines + line;
+}
+
+void print_figures(const std::string& label, const nlohmann::ordered_json& json, const std::string& rest) {
+    fmt::print("{:25} {:8.2f} {:8.2f} {:7.2f} {:8.1f}{}\n", label, json["efl_mm"].get<double>(),
+               json["bfl_mm"].get<double>(), json["f_number"].get<double>(), json["half_field_deg"].get<double>(),
+               rest);
+}
+
+void print_lens(const nlohmann::ordered_json& json) {
+    const std::string field = json.contains("stated_half_field_deg")
+                                  ? fmt::format("{:.1f}", json["stated_half_field_deg"].get<double>())
+                                  : "–";
+    print_figures(json["lens"].get<std::string>(), json,
+                  fmt::format("  {:>6} {:>5}  {:12} {}", field, json["elements"].get<int>(),
+                              json["design"].get<std::string>(), json["projection"].get<std::string>()));
+    for (const nlohmann::ordered_json& position : json.value("zoom", nlohmann::ordered_json::array())) {
+        print_figures(fmt::format("{} at {}", kIndent, position["name"].get<std::string>()), position, "");
+    }
+    fmt::print("{} {}\n{}\n\n", kIndent, json["name"].get<std::string>(),
+               indented_lines(json["source"].get<std::string>()));
+}
+
 int list_lenses(const CommonOptions& options) {
     nlohmann::ordered_json lenses = nlohmann::ordered_json::array();
+    if (prints_text(options)) {
+        fmt::print(
+            "Computed from each table at the d line, for an object at infinity; field: half, in degrees, of the "
+            "last\nchief ray that passes every rim, beside what the source states.\n\n");
+        fmt::print("{:25} {:>8} {:>8} {:>7} {:>8}  {:>6} {:>5}  {:12} {}\n", "lens", "efl mm", "bfl mm", "f/", "field",
+                   "stated", "elem.", "design", "projection");
+    }
     for (const std::string& name : shipped_lens_names()) {
-        const Lens lens = load_lens(name);
-        const ParaxialData data = paraxial_data(at_wavelength<double>(lens, kLineD));
-        lenses.push_back({{"lens", name},
-                          {"name", lens.name},
-                          {"efl_mm", data.efl},
-                          {"bfl_mm", data.bfl},
-                          {"f_number", data.f_number},
-                          {"projection", projection_name(lens.projection)},
-                          {"source", lens.source}});
+        lenses.push_back(lens_json(name, read_prescription(find_lens_file(name))));
         if (prints_text(options)) {
-            fmt::print("{:16} efl {:7.2f} mm  f/{:<5.2f} {:12} {}\n{:17}{}\n", name, data.efl, data.f_number,
-                       projection_name(lens.projection), lens.name, "", lens.source);
+            print_lens(lenses.back());
         }
     }
     write_json_result(options, {{"lenses", lenses}});
@@ -55,11 +138,11 @@ int list_glasses(const CommonOptions& options) {
     return kDone;
 }
 
-void add_list_command(CLI::App& app, int& status, const char* name, const char* description,
+void add_list_command(CLI::App& app, int& status, const char* name, const char* description, const char* json_keys,
                       int (*list)(const CommonOptions&)) {
     const auto options = std::make_shared<CommonOptions>();
     CLI::App* command = app.add_subcommand(name, description);
-    command->footer(fmt::format("Example: lensproof {} --json -", name));
+    command->footer(fmt::format("{}Example: lensproof {} --json -", json_keys, name));
     add_common_options(*command, *options);
     command->callback([options, list, &status] {
         check_json_name(*options);
@@ -70,11 +153,18 @@ void add_list_command(CLI::App& app, int& status, const char* name, const char* 
 }  // namespace
 
 void add_lenses_command(CLI::App& app, int& status) {
-    add_list_command(app, status, "lenses", "List the lenses that ship, with their sources", list_lenses);
+    add_list_command(
+        app, status, "lenses", "List the lenses that ship, with their sources",
+        "The JSON has for each lens: lens, name, efl_mm, bfl_mm, f_number and half_field_deg (of the last\n"
+        "chief ray that passes every rim), all computed at the d line for an object at infinity; projection,\n"
+        "source, design, elements, surfaces (the stop included), stated_half_field_deg where the source\n"
+        "states one, and zoom: the name and the computed figures of each position of a zoom lens, whose\n"
+        "own figures are those of the first.\n",
+        list_lenses);
 }
 
 void add_glasses_command(CLI::App& app, int& status) {
-    add_list_command(app, status, "glasses", "List the glasses that ship, with their sources", list_glasses);
+    add_list_command(app, status, "glasses", "List the glasses that ship, with their sources", "", list_glasses);
 }
 
 }  // namespace lensproof
