@@ -23,6 +23,7 @@ struct Unit {
 constexpr std::array kUnits = {Unit{"inches", 25.4}, Unit{"cm", 10.0}, Unit{"m", 1000.0}, Unit{"tenths of a mm", 0.1},
                                Unit{"mm of a table meant in inches", 1.0 / 25.4}};
 constexpr double kSameUnit = 0.02;       // how well a ratio meets a unit's factor
+constexpr double kUnitSlip = 0.01;       // a unit that is wrong throws a lens off by more than this
 constexpr double kNormalisedFrom = 0.9;  // mm of focal length: tables for f = 1
 constexpr double kNormalisedTo = 1.1;
 // Rule 24.
@@ -63,7 +64,7 @@ void check_lens_units(const CheckedLens& checked, Findings& findings) {
 
 /// One column, or one number, in another unit than the rest.
 void check_mixed_units(const CheckedLens& checked, const Restoration& restoration, Findings& findings) {
-    if (!(restoration.residual_as_given() > Restoration::kRestored)) {
+    if (!(restoration.residual_as_given() > kUnitSlip)) {
         return;
     }
     const auto report = [&](int surface, const std::string& what, const Unit& unit, double residual) {
@@ -105,14 +106,16 @@ void check_mixed_units(const CheckedLens& checked, const Restoration& restoratio
 int impossible_rims(const CheckedLens& checked, double share) {
     int count = 0;
     for (int i = 0; i < checked.size(); ++i) {
-        const double reach = share * checked.semi_diameters[i];
-        const double sag = sag_at(checked.row(i), reach);
+        const double own_reach = share * checked.semi_diameters[i];
+        const double sag = sag_at(checked.row(i), own_reach);
         if (std::isnan(sag)) {
             ++count;
         } else if (i + 1 < checked.size() && checked.is_glass_behind(i)) {
             const double edge =
                 checked.row(i).thickness_mm + sag_at(checked.row(i + 1), share * checked.semi_diameters[i + 1]) - sag;
-            count += edge < 0.0 ? 1 : 0;
+            const double reach = share * std::min(checked.semi_diameters[i], checked.semi_diameters[i + 1]);
+            const bool crosses = separation_at(checked.row(i), checked.row(i + 1), reach) < 0.0;
+            count += edge < 0.0 && crosses ? 1 : 0;
         }
     }
     return count;

@@ -70,6 +70,14 @@ class Changes {
     std::vector<NumberChange> found_;
 };
 
+/// To as many digits as any table has, so that 4.297 moved by a place is 42.97.
+double rounded(double value) {
+    const std::string text = fmt::format("{:.10g}", value);
+    double nearest = value;
+    std::from_chars(text.data(), text.data() + text.size(), nearest);
+    return nearest;
+}
+
 void add_swaps(Changes& changes) {
     const std::string& text = changes.text();
     for (std::size_t i = 0; i < text.size(); ++i) {
@@ -118,11 +126,11 @@ std::vector<NumberChange> plausible_changes(double value) {
     }
     Changes changes(value);
     changes.add_value(-value, "the sign lost", kOften);
-    for (const double factor : {10.0, 0.1, 100.0, 0.01}) {
-        changes.add(factor * std::abs(value), "the decimal point moved", kOften);
+    for (const int places : {1, -1, 2, -2, 3, -3}) {
+        changes.add(rounded(std::pow(10.0, places) * std::abs(value)), "the decimal point moved", kOften);
     }
     for (const double factor : {25.4, 1.0 / 25.4}) {
-        changes.add(factor * std::abs(value), "inches for mm", kSometimes);
+        changes.add(rounded(factor * std::abs(value)), "inches for mm", kSometimes);
     }
     for (const double factor : {2.0, 0.5}) {
         changes.add(factor * std::abs(value), "a diameter for a radius", kRarely);

@@ -16,6 +16,7 @@ namespace {
 
 constexpr double kDegree = std::numbers::pi / 180.0;
 constexpr double kLeastTransmitted = 0.30;   // of the axial beam's area, rule 28
+constexpr double kRoundedField = 0.95;       // of the claimed field: up to there at least some light must come
 constexpr double kDistortion = 0.05;         // rule 31
 constexpr double kFisheyeDistortion = 0.10;  // from the projection that is claimed: this project's
 constexpr double kWidestRectilinear = 80.0;  // degrees: f tan grows without bounds
@@ -140,28 +141,45 @@ double window(const CheckedLens& checked, double axial_semi_diameter) {
     return std::min(reach + depth, kPupilGrowth * axial_semi_diameter);
 }
 
-/// Rules 28 and 33, and the order of surfaces.
+/// The beam of the field that the rims let pass.
+SampledBeam field_beam(const CheckedLens& checked, double field, const ChiefRay& chief, double axial) {
+    const double centre = chief.front.origin.y * std::cos(field) - chief.front.origin.z * std::sin(field);
+    return sample_beam(checked, field, centre, window(checked, axial));
+}
+
+/// Rule 28. A field that is claimed a little too wide is a warning: light has to end long before it to be an error.
+void check_vignetting(const CheckedLens& checked, double field, double axial, double area, Findings& findings) {
+    const double transmitted = area / (std::numbers::pi * axial * axial);
+    if (transmitted >= kLeastTransmitted) {
+        return;
+    }
+    Severity severity = Severity::warning;
+    if (!(transmitted > 0.0)) {
+        const double within = kRoundedField * field;
+        const std::optional<ChiefRay> chief =
+            ChiefRays(lens_in_focus(checked, false), checked.settings.wavelength_nm).at_field(within);
+        const bool is_dark = !chief || !(field_beam(checked, within, *chief, axial).area > 0.0);
+        severity = is_dark ? Severity::error : Severity::warning;
+    }
+    findings.push_back(
+        {.code = "vignetting",
+         .severity = severity,
+         .message =
+             fmt::format("the rims leave {} of the axial beam at the stated field of {:.2f}°",
+                         transmitted > 0.0 ? fmt::format("{:.1f} %", 100.0 * transmitted) : "nothing", field / kDegree),
+         .value = 100.0 * transmitted,
+         .limit = transmitted > 0.0 ? 100.0 * kLeastTransmitted : 0.0,
+         .unit = "%"});
+}
+
+/// Rule 33, and the order of surfaces.
 void check_beam(const CheckedLens& checked, double field, const std::optional<ChiefRay>& chief, Findings& findings) {
     const double axial = axial_beam(checked).semi_diameter;
     if (!(axial > 0.0) || !chief) {
         return;
     }
-    const double centre = chief->front.origin.y * std::cos(field) - chief->front.origin.z * std::sin(field);
-    const SampledBeam beam = sample_beam(checked, field, centre, window(checked, axial));
-    const double transmitted = beam.area / (std::numbers::pi * axial * axial);
-    if (transmitted < kLeastTransmitted) {
-        findings.push_back(
-            {.code = "vignetting",
-             .severity = transmitted > 0.0 ? Severity::warning : Severity::error,
-             .message = transmitted > 0.0
-                            ? fmt::format("the rims leave {:.1f} % of the axial beam at the stated field of {:.2f}°",
-                                          100.0 * transmitted, field / kDegree)
-                            : fmt::format("the rims leave nothing of the beam at the stated field of {:.2f}°",
-                                          field / kDegree),
-             .value = 100.0 * transmitted,
-             .limit = transmitted > 0.0 ? 100.0 * kLeastTransmitted : 0.0,
-             .unit = "%"});
-    }
+    const SampledBeam beam = field_beam(checked, field, *chief, axial);
+    check_vignetting(checked, field, axial, beam.area, findings);
     if (beam.backwards > kBackwardsShare * (beam.area + beam.backwards)) {
         findings.push_back({.code = "order-of-surfaces",
                             .severity = Severity::error,
