@@ -4,12 +4,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 #include "calibration/measure.h"
 #include "engine/io/file.h"
 #include "engine/io/image.h"
 #include "engine/io/input_error.h"
 #include "engine/io/prescription_file.h"
+#include "engine/optics/glass_catalogue.h"
 #include "engine/optics/paraxial.h"
 #include "engine/spectral/wavelengths.h"
 #include "experiments/closed_loop.h"
@@ -312,7 +314,7 @@ ExperimentResult run_experiment(const Experiment& experiment, const RunSettings&
     ExperimentResult result;
     result.inputs.push_back(experiment.file);
     if (!experiment.simulations.empty()) {
-        result.inputs.push_back(data_root() / "lenses" / "glasses.toml");
+        std::ranges::copy(shipped_glass_files(), std::back_inserter(result.inputs));
     }
     // Whatever is missing is found before the long part begins.
     std::vector<PhotoSet> sets;

@@ -71,29 +71,17 @@ void trace_if_possible(CheckedLens& checked) {
 
 }  // namespace
 
-std::optional<Glass> stated_glass(const PrescribedSurface& row, const std::vector<Glass>& glasses) {
-    const StatedMedium& medium = row.medium;
-    Glass stated;
-    stated.max_wavelength_nm = kUnlimited;
-    if (medium.is_air()) {
-        stated.name = "air";
-        stated.formula = ConstantIndex{1.0};
-        return stated;
+std::optional<Glass> stated_glass(const PrescribedSurface& row, const GlassCatalogue& glasses,
+                                  const std::vector<std::string>& preferred_makers) {
+    PrescribedSurface sound = row;
+    if (!(row.medium.V_d.value_or(1.0) > 0.0)) {
+        sound.medium.V_d.reset();  // no dispersion can be made of it, but the index stands
     }
-    if (!medium.glass.empty()) {
-        if (std::optional<Glass> found = find_glass(glasses, medium.glass)) {
-            return found;
-        }
+    try {
+        return stated_medium(sound, glasses, preferred_makers);
+    } catch (const InputError&) {
+        return std::nullopt;
     }
-    if (medium.n_d && medium.V_d && *medium.V_d > 0.0) {
-        stated.formula = buchdahl_normal_line(*medium.n_d, *medium.V_d);
-        return stated;
-    }
-    if (medium.n_d) {
-        stated.formula = ConstantIndex{*medium.n_d};
-        return stated;
-    }
-    return std::nullopt;
 }
 
 TraceLens<double> paraxial_lens(const ParaxialTable& table) {
@@ -124,26 +112,30 @@ bool CheckedLens::is_dummy(int i) const {
 }
 
 CheckedLens make_checked_lens(const Prescription& at_one_position, const StatedData& claims,
-                              const std::vector<Glass>& glasses, const CheckSettings& settings) {
+                              const GlassCatalogue& glasses, const CheckSettings& settings) {
     CheckedLens checked;
     checked.prescription = at_one_position;
     checked.claims = joined(claims, at_one_position.stated);
     checked.settings = settings;
     checked.known_glasses = &glasses;
+    trace_if_possible(checked);
     bool is_known = true;
-    for (const PrescribedSurface& row : at_one_position.surfaces) {
-        checked.media.push_back(stated_glass(row, glasses));
+    for (int i = 0; i < checked.size(); ++i) {
+        const PrescribedSurface& row = checked.row(i);
+        checked.media.push_back(stated_glass(row, glasses, at_one_position.preferred_makers));
         checked.table.curvature.push_back(row.curvature() + 2.0 * row.asphere[0]);
         checked.table.gap.push_back(row.thickness_mm);
-        checked.table.index.push_back(index_behind(row, checked.media.back(), settings));
+        // The traced lens knows of its surroundings, too.
+        checked.table.index.push_back(checked.traced ? checked.traced->surfaces[i].index_after
+                                                     : index_behind(row, checked.media.back(), settings));
+        const bool is_last = i + 1 == checked.size();
         is_known = is_known && std::isfinite(checked.table.curvature.back()) &&
                    std::isfinite(checked.table.index.back()) && checked.table.index.back() > 0.0 &&
-                   (std::isfinite(row.thickness_mm) || &row == &at_one_position.surfaces.back());
+                   (std::isfinite(row.thickness_mm) || is_last);
     }
     if (is_known) {
         checked.focus = paraxial_focus(checked.table, at_one_position.object_distance_mm);
     }
-    trace_if_possible(checked);
     for (int i = 0; i < checked.size(); ++i) {
         const PrescribedSurface& row = checked.row(i);
         const bool is_stated = row.semi_diameter_mm || row.rim_mm;

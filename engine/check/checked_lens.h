@@ -34,7 +34,7 @@ struct CheckedLens {
     Prescription prescription;  // at one zoom position
     StatedData claims;
     CheckSettings settings;
-    const std::vector<Glass>* known_glasses = nullptr;
+    const GlassCatalogue* known_glasses = nullptr;
 
     std::vector<std::optional<Glass>> media;  // behind each surface; nothing where it is not known
     ParaxialTable table;                      // NaN where a number is missing
@@ -59,10 +59,11 @@ struct CheckedLens {
 };
 
 CheckedLens make_checked_lens(const Prescription& at_one_position, const StatedData& claims,
-                              const std::vector<Glass>& glasses, const CheckSettings& settings);
+                              const GlassCatalogue& glasses, const CheckSettings& settings);
 
 /// The glass behind a surface as the table names or describes it; nothing where the name is unknown and no index is
 /// stated.
-std::optional<Glass> stated_glass(const PrescribedSurface& row, const std::vector<Glass>& glasses);
+std::optional<Glass> stated_glass(const PrescribedSurface& row, const GlassCatalogue& glasses,
+                                  const std::vector<std::string>& preferred_makers);
 
 }  // namespace lensproof

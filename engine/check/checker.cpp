@@ -76,7 +76,7 @@ bool CheckReport::ok() const {
 }
 
 CheckReport check_prescription(const Prescription& prescription, const StatedData& claims,
-                               const std::vector<Glass>& glasses, const CheckSettings& settings) {
+                               const GlassCatalogue& glasses, const CheckSettings& settings) {
     CheckReport report{.findings = prescription.remarks, .computed = {}};
     if (prescription.surfaces.empty()) {
         report.findings.push_back(

@@ -38,6 +38,6 @@ struct CheckReport {
 ///
 /// Each rule stands with its source beside the check. Never throws for what a prescription may hold.
 CheckReport check_prescription(const Prescription& prescription, const StatedData& claims,
-                               const std::vector<Glass>& glasses, const CheckSettings& settings = {});
+                               const GlassCatalogue& glasses, const CheckSettings& settings = {});
 
 }  // namespace lensproof

@@ -6,7 +6,6 @@
 #include <cmath>
 
 #include "engine/check/checks.h"
-#include "engine/check/glass_lookup.h"
 
 namespace lensproof {
 
@@ -26,6 +25,10 @@ constexpr double kAbbeWarning = 0.01;
 // Rule 17: what renders take by default.
 constexpr double kRenderFrom = 400.0;
 constexpr double kRenderTo = 700.0;
+
+GlassMatch resolve(const CheckedLens& checked, const std::string& name) {
+    return checked.known_glasses->resolve(name, checked.prescription.preferred_makers);
+}
 
 std::string where_air_begins(const StatedMedium& medium) {
     return medium.glass.empty() ? fmt::format("n_d = {}", medium.n_d.value_or(Finding::kNothing)) : medium.glass;
@@ -120,23 +123,27 @@ void check_name(const CheckedLens& checked, int i, Findings& findings) {
     if (medium.glass.empty() || medium.is_air() || checked.settings.indices.contains(medium.glass)) {
         return;
     }
-    const GlassLookup lookup =
-        look_up_glass(*checked.known_glasses, medium.glass, checked.prescription.preferred_makers);
-    if (lookup.glass) {
-        if (lookup.is_spelled_differently) {
+    const GlassMatch match = resolve(checked, medium.glass);
+    if (match.glass) {
+        if (match.how == GlassMatch::How::spelled_differently) {
             findings.push_back({.code = "glass-spelling",
                                 .severity = Severity::info,
                                 .surface = i + 1,
                                 .message = fmt::format("the glass {} is taken for {} {}", medium.glass,
-                                                       lookup.glass->catalogue, lookup.glass->name)});
+                                                       match.glass->catalogue, match.glass->name)});
         }
-        check_figures(checked, i, *lookup.glass, findings);
+        if (match.glass->status == "obsolete") {
+            findings.push_back(
+                {.code = "glass-obsolete",
+                 .severity = Severity::info,
+                 .surface = i + 1,
+                 .message = fmt::format("{} {} is no longer made", match.glass->catalogue, match.glass->name)});
+        }
+        check_figures(checked, i, *match.glass, findings);
         return;
     }
-    std::string message = fmt::format("no known catalogue has the glass {}", medium.glass);
-    if (!lookup.suggestions.empty()) {
-        message += fmt::format("; meant may be {}", fmt::join(lookup.suggestions, ", "));
-    }
+    std::string message =
+        fmt::format("no catalogue has the glass {}; {}", medium.glass, suggestion_text(match.suggestions));
     if (medium.n_d) {
         message += fmt::format("; traced with the n_d = {} beside it", *medium.n_d);
     }
@@ -149,9 +156,7 @@ void check_name(const CheckedLens& checked, int i, Findings& findings) {
 /// Whether the table gives the glass behind a surface by figures alone.
 bool is_given_by_figures(const CheckedLens& checked, int i) {
     const StatedMedium& medium = checked.row(i).medium;
-    const bool is_named =
-        !medium.glass.empty() &&
-        look_up_glass(*checked.known_glasses, medium.glass, checked.prescription.preferred_makers).glass;
+    const bool is_named = !medium.glass.empty() && resolve(checked, medium.glass).glass;
     return checked.is_glass_behind(i) && !is_named && medium.n_d && medium.indices.empty();
 }
 
@@ -180,7 +185,7 @@ void report_normal_line(const CheckedLens& checked, Findings& findings) {
     double worst_error = 0.0;
     const auto error_at = [&](int i, double wavelength) {
         const StatedMedium& medium = checked.row(i).medium;
-        return expected_index_error(*checked.known_glasses, *medium.n_d, *medium.V_d, wavelength);
+        return normal_line_error(checked.known_glasses->glasses(), *medium.n_d, *medium.V_d, wavelength).percentile_95;
     };
     for (int i = 0; i < checked.size(); ++i) {
         const StatedMedium& medium = checked.row(i).medium;
@@ -188,7 +193,8 @@ void report_normal_line(const CheckedLens& checked, Findings& findings) {
             continue;
         }
         surfaces.push_back(i + 1);
-        const double error = std::max(error_at(i, kRenderFrom), error_at(i, kRenderTo));
+        // The model errs most in the blue.
+        const double error = error_at(i, kRenderFrom);
         if (error >= worst_error) {
             worst_error = error;
             worst = i;
@@ -200,8 +206,8 @@ void report_normal_line(const CheckedLens& checked, Findings& findings) {
              .severity = Severity::info,
              .surface = worst + 1,
              .message = fmt::format("given by n_d and V_d alone, as are {} glasses here (behind surfaces {}): their "
-                                    "dispersion is modelled, with an expected error in n of {:.1e} at {} nm and "
-                                    "{:.1e} at {} nm for this one, the worst",
+                                    "dispersion is modelled, with an error in n of up to {:.1e} at {} nm and {:.1e} "
+                                    "at {} nm for this one, the worst (95 % of the real glasses nearby)",
                                     surfaces.size(), fmt::join(surfaces, ", "), error_at(worst, kRenderFrom),
                                     kRenderFrom, error_at(worst, kRenderTo), kRenderTo),
              .value = worst_error});

@@ -6,7 +6,6 @@
 
 #include "engine/check/checks.h"
 #include "engine/check/digits.h"
-#include "engine/check/glass_lookup.h"
 #include "engine/check/restoration.h"
 #include "engine/check/sag.h"
 
@@ -116,7 +115,7 @@ class Trials {
         }
         const DispersionFormula& formula = lens_.media[i]->formula;
         const double n_d = refractive_index(formula, kLineD);
-        for (const Glass& glass : nearest_glasses(*lens_.known_glasses, n_d, abbe_number(formula), kNeighbours)) {
+        for (const Glass& glass : lens_.known_glasses->nearest(n_d, abbe_number(formula), kNeighbours)) {
             constexpr double kFarFetched = 3.0;
             ParaxialTable table = lens_.table;
             table.index[i] = refractive_index(glass.formula, lens_.settings.wavelength_nm);

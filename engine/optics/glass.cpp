@@ -4,130 +4,77 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
-#include "engine/io/file.h"
-#include "engine/io/input_error.h"
-#include "engine/io/toml.h"
-#include "engine/spectral/wavelengths.h"
+#include "engine/optics/air.h"
 
 namespace lensproof {
-
-namespace {
-
-double squared_index(const Sellmeier& formula, double squared_um) {
-    double sum = 1.0;
-    for (std::size_t i = 0; i < formula.b.size(); ++i) {
-        sum += formula.b[i] * squared_um / (squared_um - formula.c[i]);
-    }
-    return sum;
-}
-
-double squared_index(const SchottPolynomial& formula, double squared_um) {
-    const auto& a = formula.a;
-    const double inverse = 1.0 / squared_um;
-    return a[0] + a[1] * squared_um + inverse * (a[2] + inverse * (a[3] + inverse * (a[4] + inverse * a[5])));
-}
-
-double index_um(const ConstantIndex& formula, double) {
-    return formula.index;
-}
-
-double index_um(const BuchdahlNormalLine& formula, double wavelength_um) {
-    const double from_d = wavelength_um - 1e-3 * kLineD;
-    const double omega = from_d / (1.0 + 2.5 * from_d);
-    return formula.n_d + omega * (formula.nu1 + omega * formula.nu2);
-}
-
-template <class Formula>
-double index_um(const Formula& formula, double wavelength_um) {
-    return std::sqrt(squared_index(formula, wavelength_um * wavelength_um));
-}
-
-DispersionFormula read_formula(TomlTable& entry) {
-    if (entry.choice("formula", {"sellmeier", "schott-polynomial"}) == "sellmeier") {
-        Sellmeier formula;
-        std::ranges::copy(entry.numbers("B", 3), formula.b.begin());
-        std::ranges::copy(entry.numbers("C_um2", 3), formula.c.begin());
-        return formula;
-    }
-    SchottPolynomial formula;
-    std::ranges::copy(entry.numbers("A", 6), formula.a.begin());
-    return formula;
-}
-
-bool same_letters(const std::string& a, const std::string& b) {
-    return std::ranges::equal(a, b,
-                              [](unsigned char x, unsigned char y) { return std::toupper(x) == std::toupper(y); });
-}
-
-}  // namespace
-
-double refractive_index(const DispersionFormula& formula, double wavelength_nm) {
-    return std::visit([&](const auto& f) { return index_um(f, 1e-3 * wavelength_nm); }, formula);
-}
 
 bool covers(const Glass& glass, double wavelength_nm) {
     return wavelength_nm >= glass.min_wavelength_nm && wavelength_nm <= glass.max_wavelength_nm;
 }
 
-double abbe_number(const DispersionFormula& formula) {
-    return (refractive_index(formula, kLineD) - 1.0) /
-           (refractive_index(formula, kLineF) - refractive_index(formula, kLineC));
+double clamped_to_range(const Glass& glass, double wavelength_nm) {
+    return std::clamp(wavelength_nm, glass.min_wavelength_nm, glass.max_wavelength_nm);
 }
 
-BuchdahlNormalLine buchdahl_normal_line(double n_d, double V_d) {
-    const auto omega = [](double wavelength_nm) {
-        const double from_d = 1e-3 * (wavelength_nm - kLineD);
-        return from_d / (1.0 + 2.5 * from_d);
-    };
-    const double F = omega(kLineF);
-    const double C = omega(kLineC);
-    const double g = omega(kLineG);
-    const double principal_dispersion = (n_d - 1.0) / V_d;
-    const double g_minus_F = (0.6438 - 0.001682 * V_d) * principal_dispersion;
-    // Two linear equations: n_F − n_C and n_g − n_F.
-    const double a11 = F - C;
-    const double a12 = F * F - C * C;
-    const double a21 = g - F;
-    const double a22 = g * g - F * F;
-    const double determinant = a11 * a22 - a12 * a21;
-    return {.n_d = n_d,
-            .nu1 = (principal_dispersion * a22 - g_minus_F * a12) / determinant,
-            .nu2 = (g_minus_F * a11 - principal_dispersion * a21) / determinant};
-}
-
-std::vector<Glass> read_glasses(const std::filesystem::path& file) {
-    TomlTable top = TomlTable::read(file);
-    std::vector<Glass> glasses;
-    for (TomlTable& entry : top.tables("glass")) {
-        Glass glass;
-        glass.name = entry.text("name");
-        glass.catalogue = entry.text("catalogue");
-        glass.formula = read_formula(entry);
-        const std::vector<double> range = entry.numbers("range_nm", 2, kPositive);
-        glass.min_wavelength_nm = range[0];
-        glass.max_wavelength_nm = range[1];
-        glass.stated_n_d = entry.number("n_d", {.min = 1.0, .max = 4.0});
-        glass.stated_V_d = entry.number("V_d", kPositive);
-        glass.source = entry.text("source");
-        entry.finish();
-        if (find_glass(glasses, glass.name)) {
-            entry.fail("name", fmt::format("{} stands in the file twice", glass.name));
-        }
-        glasses.push_back(std::move(glass));
+double dn_dT_absolute(const Glass& glass, double wavelength_nm, double temperature_C) {
+    if (!glass.thermal) {
+        return std::numeric_limits<double>::quiet_NaN();
     }
-    top.finish();
-    return glasses;
+    const ThermalDispersion& t = *glass.thermal;
+    const double n = refractive_index(glass.formula, wavelength_nm);
+    const double dt = temperature_C - t.reference_C;
+    const double um = 1e-3 * wavelength_nm;
+    const double resonance = um * um - std::copysign(t.lambda_tk_um * t.lambda_tk_um, t.lambda_tk_um);
+    return (n * n - 1.0) / (2.0 * n) *
+           (t.d0 + 2.0 * t.d1 * dt + 3.0 * t.d2 * dt * dt + (t.e0 + 2.0 * t.e1 * dt) / resonance);
 }
 
-std::vector<Glass> shipped_glasses() {
-    return read_glasses(data_root() / "lenses" / "glasses.toml");
+double dn_dT_relative(const Glass& glass, double wavelength_nm, double temperature_C) {
+    const double n = refractive_index(glass.formula, wavelength_nm);
+    const double air = air_index(vacuum_wavelength_nm(wavelength_nm), temperature_C);
+    const double air_slope = -(air - 1.0) / (temperature_C + 273.15);  // an ideal gas thins with temperature
+    return (dn_dT_absolute(glass, wavelength_nm, temperature_C) - n * air_slope) / air;
 }
 
-std::optional<Glass> find_glass(const std::vector<Glass>& glasses, const std::string& name) {
-    const auto found =
-        std::ranges::find_if(glasses, [&](const Glass& glass) { return same_letters(glass.name, name); });
-    return found == glasses.end() ? std::nullopt : std::optional(*found);
+std::optional<double> internal_transmittance(const Glass& glass, double wavelength_nm, double thickness_mm) {
+    const auto& table = glass.internal_transmittance;
+    const auto above = std::ranges::lower_bound(table, wavelength_nm, {}, &TransmittancePoint::wavelength_nm);
+    if (above == table.end() || (above == table.begin() && above->wavelength_nm != wavelength_nm)) {
+        return std::nullopt;
+    }
+    const auto through = [&](const TransmittancePoint& point) {
+        return std::pow(point.transmittance, thickness_mm / point.thickness_mm);
+    };
+    if (above->wavelength_nm == wavelength_nm) {
+        return through(*above);
+    }
+    const TransmittancePoint& a = *(above - 1);
+    const double t = (wavelength_nm - a.wavelength_nm) / (above->wavelength_nm - a.wavelength_nm);
+    if (a.thickness_mm != above->thickness_mm) {
+        return (1.0 - t) * through(a) + t * through(*above);
+    }
+    return through({.wavelength_nm = wavelength_nm,
+                    .transmittance = (1.0 - t) * a.transmittance + t * above->transmittance,
+                    .thickness_mm = a.thickness_mm});
+}
+
+std::string complaint_about(const Glass& glass) {
+    const double min = glass.min_wavelength_nm;
+    const double max = glass.max_wavelength_nm;
+    if (!(min > 0.0 && min < max && max <= 1e6)) {
+        return fmt::format("its range is {} to {} nm, expected two ascending wavelengths", min, max);
+    }
+    constexpr int kSteps = 64;
+    for (int i = 0; i <= kSteps; ++i) {
+        const double nm = min + (max - min) * i / kSteps;
+        const double n = refractive_index(glass.formula, nm);
+        if (!(n > 0.5 && n < 10.0)) {
+            return fmt::format("its index at {:.4g} nm is {:.4g}, expected one from 0.5 to 10", nm, n);
+        }
+    }
+    return {};
 }
 
 }  // namespace lensproof

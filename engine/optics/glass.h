@@ -1,71 +1,69 @@
-// engine/optics/glass.h — refractive indices of optical glass from catalogue formulas.
+// engine/optics/glass.h — a glass as its catalogue states it.
 #pragma once
-#include <array>
-#include <filesystem>
 #include <optional>
 #include <string>
-#include <variant>
 #include <vector>
+
+#include "engine/optics/dispersion.h"
+#include "engine/optics/normal_line.h"
 
 namespace lensproof {
 
-/// n² − 1 = Σ B_i λ² / (λ² − C_i), λ in µm (Sellmeier 1871; SCHOTT's present form).
-struct Sellmeier {
-    std::array<double, 3> b{};
-    std::array<double, 3> c{};  // µm²
+/// How the index of a glass changes with temperature, from `reference_C`:
+///     Δn_abs = (n² − 1) / (2 n) (D0 Δt + D1 Δt² + D2 Δt³ + (E0 Δt + E1 Δt²) / (λ² − λ_tk²)),  λ in µm
+/// (SCHOTT TIE-19, eq. 4). A negative λ_tk stands for λ² + λ_tk², as in the makers' tables.
+struct ThermalDispersion {
+    double d0 = 0.0;  // 1/K
+    double d1 = 0.0;  // 1/K²
+    double d2 = 0.0;  // 1/K³
+    double e0 = 0.0;  // µm²/K
+    double e1 = 0.0;  // µm²/K²
+    double lambda_tk_um = 0.0;
+    double reference_C = 20.0;
 };
 
-/// n² = a0 + a1 λ² + a2 λ⁻² + a3 λ⁻⁴ + a4 λ⁻⁶ + a5 λ⁻⁸, λ in µm (SCHOTT's form until 1992; HIKARI still uses it).
-struct SchottPolynomial {
-    std::array<double, 6> a{};
+/// The fraction of light that passes `thickness_mm` of glass, reflections at its surfaces left out.
+struct TransmittancePoint {
+    double wavelength_nm = 0.0;
+    double transmittance = 0.0;
+    double thickness_mm = 0.0;
 };
 
-/// The same index at every wavelength.
-struct ConstantIndex {
-    double index = 1.0;
-};
-
-/// What is left when a table states n_d and V_d alone: n = n_d + ν₁ω + ν₂ω² with Buchdahl's ω = (λ − λ_d) / (1 + 2.5 (λ
-/// − λ_d)), λ in µm (Robb & Mercado, Appl. Opt. 22, 1198, 1983). ν₁ and ν₂ are such that n_F − n_C = (n_d − 1) / V_d
-/// and the glass lies on SCHOTT's normal line P_gF = 0.6438 − 0.001682 V_d (SCHOTT TIE-29). See `buchdahl_normal_line`.
-struct BuchdahlNormalLine {
-    double n_d = 1.0;
-    double nu1 = 0.0;
-    double nu2 = 0.0;
-};
-
-using DispersionFormula = std::variant<ConstantIndex, Sellmeier, SchottPolynomial, BuchdahlNormalLine>;
-
-/// A glass as its catalogue states it. Indices are relative to air at catalogue conditions, as catalogues give them,
-/// and the tracer's air therefore has index 1.
+/// A glass as its catalogue states it. Indices are relative to air at catalogue conditions and wavelengths are those in
+/// air, as catalogues give both; the tracer's air therefore has index 1. air.h leads to indices against vacuum.
 struct Glass {
     std::string name;
     std::string catalogue;
     DispersionFormula formula;
     double min_wavelength_nm = 0.0;  // the formula's stated range
     double max_wavelength_nm = 0.0;
-    double stated_n_d = 0.0;
-    double stated_V_d = 0.0;
+    std::optional<double> stated_n_d;
+    std::optional<double> stated_V_d;
+    std::string status;  // "current", "special" (on request), "obsolete", or nothing where that is not known
     std::string source;
+    std::string note;
+    std::optional<ThermalDispersion> thermal;
+    std::vector<TransmittancePoint> internal_transmittance;  // ascending; for shipped glasses see glass_catalogue.h
 };
-
-/// The index at a vacuum-scale catalogue wavelength in nm. No range check: see `covers`.
-double refractive_index(const DispersionFormula& formula, double wavelength_nm);
 
 bool covers(const Glass& glass, double wavelength_nm);
 
-/// V_d = (n_d − 1) / (n_F − n_C).
-double abbe_number(const DispersionFormula& formula);
+/// The nearest wavelength that the formula covers: what a render uses beyond the range, and says so.
+double clamped_to_range(const Glass& glass, double wavelength_nm);
 
-BuchdahlNormalLine buchdahl_normal_line(double n_d, double V_d);
+/// dn/dT against vacuum at `temperature_C`, 1/K: the derivative of TIE-19's formula above.
+double dn_dT_absolute(const Glass& glass, double wavelength_nm, double temperature_C = 20.0);
 
-/// The glasses that ship, in the file's order. Throws InputError naming the file and line of an entry that is unusable.
-std::vector<Glass> read_glasses(const std::filesystem::path& file);
+/// dn/dT relative to air of the same temperature at 101 325 Pa, as catalogues tabulate it, 1/K. Both are NaN where the
+/// glass has no thermal data.
+double dn_dT_relative(const Glass& glass, double wavelength_nm, double temperature_C = 20.0);
 
-/// `read_glasses` on lenses/glasses.toml.
-std::vector<Glass> shipped_glasses();
+/// Internal transmittance through `thickness_mm`, by the exponential law and, between tabulated wavelengths, linear in
+/// the transmittance at the table's thickness. Nothing outside the table, or without one.
+std::optional<double> internal_transmittance(const Glass& glass, double wavelength_nm, double thickness_mm);
 
-/// The glass of that name (letter case aside), or nothing. No guessing: LAK9 is not N-LAK9.
-std::optional<Glass> find_glass(const std::vector<Glass>& glasses, const std::string& name);
+/// What is wrong with a glass that was read, in words, or nothing: the range has to be finite and ascending, and the
+/// index real and between 0.5 and 10 throughout.
+std::string complaint_about(const Glass& glass);
 
 }  // namespace lensproof

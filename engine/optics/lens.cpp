@@ -10,8 +10,11 @@
 #include <set>
 
 #include "engine/io/file.h"
+#include "engine/io/glass_file.h"
 #include "engine/io/input_error.h"
 #include "engine/io/prescription_file.h"
+#include "engine/io/text.h"
+#include "engine/optics/air.h"
 #include "engine/optics/paraxial.h"
 #include "engine/spectral/wavelengths.h"
 
@@ -32,34 +35,21 @@ Glass everywhere(std::string name, DispersionFormula formula) {
     return glass;
 }
 
-Glass resolve_medium(const PrescribedSurface& surface, const std::vector<Glass>& glasses) {
-    const StatedMedium& medium = surface.medium;
-    if (medium.is_air()) {
-        return everywhere("air", ConstantIndex{1.0});
+Glass tabulated_glass(const std::vector<WavelengthValue>& indices) {
+    Glass glass;
+    glass.name = fmt::format("a table of {} indices", indices.size());
+    if (indices.size() == 1) {
+        return everywhere(glass.name, ConstantIndex{indices.front().value});
     }
-    if (!medium.glass.empty()) {
-        if (const std::optional<Glass> found = find_glass(glasses, medium.glass)) {
-            return *found;
-        }
+    IndexTable table;
+    for (const WavelengthValue& entry : indices) {
+        table.wavelength_um.push_back(1e-3 * entry.wavelength_nm);
+        table.index.push_back(entry.value);
     }
-    if (medium.n_d && !medium.V_d) {
-        return everywhere(fmt::format("n={}", *medium.n_d), ConstantIndex{*medium.n_d});
-    }
-    if (medium.n_d) {
-        Glass glass;
-        glass.name = fmt::format("n_d={} V_d={}", *medium.n_d, *medium.V_d);
-        glass.formula = buchdahl_normal_line(*medium.n_d, *medium.V_d);
-        // Where Robb & Mercado fitted the form.
-        glass.min_wavelength_nm = 365.0;
-        glass.max_wavelength_nm = 1014.0;
-        return glass;
-    }
-    std::vector<std::string> names;
-    std::ranges::transform(glasses, std::back_inserter(names), &Glass::name);
-    throw InputError(
-        fmt::format("{}.glass is \"{}\", which is not in the catalogue lenses/glasses.toml; it has: {}. "
-                    "Or state n_d and V_d.",
-                    surface.where, medium.glass, fmt::join(names, ", ")));
+    glass.formula = std::move(table);
+    glass.min_wavelength_nm = indices.front().wavelength_nm;
+    glass.max_wavelength_nm = indices.back().wavelength_nm;
+    return glass;
 }
 
 void require(bool holds, const PrescribedSurface& row, const char* key, double found, const char* expected) {
@@ -201,11 +191,42 @@ void estimate_semi_diameters(Lens& lens) {
 
 }  // namespace
 
+Glass stated_medium(const PrescribedSurface& surface, const GlassCatalogue& glasses,
+                    const std::vector<std::string>& preferred_makers) {
+    const StatedMedium& medium = surface.medium;
+    if (medium.is_air()) {
+        return everywhere("air", ConstantIndex{1.0});
+    }
+    if (!medium.indices.empty()) {
+        return tabulated_glass(medium.indices);
+    }
+    GlassMatch match;
+    if (!medium.glass.empty()) {
+        match = glasses.resolve(medium.glass, preferred_makers);
+        if (match.glass) {
+            return std::move(*match.glass);
+        }
+    }
+    if (medium.n_d && !medium.V_d) {
+        return everywhere(fmt::format("n={}", *medium.n_d), ConstantIndex{*medium.n_d});
+    }
+    if (medium.n_d) {
+        Glass glass;
+        glass.name = fmt::format("n_d={} V_d={}", *medium.n_d, *medium.V_d);
+        glass.formula = normal_line(*medium.n_d, *medium.V_d);
+        glass.min_wavelength_nm = kNormalLineMinNm;
+        glass.max_wavelength_nm = kNormalLineMaxNm;
+        return glass;
+    }
+    throw InputError(fmt::format("{}.glass is \"{}\", which no catalogue has; {}. Or state n_d and V_d.", surface.where,
+                                 printable(medium.glass), suggestion_text(match.suggestions)));
+}
+
 int Lens::stop_index() const {
     return static_cast<int>(std::ranges::find_if(surfaces, &LensSurface::is_stop) - surfaces.begin());
 }
 
-Lens make_lens(const Prescription& prescription, const std::vector<Glass>& glasses, const IndexOverrides& overrides) {
+Lens make_lens(const Prescription& prescription, const GlassCatalogue& glasses, const IndexOverrides& overrides) {
     require_traceable(prescription);
     Lens lens;
     lens.name = prescription.name;
@@ -224,7 +245,7 @@ Lens make_lens(const Prescription& prescription, const std::vector<Glass>& glass
         const auto override_index = overrides.find(row.medium.glass);
         Glass medium = override_index != overrides.end()
                            ? everywhere(row.medium.glass, ConstantIndex{override_index->second})
-                           : resolve_medium(row, glasses);
+                           : stated_medium(row, glasses, prescription.preferred_makers);
         used.insert(row.medium.glass);
         LensSurface surface = placed_surface(row, z);
         // A barrel is convex, so a path runs inside it where it does so at both ends.
@@ -257,11 +278,20 @@ Lens make_lens(const Prescription& prescription, const std::vector<Glass>& glass
     return lens;
 }
 
-Lens load_lens(const std::string& lens, const IndexOverrides& overrides, const std::string& zoom) {
+GlassCatalogue with_own_catalogues(GlassCatalogue glasses, const Prescription& prescription) {
+    for (const std::filesystem::path& file : prescription.catalogues) {
+        glasses.add(read_glass_file(file).glasses);
+    }
+    return glasses;
+}
+
+Lens load_lens(const std::string& lens, const LensSettings& settings) {
     Prescription prescription = read_prescription(find_lens_file(lens));
-    const std::size_t position = zoom.empty() ? 0 : find_zoom_position(prescription, zoom);
+    const std::size_t position = settings.zoom.empty() ? 0 : find_zoom_position(prescription, settings.zoom);
     prescription = at_zoom_position(std::move(prescription), position);
-    return make_lens(prescription, shipped_glasses(), overrides);
+    const GlassCatalogue glasses =
+        with_own_catalogues(settings.glasses ? *settings.glasses : GlassCatalogue::shipped(), prescription);
+    return make_lens(prescription, glasses, settings.indices);
 }
 
 Lens with_f_number(Lens lens, double f_number) {
@@ -369,6 +399,15 @@ WavelengthRange wavelength_range(const Lens& lens) {
 
 namespace {
 
+/// The index of a medium against what the lens stands in, which itself has 1.
+double index_in(Surroundings surroundings, const Glass& medium, double wavelength_nm) {
+    if (surroundings == Surroundings::air || medium.name == "air") {
+        return refractive_index(medium.formula, wavelength_nm);
+    }
+    const double in_air_nm = air_wavelength_nm(wavelength_nm);
+    return absolute_index(refractive_index(medium.formula, in_air_nm), in_air_nm);
+}
+
 template <class T>
 Vec3<T> converted(const Vec3d& v) {
     return {static_cast<T>(v.x), static_cast<T>(v.y), static_cast<T>(v.z)};
@@ -417,7 +456,7 @@ TraceLens<T> at_wavelength(const Lens& lens, double wavelength_nm) {
                                          surface.medium.name, surface.medium.min_wavelength_nm,
                                          surface.medium.max_wavelength_nm));
         }
-        const double index_after = refractive_index(surface.medium.formula, wavelength_nm);
+        const double index_after = index_in(lens.surroundings, surface.medium, wavelength_nm);
         // At the vertex an r² term bends like the curvature: A2 r² = c r² / 2.
         const double vertex_curvature = surface.curvature + 2.0 * surface.shape.asphere[0];
         traced.surfaces.push_back(make_trace_surface<T>(

@@ -1,10 +1,11 @@
 // engine/optics/lens.h — a lens as it was meant: glasses looked up, stop and focus set, ready to be traced.
 #pragma once
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
-#include "engine/optics/glass.h"
+#include "engine/optics/glass_catalogue.h"
 #include "engine/optics/prescription.h"
 #include "engine/optics/trace.h"
 
@@ -50,14 +51,27 @@ struct Lens {
 /// Constant indices that stand for glasses, by catalogue name: `--index LAK9=1.691`.
 using IndexOverrides = std::map<std::string, double>;
 
+/// The medium behind a surface as the table names or describes it: air, a catalogue's glass, a table of indices, or the
+/// model of what n_d and V_d state. Throws InputError naming the surface for a glass that no catalogue has.
+Glass stated_medium(const PrescribedSurface& surface, const GlassCatalogue& glasses,
+                    const std::vector<std::string>& preferred_makers);
+
 /// Looks the prescription's glasses up. Throws InputError naming the file, the line and the name of an unknown glass,
 /// and for an override of a glass that the lens does not have.
-Lens make_lens(const Prescription& prescription, const std::vector<Glass>& glasses,
-               const IndexOverrides& overrides = {});
+Lens make_lens(const Prescription& prescription, const GlassCatalogue& glasses, const IndexOverrides& overrides = {});
 
-/// find_lens_file, read_prescription and make_lens with the glasses that ship, at the zoom position called `zoom` (its
-/// name or number; empty: the first).
-Lens load_lens(const std::string& lens, const IndexOverrides& overrides = {}, const std::string& zoom = "");
+/// What a lens is loaded with, beyond its file.
+struct LensSettings {
+    IndexOverrides indices;
+    std::string zoom;                       // the position's name or number; empty: the first
+    std::optional<GlassCatalogue> glasses;  // nothing: those that ship
+};
+
+/// `glasses` behind the prescription's own catalogues. Throws InputError for one that cannot be read.
+GlassCatalogue with_own_catalogues(GlassCatalogue glasses, const Prescription& prescription);
+
+/// find_lens_file, read_prescription, the zoom position, and make_lens.
+Lens load_lens(const std::string& lens, const LensSettings& settings = {});
 
 /// The lens with its stop opened or closed to f-number `f_number` (paraxial: EFL over entrance pupil diameter, at the d
 /// line, object at infinity). Throws InputError where that is wider than the prescription's stop.

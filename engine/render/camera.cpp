@@ -141,7 +141,7 @@ ChartScene read_chart_scene(const std::filesystem::path& file) {
 }
 
 Lens camera_lens(const Camera& camera) {
-    return focused_at(with_f_number(load_lens(camera.lens, {}, camera.zoom), camera.f_number),
+    return focused_at(with_f_number(load_lens(camera.lens, {.zoom = camera.zoom}), camera.f_number),
                       camera.focus_distance_mm);
 }
 

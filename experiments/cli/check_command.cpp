@@ -3,15 +3,17 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <memory>
 #include <sstream>
 
 #include "engine/check/checker.h"
+#include "engine/io/file.h"
 #include "engine/io/input_error.h"
 #include "engine/io/prescription_file.h"
+#include "engine/io/text.h"
 #include "experiments/cli/command.h"
+#include "experiments/plot/lens_section.h"
 
 namespace lensproof {
 
@@ -24,15 +26,16 @@ struct CheckOptions {
     std::vector<std::string> indices;
     double wavelength_nm = kLineD;
     std::string zoom;
+    std::string plot_file;
+    std::vector<std::string> glass_catalogues;
 };
 
-double parse_number(const std::string& text, const std::string& where) {
-    double value = 0.0;
-    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-    if (error != std::errc() || end != text.data() + text.size() || !std::isfinite(value)) {
-        throw InputError(fmt::format("{} is \"{}\", expected a number", where, text));
+double parse_finite(const std::string& text, const std::string& where) {
+    const std::optional<double> value = parse_number(text);
+    if (!value || !std::isfinite(*value)) {
+        throw InputError(fmt::format("{} is \"{}\", expected a number", where, printable(text)));
     }
-    return value;
+    return *value;
 }
 
 struct Claim {
@@ -61,7 +64,7 @@ StatedData parse_claims(const std::string& text) {
             throw InputError(fmt::format("--stated holds \"{}\", expected KEY=NUMBER with one of the keys {}", item,
                                          fmt::join(keys, ", ")));
         }
-        const double value = parse_number(item.substr(equals + 1), "--stated " + key);
+        const double value = parse_finite(item.substr(equals + 1), "--stated " + key);
         const bool may_be_negative = key == "efl_mm" || key == "bfl_mm";
         if (!(value > 0.0) && !may_be_negative) {
             throw InputError(fmt::format("--stated {} is {}, expected a positive number", key, value));
@@ -78,7 +81,7 @@ IndexOverrides parse_indices(const std::vector<std::string>& texts) {
         if (equals == 0 || equals == std::string::npos) {
             throw InputError(fmt::format("--index is \"{}\", expected NAME=VALUE", text));
         }
-        overrides[text.substr(0, equals)] = parse_number(text.substr(equals + 1), "--index " + text);
+        overrides[text.substr(0, equals)] = parse_finite(text.substr(equals + 1), "--index " + text);
     }
     return overrides;
 }
@@ -90,13 +93,14 @@ nlohmann::ordered_json number_or_null(double value) {
 
 /// Every key is there; what does not apply is null: the surface of a finding about the lens as a whole, say.
 nlohmann::ordered_json finding_json(const Finding& finding) {
-    return {{"code", finding.code},
-            {"severity", severity_name(finding.severity)},
-            {"surface", finding.surface > 0 ? nlohmann::ordered_json(finding.surface) : nlohmann::ordered_json(nullptr)},
-            {"message", finding.message},
-            {"value", number_or_null(finding.value)},
-            {"limit", number_or_null(finding.limit)},
-            {"unit", finding.unit}};
+    return {
+        {"code", finding.code},
+        {"severity", severity_name(finding.severity)},
+        {"surface", finding.surface > 0 ? nlohmann::ordered_json(finding.surface) : nlohmann::ordered_json(nullptr)},
+        {"message", finding.message},
+        {"value", number_or_null(finding.value)},
+        {"limit", number_or_null(finding.limit)},
+        {"unit", finding.unit}};
 }
 
 nlohmann::ordered_json computed_json(const ComputedData& computed) {
@@ -159,11 +163,30 @@ void print_report(const std::string& lens, const CheckReport& report) {
     }
 }
 
+/// The section at the position that is checked, or at the first.
+void write_plot(const std::string& file, const Prescription& prescription, const GlassCatalogue& glasses,
+                const CheckSettings& settings, const CheckReport& report) {
+    const Prescription drawn = at_zoom_position(prescription, settings.zoom_position.value_or(0));
+    std::optional<Lens> lens;
+    try {
+        lens = make_lens(drawn, glasses, settings.indices);
+    } catch (const InputError&) {
+        lens.reset();  // the findings say why; what the table gives is drawn all the same
+    }
+    write_file(file, lens_section_svg(drawn, lens ? &*lens : nullptr, report.findings));
+}
+
 int run_check(const CheckOptions& options) {
     check_json_name(options.common);
+    if (!options.plot_file.empty()) {
+        check_output_name(options.plot_file);
+        if (options.lenses.size() > 1) {
+            throw InputError(fmt::format("--plot draws one lens, found {}", options.lenses.size()));
+        }
+    }
     const StatedData claims = parse_claims(options.stated);
     const IndexOverrides indices = parse_indices(options.indices);
-    const std::vector<Glass> glasses = shipped_glasses();
+    const GlassCatalogue glasses = read_glass_catalogues(options.glass_catalogues);
     // All are read before any is judged: a file that cannot be read ends the command before it has said anything.
     std::vector<Prescription> prescriptions;
     std::vector<CheckSettings> settings;
@@ -177,11 +200,15 @@ int run_check(const CheckOptions& options) {
     nlohmann::ordered_json lenses = nlohmann::ordered_json::array();
     bool all_ok = true;
     for (std::size_t i = 0; i < prescriptions.size(); ++i) {
-        const CheckReport report = check_prescription(prescriptions[i], claims, glasses, settings[i]);
+        const GlassCatalogue own = with_own_catalogues(glasses, prescriptions[i]);
+        const CheckReport report = check_prescription(prescriptions[i], claims, own, settings[i]);
         all_ok = all_ok && report.ok();
         lenses.push_back(report_json(options.lenses[i], prescriptions[i], report));
         if (prints_text(options.common)) {
             print_report(options.lenses[i], report);
+        }
+        if (!options.plot_file.empty()) {
+            write_plot(options.plot_file, prescriptions[i], own, settings[i], report);
         }
     }
     write_json_result(options.common, {{"lenses", lenses}});
@@ -211,6 +238,9 @@ void add_check_command(CLI::App& app, int& status) {
         ->capture_default_str();
     command->add_option("--zoom", options->zoom, "Check this zoom position alone (default: every one)")
         ->type_name("NAME|N");
+    command->add_option("--plot", options->plot_file, "Draw the lens's section, with what was found marked")
+        ->type_name("OUT.svg");
+    add_glass_catalogue_option(*command, options->glass_catalogues);
     add_common_options(*command, options->common);
     command->callback([options, &status] { status = run_check(*options); });
 }

@@ -7,6 +7,7 @@
 #include <cstdlib>
 
 #include "engine/io/file.h"
+#include "engine/io/glass_file.h"
 
 namespace lensproof {
 
@@ -41,6 +42,27 @@ void add_common_options(CLI::App& command, CommonOptions& options) {
     command.add_option("--seed", options.seed, "Seed of everything random")
         ->check(CLI::Validator(complain_unless_seed, "UINT"))
         ->capture_default_str();
+}
+
+void add_glass_catalogue_option(CLI::App& command, std::vector<std::string>& files) {
+    command
+        .add_option("--glass-catalogue", files,
+                    "Glasses of your own, looked up first: .agf (Zemax), .yml (refractiveindex.info) or .csv; may be "
+                    "repeated")
+        ->type_name("FILE")
+        ->allow_extra_args(false);
+}
+
+GlassCatalogue read_glass_catalogues(const std::vector<std::string>& files) {
+    GlassCatalogue catalogue = GlassCatalogue::shipped();
+    for (const std::string& file : files) {
+        GlassFile read = read_glass_file(file);
+        for (const std::string& note : read.notes) {
+            fmt::print(stderr, "lensproof: {}\n", note);
+        }
+        catalogue.add(std::move(read.glasses));
+    }
+    return catalogue;
 }
 
 void check_json_name(const CommonOptions& options) {

@@ -6,6 +6,9 @@
 #include <functional>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <vector>
+
+#include "engine/optics/glass_catalogue.h"
 
 namespace lensproof {
 
@@ -25,6 +28,13 @@ void add_common_options(CLI::App& command, CommonOptions& options);
 
 /// Whether an option's text is a finite number above 0. (CLI::PositiveNumber lets nan pass.)
 extern const CLI::Validator kPositiveOption;
+
+/// Adds --glass-catalogue FILE, which may be repeated.
+void add_glass_catalogue_option(CLI::App& command, std::vector<std::string>& files);
+
+/// The glasses that ship, behind those of the user's files, of which the last comes first. What a file has that is left
+/// out goes to standard error.
+GlassCatalogue read_glass_catalogues(const std::vector<std::string>& files);
 
 /// Throws InputError where --json cannot be written, before long work begins.
 void check_json_name(const CommonOptions& options);

@@ -1,4 +1,4 @@
-// experiments/cli/list_commands.cpp — `lensproof lenses` and `lensproof glasses`: what ships.
+// experiments/cli/list_commands.cpp — `lensproof lenses`: the lenses that ship.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -54,7 +54,7 @@ nlohmann::ordered_json lens_json(const std::string& id, const Prescription& pres
     }
     for (const ZoomPosition& zoom : prescription.zoom) {
         nlohmann::ordered_json position{{"name", zoom.name}};
-        add_figures(position, figures_of(load_lens(id, {}, zoom.name)));
+        add_figures(position, figures_of(load_lens(id, {.zoom = zoom.name})));
         json["zoom"].push_back(position);
     }
     return json;
@@ -117,54 +117,23 @@ int list_lenses(const CommonOptions& options) {
     return kDone;
 }
 
-int list_glasses(const CommonOptions& options) {
-    nlohmann::ordered_json glasses = nlohmann::ordered_json::array();
-    for (const Glass& glass : shipped_glasses()) {
-        const double n_d = refractive_index(glass.formula, kLineD);
-        const double V_d = abbe_number(glass.formula);
-        glasses.push_back({{"glass", glass.name},
-                           {"catalogue", glass.catalogue},
-                           {"n_d", n_d},
-                           {"V_d", V_d},
-                           {"min_wavelength_nm", glass.min_wavelength_nm},
-                           {"max_wavelength_nm", glass.max_wavelength_nm},
-                           {"source", glass.source}});
-        if (prints_text(options)) {
-            fmt::print("{:8} {:8} n_d {:.5f}  V_d {:5.2f}  {:.0f} to {:.0f} nm  {}\n", glass.name, glass.catalogue, n_d,
-                       V_d, glass.min_wavelength_nm, glass.max_wavelength_nm, glass.source);
-        }
-    }
-    write_json_result(options, {{"glasses", glasses}});
-    return kDone;
-}
-
-void add_list_command(CLI::App& app, int& status, const char* name, const char* description, const char* json_keys,
-                      int (*list)(const CommonOptions&)) {
-    const auto options = std::make_shared<CommonOptions>();
-    CLI::App* command = app.add_subcommand(name, description);
-    command->footer(fmt::format("{}Example: lensproof {} --json -", json_keys, name));
-    add_common_options(*command, *options);
-    command->callback([options, list, &status] {
-        check_json_name(*options);
-        status = list(*options);
-    });
-}
-
 }  // namespace
 
 void add_lenses_command(CLI::App& app, int& status) {
-    add_list_command(
-        app, status, "lenses", "List the lenses that ship, with their sources",
+    const auto options = std::make_shared<CommonOptions>();
+    CLI::App* command = app.add_subcommand("lenses", "List the lenses that ship, with their sources");
+    command->footer(
         "The JSON has for each lens: lens, name, efl_mm, bfl_mm, f_number and half_field_deg (of the last\n"
         "chief ray that passes every rim), all computed at the d line for an object at infinity; projection,\n"
         "source, design, elements, surfaces (the stop included), stated_half_field_deg where the source\n"
         "states one, and zoom: the name and the computed figures of each position of a zoom lens, whose\n"
-        "own figures are those of the first.\n",
-        list_lenses);
-}
-
-void add_glasses_command(CLI::App& app, int& status) {
-    add_list_command(app, status, "glasses", "List the glasses that ship, with their sources", "", list_glasses);
+        "own figures are those of the first.\n"
+        "Example: lensproof lenses --json -");
+    add_common_options(*command, *options);
+    command->callback([options, &status] {
+        check_json_name(*options);
+        status = list_lenses(*options);
+    });
 }
 
 }  // namespace lensproof

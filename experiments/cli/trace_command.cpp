@@ -32,6 +32,7 @@ struct TraceOptions {
     std::string output_file;
     std::string precision = "double";
     std::vector<std::string> indices;
+    std::vector<std::string> glass_catalogues;
     bool reverse = false;
     bool no_clip = false;
 };
@@ -156,7 +157,9 @@ int run_trace(const TraceOptions& options) {
         check_output_name(options.output_file);
     }
     check_json_name(options.common);
-    const Lens lens = load_lens(options.lens, parse_indices(options.indices), options.zoom);
+    const Lens lens = load_lens(options.lens, {.indices = parse_indices(options.indices),
+                                               .zoom = options.zoom,
+                                               .glasses = read_glass_catalogues(options.glass_catalogues)});
     const std::vector<GivenRay> rays = read_rays(options.rays_file);
     TraceTable table;
     if (options.precision == "float") {
@@ -196,6 +199,7 @@ void add_trace_command(CLI::App& app, int& status) {
         ->allow_extra_args(false);  // what follows is the lens
     command->add_option("--zoom", options->zoom, "Position of a zoom lens, by name or number (default: the first)")
         ->type_name("POSITION");
+    add_glass_catalogue_option(*command, options->glass_catalogues);
     command->add_flag("--reverse", options->reverse, "Rays run from the sensor outwards");
     command->add_flag("--no-clip", options->no_clip,
                       "Follow rays beyond the rims; the first rim passed is still named");

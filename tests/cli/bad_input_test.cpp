@@ -183,7 +183,7 @@ TEST(BadLens, NamesTheLineTheKeyAndWhatItHolds) {
         {"no rim's number", "semi_diameter_mm = 10.0", "semi_diameter_mm = nan", {":5:", "semi_diameter_mm", "nan"}},
         {"negative thickness", "thickness_mm =  5.0", "thickness_mm = -5.0", {":5:", "thickness_mm", "-5"}},
         {"no radius", "radius_mm =  50.0", "radius_mm = nan", {":5:", "radius_mm", "nan", "inf"}},
-        {"unknown glass", "BK7", "UNOBTAINIUM", {":5:", "glass", "UNOBTAINIUM", "BK7"}},
+        {"unknown glass", "BK7", "UNOBTAINIUM", {":5:", "glass", "UNOBTAINIUM", "lensproof glasses"}},
         {"unknown key", "radius_mm =  50.0", "radus_mm = 50.0", {":5:", "radus_mm", "not a key", "thickness_mm"}},
         {"no stop", "stop = true", "radius_mm = inf", {"0 aperture stops"}},
         {"glass to the end", "semi_diameter_mm =  8.0", "semi_diameter_mm = 8.0, glass = 'BK7'", {"BK7", "air"}},

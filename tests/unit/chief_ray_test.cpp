@@ -27,8 +27,8 @@ Prescription singlet(bool front_is_stop) {
 
 // The stop's centre is the vertex in both, so that the chief rays are the same.
 TEST(ChiefRays, BendAtAStopOfGlass) {
-    const ChiefRays on_glass(make_lens(singlet(true), {}), kLineD);
-    const ChiefRays in_air(make_lens(singlet(false), {}), kLineD);
+    const ChiefRays on_glass(make_lens(singlet(true), GlassCatalogue{}), kLineD);
+    const ChiefRays in_air(make_lens(singlet(false), GlassCatalogue{}), kLineD);
     for (const double field : {0.0, 0.1, 0.3, 0.5}) {
         const auto a = on_glass.at_field(field);
         const auto b = in_air.at_field(field);

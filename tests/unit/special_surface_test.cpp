@@ -41,7 +41,7 @@ Prescription prescription_of(std::vector<PrescribedSurface> surfaces) {
 }
 
 TraceLens<double> traceable(const Prescription& prescription) {
-    return at_wavelength<double>(make_lens(prescription, {}), kWavelength);
+    return at_wavelength<double>(make_lens(prescription, GlassCatalogue{}), kWavelength);
 }
 
 /// Rays from all around: heights up to `height`, slopes up to `slope`, from z = −20.
@@ -386,7 +386,7 @@ TEST(StopMask, EndsRaysInTheTracerAsStopped) {
 TEST(Barrel, CutsAtBothEndsOfItsSpace) {
     Prescription prescription = prescription_of({row(40.0, 6.0, 1.6), row(-60.0, 3.0), stop_row(50.0, 20.0)});
     prescription.surfaces[1].barrel_mm = 7.0;
-    const Lens lens = make_lens(prescription, {});
+    const Lens lens = make_lens(prescription, GlassCatalogue{});
     EXPECT_EQ(lens.surfaces[0].semi_diameter, 50.0);
     EXPECT_EQ(lens.surfaces[1].semi_diameter, 7.0);
     EXPECT_EQ(lens.surfaces[2].semi_diameter, 7.0);
@@ -402,7 +402,7 @@ TEST(FocusGroup, MovesUntilTheImageIsSharp) {
     // Behind the rear lens: 1/i = 1/60 − 1/150.
     prescription.surfaces.back().thickness_mm = 1.0 / (1.0 / 60.0 - 1.0 / 150.0);
     prescription.focus_groups = {{.first = 1, .last = 2, .travel = 1.0}};
-    const Lens lens = make_lens(prescription, {});
+    const Lens lens = make_lens(prescription, GlassCatalogue{});
     constexpr double kDrive = 5.0;
     const double object_from_group = 1.0 / (1.0 / 100.0 - 1.0 / (100.0 + kDrive));
     const Lens focused = focused_at(lens, object_from_group + kDrive);
@@ -438,10 +438,10 @@ TEST(SemiDiameter, IsEstimatedFromApertureAndField) {
     PrescribedSurface stop = stop_row(20.0);
     stop.semi_diameter_mm.reset();
     Prescription prescription = prescription_of({stop, front, rear});
-    EXPECT_ANY_THROW(make_lens(prescription, {}));
+    EXPECT_ANY_THROW(make_lens(prescription, GlassCatalogue{}));
     prescription.stated.f_number = 5.0;
     prescription.stated.half_field_deg = 10.0;
-    const Lens lens = make_lens(prescription, {});
+    const Lens lens = make_lens(prescription, GlassCatalogue{});
     EXPECT_NEAR(lens.surfaces[0].semi_diameter, 5.0, 1e-12);
     EXPECT_NEAR(lens.surfaces[1].semi_diameter, 5.0 + 20.0 * std::tan(10.0 * std::numbers::pi / 180.0), 1e-12);
 }

@@ -35,7 +35,7 @@ class OpticsReference : public testing::TestWithParam<const char*> {
                 }
             }
         }
-        lens_ = load_lens("tessar", overrides);
+        lens_ = load_lens("tessar", {.indices = overrides});
     }
 
     [[nodiscard]] double wavelength(const std::string& line) const {

@@ -10,7 +10,6 @@
 #include <set>
 
 #include "engine/check/checked_lens.h"
-#include "engine/check/glass_lookup.h"
 #include "engine/check/sag.h"
 #include "engine/io/prescription_file.h"
 
@@ -80,7 +79,7 @@ std::vector<double> swapped(double value) {
 
 class Corruptor {
   public:
-    Corruptor(const Prescription& good, const std::vector<Glass>& glasses) : good_(good), glasses_(glasses) {
+    Corruptor(const Prescription& good, const GlassCatalogue& glasses) : good_(good), glasses_(glasses) {
         for (int i = 0; i < size(); ++i) {
             corrupt_radius(i);
             corrupt_thickness(i);
@@ -160,7 +159,7 @@ class Corruptor {
     }
 
     void corrupt_glass(int i) {
-        const std::optional<Glass> glass = stated_glass(row(i), glasses_);
+        const std::optional<Glass> glass = stated_glass(row(i), glasses_, good_.preferred_makers);
         if (row(i).medium.is_air() || !glass) {
             return;
         }
@@ -180,9 +179,9 @@ class Corruptor {
                 }
             });
         };
-        const std::vector<Glass> by_distance = nearest_glasses(glasses_, n_d, V_d, glasses_.size());
+        const std::vector<Glass> by_distance = glasses_.nearest(n_d, V_d, glasses_.glasses().size());
         for (const Glass& other : by_distance) {
-            if (other.name != row(i).medium.glass && find_glass(glasses_, other.name) &&
+            if (other.name != row(i).medium.glass && is_found(other) &&
                 std::abs(refractive_index(other.formula, kLineD) - n_d) > 2e-3) {
                 set("glass: the nearest", other);
                 break;
@@ -278,8 +277,14 @@ class Corruptor {
         });
     }
 
+    /// Whether its name leads to it, not to another maker's glass.
+    [[nodiscard]] bool is_found(const Glass& glass) const {
+        const std::optional<Glass> found = glasses_.resolve(glass.name, good_.preferred_makers).glass;
+        return found && found->formula == glass.formula;
+    }
+
     const Prescription& good_;
-    const std::vector<Glass>& glasses_;
+    const GlassCatalogue& glasses_;
     std::vector<Corruption> all_;
 };
 
@@ -331,7 +336,7 @@ struct Tally {
 };
 
 TEST(PlantedErrors, AreFoundAndTheUntouchedLibraryIsClean) {
-    const std::vector<Glass> glasses = shipped_glasses();
+    const GlassCatalogue glasses = GlassCatalogue::shipped();
     std::map<std::string, Tally> tallies;
     Tally total;
     int lenses = 0;

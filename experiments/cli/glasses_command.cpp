@@ -1,0 +1,174 @@
+// experiments/cli/glasses_command.cpp — `lensproof glasses`: the glasses that are known, and the sheet of one.
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <cmath>
+#include <memory>
+
+#include "engine/io/input_error.h"
+#include "engine/io/text.h"
+#include "engine/optics/air.h"
+#include "engine/optics/glass_catalogue.h"
+#include "engine/spectral/wavelengths.h"
+#include "experiments/cli/command.h"
+
+namespace lensproof {
+
+namespace {
+
+struct GlassesOptions {
+    CommonOptions common;
+    std::vector<std::string> names;
+    std::vector<std::string> catalogues;
+};
+
+/// A number, or null where there is none: JSON has no NaN.
+nlohmann::ordered_json number_or_null(double value) {
+    return std::isfinite(value) ? nlohmann::ordered_json(value) : nlohmann::ordered_json();
+}
+
+double index_where_covered(const Glass& glass, double wavelength_nm) {
+    return covers(glass, wavelength_nm) ? refractive_index(glass.formula, wavelength_nm)
+                                        : std::numeric_limits<double>::quiet_NaN();
+}
+
+/// V_d where the formula reaches from F to C.
+double abbe_where_covered(const Glass& glass) {
+    return covers(glass, kLineF) && covers(glass, kLineC) ? abbe_number(glass.formula)
+                                                          : std::numeric_limits<double>::quiet_NaN();
+}
+
+nlohmann::ordered_json summary(const Glass& glass) {
+    return {{"glass", glass.name},
+            {"catalogue", glass.catalogue},
+            {"n_d", number_or_null(index_where_covered(glass, kLineD))},
+            {"V_d", number_or_null(abbe_where_covered(glass))},
+            {"min_wavelength_nm", glass.min_wavelength_nm},
+            {"max_wavelength_nm", glass.max_wavelength_nm},
+            {"status", glass.status},
+            {"source", glass.source},
+            {"note", glass.note}};
+}
+
+int list_glasses(const GlassesOptions& options, const GlassCatalogue& catalogue) {
+    nlohmann::ordered_json glasses = nlohmann::ordered_json::array();
+    for (const Glass& glass : catalogue.glasses()) {
+        glasses.push_back(summary(glass));
+        if (prints_text(options.common)) {
+            fmt::print("{:12} {:8} n_d {:.5f}  V_d {:5.2f}  {:4.0f} to {:4.0f} nm  {:8}  {}\n", glass.name,
+                       glass.catalogue, index_where_covered(glass, kLineD), abbe_where_covered(glass),
+                       glass.min_wavelength_nm, glass.max_wavelength_nm, glass.status, glass.source);
+        }
+    }
+    write_json_result(options.common, {{"glasses", glasses}});
+    return kDone;
+}
+
+/// The lines of a maker's sheet, from i to t.
+nlohmann::ordered_json index_rows(const Glass& glass) {
+    nlohmann::ordered_json rows = nlohmann::ordered_json::array();
+    for (const SpectralLine& line : spectral_lines()) {
+        const double n = index_where_covered(glass, line.wavelength_nm);
+        const double reference_C = glass.thermal ? glass.thermal->reference_C : 20.0;
+        rows.push_back({{"line", line.name},
+                        {"wavelength_nm", line.wavelength_nm},
+                        {"n", number_or_null(n)},
+                        {"n_in_vacuum", number_or_null(absolute_index(n, line.wavelength_nm, reference_C))},
+                        {"dn_dT_relative_per_K", number_or_null(dn_dT_relative(glass, line.wavelength_nm))},
+                        {"dn_dT_absolute_per_K", number_or_null(dn_dT_absolute(glass, line.wavelength_nm))}});
+    }
+    return rows;
+}
+
+nlohmann::ordered_json sheet(const Glass& glass, const std::vector<std::string>& also_in) {
+    nlohmann::ordered_json json = summary(glass);
+    const bool visible = covers(glass, kLineG) && covers(glass, kLineC);
+    json["also_in"] = also_in;
+    json["stated_n_d"] = glass.stated_n_d ? nlohmann::ordered_json(*glass.stated_n_d) : nullptr;
+    json["stated_V_d"] = glass.stated_V_d ? nlohmann::ordered_json(*glass.stated_V_d) : nullptr;
+    json["V_e"] = visible ? number_or_null(abbe_number_e(glass.formula)) : nullptr;
+    json["P_gF"] = visible ? number_or_null(partial_dispersion(glass.formula, kLineG, kLineF)) : nullptr;
+    json["lines"] = index_rows(glass);
+    nlohmann::ordered_json transmittance = nlohmann::ordered_json::array();
+    for (const TransmittancePoint& point : shipped_transmittance(glass)) {
+        transmittance.push_back({{"wavelength_nm", point.wavelength_nm},
+                                 {"internal_transmittance", point.transmittance},
+                                 {"thickness_mm", point.thickness_mm}});
+    }
+    json["internal_transmittance"] = transmittance;
+    return json;
+}
+
+/// A number of a sheet in a column, or a dash.
+std::string cell(const nlohmann::ordered_json& value, double factor, int digits) {
+    return value.is_number() ? fmt::format("{:.{}f}", factor * value.get<double>(), digits) : "-";
+}
+
+void print_sheet(const nlohmann::ordered_json& json) {
+    const auto text = [&](const char* key) { return json[key].get<std::string>(); };
+    fmt::print("{} ({}{})\n  {}\n", text("glass"), text("catalogue"),
+               text("status").empty() ? "" : ", " + text("status"), text("source"));
+    if (!text("note").empty()) {
+        fmt::print("  {}\n", text("note"));
+    }
+    if (!json["also_in"].empty()) {
+        fmt::print("  a glass of this name, with another formula: {}\n",
+                   fmt::join(json["also_in"].get<std::vector<std::string>>(), ", "));
+    }
+    fmt::print("  n_d {}  V_d {}  V_e {}  P_gF {}  {:.0f} to {:.0f} nm\n", cell(json["n_d"], 1.0, 6),
+               cell(json["V_d"], 1.0, 2), cell(json["V_e"], 1.0, 2), cell(json["P_gF"], 1.0, 4),
+               json["min_wavelength_nm"].get<double>(), json["max_wavelength_nm"].get<double>());
+    fmt::print("  line         nm   n (in air)  n (vacuum)  dn/dT at 20 °C, 1e-6/K: in air, vacuum\n");
+    for (const auto& line : json["lines"]) {
+        fmt::print("  {:4} {:10.4f}   {:>10}  {:>10}  {:>7} {:>7}\n", line["line"].get<std::string>(),
+                   line["wavelength_nm"].get<double>(), cell(line["n"], 1.0, 6), cell(line["n_in_vacuum"], 1.0, 6),
+                   cell(line["dn_dT_relative_per_K"], 1e6, 2), cell(line["dn_dT_absolute_per_K"], 1e6, 2));
+    }
+    if (!json["internal_transmittance"].empty()) {
+        fmt::print("  internal transmittance through {} mm\n ",
+                   json["internal_transmittance"][0]["thickness_mm"].get<double>());
+        for (const auto& point : json["internal_transmittance"]) {
+            fmt::print(" {:.0f}:{}", point["wavelength_nm"].get<double>(),
+                       cell(point["internal_transmittance"], 1.0, 3));
+        }
+        fmt::print("\n");
+    }
+}
+
+int show_glasses(const GlassesOptions& options, const GlassCatalogue& catalogue) {
+    nlohmann::ordered_json sheets = nlohmann::ordered_json::array();
+    for (const std::string& name : options.names) {
+        const GlassMatch match = catalogue.resolve(name);
+        if (!match.glass) {
+            throw InputError(fmt::format("glass \"{}\" is in no catalogue; {}", printable(name),
+                                         suggestion_text(match.suggestions)));
+        }
+        sheets.push_back(sheet(*match.glass, match.also_in));
+    }
+    if (prints_text(options.common)) {
+        for (const auto& json : sheets) {
+            print_sheet(json);
+        }
+    }
+    write_json_result(options.common, {{"glasses", sheets}});
+    return kDone;
+}
+
+}  // namespace
+
+void add_glasses_command(CLI::App& app, int& status) {
+    const auto options = std::make_shared<GlassesOptions>();
+    CLI::App* command = app.add_subcommand(
+        "glasses", "List the glasses that are known, with their sources, or show the sheets of some");
+    command->footer("Example: lensproof glasses N-BK7 \"SCHOTT LAK9\"");
+    command->add_option("NAME", options->names, "Glasses to show, as lens people write them");
+    add_glass_catalogue_option(*command, options->catalogues);
+    add_common_options(*command, options->common);
+    command->callback([options, &status] {
+        check_json_name(options->common);
+        const GlassCatalogue catalogue = read_glass_catalogues(options->catalogues);
+        status = options->names.empty() ? list_glasses(*options, catalogue) : show_glasses(*options, catalogue);
+    });
+}
+
+}  // namespace lensproof

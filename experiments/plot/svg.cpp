@@ -1,0 +1,242 @@
+#include "experiments/plot/svg.h"
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+
+namespace lensproof {
+
+namespace {
+
+constexpr std::string_view kReplacement = "\uFFFD";
+
+/// The length of the UTF-8 sequence at the start of `text` (not empty), or 0 where it is not one (RFC 3629) or XML
+/// forbids its character.
+std::size_t character_length(std::string_view text) {
+    const auto byte = [&](std::size_t i) {
+        return i < text.size() ? static_cast<unsigned char>(text[i]) : static_cast<unsigned char>(0);
+    };
+    const unsigned first = byte(0);
+    if (first < 0x80) {
+        return first >= 0x20 && first != 0x7F ? 1 : 0;
+    }
+    const std::size_t length = first >= 0xF0 ? 4 : (first >= 0xE0 ? 3 : 2);
+    if (first < 0xC2 || first > 0xF4) {
+        return 0;
+    }
+    unsigned code = first & (0x7Fu >> length);
+    for (std::size_t i = 1; i < length; ++i) {
+        if ((byte(i) & 0xC0u) != 0x80u) {
+            return 0;
+        }
+        code = code << 6u | (byte(i) & 0x3Fu);
+    }
+    const bool overlong = (length == 3 && code < 0x800) || (length == 4 && code < 0x10000);
+    const bool control = code < 0xA0;
+    const bool surrogate = code >= 0xD800 && code < 0xE000;
+    const bool reorders = (code >= 0x202A && code <= 0x202E) || (code >= 0x2066 && code <= 0x2069);
+    const bool noncharacter = (code & 0xFFFEu) == 0xFFFEu;
+    return overlong || control || surrogate || reorders || noncharacter || code > 0x10FFFF ? 0 : length;
+}
+
+/// Calls `visit` with every character of `text`; what is none comes byte by byte, as U+FFFD.
+template <class Visitor>
+void for_each_character(std::string_view text, Visitor&& visit) {
+    while (!text.empty()) {
+        const std::size_t length = character_length(text);
+        visit(length > 0 ? text.substr(0, length) : kReplacement);
+        text.remove_prefix(std::max<std::size_t>(length, 1));
+    }
+}
+
+std::vector<std::string_view> characters(std::string_view text) {
+    std::vector<std::string_view> found;
+    for_each_character(text, [&](std::string_view character) { found.push_back(character); });
+    return found;
+}
+
+std::string attribute(std::string_view name, std::string_view value) {
+    return " " + std::string(name) + "=\"" + std::string(value) + "\"";
+}
+
+bool is_finite(SvgPoint point) {
+    return std::isfinite(point.x) && std::isfinite(point.y);
+}
+
+}  // namespace
+
+std::string svg_number(double value) {
+    constexpr double kLargest = 1e7;
+    if (!std::isfinite(value)) {
+        return "0";
+    }
+    std::array<char, 32> buffer{};
+    const auto end = std::to_chars(buffer.data(), buffer.data() + buffer.size(), std::clamp(value, -kLargest, kLargest),
+                                   std::chars_format::fixed, 2)
+                         .ptr;
+    std::string digits(buffer.data(), end);
+    digits.erase(digits.find_last_not_of('0') + 1);
+    if (digits.back() == '.') {
+        digits.pop_back();
+    }
+    return digits == "-0" ? "0" : digits;
+}
+
+std::string svg_text(std::string_view text) {
+    std::string out;
+    out.reserve(text.size());
+    for_each_character(text, [&](std::string_view character) {
+        switch (character.front()) {
+            case '&':
+                out += "&amp;";
+                break;
+            case '<':
+                out += "&lt;";
+                break;
+            case '>':
+                out += "&gt;";
+                break;
+            case '"':
+                out += "&quot;";
+                break;
+            case '\'':
+                out += "&#39;";
+                break;
+            default:
+                out += character;
+        }
+    });
+    return out;
+}
+
+std::string shortened(std::string_view text, std::size_t most) {
+    const std::vector<std::string_view> all = characters(text);
+    std::string out;
+    const bool fits = all.size() <= most;
+    for (std::size_t i = 0; i < (fits ? all.size() : most - 1); ++i) {
+        out += all[i];
+    }
+    return fits ? out : out + "…";
+}
+
+std::vector<std::string> wrapped(std::string_view text, std::size_t most, std::size_t lines) {
+    std::vector<std::string> broken;
+    std::vector<std::string_view> rest = characters(text);
+    while (!rest.empty() && broken.size() + 1 < lines && rest.size() > most) {
+        const auto limit = rest.begin() + static_cast<std::ptrdiff_t>(most) + 1;
+        const auto space = std::find(std::make_reverse_iterator(limit), rest.rend(), " ");
+        const bool at_space = space != rest.rend() && space.base() - 1 != rest.begin();
+        const auto end = at_space ? space.base() - 1 : limit - 1;
+        std::string line;
+        std::for_each(rest.begin(), end, [&](std::string_view character) { line += character; });
+        broken.push_back(std::move(line));
+        rest.erase(rest.begin(), at_space ? end + 1 : end);
+    }
+    std::string last;
+    for (const std::string_view character : rest) {
+        last += character;
+    }
+    broken.push_back(shortened(last, most));
+    return broken;
+}
+
+double svg_text_width(std::string_view text, double size) {
+    constexpr double kAverageLetter = 0.58;
+    return kAverageLetter * size * static_cast<double>(characters(text).size());
+}
+
+Svg::Svg(std::string_view title) : title_(svg_text(title)) {}
+
+void Svg::finish_element(std::string_view name, const SvgStyle& style) {
+    body_ += attribute("fill", style.fill);
+    if (style.stroke != "none") {
+        body_ += attribute("stroke", style.stroke) + attribute("stroke-width", svg_number(style.width));
+    }
+    if (!style.dashes.empty()) {
+        body_ += attribute("stroke-dasharray", style.dashes);
+    }
+    if (style.opacity < 1.0) {
+        body_ += attribute("opacity", svg_number(style.opacity));
+    }
+    if (!style.class_name.empty()) {
+        body_ += attribute("class", svg_text(style.class_name));
+    }
+    body_ += style.description.empty()
+                 ? "/>\n"
+                 : "><title>" + svg_text(style.description) + "</title></" + std::string(name) + ">\n";
+}
+
+void Svg::path(const std::vector<SvgPoint>& points, const SvgStyle& style, bool closed) {
+    std::string data;
+    std::size_t count = 0;
+    for (const SvgPoint& point : points) {
+        if (is_finite(point)) {
+            data += (count == 0 ? "M" : " ") + svg_number(point.x) + " " + svg_number(point.y);
+            ++count;
+        }
+    }
+    if (count >= 2) {
+        body_ += "<path" + attribute("d", closed ? data + "Z" : data);
+        finish_element("path", style);
+    }
+}
+
+void Svg::circle(SvgPoint centre, double radius, const SvgStyle& style) {
+    if (is_finite(centre) && radius > 0.0) {
+        body_ += "<circle" + attribute("cx", svg_number(centre.x)) + attribute("cy", svg_number(centre.y)) +
+                 attribute("r", svg_number(radius));
+        finish_element("circle", style);
+    }
+}
+
+void Svg::rectangle(SvgPoint corner, double width, double height, const SvgStyle& style) {
+    if (is_finite(corner) && width > 0.0 && height > 0.0) {
+        body_ += "<rect" + attribute("x", svg_number(corner.x)) + attribute("y", svg_number(corner.y)) +
+                 attribute("width", svg_number(width)) + attribute("height", svg_number(height));
+        finish_element("rect", style);
+    }
+}
+
+void Svg::text(SvgPoint at, std::string_view words, const SvgTextStyle& style) {
+    if (!is_finite(at)) {
+        return;
+    }
+    body_ += "<text" + attribute("x", svg_number(at.x)) + attribute("y", svg_number(at.y)) +
+             attribute("font-size", svg_number(style.size)) + attribute("fill", style.fill);
+    if (style.anchor != SvgAnchor::start) {
+        body_ += attribute("text-anchor", style.anchor == SvgAnchor::middle ? "middle" : "end");
+    }
+    if (style.bold) {
+        body_ += attribute("font-weight", "600");
+    }
+    if (style.rotation_deg != 0.0) {
+        body_ += attribute("transform", "rotate(" + svg_number(style.rotation_deg) + " " + svg_number(at.x) + " " +
+                                            svg_number(at.y) + ")");
+    }
+    if (!style.class_name.empty()) {
+        body_ += attribute("class", svg_text(style.class_name));
+    }
+    body_ += ">" + svg_text(words) + "</text>\n";
+}
+
+void Svg::open_group(std::string_view class_name) {
+    body_ += "<g" + attribute("class", svg_text(class_name)) + ">\n";
+}
+
+void Svg::close_group() {
+    body_ += "</g>\n";
+}
+
+std::string Svg::document(double width, double height) const {
+    const std::string w = svg_number(width);
+    const std::string h = svg_number(height);
+    return "<svg xmlns=\"http://www.w3.org/2000/svg\"" + attribute("width", w) + attribute("height", h) +
+           attribute("viewBox", "0 0 " + w + " " + h) + attribute("role", "img") +
+           attribute("font-family", "Helvetica, Arial, 'Liberation Sans', 'DejaVu Sans', sans-serif") +
+           attribute("stroke-linejoin", "round") + attribute("stroke-linecap", "butt") + ">\n<title>" + title_ +
+           "</title>\n" + "<rect" + attribute("width", w) + attribute("height", h) + " fill=\"#fff\"/>\n" + body_ +
+           "</svg>\n";
+}
+
+}  // namespace lensproof
