@@ -15,7 +15,7 @@ namespace lensproof {
 namespace {
 
 // Makers' largest has 1.2 MB.
-constexpr std::size_t kLargestCatalogue = std::size_t{32} << 20;
+constexpr std::size_t kLargestCatalogue = std::size_t{8} << 20;
 
 /// Coefficients as a CD record lists them; those that it leaves out are 0.
 using Coefficients = std::array<double, 16>;
@@ -105,7 +105,7 @@ class AgfReader {
         for (const std::string_view content : lines_of(text)) {
             ++line;
             std::vector<std::string_view> words = words_of(content);
-            if (words.empty()) {
+            if (words.empty() || words.front().starts_with('!')) {  // nothing, or a comment
                 continue;
             }
             // NIKON's catalogue of 2018 breaks its lines at 80 columns.
@@ -233,8 +233,10 @@ class AgfReader {
             return a.wavelength_nm != b.wavelength_nm ? a.wavelength_nm < b.wavelength_nm
                                                       : a.thickness_mm > b.thickness_mm;
         });
-        const auto rest = std::ranges::unique(points, {}, &TransmittancePoint::wavelength_nm);
-        points.erase(rest.begin(), rest.end());
+        const auto same = [](const TransmittancePoint& a, const TransmittancePoint& b) {
+            return a.wavelength_nm == b.wavelength_nm;
+        };
+        points.erase(std::unique(points.begin(), points.end(), same), points.end());
     }
 
     void finish_glass() {

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <numeric>
 
 #include "engine/io/glass_file.h"
 #include "engine/io/input_error.h"
@@ -14,8 +15,8 @@ namespace lensproof {
 
 namespace {
 
-// The database's largest page has half a megabyte; the YAML library needs some hundred times a text's size.
-constexpr std::size_t kLargestPage = std::size_t{4} << 20;
+// The database's largest page has 0.8 MB; the YAML library needs up to 150 times a text's size.
+constexpr std::size_t kLargestPage = std::size_t{2} << 20;
 
 class RiiPage {
   public:
@@ -43,21 +44,29 @@ class RiiPage {
         return numbers;
     }
 
-    /// The table's columns: wavelength in µm, ascending, and `columns` − 1 numbers beside.
-    [[nodiscard]] std::vector<std::vector<double>> table(const YAML::Node& node, std::size_t columns) const {
+    /// The table's columns: wavelength in µm, sorted, and `columns` − 1 numbers beside.
+    [[nodiscard]] std::vector<std::vector<double>> table(const YAML::Node& node, std::size_t columns,
+                                                         std::vector<std::string>& notes) const {
         const std::vector<double> all = numbers(node, "data");
         if (all.empty() || all.size() % columns != 0) {
             fail(node, fmt::format("data holds {} numbers, expected rows of {}", all.size(), columns));
         }
+        std::vector<std::size_t> order(all.size() / columns);  // some pages have a row out of its place
+        std::iota(order.begin(), order.end(), std::size_t{0});
+        std::ranges::stable_sort(order, {}, [&](std::size_t row) { return all[row * columns]; });
         std::vector<std::vector<double>> table(columns);
-        for (std::size_t i = 0; i < all.size(); ++i) {
-            table[i % columns].push_back(all[i]);
-        }
-        const std::vector<double>& wavelengths = table[0];
-        for (std::size_t i = 0; i < wavelengths.size(); ++i) {
-            if (wavelengths[i] <= (i == 0 ? 0.0 : wavelengths[i - 1])) {
-                fail(node, fmt::format("a wavelength is {}, expected more than {}, as wavelengths ascend",
-                                       wavelengths[i], i == 0 ? 0.0 : wavelengths[i - 1]));
+        for (const std::size_t row : order) {
+            const double wavelength = all[row * columns];
+            if (wavelength <= 0.0) {
+                fail(node, fmt::format("a wavelength is {}, expected a positive number", wavelength));
+            }
+            if (!table[0].empty() && wavelength == table[0].back()) {
+                notes.push_back(fmt::format("{}:{}: the wavelength {} stands there twice: the first holds",
+                                            file_.string(), node.Mark().line + 1, wavelength));
+                continue;
+            }
+            for (std::size_t column = 0; column < columns; ++column) {
+                table[column].push_back(all[row * columns + column]);
             }
         }
         return table;
@@ -173,7 +182,7 @@ void RiiPage::take_data(const YAML::Node& data, Glass& glass, bool& has_index, s
         glass.max_wavelength_nm = 1e3 * range[1];
         has_index = true;
     } else if (is_table && (words[1] == "n" || words[1] == "nk") && !has_index) {
-        const auto columns = table(data["data"], words[1] == "n" ? 2 : 3);
+        const auto columns = table(data["data"], words[1] == "n" ? 2 : 3, notes);
         if (columns[0].size() < 2) {
             fail(data, "data holds one row, expected two or more");
         }
@@ -185,7 +194,7 @@ void RiiPage::take_data(const YAML::Node& data, Glass& glass, bool& has_index, s
         }
         has_index = true;
     } else if (is_table && words[1] == "k" && glass.internal_transmittance.empty()) {
-        const auto columns = table(data["data"], 2);
+        const auto columns = table(data["data"], 2, notes);
         take_absorption(columns[0], columns[1], glass);
     } else {
         notes.push_back(fmt::format("{}:{}: DATA of type \"{}\" is left out", file_.string(), data.Mark().line + 1,
@@ -203,7 +212,7 @@ void RiiPage::take_specs(const YAML::Node& specs, Glass& glass) const {
         glass.note += (glass.note.empty() ? "" : "; ") + std::string("the source's index is against vacuum");
     }
     const YAML::Node thermal = specs["thermal_dispersion"];
-    if (thermal.IsSequence() && thermal.size() > 0 && thermal[0].IsMap()) {
+    if (thermal.IsDefined() && thermal.IsSequence() && thermal.size() > 0 && thermal[0].IsMap()) {
         const YAML::Node coefficients = thermal[0]["coefficients"];
         const std::vector<double> t = numbers(coefficients, "thermal_dispersion");
         if (t.size() == 6 && text(thermal[0]["type"]) == "Schott formula") {

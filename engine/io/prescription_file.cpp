@@ -17,14 +17,28 @@ namespace {
 struct Form {
     std::string_view extension;
     Prescription (*parse)(const std::string&, const std::filesystem::path&);
+    WrittenPrescription (*write)(const Prescription&);  // null: read only
 };
 
-constexpr Form kForms[] = {{".toml", parse_toml_prescription}, {".csv", parse_csv_prescription}};
+constexpr Form kForms[] = {
+    {".toml", parse_toml_prescription, to_toml},
+    {".csv", parse_csv_prescription, to_csv},
+    {".zmx", parse_zmx, to_zmx},
+    {".seq", parse_seq, nullptr},
+    {".dat", parse_pbrt_lens, to_pbrt_lens},
+    {".json", parse_optiland, nullptr},
+    {".fx", parse_fx, nullptr},
+};
 
-const Form& find_form(const std::filesystem::path& file) {
+/// The form of that extension, letter case aside, or the end.
+const Form* form_of(const std::filesystem::path& file) {
     std::string extension = file.extension().string();
     std::ranges::transform(extension, extension.begin(), [](unsigned char letter) { return std::tolower(letter); });
-    const auto* form = std::ranges::find(kForms, extension, &Form::extension);
+    return std::ranges::find(kForms, extension, &Form::extension);
+}
+
+const Form& find_form(const std::filesystem::path& file) {
+    const Form* form = form_of(file);
     if (form == std::end(kForms)) {
         std::vector<std::string_view> known;
         std::ranges::transform(kForms, std::back_inserter(known), &Form::extension);
@@ -38,6 +52,38 @@ const Form& find_form(const std::filesystem::path& file) {
 
 Prescription read_prescription(const std::filesystem::path& file) {
     return find_form(file).parse(read_file(file), file);
+}
+
+void check_prescription_name(const std::filesystem::path& file) {
+    const Form* form = form_of(file);
+    if (form == std::end(kForms) || form->write == nullptr) {
+        std::vector<std::string_view> known;
+        for (const Form& each : kForms) {
+            if (each.write != nullptr) {
+                known.push_back(each.extension);
+            }
+        }
+        throw InputError(fmt::format("{}: prescriptions are not written as \"{}\", expected one of {}", file.string(),
+                                     file.extension().string(), fmt::join(known, ", ")));
+    }
+    check_output_name(file);
+}
+
+std::vector<Finding> write_prescription(const Prescription& prescription, const std::filesystem::path& file) {
+    check_prescription_name(file);
+    Prescription moved = prescription;
+    const std::filesystem::path folder = std::filesystem::absolute(file).parent_path();
+    moved.file = folder / file.filename();
+    for (std::filesystem::path& catalogue : moved.catalogues) {
+        catalogue = std::filesystem::absolute(catalogue);
+    }
+    if (auto* texture = std::get_if<TexturedStop>(&moved.stop_shape)) {
+        const auto image = std::filesystem::absolute(prescription.file).parent_path() / texture->image;
+        texture->image = image.lexically_proximate(folder).generic_string();
+    }
+    WrittenPrescription written = form_of(file)->write(moved);
+    write_file(file, written.text);
+    return std::move(written.lost);
 }
 
 std::vector<std::string> shipped_lens_names() {

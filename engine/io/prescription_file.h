@@ -16,8 +16,12 @@ namespace lensproof {
 /// where one belongs, an unknown key.
 Prescription read_prescription(const std::filesystem::path& file);
 
-/// Writes a prescription as .toml, .zmx, .dat (pbrt) or .csv, told by the extension. Returns what that form cannot say.
-/// Throws InputError for an extension that cannot be written.
+/// Throws InputError where `write_prescription` could not write a file of that name: its extension, or the place.
+void check_prescription_name(const std::filesystem::path& file);
+
+/// Writes a prescription as .toml, .zmx, .dat (pbrt) or .csv, told by the extension; the file appears whole or not
+/// at all. Files that it names, a glass catalogue or a stop's picture, are named from the new place. Returns what the
+/// form cannot say: warnings where rays then go another way. Throws InputError for an extension that cannot be written.
 std::vector<Finding> write_prescription(const Prescription& prescription, const std::filesystem::path& file);
 
 /// The file of a LENS argument: a path, or the name of a lens that ships in lenses/. Throws InputError listing the

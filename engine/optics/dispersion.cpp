@@ -82,22 +82,26 @@ double index_um(const ExoticDispersion& formula, double um) {
     return std::sqrt(a[0] + a[1] / (um * um - a[2]) + a[3] * from / (from * from + a[5]));
 }
 
-/// The slope at entry i: that of the parabola through its neighbours, kept from overshooting.
+/// The coordinate in which tables are interpolated: that of Cauchy's formula, where glass is nearly straight.
+double table_coordinate(double um) {
+    return -1.0 / (um * um);
+}
+
+/// dn/dx at entry i: that of the parabola through its neighbours, kept from overshooting.
 double table_slope(const IndexTable& table, std::size_t i) {
-    const auto& x = table.wavelength_um;
-    const auto& y = table.index;
-    const auto secant = [&](std::size_t k) { return (y[k + 1] - y[k]) / (x[k + 1] - x[k]); };
-    const std::size_t last = x.size() - 1;
+    const auto x = [&](std::size_t k) { return table_coordinate(table.wavelength_um[k]); };
+    const auto secant = [&](std::size_t k) { return (table.index[k + 1] - table.index[k]) / (x(k + 1) - x(k)); };
+    const std::size_t last = table.index.size() - 1;
     if (last == 1) {
         return secant(0);
     }
     const std::size_t left = std::clamp<std::size_t>(i, 1, last - 1) - 1;
     const double before = secant(left);
     const double after = secant(left + 1);
-    const double curvature = (after - before) / (x[left + 2] - x[left]);
-    const double slope = before + curvature * (2.0 * x[i] - x[left] - x[left + 1]);
-    const double nearest = i == 0 ? before : after;
+    const double curvature = (after - before) / (x(left + 2) - x(left));
+    const double slope = before + curvature * (2.0 * x(i) - x(left) - x(left + 1));
     if (i == 0 || i == last) {
+        const double nearest = i == 0 ? before : after;
         return slope * nearest > 0.0 ? std::copysign(std::min(std::abs(slope), 3.0 * std::abs(nearest)), slope) : 0.0;
     }
     const double most = before * after > 0.0 ? 3.0 * std::min(std::abs(before), std::abs(after)) : 0.0;
@@ -105,16 +109,17 @@ double table_slope(const IndexTable& table, std::size_t i) {
 }
 
 double index_um(const IndexTable& table, double um) {
-    const auto& x = table.wavelength_um;
-    if (!(um > x.front())) {
+    const auto& wavelengths = table.wavelength_um;
+    if (!(um > wavelengths.front())) {
         return table.index.front();
     }
-    if (um >= x.back()) {
+    if (um >= wavelengths.back()) {
         return table.index.back();
     }
-    const std::size_t i = std::ranges::upper_bound(x, um) - x.begin() - 1;
-    const double width = x[i + 1] - x[i];
-    const double t = (um - x[i]) / width;
+    const std::size_t i = std::ranges::upper_bound(wavelengths, um) - wavelengths.begin() - 1;
+    const double start = table_coordinate(wavelengths[i]);
+    const double width = table_coordinate(wavelengths[i + 1]) - start;
+    const double t = (table_coordinate(um) - start) / width;
     const double rest = 1.0 - t;
     return rest * rest * ((1.0 + 2.0 * t) * table.index[i] + t * width * table_slope(table, i)) +
            t * t * ((1.0 + 2.0 * rest) * table.index[i + 1] - rest * width * table_slope(table, i + 1));

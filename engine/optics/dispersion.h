@@ -92,9 +92,10 @@ struct ExoticDispersion {
     bool operator==(const ExoticDispersion&) const = default;
 };
 
-/// Measured indices, ascending in wavelength. Between them a cubic with the slopes of the parabolas through three
-/// neighbours, limited so that the curve turns nowhere but where the table does (Hyman, SIAM J. Sci. Stat. Comput. 4,
-/// 645, 1983); beyond its ends the nearest index. N-BK7 from a table at the 12 lines from i to t comes out within 2e-5.
+/// Measured indices, ascending in wavelength. Between them a cubic in λ⁻², with the slopes of the parabolas through
+/// three neighbours, limited so that the curve turns nowhere but where the table does (Hyman, SIAM J. Sci. Stat.
+/// Comput. 4, 645, 1983); beyond its ends the nearest index. N-BK7 from a table at the 13 lines from i to t comes out
+/// within 4e-5, and within 3e-6 between h and r.
 struct IndexTable {
     std::vector<double> wavelength_um;
     std::vector<double> index;

@@ -211,6 +211,7 @@ GlassMatch GlassCatalogue::resolve(std::string_view name, std::span<const std::s
 
 std::vector<Glass> GlassCatalogue::nearest(double n_d, double V_d, std::size_t count) const {
     std::vector<double> distances;
+    distances.reserve(glasses_.size());
     for (const Glass& glass : glasses_) {
         const double d = distance(glass, n_d, V_d);
         distances.push_back(std::isfinite(d) ? d : HUGE_VAL);
@@ -239,6 +240,7 @@ std::string suggestion_text(const std::vector<GlassSuggestion>& suggestions) {
 
 std::vector<std::filesystem::path> shipped_glass_files() {
     std::vector<std::filesystem::path> files;
+    files.reserve(kTables.size());
     for (const char* table : kTables) {
         files.push_back(glass_folder() / fmt::format("{}.csv", table));
     }

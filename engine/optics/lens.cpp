@@ -15,6 +15,7 @@
 #include "engine/io/prescription_file.h"
 #include "engine/io/text.h"
 #include "engine/optics/air.h"
+#include "engine/optics/frame.h"
 #include "engine/optics/paraxial.h"
 #include "engine/spectral/wavelengths.h"
 
@@ -91,26 +92,12 @@ void require_traceable(const Prescription& prescription) {
 
 constexpr double kDegree = std::numbers::pi / 180.0;
 
-/// The axes x, y, z after the tilts: about x, then the turned y, then the twice turned z.
-std::array<Vec3d, 3> tilted_axes(const std::array<double, 3>& tilt_deg) {
-    std::array<Vec3d, 3> axes{{{1.0, 0.0, 0.0}, {0.0, 1.0, 0.0}, {0.0, 0.0, 1.0}}};
-    for (std::size_t about = 0; about < 3; ++about) {
-        const double sine = std::sin(tilt_deg[about] * kDegree);
-        const double cosine = std::cos(tilt_deg[about] * kDegree);
-        Vec3d& u = axes[(about + 1) % 3];
-        Vec3d& v = axes[(about + 2) % 3];
-        const Vec3d turned = cosine * u + sine * v;
-        v = cosine * v - sine * u;
-        u = turned;
-    }
-    return axes;
-}
-
-/// `row` with its vertex at z, by its own misalignment.
-LensSurface placed_surface(const PrescribedSurface& row, double z) {
+LensSurface placed_surface(const PrescribedSurface& row, const Frame& frame) {
     LensSurface surface;
     surface.curvature = row.curvature();
-    surface.vertex_z = z;
+    surface.vertex_z = frame.origin.z;
+    surface.vertex = {frame.origin.x, frame.origin.y};
+    surface.axes = frame.axes;
     surface.semi_diameter = row.semi_diameter_mm.value_or(row.rim_mm.value_or(kUnlimited));
     surface.is_stop = row.is_stop;
     surface.has_shape = row.conic != 0.0 || row.is_asphere() || row.radius_x_mm.has_value();
@@ -124,27 +111,7 @@ LensSurface placed_surface(const PrescribedSurface& row, double z) {
             surface.shape.terms = term + 1;
         }
     }
-    if (row.misalignment != Misalignment{}) {
-        surface.vertex = {row.misalignment.decentre_mm[0], row.misalignment.decentre_mm[1]};
-        surface.axes = tilted_axes(row.misalignment.tilt_deg);
-    }
     return surface;
-}
-
-/// Turns the group's surfaces about its pivot, and shifts them.
-void misalign(Lens& lens, const MisalignedGroup& group) {
-    const std::array<Vec3d, 3> turned = tilted_axes(group.misalignment.tilt_deg);
-    const auto rotate = [&](const Vec3d& v) { return v.x * turned[0] + (v.y * turned[1] + v.z * turned[2]); };
-    const double pivot_z = lens.surfaces[group.first - 1].vertex_z + group.pivot_mm;
-    for (int i = group.first - 1; i < group.last; ++i) {
-        LensSurface& surface = lens.surfaces[i];
-        const Vec3d vertex = rotate({surface.vertex.x, surface.vertex.y, surface.vertex_z - pivot_z});
-        surface.vertex = {vertex.x + group.misalignment.decentre_mm[0], vertex.y + group.misalignment.decentre_mm[1]};
-        surface.vertex_z = vertex.z + pivot_z;
-        for (Vec3d& axis : surface.axes) {
-            axis = rotate(axis);
-        }
-    }
 }
 
 /// Where no semi-diameter is stated: the heights of the marginal and of the chief ray, added, as design programs do.
@@ -239,7 +206,7 @@ Lens make_lens(const Prescription& prescription, const GlassCatalogue& glasses, 
     lens.surroundings = prescription.surroundings;
     lens.is_rotationally_symmetric = prescription.is_rotationally_symmetric();
     std::set<std::string> used;
-    double z = 0.0;
+    const std::vector<Frame> frames = surface_frames(prescription);
     double barrel_before = kUnlimited;
     for (const PrescribedSurface& row : prescription.surfaces) {
         const auto override_index = overrides.find(row.medium.glass);
@@ -247,7 +214,7 @@ Lens make_lens(const Prescription& prescription, const GlassCatalogue& glasses, 
                            ? everywhere(row.medium.glass, ConstantIndex{override_index->second})
                            : stated_medium(row, glasses, prescription.preferred_makers);
         used.insert(row.medium.glass);
-        LensSurface surface = placed_surface(row, z);
+        LensSurface surface = placed_surface(row, frames[lens.surfaces.size()]);
         // A barrel is convex, so a path runs inside it where it does so at both ends.
         surface.semi_diameter = std::min({surface.semi_diameter, barrel_before, row.barrel_mm.value_or(kUnlimited)});
         surface.medium = std::move(medium);
@@ -256,11 +223,7 @@ Lens make_lens(const Prescription& prescription, const GlassCatalogue& glasses, 
         }
         lens.surfaces.push_back(std::move(surface));
         barrel_before = row.barrel_mm.value_or(kUnlimited);
-        z += row.thickness_mm;
-    }
-    lens.image_z = z;
-    for (const MisalignedGroup& group : prescription.groups) {
-        misalign(lens, group);
+        lens.image_z += row.thickness_mm;
     }
     for (const auto& [name, index] : overrides) {
         if (!used.contains(name)) {

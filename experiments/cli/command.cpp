@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <cstdlib>
@@ -57,8 +58,12 @@ GlassCatalogue read_glass_catalogues(const std::vector<std::string>& files) {
     GlassCatalogue catalogue = GlassCatalogue::shipped();
     for (const std::string& file : files) {
         GlassFile read = read_glass_file(file);
-        for (const std::string& note : read.notes) {
-            fmt::print(stderr, "lensproof: {}\n", note);
+        constexpr std::size_t kShownNotes = 5;
+        for (std::size_t i = 0; i < std::min(kShownNotes, read.notes.size()); ++i) {
+            fmt::print(stderr, "lensproof: {}\n", read.notes[i]);
+        }
+        if (read.notes.size() > kShownNotes) {
+            fmt::print(stderr, "lensproof: {}: {} more such notes\n", file, read.notes.size() - kShownNotes);
         }
         catalogue.add(std::move(read.glasses));
     }

@@ -59,6 +59,7 @@ int run(int argc, char** argv) {
     app.footer("The launcher also has: ./lensproof demo, the demo experiment, and ./lensproof test, every test.");
     app.require_subcommand(1);
     add_check_command(app, status);
+    add_convert_command(app, status);
     add_trace_command(app, status);
     add_render_command(app, status);
     add_measure_command(app, status);

@@ -18,8 +18,8 @@ using Json = nlohmann::json;
 
 constexpr const char* kRayHeader = "id,x_mm,y_mm,z_mm,dx,dy,dz,wavelength_nm\n";
 constexpr const char* kAxialRay = "a,0,1,-10,0,0,1,587.5618\n";
-const std::vector<std::string> kCommands = {"check",   "trace", "render", "measure",
-                                            "compare", "run",   "lenses", "glasses"};
+const std::vector<std::string> kCommands = {"check",   "convert", "trace",  "render", "measure",
+                                            "compare", "run",     "lenses", "glasses"};
 
 std::string rays_text() {
     return std::string(kRayHeader) + kAxialRay + "b,0,19,-10,0,0,1,486.1327\nc,0,40,-10,0,0,1,587.5618\n";
@@ -66,6 +66,35 @@ TEST(Lists, NameWhatShipsWithItsSource) {
     const Json glasses = Json::parse(place.run({"glasses", "--json", "-"}).out)["glasses"];
     for (const Json& glass : glasses) {
         EXPECT_FALSE(glass["source"].get<std::string>().empty()) << glass;
+    }
+}
+
+TEST(Glasses, ShowsTheSheetOfAGlassAsItsMakerDoes) {
+    const Workplace place;
+    const Json sheet = Json::parse(place.run({"glasses", "NBK7_SCHOTT", "--json", "-"}).out)["glasses"][0];
+    EXPECT_EQ(sheet["glass"], "N-BK7");
+    EXPECT_EQ(sheet["lines"].size(), 13U);
+    EXPECT_NEAR(sheet["P_gF"].get<double>(), 0.5349, 1e-4);
+    EXPECT_GT(sheet["internal_transmittance"].size(), 20U);
+    EXPECT_NE(place.run({"glasses", "N-BK7"}).out.find("1.516800"), std::string::npos);
+    const Outcome unknown = place.run({"glasses", "N-LLF7"});
+    EXPECT_EQ(unknown.status, 2);
+    EXPECT_NE(unknown.err.find("perhaps LLF7 (SCHOTT)"), std::string::npos) << unknown.err;
+}
+
+TEST(Glasses, ThatTheUserBringsComeFirst) {
+    const Workplace place;
+    place.file("mine.csv", "glass,formula,coefficients,min_nm,max_nm\nBK7,constant,1.5,400,700\n");
+    place.file("bad.agf", "NM\n");
+    place.file("rays.csv", rays_text());
+    const Json own = Json::parse(place.run({"glasses", "BK7", "--glass-catalogue", "mine.csv", "--json", "-"}).out);
+    EXPECT_EQ(own["glasses"][0]["n_d"], 1.5);
+    EXPECT_EQ(own["glasses"][0]["also_in"][0], "SCHOTT");
+    EXPECT_EQ(place.run({"trace", "tessar", "--rays", "rays.csv", "--glass-catalogue", "mine.csv"}).status, 0);
+    for (const char* file : {"bad.agf", "missing.agf", "rays.txt", "rays.csv"}) {
+        const Outcome refused = place.run({"glasses", "--glass-catalogue", file});
+        EXPECT_EQ(refused.status, 2) << file;
+        EXPECT_NE(refused.err.find(file), std::string::npos) << refused.err;
     }
 }
 

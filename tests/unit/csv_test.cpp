@@ -106,12 +106,12 @@ TEST(Csv, ExpectedColumnsMayStandInAnyOrder) {
     EXPECT_THROW(table.expect_columns({"a", "b", "d"}, {"c"}), InputError);
 }
 
-// What a table of a hundred megabytes of commas or quotes must not do is fill the memory with cells.
+// What a table of nothing but commas or quotes must not do is fill the memory with cells.
 TEST(Csv, EndlessLinesAreRefusedShortly) {
-    const std::string commas(50'000'000, ',');
+    const std::string commas(5'000'000, ',');
     EXPECT_LT(complaint_about(commas).size(), 400U);
     EXPECT_LT(complaint_about("a\n" + commas).size(), 400U);
-    EXPECT_LT(complaint_about("a\n" + std::string(50'000'001, '"')).size(), 400U);
+    EXPECT_LT(complaint_about("a\n" + std::string(5'000'001, '"')).size(), 400U);
 }
 
 }  // namespace

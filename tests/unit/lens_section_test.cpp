@@ -28,7 +28,7 @@ Prescription shipped(const std::string& name) {
 }
 
 std::string drawn(const Prescription& prescription, const std::vector<Finding>& findings = {}) {
-    const Lens lens = make_lens(prescription, shipped_glasses());
+    const Lens lens = make_lens(prescription, GlassCatalogue::shipped());
     return lens_section_svg(prescription, &lens, findings);
 }
 
@@ -171,7 +171,7 @@ TEST(MeridionalBundle, ANearObjectsRaysLeaveOnePoint) {
 TEST(LensSection, RaysEndOnTheSensorAndBundlesComeToAFocus) {
     for (const std::string name : {"tessar", "petzval", "muller-fisheye"}) {
         const Prescription prescription = shipped(name);
-        const Lens lens = make_lens(prescription, shipped_glasses());
+        const Lens lens = make_lens(prescription, GlassCatalogue::shipped());
         const SectionRays rays = section_rays(prescription, lens, 10.0, 5);
         ASSERT_EQ(rays.bundles.size(), 3U) << name;
         for (const SectionBundle& bundle : rays.bundles) {
@@ -191,7 +191,7 @@ TEST(LensSection, RaysEndOnTheSensorAndBundlesComeToAFocus) {
 // to what passes, and says so.
 TEST(LensSection, AFieldBeyondTheRimsIsNotDrawn) {
     const Prescription prescription = shipped("muller-fisheye");
-    const SectionRays rays = section_rays(prescription, make_lens(prescription, shipped_glasses()), 5.0, 3);
+    const SectionRays rays = section_rays(prescription, make_lens(prescription, GlassCatalogue::shipped()), 5.0, 3);
     EXPECT_NEAR(rays.bundles.back().field_angle / kDegree, 74.8, 0.1);
     EXPECT_NE(rays.remark.find("77.95"), std::string::npos);
     EXPECT_NE(drawn(prescription).find("77.95° is stated"), std::string::npos);
@@ -300,7 +300,7 @@ TEST(LensSection, AbsurdTablesAreDrawnAllTheSame) {
             prescription.object_distance_mm = absurd;
             std::optional<Lens> lens;
             try {
-                lens = make_lens(prescription, shipped_glasses());
+                lens = make_lens(prescription, GlassCatalogue::shipped());
             } catch (const std::exception&) {
             }
             const std::string svg = lens_section_svg(prescription, lens ? &*lens : nullptr, {});

@@ -32,7 +32,7 @@ Setting make_setting(const std::string& name, const std::string& zoom) {
     const std::size_t position = zoom.empty() ? 0 : find_zoom_position(prescription, zoom);
     Setting setting{.label = zoom.empty() ? name : name + " at " + zoom,
                     .prescription = at_zoom_position(prescription, position),
-                    .lens = load_lens(name, {}, zoom),
+                    .lens = load_lens(name, {.zoom = zoom}),
                     .at_d = {},
                     .paraxial = {}};
     setting.at_d = at_wavelength<double>(setting.lens, kLineD);

@@ -1,0 +1,81 @@
+// experiments/cli/convert_command.cpp — `lensproof convert IN OUT`: a prescription from one form to another.
+#include <fmt/format.h>
+
+#include <memory>
+
+#include "engine/io/prescription_file.h"
+#include "experiments/cli/command.h"
+
+namespace lensproof {
+
+namespace {
+
+struct ConvertOptions {
+    CommonOptions common;
+    std::string in;
+    std::string out;
+    std::string zoom;
+};
+
+nlohmann::ordered_json to_json(const std::vector<Finding>& findings) {
+    nlohmann::ordered_json list = nlohmann::ordered_json::array();
+    for (const Finding& finding : findings) {
+        list.push_back({{"code", finding.code},
+                        {"severity", severity_name(finding.severity)},
+                        {"surface", finding.surface},
+                        {"message", finding.message}});
+    }
+    return list;
+}
+
+void say(const std::vector<Finding>& findings, const std::filesystem::path& file) {
+    for (const Finding& finding : findings) {
+        const std::string surface = finding.surface > 0 ? fmt::format("surface {}: ", finding.surface) : "";
+        fmt::print(stderr, "{}: {}{} ({})\n", severity_name(finding.severity), surface, finding.message,
+                   file.filename().string());
+    }
+}
+
+int convert(const ConvertOptions& options) {
+    check_json_name(options.common);
+    check_prescription_name(options.out);
+    const std::filesystem::path in = find_lens_file(options.in);
+    Prescription prescription = read_prescription(in);
+    if (!options.zoom.empty()) {
+        const std::size_t position = find_zoom_position(prescription, options.zoom);
+        prescription = at_zoom_position(std::move(prescription), position);
+    }
+    const std::vector<Finding> lost = write_prescription(prescription, options.out);
+    say(prescription.remarks, in);
+    say(lost, options.out);
+    write_json_result(options.common, {{"in", in.string()},
+                                       {"out", options.out},
+                                       {"remarks", to_json(prescription.remarks)},
+                                       {"lost", to_json(lost)}});
+    if (prints_text(options.common) && !options.common.quiet) {
+        fmt::print("{}: {} surfaces\n", options.out, prescription.surfaces.size());
+    }
+    return kDone;
+}
+
+}  // namespace
+
+void add_convert_command(CLI::App& app, int& status) {
+    auto* command = app.add_subcommand("convert", "Write a prescription in another form");
+    auto options = std::make_shared<ConvertOptions>();
+    command->footer(
+        "Reads .toml, .zmx, .seq, .dat (pbrt), .json (Optiland), .fx (lensoptics) and .csv, writes .toml, .zmx, .dat "
+        "and .csv.\n"
+        "What the reader did not understand, and what the form of OUT cannot say, goes to standard error: as a warning "
+        "where rays then go another way, else as an info.\n"
+        "Example: lensproof convert patent.fx patent.toml");
+    command->add_option("IN", options->in, "A prescription file, or the name of a lens that ships")->required();
+    command->add_option("OUT", options->out, "The file to write; its extension tells the form")->required();
+    command->add_option("--zoom", options->zoom,
+                        "Write one zoom position alone, by its name or its number from 1. Forms without zoom hold the "
+                        "first one otherwise");
+    add_common_options(*command, options->common);
+    command->callback([options, &status] { status = convert(*options); });
+}
+
+}  // namespace lensproof

@@ -1,0 +1,301 @@
+// A prescription written in another form and read back is the same lens: every ray, skew ones and wide ones too, meets
+// every surface at the same point to 1e-9 mm. Where the form cannot say what bends or stops a ray, the writer warns,
+// and of the right thing.
+//
+// Numbers are written with the digits that read back to the same double, so the tracer does the very same steps; what
+// is left of 1e-9 mm is for forms that say a thing in other words (half diameters, half the rotation).
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <set>
+
+#include "engine/io/file.h"
+#include "engine/io/prescription_file.h"
+#include "engine/optics/lens.h"
+#include "engine/spectral/wavelengths.h"
+
+namespace lensproof {
+namespace {
+
+constexpr double kTolerance_mm = 1e-9;
+const std::vector<std::string> kForms = {".toml", ".csv", ".dat"};
+
+/// A path of a ray: its points and states at every surface, and where it meets the sensor's plane.
+struct Path {
+    std::vector<Vec3d> points;
+    std::vector<RayStatus> states;
+};
+
+Path path_of(const TraceLens<double>& lens, const Ray<double>& ray) {
+    Path path;
+    const TracedRay<double> traced = trace<Direction::forward, Rims::follow>(lens, ray, [&](const auto& event) {
+        path.points.push_back(event.ray.origin);
+        path.states.push_back(event.status);
+    });
+    if (path.points.size() == lens.surfaces.size() && traced.status != RayStatus::missed &&
+        traced.status != RayStatus::total_internal_reflection) {
+        path.points.push_back(meet_plane(traced.ray, lens.image_z).point);
+    }
+    return path;
+}
+
+/// Rays over the front surface's aperture and from all over the field, most of them skew.
+std::vector<Ray<double>> rays_into(const Lens& lens) {
+    std::vector<Ray<double>> rays;
+    const double rim = lens.surfaces.front().semi_diameter;
+    for (int field = 0; field < 7; ++field) {
+        const double angle = 0.14 * field;
+        const double azimuth = 1.1 * field;
+        const Vec3d way{std::sin(angle) * std::cos(azimuth), std::sin(angle) * std::sin(azimuth), std::cos(angle)};
+        for (int point = 0; point < 60; ++point) {
+            const double radius = rim * std::sqrt((point + 0.5) / 60.0);
+            const double turn = 2.399963229728653 * point;  // the golden angle: an even spread
+            const Vec3d on_front{radius * std::cos(turn), radius * std::sin(turn), 0.0};
+            rays.push_back({on_front - 20.0 * way, way});
+        }
+    }
+    return rays;
+}
+
+/// The furthest apart that two lenses take any ray at any surface; infinite where one of them stops or loses a ray that
+/// the other does not. Counts the points compared.
+double furthest_apart(const Lens& a, const Lens& b, double wavelength_nm, int& points) {
+    const TraceLens<double> trace_a = at_wavelength<double>(a, wavelength_nm);
+    const TraceLens<double> trace_b = at_wavelength<double>(b, wavelength_nm);
+    double furthest = 0.0;
+    for (const Ray<double>& ray : rays_into(a)) {
+        const Path path_a = path_of(trace_a, ray);
+        const Path path_b = path_of(trace_b, ray);
+        if (path_a.states != path_b.states || path_a.points.size() != path_b.points.size()) {
+            return std::numeric_limits<double>::infinity();
+        }
+        for (std::size_t i = 0; i < path_a.points.size(); ++i) {
+            const Vec3d apart = path_a.points[i] - path_b.points[i];
+            furthest = std::max(furthest, std::sqrt(dot(apart, apart)));
+            ++points;
+        }
+    }
+    return furthest;
+}
+
+class Conversion : public testing::Test {
+  protected:
+    Conversion() : folder_(std::filesystem::path(testing::TempDir()) / "conversion") {
+        std::filesystem::create_directories(folder_);
+    }
+    ~Conversion() override { std::filesystem::remove_all(folder_); }
+
+    /// Writes the lens in a form and reads it back. `warnings`: the codes of what the form could not say of its rays.
+    Prescription there_and_back(const Prescription& lens, const std::string& form, std::set<std::string>& warnings) {
+        const std::filesystem::path file = folder_ / ("lens" + form);
+        for (const Finding& lost : write_prescription(lens, file)) {
+            if (lost.severity != Severity::info) {
+                warnings.insert(lost.code);
+                EXPECT_FALSE(lost.message.empty());
+            }
+        }
+        return read_prescription(file);
+    }
+
+    /// Asserts that the form warns of just `expected`, and that without a warning no ray moves.
+    void expect_form_keeps(const Prescription& lens, const std::string& form, const std::set<std::string>& expected) {
+        SCOPED_TRACE(lens.name + " as " + form);
+        std::set<std::string> warnings;
+        const Prescription back = there_and_back(lens, form, warnings);
+        EXPECT_EQ(warnings, expected);
+        ASSERT_EQ(back.surfaces.size(), lens.surfaces.size());
+        // These do not bend rays, at one wavelength and at the position that is written: the rest must still agree.
+        std::set<std::string> bending = warnings;
+        for (const char* code : {"lost-coating", "lost-zoom", "lost-focus-groups"}) {
+            bending.erase(code);
+        }
+        const bool one_colour = bending.erase("lost-dispersion") > 0;
+        if (!bending.empty()) {
+            return;
+        }
+        int points = 0;
+        for (std::size_t position = 0; position < std::max<std::size_t>(1, back.zoom.size()); ++position) {
+            const Lens here = make_lens(at_zoom_position(lens, position), shipped_glasses());
+            const Lens there = make_lens(at_zoom_position(back, position), shipped_glasses());
+            for (const double wavelength_nm : {kLineD, kLineF, kLineC}) {
+                if (!one_colour || wavelength_nm == kLineD) {
+                    EXPECT_LE(furthest_apart(here, there, wavelength_nm, points), kTolerance_mm)
+                        << wavelength_nm << " nm, position " << position + 1;
+                }
+            }
+        }
+        EXPECT_GT(points, 1000);
+    }
+
+    std::filesystem::path folder_;
+};
+
+PrescribedSurface surface(double radius_mm, double thickness_mm, double n_d, double semi_diameter_mm) {
+    PrescribedSurface row;
+    row.radius_mm = radius_mm;
+    row.thickness_mm = thickness_mm;
+    row.semi_diameter_mm = semi_diameter_mm;
+    if (n_d != 1.0) {
+        row.medium.n_d = n_d;
+    }
+    return row;
+}
+
+/// A doublet with a stop before it, of constant indices: what every form can say.
+Prescription plain() {
+    Prescription lens;
+    lens.name = "plain";
+    lens.source = "made for this test";
+    lens.file = "plain.toml";
+    PrescribedSurface stop = surface(std::numeric_limits<double>::infinity(), 4.3, 1.0, 6.0);
+    stop.is_stop = true;
+    lens.surfaces = {stop, surface(61.3 / 3.0, 5.1, 1.5168, 9.0), surface(-44.4, 1.7, 1.6727, 9.0),
+                     surface(-129.7, 57.9, 1.0, 9.0)};
+    return lens;
+}
+
+TEST_F(Conversion, KeepsEveryRayOfALensThatEveryFormCanSay) {
+    for (const std::string& form : kForms) {
+        expect_form_keeps(plain(), form, {});
+    }
+    Prescription dispersive = plain();
+    dispersive.surfaces[1].medium.V_d = 64.17;
+    dispersive.surfaces[2].medium.V_d = 32.21;
+    expect_form_keeps(dispersive, ".toml", {});
+    expect_form_keeps(dispersive, ".csv", {});
+    expect_form_keeps(dispersive, ".dat", {"lost-dispersion"});
+}
+
+TEST_F(Conversion, KeepsEveryRayOfEveryLensThatShips) {
+    for (const std::string& name : shipped_lens_names()) {
+        Prescription lens = read_prescription(find_lens_file(name));
+        std::set<std::string> csv;
+        std::set<std::string> pbrt;
+        double before = 1.0;
+        for (const PrescribedSurface& row : lens.surfaces) {
+            const bool is_air = row.medium.is_air();
+            const double after = is_air ? 1.0 : 2.0;  // of any glass
+            if (!is_air && (!row.medium.glass.empty() || row.medium.V_d)) {
+                pbrt.insert("lost-dispersion");
+            }
+            if (row.is_flat() && !(row.is_stop && before == 1.0 && after == 1.0)) {
+                pbrt.insert("lost-flat");
+            }
+            if (row.is_stop && !(row.is_flat() && before == after)) {
+                pbrt.insert("lost-stop");
+            }
+            if (row.conic != 0.0 || row.is_asphere()) {
+                pbrt.insert("lost-asphere");
+            }
+            if (row.radius_x_mm) {
+                csv.insert("lost-toroid");
+            }
+            if (!row.coating.empty()) {
+                csv.insert("lost-coating");
+            }
+            before = after;
+        }
+        if (!lens.zoom.empty()) {
+            csv.insert("lost-zoom");
+        }
+        if (!lens.focus_groups.empty()) {
+            csv.insert("lost-focus-groups");
+        }
+        if (lens.stop_shape.index() != 0) {
+            csv.insert("lost-stop-shape");
+        }
+        if (!lens.catalogues.empty() || !lens.preferred_makers.empty()) {
+            csv.insert("lost-catalogues");
+        }
+        pbrt.insert(csv.begin(), csv.end());
+        expect_form_keeps(lens, ".toml", {});
+        expect_form_keeps(lens, ".csv", csv);
+        if (!pbrt.contains("lost-stop")) {  // which is a row more
+            expect_form_keeps(lens, ".dat", pbrt);
+        }
+    }
+}
+
+TEST_F(Conversion, KeepsConicsAndAspheresWhereThereAreColumns) {
+    Prescription lens = plain();
+    lens.surfaces[1].conic = -0.73;
+    lens.surfaces[3].asphere = {1e-5, -3.3e-6, 2.1e-8, 0.0, 1e-13};
+    expect_form_keeps(lens, ".toml", {});
+    expect_form_keeps(lens, ".csv", {});
+    expect_form_keeps(lens, ".dat", {"lost-asphere"});
+}
+
+TEST_F(Conversion, WarnsOfWhatTablesCannotSay) {
+    const auto expect = [&](const std::string& what, const Prescription& lens) {
+        expect_form_keeps(lens, ".toml", {});
+        expect_form_keeps(lens, ".csv", {what});
+        expect_form_keeps(lens, ".dat", {what});
+    };
+    Prescription toroid = plain();
+    toroid.surfaces[1].radius_x_mm = 25.0;
+    expect("lost-toroid", toroid);
+    Prescription tilted = plain();
+    tilted.surfaces[2].misalignment = {{0.1, -0.05}, {0.4, 0.2, -3.0}};
+    expect("lost-misalignment", tilted);
+    Prescription grouped = plain();
+    grouped.groups = {{.first = 2, .last = 4, .misalignment = {{0.0, 0.2}, {0.5, 0.0, 0.0}}, .pivot_mm = 2.0}};
+    expect("lost-misalignment", grouped);
+    Prescription coated = plain();
+    coated.coatings["single"] = std::vector<CoatingLayer>{{1.38, 99.6}};
+    coated.surfaces[1].coating = "single";
+    expect("lost-coating", coated);
+    Prescription bladed = plain();
+    bladed.stop_shape = PolygonStop{.blades = 5, .curvature = 0.3, .rotation_deg = 11.0};
+    expect("lost-stop-shape", bladed);
+    Prescription zoom = plain();
+    zoom.zoom = {{.name = "wide", .gaps_mm = {{1, 2.0}, {4, 60.0}}, .stop_semi_diameter_mm = 5.0, .stated = {}},
+                 {.name = "tele", .gaps_mm = {{1, 8.0}, {4, 50.0}}, .stop_semi_diameter_mm = {}, .stated = {}}};
+    expect("lost-zoom", zoom);
+    for (const std::string& form : kForms) {
+        Prescription tele = at_zoom_position(zoom, 1);
+        tele.name = "tele";
+        expect_form_keeps(tele, form, {});
+    }
+}
+
+TEST_F(Conversion, WarnsOfAPlaneThatPbrtTakesForTheStop) {
+    Prescription lens = plain();
+    lens.surfaces[3].radius_mm = std::numeric_limits<double>::infinity();
+    expect_form_keeps(lens, ".csv", {});
+    expect_form_keeps(lens, ".dat", {"lost-flat"});
+    // What is written in its place departs from the plane by h² / 2R, 0.4 µm at the rim of 9 mm and R = 10⁵ mm.
+    std::set<std::string> warnings;
+    const Lens back = make_lens(there_and_back(lens, ".dat", warnings), shipped_glasses());
+    const Lens here = make_lens(lens, shipped_glasses());
+    int points = 0;
+    const double apart = furthest_apart(here, back, kLineD, points);
+    EXPECT_GT(apart, kTolerance_mm);
+    EXPECT_LT(apart, 0.1);
+}
+
+TEST_F(Conversion, WarnsOfAStopThatLiesOnGlass) {
+    Prescription lens = plain();
+    lens.surfaces.erase(lens.surfaces.begin());
+    lens.surfaces[1].is_stop = true;
+    expect_form_keeps(lens, ".toml", {});
+    expect_form_keeps(lens, ".csv", {});
+    std::set<std::string> warnings;
+    const Prescription back = there_and_back(lens, ".dat", warnings);
+    EXPECT_EQ(warnings, std::set<std::string>{"lost-stop"});
+    EXPECT_EQ(std::ranges::count_if(back.surfaces, &PrescribedSurface::is_stop), 1);
+}
+
+TEST_F(Conversion, KeepsRimsAndBarrelsAsClearApertures) {
+    Prescription lens = plain();
+    lens.surfaces[1].barrel_mm = 7.5;  // narrows this surface and the next
+    lens.surfaces[3].semi_diameter_mm = std::nullopt;
+    lens.surfaces[3].rim_mm = 8.0;
+    for (const std::string& form : kForms) {
+        expect_form_keeps(lens, form, {});
+    }
+}
+
+}  // namespace
+}  // namespace lensproof
