@@ -9,6 +9,7 @@
 #include "engine/io/glass_file.h"
 #include "engine/io/input_error.h"
 #include "engine/io/text.h"
+#include "engine/io/text_encoding.h"
 
 namespace lensproof {
 
@@ -278,7 +279,7 @@ GlassFile parse_agf(const std::string& bytes, const std::filesystem::path& name)
         throw InputError(fmt::format("{}: has {} bytes, expected a catalogue of at most {}", name.string(),
                                      bytes.size(), kLargestCatalogue));
     }
-    return AgfReader(name).read(decoded_text(bytes));
+    return AgfReader(name).read(to_utf8(bytes));
 }
 
 }  // namespace lensproof

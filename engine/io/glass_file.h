@@ -23,7 +23,7 @@ GlassFile read_glass_file(const std::filesystem::path& file);
 /// Throws InputError naming line and column of an entry that is unusable, and for a glass that stands there twice.
 GlassFile parse_glass_table(std::string text, const std::filesystem::path& name);
 
-/// A Zemax catalogue (.agf), in any encoding of `decoded_text`: records NM, GC, ED, CD, TD, OD, LD and IT, dispersion
+/// A Zemax catalogue (.agf), in any encoding of `to_utf8`: records NM, GC, ED, CD, TD, OD, LD and IT, dispersion
 /// formulas 1 to 13, with numbers that run on in the next line. Glasses that cannot be used (a formula that is not one
 /// of these, no range, an index that is not real in it) are left out with a note, and so are keywords that are not
 /// known. The catalogue takes the file's name. Throws InputError for a number that is none, and where there is no

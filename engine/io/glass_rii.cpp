@@ -10,6 +10,7 @@
 #include "engine/io/glass_file.h"
 #include "engine/io/input_error.h"
 #include "engine/io/text.h"
+#include "engine/io/text_encoding.h"
 
 namespace lensproof {
 
@@ -278,7 +279,7 @@ GlassFile parse_rii(const std::string& text, const std::filesystem::path& name) 
             fmt::format("{}: has {} bytes, expected a page of at most {}", name.string(), text.size(), kLargestPage));
     }
     try {
-        const YAML::Node root = YAML::Load(decoded_text(text));
+        const YAML::Node root = YAML::Load(to_utf8(text));
         return RiiPage(name, root).read();
     } catch (const YAML::Exception& error) {
         throw InputError(

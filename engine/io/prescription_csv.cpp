@@ -11,6 +11,7 @@
 #include "engine/io/input_error.h"
 #include "engine/io/prescription_forms.h"
 #include "engine/io/text.h"
+#include "engine/io/text_encoding.h"
 #include "engine/spectral/wavelengths.h"
 
 namespace lensproof {
@@ -267,7 +268,7 @@ class CsvPrescription {
 }  // namespace
 
 Prescription parse_csv_prescription(const std::string& text, const std::filesystem::path& file) {
-    return CsvPrescription(text, file).read();
+    return CsvPrescription(to_utf8(text), file).read();
 }
 
 }  // namespace lensproof

@@ -17,6 +17,7 @@
 #include "engine/io/input_error.h"
 #include "engine/io/prescription_forms.h"
 #include "engine/io/text.h"
+#include "engine/io/text_encoding.h"
 
 namespace lensproof {
 
@@ -288,7 +289,7 @@ class FxTable {
 }  // namespace
 
 Prescription parse_fx(const std::string& text, const std::filesystem::path& file) {
-    return FxTable(file).read(text);
+    return FxTable(file).read(to_utf8(text));
 }
 
 }  // namespace lensproof

@@ -12,6 +12,7 @@
 #include "engine/io/prescription_forms.h"
 #include "engine/io/prescription_losses.h"
 #include "engine/io/text.h"
+#include "engine/io/text_encoding.h"
 #include "engine/optics/lens.h"
 #include "engine/spectral/wavelengths.h"
 
@@ -294,7 +295,7 @@ class PbrtWriter {
 }  // namespace
 
 Prescription parse_pbrt_lens(const std::string& text, const std::filesystem::path& file) {
-    return PbrtLens(file).read(text);
+    return PbrtLens(file).read(to_utf8(text));
 }
 
 WrittenPrescription to_pbrt_lens(const Prescription& prescription) {

@@ -259,7 +259,11 @@ class ZmxWriter {
         }
         if (!medium.glass.empty()) {
             const auto [maker, name] = split_glass(medium.glass);
-            line("  GLAS {} 0 0 {} {} 0 0 0 0 0 0", name, n_d, V_d);
+            if (medium.n_d) {
+                line("  GLAS {} 0 0 {} {} 0 0 0 0 0 0", name, n_d, V_d);
+            } else {
+                line("  GLAS {} 0 0 1.5 40 0 0 0 0 0 0", name);  // as Zemax writes what only the catalogue knows
+            }
             const auto [known, is_new] = makers_.try_emplace(name, maker);
             if (!is_new && known->second != maker) {
                 lose(number, fmt::format("which maker's {} each surface has", name));

@@ -17,6 +17,12 @@ void Remarks::add_once(const std::string& key, std::string code, Severity severi
     }
 }
 
+void Remarks::at(const Command& command, std::string code, Severity severity, int surface, const std::string& what) {
+    const std::string of_surface = surface > 0 ? fmt::format(", surface {} of the file", surface) : "";
+    add_once(surface > 0 ? command.keyword + of_surface : "", std::move(code), severity, surface,
+             fmt::format("line {}{}: {}: {}", command.line, of_surface, printable(command.keyword), what));
+}
+
 void Remarks::not_understood(const std::string& word, int surface, int line, const std::string& what) {
     constexpr int kMost = 100;
     if (not_understood_ >= kMost) {

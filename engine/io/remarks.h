@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "engine/io/command.h"
 #include "engine/optics/finding.h"
 
 namespace lensproof {
@@ -15,6 +16,10 @@ class Remarks {
 
     /// As `add`, but only the first time that `code` is used with `key`.
     void add_once(const std::string& key, std::string code, Severity severity, int surface, std::string message);
+
+    /// "line 7, surface 2 of the file: SQAP: `what`", the first time for each code, or on a surface (not 0) for each
+    /// code and keyword.
+    void at(const Command& command, std::string code, Severity severity, int surface, const std::string& what);
 
     /// That a word of the file is not understood: once for each word and surface, and not more than a hundred times.
     void not_understood(const std::string& word, int surface, int line, const std::string& what = "");

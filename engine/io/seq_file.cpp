@@ -7,6 +7,7 @@
 #include <cmath>
 #include <set>
 
+#include "engine/io/command.h"
 #include "engine/io/input_error.h"
 #include "engine/io/seq_statements.h"
 #include "engine/io/text.h"
@@ -44,12 +45,19 @@ bool is_among(const auto& words, std::string_view word) {
 
 class SeqReader {
   public:
-    SeqReader(const std::filesystem::path& file, Remarks& remarks) : path_(file), remarks_(remarks) {}
+    SeqReader(const std::filesystem::path& file, Remarks& remarks) : path_(file), remarks_(remarks) {
+        here_.file = &path_;
+    }
 
     SeqFile read(std::string_view text) {
         for (const SeqStatement& statement : seq_statements(text)) {
             statement_ = &statement;
-            keyword_ = statement.words[0].text;
+            here_.line = statement.line;
+            here_.keyword = statement.words[0].text;
+            here_.words.clear();
+            for (const SeqWord& word : statement.words) {
+                here_.words.push_back(word.text);
+            }
             next_ = 1;
             read_statement();
         }
@@ -65,39 +73,6 @@ class SeqReader {
 
   private:
     [[nodiscard]] const std::vector<SeqWord>& words() const { return statement_->words; }
-    [[nodiscard]] std::string_view word(std::size_t index) const {
-        return index < words().size() ? std::string_view(words()[index].text) : std::string_view();
-    }
-
-    [[noreturn]] void fail(std::string_view found, std::string_view expected) const {
-        throw InputError(fmt::format("{}:{}: {} is \"{}\", expected {}", path_.string(), statement_->line,
-                                     printable(keyword_), printable(found), expected));
-    }
-
-    double number(std::size_t index, std::string_view expected) const {
-        const std::optional<double> value = parse_number(word(index));
-        if (!value) {
-            fail(word(index), expected);
-        }
-        return *value;
-    }
-
-    [[nodiscard]] std::vector<double> numbers_from(std::size_t first) const {
-        std::vector<double> values;
-        for (std::size_t i = first; i < words().size(); ++i) {
-            values.push_back(number(i, "numbers"));
-        }
-        return values;
-    }
-
-    int integer(std::size_t index, int min, int max, std::string_view expected) const {
-        const double value = number(index, expected);
-        if (!(value >= min && value <= max) || value != std::floor(value)) {
-            fail(word(index), fmt::format("{} from {} to {}", expected, min, max));
-        }
-        return static_cast<int>(value);
-    }
-
     [[nodiscard]] int last_surface() const { return static_cast<int>(file_.surfaces.size()) - 1; }
 
     /// Without RDM the program's own preference counts, which the file does not hold. A curvature beyond 1 in the
@@ -133,7 +108,7 @@ class SeqReader {
             return std::nullopt;
         }
         if (!(*value >= 0.0 && *value <= last_surface()) || *value != std::floor(*value)) {
-            fail(name, fmt::format("a surface up to S{}", last_surface()));
+            here_.fail(name, fmt::format("a surface up to S{}", last_surface()));
         }
         return static_cast<int>(*value);
     }
@@ -144,7 +119,7 @@ class SeqReader {
         zoom_position_ = 0;
         qualifier_.clear();
         for (; next_ < words().size() && !words()[next_].is_quoted; ++next_) {
-            const std::string_view name = word(next_);
+            const std::string_view name = here_.word(next_);
             if (const std::optional<int> named = surface_named(name)) {
                 surface_ = *named;
             } else if (name.size() > 1 && name[0] == 'Z' && parse_number(name.substr(1))) {
@@ -166,53 +141,52 @@ class SeqReader {
             not_understood();
             return;
         }
-        const bool is_surface_line = keyword_[0] == 'S' && (keyword_.size() == 1 || keyword_ == "SO" ||
-                                                            keyword_ == "SI" || parse_number(keyword_.substr(1)));
+        const bool is_surface_line =
+            here_.keyword[0] == 'S' && (here_.keyword.size() == 1 || here_.keyword == "SO" || here_.keyword == "SI" ||
+                                        parse_number(here_.keyword.substr(1)));
         if (is_surface_line) {
             read_surface();
             return;
         }
         constexpr std::size_t kSignificant = 3;  // letters of a command
-        keyword_ = keyword_.substr(0, kSignificant);
-        if (!read_system() && !read_of_surface() && !is_among(kSilent, keyword_)) {
+        here_.keyword = here_.keyword.substr(0, kSignificant);
+        if (!read_system() && !read_of_surface() && !is_among(kSilent, here_.keyword)) {
             not_understood();
         }
     }
 
-    void not_understood() { remarks_.not_understood(keyword_, std::max(0, last_surface()), statement_->line); }
+    void not_understood() { remarks_.not_understood(here_.keyword, std::max(0, last_surface()), here_.line); }
 
     /// Commands of the lens as a whole.
     bool read_system() {
-        if (keyword_ == "RDM") {
-            radius_mode_ = !word(1).starts_with('N');
+        if (here_.keyword == "RDM") {
+            radius_mode_ = !here_.word(1).starts_with('N');
             radius_mode_is_stated_ = true;
-        } else if (keyword_ == "TIT") {
+        } else if (here_.keyword == "TIT") {
             file_.title = words().size() > 1 ? words()[1].text : "";
-        } else if (keyword_ == "DIM") {
+        } else if (here_.keyword == "DIM") {
             read_unit();
-        } else if (keyword_ == "EPD" || keyword_ == "FNO" || keyword_ == "NA" || keyword_ == "NAO") {
-            file_.aperture_type = keyword_;
-            file_.aperture_value = number(1, "the aperture's value");
-        } else if (is_among(kFields, keyword_)) {
-            file_.fields[keyword_] = numbers_from(1);
-        } else if (keyword_ == "WL") {
-            file_.wavelengths_nm = numbers_from(1);
-        } else if (keyword_ == "REF") {
-            file_.reference_wavelength = integer(1, 1, kMostSurfaces, "a wavelength's number");
-        } else if (keyword_ == "PRV") {
+        } else if (here_.keyword == "EPD" || here_.keyword == "FNO" || here_.keyword == "NA" ||
+                   here_.keyword == "NAO") {
+            file_.aperture_type = here_.keyword;
+            file_.aperture_value = here_.number(1, "the aperture's value");
+        } else if (is_among(kFields, here_.keyword)) {
+            file_.fields[here_.keyword] = here_.numbers_from(1);
+        } else if (here_.keyword == "WL") {
+            file_.wavelengths_nm = here_.numbers_from(1);
+        } else if (here_.keyword == "REF") {
+            file_.reference_wavelength = here_.integer(1, 1, kMostSurfaces, "a wavelength's number");
+        } else if (here_.keyword == "PRV") {
             in_private_catalogue_ = true;
             private_wavelengths_.clear();
-        } else if (keyword_ == "ZOO") {
+        } else if (here_.keyword == "ZOO") {
             read_zoom();
-        } else if (is_among(kVignettingFactors, keyword_)) {
-            remarks_.add_once("", "vignetting-factors", Severity::info, 0,
-                              fmt::format("line {}: {}: vignetting factors are left out; rims cut the beams",
-                                          statement_->line, keyword_));
-        } else if (keyword_ == "TEM" || keyword_ == "PRE") {
-            remarks_.add_once(keyword_, "environment", Severity::info, 0,
-                              fmt::format("line {}: {} {} is left out: indices and lengths are taken at 20 °C and 1 "
-                                          "atm",
-                                          statement_->line, keyword_, printable(word(1))));
+        } else if (is_among(kVignettingFactors, here_.keyword)) {
+            remarks_.at(here_, "vignetting-factors", Severity::info, 0,
+                        "vignetting factors are left out; rims cut the beams");
+        } else if (here_.keyword == "TEM" || here_.keyword == "PRE") {
+            remarks_.at(here_, "environment", Severity::info, 0,
+                        "left out: indices and lengths are taken at 20 °C and 1 atm");
         } else {
             return false;
         }
@@ -220,39 +194,39 @@ class SeqReader {
     }
 
     void read_unit() {
-        const std::string_view unit = word(1);
+        const std::string_view unit = here_.word(1);
         if (unit.starts_with('M')) {
             file_.unit_mm = 1.0;
         } else if (unit.starts_with('C') || unit.starts_with('I')) {
             file_.unit_mm = unit[0] == 'C' ? 10.0 : 25.4;
-            remarks_.add_once("", "units", Severity::info, 0,
-                              fmt::format("line {}: lengths are in {} and taken times {} mm", statement_->line,
-                                          unit[0] == 'C' ? "cm" : "inches", file_.unit_mm));
+            remarks_.at(here_, "units", Severity::info, 0,
+                        fmt::format("lengths are in {} and taken times {} mm", unit[0] == 'C' ? "cm" : "inches",
+                                    file_.unit_mm));
         } else {
-            fail(unit, "M, C or I");
+            here_.fail(unit, "M, C or I");
         }
     }
 
     void read_surface() {
-        SeqSurface surface{.line = statement_->line};
-        const double bent = number(1, radius_mode_ ? "a radius" : "a curvature");
+        SeqSurface surface{.line = here_.line};
+        const double bent = here_.number(1, radius_mode_ ? "a radius" : "a curvature");
         surface.curvature = !radius_mode_ ? bent : (bent == 0.0 ? 0.0 : 1.0 / bent);
-        surface.thickness = number(2, "a thickness");
+        surface.thickness = here_.number(2, "a thickness");
         for (std::size_t i = 3; i < words().size(); ++i) {
             read_glass_word(surface, words()[i]);
         }
         const auto next = static_cast<double>(file_.surfaces.size());
-        const bool is_object = keyword_ == "SO" || keyword_ == "S0";
-        const bool has_number = !is_object && keyword_ != "S" && keyword_ != "SI";
-        const double stated = has_number ? parse_number(keyword_.substr(1)).value_or(next) : next;
+        const bool is_object = here_.keyword == "SO" || here_.keyword == "S0";
+        const bool has_number = !is_object && here_.keyword != "S" && here_.keyword != "SI";
+        const double stated = has_number ? parse_number(here_.keyword.substr(1)).value_or(next) : next;
         if (file_.has_image || stated != next || is_object != file_.surfaces.empty() ||
             file_.surfaces.size() >= kMostSurfaces) {
             throw InputError(
                 fmt::format("{}:{}: {}, expected SO, then surfaces in order (here S{}), not more than {}, "
                             "and SI last",
-                            path_.string(), statement_->line, printable(keyword_), next, kMostSurfaces));
+                            path_.string(), here_.line, printable(here_.keyword), next, kMostSurfaces));
         }
-        file_.has_image = keyword_ == "SI";
+        file_.has_image = here_.keyword == "SI";
         file_.surfaces.push_back(std::move(surface));
         bends_.push_back(bent);
     }
@@ -275,31 +249,25 @@ class SeqReader {
         if (read_shape(surface) || read_decentre(surface)) {
             return true;
         }
-        if (keyword_ == "STO") {
+        if (here_.keyword == "STO") {
             surface.is_stop = true;
-        } else if (keyword_ == "THI") {
+        } else if (here_.keyword == "THI") {
             set_thickness();
-        } else if (keyword_ == "GLA") {
+        } else if (here_.keyword == "GLA") {
             read_glass_word(surface, next_ < words().size() ? words()[next_] : SeqWord{});
-        } else if (keyword_ == "RMD") {
-            surface.is_mirror = word(next_) == "REFL";
-        } else if (keyword_ == "CIR" && qualifier_ != "OBS" && qualifier_ != "HOL") {
-            (qualifier_ == "EDG" ? surface.edge : surface.semi_diameter) = number(next_, "an aperture's radius");
-        } else if (keyword_ == "CIR" || is_among(kApertureShapes, keyword_)) {
-            remarks_.add_once(fmt::format("{} {}", keyword_, surface_), "aperture-shape", Severity::warning, surface_,
-                              fmt::format("line {}, surface {} of the file: {} makes the aperture no full circle about "
-                                          "the vertex; that is left out",
-                                          statement_->line, surface_, keyword_));
-        } else if (is_among(kSolves, keyword_)) {
-            remarks_.add_once("", "solve", Severity::info, surface_,
-                              fmt::format("line {}: {}: what solves and pick-ups gave is taken as stated; they are "
-                                          "not followed",
-                                          statement_->line, keyword_));
-        } else if (is_among(kDiffraction, keyword_) || is_among(kOtherTypes, keyword_)) {
-            remarks_.add_once(fmt::format("{}", surface_), "surface-type", Severity::error, surface_,
-                              fmt::format("line {}, surface {} of the file: {}: the surface is more than a conic, "
-                                          "asphere or toroid; the rest is left out",
-                                          statement_->line, surface_, keyword_));
+        } else if (here_.keyword == "RMD") {
+            surface.is_mirror = here_.word(next_) == "REFL";
+        } else if (here_.keyword == "CIR" && qualifier_ != "OBS" && qualifier_ != "HOL") {
+            (qualifier_ == "EDG" ? surface.edge : surface.semi_diameter) = here_.number(next_, "an aperture's radius");
+        } else if (here_.keyword == "CIR" || is_among(kApertureShapes, here_.keyword)) {
+            remarks_.at(here_, "aperture-shape", Severity::warning, surface_,
+                        "makes the aperture no full circle about the vertex, and is left out");
+        } else if (is_among(kSolves, here_.keyword)) {
+            remarks_.at(here_, "solve", Severity::info, 0,
+                        "what solves and pick-ups gave is taken as stated; they are not followed");
+        } else if (is_among(kDiffraction, here_.keyword) || is_among(kOtherTypes, here_.keyword)) {
+            remarks_.at(here_, "surface-type", Severity::error, surface_,
+                        "the surface is more than a conic, asphere or toroid; the rest is left out");
         } else {
             return false;
         }
@@ -307,22 +275,23 @@ class SeqReader {
     }
 
     bool read_shape(SeqSurface& surface) {
-        const std::size_t term = keyword_.size() == 1 ? kAsphereTermNames.find(keyword_[0]) : std::string_view::npos;
+        const std::size_t term =
+            here_.keyword.size() == 1 ? kAsphereTermNames.find(here_.keyword[0]) : std::string_view::npos;
         const auto curvature_of = [&](double radius) { return radius == 0.0 ? 0.0 : 1.0 / radius; };
-        if (is_among(kTypes, keyword_)) {
-            surface.type = keyword_;
-        } else if (keyword_ == "K") {
-            surface.conic = number(next_, "a conic constant");
+        if (is_among(kTypes, here_.keyword)) {
+            surface.type = here_.keyword;
+        } else if (here_.keyword == "K") {
+            surface.conic = here_.number(next_, "a conic constant");
         } else if (term != std::string_view::npos) {
-            surface.asphere[term + 1] = number(next_, "an aspheric coefficient");
-        } else if (keyword_ == "RDY" || keyword_ == "CUY") {
-            const double value = number(next_, "a radius or a curvature");
-            surface.curvature = keyword_ == "RDY" ? curvature_of(value) : value;
-        } else if (keyword_ == "RDX" || keyword_ == "CUX") {
-            const double value = number(next_, "a radius or a curvature");
-            surface.curvature_x = keyword_ == "RDX" ? curvature_of(value) : value;
-        } else if (keyword_ == "CUF") {
-            if (number(next_, "a curvature") != 0.0) {
+            surface.asphere[term + 1] = here_.number(next_, "an aspheric coefficient");
+        } else if (here_.keyword == "RDY" || here_.keyword == "CUY") {
+            const double value = here_.number(next_, "a radius or a curvature");
+            surface.curvature = here_.keyword == "RDY" ? curvature_of(value) : value;
+        } else if (here_.keyword == "RDX" || here_.keyword == "CUX") {
+            const double value = here_.number(next_, "a radius or a curvature");
+            surface.curvature_x = here_.keyword == "RDX" ? curvature_of(value) : value;
+        } else if (here_.keyword == "CUF") {
+            if (here_.number(next_, "a curvature") != 0.0) {
                 not_understood();
             }
         } else {
@@ -334,15 +303,15 @@ class SeqReader {
     bool read_decentre(SeqSurface& surface) {
         static constexpr std::string_view kDecentres[] = {"XDE", "YDE", "ZDE"};
         static constexpr std::string_view kTilts[] = {"ADE", "BDE", "CDE"};
-        if (is_among(kDecentres, keyword_)) {
-            surface.decentre[keyword_[0] - 'X'] = number(next_, "a decentre");
-        } else if (is_among(kTilts, keyword_)) {
-            surface.tilt_deg[keyword_[0] - 'A'] = number(next_, "a tilt in degrees");
-        } else if (keyword_ == "DAR") {
+        if (is_among(kDecentres, here_.keyword)) {
+            surface.decentre[here_.keyword[0] - 'X'] = here_.number(next_, "a decentre");
+        } else if (is_among(kTilts, here_.keyword)) {
+            surface.tilt_deg[here_.keyword[0] - 'A'] = here_.number(next_, "a tilt in degrees");
+        } else if (here_.keyword == "DAR") {
             surface.decentre_kind = SeqDecentre::restore;
-        } else if (keyword_ == "REV") {
+        } else if (here_.keyword == "REV") {
             surface.decentre_kind = SeqDecentre::reverse;
-        } else if (keyword_ == "BEN") {
+        } else if (here_.keyword == "BEN") {
             surface.decentre_kind = SeqDecentre::bend;
         } else {
             return false;
@@ -351,13 +320,14 @@ class SeqReader {
     }
 
     void set_thickness() {
-        const double value = number(next_, "a thickness");
+        const double value = here_.number(next_, "a thickness");
         if (zoom_position_ == 0) {
             file_.surfaces[surface_].thickness = value;
             return;
         }
         if (zoom_position_ > file_.zoom_positions) {
-            fail(fmt::format("for Z{}", zoom_position_), fmt::format("one of {} zoom positions", file_.zoom_positions));
+            here_.fail(fmt::format("for Z{}", zoom_position_),
+                       fmt::format("one of {} zoom positions", file_.zoom_positions));
         }
         std::vector<double>& values = file_.zoomed_thicknesses[surface_];
         values.resize(static_cast<std::size_t>(file_.zoom_positions), file_.surfaces[surface_].thickness);
@@ -366,20 +336,20 @@ class SeqReader {
 
     /// "ZOO 3", or "ZOO THI S5 1.0 2.0 3.0": a value for each position.
     void read_zoom() {
-        if (parse_number(word(1))) {
-            file_.zoom_positions = integer(1, 1, kMostZoomPositions, "a number of zoom positions");
+        if (parse_number(here_.word(1))) {
+            file_.zoom_positions = here_.integer(1, 1, kMostZoomPositions, "a number of zoom positions");
             return;
         }
-        const std::string command(word(1).substr(0, 3));
+        const std::string command(here_.word(1).substr(0, 3));
         next_ = 2;
         if (!file_.surfaces.empty()) {
             take_qualifiers();
         }
         const auto values = [&] {
-            std::vector<double> read = numbers_from(next_);
+            std::vector<double> read = here_.numbers_from(next_);
             if (read.size() != static_cast<std::size_t>(file_.zoom_positions)) {
-                fail(fmt::format("{} values", read.size()),
-                     fmt::format("{}, one for each zoom position", file_.zoom_positions));
+                here_.fail(fmt::format("{} values", read.size()),
+                           fmt::format("{}, one for each zoom position", file_.zoom_positions));
             }
             return read;
         };
@@ -394,28 +364,28 @@ class SeqReader {
         } else if (!is_among(kSilent, command)) {
             remarks_.add_once(command, "multi-configuration", Severity::warning, 0,
                               fmt::format("line {}: {} differs between the zoom positions, which is left out",
-                                          statement_->line, printable(command)));
+                                          here_.line, printable(command)));
         }
     }
 
     /// PWL with wavelengths, then a line of indices for each glass.
     void read_private_catalogue() {
-        if (keyword_ == "END" && !words()[0].is_quoted) {
+        if (here_.keyword == "END" && !words()[0].is_quoted) {
             in_private_catalogue_ = false;
-        } else if (keyword_ == "PWL" && !words()[0].is_quoted) {
-            private_wavelengths_ = numbers_from(1);
-        } else if (words().size() > 1 && parse_number(word(1)) && !private_wavelengths_.empty()) {
-            const std::vector<double> indices = numbers_from(1);
+        } else if (here_.keyword == "PWL" && !words()[0].is_quoted) {
+            private_wavelengths_ = here_.numbers_from(1);
+        } else if (words().size() > 1 && parse_number(here_.word(1)) && !private_wavelengths_.empty()) {
+            const std::vector<double> indices = here_.numbers_from(1);
             if (indices.size() != private_wavelengths_.size()) {
-                fail(fmt::format("{} indices", indices.size()),
-                     fmt::format("{}, one for each wavelength of PWL", private_wavelengths_.size()));
+                here_.fail(fmt::format("{} indices", indices.size()),
+                           fmt::format("{}, one for each wavelength of PWL", private_wavelengths_.size()));
             }
             std::vector<WavelengthValue> table;
             for (std::size_t i = 0; i < indices.size(); ++i) {
                 table.push_back({private_wavelengths_[i], indices[i]});
             }
             std::ranges::sort(table, {}, &WavelengthValue::wavelength_nm);
-            file_.private_glasses[keyword_] = std::move(table);
+            file_.private_glasses[here_.keyword] = std::move(table);
         } else {
             not_understood();
         }
@@ -425,7 +395,7 @@ class SeqReader {
     Remarks& remarks_;
     SeqFile file_;
     const SeqStatement* statement_ = nullptr;
-    std::string keyword_;
+    Command here_;          // the statement's; its word 0 is the keyword
     std::size_t next_ = 1;  // the word behind the qualifiers
     int surface_ = 0;
     int zoom_position_ = 0;

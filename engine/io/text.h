@@ -13,10 +13,6 @@ std::string_view trimmed(std::string_view text);
 /// `text` without the byte order mark that some programs write before UTF-8.
 std::string_view without_byte_order_mark(std::string_view text);
 
-/// A text file's bytes as UTF-8: UTF-16 of either order, with a byte order mark or without (then known by its zero
-/// bytes), UTF-8, and what is not UTF-8 read as Latin-1. Lens and glass files come in all of them.
-std::string decoded_text(std::string_view bytes);
-
 /// The lines of a text, at LF, CR LF or CR. They look into `text`.
 std::vector<std::string_view> lines_of(std::string_view text);
 

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/io/command.h"
 #include "engine/io/input_error.h"
 #include "engine/io/text.h"
 
@@ -44,12 +45,14 @@ bool is_among(const auto& words, std::string_view word) {
 /// Reads one file, line by line.
 class ZmxReader {
   public:
-    ZmxReader(const std::filesystem::path& file, Remarks& remarks) : path_(file), remarks_(remarks) {}
+    ZmxReader(const std::filesystem::path& file, Remarks& remarks) : path_(file), remarks_(remarks) {
+        here_.file = &path_;
+    }
 
     ZmxFile read(std::string_view text) {
         while (!text.empty()) {
             const std::size_t end = std::min(text.find_first_of("\r\n"), text.size());
-            ++line_;
+            ++here_.line;
             read_line(text.substr(0, end));
             const bool crlf = text.substr(end).starts_with("\r\n");
             text.remove_prefix(std::min(text.size(), end + (crlf ? 2 : 1)));
@@ -71,15 +74,15 @@ class ZmxReader {
         const bool is_indented = !line.empty() && (line[0] == ' ' || line[0] == '\t');
         const std::string_view content = trimmed(line);
         const std::size_t end = std::min(content.find_first_of(" \t"), content.size());
-        keyword_ = content.substr(0, end);
+        here_.keyword = content.substr(0, end);
         rest_ = trimmed(content.substr(end));
-        words_.clear();
+        here_.words.clear();
         for (std::string_view left = rest_; !left.empty();) {
             const std::size_t length = std::min(left.find_first_of(" \t"), left.size());
-            words_.push_back(left.substr(0, length));
+            here_.words.push_back(left.substr(0, length));
             left = trimmed(left.substr(length));
         }
-        if (keyword_.empty()) {
+        if (here_.keyword.empty()) {
             return;
         }
         static constexpr Keyword kKeywords[] = {
@@ -102,64 +105,34 @@ class ZmxReader {
             {"CLAP", &ZmxReader::read_aperture},   {"FLAP", &ZmxReader::read_aperture},
             {"OBDC", &ZmxReader::read_off_centre}, {"PARM", &ZmxReader::read_parameter},
             {"XDAT", &ZmxReader::read_extra},      {"COAT", &ZmxReader::read_coating}};
-        const auto* known = std::ranges::find(kKeywords, keyword_, &Keyword::name);
-        const auto* of_surface = std::ranges::find(kOfSurfaces, keyword_, &Keyword::name);
+        const auto* known = std::ranges::find(kKeywords, here_.keyword, &Keyword::name);
+        const auto* of_surface = std::ranges::find(kOfSurfaces, here_.keyword, &Keyword::name);
         if (known != std::end(kKeywords)) {
             (this->*known->read)();
         } else if (of_surface != std::end(kOfSurfaces) && !file_.surfaces.empty()) {
             (this->*of_surface->read)();
-        } else if (is_among(kSilent, keyword_)) {
+        } else if (is_among(kSilent, here_.keyword)) {
             return;
-        } else if (is_among(kSolves, keyword_)) {
+        } else if (is_among(kSolves, here_.keyword)) {
             report_solve();
-        } else if (is_among(kApertureShapes, keyword_)) {
-            remarks_.add_once(
-                fmt::format("{} {}", keyword_, surface_number()), "aperture-shape", Severity::warning, surface_number(),
-                fmt::format("line {}, surface {} of the file: the aperture {} is no full circle; the circle "
-                            "of the semi-diameter is taken",
-                            line_, surface_number(), keyword_));
-        } else if (is_among(kVignettingFactors, keyword_)) {
+        } else if (is_among(kApertureShapes, here_.keyword)) {
+            remarks_.at(here_, "aperture-shape", Severity::warning, surface_number(),
+                        "the aperture is no full circle; the circle of the semi-diameter is taken");
+        } else if (is_among(kVignettingFactors, here_.keyword)) {
             read_vignetting();
         } else if (!file_.surfaces.empty() && !is_indented) {
             read_tail();
         } else {
-            remarks_.not_understood(std::string(keyword_), surface_number(), line_);
+            remarks_.not_understood(here_.keyword, surface_number(), here_.line);
         }
     }
 
     [[nodiscard]] int surface_number() const { return std::max(0, static_cast<int>(file_.surfaces.size()) - 1); }
     ZmxSurface& surface() { return file_.surfaces.back(); }
 
-    [[noreturn]] void fail(std::string_view found, std::string_view expected) const {
-        throw InputError(fmt::format("{}:{}: {}{} is \"{}\", expected {}", path_.string(), line_,
-                                     file_.surfaces.empty() ? "" : fmt::format("SURF {}: ", surface_number()),
-                                     printable(keyword_), printable(found), expected));
-    }
-
-    double number(std::size_t word, std::string_view expected) const {
-        const std::string_view text = word < words_.size() ? words_[word] : std::string_view();
-        const std::optional<double> value = parse_number(text);
-        if (!value) {
-            fail(text, expected);
-        }
-        return *value;
-    }
-
-    double number_or_zero(std::size_t word) const {
-        return word < words_.size() ? parse_number(words_[word]).value_or(0.0) : 0.0;
-    }
-
-    int integer(std::size_t word, int min, int max, std::string_view expected) const {
-        const double value = number(word, expected);
-        if (!(value >= min && value <= max) || value != std::floor(value)) {
-            fail(words_[word], fmt::format("{} from {} to {}", expected, min, max));
-        }
-        return static_cast<int>(value);
-    }
-
     void read_mode() {
         if (!rest_.starts_with("SEQ")) {
-            fail(rest_, "SEQ: only sequential systems are lenses");
+            here_.fail(rest_, "SEQ: only sequential systems are lenses");
         }
     }
 
@@ -167,8 +140,8 @@ class ZmxReader {
 
     void read_note() {
         std::string_view text = rest_;
-        if (!words_.empty() && parse_number(words_[0])) {
-            text = trimmed(text.substr(words_[0].size()));
+        if (!here_.words.empty() && parse_number(here_.words[0])) {
+            text = trimmed(text.substr(here_.words[0].size()));
         }
         if (!text.empty()) {
             file_.notes.push_back(std::string(text));
@@ -183,53 +156,55 @@ class ZmxReader {
         static constexpr Unit kUnits[] = {{"MM", 1.0},    {"CM", 10.0},      {"IN", 25.4},
                                           {"INCH", 25.4}, {"INCHES", 25.4},  {"M", 1000.0},
                                           {"ME", 1000.0}, {"METER", 1000.0}, {"METERS", 1000.0}};
-        const std::string_view name = words_.empty() ? std::string_view() : words_[0];
+        const std::string_view name = here_.word(0);
         const auto* unit = std::ranges::find(kUnits, name, &Unit::name);
         if (unit == std::end(kUnits)) {
-            fail(name, "MM, CM, IN or M");
+            here_.fail(name, "MM, CM, IN or M");
         }
         file_.unit_mm = unit->mm;
         if (unit->mm != 1.0) {
-            remarks_.add_once(fmt::format("{} {}", keyword_, surface_number()), "units", Severity::info, 0,
-                              fmt::format("line {}: lengths are in {} and taken times {} mm", line_, name, unit->mm));
+            remarks_.at(here_, "units", Severity::info, 0,
+                        fmt::format("lengths are in {} and taken times {} mm", name, unit->mm));
         }
     }
 
     void read_aperture_type() {
-        file_.aperture_type = std::string(keyword_);
-        file_.aperture_value = keyword_ == "FLOA" ? 0.0 : number(0, "the aperture's value");
-        file_.is_working_f_number = keyword_ == "FNUM" && number_or_zero(1) != 0.0;
+        file_.aperture_type = here_.keyword;
+        file_.aperture_value = here_.keyword == "FLOA" ? 0.0 : here_.number(0, "the aperture's value");
+        file_.is_working_f_number = here_.keyword == "FNUM" && here_.number_or_zero(1) != 0.0;
     }
 
     void read_field_type() {
-        file_.field_type = static_cast<int>(std::clamp(number(0, "a kind of field"), -1.0, 100.0));
-        file_.fields = static_cast<int>(std::clamp(number_or_zero(2), 0.0, 1e6));
-        file_.wavelengths = static_cast<int>(std::clamp(number_or_zero(3), 0.0, 1e6));
+        file_.field_type = static_cast<int>(std::clamp(here_.number(0, "a kind of field"), -1.0, 100.0));
+        file_.fields = static_cast<int>(std::clamp(here_.number_or_zero(2), 0.0, 1e6));
+        file_.wavelengths = static_cast<int>(std::clamp(here_.number_or_zero(3), 0.0, 1e6));
     }
 
     void read_fields() {
-        std::vector<double>& values = keyword_[0] == 'X' ? file_.field_x : file_.field_y;
+        std::vector<double>& values = here_.keyword[0] == 'X' ? file_.field_x : file_.field_y;
         values.clear();
-        for (std::size_t i = 0; i < words_.size(); ++i) {
-            values.push_back(number(i, "fields"));
+        for (std::size_t i = 0; i < here_.words.size(); ++i) {
+            values.push_back(here_.number(i, "fields"));
         }
     }
 
     void read_wavelength() {
-        const int index = integer(0, 1, kMostWavelengths, "a wavelength's number");
-        file_.wavelengths_um[index] = number(1, "a wavelength in micrometres");
+        const int index = here_.integer(0, 1, kMostWavelengths, "a wavelength's number");
+        file_.wavelengths_um[index] = here_.number(1, "a wavelength in micrometres");
     }
 
     void read_wavelengths() {
-        for (std::size_t i = 0; i < words_.size() && i < kMostWavelengths; ++i) {
-            file_.wavelengths_um[static_cast<int>(i) + 1] = number(i, "wavelengths in micrometres");
+        for (std::size_t i = 0; i < here_.words.size() && i < kMostWavelengths; ++i) {
+            file_.wavelengths_um[static_cast<int>(i) + 1] = here_.number(i, "wavelengths in micrometres");
         }
     }
 
-    void read_reference() { file_.reference_wavelength = integer(0, 1, kMostWavelengths, "a wavelength's number"); }
+    void read_reference() {
+        file_.reference_wavelength = here_.integer(0, 1, kMostWavelengths, "a wavelength's number");
+    }
 
     void read_catalogues() {
-        for (const std::string_view word : words_) {
+        for (const std::string_view word : here_.words) {
             file_.catalogues.push_back(std::string(word));
         }
     }
@@ -237,30 +212,29 @@ class ZmxReader {
     void read_environment() {
         constexpr double kCatalogueTemperature = 20.0;
         constexpr double kCataloguePressure = 1.0;
-        if (words_.size() >= 2 &&
-            (number(0, "a temperature") != kCatalogueTemperature || number(1, "a pressure") != kCataloguePressure)) {
-            remarks_.add_once(
-                fmt::format("{} {}", keyword_, surface_number()), "environment", Severity::warning, 0,
-                fmt::format("line {}: the lens is meant for {} °C and {} atm; indices and lengths are taken "
-                            "at 20 °C and 1 atm",
-                            line_, printable(words_[0]), printable(words_[1])));
+        if (here_.words.size() >= 2 && (here_.number(0, "a temperature") != kCatalogueTemperature ||
+                                        here_.number(1, "a pressure") != kCataloguePressure)) {
+            remarks_.at(
+                here_, "environment", Severity::warning, 0,
+                fmt::format("the lens is meant for {} °C and {} atm; indices and lengths are taken at 20 °C and 1 atm",
+                            printable(here_.words[0]), printable(here_.words[1])));
         }
     }
 
     void read_apodization() {
-        if (number_or_zero(0) != 0.0) {
-            remarks_.not_understood("GFAC", 0, line_, "the pupil's apodization");
+        if (here_.number_or_zero(0) != 0.0) {
+            remarks_.not_understood("GFAC", 0, here_.line, "the pupil's apodization");
         }
     }
 
     void read_import() {
         if (!rest_.empty()) {
-            remarks_.not_understood("FIMP", surface_number(), line_, "data from the file " + printable(rest_));
+            remarks_.not_understood("FIMP", surface_number(), here_.line, "data from the file " + printable(rest_));
         }
     }
 
     void read_configurations() {
-        file_.configurations = integer(0, 1, kMostConfigurations, "a number of configurations");
+        file_.configurations = here_.integer(0, 1, kMostConfigurations, "a number of configurations");
         in_configurations_ = !file_.surfaces.empty();
     }
 
@@ -270,42 +244,43 @@ class ZmxReader {
         }
         tail_.clear();
         tail_lines_ = 0;
-        const double stated = number(0, "a surface's number");
+        const double stated = here_.number(0, "a surface's number");
         if (stated != static_cast<double>(file_.surfaces.size()) || file_.surfaces.size() >= kMostSurfaces) {
-            throw InputError(
-                fmt::format("{}:{}: SURF {}, expected surfaces in order, here SURF {}, and not more "
-                            "than {}",
-                            path_.string(), line_, printable(words_[0]), file_.surfaces.size(), kMostSurfaces));
+            throw InputError(fmt::format(
+                "{}:{}: SURF {}, expected surfaces in order, here SURF {}, and not more "
+                "than {}",
+                path_.string(), here_.line, printable(here_.words[0]), file_.surfaces.size(), kMostSurfaces));
         }
-        file_.surfaces.push_back({.line = line_});
+        file_.surfaces.push_back({.line = here_.line});
+        here_.context = fmt::format("SURF {}: ", surface_number());
     }
 
-    void read_type() { surface().type = std::string(words_.empty() ? std::string_view("STANDARD") : words_[0]); }
+    void read_type() { surface().type = here_.words.empty() ? "STANDARD" : std::string(here_.words[0]); }
 
     void read_curvature() {
-        surface().curvature = number(0, "a curvature");
-        if (number_or_zero(1) > 1.0) {  // 0 fixed, 1 variable
+        surface().curvature = here_.number(0, "a curvature");
+        if (here_.number_or_zero(1) > 1.0) {  // 0 fixed, 1 variable
             report_solve();
         }
     }
 
-    void read_conic() { surface().conic = number(0, "a conic constant"); }
-    void read_thickness() { surface().thickness = number(0, "a thickness"); }
+    void read_conic() { surface().conic = here_.number(0, "a conic constant"); }
+    void read_thickness() { surface().thickness = here_.number(0, "a thickness"); }
     void read_stop() { surface().is_stop = true; }
 
     void read_glass() {
         ZmxSurface& here = surface();
         here.medium = {};
-        const std::string name = std::string(words_.empty() ? std::string_view() : words_[0]);
+        const std::string name(here_.word(0));
         if (name.empty()) {
-            fail("", "a glass");
+            here_.fail("", "a glass");
         }
         here.is_mirror = name == "MIRROR";
         if (here.is_mirror) {
             return;
         }
-        const double n_d = number_or_zero(3);
-        const double V_d = number_or_zero(4);
+        const double n_d = here_.number_or_zero(3);
+        const double V_d = here_.number_or_zero(4);
         const bool is_model = name == "___BLANK";
         // What Zemax writes beside a catalogue's glass whose indices it did not set down.
         const bool says_nothing = !is_model && ((n_d == 1.5 && V_d == 40.0) || n_d == 0.0);
@@ -313,111 +288,100 @@ class ZmxReader {
             here.medium.glass = name;
         }
         if (!says_nothing) {
-            here.medium.n_d = is_model ? number(3, "a model glass's index") : n_d;
+            here.medium.n_d = is_model ? here_.number(3, "a model glass's index") : n_d;
             if (V_d != 0.0) {
                 here.medium.V_d = V_d;
             }
         }
-        if (is_model && number_or_zero(5) != 0.0) {
-            remarks_.add_once(
-                fmt::format("{} {}", keyword_, surface_number()), "partial-dispersion", Severity::info,
-                surface_number(),
-                fmt::format("line {}: the model glass's deviation from the normal line, ΔP_gF = {}, is left "
-                            "out",
-                            line_, words_[5]));
+        if (is_model && here_.number_or_zero(5) != 0.0) {
+            remarks_.at(here_, "partial-dispersion", Severity::info, surface_number(),
+                        fmt::format("the model glass's deviation from the normal line, ΔP_gF = {}, is left out",
+                                    here_.words[5]));
         }
     }
 
     void read_diameter() {
-        const double semi_diameter = number(0, "a semi-diameter");
+        const double semi_diameter = here_.number(0, "a semi-diameter");
         if (semi_diameter != 0.0) {
             surface().semi_diameter = semi_diameter;
-            surface().semi_diameter_is_fixed = number_or_zero(1) != 0.0;
+            surface().semi_diameter_is_fixed = here_.number_or_zero(1) != 0.0;
         }
     }
 
     void read_mechanical() {
-        const double semi_diameter = number(0, "a mechanical semi-diameter");
+        const double semi_diameter = here_.number(0, "a mechanical semi-diameter");
         if (semi_diameter != 0.0) {
             surface().mechanical = semi_diameter;
         }
     }
 
     void read_aperture() {
-        const double inner = number(0, "an aperture's inner radius");
-        const double outer = number(1, "an aperture's outer radius");
+        const double inner = here_.number(0, "an aperture's inner radius");
+        const double outer = here_.number(1, "an aperture's outer radius");
         if (outer != 0.0) {
             surface().aperture = outer;
         }
         if (inner != 0.0) {
-            remarks_.add_once(
-                fmt::format("{} {}", keyword_, surface_number()), "aperture-shape", Severity::warning, surface_number(),
-                fmt::format("line {}, surface {} of the file: the aperture's central obstruction of radius "
-                            "{} is left out",
-                            line_, surface_number(), inner));
+            remarks_.at(here_, "aperture-shape", Severity::warning, surface_number(),
+                        fmt::format("the aperture's central obstruction of radius {} is left out", inner));
         }
     }
 
     void read_off_centre() {
-        if (number_or_zero(0) != 0.0 || number_or_zero(1) != 0.0) {
-            remarks_.add_once(
-                fmt::format("{} {}", keyword_, surface_number()), "aperture-shape", Severity::warning, surface_number(),
-                fmt::format("line {}, surface {} of the file: the aperture is off the vertex, and taken about "
-                            "it",
-                            line_, surface_number()));
+        if (here_.number_or_zero(0) != 0.0 || here_.number_or_zero(1) != 0.0) {
+            remarks_.at(here_, "aperture-shape", Severity::warning, surface_number(),
+                        "the aperture is off the vertex, and taken about it");
         }
     }
 
     void read_parameter() {
-        surface().parameters[integer(0, 0, kMostParameters, "a parameter's number")] = number(1, "a parameter");
+        surface().parameters[here_.integer(0, 0, kMostParameters, "a parameter's number")] =
+            here_.number(1, "a parameter");
     }
 
     void read_extra() {
-        surface().extra[integer(0, 0, kMostParameters, "an extra value's number")] = number(1, "an extra value");
+        surface().extra[here_.integer(0, 0, kMostParameters, "an extra value's number")] =
+            here_.number(1, "an extra value");
     }
 
     void read_coating() {
-        remarks_.add_once(fmt::format("{} {}", keyword_, surface_number()), "coating", Severity::info, surface_number(),
-                          fmt::format("line {}: the coating {} is named only; the surface is taken as bare", line_,
-                                      printable(rest_)));
+        remarks_.at(here_, "coating", Severity::info, surface_number(),
+                    fmt::format("the coating {} is named only; the surface is taken as bare", printable(rest_)));
     }
 
     void read_vignetting() {
-        for (std::size_t i = 0; i < words_.size(); ++i) {
-            if (number_or_zero(i) != 0.0) {
-                remarks_.add_once(
-                    "", "vignetting-factors", Severity::info, 0,
-                    fmt::format("line {}: {}: vignetting factors are left out; rims cut the beams", line_, keyword_));
+        for (std::size_t i = 0; i < here_.words.size(); ++i) {
+            if (here_.number_or_zero(i) != 0.0) {
+                remarks_.at(here_, "vignetting-factors", Severity::info, 0,
+                            "vignetting factors are left out; rims cut the beams");
             }
         }
     }
 
     void report_solve() {
-        remarks_.add_once("", "solve", Severity::info, surface_number(),
-                          fmt::format("line {}: {}: what solves and pick-ups gave is taken as stated; they are not "
-                                      "followed",
-                                      line_, keyword_));
+        remarks_.at(here_, "solve", Severity::info, 0,
+                    "what solves and pick-ups gave is taken as stated; they are not followed");
     }
 
     /// Behind the surfaces stand the merit function and the tolerances, which bear on no ray, and the operands of the
     /// configurations.
     void read_tail() {
         if (in_configurations_) {
-            const bool is_operand =
-                words_.size() >= 3 && parse_number(words_[0]) && parse_number(words_[1]) && parse_number(words_[2]);
+            const bool is_operand = here_.words.size() >= 3 && parse_number(here_.words[0]) &&
+                                    parse_number(here_.words[1]) && parse_number(here_.words[2]);
             if (!is_operand || file_.operands.size() >= kMostOperands) {
-                remarks_.not_understood(std::string(keyword_), 0, line_, "an operand of configurations");
+                remarks_.not_understood(here_.keyword, 0, here_.line, "an operand of configurations");
                 return;
             }
-            const int of = integer(0, 0, kMostSurfaces, "a surface");
-            const int configuration = integer(1, 0, kMostConfigurations, "a configuration");
-            file_.operands[{std::string(keyword_), of}][configuration] = number(2, "a value");
+            const int of = here_.integer(0, 0, kMostSurfaces, "a surface");
+            const int configuration = here_.integer(1, 0, kMostConfigurations, "a configuration");
+            file_.operands[{here_.keyword, of}][configuration] = here_.number(2, "a value");
             return;
         }
         ++tail_lines_;
         constexpr std::size_t kMostNamed = 100;
         if (tail_.size() < kMostNamed) {
-            tail_.push_back({printable(keyword_), line_});
+            tail_.push_back({printable(here_.keyword), here_.line});
         }
     }
 
@@ -445,10 +409,8 @@ class ZmxReader {
     const std::filesystem::path& path_;
     Remarks& remarks_;
     ZmxFile file_;
-    int line_ = 0;
-    std::string_view keyword_;
-    std::string_view rest_;
-    std::vector<std::string_view> words_;
+    Command here_;           // the line that is read
+    std::string_view rest_;  // behind its keyword, as it stands
     bool in_configurations_ = false;
     std::vector<TailLine> tail_;
     int tail_lines_ = 0;
