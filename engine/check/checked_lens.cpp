@@ -107,6 +107,12 @@ Focus paraxial_focus(const ParaxialTable& table, double object_distance_mm) {
             .image_distance = paraxial_image_distance(lens, object_distance_mm)};
 }
 
+bool CheckedLens::is_incomplete(int i) const {
+    return std::ranges::any_of(prescription.remarks, [&](const Finding& remark) {
+        return remark.surface == i + 1 && remark.severity != Severity::info;
+    });
+}
+
 bool CheckedLens::is_dummy(int i) const {
     return table.index[i] == index_before(i);
 }

@@ -52,6 +52,8 @@ struct CheckedLens {
     [[nodiscard]] int size() const { return static_cast<int>(prescription.surfaces.size()); }
     [[nodiscard]] const PrescribedSurface& row(int i) const { return prescription.surfaces[i]; }
     [[nodiscard]] bool is_glass_behind(int i) const { return !row(i).medium.is_air() && table.index[i] != 1.0; }
+    /// Whether the reader had to leave something of the surface out.
+    [[nodiscard]] bool is_incomplete(int i) const;
     /// Whether light passes the surface unchanged: a stop's plane, or a dummy.
     [[nodiscard]] bool is_dummy(int i) const;
     /// Behind the surface, or in front of the first: the index.

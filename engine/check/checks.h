@@ -1,5 +1,5 @@
 // engine/check/checks.h — the checks, by what they look at. Each appends what it finds; the rules' numbers refer to the
-// list in the list that commercial tools share.
+// list in engine/check/README.md.
 #pragma once
 #include "engine/check/checked_lens.h"
 

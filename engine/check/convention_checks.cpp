@@ -23,7 +23,7 @@ struct Unit {
 constexpr std::array kUnits = {Unit{"inches", 25.4}, Unit{"cm", 10.0}, Unit{"m", 1000.0}, Unit{"tenths of a mm", 0.1},
                                Unit{"mm of a table meant in inches", 1.0 / 25.4}};
 constexpr double kSameUnit = 0.02;       // how well a ratio meets a unit's factor
-constexpr double kUnitSlip = 0.01;       // a unit that is wrong throws a lens off by more than this
+constexpr double kUnitSlip = 0.05;       // a unit that is wrong throws a lens off by more than this
 constexpr double kNormalisedFrom = 0.9;  // mm of focal length: tables for f = 1
 constexpr double kNormalisedTo = 1.1;
 // Rule 24.
