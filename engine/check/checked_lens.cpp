@@ -78,7 +78,7 @@ std::optional<Glass> stated_glass(const PrescribedSurface& row, const GlassCatal
         sound.medium.V_d.reset();  // no dispersion can be made of it, but the index stands
     }
     try {
-        return stated_medium(sound, glasses, preferred_makers);
+        return resolved_medium(sound, glasses, preferred_makers);
     } catch (const InputError&) {
         return std::nullopt;
     }

@@ -168,48 +168,11 @@ class PbrtLens {
     Prescription lens_;
 };
 
-Lens traceable(const Prescription& prescription) {
-    return make_lens(prescription, GlassCatalogue::shipped());
-}
-
-/// The index at the d line of what is behind the surface: the stated one, or that of the glass named.
-double index_at_d(const PrescribedSurface& row) {
-    const StatedMedium& medium = row.medium;
-    if (medium.is_air()) {
-        return 1.0;
-    }
-    if (medium.n_d) {
-        return *medium.n_d;
-    }
-    if (!medium.indices.empty()) {
-        return interpolated(medium.indices, kLineD);
-    }
-    // A lens of this surface alone, so that the name is resolved as it is everywhere.
-    Prescription alone;
-    PrescribedSurface front;
-    front.medium = medium;
-    front.where = row.where;
-    front.semi_diameter_mm = 1.0;
-    front.is_stop = true;
-    PrescribedSurface back;
-    back.semi_diameter_mm = 1.0;
-    alone.surfaces = {front, back};
-    const Lens lens = traceable(alone);
-    return refractive_index(lens.surfaces.front().medium.formula, kLineD);
-}
-
-/// The semi-diameters that the tracer would take where the table states none.
-std::vector<double> estimated_semi_diameters(const Prescription& prescription) {
-    std::vector<double> semi_diameters;
-    for (const LensSurface& surface : traceable(prescription).surfaces) {
-        semi_diameters.push_back(surface.semi_diameter);
-    }
-    return semi_diameters;
-}
-
 class PbrtWriter {
   public:
-    explicit PbrtWriter(const Prescription& prescription) : lens_(single_position(prescription, written_.lost)) {}
+    explicit PbrtWriter(const Prescription& prescription)
+        : lens_(single_position(prescription, written_.lost)),
+          glasses_(with_own_catalogues(GlassCatalogue::shipped(), lens_)) {}
 
     WrittenPrescription write() {
         std::ranges::copy(losses_of_tables(lens_), std::back_inserter(written_.lost));
@@ -241,13 +204,14 @@ class PbrtWriter {
         if (const std::optional<double> stated = plain_semi_diameter(lens_, index)) {
             return 2.0 * *stated;
         }
-        if (estimated_.empty()) {
-            estimated_ = estimated_semi_diameters(lens_);
+        if (estimated_.surfaces.empty()) {
+            estimated_ = make_lens(lens_, glasses_);
         }
+        const double needed = 2.0 * estimated_.surfaces[index].semi_diameter;
         lose("aperture-estimated", Severity::info, index,
              fmt::format("no clear aperture is stated; written is what the stated f-number and field need, {:.6g} mm",
-                         2.0 * estimated_[index]));
-        return 2.0 * estimated_[index];
+                         needed));
+        return needed;
     }
 
     void add_line(double radius, double thickness, double index, double aperture) {
@@ -257,7 +221,8 @@ class PbrtWriter {
     /// Returns the index behind the surface.
     double add_row(std::size_t i, double before) {
         const PrescribedSurface& row = lens_.surfaces[i];
-        const double after = index_at_d(row);
+        const Glass medium = resolved_medium(row, glasses_, lens_.preferred_makers);
+        const double after = refractive_index(medium.formula, kLineD);
         if (!row.medium.glass.empty() && !row.medium.is_air()) {
             lose("lost-dispersion", Severity::warning, i,
                  fmt::format("of {} its index at the d line alone is written, {}", row.medium.glass, after));
@@ -289,7 +254,8 @@ class PbrtWriter {
 
     WrittenPrescription written_;
     Prescription lens_;
-    std::vector<double> estimated_;
+    GlassCatalogue glasses_;
+    Lens estimated_;  // made where its semi-diameters are asked for
 };
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "engine/io/prescription_forms.h"
+#include "engine/io/prescription_losses.h"
 #include "engine/io/surface_chain.h"
 #include "engine/io/text_encoding.h"
 #include "engine/spectral/wavelengths.h"
@@ -72,11 +73,8 @@ class ZmxWriter {
         text_ += "\r\n";
     }
 
-    void lose(int surface, const std::string& what, Severity severity = Severity::warning) {
-        lost_.push_back({.code = "not-written",
-                         .severity = severity,
-                         .surface = surface,
-                         .message = "a .zmx file cannot say " + what});
+    void lose(const std::string& code, int surface, const std::string& what, Severity severity = Severity::warning) {
+        lost_.push_back(lost(code, severity, surface, "a .zmx file cannot say " + what));
     }
 
     void write_head() {
@@ -210,7 +208,7 @@ class ZmxWriter {
                 line("  PARM {} {}", i + 2, row.asphere[i]);
             }
             if (terms > kToroidTerms) {
-                lose(number, fmt::format("a toroid's terms beyond y^{}", 2 * kToroidTerms));
+                lose("lost-asphere", number, fmt::format("a toroid's terms beyond y^{}", 2 * kToroidTerms));
             }
         } else if (is_extended) {
             line("  XDAT 1 {} 0 0 1.0 0.0 0 \"\"", terms);
@@ -228,20 +226,22 @@ class ZmxWriter {
         if (row.conic != 0.0) {
             line("  CONI {}", row.conic);
         }
-        if (row.semi_diameter_mm) {
-            line("  DIAM {} 1 0 0 1 \"\"", *row.semi_diameter_mm);
+        const std::optional<double> clear = plain_semi_diameter(prescription_, number - 1);
+        if (clear) {
+            line("  DIAM {} 1 0 0 1 \"\"", *clear);
         }
         if (row.rim_mm) {
             line("  MEMA {} 1 0 0 1 \"\"", *row.rim_mm);
         }
-        if (row.semi_diameter_mm) {
-            line("  FLAP 0 {} 0", *row.semi_diameter_mm);
+        if (clear) {
+            line("  FLAP 0 {} 0", *clear);
         }
         if (row.barrel_mm) {
-            lose(number, "the radius of a barrel");
+            lose("lost-barrel", number, "the radius of a barrel; the clear apertures at its ends are narrowed to it",
+                 Severity::info);
         }
         if (!row.coating.empty()) {
-            lose(number, fmt::format("what the coating {} is", row.coating));
+            lose("lost-coating", number, fmt::format("what the coating {} is", row.coating));
         }
     }
 
@@ -255,7 +255,8 @@ class ZmxWriter {
             n_d = interpolated(medium.indices, kLineD);
             const double spread = interpolated(medium.indices, kLineF) - interpolated(medium.indices, kLineC);
             V_d = spread > 0.0 ? (n_d - 1.0) / spread : 0.0;
-            lose(number, fmt::format("a table of indices; n_d = {:.6f}, V_d = {:.2f} stand for it", n_d, V_d));
+            lose("lost-indices", number,
+                 fmt::format("a table of indices; n_d = {:.6f}, V_d = {:.2f} stand for it", n_d, V_d));
         }
         if (!medium.glass.empty()) {
             const auto [maker, name] = split_glass(medium.glass);
@@ -266,7 +267,7 @@ class ZmxWriter {
             }
             const auto [known, is_new] = makers_.try_emplace(name, maker);
             if (!is_new && known->second != maker) {
-                lose(number, fmt::format("which maker's {} each surface has", name));
+                lose("lost-makers", number, fmt::format("which maker's {} each surface has", name));
             }
         } else {
             line("  GLAS ___BLANK 1 0 {} {} 0 0 0 0 0 0", n_d, V_d);
@@ -286,11 +287,12 @@ class ZmxWriter {
             tables.push_back(surfaces_at(position));
             const ZoomPosition& zoom = original_.zoom[position];
             if (zoom.stop_semi_diameter_mm) {
-                lose(0, fmt::format("the stop's size at the zoom position {}", zoom.name));
+                lose("lost-stop-size", 0, fmt::format("the stop's size at the zoom position {}", zoom.name));
             }
         }
         if (count > 0) {
-            lose(0, "the names and the stated data of zoom positions; they are numbered", Severity::info);
+            lose("lost-zoom-names", 0, "the names and the stated data of zoom positions; they are numbered",
+                 Severity::info);
         }
         for (std::size_t row = 0; row < prescription_.surfaces.size(); ++row) {
             const auto differs = [&](const auto& table) {
@@ -304,7 +306,7 @@ class ZmxWriter {
                      zmx_number(tables[i][row].thickness_mm));
             }
             if (std::ranges::any_of(tables, is_misplaced)) {
-                lose(static_cast<int>(row) + 1, "a decentre that differs between zoom positions");
+                lose("lost-misalignment", static_cast<int>(row) + 1, "a decentre that differs between zoom positions");
             }
         }
     }
@@ -312,29 +314,30 @@ class ZmxWriter {
     void report_lost() {
         const StatedData& stated = original_.stated;
         if (!std::holds_alternative<std::monostate>(original_.stop_shape)) {
-            lose(0, "a stop that is no circle");
+            lose("lost-stop-shape", 0, "a stop that is no circle");
         }
         if (original_.projection != Projection::rectilinear) {
-            lose(0, fmt::format("the projection, {}", projection_name(original_.projection)));
+            lose("lost-projection", 0, fmt::format("the projection, {}", projection_name(original_.projection)),
+                 Severity::info);
         }
         if (!original_.focus_groups.empty()) {
-            lose(0, "which groups move to focus");
+            lose("lost-focus-groups", 0, "which groups move to focus");
         }
         if (original_.surroundings == Surroundings::vacuum) {
-            lose(0, "that the lens stands in vacuum");
+            lose("lost-surroundings", 0, "that the lens stands in vacuum");
         }
         if (!original_.catalogues.empty()) {
-            lose(0, "where the lens's own glass files lie");
+            lose("lost-catalogues", 0, "where the lens's own glass files lie");
         }
         if (stated.efl_mm || stated.bfl_mm || stated.total_track_mm ||
             (stated.f_number && stated.entrance_pupil_diameter_mm)) {
-            lose(0, "all of the stated data; the aperture and the field are written", Severity::info);
+            lose("lost-stated", 0, "all of the stated data; the aperture and the field are written", Severity::info);
         }
         if (!original_.groups.empty() && surface_frames(original_).front().origin.z != 0.0) {
-            lose(1, "that the first vertex lies off its untilted place; lens space begins at it");
+            lose("lost-origin", 1, "that the first vertex lies off its untilted place; lens space begins at it");
         }
         if (!original_.groups.empty()) {
-            lose(0, "which surfaces are tilted as a group; each is tilted on its own, to the same place",
+            lose("lost-groups", 0, "which surfaces are tilted as a group; each is tilted on its own, to the same place",
                  Severity::info);
         }
     }

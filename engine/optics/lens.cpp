@@ -158,8 +158,8 @@ void estimate_semi_diameters(Lens& lens) {
 
 }  // namespace
 
-Glass stated_medium(const PrescribedSurface& surface, const GlassCatalogue& glasses,
-                    const std::vector<std::string>& preferred_makers) {
+Glass resolved_medium(const PrescribedSurface& surface, const GlassCatalogue& glasses,
+                      const std::vector<std::string>& preferred_makers) {
     const StatedMedium& medium = surface.medium;
     if (medium.is_air()) {
         return everywhere("air", ConstantIndex{1.0});
@@ -212,7 +212,7 @@ Lens make_lens(const Prescription& prescription, const GlassCatalogue& glasses, 
         const auto override_index = overrides.find(row.medium.glass);
         Glass medium = override_index != overrides.end()
                            ? everywhere(row.medium.glass, ConstantIndex{override_index->second})
-                           : stated_medium(row, glasses, prescription.preferred_makers);
+                           : resolved_medium(row, glasses, prescription.preferred_makers);
         used.insert(row.medium.glass);
         LensSurface surface = placed_surface(row, frames[lens.surfaces.size()]);
         // A barrel is convex, so a path runs inside it where it does so at both ends.

@@ -51,10 +51,10 @@ struct Lens {
 /// Constant indices that stand for glasses, by catalogue name: `--index LAK9=1.691`.
 using IndexOverrides = std::map<std::string, double>;
 
-/// The medium behind a surface as the table names or describes it: air, a catalogue's glass, a table of indices, or the
-/// model of what n_d and V_d state. Throws InputError naming the surface for a glass that no catalogue has.
-Glass stated_medium(const PrescribedSurface& surface, const GlassCatalogue& glasses,
-                    const std::vector<std::string>& preferred_makers);
+/// What is behind a surface: its table of indices, the glass it names, or what its n_d and V_d stand for; those too
+/// where the name is not known. Throws InputError with suggestions for an unknown name alone.
+Glass resolved_medium(const PrescribedSurface& surface, const GlassCatalogue& glasses,
+                      const std::vector<std::string>& preferred_makers);
 
 /// Looks the prescription's glasses up. Throws InputError naming the file, the line and the name of an unknown glass,
 /// and for an override of a glass that the lens does not have.

@@ -34,21 +34,13 @@ void redirect(int descriptor, Stream stream, const char* capture) {
     ::close(to);
 }
 
-fs::path new_folder() {
-    std::string name = (fs::temp_directory_path() / "lensproof-cli-XXXXXX").string();
-    if (::mkdtemp(name.data()) == nullptr) {
-        throw std::runtime_error("no temporary folder");
-    }
-    return name;
-}
-
 }  // namespace
 
 Outcome run_program(const std::vector<std::string>& arguments, const fs::path& where, Stream out, Stream err) {
     // Files rather than pipes: neither stream can fill up and block the program.
-    const fs::path captures = new_folder();
-    const std::string out_file = (captures / "out").string();
-    const std::string err_file = (captures / "err").string();
+    const TestFolder captures;
+    const std::string out_file = (captures.path() / "out").string();
+    const std::string err_file = (captures.path() / "err").string();
     const std::string folder = where.string();
     std::vector<std::string> words = {LENSPROOF_PROGRAM};
     words.insert(words.end(), arguments.begin(), arguments.end());
@@ -70,43 +62,35 @@ Outcome run_program(const std::vector<std::string>& arguments, const fs::path& w
     Outcome outcome{.status = WIFEXITED(status) ? WEXITSTATUS(status) : -WTERMSIG(status),
                     .out = bytes_of(out_file),
                     .err = bytes_of(err_file)};
-    fs::remove_all(captures);
     return outcome;
 }
 
-Workplace::Workplace() : folder_(new_folder()) {}
-
-Workplace::~Workplace() {
-    std::error_code ignored;
-    fs::remove_all(folder_, ignored);
-}
-
 std::string Workplace::file(const std::string& name, std::string_view content) const {
-    fs::create_directories((folder_ / name).parent_path());
-    std::ofstream stream(folder_ / name, std::ios::binary);
+    fs::create_directories((folder_.path() / name).parent_path());
+    std::ofstream stream(folder_.path() / name, std::ios::binary);
     stream.write(content.data(), static_cast<std::streamsize>(content.size()));
     return name;
 }
 
 std::string Workplace::content(const std::string& name) const {
-    return bytes_of(folder_ / name);
+    return bytes_of(folder_.path() / name);
 }
 
 bool Workplace::has(const std::string& name) const {
-    return fs::exists(folder_ / name);
+    return fs::exists(folder_.path() / name);
 }
 
 std::vector<std::string> Workplace::names() const {
     std::vector<std::string> names;
-    for (const auto& entry : fs::recursive_directory_iterator(folder_)) {
-        names.push_back(entry.path().lexically_relative(folder_).string());
+    for (const auto& entry : fs::recursive_directory_iterator(folder_.path())) {
+        names.push_back(entry.path().lexically_relative(folder_.path()).string());
     }
     std::ranges::sort(names);
     return names;
 }
 
 Outcome Workplace::run(const std::vector<std::string>& arguments, Stream out, Stream err) const {
-    return run_program(arguments, folder_, out, err);
+    return run_program(arguments, folder_.path(), out, err);
 }
 
 std::string with(std::string text, const std::string& from, const std::string& to) {

@@ -5,6 +5,8 @@
 #include <string_view>
 #include <vector>
 
+#include "tests/test_folder.h"
+
 namespace lensproof {
 
 /// Where a spawned program's standard stream goes.
@@ -23,11 +25,6 @@ Outcome run_program(const std::vector<std::string>& arguments, const std::filesy
 /// A folder of its own for a test; gone with all that is in it at the end of its life.
 class Workplace {
   public:
-    Workplace();
-    ~Workplace();
-    Workplace(const Workplace&) = delete;
-    Workplace& operator=(const Workplace&) = delete;
-
     /// Writes `content` to `name` (folders on the way are made) and returns the name.
     std::string file(const std::string& name, std::string_view content) const;
     /// The bytes of `name`; empty where there is none.
@@ -40,7 +37,7 @@ class Workplace {
                               Stream err = Stream::captured) const;
 
   private:
-    std::filesystem::path folder_;
+    TestFolder folder_;
 };
 
 /// `text` with its first `from` replaced by `to`; fails the test where there is none.

@@ -3,8 +3,8 @@
 #include <cstddef>
 #include <cstdint>
 #include <string>
-#include <type_traits>
 
+#include "engine/io/glass_file.h"
 #include "engine/io/input_error.h"
 #include "engine/optics/lens.h"
 #include LENSPROOF_READER_HEADER
@@ -13,10 +13,19 @@ namespace {
 
 using namespace lensproof;
 
-void use(const Prescription& prescription) {
-    const Lens lens = make_lens(prescription, {});
+[[maybe_unused]] void use(const Prescription& prescription) {
+    static const GlassCatalogue glasses = GlassCatalogue::shipped();
+    const Lens lens = make_lens(prescription, glasses);
     const Ray<double> ray{{0.0, 0.1, -10.0}, {0.0, 0.0, 1.0}};
     trace(at_wavelength<double>(lens, 550.0), ray);
+}
+
+[[maybe_unused]] void use(const GlassFile& file) {
+    for (const Glass& glass : file.glasses) {
+        refractive_index(glass.formula, clamped_to_range(glass, 550.0));
+        internal_transmittance(glass, 550.0, 10.0);
+        dn_dT_relative(glass, clamped_to_range(glass, 550.0));
+    }
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include "engine/io/input_error.h"
 #include "engine/io/prescription_file.h"
 #include "engine/optics/lens.h"
+#include "tests/test_folder.h"
 
 namespace lensproof {
 namespace {
@@ -14,7 +15,7 @@ namespace {
 class PrescriptionFile : public testing::Test {
   protected:
     std::filesystem::path write(const std::string& name, const std::string& content) {
-        std::filesystem::path file = std::filesystem::path(testing::TempDir()) / name;
+        std::filesystem::path file = folder_.path() / name;
         write_file(file, content);
         return file;
     }
@@ -28,6 +29,8 @@ class PrescriptionFile : public testing::Test {
         }
         return "";
     }
+
+    TestFolder folder_;
 };
 
 constexpr const char* kHead = "name = \"x\"\nsource = \"y\"\n";
@@ -67,7 +70,7 @@ TEST_F(PrescriptionFile, EveryOtherDefectIsAnInputError) {
         EXPECT_NE(said.find("defect.toml"), std::string::npos) << text << "\nsaid: " << said;
     }
     EXPECT_NE(complaint("no-such-lens").find("tessar"), std::string::npos);
-    EXPECT_NE(complaint(testing::TempDir()), "");
+    EXPECT_NE(complaint(folder_.path()), "");
 }
 
 TEST_F(PrescriptionFile, CsvCarriesTheSameLens) {

@@ -8,6 +8,7 @@
 #include "engine/io/input_error.h"
 #include "engine/io/prescription_file.h"
 #include "engine/io/prescription_forms.h"
+#include "tests/test_folder.h"
 
 namespace lensproof {
 namespace {
@@ -247,7 +248,8 @@ TEST(CsvWriter, CarriesWhatItsColumnsHoldAndNamesTheRest) {
 }
 
 TEST(WritePrescription, NamesFilesFromTheNewPlace) {
-    const std::filesystem::path folder = std::filesystem::path(testing::TempDir()) / "written";
+    const TestFolder place;
+    const std::filesystem::path& folder = place.path();
     std::filesystem::create_directories(folder / "deep");
     Prescription lens = everything();
     lens.file = folder / "a.toml";
@@ -257,7 +259,6 @@ TEST(WritePrescription, NamesFilesFromTheNewPlace) {
     const Prescription back = read_prescription(folder / "deep" / "b.toml");
     EXPECT_EQ(std::get<TexturedStop>(back.stop_shape).image, "../stop.png");
     EXPECT_EQ(back.catalogues.front().lexically_normal(), (folder / "mine.agf").lexically_normal());
-    std::filesystem::remove_all(folder);
 }
 
 TEST(WritePrescription, NamesTheFormsThatItCanWrite) {
@@ -266,7 +267,7 @@ TEST(WritePrescription, NamesTheFormsThatItCanWrite) {
             write_prescription(everything(), name);
             FAIL() << name;
         } catch (const InputError& error) {
-            EXPECT_NE(std::string(error.what()).find(".toml, .csv, .dat"), std::string::npos) << error.what();
+            EXPECT_NE(std::string(error.what()).find(".toml, .csv, .zmx, .dat"), std::string::npos) << error.what();
         }
     }
 }

@@ -15,12 +15,13 @@
 #include "engine/io/prescription_file.h"
 #include "engine/optics/lens.h"
 #include "engine/spectral/wavelengths.h"
+#include "tests/test_folder.h"
 
 namespace lensproof {
 namespace {
 
 constexpr double kTolerance_mm = 1e-9;
-const std::vector<std::string> kForms = {".toml", ".csv", ".dat"};
+const std::vector<std::string> kForms = {".toml", ".csv", ".zmx", ".dat"};
 
 /// A path of a ray: its points and states at every surface, and where it meets the sensor's plane.
 struct Path {
@@ -82,14 +83,9 @@ double furthest_apart(const Lens& a, const Lens& b, double wavelength_nm, int& p
 
 class Conversion : public testing::Test {
   protected:
-    Conversion() : folder_(std::filesystem::path(testing::TempDir()) / "conversion") {
-        std::filesystem::create_directories(folder_);
-    }
-    ~Conversion() override { std::filesystem::remove_all(folder_); }
-
     /// Writes the lens in a form and reads it back. `warnings`: the codes of what the form could not say of its rays.
     Prescription there_and_back(const Prescription& lens, const std::string& form, std::set<std::string>& warnings) {
-        const std::filesystem::path file = folder_ / ("lens" + form);
+        const std::filesystem::path file = folder_.path() / ("lens" + form);
         for (const Finding& lost : write_prescription(lens, file)) {
             if (lost.severity != Severity::info) {
                 warnings.insert(lost.code);
@@ -129,7 +125,7 @@ class Conversion : public testing::Test {
         EXPECT_GT(points, 1000);
     }
 
-    std::filesystem::path folder_;
+    TestFolder folder_;
 };
 
 PrescribedSurface surface(double radius_mm, double thickness_mm, double n_d, double semi_diameter_mm) {
@@ -165,6 +161,7 @@ TEST_F(Conversion, KeepsEveryRayOfALensThatEveryFormCanSay) {
     dispersive.surfaces[2].medium.V_d = 32.21;
     expect_form_keeps(dispersive, ".toml", {});
     expect_form_keeps(dispersive, ".csv", {});
+    expect_form_keeps(dispersive, ".zmx", {});
     expect_form_keeps(dispersive, ".dat", {"lost-dispersion"});
 }
 
@@ -173,6 +170,7 @@ TEST_F(Conversion, KeepsEveryRayOfEveryLensThatShips) {
         Prescription lens = read_prescription(find_lens_file(name));
         std::set<std::string> csv;
         std::set<std::string> pbrt;
+        std::set<std::string> zmx;
         double before = 1.0;
         for (const PrescribedSurface& row : lens.surfaces) {
             const bool is_air = row.medium.is_air();
@@ -194,6 +192,7 @@ TEST_F(Conversion, KeepsEveryRayOfEveryLensThatShips) {
             }
             if (!row.coating.empty()) {
                 csv.insert("lost-coating");
+                zmx.insert("lost-coating");
             }
             before = after;
         }
@@ -212,6 +211,7 @@ TEST_F(Conversion, KeepsEveryRayOfEveryLensThatShips) {
         pbrt.insert(csv.begin(), csv.end());
         expect_form_keeps(lens, ".toml", {});
         expect_form_keeps(lens, ".csv", csv);
+        expect_form_keeps(lens, ".zmx", zmx);
         if (!pbrt.contains("lost-stop")) {  // which is a row more
             expect_form_keeps(lens, ".dat", pbrt);
         }
@@ -224,6 +224,7 @@ TEST_F(Conversion, KeepsConicsAndAspheresWhereThereAreColumns) {
     lens.surfaces[3].asphere = {1e-5, -3.3e-6, 2.1e-8, 0.0, 1e-13};
     expect_form_keeps(lens, ".toml", {});
     expect_form_keeps(lens, ".csv", {});
+    expect_form_keeps(lens, ".zmx", {});
     expect_form_keeps(lens, ".dat", {"lost-asphere"});
 }
 

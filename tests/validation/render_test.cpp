@@ -9,6 +9,7 @@
 #include "engine/optics/illumination.h"
 #include "engine/render/camera.h"
 #include "engine/spectral/illuminant.h"
+#include "tests/test_folder.h"
 
 namespace lensproof {
 namespace {
@@ -112,7 +113,8 @@ TEST(ChartRender, FilmIrradianceIsRadianceTimesTheBundle) {
 
 /// Green of a flat field, the mean over the picture, through the Tessar at f/8 with `more` added to its file.
 double green_through_tessar_with(const std::string& more) {
-    const std::filesystem::path file = std::filesystem::path(testing::TempDir()) / "tessar_with.toml";
+    const TestFolder folder;
+    const std::filesystem::path file = folder.path() / "tessar_with.toml";
     write_file(file, read_file(find_lens_file("tessar")) + more);
     const ChartCamera chart_camera(small_camera(file.string(), 8.0, 4.0, 8), Light{}, kSampling);
     const Chart white{.pattern = FlatField{}, .white_reflectance = 1.0};
