@@ -47,6 +47,7 @@ void write_json_result(const CommonOptions& options, const nlohmann::ordered_jso
 bool prints_text(const CommonOptions& options);
 
 /// Each adds its subcommand to `app`; running it stores the exit status in `status`.
+void add_check_command(CLI::App& app, int& status);
 void add_trace_command(CLI::App& app, int& status);
 void add_render_command(CLI::App& app, int& status);
 void add_measure_command(CLI::App& app, int& status);

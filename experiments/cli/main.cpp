@@ -58,6 +58,7 @@ int run(int argc, char** argv) {
     app.set_version_flag("--version", LENSPROOF_VERSION);
     app.footer("The launcher also has: ./lensproof demo, the demo experiment, and ./lensproof test, every test.");
     app.require_subcommand(1);
+    add_check_command(app, status);
     add_convert_command(app, status);
     add_trace_command(app, status);
     add_render_command(app, status);

@@ -1,0 +1,155 @@
+#include "engine/check/checked_lens.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "engine/io/input_error.h"
+
+namespace lensproof {
+
+namespace {
+
+constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
+constexpr double kUnlimited = std::numeric_limits<double>::infinity();
+
+double index_behind(const PrescribedSurface& row, const std::optional<Glass>& medium, const CheckSettings& settings) {
+    const auto override_index = settings.indices.find(row.medium.glass);
+    if (!row.medium.glass.empty() && override_index != settings.indices.end()) {
+        return override_index->second;
+    }
+    return medium ? refractive_index(medium->formula, settings.wavelength_nm) : kUnknown;
+}
+
+/// What is claimed from outside goes before what the file says.
+StatedData joined(const StatedData& from_outside, StatedData claims) {
+    const auto take = [](std::optional<double>& claim, const std::optional<double>& given) {
+        claim = given ? given : claim;
+    };
+    take(claims.efl_mm, from_outside.efl_mm);
+    take(claims.bfl_mm, from_outside.bfl_mm);
+    take(claims.f_number, from_outside.f_number);
+    take(claims.half_field_deg, from_outside.half_field_deg);
+    take(claims.image_circle_mm, from_outside.image_circle_mm);
+    take(claims.total_track_mm, from_outside.total_track_mm);
+    take(claims.entrance_pupil_diameter_mm, from_outside.entrance_pupil_diameter_mm);
+    return claims;
+}
+
+/// Where a stop is missing or doubled, rays are judged as though the narrowest of the surfaces that may be meant were
+/// it.
+std::optional<int> assume_stop(Prescription& prescription) {
+    const auto stops = std::ranges::count_if(prescription.surfaces, &PrescribedSurface::is_stop);
+    if (stops == 1) {
+        return std::nullopt;
+    }
+    const auto narrowness = [&](const PrescribedSurface& row) {
+        return stops > 1 && !row.is_stop ? kUnlimited : row.semi_diameter_mm.value_or(kUnlimited);
+    };
+    const auto narrowest = std::ranges::min_element(prescription.surfaces, {}, narrowness);
+    for (PrescribedSurface& row : prescription.surfaces) {
+        row.is_stop = false;
+    }
+    narrowest->is_stop = true;
+    return static_cast<int>(narrowest - prescription.surfaces.begin());
+}
+
+void trace_if_possible(CheckedLens& checked) {
+    Prescription traceable = checked.prescription;
+    traceable.stop_shape = {};
+    traceable.stated = checked.claims;
+    checked.assumed_stop = assume_stop(traceable);
+    try {
+        checked.lens = make_lens(traceable, *checked.known_glasses, checked.settings.indices);
+        checked.traced = at_wavelength<double>(*checked.lens, checked.settings.wavelength_nm);
+        checked.paraxial = paraxial_data(*checked.traced);
+    } catch (const InputError& error) {
+        checked.why_not_traced = error.what();
+        checked.lens.reset();
+        checked.traced.reset();
+    }
+}
+
+}  // namespace
+
+std::optional<Glass> stated_glass(const PrescribedSurface& row, const GlassCatalogue& glasses,
+                                  const std::vector<std::string>& preferred_makers) {
+    PrescribedSurface sound = row;
+    if (!(row.medium.V_d.value_or(1.0) > 0.0)) {
+        sound.medium.V_d.reset();  // no dispersion can be made of it, but the index stands
+    }
+    try {
+        return resolved_medium(sound, glasses, preferred_makers);
+    } catch (const InputError&) {
+        return std::nullopt;
+    }
+}
+
+TraceLens<double> paraxial_lens(const ParaxialTable& table) {
+    TraceLens<double> lens{.surfaces = {}, .image_z = 0.0};
+    lens.surfaces.reserve(table.curvature.size());
+    double index_before = 1.0;
+    double z = 0.0;
+    for (std::size_t i = 0; i < table.curvature.size(); ++i) {
+        lens.surfaces.push_back(
+            make_trace_surface(table.curvature[i], z, kUnlimited, index_before, table.index[i], false));
+        index_before = table.index[i];
+        z += table.gap[i];
+    }
+    lens.image_z = z;
+    return lens;
+}
+
+Focus paraxial_focus(const ParaxialTable& table, double object_distance_mm) {
+    const TraceLens<double> lens = paraxial_lens(table);
+    const ParaxialRay rear = trace_paraxial(lens, {1.0, 0.0}, 0, static_cast<int>(lens.surfaces.size()) - 1);
+    return {.efl = -1.0 / rear.slope,
+            .bfl = -rear.height / rear.slope,
+            .image_distance = paraxial_image_distance(lens, object_distance_mm)};
+}
+
+bool CheckedLens::is_incomplete(int i) const {
+    return std::ranges::any_of(prescription.remarks, [&](const Finding& remark) {
+        return remark.surface == i + 1 && remark.severity != Severity::info;
+    });
+}
+
+bool CheckedLens::is_dummy(int i) const {
+    return table.index[i] == index_before(i);
+}
+
+CheckedLens make_checked_lens(const Prescription& at_one_position, const StatedData& claims,
+                              const GlassCatalogue& glasses, const CheckSettings& settings) {
+    CheckedLens checked;
+    checked.prescription = at_one_position;
+    checked.claims = joined(claims, at_one_position.stated);
+    checked.settings = settings;
+    checked.known_glasses = &glasses;
+    trace_if_possible(checked);
+    bool is_known = true;
+    for (int i = 0; i < checked.size(); ++i) {
+        const PrescribedSurface& row = checked.row(i);
+        checked.media.push_back(stated_glass(row, glasses, at_one_position.preferred_makers));
+        checked.table.curvature.push_back(row.curvature() + 2.0 * row.asphere[0]);
+        checked.table.gap.push_back(row.thickness_mm);
+        // The traced lens knows of its surroundings, too.
+        checked.table.index.push_back(checked.traced ? checked.traced->surfaces[i].index_after
+                                                     : index_behind(row, checked.media.back(), settings));
+        const bool is_last = i + 1 == checked.size();
+        is_known = is_known && std::isfinite(checked.table.curvature.back()) &&
+                   std::isfinite(checked.table.index.back()) && checked.table.index.back() > 0.0 &&
+                   (std::isfinite(row.thickness_mm) || is_last);
+    }
+    if (is_known) {
+        checked.focus = paraxial_focus(checked.table, at_one_position.object_distance_mm);
+    }
+    for (int i = 0; i < checked.size(); ++i) {
+        const PrescribedSurface& row = checked.row(i);
+        const bool is_stated = row.semi_diameter_mm || row.rim_mm;
+        const double estimate = checked.lens ? checked.lens->surfaces[i].semi_diameter : kUnknown;
+        checked.semi_diameters.push_back(row.semi_diameter_mm.value_or(row.rim_mm.value_or(estimate)));
+        checked.is_estimated.push_back(!is_stated);
+    }
+    return checked;
+}
+
+}  // namespace lensproof

@@ -1,0 +1,71 @@
+// engine/check/checked_lens.h — what the checks look at: a prescription at one zoom position, with all that could be
+// made of it.
+#pragma once
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "engine/check/checker.h"
+
+namespace lensproof {
+
+using Findings = std::vector<Finding>;
+
+/// The numbers that first-order data come from, a surface each. No stop is needed, and no aperture.
+struct ParaxialTable {
+    std::vector<double> curvature;  // 1/mm, at the vertex
+    std::vector<double> gap;        // mm, behind the surface
+    std::vector<double> index;      // behind the surface
+};
+
+/// Where a lens focuses; mm. Not finite where it does not.
+struct Focus {
+    double efl = 0.0;
+    double bfl = 0.0;             // last vertex to the focus of an object at infinity
+    double image_distance = 0.0;  // last vertex to the image of the object that the table is set to
+};
+
+Focus paraxial_focus(const ParaxialTable& table, double object_distance_mm);
+
+/// The tracer's surfaces for it, whose rims are infinite.
+TraceLens<double> paraxial_lens(const ParaxialTable& table);
+
+struct CheckedLens {
+    Prescription prescription;  // at one zoom position
+    StatedData claims;
+    CheckSettings settings;
+    const GlassCatalogue* known_glasses = nullptr;
+
+    std::vector<std::optional<Glass>> media;  // behind each surface; nothing where it is not known
+    ParaxialTable table;                      // NaN where a number is missing
+    std::optional<Focus> focus;               // nothing where a number is missing
+    std::vector<double> semi_diameters;       // stated ones, else the rim, else estimated, else NaN
+    std::vector<bool> is_estimated;           // whether that semi-diameter is not the table's
+
+    // Of a lens with a full circle for a stop. Nothing where the table cannot be traced.
+    std::optional<Lens> lens;
+    std::optional<TraceLens<double>> traced;
+    std::optional<ParaxialData> paraxial;
+    std::string why_not_traced;       // in make_lens's words
+    std::optional<int> assumed_stop;  // the surface (from 0) that stands in for a stop that is missing or doubled
+
+    [[nodiscard]] int size() const { return static_cast<int>(prescription.surfaces.size()); }
+    [[nodiscard]] const PrescribedSurface& row(int i) const { return prescription.surfaces[i]; }
+    [[nodiscard]] bool is_glass_behind(int i) const { return !row(i).medium.is_air() && table.index[i] != 1.0; }
+    /// Whether the reader had to leave something of the surface out.
+    [[nodiscard]] bool is_incomplete(int i) const;
+    /// Whether light passes the surface unchanged: a stop's plane, or a dummy.
+    [[nodiscard]] bool is_dummy(int i) const;
+    /// Behind the surface, or in front of the first: the index.
+    [[nodiscard]] double index_before(int i) const { return i == 0 ? 1.0 : table.index[i - 1]; }
+};
+
+CheckedLens make_checked_lens(const Prescription& at_one_position, const StatedData& claims,
+                              const GlassCatalogue& glasses, const CheckSettings& settings);
+
+/// The glass behind a surface as the table names or describes it; nothing where the name is unknown and no index is
+/// stated.
+std::optional<Glass> stated_glass(const PrescribedSurface& row, const GlassCatalogue& glasses,
+                                  const std::vector<std::string>& preferred_makers);
+
+}  // namespace lensproof

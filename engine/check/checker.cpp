@@ -1,0 +1,117 @@
+#include "engine/check/checker.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "engine/check/checks.h"
+
+namespace lensproof {
+
+namespace {
+
+bool is_error(const Finding& finding) {
+    return finding.severity == Severity::error;
+}
+
+/// What could not be judged for want of a lens that rays can be traced through.
+void report_untraced(const CheckedLens& checked, Findings& findings) {
+    if (checked.lens) {
+        return;
+    }
+    const bool is_explained = std::ranges::any_of(findings, is_error);
+    findings.push_back({.code = is_explained ? "not-judged" : "not-traceable",
+                        .severity = is_explained ? Severity::info : Severity::error,
+                        .message = (is_explained ? "no ray was traced, so nothing is said about rays: "
+                                                 : "the lens cannot be traced: ") +
+                                   checked.why_not_traced});
+}
+
+Findings check_position(const CheckedLens& checked) {
+    Findings findings;
+    check_table(checked, findings);
+    check_geometry(checked, findings);
+    check_glasses(checked, findings);
+    check_first_order(checked, findings);
+    check_conventions(checked, findings);
+    check_axial_rays(checked, findings);
+    check_field_rays(checked, findings);
+    suggest_changes(checked, findings);
+    report_untraced(checked, findings);
+    std::ranges::stable_sort(findings, [](const Finding& a, const Finding& b) { return a.severity > b.severity; });
+    return findings;
+}
+
+bool is_same(const Finding& a, const Finding& b) {
+    return a.code == b.code && a.severity == b.severity && a.surface == b.surface && a.message == b.message;
+}
+
+bool holds(const Findings& findings, const Finding& wanted) {
+    return std::ranges::any_of(findings, [&](const Finding& finding) { return is_same(finding, wanted); });
+}
+
+std::optional<ComputedData> computed_data(const CheckedLens& checked, std::string position) {
+    if (!checked.focus) {
+        return std::nullopt;
+    }
+    ParaxialData paraxial = checked.paraxial.value_or(ParaxialData{});
+    if (!checked.paraxial || checked.assumed_stop) {
+        // What a stop is needed for is not known.
+        paraxial.entrance_pupil_z = paraxial.entrance_pupil_diameter = Finding::kNothing;
+        paraxial.exit_pupil_z = paraxial.exit_pupil_diameter = paraxial.f_number = Finding::kNothing;
+    }
+    if (!checked.paraxial) {
+        paraxial.ffl = Finding::kNothing;
+    }
+    paraxial.efl = checked.focus->efl;
+    paraxial.bfl = checked.focus->bfl;
+    return ComputedData{
+        .zoom_position = std::move(position), .paraxial = paraxial, .wavelength_nm = checked.settings.wavelength_nm};
+}
+
+}  // namespace
+
+bool CheckReport::ok() const {
+    return std::ranges::none_of(findings, is_error);
+}
+
+CheckReport check_prescription(const Prescription& prescription, const StatedData& claims,
+                               const GlassCatalogue& glasses, const CheckSettings& settings) {
+    CheckReport report{.findings = prescription.remarks, .computed = {}};
+    if (prescription.surfaces.empty()) {
+        report.findings.push_back(
+            {.code = "no-surface", .severity = Severity::error, .message = "the prescription holds no surface"});
+        return report;
+    }
+    const std::size_t count = std::max<std::size_t>(1, prescription.zoom.size());
+    std::vector<std::pair<std::string, Findings>> positions;
+    for (std::size_t position = 0; position < count; ++position) {
+        if (settings.zoom_position && *settings.zoom_position != position) {
+            continue;
+        }
+        const CheckedLens checked =
+            make_checked_lens(at_zoom_position(prescription, position), claims, glasses, settings);
+        const std::string name = prescription.zoom.empty() ? "" : prescription.zoom[position].name;
+        positions.emplace_back(name, check_position(checked));
+        if (std::optional<ComputedData> computed = computed_data(checked, name)) {
+            report.computed.push_back(*computed);
+        }
+    }
+    for (const auto& [name, findings] : positions) {
+        for (const Finding& finding : findings) {
+            // What holds at every position is said once.
+            const bool everywhere =
+                std::ranges::all_of(positions, [&](const auto& other) { return holds(other.second, finding); });
+            if (everywhere && holds(report.findings, finding)) {
+                continue;
+            }
+            report.findings.push_back(finding);
+            if (!everywhere && !name.empty()) {
+                report.findings.back().message = fmt::format("at {}: {}", name, finding.message);
+            }
+        }
+    }
+    return report;
+}
+
+}  // namespace lensproof

@@ -1,0 +1,43 @@
+// engine/check/checker.h — the sanity checker: what is wrong with a prescription, before anything is rendered with it.
+#pragma once
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "engine/optics/lens.h"
+#include "engine/optics/paraxial.h"
+#include "engine/spectral/wavelengths.h"
+
+namespace lensproof {
+
+struct CheckSettings {
+    double wavelength_nm = kLineD;             // of the first-order data and of the rays
+    IndexOverrides indices;                    // constant indices in place of glasses
+    std::optional<std::size_t> zoom_position;  // counted from 0; without one, every position is checked
+};
+
+/// The lens's first-order data at one zoom position, which has no name where the lens does not zoom.
+struct ComputedData {
+    std::string zoom_position;
+    ParaxialData paraxial;
+    double wavelength_nm = kLineD;
+};
+
+struct CheckReport {
+    std::vector<Finding> findings;       // the reader's remarks first, then errors, warnings and infos
+    std::vector<ComputedData> computed;  // a position of the zoom each; empty where nothing could be computed
+
+    /// Whether no finding is an error.
+    [[nodiscard]] bool ok() const;
+};
+
+/// Judges the table by itself, by its glasses, by its first-order data and by real rays, and against what is claimed
+/// of it: `claims`, and where it is silent the prescription's own. What the table makes impossible to judge is said,
+/// not skipped in silence. Nothing is mended: where one changed digit would restore the claims, that is a finding
+/// "suggestion".
+///
+/// Each rule stands with its source beside the check. Never throws for what a prescription may hold.
+CheckReport check_prescription(const Prescription& prescription, const StatedData& claims,
+                               const GlassCatalogue& glasses, const CheckSettings& settings = {});
+
+}  // namespace lensproof

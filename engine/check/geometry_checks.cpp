@@ -1,0 +1,362 @@
+// Surfaces against each other: edges and centres of elements, gaps, cement; and surfaces that do not keep their shape.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "engine/check/checks.h"
+#include "engine/check/sag.h"
+
+namespace lensproof {
+
+namespace {
+
+// Rule 7: Edmund Optics and photonics.com (article 64048): radii below 0.7 diameters are hard to make.
+constexpr double kSteepest = 0.714;
+constexpr double kFlattestSag = 0.1;  // mm, rule 8, same source
+// Rule 9: the customary least edge, at a blank 1 mm wider than the clear diameter; and this project's own.
+constexpr double kBlankMargin = 0.5;  // mm of radius
+constexpr double kThinnestBlankEdge = 0.7;
+constexpr double kThinnestEdge = 1.0;
+constexpr double kThinnestEdgeShare = 0.05;  // of the diameter
+// Rule 10: 6 : 1 to 10 : 1 is the usual rule for diameter to centre thickness. Nearly every lens that was ever sold
+// breaks it somewhere, so half of it is what is warned of.
+constexpr double kThinnestCentre = 1.0;
+constexpr double kThinnestCentreShare = 0.1;
+constexpr double kThinCentreShare = 0.05;
+constexpr double kNarrowestGap = 0.05;  // mm, rule 11
+constexpr double kSelfCentring = 0.56;  // rule 36: Karow, Fabrication Methods for Precision Optics (1993), p. 524
+constexpr int kSamples = 64;            // of the height, where no closed form serves
+
+bool is_known(double value) {
+    return std::isfinite(value);
+}
+
+/// Two successive surfaces, what lies between them, and how far out each reaches.
+struct Space {
+    const CheckedLens& checked;
+    int i;  // the first surface, from 0
+    const PrescribedSurface& front = checked.row(i);
+    const PrescribedSurface& rear = checked.row(i + 1);
+    double front_reach = checked.semi_diameters[i];
+    double rear_reach = checked.semi_diameters[i + 1];
+
+    [[nodiscard]] bool is_estimated() const { return checked.is_estimated[i] || checked.is_estimated[i + 1]; }
+    /// What an unstated semi-diameter implies, or a shape of which the reader left something out, is no more than worth
+    /// a look.
+    [[nodiscard]] Severity at_most(Severity severity) const {
+        return is_estimated() || checked.is_incomplete(i) || checked.is_incomplete(i + 1)
+                   ? std::min(severity, Severity::warning)
+                   : severity;
+    }
+    [[nodiscard]] int surface() const { return i + 1; }
+};
+
+/// Half a unit of the last digit that a length is given with.
+double rounding_of(double length) {
+    const std::string text = fmt::format("{}", length);
+    const std::size_t point = text.find('.');
+    const std::size_t decimals = point == std::string::npos ? 0 : text.size() - point - 1;
+    return 0.5 * std::pow(10.0, -static_cast<double>(decimals));
+}
+
+/// The least separation up to `reach`, and where.
+struct Narrowest {
+    double separation;
+    double r = 0.0;
+};
+
+Narrowest narrowest_up_to(const Space& space, double reach) {
+    Narrowest narrowest{.separation = space.front.thickness_mm};
+    for (int k = 1; k <= kSamples; ++k) {
+        const double r = reach * k / kSamples;
+        const double here = separation_at(space.front, space.rear, r);
+        if (here < narrowest.separation) {
+            narrowest = {.separation = here, .r = r};
+        }
+    }
+    return narrowest;
+}
+
+/// The height that both surfaces reach, less what the rounding of their semi-diameters may have added.
+double certain_reach(const Space& space) {
+    return std::min(space.front_reach - rounding_of(space.front_reach),
+                    space.rear_reach - rounding_of(space.rear_reach));
+}
+
+/// Whether the surfaces are apart up to the smaller semi-diameter, or run on to the larger one and still are.
+bool cuts_no_glass(const Space& space) {
+    const double larger = std::max(space.front_reach, space.rear_reach);
+    const bool differ = space.front_reach != space.rear_reach;
+    const double at_rim =
+        separation_at(space.front, space.rear, differ ? larger - rounding_of(larger) : certain_reach(space));
+    return narrowest_up_to(space, certain_reach(space)).separation >= 0.0 && at_rim >= 0.0;
+}
+
+/// Rules 6 to 8 for a surface by itself.
+void check_steepness(const CheckedLens& checked, int i, Findings& findings) {
+    const PrescribedSurface& row = checked.row(i);
+    const double share = std::abs(checked.semi_diameters[i] * row.curvature());
+    if (share > kSteepest && share < 1.0) {
+        findings.push_back(
+            {.code = "steep-surface",
+             .severity = Severity::warning,
+             .surface = i + 1,
+             .message = fmt::format("its radius is only {:.2f} of its diameter: hard to make", 0.5 / share),
+             .value = share,
+             .limit = kSteepest});
+    }
+    const double depth = std::abs(sag_at(row, checked.semi_diameters[i]));
+    if (!row.is_flat() && !row.is_asphere() && depth < kFlattestSag) {
+        findings.push_back({.code = "nearly-flat",
+                            .severity = Severity::info,
+                            .surface = i + 1,
+                            .message = fmt::format("it is only {:.3f} mm deep at its rim: would a flat do?", depth),
+                            .value = depth,
+                            .limit = kFlattestSag,
+                            .unit = "mm"});
+    }
+}
+
+/// Rule 9: t + sag(i + 1) − sag(i), each at its own semi-diameter. Where the smaller surface runs on to the larger
+/// one's rim and clears it there, or the rounding of the semi-diameters explains the rest, such an element can be made.
+void check_edge(const Space& space, Findings& findings) {
+    const auto edge_with = [&](double margin) {
+        return space.front.thickness_mm + sag_at(space.rear, space.rear_reach + margin) -
+               sag_at(space.front, space.front_reach + margin);
+    };
+    const double edge = edge_with(0.0);
+    const double blank_edge = edge_with(kBlankMargin);
+    const double reach = std::max(space.front_reach, space.rear_reach);
+    const double least = std::max(kThinnestEdge, kThinnestEdgeShare * 2.0 * reach);
+    const auto report = [&](Severity severity, double value, double limit, std::string message) {
+        findings.push_back({.code = "edge-thickness",
+                            .severity = severity,
+                            .surface = space.surface(),
+                            .message = std::move(message),
+                            .value = value,
+                            .limit = limit,
+                            .unit = "mm"});
+    };
+    if (edge < 0.0) {
+        const bool is_possible = cuts_no_glass(space);
+        report(is_possible ? Severity::warning : space.at_most(Severity::error), edge, 0.0,
+               fmt::format("its glass would be {:.3f} mm thick at the edge, each surface taken to its own "
+                           "semi-diameter: {}",
+                           edge,
+                           is_possible ? "are these semi-diameters of light, not of glass?"
+                                       : "the two surfaces meet inside their apertures"));
+    } else if (blank_edge < kThinnestBlankEdge) {
+        report(Severity::warning, blank_edge, kThinnestBlankEdge,
+               fmt::format("its glass is {:.3f} mm thick at the edge of a blank 1 mm wider than the clear aperture: it "
+                           "chips",
+                           blank_edge));
+    } else if (edge < least) {
+        report(Severity::info, edge, least, fmt::format("its glass is only {:.3f} mm thick at the edge", edge));
+    }
+}
+
+/// Rule 10.
+void check_centre(const Space& space, Findings& findings) {
+    const double diameter = 2.0 * std::max(space.front_reach, space.rear_reach);
+    const bool is_negative = space.front.curvature() < space.rear.curvature();
+    const double least = std::max(kThinnestCentre, is_negative ? kThinnestCentreShare * diameter : 0.0);
+    const double thickness = space.front.thickness_mm;
+    if (thickness > 0.0 && thickness < least) {
+        const bool is_thin = thickness < std::max(kThinnestCentre, kThinCentreShare * diameter);
+        findings.push_back({.code = "centre-thickness",
+                            .severity = is_thin ? Severity::warning : Severity::info,
+                            .surface = space.surface(),
+                            .message = fmt::format("its glass is only {} mm thick in the middle for a diameter of "
+                                                   "{:.3g} mm",
+                                                   thickness, diameter),
+                            .value = thickness,
+                            .limit = least,
+                            .unit = "mm"});
+    }
+}
+
+/// Rule 11, over the height that both surfaces reach. A stop's plane that a surface bulges through cuts no glass, and
+/// what the rounding of semi-diameters explains is no more than a warning.
+void check_crossing(const Space& space, Findings& findings) {
+    const auto [narrowest, where] = narrowest_up_to(space, std::min(space.front_reach, space.rear_reach));
+    const bool is_glass = space.checked.is_glass_behind(space.i);
+    const bool is_plane = space.checked.is_dummy(space.i) || space.checked.is_dummy(space.i + 1);
+    const bool touches = narrowest < 0.0 || (narrowest == 0.0 && where > 0.0);
+    const bool is_explained = is_plane || narrowest_up_to(space, certain_reach(space)).separation >= 0.0;
+    if (touches && space.front.thickness_mm > 0.0) {
+        findings.push_back(
+            {.code = "surfaces-cross",
+             .severity = is_explained ? Severity::warning : space.at_most(Severity::error),
+             .surface = space.surface(),
+             .message = fmt::format("it runs {:.3f} mm into surface {}, {:.3g} mm from the axis{}", -narrowest,
+                                    space.surface() + 1, where, is_plane ? " (a plane without glass)" : ""),
+             .value = narrowest,
+             .limit = 0.0,
+             .unit = "mm"});
+    } else if (!is_glass && !is_plane && narrowest > 0.0 && narrowest < kNarrowestGap) {
+        findings.push_back({.code = "air-gap",
+                            .severity = Severity::warning,
+                            .surface = space.surface(),
+                            .message = fmt::format("only {:.3f} mm of air to surface {}, {:.3g} mm from the axis",
+                                                   narrowest, space.surface() + 1, where),
+                            .value = narrowest,
+                            .limit = kNarrowestGap,
+                            .unit = "mm"});
+    }
+}
+
+/// The glass beyond the clear apertures, up to stated rims, ground flat there.
+void check_rims(const Space& space, Findings& findings) {
+    if (!space.front.rim_mm || !space.rear.rim_mm || space.checked.is_glass_behind(space.i)) {
+        return;
+    }
+    const double separation =
+        space.front.thickness_mm + sag_at(space.rear, space.rear_reach) - sag_at(space.front, space.front_reach);
+    const bool overlap =
+        separation < 0.0 && *space.front.rim_mm > space.rear_reach && *space.rear.rim_mm > space.front_reach;
+    if (overlap) {
+        findings.push_back({.code = "rims-overlap",
+                            .severity = Severity::warning,
+                            .surface = space.surface(),
+                            .message = fmt::format("its rim and that of surface {} overlap by {:.3f} mm",
+                                                   space.surface() + 1, -separation),
+                            .value = separation,
+                            .limit = 0.0,
+                            .unit = "mm"});
+    }
+}
+
+// Rule 12: an air gap so thin between surfaces so nearly alike is cement that the table spells as two surfaces.
+constexpr double kCementGap = 0.02;     // mm
+constexpr double kCementRadii = 0.02;   // relative
+constexpr double kCementHeights = 0.1;  // relative
+
+void check_cement(const Space& space, Findings& findings) {
+    const CheckedLens& checked = space.checked;
+    const int i = space.i;
+    if (checked.is_glass_behind(i)) {
+        const bool is_glass_before = i > 0 && checked.is_glass_behind(i - 1);
+        const bool same_dispersion =
+            is_glass_before && checked.media[i] && checked.media[i - 1] &&
+            abbe_number(checked.media[i]->formula) == abbe_number(checked.media[i - 1]->formula);
+        if (is_glass_before && checked.is_dummy(i) && same_dispersion && !space.front.is_stop &&
+            !space.front.is_flat()) {
+            findings.push_back({.code = "no-index-step",
+                                .severity = Severity::warning,
+                                .surface = i + 1,
+                                .message = "the glasses on both sides of it are the same: it does nothing"});
+        }
+        return;
+    }
+    const bool is_cement = i > 0 && checked.is_glass_behind(i - 1) && checked.is_glass_behind(i + 1) &&
+                           space.front.thickness_mm >= 0.0 && space.front.thickness_mm <= kCementGap;
+    const double front = space.front.curvature();
+    const double rear = space.rear.curvature();
+    const bool alike = std::abs(front - rear) <= kCementRadii * std::abs(front);
+    if (!is_cement || !alike) {
+        return;
+    }
+    const bool other_radius = front != rear;
+    const bool other_height = std::abs(space.front_reach - space.rear_reach) > kCementHeights * space.front_reach;
+    if (other_radius || other_height) {
+        findings.push_back({.code = "cemented-surfaces",
+                            .severity = Severity::warning,
+                            .surface = i + 1,
+                            .message = fmt::format("it looks cemented to surface {}, but their {} differ", i + 2,
+                                                   other_radius ? "radii" : "semi-diameters"),
+                            .value = other_radius ? 1.0 / front - 1.0 / rear : space.front_reach - space.rear_reach,
+                            .limit = 0.0,
+                            .unit = "mm"});
+    }
+}
+
+/// Rule 36: the tangent of the angle between the two surfaces' normals where bell chucks hold them.
+void check_centring(const Space& space, Findings& findings) {
+    const auto slope = [](const PrescribedSurface& row, double reach) { return std::asin(reach * row.curvature()); };
+    const bool is_single =
+        (space.i == 0 || !space.checked.is_glass_behind(space.i - 1)) && !space.checked.is_glass_behind(space.i + 1);
+    const double angle = std::abs(slope(space.front, space.front_reach) - slope(space.rear, space.rear_reach));
+    if (is_single && std::tan(angle) < kSelfCentring && angle < 1.0) {
+        findings.push_back({.code = "centring",
+                            .severity = Severity::info,
+                            .surface = space.surface(),
+                            .message = fmt::format("the element does not centre itself between bell chucks (Karow's Z "
+                                                   "is {:.2f})",
+                                                   std::tan(angle)),
+                            .value = std::tan(angle),
+                            .limit = kSelfCentring});
+    }
+}
+
+/// Rule 35: the sag is real over the aperture, and its slope keeps its direction.
+void check_asphere(const CheckedLens& checked, int i, Findings& findings) {
+    const PrescribedSurface& row = checked.row(i);
+    if (!row.is_asphere() && row.conic == 0.0) {
+        return;
+    }
+    const SurfaceShape<double> shape = prescribed_shape(row);
+    const double reach = checked.semi_diameters[i];
+    double steepest = 0.0;  // dz/dr, of the first direction
+    for (int k = 1; k <= kSamples; ++k) {
+        const double r = reach * k / kSamples;
+        const SagProfile<double> here = sag_profile(shape, r * r);
+        if (!here.defined || !is_known(here.sag)) {
+            findings.push_back({.code = "asphere-ends",
+                                .severity = row.is_asphere() ? Severity::error : Severity::warning,
+                                .surface = i + 1,
+                                .message = fmt::format("its conic ends {:.4g} mm from the axis, inside its "
+                                                       "semi-diameter of {:.4g} mm",
+                                                       r, reach),
+                                .value = r,
+                                .limit = reach,
+                                .unit = "mm"});
+            return;
+        }
+        const double slope = 2.0 * r * here.slope;
+        // A slope of a minute of arc the other way is a correction plate's; what it then reaches counts.
+        constexpr double kNoticeable = 0.03;
+        if (std::abs(slope) > std::abs(steepest) && slope * steepest >= 0.0) {
+            steepest = slope;
+        } else if (slope * steepest < 0.0 && std::abs(slope) > kNoticeable && std::abs(steepest) > kNoticeable) {
+            findings.push_back({.code = "asphere-turns-over",
+                                .severity = Severity::warning,
+                                .surface = i + 1,
+                                .message = fmt::format("it turns over inside its aperture: its slope has changed sign "
+                                                       "{:.4g} mm from the axis, of {:.4g} mm",
+                                                       r, reach),
+                                .value = r,
+                                .limit = reach,
+                                .unit = "mm"});
+            return;
+        }
+    }
+}
+
+}  // namespace
+
+void check_geometry(const CheckedLens& checked, Findings& findings) {
+    for (int i = 0; i < checked.size(); ++i) {
+        if (!is_known(checked.semi_diameters[i]) || !is_known(checked.table.curvature[i])) {
+            continue;
+        }
+        check_steepness(checked, i, findings);
+        check_asphere(checked, i, findings);
+        const bool has_next = i + 1 < checked.size() && is_known(checked.semi_diameters[i + 1]) &&
+                              is_known(checked.table.curvature[i + 1]) && is_known(checked.row(i).thickness_mm);
+        if (!has_next) {
+            continue;
+        }
+        const Space space{.checked = checked, .i = i};
+        if (checked.is_glass_behind(i)) {
+            check_edge(space, findings);
+            check_centre(space, findings);
+            check_centring(space, findings);
+        }
+        check_crossing(space, findings);
+        check_rims(space, findings);
+        check_cement(space, findings);
+    }
+}
+
+}  // namespace lensproof

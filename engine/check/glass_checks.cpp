@@ -1,0 +1,267 @@
+// Glasses: whether names are known, figures agree with them, and every wavelength of a render has an index.
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "engine/check/checks.h"
+
+namespace lensproof {
+
+namespace {
+
+// Rule 13: from fluorite crystals to the densest flints.
+constexpr double kLowestIndex = 1.35;
+constexpr double kHighestIndex = 2.2;
+constexpr double kLowestAbbe = 15.0;
+constexpr double kHighestAbbe = 100.0;
+// Rule 15. Listings of three decimals are off by half a unit of the last, and a little.
+constexpr double kIndexError = 1e-3;
+constexpr double kIndexRounding = 5.1e-4;
+constexpr double kIndexWarning = 2e-4;
+constexpr double kAbbeError = 0.05;  // relative
+constexpr double kAbbeWarning = 0.01;
+// Rule 17: what renders take by default.
+constexpr double kRenderFrom = 400.0;
+constexpr double kRenderTo = 700.0;
+
+GlassMatch resolve(const CheckedLens& checked, const std::string& name) {
+    return checked.known_glasses->resolve(name, checked.prescription.preferred_makers);
+}
+
+std::string where_air_begins(const StatedMedium& medium) {
+    return medium.glass.empty() ? fmt::format("n_d = {}", medium.n_d.value_or(Finding::kNothing)) : medium.glass;
+}
+
+/// Rule 13.
+void check_index_range(const CheckedLens& checked, int i, Findings& findings) {
+    const double index = checked.table.index[i];
+    const std::string is = fmt::format("the index behind it is {:.6g}", index);
+    if (index < 1.0) {
+        findings.push_back({.code = "index-range",
+                            .severity = Severity::error,
+                            .surface = i + 1,
+                            .message = is + ": below that of air",
+                            .value = index,
+                            .limit = 1.0});
+    } else if (index < kLowestIndex || index > kHighestIndex) {
+        findings.push_back({.code = "index-range",
+                            .severity = Severity::warning,
+                            .surface = i + 1,
+                            .message = is + ": no glass has it",
+                            .value = index,
+                            .limit = index < kLowestIndex ? kLowestIndex : kHighestIndex});
+    }
+    const StatedMedium& medium = checked.row(i).medium;
+    const double V_d = medium.V_d.value_or(60.0);
+    if (V_d <= 0.0 || V_d < kLowestAbbe || V_d > kHighestAbbe) {
+        findings.push_back({.code = "abbe-range",
+                            .severity = V_d <= 0.0 ? Severity::error : Severity::warning,
+                            .surface = i + 1,
+                            .message = fmt::format("an Abbe number of {} behind it: no glass has it", V_d),
+                            .value = V_d,
+                            .limit = V_d < kLowestAbbe ? kLowestAbbe : kHighestAbbe});
+    }
+    const DispersionFormula& formula = checked.media[i]->formula;
+    const double n_F = refractive_index(formula, kLineF);
+    const double n_d = refractive_index(formula, kLineD);
+    const double n_C = refractive_index(formula, kLineC);
+    const bool has_dispersion = n_F != n_C;
+    if (has_dispersion && !(n_F > n_d && n_d > n_C)) {
+        findings.push_back({.code = "dispersion-order",
+                            .severity = Severity::warning,
+                            .surface = i + 1,
+                            .message = fmt::format("its index does not fall from blue to red: {:.5f} at F, {:.5f} at "
+                                                   "d, {:.5f} at C",
+                                                   n_F, n_d, n_C),
+                            .value = n_F - n_C,
+                            .limit = 0.0});
+    }
+}
+
+/// Rule 15, of a name beside figures.
+void check_figures(const CheckedLens& checked, int i, const Glass& glass, Findings& findings) {
+    const StatedMedium& medium = checked.row(i).medium;
+    if (medium.n_d) {
+        const double n_d = refractive_index(glass.formula, kLineD);
+        const double off = std::abs(*medium.n_d - n_d);
+        // Three decimals are a listing's habit, more are a claim.
+        const bool has_three_decimals = std::abs(*medium.n_d * 1e3 - std::round(*medium.n_d * 1e3)) < 1e-6;
+        if (off > kIndexWarning) {
+            const bool rounded = has_three_decimals && off <= kIndexRounding;
+            findings.push_back({.code = "glass-index",
+                                .severity = off > kIndexError ? Severity::error
+                                            : rounded         ? Severity::info
+                                                              : Severity::warning,
+                                .surface = i + 1,
+                                .message = fmt::format("n_d = {} is stated beside {}, which has {:.5f}{}", *medium.n_d,
+                                                       medium.glass, n_d, rounded ? ": rounded" : ""),
+                                .value = off,
+                                .limit = off > kIndexError ? kIndexError : kIndexWarning});
+        }
+    }
+    if (medium.V_d && std::isfinite(*medium.V_d)) {
+        const double V_d = abbe_number(glass.formula);
+        const double off = std::abs(*medium.V_d / V_d - 1.0);
+        if (off > kAbbeWarning) {
+            findings.push_back({.code = "glass-abbe",
+                                .severity = off > kAbbeError ? Severity::error : Severity::warning,
+                                .surface = i + 1,
+                                .message = fmt::format("V_d = {} is stated beside {}, which has {:.2f}", *medium.V_d,
+                                                       medium.glass, V_d),
+                                .value = 100.0 * off,
+                                .limit = 100.0 * (off > kAbbeError ? kAbbeError : kAbbeWarning),
+                                .unit = "%"});
+        }
+    }
+}
+
+/// Rule 14.
+void check_name(const CheckedLens& checked, int i, Findings& findings) {
+    const StatedMedium& medium = checked.row(i).medium;
+    if (medium.glass.empty() || medium.is_air() || checked.settings.indices.contains(medium.glass)) {
+        return;
+    }
+    const GlassMatch match = resolve(checked, medium.glass);
+    if (match.glass) {
+        if (match.how == GlassMatch::How::spelled_differently) {
+            findings.push_back({.code = "glass-spelling",
+                                .severity = Severity::info,
+                                .surface = i + 1,
+                                .message = fmt::format("the glass {} is taken for {} {}", medium.glass,
+                                                       match.glass->catalogue, match.glass->name)});
+        }
+        if (match.glass->status == "obsolete") {
+            findings.push_back(
+                {.code = "glass-obsolete",
+                 .severity = Severity::info,
+                 .surface = i + 1,
+                 .message = fmt::format("{} {} is no longer made", match.glass->catalogue, match.glass->name)});
+        }
+        check_figures(checked, i, *match.glass, findings);
+        return;
+    }
+    std::string message =
+        fmt::format("no catalogue has the glass {}; {}", medium.glass, suggestion_text(match.suggestions));
+    if (medium.n_d) {
+        message += fmt::format("; traced with the n_d = {} beside it", *medium.n_d);
+    }
+    findings.push_back({.code = "glass-unknown",
+                        .severity = medium.n_d ? Severity::warning : Severity::error,
+                        .surface = i + 1,
+                        .message = message});
+}
+
+/// Whether the table gives the glass behind a surface by figures alone.
+bool is_given_by_figures(const CheckedLens& checked, int i) {
+    const StatedMedium& medium = checked.row(i).medium;
+    const bool is_named = !medium.glass.empty() && resolve(checked, medium.glass).glass;
+    return checked.is_glass_behind(i) && !is_named && medium.n_d && medium.indices.empty();
+}
+
+/// Rule 16.
+void check_achromatic(const CheckedLens& checked, Findings& findings) {
+    std::vector<int> surfaces;
+    for (int i = 0; i < checked.size(); ++i) {
+        if (is_given_by_figures(checked, i) && !checked.row(i).medium.V_d) {
+            surfaces.push_back(i + 1);
+        }
+    }
+    if (!surfaces.empty()) {
+        findings.push_back({.code = "no-dispersion",
+                            .severity = Severity::warning,
+                            .surface = surfaces.front(),
+                            .message = fmt::format("no Abbe number and no known name for the glass behind surface{} "
+                                                   "{}: a spectral render sees one colour there",
+                                                   surfaces.size() > 1 ? "s" : "", fmt::join(surfaces, ", "))});
+    }
+}
+
+/// How far the model of dispersion may be off for glasses that are given by n_d and V_d.
+void report_normal_line(const CheckedLens& checked, Findings& findings) {
+    std::vector<int> surfaces;
+    int worst = 0;
+    double worst_error = 0.0;
+    const auto error_at = [&](int i, double wavelength) {
+        const StatedMedium& medium = checked.row(i).medium;
+        return normal_line_error(checked.known_glasses->glasses(), *medium.n_d, *medium.V_d, wavelength).percentile_95;
+    };
+    for (int i = 0; i < checked.size(); ++i) {
+        const StatedMedium& medium = checked.row(i).medium;
+        if (!is_given_by_figures(checked, i) || !(medium.V_d.value_or(0.0) > 0.0) || !(*medium.n_d > 1.0)) {
+            continue;
+        }
+        surfaces.push_back(i + 1);
+        // The model errs most in the blue.
+        const double error = error_at(i, kRenderFrom);
+        if (error >= worst_error) {
+            worst_error = error;
+            worst = i;
+        }
+    }
+    if (!surfaces.empty()) {
+        findings.push_back(
+            {.code = "normal-line",
+             .severity = Severity::info,
+             .surface = worst + 1,
+             .message = fmt::format("given by n_d and V_d alone, as are {} glasses here (behind surfaces {}): their "
+                                    "dispersion is modelled, with an error in n of up to {:.1e} at {} nm and {:.1e} "
+                                    "at {} nm for this one, the worst (95 % of the real glasses nearby)",
+                                    surfaces.size(), fmt::join(surfaces, ", "), error_at(worst, kRenderFrom),
+                                    kRenderFrom, error_at(worst, kRenderTo), kRenderTo),
+             .value = worst_error});
+    }
+}
+
+/// Rule 17.
+void check_wavelengths(const CheckedLens& checked, int i, Findings& findings) {
+    const Glass& glass = *checked.media[i];
+    std::vector<double> wavelengths = checked.prescription.wavelengths_nm;
+    wavelengths.insert(wavelengths.end(), {kRenderFrom, kRenderTo, checked.settings.wavelength_nm});
+    for (const double wavelength : wavelengths) {
+        if (!covers(glass, wavelength)) {
+            findings.push_back(
+                {.code = "wavelength-range",
+                 .severity = Severity::warning,
+                 .surface = i + 1,
+                 .message = fmt::format("{} nm is outside the range of {}, {} to {} nm", wavelength, glass.name,
+                                        glass.min_wavelength_nm, glass.max_wavelength_nm),
+                 .value = wavelength,
+                 .limit = wavelength < glass.min_wavelength_nm ? glass.min_wavelength_nm : glass.max_wavelength_nm,
+                 .unit = "nm"});
+            return;
+        }
+    }
+}
+
+/// Rule 18.
+void check_last_medium(const CheckedLens& checked, Findings& findings) {
+    const int last = checked.size() - 1;
+    if (!checked.row(last).medium.is_air() && checked.table.index[last] != 1.0) {
+        findings.push_back({.code = "last-medium",
+                            .severity = Severity::warning,
+                            .surface = last + 1,
+                            .message = fmt::format("the last surface is followed by {}, not by air: is a row missing?",
+                                                   where_air_begins(checked.row(last).medium)),
+                            .value = checked.table.index[last],
+                            .limit = 1.0});
+    }
+}
+
+}  // namespace
+
+void check_glasses(const CheckedLens& checked, Findings& findings) {
+    for (int i = 0; i < checked.size(); ++i) {
+        check_name(checked, i, findings);
+        if (!checked.row(i).medium.is_air() && checked.media[i] && std::isfinite(checked.table.index[i])) {
+            check_index_range(checked, i, findings);
+            check_wavelengths(checked, i, findings);
+        }
+    }
+    check_achromatic(checked, findings);
+    report_normal_line(checked, findings);
+    check_last_medium(checked, findings);
+}
+
+}  // namespace lensproof

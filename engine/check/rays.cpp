@@ -1,0 +1,167 @@
+#include "engine/check/rays.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace lensproof {
+
+namespace {
+
+constexpr int kSteps = 200;           // across the beam, in search of its edge
+constexpr int kHalvings = 50;         // of a step
+constexpr double kBackwards = -1e-9;  // mm: further back than rounding goes
+
+/// From the axial object point, through height `h` in the plane of the first vertex.
+Ray<double> axial_ray(const CheckedLens& checked, double h) {
+    const double distance = checked.prescription.object_distance_mm;
+    if (std::isinf(distance)) {
+        return {{0.0, h, 0.0}, {0.0, 0.0, 1.0}};
+    }
+    return {{0.0, 0.0, -distance}, normalized(Vec3d{0.0, h, distance})};
+}
+
+AxialBeam beam_through(const CheckedLens& checked, const TraceLens<double>& lens) {
+    AxialBeam beam;
+    const double widest =
+        1.5 * std::max(checked.semi_diameters.front(), 0.5 * checked.paraxial->entrance_pupil_diameter);
+    if (!std::isfinite(widest)) {
+        return beam;
+    }
+    double passing = 0.0;
+    double failing = widest;
+    for (int step = 0; step <= kSteps; ++step) {
+        // Not on the axis itself, where a ray meets no slope.
+        const double h = widest * std::max(1e-3, static_cast<double>(step)) / kSteps;
+        if (!follow(lens, axial_ray(checked, h)).passes()) {
+            failing = h;
+            break;
+        }
+        passing = h;
+    }
+    for (int i = 0; i < kHalvings && passing > 0.0; ++i) {
+        const double middle = 0.5 * (passing + failing);
+        (follow(lens, axial_ray(checked, middle)).passes() ? passing : failing) = middle;
+    }
+    beam.semi_diameter = passing;
+    beam.limit = follow(lens, axial_ray(checked, failing));
+    const Vec3d way = follow(lens, axial_ray(checked, passing)).ray.direction;
+    beam.exit_sine = std::hypot(way.x, way.y);
+    return beam;
+}
+
+}  // namespace
+
+RayFate follow(const TraceLens<double>& lens, const Ray<double>& ray, Rims rims) {
+    RayFate fate;
+    Ray<double> before = ray;
+    bool is_first = true;
+    const auto visit = [&](const SurfaceEvent<double>& event) {
+        if (event.status == RayStatus::missed) {
+            return;
+        }
+        const Vec3d step = event.ray.origin - before.origin;
+        if (!is_first && !fate.is_backwards && dot(step, before.direction) < kBackwards) {
+            fate.is_backwards = true;
+            fate.surface = event.surface;
+        }
+        is_first = false;
+        const TraceSurface<double>& surface = lens.surfaces[event.surface];
+        if (event.status == RayStatus::ok && surface.index_before != surface.index_after) {
+            // From the bend: n' d' − n d = Γ N, with Γ = n' cos i' − n cos i.
+            const Vec3d bend = surface.index_after * event.ray.direction - surface.index_before * before.direction;
+            const double bent = length(bend);
+            if (bent > 0.0) {
+                const double cosine = std::min(1.0, std::abs(dot(before.direction, (1.0 / bent) * bend)));
+                const double denser_cosine = std::min(1.0, std::abs(dot(event.ray.direction, (1.0 / bent) * bend)));
+                const double incidence = std::acos(std::min(cosine, denser_cosine));  // in the thinner medium
+                if (incidence > fate.largest_incidence) {
+                    fate.largest_incidence = incidence;
+                    fate.steepest_surface = event.surface;
+                }
+            }
+        }
+        before = event.ray;
+    };
+    const TracedRay<double> traced = rims == Rims::clip ? trace<Direction::forward, Rims::clip>(lens, ray, visit)
+                                                        : trace<Direction::forward, Rims::follow>(lens, ray, visit);
+    fate.status = traced.status;
+    if (traced.status != RayStatus::ok) {
+        fate.surface = fate.is_backwards ? fate.surface : traced.surface;
+    } else if (!fate.is_backwards && !(traced.ray.direction.z > 0.0)) {
+        fate.is_backwards = true;
+        fate.surface = static_cast<int>(lens.surfaces.size()) - 1;
+    }
+    fate.ray = traced.ray;
+    return fate;
+}
+
+std::string words(const RayFate& fate) {
+    const int surface = fate.surface + 1;
+    if (fate.is_backwards) {
+        return fmt::format("it would have to run backwards to meet surface {}", surface);
+    }
+    switch (fate.status) {
+        case RayStatus::missed:
+            return fmt::format("it misses surface {}", surface);
+        case RayStatus::total_internal_reflection:
+            return fmt::format("surface {} reflects it totally", surface);
+        case RayStatus::clipped:
+            return fmt::format("the rim of surface {} cuts it off", surface);
+        case RayStatus::stopped:
+            return fmt::format("the stop, surface {}, holds it back", surface);
+        case RayStatus::ok:
+            break;
+    }
+    return "it passes";
+}
+
+TraceLens<double> without_rims(const CheckedLens& checked, bool keep_stop) {
+    TraceLens<double> lens = *checked.traced;
+    for (TraceSurface<double>& surface : lens.surfaces) {
+        if (!(keep_stop && surface.is_stop)) {
+            surface.semi_diameter_squared = std::numeric_limits<double>::infinity();
+        }
+    }
+    return lens;
+}
+
+AxialBeam axial_beam(const CheckedLens& checked) {
+    return beam_through(checked, *checked.traced);
+}
+
+AxialBeam stop_limited_beam(const CheckedLens& checked) {
+    return beam_through(checked, without_rims(checked, true));
+}
+
+double axial_blur(const CheckedLens& checked, double beam_semi_diameter) {
+    // Transverse height y + t z in planes z behind the last vertex, weighed with the ring of the pupil that each ray
+    // stands for: Σ w (y + t z)² is least at z = −Σ w y t / Σ w t².
+    constexpr int kRays = 32;
+    std::vector<std::array<double, 3>> rays;
+    double yt = 0.0;
+    double tt = 0.0;
+    for (int k = 0; k < kRays; ++k) {
+        const double h = beam_semi_diameter * (k + 0.5) / kRays;
+        const RayFate fate = follow(*checked.traced, axial_ray(checked, h));
+        if (!fate.passes()) {
+            continue;
+        }
+        const double t = fate.ray.direction.y / fate.ray.direction.z;
+        const double y = fate.ray.origin.y - t * (fate.ray.origin.z - checked.lens->last_vertex_z());
+        rays.push_back({h, y, t});
+        yt += h * y * t;
+        tt += h * t * t;
+    }
+    const double z = tt > 0.0 ? -yt / tt : 0.0;
+    double sum = 0.0;
+    double weights = 0.0;
+    for (const auto& [h, y, t] : rays) {
+        sum += h * (y + t * z) * (y + t * z);
+        weights += h;
+    }
+    return weights > 0.0 ? std::sqrt(sum / weights) : 0.0;
+}
+
+}  // namespace lensproof

@@ -1,0 +1,19 @@
+// engine/check/sag.h — where a prescribed surface is, away from its vertex.
+#pragma once
+#include "engine/optics/prescription.h"
+#include "engine/optics/surface_shape.h"
+
+namespace lensproof {
+
+/// The surface's shape, centred: its tilt and decentre are left out.
+SurfaceShape<double> prescribed_shape(const PrescribedSurface& row);
+
+/// z above the vertex's plane at `r` mm from the axis, along y, or along x for a toroid's other section. NaN where
+/// there is no surface.
+enum class Section { along_y, along_x };
+double sag_at(const PrescribedSurface& row, double r, Section section = Section::along_y);
+
+/// The distance along the axis from one surface to the next at `r` mm from it, the smaller of the two sections'.
+double separation_at(const PrescribedSurface& row, const PrescribedSurface& next, double r);
+
+}  // namespace lensproof

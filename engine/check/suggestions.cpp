@@ -1,0 +1,184 @@
+// Which change of one number would restore the stated focal length and back focus.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "engine/check/checks.h"
+#include "engine/check/digits.h"
+#include "engine/check/restoration.h"
+#include "engine/check/sag.h"
+
+namespace lensproof {
+
+namespace {
+
+constexpr std::size_t kMost = 5;         // suggestions that are reported
+constexpr double kRounding = 5e-4;       // of the focal length: residuals below it are alike
+constexpr std::size_t kNeighbours = 12;  // glasses that one may have been mistaken for
+constexpr double kFromWarning = 0.003;   // residual from which something looks wrong
+
+/// One number of the table as it might have been meant.
+struct Trial {
+    int surface = 0;  // from 0
+    std::string message;
+    double unlikelihood = 1.0;  // 1 for slips that happen often
+    double residual = 0.0;
+    ParaxialTable table;
+
+    /// Lower is better: how far off, and how far-fetched.
+    [[nodiscard]] double cost() const { return (residual + kRounding) * unlikelihood; }
+};
+
+/// The trials that bring the lens back to what is claimed of it.
+class Trials {
+  public:
+    explicit Trials(const CheckedLens& checked) : lens_(checked), restoration_(checked) {}
+
+    [[nodiscard]] bool is_needed() const {
+        return lens_.focus && restoration_.has_claims() && restoration_.residual_as_given() > kFromWarning;
+    }
+
+    void run() {
+        for (int i = 0; i < lens_.size(); ++i) {
+            try_radius(i);
+            try_thickness(i);
+            try_index(i);
+        }
+        std::ranges::stable_sort(found_, {}, &Trial::cost);
+    }
+
+    [[nodiscard]] const std::vector<Trial>& found() const { return found_; }
+    [[nodiscard]] const Restoration& restoration() const { return restoration_; }
+
+  private:
+    void judge(int surface, ParaxialTable table, double unlikelihood, const std::string& message) {
+        const double residual = restoration_.residual(table);
+        if (restoration_.restores(residual)) {
+            found_.push_back({.surface = surface,
+                              .message = message,
+                              .unlikelihood = unlikelihood,
+                              .residual = residual,
+                              .table = std::move(table)});
+        }
+    }
+
+    void try_radius(int i) {
+        const PrescribedSurface& row = lens_.row(i);
+        if (row.is_flat()) {
+            return;
+        }
+        for (const NumberChange& change : plausible_changes(row.radius_mm)) {
+            if (change.value == 0.0) {
+                continue;
+            }
+            ParaxialTable table = lens_.table;
+            table.curvature[i] += 1.0 / change.value - row.curvature();
+            judge(i, std::move(table), change.unlikelihood,
+                  fmt::format("radius {} in place of {} ({})", change.value, row.radius_mm, change.slip));
+        }
+    }
+
+    void try_thickness(int i) {
+        const double given = lens_.row(i).thickness_mm;
+        if (given == 0.0 || i + 1 == lens_.size()) {
+            return;  // the last one is a claim
+        }
+        for (const NumberChange& change : plausible_changes(given)) {
+            if (change.value > 0.0) {
+                ParaxialTable table = lens_.table;
+                table.gap[i] = change.value;
+                judge(i, std::move(table), change.unlikelihood,
+                      fmt::format("thickness {} in place of {} behind it ({})", change.value, given, change.slip));
+            }
+        }
+    }
+
+    void try_index(int i) {
+        if (!lens_.is_glass_behind(i)) {
+            return;
+        }
+        const StatedMedium& medium = lens_.row(i).medium;
+        if (medium.n_d && medium.glass.empty()) {
+            for (const NumberChange& change : plausible_changes(*medium.n_d)) {
+                if (change.value > 1.3 && change.value < 2.3) {
+                    ParaxialTable table = lens_.table;
+                    table.index[i] += change.value - *medium.n_d;
+                    judge(i, std::move(table), change.unlikelihood,
+                          fmt::format("n_d {} in place of {} behind it ({})", change.value, *medium.n_d, change.slip));
+                }
+            }
+            return;
+        }
+        if (!lens_.media[i]) {
+            return;
+        }
+        const DispersionFormula& formula = lens_.media[i]->formula;
+        const double n_d = refractive_index(formula, kLineD);
+        for (const Glass& glass : lens_.known_glasses->nearest(n_d, abbe_number(formula), kNeighbours)) {
+            constexpr double kFarFetched = 3.0;
+            ParaxialTable table = lens_.table;
+            table.index[i] = refractive_index(glass.formula, lens_.settings.wavelength_nm);
+            if (glass.name != medium.glass) {
+                judge(i, std::move(table), kFarFetched,
+                      fmt::format("glass {} {} in place of {} behind it", glass.catalogue, glass.name, medium.glass));
+            }
+        }
+    }
+
+    const CheckedLens& lens_;
+    Restoration restoration_;
+    std::vector<Trial> found_;
+};
+
+/// Whether the changed table's glass would cut through itself at its clear apertures.
+bool is_possible(const CheckedLens& checked, const Trial& trial) {
+    const auto row = [&](int i) {
+        PrescribedSurface changed = checked.row(i);
+        if (!changed.is_asphere()) {
+            changed.radius_mm = trial.table.curvature[i] == 0.0 ? 0.0 : 1.0 / trial.table.curvature[i];
+        }
+        changed.thickness_mm = trial.table.gap[i];
+        return changed;
+    };
+    for (const int i : {trial.surface - 1, trial.surface}) {
+        if (i < 0 || i + 1 >= checked.size()) {
+            continue;
+        }
+        const double reach = std::min(checked.semi_diameters[i], checked.semi_diameters[i + 1]);
+        if (std::isfinite(reach) && !(separation_at(row(i), row(i + 1), reach) > 0.0)) {
+            return false;
+        }
+    }
+    return true;
+}
+
+}  // namespace
+
+void suggest_changes(const CheckedLens& checked, Findings& findings) {
+    Trials trials(checked);
+    if (!trials.is_needed()) {
+        return;
+    }
+    trials.run();
+    std::size_t reported = 0;
+    for (const Trial& trial : trials.found()) {
+        if (reported == kMost) {
+            break;
+        }
+        if (is_possible(checked, trial)) {
+            ++reported;
+            findings.push_back(
+                {.code = "suggestion",
+                 .severity = Severity::info,
+                 .surface = trial.surface + 1,
+                 .message = fmt::format("{} would bring the stated focal length and back focus back, within {:.2g} %",
+                                        trial.message, 100.0 * trial.residual),
+                 .value = 100.0 * trial.residual,
+                 .limit = 100.0 * Restoration::kRestored,
+                 .unit = "%"});
+        }
+    }
+}
+
+}  // namespace lensproof

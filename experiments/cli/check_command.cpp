@@ -1,0 +1,248 @@
+// experiments/cli/check_command.cpp — `lensproof check LENS…`: what is wrong with prescriptions, before any render.
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <sstream>
+
+#include "engine/check/checker.h"
+#include "engine/io/file.h"
+#include "engine/io/input_error.h"
+#include "engine/io/prescription_file.h"
+#include "engine/io/text.h"
+#include "experiments/cli/command.h"
+#include "experiments/plot/lens_section.h"
+
+namespace lensproof {
+
+namespace {
+
+struct CheckOptions {
+    CommonOptions common;
+    std::vector<std::string> lenses;
+    std::string stated;
+    std::vector<std::string> indices;
+    double wavelength_nm = kLineD;
+    std::string zoom;
+    std::string plot_file;
+    std::vector<std::string> glass_catalogues;
+};
+
+double parse_finite(const std::string& text, const std::string& where) {
+    const std::optional<double> value = parse_number(text);
+    if (!value || !std::isfinite(*value)) {
+        throw InputError(fmt::format("{} is \"{}\", expected a number", where, printable(text)));
+    }
+    return *value;
+}
+
+struct Claim {
+    const char* key;
+    std::optional<double> StatedData::*member;
+};
+
+constexpr Claim kClaims[] = {{"efl_mm", &StatedData::efl_mm},
+                             {"bfl_mm", &StatedData::bfl_mm},
+                             {"f_number", &StatedData::f_number},
+                             {"half_field_deg", &StatedData::half_field_deg},
+                             {"image_circle_mm", &StatedData::image_circle_mm},
+                             {"total_track_mm", &StatedData::total_track_mm}};
+
+/// `efl_mm=100,f_number=2.8`
+StatedData parse_claims(const std::string& text) {
+    StatedData claims;
+    std::istringstream items(text);
+    for (std::string item; std::getline(items, item, ',');) {
+        const std::size_t equals = item.find('=');
+        const std::string key = item.substr(0, equals);
+        const auto* claim = std::ranges::find(kClaims, key, &Claim::key);
+        if (equals == std::string::npos || claim == std::end(kClaims)) {
+            std::vector<std::string> keys;
+            std::ranges::transform(kClaims, std::back_inserter(keys), &Claim::key);
+            throw InputError(fmt::format("--stated holds \"{}\", expected KEY=NUMBER with one of the keys {}", item,
+                                         fmt::join(keys, ", ")));
+        }
+        const double value = parse_finite(item.substr(equals + 1), "--stated " + key);
+        const bool may_be_negative = key == "efl_mm" || key == "bfl_mm";
+        if (!(value > 0.0) && !may_be_negative) {
+            throw InputError(fmt::format("--stated {} is {}, expected a positive number", key, value));
+        }
+        claims.*claim->member = value;
+    }
+    return claims;
+}
+
+IndexOverrides parse_indices(const std::vector<std::string>& texts) {
+    IndexOverrides overrides;
+    for (const std::string& text : texts) {
+        const std::size_t equals = text.find('=');
+        if (equals == 0 || equals == std::string::npos) {
+            throw InputError(fmt::format("--index is \"{}\", expected NAME=VALUE", text));
+        }
+        overrides[text.substr(0, equals)] = parse_finite(text.substr(equals + 1), "--index " + text);
+    }
+    return overrides;
+}
+
+/// A number, or null where there is none: JSON knows no NaN.
+nlohmann::ordered_json number_or_null(double value) {
+    return std::isfinite(value) ? nlohmann::ordered_json(value) : nlohmann::ordered_json(nullptr);
+}
+
+/// Every key is there; what does not apply is null: the surface of a finding about the lens as a whole, say.
+nlohmann::ordered_json finding_json(const Finding& finding) {
+    return {
+        {"code", finding.code},
+        {"severity", severity_name(finding.severity)},
+        {"surface", finding.surface > 0 ? nlohmann::ordered_json(finding.surface) : nlohmann::ordered_json(nullptr)},
+        {"message", finding.message},
+        {"value", number_or_null(finding.value)},
+        {"limit", number_or_null(finding.limit)},
+        {"unit", finding.unit}};
+}
+
+nlohmann::ordered_json computed_json(const ComputedData& computed) {
+    nlohmann::ordered_json json;
+    if (!computed.zoom_position.empty()) {
+        json["zoom_position"] = computed.zoom_position;
+    }
+    const ParaxialData& data = computed.paraxial;
+    json["wavelength_nm"] = computed.wavelength_nm;
+    json["efl_mm"] = number_or_null(data.efl);
+    json["bfl_mm"] = number_or_null(data.bfl);
+    json["ffl_mm"] = number_or_null(data.ffl);
+    json["entrance_pupil_z_mm"] = number_or_null(data.entrance_pupil_z);
+    json["entrance_pupil_diameter_mm"] = number_or_null(data.entrance_pupil_diameter);
+    json["exit_pupil_z_mm"] = number_or_null(data.exit_pupil_z);
+    json["exit_pupil_diameter_mm"] = number_or_null(data.exit_pupil_diameter);
+    json["f_number"] = number_or_null(data.f_number);
+    return json;
+}
+
+nlohmann::ordered_json report_json(const std::string& lens, const Prescription& prescription,
+                                   const CheckReport& report) {
+    nlohmann::ordered_json json{{"lens", lens},
+                                {"file", prescription.file.string()},
+                                {"ok", report.ok()},
+                                {"findings", nlohmann::json::array()}};
+    for (const Finding& finding : report.findings) {
+        json["findings"].push_back(finding_json(finding));
+    }
+    if (!report.computed.empty()) {
+        json["computed"] = computed_json(report.computed.front());
+    }
+    if (report.computed.size() > 1) {
+        for (const ComputedData& computed : report.computed) {
+            json["zoom"].push_back(computed_json(computed));
+        }
+    }
+    return json;
+}
+
+void print_report(const std::string& lens, const CheckReport& report) {
+    const auto count = [&](Severity severity) {
+        return std::ranges::count(report.findings, severity, &Finding::severity);
+    };
+    const auto errors = count(Severity::error);
+    const auto warnings = count(Severity::warning);
+    fmt::print("{}: {} ({} error{}, {} warning{})", lens, report.ok() ? "ok" : "not ok", errors, errors == 1 ? "" : "s",
+               warnings, warnings == 1 ? "" : "s");
+    if (!report.computed.empty()) {
+        const ParaxialData& data = report.computed.front().paraxial;
+        fmt::print(", focal length {:.4f} mm, back focus {:.4f} mm", data.efl, data.bfl);
+        if (std::isfinite(data.f_number)) {
+            fmt::print(", f/{:.3f}", data.f_number);
+        }
+    }
+    fmt::print("\n");
+    for (const Finding& finding : report.findings) {
+        const std::string where = finding.surface > 0 ? fmt::format("surface {}", finding.surface) : "lens";
+        fmt::print("  {:7} {:10} {}: {}\n", severity_name(finding.severity), where, finding.code, finding.message);
+    }
+}
+
+/// The section at the position that is checked, or at the first.
+void write_plot(const std::string& file, const Prescription& prescription, const GlassCatalogue& glasses,
+                const CheckSettings& settings, const CheckReport& report) {
+    const Prescription drawn = at_zoom_position(prescription, settings.zoom_position.value_or(0));
+    std::optional<Lens> lens;
+    try {
+        lens = make_lens(drawn, glasses, settings.indices);
+    } catch (const InputError&) {
+        lens.reset();  // the findings say why; what the table gives is drawn all the same
+    }
+    write_file(file, lens_section_svg(drawn, lens ? &*lens : nullptr, report.findings));
+}
+
+int run_check(const CheckOptions& options) {
+    check_json_name(options.common);
+    if (!options.plot_file.empty()) {
+        check_output_name(options.plot_file);
+        if (options.lenses.size() > 1) {
+            throw InputError(fmt::format("--plot draws one lens, found {}", options.lenses.size()));
+        }
+    }
+    const StatedData claims = parse_claims(options.stated);
+    const IndexOverrides indices = parse_indices(options.indices);
+    const GlassCatalogue glasses = read_glass_catalogues(options.glass_catalogues);
+    // All are read before any is judged: a file that cannot be read ends the command before it has said anything.
+    std::vector<Prescription> prescriptions;
+    std::vector<CheckSettings> settings;
+    for (const std::string& lens : options.lenses) {
+        prescriptions.push_back(read_prescription(find_lens_file(lens)));
+        settings.push_back({.wavelength_nm = options.wavelength_nm, .indices = indices, .zoom_position = {}});
+        if (!options.zoom.empty()) {
+            settings.back().zoom_position = find_zoom_position(prescriptions.back(), options.zoom);
+        }
+    }
+    nlohmann::ordered_json lenses = nlohmann::ordered_json::array();
+    bool all_ok = true;
+    for (std::size_t i = 0; i < prescriptions.size(); ++i) {
+        const GlassCatalogue own = with_own_catalogues(glasses, prescriptions[i]);
+        const CheckReport report = check_prescription(prescriptions[i], claims, own, settings[i]);
+        all_ok = all_ok && report.ok();
+        lenses.push_back(report_json(options.lenses[i], prescriptions[i], report));
+        if (prints_text(options.common)) {
+            print_report(options.lenses[i], report);
+        }
+        if (!options.plot_file.empty()) {
+            write_plot(options.plot_file, prescriptions[i], own, settings[i], report);
+        }
+    }
+    write_json_result(options.common, {{"lenses", lenses}});
+    return all_ok ? kDone : kCheckFailed;
+}
+
+}  // namespace
+
+void add_check_command(CLI::App& app, int& status) {
+    const auto options = std::make_shared<CheckOptions>();
+    CLI::App* command = app.add_subcommand("check", "Say what is wrong with prescriptions");
+    command->footer(
+        "Example: lensproof check tessar my.zmx --stated efl_mm=100,f_number=2.8 --json -\n"
+        "Exit status 1 when any finding is an error; 2 when any file cannot be read, and then none is judged.");
+    command->add_option("LENS", options->lenses, "Prescription files, or names of lenses that ship")->required();
+    command
+        ->add_option("--stated", options->stated,
+                     "What the source claims where the file is silent or wrong: efl_mm, bfl_mm, f_number, "
+                     "half_field_deg, image_circle_mm, total_track_mm (of each lens; of a zoom, at each position)")
+        ->type_name("KEY=NUMBER,…");
+    command
+        ->add_option("--index", options->indices, "NAME=VALUE: a constant index in place of a glass; may be repeated")
+        ->type_name("NAME=VALUE")
+        ->allow_extra_args(false);  // what follows is a lens
+    command->add_option("--wavelength", options->wavelength_nm, "nm, of first-order data and rays")
+        ->check(kPositiveOption)
+        ->capture_default_str();
+    command->add_option("--zoom", options->zoom, "Check this zoom position alone (default: every one)")
+        ->type_name("NAME|N");
+    command->add_option("--plot", options->plot_file, "Draw the lens's section, with what was found marked")
+        ->type_name("OUT.svg");
+    add_glass_catalogue_option(*command, options->glass_catalogues);
+    add_common_options(*command, options->common);
+    command->callback([options, &status] { status = run_check(*options); });
+}
+
+}  // namespace lensproof

@@ -1,0 +1,94 @@
+// tests/cli/check_test.cpp — `lensproof check` as a user meets it: statuses, JSON, claims, the drawing.
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "tests/cli/program.h"
+
+namespace lensproof {
+namespace {
+
+using Json = nlohmann::json;
+
+constexpr const char* kSinglet =
+    "name = \"singlet\"\nsource = \"none\"\nsurfaces = [\n"
+    "  { radius_mm =  50, thickness_mm = 6, n_d = 1.5, V_d = 60, semi_diameter_mm = 10 },\n"
+    "  { radius_mm = -50, thickness_mm = 2,                      semi_diameter_mm = 10 },\n"
+    "  { stop = true,     thickness_mm = 46.9388,                semi_diameter_mm =  5 },\n]\n";
+
+TEST(Check, AGoodLensIsOkAndItsJsonHasEveryKey) {
+    const Workplace place;
+    const Outcome outcome = place.run({"check", "tessar", "petzval", "--json", "-"});
+    EXPECT_EQ(outcome.status, 0) << outcome.err;
+    const Json lenses = Json::parse(outcome.out)["lenses"];
+    ASSERT_EQ(lenses.size(), 2U);
+    EXPECT_EQ(lenses[0]["lens"], "tessar");
+    EXPECT_TRUE(lenses[0]["ok"].get<bool>());
+    EXPECT_NEAR(lenses[0]["computed"]["bfl_mm"].get<double>(), 79.8307, 1e-3);
+    EXPECT_NEAR(lenses[0]["computed"]["f_number"].get<double>(), 2.73, 5e-3);
+    ASSERT_FALSE(lenses[0]["findings"].empty());
+    for (const Json& finding : lenses[0]["findings"]) {
+        for (const char* key : {"code", "severity", "surface", "message", "value", "limit", "unit"}) {
+            EXPECT_TRUE(finding.contains(key)) << key;
+        }
+        EXPECT_NE(finding["severity"], "error");
+    }
+}
+
+TEST(Check, AnErrorIsStatusOneAndAnUnreadableFileStatusTwo) {
+    const Workplace place;
+    place.file("crossed.toml", with(kSinglet, "thickness_mm = 6", "thickness_mm = 0.5"));
+    place.file("missing-stop.toml", with(kSinglet, "stop = true,", ""));
+    place.file("nan.toml", with(kSinglet, "radius_mm =  50", "radius_mm = nan"));
+    place.file("no-table.toml", "name = \"x\"\nsource = \"y\"\n");
+    for (const char* file : {"crossed.toml", "missing-stop.toml", "nan.toml"}) {
+        SCOPED_TRACE(file);
+        const Outcome outcome = place.run({"check", file});
+        EXPECT_EQ(outcome.status, 1);
+        EXPECT_NE(outcome.out.find("error"), std::string::npos);
+        EXPECT_EQ(outcome.err, "");
+    }
+    // Nothing is said about the good one before the bad one ends the command.
+    const Outcome outcome = place.run({"check", "tessar", "no-table.toml"});
+    EXPECT_EQ(outcome.status, 2);
+    EXPECT_EQ(outcome.out, "");
+    EXPECT_NE(outcome.err.find("no-table.toml"), std::string::npos);
+}
+
+TEST(Check, WhatIsStatedIsHeldAgainstTheTable) {
+    const Workplace place;
+    // The lensmaker's equation: f = 51.0204 mm.
+    place.file("singlet.toml", kSinglet);
+    EXPECT_EQ(place.run({"check", "singlet.toml", "--stated", "efl_mm=51.02"}).status, 0);
+    const Outcome off = place.run({"check", "singlet.toml", "--stated", "efl_mm=15.02"});
+    EXPECT_EQ(off.status, 1);
+    EXPECT_NE(off.out.find("focal-length"), std::string::npos);
+    for (const char* unusable : {"efl=51", "efl_mm", "efl_mm=long", "f_number=-2", "efl_mm=nan"}) {
+        const Outcome outcome = place.run({"check", "singlet.toml", "--stated", unusable});
+        EXPECT_EQ(outcome.status, 2) << unusable;
+        EXPECT_NE(outcome.err.find("expected"), std::string::npos) << outcome.err;
+    }
+}
+
+TEST(Check, DrawsALensThatCannotBeTracedToo) {
+    const Workplace place;
+    place.file("crossed.toml", with(kSinglet, "thickness_mm = 6", "thickness_mm = 0.5"));
+    place.file("nan.toml", with(kSinglet, "radius_mm =  50", "radius_mm = nan"));
+    for (const char* file : {"crossed.toml", "nan.toml"}) {
+        EXPECT_EQ(place.run({"check", file, "--plot", "out.svg"}).status, 1);
+        EXPECT_NE(place.content("out.svg").find("<svg"), std::string::npos);
+    }
+    EXPECT_EQ(place.run({"check", "tessar", "petzval", "--plot", "out.svg"}).status, 2);
+}
+
+TEST(Check, AZoomIsCheckedAtOnePositionOrAtAll) {
+    const Workplace place;
+    const Json all = Json::parse(place.run({"check", "canon-zoom-70-200", "--json", "-"}).out)["lenses"][0];
+    EXPECT_EQ(all["zoom"].size(), 3U);
+    const Json last = Json::parse(place.run({"check", "canon-zoom-70-200", "--zoom", "3", "--json", "-"}).out);
+    EXPECT_EQ(last["lenses"][0]["computed"], all["zoom"][2]);
+    EXPECT_EQ(place.run({"check", "canon-zoom-70-200", "--zoom", "9"}).status, 2);
+}
+
+}  // namespace
+}  // namespace lensproof

@@ -1,0 +1,398 @@
+// tests/validation/planted_errors_test.cpp — good prescriptions, corrupted in every way that tables get corrupted, and
+// how many of the corruptions the checker sees. It prints the table.
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <map>
+#include <set>
+
+#include "engine/check/checked_lens.h"
+#include "engine/check/sag.h"
+#include "engine/io/prescription_file.h"
+
+namespace lensproof {
+namespace {
+
+/// A prescription with one thing wrong.
+struct Corruption {
+    std::string kind;
+    int surface = 0;  // from 1; 0: the lens as a whole
+    std::string was;  // the number that was right, as a suggestion would write it
+    Prescription prescription;
+};
+
+/// The codes that name a kind of corruption rightly.
+const std::map<std::string, std::set<std::string>> kRightNames = {
+    {"radius: sign turned", {"focal-length", "back-focus", "negative-power", "no-power"}},
+    {"radius: digits swapped", {"focal-length", "back-focus"}},
+    {"radius: decimal point lost", {"focal-length", "back-focus", "extreme-value"}},
+    {"radius: in inches or cm", {"focal-length", "back-focus", "units"}},
+    {"thickness: digits swapped", {"focal-length", "back-focus"}},
+    {"thickness: negative", {"negative-thickness"}},
+    {"thickness: in inches or cm", {"focal-length", "back-focus", "units"}},
+    {"thickness: surfaces crossed", {"surfaces-cross", "edge-thickness", "sensor-inside-lens"}},
+    {"all lengths in inches or cm", {"units", "focal-length"}},
+    {"all thicknesses in inches or cm", {"units", "focal-length", "back-focus"}},
+    {"all semi-diameters in inches or cm", {"units", "f-number"}},
+    {"all diameters for semi-diameters", {"diameters", "f-number"}},
+    {"one diameter for a semi-diameter",
+     {"diameters", "edge-thickness", "surfaces-cross", "semi-diameter-beyond-sphere", "steep-surface", "f-number"}},
+    {"glass: the nearest", {"focal-length", "back-focus", "glass-index", "glass-abbe", "axial-colour"}},
+    {"glass: another of the lens", {"focal-length", "back-focus", "glass-index", "glass-abbe", "axial-colour"}},
+    {"glass: far away", {"focal-length", "back-focus", "glass-index", "glass-abbe", "axial-colour"}},
+    {"glass: unknown name", {"glass-unknown"}},
+    {"stop missing", {"stop-missing"}},
+    {"stop doubled", {"stop-doubled"}},
+    {"not a number", {"not-finite"}},
+    {"list reversed", {"reversed", "focal-length", "back-focus"}},
+};
+
+bool is_judged_by_focus(const std::string& kind) {
+    return kRightNames.at(kind).contains("back-focus") || kRightNames.at(kind).contains("focal-length");
+}
+
+std::string digits_of(double value) {
+    return fmt::format("{}", value);
+}
+
+double number(const std::string& text) {
+    return std::strtod(text.c_str(), nullptr);
+}
+
+/// Every number that two swapped neighbouring digits make of `value`.
+std::vector<double> swapped(double value) {
+    std::vector<double> all;
+    const std::string text = digits_of(value);
+    for (std::size_t i = 0; i + 1 < text.size(); ++i) {
+        std::string other = text;
+        std::swap(other[i], other[i + 1]);
+        const bool digits = std::isdigit(text[i]) != 0 && std::isdigit(text[i + 1]) != 0 && text[i] != text[i + 1];
+        if (digits && number(other) != 0.0) {
+            all.push_back(number(other));
+        }
+    }
+    return all;
+}
+
+class Corruptor {
+  public:
+    Corruptor(const Prescription& good, const GlassCatalogue& glasses) : good_(good), glasses_(glasses) {
+        for (int i = 0; i < size(); ++i) {
+            corrupt_radius(i);
+            corrupt_thickness(i);
+            corrupt_semi_diameter(i);
+            corrupt_glass(i);
+        }
+        corrupt_stop();
+        corrupt_lens();
+    }
+
+    [[nodiscard]] const std::vector<Corruption>& all() const { return all_; }
+
+  private:
+    [[nodiscard]] int size() const { return static_cast<int>(good_.surfaces.size()); }
+    [[nodiscard]] const PrescribedSurface& row(int i) const { return good_.surfaces[i]; }
+
+    void plant(const std::string& kind, int surface, const std::string& was,
+               const std::function<void(Prescription&)>& change) {
+        all_.push_back({.kind = kind, .surface = surface, .was = was, .prescription = good_});
+        change(all_.back().prescription);
+    }
+
+    void corrupt_radius(int i) {
+        const double radius = row(i).radius_mm;
+        if (row(i).is_flat()) {
+            return;
+        }
+        const auto set = [&](const std::string& kind, double value) {
+            plant(kind, i + 1, digits_of(radius), [&](Prescription& p) { p.surfaces[i].radius_mm = value; });
+        };
+        set("radius: sign turned", -radius);
+        for (const double value : swapped(radius)) {
+            set("radius: digits swapped", value);
+        }
+        const std::string text = digits_of(radius);
+        if (const std::size_t point = text.find('.'); point != std::string::npos) {
+            set("radius: decimal point lost", number(std::string(text).erase(point, 1)));
+        }
+        set("radius: in inches or cm", radius / 25.4);
+        set("radius: in inches or cm", radius / 10.0);
+        set("not a number", std::numeric_limits<double>::quiet_NaN());
+    }
+
+    void corrupt_thickness(int i) {
+        const double thickness = row(i).thickness_mm;
+        const bool moves = !good_.zoom.empty() && good_.zoom.front().gaps_mm.contains(i + 1);
+        if (thickness == 0.0 || moves) {
+            return;  // of a zoom's moving gaps, the table's own value is overridden
+        }
+        const auto set = [&](const std::string& kind, double value) {
+            plant(kind, i + 1, digits_of(thickness), [&](Prescription& p) { p.surfaces[i].thickness_mm = value; });
+        };
+        for (const double value : swapped(thickness)) {
+            set("thickness: digits swapped", value);
+        }
+        set("thickness: negative", -thickness);
+        set("thickness: in inches or cm", thickness / 25.4);
+        set("thickness: in inches or cm", thickness / 10.0);
+        set("not a number", std::numeric_limits<double>::quiet_NaN());
+        if (i + 1 == size() || !row(i).semi_diameter_mm || !row(i + 1).semi_diameter_mm || row(i).is_stop ||
+            row(i + 1).is_stop) {
+            return;
+        }
+        // As close as the rims forbid: there the surfaces are 5 % of the aperture inside each other.
+        const double reach = std::min(*row(i).semi_diameter_mm, *row(i + 1).semi_diameter_mm);
+        const double bulge = thickness - separation_at(row(i), row(i + 1), reach);
+        if (const double gap = bulge - 0.05 * reach; gap > 0.0 && gap < thickness) {
+            set("thickness: surfaces crossed", gap);
+        }
+    }
+
+    void corrupt_semi_diameter(int i) {
+        if (row(i).semi_diameter_mm && !row(i).is_stop) {
+            plant("one diameter for a semi-diameter", i + 1, "",
+                  [&](Prescription& p) { *p.surfaces[i].semi_diameter_mm *= 2.0; });
+        }
+    }
+
+    void corrupt_glass(int i) {
+        const std::optional<Glass> glass = stated_glass(row(i), glasses_, good_.preferred_makers);
+        if (row(i).medium.is_air() || !glass) {
+            return;
+        }
+        const double n_d = refractive_index(glass->formula, kLineD);
+        const double V_d = std::holds_alternative<ConstantIndex>(glass->formula) ? 50.0 : abbe_number(glass->formula);
+        const auto set = [&](const std::string& kind, const Glass& other) {
+            plant(kind, i + 1, row(i).medium.glass, [&](Prescription& p) {
+                StatedMedium& medium = p.surfaces[i].medium;
+                const bool by_name = !medium.glass.empty();
+                if (by_name) {
+                    medium.glass = other.name;
+                }
+                if (!by_name) {
+                    medium.n_d = std::round(refractive_index(other.formula, kLineD) * 1e5) * 1e-5;
+                    medium.V_d =
+                        medium.V_d ? std::optional(std::round(abbe_number(other.formula) * 10) * 0.1) : std::nullopt;
+                }
+            });
+        };
+        const std::vector<Glass> by_distance = glasses_.nearest(n_d, V_d, glasses_.glasses().size());
+        for (const Glass& other : by_distance) {
+            if (other.name != row(i).medium.glass && is_found(other) &&
+                std::abs(refractive_index(other.formula, kLineD) - n_d) > 2e-3) {
+                set("glass: the nearest", other);
+                break;
+            }
+        }
+        for (const Glass& other : by_distance) {
+            if (std::abs(refractive_index(other.formula, kLineD) - n_d) > 0.08) {
+                set("glass: far away", other);
+                break;
+            }
+        }
+        for (const PrescribedSurface& other : good_.surfaces) {
+            const bool differs = other.medium.glass != row(i).medium.glass || other.medium.n_d != row(i).medium.n_d;
+            if (!other.medium.is_air() && differs) {
+                plant("glass: another of the lens", i + 1, "",
+                      [&](Prescription& p) { p.surfaces[i].medium = other.medium; });
+                break;
+            }
+        }
+        plant("glass: unknown name", i + 1, "", [&](Prescription& p) {
+            p.surfaces[i].medium = {};
+            p.surfaces[i].medium.glass = "XK7";
+        });
+    }
+
+    void corrupt_stop() {
+        for (int i = 0; i < size(); ++i) {
+            if (row(i).is_stop) {
+                plant("stop missing", 0, "", [&](Prescription& p) { p.surfaces[i].is_stop = false; });
+                if (row(i).is_flat() && size() > 2 && i > 0) {
+                    plant("stop missing", 0, "", [&](Prescription& p) {
+                        p.surfaces[i - 1].thickness_mm += p.surfaces[i].thickness_mm;
+                        p.surfaces.erase(p.surfaces.begin() + i);
+                        p.zoom.clear();
+                    });
+                }
+            } else {
+                plant("stop doubled", i + 1, "", [&](Prescription& p) { p.surfaces[i].is_stop = true; });
+            }
+        }
+    }
+
+    void corrupt_lens() {
+        for (const double factor : {1.0 / 25.4, 0.1}) {
+            plant("all lengths in inches or cm", 0, "", [&](Prescription& p) {
+                for (PrescribedSurface& surface : p.surfaces) {
+                    surface.radius_mm *= factor;
+                    surface.thickness_mm *= factor;
+                    if (surface.semi_diameter_mm) {
+                        *surface.semi_diameter_mm *= factor;
+                    }
+                    double scale = 1.0 / factor;  // of r², r⁴, …
+                    for (double& term : surface.asphere) {
+                        term *= scale;
+                        scale /= factor * factor;
+                    }
+                }
+                for (ZoomPosition& position : p.zoom) {
+                    for (auto& [at, gap] : position.gaps_mm) {
+                        gap *= factor;
+                    }
+                }
+            });
+            plant("all thicknesses in inches or cm", 0, "", [&](Prescription& p) {
+                for (PrescribedSurface& surface : p.surfaces) {
+                    surface.thickness_mm *= factor;
+                }
+                p.zoom.clear();
+            });
+            plant("all semi-diameters in inches or cm", 0, "", [&](Prescription& p) {
+                for (PrescribedSurface& surface : p.surfaces) {
+                    if (surface.semi_diameter_mm) {
+                        *surface.semi_diameter_mm *= factor;
+                    }
+                }
+            });
+        }
+        plant("all diameters for semi-diameters", 0, "", [&](Prescription& p) {
+            for (PrescribedSurface& surface : p.surfaces) {
+                if (surface.semi_diameter_mm) {
+                    *surface.semi_diameter_mm *= 2.0;
+                }
+            }
+        });
+        plant("list reversed", 0, "", [&](Prescription& p) {
+            for (int i = 0; i < size(); ++i) {
+                const int from = size() - 1 - i;
+                p.surfaces[i] = row(from);
+                p.surfaces[i].medium = from > 0 ? row(from - 1).medium : StatedMedium{};
+                p.surfaces[i].thickness_mm = from > 0 ? row(from - 1).thickness_mm : row(size() - 1).thickness_mm;
+            }
+            p.zoom.clear();
+        });
+    }
+
+    /// Whether its name leads to it, not to another maker's glass.
+    [[nodiscard]] bool is_found(const Glass& glass) const {
+        const std::optional<Glass> found = glasses_.resolve(glass.name, good_.preferred_makers).glass;
+        return found && found->formula == glass.formula;
+    }
+
+    const Prescription& good_;
+    const GlassCatalogue& glasses_;
+    std::vector<Corruption> all_;
+};
+
+using Keys = std::map<std::pair<std::string, int>, Severity>;
+
+/// Errors and warnings by code and surface.
+Keys keys_of(const CheckReport& report) {
+    Keys keys;
+    for (const Finding& finding : report.findings) {
+        if (finding.severity != Severity::info) {
+            Severity& worst = keys.try_emplace({finding.code, finding.surface}, finding.severity).first->second;
+            worst = std::max(worst, finding.severity);
+        }
+    }
+    return keys;
+}
+
+/// The codes that say more of `corrupted` than of the untouched lens.
+std::set<std::string> new_codes(const Keys& untouched, const Keys& corrupted) {
+    std::set<std::string> codes;
+    for (const auto& [key, severity] : corrupted) {
+        const auto before = untouched.find(key);
+        if (before == untouched.end() || before->second < severity) {
+            codes.insert(key.first);
+        }
+    }
+    return codes;
+}
+
+/// Below the rounding of published tables: a change of the focus by less than 0.1 % of the focal length is no error
+/// that anyone could see in a table.
+bool is_measurable(const CheckReport& untouched, const CheckReport& corrupted) {
+    if (untouched.computed.empty() || corrupted.computed.empty()) {
+        return true;
+    }
+    const ParaxialData& before = untouched.computed.front().paraxial;
+    const ParaxialData& after = corrupted.computed.front().paraxial;
+    const double limit = 1e-3 * std::abs(before.efl);
+    return !(std::abs(after.efl - before.efl) < limit && std::abs(after.bfl - before.bfl) < limit);
+}
+
+struct Tally {
+    int planted = 0;
+    int measurable = 0;
+    int detected_of_all = 0;
+    int detected = 0;
+    int named_rightly = 0;
+    int restored = 0;
+};
+
+TEST(PlantedErrors, AreFoundAndTheUntouchedLibraryIsClean) {
+    const GlassCatalogue glasses = GlassCatalogue::shipped();
+    std::map<std::string, Tally> tallies;
+    Tally total;
+    int lenses = 0;
+    int false_errors = 0;
+    const bool verbose = std::getenv("LENSPROOF_LIST_MISSED") != nullptr;
+    for (const std::string& name : shipped_lens_names()) {
+        const Prescription good = read_prescription(find_lens_file(name));
+        const CheckReport untouched = check_prescription(good, {}, glasses);
+        ++lenses;
+        false_errors += untouched.ok() ? 0 : 1;
+        const Corruptor corruptor(good, glasses);
+        for (const Corruption& corruption : corruptor.all()) {
+            const CheckReport report = check_prescription(corruption.prescription, {}, glasses);
+            const std::set<std::string> codes = new_codes(keys_of(untouched), keys_of(report));
+            const bool measurable =
+                !is_judged_by_focus(corruption.kind) || is_measurable(untouched, report) || corruption.surface == 0;
+            const bool named = std::ranges::any_of(
+                codes, [&](const std::string& code) { return kRightNames.at(corruption.kind).contains(code); });
+            const bool restored = std::ranges::any_of(report.findings, [&](const Finding& finding) {
+                return finding.code == "suggestion" && finding.surface == corruption.surface &&
+                       !corruption.was.empty() &&
+                       finding.message.find(" " + corruption.was + " in place") != std::string::npos;
+            });
+            for (Tally* tally : {&tallies[corruption.kind], &total}) {
+                ++tally->planted;
+                tally->measurable += measurable ? 1 : 0;
+                tally->detected_of_all += codes.empty() ? 0 : 1;
+                tally->detected += measurable && !codes.empty() ? 1 : 0;
+                tally->named_rightly += measurable && named ? 1 : 0;
+                tally->restored += measurable && restored ? 1 : 0;
+            }
+            if (verbose && measurable && codes.empty()) {
+                fmt::print("missed: {} surface {} {} (was {})\n", name, corruption.surface, corruption.kind,
+                           corruption.was);
+            }
+        }
+    }
+    const auto print = [](const std::string& kind, const Tally& t) {
+        fmt::print("{:36} {:6} {:6.1f} % {:6} {:6.1f} % {:6.1f} % {:6.1f} %\n", kind, t.planted,
+                   100.0 * t.detected_of_all / t.planted, t.measurable, 100.0 * t.detected / t.measurable,
+                   100.0 * t.named_rightly / t.measurable, 100.0 * t.restored / t.measurable);
+    };
+    fmt::print("{:36} {:>6} {:>8} {:>6} {:>8} {:>8} {:>8}\n", "planted in " + std::to_string(lenses) + " lenses", "all",
+               "found", "*", "found", "named", "undone");
+    for (const auto& [kind, tally] : tallies) {
+        print(kind, tally);
+    }
+    print("total", total);
+    fmt::print(
+        "*: without those that move neither focal length nor back focus by 0.1 % of the focal length.\n"
+        "named: by a finding that is about such a slip; undone: a suggestion gives the right number back.\n"
+        "untouched: {} of {} lenses with an error\n",
+        false_errors, lenses);
+    EXPECT_GE(total.detected, 0.95 * total.measurable);
+    EXPECT_LE(false_errors, 0.02 * lenses);
+}
+
+}  // namespace
+}  // namespace lensproof
