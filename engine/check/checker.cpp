@@ -83,6 +83,14 @@ CheckReport check_prescription(const Prescription& prescription, const StatedDat
             {.code = "no-surface", .severity = Severity::error, .message = "the prescription holds no surface"});
         return report;
     }
+    if (std::ranges::any_of(report.findings, is_error)) {
+        // Numbers of another lens than the file's would only mislead.
+        report.findings.push_back({.code = "not-judged",
+                                   .severity = Severity::info,
+                                   .message = "the file holds surfaces that are not traced here, so the rest is not "
+                                              "judged"});
+        return report;
+    }
     const std::size_t count = std::max<std::size_t>(1, prescription.zoom.size());
     std::vector<std::pair<std::string, Findings>> positions;
     for (std::size_t position = 0; position < count; ++position) {

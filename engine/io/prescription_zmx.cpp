@@ -111,7 +111,7 @@ PrescribedSurface read_row(const ZmxFile& file, int number, const std::filesyste
     if (surface.is_mirror) {
         remarks.add(
             "mirror", Severity::error, number,
-            fmt::format("line {}, surface {} of the file: a mirror, which is not traced", surface.line, number));
+            fmt::format("line {}, surface {} of the file: GLAS MIRROR, which is not traced", surface.line, number));
     }
     return row;
 }

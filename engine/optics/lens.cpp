@@ -61,6 +61,11 @@ void require(bool holds, const PrescribedSurface& row, const char* key, double f
 
 /// Refuses what cannot be traced; `check` says more about it.
 void require_traceable(const Prescription& prescription) {
+    const auto misread = std::ranges::find(prescription.remarks, Severity::error, &Finding::severity);
+    if (misread != prescription.remarks.end()) {
+        throw InputError(
+            fmt::format("{}: surface {}: {}", prescription.file.string(), misread->surface, misread->message));
+    }
     for (const PrescribedSurface& row : prescription.surfaces) {
         require(row.is_flat() || (std::isfinite(row.radius_mm) && std::abs(row.radius_mm) >= kSmallestRadius), row,
                 "radius_mm", row.radius_mm, "a radius in mm; a flat surface has inf, or no radius_mm");
