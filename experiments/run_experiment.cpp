@@ -10,7 +10,7 @@
 #include "engine/io/file.h"
 #include "engine/io/image.h"
 #include "engine/io/input_error.h"
-#include "engine/io/prescription_file.h"
+#include "engine/io/prescription/prescription_file.h"
 #include "engine/optics/glass_catalogue.h"
 #include "engine/optics/paraxial.h"
 #include "engine/spectral/wavelengths.h"

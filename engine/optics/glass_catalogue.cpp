@@ -9,7 +9,7 @@
 
 #include "engine/io/csv.h"
 #include "engine/io/file.h"
-#include "engine/io/glass_file.h"
+#include "engine/io/glass/glass_file.h"
 #include "engine/io/input_error.h"
 #include "engine/io/text.h"
 #include "engine/optics/glass_name.h"

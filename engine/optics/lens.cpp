@@ -10,9 +10,9 @@
 #include <set>
 
 #include "engine/io/file.h"
-#include "engine/io/glass_file.h"
+#include "engine/io/glass/glass_file.h"
 #include "engine/io/input_error.h"
-#include "engine/io/prescription_file.h"
+#include "engine/io/prescription/prescription_file.h"
 #include "engine/io/text.h"
 #include "engine/optics/air.h"
 #include "engine/optics/frame.h"

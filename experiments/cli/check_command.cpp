@@ -10,7 +10,7 @@
 #include "engine/check/checker.h"
 #include "engine/io/file.h"
 #include "engine/io/input_error.h"
-#include "engine/io/prescription_file.h"
+#include "engine/io/prescription/prescription_file.h"
 #include "engine/io/text.h"
 #include "experiments/cli/command.h"
 #include "experiments/plot/lens_section.h"

@@ -8,7 +8,7 @@
 #include <cstdlib>
 
 #include "engine/io/file.h"
-#include "engine/io/glass_file.h"
+#include "engine/io/glass/glass_file.h"
 
 namespace lensproof {
 

@@ -4,7 +4,8 @@
 #include <cstdint>
 #include <string>
 
-#include "engine/io/glass_file.h"
+#include "engine/check/checker.h"
+#include "engine/io/glass/glass_file.h"
 #include "engine/io/input_error.h"
 #include "engine/optics/lens.h"
 #include LENSPROOF_READER_HEADER
@@ -15,6 +16,7 @@ using namespace lensproof;
 
 [[maybe_unused]] void use(const Prescription& prescription) {
     static const GlassCatalogue glasses = GlassCatalogue::shipped();
+    check_prescription(prescription, {}, glasses, {});
     const Lens lens = make_lens(prescription, glasses);
     const Ray<double> ray{{0.0, 0.1, -10.0}, {0.0, 0.0, 1.0}};
     trace(at_wavelength<double>(lens, 550.0), ray);

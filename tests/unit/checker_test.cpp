@@ -12,7 +12,7 @@
 
 #include "engine/check/digits.h"
 #include "engine/check/sag.h"
-#include "engine/io/prescription_file.h"
+#include "engine/io/prescription/prescription_file.h"
 
 namespace lensproof {
 namespace {

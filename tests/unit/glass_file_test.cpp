@@ -1,5 +1,5 @@
 // Catalogues that users bring: Zemax .agf, refractiveindex.info pages, the project's own tables.
-#include "engine/io/glass_file.h"
+#include "engine/io/glass/glass_file.h"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>

@@ -9,7 +9,7 @@
 #include <numbers>
 #include <optional>
 
-#include "engine/io/prescription_file.h"
+#include "engine/io/prescription/prescription_file.h"
 #include "engine/optics/meridional_bundle.h"
 #include "engine/spectral/wavelengths.h"
 #include "experiments/plot/label_row.h"

@@ -1,5 +1,5 @@
 // What each reader takes from a file, what it says it did not understand, and how it bears files that are none.
-#include "engine/io/prescription_forms.h"
+#include "engine/io/prescription/prescription_forms.h"
 
 #include <gtest/gtest.h>
 

@@ -5,8 +5,8 @@
 #include <cmath>
 
 #include "engine/io/input_error.h"
-#include "engine/io/prescription_file.h"
-#include "engine/io/prescription_forms.h"
+#include "engine/io/prescription/prescription_file.h"
+#include "engine/io/prescription/prescription_forms.h"
 #include "engine/io/text_encoding.h"
 #include "engine/optics/lens.h"
 #include "tests/unit/same_rays.h"

@@ -5,7 +5,7 @@
 
 #include "engine/io/file.h"
 #include "engine/io/input_error.h"
-#include "engine/io/prescription_file.h"
+#include "engine/io/prescription/prescription_file.h"
 #include "engine/optics/lens.h"
 #include "tests/test_folder.h"
 

@@ -6,8 +6,8 @@
 
 #include "engine/io/file.h"
 #include "engine/io/input_error.h"
-#include "engine/io/prescription_file.h"
-#include "engine/io/prescription_forms.h"
+#include "engine/io/prescription/prescription_file.h"
+#include "engine/io/prescription/prescription_forms.h"
 #include "tests/test_folder.h"
 
 namespace lensproof {

@@ -6,8 +6,8 @@
 #include <numbers>
 
 #include "engine/io/input_error.h"
-#include "engine/io/prescription_file.h"
-#include "engine/io/prescription_forms.h"
+#include "engine/io/prescription/prescription_file.h"
+#include "engine/io/prescription/prescription_forms.h"
 #include "engine/io/text_encoding.h"
 #include "engine/optics/lens.h"
 #include "tests/unit/same_rays.h"

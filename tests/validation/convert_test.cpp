@@ -12,7 +12,7 @@
 #include <set>
 
 #include "engine/io/file.h"
-#include "engine/io/prescription_file.h"
+#include "engine/io/prescription/prescription_file.h"
 #include "engine/optics/lens.h"
 #include "engine/spectral/wavelengths.h"
 #include "tests/test_folder.h"

@@ -7,7 +7,7 @@
 #include <numbers>
 #include <set>
 
-#include "engine/io/prescription_file.h"
+#include "engine/io/prescription/prescription_file.h"
 #include "engine/optics/chief_ray.h"
 #include "engine/optics/lens.h"
 #include "engine/optics/paraxial.h"

@@ -11,7 +11,7 @@
 
 #include "engine/check/checked_lens.h"
 #include "engine/check/sag.h"
-#include "engine/io/prescription_file.h"
+#include "engine/io/prescription/prescription_file.h"
 
 namespace lensproof {
 namespace {

@@ -5,7 +5,7 @@
 #include <numbers>
 
 #include "engine/io/file.h"
-#include "engine/io/prescription_file.h"
+#include "engine/io/prescription/prescription_file.h"
 #include "engine/optics/illumination.h"
 #include "engine/render/camera.h"
 #include "engine/spectral/illuminant.h"
