@@ -428,6 +428,33 @@ TEST(ZoomPosition, ReplacesGapsStopAndClaims) {
     EXPECT_ANY_THROW(find_zoom_position(prescription, "middle"));
 }
 
+// Air at 20 °C and 101 325 Pa has n − 1 = 2.724e-4 at the d line (2.718e-4 at 633 nm by NIST's calculator): a catalogue's
+// index, relative to it, is that much higher against vacuum. And the wavelength in air is 0.163 nm shorter, which by
+// N-BK7's dn/dλ of −4.18e-5 / nm adds 4.5e-6 of 1.5168. Both are known to 1e-7.
+TEST(Medium, InVacuumIsTheCataloguesTimesThatOfAir) {
+    Prescription prescription = prescription_of({row(40.0, 6.0), row(-60.0, 3.0), stop_row(50.0, 20.0)});
+    prescription.surfaces[0].medium.glass = "N-BK7";
+    const auto index = [&] {
+        return at_wavelength<double>(make_lens(prescription, GlassCatalogue::shipped()), kWavelength);
+    };
+    const double in_air = index().surfaces[0].index_after;
+    EXPECT_NEAR(in_air, 1.5168, 1e-6);
+    prescription.surroundings = Surroundings::vacuum;
+    const TraceLens<double> in_vacuum = index();
+    EXPECT_NEAR(in_vacuum.surfaces[0].index_after / in_air, 1.0002724 + 4.5e-6, 5e-7);
+    EXPECT_EQ(in_vacuum.surfaces[1].index_after, 1.0);
+}
+
+// A table of indices counts before the name and the figures beside it, and ends where it ends.
+TEST(Medium, TableOfIndicesIsMetAtItsWavelengths) {
+    Prescription prescription = prescription_of({row(40.0, 6.0), row(-60.0, 3.0), stop_row(50.0, 20.0)});
+    prescription.surfaces[0].medium = {.n_d = 1.9, .indices = {{486.1, 1.63}, {587.6, 1.62}, {656.3, 1.616}}};
+    const Lens lens = make_lens(prescription, GlassCatalogue{});
+    EXPECT_DOUBLE_EQ(at_wavelength<double>(lens, 587.6).surfaces[0].index_after, 1.62);
+    EXPECT_DOUBLE_EQ(at_wavelength<double>(lens, 656.3).surfaces[0].index_after, 1.616);
+    EXPECT_ANY_THROW(at_wavelength<double>(lens, 700.0));
+}
+
 // Where no semi-diameter is stated, it is the marginal ray's height and the chief ray's, added: a thin lens at the stop
 // needs the pupil alone, one 20 mm behind it tan(field) · 20 mm more.
 TEST(SemiDiameter, IsEstimatedFromApertureAndField) {
