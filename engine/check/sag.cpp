@@ -2,16 +2,9 @@
 
 #include <algorithm>
 
-namespace lensproof {
+#include "engine/optics/lens.h"
 
-SurfaceShape<double> prescribed_shape(const PrescribedSurface& row) {
-    return {.curvature = row.curvature(),
-            .conic = row.conic,
-            .asphere = row.asphere,
-            .terms = row.is_asphere() ? kAsphereTerms : 0,
-            .is_toroid = row.radius_x_mm.has_value(),
-            .curvature_x = row.radius_x_mm ? 1.0 / *row.radius_x_mm : 0.0};
-}
+namespace lensproof {
 
 double sag_at(const PrescribedSurface& row, double r, Section section) {
     const bool along_y = section == Section::along_y;

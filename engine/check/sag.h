@@ -1,12 +1,8 @@
 // engine/check/sag.h — where a prescribed surface is, away from its vertex.
 #pragma once
 #include "engine/optics/prescription.h"
-#include "engine/optics/surface_shape.h"
 
 namespace lensproof {
-
-/// The surface's shape, centred: its tilt and decentre are left out.
-SurfaceShape<double> prescribed_shape(const PrescribedSurface& row);
 
 /// z above the vertex's plane at `r` mm from the axis, along y, or along x for a toroid's other section. NaN where
 /// there is no surface.

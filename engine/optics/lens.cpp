@@ -106,16 +106,7 @@ LensSurface placed_surface(const PrescribedSurface& row, const Frame& frame) {
     surface.semi_diameter = row.semi_diameter_mm.value_or(row.rim_mm.value_or(kUnlimited));
     surface.is_stop = row.is_stop;
     surface.has_shape = row.conic != 0.0 || row.is_asphere() || row.radius_x_mm.has_value();
-    surface.shape = {.curvature = row.curvature(),
-                     .conic = row.conic,
-                     .asphere = row.asphere,
-                     .is_toroid = row.radius_x_mm.has_value(),
-                     .curvature_x = row.radius_x_mm ? 1.0 / *row.radius_x_mm : 0.0};
-    for (int term = 0; term < kAsphereTerms; ++term) {
-        if (row.asphere[term] != 0.0) {
-            surface.shape.terms = term + 1;
-        }
-    }
+    surface.shape = prescribed_shape(row);
     return surface;
 }
 
@@ -192,6 +183,20 @@ Glass resolved_medium(const PrescribedSurface& surface, const GlassCatalogue& gl
     }
     throw InputError(fmt::format("{}.glass is \"{}\", which no catalogue has; {}. Or state n_d and V_d.", surface.where,
                                  printable(medium.glass), suggestion_text(match.suggestions)));
+}
+
+SurfaceShape<double> prescribed_shape(const PrescribedSurface& row) {
+    SurfaceShape<double> shape{.curvature = row.curvature(),
+                               .conic = row.conic,
+                               .asphere = row.asphere,
+                               .is_toroid = row.radius_x_mm.has_value(),
+                               .curvature_x = row.radius_x_mm ? 1.0 / *row.radius_x_mm : 0.0};
+    for (int term = 0; term < kAsphereTerms; ++term) {
+        if (row.asphere[term] != 0.0) {
+            shape.terms = term + 1;
+        }
+    }
+    return shape;
 }
 
 int Lens::stop_index() const {

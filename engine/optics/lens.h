@@ -51,6 +51,9 @@ struct Lens {
 /// Constant indices that stand for glasses, by catalogue name: `--index LAK9=1.691`.
 using IndexOverrides = std::map<std::string, double>;
 
+/// The surface's shape, centred: its tilt and decentre are left out.
+SurfaceShape<double> prescribed_shape(const PrescribedSurface& row);
+
 /// What is behind a surface: its table of indices, the glass it names, or what its n_d and V_d stand for; those too
 /// where the name is not known. Throws InputError with suggestions for an unknown name alone.
 Glass resolved_medium(const PrescribedSurface& surface, const GlassCatalogue& glasses,
