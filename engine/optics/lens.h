@@ -76,15 +76,6 @@ GlassCatalogue with_own_catalogues(GlassCatalogue glasses, const Prescription& p
 /// find_lens_file, read_prescription, the zoom position, and make_lens.
 Lens load_lens(const std::string& lens, const LensSettings& settings = {});
 
-/// The lens with its stop opened or closed to f-number `f_number` (paraxial: EFL over entrance pupil diameter, at the d
-/// line, object at infinity). Throws InputError where that is wider than the prescription's stop.
-Lens with_f_number(Lens lens, double f_number);
-
-/// The lens with the sensor moved to the paraxial image at the d line of an object `object_distance_mm` in front of the
-/// first vertex; infinity is allowed. Throws InputError for an object at or inside the front focal point, which has no
-/// real image.
-Lens focused_at(Lens lens, double object_distance_mm);
-
 /// The range of wavelengths that every glass's formula covers, nm.
 struct WavelengthRange {
     double min_nm = 0.0;

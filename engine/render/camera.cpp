@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "engine/io/input_error.h"
+#include "engine/optics/focus.h"
 #include "engine/spectral/illuminant.h"
 #include "engine/spectral/spectral_exr.h"
 #include "engine/spectral/wavelengths.h"

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "engine/io/input_error.h"
+#include "engine/optics/focus.h"
 #include "engine/optics/lens.h"
 #include "engine/spectral/wavelengths.h"
 

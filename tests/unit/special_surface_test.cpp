@@ -5,6 +5,7 @@
 #include <numbers>
 #include <random>
 
+#include "engine/optics/focus.h"
 #include "engine/optics/lens.h"
 #include "engine/optics/paraxial.h"
 #include "engine/spectral/wavelengths.h"
@@ -428,9 +429,9 @@ TEST(ZoomPosition, ReplacesGapsStopAndClaims) {
     EXPECT_ANY_THROW(find_zoom_position(prescription, "middle"));
 }
 
-// Air at 20 °C and 101 325 Pa has n − 1 = 2.724e-4 at the d line (2.718e-4 at 633 nm by NIST's calculator): a catalogue's
-// index, relative to it, is that much higher against vacuum. And the wavelength in air is 0.163 nm shorter, which by
-// N-BK7's dn/dλ of −4.18e-5 / nm adds 4.5e-6 of 1.5168. Both are known to 1e-7.
+// Air at 20 °C and 101 325 Pa has n − 1 = 2.724e-4 at the d line (2.718e-4 at 633 nm by NIST's calculator): a
+// catalogue's index, relative to it, is that much higher against vacuum. And the wavelength in air is 0.163 nm shorter,
+// which by N-BK7's dn/dλ of −4.18e-5 / nm adds 4.5e-6 of 1.5168. Both are known to 1e-7.
 TEST(Medium, InVacuumIsTheCataloguesTimesThatOfAir) {
     Prescription prescription = prescription_of({row(40.0, 6.0), row(-60.0, 3.0), stop_row(50.0, 20.0)});
     prescription.surfaces[0].medium.glass = "N-BK7";

@@ -1,0 +1,110 @@
+#include "engine/optics/focus.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+
+#include "engine/io/input_error.h"
+#include "engine/optics/paraxial.h"
+#include "engine/spectral/wavelengths.h"
+
+namespace lensproof {
+
+namespace {
+
+/// The lens with its focusing groups driven by `drive` mm, or nothing where surfaces would meet or leave the space
+/// between front and sensor.
+std::optional<Lens> driven(const Lens& lens, double drive) {
+    Lens moved = lens;
+    for (const FocusGroup& group : lens.focus_groups) {
+        for (int i = group.first - 1; i < group.last; ++i) {
+            moved.surfaces[i].vertex_z -= group.travel * drive;
+        }
+    }
+    for (std::size_t i = 0; i + 1 < moved.surfaces.size(); ++i) {
+        if (moved.surfaces[i + 1].vertex_z < moved.surfaces[i].vertex_z) {
+            return std::nullopt;
+        }
+    }
+    return moved.last_vertex_z() <= moved.image_z ? std::optional(moved) : std::nullopt;
+}
+
+/// How far behind the sensor the paraxial image at the d line of an object in front of the table's first vertex lies.
+double defocus(const Lens& lens, double object_distance_mm) {
+    const double distance = object_distance_mm + lens.surfaces.front().vertex_z;
+    return lens.last_vertex_z() + paraxial_image_distance(at_wavelength<double>(lens, kLineD), distance) - lens.image_z;
+}
+
+/// The lens with its focusing groups where the image of the object is as far from the sensor as infinity's is in the
+/// table, which is where the table's own sensor stands.
+Lens focused_by_groups(const Lens& lens, double object_distance_mm) {
+    const double aim = defocus(lens, std::numeric_limits<double>::infinity());
+    const auto error = [&](double drive) -> std::optional<double> {
+        const std::optional<Lens> moved = driven(lens, drive);
+        return moved ? std::optional(defocus(*moved, object_distance_mm) - aim) : std::nullopt;
+    };
+    // Outwards in steps until the sign changes, then bisection.
+    const double step = 1e-3 * (lens.image_z - lens.surfaces.front().vertex_z);
+    for (const double direction : {1.0, -1.0}) {
+        double near = 0.0;
+        std::optional<double> last = error(near);
+        for (int i = 1; i <= 1000 && last; ++i) {
+            const double far = direction * i * step;
+            const std::optional<double> here = error(far);
+            if (here && (*here <= 0.0) != (*last <= 0.0) && std::abs(*here - *last) < lens.image_z) {
+                double low = near;
+                double high = far;
+                for (int halving = 0; halving < 60; ++halving) {
+                    const double middle = 0.5 * (low + high);
+                    ((*error(middle) <= 0.0) == (*last <= 0.0) ? low : high) = middle;
+                }
+                return *driven(lens, low);
+            }
+            last = here;
+            near = far;
+        }
+    }
+    throw InputError(fmt::format("{} cannot be focused at {} mm: its focusing groups do not reach so far", lens.name,
+                                 object_distance_mm));
+}
+
+}  // namespace
+
+Lens with_f_number(Lens lens, double f_number) {
+    const double widest = paraxial_data(at_wavelength<double>(lens, kLineD)).f_number;
+    LensSurface& stop = lens.surfaces[lens.stop_index()];
+    // Published f-numbers are rounded: f/2.8 is asked of a lens that opens to f/2.83.
+    constexpr double kRounding = 0.02;
+    if (!(f_number >= widest * (1.0 - kRounding))) {
+        throw InputError(fmt::format("f/{} is wider than {} opens: f/{:.2f}", f_number, lens.name, widest));
+    }
+    stop.semi_diameter *= std::min(1.0, widest / f_number);
+    return lens;
+}
+
+Lens focused_at(Lens lens, double object_distance_mm) {
+    const TraceLens<double> at_d = at_wavelength<double>(lens, kLineD);
+    const double image_distance = paraxial_image_distance(at_d, object_distance_mm);
+    const double front_focus = -paraxial_data(at_d).ffl;
+    if (!lens.focus_groups.empty() && object_distance_mm > 0.0) {
+        return std::isinf(object_distance_mm) ? lens : focused_by_groups(lens, object_distance_mm);
+    }
+    if (!(object_distance_mm > front_focus) || !std::isfinite(image_distance)) {
+        throw InputError(
+            fmt::format("{} cannot be focused at {} mm: its front focal point lies {:.2f} mm in front of it", lens.name,
+                        object_distance_mm, front_focus));
+    }
+    if (!(image_distance > 0.0)) {
+        throw InputError(
+            fmt::format("{} focused at {} mm has its image {:.2f} mm behind the last vertex, where no sensor "
+                        "can stand",
+                        lens.name, object_distance_mm, image_distance));
+    }
+    lens.image_z = lens.last_vertex_z() + image_distance;
+    return lens;
+}
+
+}  // namespace lensproof

@@ -1,0 +1,15 @@
+// tests/fuzz/use_what_was_read.h — what a reader took must survive being used.
+#pragma once
+#include "engine/io/glass/glass_file.h"
+#include "engine/optics/prescription.h"
+
+namespace lensproof {
+
+/// Checks the prescription, makes a lens of it with the glasses that ship, and traces a ray. Throws InputError where it
+/// cannot be made.
+void use(const Prescription& prescription);
+
+/// Asks each glass for its index, its transmittance and its change with temperature.
+void use(const GlassFile& file);
+
+}  // namespace lensproof
