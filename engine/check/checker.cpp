@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "engine/check/checks.h"
 
@@ -27,6 +28,29 @@ void report_untraced(const CheckedLens& checked, Findings& findings) {
                                    checked.why_not_traced});
 }
 
+/// What rays could be traced for and are not: the axial beam and the field are followed in lenses of revolution only,
+/// the field from infinity only.
+void report_rays_not_asked(const CheckedLens& checked, Findings& findings) {
+    if (!checked.traced) {
+        return;
+    }
+    const double object = checked.prescription.object_distance_mm;
+    const bool claims_field = checked.claims.half_field_deg || checked.claims.image_circle_mm;
+    if (!checked.prescription.is_rotationally_symmetric()) {
+        findings.push_back({.code = "not-judged",
+                            .severity = Severity::info,
+                            .message = "a surface is tilted, shifted or toroidal, so no ray was traced: nothing is "
+                                       "said about the axial beam, its focus and colour, nor about the field"});
+    } else if (std::isfinite(object) && claims_field) {
+        findings.push_back(
+            {.code = "not-judged",
+             .severity = Severity::info,
+             .message = fmt::format("the table is set to an object {} mm away, and the field is judged from infinity "
+                                    "only: nothing is said about the stated field and image circle",
+                                    object)});
+    }
+}
+
 Findings check_position(const CheckedLens& checked) {
     Findings findings;
     check_table(checked, findings);
@@ -38,6 +62,7 @@ Findings check_position(const CheckedLens& checked) {
     check_field_rays(checked, findings);
     suggest_changes(checked, findings);
     report_untraced(checked, findings);
+    report_rays_not_asked(checked, findings);
     std::ranges::stable_sort(findings, [](const Finding& a, const Finding& b) { return a.severity > b.severity; });
     return findings;
 }

@@ -27,6 +27,7 @@ constexpr double kThinCentreShare = 0.05;
 constexpr double kNarrowestGap = 0.05;  // mm, rule 11
 constexpr double kSelfCentring = 0.56;  // rule 36: Karow, Fabrication Methods for Precision Optics (1993), p. 524
 constexpr int kSamples = 64;            // of the height, where no closed form serves
+constexpr int kHalvings = 50;           // of a step between samples
 
 bool is_known(double value) {
     return std::isfinite(value);
@@ -297,35 +298,46 @@ void check_asphere(const CheckedLens& checked, int i, Findings& findings) {
     }
     const SurfaceShape<double> shape = prescribed_shape(row);
     const double reach = checked.semi_diameters[i];
-    double steepest = 0.0;  // dz/dr, of the first direction
+    const auto slope_at = [&](double r) { return 2.0 * r * sag_profile(shape, r * r).slope; };
+    double steepest = 0.0;   // dz/dr, of the first direction
+    double rising_to = 0.0;  // r, where the slope last had that direction
     for (int k = 1; k <= kSamples; ++k) {
         const double r = reach * k / kSamples;
         const SagProfile<double> here = sag_profile(shape, r * r);
         if (!here.defined || !is_known(here.sag)) {
+            // Of a conic: z is real up to (1 + k) c² r² = 1.
+            const double end =
+                std::min(r, 1.0 / (std::abs(row.curvature()) * std::sqrt(std::max(0.0, 1.0 + row.conic))));
             findings.push_back({.code = "asphere-ends",
                                 .severity = row.is_asphere() ? Severity::error : Severity::warning,
                                 .surface = i + 1,
                                 .message = fmt::format("its conic ends {:.4g} mm from the axis, inside its "
                                                        "semi-diameter of {:.4g} mm",
-                                                       r, reach),
-                                .value = r,
+                                                       end, reach),
+                                .value = end,
                                 .limit = reach,
                                 .unit = "mm"});
             return;
         }
-        const double slope = 2.0 * r * here.slope;
+        const double slope = slope_at(r);
         // A slope of a minute of arc the other way is a correction plate's; what it then reaches counts.
         constexpr double kNoticeable = 0.03;
-        if (std::abs(slope) > std::abs(steepest) && slope * steepest >= 0.0) {
-            steepest = slope;
-        } else if (slope * steepest < 0.0 && std::abs(slope) > kNoticeable && std::abs(steepest) > kNoticeable) {
+        if (slope * steepest >= 0.0) {
+            rising_to = r;
+            steepest = std::abs(slope) > std::abs(steepest) ? slope : steepest;
+        } else if (std::abs(slope) > kNoticeable && std::abs(steepest) > kNoticeable) {
+            double turned_at = r;
+            for (int halving = 0; halving < kHalvings; ++halving) {
+                const double middle = 0.5 * (rising_to + turned_at);
+                (slope_at(middle) * steepest > 0.0 ? rising_to : turned_at) = middle;
+            }
             findings.push_back({.code = "asphere-turns-over",
                                 .severity = Severity::warning,
                                 .surface = i + 1,
-                                .message = fmt::format("it turns over inside its aperture: its slope has changed sign "
+                                .message = fmt::format("it turns over inside its aperture: its slope changes sign "
                                                        "{:.4g} mm from the axis, of {:.4g} mm",
-                                                       r, reach),
-                                .value = r,
+                                                       turned_at, reach),
+                                .value = turned_at,
                                 .limit = reach,
                                 .unit = "mm"});
             return;

@@ -13,25 +13,10 @@
 #include "engine/check/digits.h"
 #include "engine/check/sag.h"
 #include "engine/io/prescription/prescription_file.h"
+#include "tests/unit/checker_case.h"
 
 namespace lensproof {
 namespace {
-
-const GlassCatalogue& glasses() {
-    static const GlassCatalogue shipped = GlassCatalogue::shipped();
-    return shipped;
-}
-
-CheckReport checked(const Prescription& prescription, const StatedData& claims = {}) {
-    return check_prescription(prescription, claims, glasses());
-}
-
-const Finding* find(const CheckReport& report, const std::string& code, int surface = -1) {
-    const auto found = std::ranges::find_if(report.findings, [&](const Finding& finding) {
-        return finding.code == code && (surface < 0 || finding.surface == surface);
-    });
-    return found == report.findings.end() ? nullptr : &*found;
-}
 
 Prescription tessar() {
     return read_prescription(find_lens_file("tessar"));
@@ -242,11 +227,7 @@ TEST(Checker, EachDefectIsNamed) {
         defect.plant(bad);
         const CheckReport report = checked(bad);
         const Finding* finding = find(report, defect.code, defect.surface);
-        std::string said;
-        for (const Finding& other : report.findings) {
-            said += other.code + " at " + std::to_string(other.surface) + ": " + other.message + "\n";
-        }
-        EXPECT_NE(finding, nullptr) << said;
+        EXPECT_NE(finding, nullptr) << said(report);
         if (finding == nullptr) {
             continue;
         }
