@@ -14,10 +14,6 @@ bool covers(const Glass& glass, double wavelength_nm) {
     return wavelength_nm >= glass.min_wavelength_nm && wavelength_nm <= glass.max_wavelength_nm;
 }
 
-double clamped_to_range(const Glass& glass, double wavelength_nm) {
-    return std::clamp(wavelength_nm, glass.min_wavelength_nm, glass.max_wavelength_nm);
-}
-
 double dn_dT_absolute(const Glass& glass, double wavelength_nm, double temperature_C) {
     if (!glass.thermal) {
         return std::numeric_limits<double>::quiet_NaN();

@@ -48,9 +48,6 @@ struct Glass {
 
 bool covers(const Glass& glass, double wavelength_nm);
 
-/// The nearest wavelength that the formula covers: what a render uses beyond the range, and says so.
-double clamped_to_range(const Glass& glass, double wavelength_nm);
-
 /// dn/dT against vacuum at `temperature_C`, 1/K: the derivative of TIE-19's formula above.
 double dn_dT_absolute(const Glass& glass, double wavelength_nm, double temperature_C = 20.0);
 

@@ -92,12 +92,13 @@ Prescription at_zoom_position(Prescription prescription, std::size_t position) {
         }
     };
     StatedData& stated = prescription.stated;
-    // What holds for one position only is not claimed of the others.
+    // What a source says of the whole lens holds at each position that says nothing else, but for lengths that zooming
+    // changes.
     stated.efl_mm = chosen.stated.efl_mm;
     stated.bfl_mm = chosen.stated.bfl_mm;
-    stated.half_field_deg = chosen.stated.half_field_deg;
     stated.total_track_mm = chosen.stated.total_track_mm;
-    stated.entrance_pupil_diameter_mm = chosen.stated.entrance_pupil_diameter_mm;
+    take(stated.half_field_deg, chosen.stated.half_field_deg);
+    take(stated.entrance_pupil_diameter_mm, chosen.stated.entrance_pupil_diameter_mm);
     take(stated.f_number, chosen.stated.f_number);
     take(stated.image_circle_mm, chosen.stated.image_circle_mm);
     prescription.zoom.clear();

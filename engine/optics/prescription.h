@@ -174,6 +174,7 @@ struct Prescription {
 };
 
 /// The prescription with its gaps (and stop and claims) at one of its zoom positions, which it then no longer lists.
+/// What is stated of the whole lens holds at each position, but for its focal length, back focus and track.
 /// Throws InputError naming the positions where there is no such one. A lens without positions has only position 0.
 Prescription at_zoom_position(Prescription prescription, std::size_t position);
 

@@ -1,5 +1,6 @@
 // engine/optics/surface_shape.h — conics, even aspheres, toroids and cylinders: sag, and where a ray meets them.
 #pragma once
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
@@ -31,12 +32,15 @@ struct SurfaceShape {
 template <class T>
 struct SagProfile {
     T sag;
-    T slope;  // dg / d(r²)
+    T slope;         // dg / d(r²)
+    T largest_term;  // of the sum, without its sign: its rounding is an ulp of this
     bool defined;
 };
 
 template <class T>
 SagProfile<T> sag_profile(const SurfaceShape<T>& shape, const T& r2) {
+    using std::abs;
+    using std::max;
     using std::sqrt;
     const T& c = shape.curvature;
     const T root2 = T(1) - (T(1) + shape.conic) * c * c * r2;
@@ -45,12 +49,15 @@ SagProfile<T> sag_profile(const SurfaceShape<T>& shape, const T& r2) {
     T sag = c * r2 / (T(1) + root);
     T slope = defined ? c / (T(2) * root) : T(0);
     T power = T(1);  // r^(2i)
+    T largest_term = T(0);
     for (int i = 0; i < shape.terms; ++i) {
         slope += T(i + 1) * shape.asphere[i] * power;
         power *= r2;
-        sag += shape.asphere[i] * power;
+        const T term = shape.asphere[i] * power;
+        sag += term;
+        largest_term = max(largest_term, abs(term));
     }
-    return {sag, slope, defined};
+    return {sag, slope, largest_term, defined};
 }
 
 /// The surface as the zero of F, which rises towards +z, with its gradient.
@@ -58,6 +65,7 @@ template <class T>
 struct Implicit {
     T value;
     Vec3<T> gradient;
+    T largest_term;  // of the profile
     bool defined;
 };
 
@@ -66,12 +74,13 @@ template <class T>
 Implicit<T> implicit_surface(const SurfaceShape<T>& shape, const Vec3<T>& p) {
     if (!shape.is_toroid) {
         const SagProfile<T> g = sag_profile(shape, p.x * p.x + p.y * p.y);
-        return {p.z - g.sag, {T(-2) * p.x * g.slope, T(-2) * p.y * g.slope, T(1)}, g.defined};
+        return {p.z - g.sag, {T(-2) * p.x * g.slope, T(-2) * p.y * g.slope, T(1)}, g.largest_term, g.defined};
     }
     const SagProfile<T> g = sag_profile(shape, p.y * p.y);
     const T& c = shape.curvature_x;
     return {p.z - g.sag - c / T(2) * (p.x * p.x + p.z * p.z - g.sag * g.sag),
             {-c * p.x, T(-2) * p.y * g.slope * (T(1) - c * g.sag), T(1) - c * p.z},
+            g.largest_term,
             g.defined && T(1) - c * p.z > T(0)};
 }
 
@@ -140,10 +149,12 @@ std::pair<Intersection<T>, Vec3<T>> intersect(const SurfaceShape<T>& shape, cons
         meeting.distance = parallel ? T(0) : -origin.z / d.z;
         meeting.point = origin + meeting.distance * d;
     }
+    // A step that no longer shrinks has come down to the noise of the terms' sum.
     constexpr int kMostSteps = 50;
     const T precision = T(16) * std::numeric_limits<T>::epsilon();
     meeting.hit = false;
     Vec3<T> gradient{T(0), T(0), T(1)};
+    T last_step = std::numeric_limits<T>::infinity();
     for (int step = 0; step < kMostSteps && !meeting.hit; ++step) {
         const Implicit<T> here = implicit_surface(shape, meeting.point);
         const T rise = dot(here.gradient, d);
@@ -154,7 +165,9 @@ std::pair<Intersection<T>, Vec3<T>> intersect(const SurfaceShape<T>& shape, cons
         meeting.point = meeting.point + ahead * d;
         meeting.distance += ahead;
         const T size = sqrt(dot(meeting.point, meeting.point)) + T(1);
-        meeting.hit = abs(ahead) <= precision * size;
+        const bool is_noise = abs(ahead) >= last_step && abs(ahead) <= T(4) * precision * (size + here.largest_term);
+        meeting.hit = abs(ahead) <= precision * size || is_noise;
+        last_step = abs(ahead);
         gradient = here.gradient;
     }
     if (!meeting.hit) {

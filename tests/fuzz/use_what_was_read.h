@@ -5,8 +5,8 @@
 
 namespace lensproof {
 
-/// Checks the prescription, makes a lens of it with the glasses that ship, and traces a ray. Throws InputError where it
-/// cannot be made.
+/// Checks the prescription, which must not fail, makes a lens of it with the glasses that ship, unless that is refused,
+/// and traces a ray.
 void use(const Prescription& prescription);
 
 /// Asks each glass for its index, its transmittance and its change with temperature.

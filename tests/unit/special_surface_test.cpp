@@ -140,6 +140,24 @@ TEST(Asphere, SeriesOfASphereIsTheSphere) {
     expect_same_rays(lens(row(R, 6.0, 1.6)), lens(series), rays(8.0, 0.3), 1e-11);
 }
 
+// Terms that cancel: their sum is known to an ulp of the largest, 200 mm here, while the surface departs from its base
+// by little. Every ray that meets the base meets it.
+TEST(Asphere, TermsThatCancelAreMetAllTheSame) {
+    PrescribedSurface front = row(60.0, 8.0, 1.7, 14.0);
+    const double r2 = 12.0 * 12.0;
+    // 200 mm (r/12)⁴ (1 − (r/12)²)… up to r²⁰ in signs that alternate: (1 − u)⁸ u² has a maximum of 0.007 at u = 1/5.
+    constexpr std::array kBinomials = {1.0, -8.0, 28.0, -56.0, 70.0, -56.0, 28.0, -8.0, 1.0};
+    for (int i = 0; i < 9; ++i) {
+        front.asphere[i + 1] = 2.8 * kBinomials[i] / std::pow(r2, i + 2);
+    }
+    const TraceLens<double> lens = traceable(prescription_of({front, row(kFlat, 2.0), stop_row(50.0)}));
+    int missed = 0;
+    for (const Ray<double>& ray : rays(7.0, 0.4, 2000)) {
+        missed += trace<Direction::forward, Rims::follow>(lens, ray).status == RayStatus::missed ? 1 : 0;
+    }
+    EXPECT_EQ(missed, 0);
+}
+
 TEST(Asphere, PointsLieOnTheSurfaceAndBackTheRayReturns) {
     PrescribedSurface front = row(28.0, 8.0, 1.7, 14.0);
     front.conic = -0.7;
@@ -426,6 +444,8 @@ TEST(ZoomPosition, ReplacesGapsStopAndClaims) {
     EXPECT_EQ(*chosen.stated.f_number, 4.0);
     EXPECT_EQ(find_zoom_position(prescription, "1"), 0U);
     EXPECT_FALSE(at_zoom_position(prescription, 0).stated.efl_mm.has_value());
+    prescription.stated.half_field_deg = 20.0;
+    EXPECT_EQ(*at_zoom_position(prescription, 1).stated.half_field_deg, 20.0);
     EXPECT_ANY_THROW(find_zoom_position(prescription, "middle"));
 }
 

@@ -209,8 +209,13 @@ void RiiPage::take_specs(const YAML::Node& specs, Glass& glass) const {
     glass.stated_V_d = number("Vd");
     const std::string status = text(specs["glass_status"]);
     glass.status = status == "standard" || status == "preferred" ? "current" : printable(status);
-    if (text(specs["n_is_absolute"]) == "true") {
-        glass.note += (glass.note.empty() ? "" : "; ") + std::string("the source's index is against vacuum");
+    for (const char* against : {"n_is_absolute", "wavelength_is_vacuum"}) {
+        if (text(specs[against]) == "true") {
+            throw InputError(
+                fmt::format("{}:{}: {} is true; expected indices relative to air at wavelengths in air, "
+                            "as glass catalogues give them",
+                            file_.string(), specs.Mark().line + 1, against));
+        }
     }
     const YAML::Node thermal = specs["thermal_dispersion"];
     if (thermal.IsDefined() && thermal.IsSequence() && thermal.size() > 0 && thermal[0].IsMap()) {

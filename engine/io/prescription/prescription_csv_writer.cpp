@@ -121,16 +121,19 @@ WrittenPrescription to_csv(const Prescription& prescription) {
         const StatedMedium& medium = row.medium;
         const int number = static_cast<int>(i) + 1;
         std::string n_d = medium.is_air() ? "1" : cell_of(medium.n_d);
+        std::string V_d = medium.n_d ? cell_of(medium.V_d) : "";
         if (fits_line_columns(medium)) {
             n_d = index_cell(medium, kLineD);
         } else if (!medium.indices.empty()) {
+            const auto [index, abbe] = figures_of_table(medium);
             written.lost.push_back(lost("lost-indices", Severity::warning, number,
-                                        "its indices are at wavelengths that have no column, which are d, C, F, g"));
-            n_d = n_d.empty() ? fmt::format("{}", interpolated(medium.indices, kLineD)) : n_d;
+                                        "its table of indices has not just the lines d, C, F, g that have columns; its "
+                                        "n_d and V_d are written"));
+            n_d = fmt::format("{}", index);
+            V_d = abbe > 0.0 ? fmt::format("{}", abbe) : "";
         }
         written.text += fmt::format("{},{},{},{},{},{},{}{}\n", number, row.is_flat() ? "inf" : cell_of(row.radius_mm),
-                                    row.thickness_mm, n_d, medium.n_d ? cell_of(medium.V_d) : "",
-                                    cell_of(plain_semi_diameter(lens, i)),
+                                    row.thickness_mm, n_d, V_d, cell_of(plain_semi_diameter(lens, i)),
                                     row.is_stop       ? "stop"
                                     : medium.is_air() ? "air"
                                                       : "glass",

@@ -4,6 +4,9 @@
 
 #include <algorithm>
 
+#include "engine/optics/lens.h"
+#include "engine/spectral/wavelengths.h"
+
 namespace lensproof {
 
 Finding lost(const std::string& code, Severity severity, int surface, const std::string& message) {
@@ -62,6 +65,15 @@ bool states_anything(const StatedData& stated) {
 }
 
 }  // namespace
+
+std::pair<double, double> figures_of_table(const StatedMedium& medium) {
+    PrescribedSurface row;
+    row.medium.indices = medium.indices;
+    const DispersionFormula formula = resolved_medium(row, {}, {}).formula;
+    const double dispersion = refractive_index(formula, kLineF) - refractive_index(formula, kLineC);
+    const double n_d = refractive_index(formula, kLineD);
+    return {n_d, dispersion > 0.0 ? (n_d - 1.0) / dispersion : 0.0};
+}
 
 std::vector<Finding> losses_of_tables(const Prescription& prescription) {
     std::vector<Finding> losses;

@@ -2,6 +2,7 @@
 // prescription.
 #pragma once
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "engine/optics/prescription.h"
@@ -17,6 +18,9 @@ Prescription single_position(const Prescription& prescription, std::vector<Findi
 /// The clear semi-diameter of surface `index` (from 0) where nothing but one number can be said of it: the stated one,
 /// or the rim where none is, narrowed by the barrel on either side. Nothing where nothing is stated.
 std::optional<double> plain_semi_diameter(const Prescription& prescription, std::size_t index);
+
+/// n_d and V_d of a medium's table of indices, as it is traced; V_d is 0 where the index does not fall from F to C.
+std::pair<double, double> figures_of_table(const StatedMedium& medium);
 
 /// What neither the CSV table nor pbrt's says: toroids, tilts, coatings, blades, groups, surroundings, claims.
 std::vector<Finding> losses_of_tables(const Prescription& prescription);

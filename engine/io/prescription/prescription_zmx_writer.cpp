@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <tuple>
 
 #include "engine/io/prescription/prescription_forms.h"
 #include "engine/io/prescription/prescription_losses.h"
@@ -252,9 +253,7 @@ class ZmxWriter {
         double n_d = medium.n_d.value_or(0.0);
         double V_d = medium.V_d.value_or(0.0);
         if (!medium.indices.empty()) {
-            n_d = interpolated(medium.indices, kLineD);
-            const double spread = interpolated(medium.indices, kLineF) - interpolated(medium.indices, kLineC);
-            V_d = spread > 0.0 ? (n_d - 1.0) / spread : 0.0;
+            std::tie(n_d, V_d) = figures_of_table(medium);
             lose("lost-indices", number,
                  fmt::format("a table of indices; n_d = {:.6f}, V_d = {:.2f} stand for it", n_d, V_d));
         }
