@@ -153,6 +153,9 @@ CsvTable CsvTable::parse(std::string text, const std::filesystem::path& name) {
     if (count > kMostColumns) {
         refuse(fmt::format("{} columns, expected at most {}", count, kMostColumns));
     }
+    if (count == 1 && line->find(';') != std::string_view::npos) {
+        refuse("its separator is ';', expected ',' between cells and '.' in decimals");
+    }
     for (auto column = content->header.begin(); column != content->header.end(); ++column) {
         if (column->empty()) {
             refuse(fmt::format("column {} has no name", column - content->header.begin() + 1));
@@ -194,12 +197,12 @@ std::string CsvTable::where_header() const {
 std::optional<std::string_view> CsvTable::next_line() {
     const std::string_view text = table_->text;
     while (position_ < text.size()) {
-        const std::size_t end = std::min(text.find('\n', position_), text.size());
+        const std::size_t end = std::min(text.find_first_of("\r\n", position_), text.size());
         std::string_view line = text.substr(position_, end - position_);
         if (line_ == 0) {
             line = without_byte_order_mark(line);
         }
-        position_ = end + 1;
+        position_ = end + (text.substr(end).starts_with("\r\n") ? 2 : 1);
         ++line_;
         line = trimmed(line);
         if (!line.empty() && line.front() != '#') {

@@ -49,7 +49,7 @@ class CsvRow {
 
 /// A CSV file: a header that names the columns, then rows of as many cells.
 ///
-/// Lines end with LF or CR LF, a UTF-8 byte order mark is skipped, and so are empty lines and those that start with
+/// Lines end with LF, CR LF or CR, a UTF-8 byte order mark is skipped, and so are empty lines and those that start with
 /// '#'. Blanks around a cell are no part of it. A cell may stand in double quotes, and then hold commas, and quotes
 /// written twice; it ends in its own line. Rows are cut when they are asked for, so a file takes no more memory than
 /// its text.

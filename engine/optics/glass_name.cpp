@@ -1,5 +1,7 @@
 #include "engine/optics/glass_name.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cctype>
 #include <cmath>
@@ -23,20 +25,22 @@ bool all_digits(std::string_view text) {
     return !text.empty() && std::ranges::all_of(text, [](char c) { return c >= '0' && c <= '9'; });
 }
 
-/// Digits behind a point.
-double fraction(std::string_view digits) {
+/// The number whose digits these are, with a point behind the first `whole` of them; rounded once, as when it is read.
+double with_point(std::string_view digits, std::size_t whole) {
     double value = 0.0;
     for (const char digit : digits) {
         value = 10.0 * value + (digit - '0');
     }
-    return value / std::pow(10.0, static_cast<double>(digits.size()));
+    return value / std::pow(10.0, static_cast<double>(digits.size() - whole));
 }
 
 /// From the digits behind the 1 of n_d and those of V_d, the first two of which stand before its point.
 std::optional<GlassCode> from_digits(std::string_view index, std::string_view abbe) {
-    GlassCode code{.n_d = 1.0 + fraction(index), .V_d = 100.0 * fraction(abbe)};
     constexpr double kLeastIndex = 1.3;  // no glass has less: 001 is 2.001
-    code.n_d += code.n_d < kLeastIndex ? 1.0 : 0.0;
+    GlassCode code{.n_d = with_point(fmt::format("1{}", index), 1), .V_d = with_point(abbe, 2)};
+    if (code.n_d < kLeastIndex) {
+        code.n_d = with_point(fmt::format("2{}", index), 1);
+    }
     return code.V_d >= 10.0 ? std::optional(code) : std::nullopt;
 }
 

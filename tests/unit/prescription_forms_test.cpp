@@ -80,6 +80,8 @@ TEST(CsvTable, ReadsGlassConicAndEvenTermsAndNamesTheOthers) {
     EXPECT_EQ(first.asphere[9], 1e-22);
     EXPECT_EQ(lens.surfaces[2].medium.n_d, 1.4) << "a stop keeps the medium that it states";
     expect_remark(lens, "asphere-term-not-read", 1, "A5 = 2e-06, A22 = 3");
+    EXPECT_EQ(find_remark(lens, "asphere-term-not-read", 1)->severity, Severity::error) << "another surface";
+    EXPECT_EQ(find_remark(lens, "asphere-term-not-read", 3), nullptr) << "0 is no term";
     expect_remark(lens, "column-not-read", 0, "mood");
     expect_remark(lens, "kind-contradicts-index", 2, "air");
     EXPECT_EQ(lens.remarks.size(), 3U);
@@ -106,7 +108,33 @@ TEST(CsvTable, KnowsTheNamesThatOthersGiveItsColumns) {
     EXPECT_TRUE(lens.remarks.empty());
 }
 
+TEST(CsvTable, SaysWhereIndicesAtLinesAreNotUsed) {
+    const Prescription lens = parse_csv_prescription(
+        kHeader +
+            ",glass,n_C,n_F,n_g\n1,50,4,1.5,60,10,glass,BK7,1.49,1.51,1.52\n2,50,4,1.5,60,10,glass,,1.49,,\n"
+            "3,50,4,1.5,60,10,glass,,1.49,15.1,1.52\n4,50,4,,,10,,,1.49,1.51,\n5,50,4,1,,10,air,,1,1,1\n"
+            "6,50,4,1.5,60,10,glass,,1.49,1.51,\n7,50,4,,,10,,BK7,1.49,1.51,\n",
+        "a.csv");
+    ASSERT_EQ(lens.surfaces.size(), 7U);
+    EXPECT_EQ(lens.surfaces[0].medium.n_d, 1.5);
+    EXPECT_EQ(lens.surfaces[0].medium.V_d, 60.0);
+    expect_remark(lens, "lines-not-used", 1, "BK7");
+    EXPECT_EQ(find_remark(lens, "lines-not-used", 1)->severity, Severity::info);
+    expect_remark(lens, "lines-not-used", 2, "two or more");
+    expect_remark(lens, "lines-not-used", 3, "from 1 to 5");
+    expect_remark(lens, "lines-not-used", 4, "air");
+    expect_remark(lens, "lines-not-used", 7, "BK7");
+    EXPECT_EQ(lens.remarks.size(), 5U);
+    EXPECT_EQ(lens.surfaces[5].medium.indices.size(), 3U);
+    for (const int row : {0, 1, 2, 3, 4, 6}) {
+        EXPECT_TRUE(lens.surfaces[row].medium.indices.empty()) << row;
+    }
+}
+
 TEST(CsvTable, SaysWhatIsNoPrescription) {
+    const std::string german = complaint(parse_csv_prescription, "radius_mm;thickness_mm;n_d\n50,5;4;1,5\n");
+    EXPECT_NE(german.find("lens.x:1: the header is"), std::string::npos) << german;
+    EXPECT_NE(german.find("separator is ';', expected ','"), std::string::npos) << german;
     EXPECT_NE(complaint(parse_csv_prescription, kHeader + "\n1,5O,4,1.5,60,10,glass\n")
                   .find("lens.x:2: radius_mm is \"5O\", expected"),
               std::string::npos);
@@ -150,6 +178,7 @@ TEST(PbrtLens, SaysWhatItTookUponItself) {
 }
 
 TEST(PbrtLens, SaysWhatIsNoPrescription) {
+    EXPECT_NE(complaint(parse_pbrt_lens, "29,475 3.76 1.67 25.2\n").find("found \"29,475\""), std::string::npos);
     EXPECT_NE(complaint(parse_pbrt_lens, "# x\n1 2 3\n").find("lens.x:2: 3 numbers"), std::string::npos);
     EXPECT_NE(complaint(parse_pbrt_lens, "1 2 three 4\n").find("lens.x:1: found \"three\""), std::string::npos);
     EXPECT_NE(complaint(parse_pbrt_lens, "1 2 3 4 5 6\n"), "");
@@ -192,6 +221,16 @@ TEST(FxTable, ReadsGlassIrisZoomCylindersAspheresAndScale) {
     expect_remark(lens, "scaled", 0, "0.5");
     EXPECT_NE(find_remark(lens, "radius-for-flat"), nullptr);
     EXPECT_EQ(lens.remarks.size(), 2U);
+}
+
+TEST(FxTable, ScaleIsOfEveryRowWhereverItStands) {
+    const std::string rows = "10 3 abbe 1.5 60 5\n-20 4 air 5\n";
+    const Prescription lens = parse_fx(rows + "#!scale 2\n", "a.fx");
+    EXPECT_EQ(lens.surfaces[0].radius_mm, 20.0);
+    EXPECT_EQ(lens.surfaces[0].thickness_mm, 6.0);
+    EXPECT_EQ(lens.surfaces[1].semi_diameter_mm, 10.0);
+    EXPECT_NE(complaint(parse_fx, "#!scale 2\n" + rows + "#!scale 3\n").find("lens.x:4: found \"#!scale 3\""),
+              std::string::npos);
 }
 
 TEST(FxTable, AnIrisInsideGlassKeepsIt) {
@@ -301,6 +340,12 @@ TEST(Optiland, NamesWhatItDoesNotUnderstand) {
     EXPECT_EQ(find_remark(mirror, "mirror", 1)->severity, Severity::error);
     const Prescription odd = parse_optiland(replaced(kOptiland, "EvenAsphere", "ZernikePolynomial"), "a.json");
     expect_remark(odd, "shape-not-read", 2, "ZernikePolynomial");
+    EXPECT_EQ(find_remark(odd, "shape-not-read", 2)->severity, Severity::error);
+    const Prescription terms =
+        parse_optiland(replaced(kOptiland, "2e-09]", "2e-09, 0, 0, 0, 0, 0, 0, 0, 1e-30, 0]"), "a.json");
+    expect_remark(terms, "asphere-term-not-read", 2, "r^22");
+    EXPECT_EQ(find_remark(terms, "asphere-term-not-read", 2)->severity, Severity::error);
+    EXPECT_EQ(terms.remarks.size(), 5U) << "and the four of the lens as it is; 0 is no term";
     const Prescription stuff = parse_optiland(replaced(kOptiland, "AbbeMaterial", "GradientMaterial"), "a.json");
     expect_remark(stuff, "material-not-read", 4, "GradientMaterial");
     const Prescription rim = parse_optiland(replaced(kOptiland, "RadialAperture", "PolygonAperture"), "a.json");
@@ -323,6 +368,26 @@ TEST(Optiland, SaysWhatIsNoPrescription) {
         const std::string said = complaint(parse_optiland, text);
         EXPECT_NE(said.find("lens.x"), std::string::npos) << text.substr(0, 100);
         EXPECT_NE(said.find(word), std::string::npos) << text.substr(0, 100) << " said: " << said;
+    }
+}
+
+TEST(EveryReader, KnowsEveryLineEnd) {
+    const std::vector<std::pair<Parse, std::string>> files = {
+        {parse_csv_prescription, "# x\n# a note\n" + kHeader + "\n1,50,4,1.5,60,10,glass\n2,-50,4,1,,10,air\n"},
+        {parse_pbrt_lens, "# x\n# a note\n100 5 1.5 20\n-100 10 0 20\n"},
+        {parse_fx, "# x\n# a note\n10 3 abbe 1.5 60 5\n10 1 air 5\n"}};
+    for (const auto& [parse, text] : files) {
+        for (const std::string end : {"\n", "\r", "\r\n"}) {
+            std::string ended;
+            for (const char letter : text) {
+                ended += letter == '\n' ? end : std::string(1, letter);
+            }
+            const Prescription lens = parse(ended, "a.x");
+            ASSERT_EQ(lens.surfaces.size(), 2U) << text;
+            EXPECT_EQ(lens.name, "x");
+            EXPECT_EQ(lens.notes, "a note");
+            EXPECT_EQ(lens.surfaces[1].where, parse(text, "a.x").surfaces[1].where);
+        }
     }
 }
 

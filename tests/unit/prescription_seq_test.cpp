@@ -130,9 +130,9 @@ TEST(Seq, ReadsEveryWayToStateAGlass) {
     const Prescription lens = parse(
         "RDM;LEN\nPRV\n PWL 650.0 587.6 &\n 486.1\n 'E48' 1.5286 1.53116&\n  1.5378\nEND\nSO 0 1e13\n"
         "S 10 1 'E48'\n STO\nS 10 1 517642\nS 10 1 620410.3637\nS 10 1 1.5168:64.17\nS 10 1 1.6\nS 10 1 SLAH66_OHARA\n"
-        "S 10 1 AIR\nS 10 1\nGLA S8 SF7_HIKARI\nSI 0 0\n");
+        "S 10 1 AIR\nS 10 1\nGLA S8 SF7_HIKARI\nS 10 1 003283\nS 10 1 620410.364\nSI 0 0\n");
     const auto& rows = lens.surfaces;
-    ASSERT_EQ(rows.size(), 8U);
+    ASSERT_EQ(rows.size(), 10U);
     ASSERT_EQ(rows[0].medium.indices.size(), 3U);
     EXPECT_EQ(rows[0].medium.indices[0].wavelength_nm, 486.1);
     EXPECT_EQ(rows[0].medium.indices[0].value, 1.5378);
@@ -147,6 +147,10 @@ TEST(Seq, ReadsEveryWayToStateAGlass) {
     EXPECT_EQ(rows[5].medium.glass, "OHARA S-LAH66");
     EXPECT_TRUE(rows[6].medium.is_air());
     EXPECT_EQ(rows[7].medium.glass, "HIKARI SF7");
+    EXPECT_EQ(rows[8].medium.n_d, 2.003) << "the index has lost its 2";
+    EXPECT_EQ(rows[8].medium.V_d, 28.3);
+    EXPECT_EQ(rows[9].medium.n_d, 1.620410);
+    EXPECT_EQ(rows[9].medium.V_d, 36.4) << "no density";
     EXPECT_TRUE(lens.remarks.empty());
 }
 
@@ -161,6 +165,39 @@ TEST(Seq, ReadsZoomPositions) {
     EXPECT_EQ(lens.zoom[2].gaps_mm, (std::map<int, double>{{1, 1.5}, {2, 7.0}}));
     EXPECT_EQ(lens.zoom[1].stated.entrance_pupil_diameter_mm, 3.0);
     EXPECT_TRUE(has_finding(lens, "multi-configuration", "YAN"));
+}
+
+TEST(Seq, WhatHoldsForOnePositionAloneIsNamedAndLeftOut) {
+    const Prescription lens = parse(
+        "RDM;LEN\nEPD 2\nSO 0 1e13\nS 10 1 517642\n STO\n CIR 4\nS 20 5\nSI 0 0\nZOO 2\nCIR S1 Z2 3\nRDY S1 Z2 77\n"
+        "GLA S1 Z2 620364\nEPD Z2 5\nYAN F2 Z1 3\nCCY S1 Z2 0\nGO\n");
+    ASSERT_EQ(lens.surfaces.size(), 2U);
+    EXPECT_EQ(lens.surfaces[0].radius_mm, 10.0);
+    EXPECT_EQ(lens.surfaces[0].semi_diameter_mm, 4.0);
+    EXPECT_EQ(lens.surfaces[0].medium.n_d, 1.517);
+    EXPECT_EQ(lens.stated.entrance_pupil_diameter_mm, 2.0);
+    for (const char* command : {"line 10: CIR", "line 11: RDY", "line 12: GLA", "line 13: EPD", "line 14: YAN"}) {
+        EXPECT_TRUE(has_finding(lens, "multi-configuration", command)) << command;
+    }
+    EXPECT_EQ(lens.remarks.size(), 5U);
+    EXPECT_EQ(lens.remarks[0].surface, 1);
+    EXPECT_EQ(lens.remarks[0].severity, Severity::warning);
+}
+
+TEST(Seq, DeletedSurfacesMakeAnotherLens) {
+    const std::string lens = "RDM;LEN\nSO 0 1e13\nS 10 1 517642\n STO\nS 20 5\nS 20 5\nSI 0 0\n";
+    const Prescription cut = parse(lens + "DEL S2..3\nDEL PIK THI S1\nDEL SOL S1\nDEL APE S1\n");
+    ASSERT_EQ(cut.remarks.size(), 2U);
+    EXPECT_TRUE(has_finding(cut, "deleted-surfaces", "line 8: DEL"));
+    EXPECT_EQ(cut.remarks[0].severity, Severity::error);
+    EXPECT_TRUE(has_finding(cut, "not-understood", "DEL"));
+    EXPECT_THROW(make_lens(cut, {}), InputError);
+}
+
+TEST(Seq, EveryLineEndIsOne) {
+    std::string old = kTessar;
+    std::ranges::replace(old, '\n', '\r');
+    expect_same_rays(parse(kTessar), parse(old));
 }
 
 TEST(Seq, NamesWhatItDoesNotUnderstand) {
@@ -197,6 +234,13 @@ TEST(Seq, HostileFilesAreRefusedByLine) {
     EXPECT_NE(complaint(head + "S 1 1\nZOO 10000000000\n").find("ZOO"), std::string::npos);
     EXPECT_NE(complaint(head + "S 1 1\nZOO 3\nZOO THI S1 1 2\n").find("2 values"), std::string::npos);
     EXPECT_NE(complaint(head + "PRV\nPWL 500 600\n'A' 1.5\nEND\n").find("1 indices"), std::string::npos);
+    EXPECT_NE(complaint(head + "PRV\nPWL 500 600 500\n").find(":4: PWL is \"500\", expected wavelengths"),
+              std::string::npos);
+    EXPECT_NE(complaint(head + "PRV\nPWL 500 nan\n").find("PWL is \"NAN\""), std::string::npos);
+    EXPECT_NE(complaint(head + "PRV\nPWL 500 600\n'A' 1.5 15\n").find(":5: A is \"15\", expected a refractive index"),
+              std::string::npos);
+    EXPECT_NE(complaint(head + "S 1 1 1.5:6O\nSI 0 0\n").find(":3: S1: its glass is \"1.5:6O\", expected n_d:V_d"),
+              std::string::npos);
     EXPECT_NE(complaint("DIM FURLONG\n").find("expected M, C or I"), std::string::npos);
     EXPECT_NE(complaint(head + "S 1 inf\n ADE 1\nS 1 1\nSI 0 0\n"), "");
     EXPECT_EQ(complaint(head + "S nan -inf\nSI 0 0\n"), "") << "for the checker to say";

@@ -200,6 +200,18 @@ TEST(Zmx, NamesWhatItDoesNotUnderstand) {
     }));
 }
 
+TEST(Zmx, NamesTermsThatAnEvenAsphereHasNot) {
+    const Prescription lens = parse(kHead + "FTYP 4 0 1 1\r\nYFLN 20\r\n" + kObject +
+                                    surf(1,
+                                         "  STOP\r\n  TYPE EVENASPH\r\n  PARM 8 0\r\n  PARM 9 1e-9\r\n  PARM 10 0\r\n"
+                                         "  PARM 11 2\r\n  DISZ 2\r\n") +
+                                    surf(2, "  DISZ 0\r\n"));
+    EXPECT_TRUE(has_finding(lens, "surface-type", "PARM 9 = 1e-09, PARM 11 = 2 of the EVENASPH"));
+    EXPECT_TRUE(has_finding(lens, "fields", "theodolite"));
+    EXPECT_FALSE(has_finding(lens, "fields", "mm"));
+    EXPECT_THROW(make_lens(lens, {}), InputError);
+}
+
 TEST(Zmx, HostileFilesAreRefusedByLine) {
     const auto lens = [](const std::string& lines) {
         return kHead + kObject + surf(1, lines) + surf(2, "  DISZ 0\r\n");
@@ -215,6 +227,10 @@ TEST(Zmx, HostileFilesAreRefusedByLine) {
     EXPECT_NE(complaint(kHead + "SURF 10000000000\r\n").find("test.zmx:6: SURF 10000000000"), std::string::npos);
     EXPECT_NE(complaint(lens("  CURV x\r\n")).find("test.zmx:10: SURF 1: CURV is \"x\""), std::string::npos);
     EXPECT_NE(complaint(lens("  DISZ\r\n")).find("DISZ is \"\""), std::string::npos);
+    EXPECT_NE(complaint(lens("  GLAS ___BLANK 1 0 1.5 6O\r\n")).find("test.zmx:10: SURF 1: GLAS is \"6O\", expected"),
+              std::string::npos);
+    EXPECT_NE(complaint(lens("  GLAS N-BK7 0 0 1,6 60\r\n")).find("GLAS is \"1,6\""), std::string::npos);
+    EXPECT_EQ(complaint(lens("  DIAM 5 1 0 0 1 \"\"\r\n  GLAS N-BK7\r\n")), "");
     EXPECT_NE(complaint(lens("  PARM 1e9 1\r\n")).find("PARM"), std::string::npos);
     EXPECT_NE(complaint(lens("") + "MNUM 10000000000 1\r\n").find("MNUM"), std::string::npos);
     EXPECT_NE(complaint(kHead + kObject + surf(1, coordinate_break({}, INFINITY)) + surf(2, "  DISZ 1\r\n") +

@@ -22,7 +22,7 @@ double Command::number(std::size_t index, std::string_view expected) const {
 }
 
 double Command::number_or_zero(std::size_t index) const {
-    return parse_number(word(index)).value_or(0.0);
+    return index < words.size() ? number(index, "a number") : 0.0;
 }
 
 int Command::integer(std::size_t index, int min, int max, std::string_view expected) const {

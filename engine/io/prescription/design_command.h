@@ -19,6 +19,7 @@ struct Command {
     /// Nothing where there is no such word.
     [[nodiscard]] std::string_view word(std::size_t index) const;
     [[nodiscard]] double number(std::size_t index, std::string_view expected) const;
+    /// Zero where there is no such word.
     [[nodiscard]] double number_or_zero(std::size_t index) const;
     /// A whole number from `min` to `max`.
     [[nodiscard]] int integer(std::size_t index, int min, int max, std::string_view expected) const;

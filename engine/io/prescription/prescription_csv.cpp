@@ -86,9 +86,9 @@ class CsvPrescription {
     }
 
   private:
-    void remark(const std::string& code, int surface, const std::string& message) {
-        prescription_.remarks.push_back(
-            {.code = code, .severity = Severity::warning, .surface = surface, .message = message});
+    void remark(const std::string& code, int surface, const std::string& message,
+                Severity severity = Severity::warning) {
+        prescription_.remarks.push_back({.code = code, .severity = severity, .surface = surface, .message = message});
     }
 
     std::string find(const ColumnNames& names) {
@@ -142,10 +142,8 @@ class CsvPrescription {
         bool named = false;
         bool sourced = false;
         bool has_hidden_terms = false;
-        for (std::size_t begin = 0; begin < text.size();) {
-            const std::size_t end = std::min(text.find('\n', begin), text.size());
-            std::string_view line = trimmed(without_byte_order_mark(text.substr(begin, end - begin)));
-            begin = end + 1;
+        for (std::string_view line : lines_of(without_byte_order_mark(text))) {
+            line = trimmed(line);
             if (!line.starts_with('#')) {
                 continue;
             }
@@ -192,7 +190,7 @@ class CsvPrescription {
         surface.semi_diameter_mm = stated(row, columns_.semi_diameter, "a length in mm");
         surface.conic = stated(row, columns_.conic, "a conic constant").value_or(0.0);
         read_terms(row, number, surface);
-        surface.medium = read_medium(row, surface.is_stop);
+        surface.medium = read_medium(row, number, surface.is_stop);
         if ((kind == "air" && !surface.medium.is_air()) || (kind == "glass" && surface.medium.is_air())) {
             remark("kind-contradicts-index", number,
                    fmt::format("said to be followed by {}, but its index says {}; the index is taken", kind,
@@ -226,36 +224,56 @@ class CsvPrescription {
         if (!odd.empty()) {
             remark("asphere-term-not-read", number,
                    fmt::format("the aspheric terms {} are left out: even powers up to r²⁰ are carried",
-                               fmt::join(odd, ", ")));
+                               fmt::join(odd, ", ")),
+                   Severity::error);
         }
     }
 
-    /// What is behind the surface. Indices at further lines are kept beside n_d and V_d where they are at least two,
-    /// all of them numbers above 1.
-    [[nodiscard]] StatedMedium read_medium(const CsvRow& row, bool is_stop) const {
+    /// What is behind the surface.
+    StatedMedium read_medium(const CsvRow& row, int number, bool is_stop) {
         StatedMedium medium;
         medium.glass = columns_.glass.empty() ? "" : row.text(columns_.glass);
         const std::optional<double> n_d = stated(row, columns_.index, "a refractive index");
-        if (!n_d || *n_d == 1.0 || (is_stop && *n_d == 0.0)) {
-            return medium;
-        }
-        medium.n_d = n_d;
-        medium.V_d = stated(row, columns_.abbe, "an Abbe number, or nothing");
-        medium.indices = {{kLineD, *n_d}};
+        const bool is_air = !n_d || *n_d == 1.0 || (is_stop && *n_d == 0.0);
+        std::vector<WavelengthValue> lines;
         for (const auto& [column, wavelength_nm] : columns_.lines) {
-            if (const auto index = stated(row, column, "a refractive index, or nothing")) {
-                medium.indices.push_back({wavelength_nm, *index});
+            const std::optional<double> index = stated(row, column, "a refractive index, or nothing");
+            if (index && !(is_air && (*index == 1.0 || *index == 0.0))) {
+                lines.push_back({wavelength_nm, *index});
             }
         }
-        std::ranges::sort(medium.indices, {}, &WavelengthValue::wavelength_nm);
-        const bool usable = medium.glass.empty() && medium.indices.size() >= 3 &&
-                            std::ranges::all_of(medium.indices, [](const WavelengthValue& at) {
-                                return at.value >= 1.0 && at.value <= 5.0;
-                            });
-        if (!usable) {
-            medium.indices.clear();
+        if (!is_air) {
+            medium.n_d = n_d;
+            medium.V_d = stated(row, columns_.abbe, "an Abbe number, or nothing");
+            lines.push_back({kLineD, *n_d});
         }
+        take_lines(std::move(lines), number, medium);
         return medium;
+    }
+
+    /// Indices at further lines are kept beside n_d and V_d where no glass is named and they make a dispersion.
+    void take_lines(std::vector<WavelengthValue> lines, int number, StatedMedium& medium) {
+        const std::size_t others = lines.size() - (medium.n_d ? 1 : 0);
+        const auto leave_out = [&](Severity severity, const std::string& why) {
+            remark("lines-not-used", number, fmt::format("its indices at lines beside d are left out: {}", why),
+                   severity);
+        };
+        if (others == 0) {
+            return;
+        }
+        if (!medium.glass.empty()) {
+            leave_out(Severity::info, fmt::format("those of {} are taken", printable(medium.glass)));
+        } else if (!medium.n_d) {
+            leave_out(Severity::warning, "its n_d says air");
+        } else if (others < 2) {
+            leave_out(Severity::warning, "one says no dispersion, expected two or more");
+        } else if (!std::ranges::all_of(lines,
+                                        [](const WavelengthValue& at) { return at.value >= 1.0 && at.value <= 5.0; })) {
+            leave_out(Severity::warning, "expected each from 1 to 5");
+        } else {
+            std::ranges::sort(lines, {}, &WavelengthValue::wavelength_nm);
+            medium.indices = std::move(lines);
+        }
     }
 
     CsvTable table_;

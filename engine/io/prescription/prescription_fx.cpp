@@ -26,18 +26,8 @@ namespace {
 constexpr std::size_t kMostSurfaces = 1000;
 constexpr std::size_t kMostPositions = 3;   // short, mid and long
 constexpr std::size_t kMostRemarks = 1000;  // a file of nothing else says no more
-constexpr std::string_view kBlanks = " \t\r";
+constexpr std::string_view kScale = "#!scale";
 constexpr std::string_view kAspheric = "#!aspheric=";
-
-std::vector<std::string_view> words_of_line(std::string_view line) {
-    std::vector<std::string_view> words;
-    for (std::size_t begin = 0; (begin = line.find_first_not_of(kBlanks, begin)) != std::string_view::npos;) {
-        const std::size_t end = std::min(line.find_first_of(kBlanks, begin), line.size());
-        words.push_back(line.substr(begin, end - begin));
-        begin = end;
-    }
-    return words;
-}
 
 std::string lower(std::string_view text) {
     std::string small(text);
@@ -58,13 +48,15 @@ class FxTable {
     }
 
     Prescription read(std::string_view text) {
-        text = without_byte_order_mark(text);
-        for (int number = 1; !text.empty(); ++number) {
-            const std::string_view line = text.substr(0, text.find('\n'));
-            text.remove_prefix(std::min(line.size() + 1, text.size()));
-            where_ = fmt::format("{}:{}", lens_.file.string(), number);
-            read_line(trimmed(line));
-        }
+        const std::vector<std::string_view> lines = lines_of(without_byte_order_mark(text));
+        const auto read_each = [&](auto read_one) {
+            for (std::size_t i = 0; i < lines.size(); ++i) {
+                where_ = fmt::format("{}:{}", lens_.file.string(), i + 1);
+                read_one(trimmed(lines[i]));
+            }
+        };
+        read_each([&](std::string_view line) { read_scale(line); });  // wherever it stands, it is the whole table's
+        read_each([&](std::string_view line) { read_line(line); });
         if (lens_.surfaces.empty()) {
             throw InputError(fmt::format("{}: holds no row of radius, thickness and material", lens_.file.string()));
         }
@@ -98,15 +90,27 @@ class FxTable {
         return *value;
     }
 
+    void read_scale(std::string_view line) {
+        if (!line.starts_with(kScale)) {
+            return;
+        }
+        if (is_scaled_) {
+            fail(line, "one #!scale");
+        }
+        scale_ = number(trimmed(line.substr(kScale.size())), "#!scale and a number");
+        if (!std::isfinite(scale_) || scale_ <= 0.0) {
+            fail(line, "#!scale and a positive number");
+        }
+        is_scaled_ = true;
+        remark("scaled", Severity::warning, 0,
+               fmt::format("every length is multiplied by the file's #!scale, {}", scale_));
+    }
+
     void read_line(std::string_view line) {
-        if (line.starts_with("#!scale")) {
-            scale_ = number(trimmed(line.substr(7)), "#!scale and a number");
-            if (!std::isfinite(scale_) || scale_ <= 0.0) {
-                fail(line, "#!scale and a positive number");
-            }
-            remark("scaled", Severity::warning, 0,
-                   fmt::format("every length is multiplied by the file's #!scale, {}", scale_));
-        } else if (line.starts_with('#') || line.starts_with("//")) {
+        if (line.starts_with(kScale)) {
+            return;
+        }
+        if (line.starts_with('#') || line.starts_with("//")) {
             read_comment(line);
         } else if (!line.empty()) {
             read_row(line);
@@ -115,7 +119,7 @@ class FxTable {
 
     void read_comment(std::string_view line) {
         if (line.starts_with("#EFL")) {
-            for (const std::string_view word : words_of_line(line.substr(4, line.find("//") - 4))) {
+            for (const std::string_view word : words_of(line.substr(4, line.find("//") - 4))) {
                 if (const std::optional<double> length = parse_number(word); length && std::isfinite(*length)) {
                     focal_lengths_.push_back(*length);
                 }
@@ -157,7 +161,7 @@ class FxTable {
             throw InputError(fmt::format("{}: more than {} surfaces", where_, kMostSurfaces));
         }
         const std::size_t body_end = std::min({line.find('#'), line.find("//"), line.size()});
-        const std::vector<std::string_view> words = words_of_line(line.substr(0, body_end));
+        const std::vector<std::string_view> words = words_of(line.substr(0, body_end));
         if (words.size() < 4) {
             fail(line, "radius, thickness, material, n_d and V_d behind glass, semi-diameter");
         }
@@ -282,6 +286,7 @@ class FxTable {
     std::vector<std::string> notes_;
     std::string where_;
     double scale_ = 1.0;
+    bool is_scaled_ = false;
     bool is_named_ = false;
     bool has_planes_ = false;
 };

@@ -87,7 +87,7 @@ std::vector<Finding> losses_of_tables(const Prescription& prescription) {
     };
     const bool moves = std::ranges::any_of(
         prescription.groups, [](const MisalignedGroup& group) { return group.misalignment != Misalignment{}; });
-    add(moves, "lost-misalignment", Severity::warning, "decentred and tilted groups are written where they should be");
+    add(moves, "lost-misalignment", Severity::warning, "decentred and tilted groups are written as if aligned");
     add(prescription.stop_shape.index() != 0, "lost-stop-shape", Severity::warning,
         "the stop's shape is left out: a full circle is written");
     add(!prescription.focus_groups.empty(), "lost-focus-groups", Severity::warning,

@@ -13,68 +13,33 @@
 #include "engine/io/json_value.h"
 #include "engine/io/prescription/prescription_forms.h"
 #include "engine/io/text.h"
+#include "engine/optics/frame.h"
 
 namespace lensproof {
 
 namespace {
 
-using Matrix = std::array<std::array<double, 3>, 3>;
-
 constexpr std::size_t kMostSurfaces = 1000;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr Matrix kIdentity{{{1.0, 0.0, 0.0}, {0.0, 1.0, 0.0}, {0.0, 0.0, 1.0}}};
+constexpr double kDegree = std::numbers::pi / 180.0;
 
-/// Where a surface stands in the whole lens.
-struct Frame {
-    std::array<double, 3> origin{};
-    Matrix axes = kIdentity;  // columns
-};
-
-Matrix product(const Matrix& a, const Matrix& b) {
-    Matrix c{};
-    for (int i = 0; i < 3; ++i) {
-        for (int j = 0; j < 3; ++j) {
-            c[i][j] = a[i][0] * b[0][j] + a[i][1] * b[1][j] + a[i][2] * b[2][j];
-        }
-    }
-    return c;
-}
-
-/// Optiland turns about x, then the fixed y, then the fixed z: R_z R_y R_x.
-Matrix rotation(double rx, double ry, double rz) {
-    const Matrix x{{{1.0, 0.0, 0.0}, {0.0, std::cos(rx), -std::sin(rx)}, {0.0, std::sin(rx), std::cos(rx)}}};
-    const Matrix y{{{std::cos(ry), 0.0, std::sin(ry)}, {0.0, 1.0, 0.0}, {-std::sin(ry), 0.0, std::cos(ry)}}};
-    const Matrix z{{{std::cos(rz), -std::sin(rz), 0.0}, {std::sin(rz), std::cos(rz), 0.0}, {0.0, 0.0, 1.0}}};
-    return product(z, product(y, x));
-}
-
+/// Where a surface stands in the whole lens. Optiland turns about x, then the fixed y, then the fixed z, which is about
+/// z, the turned y and the twice turned x.
 Frame read_frame(const JsonValue& system) {
-    Frame frame{{system.number_or("x", 0.0), system.number_or("y", 0.0), system.number_or("z", 0.0)},
-                rotation(system.number_or("rx", 0.0), system.number_or("ry", 0.0), system.number_or("rz", 0.0))};
-    if (!system.has("reference_cs")) {
-        return frame;
-    }
-    const Frame base = read_frame(system.at("reference_cs"));  // as deep as the file, which is bounded
-    Frame whole;
-    whole.axes = product(base.axes, frame.axes);
-    for (int i = 0; i < 3; ++i) {
-        whole.origin[i] = base.origin[i];
-        for (int j = 0; j < 3; ++j) {
-            whole.origin[i] += base.axes[i][j] * frame.origin[j];
-        }
-    }
-    return whole;
+    const Vec3d origin{system.number_or("x", 0.0), system.number_or("y", 0.0), system.number_or("z", 0.0)};
+    // As deep as the file, which is bounded. An infinite z, the object's, stays out of sums over the axes.
+    const Frame frame =
+        system.has("reference_cs") ? read_frame(system.at("reference_cs")).shifted(origin) : Frame{.origin = origin};
+    return frame.turned(2, system.number_or("rz", 0.0) / kDegree)
+        .turned(1, system.number_or("ry", 0.0) / kDegree)
+        .turned(0, system.number_or("rx", 0.0) / kDegree);
 }
 
-/// The angles about x, the turned y and the twice turned z that lead to these axes, degrees.
-std::array<double, 3> tilt_of(const Matrix& axes) {
-    if (axes == kIdentity) {
-        return {};
-    }
-    constexpr double kDegrees = 180.0 / std::numbers::pi;
-    const auto degrees = [&](double radians) { return kDegrees * radians + 0.0; };  // no −0
-    return {degrees(std::atan2(-axes[1][2], axes[2][2])), degrees(std::asin(std::clamp(axes[0][2], -1.0, 1.0))),
-            degrees(std::atan2(-axes[0][1], axes[0][0]))};
+/// The angles as a prescription has them, without the −0 of what is not turned.
+std::array<double, 3> tilt_of(const Frame& frame) {
+    std::array<double, 3> tilts = tilt_angles(frame);
+    std::ranges::for_each(tilts, [](double& angle) { angle += 0.0; });
+    return tilts;
 }
 
 class OptilandLens {
@@ -101,9 +66,9 @@ class OptilandLens {
             frames.push_back(read_frame(surface.at("geometry").at("cs")));
         }
         for (std::size_t i = 1; i + 1 < surfaces.size(); ++i) {
-            add_surface(surfaces[i], frames[i], frames[i + 1].origin[2] - frames[i].origin[2]);
+            add_surface(surfaces[i], frames[i], frames[i + 1].origin.z - frames[i].origin.z);
         }
-        lens_.object_distance_mm = frames[1].origin[2] - frames[0].origin[2];
+        lens_.object_distance_mm = frames[1].origin.z - frames[0].origin.z;
         if (!(std::isfinite(lens_.object_distance_mm) && lens_.object_distance_mm > 0.0)) {
             lens_.object_distance_mm = kInfinity;
         }
@@ -145,7 +110,7 @@ class OptilandLens {
         const double stated = value.number_or("thickness", thickness);
         surface.thickness_mm = std::abs(stated - thickness) < 1e-9 ? stated : thickness;
         surface.is_stop = value.is_true("is_stop");
-        surface.misalignment = {{frame.origin[0], frame.origin[1]}, tilt_of(frame.axes)};
+        surface.misalignment = {{frame.origin.x, frame.origin.y}, tilt_of(frame)};
         read_geometry(value.at("geometry"), number, surface);
         read_material(value.at("material_post"), number, surface.medium);
         read_rim(value, number, surface);
@@ -176,7 +141,8 @@ class OptilandLens {
             surface.conic = geometry.number_or("conic_y", surface.conic);
             remark("shape-not-read", number,
                    fmt::format("a surface of the kind \"{}\" is not understood: its radius and conic alone are taken",
-                               printable(type)));
+                               printable(type)),
+                   Severity::error);
         }
     }
 
@@ -191,7 +157,8 @@ class OptilandLens {
                 surface.asphere[term] = coefficient;
             } else if (coefficient != 0.0) {
                 remark("asphere-term-not-read", number,
-                       fmt::format("the term of r^{} is left out: even powers up to r²⁰ are carried", 2 * term + 2));
+                       fmt::format("the term of r^{} is left out: even powers up to r²⁰ are carried", 2 * term + 2),
+                       Severity::error);
             }
         }
     }
@@ -279,7 +246,7 @@ class OptilandLens {
             remark("curved-image", 0,
                    fmt::format("the image's surface has a radius of {} mm; the sensor is flat", radius));
         }
-        if (frame.axes != kIdentity || frame.origin[0] != 0.0 || frame.origin[1] != 0.0) {
+        if (tilt_of(frame) != std::array<double, 3>{} || frame.origin.x != 0.0 || frame.origin.y != 0.0) {
             remark("tilted-image", 0, "the image's surface is tilted or shifted; the sensor is not");
         }
     }

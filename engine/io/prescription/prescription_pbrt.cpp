@@ -26,15 +26,7 @@ constexpr double kAlmostFlat = 1e5;
 
 std::vector<double> read_numbers(std::string_view line, const std::string& where) {
     std::vector<double> numbers;
-    constexpr std::string_view kBlanks = " \t\r,";
-    while (true) {
-        const std::size_t begin = line.find_first_not_of(kBlanks);
-        if (begin == std::string_view::npos) {
-            return numbers;
-        }
-        line.remove_prefix(begin);
-        const std::string_view word = line.substr(0, line.find_first_of(kBlanks));
-        line.remove_prefix(word.size());
+    for (const std::string_view word : words_of(line)) {
         const std::optional<double> number = parse_number(word);
         if (!number || numbers.size() == 5) {
             throw InputError(fmt::format("{}: found \"{}\", expected radius, thickness, index and aperture diameter",
@@ -42,6 +34,7 @@ std::vector<double> read_numbers(std::string_view line, const std::string& where
         }
         numbers.push_back(*number);
     }
+    return numbers;
 }
 
 class PbrtLens {
@@ -53,11 +46,10 @@ class PbrtLens {
     }
 
     Prescription read(std::string_view text) {
-        text = without_byte_order_mark(text);
         std::vector<std::string> comments;
-        for (int number = 1; !text.empty(); ++number) {
-            const std::string_view line = text.substr(0, text.find('\n'));
-            text.remove_prefix(std::min(line.size() + 1, text.size()));
+        int number = 0;
+        for (const std::string_view line : lines_of(without_byte_order_mark(text))) {
+            ++number;
             const std::size_t hash = std::min(line.find('#'), line.size());
             if (const std::string_view comment = trimmed(line.substr(hash)); !comment.empty()) {
                 comments.emplace_back(trimmed(comment.substr(1)));

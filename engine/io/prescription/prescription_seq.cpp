@@ -11,6 +11,7 @@
 #include "engine/io/prescription/surface_chain.h"
 #include "engine/io/text.h"
 #include "engine/io/text_encoding.h"
+#include "engine/optics/glass_name.h"
 
 namespace lensproof {
 
@@ -18,23 +19,6 @@ namespace {
 
 constexpr double kDegree = std::numbers::pi / 180.0;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-
-/// "517642" is n_d = 1.517, V_d = 64.2, and "517168.6417" the same with more digits: what stands before the point are
-/// decimals of n_d, what stands behind it is V_d with its point behind two digits.
-std::optional<StatedMedium> glass_code(const std::string& code) {
-    const std::size_t point = code.find('.');
-    const bool is_short = point == std::string::npos && code.size() == 6;
-    const std::string index = is_short ? code.substr(0, 3) : code.substr(0, point);
-    const std::string abbe = is_short ? code.substr(3) : (point == std::string::npos ? "" : code.substr(point + 1));
-    const auto is_digits = [](const std::string& text) {
-        return text.size() >= 3 && std::ranges::all_of(text, [](unsigned char letter) { return std::isdigit(letter); });
-    };
-    if (!is_digits(index) || !is_digits(abbe)) {
-        return std::nullopt;
-    }
-    return StatedMedium{.n_d = parse_number("1." + index),
-                        .V_d = parse_number(abbe.substr(0, 2) + "." + abbe.substr(2))};
-}
 
 /// "NBK7_SCHOTT" is SCHOTT's N-BK7: CODE V leaves out the hyphen behind a maker's letter for glasses of its present
 /// line.
@@ -58,22 +42,33 @@ std::string catalogue_name(const std::string& stated) {
     return maker + " " + name;
 }
 
-StatedMedium read_medium(const SeqFile& file, const std::string& glass) {
+/// n_d and V_d from CODE V's codes. It writes no density: behind six digits and a point stands V_d, and a zero more
+/// says so where there are three digits of it.
+std::optional<GlassCode> glass_code(const std::string& glass) {
+    constexpr std::size_t kDigits = 6;
+    const bool looks_dense = glass.find('.') == kDigits && glass.size() == kDigits + 4;
+    return parse_glass_code(looks_dense ? glass + "0" : glass);
+}
+
+/// The medium behind a surface; `where` is its place in the file.
+StatedMedium read_medium(const SeqFile& file, const std::string& glass, const std::string& where) {
     StatedMedium medium;
-    const std::size_t colon = glass.find(':');
-    const std::optional<double> n_d = parse_number(glass.substr(0, colon));
     if (glass.empty() || glass == "AIR") {
         return medium;
     }
+    const std::size_t colon = glass.find(':');
+    const std::optional<double> n_d = parse_number(glass.substr(0, colon));
     if (const auto own = file.private_glasses.find(glass); own != file.private_glasses.end()) {
         medium.indices = own->second;
-    } else if (const std::optional<StatedMedium> coded = glass_code(glass)) {
-        medium = *coded;
-    } else if (n_d && colon != std::string::npos) {
-        medium.n_d = n_d;
-        medium.V_d = parse_number(glass.substr(colon + 1));
+    } else if (const std::optional<GlassCode> code = glass_code(glass)) {
+        medium.n_d = code->n_d;
+        medium.V_d = code->V_d;
     } else if (n_d) {
         medium.n_d = n_d;
+        medium.V_d = colon == std::string::npos ? std::nullopt : parse_number(glass.substr(colon + 1));
+        if (colon != std::string::npos && !medium.V_d) {
+            throw InputError(fmt::format("{}: its glass is \"{}\", expected n_d:V_d", where, printable(glass)));
+        }
     } else {
         medium.glass = catalogue_name(glass);
     }
@@ -106,7 +101,7 @@ PrescribedSurface read_row(const SeqFile& file, int number, const std::filesyste
     if (surface.edge && surface.edge > surface.semi_diameter.value_or(0.0)) {
         row.rim_mm = length(surface.edge);
     }
-    row.medium = read_medium(file, surface.glass);
+    row.medium = read_medium(file, surface.glass, row.where);
     if (surface.is_mirror) {
         remarks.add(
             "mirror", Severity::error, number,

@@ -68,6 +68,17 @@ void read_shape(PrescribedSurface& row, const ZmxSurface& surface, int number, d
         for (int i = 1; i <= kParameterTerms; ++i) {
             set(step * i, surface.parameter(i));
         }
+        std::vector<std::string> beyond;
+        for (const auto& [index, value] : surface.parameters) {
+            if (index > kParameterTerms && value != 0.0) {
+                beyond.push_back(fmt::format("PARM {} = {}", index, value));
+            }
+        }
+        if (!beyond.empty()) {
+            surface_type_error(remarks, surface, number,
+                               fmt::format("{} of the {}, which has {} terms, is left out", fmt::join(beyond, ", "),
+                                           surface.type, kParameterTerms));
+        }
     } else if (surface.type == "XASPHERE") {
         normalized_terms(2);
     } else if (surface.type == "XOSPHERE") {
@@ -206,6 +217,8 @@ void read_fields(const ZmxFile& file, StatedData& stated, Remarks& remarks) {
         stated.half_field_deg = largest;
     } else if (file.field_type == 2 || file.field_type == 3) {
         stated.image_circle_mm = 2.0 * largest * file.unit_mm;
+    } else if (file.field_type == 4) {
+        remarks.add("fields", Severity::info, 0, "fields are stated as theodolite angles (FTYP 4), and left out");
     } else {
         remarks.add("fields", Severity::info, 0,
                     fmt::format("fields are stated as object heights (FTYP {}), up to {} mm, and left out",

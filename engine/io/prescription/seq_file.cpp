@@ -21,11 +21,11 @@ constexpr int kMostZoomPositions = 100;
 
 /// Commands that bear on no ray: preferences, weights, labels, what an optimizer may vary (a letter C at the end),
 /// tolerances, listings.
-constexpr std::string_view kSilent[] = {
-    "LEN", "GO",  "INI", "WTW", "WTF", "CCY", "CCX", "THC", "GLC", "KC",  "AC",  "BC",  "CC",  "DC",
-    "EC",  "FC",  "GC",  "HC",  "JC",  "XDC", "YDC", "ZDC", "ADC", "BDC", "CDC", "SLB", "DER", "VIE",
-    "ECH", "OUT", "LIS", "SAV", "COM", "CWL", "CA",  "DLF", "DLT", "DLR", "DLN", "DLV", "DLS", "TIR",
-    "IRR", "BTI", "CYD", "DEL", "SUR", "WID", "DSX", "DSY", "DSZ", "SPH", "VER", "IC",  "UID", "REFR"};
+constexpr std::string_view kSilent[] = {"LEN", "GO",  "INI", "WTW", "WTF", "CCY", "CCX", "THC", "GLC", "KC",  "AC",
+                                        "BC",  "CC",  "DC",  "EC",  "FC",  "GC",  "HC",  "JC",  "XDC", "YDC", "ZDC",
+                                        "ADC", "BDC", "CDC", "SLB", "DER", "VIE", "ECH", "OUT", "LIS", "SAV", "COM",
+                                        "CWL", "CA",  "DLF", "DLT", "DLR", "DLN", "DLV", "DLS", "TIR", "IRR", "BTI",
+                                        "CYD", "SUR", "WID", "DSX", "DSY", "DSZ", "SPH", "VER", "IC",  "UID"};
 
 /// Solves and pick-ups, whose outcome the file holds as the value itself.
 constexpr std::string_view kSolves[] = {"PIM", "PUY", "PIY", "HMY", "HCY", "UMY", "IMY", "UCY", "ICY", "APY", "PIK"};
@@ -113,6 +113,23 @@ class SeqReader {
         return static_cast<int>(*value);
     }
 
+    /// Whether a qualifier, as Z2 in "CIR S1 Z2 3", makes the command one of a single zoom position.
+    [[nodiscard]] bool is_of_one_position() const {
+        constexpr std::string_view kOthers[] = {"SO", "SI", "SS", "SA", "CLR", "EDG", "OBS", "HOL"};
+        for (std::size_t i = 1; i < words().size() && !words()[i].is_quoted; ++i) {
+            const std::string_view name = here_.word(i);
+            const std::optional<double> number = parse_number(name.substr(1));
+            if (name[0] == 'Z' && number) {
+                return *number != 0.0;
+            }
+            if (!is_among(kOthers, name) &&
+                !(number && std::string_view("SFW").find(name[0]) != std::string_view::npos)) {
+                return false;
+            }
+        }
+        return false;
+    }
+
     /// Takes the qualifiers behind the keyword: the surface meant, the zoom position, apertures' kinds and labels.
     void take_qualifiers() {
         surface_ = last_surface();
@@ -150,6 +167,14 @@ class SeqReader {
         }
         constexpr std::size_t kSignificant = 3;  // letters of a command
         here_.keyword = here_.keyword.substr(0, kSignificant);
+        if (here_.keyword != "THI" && !is_among(kSilent, here_.keyword) && is_of_one_position()) {
+            const int surface = file_.surfaces.empty() ? 0 : surface_named(here_.word(1)).value_or(0);
+            remarks_.add_once(fmt::format("{} {}", here_.keyword, here_.word(1)), "multi-configuration",
+                              Severity::warning, surface,
+                              fmt::format("line {}: {} holds for one zoom position alone, and is left out", here_.line,
+                                          printable(here_.keyword)));
+            return;
+        }
         if (!read_system() && !read_of_surface() && !is_among(kSilent, here_.keyword)) {
             not_understood();
         }
@@ -181,6 +206,8 @@ class SeqReader {
             private_wavelengths_.clear();
         } else if (here_.keyword == "ZOO") {
             read_zoom();
+        } else if (here_.keyword == "DEL") {
+            read_deletion();
         } else if (is_among(kVignettingFactors, here_.keyword)) {
             remarks_.at(here_, "vignetting-factors", Severity::info, 0,
                         "vignetting factors are left out; rims cut the beams");
@@ -204,6 +231,20 @@ class SeqReader {
                                     file_.unit_mm));
         } else {
             here_.fail(unit, "M, C or I");
+        }
+    }
+
+    /// "DEL S3..5" takes surfaces away; "DEL PIK", "DEL SOL" undo what is not followed here.
+    void read_deletion() {
+        const std::string_view what = here_.word(1);
+        if (what.starts_with("SOL") || is_among(kSolves, what.substr(0, 3))) {
+            return;
+        }
+        if (what.starts_with('S')) {
+            remarks_.at(here_, "deleted-surfaces", Severity::error, 0,
+                        "deletes surfaces, which is not followed: the lens is another");
+        } else {
+            not_understood();
         }
     }
 
@@ -373,7 +414,7 @@ class SeqReader {
         if (here_.keyword == "END" && !words()[0].is_quoted) {
             in_private_catalogue_ = false;
         } else if (here_.keyword == "PWL" && !words()[0].is_quoted) {
-            private_wavelengths_ = here_.numbers_from(1);
+            read_private_wavelengths();
         } else if (words().size() > 1 && parse_number(here_.word(1)) && !private_wavelengths_.empty()) {
             const std::vector<double> indices = here_.numbers_from(1);
             if (indices.size() != private_wavelengths_.size()) {
@@ -382,12 +423,26 @@ class SeqReader {
             }
             std::vector<WavelengthValue> table;
             for (std::size_t i = 0; i < indices.size(); ++i) {
+                if (!(indices[i] >= 1.0 && indices[i] <= 5.0)) {
+                    here_.fail(here_.word(i + 1), "a refractive index from 1 to 5");
+                }
                 table.push_back({private_wavelengths_[i], indices[i]});
             }
             std::ranges::sort(table, {}, &WavelengthValue::wavelength_nm);
             file_.private_glasses[here_.keyword] = std::move(table);
         } else {
             not_understood();
+        }
+    }
+
+    void read_private_wavelengths() {
+        private_wavelengths_ = here_.numbers_from(1);
+        for (auto here = private_wavelengths_.begin(); here != private_wavelengths_.end(); ++here) {
+            if (!(*here > 0.0 && std::isfinite(*here)) ||
+                std::find(private_wavelengths_.begin(), here, *here) != here) {
+                here_.fail(here_.word(here - private_wavelengths_.begin() + 1),
+                           "wavelengths in nm, none of them twice");
+            }
         }
     }
 

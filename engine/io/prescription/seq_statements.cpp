@@ -47,10 +47,10 @@ std::vector<SeqStatement> seq_statements(std::string_view text) {
         }
         statement = {};
     };
-    for (int number = 1; !text.empty(); ++number) {
-        const std::size_t end = std::min(text.find('\n'), text.size());
-        std::string_view line = trimmed(text.substr(0, end));
-        text.remove_prefix(std::min(text.size(), end + 1));
+    int number = 0;
+    for (const std::string_view whole : lines_of(text)) {
+        ++number;
+        std::string_view line = trimmed(whole);
         const bool goes_on = line.ends_with('&');
         if (goes_on) {
             line.remove_suffix(1);

@@ -50,12 +50,9 @@ class ZmxReader {
     }
 
     ZmxFile read(std::string_view text) {
-        while (!text.empty()) {
-            const std::size_t end = std::min(text.find_first_of("\r\n"), text.size());
+        for (const std::string_view line : lines_of(text)) {
             ++here_.line;
-            read_line(text.substr(0, end));
-            const bool crlf = text.substr(end).starts_with("\r\n");
-            text.remove_prefix(std::min(text.size(), end + (crlf ? 2 : 1)));
+            read_line(line);
         }
         if (file_.surfaces.empty()) {
             throw InputError(fmt::format("{}: holds no SURF, expected a sequential Zemax file", path_.string()));
@@ -76,12 +73,7 @@ class ZmxReader {
         const std::size_t end = std::min(content.find_first_of(" \t"), content.size());
         here_.keyword = content.substr(0, end);
         rest_ = trimmed(content.substr(end));
-        here_.words.clear();
-        for (std::string_view left = rest_; !left.empty();) {
-            const std::size_t length = std::min(left.find_first_of(" \t"), left.size());
-            here_.words.push_back(left.substr(0, length));
-            left = trimmed(left.substr(length));
-        }
+        here_.words = words_of(rest_);
         if (here_.keyword.empty()) {
             return;
         }
