@@ -121,10 +121,11 @@ void check_thickness_sign(const CheckedLens& checked, int i, Findings& findings)
     if (is_last) {
         add(findings, "no-image-distance", Severity::info, i + 1,
             "the last thickness is 0: the table does not say where the sensor stands", 0.0, 0.0, "mm");
+    } else if (checked.is_dummy(i) || checked.is_dummy(i + 1)) {
+        return;  // a plane that says a place within a medium takes no room
     } else if (checked.is_glass_behind(i)) {
         add(findings, "zero-thickness", Severity::error, i + 1, "the glass behind it has no thickness", 0.0, 0.0, "mm");
-    } else if (!checked.is_dummy(i) && !checked.is_dummy(i + 1) &&
-               checked.row(i).curvature() != checked.row(i + 1).curvature()) {
+    } else if (checked.row(i).curvature() != checked.row(i + 1).curvature()) {
         add(findings, "zero-thickness", Severity::warning, i + 1,
             "it touches the next surface, though neither is a dummy and they are not curved alike", 0.0, 0.0, "mm");
     }
