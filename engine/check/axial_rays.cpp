@@ -24,8 +24,8 @@ constexpr double kAxialColour = 0.015;
 
 /// Rules 23 and 27.
 void check_beam(const CheckedLens& checked, const AxialBeam& beam, Findings& findings) {
-    const double paraxial = 0.5 * checked.paraxial->entrance_pupil_diameter;
-    if (beam.semi_diameter <= 0.0) {
+    const double paraxial = paraxial_beam(checked).height;
+    if (beam.height <= 0.0) {
         findings.push_back({.code = "marginal-ray",
                             .severity = Severity::error,
                             .surface = beam.limit.surface + 1,
@@ -38,43 +38,43 @@ void check_beam(const CheckedLens& checked, const AxialBeam& beam, Findings& fin
     const bool is_broken = beam.limit.status == RayStatus::missed ||
                            beam.limit.status == RayStatus::total_internal_reflection || beam.limit.is_backwards;
     if (is_broken) {
-        findings.push_back(
-            {.code = "marginal-ray",
-             .severity = beam.semi_diameter < kShortBeam * paraxial ? Severity::error : Severity::warning,
-             .surface = beam.limit.surface + 1,
-             .message = fmt::format("the axial beam ends {:.4g} mm from the axis, where the stop would "
-                                    "let {:.4g} mm pass: {}",
-                                    beam.semi_diameter, paraxial, words(beam.limit)),
-             .value = beam.semi_diameter,
-             .limit = paraxial,
-             .unit = "mm"});
+        findings.push_back({.code = "marginal-ray",
+                            .severity = beam.height < kShortBeam * paraxial ? Severity::error : Severity::warning,
+                            .surface = beam.limit.surface + 1,
+                            .message = fmt::format("the axial beam ends {:.4g} mm from the axis, where the stop would "
+                                                   "let {:.4g} mm pass: {}",
+                                                   beam.height, paraxial, words(beam.limit)),
+                            .value = beam.height,
+                            .limit = paraxial,
+                            .unit = "mm"});
         return;
     }
     if (beam.limit.status != RayStatus::clipped) {
         return;
     }
-    const double of_stop = stop_limited_beam(checked).semi_diameter;
+    const double of_stop = stop_limited_beam(checked).height;
     const double real_f_number = 0.5 / std::max(1e-12, beam.exit_sine);
-    if (beam.semi_diameter < kRimLimits * of_stop) {
+    if (beam.height < kRimLimits * of_stop) {
         findings.push_back(
             {.code = "stop-not-limiting",
              .severity = Severity::warning,
              .surface = beam.limit.surface + 1,
              .message = fmt::format("its rim cuts the axial beam to {:.4g} mm, where the stop lets "
                                     "{:.4g} mm pass: f/{:.2f} by real rays, f/{:.2f} by the stop",
-                                    beam.semi_diameter, of_stop, real_f_number, checked.paraxial->f_number),
-             .value = beam.semi_diameter,
+                                    beam.height, of_stop, real_f_number, paraxial_beam(checked).f_number),
+             .value = beam.height,
              .limit = of_stop,
              .unit = "mm"});
     }
 }
 
-/// Beside rule 22: where pupil aberration parts the real f-number from the paraxial one.
+/// Beside rule 22: where pupil aberration parts the real f-number from the paraxial one, both of the object that the
+/// table is set to.
 void report_real_f_number(const CheckedLens& checked, const AxialBeam& beam, Findings& findings) {
     const double real = 0.5 / beam.exit_sine;
-    const double paraxial = checked.paraxial->f_number;
+    const double paraxial = paraxial_beam(checked).f_number;
     constexpr double kWorthSaying = 0.02;
-    if (beam.semi_diameter > 0.0 && std::isfinite(real) && std::abs(real / paraxial - 1.0) > kWorthSaying) {
+    if (beam.height > 0.0 && std::isfinite(real) && std::abs(real / paraxial - 1.0) > kWorthSaying) {
         findings.push_back({.code = "real-f-number",
                             .severity = Severity::info,
                             .message = fmt::format("the axial beam's real f-number is {:.3f}, the paraxial one {:.3f}",
@@ -86,10 +86,10 @@ void report_real_f_number(const CheckedLens& checked, const AxialBeam& beam, Fin
 
 /// A number that is wrong mostly shows in the image before anything else: rays that should meet do not.
 void check_blur(const CheckedLens& checked, const AxialBeam& beam, Findings& findings) {
-    if (beam.semi_diameter <= 0.0) {
+    if (beam.height <= 0.0) {
         return;
     }
-    const double blur = axial_blur(checked, beam.semi_diameter) / std::abs(checked.focus->efl);
+    const double blur = axial_blur(checked, beam.height) / std::abs(checked.focus->efl);
     if (blur > kBlur) {
         findings.push_back({.code = "blur",
                             .severity = Severity::warning,

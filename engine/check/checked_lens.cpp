@@ -1,5 +1,7 @@
 #include "engine/check/checked_lens.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -17,7 +19,8 @@ double index_behind(const PrescribedSurface& row, const std::optional<Glass>& me
     if (!row.medium.glass.empty() && override_index != settings.indices.end()) {
         return override_index->second;
     }
-    return medium ? refractive_index(medium->formula, settings.wavelength_nm) : kUnknown;
+    const bool is_known = medium && covers(*medium, settings.wavelength_nm);
+    return is_known ? refractive_index(medium->formula, settings.wavelength_nm) : kUnknown;
 }
 
 /// What is claimed from outside goes before what the file says.
@@ -60,6 +63,12 @@ void trace_if_possible(CheckedLens& checked) {
     checked.assumed_stop = assume_stop(traceable);
     try {
         checked.lens = make_lens(traceable, *checked.known_glasses, checked.settings.indices);
+        for (const LensSurface& surface : checked.lens->surfaces) {
+            if (!covers(surface.medium, checked.settings.wavelength_nm)) {
+                throw InputError(fmt::format("the index of {} is not known at {} nm", surface.medium.name,
+                                             checked.settings.wavelength_nm));
+            }
+        }
         checked.traced = at_wavelength<double>(*checked.lens, checked.settings.wavelength_nm);
         checked.paraxial = paraxial_data(*checked.traced);
     } catch (const InputError& error) {
@@ -105,12 +114,6 @@ Focus paraxial_focus(const ParaxialTable& table, double object_distance_mm) {
     return {.efl = -1.0 / rear.slope,
             .bfl = -rear.height / rear.slope,
             .image_distance = paraxial_image_distance(lens, object_distance_mm)};
-}
-
-bool CheckedLens::is_incomplete(int i) const {
-    return std::ranges::any_of(prescription.remarks, [&](const Finding& remark) {
-        return remark.surface == i + 1 && remark.severity != Severity::info;
-    });
 }
 
 bool CheckedLens::is_dummy(int i) const {

@@ -37,7 +37,7 @@ struct CheckedLens {
     const GlassCatalogue* known_glasses = nullptr;
 
     std::vector<std::optional<Glass>> media;  // behind each surface; nothing where it is not known
-    ParaxialTable table;                      // NaN where a number is missing
+    ParaxialTable table;                      // NaN where a number is missing, or a glass has none at the wavelength
     std::optional<Focus> focus;               // nothing where a number is missing
     std::vector<double> semi_diameters;       // stated ones, else the rim, else estimated, else NaN
     std::vector<bool> is_estimated;           // whether that semi-diameter is not the table's
@@ -52,8 +52,6 @@ struct CheckedLens {
     [[nodiscard]] int size() const { return static_cast<int>(prescription.surfaces.size()); }
     [[nodiscard]] const PrescribedSurface& row(int i) const { return prescription.surfaces[i]; }
     [[nodiscard]] bool is_glass_behind(int i) const { return !row(i).medium.is_air() && table.index[i] != 1.0; }
-    /// Whether the reader had to leave something of the surface out.
-    [[nodiscard]] bool is_incomplete(int i) const;
     /// Whether light passes the surface unchanged: a stop's plane, or a dummy.
     [[nodiscard]] bool is_dummy(int i) const;
     /// Behind the surface, or in front of the first: the index.

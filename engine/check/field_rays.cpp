@@ -48,7 +48,13 @@ RayFate first_failure(const CheckedLens& checked) {
     for (int k = 1; k < kAngles; ++k) {
         const double angle = 90.0 * kDegree * k / kAngles;
         const Vec3d way{0.0, std::sin(angle), std::cos(angle)};
-        const TracedRay<double> outwards = trace<Direction::reverse>(front, Ray<double>{{0.0, 0.0, z}, -1.0 * way});
+        // Where the stop is a glass surface, the ray bends at its vertex.
+        const double sine = lens.surfaces[stop].reverse_ratio * way.y;
+        if (!(sine < 1.0)) {
+            return {.status = RayStatus::total_internal_reflection, .surface = stop};
+        }
+        const Vec3d back{0.0, -sine, -std::sqrt(1.0 - sine * sine)};
+        const TracedRay<double> outwards = trace<Direction::reverse>(front, Ray<double>{{0.0, 0.0, z}, back});
         const TracedRay<double> inwards = trace<Direction::forward>(rear, Ray<double>{{0.0, 0.0, z}, way});
         if (stop > 0 && outwards.status != RayStatus::ok) {
             return {.status = outwards.status, .surface = outwards.surface};
@@ -174,7 +180,7 @@ void check_vignetting(const CheckedLens& checked, double field, double axial, do
 
 /// Rule 33, and the order of surfaces.
 void check_beam(const CheckedLens& checked, double field, const std::optional<ChiefRay>& chief, Findings& findings) {
-    const double axial = axial_beam(checked).semi_diameter;
+    const double axial = axial_beam(checked).height;
     if (!(axial > 0.0) || !chief) {
         return;
     }

@@ -43,12 +43,9 @@ struct Space {
     double rear_reach = checked.semi_diameters[i + 1];
 
     [[nodiscard]] bool is_estimated() const { return checked.is_estimated[i] || checked.is_estimated[i + 1]; }
-    /// What an unstated semi-diameter implies, or a shape of which the reader left something out, is no more than worth
-    /// a look.
+    /// What an unstated semi-diameter implies is no more than worth a look.
     [[nodiscard]] Severity at_most(Severity severity) const {
-        return is_estimated() || checked.is_incomplete(i) || checked.is_incomplete(i + 1)
-                   ? std::min(severity, Severity::warning)
-                   : severity;
+        return is_estimated() ? std::min(severity, Severity::warning) : severity;
     }
     [[nodiscard]] int surface() const { return i + 1; }
 };

@@ -30,7 +30,7 @@ GlassMatch resolve(const CheckedLens& checked, const std::string& name) {
     return checked.known_glasses->resolve(name, checked.prescription.preferred_makers);
 }
 
-std::string where_air_begins(const StatedMedium& medium) {
+std::string medium_in_words(const StatedMedium& medium) {
     return medium.glass.empty() ? fmt::format("n_d = {}", medium.n_d.value_or(Finding::kNothing)) : medium.glass;
 }
 
@@ -132,6 +132,15 @@ void check_name(const CheckedLens& checked, int i, Findings& findings) {
                                 .message = fmt::format("the glass {} is taken for {} {}", medium.glass,
                                                        match.glass->catalogue, match.glass->name)});
         }
+        if (!match.also_in.empty()) {
+            findings.push_back(
+                {.code = "glass-ambiguous",
+                 .severity = Severity::info,
+                 .surface = i + 1,
+                 .message = fmt::format("the glass {} is taken for that of {}; a glass of this name, with another "
+                                        "formula, is in {}, too",
+                                        medium.glass, match.glass->catalogue, fmt::join(match.also_in, ", "))});
+        }
         if (match.glass->status == "obsolete") {
             findings.push_back(
                 {.code = "glass-obsolete",
@@ -193,46 +202,60 @@ void report_normal_line(const CheckedLens& checked, Findings& findings) {
             continue;
         }
         surfaces.push_back(i + 1);
-        // The model errs most in the blue.
+        // In a render, the model errs most in the blue.
         const double error = error_at(i, kRenderFrom);
         if (error >= worst_error) {
             worst_error = error;
             worst = i;
         }
     }
-    if (!surfaces.empty()) {
-        findings.push_back(
-            {.code = "normal-line",
-             .severity = Severity::info,
-             .surface = worst + 1,
-             .message = fmt::format("given by n_d and V_d alone, as are {} glasses here (behind surfaces {}): their "
-                                    "dispersion is modelled, with an error in n of up to {:.1e} at {} nm and {:.1e} "
-                                    "at {} nm for this one, the worst (95 % of the real glasses nearby)",
-                                    surfaces.size(), fmt::join(surfaces, ", "), error_at(worst, kRenderFrom),
-                                    kRenderFrom, error_at(worst, kRenderTo), kRenderTo),
-             .value = worst_error});
+    if (surfaces.empty()) {
+        return;
     }
+    const std::string others = surfaces.size() > 1
+                                   ? fmt::format(", the worst of {} such glasses here (behind surfaces {})",
+                                                 surfaces.size(), fmt::join(surfaces, ", "))
+                                   : "";
+    std::vector<std::string> errors;
+    for (const double wavelength : {kNormalLineMinNm, kRenderFrom, kRenderTo, kNormalLineMaxNm}) {
+        errors.push_back(fmt::format("{:.1e} at {} nm", error_at(worst, wavelength), wavelength));
+    }
+    findings.push_back({.code = "normal-line",
+                        .severity = Severity::info,
+                        .surface = worst + 1,
+                        .message = fmt::format("given by n_d and V_d alone{}: its dispersion is modelled, with an "
+                                               "error in n of up to {} (95 % of the real glasses nearby)",
+                                               others, fmt::join(errors, ", ")),
+                        .value = worst_error});
 }
 
-/// Rule 17.
+/// Rule 17. Without an index at the wavelength that is asked for, nothing can be computed; without one elsewhere, some
+/// renders are off.
 void check_wavelengths(const CheckedLens& checked, int i, Findings& findings) {
-    const Glass& glass = *checked.media[i];
-    std::vector<double> wavelengths = checked.prescription.wavelengths_nm;
-    wavelengths.insert(wavelengths.end(), {kRenderFrom, kRenderTo, checked.settings.wavelength_nm});
-    for (const double wavelength : wavelengths) {
-        if (!covers(glass, wavelength)) {
-            findings.push_back(
-                {.code = "wavelength-range",
-                 .severity = Severity::warning,
-                 .surface = i + 1,
-                 .message = fmt::format("{} nm is outside the range of {}, {} to {} nm", wavelength, glass.name,
-                                        glass.min_wavelength_nm, glass.max_wavelength_nm),
-                 .value = wavelength,
-                 .limit = wavelength < glass.min_wavelength_nm ? glass.min_wavelength_nm : glass.max_wavelength_nm,
-                 .unit = "nm"});
-            return;
-        }
+    if (checked.settings.indices.contains(checked.row(i).medium.glass)) {
+        return;  // an index in place of a glass holds at every wavelength
     }
+    const Glass& glass = *checked.media[i];
+    const double asked = checked.settings.wavelength_nm;
+    std::vector<double> wavelengths{asked};
+    wavelengths.insert(wavelengths.end(), checked.prescription.wavelengths_nm.begin(),
+                       checked.prescription.wavelengths_nm.end());
+    wavelengths.insert(wavelengths.end(), {kRenderFrom, kRenderTo});
+    const auto outside =
+        std::ranges::find_if(wavelengths, [&](double wavelength) { return !covers(glass, wavelength); });
+    if (outside == wavelengths.end()) {
+        return;
+    }
+    const bool nothing_computed = *outside == asked;
+    findings.push_back({.code = "wavelength-range",
+                        .severity = nothing_computed ? Severity::error : Severity::warning,
+                        .surface = i + 1,
+                        .message = fmt::format("{} nm is outside the range of {}, {} to {} nm{}", *outside, glass.name,
+                                               glass.min_wavelength_nm, glass.max_wavelength_nm,
+                                               nothing_computed ? ": nothing is computed there" : ""),
+                        .value = *outside,
+                        .limit = *outside < glass.min_wavelength_nm ? glass.min_wavelength_nm : glass.max_wavelength_nm,
+                        .unit = "nm"});
 }
 
 /// Rule 18.
@@ -243,7 +266,7 @@ void check_last_medium(const CheckedLens& checked, Findings& findings) {
                             .severity = Severity::warning,
                             .surface = last + 1,
                             .message = fmt::format("the last surface is followed by {}, not by air: is a row missing?",
-                                                   where_air_begins(checked.row(last).medium)),
+                                                   medium_in_words(checked.row(last).medium)),
                             .value = checked.table.index[last],
                             .limit = 1.0});
     }
@@ -254,9 +277,12 @@ void check_last_medium(const CheckedLens& checked, Findings& findings) {
 void check_glasses(const CheckedLens& checked, Findings& findings) {
     for (int i = 0; i < checked.size(); ++i) {
         check_name(checked, i, findings);
-        if (!checked.row(i).medium.is_air() && checked.media[i] && std::isfinite(checked.table.index[i])) {
+        if (checked.row(i).medium.is_air() || !checked.media[i]) {
+            continue;
+        }
+        check_wavelengths(checked, i, findings);
+        if (std::isfinite(checked.table.index[i])) {
             check_index_range(checked, i, findings);
-            check_wavelengths(checked, i, findings);
         }
     }
     check_achromatic(checked, findings);

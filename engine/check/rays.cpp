@@ -24,8 +24,7 @@ Ray<double> axial_ray(const CheckedLens& checked, double h) {
 
 AxialBeam beam_through(const CheckedLens& checked, const TraceLens<double>& lens) {
     AxialBeam beam;
-    const double widest =
-        1.5 * std::max(checked.semi_diameters.front(), 0.5 * checked.paraxial->entrance_pupil_diameter);
+    const double widest = 1.5 * std::max(checked.semi_diameters.front(), paraxial_beam(checked).height);
     if (!std::isfinite(widest)) {
         return beam;
     }
@@ -44,7 +43,7 @@ AxialBeam beam_through(const CheckedLens& checked, const TraceLens<double>& lens
         const double middle = 0.5 * (passing + failing);
         (follow(lens, axial_ray(checked, middle)).passes() ? passing : failing) = middle;
     }
-    beam.semi_diameter = passing;
+    beam.height = passing;
     beam.limit = follow(lens, axial_ray(checked, failing));
     const Vec3d way = follow(lens, axial_ray(checked, passing)).ray.direction;
     beam.exit_sine = std::hypot(way.x, way.y);
@@ -61,21 +60,24 @@ RayFate follow(const TraceLens<double>& lens, const Ray<double>& ray, Rims rims)
         if (event.status == RayStatus::missed) {
             return;
         }
+        const TraceSurface<double>& surface = lens.surfaces[event.surface];
+        if (surface.index_before == surface.index_after) {
+            return;  // it bends no ray, so it does not matter on which side of a neighbour the ray meets it
+        }
         const Vec3d step = event.ray.origin - before.origin;
         if (!is_first && !fate.is_backwards && dot(step, before.direction) < kBackwards) {
             fate.is_backwards = true;
             fate.surface = event.surface;
         }
         is_first = false;
-        const TraceSurface<double>& surface = lens.surfaces[event.surface];
-        if (event.status == RayStatus::ok && surface.index_before != surface.index_after) {
+        if (event.status == RayStatus::ok) {
             // From the bend: n' d' − n d = Γ N, with Γ = n' cos i' − n cos i.
             const Vec3d bend = surface.index_after * event.ray.direction - surface.index_before * before.direction;
             const double bent = length(bend);
             if (bent > 0.0) {
                 const double cosine = std::min(1.0, std::abs(dot(before.direction, (1.0 / bent) * bend)));
-                const double denser_cosine = std::min(1.0, std::abs(dot(event.ray.direction, (1.0 / bent) * bend)));
-                const double incidence = std::acos(std::min(cosine, denser_cosine));  // in the thinner medium
+                const double cosine_after = std::min(1.0, std::abs(dot(event.ray.direction, (1.0 / bent) * bend)));
+                const double incidence = std::acos(std::min(cosine, cosine_after));  // in the thinner medium
                 if (incidence > fate.largest_incidence) {
                     fate.largest_incidence = incidence;
                     fate.steepest_surface = event.surface;
@@ -127,6 +129,17 @@ TraceLens<double> without_rims(const CheckedLens& checked, bool keep_stop) {
     return lens;
 }
 
+ParaxialBeam paraxial_beam(const CheckedLens& checked) {
+    const TraceLens<double>& lens = *checked.traced;
+    const int stop = checked.lens->stop_index();
+    const double distance = checked.prescription.object_distance_mm;
+    const ParaxialRay any{1.0, std::isinf(distance) ? 0.0 : 1.0 / distance};
+    const double at_stop = trace_paraxial(lens, any, 0, stop).height;
+    const double behind = trace_paraxial(lens, any, 0, checked.size() - 1).slope;
+    const double height = std::abs(std::sqrt(lens.surfaces[stop].semi_diameter_squared) / at_stop);
+    return {.height = height, .f_number = 0.5 / std::abs(height * behind)};
+}
+
 AxialBeam axial_beam(const CheckedLens& checked) {
     return beam_through(checked, *checked.traced);
 }
@@ -135,7 +148,7 @@ AxialBeam stop_limited_beam(const CheckedLens& checked) {
     return beam_through(checked, without_rims(checked, true));
 }
 
-double axial_blur(const CheckedLens& checked, double beam_semi_diameter) {
+double axial_blur(const CheckedLens& checked, double beam_height) {
     // Transverse height y + t z in planes z behind the last vertex, weighed with the ring of the pupil that each ray
     // stands for: Σ w (y + t z)² is least at z = −Σ w y t / Σ w t².
     constexpr int kRays = 32;
@@ -143,7 +156,7 @@ double axial_blur(const CheckedLens& checked, double beam_semi_diameter) {
     double yt = 0.0;
     double tt = 0.0;
     for (int k = 0; k < kRays; ++k) {
-        const double h = beam_semi_diameter * (k + 0.5) / kRays;
+        const double h = beam_height * (k + 0.5) / kRays;
         const RayFate fate = follow(*checked.traced, axial_ray(checked, h));
         if (!fate.passes()) {
             continue;

@@ -11,7 +11,7 @@ namespace lensproof {
 struct RayFate {
     RayStatus status = RayStatus::ok;
     int surface = 0;                 // from 0: where it failed, or was cut first
-    bool is_backwards = false;       // it met `surface` before the one in front of it: no physical order
+    bool is_backwards = false;       // it met `surface` before the one that bent it last: no physical order
     double largest_incidence = 0.0;  // rad
     int steepest_surface = 0;
     Ray<double> ray;  // behind the last surface that it reached
@@ -27,19 +27,29 @@ std::string words(const RayFate& fate);
 /// The lens with rims so wide that none cuts; with `keep_stop`, the stop still does.
 TraceLens<double> without_rims(const CheckedLens& checked, bool keep_stop);
 
-/// The rays from the axial object point, by their height in the plane of the first vertex.
+/// The real rays from the axial object point. They are told apart by their height in the plane of the first vertex,
+/// which is the beam's semi-diameter in front of the lens where the object is far, and less where it is near.
 struct AxialBeam {
-    double semi_diameter = 0.0;  // mm: the largest height up to which every ray passes
-    RayFate limit;               // of the ray just above
-    double exit_sine = 0.0;      // of the outermost ray's angle with the axis behind the lens
+    double height = 0.0;     // mm, in the first vertex's plane: the largest up to which every ray passes
+    RayFate limit;           // of the ray just above
+    double exit_sine = 0.0;  // of the outermost ray's angle with the axis behind the lens
 };
+
+/// What an axial beam is held against: the paraxial ray from the same object point through the stop's edge.
+struct ParaxialBeam {
+    double height = 0.0;    // mm, in the first vertex's plane
+    double f_number = 0.0;  // the working one, 1 / (2 |u'|): that of the lens where the object is far
+};
+
+ParaxialBeam paraxial_beam(const CheckedLens& checked);
 
 AxialBeam axial_beam(const CheckedLens& checked);
 
 /// The beam that the stop alone would leave.
 AxialBeam stop_limited_beam(const CheckedLens& checked);
 
-/// The rms distance (mm) from the axis of the axial beam's rays in the plane where that is smallest.
-double axial_blur(const CheckedLens& checked, double beam_semi_diameter);
+/// The rms distance (mm) from the axis of the axial beam's rays in the plane where that is smallest; up to
+/// `beam_height` in the first vertex's plane.
+double axial_blur(const CheckedLens& checked, double beam_height);
 
 }  // namespace lensproof

@@ -16,6 +16,7 @@ namespace {
 constexpr std::size_t kMost = 5;         // suggestions that are reported
 constexpr double kRounding = 5e-4;       // of the focal length: residuals below it are alike
 constexpr std::size_t kNeighbours = 12;  // glasses that one may have been mistaken for
+constexpr double kThinnestShare = 0.02;  // of the diameter: no glass is meant to be thinner
 constexpr double kFromWarning = 0.003;   // residual from which something looks wrong
 
 /// One number of the table as it might have been meant.
@@ -119,7 +120,7 @@ class Trials {
             constexpr double kFarFetched = 3.0;
             ParaxialTable table = lens_.table;
             table.index[i] = refractive_index(glass.formula, lens_.settings.wavelength_nm);
-            if (glass.name != medium.glass) {
+            if (glass.name != medium.glass && covers(glass, lens_.settings.wavelength_nm)) {
                 judge(i, std::move(table), kFarFetched,
                       fmt::format("glass {} {} in place of {} behind it", glass.catalogue, glass.name, medium.glass));
             }
@@ -131,7 +132,8 @@ class Trials {
     std::vector<Trial> found_;
 };
 
-/// Whether the changed table's glass would cut through itself at its clear apertures.
+/// Whether the changed table could be made: no glass that is a foil, or that cuts through itself at its clear
+/// apertures.
 bool is_possible(const CheckedLens& checked, const Trial& trial) {
     const auto row = [&](int i) {
         PrescribedSurface changed = checked.row(i);
@@ -146,6 +148,10 @@ bool is_possible(const CheckedLens& checked, const Trial& trial) {
             continue;
         }
         const double reach = std::min(checked.semi_diameters[i], checked.semi_diameters[i + 1]);
+        const bool is_foil = trial.table.gap[i] < kThinnestShare * 2.0 * checked.semi_diameters[i];
+        if (checked.is_glass_behind(i) && is_foil && trial.table.gap[i] != checked.table.gap[i]) {
+            return false;
+        }
         if (std::isfinite(reach) && !(separation_at(row(i), row(i + 1), reach) > 0.0)) {
             return false;
         }

@@ -74,35 +74,6 @@ StatedData parse_claims(const std::string& text) {
     return claims;
 }
 
-IndexOverrides parse_indices(const std::vector<std::string>& texts) {
-    IndexOverrides overrides;
-    for (const std::string& text : texts) {
-        const std::size_t equals = text.find('=');
-        if (equals == 0 || equals == std::string::npos) {
-            throw InputError(fmt::format("--index is \"{}\", expected NAME=VALUE", text));
-        }
-        overrides[text.substr(0, equals)] = parse_finite(text.substr(equals + 1), "--index " + text);
-    }
-    return overrides;
-}
-
-/// A number, or null where there is none: JSON knows no NaN.
-nlohmann::ordered_json number_or_null(double value) {
-    return std::isfinite(value) ? nlohmann::ordered_json(value) : nlohmann::ordered_json(nullptr);
-}
-
-/// Every key is there; what does not apply is null: the surface of a finding about the lens as a whole, say.
-nlohmann::ordered_json finding_json(const Finding& finding) {
-    return {
-        {"code", finding.code},
-        {"severity", severity_name(finding.severity)},
-        {"surface", finding.surface > 0 ? nlohmann::ordered_json(finding.surface) : nlohmann::ordered_json(nullptr)},
-        {"message", finding.message},
-        {"value", number_or_null(finding.value)},
-        {"limit", number_or_null(finding.limit)},
-        {"unit", finding.unit}};
-}
-
 nlohmann::ordered_json computed_json(const ComputedData& computed) {
     nlohmann::ordered_json json;
     if (!computed.zoom_position.empty()) {
@@ -163,10 +134,12 @@ void print_report(const std::string& lens, const CheckReport& report) {
     }
 }
 
-/// The section at the position that is checked, or at the first.
-void write_plot(const std::string& file, const Prescription& prescription, const GlassCatalogue& glasses,
-                const CheckSettings& settings, const CheckReport& report) {
-    const Prescription drawn = at_zoom_position(prescription, settings.zoom_position.value_or(0));
+/// The section at the position that is checked, or at the first, with what was found there.
+void write_plot(const std::string& file, const Prescription& prescription, const StatedData& claims,
+                const GlassCatalogue& glasses, CheckSettings settings) {
+    settings.zoom_position = settings.zoom_position.value_or(0);
+    const CheckReport report = check_prescription(prescription, claims, glasses, settings);
+    const Prescription drawn = at_zoom_position(prescription, *settings.zoom_position);
     std::optional<Lens> lens;
     try {
         lens = make_lens(drawn, glasses, settings.indices);
@@ -208,7 +181,7 @@ int run_check(const CheckOptions& options) {
             print_report(options.lenses[i], report);
         }
         if (!options.plot_file.empty()) {
-            write_plot(options.plot_file, prescriptions[i], own, settings[i], report);
+            write_plot(options.plot_file, prescriptions[i], claims, own, settings[i]);
         }
     }
     write_json_result(options.common, {{"lenses", lenses}});
@@ -229,10 +202,7 @@ void add_check_command(CLI::App& app, int& status) {
                      "What the source claims where the file is silent or wrong: efl_mm, bfl_mm, f_number, "
                      "half_field_deg, image_circle_mm, total_track_mm (of each lens; of a zoom, at each position)")
         ->type_name("KEY=NUMBER,…");
-    command
-        ->add_option("--index", options->indices, "NAME=VALUE: a constant index in place of a glass; may be repeated")
-        ->type_name("NAME=VALUE")
-        ->allow_extra_args(false);  // what follows is a lens
+    add_index_option(*command, options->indices);
     command->add_option("--wavelength", options->wavelength_nm, "nm, of first-order data and rays")
         ->check(kPositiveOption)
         ->capture_default_str();

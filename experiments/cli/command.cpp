@@ -9,6 +9,8 @@
 
 #include "engine/io/file.h"
 #include "engine/io/glass/glass_file.h"
+#include "engine/io/input_error.h"
+#include "engine/io/text.h"
 
 namespace lensproof {
 
@@ -70,6 +72,28 @@ GlassCatalogue read_glass_catalogues(const std::vector<std::string>& files) {
     return catalogue;
 }
 
+void add_index_option(CLI::App& command, std::vector<std::string>& texts) {
+    command.add_option("--index", texts, "NAME=VALUE: a constant index in place of a glass; may be repeated")
+        ->type_name("NAME=VALUE")
+        ->allow_extra_args(false);  // what follows is a lens
+}
+
+IndexOverrides parse_indices(const std::vector<std::string>& texts) {
+    IndexOverrides overrides;
+    for (const std::string& text : texts) {
+        const std::size_t equals = text.find('=');
+        if (equals == 0 || equals == std::string::npos) {
+            throw InputError(fmt::format("--index is \"{}\", expected NAME=VALUE", printable(text)));
+        }
+        const std::optional<double> index = parse_number(text.substr(equals + 1));
+        if (!index || !(*index >= 1.0 && *index <= 10.0)) {
+            throw InputError(fmt::format("--index {}: expected an index from 1 to 10", printable(text)));
+        }
+        overrides[text.substr(0, equals)] = *index;
+    }
+    return overrides;
+}
+
 void check_json_name(const CommonOptions& options) {
     if (!options.json_file.empty() && options.json_file != "-") {
         check_output_name(options.json_file);
@@ -86,6 +110,21 @@ void write_json_result(const CommonOptions& options, const nlohmann::ordered_jso
     } else {
         write_file(options.json_file, text);
     }
+}
+
+nlohmann::ordered_json number_or_null(double value) {
+    return std::isfinite(value) ? nlohmann::ordered_json(value) : nlohmann::ordered_json(nullptr);
+}
+
+nlohmann::ordered_json finding_json(const Finding& finding) {
+    return {
+        {"code", finding.code},
+        {"severity", severity_name(finding.severity)},
+        {"surface", finding.surface > 0 ? nlohmann::ordered_json(finding.surface) : nlohmann::ordered_json(nullptr)},
+        {"message", finding.message},
+        {"value", number_or_null(finding.value)},
+        {"limit", number_or_null(finding.limit)},
+        {"unit", finding.unit}};
 }
 
 bool prints_text(const CommonOptions& options) {

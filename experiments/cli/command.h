@@ -8,7 +8,9 @@
 #include <string>
 #include <vector>
 
+#include "engine/optics/finding.h"
 #include "engine/optics/glass_catalogue.h"
+#include "engine/optics/lens.h"
 
 namespace lensproof {
 
@@ -36,12 +38,24 @@ void add_glass_catalogue_option(CLI::App& command, std::vector<std::string>& fil
 /// out goes to standard error.
 GlassCatalogue read_glass_catalogues(const std::vector<std::string>& files);
 
+/// Adds --index NAME=VALUE, which may be repeated and takes no more than that one argument.
+void add_index_option(CLI::App& command, std::vector<std::string>& texts);
+
+/// What --index was given. Throws InputError unless each is a name and an index from 1 to 10.
+IndexOverrides parse_indices(const std::vector<std::string>& texts);
+
 /// Throws InputError where --json cannot be written, before long work begins.
 void check_json_name(const CommonOptions& options);
 
 /// Writes the machine-readable result where --json asked for it. Bytes that are not UTF-8, as in some files' names, are
 /// replaced.
 void write_json_result(const CommonOptions& options, const nlohmann::ordered_json& result);
+
+/// A number, or null where there is none: JSON knows no NaN.
+nlohmann::ordered_json number_or_null(double value);
+
+/// Every key is there; what does not apply is null: the surface of a finding about the lens as a whole, say.
+nlohmann::ordered_json finding_json(const Finding& finding);
 
 /// Whether a person-readable result may go to standard output (not when the JSON goes there).
 bool prints_text(const CommonOptions& options);

@@ -20,10 +20,7 @@ struct ConvertOptions {
 nlohmann::ordered_json to_json(const std::vector<Finding>& findings) {
     nlohmann::ordered_json list = nlohmann::ordered_json::array();
     for (const Finding& finding : findings) {
-        list.push_back({{"code", finding.code},
-                        {"severity", severity_name(finding.severity)},
-                        {"surface", finding.surface},
-                        {"message", finding.message}});
+        list.push_back(finding_json(finding));
     }
     return list;
 }

@@ -2,7 +2,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <cmath>
+#include <limits>
 #include <memory>
 
 #include "engine/io/input_error.h"
@@ -21,11 +21,6 @@ struct GlassesOptions {
     std::vector<std::string> names;
     std::vector<std::string> catalogues;
 };
-
-/// A number, or null where there is none: JSON has no NaN.
-nlohmann::ordered_json number_or_null(double value) {
-    return std::isfinite(value) ? nlohmann::ordered_json(value) : nlohmann::ordered_json();
-}
 
 double index_where_covered(const Glass& glass, double wavelength_nm) {
     return covers(glass, wavelength_nm) ? refractive_index(glass.formula, wavelength_nm)

@@ -8,7 +8,6 @@
 #include "engine/io/csv.h"
 #include "engine/io/file.h"
 #include "engine/io/input_error.h"
-#include "engine/io/text.h"
 #include "engine/optics/lens.h"
 #include "experiments/cli/command.h"
 
@@ -65,22 +64,6 @@ std::vector<GivenRay> read_rays(const std::string& file) {
         throw InputError(fmt::format("{}: holds no ray", file));
     }
     return rays;
-}
-
-IndexOverrides parse_indices(const std::vector<std::string>& texts) {
-    IndexOverrides overrides;
-    for (const std::string& text : texts) {
-        const std::size_t equals = text.find('=');
-        if (equals == 0 || equals == std::string::npos) {
-            throw InputError(fmt::format("--index is \"{}\", expected NAME=VALUE", text));
-        }
-        const std::optional<double> index = parse_number(text.substr(equals + 1));
-        if (!index || !(*index >= 1.0 && *index <= 10.0)) {
-            throw InputError(fmt::format("--index {}: expected an index from 1 to 10", printable(text)));
-        }
-        overrides[text.substr(0, equals)] = *index;
-    }
-    return overrides;
 }
 
 /// Collects a row a surface, as CSV or JSON.
@@ -193,10 +176,7 @@ void add_trace_command(CLI::App& app, int& status) {
     command->add_option("--precision", options->precision, "float, double or extended")
         ->check(CLI::IsMember({"float", "double", "extended"}))
         ->capture_default_str();
-    command
-        ->add_option("--index", options->indices, "NAME=VALUE: a constant index in place of a glass; may be repeated")
-        ->type_name("NAME=VALUE")
-        ->allow_extra_args(false);  // what follows is the lens
+    add_index_option(*command, options->indices);
     command->add_option("--zoom", options->zoom, "Position of a zoom lens, by name or number (default: the first)")
         ->type_name("POSITION");
     add_glass_catalogue_option(*command, options->glass_catalogues);

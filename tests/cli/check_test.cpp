@@ -81,6 +81,31 @@ TEST(Check, DrawsALensThatCannotBeTracedToo) {
     EXPECT_EQ(place.run({"check", "tessar", "petzval", "--plot", "out.svg"}).status, 2);
 }
 
+TEST(Check, TakesIndicesThatTraceTakes) {
+    const Workplace place;
+    place.file("rays.csv", "id,x_mm,y_mm,z_mm,dx,dy,dz,wavelength_nm\n1,0,1,-10,0,0,1,587.56\n");
+    for (const char* unusable : {"LAK9=-3", "LAK9=0.5", "LAK9=11", "LAK9=nan", "LAK9", "=1.5"}) {
+        SCOPED_TRACE(unusable);
+        const Outcome check = place.run({"check", "tessar", "--index", unusable});
+        const Outcome trace = place.run({"trace", "tessar", "--rays", "rays.csv", "--index", unusable});
+        EXPECT_EQ(check.status, 2);
+        EXPECT_EQ(check.err, trace.err);
+        EXPECT_NE(check.err.find("expected"), std::string::npos) << check.err;
+    }
+}
+
+TEST(Check, DrawsAZoomPositionWithWhatWasFoundThere) {
+    const Workplace place;
+    place.file("zoom.toml", std::string(kSinglet) +
+                                "[[zoom]]\nname = \"wide\"\ngaps_mm = { 1 = 6.0 }\n"
+                                "[[zoom]]\nname = \"long\"\ngaps_mm = { 1 = 0.5 }\n");
+    EXPECT_EQ(place.run({"check", "zoom.toml", "--plot", "first.svg"}).status, 1) << "for the second position";
+    EXPECT_NE(place.content("first.svg").find("<svg"), std::string::npos);
+    EXPECT_EQ(place.content("first.svg").find("surfaces-cross"), std::string::npos);
+    EXPECT_EQ(place.run({"check", "zoom.toml", "--zoom", "2", "--plot", "second.svg"}).status, 1);
+    EXPECT_NE(place.content("second.svg").find("surfaces-cross"), std::string::npos);
+}
+
 TEST(Check, AZoomIsCheckedAtOnePositionOrAtAll) {
     const Workplace place;
     const Json all = Json::parse(place.run({"check", "canon-zoom-70-200", "--json", "-"}).out)["lenses"][0];

@@ -64,8 +64,10 @@ TEST(Convert, WarnsOfWhatTheFormCannotSayAndIsDone) {
 TEST(Convert, SaysWhatTheReaderDidNotUnderstand) {
     const Workplace place;
     place.file("a.fx", "#!wobble 3\n10 3 abbe 1.5 60 5\n100000 20 iris 5\n");
-    const Outcome outcome = place.run({"convert", "a.fx", "a.toml"});
+    const Outcome outcome = place.run({"convert", "a.fx", "a.toml", "--json", "a.json"});
     EXPECT_EQ(outcome.status, 0);
+    const nlohmann::json remark = nlohmann::json::parse(place.content("a.json"))["remarks"][0];
+    EXPECT_TRUE(remark["surface"].is_null()) << "it is of the lens as a whole: " << remark;
     EXPECT_NE(outcome.err.find("warning: the line \"!wobble 3\" is not understood (a.fx)"), std::string::npos)
         << outcome.err;
 }

@@ -32,6 +32,61 @@ TEST(CheckerRays, TheHalfBallsRealFNumber) {
                    {"real-f-number", Severity::info, 0, 0.5 / std::sin(delta), 1e-9, 2.5});
 }
 
+/// Set to an object 40 mm in front of its flat face.
+Prescription near_half_ball(double stop_semi_diameter) {
+    Prescription lens = half_ball(stop_semi_diameter);
+    lens.object_distance_mm = 40.0;
+    return lens;
+}
+
+// From 40 mm, the paraxial ray through height a of the front arrives with the slope a / 40, runs with a / 60 in the
+// glass to the height 7a / 6, and leaves with a / 40 − 0.05 · 7a / 6 = −a / 30: f/15/a, not the f/10/a of far objects.
+// The real one has the angle u' = asin(sin u / n) in the glass and passes the centre at a cos u'; it meets the sphere
+// at i = asin(a cos u' / R) and is turned by asin(n sin i) − i.
+TEST(CheckerRays, ANearObjectsFNumbersAreTheWorkingOnes) {
+    constexpr double kHeight = 4.0;
+    const double inside = std::asin(std::sin(std::atan(kHeight / 40.0)) / 1.5);
+    const double incidence = std::asin(0.1 * kHeight * std::cos(inside));
+    const double outside = std::asin(1.5 * std::sin(incidence)) - incidence - inside;
+    expect_planted(near_half_ball(1.0), [=](P& p) { p.surfaces[0].semi_diameter_mm = kHeight; },
+                   {"real-f-number", Severity::info, 0, 0.5 / std::sin(outside), 1e-9, 15.0 / kHeight});
+}
+
+TEST(CheckerRays, ANearObjectsBeamIsHeldAgainstTheStopsFromThere) {
+    const Prescription good = near_half_ball(3.0);
+    EXPECT_EQ(find(checked(good), "marginal-ray"), nullptr);
+    const auto narrow_the_rear = [](P& p) { p.surfaces[1].semi_diameter_mm = 3.0; };
+    expect_planted(good, narrow_the_rear, {"stop-not-limiting", Severity::warning, 2, Finding::kNothing, 0.0, 3.0});
+    Prescription narrowed = good;
+    narrow_the_rear(narrowed);
+    const CheckReport report = checked(narrowed);
+    EXPECT_NE(find(report, "stop-not-limiting")->message.find("f/5.00 by the stop"), std::string::npos) << said(report);
+}
+
+// The rear's rim reaches 20 − √(20² − 6²) = 0.92 mm behind its vertex, past the stop's plane 0.3 mm behind it. No ray
+// bends in that plane, so none is kept from its way.
+TEST(CheckerRays, AStopInsideASurfacesSagTurnsNoRayBack) {
+    Prescription lens;
+    lens.surfaces.resize(3);
+    lens.surfaces[0] = {.radius_mm = 15.0, .thickness_mm = 3.0, .semi_diameter_mm = 7.0};
+    lens.surfaces[0].medium.n_d = 1.5;
+    lens.surfaces[1] = {.radius_mm = 20.0, .thickness_mm = 2.0, .semi_diameter_mm = 7.0};
+    lens.surfaces[2] = {.thickness_mm = 0.0, .semi_diameter_mm = 6.0, .is_stop = true};
+    const auto close_up = [](P& p) { p.surfaces[1].thickness_mm = 0.3; };
+    expect_planted(at_field(lens, 10.0), close_up, {"surfaces-cross", Severity::warning, 2});
+    Prescription closed_up = at_field(lens, 10.0);
+    close_up(closed_up);
+    const CheckReport report = checked(closed_up);
+    EXPECT_EQ(find(report, "order-of-surfaces"), nullptr) << said(report);
+    EXPECT_EQ(find(report, "marginal-ray"), nullptr) << said(report);
+    EXPECT_TRUE(report.ok()) << said(report);
+}
+
+// Where the stop is a glass surface, its own total reflection ends the field: at 90° in air.
+TEST(CheckerRays, AStopOnGlassEndsTheFieldWhereItReflectsTotally) {
+    expect_planted(at_field(half_ball(), 55.0), field(95.0), {"chief-ray", Severity::error, 1, 90.0, 1e-3, 95.0});
+}
+
 // By the law of sines that ray crosses the axis n h / sin δ behind the ball's centre. Over the pupil, the rms of its
 // height y + t z in the plane z of least rms is computed here in 100 times as many zones as in the checker. The
 // midpoint rule in N = 32 zones makes ∫x⁷, ∫x⁵, ∫x³ too small by (7, 5, 3) / 24 N², which takes 60 / 24 N² = 0.24 %

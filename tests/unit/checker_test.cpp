@@ -309,6 +309,15 @@ TEST(Checker, TheReadersRemarksComeFirst) {
     EXPECT_EQ(checked(lens).findings.front().code, "not-understood");
 }
 
+TEST(Checker, AReadersWarningSoftensNoError) {
+    Prescription lens = tessar();
+    lens.remarks.push_back({.code = "not-understood", .surface = 6, .message = "a column"});
+    lens.surfaces[5].thickness_mm = 2.0;
+    const CheckReport report = checked(lens);
+    ASSERT_NE(find(report, "surfaces-cross", 6), nullptr);
+    EXPECT_EQ(find(report, "surfaces-cross", 6)->severity, Severity::error);
+}
+
 TEST(Checker, AZoomIsJudgedAtEachPosition) {
     Prescription lens = tessar();
     lens.zoom = {{.name = "near", .gaps_mm = {{6, 10.64}}, .stop_semi_diameter_mm = {}, .stated = {}},
@@ -340,6 +349,13 @@ TEST(Suggestions, SwappedDigitsAndLostSignsAreFoundFirst) {
     EXPECT_NE(first->message.find("radius -59.06 in place of 59.06 (the sign lost)"), std::string::npos)
         << first->message;
     EXPECT_EQ(first->severity, Severity::info) << "never a silent fix";
+}
+
+// Tronnier's Heliar is off by 0.76 % for the rounding of its indices: its 1.85 mm of glass are not meant to be 0.07 mm.
+TEST(Suggestions, NoGlassIsThoughtToBeAFoil) {
+    const CheckReport report = checked(read_prescription(find_lens_file("heliar-tronnier")));
+    EXPECT_NE(find(report, "focal-length"), nullptr);
+    EXPECT_EQ(find(report, "suggestion"), nullptr) << said(report);
 }
 
 TEST(Digits, ChangesAreThoseOfTheShortestDecimalForm) {

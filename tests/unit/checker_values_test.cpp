@@ -151,6 +151,67 @@ TEST(CheckerValues, AShortTableOfIndicesIsNamedByItsFirstGap) {
                    {"wavelength-range", Severity::warning, 1, 400.0, 0.0, 450.0});
 }
 
+TEST(CheckerValues, NothingIsComputedWhereAGlassHasNoIndex) {
+    const GlassCatalogue glasses = GlassCatalogue::shipped();
+    const Prescription lens = tessar();
+    CheckSettings settings{.wavelength_nm = 200.0, .indices = {}, .zoom_position = {}};
+    const CheckReport report = check_prescription(lens, {}, glasses, settings);
+    const Finding* range = find(report, "wavelength-range");
+    ASSERT_NE(range, nullptr);
+    EXPECT_EQ(range->severity, Severity::error);
+    EXPECT_EQ(range->value, 200.0);
+    EXPECT_GT(range->limit, 200.0);
+    EXPECT_NE(range->message.find(lens.surfaces[range->surface - 1].medium.glass), std::string::npos) << range->message;
+    EXPECT_TRUE(report.computed.empty());
+    EXPECT_EQ(find(report, "focal-length"), nullptr);
+    EXPECT_EQ(find(report, "back-focus"), nullptr);
+    EXPECT_NE(find(report, "not-judged"), nullptr);
+
+    // An index in place of each glass holds at 200 nm, too: the lens is what it is at d with them.
+    for (const PrescribedSurface& row : lens.surfaces) {
+        if (!row.medium.is_air()) {
+            settings.indices[row.medium.glass] = 1.6;
+        }
+    }
+    const CheckReport overridden = check_prescription(lens, {}, glasses, settings);
+    EXPECT_EQ(find(overridden, "wavelength-range"), nullptr) << said(overridden);
+    settings.wavelength_nm = kLineD;
+    ASSERT_EQ(overridden.computed.size(), 1U);
+    EXPECT_EQ(overridden.computed[0].paraxial.efl,
+              check_prescription(lens, {}, glasses, settings).computed.at(0).paraxial.efl);
+}
+
+// SCHOTT, HOYA and others have an F2, each with a formula of its own; a maker's name says which is meant.
+TEST(CheckerValues, ANameOfSeveralMakersIsNoted) {
+    Prescription lens = half_ball();
+    lens.surfaces[0].medium = {};
+    lens.surfaces[0].medium.glass = "SCHOTT F2";
+    expect_planted(lens, [](P& p) { p.surfaces[0].medium.glass = "F2"; }, {"glass-ambiguous", Severity::info, 1});
+    lens.surfaces[0].medium.glass = "F2";
+    const CheckReport report = checked(lens);
+    const std::string& message = find(report, "glass-ambiguous")->message;
+    EXPECT_NE(message.find("taken for that of SCHOTT"), std::string::npos) << message;
+    EXPECT_NE(message.find("HOYA"), std::string::npos) << message;
+}
+
+TEST(CheckerValues, TheModelledDispersionsErrorIsStatedUpToItsEnds) {
+    Prescription lens = half_ball();
+    lens.surfaces[0].medium.V_d = 60.0;
+    CheckReport report = checked(lens);
+    ASSERT_NE(find(report, "normal-line"), nullptr);
+    const std::string one = find(report, "normal-line")->message;
+    for (const char* wavelength : {" at 365 nm", " at 400 nm", " at 700 nm", " at 1014 nm"}) {
+        EXPECT_NE(one.find(wavelength), std::string::npos) << one;
+    }
+    EXPECT_TRUE(one.starts_with("given by n_d and V_d alone: its dispersion")) << one;
+
+    Prescription two = ball(9.0);
+    two.surfaces[0].medium.V_d = two.surfaces[1].medium.V_d = 60.0;
+    report = checked(two);
+    ASSERT_NE(find(report, "normal-line"), nullptr);
+    EXPECT_NE(find(report, "normal-line")->message.find("the worst of 2 such glasses"), std::string::npos);
+}
+
 TEST(CheckerValues, ARowTypedTwiceAndATableWithoutRows) {
     expect_planted(half_ball(), [](P& p) { p.surfaces.push_back(p.surfaces[1]); },
                    {"duplicate-surface", Severity::warning, 3});

@@ -326,11 +326,12 @@ bool is_measurable(const CheckReport& untouched, const CheckReport& corrupted) {
     return !(std::abs(after.efl - before.efl) < limit && std::abs(after.bfl - before.bfl) < limit);
 }
 
+/// Of one kind. What is named and restored is counted among the measurable.
 struct Tally {
     int planted = 0;
     int measurable = 0;
-    int detected_of_all = 0;
-    int detected = 0;
+    int found_of_all = 0;
+    int found_of_measurable = 0;
     int named_rightly = 0;
     int restored = 0;
 };
@@ -363,8 +364,8 @@ TEST(PlantedErrors, AreFoundAndTheUntouchedLibraryIsClean) {
             for (Tally* tally : {&tallies[corruption.kind], &total}) {
                 ++tally->planted;
                 tally->measurable += measurable ? 1 : 0;
-                tally->detected_of_all += codes.empty() ? 0 : 1;
-                tally->detected += measurable && !codes.empty() ? 1 : 0;
+                tally->found_of_all += codes.empty() ? 0 : 1;
+                tally->found_of_measurable += measurable && !codes.empty() ? 1 : 0;
                 tally->named_rightly += measurable && named ? 1 : 0;
                 tally->restored += measurable && restored ? 1 : 0;
             }
@@ -376,11 +377,11 @@ TEST(PlantedErrors, AreFoundAndTheUntouchedLibraryIsClean) {
     }
     const auto print = [](const std::string& kind, const Tally& t) {
         fmt::print("{:36} {:6} {:6.1f} % {:6} {:6.1f} % {:6.1f} % {:6.1f} %\n", kind, t.planted,
-                   100.0 * t.detected_of_all / t.planted, t.measurable, 100.0 * t.detected / t.measurable,
+                   100.0 * t.found_of_all / t.planted, t.measurable, 100.0 * t.found_of_measurable / t.measurable,
                    100.0 * t.named_rightly / t.measurable, 100.0 * t.restored / t.measurable);
     };
     fmt::print("{:36} {:>6} {:>8} {:>6} {:>8} {:>8} {:>8}\n", "planted in " + std::to_string(lenses) + " lenses", "all",
-               "found", "*", "found", "named", "undone");
+               "found", "*", "found*", "named*", "undone*");
     for (const auto& [kind, tally] : tallies) {
         print(kind, tally);
     }
@@ -390,7 +391,14 @@ TEST(PlantedErrors, AreFoundAndTheUntouchedLibraryIsClean) {
         "named: by a finding that is about such a slip; undone: a suggestion gives the right number back.\n"
         "untouched: {} of {} lenses with an error\n",
         false_errors, lenses);
-    EXPECT_GE(total.detected, 0.95 * total.measurable);
+    double sum_over_kinds = 0.0;
+    for (const auto& [kind, tally] : tallies) {
+        const double share = static_cast<double>(tally.found_of_measurable) / tally.measurable;
+        EXPECT_GE(share, 0.90) << kind;
+        sum_over_kinds += share;
+    }
+    EXPECT_GE(sum_over_kinds / static_cast<double>(tallies.size()), 0.95);
+    EXPECT_GE(total.found_of_measurable, 0.95 * total.measurable);
     EXPECT_LE(false_errors, 0.02 * lenses);
 }
 
