@@ -73,10 +73,11 @@ std::optional<ChiefRay> check_chief_ray(const CheckedLens& checked, double field
     if (std::optional<ChiefRay> chief = rays.at_field(field)) {
         return chief;
     }
-    const std::optional<ChiefRay> past_rims = ChiefRays(lens_in_focus(checked, false), wavelength).at_field(field);
-    const double reached = rays.largest_field() / kDegree;
+    const ChiefRays rays_past_rims(lens_in_focus(checked, false), wavelength);
+    const std::optional<ChiefRay> past_rims = rays_past_rims.at_field(field);
     if (past_rims) {
         const RayFate fate = follow(*checked.traced, past_rims->front);
+        const double reached = rays.largest_field() / kDegree;
         findings.push_back({.code = "chief-ray",
                             .severity = Severity::warning,
                             .surface = fate.surface + 1,
@@ -89,6 +90,7 @@ std::optional<ChiefRay> check_chief_ray(const CheckedLens& checked, double field
         return past_rims;
     }
     const RayFate fate = first_failure(checked);
+    const double reached = std::max(0.0, rays_past_rims.largest_field()) / kDegree;
     findings.push_back(
         {.code = "chief-ray",
          .severity = Severity::error,

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "engine/check/checks.h"
 #include "engine/check/digits.h"
@@ -159,11 +160,44 @@ bool is_possible(const CheckedLens& checked, const Trial& trial) {
     return true;
 }
 
+/// A slip in the last thickness, which is a claim itself: where the focal length is as stated, or not stated, the
+/// change that puts the sensor into the image. Whether there is one.
+bool suggest_last_thickness(const CheckedLens& checked, Findings& findings) {
+    const double given = checked.row(checked.size() - 1).thickness_mm;
+    const double efl = checked.focus->efl;
+    const double image = checked.focus->image_distance;
+    const bool is_lens_as_stated =
+        !checked.claims.efl_mm || std::abs(efl / *checked.claims.efl_mm - 1.0) < kFromWarning;
+    const auto miss = [&](double thickness) { return std::abs((thickness - image) / efl); };
+    if (!is_lens_as_stated || given == 0.0 || !(miss(given) > kFromWarning)) {
+        return false;
+    }
+    std::optional<NumberChange> best;
+    for (const NumberChange& change : plausible_changes(given)) {
+        if (miss(change.value) < kRounding && (!best || miss(change.value) < miss(best->value))) {
+            best = change;
+        }
+    }
+    if (best) {
+        findings.push_back(
+            {.code = "suggestion",
+             .severity = Severity::info,
+             .surface = checked.size(),
+             .message = fmt::format("thickness {} in place of {} behind it ({}) would put the sensor into "
+                                    "the image, within {:.2g} % of the focal length",
+                                    best->value, given, best->slip, 100.0 * miss(best->value)),
+             .value = 100.0 * miss(best->value),
+             .limit = 100.0 * kRounding,
+             .unit = "%"});
+    }
+    return best.has_value();
+}
+
 }  // namespace
 
 void suggest_changes(const CheckedLens& checked, Findings& findings) {
     Trials trials(checked);
-    if (!trials.is_needed()) {
+    if (!checked.focus || suggest_last_thickness(checked, findings) || !trials.is_needed()) {
         return;
     }
     trials.run();

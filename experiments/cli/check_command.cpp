@@ -66,8 +66,9 @@ StatedData parse_claims(const std::string& text) {
         }
         const double value = parse_finite(item.substr(equals + 1), "--stated " + key);
         const bool may_be_negative = key == "efl_mm" || key == "bfl_mm";
-        if (!(value > 0.0) && !may_be_negative) {
-            throw InputError(fmt::format("--stated {} is {}, expected a positive number", key, value));
+        if (may_be_negative ? value == 0.0 : !(value > 0.0)) {
+            throw InputError(fmt::format("--stated {} is {}, expected a {} number", key, value,
+                                         may_be_negative ? "non-zero" : "positive"));
         }
         claims.*claim->member = value;
     }

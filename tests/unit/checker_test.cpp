@@ -351,6 +351,18 @@ TEST(Suggestions, SwappedDigitsAndLostSignsAreFoundFirst) {
     EXPECT_EQ(first->severity, Severity::info) << "never a silent fix";
 }
 
+// The last thickness is a claim of its own: the lens itself is as stated, so nothing else is blamed.
+TEST(Suggestions, SlipInTheLastThicknessIsNamed) {
+    Prescription moved = tessar();
+    moved.surfaces.back().thickness_mm = 97.831;
+    const CheckReport report = checked(moved);
+    const Finding* first = find(report, "suggestion");
+    ASSERT_NE(first, nullptr) << said(report);
+    EXPECT_EQ(first->surface, 8);
+    EXPECT_NE(first->message.find("thickness 79.831 in place of 97.831"), std::string::npos) << first->message;
+    EXPECT_EQ(std::ranges::count(report.findings, "suggestion", &Finding::code), 1);
+}
+
 // Tronnier's Heliar is off by 0.76 % for the rounding of its indices: its 1.85 mm of glass are not meant to be 0.07 mm.
 TEST(Suggestions, NoGlassIsThoughtToBeAFoil) {
     const CheckReport report = checked(read_prescription(find_lens_file("heliar-tronnier")));
