@@ -189,12 +189,15 @@ void check_beam(const CheckedLens& checked, double field, const std::optional<Ch
     const SampledBeam beam = field_beam(checked, field, *chief, axial);
     check_vignetting(checked, field, axial, beam.area, findings);
     if (beam.backwards > kBackwardsShare * (beam.area + beam.backwards)) {
+        // Rims that were estimated are no claim of the table's.
+        const int there = beam.backwards_surface;
+        const bool is_estimated = checked.is_estimated[there] || (there > 0 && checked.is_estimated[there - 1]);
         findings.push_back({.code = "order-of-surfaces",
-                            .severity = Severity::error,
-                            .surface = beam.backwards_surface + 1,
+                            .severity = is_estimated ? Severity::warning : Severity::error,
+                            .surface = there + 1,
                             .message = fmt::format("rays of the stated field of {:.2f}° pass every rim, but would "
                                                    "have to run backwards to meet surface {}",
-                                                   field / kDegree, beam.backwards_surface + 1),
+                                                   field / kDegree, there + 1),
                             .value = 100.0 * beam.backwards / (beam.area + beam.backwards),
                             .limit = 100.0 * kBackwardsShare,
                             .unit = "%"});

@@ -107,7 +107,7 @@ std::filesystem::path find_lens_file(const std::string& lens) {
         throw InputError(fmt::format("{}: neither a file nor a lens that ships; those are: {}", lens,
                                      fmt::join(shipped_lens_names(), ", ")));
     }
-    const std::filesystem::path path(lens);
+    std::filesystem::path path(lens);
     find_form(path);
     return path;
 }
