@@ -1,8 +1,8 @@
 """Computes first_order.json, what rayoptics and Optiland say of the Zemax files that they ship.
 
-    python3 -m venv /tmp/other_programs
-    /tmp/other_programs/bin/pip install rayoptics==0.9.8 optiland==0.6.3 opticalglass==1.1.1
-    /tmp/other_programs/bin/python tests/validation/other_programs/compute_first_order.py
+    python3 -m venv build/programs
+    build/programs/bin/pip install rayoptics==0.9.8 optiland==0.6.3 opticalglass==1.1.1
+    build/programs/bin/python tests/validation/other_programs/compute_first_order.py
 
 Run by hand when a version changes; the tests read its result. Each program reads each file with its own reader and its
 own glasses, at the file's primary wavelength, and traces its own paraxial rays. What differs from asking for the
