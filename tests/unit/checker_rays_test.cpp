@@ -215,5 +215,19 @@ TEST(CheckerRays, WhatIsNotAskedOfAFiniteObjectsFieldIsSaid) {
     EXPECT_EQ(find(checked(unclaimed), "not-judged"), nullptr) << "nothing is claimed that rays could judge";
 }
 
+// The Tessar without its semi-diameters: estimated rims let rays pass that no real rim would, which the table never
+// said.
+TEST(OrderOfSurfaces, IsNoErrorWhereTheRimsAreEstimated) {
+    Prescription lens = read_prescription(find_lens_file("tessar"));
+    for (PrescribedSurface& row : lens.surfaces) {
+        row.semi_diameter_mm.reset();
+    }
+    const CheckReport report = checked(lens);
+    const Finding* found = find(report, "order-of-surfaces");
+    ASSERT_NE(found, nullptr) << said(report);
+    EXPECT_EQ(found->severity, Severity::warning);
+    EXPECT_TRUE(report.ok()) << said(report);
+}
+
 }  // namespace
 }  // namespace lensproof
