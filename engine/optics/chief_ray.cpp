@@ -10,13 +10,18 @@ namespace {
 // Halvings that take an angle of order 1 down to the last bit.
 constexpr int kHalvings = 60;
 
+/// Whether a half of a chief ray got through, or was followed past a rim.
+bool arrives(RayStatus status, Rims rims) {
+    return status == RayStatus::ok || (rims == Rims::follow && status == RayStatus::clipped);
+}
+
 }  // namespace
 
-ChiefRays::ChiefRays(const Lens& lens, double wavelength_nm) {
-    const TraceLens<double> whole = at_wavelength<double>(lens, wavelength_nm);
-    const auto stop = whole.surfaces.begin() + lens.stop_index();
-    front_ = {.surfaces = {whole.surfaces.begin(), stop}, .image_z = 0.0, .specials = whole.specials};
-    rear_ = {.surfaces = {stop + 1, whole.surfaces.end()}, .image_z = whole.image_z, .specials = whole.specials};
+ChiefRays::ChiefRays(const Lens& lens, double wavelength_nm, Rims rims)
+    : whole_(at_wavelength<double>(lens, wavelength_nm)), rims_(rims) {
+    const auto stop = whole_.surfaces.begin() + lens.stop_index();
+    front_ = {.surfaces = {whole_.surfaces.begin(), stop}, .image_z = 0.0, .specials = whole_.specials};
+    rear_ = {.surfaces = {stop + 1, whole_.surfaces.end()}, .image_z = whole_.image_z, .specials = whole_.specials};
     stop_z_ = stop->vertex_z;
     stop_ratio_ = stop->reverse_ratio;
 
@@ -39,15 +44,24 @@ std::optional<ChiefRay> ChiefRays::from_stop(double stop_angle) const {
     }
     const Ray<double> outwards{{0.0, 0.0, stop_z_}, {0.0, -sine, -std::sqrt(1.0 - sine * sine)}};
     const Ray<double> inwards{{0.0, 0.0, stop_z_}, direction};
-    const TracedRay<double> front = trace<Direction::reverse>(front_, outwards);
-    const TracedRay<double> rear = trace<Direction::forward>(rear_, inwards);
-    if (front.status != RayStatus::ok || rear.status != RayStatus::ok || !(rear.ray.direction.z > 0.0)) {
+    const bool clips = rims_ == Rims::clip;
+    const auto front =
+        clips ? trace<Direction::reverse>(front_, outwards) : trace<Direction::reverse, Rims::follow>(front_, outwards);
+    const auto rear =
+        clips ? trace<Direction::forward>(rear_, inwards) : trace<Direction::forward, Rims::follow>(rear_, inwards);
+    if (!arrives(front.status, rims_) || !arrives(rear.status, rims_) || !(rear.ray.direction.z > 0.0)) {
         return std::nullopt;
     }
     const Vec3d incoming = -1.0 * front.ray.direction;
-    return ChiefRay{.field_angle = std::atan2(incoming.y, incoming.z),
-                    .front = {front.ray.origin, incoming},
-                    .image_height = meet_plane(rear.ray, rear_.image_z).point.y};
+    ChiefRay chief{.field_angle = std::atan2(incoming.y, incoming.z),
+                   .front = {front.ray.origin, incoming},
+                   .image_height = meet_plane(rear.ray, rear_.image_z).point.y};
+    if (front.status != RayStatus::ok || rear.status != RayStatus::ok) {
+        const TracedRay<double> from_scene = trace<Direction::forward, Rims::follow>(whole_, chief.front);
+        chief.status = from_scene.status;
+        chief.surface = from_scene.surface;
+    }
+    return chief;
 }
 
 template <class Residual>

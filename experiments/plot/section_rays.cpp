@@ -62,7 +62,7 @@ SectionBundle drawn_bundle(const TraceLens<double>& lens, const MeridionalBundle
     const Vec3d& incoming = bundle.chief.front.direction;
     const Vec3d start = bundle.chief.front.origin - lead * incoming;
     const auto add = [&](double offset, bool is_chief) {
-        SectionRay ray = drawn_ray(lens, bundle.ray(offset), start, incoming);
+        SectionRay ray = drawn_ray(lens, bundle.ray({0.0, offset}), start, incoming);
         ray.is_chief = is_chief;
         if (ray.passes && ray.points.size() >= 2) {
             drawn.rays.push_back(std::move(ray));

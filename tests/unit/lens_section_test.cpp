@@ -142,15 +142,15 @@ TEST(MeridionalBundle, ReachesFromRimToRim) {
     for (const double field : {0.0, 10.0, 20.0}) {
         const MeridionalBundle bundle = meridional_bundle(traced, *chiefs.at_field(field * kDegree));
         for (const double end : {bundle.lower, bundle.upper}) {
-            EXPECT_EQ(trace(traced, bundle.ray(end)).status, RayStatus::ok);
-            EXPECT_NE(trace(traced, bundle.ray(end + std::copysign(1e-3, end))).status, RayStatus::ok);
+            EXPECT_EQ(trace(traced, bundle.ray({0.0, end})).status, RayStatus::ok);
+            EXPECT_NE(trace(traced, bundle.ray({0.0, end + std::copysign(1e-3, end)})).status, RayStatus::ok);
         }
     }
     const MeridionalBundle axial = meridional_bundle(traced, *chiefs.at_field(0.0));
     EXPECT_NEAR(axial.upper, -axial.lower, 1e-9);
     // It is the stop that bounds it: the outermost ray grazes its edge, 15 mm from the axis.
     double height_at_stop = 0.0;
-    trace(traced, axial.ray(axial.upper), [&](const SurfaceEvent<double>& event) {
+    trace(traced, axial.ray({0.0, axial.upper}), [&](const SurfaceEvent<double>& event) {
         height_at_stop = event.surface == lens.stop_index() ? event.ray.origin.y : height_at_stop;
     });
     EXPECT_NEAR(height_at_stop, 15.0, 1e-9);
@@ -162,7 +162,7 @@ TEST(MeridionalBundle, ANearObjectsRaysLeaveOnePoint) {
     const double distance = 500.0;
     const MeridionalBundle bundle =
         meridional_bundle(at_wavelength<double>(lens, kLineD), *chiefs.at_field(10.0 * kDegree), distance);
-    const auto object_height = [&](double offset) { return meet_plane(bundle.ray(offset), -distance).point.y; };
+    const auto object_height = [&](double offset) { return meet_plane(bundle.ray({0.0, offset}), -distance).point.y; };
     EXPECT_LT(bundle.lower, -5.0);
     EXPECT_NEAR(object_height(bundle.lower), object_height(bundle.upper), 1e-9);
     EXPECT_LT(object_height(0.0), -80.0);  // −(500 + entrance pupil) tan 10°

@@ -1,0 +1,25 @@
+// engine/optics/field_bundle.h — the light of one object point on its way into the lens.
+#pragma once
+#include <limits>
+
+#include "engine/optics/chief_ray.h"
+
+namespace lensproof {
+
+/// The rays of one object point around its chief ray. They are told apart by their offset (mm) across the chief ray at
+/// its point on the first surface: x along +x, y in the meridional plane towards +y. Lens space, mm, radians.
+struct FieldBundle {
+    ChiefRay chief;
+    double object_distance = std::numeric_limits<double>::infinity();  // of the point's plane in front of z = 0, mm
+
+    /// Whether the object point is so near that its rays are not parallel. Where the chief ray does not come from the
+    /// object's plane (θ ≥ 90°) the point is taken as one at infinity.
+    [[nodiscard]] bool is_near() const;
+
+    /// The incoming ray at `offset`. All origins lie on one wavefront, next to the first surface (a plane for an object
+    /// at infinity, else a sphere around the object point), so that differences of optical path from there are those
+    /// from the object and lose no digits to its distance.
+    [[nodiscard]] Ray<double> ray(Vec2d offset) const;
+};
+
+}  // namespace lensproof
