@@ -4,6 +4,7 @@
 
 #include "experiments/plot/analysis_plots.h"
 #include "experiments/plot/chart.h"
+#include "experiments/plot/chart_axes.h"
 #include "experiments/plot/palette.h"
 #include "experiments/plot/plot_words.h"
 
@@ -186,7 +187,7 @@ std::string lateral_colour_svg(const PlotHeading& heading, const std::vector<Wav
         curve.points = turned(in_order(std::move(curve.points)));
         chart.curves.push_back(std::move(curve));
     }
-    if (edge.size() > 1) {
+    if (edge.size() > 1 && !is_empty(chart)) {
         chart.areas.push_back(std::move(band));
     }
     mark_single_points(chart);
