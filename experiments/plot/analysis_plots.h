@@ -75,12 +75,12 @@ std::string spots_svg(const PlotHeading& heading, const std::vector<double>& def
                       const std::vector<FieldSpots>& fields);
 
 /// Light against the field, both over the axis: the illumination, and the cross-section of the passing beam.
-struct IlluminationPoint {
+struct FieldBrightness {
     double field_deg = 0.0;
     double relative_illumination = 0.0;
     double vignetting = 0.0;
 };
-std::string illumination_svg(const PlotHeading& heading, const std::vector<IlluminationPoint>& points);
+std::string illumination_svg(const PlotHeading& heading, const std::vector<FieldBrightness>& points);
 
 /// A square grid of values over a square: row by row from low y to high y.
 struct SquareMap {

@@ -194,7 +194,7 @@ std::string lateral_colour_svg(const PlotHeading& heading, const std::vector<Wav
     return chart_svg(chart, {480.0, 540.0});
 }
 
-std::string illumination_svg(const PlotHeading& heading, const std::vector<IlluminationPoint>& points) {
+std::string illumination_svg(const PlotHeading& heading, const std::vector<FieldBrightness>& points) {
     PlotChart chart{.title = plot_title(heading, "relative illumination"),
                     .caption = heading.conditions,
                     .x = field_axis(),
@@ -203,7 +203,7 @@ std::string illumination_svg(const PlotHeading& heading, const std::vector<Illum
     ChartCurve illumination{.label = "relative illumination", .colour = series_colour(0), .width = 2.0};
     ChartCurve vignetting{
         .label = "beam's cross-section (vignetting)", .colour = series_colour(1), .line = CurveLine::dashed};
-    for (const IlluminationPoint& point : points) {
+    for (const FieldBrightness& point : points) {
         illumination.points.push_back({point.field_deg, point.relative_illumination});
         vignetting.points.push_back({point.field_deg, point.vignetting});
     }

@@ -90,7 +90,7 @@ std::string spots(const Case& c) {
 }
 
 std::string illumination(const Case& c) {
-    std::vector<IlluminationPoint> points;
+    std::vector<FieldBrightness> points;
     for (const double field : c.fields) {
         const double v = c.has_light ? 1.0 / (1.0 + 0.01 * field) : kNan;
         points.push_back({field, v * v, v});

@@ -45,7 +45,7 @@ Image first_picture(const std::string& svg, const std::string& name) {
     return read_image(file);
 }
 
-Chart map_chart(HeatMap map) {
+PlotChart map_chart(HeatMap map) {
     return {
         .title = "Map", .x = {.label = "x", .unit = "µm"}, .y = {.label = "y", .unit = "µm"}, .map = std::move(map)};
 }
@@ -95,7 +95,7 @@ TEST(HeatMap, LogarithmicColoursAreEvenInDecades) {
 }
 
 TEST(HeatMap, TheMapFillsItsPlaceOnTheAxes) {
-    const Chart chart = map_chart(small_map());
+    const PlotChart chart = map_chart(small_map());
     const ChartFrame frame = chart_frame(chart, {10.0, 20.0, 300.0, 200.0});
     EXPECT_EQ(frame.to_page({-3.0, 2.0}).x, 10.0);
     EXPECT_EQ(frame.to_page({-3.0, 2.0}).y, 20.0);
