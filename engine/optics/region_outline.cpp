@@ -46,16 +46,10 @@ const Kronrod& kronrod() {
     return rule;
 }
 
-struct Edge {
-    double distance = 0.0;  // in units of the frame's scale
-    int limit = -1;
-};
-
 /// Polar coordinates about a point inside the region, with axes stretched so that the region is about as wide as high.
 class PolarFrame {
   public:
-    PolarFrame(const Region& region, Vec2d centre, Vec2d scale)
-        : region_(&region), centre_(centre), scale_(scale), inside_(region(centre)) {}
+    PolarFrame(const Region& region, Vec2d centre, Vec2d scale) : region_(&region), centre_(centre), scale_(scale) {}
 
     [[nodiscard]] Vec2d from_centre(double azimuth, double distance) const {
         return {distance * scale_.x * std::cos(azimuth), distance * scale_.y * std::sin(azimuth)};
@@ -67,43 +61,8 @@ class PolarFrame {
     }
 
     /// The edge at `azimuth`, which is expected at about `hint`.
-    [[nodiscard]] Edge edge(double azimuth, double hint) const {
-        double inside = 0.0;
-        double outside = hint;
-        RegionSample near = inside_;
-        RegionSample far = sample(azimuth, outside);
-        constexpr double kStep = 1.3;
-        while (far.margin <= 0.0 && std::isfinite(outside)) {
-            inside = outside;
-            near = far;
-            outside *= kStep;
-            far = sample(azimuth, outside);
-        }
-        const auto is_exact = [](double a, double b) { return b - a <= 1e-14 * b; };
-        while (std::isinf(far.margin) && !is_exact(inside, outside)) {
-            const double middle = 0.5 * (inside + outside);
-            const RegionSample here = sample(azimuth, middle);
-            (here.margin <= 0.0 ? inside : outside) = middle;
-            (here.margin <= 0.0 ? near : far) = here;
-        }
-        if (near.margin < 0.0 && !is_exact(inside, outside)) {
-            const auto margin = [&](double distance) {
-                const RegionSample here = sample(azimuth, distance);
-                if (here.margin > 0.0 && distance < outside) {
-                    outside = distance;
-                    far = here;
-                }
-                return std::min(here.margin, 1.0);  // an interpolation cannot use an infinite one
-            };
-            std::uintmax_t steps = 200;
-            const auto root = boost::math::tools::toms748_solve(margin, inside, outside, near.margin,
-                                                                std::min(far.margin, 1.0), is_exact, steps);
-            inside = root.first;
-            if (root.first == root.second) {
-                far = sample(azimuth, inside);
-            }
-        }
-        return {inside, far.limit};
+    [[nodiscard]] RegionEdge edge(double azimuth, double hint) const {
+        return region_edge(*region_, centre_, from_centre(azimuth, 1.0), hint);
     }
 
     [[nodiscard]] bool holds_between(double azimuth, double distance) const {
@@ -119,7 +78,6 @@ class PolarFrame {
     const Region* region_;
     Vec2d centre_;
     Vec2d scale_;
-    RegionSample inside_;
 };
 
 /// The frame moved towards the region's centroid and stretched to its extent, both seen at 16 azimuths.
@@ -176,7 +134,7 @@ class Outliner {
     void append(double from, double to, int halvings = kMostHalvings) {
         const Kronrod& rule = kronrod();
         std::array<double, kPoints> azimuth{};
-        std::array<Edge, kPoints> edges{};
+        std::array<RegionEdge, kPoints> edges{};
         for (std::size_t i = 0; i < kPoints; ++i) {
             azimuth[i] = 0.5 * (from + to) + 0.5 * (to - from) * rule.node[i];
             edges[i] = frame_.edge(azimuth[i], hint_);
@@ -222,7 +180,7 @@ class Outliner {
   private:
     /// QUADPACK's: what the rules differ by, sharpened by how far that is below the integrand's own variation.
     static double estimated_error(double half_width, double area, double gauss_area,
-                                  const std::array<Edge, kPoints>& edges) {
+                                  const std::array<RegionEdge, kPoints>& edges) {
         const double mean = 0.5 * area;
         double variation = 0.0;
         for (std::size_t i = 0; i < kPoints; ++i) {
@@ -236,11 +194,11 @@ class Outliner {
     }
 
     /// Where the limit changes between two azimuths, the first of which has `edge`.
-    [[nodiscard]] double corner(double from, double to, Edge edge) const {
+    [[nodiscard]] double corner(double from, double to, RegionEdge edge) const {
         double hint = edge.distance;
         while (to - from > kCornerTolerance) {
             const double middle = 0.5 * (from + to);
-            const Edge here = frame_.edge(middle, hint);
+            const RegionEdge here = frame_.edge(middle, hint);
             hint = here.distance;
             (here.limit == edge.limit ? from : to) = middle;
         }
@@ -288,6 +246,46 @@ std::optional<Vec2d> find_inside(const Region& region, const RegionSearch& searc
         }
     }
     return least.margin < 0.0 ? std::optional(best) : std::nullopt;
+}
+
+RegionEdge region_edge(const Region& region, Vec2d inside, Vec2d along, double hint) {
+    const auto sample = [&](double distance) {
+        return region({inside.x + distance * along.x, inside.y + distance * along.y});
+    };
+    double low = 0.0;
+    double high = hint;
+    RegionSample near = sample(low);
+    RegionSample far = sample(high);
+    constexpr double kStep = 1.3;
+    while (far.margin <= 0.0 && std::isfinite(high)) {
+        low = high;
+        near = far;
+        high *= kStep;
+        far = sample(high);
+    }
+    const auto is_exact = [](double a, double b) { return b - a <= 1e-14 * b; };
+    while (std::isinf(far.margin) && !is_exact(low, high)) {
+        const double middle = 0.5 * (low + high);
+        const RegionSample here = sample(middle);
+        (here.margin <= 0.0 ? low : high) = middle;
+        (here.margin <= 0.0 ? near : far) = here;
+    }
+    if (!(near.margin < 0.0) || is_exact(low, high)) {
+        return {low, far.limit};
+    }
+    double nearest = high;
+    const auto margin = [&](double distance) {
+        const RegionSample here = sample(distance);
+        if (here.margin > 0.0 && distance < nearest) {
+            nearest = distance;
+            far = here;
+        }
+        return std::min(here.margin, 1.0);  // an interpolation cannot use an infinite one
+    };
+    std::uintmax_t steps = 200;
+    const auto root =
+        boost::math::tools::toms748_solve(margin, low, high, near.margin, std::min(far.margin, 1.0), is_exact, steps);
+    return {root.first, root.first == root.second ? sample(root.first).limit : far.limit};
 }
 
 RegionOutline region_outline(const Region& region, const RegionSearch& search) {

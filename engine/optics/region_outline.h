@@ -52,8 +52,18 @@ struct RegionSearch {
 /// Torczon, SIAM Review 45, 2003); of a mirror image, on x = 0. Nothing where none is found.
 std::optional<Vec2d> find_inside(const Region& region, const RegionSearch& search);
 
-/// The outline about a point near the middle of the region. Radii by TOMS 748 (Alefeld, Potra, Shi 1995) to the last
-/// digits, pieces halved until the estimate of the area's error (Piessens et al., QUADPACK 1983) is below 1e-11.
+/// Where a region is left on the way from a point inside it.
+struct RegionEdge {
+    double distance = 0.0;  // in units of `along`, the last one inside to 1e-14
+    int limit = -1;
+};
+
+/// The way goes from `inside` along the vector `along`; the edge is expected at about `hint` times it. Found between
+/// points inside and outside by TOMS 748 (Alefeld, Potra, Shi 1995), or by halving where the margin is infinite.
+RegionEdge region_edge(const Region& region, Vec2d inside, Vec2d along, double hint = 1.0);
+
+/// The outline about a point near the middle of the region. Pieces are halved until the estimate of the area's error
+/// (Piessens et al., QUADPACK 1983) is below 1e-11.
 RegionOutline region_outline(const Region& region, const RegionSearch& search);
 
 /// A point of a region and the area that it stands for.
