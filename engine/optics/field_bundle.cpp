@@ -4,6 +4,12 @@
 
 namespace lensproof {
 
+std::array<Vec3d, 2> across_axes(const Vec3d& along) {
+    const double from_x = std::hypot(along.y, along.z);
+    return {{{from_x, -along.x * along.y / from_x, -along.x * along.z / from_x},
+             {0.0, along.z / from_x, -along.y / from_x}}};
+}
+
 bool FieldBundle::is_near() const {
     return std::isfinite(object_distance) && object_distance > 0.0 && chief.front.direction.z > 0.0;
 }
@@ -21,22 +27,18 @@ Vec3d FieldBundle::object_point() const {
 
 Ray<double> FieldBundle::ray(Vec2d offset) const {
     const Vec3d& along = chief.front.direction;
-    // +x made perpendicular to the chief ray, and what completes the frame. In the plane x = 0 these are
-    // (1, 0, 0) and (0, z, −y).
-    const double across_yz = std::hypot(along.y, along.z);
-    const Vec3d across_x{across_yz, -along.x * along.y / across_yz, -along.x * along.z / across_yz};
-    const Vec3d across_y{0.0, along.z / across_yz, -along.y / across_yz};
-    const Vec3d across = offset.x * across_x + offset.y * across_y;
-    const Vec3d origin = chief.front.origin + across;
+    const std::array<Vec3d, 2> axes = across();
+    const Vec3d sideways = offset.x * axes[0] + offset.y * axes[1];
+    const Vec3d origin = chief.front.origin + sideways;
     if (!is_near()) {
         return {origin, along};
     }
     // From the object at distance R along the chief ray to `origin` it is √(R² + r²): r² / (R + √(R² + r²)) beyond the
     // wavefront.
     const double to_object = distance();
-    const double r2 = dot(across, across);
+    const double r2 = dot(sideways, sideways);
     const double to_origin = std::sqrt(to_object * to_object + r2);
-    const Vec3d direction = (1.0 / to_origin) * (to_object * along + across);
+    const Vec3d direction = (1.0 / to_origin) * (to_object * along + sideways);
     return {origin - (r2 / (to_object + to_origin)) * direction, direction};
 }
 

@@ -1,10 +1,15 @@
 // engine/optics/field_bundle.h — the light of one object point on its way into the lens.
 #pragma once
+#include <array>
 #include <limits>
 
 #include "engine/optics/chief_ray.h"
 
 namespace lensproof {
+
+/// Two unit vectors across the direction `along` and each other: the first as near to +x as can be, the second as near
+/// to +y (in the plane x = 0: (1, 0, 0) and (0, z, −y)). Not for a direction along x.
+std::array<Vec3d, 2> across_axes(const Vec3d& along);
 
 /// The rays of one object point around its chief ray. They are told apart by their offset (mm) across the chief ray at
 /// its point on the first surface: x along +x, y in the meridional plane towards +y (where the chief ray has left the
@@ -16,6 +21,9 @@ struct FieldBundle {
     /// Whether the object point is so near that its rays are not parallel. Where the chief ray does not come from the
     /// object's plane (θ ≥ 90°) the point is taken as one at infinity.
     [[nodiscard]] bool is_near() const;
+
+    /// The directions of an offset's x and y.
+    [[nodiscard]] std::array<Vec3d, 2> across() const { return across_axes(chief.front.direction); }
 
     /// Along the chief ray from the object point to the chief ray's point on the first surface, mm; infinite where the
     /// object is not near.
