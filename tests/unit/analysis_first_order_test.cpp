@@ -44,7 +44,7 @@ TEST(FirstOrder, BallLens) {
     expect_relative(data.petzval_radius, -efl, kRounding);
 }
 
-// Thick lenses (Hecht, eqs. 6.1 to 6.4): 1/f = (n − 1) (1/R1 − 1/R2 + (n − 1) d / (n R1 R2)), principal points at
+// Thick lenses (Hecht, Optics, §6.1): 1/f = (n − 1) (1/R1 − 1/R2 + (n − 1) d / (n R1 R2)), principal points at
 // −f (n − 1) d / (n R2) and −f (n − 1) d / (n R1). The last, of a focal length of 1000 km, has them 3 mm inside the
 // glass all the same: as differences of focal lengths and focal distances they would be good to 1e-7 mm only.
 TEST(FirstOrder, ThickLens) {
@@ -89,7 +89,7 @@ TEST(FirstOrder, NodalRayKeepsItsSlope) {
     expect_relative(-out.height / out.slope, data.rear_nodal_z, 100 * kRounding);
 }
 
-// A plane-parallel plate moves an image by t (1 − 1/n), magnifies it once, and has no focus (Born & Wolf, §4.4).
+// A plane-parallel plate moves an image by t (1 − 1/n), magnifies it once, and has no focus.
 TEST(FirstOrder, PlaneParallelPlateShiftsTheImage) {
     constexpr double n = 1.5;
     constexpr double t = 12.0;
@@ -215,7 +215,7 @@ TEST(FirstOrder, ConjugatesHangTogether) {
 }
 
 // n (y ū − ȳ u) is what it is in front of the lens behind every surface, and behind the lens n' u' times the image's
-// height (Welford, §2.4). Against the largest of its two terms, as these may cancel.
+// height (Welford, ch. 2). Against the largest of its two terms, as these may cancel.
 TEST(FirstOrder, LagrangeInvariantIsOne) {
     for (const char* name : {"tessar", "muller-fisheye", "canon-zoom-70-200"}) {
         const TraceLens<double> lens = shipped(name);
