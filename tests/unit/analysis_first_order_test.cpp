@@ -272,6 +272,32 @@ TEST(FirstOrder, CountsVertexCurvatureAndDistancesFromVertices) {
     }
 }
 
+// The same from a prescription: of a toroid the curvature in y–z, wherever an r² term is in it.
+TEST(FirstOrder, CountsAToroidInYZ) {
+    const auto data = [](double radius, double a2, std::optional<double> radius_x) {
+        PrescribedSurface front;
+        front.radius_mm = radius;
+        front.asphere[0] = a2;
+        front.radius_x_mm = radius_x;
+        front.thickness_mm = 5.0;
+        front.semi_diameter_mm = 10.0;
+        front.medium.n_d = 1.5;
+        PrescribedSurface rear = front;
+        rear.medium = {};
+        rear.radius_mm = kInfinity;
+        rear.asphere[0] = 0.0;
+        rear.radius_x_mm.reset();
+        rear.is_stop = true;
+        Prescription prescription;
+        prescription.surfaces = {front, rear};
+        return paraxial_data(at_wavelength<double>(make_lens(prescription, GlassCatalogue{}), kLineD));
+    };
+    EXPECT_EQ(data(50.0, 0.0, std::nullopt).efl, 100.0);
+    EXPECT_EQ(data(50.0, 0.0, 20.0).efl, 100.0);
+    expect_relative(data(kInfinity, 0.01, kInfinity).efl, 100.0, kRounding);
+    expect_relative(data(100.0, 0.005, -30.0).bfl, 100.0 - 5.0 / 1.5, kRounding);
+}
+
 // A plano-convex lens with a hyperbolic rear is free of spherical aberration: tan U' = h / (s' − sag) with s' the focus
 // from its vertex, so the real f-number is known. Its paraxial one is f / 2h.
 TEST(FirstOrder, RealWorkingFNumberOfAHyperboloid) {
