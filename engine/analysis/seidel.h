@@ -9,7 +9,7 @@
 namespace lensproof {
 
 /// One surface's share of the sums, or their total; mm. Welford, Aberrations of Optical Systems (1986), ch. 8 and
-/// §10.2; signs as in rayoptics, so that S1 > 0 is undercorrected spherical aberration.
+/// 10; signs as in rayoptics, so that S1 > 0 is undercorrected spherical aberration.
 template <class T>
 struct SeidelTerms {
     T s1 = T(0);  // spherical aberration
@@ -82,17 +82,21 @@ ThirdOrderWavefront<T> third_order_wavefront(const SeidelTerms<T>& terms) {
 }
 
 /// How far (mm, x and y) from the paraxial image a ray meets the paraxial image plane: the ray through the pupil at
-/// `pupil` (relative to its edge) from the share `field` of the full field. To third order, at the reference
-/// wavelength; the field lies in +y. `sums` with an image at infinity (image_slope 0) give infinite distances.
+/// `pupil` (relative to its edge) from the share `field` of the full field, which lies in +y. To third order, at the
+/// reference wavelength: the gradient of W over n' u'. Nothing where the image lies at infinity.
 template <class T>
-Vec2<T> third_order_ray_error(const SeidelSums<T>& sums, const Vec2<T>& pupil, const T& field) {
+std::optional<Vec2<T>> third_order_ray_error(const SeidelSums<T>& sums, const Vec2<T>& pupil, const T& field) {
+    if (sums.image_slope == T(0)) {
+        return std::nullopt;
+    }
     const SeidelTerms<T>& s = sums.total;
     const T rho2 = pupil.x * pupil.x + pupil.y * pupil.y;
     const T field2 = field * field;
     const T scale = 1 / (2 * sums.image_slope);
-    return {scale * (s.s1 * rho2 + 2 * s.s2 * field * pupil.y + (s.s3 + s.s4) * field2) * pupil.x,
-            scale * ((s.s1 * rho2 + (3 * s.s3 + s.s4) * field2) * pupil.y +
-                     s.s2 * field * (rho2 + 2 * pupil.y * pupil.y) + s.s5 * field2 * field)};
+    const T x = (s.s1 * rho2 + 2 * s.s2 * field * pupil.y + (s.s3 + s.s4) * field2) * pupil.x;
+    const T y = (s.s1 * rho2 + (3 * s.s3 + s.s4) * field2) * pupil.y + s.s2 * field * (rho2 + 2 * pupil.y * pupil.y) +
+                s.s5 * field2 * field;
+    return Vec2<T>{scale * x, scale * y};
 }
 
 // ---------------------------------------------------------------------------------------------------------------------

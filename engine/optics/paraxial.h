@@ -104,7 +104,9 @@ std::optional<T> lagrange_invariant(const TraceLens<T>& lens, const std::type_id
 namespace paraxial_detail {
 
 template <class T>
-constexpr T kInfinity = std::numeric_limits<T>::infinity();
+T infinity() {
+    return std::numeric_limits<T>::infinity();
+}
 
 template <class T>
 T power(const TraceSurface<T>& surface) {
@@ -124,12 +126,7 @@ BasicParaxialRay<T> refracted_backwards(const BasicParaxialRay<T>& ray, const Tr
 /// Where a ray in the plane of a vertex crosses the axis, from that vertex.
 template <class T>
 T axis_crossing(const BasicParaxialRay<T>& ray) {
-    return ray.slope == T(0) ? kInfinity<T> : T(-ray.height / ray.slope);
-}
-
-template <class T>
-int last_surface(const TraceLens<T>& lens) {
-    return static_cast<int>(lens.surfaces.size()) - 1;
+    return ray.slope == T(0) ? infinity<T>() : T(-ray.height / ray.slope);
 }
 
 template <class T>
@@ -153,22 +150,45 @@ BasicParaxialRay<T> ray_from_axis(const T& object_distance) {
     return {T(1), T(1) / object_distance};  // 0 for infinity
 }
 
+/// The ray from the stop's centre of optical slope 1, as it stands just before the first surface.
+template <class T>
+BasicParaxialRay<T> ray_from_stop_to_front(const TraceLens<T>& lens) {
+    const int stop = find_stop(lens);
+    BasicParaxialRay<T> ray{T(0), T(1) / lens.surfaces[stop].index_before};
+    for (int i = stop; i > 0; --i) {
+        ray.height -= ray.slope * (lens.surfaces[i].vertex_z - lens.surfaces[i - 1].vertex_z);
+        ray = refracted_backwards(ray, lens.surfaces[i - 1]);
+    }
+    return ray;
+}
+
 /// The whole lens as a matrix: a ray of height y and optical slope n u in the first vertex's plane leaves the last with
-/// y' = A y + B n u and n' u' = −K y + D n u (Gauss). A − 1 and D − 1 are summed up themselves, so that the principal
-/// points keep their digits where the lens is weak.
+///     y' = A y + B n u,   n' u' = D n u − K y
+/// (Gauss). A − 1 and D − 1 are summed up themselves, so that the principal points keep their digits where the lens is
+/// weak, and conjugates theirs where it is nearly afocal and the object far.
 template <class T>
 struct GaussianConstants {
     T height_change = T(0);  // A − 1
     T slope_change = T(0);   // D − 1
+    T reduced_path = T(0);   // B
     T power = T(0);          // K
+    T n_first = T(1);
+    T n_last = T(1);
+
+    [[nodiscard]] BasicParaxialRay<T> through(const BasicParaxialRay<T>& ray) const {
+        const T optical_slope = n_first * ray.slope;
+        return {ray.height + height_change * ray.height + reduced_path * optical_slope,
+                (optical_slope + slope_change * optical_slope - power * ray.height) / n_last};
+    }
 };
 
 template <class T>
 GaussianConstants<T> gaussian_constants(const TraceLens<T>& lens) {
     GaussianConstants<T> constants;
-    const T n_first = lens.surfaces.front().index_before;
+    constants.n_first = lens.surfaces.front().index_before;
+    constants.n_last = lens.surfaces.back().index_after;
     BasicParaxialRay<T> parallel{T(1), T(0)};
-    BasicParaxialRay<T> through_vertex{T(0), T(1) / n_first};
+    BasicParaxialRay<T> through_vertex{T(0), T(1) / constants.n_first};
     T z = lens.surfaces.front().vertex_z;
     for (const TraceSurface<T>& surface : lens.surfaces) {
         const T gap = surface.vertex_z - z;
@@ -181,18 +201,19 @@ GaussianConstants<T> gaussian_constants(const TraceLens<T>& lens) {
         parallel = refracted(parallel, surface);
         through_vertex = refracted(through_vertex, surface);
     }
+    constants.reduced_path = through_vertex.height;
     return constants;
 }
 
 template <class T>
 void set_cardinal_points(BasicParaxialData<T>& data, const TraceLens<T>& lens) {
     const GaussianConstants<T> constants = gaussian_constants(lens);
-    const T n_first = lens.surfaces.front().index_before;
-    const T n_last = lens.surfaces.back().index_after;
+    const T& n_first = constants.n_first;
+    const T& n_last = constants.n_last;
     const T& power = constants.power;
     if (power == T(0)) {
-        data.efl = data.bfl = data.rear_principal_z = data.rear_nodal_z = kInfinity<T>;
-        data.ffl = data.front_principal_z = data.front_nodal_z = -kInfinity<T>;
+        data.efl = data.bfl = data.rear_principal_z = data.rear_nodal_z = infinity<T>();
+        data.ffl = data.front_principal_z = data.front_nodal_z = -infinity<T>();
         return;
     }
     data.efl = n_last / power;
@@ -211,7 +232,7 @@ T petzval_radius(const TraceLens<T>& lens) {
     for (const TraceSurface<T>& surface : lens.surfaces) {
         sum += power(surface) / (surface.index_before * surface.index_after);
     }
-    return sum == T(0) ? kInfinity<T> : T(-1 / (lens.surfaces.back().index_after * sum));
+    return sum == T(0) ? infinity<T>() : T(-1 / (lens.surfaces.back().index_after * sum));
 }
 
 /// The stop's image: its centre from `vertex_ray`, the ray from there with optical slope 1 as it stands at the vertex
@@ -220,7 +241,7 @@ template <class T>
 void set_pupil(const BasicParaxialRay<T>& vertex_ray, const T& index, const T& stop_diameter, T& z, T& diameter) {
     using std::abs;
     z = axis_crossing(vertex_ray);
-    diameter = vertex_ray.slope == T(0) ? kInfinity<T> : T(stop_diameter / abs(index * vertex_ray.slope));
+    diameter = vertex_ray.slope == T(0) ? infinity<T>() : T(stop_diameter / abs(index * vertex_ray.slope));
 }
 
 }  // namespace paraxial_detail
@@ -240,7 +261,7 @@ BasicParaxialRay<T> trace_paraxial(const TraceLens<T>& lens, BasicParaxialRay<T>
 
 template <class T>
 BasicParaxialData<T> paraxial_data(const TraceLens<T>& lens) {
-    using paraxial_detail::kInfinity;
+    using paraxial_detail::infinity;
     BasicParaxialData<T> data;
     paraxial_detail::set_cardinal_points(data, lens);
     data.petzval_radius = paraxial_detail::petzval_radius(lens);
@@ -248,47 +269,43 @@ BasicParaxialData<T> paraxial_data(const TraceLens<T>& lens) {
     const int stop = paraxial_detail::find_stop(lens);
     const TraceSurface<T>& surface = lens.surfaces[stop];
     const T diameter = T(2) * paraxial_detail::stop_semi_diameter(lens);
-    const int last = paraxial_detail::last_surface(lens);
-    // `trace_paraxial` backwards starts behind the stop's surface, forwards before it: one ray, as its height is 0.
-    paraxial_detail::set_pupil(trace_paraxial(lens, {T(0), T(1) / surface.index_after}, stop, 0),
-                               lens.surfaces.front().index_before, diameter, data.entrance_pupil_z,
-                               data.entrance_pupil_diameter);
+    const int last = static_cast<int>(lens.surfaces.size()) - 1;
+    paraxial_detail::set_pupil(paraxial_detail::ray_from_stop_to_front(lens), lens.surfaces.front().index_before,
+                               diameter, data.entrance_pupil_z, data.entrance_pupil_diameter);
     paraxial_detail::set_pupil(trace_paraxial(lens, {T(0), T(1) / surface.index_before}, stop, last),
                                lens.surfaces.back().index_after, diameter, data.exit_pupil_z, data.exit_pupil_diameter);
-    const bool is_afocal = data.efl == kInfinity<T>;
-    data.f_number = is_afocal ? kInfinity<T> : T(data.efl / data.entrance_pupil_diameter);
+    const bool is_afocal = data.efl == infinity<T>();
+    data.f_number = is_afocal ? infinity<T>() : T(data.efl / data.entrance_pupil_diameter);
     return data;
 }
 
 template <class T>
 T paraxial_image_distance(const TraceLens<T>& lens, const std::type_identity_t<T>& object_distance) {
-    return paraxial_detail::axis_crossing(trace_paraxial(lens, paraxial_detail::ray_from_axis<T>(object_distance), 0,
-                                                         paraxial_detail::last_surface(lens)));
+    return paraxial_detail::axis_crossing(
+        paraxial_detail::gaussian_constants(lens).through(paraxial_detail::ray_from_axis<T>(object_distance)));
 }
 
 template <class T>
 BasicConjugates<T> paraxial_conjugates(const TraceLens<T>& lens, const std::type_identity_t<T>& object_distance) {
-    using paraxial_detail::kInfinity;
+    using paraxial_detail::infinity;
     using std::abs;
-    const int last = paraxial_detail::last_surface(lens);
-    const T n_first = lens.surfaces.front().index_before;
-    const T n_last = lens.surfaces.back().index_after;
+    const paraxial_detail::GaussianConstants<T> constants = paraxial_detail::gaussian_constants(lens);
     const BasicParaxialRay<T> front = paraxial_detail::ray_from_axis<T>(object_distance);
-    const BasicParaxialRay<T> rear = trace_paraxial(lens, front, 0, last);
+    const BasicParaxialRay<T> rear = constants.through(front);
     BasicConjugates<T> conjugates;
     conjugates.image_distance = paraxial_detail::axis_crossing(rear);
     if (rear.slope != T(0)) {
-        conjugates.magnification = n_first * front.slope / (n_last * rear.slope);
+        conjugates.magnification = constants.n_first * front.slope / (constants.n_last * rear.slope);
     } else {
         // An afocal lens magnifies objects at all distances alike.
-        conjugates.magnification = front.slope == T(0) ? rear.height : kInfinity<T>;
+        conjugates.magnification = front.slope == T(0) ? rear.height : infinity<T>();
     }
     if (const auto marginal = paraxial_marginal_ray(lens, object_distance)) {
-        const T slope = abs(trace_paraxial(lens, *marginal, 0, last).slope);
-        conjugates.working_f_number = slope == T(0) ? kInfinity<T> : T(1 / (2 * n_last * slope));
-        conjugates.object_numerical_aperture = n_first * abs(marginal->slope);
+        const T slope = abs(constants.through(*marginal).slope);
+        conjugates.working_f_number = slope == T(0) ? infinity<T>() : T(1 / (2 * constants.n_last * slope));
+        conjugates.object_numerical_aperture = constants.n_first * abs(marginal->slope);
     } else {
-        conjugates.object_numerical_aperture = front.slope == T(0) ? T(0) : kInfinity<T>;
+        conjugates.object_numerical_aperture = front.slope == T(0) ? T(0) : infinity<T>();
     }
     return conjugates;
 }
@@ -300,10 +317,10 @@ std::optional<BasicParaxialRay<T>> paraxial_marginal_ray(const TraceLens<T>& len
     const int stop = paraxial_detail::find_stop(lens);
     const T at_stop = trace_paraxial(lens, any, 0, stop).height;
     const T semi_diameter = paraxial_detail::stop_semi_diameter(lens);
-    if (at_stop == T(0) || !(semi_diameter < paraxial_detail::kInfinity<T>)) {
+    if (at_stop == T(0) || !(semi_diameter < paraxial_detail::infinity<T>())) {
         return std::nullopt;
     }
-    const bool pupil_is_inverted = trace_paraxial(lens, {T(0), T(1)}, stop, 0).slope < T(0);
+    const bool pupil_is_inverted = paraxial_detail::ray_from_stop_to_front(lens).slope < T(0);
     const T scale = (pupil_is_inverted ? -semi_diameter : semi_diameter) / at_stop;
     return BasicParaxialRay<T>{scale * any.height, scale * any.slope};
 }
@@ -313,8 +330,7 @@ std::optional<BasicParaxialRay<T>> paraxial_chief_ray(const TraceLens<T>& lens,
                                                       const std::type_identity_t<T>& field_angle) {
     using std::abs;
     using std::tan;
-    const int stop = paraxial_detail::find_stop(lens);
-    const BasicParaxialRay<T> any = trace_paraxial(lens, {T(0), T(1)}, stop, 0);
+    const BasicParaxialRay<T> any = paraxial_detail::ray_from_stop_to_front(lens);
     if (!(abs(field_angle) < T(std::numbers::pi / 2.0)) || any.slope == T(0)) {
         return std::nullopt;
     }
@@ -325,7 +341,7 @@ std::optional<BasicParaxialRay<T>> paraxial_chief_ray(const TraceLens<T>& lens,
 template <class T>
 std::optional<T> lagrange_invariant(const TraceLens<T>& lens, const std::type_identity_t<T>& field_angle) {
     const auto chief = paraxial_chief_ray(lens, field_angle);
-    const auto marginal = paraxial_marginal_ray(lens, paraxial_detail::kInfinity<T>);
+    const auto marginal = paraxial_marginal_ray(lens, paraxial_detail::infinity<T>());
     if (!chief || !marginal) {
         return std::nullopt;
     }
