@@ -41,8 +41,8 @@ struct BasicParaxialData {
     T rear_principal_z = T(0);   // from the last vertex
     T front_nodal_z = T(0);      // from the first vertex; the principal point where both ends have one index
     T rear_nodal_z = T(0);       // from the last vertex
-    // Of the surface on which a flat object's image lies where there is no astigmatism: −1 / (n' Σ c (n' − n) / (n
-    // n')), negative where that curves towards the lens, infinite where it is flat.
+    // −1 / (n' Σ c (n' − n) / (n n')), of the surface on which a flat object's image lies where there is no
+    // astigmatism: negative where that curves towards the lens, infinite where it is flat.
     T petzval_radius = T(0);
 };
 
@@ -52,7 +52,7 @@ struct BasicConjugates {
     T image_distance = T(0);  // last vertex to paraxial image, mm
     T magnification = T(0);   // transverse, negative where the image is inverted; of an object at infinity 0
     // Of the paraxial ray through the stop's edge: 1 / (2 n' |u'|), u' being a slope (a tangent). With an object at
-    // infinity this is the f-number; of a lens without coma the real 1 / (2 n' sin U') is the same.
+    // infinity this is the f-number's size; of a lens without coma the real 1 / (2 n' sin U') is the same.
     T working_f_number = T(0);
     T object_numerical_aperture = T(0);  // n |u| of that ray, to be read as a sine in the same way
 };
@@ -77,7 +77,7 @@ template <class T>
 T paraxial_image_distance(const TraceLens<T>& lens, const std::type_identity_t<T>& object_distance);
 
 /// Image, magnification and apertures for an object as above. Where the object's image falls into the stop, which then
-/// limits no cone of light, the working f-number is 0 and the numerical aperture infinite.
+/// limits no cone of light, the working f-number is 0, and the numerical aperture infinite if the object is near.
 template <class T>
 BasicConjugates<T> paraxial_conjugates(const TraceLens<T>& lens, const std::type_identity_t<T>& object_distance);
 

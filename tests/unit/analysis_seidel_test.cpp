@@ -282,14 +282,11 @@ std::vector<RayCase> ray_cases() {
 TEST(Seidel, RealRaysAgreeInTheLimit) {
     for (const RayCase& c : ray_cases()) {
         const auto sums = seidel_sums(c.lens, c.lens, c.lens, c.field_angle, c.object_distance).value();
-        for (const auto& [pupil, field] : {std::pair{Vec2<long double>{0, 1}, 0.0L},
-                                           {Vec2<long double>{0, 0}, 1.0L},
-                                           {Vec2<long double>{1, 0}, 1.0L},
-                                           {Vec2<long double>{0, 1}, 1.0L},
-                                           {Vec2<long double>{0, -1}, 1.0L}}) {
-            const Vec2<long double> predicted = third_order_ray_error(sums, pupil, field).value();
+        // Pupil x, pupil y, field.
+        for (const Vec3<long double>& at : {Vec3<long double>{0, 1, 0}, {0, 0, 1}, {1, 0, 1}, {0, 1, 1}, {0, -1, 1}}) {
+            const Vec2<long double> predicted = third_order_ray_error(sums, {at.x, at.y}, at.z).value();
             const auto deviation = [&](long double t) {
-                const Vec2<long double> found = real_ray_error(c, {t * pupil.x, t * pupil.y}, t * field);
+                const Vec2<long double> found = real_ray_error(c, {t * at.x, t * at.y}, t * at.z);
                 return Vec2<long double>{found.x / (t * t * t) - predicted.x, found.y / (t * t * t) - predicted.y};
             };
             const Vec2<long double> coarse = deviation(1.0L / 64);
@@ -297,8 +294,8 @@ TEST(Seidel, RealRaysAgreeInTheLimit) {
             const long double size = std::hypot(predicted.x, predicted.y);
             const long double first = std::hypot(coarse.x, coarse.y);
             const long double second = std::hypot(fine.x, fine.y);
-            EXPECT_LT(first, 0.02L * size) << c.name << " " << pupil.x << " " << pupil.y << " " << field;
-            EXPECT_NEAR(second / first, 0.25L, 0.02L) << c.name << " " << pupil.x << " " << pupil.y << " " << field;
+            EXPECT_LT(first, 0.02L * size) << c.name << " " << at.x << " " << at.y << " " << at.z;
+            EXPECT_NEAR(second / first, 0.25L, 0.02L) << c.name << " " << at.x << " " << at.y << " " << at.z;
         }
     }
 }
