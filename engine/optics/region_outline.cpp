@@ -151,7 +151,7 @@ class Outliner {
         }
         const double half_width = 0.5 * (to - from);
         const double error = estimated_error(half_width, area, gauss_area, edges);
-        if (halvings > 0 && points.size() < kMostPoints && error > kAreaTolerance * 2.0 * kPi) {
+        if (halvings > 0 && is_star_shaped && points.size() < kMostPoints && error > kAreaTolerance * 2.0 * kPi) {
             const double split = split_point(azimuth, edges);
             append(from, split, halvings - 1);
             append(split, to, halvings - 1);
