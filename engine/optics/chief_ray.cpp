@@ -1,8 +1,10 @@
 #include "engine/optics/chief_ray.h"
 
+#include <algorithm>
 #include <boost/math/tools/toms748_solve.hpp>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <numbers>
 
 namespace lensproof {
@@ -58,9 +60,27 @@ ChiefRays::ChiefRays(const Lens& lens, double wavelength_nm, Rims rims)
     stop_centre_ = {surface.vertex.x, surface.vertex.y, surface.vertex_z};
     stop_normal_ = surface.axes[2];
     stop_ratio_ = stop->reverse_ratio;
-    largest_stop_angle_ =
-        last_passing(0.0, 0.5 * std::numbers::pi, [&](double angle) { return from_stop(angle).has_value(); });
+    largest_stop_angle_ = is_symmetric_ ? end_of_family() : 0.0;
     largest_field_ = find_largest_field();
+}
+
+double ChiefRays::end_of_family() const {
+    constexpr int kSteps = 256;
+    constexpr double kStep = 0.5 * std::numbers::pi / kSteps;
+    const auto field = [&](double angle) {
+        const std::optional<ChiefRay> ray = from_stop(angle);
+        return ray ? ray->field_angle : -std::numeric_limits<double>::infinity();
+    };
+    const auto goes_on = [&](double angle) {
+        constexpr double kBehind = 1e-7;
+        return field(angle) > field(angle - kBehind);
+    };
+    int step = 1;
+    for (double last = field(0.0); step < kSteps && field(step * kStep) > last; ++step) {
+        last = field(step * kStep);
+    }
+    // It ends or folds on the way to here, or, where it has just turned, in the step before.
+    return last_passing(std::max(0, step - 2) * kStep, step * kStep, goes_on);
 }
 
 double ChiefRays::find_largest_field() const {

@@ -151,7 +151,7 @@ class Outliner {
         }
         const double half_width = 0.5 * (to - from);
         const double error = estimated_error(half_width, area, gauss_area, edges);
-        if (halvings > 0 && points.size() < kMostPoints && error > kAreaTolerance * 2.0 * kPi) {
+        if (halvings > 0 && is_star_shaped && points.size() < kMostPoints && error > kAreaTolerance * 2.0 * kPi) {
             const double split = split_point(azimuth, edges);
             append(from, split, halvings - 1);
             append(split, to, halvings - 1);
@@ -195,7 +195,7 @@ class Outliner {
 
     /// The first corner, or the middle where there is none.
     [[nodiscard]] double split_point(const std::array<double, kPoints>& azimuth,
-                                     const std::array<RegionEdge, kPoints>& edges) const {
+                                     const std::array<RegionEdge, kPoints>& edges) {
         const auto last = std::ranges::adjacent_find(edges, std::ranges::not_equal_to{}, &RegionEdge::limit);
         if (last == edges.end()) {
             return azimuth[kPoints / 2];
@@ -204,15 +204,20 @@ class Outliner {
         return corner(azimuth[i], azimuth[i + 1], *last);
     }
 
-    /// Where the limit changes between two azimuths, the first of which has `edge`.
-    [[nodiscard]] double corner(double from, double to, RegionEdge edge) const {
-        double hint = edge.distance;
+    /// Where the limit changes between two azimuths, the first of which has `edge`. An outline that jumps there is seen
+    /// along its tangent.
+    [[nodiscard]] double corner(double from, double to, RegionEdge edge) {
+        RegionEdge before = edge;
+        RegionEdge after = edge;
         while (to - from > kCornerTolerance) {
             const double middle = 0.5 * (from + to);
-            const RegionEdge here = frame_.edge(middle, hint);
-            hint = here.distance;
-            (here.limit == edge.limit ? from : to) = middle;
+            const RegionEdge here = frame_.edge(middle, before.distance);
+            const bool is_before = here.limit == edge.limit;
+            (is_before ? from : to) = middle;
+            (is_before ? before : after) = here;
         }
+        constexpr double kJump = 1e3 * kCornerTolerance;
+        is_star_shaped = is_star_shaped && std::abs(after.distance - before.distance) <= kJump * before.distance;
         return 0.5 * (from + to);
     }
 
