@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "engine/analysis/seidel.h"
+#include "engine/analysis/working_f_number.h"
 #include "engine/optics/lens.h"
 #include "engine/optics/paraxial.h"
 
@@ -41,6 +42,7 @@ struct LensAnalysis {
     std::vector<ParaxialData> paraxial;        // by wavelength, as in the settings
     ParaxialData reference_paraxial;           // at the reference wavelength, as all that follows
     Conjugates conjugates;                     // of the settings' object
+    double real_working_f_number = 0.0;        // infinite where no axial light passes
     std::optional<double> lagrange_invariant;  // for the largest field, as the sums; nothing at and beyond 90°
     std::optional<SeidelSums<double>> seidel;  // colour from the longest to the shortest wavelength
     std::vector<FieldAnalysis> fields;         // by field, and for each by wavelength

@@ -1,4 +1,5 @@
-// experiments/cli/analyze_command.cpp — `lensproof analyze LENS`: what a lens does, in the numbers that lens people use.
+// experiments/cli/analyze_command.cpp — `lensproof analyze LENS`: what a lens does, in the numbers that lens people
+// use.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -40,6 +41,8 @@ struct AnalyzeOptions {
     int rings = 0;
 };
 
+constexpr double kFarthestImage = 1e15;  // mm
+
 /// The object's distance: the option's, or that which the table is set to.
 double object_distance(const std::string& option, const Prescription& prescription) {
     if (option.empty()) {
@@ -56,8 +59,7 @@ double object_distance(const std::string& option, const Prescription& prescripti
 /// The lens as it is analysed: zoomed, stopped down, focused, its sensor in place.
 Lens prepared_lens(const AnalyzeOptions& options, const Prescription& prescription, double distance,
                    double reference_wavelength_nm) {
-    const GlassCatalogue glasses =
-        with_own_catalogues(read_glass_catalogues(options.glass_catalogues), prescription);
+    const GlassCatalogue glasses = with_own_catalogues(read_glass_catalogues(options.glass_catalogues), prescription);
     Lens lens = make_lens(prescription, glasses, parse_indices(options.indices));
     if (options.f_number) {
         lens = with_f_number(std::move(lens), *options.f_number);
@@ -66,6 +68,10 @@ Lens prepared_lens(const AnalyzeOptions& options, const Prescription& prescripti
         lens = focused_at(std::move(lens), distance);
     }
     if (options.image_distance_mm) {
+        if (!(std::abs(*options.image_distance_mm) <= kFarthestImage)) {
+            throw InputError(fmt::format("--image-distance is {}, expected mm from -{:g} to {:g}",
+                                         *options.image_distance_mm, kFarthestImage, kFarthestImage));
+        }
         lens.image_z = lens.last_vertex_z() + *options.image_distance_mm;
     } else if (lens.image_z == lens.last_vertex_z()) {  // the source does not say
         const TraceLens<double> traced = at_wavelength<double>(lens, reference_wavelength_nm);
@@ -109,7 +115,8 @@ std::vector<double> wavelengths_of(const AnalyzeOptions& options, const Prescrip
 int run_analyze(const AnalyzeOptions& options) {
     check_json_name(options.common);
     Prescription prescription = read_prescription(find_lens_file(options.lens));
-    prescription = at_zoom_position(prescription, options.zoom.empty() ? 0 : find_zoom_position(prescription, options.zoom));
+    prescription =
+        at_zoom_position(prescription, options.zoom.empty() ? 0 : find_zoom_position(prescription, options.zoom));
     AnalysisSettings settings;
     settings.wavelengths_nm = wavelengths_of(options, prescription);
     settings.reference_wavelength_nm = options.reference_wavelength_nm.value_or(settings.wavelengths_nm.front());
@@ -117,7 +124,6 @@ int run_analyze(const AnalyzeOptions& options) {
     settings.rings = options.rings;
     const Lens lens = prepared_lens(options, prescription, settings.object_distance, settings.reference_wavelength_nm);
     settings.fields = fields_of(options, lens, settings.reference_wavelength_nm);
-
     const LensAnalysis analysis = analyze_lens(lens, settings);
     if (prints_text(options.common)) {
         fmt::print("{}", analysis_text(lens, settings, analysis));
