@@ -7,6 +7,7 @@
 #include <boost/math/tools/toms748_solve.hpp>
 #include <cmath>
 #include <cstdint>
+#include <functional>
 #include <limits>
 #include <numbers>
 
@@ -17,8 +18,9 @@ namespace {
 constexpr double kPi = std::numbers::pi;
 constexpr double kAreaTolerance = 1e-11;
 // A corner that is off by δ costs δ² / 2 times the change of slope.
-constexpr double kCornerTolerance = 1e-8;
+constexpr double kCornerTolerance = 1e-6;
 constexpr int kMostHalvings = 24;
+constexpr std::size_t kMostPoints = 1000;
 constexpr int kPoints = 15;
 
 /// Gauss-Kronrod's nodes on [−1, 1], ascending; `gauss` is 0 at those that the 7 Gauss nodes do not have.
@@ -46,16 +48,10 @@ const Kronrod& kronrod() {
     return rule;
 }
 
-struct Edge {
-    double distance = 0.0;  // in units of the frame's scale
-    int limit = -1;
-};
-
 /// Polar coordinates about a point inside the region, with axes stretched so that the region is about as wide as high.
 class PolarFrame {
   public:
-    PolarFrame(const Region& region, Vec2d centre, Vec2d scale)
-        : region_(&region), centre_(centre), scale_(scale), inside_(region(centre)) {}
+    PolarFrame(const Region& region, Vec2d centre, Vec2d scale) : region_(&region), centre_(centre), scale_(scale) {}
 
     [[nodiscard]] Vec2d from_centre(double azimuth, double distance) const {
         return {distance * scale_.x * std::cos(azimuth), distance * scale_.y * std::sin(azimuth)};
@@ -67,43 +63,8 @@ class PolarFrame {
     }
 
     /// The edge at `azimuth`, which is expected at about `hint`.
-    [[nodiscard]] Edge edge(double azimuth, double hint) const {
-        double inside = 0.0;
-        double outside = hint;
-        RegionSample near = inside_;
-        RegionSample far = sample(azimuth, outside);
-        constexpr double kStep = 1.3;
-        while (far.margin <= 0.0 && std::isfinite(outside)) {
-            inside = outside;
-            near = far;
-            outside *= kStep;
-            far = sample(azimuth, outside);
-        }
-        const auto is_exact = [](double a, double b) { return b - a <= 1e-14 * b; };
-        while (std::isinf(far.margin) && !is_exact(inside, outside)) {
-            const double middle = 0.5 * (inside + outside);
-            const RegionSample here = sample(azimuth, middle);
-            (here.margin <= 0.0 ? inside : outside) = middle;
-            (here.margin <= 0.0 ? near : far) = here;
-        }
-        if (near.margin < 0.0 && !is_exact(inside, outside)) {
-            const auto margin = [&](double distance) {
-                const RegionSample here = sample(azimuth, distance);
-                if (here.margin > 0.0 && distance < outside) {
-                    outside = distance;
-                    far = here;
-                }
-                return std::min(here.margin, 1.0);  // an interpolation cannot use an infinite one
-            };
-            std::uintmax_t steps = 200;
-            const auto root = boost::math::tools::toms748_solve(margin, inside, outside, near.margin,
-                                                                std::min(far.margin, 1.0), is_exact, steps);
-            inside = root.first;
-            if (root.first == root.second) {
-                far = sample(azimuth, inside);
-            }
-        }
-        return {inside, far.limit};
+    [[nodiscard]] RegionEdge edge(double azimuth, double hint) const {
+        return region_edge(*region_, centre_, from_centre(azimuth, 1.0), hint);
     }
 
     [[nodiscard]] bool holds_between(double azimuth, double distance) const {
@@ -119,7 +80,6 @@ class PolarFrame {
     const Region* region_;
     Vec2d centre_;
     Vec2d scale_;
-    RegionSample inside_;
 };
 
 /// The frame moved towards the region's centroid and stretched to its extent, both seen at 16 azimuths.
@@ -176,19 +136,11 @@ class Outliner {
     void append(double from, double to, int halvings = kMostHalvings) {
         const Kronrod& rule = kronrod();
         std::array<double, kPoints> azimuth{};
-        std::array<Edge, kPoints> edges{};
+        std::array<RegionEdge, kPoints> edges{};
         for (std::size_t i = 0; i < kPoints; ++i) {
             azimuth[i] = 0.5 * (from + to) + 0.5 * (to - from) * rule.node[i];
             edges[i] = frame_.edge(azimuth[i], hint_);
             hint_ = std::max(edges[i].distance, std::numeric_limits<double>::min());
-        }
-        for (std::size_t i = 0; i + 1 < kPoints && halvings > 0; ++i) {
-            if (edges[i].limit != edges[i + 1].limit) {
-                const double split = corner(azimuth[i], azimuth[i + 1], edges[i]);
-                append(from, split, halvings - 1);
-                append(split, to, halvings - 1);
-                return;
-            }
         }
         double area = 0.0;
         double gauss_area = 0.0;
@@ -199,9 +151,10 @@ class Outliner {
         }
         const double half_width = 0.5 * (to - from);
         const double error = estimated_error(half_width, area, gauss_area, edges);
-        if (halvings > 0 && error > kAreaTolerance * 2.0 * kPi) {
-            append(from, 0.5 * (from + to), halvings - 1);
-            append(0.5 * (from + to), to, halvings - 1);
+        if (halvings > 0 && points.size() < kMostPoints && error > kAreaTolerance * 2.0 * kPi) {
+            const double split = split_point(azimuth, edges);
+            append(from, split, halvings - 1);
+            append(split, to, halvings - 1);
             return;
         }
         error_ += error;
@@ -220,30 +173,51 @@ class Outliner {
     bool is_star_shaped = true;
 
   private:
-    /// QUADPACK's: what the rules differ by, sharpened by how far that is below the integrand's own variation.
+    static bool has_corner(const std::array<RegionEdge, kPoints>& edges) {
+        return std::ranges::adjacent_find(edges, std::ranges::not_equal_to{}, &RegionEdge::limit) != edges.end();
+    }
+
+    /// QUADPACK's: what the rules differ by, sharpened, where the outline is smooth, by how far that is below the
+    /// integrand's own variation. Two limits may also coincide all along; then the difference is small as it is.
     static double estimated_error(double half_width, double area, double gauss_area,
-                                  const std::array<Edge, kPoints>& edges) {
+                                  const std::array<RegionEdge, kPoints>& edges) {
         const double mean = 0.5 * area;
         double variation = 0.0;
         for (std::size_t i = 0; i < kPoints; ++i) {
             variation += kronrod().weight[i] * std::abs(edges[i].distance * edges[i].distance - mean);
         }
         const double difference = std::abs(area - gauss_area);
-        if (!(variation > 0.0)) {
+        if (!(variation > 0.0) || has_corner(edges)) {
             return half_width * difference;
         }
         return half_width * variation * std::min(1.0, std::pow(200.0 * difference / variation, 1.5));
     }
 
-    /// Where the limit changes between two azimuths, the first of which has `edge`.
-    [[nodiscard]] double corner(double from, double to, Edge edge) const {
-        double hint = edge.distance;
+    /// The first corner, or the middle where there is none.
+    [[nodiscard]] double split_point(const std::array<double, kPoints>& azimuth,
+                                     const std::array<RegionEdge, kPoints>& edges) {
+        const auto last = std::ranges::adjacent_find(edges, std::ranges::not_equal_to{}, &RegionEdge::limit);
+        if (last == edges.end()) {
+            return azimuth[kPoints / 2];
+        }
+        const auto i = static_cast<std::size_t>(last - edges.begin());
+        return corner(azimuth[i], azimuth[i + 1], *last);
+    }
+
+    /// Where the limit changes between two azimuths, the first of which has `edge`. An outline that jumps there is seen
+    /// along its tangent.
+    [[nodiscard]] double corner(double from, double to, RegionEdge edge) {
+        RegionEdge before = edge;
+        RegionEdge after = edge;
         while (to - from > kCornerTolerance) {
             const double middle = 0.5 * (from + to);
-            const Edge here = frame_.edge(middle, hint);
-            hint = here.distance;
-            (here.limit == edge.limit ? from : to) = middle;
+            const RegionEdge here = frame_.edge(middle, before.distance);
+            const bool is_before = here.limit == edge.limit;
+            (is_before ? from : to) = middle;
+            (is_before ? before : after) = here;
         }
+        constexpr double kJump = 1e3 * kCornerTolerance;
+        is_star_shaped = is_star_shaped && std::abs(after.distance - before.distance) <= kJump * before.distance;
         return 0.5 * (from + to);
     }
 
@@ -290,30 +264,97 @@ std::optional<Vec2d> find_inside(const Region& region, const RegionSearch& searc
     return least.margin < 0.0 ? std::optional(best) : std::nullopt;
 }
 
-RegionOutline region_outline(const Region& region, const RegionSearch& search) {
-    RegionOutline outline{.centre = search.start, .is_half = search.is_mirror, .points = {}};
-    const std::optional<Vec2d> inside = find_inside(region, search);
-    if (!inside) {
-        return outline;
+RegionEdge region_edge(const Region& region, Vec2d inside, Vec2d along, double hint) {
+    const auto sample = [&](double distance) {
+        return region({inside.x + distance * along.x, inside.y + distance * along.y});
+    };
+    double low = 0.0;
+    double high = hint;
+    RegionSample near = sample(low);
+    RegionSample far = sample(high);
+    constexpr double kStep = 1.3;
+    while (far.margin <= 0.0 && std::isfinite(high)) {
+        low = high;
+        near = far;
+        high *= kStep;
+        far = sample(high);
     }
-    const double scale = search.reach;
-    const PolarFrame frame = centred(PolarFrame(region, *inside, {scale, scale}), search.is_mirror);
+    const auto is_exact = [](double a, double b) { return b - a <= 1e-14 * b; };
+    while (std::isinf(far.margin) && !is_exact(low, high)) {
+        const double middle = 0.5 * (low + high);
+        const RegionSample here = sample(middle);
+        (here.margin <= 0.0 ? low : high) = middle;
+        (here.margin <= 0.0 ? near : far) = here;
+    }
+    if (!(near.margin < 0.0) || is_exact(low, high)) {
+        return {low, far.limit};
+    }
+    double nearest = high;
+    const auto margin = [&](double distance) {
+        const RegionSample here = sample(distance);
+        if (here.margin > 0.0 && distance < nearest) {
+            nearest = distance;
+            far = here;
+        }
+        return std::min(here.margin, 1.0);  // an interpolation cannot use an infinite one
+    };
+    std::uintmax_t steps = 200;
+    const auto root =
+        boost::math::tools::toms748_solve(margin, low, high, near.margin, std::min(far.margin, 1.0), is_exact, steps);
+    return {root.first, root.first == root.second ? sample(root.first).limit : far.limit};
+}
+
+namespace {
+
+RegionOutline outline_in(const PolarFrame& frame, bool is_mirror) {
     Outliner outliner(frame);
-    const int quarters = search.is_mirror ? 2 : 4;
+    const int quarters = is_mirror ? 2 : 4;
     for (int i = 0; i < quarters; ++i) {
         outliner.append(0.5 * kPi * (i - 1), 0.5 * kPi * i);
     }
-    outline.centre = frame.centre();
-    outline.points = std::move(outliner.points);
-    outline.is_star_shaped = outliner.is_star_shaped;
+    RegionOutline outline{.centre = frame.centre(), .is_half = is_mirror, .points = std::move(outliner.points)};
     for (const OutlinePoint& point : outline.points) {
         outline.area += point.wedge_area;
     }
     outline.relative_error = outliner.error() / outline.area;
-    if (search.is_mirror) {
+    // A smooth outline with corners converges; one that jumps, where a ray from the centre touches the edge, does not.
+    constexpr double kConverged = 1e-9;
+    outline.is_star_shaped = outliner.is_star_shaped && outline.relative_error < kConverged;
+    if (is_mirror) {
         outline.area *= 2.0;
     }
     return outline;
+}
+
+/// The outline about another centre, if the region is star-shaped about one of a few between the frame's centre and the
+/// edge; else that about the frame's.
+RegionOutline outline_about_another(const PolarFrame& frame, bool is_mirror, RegionOutline outline) {
+    const int azimuths = is_mirror ? 2 : 8;
+    for (const double share : {0.5, 0.8}) {
+        for (int i = 0; i < azimuths; ++i) {
+            const double azimuth = 2.0 * kPi * i / azimuths + 0.5 * kPi;
+            Vec2d at = frame.from_centre(azimuth, share * frame.edge(azimuth, 1.0).distance);
+            at = {is_mirror ? frame.centre().x : frame.centre().x + at.x, frame.centre().y + at.y};
+            RegionOutline other = outline_in(PolarFrame(frame.region(), at, frame.scale()), is_mirror);
+            if (other.is_star_shaped) {
+                return other;
+            }
+        }
+    }
+    return outline;
+}
+
+}  // namespace
+
+RegionOutline region_outline(const Region& region, const RegionSearch& search) {
+    const std::optional<Vec2d> inside = find_inside(region, search);
+    if (!inside) {
+        return {.centre = search.start, .is_half = search.is_mirror, .points = {}};
+    }
+    const Vec2d scale{search.reach, search.reach};
+    const PolarFrame frame = centred(PolarFrame(region, *inside, scale), search.is_mirror);
+    RegionOutline outline = outline_in(frame, search.is_mirror);
+    return outline.is_star_shaped ? outline : outline_about_another(frame, search.is_mirror, std::move(outline));
 }
 
 GaussRule gauss_legendre(int count) {

@@ -27,9 +27,9 @@ struct OutlinePoint {
 /// points: between the corners, where one limit takes over from another, they are Gauss-Kronrod nodes in azimuth, so
 /// that the area converges as that of a smooth curve does.
 ///
-/// The region is taken to be star-shaped about the centre: each ray from there leaves it once. Of what lies beyond the
-/// first exit (the far part of an annulus) nothing is seen. Where points between the centre and the outline lie
-/// outside, `is_star_shaped` is false, and the wedges hold more than the region.
+/// The region has to be star-shaped about some point: each ray from there leaves it once. Of what lies beyond the first
+/// exit (the far part of an annulus) nothing is seen. `is_star_shaped` is false where points between the centre and the
+/// outline lie outside, or the area does not converge because the outline jumps; the area is then not to be trusted.
 struct RegionOutline {
     Vec2d centre;
     bool is_half = false;  // the points with x ≥ 0 alone stand for the whole region, which is their mirror image too
@@ -52,8 +52,19 @@ struct RegionSearch {
 /// Torczon, SIAM Review 45, 2003); of a mirror image, on x = 0. Nothing where none is found.
 std::optional<Vec2d> find_inside(const Region& region, const RegionSearch& search);
 
-/// The outline about a point near the middle of the region. Radii by TOMS 748 (Alefeld, Potra, Shi 1995) to the last
-/// digits, pieces halved until the estimate of the area's error (Piessens et al., QUADPACK 1983) is below 1e-11.
+/// Where a region is left on the way from a point inside it.
+struct RegionEdge {
+    double distance = 0.0;  // in units of `along`, the last one inside to 1e-14
+    int limit = -1;
+};
+
+/// The way goes from `inside` along the vector `along`; the edge is expected at about `hint` times it. Found between
+/// points inside and outside by TOMS 748 (Alefeld, Potra, Shi 1995), or by halving where the margin is infinite.
+RegionEdge region_edge(const Region& region, Vec2d inside, Vec2d along, double hint = 1.0);
+
+/// The outline about a point near the middle of the region, or between there and its edge where it is not star-shaped
+/// about the middle (a crescent). Pieces are halved until the estimate of the area's error
+/// (Piessens et al., QUADPACK 1983) is below 1e-11.
 RegionOutline region_outline(const Region& region, const RegionSearch& search);
 
 /// A point of a region and the area that it stands for.

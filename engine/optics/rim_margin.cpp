@@ -1,40 +1,50 @@
 #include "engine/optics/rim_margin.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 namespace lensproof {
 
 namespace {
 
-/// Distance² from the surface's own axis.
-double height_squared(const TraceLens<double>& lens, const TraceSurface<double>& surface, const Vec3d& at) {
+/// The point on the surface in the surface's own axes.
+Vec3d own_point(const TraceLens<double>& lens, const TraceSurface<double>& surface, const Vec3d& at) {
+    const Vec3d from_vertex{at.x, at.y, at.z - surface.vertex_z};
     if (surface.special < 0) {
-        return at.x * at.x + at.y * at.y;
+        return from_vertex;
     }
     const SpecialSurface<double>& special = lens.specials[surface.special];
-    const Vec3d own = special.to_own({at.x - special.vertex.x, at.y - special.vertex.y, at.z - surface.vertex_z});
-    return own.x * own.x + own.y * own.y;
+    return special.to_own({at.x - special.vertex.x, at.y - special.vertex.y, from_vertex.z});
 }
 
 template <Direction direction>
 RegionSample margin_along(const TraceLens<double>& lens, const Ray<double>& ray) {
+    const auto count = static_cast<int>(lens.surfaces.size());
+    constexpr int kStatuses = 6;  // 1 + the last status's number, and one more
     RegionSample worst{.margin = -std::numeric_limits<double>::infinity()};
     const auto compare = [&](const SurfaceEvent<double>& event) {
         if (event.status == RayStatus::missed) {
             return;
         }
         const TraceSurface<double>& surface = lens.surfaces[event.surface];
-        const double margin = height_squared(lens, surface, event.ray.origin) / surface.semi_diameter_squared - 1.0;
+        const Vec3d at = own_point(lens, surface, event.ray.origin);
+        const double margin = (at.x * at.x + at.y * at.y) / surface.semi_diameter_squared - 1.0;
         if (margin > worst.margin) {
             worst = {margin, event.surface};
+        }
+        if (surface.special >= 0 && !lens.specials[surface.special].mask.is_full_circle()) {
+            const double scale = 1.0 / std::sqrt(surface.semi_diameter_squared);
+            const auto blade = lens.specials[surface.special].mask.edge_margin(scale * at.x, scale * at.y);
+            if (blade.margin > worst.margin) {
+                worst = {blade.margin, count * (kStatuses + blade.edge) + event.surface};
+            }
         }
     };
     const TracedRay<double> traced = trace<direction, Rims::follow>(lens, ray, compare);
     if (traced.status == RayStatus::ok || worst.margin > 0.0) {
         return worst;
     }
-    const auto count = static_cast<int>(lens.surfaces.size());
     return {.margin = std::numeric_limits<double>::infinity(),
             .limit = count * (1 + static_cast<int>(traced.status)) + traced.surface};
 }

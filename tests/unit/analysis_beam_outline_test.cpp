@@ -111,6 +111,22 @@ TEST(RegionOutline, QuadratureIntegratesPolynomials) {
     EXPECT_NEAR(second / (81.0 * kPi / 4.0 + 9.0 * kPi * 0.25), 1.0, 1e-12);
 }
 
+// A disc with a bite: star-shaped only about points with y > 1.05, where the tangents at the bite's ends meet the axis,
+// and its centroid is not among them.
+TEST(RegionOutline, CrescentIsSeenFromItsFarSide) {
+    const Region crescent = [](Vec2d at) {
+        const double outer = (at.x * at.x + at.y * at.y) / 9.0 - 1.0;
+        const double bite = 1.0 - (at.x * at.x + (at.y + 3.4) * (at.y + 3.4)) / (2.2 * 2.2);
+        return bite > outer ? RegionSample{bite, 1} : RegionSample{outer, 0};
+    };
+    for (const bool is_mirror : {true, false}) {
+        const RegionOutline outline = region_outline(crescent, {.start = {}, .reach = 7.0, .is_mirror = is_mirror});
+        EXPECT_TRUE(outline.is_star_shaped);
+        EXPECT_GT(outline.centre.y, 1.04);
+        EXPECT_NEAR(outline.area / (9.0 * kPi - lens_area(2.2, 3.0, 3.4)), 1.0, 1e-11);
+    }
+}
+
 // An annulus is not star-shaped, and said not to be.
 TEST(RegionOutline, SaysWhereItIsNotStarShaped) {
     const Region annulus = [](Vec2d at) {
