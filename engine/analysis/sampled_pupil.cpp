@@ -176,11 +176,6 @@ class CellRays {
     bool is_folded_ = false;
 };
 
-/// Half a wave from cell to cell, as a distance in the image.
-double largest_seen_aberration(const SampledPupil& pupil) {
-    return 0.5e-6 * pupil.wavelength_nm / pupil.spacing;
-}
-
 }  // namespace
 
 const char* pupil_status_name(PupilStatus status) {
@@ -229,8 +224,10 @@ SampledPupil sample_pupil(const PolychromaticField& field, const PolychromaticFi
     pupil.size = static_cast<int>(std::lround(box.width() / spacing)) + 3;  // a cell around it for the rim
     pupil.centre = {0.5 * (box.low.x + box.high.x), 0.5 * (box.low.y + box.high.y)};
     const std::size_t cells = static_cast<std::size_t>(pupil.size) * static_cast<std::size_t>(pupil.size);
+    pupil.share.assign(cells, 0.0);
     pupil.amplitude.assign(cells, 0.0);
     pupil.path.assign(cells, 0.0);
+    pupil.offset.assign(cells, {});
     pupil.aberration.assign(cells, {});
 
     const Aim aim(field, part);
@@ -245,8 +242,10 @@ SampledPupil sample_pupil(const PolychromaticField& field, const PolychromaticFi
             }
             const double area = 1.0 / std::abs(aimed->jacobian.determinant());
             const std::size_t cell = pupil.cell(row, column);
+            pupil.share[cell] = share;
             pupil.amplitude[cell] = share * std::sqrt(area);
             pupil.path[cell] = aimed->ray.path - mean_path;
+            pupil.offset[cell] = aimed->offset;
             pupil.aberration[cell] = aimed->ray.aberration;
             pupil.energy += share * area * spacing * spacing;
             pupil.largest_aberration =
@@ -254,7 +253,7 @@ SampledPupil sample_pupil(const PolychromaticField& field, const PolychromaticFi
         }
     }
     if (pupil.energy > 0.0) {
-        const bool is_seen = pupil.largest_aberration <= largest_seen_aberration(pupil);
+        const bool is_seen = pupil.largest_aberration <= pupil.largest_seen_aberration();
         pupil.status = rays.is_folded() ? PupilStatus::folded : is_seen ? PupilStatus::ok : PupilStatus::aliased;
     }
     return pupil;
@@ -281,7 +280,7 @@ SampledPupil refocused(SampledPupil pupil, const PolychromaticField& field, doub
     }
     if (pupil.status == PupilStatus::ok || pupil.status == PupilStatus::aliased) {
         pupil.status =
-            pupil.largest_aberration <= largest_seen_aberration(pupil) ? PupilStatus::ok : PupilStatus::aliased;
+            pupil.largest_aberration <= pupil.largest_seen_aberration() ? PupilStatus::ok : PupilStatus::aliased;
     }
     return pupil;
 }

@@ -215,6 +215,11 @@ TEST(Mtf, SaysWhatItCannotSample) {
     const std::vector<double> frequencies = {30.0};
     EXPECT_EQ(diffraction_mtf(wide, frequencies, MtfKind::diffraction, 32).status, PupilStatus::aliased);
     EXPECT_EQ(diffraction_mtf(wide, frequencies, MtfKind::diffraction_limited, 32).status, PupilStatus::ok);
+    const MtfCurve automatic = diffraction_mtf(wide, frequencies);
+    EXPECT_EQ(automatic.status, PupilStatus::ok);
+    const MtfCurve fine = diffraction_mtf(wide, frequencies, MtfKind::diffraction, 400);
+    EXPECT_NEAR(automatic.tangential.front(), fine.tangential.front(), 2.0 * kRimCells);
+    EXPECT_NEAR(automatic.sagittal.front(), fine.sagittal.front(), 2.0 * kRimCells);
     EXPECT_EQ(geometric_mtf(wide, std::vector<double>{900.0}, {.azimuths = 8, .rings = 4}).status,
               PupilStatus::aliased);
     EXPECT_THROW(diffraction_mtf(wide, std::vector<double>{-1.0}), InputError);
