@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "engine/analysis/wavefront.h"
+#include "engine/analysis/wavefront_map.h"
 #include "engine/spectral/wavelengths.h"
 #include "tests/unit/perfect_lens.h"
 
@@ -201,6 +202,57 @@ TEST(Wavefront, BestSphereFindsTheFocus) {
     const double tilt = std::hypot(shift.x, shift.y) * 0.16 / (kLineD * 1e-6);
     EXPECT_NEAR(std::sqrt(errors.rms * errors.rms - errors.rms_without_tilt * errors.rms_without_tilt), 0.5 * tilt,
                 0.03 * tilt);
+}
+
+// The map of a perfect lens out of focus, W = ζ (1 − cos U) from a telecentric pupil, at each of its cells.
+TEST(WavefrontMap, OfADefocusedLens) {
+    const PerfectLens perfect{.stop_distance = PerfectLens{}.telecentric_distance(), .defocus = 0.05};
+    const FieldBundle bundle = bundle_at(perfect.lens(), 0.0);
+    const PolychromaticField field =
+        polychromatic_field(perfect.lens(), bundle, kLineD, std::vector<WeightedWavelength>{{kLineD, 1.0}});
+    constexpr int kCells = 40;
+    const WavefrontMap map = wavefront_map(field, field.parts.front(), kCells);
+    int inside = 0;
+    for (int row = 0; row < map.size; ++row) {
+        for (int column = 0; column < map.size; ++column) {
+            if (!map.is_inside(row, column)) {
+                EXPECT_EQ(map.at(row, column), 0.0);
+                continue;
+            }
+            ++inside;
+            const Vec2d pupil = map.pupil(row, column);
+            const double cosine = std::sqrt(1.0 - pupil.x * pupil.x - pupil.y * pupil.y);
+            EXPECT_NEAR(map.at(row, column), 0.05 * (1.0 - cosine) / (kLineD * 1e-6), 1e-6);
+        }
+    }
+    // A disc's cells, to those of its rim.
+    EXPECT_NEAR(inside / (0.25 * std::numbers::pi * kCells * kCells), 1.0, 0.03);
+    EXPECT_EQ(map.status, PupilStatus::ok);
+}
+
+// Off the axis the cells are those of `wavefront` at the same rays, rim to rim.
+TEST(WavefrontMap, IsTheWavefrontOffTheAxis) {
+    const Lens lens = load_lens("double-gauss-tronnier");
+    const FieldBundle bundle = bundle_at(lens, 14.0 * kDegree);
+    const PolychromaticField field =
+        polychromatic_field(lens, bundle, kLineD, std::vector<WeightedWavelength>{{kLineD, 1.0}});
+    const PolychromaticField::Part& part = field.parts.front();
+    const WavefrontMap map = wavefront_map(field, part, 48);
+    double sum = 0.0;
+    double squares = 0.0;
+    int cells = 0;
+    for (std::size_t i = 0; i < map.opd_waves.size(); ++i) {
+        if (map.inside[i] != 0) {
+            sum += map.opd_waves[i];
+            squares += map.opd_waves[i] * map.opd_waves[i];
+            ++cells;
+        }
+    }
+    const double rms = std::sqrt(squares / cells - sum * sum / cells / cells);
+    const double expected =
+        wavefront_errors(wavefront(part.lens, kLineD, bundle, field.sphere, beam_quadrature(part.outline, 10))).rms;
+    // Even cells in direction against even cells in the beam, and 4/48 of them at the rim.
+    EXPECT_NEAR(rms / expected, 1.0, 0.1);
 }
 
 // A chief ray that a rim clips leaves the field its rays.
