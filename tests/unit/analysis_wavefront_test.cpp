@@ -180,6 +180,37 @@ TEST(Wavefront, HoldsDigitsForFarObjects) {
     }
 }
 
+// rayoptics 0.9.8 (waveabr.wave_abr_full_calc) for the Tessar with constant indices, image plane 79.831 mm behind it,
+// an object at 1e10 mm, and rays through these points of the first surface; the sign is the same. Its distance of 1e10
+// mm leaves the field angle 1e-9 and so the tilt 1e-7 waves.
+TEST(Wavefront, AgreesWithRayoptics) {
+    struct Row {
+        double field_deg;
+        Vec3d point;
+        double waves;
+    };
+    constexpr Row kRows[] = {
+        {0.0, {0.0, 4.499999993880237, 0.23627912227771064}, -0.03137188949203151},
+        {0.0, {3.4999999952074585, 0.0, 0.14277851607055528}, -0.03751195141130368},
+        {7.0, {0.0, 2.810004355082121, 0.09197794295521017}, -0.01445219216656292},
+        {7.0, {0.0, -5.655393700068386, 0.37378629388256523}, -0.10580081562285439},
+        {7.0, {3.499999995218992, -1.6797118439316505, 0.17573089589188007}, 0.11632923681313419},
+        {7.0, {2.4999999965611637, 0.8085840008494058, 0.08040811652826477}, 0.05216079007859865},
+        {9.8, {0.0, 2.112054244314492, 0.05193705595424786}, -0.09166261913243019},
+        {9.8, {0.0, -6.316293211846566, 0.4667608285911814}, -0.16305726330726764},
+        {9.8, {3.4999999952302536, -2.361005024467417, 0.20790749614995935}, 0.23805807309892657},
+    };
+    const Lens lens = load_lens("tessar", {.indices = {{"LAK9", 1.691}, {"LLF7", 1.549}, {"SF7", 1.64}}});
+    const TraceLens<double> traced = at_wavelength<double>(lens, kLineD);
+    for (const Row& row : kRows) {
+        const FieldBundle bundle = bundle_at(lens, row.field_deg * kDegree, 1e10);
+        const Vec3d apart = row.point - bundle.chief.front.origin;
+        const std::vector<BeamNode> node = {{{dot(apart, bundle.across()[0]), dot(apart, bundle.across()[1])}, 1.0}};
+        const Wavefront front = wavefront(traced, kLineD, bundle, reference_sphere(traced, bundle).value(), node);
+        EXPECT_NEAR(front.rays.front().opd_mm * 1e6 / kLineD, row.waves, 1e-6) << row.field_deg << " " << row.point.y;
+    }
+}
+
 // A shift of the reference centre in its plane is a tilt, and along the axis a defocus: of a perfect wavefront nothing
 // is left once they are taken out, and what was taken out is the shift. Second order: shift² / radius.
 TEST(Wavefront, BestSphereFindsTheFocus) {
