@@ -346,6 +346,29 @@ RegionOutline outline_about_another(const PolarFrame& frame, bool is_mirror, Reg
     return outline;
 }
 
+/// The outline of a region that is its own mirror image, in a plane sheared so that the middle of the region's height
+/// is as high at 0.8 of its half width as on x = 0.
+RegionOutline straightened_outline(const PolarFrame& frame) {
+    double bend = 0.0;
+    const Vec2d centre = frame.centre();
+    const Vec2d scale = frame.scale();
+    const Region straight = [&](Vec2d at) { return frame.region()({at.x, at.y + bend * at.x * at.x}); };
+    constexpr int kRounds = 6;
+    for (int round = 0; round < kRounds; ++round) {
+        constexpr double kShare = 0.8;
+        const double x = kShare * scale.x * region_edge(straight, centre, {scale.x, 0.0}).distance;
+        const auto middle = [&](double at_x) {
+            const double above = region_edge(straight, {at_x, centre.y}, {0.0, scale.y}).distance;
+            const double below = region_edge(straight, {at_x, centre.y}, {0.0, -scale.y}).distance;
+            return 0.5 * scale.y * (above - below);
+        };
+        bend += (middle(x) - middle(0.0)) / (x * x);
+    }
+    RegionOutline outline = outline_in(centred(PolarFrame(straight, centre, scale), true), true);
+    outline.bend = bend;
+    return outline;
+}
+
 }  // namespace
 
 RegionOutline region_outline(const Region& region, const RegionSearch& search) {
@@ -356,7 +379,14 @@ RegionOutline region_outline(const Region& region, const RegionSearch& search) {
     const Vec2d scale{search.reach, search.reach};
     const PolarFrame frame = centred(PolarFrame(region, *inside, scale), search.is_mirror);
     RegionOutline outline = outline_in(frame, search.is_mirror);
-    return outline.is_star_shaped ? outline : outline_about_another(frame, search.is_mirror, std::move(outline));
+    if (!outline.is_star_shaped) {
+        outline = outline_about_another(frame, search.is_mirror, std::move(outline));
+    }
+    if (!outline.is_star_shaped && search.is_mirror) {
+        RegionOutline straightened = straightened_outline(frame);
+        return straightened.is_star_shaped ? straightened : outline;
+    }
+    return outline;
 }
 
 GaussRule gauss_legendre(int count) {
@@ -381,10 +411,10 @@ std::vector<RegionNode> region_quadrature(const RegionOutline& outline, int ring
         for (std::size_t i = 0; i < rule.nodes.size(); ++i) {
             const double t = rule.nodes[i];
             const double weight = 2.0 * t * rule.weights[i] * point.wedge_area;
-            const Vec2d from_centre{t * point.edge.x, t * point.edge.y};
-            nodes.push_back({{outline.centre.x + from_centre.x, outline.centre.y + from_centre.y}, weight});
+            const Vec2d at = outline.at(point, t);
+            nodes.push_back({at, weight});
             if (outline.is_half) {
-                nodes.push_back({{outline.centre.x - from_centre.x, outline.centre.y + from_centre.y}, weight});
+                nodes.push_back({{-at.x, at.y}, weight});
             }
         }
     }

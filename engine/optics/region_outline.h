@@ -18,8 +18,8 @@ using Region = std::function<RegionSample(Vec2d)>;
 
 /// A point of the outline, and the wedge that it stands for.
 struct OutlinePoint {
-    Vec2d edge;         // from the outline's centre to the point
-    double wedge_area;  // ∫ over the region is Σ wedge_area · 2 ∫₀¹ f(centre + t · edge) t dt
+    Vec2d edge;         // from the outline's centre to the point, unbent
+    double wedge_area;  // ∫ over the region is Σ wedge_area · 2 ∫₀¹ f(at(point, t)) t dt
     int limit = -1;     // which limit the region ends at
 };
 
@@ -34,11 +34,19 @@ struct RegionOutline {
     Vec2d centre;
     bool is_half = false;  // the points with x ≥ 0 alone stand for the whole region, which is their mirror image too
     std::vector<OutlinePoint> points;  // empty: nothing is inside
+    double bend = 0.0;                 // 1 / length: the wedges' own plane is sheared by (0, bend · x²)
     double area = 0.0;                 // of the whole region
     double relative_error = 0.0;       // estimated, of the area
     bool is_star_shaped = true;
 
     [[nodiscard]] bool is_empty() const { return points.empty(); }
+
+    /// Of the way from the centre to a point of the outline, the point after the share `t`; with t = 1 that point
+    /// itself.
+    [[nodiscard]] Vec2d at(const OutlinePoint& point, double t) const {
+        const double x = t * point.edge.x;
+        return {centre.x + x, centre.y + t * point.edge.y + bend * x * x};
+    }
 };
 
 /// Where to look for a region.
@@ -63,7 +71,8 @@ struct RegionEdge {
 RegionEdge region_edge(const Region& region, Vec2d inside, Vec2d along, double hint = 1.0);
 
 /// The outline about a point near the middle of the region, or between there and its edge where it is not star-shaped
-/// about the middle (a crescent). Pieces are halved until the estimate of the area's error
+/// about the middle (a crescent). The last light of a fisheye is a long, bent strip, star-shaped about no point: it is
+/// straightened by a shear across x, which keeps areas. Pieces are halved until the estimate of the area's error
 /// (Piessens et al., QUADPACK 1983) is below 1e-11.
 RegionOutline region_outline(const Region& region, const RegionSearch& search);
 

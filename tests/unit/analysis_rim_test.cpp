@@ -36,8 +36,7 @@ TEST(BeamOutline, BladesAreFollowedWithTheirCorners) {
 }
 
 // From a micrometre's pinhole to a stop that does not limit anything, on the axis and off it: the bare stop's disc seen
-// obliquely. A closed stop
-// leaves nothing, and says so.
+// obliquely. A closed stop leaves nothing, and says so.
 TEST(BeamOutline, StopsOfEverySize) {
     for (const double radius : {1e-3, 0.05, 2.0, 500.0}) {
         const Lens lens = make_lens(
