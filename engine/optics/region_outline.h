@@ -1,20 +1,10 @@
 // engine/optics/region_outline.h — the outline of a plane region that several limits bound together, and its area.
 #pragma once
-#include <functional>
-#include <optional>
 #include <vector>
 
-#include "engine/optics/vec.h"
+#include "engine/optics/region.h"
 
 namespace lensproof {
-
-/// How a point stands to a region.
-struct RegionSample {
-    double margin = 0.0;  // ≤ 0 inside; > 0 outside: smooth along one limit, infinite where nothing is known but that
-    int limit = -1;       // the limit that comes first in the way: the one with the largest margin
-};
-
-using Region = std::function<RegionSample(Vec2d)>;
 
 /// A point of the outline, and the wedge that it stands for.
 struct OutlinePoint {
@@ -48,27 +38,6 @@ struct RegionOutline {
         return {centre.x + x, centre.y + t * point.edge.y + bend * x * x};
     }
 };
-
-/// Where to look for a region.
-struct RegionSearch {
-    Vec2d start;             // probably inside
-    double reach = 1.0;      // no point of the region lies farther from `start`
-    bool is_mirror = false;  // the region is its own mirror image in x = 0, and start.x = 0
-};
-
-/// A point inside: `start`, or else the best of a grid, improved by compass search down the margin (Kolda, Lewis,
-/// Torczon, SIAM Review 45, 2003); of a mirror image, on x = 0. Nothing where none is found.
-std::optional<Vec2d> find_inside(const Region& region, const RegionSearch& search);
-
-/// Where a region is left on the way from a point inside it.
-struct RegionEdge {
-    double distance = 0.0;  // in units of `along`, the last one inside to 1e-14
-    int limit = -1;
-};
-
-/// The way goes from `inside` along the vector `along`; the edge is expected at about `hint` times it. Found between
-/// points inside and outside by TOMS 748 (Alefeld, Potra, Shi 1995), or by halving where the margin is infinite.
-RegionEdge region_edge(const Region& region, Vec2d inside, Vec2d along, double hint = 1.0);
 
 /// The outline about a point near the middle of the region, or between there and its edge where it is not star-shaped
 /// about the middle (a crescent). The last light of a fisheye is a long, bent strip, star-shaped about no point: it is
