@@ -108,7 +108,7 @@ SquareMap square(const Case& c) {
 }
 
 std::string wavefronts(const Case& c) {
-    std::vector<WavefrontMap> fields;
+    std::vector<FieldWavefront> fields;
     for (const double field : c.fields) {
         fields.push_back({field, c.wavelengths.front(), square(c), 0.1 * c.size, c.size});
     }
@@ -184,6 +184,23 @@ TEST(AnalysisPlots, AFieldWithoutLightSaysSo) {
     for (const auto& [name, plot] : kPlots) {
         EXPECT_NE(plot(dark).find("no light"), std::string::npos) << name;
         EXPECT_EQ(plot({}).find("no light"), std::string::npos) << name;
+    }
+}
+
+// Where light arrives and a plot is missing all the same, it says why.
+TEST(AnalysisPlots, AMissingPlotSaysWhy) {
+    const std::string why = "too steep for the grid";
+    FieldWavefront wavefront;
+    wavefront.remark = why;
+    PsfMap psf;
+    psf.remark = why;
+    FieldMtf modulation;
+    modulation.remark = why;
+    for (const std::string& svg :
+         {wavefront_svg({}, {wavefront}), psf_svg({}, {psf}), mtf_svg({}, {modulation}, {{0.0, 1.0}, {100.0, 0.5}})}) {
+        EXPECT_NE(svg.find(why), std::string::npos);
+        EXPECT_EQ(svg.find("no light"), std::string::npos);
+        EXPECT_TRUE(is_sound(svg));
     }
 }
 
