@@ -120,6 +120,7 @@ Json mtf_json(const std::vector<FieldMtf>& fields) {
     Json json = Json::array();
     for (const FieldMtf& field : fields) {
         json.push_back({{"field_deg", field.field_deg},
+                        {"remark", field.remark},
                         {"tangential", points_json(field.tangential)},
                         {"sagittal", points_json(field.sagittal)}});
     }
@@ -200,7 +201,7 @@ std::map<std::string, std::string> analysis_drawings(const PlotHeading& heading,
             {"wavefront.svg", wavefront_svg(heading, waves.wavefronts)},
             {"psf.svg", psf_svg(heading, waves.psfs)},
             {"mtf.svg", mtf_svg(heading, waves.mtf, waves.diffraction_limit)},
-            {"mtf_geometric.svg", mtf_svg(heading, waves.geometric_mtf, waves.diffraction_limit)},
+            {"mtf_geometric.svg", mtf_svg(heading, waves.geometric_mtf, waves.diffraction_limit, "geometric")},
             {"mtf_over_field.svg", mtf_field_svg(heading, waves.mtf_over_field)}};
 }
 

@@ -46,6 +46,20 @@ FieldWavefront field_wavefront(const PolychromaticField& field, const Polychroma
     return shown;
 }
 
+/// Why there is nothing to show.
+std::string status_remark(PupilStatus status) {
+    switch (status) {
+        case PupilStatus::aliased:
+            return "aberrations too large for the grid";
+        case PupilStatus::folded:
+            return "two rays leave in one direction";
+        case PupilStatus::ok:
+        case PupilStatus::no_light:
+            break;
+    }
+    return "";
+}
+
 /// The middle of a picture, wide enough for the rays and for some rings of Airy's disc.
 PsfMap psf_map(const PolychromaticField& field, double field_deg) {
     PsfMap map{.field_deg = field_deg};
@@ -58,6 +72,7 @@ PsfMap psf_map(const PolychromaticField& field, double field_deg) {
         }
     }
     if (psf.status != PupilStatus::ok) {
+        map.remark = status_remark(psf.status);
         return map;
     }
     constexpr double kAiryPixels = 2.44;  // of its radius at λ / (2 D) a pixel
@@ -84,21 +99,24 @@ MtfCurve ray_mtf(const PolychromaticField& field, std::span<const double> freque
     return curve;
 }
 
-/// With diffraction, or by rays where the path differences are too steep to be sampled: there the two agree.
-MtfCurve resolved_mtf(const PolychromaticField& field, std::span<const double> frequencies) {
-    MtfCurve curve = diffraction_mtf(field, frequencies);
-    return curve.status == PupilStatus::ok ? curve : ray_mtf(field, frequencies);
-}
-
-FieldMtf field_mtf(const MtfCurve& curve, double field_deg) {
-    FieldMtf mtf{.field_deg = field_deg};
-    if (curve.status == PupilStatus::ok) {
-        for (std::size_t i = 0; i < curve.frequency.size(); ++i) {
-            mtf.tangential.push_back({curve.frequency[i], curve.tangential[i]});
-            mtf.sagittal.push_back({curve.frequency[i], curve.sagittal[i]});
-        }
+FieldMtf field_mtf(const MtfCurve& curve, double field_deg, const std::string& remark = "") {
+    FieldMtf mtf{.field_deg = field_deg, .remark = remark};
+    if (curve.status != PupilStatus::ok) {
+        mtf.remark = status_remark(curve.status);
+        return mtf;
+    }
+    for (std::size_t i = 0; i < curve.frequency.size(); ++i) {
+        mtf.tangential.push_back({curve.frequency[i], curve.tangential[i]});
+        mtf.sagittal.push_back({curve.frequency[i], curve.sagittal[i]});
     }
     return mtf;
+}
+
+/// With diffraction, or by rays where the path differences are too steep to be sampled: there the two agree.
+FieldMtf resolved_mtf(const PolychromaticField& field, std::span<const double> frequencies, double field_deg) {
+    const MtfCurve curve = diffraction_mtf(field, frequencies);
+    return curve.status == PupilStatus::ok ? field_mtf(curve, field_deg)
+                                           : field_mtf(ray_mtf(field, frequencies), field_deg, "by rays");
 }
 
 std::vector<FrequencyMtf> mtf_over_field(const Lens& lens, AnalysisSettings settings, int threads) {
@@ -108,17 +126,17 @@ std::vector<FrequencyMtf> mtf_over_field(const Lens& lens, AnalysisSettings sett
     }
     settings.fields = even_fields(std::ranges::max(settings.fields), kMtfFields);
     const auto fields = polychromatic_fields(lens, settings);
-    std::vector<MtfCurve> mtf(fields.size());
-    parallel_for(
-        static_cast<int>(fields.size()), threads,
-        [&](int i) { mtf[i] = fields[i] ? resolved_mtf(*fields[i], kShownFrequencies) : MtfCurve{}; }, [](int) {});
-    for (std::size_t i = 0; i < fields.size(); ++i) {
-        const MtfCurve& curve = mtf[i];
+    std::vector<FieldMtf> mtf(fields.size());
+    const auto compute = [&](int i) {
         const double field_deg = settings.fields[i] / kDegree;
+        mtf[i] = fields[i] ? resolved_mtf(*fields[i], kShownFrequencies, field_deg) : FieldMtf{.field_deg = field_deg};
+    };
+    parallel_for(static_cast<int>(fields.size()), threads, compute, [](int) {});
+    for (const FieldMtf& field : mtf) {
         for (std::size_t k = 0; k < curves.size(); ++k) {
-            const bool is_known = curve.status == PupilStatus::ok;
-            curves[k].tangential.push_back({field_deg, is_known ? curve.tangential[k] : kNothing});
-            curves[k].sagittal.push_back({field_deg, is_known ? curve.sagittal[k] : kNothing});
+            const bool is_known = !field.tangential.empty();
+            curves[k].tangential.push_back({field.field_deg, is_known ? field.tangential[k].y : kNothing});
+            curves[k].sagittal.push_back({field.field_deg, is_known ? field.sagittal[k].y : kNothing});
         }
     }
     return curves;
@@ -164,7 +182,7 @@ WaveCurves wave_curves(const Lens& lens, const AnalysisSettings& settings, int t
                                    ? field_wavefront(*reference, reference->parts.front(), axial_radius, settings.rings)
                                    : FieldWavefront{.field_deg = field_deg};
         curves.psfs[i] = field ? psf_map(*field, field_deg) : PsfMap{.field_deg = field_deg};
-        curves.mtf[i] = field_mtf(field ? resolved_mtf(*field, frequencies) : MtfCurve{}, field_deg);
+        curves.mtf[i] = field ? resolved_mtf(*field, frequencies, field_deg) : FieldMtf{.field_deg = field_deg};
         curves.geometric_mtf[i] = field_mtf(field ? ray_mtf(*field, frequencies) : MtfCurve{}, field_deg);
     };
     parallel_for(static_cast<int>(fields.size()), threads, compute, [](int) {});
