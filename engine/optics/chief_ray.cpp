@@ -152,7 +152,7 @@ std::optional<ChiefRay> ChiefRays::solve(const Residual& residual) const {
         return ray ? residual(*ray) : 0.0;
     };
     const auto is_exact = [](double a, double b) { return b - a <= 2e-16 * b; };
-    std::uintmax_t steps = 2U * kHalvings;
+    std::uintmax_t steps = 120;  // never needed: each takes a digit or more
     const auto [low, high] =
         boost::math::tools::toms748_solve(at, 0.0, largest_stop_angle_, at_first, at_last, is_exact, steps);
     return is_family ? from_stop(high) : std::nullopt;

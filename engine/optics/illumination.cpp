@@ -39,10 +39,9 @@ struct SensorPoint {
         // is close; no two cosines are farther apart than 2.
         const double reach = std::min(2.0, 2.0 * std::sqrt(rear.semi_diameter_squared) / std::abs(to_vertex.z));
         const Vec2d start = towards.value_or(Vec2d{to_middle.x, to_middle.y});
-        return region_outline([this](Vec2d cosines) { return margin(cosines); },
-                              {.start = start,
-                               .reach = reach,
-                               .is_mirror = is_mirror_symmetric(lens) && at.x == 0.0 && start.x == 0.0});
+        return region_outline(
+            [this](Vec2d cosines) { return margin(cosines); },
+            {.start = start, .reach = reach, .is_mirror = is_mirror_symmetric(lens) && at.x == 0.0 && start.x == 0.0});
     }
 };
 

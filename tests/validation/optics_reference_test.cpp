@@ -138,8 +138,8 @@ TEST_P(OpticsReference, ChiefRayHeights) {
     EXPECT_GT(compared, 40);
 }
 
-// The projected solid angle of the bundle at the d line, to the reference's own accuracy of about 1e-7 (it does not look
-// for the corners between two rims' arcs).
+// The projected solid angle of the bundle at the d line, to the reference's own accuracy of about 1e-7 (it does not
+// look for the corners between two rims' arcs).
 TEST_P(OpticsReference, ProjectedSolidAngle) {
     Lens lens = lens_;
     lens.image_z = data_["image_planes"]["paraxial_d"]["z"];
