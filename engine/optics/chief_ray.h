@@ -46,7 +46,8 @@ class ChiefRays {
     [[nodiscard]] std::optional<ChiefRay> from_point(const Vec3d& object) const;
     [[nodiscard]] std::optional<ChiefRay> from_point(double y, double z) const { return from_point({0.0, y, z}); }
 
-    /// The last field angle whose chief ray passes every rim, or goes on beyond them (Rims::follow).
+    /// The last field angle whose chief ray passes every rim, or goes on beyond them (Rims::follow) as far as the field
+    /// grows with the stop angle: far beyond the rims surfaces may bend it back.
     [[nodiscard]] double largest_field() const { return largest_field_; }
 
   private:
@@ -55,6 +56,7 @@ class ChiefRays {
     [[nodiscard]] std::optional<ChiefRay> solve(const Residual& residual) const;
     template <class Residual>
     [[nodiscard]] std::optional<ChiefRay> aim(const Residual& residual) const;
+    [[nodiscard]] double end_of_family() const;
     [[nodiscard]] double find_largest_field() const;
 
     TraceLens<double> whole_;

@@ -42,23 +42,20 @@ Ray<double> FieldBundle::ray(Vec2d offset) const {
     return {origin - (r2 / (to_object + to_origin)) * direction, direction};
 }
 
+std::optional<FieldBundle> same_object(const FieldBundle& bundle, const ChiefRays& of_wavelength) {
+    const std::optional<ChiefRay> own = bundle.is_near() ? of_wavelength.from_point(bundle.object_point())
+                                                         : of_wavelength.at_field(bundle.chief.field_angle);
+    return own ? std::optional(FieldBundle{.chief = *own, .object_distance = bundle.object_distance}) : std::nullopt;
+}
+
 std::optional<FieldBundle> field_bundle(const ChiefRays& of_wavelength, const ChiefRays& reference, double field_angle,
                                         double object_distance) {
     const std::optional<ChiefRay> aimed = reference.at_field(field_angle);
     if (!aimed) {
         return std::nullopt;
     }
-    FieldBundle bundle{.chief = *aimed, .object_distance = object_distance};
-    if (&of_wavelength == &reference) {
-        return bundle;
-    }
-    const std::optional<ChiefRay> own =
-        bundle.is_near() ? of_wavelength.from_point(bundle.object_point()) : of_wavelength.at_field(field_angle);
-    if (!own) {
-        return std::nullopt;
-    }
-    bundle.chief = *own;
-    return bundle;
+    const FieldBundle bundle{.chief = *aimed, .object_distance = object_distance};
+    return &of_wavelength == &reference ? std::optional(bundle) : same_object(bundle, of_wavelength);
 }
 
 }  // namespace lensproof

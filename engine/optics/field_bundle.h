@@ -38,6 +38,10 @@ struct FieldBundle {
     [[nodiscard]] Ray<double> ray(Vec2d offset) const;
 };
 
+/// The bundle of the same object at another wavelength, around that wavelength's own chief ray: at infinity the same
+/// direction, else the same point. Nothing where there is no such ray.
+std::optional<FieldBundle> same_object(const FieldBundle& bundle, const ChiefRays& of_wavelength);
+
 /// The bundle of the object at `field_angle`, which the chief ray of the reference wavelength defines: at infinity the
 /// direction, else the point where that ray leaves the object's plane. Nothing where either ray does not exist.
 std::optional<FieldBundle> field_bundle(const ChiefRays& of_wavelength, const ChiefRays& reference, double field_angle,

@@ -80,6 +80,26 @@ TEST(ChiefRays, ReachEveryFieldOfAFisheye) {
     EXPECT_FALSE(rays.at_field(rays.largest_field() + 1e-3));
 }
 
+// Followed past the rims, a triplet's chief rays turn back before they end; the fields up to the turn are all there,
+// and those within the rims the same as without following.
+TEST(ChiefRays, FollowedUpToTheFold) {
+    for (const char* name : {"triplet-cooke", "tessar", "muller-fisheye"}) {
+        const Lens lens = load_lens(name);
+        const ChiefRays within(lens, kLineD);
+        const ChiefRays beyond(lens, kLineD, Rims::follow);
+        EXPECT_GT(beyond.largest_field(), within.largest_field()) << name;
+        for (const double share : {0.1, 0.5, 0.99}) {
+            const auto ray = beyond.at_field(share * beyond.largest_field());
+            ASSERT_TRUE(ray) << name;
+            EXPECT_LT(miss_at_stop(lens, ray->front), 1e-10);
+            const auto same = beyond.at_field(share * within.largest_field());
+            ASSERT_TRUE(same) << name;
+            EXPECT_EQ(same->status, RayStatus::ok);
+            EXPECT_NEAR(same->image_height, within.at_field(share * within.largest_field())->image_height, 1e-12);
+        }
+    }
+}
+
 // A turned lens's chief rays are those of the straight lens, turned; turned out of the plane x = 0 they still come from
 // where they are asked to and meet the stop's centre. 1e-11 mm: angles to 1e-12 over a lens of about 60 mm.
 TEST(ChiefRays, AimThroughATurnedLens) {
