@@ -207,10 +207,10 @@ Psf fft_psf(const PolychromaticField& field, const FftPsfSettings& settings) {
     std::vector<std::vector<Complex>> functions;
     for (const PolychromaticField::Part& part : field.parts) {
         const double spacing = wavelength_mm(part.wavelength_nm) / (size * psf.pixel_um * kMicrometre);
-        if (cosine_box(field, part).width() / spacing + 3.0 > size) {
+        if (pupil_cells(cosine_box(field, part).width(), spacing) > size) {
             throw InputError(fmt::format(
-                "pixels of {} µm are too coarse for a PSF whose diffraction needs {:.3g} µm at {} pixels a side",
-                psf.pixel_um, 2.0 * finest * (size - 3.0) / size, size));
+                "pixels of {} µm are too coarse for this PSF: expected less than about {:.3g} µm at {} a side",
+                psf.pixel_um, 1.9 * finest, size));
         }
         const SampledPupil& pupil = pupils.emplace_back(sample_pupil(field, part, spacing));
         functions.push_back(pupil_function(pupil));
@@ -297,10 +297,12 @@ double encircled_energy(const Psf& psf, Vec2d centre_um, double radius_um) {
             const double x = psf.position_um(column) - centre_um.x;
             const double y = psf.position_um(row) - centre_um.y;
             int inside = 0;
-            for (int i = 0; i < kParts * kParts; ++i) {
-                const double part_x = x + psf.pixel_um * ((i % kParts + 0.5) / kParts - 0.5);
-                const double part_y = y + psf.pixel_um * ((i / kParts + 0.5) / kParts - 0.5);
-                inside += part_x * part_x + part_y * part_y <= radius_um * radius_um ? 1 : 0;
+            for (int i = 0; i < kParts; ++i) {
+                const double part_y = y + psf.pixel_um * ((i + 0.5) / kParts - 0.5);
+                for (int k = 0; k < kParts; ++k) {
+                    const double part_x = x + psf.pixel_um * ((k + 0.5) / kParts - 0.5);
+                    inside += part_x * part_x + part_y * part_y <= radius_um * radius_um ? 1 : 0;
+                }
             }
             sum += psf.at(row, column) * inside;
         }

@@ -19,7 +19,10 @@ struct Psf {
     int needed_size = 0;  // of an FFT with such pixels: the power of two whose window holds the rays; 0: by another way
 
     /// From the image point (PolychromaticField), along x or y, of a column or row.
-    [[nodiscard]] double position_um(int index) const { return pixel_um * (index - size / 2); }
+    [[nodiscard]] double position_um(int index) const {
+        const int middle = size / 2;
+        return pixel_um * (index - middle);
+    }
     [[nodiscard]] double at(int row, int column) const {
         return irradiance[static_cast<std::size_t>(row) * static_cast<std::size_t>(size) +
                           static_cast<std::size_t>(column)];

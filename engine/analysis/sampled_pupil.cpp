@@ -240,13 +240,18 @@ CosineBox cosine_box(const PolychromaticField& field, const PolychromaticField::
     return box;
 }
 
+int pupil_cells(double width, double spacing) {
+    constexpr double kMost = 1e6;
+    return static_cast<int>(std::lround(std::min(kMost, 1.01 * width / spacing))) + 3;
+}
+
 SampledPupil sample_pupil(const PolychromaticField& field, const PolychromaticField::Part& part, double spacing) {
     SampledPupil pupil{.wavelength_nm = part.wavelength_nm, .weight = part.weight, .spacing = spacing};
     const CosineBox box = cosine_box(field, part);
     if (!(box.width() > 0.0)) {
         return pupil;
     }
-    pupil.size = static_cast<int>(std::lround(box.width() / spacing)) + 3;  // a cell around it for the rim
+    pupil.size = pupil_cells(box.width(), spacing);
     pupil.centre = {0.5 * (box.low.x + box.high.x), 0.5 * (box.low.y + box.high.y)};
     const std::size_t cells = static_cast<std::size_t>(pupil.size) * static_cast<std::size_t>(pupil.size);
     pupil.share.assign(cells, 0.0);

@@ -61,6 +61,10 @@ struct CosineBox {
 };
 CosineBox cosine_box(const PolychromaticField& field, const PolychromaticField::Part& part);
 
+/// How many cells along each side a pupil's grid has: all that the width takes, 1 % for what bulges out between the
+/// outline's points, and a cell around it for the rim. At most 1e6.
+int pupil_cells(double width, double spacing);
+
 /// The pupil on a grid of the given spacing. Each cell's ray is aimed by tracing (Broyden's method, from its
 /// neighbour's), not interpolated; cells at the rim count by the share of 8 × 8 points that pass. The grid may be
 /// `aliased` by itself where a ray lands farther than λ / (2 spacing) from the image point: since dV = −(ξ dL + η dM),
