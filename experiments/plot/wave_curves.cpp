@@ -17,7 +17,7 @@ constexpr double kDegree = std::numbers::pi / 180.0;
 constexpr double kNothing = std::numeric_limits<double>::quiet_NaN();
 
 constexpr int kMapCells = 64;        // across a wavefront map
-constexpr int kLargestPsf = 2048;    // pixels of a PSF's window, 256 at least
+constexpr int kLargestPsf = 2048;    // pixels of a PSF's window
 constexpr int kMostRefinements = 3;  // of the rays that a geometric MTF sums over
 constexpr std::size_t kFrequencies = 51;
 constexpr double kHighestFrequency = 100.0;  // cycles/mm, or the cutoff where that is lower
@@ -63,13 +63,9 @@ std::string status_remark(PupilStatus status) {
 /// The middle of a picture, wide enough for the rays and for some rings of Airy's disc.
 PsfMap psf_map(const PolychromaticField& field, double field_deg) {
     PsfMap map{.field_deg = field_deg};
-    FftPsfSettings sampling;
-    Psf psf = fft_psf(field, sampling);
-    while (psf.status == PupilStatus::aliased && sampling.size < kLargestPsf) {
-        sampling.size *= 2;
-        if (2.0 * psf.largest_aberration_um < sampling.size * psf.pixel_um || sampling.size == kLargestPsf) {
-            psf = fft_psf(field, sampling);
-        }
+    Psf psf = fft_psf(field);
+    if (psf.status == PupilStatus::aliased && psf.needed_size <= kLargestPsf) {
+        psf = fft_psf(field, {.size = psf.needed_size});
     }
     if (psf.status != PupilStatus::ok) {
         map.remark = status_remark(psf.status);
