@@ -2,79 +2,68 @@
 
 #include <algorithm>
 
-#include "engine/analysis/beam_outline.h"
+#include "engine/analysis/field_curves.h"
+#include "engine/analysis/spot.h"
 #include "engine/analysis/wavefront.h"
-#include "engine/optics/chief_ray.h"
-#include "engine/optics/illumination.h"
 
 namespace lensproof {
 
 namespace {
 
-/// The direction cosines under which the sensor sees the chief ray come.
-Vec2d seen_from_sensor(const ChiefRay& chief) {
-    return {-chief.rear.direction.x, -chief.rear.direction.y};
-}
+/// A lens at one wavelength, with the axis's light that every field's is compared to.
+struct AnalysedColour {
+    ColourOfLens colour;
+    FieldLight axis{};
 
-/// A lens at one wavelength, with what every field is compared to.
-class AtWavelength {
-  public:
-    AtWavelength(const Lens& lens, double wavelength_nm, const AnalysisSettings& settings)
-        : settings_(settings),
-          wavelength_nm_(wavelength_nm),
-          lens_(at_wavelength<double>(lens, wavelength_nm)),
-          chief_rays_(lens, wavelength_nm, Rims::follow) {
-        if (const std::optional<ChiefRay> axial = chief_rays_.at_field(0.0)) {
-            axial_beam_area_ = beam_outline(lens_, bundle(*axial)).area;
-            axial_solid_angle_ = image_outline(lens_, axial->image_point, seen_from_sensor(*axial)).area;
+    AnalysedColour(const Lens& lens, double wavelength_nm, const AnalysisSettings& settings)
+        : colour(lens, wavelength_nm) {
+        if (const auto axial = field_bundle(colour.chief_rays, colour.chief_rays, 0.0, settings.object_distance)) {
+            axis = field_light(colour.lens, *axial, axial->chief.image_point);
         }
     }
-
-    [[nodiscard]] const TraceLens<double>& lens() const { return lens_; }
-    [[nodiscard]] std::optional<ChiefRay> chief_ray(double field) const { return chief_rays_.at_field(field); }
-    [[nodiscard]] FieldAnalysis analyze(double field, const std::optional<ChiefRay>& reference_chief) const;
-
-  private:
-    [[nodiscard]] FieldBundle bundle(const ChiefRay& chief) const {
-        return {.chief = chief, .object_distance = settings_.object_distance};
-    }
-
-    const AnalysisSettings& settings_;
-    double wavelength_nm_;
-    TraceLens<double> lens_;
-    ChiefRays chief_rays_;
-    double axial_beam_area_ = 0.0;
-    double axial_solid_angle_ = 0.0;
 };
 
-FieldAnalysis AtWavelength::analyze(double field, const std::optional<ChiefRay>& reference_chief) const {
-    FieldAnalysis row{.field_angle = field, .wavelength_nm = wavelength_nm_};
-    const std::optional<ChiefRay> chief = chief_ray(field);
-    if (!chief) {
+/// What the passing beam makes at the image.
+void add_image(FieldAnalysis& row, const ColourOfLens& colour, const FieldBundle& bundle, const RegionOutline& beam,
+               int rings) {
+    const SpotSize spot = spot_size(spot_rays(colour.lens, bundle, beam, rings));
+    row.spot_rms = spot.rms;
+    row.spot_centroid = spot.centroid;
+    if (const auto sphere = reference_sphere(colour.lens, bundle)) {
+        const Wavefront waves =
+            wavefront(colour.lens, colour.wavelength_nm, bundle, *sphere, beam_quadrature(beam, rings));
+        row.wavefront_rms_waves = wavefront_errors(waves).rms;
+    }
+}
+
+/// `reference`: the field's bundle at the reference wavelength, which says where the object is.
+FieldAnalysis analyze_field(double field, const AnalysedColour& analysed, const std::optional<FieldBundle>& reference,
+                            Projection projection, int rings) {
+    const ColourOfLens& colour = analysed.colour;
+    FieldAnalysis row{.field_angle = field, .wavelength_nm = colour.wavelength_nm};
+    const auto bundle = reference ? same_object(*reference, colour.chief_rays) : std::nullopt;
+    if (!bundle) {
         row.status = RayStatus::missed;
         return row;
     }
-    row.status = chief->status;
-    row.surface = chief->surface;
-    row.chief_ray_height = chief->image_height;
-    const FieldBundle rays = bundle(*chief);
-    const RegionOutline outline = beam_outline(lens_, rays);
-    if (axial_beam_area_ > 0.0) {
-        row.vignetting = outline.area / axial_beam_area_;
+    row.status = bundle->chief.status;
+    row.surface = bundle->chief.surface;
+    row.chief_ray_height = bundle->chief.image_height;
+    row.lateral_colour = bundle->chief.image_height - reference->chief.image_height;
+    row.distortion_percent = distortion_percent(colour.lens, projection, *bundle);
+    if (const auto pencil = ray_pencil(colour.lens, *bundle)) {
+        const AstigmaticFoci foci = astigmatic_foci(*pencil, colour.lens.image_z);
+        row.tangential_focus = foci.tangential;
+        row.sagittal_focus = foci.sagittal;
     }
-    if (!outline.is_empty()) {
-        const std::vector<BeamNode> nodes = beam_quadrature(outline, settings_.rings);
-        if (const std::optional<ReferenceSphere> sphere = reference_sphere(lens_, rays)) {
-            const Wavefront waves = wavefront(lens_, wavelength_nm_, rays, *sphere, nodes);
-            row.wavefront_rms_waves = wavefront_errors(waves).rms;
-        }
+    const FieldLight light = field_light(colour.lens, *bundle, reference->chief.image_point);
+    if (!analysed.axis.beam.is_empty()) {
+        const FieldLightRatio ratio = light_ratio(light, analysed.axis);
+        row.vignetting = ratio.vignetting;
+        row.relative_illumination = ratio.relative_illumination;
     }
-    if (reference_chief) {
-        row.lateral_colour = chief->image_height - reference_chief->image_height;
-        if (axial_solid_angle_ > 0.0) {
-            row.relative_illumination =
-                image_outline(lens_, reference_chief->image_point, seen_from_sensor(*chief)).area / axial_solid_angle_;
-        }
+    if (!light.beam.is_empty()) {
+        add_image(row, colour, *bundle, light.beam, rings);
     }
     return row;
 }
@@ -82,28 +71,49 @@ FieldAnalysis AtWavelength::analyze(double field, const std::optional<ChiefRay>&
 }  // namespace
 
 LensAnalysis analyze_lens(const Lens& lens, const AnalysisSettings& settings) {
+    const ColourOfLens reference(lens, settings.reference_wavelength_nm);
+    std::vector<AnalysedColour> colours;
     LensAnalysis analysis;
-    const AtWavelength reference(lens, settings.reference_wavelength_nm, settings);
-    std::vector<AtWavelength> wavelengths;
     for (const double wavelength_nm : settings.wavelengths_nm) {
-        wavelengths.emplace_back(lens, wavelength_nm, settings);
-        analysis.paraxial.push_back(paraxial_data(wavelengths.back().lens()));
+        colours.emplace_back(lens, wavelength_nm, settings);
+        analysis.paraxial.push_back(paraxial_data(colours.back().colour.lens));
     }
-    analysis.reference_paraxial = paraxial_data(reference.lens());
-    analysis.conjugates = paraxial_conjugates(reference.lens(), settings.object_distance);
+    analysis.reference_paraxial = paraxial_data(reference.lens);
+    analysis.conjugates = paraxial_conjugates(reference.lens, settings.object_distance);
+    analysis.real_working_f_number = real_working_f_number(reference.lens, settings.object_distance);
 
     const double largest_field = std::ranges::max(settings.fields);
     const auto [shortest, longest] = std::ranges::minmax_element(settings.wavelengths_nm);
-    analysis.seidel = seidel_sums(reference.lens(), at_wavelength<double>(lens, *shortest),
+    analysis.seidel = seidel_sums(reference.lens, at_wavelength<double>(lens, *shortest),
                                   at_wavelength<double>(lens, *longest), largest_field, settings.object_distance);
-    analysis.lagrange_invariant = lagrange_invariant(reference.lens(), largest_field);
+    analysis.lagrange_invariant = lagrange_invariant(reference.lens, largest_field);
     for (const double field : settings.fields) {
-        const std::optional<ChiefRay> reference_chief = reference.chief_ray(field);
-        for (const AtWavelength& wavelength : wavelengths) {
-            analysis.fields.push_back(wavelength.analyze(field, reference_chief));
+        const auto bundle = field_bundle(reference.chief_rays, reference.chief_rays, field, settings.object_distance);
+        for (const AnalysedColour& colour : colours) {
+            analysis.fields.push_back(analyze_field(field, colour, bundle, lens.projection, settings.rings));
         }
     }
     return analysis;
+}
+
+std::vector<std::optional<PolychromaticField>> polychromatic_fields(const Lens& lens,
+                                                                    const AnalysisSettings& settings) {
+    std::vector<WeightedWavelength> wavelengths;
+    for (const double wavelength_nm : settings.wavelengths_nm) {
+        wavelengths.push_back({.wavelength_nm = wavelength_nm});
+    }
+    const ChiefRays chief_rays(lens, settings.reference_wavelength_nm, Rims::follow);
+    std::vector<std::optional<PolychromaticField>> fields;
+    for (const double field : settings.fields) {
+        const auto bundle = field_bundle(chief_rays, chief_rays, field, settings.object_distance);
+        fields.push_back(
+            bundle ? std::optional(polychromatic_field(lens, *bundle, settings.reference_wavelength_nm, wavelengths))
+                   : std::nullopt);
+        if (fields.back() && fields.back()->parts.empty()) {
+            fields.back().reset();
+        }
+    }
+    return fields;
 }
 
 }  // namespace lensproof

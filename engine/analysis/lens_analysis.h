@@ -4,7 +4,9 @@
 #include <optional>
 #include <vector>
 
+#include "engine/analysis/polychromatic_field.h"
 #include "engine/analysis/seidel.h"
+#include "engine/analysis/working_f_number.h"
 #include "engine/optics/lens.h"
 #include "engine/optics/paraxial.h"
 
@@ -41,12 +43,17 @@ struct LensAnalysis {
     std::vector<ParaxialData> paraxial;        // by wavelength, as in the settings
     ParaxialData reference_paraxial;           // at the reference wavelength, as all that follows
     Conjugates conjugates;                     // of the settings' object
+    double real_working_f_number = 0.0;        // infinite where no axial light passes
     std::optional<double> lagrange_invariant;  // for the largest field, as the sums; nothing at and beyond 90°
     std::optional<SeidelSums<double>> seidel;  // colour from the longest to the shortest wavelength
     std::vector<FieldAnalysis> fields;         // by field, and for each by wavelength
 };
 
-/// Throws InputError for a wavelength that a glass's formula does not cover.
+/// Throws InputError for a wavelength that a glass's formula does not cover, as does what follows.
 LensAnalysis analyze_lens(const Lens& lens, const AnalysisSettings& settings);
+
+/// The settings' fields with all of their wavelengths, of equal weight each: what focus, PSF and MTF are judged by.
+/// Nothing for a field whose object has no chief ray, or no light that passes.
+std::vector<std::optional<PolychromaticField>> polychromatic_fields(const Lens& lens, const AnalysisSettings& settings);
 
 }  // namespace lensproof

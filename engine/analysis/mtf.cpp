@@ -111,12 +111,23 @@ MtfCurve empty_curve(std::span<const double> frequencies) {
 }  // namespace
 
 std::vector<SampledPupil> sample_pupils(const PolychromaticField& field, int samples) {
-    if (samples < 8 || samples > 4096) {
-        throw InputError(fmt::format("{} samples across the pupil: expected 8 to 4096", samples));
+    constexpr int kUsual = 128;
+    constexpr int kMost = 1024;
+    if (samples != 0 && (samples < 8 || samples > 4096)) {
+        throw InputError(fmt::format("{} samples across the pupil: expected 8 to 4096, or 0", samples));
     }
     std::vector<SampledPupil> pupils;
     for (const PolychromaticField::Part& part : field.parts) {
-        pupils.push_back(sample_pupil(field, part, cosine_box(field, part).width() / samples));
+        const double width = cosine_box(field, part).width();
+        SampledPupil pupil = sample_pupil(field, part, width / (samples > 0 ? samples : kUsual));
+        if (samples == 0 && pupil.status == PupilStatus::aliased) {
+            // Rays between the samples may land a little farther.
+            const double needed = 1.05 * kUsual * pupil.largest_aberration / pupil.largest_seen_aberration();
+            if (needed <= kMost) {
+                pupil = sample_pupil(field, part, width / std::ceil(needed));
+            }
+        }
+        pupils.push_back(std::move(pupil));
     }
     return pupils;
 }

@@ -20,8 +20,9 @@ struct MtfCurve {
 /// Which aberrations count.
 enum class MtfKind { diffraction, diffraction_limited };
 
-/// The sampled pupils of a field at all of its wavelengths, `samples` cells across the wider side of each beam.
-std::vector<SampledPupil> sample_pupils(const PolychromaticField& field, int samples);
+/// The sampled pupils of a field at all of its wavelengths, `samples` (8 to 4096) cells across the wider side of each
+/// beam; 0: 128, or as many up to 1024 as its aberrations need.
+std::vector<SampledPupil> sample_pupils(const PolychromaticField& field, int samples = 0);
 
 /// The MTF of sampled pupils, as the normalised autocorrelation of the pupil function (Hopkins 1953; Goodman,
 /// Introduction to Fourier Optics, 6.3): a frequency f along y shears it by λ f in direction cosines. Between whole
@@ -32,9 +33,9 @@ std::vector<SampledPupil> sample_pupils(const PolychromaticField& field, int sam
 MtfCurve diffraction_mtf(std::span<const SampledPupil> pupils, std::span<const double> frequencies,
                          MtfKind kind = MtfKind::diffraction);
 
-/// The MTF of a field at 128 samples across the pupil, or as many as given.
+/// The MTF of a field; `samples` as for `sample_pupils`.
 MtfCurve diffraction_mtf(const PolychromaticField& field, std::span<const double> frequencies,
-                         MtfKind kind = MtfKind::diffraction, int samples = 128);
+                         MtfKind kind = MtfKind::diffraction, int samples = 0);
 
 /// How many rays the geometric MTF sums over. It is right while f times the change of position from one ray to the
 /// next stays below half a cycle.

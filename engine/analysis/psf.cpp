@@ -229,6 +229,9 @@ Psf fft_psf(const PolychromaticField& field, const FftPsfSettings& settings) {
     if (pupils.empty()) {
         return psf;
     }
+    // Rays between the samples may land a little farther.
+    const double window = 1.05 * 2.0 * psf.largest_aberration_um / psf.pixel_um;
+    psf.needed_size = static_cast<int>(std::bit_ceil(static_cast<unsigned>(std::clamp(std::ceil(window), 8.0, 1e9))));
     find_peak(psf, [&](Vec2d point_um) {
         double sum = 0.0;
         for (std::size_t i = 0; i < pupils.size(); ++i) {

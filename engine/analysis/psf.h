@@ -16,6 +16,7 @@ struct Psf {
     double strehl = 0.0;                 // the peak, found between the pixels, over `perfect_peak`
     Vec2d peak_um;                       // where it is
     double largest_aberration_um = 0.0;  // of the rays, from the image point
+    int needed_size = 0;  // of an FFT with such pixels: the power of two whose window holds the rays; 0: by another way
 
     /// From the image point (PolychromaticField), along x or y, of a column or row.
     [[nodiscard]] double position_um(int index) const { return pixel_um * (index - size / 2); }

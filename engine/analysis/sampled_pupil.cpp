@@ -31,7 +31,7 @@ struct Jacobian {
 struct AimedRay {
     Vec2d offset;
     ImageRay ray;
-    Jacobian jacobian;
+    Jacobian slope;  // about that of the map there, good for the next step
 };
 
 /// Finds rays by the direction in which they leave.
@@ -58,20 +58,22 @@ class Aim {
                         .yy = scale * (up->direction.y - down->direction.y)};
     }
 
-    /// Broyden's method from a guess. An error e in direction moves the path by e times the aberration: nothing at
-    /// 1e-12.
+    /// Broyden's method from a guess, until the rest is laid on by the slope: dV = −ε · (error in direction), and what
+    /// that leaves is the square of 1e-7 times some mm of depth.
     [[nodiscard]] std::optional<AimedRay> towards(Vec2d cosines, Vec2d guess, Jacobian slope) const {
-        constexpr double kTolerance = 1e-12;
+        constexpr double kTolerance = 1e-7;
         constexpr int kSteps = 30;
         std::optional<ImageRay> here = ray(guess);
         for (int i = 0; here && i < kSteps; ++i) {
             const Vec2d error{cosines.x - here->direction.x, cosines.y - here->direction.y};
-            if (std::hypot(error.x, error.y) < kTolerance) {
-                const std::optional<Jacobian> exact = jacobian(guess);
-                return exact ? std::optional(AimedRay{guess, *here, *exact}) : std::nullopt;
-            }
             const Vec2d move = slope.solve(error);
             guess = {guess.x + move.x, guess.y + move.y};
+            if (std::hypot(error.x, error.y) < kTolerance) {
+                here->path -= here->aberration.x * error.x + here->aberration.y * error.y;
+                here->direction.x = cosines.x;
+                here->direction.y = cosines.y;
+                return AimedRay{guess, *here, slope};
+            }
             here = ray(guess);
             if (here) {
                 // What the slope left over, laid on the step.
@@ -88,13 +90,13 @@ class Aim {
     }
 
     /// The share of a cell around `aimed` whose rays pass, by the map's linear part.
-    [[nodiscard]] double open_share(const AimedRay& aimed, double spacing) const {
+    [[nodiscard]] double open_share(const AimedRay& aimed, const Jacobian& slope, double spacing) const {
         int open = 0;
         for (int i = 0; i < kEdgeSamples; ++i) {
             for (int k = 0; k < kEdgeSamples; ++k) {
                 const Vec2d within{spacing * ((k + 0.5) / kEdgeSamples - 0.5),
                                    spacing * ((i + 0.5) / kEdgeSamples - 0.5)};
-                const Vec2d move = aimed.jacobian.solve(within);
+                const Vec2d move = slope.solve(within);
                 const Vec2d offset{aimed.offset.x + move.x, aimed.offset.y + move.y};
                 open += trace(part_.lens, field_.bundle.ray(offset)).status == RayStatus::ok ? 1 : 0;
             }
@@ -117,7 +119,6 @@ class CellRays {
         if (!ray || !slope) {
             return;
         }
-        is_turned_ = slope->determinant() < 0.0;
         const auto nearest = [&](double cosine, double middle) {
             const auto cell = static_cast<int>(std::lround((cosine - middle) / grid.spacing + 0.5 * (grid.size - 1)));
             return std::clamp(cell, 0, grid.size - 1);
@@ -139,7 +140,19 @@ class CellRays {
     [[nodiscard]] const std::optional<AimedRay>& at(int row, int column) const {
         return rays_[grid_.cell(row, column)];
     }
-    [[nodiscard]] bool is_folded() const { return is_folded_; }
+
+    /// d(cosines) / d(offset) at a solved cell, from the neighbours two to each side by differences of fourth order, or
+    /// else by tracing.
+    [[nodiscard]] Jacobian jacobian(const Aim& aim, int row, int column) const {
+        const std::optional<Vec2d> by_x = difference(row, column, 0, 1);
+        const std::optional<Vec2d> by_y = difference(row, column, 1, 0);
+        if (by_x && by_y) {
+            // The inverse of d(offset) / d(cosines).
+            const double d = by_x->x * by_y->y - by_y->x * by_x->y;
+            return {.xx = by_y->y / d, .xy = -by_y->x / d, .yx = -by_x->y / d, .yy = by_x->x / d};
+        }
+        return aim.jacobian(at(row, column)->offset).value_or(at(row, column)->slope);
+    }
 
     /// Whether the cell and all of its neighbours pass.
     [[nodiscard]] bool is_inner(int row, int column) const {
@@ -155,16 +168,30 @@ class CellRays {
     }
 
   private:
+    /// The change of the offset per direction cosine along rows or columns.
+    [[nodiscard]] std::optional<Vec2d> difference(int row, int column, int down, int right) const {
+        Vec2d sum{};
+        for (const auto& [step, factor] : {std::pair{-2, 1.0}, {-1, -8.0}, {1, 8.0}, {2, -1.0}}) {
+            const int r = row + step * down;
+            const int c = column + step * right;
+            if (r < 0 || c < 0 || r >= grid_.size || c >= grid_.size || !at(r, c)) {
+                return std::nullopt;
+            }
+            const double per_cosine = factor / (12.0 * grid_.spacing);
+            sum = {sum.x + per_cosine * at(r, c)->offset.x, sum.y + per_cosine * at(r, c)->offset.y};
+        }
+        return sum;
+    }
+
     void visit(const Aim& aim, int row, int column, const AimedRay& from) {
         std::optional<AimedRay>& mine = rays_[grid_.cell(row, column)];
         if (mine) {
             return;
         }
         const Vec2d target = grid_.cosines(row, column);
-        const Vec2d move = from.jacobian.solve({target.x - from.ray.direction.x, target.y - from.ray.direction.y});
-        mine = aim.towards(target, {from.offset.x + move.x, from.offset.y + move.y}, from.jacobian);
+        const Vec2d move = from.slope.solve({target.x - from.ray.direction.x, target.y - from.ray.direction.y});
+        mine = aim.towards(target, {from.offset.x + move.x, from.offset.y + move.y}, from.slope);
         if (mine && mine->ray.passes) {
-            is_folded_ = is_folded_ || (mine->jacobian.determinant() < 0.0) != is_turned_;
             front_.push({row, column});
         }
     }
@@ -172,14 +199,7 @@ class CellRays {
     const SampledPupil& grid_;
     std::vector<std::optional<AimedRay>> rays_;
     std::queue<std::array<int, 2>> front_;
-    bool is_turned_ = false;
-    bool is_folded_ = false;
 };
-
-/// Half a wave from cell to cell, as a distance in the image.
-double largest_seen_aberration(const SampledPupil& pupil) {
-    return 0.5e-6 * pupil.wavelength_nm / pupil.spacing;
-}
 
 }  // namespace
 
@@ -229,24 +249,35 @@ SampledPupil sample_pupil(const PolychromaticField& field, const PolychromaticFi
     pupil.size = static_cast<int>(std::lround(box.width() / spacing)) + 3;  // a cell around it for the rim
     pupil.centre = {0.5 * (box.low.x + box.high.x), 0.5 * (box.low.y + box.high.y)};
     const std::size_t cells = static_cast<std::size_t>(pupil.size) * static_cast<std::size_t>(pupil.size);
+    pupil.share.assign(cells, 0.0);
     pupil.amplitude.assign(cells, 0.0);
     pupil.path.assign(cells, 0.0);
+    pupil.offset.assign(cells, {});
     pupil.aberration.assign(cells, {});
 
     const Aim aim(field, part);
     const CellRays rays(aim, pupil, part.outline.centre);
     const double mean_path = aim.ray(part.outline.centre).value_or(ImageRay{}).path;
+    int turned = 0;
+    int straight = 0;
     for (int row = 0; row < pupil.size; ++row) {
         for (int column = 0; column < pupil.size; ++column) {
             const std::optional<AimedRay>& aimed = rays.at(row, column);
-            const double share = !aimed ? 0.0 : rays.is_inner(row, column) ? 1.0 : aim.open_share(*aimed, spacing);
+            if (!aimed) {
+                continue;
+            }
+            const Jacobian slope = rays.jacobian(aim, row, column);
+            const double share = rays.is_inner(row, column) ? 1.0 : aim.open_share(*aimed, slope, spacing);
             if (!(share > 0.0)) {
                 continue;
             }
-            const double area = 1.0 / std::abs(aimed->jacobian.determinant());
+            (slope.determinant() < 0.0 ? turned : straight) += 1;
+            const double area = 1.0 / std::abs(slope.determinant());
             const std::size_t cell = pupil.cell(row, column);
+            pupil.share[cell] = share;
             pupil.amplitude[cell] = share * std::sqrt(area);
             pupil.path[cell] = aimed->ray.path - mean_path;
+            pupil.offset[cell] = aimed->offset;
             pupil.aberration[cell] = aimed->ray.aberration;
             pupil.energy += share * area * spacing * spacing;
             pupil.largest_aberration =
@@ -254,8 +285,10 @@ SampledPupil sample_pupil(const PolychromaticField& field, const PolychromaticFi
         }
     }
     if (pupil.energy > 0.0) {
-        const bool is_seen = pupil.largest_aberration <= largest_seen_aberration(pupil);
-        pupil.status = rays.is_folded() ? PupilStatus::folded : is_seen ? PupilStatus::ok : PupilStatus::aliased;
+        const bool is_seen = pupil.largest_aberration <= pupil.largest_seen_aberration();
+        pupil.status = turned > 0 && straight > 0 ? PupilStatus::folded
+                       : is_seen                  ? PupilStatus::ok
+                                                  : PupilStatus::aliased;
     }
     return pupil;
 }
@@ -281,7 +314,7 @@ SampledPupil refocused(SampledPupil pupil, const PolychromaticField& field, doub
     }
     if (pupil.status == PupilStatus::ok || pupil.status == PupilStatus::aliased) {
         pupil.status =
-            pupil.largest_aberration <= largest_seen_aberration(pupil) ? PupilStatus::ok : PupilStatus::aliased;
+            pupil.largest_aberration <= pupil.largest_seen_aberration() ? PupilStatus::ok : PupilStatus::aliased;
     }
     return pupil;
 }

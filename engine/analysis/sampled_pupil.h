@@ -33,12 +33,16 @@ struct SampledPupil {
     int size = 0;                   // cells along each side
     double spacing = 0.0;           // of direction cosines
     Vec2d centre;                   // direction cosines in the middle of the grid
-    std::vector<double> amplitude;  // mm; row-major, M rising by rows, L by columns: √(d area / d cosines) times the
-                                    // share of the cell that lies inside the beam
+    std::vector<double> share;      // of the cell that lies inside the beam; row-major, M rising by rows, L by columns
+    std::vector<double> amplitude;  // mm: √(d area / d cosines) times the share
     std::vector<double> path;       // V, mm, 0 where `amplitude` is 0; from a mean
+    std::vector<Vec2d> offset;      // of the cell's ray in the incoming beam (FieldBundle), mm
     std::vector<Vec2d> aberration;  // where the cell's ray meets the image plane, mm from the image point
     double energy = 0.0;            // Σ of the beam's cross-section, mm²
     double largest_aberration = 0.0;  // mm
+
+    /// How far from the image point a ray may land that this spacing shows: λ / (2 spacing), mm.
+    [[nodiscard]] double largest_seen_aberration() const { return 0.5e-6 * wavelength_nm / spacing; }
 
     [[nodiscard]] Vec2d cosines(int row, int column) const {
         const double middle = 0.5 * (size - 1);

@@ -17,7 +17,7 @@ constexpr double kDegree = std::numbers::pi / 180.0;
 constexpr double kMicrometre = 1e-3;  // in mm
 
 Json optional_json(const std::optional<double>& value, double unit = 1.0) {
-    return value ? number_or_null(*value / unit) : Json(nullptr);
+    return value ? number_or_null(*value / unit + 0.0) : Json(nullptr);
 }
 
 Json paraxial_json(const ParaxialData& data) {
@@ -43,6 +43,7 @@ Json reference_json(const Lens& lens, const LensAnalysis& analysis) {
     json["image_distance_mm"] = number_or_null(analysis.conjugates.image_distance);
     json["magnification"] = number_or_null(analysis.conjugates.magnification);
     json["working_f_number"] = number_or_null(analysis.conjugates.working_f_number);
+    json["real_working_f_number"] = number_or_null(analysis.real_working_f_number);
     return json;
 }
 
@@ -77,15 +78,15 @@ Json field_json(const FieldAnalysis& row) {
             {"relative_illumination", optional_json(row.relative_illumination)},
             {"vignetting", optional_json(row.vignetting)},
             {"spot_rms_um", optional_json(row.spot_rms, kMicrometre)},
-            {"spot_centroid_mm",
-             row.spot_centroid ? Json{row.spot_centroid->x, row.spot_centroid->y} : Json(nullptr)},
+            {"spot_centroid_mm", row.spot_centroid ? Json{row.spot_centroid->x, row.spot_centroid->y} : Json(nullptr)},
             {"wavefront_rms_waves", optional_json(row.wavefront_rms_waves)},
             {"lateral_colour_um", optional_json(row.lateral_colour, kMicrometre)}};
 }
 
 /// A cell of a table, a dash where there is nothing.
 std::string cell(const std::optional<double>& value, int width, int digits) {
-    return value && std::isfinite(*value) ? fmt::format("{:{}.{}f}", *value, width, digits)
+    // Adding 0 makes a 0 of −0.
+    return value && std::isfinite(*value) ? fmt::format("{:{}.{}f}", *value + 0.0, width, digits)
                                           : fmt::format("{:>{}}", "-", width);
 }
 
@@ -106,6 +107,7 @@ std::string paraxial_text(const Lens& lens, const LensAnalysis& analysis) {
     line("  diameter", data.exit_pupil_diameter, "mm");
     line("f-number", data.f_number, "");
     line("working f-number", analysis.conjugates.working_f_number, "");
+    line("  of real rays", analysis.real_working_f_number, "");
     line("magnification", analysis.conjugates.magnification, "");
     line("image distance", lens.image_z - lens.last_vertex_z(), "mm");
     line("  of the paraxial image", analysis.conjugates.image_distance, "mm");
@@ -119,8 +121,8 @@ std::string seidel_text(const SeidelSums<double>& sums) {
     std::string text = fmt::format("  {:>7}{:>12}{:>12}{:>12}{:>12}{:>12}{:>12}{:>12}\n", "surface", "S1", "S2", "S3",
                                    "S4", "S5", "C1", "C2");
     const auto row = [&](const std::string& name, const SeidelTerms<double>& t) {
-        text += fmt::format("  {:>7}{:12.6f}{:12.6f}{:12.6f}{:12.6f}{:12.6f}{:12.6f}{:12.6f}\n", name, t.s1, t.s2, t.s3,
-                            t.s4, t.s5, t.c1, t.c2);
+        text += fmt::format("  {:>7}{}{}{}{}{}{}{}\n", name, cell(t.s1, 12, 6), cell(t.s2, 12, 6), cell(t.s3, 12, 6),
+                            cell(t.s4, 12, 6), cell(t.s5, 12, 6), cell(t.c1, 12, 6), cell(t.c2, 12, 6));
     };
     for (std::size_t i = 0; i < sums.surfaces.size(); ++i) {
         row(std::to_string(i + 1), sums.surfaces[i]);
@@ -130,24 +132,23 @@ std::string seidel_text(const SeidelSums<double>& sums) {
 }
 
 std::string fields_text(const std::vector<FieldAnalysis>& fields) {
-    std::string text = fmt::format("  {:>8}{:>10}{:>11}{:>9}{:>9}{:>9}{:>8}{:>8}{:>9}{:>8}{:>9}  {}\n", "field", "nm",
-                                   "height", "distort.", "T focus", "S focus", "illum.", "vign.", "spot rms", "wave rms",
-                                   "lat. col.", "chief ray");
-    text += fmt::format("  {:>8}{:>10}{:>11}{:>9}{:>9}{:>9}{:>8}{:>8}{:>9}{:>8}{:>9}\n", "deg", "", "mm", "%", "mm",
-                        "mm", "", "", "um", "waves", "um");
+    std::string text = fmt::format("  {:>8}{:>10}{:>11}{:>10}{:>10}{:>10}{:>8}{:>8}{:>10}{:>10}{:>10}  {}\n", "field",
+                                   "nm", "height", "distort.", "T focus", "S focus", "illum.", "vign.", "spot rms",
+                                   "wave rms", "lat. col.", "chief ray");
+    text += fmt::format("  {:>8}{:>10}{:>11}{:>10}{:>10}{:>10}{:>8}{:>8}{:>10}{:>10}{:>10}\n", "deg", "", "mm", "%",
+                        "mm", "mm", "", "", "um", "waves", "um");
     for (const FieldAnalysis& row : fields) {
         const auto in_um = [](const std::optional<double>& mm) {
             return mm ? std::optional(*mm / kMicrometre) : std::nullopt;
         };
         text += fmt::format("  {:8.3f}{:10.4f}", row.field_angle / kDegree, row.wavelength_nm);
-        text += cell(row.chief_ray_height, 11, 5) + cell(row.distortion_percent, 9, 4) +
-                cell(row.tangential_focus, 9, 4) + cell(row.sagittal_focus, 9, 4) +
-                cell(row.relative_illumination, 8, 4) + cell(row.vignetting, 8, 4) + cell(in_um(row.spot_rms), 9, 3) +
-                cell(row.wavefront_rms_waves, 8, 4) + cell(in_um(row.lateral_colour), 9, 3);
+        text += cell(row.chief_ray_height, 11, 5) + cell(row.distortion_percent, 10, 4) +
+                cell(row.tangential_focus, 10, 4) + cell(row.sagittal_focus, 10, 4) +
+                cell(row.relative_illumination, 8, 4) + cell(row.vignetting, 8, 4) + cell(in_um(row.spot_rms), 10, 3) +
+                cell(row.wavefront_rms_waves, 10, 4) + cell(in_um(row.lateral_colour), 10, 3);
         text += row.status == RayStatus::ok ? "  ok\n"
-                : row.surface >= 0
-                    ? fmt::format("  {} at surface {}\n", status_name(row.status), row.surface + 1)
-                    : fmt::format("  {}\n", status_name(row.status));
+                : row.surface >= 0 ? fmt::format("  {} at surface {}\n", status_name(row.status), row.surface + 1)
+                                   : fmt::format("  {}\n", status_name(row.status));
     }
     return text;
 }
@@ -174,10 +175,9 @@ Json analysis_json(const Lens& lens, const AnalysisSettings& settings, const Len
 }
 
 std::string analysis_text(const Lens& lens, const AnalysisSettings& settings, const LensAnalysis& analysis) {
-    std::string text = fmt::format("{}\nAt {} nm, object at {}:\n", lens.name, settings.reference_wavelength_nm,
-                                   std::isinf(settings.object_distance)
-                                       ? "infinity"
-                                       : fmt::format("{} mm", settings.object_distance));
+    std::string text =
+        fmt::format("{}\nAt {} nm, object at {}:\n", lens.name, settings.reference_wavelength_nm,
+                    std::isinf(settings.object_distance) ? "infinity" : fmt::format("{} mm", settings.object_distance));
     text += paraxial_text(lens, analysis);
     const double largest = settings.fields.empty() ? 0.0 : *std::ranges::max_element(settings.fields);
     if (analysis.seidel) {

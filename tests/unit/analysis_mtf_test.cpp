@@ -211,11 +211,16 @@ TEST(Mtf, DiffractionLimitIsTheVignettedPupils) {
 }
 
 TEST(Mtf, SaysWhatItCannotSample) {
-    const PolychromaticField wide = field_of(load_lens("tessar"), 15.0 * kDegree);
+    const PolychromaticField wide = field_of(with_f_number(load_lens("tessar"), 4.0), 15.0 * kDegree);
     const std::vector<double> frequencies = {30.0};
     EXPECT_EQ(diffraction_mtf(wide, frequencies, MtfKind::diffraction, 32).status, PupilStatus::aliased);
     EXPECT_EQ(diffraction_mtf(wide, frequencies, MtfKind::diffraction_limited, 32).status, PupilStatus::ok);
-    EXPECT_EQ(geometric_mtf(wide, std::vector<double>{900.0}, {.azimuths = 8, .rings = 4}).status,
+    const MtfCurve automatic = diffraction_mtf(wide, frequencies);
+    EXPECT_EQ(automatic.status, PupilStatus::ok);
+    const MtfCurve fine = diffraction_mtf(wide, frequencies, MtfKind::diffraction, 256);
+    EXPECT_NEAR(automatic.tangential.front(), fine.tangential.front(), 2.0 * kRimCells);
+    EXPECT_NEAR(automatic.sagittal.front(), fine.sagittal.front(), 2.0 * kRimCells);
+    EXPECT_EQ(geometric_mtf(wide, std::vector<double>{400.0}, {.azimuths = 8, .rings = 4}).status,
               PupilStatus::aliased);
     EXPECT_THROW(diffraction_mtf(wide, std::vector<double>{-1.0}), InputError);
     EXPECT_THROW(diffraction_mtf(wide, frequencies, MtfKind::diffraction, 2), InputError);

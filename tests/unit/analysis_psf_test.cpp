@@ -226,8 +226,11 @@ TEST(Psf, WavelengthsAddUp) {
 }
 
 TEST(Psf, SaysWhatItCannotSample) {
-    const PolychromaticField wide = field_of(load_lens("tessar"), 15.0 * kDegree);
-    EXPECT_EQ(fft_psf(wide, {.size = 64}).status, PupilStatus::aliased);
+    const PolychromaticField wide = field_of(with_f_number(load_lens("tessar"), 4.0), 15.0 * kDegree);
+    const Psf small = fft_psf(wide, {.size = 64});
+    EXPECT_EQ(small.status, PupilStatus::aliased);
+    EXPECT_GT(small.needed_size, 64);
+    EXPECT_EQ(fft_psf(wide, {.size = small.needed_size, .pixel_um = small.pixel_um}).status, PupilStatus::ok);
     EXPECT_EQ(huygens_psf(wide, {.size = 4, .azimuths = 8, .rings = 4}).status, PupilStatus::aliased);
     EXPECT_THROW(fft_psf(wide, {.size = 100}), InputError);
     EXPECT_THROW(fft_psf(wide, {.size = 64, .pixel_um = 50.0}), InputError);
