@@ -200,7 +200,7 @@ std::map<std::string, std::string> analysis_drawings(const PlotHeading& heading,
             {"wavefront.svg", wavefront_svg(heading, waves.wavefronts)},
             {"psf.svg", psf_svg(heading, waves.psfs)},
             {"mtf.svg", mtf_svg(heading, waves.mtf, waves.diffraction_limit)},
-            {"mtf_geometric.svg", mtf_svg(heading, waves.geometric_mtf, waves.diffraction_limit, "by rays")},
+            {"mtf_geometric.svg", mtf_svg(heading, waves.geometric_mtf, waves.diffraction_limit)},
             {"mtf_over_field.svg", mtf_field_svg(heading, waves.mtf_over_field)}};
 }
 

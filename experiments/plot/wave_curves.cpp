@@ -24,18 +24,6 @@ constexpr double kHighestFrequency = 100.0;  // cycles/mm, or the cutoff where t
 constexpr int kMtfFields = 16;
 constexpr double kShownFrequencies[] = {10.0, 20.0, 40.0};  // cycles/mm, over the field
 
-/// Why there is no plot; nothing where there is no light, which the plots say themselves.
-std::string remark_of(PupilStatus status) {
-    switch (status) {
-        case PupilStatus::aliased:
-            return "too steep to sample";
-        case PupilStatus::folded:
-            return "folded by a caustic";
-        default:
-            return "";
-    }
-}
-
 /// Path differences at one wavelength, in the directions that the image sees; `radius`, that of the axial beam in
 /// direction cosines, is the unit.
 FieldWavefront field_wavefront(const PolychromaticField& field, const PolychromaticField::Part& part, double radius,
@@ -43,7 +31,6 @@ FieldWavefront field_wavefront(const PolychromaticField& field, const Polychroma
     FieldWavefront shown{.field_deg = field.bundle.chief.field_angle / kDegree, .wavelength_nm = part.wavelength_nm};
     const WavefrontMap map = wavefront_map(field, part, kMapCells);
     if (map.status == PupilStatus::no_light || map.status == PupilStatus::folded) {
-        shown.remark = remark_of(map.status);
         return shown;
     }
     shown.opd_waves = {.size = static_cast<std::size_t>(map.size),
@@ -71,7 +58,6 @@ PsfMap psf_map(const PolychromaticField& field, double field_deg) {
         }
     }
     if (psf.status != PupilStatus::ok) {
-        map.remark = remark_of(psf.status);
         return map;
     }
     constexpr double kAiryPixels = 2.44;  // of its radius at λ / (2 D) a pixel
@@ -106,7 +92,6 @@ MtfCurve resolved_mtf(const PolychromaticField& field, std::span<const double> f
 
 FieldMtf field_mtf(const MtfCurve& curve, double field_deg) {
     FieldMtf mtf{.field_deg = field_deg};
-    mtf.remark = remark_of(curve.status);
     if (curve.status == PupilStatus::ok) {
         for (std::size_t i = 0; i < curve.frequency.size(); ++i) {
             mtf.tangential.push_back({curve.frequency[i], curve.tangential[i]});
