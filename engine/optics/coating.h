@@ -47,7 +47,7 @@ T coating_transmittance(const TraceCoating<T>& coating, const T& n1, const T& n2
         for (auto layer = coating.layers.rbegin(); layer != coating.layers.rend(); ++layer) {
             const Complex cosine = std::sqrt(Complex(T(1) - sine / (layer->index * layer->index)));
             const Complex eta = admittance(layer->index, cosine);
-            const Complex phase = T(2) * std::numbers::pi_v<T> * layer->index * layer->thickness * cosine;
+            const Complex phase = T(2.0L * std::numbers::pi_v<long double>) * layer->index * layer->thickness * cosine;
             const Complex i_sine = Complex(T(0), T(1)) * std::sin(phase);
             const Complex cos_phase = std::cos(phase);
             const Complex next_b = cos_phase * b + i_sine / eta * c;
