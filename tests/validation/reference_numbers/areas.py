@@ -88,26 +88,27 @@ def meet(q, d, c, k, asphere, heading):
 
 
 class Region:
-    """The set of (a, b) whose ray passes: `rays(a, b)` gives start and direction."""
+    """The set of (a, b) whose ray passes: `rays(a, b)` gives start and direction; looked for within the `extents`."""
 
-    def __init__(self, beam, rays, heading, extent):
+    def __init__(self, beam, rays, heading, extents):
         self.beam, self.rays, self.heading = beam, rays, heading
-        self.centre = self.find_centre(extent)
+        self.centre = self.find_centre(extents)
         if self.centre is not None:
             self.corners = self.find_corners()
 
     def end(self, a, b):
         return self.beam.trace(*self.rays(a, b), self.heading)[0]
 
-    def find_centre(self, extent):
+    def find_centre(self, extents):
         """The mean of the passing rays of a grid, ever wider and finer; None where no light passes."""
-        for cells, wider in ((64, 1), (64, 5), (512, 5), (512, 25)):
-            self.radius = 4 * wider * extent
-            grid = wider * extent * ((np.arange(cells) + 0.5) / cells * 2 - 1)
-            a, b = (x.ravel() for x in np.meshgrid(grid, grid))
-            inside = self.end(a, b) < 0
-            if inside.sum() > 30:
-                return 0.0, b[inside].mean()
+        for extent in extents:
+            for cells in (64, 512):
+                self.radius = 2 * extent
+                grid = extent * ((np.arange(cells) + 0.5) / cells * 2 - 1)
+                a, b = (x.ravel() for x in np.meshgrid(grid, grid))
+                inside = self.end(a, b) < 0
+                if inside.sum() > 30:
+                    return 0.0, b[inside].mean()
         return None
 
     def edge(self, azimuth):
@@ -205,7 +206,7 @@ def incoming_beam(beam, chief_point, chief_direction):
 def cones_of(beam, image_y):
     """Direction cosines (l, m) = (a, b) of rays from the image point (0, image_y) towards the scene."""
     def rays(a, b):
-        n2 = np.maximum(1 - a * a - b * b, 1e-12)
+        n2 = np.maximum(1 - a * a - b * b, 1e-12)  # no such cosines: nearly along the image plane, and stopped there
         return ([np.zeros_like(a), np.full_like(a, image_y), np.full_like(a, beam.image_z)], [a, b, -np.sqrt(n2)])
     return rays
 

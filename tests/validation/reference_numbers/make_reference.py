@@ -138,13 +138,13 @@ class FieldRows:
 
     def areas_at(self, f, w, chief, image_y):
         lens, beam = self.lenses[w], self.beams[w]
-        extent = 0.7 * self.pupil
-        region = areas.Region(beam, areas.incoming_beam(beam, *chief), 1, extent)
+        extents = [self.pupil, 5 * self.pupil, 25 * self.pupil]
+        region = areas.Region(beam, areas.incoming_beam(beam, *chief), 1, extents)
         if region.centre is None:
             return {"vignetting": 0, "relative_illumination": 0}
         area, error_a = region.area()
         centroid, rms, error_s = areas.spot(beam, region, image_y)
-        cone = areas.Region(beam, areas.cones_of(beam, image_y), -1, 1.0)
+        cone = areas.Region(beam, areas.cones_of(beam, float(self.reference_y)), -1, [1.0])
         solid, error_i = cone.area()
         self.worst = max(self.worst, error_a, error_i, error_s)
         self.axial.setdefault(w, (area, solid))
