@@ -19,15 +19,12 @@ std::vector<AxialPoint> longitudinal_aberration(const TraceLens<double>& lens, c
                                                 double semi_diameter, int count) {
     std::vector<AxialPoint> points;
     const double efl = paraxial_data(lens).efl;
-    for (int i = 0; i < count; ++i) {
+    if (const std::optional<RayPencil> pencil = ray_pencil(lens, axis)) {
+        points.push_back({0.0, 0.0, astigmatic_foci(*pencil, lens.image_z).tangential});
+    }
+    for (int i = 1; i < count && semi_diameter > 0.0; ++i) {
         const double zone = static_cast<double>(i) / (count - 1);
         const double height = zone * semi_diameter;
-        if (i == 0) {
-            if (const std::optional<RayPencil> pencil = ray_pencil(lens, axis)) {
-                points.push_back({zone, height, astigmatic_foci(*pencil, lens.image_z).tangential});
-            }
-            continue;
-        }
         const auto traced = trace<Direction::forward, Rims::follow>(lens, axis.ray({0.0, height}));
         if (traced.status == RayStatus::missed || traced.status == RayStatus::total_internal_reflection) {
             continue;

@@ -3,9 +3,9 @@
 namespace lensproof {
 
 std::vector<double> even_fields(double largest, int count) {
-    std::vector<double> fields;
+    std::vector<double> fields(static_cast<std::size_t>(count));
     for (int i = 0; i < count; ++i) {
-        fields.push_back(largest * i / (count - 1));
+        fields[i] = largest * i / (count - 1);
     }
     return fields;
 }

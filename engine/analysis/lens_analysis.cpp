@@ -96,4 +96,24 @@ LensAnalysis analyze_lens(const Lens& lens, const AnalysisSettings& settings) {
     return analysis;
 }
 
+std::vector<std::optional<PolychromaticField>> polychromatic_fields(const Lens& lens,
+                                                                    const AnalysisSettings& settings) {
+    std::vector<WeightedWavelength> wavelengths;
+    for (const double wavelength_nm : settings.wavelengths_nm) {
+        wavelengths.push_back({.wavelength_nm = wavelength_nm});
+    }
+    const ChiefRays chief_rays(lens, settings.reference_wavelength_nm, Rims::follow);
+    std::vector<std::optional<PolychromaticField>> fields;
+    for (const double field : settings.fields) {
+        const auto bundle = field_bundle(chief_rays, chief_rays, field, settings.object_distance);
+        fields.push_back(
+            bundle ? std::optional(polychromatic_field(lens, *bundle, settings.reference_wavelength_nm, wavelengths))
+                   : std::nullopt);
+        if (fields.back() && fields.back()->parts.empty()) {
+            fields.back().reset();
+        }
+    }
+    return fields;
+}
+
 }  // namespace lensproof

@@ -4,6 +4,7 @@
 #include <optional>
 #include <vector>
 
+#include "engine/analysis/polychromatic_field.h"
 #include "engine/analysis/seidel.h"
 #include "engine/analysis/working_f_number.h"
 #include "engine/optics/lens.h"
@@ -48,7 +49,11 @@ struct LensAnalysis {
     std::vector<FieldAnalysis> fields;         // by field, and for each by wavelength
 };
 
-/// Throws InputError for a wavelength that a glass's formula does not cover.
+/// Throws InputError for a wavelength that a glass's formula does not cover, as does what follows.
 LensAnalysis analyze_lens(const Lens& lens, const AnalysisSettings& settings);
+
+/// The settings' fields with all of their wavelengths, of equal weight each: what focus, PSF and MTF are judged by.
+/// Nothing for a field whose object has no chief ray, or no light that passes.
+std::vector<std::optional<PolychromaticField>> polychromatic_fields(const Lens& lens, const AnalysisSettings& settings);
 
 }  // namespace lensproof

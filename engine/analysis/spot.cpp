@@ -123,6 +123,15 @@ SpotSize spot_size(std::span<const SpotRay> rays, double defocus_mm) {
     return size;
 }
 
+std::vector<ThroughFocusPoint> through_focus(std::span<const SpotRay> rays, std::span<const double> defocus_mm) {
+    std::vector<ThroughFocusPoint> points;
+    points.reserve(defocus_mm.size());
+    for (const double defocus : defocus_mm) {
+        points.push_back({defocus, spot_size(rays, defocus)});
+    }
+    return points;
+}
+
 double best_spot_defocus(std::span<const SpotRay> rays) {
     const Means mean = means(rays);
     double covariance = 0.0;

@@ -43,6 +43,13 @@ struct SpotSize {
 /// At the plane `defocus_mm` behind the sensor's. No light, no size: all zero.
 SpotSize spot_size(std::span<const SpotRay> rays, double defocus_mm = 0.0);
 
+/// Sizes through focus, from the rays of one plane.
+struct ThroughFocusPoint {
+    double defocus_mm;
+    SpotSize size;
+};
+std::vector<ThroughFocusPoint> through_focus(std::span<const SpotRay> rays, std::span<const double> defocus_mm);
+
 /// The defocus, mm from the sensor's plane, that makes the rms size least: a parabola's vertex. 0 where every ray is
 /// parallel.
 double best_spot_defocus(std::span<const SpotRay> rays);

@@ -11,8 +11,8 @@ namespace lensproof {
 
 namespace {
 
-// Halvings that take an angle of order 1 down to the last bit.
-constexpr int kHalvings = 60;
+// Halvings that take an angle of order 1 down to its last bits.
+constexpr int kHalvings = 52;
 
 /// Whether a half of a chief ray got through, or was followed past a rim.
 bool arrives(RayStatus status, Rims rims) {
@@ -65,22 +65,29 @@ ChiefRays::ChiefRays(const Lens& lens, double wavelength_nm, Rims rims)
 }
 
 double ChiefRays::end_of_family() const {
-    constexpr int kSteps = 256;
+    constexpr int kSteps = 64;
     constexpr double kStep = 0.5 * std::numbers::pi / kSteps;
+    constexpr double kNowhere = -std::numeric_limits<double>::infinity();
     const auto field = [&](double angle) {
         const std::optional<ChiefRay> ray = from_stop(angle);
-        return ray ? ray->field_angle : -std::numeric_limits<double>::infinity();
+        return ray ? ray->field_angle : kNowhere;
     };
-    const auto goes_on = [&](double angle) {
+    const auto rises = [&](double angle) {
         constexpr double kBehind = 1e-7;
         return field(angle) > field(angle - kBehind);
     };
     int step = 1;
-    for (double last = field(0.0); step < kSteps && field(step * kStep) > last; ++step) {
-        last = field(step * kStep);
+    for (double last = field(0.0); step < kSteps; ++step) {
+        const double here = field(step * kStep);
+        if (!(here > last)) {
+            break;
+        }
+        last = here;
     }
-    // It ends or folds on the way to here, or, where it has just turned, in the step before.
-    return last_passing(std::max(0, step - 2) * kStep, step * kStep, goes_on);
+    const double end =
+        last_passing((step - 1) * kStep, step * kStep, [&](double angle) { return field(angle) > kNowhere; });
+    // Where it turns back before it ends, that is on the way to here, or, if it has just done so, in the step before.
+    return rises(end) ? end : last_passing(std::max(0, step - 2) * kStep, end, rises);
 }
 
 double ChiefRays::find_largest_field() const {
@@ -145,7 +152,7 @@ std::optional<ChiefRay> ChiefRays::solve(const Residual& residual) const {
         return ray ? residual(*ray) : 0.0;
     };
     const auto is_exact = [](double a, double b) { return b - a <= 2e-16 * b; };
-    std::uintmax_t steps = 2 * kHalvings;
+    std::uintmax_t steps = 2U * kHalvings;
     const auto [low, high] =
         boost::math::tools::toms748_solve(at, 0.0, largest_stop_angle_, at_first, at_last, is_exact, steps);
     return is_family ? from_stop(high) : std::nullopt;

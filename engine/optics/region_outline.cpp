@@ -246,9 +246,11 @@ std::optional<Vec2d> find_inside(const Region& region, const RegionSearch& searc
     const int rows = search.is_mirror ? 129 : 33;
     const int columns = search.is_mirror ? 1 : 33;
     double step = 2.0 * search.reach / (rows - 1);
-    for (int i = 0; i < columns; ++i) {
-        for (int k = 0; k < rows; ++k) {
-            look({search.start.x + (i - columns / 2) * step, search.start.y + (k - rows / 2) * step});
+    const int middle_column = columns / 2;
+    const int middle_row = rows / 2;
+    for (int i = -middle_column; i <= middle_column; ++i) {
+        for (int k = -middle_row; k <= middle_row; ++k) {
+            look({search.start.x + i * step, search.start.y + k * step});
         }
     }
     constexpr double kSmallestStep = 1e-9;

@@ -9,6 +9,7 @@
 #include <numbers>
 #include <optional>
 
+#include "engine/analysis/best_focus.h"
 #include "engine/analysis/lens_analysis.h"
 #include "engine/io/file.h"
 #include "engine/io/input_error.h"
@@ -19,6 +20,8 @@
 #include "engine/spectral/wavelengths.h"
 #include "experiments/cli/analysis_output.h"
 #include "experiments/cli/command.h"
+#include "experiments/plot/analysis_curves.h"
+#include "experiments/plot/lens_section.h"
 
 namespace lensproof {
 
@@ -39,9 +42,14 @@ struct AnalyzeOptions {
     std::optional<double> f_number;
     std::optional<double> image_distance_mm;
     int rings = 0;
+    std::string best_focus;
+    std::optional<double> focus_frequency;
+    std::string plots_folder;
 };
 
 constexpr double kFarthestImage = 1e15;  // mm
+
+constexpr const char* kCriteria[] = {"paraxial", "spot", "wavefront", "mtf"};
 
 /// The object's distance: the option's, or that which the table is set to.
 double object_distance(const std::string& option, const Prescription& prescription) {
@@ -112,6 +120,48 @@ std::vector<double> wavelengths_of(const AnalyzeOptions& options, const Prescrip
     return options.wavelengths_nm;
 }
 
+/// Where the image is best, from where the image plane stands.
+double best_focus_shift(const AnalyzeOptions& options, const Lens& lens, const AnalysisSettings& settings) {
+    if (options.best_focus == "paraxial") {
+        return paraxial_focus_shift(lens, settings.reference_wavelength_nm, settings.object_distance);
+    }
+    std::vector<WeightedField> fields;
+    for (std::optional<PolychromaticField>& field : polychromatic_fields(lens, settings)) {
+        if (field) {
+            fields.push_back({.field = std::move(*field)});
+        }
+    }
+    if (options.best_focus == "spot") {
+        return spot_focus_shift(fields);
+    }
+    if (options.best_focus == "wavefront") {
+        return wavefront_focus_shift(fields);
+    }
+    if (!options.focus_frequency) {
+        throw InputError("--best-focus mtf needs --focus-frequency, in cycles/mm");
+    }
+    return mtf_focus_shift(fields, *options.focus_frequency);
+}
+
+/// "f/2.73, object at infinity, image plane 79.83 mm behind the last surface, 587.6 nm"
+std::string conditions(const Lens& lens, const AnalysisSettings& settings, const LensAnalysis& analysis) {
+    return fmt::format(
+        "f/{:.3g}, object at {}, image plane {:.6g} mm behind the last surface", analysis.reference_paraxial.f_number,
+        std::isinf(settings.object_distance) ? "infinity" : fmt::format("{:g} mm", settings.object_distance),
+        lens.image_z - lens.last_vertex_z());
+}
+
+void write_analysis_plots(const std::string& folder, const Prescription& prescription, const Lens& lens,
+                          const AnalysisSettings& settings, const LensAnalysis& analysis) {
+    const AnalysisCurves curves = analysis_curves(lens, settings);
+    const WaveCurves waves = wave_curves(lens, settings);
+    const PlotHeading heading{.lens = lens.name, .conditions = conditions(lens, settings, analysis)};
+    std::map<std::string, std::string> files = analysis_drawings(heading, lens.projection, curves, waves);
+    files["section.svg"] = lens_section_svg(prescription, &lens, {});
+    files["curves.json"] = curves_json(curves, waves).dump() + "\n";
+    write_plots(folder, files);
+}
+
 int run_analyze(const AnalyzeOptions& options) {
     check_json_name(options.common);
     Prescription prescription = read_prescription(find_lens_file(options.lens));
@@ -122,9 +172,15 @@ int run_analyze(const AnalyzeOptions& options) {
     settings.reference_wavelength_nm = options.reference_wavelength_nm.value_or(settings.wavelengths_nm.front());
     settings.object_distance = object_distance(options.focus, prescription);
     settings.rings = options.rings;
-    const Lens lens = prepared_lens(options, prescription, settings.object_distance, settings.reference_wavelength_nm);
+    Lens lens = prepared_lens(options, prescription, settings.object_distance, settings.reference_wavelength_nm);
     settings.fields = fields_of(options, lens, settings.reference_wavelength_nm);
+    if (!options.best_focus.empty()) {
+        lens = with_image_shift(std::move(lens), best_focus_shift(options, lens, settings));
+    }
     const LensAnalysis analysis = analyze_lens(lens, settings);
+    if (!options.plots_folder.empty()) {
+        write_analysis_plots(options.plots_folder, prescription, lens, settings, analysis);
+    }
     if (prints_text(options.common)) {
         fmt::print("{}", analysis_text(lens, settings, analysis));
     }
@@ -176,6 +232,22 @@ void add_analyze_command(CLI::App& app, int& status) {
     command->add_option("--rings", options->rings, "Rings of rays over a beam, for spots and wavefronts")
         ->check(CLI::Range(1, 1000))
         ->capture_default_str();
+    auto* best_focus =
+        command
+            ->add_option("--best-focus", options->best_focus,
+                         "Move the image plane to the best image of all fields and wavelengths together: paraxial, "
+                         "spot (least rms), wavefront (least rms) or mtf (highest at --focus-frequency)")
+            ->check(CLI::IsMember(std::vector<std::string>(std::begin(kCriteria), std::end(kCriteria))))
+            ->type_name("CRITERION");
+    command->add_option("--focus-frequency", options->focus_frequency, "cycles/mm, for --best-focus mtf")
+        ->needs(best_focus)
+        ->check(kPositiveOption)
+        ->type_name("F");
+    command
+        ->add_option("--plots", options->plots_folder,
+                     "Draw the lens section, ray fans, field curves, spots, MTF and the rest into a folder (SVG), "
+                     "their numbers beside them (curves.json)")
+        ->type_name("DIR");
     command->add_option("--zoom", options->zoom, "Position of a zoom lens, by name or number (default: the first)")
         ->type_name("POSITION");
     add_index_option(*command, options->indices);

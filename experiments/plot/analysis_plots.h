@@ -90,14 +90,14 @@ struct SquareMap {
 };
 
 /// Optical path differences (waves) over the exit pupil.
-struct WavefrontMap {
+struct FieldWavefront {
     double field_deg = 0.0;
     double wavelength_nm = 0.0;
     SquareMap opd_waves{};  // the half width in units of the pupil coordinate
     double rms_waves = 0.0;
     double peak_to_valley_waves = 0.0;
 };
-std::string wavefront_svg(const PlotHeading& heading, const std::vector<WavefrontMap>& fields);
+std::string wavefront_svg(const PlotHeading& heading, const std::vector<FieldWavefront>& fields);
 
 /// The image of a point, in units of the peak of a perfect lens with the same pupil; the half width in µm.
 struct PsfMap {

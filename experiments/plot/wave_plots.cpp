@@ -69,15 +69,15 @@ void add_pair(PlotChart& chart, const std::string& label, const std::string& col
 
 }  // namespace
 
-std::string wavefront_svg(const PlotHeading& heading, const std::vector<WavefrontMap>& fields) {
+std::string wavefront_svg(const PlotHeading& heading, const std::vector<FieldWavefront>& fields) {
     ChartGrid grid{.title = plot_title(heading, "wavefront"),
                    .caption = heading.conditions,
                    .columns = std::min<std::size_t>(3, std::max<std::size_t>(fields.size(), 1)),
                    .frame = {kMapSide, kMapSide}};
-    grid.shares_x = have_one_size(fields, &WavefrontMap::opd_waves);
+    grid.shares_x = have_one_size(fields, &FieldWavefront::opd_waves);
     grid.shares_y = grid.shares_x;
     constexpr double kLeastWaves = 1e-3;
-    for (const WavefrontMap& field : fields) {
+    for (const FieldWavefront& field : fields) {
         PlotChart chart{.title = field_text(field.field_deg) + ", " + wavelength_text(field.wavelength_nm),
                         .x = {.label = "Pupil x"},
                         .y = {.label = "Pupil y"},

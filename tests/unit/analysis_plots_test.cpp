@@ -108,7 +108,7 @@ SquareMap square(const Case& c) {
 }
 
 std::string wavefronts(const Case& c) {
-    std::vector<WavefrontMap> fields;
+    std::vector<FieldWavefront> fields;
     for (const double field : c.fields) {
         fields.push_back({field, c.wavelengths.front(), square(c), 0.1 * c.size, c.size});
     }

@@ -1,6 +1,7 @@
 // Spots whose sizes have closed forms, and how fast the sums over them converge.
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -112,7 +113,10 @@ TEST(Spot, DefocusOfAPerfectFocus) {
         EXPECT_NEAR(spot_size(rays).rms, std::abs(defocus) * std::sqrt(mean), 1e-12);
         EXPECT_NEAR(best_spot_defocus(rays), -defocus, 1e-12);
         EXPECT_LT(spot_size(rays, -defocus).rms, 1e-13);
-        EXPECT_NEAR(spot_size(rays, 1.0).rms, std::abs(defocus + 1.0) * std::sqrt(mean), 1e-12);
+        const std::array planes = {-1.0, 1.0};
+        for (const ThroughFocusPoint& point : through_focus(rays, planes)) {
+            EXPECT_NEAR(point.size.rms, std::abs(defocus + point.defocus_mm) * std::sqrt(mean), 1e-12);
+        }
     }
 }
 

@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "engine/analysis/wavefront.h"
+#include "engine/analysis/wavefront_map.h"
 #include "engine/spectral/wavelengths.h"
 #include "tests/unit/perfect_lens.h"
 
@@ -179,6 +180,37 @@ TEST(Wavefront, HoldsDigitsForFarObjects) {
     }
 }
 
+// rayoptics 0.9.8 (waveabr.wave_abr_full_calc) for the Tessar with constant indices, image plane 79.831 mm behind it,
+// an object at 1e10 mm, and rays through these points of the first surface; the sign is the same. Its distance of 1e10
+// mm leaves the field angle 1e-9 and so the tilt 1e-7 waves.
+TEST(Wavefront, AgreesWithRayoptics) {
+    struct Row {
+        double field_deg;
+        Vec3d point;
+        double waves;
+    };
+    constexpr Row kRows[] = {
+        {0.0, {0.0, 4.499999993880237, 0.23627912227771064}, -0.03137188949203151},
+        {0.0, {3.4999999952074585, 0.0, 0.14277851607055528}, -0.03751195141130368},
+        {7.0, {0.0, 2.810004355082121, 0.09197794295521017}, -0.01445219216656292},
+        {7.0, {0.0, -5.655393700068386, 0.37378629388256523}, -0.10580081562285439},
+        {7.0, {3.499999995218992, -1.6797118439316505, 0.17573089589188007}, 0.11632923681313419},
+        {7.0, {2.4999999965611637, 0.8085840008494058, 0.08040811652826477}, 0.05216079007859865},
+        {9.8, {0.0, 2.112054244314492, 0.05193705595424786}, -0.09166261913243019},
+        {9.8, {0.0, -6.316293211846566, 0.4667608285911814}, -0.16305726330726764},
+        {9.8, {3.4999999952302536, -2.361005024467417, 0.20790749614995935}, 0.23805807309892657},
+    };
+    const Lens lens = load_lens("tessar", {.indices = {{"LAK9", 1.691}, {"LLF7", 1.549}, {"SF7", 1.64}}});
+    const TraceLens<double> traced = at_wavelength<double>(lens, kLineD);
+    for (const Row& row : kRows) {
+        const FieldBundle bundle = bundle_at(lens, row.field_deg * kDegree, 1e10);
+        const Vec3d apart = row.point - bundle.chief.front.origin;
+        const std::vector<BeamNode> node = {{{dot(apart, bundle.across()[0]), dot(apart, bundle.across()[1])}, 1.0}};
+        const Wavefront front = wavefront(traced, kLineD, bundle, reference_sphere(traced, bundle).value(), node);
+        EXPECT_NEAR(front.rays.front().opd_mm * 1e6 / kLineD, row.waves, 1e-6) << row.field_deg << " " << row.point.y;
+    }
+}
+
 // A shift of the reference centre in its plane is a tilt, and along the axis a defocus: of a perfect wavefront nothing
 // is left once they are taken out, and what was taken out is the shift. Second order: shift² / radius.
 TEST(Wavefront, BestSphereFindsTheFocus) {
@@ -201,6 +233,57 @@ TEST(Wavefront, BestSphereFindsTheFocus) {
     const double tilt = std::hypot(shift.x, shift.y) * 0.16 / (kLineD * 1e-6);
     EXPECT_NEAR(std::sqrt(errors.rms * errors.rms - errors.rms_without_tilt * errors.rms_without_tilt), 0.5 * tilt,
                 0.03 * tilt);
+}
+
+// The map of a perfect lens out of focus, W = ζ (1 − cos U) from a telecentric pupil, at each of its cells.
+TEST(WavefrontMap, OfADefocusedLens) {
+    const PerfectLens perfect{.stop_distance = PerfectLens{}.telecentric_distance(), .defocus = 0.05};
+    const FieldBundle bundle = bundle_at(perfect.lens(), 0.0);
+    const PolychromaticField field =
+        polychromatic_field(perfect.lens(), bundle, kLineD, std::vector<WeightedWavelength>{{kLineD, 1.0}});
+    constexpr int kCells = 40;
+    const WavefrontMap map = wavefront_map(field, field.parts.front(), kCells);
+    int inside = 0;
+    for (int row = 0; row < map.size; ++row) {
+        for (int column = 0; column < map.size; ++column) {
+            if (!map.is_inside(row, column)) {
+                EXPECT_EQ(map.at(row, column), 0.0);
+                continue;
+            }
+            ++inside;
+            const Vec2d pupil = map.pupil(row, column);
+            const double cosine = std::sqrt(1.0 - pupil.x * pupil.x - pupil.y * pupil.y);
+            EXPECT_NEAR(map.at(row, column), 0.05 * (1.0 - cosine) / (kLineD * 1e-6), 1e-6);
+        }
+    }
+    // A disc's cells, to those of its rim.
+    EXPECT_NEAR(inside / (0.25 * std::numbers::pi * kCells * kCells), 1.0, 0.03);
+    EXPECT_EQ(map.status, PupilStatus::ok);
+}
+
+// Off the axis the cells are those of `wavefront` at the same rays, rim to rim.
+TEST(WavefrontMap, IsTheWavefrontOffTheAxis) {
+    const Lens lens = load_lens("double-gauss-tronnier");
+    const FieldBundle bundle = bundle_at(lens, 14.0 * kDegree);
+    const PolychromaticField field =
+        polychromatic_field(lens, bundle, kLineD, std::vector<WeightedWavelength>{{kLineD, 1.0}});
+    const PolychromaticField::Part& part = field.parts.front();
+    const WavefrontMap map = wavefront_map(field, part, 48);
+    double sum = 0.0;
+    double squares = 0.0;
+    int cells = 0;
+    for (std::size_t i = 0; i < map.opd_waves.size(); ++i) {
+        if (map.inside[i] != 0) {
+            sum += map.opd_waves[i];
+            squares += map.opd_waves[i] * map.opd_waves[i];
+            ++cells;
+        }
+    }
+    const double rms = std::sqrt(squares / cells - sum * sum / cells / cells);
+    const double expected =
+        wavefront_errors(wavefront(part.lens, kLineD, bundle, field.sphere, beam_quadrature(part.outline, 10))).rms;
+    // Even cells in direction against even cells in the beam, and 4/48 of them at the rim.
+    EXPECT_NEAR(rms / expected, 1.0, 0.1);
 }
 
 // A chief ray that a rim clips leaves the field its rays.

@@ -1,0 +1,44 @@
+// experiments/plot/analysis_curves.h — the curves and pictures of a lens's analysis, as its plots show them.
+#pragma once
+#include <nlohmann/json.hpp>
+
+#include "engine/analysis/lens_analysis.h"
+#include "experiments/plot/analysis_plots.h"
+
+namespace lensproof {
+
+/// All that the plots show. Of fields without light there is the angle alone.
+struct AnalysisCurves {
+    std::vector<FieldFans> fans;
+    std::vector<FieldCurve> field_curves;
+    std::vector<WavelengthCurve> longitudinal;
+    std::vector<WavelengthCurve> lateral_colour;
+    std::vector<Vec2d> airy_radius;  // µm over the field in degrees
+    std::vector<double> defocus_mm;  // of the spots' planes
+    std::vector<FieldSpots> spots;
+    std::vector<FieldBrightness> illumination;
+};
+
+/// The curves that rays alone give.
+AnalysisCurves analysis_curves(const Lens& lens, const AnalysisSettings& settings);
+
+/// What diffraction gives.
+struct WaveCurves {
+    std::vector<FieldWavefront> wavefronts;
+    std::vector<PsfMap> psfs;
+    std::vector<FieldMtf> mtf;            // with diffraction
+    std::vector<FieldMtf> geometric_mtf;  // by rays alone
+    std::vector<Vec2d> diffraction_limit;
+    std::vector<FrequencyMtf> mtf_over_field;
+};
+
+WaveCurves wave_curves(const Lens& lens, const AnalysisSettings& settings);
+
+/// Every number that the plots show, keyed with its unit.
+nlohmann::ordered_json curves_json(const AnalysisCurves& curves, const WaveCurves& waves);
+
+/// The drawings by file name.
+std::map<std::string, std::string> analysis_drawings(const PlotHeading& heading, Projection projection,
+                                                     const AnalysisCurves& curves, const WaveCurves& waves);
+
+}  // namespace lensproof
