@@ -1,4 +1,4 @@
-// tests/cli/analyze_numbers_test.cpp — the command `analyze` against seven lenses computed with 50 digits.
+// tests/cli/analyze_numberstest.cpp — the command `analyze` against seven lenses computed with 50 digits.
 //
 // tests/validation/reference_numbers/README.md says how the numbers were made and what each one means.
 #include <gtest/gtest.h>
@@ -48,32 +48,22 @@ double number(const Json& object, const std::string& key) {
     return *found;
 }
 
-class AnalyzeNumbers : public testing::TestWithParam<const char*> {
-  protected:
-    const Json numbers_ = reference_numbers(GetParam());
-};
-
-TEST_P(AnalyzeNumbers, FirstOrder) {
-    const double field_deg = numbers_["seidel"]["field_deg"];
-    const Json found = analysis(GetParam(), numbers_, {0.0, field_deg});
-    ASSERT_TRUE(found.is_object());
-    const std::string reference = exact(numbers_["wavelengths_nm"][0]);
+void expect_first_order(const Json& numbers, const Json& found) {
+    const std::string reference = exact(numbers["wavelengths_nm"][0]);
     EXPECT_EQ(exact(number(found, "reference_wavelength_nm")), reference);
     int compared = 0;
-    for (const auto& [key, expected] : numbers_["paraxial"][reference].items()) {
+    for (const auto& [key, expected] : numbers["paraxial"][reference].items()) {
         const double value = expected;
         EXPECT_NEAR(number(found["paraxial"], key), value, kFirstOrder * std::abs(value)) << key;
         ++compared;
     }
     EXPECT_EQ(compared, 9);
-    const double invariant = numbers_["seidel"]["lagrange_invariant_mm"];
+    const double invariant = numbers["seidel"]["lagrange_invariant_mm"];
     EXPECT_NEAR(number(found["paraxial"], "lagrange_invariant_mm"), invariant, kFirstOrder * std::abs(invariant));
 }
 
-TEST_P(AnalyzeNumbers, SeidelAndColourSums) {
-    const Json& seidel = numbers_["seidel"];
-    const Json found = analysis(GetParam(), numbers_, {0.0, seidel["field_deg"].get<double>()});
-    ASSERT_TRUE(found.is_object());
+void expect_third_order(const Json& numbers, const Json& found) {
+    const Json& seidel = numbers["seidel"];
     const Json& surfaces = found["seidel"]["surfaces"];
     ASSERT_EQ(surfaces.size(), seidel["surfaces"].size());
     const std::vector<std::string> keys = {"s1", "s2", "s3", "s4", "s5", "c1", "c2"};
@@ -93,65 +83,62 @@ TEST_P(AnalyzeNumbers, SeidelAndColourSums) {
     }
 }
 
-/// Each row of the reference with the command's row for the same field and wavelength.
-class FieldRows {
-  public:
-    FieldRows(const std::string& lens, const Json& numbers)
-        : numbers_(numbers), found_(analysis(lens, numbers, numbers["fields_deg"])) {}
-
-    template <class Check>
-    void each(const Check& check) const {
-        ASSERT_TRUE(found_.is_object());
-        for (const Json& expected : numbers_["fields"]) {
-            const double field = expected["field_deg"];
-            const double wavelength = expected["wavelength_nm"];
-            SCOPED_TRACE(testing::Message() << field << " deg, " << wavelength << " nm");
-            const Json& rows = found_["fields"];
-            const auto row = std::find_if(rows.begin(), rows.end(), [&](const Json& r) {
-                return std::abs(r["field_deg"].get<double>() - field) < 1e-9 && r["wavelength_nm"] == wavelength;
-            });
-            ASSERT_NE(row, rows.end());
-            EXPECT_EQ((*row)["status"], "ok");
-            check(expected, *row);
-        }
+void expect_chief_ray(const Json& expected, const Json& found) {
+    EXPECT_NEAR(number(found, "chief_ray_height_mm"), number(expected, "chief_ray_height_mm"), kHeight_mm);
+    EXPECT_NEAR(number(found, "lateral_colour_um"), number(expected, "lateral_colour_um"), 2e3 * kHeight_mm);
+    EXPECT_NEAR(number(found, "tangential_focus_mm"), number(expected, "tangential_focus_mm"), kFocus_mm);
+    EXPECT_NEAR(number(found, "sagittal_focus_mm"), number(expected, "sagittal_focus_mm"), kFocus_mm);
+    if (expected.contains("distortion_percent")) {
+        EXPECT_NEAR(number(found, "distortion_percent"), number(expected, "distortion_percent"), kDistortion_percent);
     }
+}
 
-  private:
-    const Json& numbers_;
-    Json found_;
+void expect_light(const Json& expected, const Json& found) {
+    for (const char* key : {"vignetting", "relative_illumination"}) {
+        const double value = number(expected, key);
+        EXPECT_NEAR(number(found, key), value, kIllumination * value) << key;
+    }
+}
+
+void expect_spot(const Json& expected, const Json& found) {
+    const double rms_um = number(expected, "spot_rms_um");
+    EXPECT_NEAR(number(found, "spot_rms_um"), rms_um, kIllumination * rms_um);
+    ASSERT_TRUE(found["spot_centroid_mm"].is_array()) << found.dump();
+    EXPECT_NEAR(found["spot_centroid_mm"][0].get<double>(), 0.0, 1e-3 * kIllumination * rms_um);
+    EXPECT_NEAR(found["spot_centroid_mm"][1].get<double>(), number(expected, "spot_centroid_y_mm"),
+                1e-3 * kIllumination * rms_um);
+}
+
+class AnalyzeNumbers : public testing::TestWithParam<const char*> {
+  protected:
+    const Json numbers_ = reference_numbers(GetParam());
 };
 
-TEST_P(AnalyzeNumbers, ChiefRaysAndFoci) {
-    FieldRows(GetParam(), numbers_).each([](const Json& expected, const Json& found) {
-        EXPECT_NEAR(number(found, "chief_ray_height_mm"), number(expected, "chief_ray_height_mm"), kHeight_mm);
-        EXPECT_NEAR(number(found, "lateral_colour_um"), number(expected, "lateral_colour_um"), 2e3 * kHeight_mm);
-        EXPECT_NEAR(number(found, "tangential_focus_mm"), number(expected, "tangential_focus_mm"), kFocus_mm);
-        EXPECT_NEAR(number(found, "sagittal_focus_mm"), number(expected, "sagittal_focus_mm"), kFocus_mm);
-        if (expected.contains("distortion_percent")) {
-            EXPECT_NEAR(number(found, "distortion_percent"), number(expected, "distortion_percent"),
-                        kDistortion_percent);
-        }
-    });
+TEST_P(AnalyzeNumbers, FirstAndThirdOrder) {
+    const Json found = analysis(GetParam(), numbers_, {0.0, numbers_["seidel"]["field_deg"].get<double>()});
+    ASSERT_TRUE(found.is_object());
+    expect_first_order(numbers_, found);
+    expect_third_order(numbers_, found);
 }
 
-TEST_P(AnalyzeNumbers, VignettingAndIllumination) {
-    FieldRows(GetParam(), numbers_).each([](const Json& expected, const Json& found) {
-        for (const char* key : {"vignetting", "relative_illumination"}) {
-            const double value = number(expected, key);
-            EXPECT_NEAR(number(found, key), value, kIllumination * value) << key;
-        }
-    });
-}
-
-TEST_P(AnalyzeNumbers, Spots) {
-    FieldRows(GetParam(), numbers_).each([](const Json& expected, const Json& found) {
-        const double rms_um = number(expected, "spot_rms_um");
-        EXPECT_NEAR(number(found, "spot_rms_um"), rms_um, kIllumination * rms_um);
-        ASSERT_TRUE(found["spot_centroid_mm"].is_array()) << found.dump();
-        EXPECT_NEAR(found["spot_centroid_mm"][0].get<double>(), 0.0, 1e-3 * kIllumination * rms_um);
-        EXPECT_NEAR(found["spot_centroid_mm"][1].get<double>(), number(expected, "spot_centroid_y_mm"),
-                    1e-3 * kIllumination * rms_um);
-    });
+TEST_P(AnalyzeNumbers, Fields) {
+    const Json found = analysis(GetParam(), numbers_, numbers_["fields_deg"]);
+    ASSERT_TRUE(found.is_object());
+    const Json& rows = found["fields"];
+    EXPECT_EQ(rows.size(), numbers_["fields"].size());
+    for (const Json& expected : numbers_["fields"]) {
+        const double field = expected["field_deg"];
+        const double wavelength = expected["wavelength_nm"];
+        SCOPED_TRACE(testing::Message() << field << " deg, " << wavelength << " nm");
+        const auto row = std::ranges::find_if(rows, [&](const Json& r) {
+            return std::abs(r["field_deg"].get<double>() - field) < 1e-9 && r["wavelength_nm"] == wavelength;
+        });
+        ASSERT_NE(row, rows.end());
+        EXPECT_EQ((*row)["status"], "ok");
+        expect_chief_ray(expected, *row);
+        expect_light(expected, *row);
+        expect_spot(expected, *row);
+    }
 }
 
 INSTANTIATE_TEST_SUITE_P(Lens, AnalyzeNumbers, testing::ValuesIn(kNumberedLenses),
