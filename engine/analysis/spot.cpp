@@ -62,13 +62,11 @@ std::vector<SpotRay> spot_rays(const TraceLens<double>& lens, const FieldBundle&
     };
     const GaussRule rule = gauss_legendre(rings);
     for (const OutlinePoint& point : outline.points) {
-        const auto offset = [&](double share) {
-            return Vec2d{outline.centre.x + share * point.edge.x, outline.centre.y + share * point.edge.y};
-        };
         for (std::size_t i = 0; i < rule.nodes.size(); ++i) {
-            add(offset(rule.nodes[i]), 2.0 * rule.nodes[i] * rule.weights[i] * point.wedge_area, outline.is_half);
+            add(outline.at(point, rule.nodes[i]), 2.0 * rule.nodes[i] * rule.weights[i] * point.wedge_area,
+                outline.is_half);
         }
-        add(offset(1.0), 0.0, outline.is_half);
+        add(outline.at(point, 1.0), 0.0, outline.is_half);
     }
     return rays;
 }

@@ -4,9 +4,7 @@
 #include <array>
 #include <boost/math/quadrature/gauss_kronrod.hpp>
 #include <boost/math/special_functions/legendre.hpp>
-#include <boost/math/tools/toms748_solve.hpp>
 #include <cmath>
-#include <cstdint>
 #include <functional>
 #include <limits>
 #include <numbers>
@@ -226,88 +224,6 @@ class Outliner {
     double error_ = 0.0;
 };
 
-}  // namespace
-
-std::optional<Vec2d> find_inside(const Region& region, const RegionSearch& search) {
-    Vec2d best = search.start;
-    RegionSample least = region(best);
-    const auto look = [&](Vec2d at) {
-        const RegionSample here = region(at);
-        if (here.margin < least.margin) {
-            least = here;
-            best = at;
-            return true;
-        }
-        return false;
-    };
-    if (least.margin < 0.0) {
-        return best;
-    }
-    const int rows = search.is_mirror ? 129 : 33;
-    const int columns = search.is_mirror ? 1 : 33;
-    double step = 2.0 * search.reach / (rows - 1);
-    const int middle_column = columns / 2;
-    const int middle_row = rows / 2;
-    for (int i = -middle_column; i <= middle_column; ++i) {
-        for (int k = -middle_row; k <= middle_row; ++k) {
-            look({search.start.x + i * step, search.start.y + k * step});
-        }
-    }
-    constexpr double kSmallestStep = 1e-9;
-    while (!(least.margin < 0.0) && step > kSmallestStep * search.reach) {
-        bool is_better = look({best.x, best.y + step}) || look({best.x, best.y - step});
-        if (!search.is_mirror) {
-            is_better = look({best.x + step, best.y}) || look({best.x - step, best.y}) || is_better;
-        }
-        if (!is_better) {
-            step *= 0.5;
-        }
-    }
-    return least.margin < 0.0 ? std::optional(best) : std::nullopt;
-}
-
-RegionEdge region_edge(const Region& region, Vec2d inside, Vec2d along, double hint) {
-    const auto sample = [&](double distance) {
-        return region({inside.x + distance * along.x, inside.y + distance * along.y});
-    };
-    double low = 0.0;
-    double high = hint;
-    RegionSample near = sample(low);
-    RegionSample far = sample(high);
-    constexpr double kStep = 1.3;
-    while (far.margin <= 0.0 && std::isfinite(high)) {
-        low = high;
-        near = far;
-        high *= kStep;
-        far = sample(high);
-    }
-    const auto is_exact = [](double a, double b) { return b - a <= 1e-14 * b; };
-    while (std::isinf(far.margin) && !is_exact(low, high)) {
-        const double middle = 0.5 * (low + high);
-        const RegionSample here = sample(middle);
-        (here.margin <= 0.0 ? low : high) = middle;
-        (here.margin <= 0.0 ? near : far) = here;
-    }
-    if (!(near.margin < 0.0) || is_exact(low, high)) {
-        return {low, far.limit};
-    }
-    double nearest = high;
-    const auto margin = [&](double distance) {
-        const RegionSample here = sample(distance);
-        if (here.margin > 0.0 && distance < nearest) {
-            nearest = distance;
-            far = here;
-        }
-        return std::min(here.margin, 1.0);  // an interpolation cannot use an infinite one
-    };
-    std::uintmax_t steps = 200;
-    const auto root =
-        boost::math::tools::toms748_solve(margin, low, high, near.margin, std::min(far.margin, 1.0), is_exact, steps);
-    return {root.first, root.first == root.second ? sample(root.first).limit : far.limit};
-}
-
-namespace {
-
 RegionOutline outline_in(const PolarFrame& frame, bool is_mirror) {
     Outliner outliner(frame);
     const int quarters = is_mirror ? 2 : 4;
@@ -346,6 +262,29 @@ RegionOutline outline_about_another(const PolarFrame& frame, bool is_mirror, Reg
     return outline;
 }
 
+/// The outline of a region that is its own mirror image, in a plane sheared so that the middle of the region's height
+/// is as high at 0.8 of its half width as on x = 0.
+RegionOutline straightened_outline(const PolarFrame& frame) {
+    double bend = 0.0;
+    const Vec2d centre = frame.centre();
+    const Vec2d scale = frame.scale();
+    const Region straight = [&](Vec2d at) { return frame.region()({at.x, at.y + bend * at.x * at.x}); };
+    constexpr int kRounds = 6;
+    for (int round = 0; round < kRounds; ++round) {
+        constexpr double kShare = 0.8;
+        const double x = kShare * scale.x * region_edge(straight, centre, {scale.x, 0.0}).distance;
+        const auto middle = [&](double at_x) {
+            const double above = region_edge(straight, {at_x, centre.y}, {0.0, scale.y}).distance;
+            const double below = region_edge(straight, {at_x, centre.y}, {0.0, -scale.y}).distance;
+            return 0.5 * scale.y * (above - below);
+        };
+        bend += (middle(x) - middle(0.0)) / (x * x);
+    }
+    RegionOutline outline = outline_in(centred(PolarFrame(straight, centre, scale), true), true);
+    outline.bend = bend;
+    return outline;
+}
+
 }  // namespace
 
 RegionOutline region_outline(const Region& region, const RegionSearch& search) {
@@ -356,7 +295,14 @@ RegionOutline region_outline(const Region& region, const RegionSearch& search) {
     const Vec2d scale{search.reach, search.reach};
     const PolarFrame frame = centred(PolarFrame(region, *inside, scale), search.is_mirror);
     RegionOutline outline = outline_in(frame, search.is_mirror);
-    return outline.is_star_shaped ? outline : outline_about_another(frame, search.is_mirror, std::move(outline));
+    if (!outline.is_star_shaped) {
+        outline = outline_about_another(frame, search.is_mirror, std::move(outline));
+    }
+    if (!outline.is_star_shaped && search.is_mirror) {
+        RegionOutline straightened = straightened_outline(frame);
+        return straightened.is_star_shaped ? straightened : outline;
+    }
+    return outline;
 }
 
 GaussRule gauss_legendre(int count) {
@@ -381,10 +327,10 @@ std::vector<RegionNode> region_quadrature(const RegionOutline& outline, int ring
         for (std::size_t i = 0; i < rule.nodes.size(); ++i) {
             const double t = rule.nodes[i];
             const double weight = 2.0 * t * rule.weights[i] * point.wedge_area;
-            const Vec2d from_centre{t * point.edge.x, t * point.edge.y};
-            nodes.push_back({{outline.centre.x + from_centre.x, outline.centre.y + from_centre.y}, weight});
+            const Vec2d at = outline.at(point, t);
+            nodes.push_back({at, weight});
             if (outline.is_half) {
-                nodes.push_back({{outline.centre.x - from_centre.x, outline.centre.y + from_centre.y}, weight});
+                nodes.push_back({{-at.x, at.y}, weight});
             }
         }
     }

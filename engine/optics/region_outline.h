@@ -1,25 +1,15 @@
 // engine/optics/region_outline.h — the outline of a plane region that several limits bound together, and its area.
 #pragma once
-#include <functional>
-#include <optional>
 #include <vector>
 
-#include "engine/optics/vec.h"
+#include "engine/optics/region.h"
 
 namespace lensproof {
 
-/// How a point stands to a region.
-struct RegionSample {
-    double margin = 0.0;  // ≤ 0 inside; > 0 outside: smooth along one limit, infinite where nothing is known but that
-    int limit = -1;       // the limit that comes first in the way: the one with the largest margin
-};
-
-using Region = std::function<RegionSample(Vec2d)>;
-
 /// A point of the outline, and the wedge that it stands for.
 struct OutlinePoint {
-    Vec2d edge;         // from the outline's centre to the point
-    double wedge_area;  // ∫ over the region is Σ wedge_area · 2 ∫₀¹ f(centre + t · edge) t dt
+    Vec2d edge;         // from the outline's centre to the point, unbent
+    double wedge_area;  // ∫ over the region is Σ wedge_area · 2 ∫₀¹ f(at(point, t)) t dt
     int limit = -1;     // which limit the region ends at
 };
 
@@ -34,36 +24,24 @@ struct RegionOutline {
     Vec2d centre;
     bool is_half = false;  // the points with x ≥ 0 alone stand for the whole region, which is their mirror image too
     std::vector<OutlinePoint> points;  // empty: nothing is inside
+    double bend = 0.0;                 // 1 / length: the wedges' own plane is sheared by (0, bend · x²)
     double area = 0.0;                 // of the whole region
     double relative_error = 0.0;       // estimated, of the area
     bool is_star_shaped = true;
 
     [[nodiscard]] bool is_empty() const { return points.empty(); }
+
+    /// Of the way from the centre to a point of the outline, the point after the share `t`; with t = 1 that point
+    /// itself.
+    [[nodiscard]] Vec2d at(const OutlinePoint& point, double t) const {
+        const double x = t * point.edge.x;
+        return {centre.x + x, centre.y + t * point.edge.y + bend * x * x};
+    }
 };
-
-/// Where to look for a region.
-struct RegionSearch {
-    Vec2d start;             // probably inside
-    double reach = 1.0;      // no point of the region lies farther from `start`
-    bool is_mirror = false;  // the region is its own mirror image in x = 0, and start.x = 0
-};
-
-/// A point inside: `start`, or else the best of a grid, improved by compass search down the margin (Kolda, Lewis,
-/// Torczon, SIAM Review 45, 2003); of a mirror image, on x = 0. Nothing where none is found.
-std::optional<Vec2d> find_inside(const Region& region, const RegionSearch& search);
-
-/// Where a region is left on the way from a point inside it.
-struct RegionEdge {
-    double distance = 0.0;  // in units of `along`, the last one inside to 1e-14
-    int limit = -1;
-};
-
-/// The way goes from `inside` along the vector `along`; the edge is expected at about `hint` times it. Found between
-/// points inside and outside by TOMS 748 (Alefeld, Potra, Shi 1995), or by halving where the margin is infinite.
-RegionEdge region_edge(const Region& region, Vec2d inside, Vec2d along, double hint = 1.0);
 
 /// The outline about a point near the middle of the region, or between there and its edge where it is not star-shaped
-/// about the middle (a crescent). Pieces are halved until the estimate of the area's error
+/// about the middle (a crescent). The last light of a fisheye is a long, bent strip, star-shaped about no point: it is
+/// straightened by a shear across x, which keeps areas. Pieces are halved until the estimate of the area's error
 /// (Piessens et al., QUADPACK 1983) is below 1e-11.
 RegionOutline region_outline(const Region& region, const RegionSearch& search);
 

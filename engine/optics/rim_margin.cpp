@@ -29,7 +29,10 @@ RegionSample margin_along(const TraceLens<double>& lens, const Ray<double>& ray)
         }
         const TraceSurface<double>& surface = lens.surfaces[event.surface];
         const Vec3d at = own_point(lens, surface, event.ray.origin);
-        const double margin = (at.x * at.x + at.y * at.y) / surface.semi_diameter_squared - 1.0;
+        // Through a closed stop nothing passes.
+        const double margin = surface.semi_diameter_squared > 0.0
+                                  ? (at.x * at.x + at.y * at.y) / surface.semi_diameter_squared - 1.0
+                                  : std::numeric_limits<double>::infinity();
         if (margin > worst.margin) {
             worst = {margin, event.surface};
         }

@@ -1,6 +1,6 @@
 // engine/optics/rim_margin.h — how far a ray stands from the rims of a lens: the region that its rims leave open.
 #pragma once
-#include "engine/optics/region_outline.h"
+#include "engine/optics/region.h"
 #include "engine/optics/trace.h"
 
 namespace lensproof {

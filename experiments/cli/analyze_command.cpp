@@ -151,15 +151,20 @@ std::string conditions(const Lens& lens, const AnalysisSettings& settings, const
         lens.image_z - lens.last_vertex_z());
 }
 
-void write_analysis_plots(const std::string& folder, const Prescription& prescription, const Lens& lens,
+void write_analysis_plots(const AnalyzeOptions& options, const Prescription& prescription, const Lens& lens,
                           const AnalysisSettings& settings, const LensAnalysis& analysis) {
     const AnalysisCurves curves = analysis_curves(lens, settings);
-    const WaveCurves waves = wave_curves(lens, settings);
+    const WaveCurves waves = wave_curves(lens, settings, options.common.threads);
     const PlotHeading heading{.lens = lens.name, .conditions = conditions(lens, settings, analysis)};
     std::map<std::string, std::string> files = analysis_drawings(heading, lens.projection, curves, waves);
     files["section.svg"] = lens_section_svg(prescription, &lens, {});
     files["curves.json"] = curves_json(curves, waves).dump() + "\n";
-    write_plots(folder, files);
+    write_plots(options.plots_folder, files);
+    for (const PsfMap& psf : waves.psfs) {
+        if (const std::optional<Image> image = psf_image(psf)) {
+            write_exr(*image, std::filesystem::path(options.plots_folder) / psf_file_name(psf));
+        }
+    }
 }
 
 int run_analyze(const AnalyzeOptions& options) {
@@ -179,7 +184,7 @@ int run_analyze(const AnalyzeOptions& options) {
     }
     const LensAnalysis analysis = analyze_lens(lens, settings);
     if (!options.plots_folder.empty()) {
-        write_analysis_plots(options.plots_folder, prescription, lens, settings, analysis);
+        write_analysis_plots(options, prescription, lens, settings, analysis);
     }
     if (prints_text(options.common)) {
         fmt::print("{}", analysis_text(lens, settings, analysis));

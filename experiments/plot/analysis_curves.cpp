@@ -92,10 +92,11 @@ FieldCurve field_curve(const ColourOfLens& colour, Projection projection, std::s
                        double object_distance) {
     FieldCurve curve{.wavelength_nm = colour.wavelength_nm, .points = {}};
     for (const FieldCurvePoint& point : field_curves(colour, projection, fields, object_distance)) {
-        curve.points.push_back({.field_deg = point.field_angle / kDegree,
-                                .tangential_mm = point.foci.tangential,
-                                .sagittal_mm = point.foci.sagittal,
-                                .distortion_percent = point.distortion_percent.value_or(kNothing)});
+        curve.points.push_back(
+            {.field_deg = point.field_angle / kDegree,
+             .tangential_mm = point.foci.tangential,
+             .sagittal_mm = point.foci.sagittal,
+             .distortion_percent = point.field_angle > 0.0 ? point.distortion_percent.value_or(kNothing) : kNothing});
     }
     return curve;
 }

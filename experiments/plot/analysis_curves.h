@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "engine/analysis/lens_analysis.h"
+#include "engine/io/image.h"
 #include "experiments/plot/analysis_plots.h"
 
 namespace lensproof {
@@ -32,10 +33,18 @@ struct WaveCurves {
     std::vector<FrequencyMtf> mtf_over_field;
 };
 
-WaveCurves wave_curves(const Lens& lens, const AnalysisSettings& settings);
+/// Fields on up to `threads` threads (0: one a core).
+WaveCurves wave_curves(const Lens& lens, const AnalysisSettings& settings, int threads = 0);
 
-/// Every number that the plots show, keyed with its unit.
+/// Every number that the plots show, keyed with its unit; of PSFs, which are pictures, what they are called.
 nlohmann::ordered_json curves_json(const AnalysisCurves& curves, const WaveCurves& waves);
+
+/// "psf_12deg.exr"
+std::string psf_file_name(const PsfMap& psf);
+
+/// The PSF as a picture of one channel "Y", y upwards, in units of the perfect lens's peak; `pixel_um`, `field_deg` and
+/// `strehl` are its attributes. Nothing where there is no PSF.
+std::optional<Image> psf_image(const PsfMap& psf);
 
 /// The drawings by file name.
 std::map<std::string, std::string> analysis_drawings(const PlotHeading& heading, Projection projection,

@@ -1,3 +1,5 @@
+#include <fmt/format.h>
+
 #include <cmath>
 
 #include "experiments/plot/analysis_curves.h"
@@ -99,11 +101,17 @@ Json wavefronts_json(const std::vector<FieldWavefront>& maps) {
     return json;
 }
 
+double pixel_um(const PsfMap& psf) {
+    return 2.0 * psf.intensity.half_width / static_cast<double>(psf.intensity.size);
+}
+
 Json psfs_json(const std::vector<PsfMap>& maps) {
     Json json = Json::array();
     for (const PsfMap& map : maps) {
-        json.push_back(
-            {{"field_deg", map.field_deg}, {"strehl", number(map.strehl)}, {"intensity_um", map_json(map.intensity)}});
+        json.push_back({{"field_deg", map.field_deg},
+                        {"strehl", number(map.strehl)},
+                        {"pixel_um", map.intensity.size > 0 ? number(pixel_um(map)) : Json(nullptr)},
+                        {"file", map.intensity.size > 0 ? Json(psf_file_name(map)) : Json(nullptr)}});
     }
     return json;
 }
@@ -157,6 +165,28 @@ Json curves_json(const AnalysisCurves& curves, const WaveCurves& waves) {
             {"geometric_mtf", mtf_json(waves.geometric_mtf)},
             {"diffraction_limit", points_json(waves.diffraction_limit)},
             {"mtf_over_field", std::move(over_field)}};
+}
+
+std::string psf_file_name(const PsfMap& psf) {
+    return fmt::format("psf_{:.6g}deg.exr", psf.field_deg);
+}
+
+std::optional<Image> psf_image(const PsfMap& psf) {
+    const auto size = static_cast<int>(psf.intensity.size);
+    if (size == 0) {
+        return std::nullopt;
+    }
+    Image image = make_image(size, size, {"Y"});
+    for (int row = 0; row < size; ++row) {
+        for (int column = 0; column < size; ++column) {
+            const std::size_t cell = static_cast<std::size_t>(row) * psf.intensity.size + column;
+            image.at(column, size - 1 - row, 0) = static_cast<float>(psf.intensity.values[cell]);
+        }
+    }
+    image.metadata = {{"pixel_um", fmt::format("{}", pixel_um(psf))},
+                      {"field_deg", fmt::format("{}", psf.field_deg)},
+                      {"strehl", fmt::format("{}", psf.strehl)}};
+    return image;
 }
 
 std::map<std::string, std::string> analysis_drawings(const PlotHeading& heading, Projection projection,

@@ -6,6 +6,7 @@
 #include "engine/analysis/mtf.h"
 #include "engine/analysis/psf.h"
 #include "engine/analysis/wavefront_map.h"
+#include "engine/render/parallel.h"
 #include "experiments/plot/analysis_curves.h"
 
 namespace lensproof {
@@ -15,9 +16,9 @@ namespace {
 constexpr double kDegree = std::numbers::pi / 180.0;
 constexpr double kNothing = std::numeric_limits<double>::quiet_NaN();
 
-constexpr int kMapCells = 64;              // across a wavefront map
-constexpr int kPsfSizes[] = {256, 512};    // that are tried, until the light fits in
-constexpr int kMtfSamples[] = {128, 256};  // across the pupil, until the path differences are resolved
+constexpr int kMapCells = 64;        // across a wavefront map
+constexpr int kLargestPsf = 2048;    // pixels of a PSF's window, 256 at least
+constexpr int kMostRefinements = 3;  // of the rays that a geometric MTF sums over
 constexpr std::size_t kFrequencies = 51;
 constexpr double kHighestFrequency = 100.0;  // cycles/mm, or the cutoff where that is lower
 constexpr int kMtfFields = 16;
@@ -48,11 +49,12 @@ FieldWavefront field_wavefront(const PolychromaticField& field, const Polychroma
 /// The middle of a picture, wide enough for the rays and for some rings of Airy's disc.
 PsfMap psf_map(const PolychromaticField& field, double field_deg) {
     PsfMap map{.field_deg = field_deg};
-    Psf psf;
-    for (const int size : kPsfSizes) {
-        psf = fft_psf(field, {.size = size});
-        if (psf.status != PupilStatus::aliased) {
-            break;
+    FftPsfSettings sampling;
+    Psf psf = fft_psf(field, sampling);
+    while (psf.status == PupilStatus::aliased && sampling.size < kLargestPsf) {
+        sampling.size *= 2;
+        if (2.0 * psf.largest_aberration_um < sampling.size * psf.pixel_um || sampling.size == kLargestPsf) {
+            psf = fft_psf(field, sampling);
         }
     }
     if (psf.status != PupilStatus::ok) {
@@ -72,15 +74,20 @@ PsfMap psf_map(const PolychromaticField& field, double field_deg) {
     return map;
 }
 
-/// With diffraction, or by rays where the path differences are too steep to be sampled.
-MtfCurve resolved_mtf(const PolychromaticField& field, std::span<const double> frequencies) {
-    for (const int samples : kMtfSamples) {
-        MtfCurve curve = diffraction_mtf(field, frequencies, MtfKind::diffraction, samples);
-        if (curve.status == PupilStatus::ok) {
-            return curve;
-        }
+MtfCurve ray_mtf(const PolychromaticField& field, std::span<const double> frequencies) {
+    GeometricMtfSettings rays;
+    MtfCurve curve = geometric_mtf(field, frequencies, rays);
+    for (int i = 0; i < kMostRefinements && curve.status == PupilStatus::aliased; ++i) {
+        rays = {.azimuths = 2 * rays.azimuths, .rings = 2 * rays.rings};
+        curve = geometric_mtf(field, frequencies, rays);
     }
-    return geometric_mtf(field, frequencies);
+    return curve;
+}
+
+/// With diffraction, or by rays where the path differences are too steep to be sampled: there the two agree.
+MtfCurve resolved_mtf(const PolychromaticField& field, std::span<const double> frequencies) {
+    MtfCurve curve = diffraction_mtf(field, frequencies);
+    return curve.status == PupilStatus::ok ? curve : ray_mtf(field, frequencies);
 }
 
 FieldMtf field_mtf(const MtfCurve& curve, double field_deg) {
@@ -94,15 +101,19 @@ FieldMtf field_mtf(const MtfCurve& curve, double field_deg) {
     return mtf;
 }
 
-std::vector<FrequencyMtf> mtf_over_field(const Lens& lens, AnalysisSettings settings) {
+std::vector<FrequencyMtf> mtf_over_field(const Lens& lens, AnalysisSettings settings, int threads) {
     std::vector<FrequencyMtf> curves;
     for (const double frequency : kShownFrequencies) {
         curves.push_back({.cycles_per_mm = frequency});
     }
     settings.fields = even_fields(std::ranges::max(settings.fields), kMtfFields);
     const auto fields = polychromatic_fields(lens, settings);
+    std::vector<MtfCurve> mtf(fields.size());
+    parallel_for(
+        static_cast<int>(fields.size()), threads,
+        [&](int i) { mtf[i] = fields[i] ? resolved_mtf(*fields[i], kShownFrequencies) : MtfCurve{}; }, [](int) {});
     for (std::size_t i = 0; i < fields.size(); ++i) {
-        const MtfCurve curve = fields[i] ? resolved_mtf(*fields[i], kShownFrequencies) : MtfCurve{};
+        const MtfCurve& curve = mtf[i];
         const double field_deg = settings.fields[i] / kDegree;
         for (std::size_t k = 0; k < curves.size(); ++k) {
             const bool is_known = curve.status == PupilStatus::ok;
@@ -125,7 +136,7 @@ std::vector<double> shown_frequencies(const PolychromaticField& axis) {
 
 }  // namespace
 
-WaveCurves wave_curves(const Lens& lens, const AnalysisSettings& settings) {
+WaveCurves wave_curves(const Lens& lens, const AnalysisSettings& settings, int threads) {
     WaveCurves curves;
     AnalysisSettings on_axis = settings;
     on_axis.fields = {0.0};
@@ -141,18 +152,23 @@ WaveCurves wave_curves(const Lens& lens, const AnalysisSettings& settings) {
     at_reference.wavelengths_nm = {settings.reference_wavelength_nm};
     const auto reference_fields = polychromatic_fields(lens, at_reference);
     const auto fields = polychromatic_fields(lens, settings);
-    for (std::size_t i = 0; i < fields.size(); ++i) {
+    curves.wavefronts.resize(fields.size());
+    curves.psfs.resize(fields.size());
+    curves.mtf.resize(fields.size());
+    curves.geometric_mtf.resize(fields.size());
+    const auto compute = [&](int i) {
         const double field_deg = settings.fields[i] / kDegree;
+        const auto& field = fields[i];
         const auto& reference = reference_fields[i];
-        curves.wavefronts.push_back(
-            reference ? field_wavefront(*reference, reference->parts.front(), axial_radius, settings.rings)
-                      : FieldWavefront{.field_deg = field_deg});
-        curves.psfs.push_back(fields[i] ? psf_map(*fields[i], field_deg) : PsfMap{.field_deg = field_deg});
-        const auto mtf = [&](const MtfCurve& curve) { return field_mtf(curve, field_deg); };
-        curves.mtf.push_back(mtf(fields[i] ? resolved_mtf(*fields[i], frequencies) : MtfCurve{}));
-        curves.geometric_mtf.push_back(mtf(fields[i] ? geometric_mtf(*fields[i], frequencies) : MtfCurve{}));
-    }
-    curves.mtf_over_field = mtf_over_field(lens, settings);
+        curves.wavefronts[i] = reference
+                                   ? field_wavefront(*reference, reference->parts.front(), axial_radius, settings.rings)
+                                   : FieldWavefront{.field_deg = field_deg};
+        curves.psfs[i] = field ? psf_map(*field, field_deg) : PsfMap{.field_deg = field_deg};
+        curves.mtf[i] = field_mtf(field ? resolved_mtf(*field, frequencies) : MtfCurve{}, field_deg);
+        curves.geometric_mtf[i] = field_mtf(field ? ray_mtf(*field, frequencies) : MtfCurve{}, field_deg);
+    };
+    parallel_for(static_cast<int>(fields.size()), threads, compute, [](int) {});
+    curves.mtf_over_field = mtf_over_field(lens, settings, threads);
     return curves;
 }
 

@@ -127,6 +127,32 @@ TEST(RegionOutline, CrescentIsSeenFromItsFarSide) {
     }
 }
 
+// A banana: the part of an annulus, radii 10 and 10.3, within a wide disc about its middle. No point of it sees both
+// tips. Its area is that between two circles cut by a third, from the circles' lenses; its nodes lie inside.
+TEST(RegionOutline, BentStripIsStraightened) {
+    const auto margin = [](Vec2d at, double y, double radius) {
+        return (at.x * at.x + (at.y - y) * (at.y - y)) / (radius * radius) - 1.0;
+    };
+    const Region banana = [&](Vec2d at) {
+        RegionSample worst{margin(at, 0.0, 10.3), 0};
+        for (const RegionSample& other :
+             {RegionSample{-margin(at, 0.0, 10.0), 1}, RegionSample{margin(at, 10.1, 4.0), 2}}) {
+            worst = other.margin > worst.margin ? other : worst;
+        }
+        return worst;
+    };
+    const RegionOutline outline = region_outline(banana, {.start = {0.0, 10.1}, .reach = 10.0, .is_mirror = true});
+    EXPECT_TRUE(outline.is_star_shaped);
+    EXPECT_NE(outline.bend, 0.0);
+    EXPECT_NEAR(outline.area / (lens_area(4.0, 10.3, 10.1) - lens_area(4.0, 10.0, 10.1)), 1.0, 1e-10);
+    double area = 0.0;
+    for (const RegionNode& node : region_quadrature(outline, 4)) {
+        EXPECT_LT(banana(node.point).margin, 0.0);
+        area += node.weight;
+    }
+    EXPECT_NEAR(area / outline.area, 1.0, 1e-13);
+}
+
 // An annulus is not star-shaped, and said not to be.
 TEST(RegionOutline, SaysWhereItIsNotStarShaped) {
     const Region annulus = [](Vec2d at) {

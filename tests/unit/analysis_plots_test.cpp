@@ -187,6 +187,23 @@ TEST(AnalysisPlots, AFieldWithoutLightSaysSo) {
     }
 }
 
+// Where light arrives and a plot is missing all the same, it says why.
+TEST(AnalysisPlots, AMissingPlotSaysWhy) {
+    const std::string why = "too steep for the grid";
+    FieldWavefront wavefront;
+    wavefront.remark = why;
+    PsfMap psf;
+    psf.remark = why;
+    FieldMtf modulation;
+    modulation.remark = why;
+    for (const std::string& svg :
+         {wavefront_svg({}, {wavefront}), psf_svg({}, {psf}), mtf_svg({}, {modulation}, {{0.0, 1.0}, {100.0, 0.5}})}) {
+        EXPECT_NE(svg.find(why), std::string::npos);
+        EXPECT_EQ(svg.find("no light"), std::string::npos);
+        EXPECT_TRUE(is_sound(svg));
+    }
+}
+
 TEST(AnalysisPlots, NothingAtAllIsDrawnToo) {
     const PlotHeading none;
     for (const std::string& svg :

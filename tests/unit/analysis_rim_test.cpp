@@ -35,5 +35,31 @@ TEST(BeamOutline, BladesAreFollowedWithTheirCorners) {
     }
 }
 
+// From a micrometre's pinhole to a stop that does not limit anything, on the axis and off it: the bare stop's disc seen
+// obliquely. A closed stop leaves nothing, and says so.
+TEST(BeamOutline, StopsOfEverySize) {
+    for (const double radius : {1e-3, 0.05, 2.0, 500.0}) {
+        const Lens lens = make_lens(
+            [&] {
+                Prescription prescription = bare_stop({});
+                prescription.surfaces[0].semi_diameter_mm = radius;
+                return prescription;
+            }(),
+            GlassCatalogue{});
+        const TraceLens<double> traced = at_wavelength<double>(lens, kLineD);
+        const ChiefRays rays(lens, kLineD);
+        for (const double field : {0.0, 1.0}) {
+            const double expected = kPi * radius * radius * std::cos(field);
+            const RegionOutline outline = beam_outline(traced, {.chief = rays.at_field(field).value()});
+            EXPECT_NEAR(outline.area / expected, 1.0, 1e-11) << radius;
+        }
+    }
+    Lens closed = make_lens(bare_stop({}), GlassCatalogue{});
+    closed.surfaces[0].semi_diameter = 0.0;
+    const TraceLens<double> traced = at_wavelength<double>(closed, kLineD);
+    EXPECT_TRUE(beam_outline(traced, {.chief = ChiefRays(closed, kLineD).at_field(0.0).value()}).is_empty());
+    EXPECT_TRUE(image_outline(traced, {}).is_empty());
+}
+
 }  // namespace
 }  // namespace lensproof

@@ -102,6 +102,15 @@ TEST(HeatMap, TheMapFillsItsPlaceOnTheAxes) {
     EXPECT_EQ(frame.to_page({3.0, -2.0}).x, 310.0);
 }
 
+TEST(HeatMap, AxesMayReachBeyondTheMapButNotCutIt) {
+    PlotChart chart = map_chart(small_map());
+    chart.x.low = -6.0;
+    chart.x.high = 1.0;
+    const ChartFrame frame = chart_frame(chart, {0.0, 0.0, 300.0, 200.0});
+    EXPECT_EQ(frame.x.low, -6.0);
+    EXPECT_EQ(frame.x.high, 3.0);
+}
+
 TEST(HeatMap, AnyRangeIsDrawn) {
     const double infinity = std::numeric_limits<double>::infinity();
     for (const AxisScale scale : {AxisScale::linear, AxisScale::logarithmic}) {
