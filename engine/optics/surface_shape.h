@@ -100,24 +100,33 @@ T sag(const SurfaceShape<T>& shape, const T& x, const T& y) {
     return root2 >= T(0) ? constant / (T(1) + sqrt(root2)) : nowhere;
 }
 
-/// `intersect` for a conic: c (x² + y² + (1 + k) z²) − 2 z = 0 along the ray from its closest approach p to the vertex,
-///     A s² + 2 B s + C = 0,   A = c (1 + k d_z²),   B = c k p_z d_z − d_z,   C = c (p·p + k p_z²) − 2 p_z.
-/// d·∇F at a root is −(B + A s) = ±√(B² − A C), so the heading picks the root as it does for the sphere.
+/// Where a ray meets a conic, without the sine, which `intersect` adds.
+///
+/// c (x² + y² + (1 + k) z²) − 2 z = 0 along the ray from its closest approach p to the vertex (p·d = 0) is
+///     A s² − 2 B s + C = 0,   A = c (1 + k d_z²),   B = d_z (1 − c k p_z),   C = f + c k p_z²,   f = c p·p − 2 p_z,
+/// and d·∇F at a root is B − A s = ±√(B² − A C), so the heading picks the root as it does for the sphere. In B² − A C
+/// the terms k² c² p_z² d_z² and 2 k c p_z d_z² stand twice; without them it is the sphere's discriminant and one term
+/// more, d_z² − c f − c² k (p_z² + d_z² p·p), which is still good to an ulp at k = 1e6. p is projected twice, for far
+/// origins: with k the linear term is too long to carry what rounding leaves of p·d.
 template <class T>
 Intersection<T> intersect_conic(const Vec3<T>& origin, const Vec3<T>& d, const T& c, const T& k, const T& heading) {
-    using std::copysign;
     using std::sqrt;
-    const T to_vertex = -dot(origin, d);
-    const Vec3<T> p = origin + to_vertex * d;
+    const T first = -dot(origin, d);
+    const Vec3<T> near_vertex = origin + first * d;
+    const T second = -dot(near_vertex, d);
+    const Vec3<T> p = near_vertex + second * d;
+    const T to_vertex = first + second;
+    const T p2 = dot(p, p);
+    const T f = c * p2 - T(2) * p.z;
     const T a = c * (T(1) + k * d.z * d.z);
-    const T minus_b = d.z - c * k * p.z * d.z;
-    const T constant = c * (dot(p, p) + k * p.z * p.z) - T(2) * p.z;
-    const T discriminant = minus_b * minus_b - a * constant;
+    const T b = d.z * (T(1) - c * k * p.z);
+    const T constant = f + c * k * p.z * p.z;
+    const T discriminant = d.z * d.z - c * f - c * c * k * (p.z * p.z + d.z * d.z * p2);
     const bool meets = discriminant > T(0);
     const T root = sqrt(meets ? discriminant : T(1));
-    const T q = minus_b + copysign(root, minus_b);
-    const bool along = minus_b * heading > T(0);
-    const bool curved = a * a > T(0);
+    const bool along = b * heading > T(0);
+    const bool curved = a < T(0) || a > T(0);
+    const T q = b + (along ? heading : -heading) * root;
     const T s = (along ? constant : q) / (along ? q : (curved ? a : T(1)));
     const Vec3<T> point = p + s * d;
     const T gradient_z = T(1) - c * (T(1) + k) * point.z;
@@ -136,13 +145,18 @@ template <class T>
 std::pair<Intersection<T>, Vec3<T>> intersect(const SurfaceShape<T>& shape, const Vec3<T>& origin, const Vec3<T>& d,
                                               const T& heading) {
     using std::abs;
+    const auto with_normal = [&](Intersection<T> met, const Vec3<T>& normal) {
+        const Vec3<T> across = d - met.cos_incidence * normal;
+        met.sin2_incidence = dot(across, across);
+        return std::pair{met, normal};
+    };
     using std::sqrt;
     Intersection<T> meeting = intersect_conic(origin, d, shape.curvature, shape.conic, heading);
     if (shape.is_conic()) {
         const T& c = shape.curvature;
         const Vec3<T>& at = meeting.point;
         const Vec3<T> gradient{-c * at.x, -c * at.y, T(1) - c * (T(1) + shape.conic) * at.z};
-        return {meeting, heading / sqrt(dot(gradient, gradient)) * gradient};
+        return with_normal(meeting, heading / sqrt(dot(gradient, gradient)) * gradient);
     }
     if (!meeting.hit || shape.is_toroid) {
         const bool parallel = !(d.z * d.z > T(0));
@@ -171,11 +185,12 @@ std::pair<Intersection<T>, Vec3<T>> intersect(const SurfaceShape<T>& shape, cons
         gradient = here.gradient;
     }
     if (!meeting.hit) {
-        return {{.point = {}, .distance = T(0), .cos_incidence = T(1), .hit = false}, {T(0), T(0), heading}};
+        return {{.point = {}, .distance = T(0), .cos_incidence = T(1), .sin2_incidence = T(0), .hit = false},
+                {T(0), T(0), heading}};
     }
     const Vec3<T> normal = heading / sqrt(dot(gradient, gradient)) * gradient;
     meeting.cos_incidence = dot(d, normal);
-    return {meeting, normal};
+    return with_normal(meeting, normal);
 }
 
 }  // namespace lensproof
