@@ -5,17 +5,11 @@
 #include <map>
 #include <vector>
 
+#include "experiments/plot/palette.h"
 #include "experiments/plot/section_rays.h"
 #include "experiments/plot/svg.h"
 
 namespace lensproof {
-
-inline constexpr const char* kInk = "#2b2f36";
-inline constexpr const char* kQuiet = "#5f6672";
-inline constexpr const char* kFaint = "#c3c8d0";
-/// Okabe & Ito's blue, green and purple, the last one darkened: told apart by the colour-blind, and none is a
-/// finding's.
-inline constexpr std::array kFieldColours = {"#0072b2", "#009e73", "#a3478c"};
 
 const char* severity_colour(Severity severity);
 

@@ -64,6 +64,19 @@ bool is_finite(SvgPoint point) {
     return std::isfinite(point.x) && std::isfinite(point.y);
 }
 
+/// "M1 2 3 4", with a Z where it is closed; nothing for fewer than two points.
+std::string path_data(const std::vector<SvgPoint>& points, bool closed) {
+    std::string data;
+    std::size_t count = 0;
+    for (const SvgPoint& point : points) {
+        if (is_finite(point)) {
+            data += (count == 0 ? "M" : " ") + svg_number(point.x) + " " + svg_number(point.y);
+            ++count;
+        }
+    }
+    return count < 2 ? "" : closed ? data + "Z" : data;
+}
+
 }  // namespace
 
 std::string svg_number(double value) {
@@ -168,16 +181,20 @@ void Svg::finish_element(std::string_view name, const SvgStyle& style) {
 }
 
 void Svg::path(const std::vector<SvgPoint>& points, const SvgStyle& style, bool closed) {
-    std::string data;
-    std::size_t count = 0;
-    for (const SvgPoint& point : points) {
-        if (is_finite(point)) {
-            data += (count == 0 ? "M" : " ") + svg_number(point.x) + " " + svg_number(point.y);
-            ++count;
-        }
+    const std::string data = path_data(points, closed);
+    if (!data.empty()) {
+        body_ += "<path" + attribute("d", data);
+        finish_element("path", style);
     }
-    if (count >= 2) {
-        body_ += "<path" + attribute("d", closed ? data + "Z" : data);
+}
+
+void Svg::paths(const std::vector<std::vector<SvgPoint>>& pieces, const SvgStyle& style, bool closed) {
+    std::string data;
+    for (const std::vector<SvgPoint>& piece : pieces) {
+        data += path_data(piece, closed);
+    }
+    if (!data.empty()) {
+        body_ += "<path" + attribute("d", data);
         finish_element("path", style);
     }
 }

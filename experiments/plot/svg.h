@@ -62,6 +62,8 @@ class Svg {
     explicit Svg(std::string_view title);
 
     void path(const std::vector<SvgPoint>& points, const SvgStyle& style, bool closed = false);
+    /// Several open or closed paths of one style as one element: a curve with gaps, or the marks of a scatter plot.
+    void paths(const std::vector<std::vector<SvgPoint>>& pieces, const SvgStyle& style, bool closed = false);
     void line(SvgPoint from, SvgPoint to, const SvgStyle& style) { path({from, to}, style); }
     void circle(SvgPoint centre, double radius, const SvgStyle& style);
     void rectangle(SvgPoint corner, double width, double height, const SvgStyle& style);
