@@ -47,11 +47,12 @@ Vec3<Pack<Scalar, N>> select(const PackMask<Scalar, N>& mask, const Vec3<Pack<Sc
 }
 
 /// The rays of a packet one after the other: what `trace_packet` does for a lens that has more than centred spheres.
-template <Direction direction, Rims rims, class Scalar, int N>
-TracedPacket<Scalar, N> trace_lanes(const TraceLens<Scalar>& lens, const Ray<Pack<Scalar, N>>& rays) {
+template <Direction direction, Rims rims, class Scalar, int N, class Visitor>
+TracedPacket<Scalar, N> trace_lanes(const TraceLens<Scalar>& lens, const Ray<Pack<Scalar, N>>& rays, Visitor&& visit) {
     TracedPacket<Scalar, N> traced{.ray = rays, .optical_path = {}, .transmittance = {}};
     for (int lane = 0; lane < N; ++lane) {
-        const TracedRay<Scalar> one = trace<direction, rims>(lens, traced.lane(lane).ray);
+        const TracedRay<Scalar> one = trace<direction, rims>(
+            lens, traced.lane(lane).ray, [&](const SurfaceEvent<Scalar>& event) { visit(lane, event); });
         set_lane(traced.ray, lane, one.ray);
         traced.optical_path.set(lane, one.optical_path);
         traced.transmittance.set(lane, one.transmittance);
@@ -64,10 +65,13 @@ TracedPacket<Scalar, N> trace_lanes(const TraceLens<Scalar>& lens, const Ray<Pac
 /// `trace` for a packet of rays: the same geometry on N lanes at once. A lane that ends keeps what it had, while the
 /// others go on. Of centred, bare spheres each lane has the bits of the scalar `trace`; a lens with any other surface
 /// is traced lane by lane, by the scalar itself.
-template <Direction direction = Direction::forward, Rims rims = Rims::clip, class Scalar, int N>
-TracedPacket<Scalar, N> trace_packet(const TraceLens<Scalar>& lens, const Ray<Pack<Scalar, N>>& rays) {
+///
+/// `visit(int lane, const SurfaceEvent<Scalar>&)` is called for each lane and surface as in `trace`.
+template <Direction direction = Direction::forward, Rims rims = Rims::clip, class Scalar, int N, class Visitor>
+TracedPacket<Scalar, N> trace_packet(const TraceLens<Scalar>& lens, const Ray<Pack<Scalar, N>>& rays,
+                                     Visitor&& visit) {
     if (!lens.specials.empty()) {
-        return trace_lanes<direction, rims>(lens, rays);
+        return trace_lanes<direction, rims>(lens, rays, visit);
     }
     using Numbers = Pack<Scalar, N>;
     using Mask = PackMask<Scalar, N>;
@@ -85,6 +89,15 @@ TracedPacket<Scalar, N> trace_packet(const TraceLens<Scalar>& lens, const Ray<Pa
             }
         }
     };
+    const auto report = [&](const Mask& lanes, int index) {
+        for (int lane = 0; lane < N; ++lane) {
+            if (lanes[lane]) {
+                const TracedRay<Scalar> at = traced.lane(lane);
+                const RayStatus here = at.surface == index ? at.status : RayStatus::ok;
+                visit(lane, SurfaceEvent<Scalar>{index, at.ray, at.optical_path, at.transmittance, here});
+            }
+        }
+    };
     const Numbers heading(kForward ? Scalar(1) : Scalar(-1));
     Mask going(true);
     for (int step = 0; step < count && any(going); ++step) {
@@ -98,6 +111,7 @@ TracedPacket<Scalar, N> trace_packet(const TraceLens<Scalar>& lens, const Ray<Pa
 
         Vec3<Numbers>& origin = traced.ray.origin;
         Vec3<Numbers>& way = traced.ray.direction;
+        const Mask reached = going;
         const Intersection<Numbers> meeting = intersect({origin.x, origin.y, origin.z - vertex_z}, way, c, heading);
         const Vec3<Numbers>& point = meeting.point;
         mark(going && !meeting.hit, RayStatus::missed, index, false);
@@ -119,8 +133,14 @@ TracedPacket<Scalar, N> trace_packet(const TraceLens<Scalar>& lens, const Ray<Pa
         const Numbers passing =
             fresnel_transmittance(index_before, index_after, meeting.cos_incidence, bent.cos_refraction);
         traced.transmittance = select(going, traced.transmittance * passing, traced.transmittance);
+        report(reached, index);
     }
     return traced;
+}
+
+template <Direction direction = Direction::forward, Rims rims = Rims::clip, class Scalar, int N>
+TracedPacket<Scalar, N> trace_packet(const TraceLens<Scalar>& lens, const Ray<Pack<Scalar, N>>& rays) {
+    return trace_packet<direction, rims>(lens, rays, [](int, const SurfaceEvent<Scalar>&) {});
 }
 
 }  // namespace lensproof
