@@ -137,45 +137,35 @@ Intersection<T> intersect_conic(const Vec3<T>& origin, const Vec3<T>& d, const T
             .hit = meets && (along || curved) && gradient_z > T(0)};
 }
 
-/// `intersect` for any shape. What is no conic is found by Newton's method from the conic's intersection (from the
-/// vertex's tangent plane where the ray misses that), until a step is below the precision of T. A surface that turns
-/// over may be met more than once; the root found is then the one next to the start. Returned with the unit normal
-/// there, turned along the ray.
+/// Newton's method along a ray from the point at `start` (mm) to where it crosses `shape` in the heading's sense, until
+/// a step is below the precision of T. A step to where there is no surface, or where the ray runs the other way through
+/// it, is halved. `hit` is false where that leads nowhere; cosine and sine are left to the caller.
 template <class T>
-std::pair<Intersection<T>, Vec3<T>> intersect(const SurfaceShape<T>& shape, const Vec3<T>& origin, const Vec3<T>& d,
-                                              const T& heading) {
+std::pair<Intersection<T>, Vec3<T>> newton_intersect(const SurfaceShape<T>& shape, const Vec3<T>& origin,
+                                                     const Vec3<T>& d, const T& heading, const T& start) {
     using std::abs;
-    const auto with_normal = [&](Intersection<T> met, const Vec3<T>& normal) {
-        const Vec3<T> across = d - met.cos_incidence * normal;
-        met.sin2_incidence = dot(across, across);
-        return std::pair{met, normal};
-    };
     using std::sqrt;
-    Intersection<T> meeting = intersect_conic(origin, d, shape.curvature, shape.conic, heading);
-    if (shape.is_conic()) {
-        const T& c = shape.curvature;
-        const Vec3<T>& at = meeting.point;
-        const Vec3<T> gradient{-c * at.x, -c * at.y, T(1) - c * (T(1) + shape.conic) * at.z};
-        return with_normal(meeting, heading / sqrt(dot(gradient, gradient)) * gradient);
-    }
-    if (!meeting.hit || shape.is_toroid) {
-        const bool parallel = !(d.z * d.z > T(0));
-        meeting.distance = parallel ? T(0) : -origin.z / d.z;
-        meeting.point = origin + meeting.distance * d;
-    }
     // A step that no longer shrinks has come down to the noise of the terms' sum.
-    constexpr int kMostSteps = 50;
+    constexpr int kMostSteps = 60;
     const T precision = T(16) * std::numeric_limits<T>::epsilon();
-    meeting.hit = false;
+    Intersection<T> meeting{
+        .point = origin + start * d, .distance = start, .cos_incidence = T(1), .sin2_incidence = T(0), .hit = false};
     Vec3<T> gradient{T(0), T(0), T(1)};
+    T ahead = T(0);
     T last_step = std::numeric_limits<T>::infinity();
     for (int step = 0; step < kMostSteps && !meeting.hit; ++step) {
         const Implicit<T> here = implicit_surface(shape, meeting.point);
         const T rise = dot(here.gradient, d);
         if (!here.defined || !(rise * heading > T(0))) {
-            break;
+            ahead = ahead / T(2);
+            if (!(abs(ahead) > T(0))) {
+                break;
+            }
+            meeting.point = meeting.point - ahead * d;
+            meeting.distance -= ahead;
+            continue;
         }
-        const T ahead = -here.value / rise;
+        ahead = -here.value / rise;
         meeting.point = meeting.point + ahead * d;
         meeting.distance += ahead;
         const T size = sqrt(dot(meeting.point, meeting.point)) + T(1);
@@ -184,13 +174,57 @@ std::pair<Intersection<T>, Vec3<T>> intersect(const SurfaceShape<T>& shape, cons
         last_step = abs(ahead);
         gradient = here.gradient;
     }
-    if (!meeting.hit) {
-        return {{.point = {}, .distance = T(0), .cos_incidence = T(1), .sin2_incidence = T(0), .hit = false},
-                {T(0), T(0), heading}};
+    return {meeting, gradient};
+}
+
+/// `intersect` for any shape. What is no conic is found by Newton's method: from the conic's intersection, else from
+/// the vertex's plane, else from the ray's point nearest to the vertex, and for a toroid at last from the spheres of
+/// its two curvatures, which rays from the side meet. A surface that turns over may be met more than once; the root
+/// found is then the one next to the start. Returned with the unit normal there, turned along the ray.
+template <class T>
+std::pair<Intersection<T>, Vec3<T>> intersect(const SurfaceShape<T>& shape, const Vec3<T>& origin, const Vec3<T>& d,
+                                              const T& heading) {
+    using std::sqrt;
+    const auto with_normal = [&](Intersection<T> met, const Vec3<T>& gradient) {
+        const Vec3<T> normal = heading / sqrt(dot(gradient, gradient)) * gradient;
+        const Vec3<T> across = d - met.cos_incidence * normal;
+        met.sin2_incidence = dot(across, across);
+        return std::pair{met, normal};
+    };
+    const T& c = shape.curvature;
+    const Intersection<T> conic = intersect_conic(origin, d, c, shape.conic, heading);
+    if (shape.is_conic()) {
+        const Vec3<T>& at = conic.point;
+        return with_normal(conic, {-c * at.x, -c * at.y, T(1) - c * (T(1) + shape.conic) * at.z});
     }
-    const Vec3<T> normal = heading / sqrt(dot(gradient, gradient)) * gradient;
-    meeting.cos_incidence = dot(d, normal);
-    return with_normal(meeting, normal);
+    const T nearest = -dot(origin, d);
+    const T across = length(origin + nearest * d);
+    const bool crosses_plane = d.z < T(0) || d.z > T(0);
+    std::pair<Intersection<T>, Vec3<T>> found{};
+    const auto finds_from = [&](const T& start) {
+        found = newton_intersect(shape, origin, d, heading, start);
+        return found.first.hit;
+    };
+    const auto finds_from_any = [&] {
+        if (!shape.is_toroid && conic.hit && finds_from(conic.distance)) {
+            return true;
+        }
+        if (crosses_plane && finds_from(-origin.z / d.z)) {
+            return true;
+        }
+        for (const int share : {0, 2, -2, 1, -1, 4, -4}) {
+            if (finds_from(nearest + T(share) / T(2) * across)) {
+                return true;
+            }
+        }
+        return false;
+    };
+    if (!finds_from_any()) {
+        found.first.hit = false;
+        found.second = {T(0), T(0), heading};
+    }
+    found.first.cos_incidence = heading * dot(d, found.second) / sqrt(dot(found.second, found.second));
+    return with_normal(found.first, found.second);
 }
 
 }  // namespace lensproof
