@@ -210,6 +210,12 @@ void draw_curve(Svg& svg, const Curve& curve, const ChartFrame& frame) {
 }
 
 void draw_data(Svg& svg, const Chart& chart, const ChartFrame& frame) {
+    if (chart.map) {
+        const HeatMap& map = *chart.map;
+        const SvgPoint corner = frame.to_page({map.x.low, map.y.high});
+        const SvgPoint opposite = frame.to_page({map.x.high, map.y.low});
+        draw_heat_map(svg, map, {corner.x, corner.y, opposite.x - corner.x, opposite.y - corner.y});
+    }
     for (const ChartArea& area : chart.areas) {
         svg.path(clipped_polygon(on_page(frame, area.outline), frame.box),
                  {.fill = area.colour, .opacity = area.opacity, .class_name = "area", .description = area.label}, true);
@@ -277,6 +283,9 @@ PanelMargins panel_margins(const Chart& chart, const ChartFrame& frame, const Pa
         const double width = svg_text_width(shortened(line->label, kMostReferenceLetters), kSmallSize);
         margins.right = std::max(margins.right, width + 12.0);
     }
+    if (chart.map && look.has_colour_bar) {
+        margins.right = std::max(margins.right, colour_bar_width(*chart.map, frame.box.height));
+    }
     return margins;
 }
 
@@ -288,8 +297,10 @@ void draw_chart(Svg& svg, const Chart& chart, const ChartFrame& frame, const Pan
         svg.text({box.x + 0.5 * box.width, box.y + 0.5 * box.height}, chart.empty_message,
                  {.size = kAxisTextSize, .fill = kQuiet, .anchor = SvgAnchor::middle, .class_name = "empty"});
     } else {
-        draw_mark_lines(svg, frame, true);
-        draw_mark_lines(svg, frame, false);
+        if (!chart.map) {
+            draw_mark_lines(svg, frame, true);
+            draw_mark_lines(svg, frame, false);
+        }
         draw_data(svg, chart, frame);
         draw_reference_labels(svg, chart, frame);
     }
@@ -308,6 +319,9 @@ void draw_chart(Svg& svg, const Chart& chart, const ChartFrame& frame, const Pan
         draw_numbers(svg, frame, false);
     }
     draw_axis_titles(svg, chart, frame, look);
+    if (chart.map && look.has_colour_bar && !is_empty(chart)) {
+        draw_colour_bar(svg, *chart.map, box);
+    }
     double y = box.y + box.height + (look.has_x_numbers ? kMajorMark + kNumberGap + 2.0 * kLine + 4.0 : 4.0);
     for (const std::string& line : notes(chart, box.width)) {
         y += kLine;

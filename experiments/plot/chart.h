@@ -6,12 +6,11 @@
 #include <vector>
 
 #include "engine/optics/vec.h"
+#include "experiments/plot/heat_map.h"
 #include "experiments/plot/svg.h"
 #include "experiments/plot/ticks.h"
 
 namespace lensproof {
-
-enum class AxisScale { linear, logarithmic };
 
 /// An axis: what it measures and which part is shown. Where an end is not given, the data say it, rounded outwards to
 /// a mark. x runs to the right and y upwards; an axis with `low` > `high` runs the other way.
@@ -65,20 +64,13 @@ struct Chart {
     std::string caption{};  // small, under the title
     ChartAxis x{};
     ChartAxis y{};
-    std::vector<ChartArea> areas{};  // behind everything
+    std::optional<HeatMap> map{};  // behind everything; the axes then show all of it, whatever they say
+    std::vector<ChartArea> areas{};
     std::vector<ReferenceLine> references{};
     std::vector<Curve> curves{};            // later ones above earlier ones
     std::string note{};                     // small, under the chart
     std::string empty_message = "no data";  // where no point can be shown
     bool has_equal_scales = false;          // a unit of x is as long as a unit of y: the wider axis shows more
-};
-
-/// A rectangle of the page, px; its corner is the upper left one.
-struct PageBox {
-    double x = 0.0;
-    double y = 0.0;
-    double width = 0.0;
-    double height = 0.0;
 };
 
 /// An axis with everything decided: `low` at the left or bottom end, `high` at the other.
@@ -104,7 +96,8 @@ struct ChartFrame {
 };
 
 /// One chart in a file of its own, `size` px wide and high, with the legend between title and frame. Any text is shown
-/// as text; the same chart gives the same bytes; nothing is thrown but std::bad_alloc, whatever the numbers are.
+/// as text; the same chart gives the same bytes; whatever the numbers are, nothing is thrown but std::bad_alloc and
+/// what draw_heat_map throws.
 struct ChartSize {
     double width = 760.0;
     double height = 480.0;
@@ -119,6 +112,7 @@ struct ChartGrid {
     std::size_t columns = 2;
     bool shares_x = true;                   // one range for all panels, its numbers under the lowest only
     bool shares_y = true;                   // … and at the leftmost
+    bool shares_colours = false;            // one range for the panels' maps, its bar at the rightmost
     ChartSize frame{300.0, 200.0};          // of each panel's axes
     std::vector<std::string> row_labels{};  // at the left of each row; may be empty
 };
@@ -130,6 +124,7 @@ struct PanelLook {
     bool has_x_numbers = true;
     bool has_y_numbers = true;
     bool has_legend = true;
+    bool has_colour_bar = true;
 };
 
 /// The space (px) that a chart needs around its frame.
@@ -147,5 +142,6 @@ void draw_chart(Svg& svg, const Chart& chart, const ChartFrame& frame, const Pan
 /// One range that holds the data of all charts, put into their axes where they leave it open.
 void share_x_range(std::vector<Chart>& charts);
 void share_y_range(std::vector<Chart>& charts);
+void share_colour_range(std::vector<Chart>& charts);
 
 }  // namespace lensproof

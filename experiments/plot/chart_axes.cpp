@@ -171,7 +171,7 @@ bool numbers_keep_clear(const ResolvedAxis& axis, double length, bool is_horizon
 
 ResolvedAxis resolve(const ChartAxis& given, const Extent& extent, double length, bool is_horizontal) {
     const ChartAxis axis = with_usable_ends(given);
-    const double px_per_mark = is_horizontal ? 44.0 : 26.0;
+    const double px_per_mark = is_horizontal ? 44.0 : 34.0;
     ResolvedAxis resolved{.scale = axis.scale};
     for (int most = std::clamp(static_cast<int>(length / px_per_mark), 2, 12); most >= 2; --most) {
         const AxisRange range =
@@ -250,7 +250,8 @@ std::size_t count_not_positive(const Chart& chart) {
 bool is_empty(const Chart& chart) {
     bool found = false;
     for_each_point(chart, [&](Vec2d point) { found = found || can_show(chart, point); });
-    return !found;
+    const bool has_map = chart.map && std::ranges::any_of(chart.map->values, [](double v) { return std::isfinite(v); });
+    return !found && !has_map;
 }
 
 double ResolvedAxis::share(double value) const {
@@ -265,8 +266,14 @@ double ResolvedAxis::value(double at) const {
 }
 
 ResolvedAxes resolve_axes(const Chart& chart, double width, double height) {
-    ResolvedAxes axes{resolve(chart.x, extent_along(chart, true), width, true),
-                      resolve(chart.y, extent_along(chart, false), height, false)};
+    ChartAxis x = chart.x;
+    ChartAxis y = chart.y;
+    if (chart.map) {
+        x = {.low = chart.map->x.low, .high = chart.map->x.high};
+        y = {.low = chart.map->y.low, .high = chart.map->y.high};
+    }
+    ResolvedAxes axes{resolve(x, extent_along(chart, true), width, true),
+                      resolve(y, extent_along(chart, false), height, false)};
     const bool are_linear = axes.x.scale == AxisScale::linear && axes.y.scale == AxisScale::linear;
     if (chart.has_equal_scales && are_linear) {
         equalise(axes, width, height);
@@ -284,6 +291,20 @@ std::string axis_title(const ChartAxis& axis, const ResolvedAxis& resolved) {
 
 void share_x_range(std::vector<Chart>& charts) {
     share_range(charts, true);
+}
+
+void share_colour_range(std::vector<Chart>& charts) {
+    Extent all;
+    for (const Chart& chart : charts) {
+        if (chart.map) {
+            all.hold(Extent{chart.map->range.low, chart.map->range.high});
+        }
+    }
+    for (Chart& chart : charts) {
+        if (chart.map) {
+            chart.map->range = {all.low, all.high};
+        }
+    }
 }
 
 void share_y_range(std::vector<Chart>& charts) {

@@ -36,7 +36,8 @@ std::vector<GridPanel> measured_panels(const std::vector<Chart>& charts, const C
         GridPanel panel;
         panel.look = {.has_x_numbers = !grid.shares_x || i + columns >= charts.size(),
                       .has_y_numbers = !grid.shares_y || i % columns == 0,
-                      .has_legend = false};
+                      .has_legend = false,
+                      .has_colour_bar = !grid.shares_colours || i % columns + 1 == columns || i + 1 == charts.size()};
         panel.frame = chart_frame(charts[i], {0.0, 0.0, grid.frame.width, grid.frame.height});
         panel.margins = panel_margins(charts[i], panel.frame, panel.look);
         panels.push_back(std::move(panel));
@@ -98,6 +99,9 @@ std::string chart_grid_svg(const ChartGrid& grid) {
     }
     if (grid.shares_y) {
         share_y_range(charts);
+    }
+    if (grid.shares_colours) {
+        share_colour_range(charts);
     }
     std::vector<GridPanel> panels = measured_panels(charts, grid, columns);
     const GridMargins margins = widest_margins(panels, columns);

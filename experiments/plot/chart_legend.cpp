@@ -58,6 +58,7 @@ std::vector<Outline> marker_outlines(SvgPoint at, CurveMarker marker, double siz
         case CurveMarker::none:
             return {};
         case CurveMarker::dot:
+            return {{at, at}};
         case CurveMarker::ring:
             return {polygon(at, r, 8, 22.5)};
         case CurveMarker::square:
@@ -94,6 +95,10 @@ void draw_markers(Svg& svg, const std::vector<SvgPoint>& points, CurveMarker mar
     std::vector<Outline> outlines;
     for (const SvgPoint& point : points) {
         std::ranges::move(marker_outlines(point, marker, size), std::back_inserter(outlines));
+    }
+    if (marker == CurveMarker::dot) {
+        svg.paths(outlines, {.stroke = colour, .width = size, .has_round_ends = true, .class_name = "marks"});
+        return;
     }
     const bool is_open = marker == CurveMarker::plus || marker == CurveMarker::cross;
     const bool is_hollow = marker == CurveMarker::ring;

@@ -5,56 +5,11 @@
 #include <charconv>
 #include <cmath>
 
+#include "experiments/markup.h"
+
 namespace lensproof {
 
 namespace {
-
-constexpr std::string_view kReplacement = "\uFFFD";
-
-/// The length of the UTF-8 sequence at the start of `text` (not empty), or 0 where it is not one (RFC 3629) or XML
-/// forbids its character.
-std::size_t character_length(std::string_view text) {
-    const auto byte = [&](std::size_t i) {
-        return i < text.size() ? static_cast<unsigned char>(text[i]) : static_cast<unsigned char>(0);
-    };
-    const unsigned first = byte(0);
-    if (first < 0x80) {
-        return first >= 0x20 && first != 0x7F ? 1 : 0;
-    }
-    const std::size_t length = first >= 0xF0 ? 4 : (first >= 0xE0 ? 3 : 2);
-    if (first < 0xC2 || first > 0xF4) {
-        return 0;
-    }
-    unsigned code = first & (0x7Fu >> length);
-    for (std::size_t i = 1; i < length; ++i) {
-        if ((byte(i) & 0xC0u) != 0x80u) {
-            return 0;
-        }
-        code = code << 6u | (byte(i) & 0x3Fu);
-    }
-    const bool overlong = (length == 3 && code < 0x800) || (length == 4 && code < 0x10000);
-    const bool control = code < 0xA0;
-    const bool surrogate = code >= 0xD800 && code < 0xE000;
-    const bool reorders = (code >= 0x202A && code <= 0x202E) || (code >= 0x2066 && code <= 0x2069);
-    const bool noncharacter = (code & 0xFFFEu) == 0xFFFEu;
-    return overlong || control || surrogate || reorders || noncharacter || code > 0x10FFFF ? 0 : length;
-}
-
-/// Calls `visit` with every character of `text`; what is none comes byte by byte, as U+FFFD.
-template <class Visitor>
-void for_each_character(std::string_view text, Visitor&& visit) {
-    while (!text.empty()) {
-        const std::size_t length = character_length(text);
-        visit(length > 0 ? text.substr(0, length) : kReplacement);
-        text.remove_prefix(std::max<std::size_t>(length, 1));
-    }
-}
-
-std::vector<std::string_view> characters(std::string_view text) {
-    std::vector<std::string_view> found;
-    for_each_character(text, [&](std::string_view character) { found.push_back(character); });
-    return found;
-}
 
 std::string attribute(std::string_view name, std::string_view value) {
     return " " + std::string(name) + "=\"" + std::string(value) + "\"";
@@ -96,35 +51,8 @@ std::string svg_number(double value) {
     return digits == "-0" ? "0" : digits;
 }
 
-std::string svg_text(std::string_view text) {
-    std::string out;
-    out.reserve(text.size());
-    for_each_character(text, [&](std::string_view character) {
-        switch (character.front()) {
-            case '&':
-                out += "&amp;";
-                break;
-            case '<':
-                out += "&lt;";
-                break;
-            case '>':
-                out += "&gt;";
-                break;
-            case '"':
-                out += "&quot;";
-                break;
-            case '\'':
-                out += "&#39;";
-                break;
-            default:
-                out += character;
-        }
-    });
-    return out;
-}
-
 std::string shortened(std::string_view text, std::size_t most) {
-    const std::vector<std::string_view> all = characters(text);
+    const std::vector<std::string_view> all = markup_characters(text);
     std::string out;
     const bool fits = all.size() <= most;
     for (std::size_t i = 0; i < (fits ? all.size() : most - 1); ++i) {
@@ -135,7 +63,7 @@ std::string shortened(std::string_view text, std::size_t most) {
 
 std::vector<std::string> wrapped(std::string_view text, std::size_t most, std::size_t lines) {
     std::vector<std::string> broken;
-    std::vector<std::string_view> rest = characters(text);
+    std::vector<std::string_view> rest = markup_characters(text);
     while (!rest.empty() && broken.size() + 1 < lines && rest.size() > most) {
         const auto limit = rest.begin() + static_cast<std::ptrdiff_t>(most) + 1;
         const auto space = std::find(std::make_reverse_iterator(limit), rest.rend(), " ");
@@ -156,15 +84,18 @@ std::vector<std::string> wrapped(std::string_view text, std::size_t most, std::s
 
 double svg_text_width(std::string_view text, double size) {
     constexpr double kAverageLetter = 0.58;
-    return kAverageLetter * size * static_cast<double>(characters(text).size());
+    return kAverageLetter * size * static_cast<double>(markup_characters(text).size());
 }
 
-Svg::Svg(std::string_view title) : title_(svg_text(title)) {}
+Svg::Svg(std::string_view title) : title_(escape_markup(title)) {}
 
 void Svg::finish_element(std::string_view name, const SvgStyle& style) {
     body_ += attribute("fill", style.fill);
     if (style.stroke != "none") {
         body_ += attribute("stroke", style.stroke) + attribute("stroke-width", svg_number(style.width));
+    }
+    if (style.has_round_ends) {
+        body_ += attribute("stroke-linecap", "round");
     }
     if (!style.dashes.empty()) {
         body_ += attribute("stroke-dasharray", style.dashes);
@@ -173,11 +104,11 @@ void Svg::finish_element(std::string_view name, const SvgStyle& style) {
         body_ += attribute("opacity", svg_number(style.opacity));
     }
     if (!style.class_name.empty()) {
-        body_ += attribute("class", svg_text(style.class_name));
+        body_ += attribute("class", escape_markup(style.class_name));
     }
     body_ += style.description.empty()
                  ? "/>\n"
-                 : "><title>" + svg_text(style.description) + "</title></" + std::string(name) + ">\n";
+                 : "><title>" + escape_markup(style.description) + "</title></" + std::string(name) + ">\n";
 }
 
 void Svg::path(const std::vector<SvgPoint>& points, const SvgStyle& style, bool closed) {
@@ -215,6 +146,17 @@ void Svg::rectangle(SvgPoint corner, double width, double height, const SvgStyle
     }
 }
 
+void Svg::picture(const PageBox& box, std::string_view png, std::string_view description) {
+    if (is_finite({box.x, box.y}) && box.width > 0.0 && box.height > 0.0) {
+        body_ += "<image" + attribute("x", svg_number(box.x)) + attribute("y", svg_number(box.y)) +
+                 attribute("width", svg_number(box.width)) + attribute("height", svg_number(box.height)) +
+                 attribute("preserveAspectRatio", "none") +
+                 attribute("style", "image-rendering:optimizeSpeed;image-rendering:pixelated") +
+                 attribute("href", "data:image/png;base64," + base64(png));
+        finish_element("image", {.description = std::string(description)});
+    }
+}
+
 void Svg::text(SvgPoint at, std::string_view words, const SvgTextStyle& style) {
     if (!is_finite(at)) {
         return;
@@ -232,13 +174,13 @@ void Svg::text(SvgPoint at, std::string_view words, const SvgTextStyle& style) {
                                             svg_number(at.y) + ")");
     }
     if (!style.class_name.empty()) {
-        body_ += attribute("class", svg_text(style.class_name));
+        body_ += attribute("class", escape_markup(style.class_name));
     }
-    body_ += ">" + svg_text(words) + "</text>\n";
+    body_ += ">" + escape_markup(words) + "</text>\n";
 }
 
 void Svg::open_group(std::string_view class_name) {
-    body_ += "<g" + attribute("class", svg_text(class_name)) + ">\n";
+    body_ += "<g" + attribute("class", escape_markup(class_name)) + ">\n";
 }
 
 void Svg::close_group() {

@@ -13,15 +13,24 @@ struct SvgPoint {
     double y = 0.0;
 };
 
+/// A rectangle of the drawing by its upper left corner.
+struct PageBox {
+    double x = 0.0;
+    double y = 0.0;
+    double width = 0.0;
+    double height = 0.0;
+};
+
 /// How a line or an area is painted. Colours are CSS colours that the program itself chooses, never text from a file.
 struct SvgStyle {
     std::string fill = "none";
     std::string stroke = "none";
-    double width = 1.0;         // of the stroke, px
-    std::string dashes{};       // lengths in px: "12 3 2 3"
-    double opacity = 1.0;       // of fill and stroke
-    std::string class_name{};   // what the thing is, for who reads or restyles the file
-    std::string description{};  // what a viewer shows when the pointer rests on it; any text
+    double width = 1.0;           // of the stroke, px
+    bool has_round_ends = false;  // a line of no length is then a disc
+    std::string dashes{};         // lengths in px: "12 3 2 3"
+    double opacity = 1.0;         // of fill and stroke
+    std::string class_name{};     // what the thing is, for who reads or restyles the file
+    std::string description{};    // what a viewer shows when the pointer rests on it; any text
 };
 
 enum class SvgAnchor { start, middle, end };
@@ -38,10 +47,6 @@ struct SvgTextStyle {
 /// A number as SVG spells it: at most two decimals, a point in every locale, no exponent. What is not finite is 0, and
 /// lengths end at ±10⁷, which renderers' single precision still holds.
 std::string svg_number(double value);
-
-/// `text` as it can stand between tags and inside a quoted attribute: & < > " ' become character references, what XML
-/// 1.0 forbids (control characters, bytes that are not UTF-8) becomes U+FFFD.
-std::string svg_text(std::string_view text);
 
 /// The first `most` characters of UTF-8 text, with an ellipsis in the last one's place where there were more.
 std::string shortened(std::string_view text, std::size_t most);
@@ -67,6 +72,8 @@ class Svg {
     void line(SvgPoint from, SvgPoint to, const SvgStyle& style) { path({from, to}, style); }
     void circle(SvgPoint centre, double radius, const SvgStyle& style);
     void rectangle(SvgPoint corner, double width, double height, const SvgStyle& style);
+    /// A picture (the bytes of a PNG) that fills the box; its pixels are not smoothed when they are enlarged.
+    void picture(const PageBox& box, std::string_view png, std::string_view description = {});
     void text(SvgPoint at, std::string_view words, const SvgTextStyle& style = {});
     void open_group(std::string_view class_name);
     void close_group();

@@ -5,6 +5,8 @@
 
 namespace lensproof {
 
+enum class AxisScale { linear, logarithmic };
+
 /// Marks of an axis, ascending and all within its range.
 struct Ticks {
     std::vector<double> major;

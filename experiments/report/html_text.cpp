@@ -4,7 +4,6 @@
 #include <array>
 #include <charconv>
 #include <cmath>
-#include <cstdint>
 
 namespace lensproof {
 namespace {
@@ -21,33 +20,6 @@ std::string with_true_minus(const std::string& digits) {
 }
 
 }  // namespace
-
-std::string escape_html(std::string_view text) {
-    std::string out;
-    out.reserve(text.size());
-    for (const char c : text) {
-        switch (c) {
-            case '&':
-                out += "&amp;";
-                break;
-            case '<':
-                out += "&lt;";
-                break;
-            case '>':
-                out += "&gt;";
-                break;
-            case '"':
-                out += "&quot;";
-                break;
-            case '\'':
-                out += "&#39;";
-                break;
-            default:
-                out += c;
-        }
-    }
-    return out;
-}
 
 std::string json_for_script(const nlohmann::ordered_json& json) {
     const std::string plain = json.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
@@ -66,23 +38,6 @@ std::string json_for_script(const nlohmann::ordered_json& json) {
                 break;
             default:
                 out += c;
-        }
-    }
-    return out;
-}
-
-std::string base64(std::string_view bytes) {
-    static constexpr std::string_view kAlphabet = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-    const auto byte = [&](std::size_t i) -> std::uint32_t {
-        return i < bytes.size() ? static_cast<unsigned char>(bytes[i]) : 0u;
-    };
-    std::string out;
-    out.reserve((bytes.size() + 2) / 3 * 4);
-    for (std::size_t i = 0; i < bytes.size(); i += 3) {
-        const std::uint32_t group = byte(i) << 16 | byte(i + 1) << 8 | byte(i + 2);
-        const std::size_t sextets = std::min<std::size_t>(bytes.size() - i, 3) + 1;
-        for (std::size_t k = 0; k < 4; ++k) {
-            out += k < sextets ? kAlphabet[group >> (18 - 6 * k) & 63u] : '=';
         }
     }
     return out;

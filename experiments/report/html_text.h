@@ -1,22 +1,15 @@
-// experiments/report/html_text.h — text that may come from anyone, made safe to stand in a page.
+// experiments/report/html_text.h — data and numbers as a page has them.
 #pragma once
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
-#include <string_view>
 
 namespace lensproof {
-
-/// `text` as it can stand between tags and inside a quoted attribute: & < > " ' become character references.
-std::string escape_html(std::string_view text);
 
 /// The compact JSON as it can stand inside <script type="application/json">: <, > and & are written \u003c, \u003e and
 /// \u0026, so that no string can end the element or open a comment. A NaN becomes null, bytes that are not UTF-8 become
 /// U+FFFD. JSON.parse gives the same value back.
 std::string json_for_script(const nlohmann::ordered_json& json);
-
-/// RFC 4648, section 4, with padding.
-std::string base64(std::string_view bytes);
 
 /// A number for a reader: up to six significant digits, no trailing zeros, a real minus sign; "—" for NaN and ±inf.
 std::string number_text(double value);

@@ -7,6 +7,7 @@
 #include <string_view>
 #include <vector>
 
+#include "experiments/markup.h"
 #include "experiments/report/html_text.h"
 
 namespace lensproof {
@@ -49,7 +50,7 @@ std::string as_text(const Json& value) {
 }
 
 std::string text(const Json& object, const char* key) {
-    return escape_html(as_text(member(object, key)));
+    return escape_markup(as_text(member(object, key)));
 }
 
 std::string with_unit(const std::string& number, const std::string& unit) {
@@ -100,7 +101,7 @@ std::string limit_html(const Json& check) {
         target ? " " + std::string(expect == "within" ? "of " : "from ") + with_unit(number_text(*target), unit) : "";
     if (expect == "within") return "within " + amount + (target ? from : " of 0");
     if (expect == "differs") return "differs by &gt;\u00a0" + amount + from;
-    return escape_html(expect) + " " + amount;
+    return escape_markup(expect) + " " + amount;
 }
 
 /// "s2" for the third subject, "" for an id that no subject has.
@@ -159,7 +160,7 @@ std::string checks_html(const Json& report) {
         const std::string colour = subject_colour(report, member(*group.checks.front(), "subject"));
         out += "<tbody><tr class=\"group\"><th scope=\"rowgroup\" colspan=\"5\">";
         if (!colour.empty()) out += "<i class=\"swatch " + colour + "\" aria-hidden=\"true\"></i>";
-        out += escape_html(group.name.empty() ? "Checks" : group.name) + " <small>" + tally(group.checks) +
+        out += escape_markup(group.name.empty() ? "Checks" : group.name) + " <small>" + tally(group.checks) +
                "</small></th></tr>\n";
         for (std::size_t i = 0; i < group.checks.size(); ++i) out += check_row(*group.checks[i], group.places[i]);
         out += "</tbody>\n";
@@ -227,7 +228,7 @@ std::string subjects_html(const Json& report, const std::map<std::string, std::s
 /// The columns are the first entry's keys.
 std::string table_html(const Json& rows) {
     std::string out = "<table class=\"list\"><thead><tr>";
-    for (const auto& [key, value] : rows.front().items()) out += "<th scope=\"col\">" + escape_html(key) + "</th>";
+    for (const auto& [key, value] : rows.front().items()) out += "<th scope=\"col\">" + escape_markup(key) + "</th>";
     out += "</tr></thead><tbody>\n";
     for (const Json& row : rows) {
         out += "<tr>";
@@ -239,7 +240,7 @@ std::string table_html(const Json& rows) {
 
 std::string joined(const Json& values, const char* separator) {
     std::string out;
-    for (const Json& value : values) out += (out.empty() ? "" : separator) + escape_html(as_text(value));
+    for (const Json& value : values) out += (out.empty() ? "" : separator) + escape_markup(as_text(value));
     return out;
 }
 
@@ -251,7 +252,8 @@ std::string settings_rows(const Json& object, const std::string& prefix) {
         if (value.is_object()) {
             out += settings_rows(value, name + ".");
         } else {
-            out += fact_row(escape_html(name), value.is_array() ? joined(value, ", ") : escape_html(as_text(value)));
+            out +=
+                fact_row(escape_markup(name), value.is_array() ? joined(value, ", ") : escape_markup(as_text(value)));
         }
     }
     return out;
@@ -259,7 +261,7 @@ std::string settings_rows(const Json& object, const std::string& prefix) {
 
 std::string value_html(const Json& value) {
     if (value.is_object()) return "<table class=\"list\"><tbody>\n" + settings_rows(value, "") + "</tbody></table>";
-    if (!value.is_array()) return escape_html(as_text(value));
+    if (!value.is_array()) return escape_markup(as_text(value));
     if (!value.empty() && value.front().is_object()) return table_html(value);
     return joined(value, "<br>");
 }
@@ -273,7 +275,7 @@ std::string provenance_html(const Json& report) {
     for (const auto& [key, value] : provenance.items()) {
         std::string label = key;
         for (char& c : label) c = c == '_' ? ' ' : c;
-        out += "<div><dt>" + escape_html(label) + "</dt><dd>" + value_html(value) + "</dd></div>\n";
+        out += "<div><dt>" + escape_markup(label) + "</dt><dd>" + value_html(value) + "</dd></div>\n";
     }
     return out + "</dl>\n";
 }

@@ -12,6 +12,7 @@
 #include "engine/io/prescription/prescription_file.h"
 #include "engine/optics/meridional_bundle.h"
 #include "engine/spectral/wavelengths.h"
+#include "experiments/markup.h"
 #include "experiments/plot/label_row.h"
 #include "experiments/plot/section_rays.h"
 #include "experiments/plot/svg.h"
@@ -44,9 +45,9 @@ TEST(Svg, NumbersAreShortAndAlwaysFinite) {
 }
 
 TEST(Svg, TextFromAFileStaysText) {
-    EXPECT_EQ(svg_text("<script>\"a\" & 'b'"), "&lt;script&gt;&quot;a&quot; &amp; &#39;b&#39;");
-    EXPECT_EQ(svg_text("Müller – 9°"), "Müller – 9°");
-    EXPECT_EQ(svg_text(std::string_view("a\0b\x1b"
+    EXPECT_EQ(escape_markup("<script>\"a\" & 'b'"), "&lt;script&gt;&quot;a&quot; &amp; &#39;b&#39;");
+    EXPECT_EQ(escape_markup("Müller – 9°"), "Müller – 9°");
+    EXPECT_EQ(escape_markup(std::string_view("a\0b\x1b"
                                         "c\x7f",
                                         6)),
               "a\uFFFD"
@@ -54,8 +55,8 @@ TEST(Svg, TextFromAFileStaysText) {
               "c\uFFFD");
     // A lone continuation byte, a truncated sequence, an overlong '/', a surrogate, a right-to-left override, U+FFFF.
     for (const char* bad : {"\x80", "\xC3", "\xC0\xAF", "\xED\xA0\x80", "\u202E", "\uFFFF"}) {
-        EXPECT_EQ(svg_text(bad).substr(0, 3), "\uFFFD") << bad;
-        EXPECT_EQ(svg_text(bad).find(bad), std::string::npos);
+        EXPECT_EQ(escape_markup(bad).substr(0, 3), "\uFFFD") << bad;
+        EXPECT_EQ(escape_markup(bad).find(bad), std::string::npos);
     }
 }
 

@@ -7,6 +7,7 @@
 #include <limits>
 #include <string>
 
+#include "experiments/markup.h"
 #include "experiments/report/html_text.h"
 
 namespace lensproof {
@@ -54,7 +55,7 @@ TEST(HtmlText, Base64GivesTheRfcsVectors) {
 }
 
 TEST(HtmlText, EscapesWhatMeansSomethingToHtml) {
-    EXPECT_EQ(escape_html("<a href=\"x\" id='y'>&amp;"), "&lt;a href=&quot;x&quot; id=&#39;y&#39;&gt;&amp;amp;");
+    EXPECT_EQ(escape_markup("<a href=\"x\" id='y'>&amp;"), "&lt;a href=&quot;x&quot; id=&#39;y&#39;&gt;&amp;amp;");
 }
 
 TEST(HtmlText, JsonInAScriptReadsBackTheSame) {

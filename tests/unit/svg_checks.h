@@ -49,7 +49,7 @@ inline ::testing::AssertionResult is_well_formed(const std::string& xml) {
             return ::testing::AssertionFailure() << "no reference: " << rest;
         }
         const auto byte = static_cast<unsigned char>(*at);
-        if ((byte < 0x20 && byte != '\n') || byte == 0x7F) {
+        if ((byte < 0x20 && byte != '\n' && byte != '\t') || byte == 0x7F) {
             return ::testing::AssertionFailure() << "control character " << int{byte};
         }
         ++at;
