@@ -32,7 +32,7 @@ std::vector<std::string> small_lines(const std::string& text, double width) {
     return text.empty() ? std::vector<std::string>{} : wrapped(text, letters_in(width, kSmallSize), 3);
 }
 
-std::vector<std::string> notes(const Chart& chart, double width) {
+std::vector<std::string> notes(const PlotChart& chart, double width) {
     std::string text = chart.note;
     if (const std::size_t dropped = count_not_positive(chart); dropped > 0) {
         text += fmt::format("{}{} {} not above zero and cannot stand on a logarithmic axis.", text.empty() ? "" : " ",
@@ -50,7 +50,8 @@ double widest_number(const ResolvedAxis& axis) {
 }
 
 /// The labelled reference lines of one direction that are within the axis.
-std::vector<const ReferenceLine*> labelled(const Chart& chart, const ChartFrame& frame, ReferenceDirection direction) {
+std::vector<const ReferenceLine*> labelled(const PlotChart& chart, const ChartFrame& frame,
+                                           ReferenceDirection direction) {
     std::vector<const ReferenceLine*> found;
     const ResolvedAxis& axis = direction == ReferenceDirection::vertical ? frame.x : frame.y;
     for (const ReferenceLine& line : chart.references) {
@@ -116,7 +117,7 @@ void draw_numbers(Svg& svg, const ChartFrame& frame, bool is_x) {
     }
 }
 
-void draw_axis_titles(Svg& svg, const Chart& chart, const ChartFrame& frame, const PanelLook& look) {
+void draw_axis_titles(Svg& svg, const PlotChart& chart, const ChartFrame& frame, const PanelLook& look) {
     const PageBox& box = frame.box;
     if (look.has_x_numbers) {
         const std::string title = shortened(axis_title(chart.x, frame.x), letters_in(box.width + 60.0, kAxisTextSize));
@@ -134,7 +135,7 @@ void draw_axis_titles(Svg& svg, const Chart& chart, const ChartFrame& frame, con
     }
 }
 
-void draw_references(Svg& svg, const Chart& chart, const ChartFrame& frame) {
+void draw_references(Svg& svg, const PlotChart& chart, const ChartFrame& frame) {
     const PageBox& box = frame.box;
     for (const ReferenceLine& line : chart.references) {
         const bool is_vertical = line.direction == ReferenceDirection::vertical;
@@ -154,7 +155,7 @@ void draw_references(Svg& svg, const Chart& chart, const ChartFrame& frame) {
     }
 }
 
-void draw_reference_labels(Svg& svg, const Chart& chart, const ChartFrame& frame) {
+void draw_reference_labels(Svg& svg, const PlotChart& chart, const ChartFrame& frame) {
     const PageBox& box = frame.box;
     const auto vertical = labelled(chart, frame, ReferenceDirection::vertical);
     std::vector<PlacedLabel> wishes;
@@ -187,7 +188,7 @@ std::vector<SvgPoint> on_page(const ChartFrame& frame, const std::vector<Vec2d>&
     return page;
 }
 
-void draw_curve(Svg& svg, const Curve& curve, const ChartFrame& frame) {
+void draw_curve(Svg& svg, const ChartCurve& curve, const ChartFrame& frame) {
     const std::vector<SvgPoint> page = on_page(frame, curve.points);
     if (curve.line != CurveLine::none) {
         const std::vector<std::vector<SvgPoint>> pieces = clipped_line(page, frame.box);
@@ -209,7 +210,7 @@ void draw_curve(Svg& svg, const Curve& curve, const ChartFrame& frame) {
     draw_markers(svg, visible, curve.marker, curve.marker_size, curve.colour);
 }
 
-void draw_data(Svg& svg, const Chart& chart, const ChartFrame& frame) {
+void draw_data(Svg& svg, const PlotChart& chart, const ChartFrame& frame) {
     if (chart.map) {
         const HeatMap& map = *chart.map;
         const SvgPoint corner = frame.to_page({map.x.low, map.y.high});
@@ -221,13 +222,13 @@ void draw_data(Svg& svg, const Chart& chart, const ChartFrame& frame) {
                  {.fill = area.colour, .opacity = area.opacity, .class_name = "area", .description = area.label}, true);
     }
     draw_references(svg, chart, frame);
-    for (const Curve& curve : chart.curves) {
+    for (const ChartCurve& curve : chart.curves) {
         draw_curve(svg, curve, frame);
     }
 }
 
 /// Title, caption, legend and reference labels: their heights above the frame.
-double heading_height(const Chart& chart, const ChartFrame& frame, const PanelLook& look) {
+double heading_height(const PlotChart& chart, const ChartFrame& frame, const PanelLook& look) {
     double height = 6.0;
     height += chart.title.empty() ? 0.0 : 20.0;
     height += kLine * static_cast<double>(small_lines(chart.caption, frame.box.width).size());
@@ -237,7 +238,7 @@ double heading_height(const Chart& chart, const ChartFrame& frame, const PanelLo
     return height + (labelled(chart, frame, ReferenceDirection::vertical).empty() ? 0.0 : kLine);
 }
 
-void draw_heading(Svg& svg, const Chart& chart, const ChartFrame& frame, const PanelLook& look) {
+void draw_heading(Svg& svg, const PlotChart& chart, const ChartFrame& frame, const PanelLook& look) {
     const PageBox& box = frame.box;
     double y = box.y - heading_height(chart, frame, look);
     if (!chart.title.empty()) {
@@ -264,12 +265,12 @@ Vec2d ChartFrame::to_value(SvgPoint point) const {
     return {x.value((point.x - box.x) / box.width), y.value(1.0 - (point.y - box.y) / box.height)};
 }
 
-ChartFrame chart_frame(const Chart& chart, const PageBox& frame) {
+ChartFrame chart_frame(const PlotChart& chart, const PageBox& frame) {
     ResolvedAxes axes = resolve_axes(chart, frame.width, frame.height);
     return {frame, std::move(axes.x), std::move(axes.y)};
 }
 
-PanelMargins panel_margins(const Chart& chart, const ChartFrame& frame, const PanelLook& look) {
+PanelMargins panel_margins(const PlotChart& chart, const ChartFrame& frame, const PanelLook& look) {
     PanelMargins margins{.left = 10.0, .top = heading_height(chart, frame, look), .right = 14.0, .bottom = 10.0};
     if (look.has_y_numbers) {
         margins.left = kMajorMark + kNumberGap + widest_number(frame.y) + 12.0 + kAxisTextSize;
@@ -289,7 +290,7 @@ PanelMargins panel_margins(const Chart& chart, const ChartFrame& frame, const Pa
     return margins;
 }
 
-void draw_chart(Svg& svg, const Chart& chart, const ChartFrame& frame, const PanelLook& look) {
+void draw_chart(Svg& svg, const PlotChart& chart, const ChartFrame& frame, const PanelLook& look) {
     const PageBox& box = frame.box;
     svg.open_group("chart");
     draw_heading(svg, chart, frame, look);
@@ -330,7 +331,7 @@ void draw_chart(Svg& svg, const Chart& chart, const ChartFrame& frame, const Pan
     svg.close_group();
 }
 
-std::string chart_svg(const Chart& chart, ChartSize size) {
+std::string chart_svg(const PlotChart& chart, ChartSize size) {
     constexpr double kEdge = 10.0;
     constexpr double kLeast = 60.0;
     const PanelLook look;

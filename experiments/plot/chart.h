@@ -30,7 +30,7 @@ enum class CurveMarker { none, dot, ring, square, triangle, diamond, plus, cross
 
 /// A curve through `points`. It breaks where one is not finite or, on a logarithmic axis, not positive; the latter are
 /// counted in a note under the chart. Outside the axes' range it is cut off at the frame.
-struct Curve {
+struct ChartCurve {
     std::string label{};  // in the legend; empty: not there. Curves of the same label and looks share an entry
     std::vector<Vec2d> points{};
     std::string colour = "#0072b2";  // CSS, see palette.h
@@ -59,7 +59,7 @@ struct ReferenceLine {
     CurveLine line = CurveLine::dashed;
 };
 
-struct Chart {
+struct PlotChart {
     std::string title{};
     std::string caption{};  // small, under the title
     ChartAxis x{};
@@ -67,7 +67,7 @@ struct Chart {
     std::optional<HeatMap> map{};  // behind everything; the axes then show all of it, whatever they say
     std::vector<ChartArea> areas{};
     std::vector<ReferenceLine> references{};
-    std::vector<Curve> curves{};            // later ones above earlier ones
+    std::vector<ChartCurve> curves{};       // later ones above earlier ones
     std::string note{};                     // small, under the chart
     std::string empty_message = "no data";  // where no point can be shown
     bool has_equal_scales = false;          // a unit of x is as long as a unit of y: the wider axis shows more
@@ -102,13 +102,13 @@ struct ChartSize {
     double width = 760.0;
     double height = 480.0;
 };
-std::string chart_svg(const Chart& chart, ChartSize size = {});
+std::string chart_svg(const PlotChart& chart, ChartSize size = {});
 
 /// Small multiples: panels in rows of `columns`, all frames of one size, with one legend for all.
 struct ChartGrid {
     std::string title{};
     std::string caption{};
-    std::vector<Chart> panels{};  // row by row
+    std::vector<PlotChart> panels{};  // row by row
     std::size_t columns = 2;
     bool shares_x = true;                   // one range for all panels, its numbers under the lowest only
     bool shares_y = true;                   // … and at the leftmost
@@ -135,13 +135,13 @@ struct PanelMargins {
     double bottom = 0.0;
 };
 /// The frame of `chart` in a box of that place and size, and the margins that it leaves.
-ChartFrame chart_frame(const Chart& chart, const PageBox& frame);
-PanelMargins panel_margins(const Chart& chart, const ChartFrame& frame, const PanelLook& look);
-void draw_chart(Svg& svg, const Chart& chart, const ChartFrame& frame, const PanelLook& look);
+ChartFrame chart_frame(const PlotChart& chart, const PageBox& frame);
+PanelMargins panel_margins(const PlotChart& chart, const ChartFrame& frame, const PanelLook& look);
+void draw_chart(Svg& svg, const PlotChart& chart, const ChartFrame& frame, const PanelLook& look);
 
 /// One range that holds the data of all charts, put into their axes where they leave it open.
-void share_x_range(std::vector<Chart>& charts);
-void share_y_range(std::vector<Chart>& charts);
-void share_colour_range(std::vector<Chart>& charts);
+void share_x_range(std::vector<PlotChart>& charts);
+void share_y_range(std::vector<PlotChart>& charts);
+void share_colour_range(std::vector<PlotChart>& charts);
 
 }  // namespace lensproof

@@ -33,8 +33,8 @@ bool is_within(const ChartAxis& axis, double value) {
     return value >= std::min(a, b) && value <= std::max(a, b);
 }
 
-void for_each_point(const Chart& chart, const std::function<void(Vec2d)>& visit) {
-    for (const Curve& curve : chart.curves) {
+void for_each_point(const PlotChart& chart, const std::function<void(Vec2d)>& visit) {
+    for (const ChartCurve& curve : chart.curves) {
         std::ranges::for_each(curve.points, visit);
     }
     for (const ChartArea& area : chart.areas) {
@@ -42,7 +42,7 @@ void for_each_point(const Chart& chart, const std::function<void(Vec2d)>& visit)
     }
 }
 
-Extent extent_along(const Chart& chart, bool along_x) {
+Extent extent_along(const PlotChart& chart, bool along_x) {
     const ChartAxis& axis = along_x ? chart.x : chart.y;
     const ChartAxis& other = along_x ? chart.y : chart.x;
     Extent extent;
@@ -203,11 +203,11 @@ void equalise(ResolvedAxes& axes, double width, double height) {
     }
 }
 
-void share_range(std::vector<Chart>& charts, bool along_x) {
+void share_range(std::vector<PlotChart>& charts, bool along_x) {
     Extent all;
-    const auto axis_of = [&](Chart& chart) -> ChartAxis& { return along_x ? chart.x : chart.y; };
+    const auto axis_of = [&](PlotChart& chart) -> ChartAxis& { return along_x ? chart.x : chart.y; };
     ChartAxis joined;
-    for (Chart& chart : charts) {
+    for (PlotChart& chart : charts) {
         const ChartAxis& axis = axis_of(chart);
         all.hold(extent_along(chart, along_x));
         joined.scale = axis.scale;
@@ -218,7 +218,7 @@ void share_range(std::vector<Chart>& charts, bool along_x) {
     constexpr int kMarks = 5;
     const AxisRange range =
         joined.scale == AxisScale::linear ? linear_range(joined, all, kMarks) : log_range(joined, all);
-    for (Chart& chart : charts) {
+    for (PlotChart& chart : charts) {
         ChartAxis& axis = axis_of(chart);
         axis.low = axis.low.value_or(range.low);
         axis.high = axis.high.value_or(range.high);
@@ -233,13 +233,13 @@ bool can_show(AxisScale scale, double value) {
     return scale == AxisScale::linear ? std::abs(value) <= kLargest : value >= kSmallest && value <= kLargest;
 }
 
-bool can_show(const Chart& chart, Vec2d point) {
+bool can_show(const PlotChart& chart, Vec2d point) {
     return can_show(chart.x.scale, point.x) && can_show(chart.y.scale, point.y);
 }
 
-std::size_t count_not_positive(const Chart& chart) {
+std::size_t count_not_positive(const PlotChart& chart) {
     std::size_t count = 0;
-    for (const Curve& curve : chart.curves) {
+    for (const ChartCurve& curve : chart.curves) {
         count += static_cast<std::size_t>(std::ranges::count_if(curve.points, [&](Vec2d point) {
             return std::isfinite(point.x) && std::isfinite(point.y) && !can_show(chart, point);
         }));
@@ -247,7 +247,7 @@ std::size_t count_not_positive(const Chart& chart) {
     return count;
 }
 
-bool is_empty(const Chart& chart) {
+bool is_empty(const PlotChart& chart) {
     bool found = false;
     for_each_point(chart, [&](Vec2d point) { found = found || can_show(chart, point); });
     const bool has_map = chart.map && std::ranges::any_of(chart.map->values, [](double v) { return std::isfinite(v); });
@@ -265,7 +265,7 @@ double ResolvedAxis::value(double at) const {
     return scale == AxisScale::linear ? low + at * (high - low) : low * std::pow(high / low, at);
 }
 
-ResolvedAxes resolve_axes(const Chart& chart, double width, double height) {
+ResolvedAxes resolve_axes(const PlotChart& chart, double width, double height) {
     ChartAxis x = chart.x;
     ChartAxis y = chart.y;
     if (chart.map) {
@@ -289,25 +289,25 @@ std::string axis_title(const ChartAxis& axis, const ResolvedAxis& resolved) {
     return unit.empty() ? axis.label : axis.label.empty() ? unit : axis.label + " (" + unit + ")";
 }
 
-void share_x_range(std::vector<Chart>& charts) {
+void share_x_range(std::vector<PlotChart>& charts) {
     share_range(charts, true);
 }
 
-void share_colour_range(std::vector<Chart>& charts) {
+void share_colour_range(std::vector<PlotChart>& charts) {
     Extent all;
-    for (const Chart& chart : charts) {
+    for (const PlotChart& chart : charts) {
         if (chart.map) {
             all.hold(Extent{chart.map->range.low, chart.map->range.high});
         }
     }
-    for (Chart& chart : charts) {
+    for (PlotChart& chart : charts) {
         if (chart.map) {
             chart.map->range = {all.low, all.high};
         }
     }
 }
 
-void share_y_range(std::vector<Chart>& charts) {
+void share_y_range(std::vector<PlotChart>& charts) {
     share_range(charts, false);
 }
 

@@ -30,7 +30,8 @@ double offset_of(const std::vector<double>& sizes, std::size_t count) {
            kPanelGap * static_cast<double>(count);
 }
 
-std::vector<GridPanel> measured_panels(const std::vector<Chart>& charts, const ChartGrid& grid, std::size_t columns) {
+std::vector<GridPanel> measured_panels(const std::vector<PlotChart>& charts, const ChartGrid& grid,
+                                       std::size_t columns) {
     std::vector<GridPanel> panels;
     for (std::size_t i = 0; i < charts.size(); ++i) {
         GridPanel panel;
@@ -92,7 +93,7 @@ double draw_grid_heading(Svg& svg, const ChartGrid& grid, double top, double wid
 }  // namespace
 
 std::string chart_grid_svg(const ChartGrid& grid) {
-    std::vector<Chart> charts = grid.panels;
+    std::vector<PlotChart> charts = grid.panels;
     const std::size_t columns = std::clamp<std::size_t>(grid.columns, 1, std::max<std::size_t>(charts.size(), 1));
     if (grid.shares_x) {
         share_x_range(charts);

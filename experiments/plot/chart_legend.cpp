@@ -110,19 +110,19 @@ void draw_markers(Svg& svg, const std::vector<SvgPoint>& points, CurveMarker mar
     svg.paths(outlines, style, !is_open);
 }
 
-std::vector<LegendEntry> legend_entries(std::span<const Chart> charts) {
+std::vector<LegendEntry> legend_entries(std::span<const PlotChart> charts) {
     std::vector<LegendEntry> entries;
     const auto add = [&](LegendEntry entry) {
         if (!entry.label.empty() && std::ranges::find(entries, entry) == entries.end()) {
             entries.push_back(std::move(entry));
         }
     };
-    for (const Chart& chart : charts) {
-        for (const Curve& curve : chart.curves) {
+    for (const PlotChart& chart : charts) {
+        for (const ChartCurve& curve : chart.curves) {
             add({.label = curve.label, .colour = curve.colour, .line = curve.line, .marker = curve.marker});
         }
     }
-    for (const Chart& chart : charts) {
+    for (const PlotChart& chart : charts) {
         for (const ChartArea& area : chart.areas) {
             add({.label = area.label, .colour = area.colour, .is_area = true, .opacity = area.opacity});
         }

@@ -21,7 +21,7 @@ struct LegendEntry {
 };
 
 /// The labelled curves and areas of the charts, each look once, in the order of their first appearance.
-std::vector<LegendEntry> legend_entries(std::span<const Chart> charts);
+std::vector<LegendEntry> legend_entries(std::span<const PlotChart> charts);
 
 /// The height of the rows that the entries take within `width` px; 0 for none.
 double legend_height(const std::vector<LegendEntry>& entries, double width);

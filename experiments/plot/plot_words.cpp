@@ -25,13 +25,13 @@ ReferenceLine zero_line(ReferenceDirection direction) {
     return {.direction = direction, .at = 0.0, .colour = "#9aa1ac", .line = CurveLine::solid};
 }
 
-Curve wavelength_curve(const WavelengthCurve& curve) {
+ChartCurve wavelength_curve(const WavelengthCurve& curve) {
     return {.label = wavelength_text(curve.wavelength_nm),
             .points = curve.points,
             .colour = wavelength_colour(curve.wavelength_nm)};
 }
 
-Curve legend_only(const std::string& label, CurveLine line) {
+ChartCurve legend_only(const std::string& label, CurveLine line) {
     return {.label = label, .colour = kQuiet, .line = line};
 }
 

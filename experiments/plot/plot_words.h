@@ -21,10 +21,10 @@ std::string wavelength_text(double wavelength_nm);
 ReferenceLine zero_line(ReferenceDirection direction);
 
 /// A curve of that wavelength's colour.
-Curve wavelength_curve(const WavelengthCurve& curve);
+ChartCurve wavelength_curve(const WavelengthCurve& curve);
 
 /// An entry of the legend that no curve has: what solid and dashed mean.
-Curve legend_only(const std::string& label, CurveLine line);
+ChartCurve legend_only(const std::string& label, CurveLine line);
 
 /// By rising x, so that a line goes once along the field whatever order the fields came in.
 std::vector<Vec2d> in_order(std::vector<Vec2d> points);

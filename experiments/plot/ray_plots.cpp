@@ -26,8 +26,8 @@ ChartAxis field_axis() {
 }
 
 /// Curves of one field are as far apart as its wavelengths; one that has a single field is a mark.
-void mark_single_points(Chart& chart) {
-    for (Curve& curve : chart.curves) {
+void mark_single_points(PlotChart& chart) {
+    for (ChartCurve& curve : chart.curves) {
         if (curve.points.size() == 1) {
             curve.marker = curve.line == CurveLine::dashed ? CurveMarker::ring : CurveMarker::dot;
         }
@@ -57,19 +57,19 @@ void hold_pupil(ChartAxis& axis, const std::vector<FieldFans>& fields) {
     axis.high = reach;
 }
 
-Chart fan_chart(const std::vector<WavelengthCurve>& curves, const std::string& pupil, const ChartAxis& pupil_axis) {
-    Chart chart{.x = pupil_axis,
-                .y = {.label = "Ray error", .unit = "µm", .least_span = kLeastErrorSpan, .is_symmetric = true},
-                .references = {zero_line(ReferenceDirection::horizontal), zero_line(ReferenceDirection::vertical)},
-                .empty_message = kNoLight};
+PlotChart fan_chart(const std::vector<WavelengthCurve>& curves, const std::string& pupil, const ChartAxis& pupil_axis) {
+    PlotChart chart{.x = pupil_axis,
+                    .y = {.label = "Ray error", .unit = "µm", .least_span = kLeastErrorSpan, .is_symmetric = true},
+                    .references = {zero_line(ReferenceDirection::horizontal), zero_line(ReferenceDirection::vertical)},
+                    .empty_message = kNoLight};
     chart.x.label = pupil;
     std::ranges::transform(curves, std::back_inserter(chart.curves), wavelength_curve);
     return chart;
 }
 
 struct FieldCurvePanels {
-    Chart astigmatism;
-    Chart distortion;
+    PlotChart astigmatism;
+    PlotChart distortion;
 };
 
 FieldCurvePanels empty_field_curves(const std::string& projection) {
@@ -128,7 +128,7 @@ std::string field_curves_svg(const PlotHeading& heading, const std::vector<Field
             distortion.points.push_back({point.distortion_percent, point.field_deg});
         }
         panels.astigmatism.curves.push_back(wavelength_curve(tangential));
-        Curve dashed = wavelength_curve(sagittal);
+        ChartCurve dashed = wavelength_curve(sagittal);
         dashed.line = CurveLine::dashed;
         dashed.label.clear();
         panels.astigmatism.curves.push_back(std::move(dashed));
@@ -145,17 +145,17 @@ std::string field_curves_svg(const PlotHeading& heading, const std::vector<Field
 }
 
 std::string longitudinal_aberration_svg(const PlotHeading& heading, const std::vector<WavelengthCurve>& zones) {
-    Chart chart{.title = plot_title(heading, "longitudinal aberration"),
-                .caption = heading.conditions,
-                .x = {.label = "Axis crossing from the image plane",
-                      .unit = "mm",
-                      .least_span = kLeastFocusSpan,
-                      .is_symmetric = true},
-                .y = {.label = "Pupil zone", .low = 0.0, .high = 1.0},
-                .references = {zero_line(ReferenceDirection::vertical)},
-                .empty_message = kNoLight};
+    PlotChart chart{.title = plot_title(heading, "longitudinal aberration"),
+                    .caption = heading.conditions,
+                    .x = {.label = "Axis crossing from the image plane",
+                          .unit = "mm",
+                          .least_span = kLeastFocusSpan,
+                          .is_symmetric = true},
+                    .y = {.label = "Pupil zone", .low = 0.0, .high = 1.0},
+                    .references = {zero_line(ReferenceDirection::vertical)},
+                    .empty_message = kNoLight};
     for (const WavelengthCurve& zone : zones) {
-        Curve curve = wavelength_curve(zone);
+        ChartCurve curve = wavelength_curve(zone);
         curve.points = turned(in_order(std::move(curve.points)));
         chart.curves.push_back(std::move(curve));
     }
@@ -164,15 +164,15 @@ std::string longitudinal_aberration_svg(const PlotHeading& heading, const std::v
 
 std::string lateral_colour_svg(const PlotHeading& heading, const std::vector<WavelengthCurve>& curves,
                                const std::vector<Vec2d>& airy_radius) {
-    Chart chart{.title = plot_title(heading, "lateral colour"),
-                .caption = heading.conditions,
-                .x = {.label = "Chief-ray height from the reference wavelength's",
-                      .unit = "µm",
-                      .least_span = kLeastColourSpan,
-                      .is_symmetric = true},
-                .y = field_axis(),
-                .references = {zero_line(ReferenceDirection::vertical)},
-                .empty_message = kNoLight};
+    PlotChart chart{.title = plot_title(heading, "lateral colour"),
+                    .caption = heading.conditions,
+                    .x = {.label = "Chief-ray height from the reference wavelength's",
+                          .unit = "µm",
+                          .least_span = kLeastColourSpan,
+                          .is_symmetric = true},
+                    .y = field_axis(),
+                    .references = {zero_line(ReferenceDirection::vertical)},
+                    .empty_message = kNoLight};
     ChartArea band{.label = "Airy radius"};
     const std::vector<Vec2d> edge = in_order(airy_radius);
     for (const Vec2d point : edge) {
@@ -182,7 +182,7 @@ std::string lateral_colour_svg(const PlotHeading& heading, const std::vector<Wav
         band.outline.push_back({-point->y, point->x});
     }
     for (const WavelengthCurve& colour : curves) {
-        Curve curve = wavelength_curve(colour);
+        ChartCurve curve = wavelength_curve(colour);
         curve.points = turned(in_order(std::move(curve.points)));
         chart.curves.push_back(std::move(curve));
     }
@@ -194,13 +194,13 @@ std::string lateral_colour_svg(const PlotHeading& heading, const std::vector<Wav
 }
 
 std::string illumination_svg(const PlotHeading& heading, const std::vector<IlluminationPoint>& points) {
-    Chart chart{.title = plot_title(heading, "relative illumination"),
-                .caption = heading.conditions,
-                .x = field_axis(),
-                .y = {.label = "Relative to the axis", .low = 0.0, .least_span = 1.0, .holds_zero = true},
-                .empty_message = kNoLight};
-    Curve illumination{.label = "relative illumination", .colour = series_colour(0), .width = 2.0};
-    Curve vignetting{
+    PlotChart chart{.title = plot_title(heading, "relative illumination"),
+                    .caption = heading.conditions,
+                    .x = field_axis(),
+                    .y = {.label = "Relative to the axis", .low = 0.0, .least_span = 1.0, .holds_zero = true},
+                    .empty_message = kNoLight};
+    ChartCurve illumination{.label = "relative illumination", .colour = series_colour(0), .width = 2.0};
+    ChartCurve vignetting{
         .label = "beam's cross-section (vignetting)", .colour = series_colour(1), .line = CurveLine::dashed};
     for (const IlluminationPoint& point : points) {
         illumination.points.push_back({point.field_deg, point.relative_illumination});

@@ -108,8 +108,8 @@ void draw_spot(Svg& svg, const Spot& spot, double airy_radius_um, const PageBox&
     svg.close_group();
 }
 
-std::vector<Chart> legend_of(const SpotScale& scale) {
-    Chart chart;
+std::vector<PlotChart> legend_of(const SpotScale& scale) {
+    PlotChart chart;
     for (std::size_t i = 0; i < scale.wavelengths.size(); ++i) {
         chart.curves.push_back({.label = wavelength_text(scale.wavelengths[i]),
                                 .colour = wavelength_colour(scale.wavelengths[i]),
@@ -146,7 +146,7 @@ double draw_heading(Svg& svg, const PlotHeading& heading, const SpotScale& scale
             y += 16.0;
         }
     }
-    const std::vector<Chart> legend = legend_of(scale);
+    const std::vector<PlotChart> legend = legend_of(scale);
     const std::vector<LegendEntry> entries = legend_entries(legend);
     draw_legend(svg, entries, {kEdge, y + 2.0}, width);
     return draw_scale_bar(svg, scale, y + 4.0 + legend_height(entries, width));

@@ -40,11 +40,11 @@ bool have_one_size(const std::vector<Field>& fields, SquareMap Field::*map) {
         fields, [&](const Field& field) { return (field.*map).half_width == (fields.front().*map).half_width; });
 }
 
-Chart psf_chart(const PsfMap& field, bool is_log) {
-    Chart chart{.title = field_text(field.field_deg) + (is_log ? ", logarithmic" : ", linear"),
-                .x = {.label = "x", .unit = "µm"},
-                .y = {.label = "y", .unit = "µm"},
-                .empty_message = kNoLight};
+PlotChart psf_chart(const PsfMap& field, bool is_log) {
+    PlotChart chart{.title = field_text(field.field_deg) + (is_log ? ", logarithmic" : ", linear"),
+                    .x = {.label = "x", .unit = "µm"},
+                    .y = {.label = "y", .unit = "µm"},
+                    .empty_message = kNoLight};
     HeatMap map = square_heat_map(field.intensity);
     const double peak = largest(map.values);
     constexpr double kDecades = 1e-5;
@@ -61,8 +61,8 @@ ChartAxis modulation_axis() {
 }
 
 /// Solid and dashed curves of one colour; only the first is in the legend.
-void add_pair(Chart& chart, const std::string& label, const std::string& colour, const std::vector<Vec2d>& tangential,
-              const std::vector<Vec2d>& sagittal) {
+void add_pair(PlotChart& chart, const std::string& label, const std::string& colour,
+              const std::vector<Vec2d>& tangential, const std::vector<Vec2d>& sagittal) {
     chart.curves.push_back({.label = label, .points = tangential, .colour = colour});
     chart.curves.push_back({.points = sagittal, .colour = colour, .line = CurveLine::dashed});
 }
@@ -78,10 +78,10 @@ std::string wavefront_svg(const PlotHeading& heading, const std::vector<Wavefron
     grid.shares_y = grid.shares_x;
     constexpr double kLeastWaves = 1e-3;
     for (const WavefrontMap& field : fields) {
-        Chart chart{.title = field_text(field.field_deg) + ", " + wavelength_text(field.wavelength_nm),
-                    .x = {.label = "Pupil x"},
-                    .y = {.label = "Pupil y"},
-                    .empty_message = kNoLight};
+        PlotChart chart{.title = field_text(field.field_deg) + ", " + wavelength_text(field.wavelength_nm),
+                        .x = {.label = "Pupil x"},
+                        .y = {.label = "Pupil y"},
+                        .empty_message = kNoLight};
         HeatMap map = square_heat_map(field.opd_waves);
         map.colours = ColourMap::diverging;
         map.range = symmetric_range(map.values, kLeastWaves);
@@ -111,11 +111,11 @@ std::string psf_svg(const PlotHeading& heading, const std::vector<PsfMap>& field
 
 std::string mtf_svg(const PlotHeading& heading, const std::vector<FieldMtf>& fields,
                     const std::vector<Vec2d>& diffraction_limit) {
-    Chart chart{.title = plot_title(heading, "modulation transfer"),
-                .caption = heading.conditions,
-                .x = {.label = "Spatial frequency", .unit = "cycles/mm", .low = 0.0},
-                .y = modulation_axis(),
-                .empty_message = kNoLight};
+    PlotChart chart{.title = plot_title(heading, "modulation transfer"),
+                    .caption = heading.conditions,
+                    .x = {.label = "Spatial frequency", .unit = "cycles/mm", .low = 0.0},
+                    .y = modulation_axis(),
+                    .empty_message = kNoLight};
     chart.curves = {legend_only("tangential", CurveLine::solid), legend_only("sagittal", CurveLine::dashed)};
     if (!diffraction_limit.empty()) {
         chart.curves.push_back({.label = "diffraction limit",
@@ -132,11 +132,11 @@ std::string mtf_svg(const PlotHeading& heading, const std::vector<FieldMtf>& fie
 }
 
 std::string mtf_field_svg(const PlotHeading& heading, const std::vector<FrequencyMtf>& frequencies) {
-    Chart chart{.title = plot_title(heading, "modulation against field"),
-                .caption = heading.conditions,
-                .x = {.label = "Field angle", .unit = "°", .least_span = 1.0, .holds_zero = true},
-                .y = modulation_axis(),
-                .empty_message = kNoLight};
+    PlotChart chart{.title = plot_title(heading, "modulation against field"),
+                    .caption = heading.conditions,
+                    .x = {.label = "Field angle", .unit = "°", .least_span = 1.0, .holds_zero = true},
+                    .y = modulation_axis(),
+                    .empty_message = kNoLight};
     chart.curves = {legend_only("tangential", CurveLine::solid), legend_only("sagittal", CurveLine::dashed)};
     for (std::size_t i = 0; i < frequencies.size(); ++i) {
         const FrequencyMtf& frequency = frequencies[i];

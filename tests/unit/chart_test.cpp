@@ -17,15 +17,15 @@ namespace {
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-Chart line_chart(std::vector<Vec2d> points) {
+PlotChart line_chart(std::vector<Vec2d> points) {
     return {.title = "A line",
             .x = {.label = "x", .unit = "mm"},
             .y = {.label = "y"},
             .curves = {{.points = std::move(points)}}};
 }
 
-Chart log_chart(std::vector<Vec2d> points) {
-    Chart chart = line_chart(std::move(points));
+PlotChart log_chart(std::vector<Vec2d> points) {
+    PlotChart chart = line_chart(std::move(points));
     chart.x.scale = AxisScale::logarithmic;
     chart.y.scale = AxisScale::logarithmic;
     return chart;
@@ -90,7 +90,7 @@ std::vector<Word> words(const std::string& svg) {
 }
 
 TEST(Chart, APlaceOnThePageIsTheValueThere) {
-    Chart chart = line_chart({{-3.0, 2e-4}, {11.0, 9e-4}});
+    PlotChart chart = line_chart({{-3.0, 2e-4}, {11.0, 9e-4}});
     for (int scales = 0; scales < 4; ++scales) {
         chart.curves[0].points = {{0.02, 2e-4}, {11.0, 9e-4}, {700.0, 3.0}};
         chart.x.scale = (scales & 1) != 0 ? AxisScale::logarithmic : AxisScale::linear;
@@ -128,7 +128,7 @@ TEST(Chart, TheDrawnCurveIsTheData) {
 }
 
 TEST(Chart, ACurveBreaksWhereThereIsNoValue) {
-    const auto pieces = [](const Chart& chart) { return count(path_data(chart_svg(chart), "curve").at(0), "M"); };
+    const auto pieces = [](const PlotChart& chart) { return count(path_data(chart_svg(chart), "curve").at(0), "M"); };
     EXPECT_EQ(pieces(line_chart({{0, 1}, {1, 2}, {2, 3}, {3, 4}})), 1U);
     EXPECT_EQ(pieces(line_chart({{0, 1}, {1, 2}, {2, kNan}, {3, 4}, {4, 5}})), 2U);
     EXPECT_EQ(pieces(line_chart({{0, 1}, {1, 2}, {kInfinity, 3}, {3, 4}, {4, 5}})), 2U);
@@ -146,7 +146,7 @@ TEST(Chart, PointsThatALogarithmicAxisCannotShowAreCounted) {
 }
 
 TEST(Chart, DataBeyondFixedAxesEndAtTheFrame) {
-    Chart chart = line_chart({{-10.0, -10.0}, {20.0, 20.0}});
+    PlotChart chart = line_chart({{-10.0, -10.0}, {20.0, 20.0}});
     chart.x.low = 0.0;
     chart.x.high = 10.0;
     chart.y.low = 0.0;
@@ -164,7 +164,7 @@ TEST(Chart, DataBeyondFixedAxesEndAtTheFrame) {
 }
 
 TEST(Chart, AxesDoNotDegenerate) {
-    const auto y_range = [](const Chart& chart) { return chart_frame(chart, {0, 0, 400, 300}).y; };
+    const auto y_range = [](const PlotChart& chart) { return chart_frame(chart, {0, 0, 400, 300}).y; };
     for (const double value : {0.0, 1e-300, 5.0, -1e12, 1e200}) {
         const ResolvedAxis axis = y_range(line_chart({{0, value}, {1, value}}));
         EXPECT_LT(axis.low, value);
@@ -172,20 +172,20 @@ TEST(Chart, AxesDoNotDegenerate) {
         EXPECT_GE(axis.ticks.major.size(), 2U) << value;
     }
     // Rounding noise about zero is not blown up to the chart's height.
-    Chart noise = line_chart({{0, 1e-15}, {1, -2e-15}});
+    PlotChart noise = line_chart({{0, 1e-15}, {1, -2e-15}});
     noise.y.least_span = 0.2;
     EXPECT_LE(y_range(noise).low, -0.1);
     EXPECT_GE(y_range(noise).high, 0.1);
     noise.y.holds_zero = true;
     noise.curves[0].points = {{0, 0.0}, {1, 1e-15}};
     EXPECT_EQ(y_range(noise).low, 0.0);
-    Chart symmetric = line_chart({{0, -1.0}, {1, 7.0}});
+    PlotChart symmetric = line_chart({{0, -1.0}, {1, 7.0}});
     symmetric.y.is_symmetric = true;
     EXPECT_EQ(y_range(symmetric).low, -y_range(symmetric).high);
 }
 
 TEST(Chart, AnAxisMayRunTheOtherWay) {
-    Chart chart = line_chart({{0, 1}, {1, 2}});
+    PlotChart chart = line_chart({{0, 1}, {1, 2}});
     chart.x.low = 1.0;
     chart.x.high = 0.0;
     const ChartFrame frame = chart_frame(chart, {0.0, 0.0, 100.0, 100.0});
@@ -195,7 +195,7 @@ TEST(Chart, AnAxisMayRunTheOtherWay) {
 }
 
 TEST(Chart, EqualScalesAreEqual) {
-    Chart chart = line_chart({{-3, -1}, {3, 1}});
+    PlotChart chart = line_chart({{-3, -1}, {3, 1}});
     chart.has_equal_scales = true;
     const ChartFrame frame = chart_frame(chart, {0.0, 0.0, 400.0, 300.0});
     const SvgPoint origin = frame.to_page({0, 0});
@@ -204,14 +204,16 @@ TEST(Chart, EqualScalesAreEqual) {
 }
 
 TEST(Chart, WordsNeverCoverEachOther) {
-    Chart chart{.title = "A title that is much longer than the chart is wide, as some are when a lens has a long name",
-                .caption =
-                    "And a caption that goes on for several lines, since somebody wanted to say it all at once: "
-                    "what was measured, on which rays, and how long it took on which machine",
-                .x = {.label = "Radius of curvature", .unit = "mm", .scale = AxisScale::logarithmic},
-                .y = {.label = "Error", .unit = "mm", .scale = AxisScale::logarithmic}};
+    PlotChart chart{
+        .title = "A title that is much longer than the chart is wide, as some are when a lens has a long name",
+        .caption =
+            "And a caption that goes on for several lines, since somebody wanted to say it all at once: "
+            "what was measured, on which rays, and how long it took on which machine",
+        .x = {.label = "Radius of curvature", .unit = "mm", .scale = AxisScale::logarithmic},
+        .y = {.label = "Error", .unit = "mm", .scale = AxisScale::logarithmic}};
     for (int i = 0; i < 7; ++i) {
-        Curve curve{.label = "number type " + std::to_string(i), .colour = series_colour(static_cast<std::size_t>(i))};
+        ChartCurve curve{.label = "number type " + std::to_string(i),
+                         .colour = series_colour(static_cast<std::size_t>(i))};
         for (int e = -3; e <= 15; ++e) {
             curve.points.push_back({std::pow(10.0, e), std::pow(10.0, -e - i)});
         }
@@ -230,7 +232,7 @@ TEST(Chart, AnythingIsDrawnAndNothingBreaksTheFile) {
     const std::vector<double> values = {0.0, 1.0, -1e9, 1e15, 1e300, -1e300, 1e-300, kNan, kInfinity, -kInfinity};
     for (const double a : values) {
         for (const double b : values) {
-            for (Chart chart : {line_chart({{a, b}, {b, a}, {1.0, 2.0}}), log_chart({{a, b}, {b, a}})}) {
+            for (PlotChart chart : {line_chart({{a, b}, {b, a}, {1.0, 2.0}}), log_chart({{a, b}, {b, a}})}) {
                 chart.title = "<script>&\"'\x01";
                 chart.y.low = a;
                 chart.x.high = b;
@@ -248,7 +250,7 @@ TEST(Chart, AnythingIsDrawnAndNothingBreaksTheFile) {
 TEST(ChartGrid, PanelsShareScalesAndOneLegend) {
     ChartGrid grid{.title = "Panels"};
     for (const double size : {1.0, 40.0, 3.0}) {
-        Chart chart = line_chart({{0, -size}, {1, size}});
+        PlotChart chart = line_chart({{0, -size}, {1, size}});
         chart.title = "Panel";
         chart.curves[0].label = "587.6 nm";
         grid.panels.push_back(chart);
@@ -258,9 +260,9 @@ TEST(ChartGrid, PanelsShareScalesAndOneLegend) {
     EXPECT_EQ(count(svg, ">587.6 nm</text>"), 1U);
     // Numbers of y at the two panels of the first column only, all on the widest panel's scale.
     EXPECT_EQ(count(svg, ">\u221240</text>"), 2U);
-    std::vector<Chart> charts = grid.panels;
+    std::vector<PlotChart> charts = grid.panels;
     share_y_range(charts);
-    for (const Chart& chart : charts) {
+    for (const PlotChart& chart : charts) {
         EXPECT_EQ(chart.y.low, -40.0);
         EXPECT_EQ(chart.y.high, 40.0);
     }
@@ -268,7 +270,7 @@ TEST(ChartGrid, PanelsShareScalesAndOneLegend) {
 }
 
 TEST(Chart, TheSameChartGivesTheSameBytes) {
-    const Chart chart = log_chart({{1, 2}, {3, 4}, {1e5, 1e-7}});
+    const PlotChart chart = log_chart({{1, 2}, {3, 4}, {1e5, 1e-7}});
     EXPECT_EQ(chart_svg(chart), chart_svg(chart));
 }
 
