@@ -24,7 +24,8 @@ struct SurfaceRow {
 /// The rows behind an open stop, which stands in the plane of the first vertex.
 Prescription prescription_of(const std::vector<SurfaceRow>& rows);
 
-/// The rows as a lens, by way of a prescription, as a file's lens is made. Throws InputError where make_lens refuses them.
+/// The rows as a lens, by way of a prescription, as a file's lens is made. Throws InputError where make_lens refuses
+/// them.
 TraceLens<double> lens_of(const std::vector<SurfaceRow>& rows);
 
 /// A ray from `origin` through `aim`.

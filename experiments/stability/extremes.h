@@ -23,7 +23,8 @@ struct Extreme {
     std::string setting;    // one sentence: which lens, which rays
     std::string parameter;  // what the number is: "radius"
     std::string unit;
-    std::vector<double> values;  // in the order of the sweep; may hold infinities and zeros, which a log axis leaves out
+    std::vector<double>
+        values;  // in the order of the sweep; may hold infinities and zeros, which a log axis leaves out
     bool is_logarithmic = true;
     /// Throws InputError where the program refuses such a lens: its message is a part of the result.
     std::function<StabilityCase(double value, std::mt19937_64& random)> build;

@@ -68,10 +68,10 @@ std::vector<Ray<double>> rays_over(double gap, std::mt19937_64& random) {
 }
 
 StabilityCase gap_case(double gap, std::mt19937_64& random) {
-    return {lens_of({{.thickness = gap},
-                     {.radius = 40.0, .thickness = 4.0, .n = 1.6},
-                     {.radius = -40.0, .thickness = 30.0}}),
-            rays_over(gap, random)};
+    return {
+        lens_of(
+            {{.thickness = gap}, {.radius = 40.0, .thickness = 4.0, .n = 1.6}, {.radius = -40.0, .thickness = 30.0}}),
+        rays_over(gap, random)};
 }
 
 StabilityCase glass_thickness_case(double thickness, std::mt19937_64& random) {
@@ -133,8 +133,14 @@ std::vector<Extreme> medium_extremes() {
         {"index-matched-grazing", "Nearly the same index, at grazing incidence",
          "A flat boundary between 1.5 and 1.5 + Δn, light at 1 mrad from it.", "Δn", "", decades(1e-16, 1.0), true,
          matched_grazing_case},
-        {"index", "High indices", "A biconvex lens; 5 is the most that a prescription may have.", "index", "",
-         {1.0, 1.0000000001, 1.0001, 1.3, 1.5, 1.8, 2.0, 2.5, 3.0, 3.5, 4.0, 4.5, 5.0, 5.5}, false, index_case},
+        {"index",
+         "High indices",
+         "A biconvex lens; 5 is the most that a prescription may have.",
+         "index",
+         "",
+         {1.0, 1.0000000001, 1.0001, 1.3, 1.5, 1.8, 2.0, 2.5, 3.0, 3.5, 4.0, 4.5, 5.0, 5.5},
+         false,
+         index_case},
         {"gap", "Air in front of a lens", "Rays that cross the gap and meet the lens.", "thickness", "mm",
          [] {
              std::vector<double> values = decades(1e-9, 1e9);
@@ -152,10 +158,23 @@ std::vector<Extreme> medium_extremes() {
          true, glass_thickness_case},
         {"backwards", "Negative thicknesses between dummies", "Back by a length, and forwards again to a lens.",
          "−thickness", "mm", decades(1e-9, 1e9), true, backwards_case},
-        {"surfaces", "Many surfaces", "Random radii from 40 to 200 mm of either sign, n = 1.6 and air in turn.",
-         "surfaces", "", {2.0, 5.0, 10.0, 20.0, 50.0, 100.0, 200.0}, true, many_surfaces_case},
-        {"wavelength", "Ends of glass formulas", "A doublet of N-BK7 and F2, at wavelengths up to the ends of their formulas and beyond.",
-         "wavelength", "nm", {1e-3, 200.0, 319.999999, 320.0, 320.000001, 400.0, 550.0, 1000.0, 2000.0, 2499.999999, 2500.0, 2500.000001, 1e9}, true, wavelength_case},
+        {"surfaces",
+         "Many surfaces",
+         "Random radii from 40 to 200 mm of either sign, n = 1.6 and air in turn.",
+         "surfaces",
+         "",
+         {2.0, 5.0, 10.0, 20.0, 50.0, 100.0, 200.0},
+         true,
+         many_surfaces_case},
+        {"wavelength",
+         "Ends of glass formulas",
+         "A doublet of N-BK7 and F2, at wavelengths up to the ends of their formulas and beyond.",
+         "wavelength",
+         "nm",
+         {1e-3, 200.0, 319.999999, 320.0, 320.000001, 400.0, 550.0, 1000.0, 2000.0, 2499.999999, 2500.0, 2500.000001,
+          1e9},
+         true,
+         wavelength_case},
     };
 }
 
