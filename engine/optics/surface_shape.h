@@ -100,7 +100,7 @@ T sag(const SurfaceShape<T>& shape, const T& x, const T& y) {
     return root2 >= T(0) ? constant / (T(1) + sqrt(root2)) : nowhere;
 }
 
-/// Where a ray meets a conic, without the sine, which `intersect` adds.
+/// Where a ray meets a conic, and ∇F there, towards +z; without the sine, which `intersect` adds.
 ///
 /// c (x² + y² + (1 + k) z²) − 2 z = 0 along the ray from its closest approach p to the vertex (p·d = 0) is
 ///     A s² − 2 B s + C = 0,   A = c (1 + k d_z²),   B = d_z (1 − c k p_z),   C = f + c k p_z²,   f = c p·p − 2 p_z,
@@ -108,8 +108,12 @@ T sag(const SurfaceShape<T>& shape, const T& x, const T& y) {
 /// the terms k² c² p_z² d_z² and 2 k c p_z d_z² stand twice; without them it is the sphere's discriminant and one term
 /// more, d_z² − c f − c² k (p_z² + d_z² p·p), which is still good to an ulp at k = 1e6. p is projected twice, for far
 /// origins: with k the linear term is too long to carry what rounding leaves of p·d.
+///
+/// Second, ∇F = (−c x, −c y, 1 − c (1 + k) z). Its z is √(1 − (1 + k) c² r²) as well, which does not amplify the error
+/// of z by k; it stands where the root is no small difference, the other form near an ellipsoid's equator.
 template <class T>
-Intersection<T> intersect_conic(const Vec3<T>& origin, const Vec3<T>& d, const T& c, const T& k, const T& heading) {
+std::pair<Intersection<T>, Vec3<T>> intersect_conic(const Vec3<T>& origin, const Vec3<T>& d, const T& c, const T& k,
+                                                    const T& heading) {
     using std::sqrt;
     const T first = -dot(origin, d);
     const Vec3<T> near_vertex = origin + first * d;
@@ -129,12 +133,16 @@ Intersection<T> intersect_conic(const Vec3<T>& origin, const Vec3<T>& d, const T
     const T q = b + (along ? heading : -heading) * root;
     const T s = (along ? constant : q) / (along ? q : (curved ? a : T(1)));
     const Vec3<T> point = p + s * d;
-    const T gradient_z = T(1) - c * (T(1) + k) * point.z;
-    const T gradient = sqrt(c * c * (point.x * point.x + point.y * point.y) + gradient_z * gradient_z);
-    return {.point = point,
-            .distance = to_vertex + s,
-            .cos_incidence = root / gradient,
-            .hit = meets && (along || curved) && gradient_z > T(0)};
+    const T of_z = T(1) - c * (T(1) + k) * point.z;
+    const T across = c * c * (point.x * point.x + point.y * point.y);
+    const T of_r2 = T(1) - (T(1) + k) * across;
+    const T gradient_z = T(4) * of_r2 > T(1) ? sqrt(of_r2) : of_z;
+    return {{.point = point,
+             .distance = to_vertex + s,
+             .cos_incidence = root / sqrt(across + gradient_z * gradient_z),
+             .sin2_incidence = T(0),
+             .hit = meets && (along || curved) && of_z > T(0)},
+            {-c * point.x, -c * point.y, gradient_z}};
 }
 
 /// Newton's method along a ray from the point at `start` (mm) to where it crosses `shape` in the heading's sense, until
@@ -191,11 +199,10 @@ std::pair<Intersection<T>, Vec3<T>> intersect(const SurfaceShape<T>& shape, cons
         met.sin2_incidence = dot(across, across);
         return std::pair{met, normal};
     };
-    const T& c = shape.curvature;
-    const Intersection<T> conic = intersect_conic(origin, d, c, shape.conic, heading);
+    const auto conic_met = intersect_conic(origin, d, shape.curvature, shape.conic, heading);
+    const Intersection<T>& conic = conic_met.first;
     if (shape.is_conic()) {
-        const Vec3<T>& at = conic.point;
-        return with_normal(conic, {-c * at.x, -c * at.y, T(1) - c * (T(1) + shape.conic) * at.z});
+        return with_normal(conic, conic_met.second);
     }
     const T nearest = -dot(origin, d);
     const T across = length(origin + nearest * d);

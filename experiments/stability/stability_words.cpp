@@ -70,7 +70,14 @@ std::string value_text(double value, const std::string& unit) {
     if (std::isinf(value)) {
         return value > 0.0 ? "∞" : "−∞";
     }
-    const std::string number = fmt::format("{:.12g}", value);
+    std::string number = fmt::format("{:.12g}", value);
+    if (std::abs(value) >= 1e5) {
+        number = fmt::format("{:.6e}", value);  // 1.000000e+09
+        const std::size_t exponent = number.find('e');
+        std::string digits = number.substr(0, exponent);
+        digits.erase(digits.find_last_not_of("0.") + 1);
+        number = fmt::format("{}e{}", digits, std::stoi(number.substr(exponent + 1)));
+    }
     return unit.empty() || unit == "°" ? number + unit : number + " " + unit;
 }
 
