@@ -1,11 +1,13 @@
 #include "experiments/experiment.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <set>
 
 #include "engine/io/input_error.h"
+#include "experiments/stability/extremes.h"
 
 namespace lensproof {
 
@@ -133,6 +135,22 @@ Comparison read_comparison(TomlTable& table, const std::set<std::string>& subjec
     return comparison;
 }
 
+StabilityExperiment read_stability(TomlTable& table) {
+    StabilityExperiment stability;
+    if (table.has("extremes")) {
+        std::vector<std::string> known;
+        std::ranges::transform(stability_extremes(), std::back_inserter(known), &Extreme::id);
+        stability.extremes = table.texts("extremes");
+        for (const std::string& id : stability.extremes) {
+            if (std::ranges::find(known, id) == known.end()) {
+                table.fail("extremes", fmt::format("names \"{}\", expected one of {}", id, fmt::join(known, ", ")));
+            }
+        }
+    }
+    table.finish();
+    return stability;
+}
+
 }  // namespace
 
 Experiment read_experiment(const std::filesystem::path& file) {
@@ -141,6 +159,11 @@ Experiment read_experiment(const std::filesystem::path& file) {
     experiment.file = file;
     experiment.title = top.text("title");
     experiment.summary = top.text_or("summary", "");
+    if (auto stability = top.optional_table("stability")) {
+        experiment.stability = read_stability(*stability);
+        top.finish();
+        return experiment;
+    }
     std::set<std::string> names;
     for (TomlTable& table : top.tables("simulations")) {
         experiment.simulations.push_back(read_simulation(table, top));
@@ -162,7 +185,7 @@ Experiment read_experiment(const std::filesystem::path& file) {
     top.optional_table("render");
     top.finish();
     if (names.empty()) {
-        top.fail("", "holds neither [[simulations]] nor [[photos]]");
+        top.fail("", "holds neither [[simulations]] nor [[photos]] nor [stability]");
     }
     return experiment;
 }

@@ -55,6 +55,11 @@ struct Comparison {
     Expectation expectation = Expectation::at_most;
 };
 
+/// The tracer's number types at the extremes (experiments/stability).
+struct StabilityExperiment {
+    std::vector<std::string> extremes;  // ids; empty: all
+};
+
 struct Experiment {
     std::filesystem::path file;
     std::string title;
@@ -62,6 +67,7 @@ struct Experiment {
     std::vector<Simulation> simulations;
     std::vector<PhotoSubject> photos;
     std::vector<Comparison> comparisons;
+    std::optional<StabilityExperiment> stability;  // then there is nothing else
 };
 
 /// Reads an experiment file (described in experiments/README.md). Throws InputError naming file, line and key.

@@ -18,21 +18,6 @@ Json number(double value) {
     return std::isfinite(value) ? Json(value) : Json(nullptr);
 }
 
-Json check_json(const Check& check) {
-    return {{"id", check.id},
-            {"group", check.group},
-            {"subject", check.subject},
-            {"label", check.label},
-            {"value", number(check.value)},
-            {"sigma", number(check.sigma)},
-            {"unit", check.unit},
-            {"limit", number(check.limit)},
-            {"expect", expectation_name(check.expectation)},
-            {"target", check.expectation == Expectation::within ? Json(check.target) : Json(nullptr)},
-            {"verdict", verdict_name(check.verdict())},
-            {"explanation", check.explanation}};
-}
-
 Json points_json(const ProfileView& view) {
     Json points = Json::array();
     for (const ProfilePoint& point : view.points) {
@@ -255,10 +240,26 @@ std::string summary_of(const Experiment& experiment, const ExperimentResult& res
     return fmt::format("{} {} of {} checks hold.", experiment.summary, passed, result.checks.size());
 }
 
-Json provenance_json(const ExperimentResult& result, const RunSettings& settings) {
+}  // namespace
+
+nlohmann::ordered_json check_json(const Check& check) {
+    return {{"id", check.id},
+            {"group", check.group},
+            {"subject", check.subject},
+            {"label", check.label},
+            {"value", number(check.value)},
+            {"sigma", number(check.sigma)},
+            {"unit", check.unit},
+            {"limit", number(check.limit)},
+            {"expect", expectation_name(check.expectation)},
+            {"target", check.expectation == Expectation::within ? Json(check.target) : Json(nullptr)},
+            {"verdict", verdict_name(check.verdict())},
+            {"explanation", check.explanation}};
+}
+
+nlohmann::ordered_json provenance_json(std::vector<std::filesystem::path> inputs, const RunSettings& settings) {
     Json provenance{{"program", "lensproof"}, {"version", LENSPROOF_VERSION}, {"commit", source_commit()}};
     provenance["settings"] = {{"seed", settings.seed}};
-    std::vector<std::filesystem::path> inputs = result.inputs;
     std::ranges::sort(inputs);
     inputs.erase(std::unique(inputs.begin(), inputs.end()), inputs.end());
     for (const std::filesystem::path& input : inputs) {
@@ -266,8 +267,6 @@ Json provenance_json(const ExperimentResult& result, const RunSettings& settings
     }
     return provenance;
 }
-
-}  // namespace
 
 nlohmann::ordered_json report_json(const Experiment& experiment, const ExperimentResult& result,
                                    const RunSettings& settings) {
@@ -284,7 +283,7 @@ nlohmann::ordered_json report_json(const Experiment& experiment, const Experimen
         report["subjects"].push_back(subject_json(subject));
     }
     report["plots"] = plots_json(experiment, result);
-    report["provenance"] = provenance_json(result, settings);
+    report["provenance"] = provenance_json(result.inputs, settings);
     report["reproduce"] = fmt::format("./lensproof run {} --seed {}", portable_path(experiment.file), settings.seed);
     return report;
 }

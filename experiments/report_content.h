@@ -9,6 +9,11 @@
 
 namespace lensproof {
 
+nlohmann::ordered_json check_json(const Check& check);
+
+/// Program, version, commit, settings, and the inputs with their hashes.
+nlohmann::ordered_json provenance_json(std::vector<std::filesystem::path> inputs, const RunSettings& settings);
+
 nlohmann::ordered_json report_json(const Experiment& experiment, const ExperimentResult& result,
                                    const RunSettings& settings);
 

@@ -1,7 +1,7 @@
 // engine/optics/coating.h — how much light passes a coated surface, by thin-film transfer matrices.
 #pragma once
+#include <cmath>
 #include <complex>
-#include <numbers>
 #include <optional>
 #include <vector>
 
@@ -35,6 +35,8 @@ T coating_transmittance(const TraceCoating<T>& coating, const T& n1, const T& n2
     }
     using Complex = std::complex<T>;
     const T sine = n1 * n1 * (T(1) - cos1 * cos1);  // (n sin θ)², the same in every layer
+    using std::acos;
+    const T pi = acos(T(-1));  // in every number type
     T sum = T(0);
     for (const bool s_polarised : {true, false}) {
         const auto admittance = [&](const Complex& n, const Complex& cosine) {
@@ -45,9 +47,9 @@ T coating_transmittance(const TraceCoating<T>& coating, const T& n1, const T& n2
         const T eta1 = admittance(n1, cos1).real();
         const T eta2 = c.real();
         for (auto layer = coating.layers.rbegin(); layer != coating.layers.rend(); ++layer) {
-            const Complex cosine = std::sqrt(Complex(T(1) - sine / (layer->index * layer->index)));
+            const Complex cosine = sqrt(Complex(T(1) - sine / (layer->index * layer->index)));
             const Complex eta = admittance(layer->index, cosine);
-            const Complex phase = T(2.0L * std::numbers::pi_v<long double>) * layer->index * layer->thickness * cosine;
+            const Complex phase = T(2) * pi * layer->index * layer->thickness * cosine;
             const Complex i_sine = Complex(T(0), T(1)) * std::sin(phase);
             const Complex cos_phase = std::cos(phase);
             const Complex next_b = cos_phase * b + i_sine / eta * c;

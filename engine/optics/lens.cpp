@@ -24,8 +24,9 @@ namespace lensproof {
 namespace {
 
 constexpr double kUnlimited = std::numeric_limits<double>::infinity();
-// Far beyond any lens, far below what would cost digits.
+// Far beyond any lens, far below what a square would overflow at.
 constexpr double kLargestLength = 1e7;
+constexpr double kLargestThickness = 1e10;
 constexpr double kSmallestRadius = 1e-3;
 
 Glass everywhere(std::string name, DispersionFormula formula) {
@@ -75,8 +76,8 @@ void require_traceable(const Prescription& prescription) {
         }
         require(!row.radius_x_mm || (!std::isnan(*row.radius_x_mm) && *row.radius_x_mm != 0.0), row, "radius_x_mm",
                 row.radius_x_mm.value_or(0.0), "a radius in mm, or inf for a cylinder");
-        require(row.thickness_mm >= 0.0 && row.thickness_mm <= kLargestLength, row, "thickness_mm", row.thickness_mm,
-                "a length that is not negative");
+        require(std::abs(row.thickness_mm) <= kLargestThickness, row, "thickness_mm", row.thickness_mm,
+                "a length up to 1e10 mm");
         for (const auto& [key, length] : {std::pair{"semi_diameter_mm", row.semi_diameter_mm},
                                           {"rim_mm", row.rim_mm},
                                           {"barrel_mm", row.barrel_mm}}) {
@@ -92,6 +93,20 @@ void require_traceable(const Prescription& prescription) {
     if (stops != 1) {
         throw InputError(fmt::format("{}: the prescription has {} aperture stops, expected exactly one",
                                      prescription.file.string(), stops));
+    }
+}
+
+/// Light of a refracting lens runs forwards. Only a dummy, with one medium on both sides, may stand behind the surface
+/// that follows it, or in front of the one before it: there the way back is a way of reckoning.
+void require_forwards(const Prescription& prescription, const std::vector<LensSurface>& surfaces) {
+    const auto is_dummy = [&](std::size_t i) {
+        return i < surfaces.size() && (i == 0 ? surfaces[0].medium.formula == DispersionFormula(ConstantIndex{1.0})
+                                              : surfaces[i].medium.formula == surfaces[i - 1].medium.formula);
+    };
+    for (std::size_t i = 0; i < surfaces.size(); ++i) {
+        const PrescribedSurface& row = prescription.surfaces[i];
+        require(row.thickness_mm >= 0.0 || is_dummy(i) || is_dummy(i + 1), row, "thickness_mm", row.thickness_mm,
+                "a length that is not negative, but beside a dummy surface");
     }
 }
 
@@ -235,6 +250,7 @@ Lens make_lens(const Prescription& prescription, const GlassCatalogue& glasses, 
         barrel_before = row.barrel_mm.value_or(kUnlimited);
         lens.image_z += row.thickness_mm;
     }
+    require_forwards(prescription, lens.surfaces);
     for (const auto& [name, index] : overrides) {
         if (!used.contains(name)) {
             used.erase("");

@@ -20,11 +20,11 @@ struct Refraction {
 /// (Welford, Aberrations of Optical Systems, §4.3). `normal` has unit length and points along the ray (d·n = cos i >
 /// 0).
 ///
-/// cos² i' = 1 − μ² (1 − cos² i) is formed as cos² i + (1 − μ²) sin² i, which is exact for μ = 1.
+/// cos² i' = 1 − μ² sin² i is formed as cos² i + (1 − μ²) sin² i, which is exact for μ = 1.
 template <class T>
-Refraction<T> refract(const Vec3<T>& direction, const Vec3<T>& normal, const T& cos_incidence, const T& index_ratio) {
+Refraction<T> refract(const Vec3<T>& direction, const Vec3<T>& normal, const T& cos_incidence, const T& sin2_incidence,
+                      const T& index_ratio) {
     using std::sqrt;
-    const T sin2_incidence = T(1) - cos_incidence * cos_incidence;
     const T cos2_refraction =
         cos_incidence * cos_incidence + (T(1) - index_ratio) * (T(1) + index_ratio) * sin2_incidence;
     const auto transmitted = cos2_refraction > T(0);
@@ -34,16 +34,20 @@ Refraction<T> refract(const Vec3<T>& direction, const Vec3<T>& normal, const T& 
             .transmitted = transmitted};
 }
 
-/// The share of unpolarised light that passes an uncoated surface: 1 − (R_s + R_p) / 2
-/// (Fresnel; Born & Wolf, Principles of Optics, 7th ed., §1.5.2, eqs. 21a, 21b).
+/// The share of unpolarised light that passes an uncoated surface (Fresnel; Born & Wolf, Principles of Optics, 7th ed.,
+/// §1.5.2, eqs. 21a, 21b).
+///
+/// Of either polarisation T = 4 a b / (a + b)², with a and b the two media's n cos i (s), or each index with the other
+/// cosine (p). Formed as 4 r (1 − r), r the lesser one's part of the sum: near grazing, where little passes, it keeps
+/// the digits that 1 − R loses, and two tiny cosines make no 0 / 0. Between equal indices it is exactly 1.
 template <class T>
 T fresnel_transmittance(const T& index_before, const T& index_after, const T& cos_incidence, const T& cos_refraction) {
-    const T s_sum = index_before * cos_incidence + index_after * cos_refraction;
-    const T p_sum = index_after * cos_incidence + index_before * cos_refraction;
-    const T inverse = T(1) / (s_sum * p_sum);
-    const T s = (index_before * cos_incidence - index_after * cos_refraction) * p_sum * inverse;
-    const T p = (index_after * cos_incidence - index_before * cos_refraction) * s_sum * inverse;
-    return T(1) - (s * s + p * p) / T(2);
+    const auto passing = [](const T& a, const T& b) {
+        const T r = select(a < b, a, b) / (a + b);
+        return r * (T(1) - r);
+    };
+    return T(2) * (passing(index_before * cos_incidence, index_after * cos_refraction) +
+                   passing(index_after * cos_incidence, index_before * cos_refraction));
 }
 
 }  // namespace lensproof

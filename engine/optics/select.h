@@ -9,9 +9,4 @@ T select(bool mask, const T& a, const T& b) {
     return mask ? a : b;
 }
 
-/// Whether any lane of `mask` holds. Packets overload it.
-inline bool any(bool mask) {
-    return mask;
-}
-
 }  // namespace lensproof

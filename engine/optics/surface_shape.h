@@ -100,68 +100,80 @@ T sag(const SurfaceShape<T>& shape, const T& x, const T& y) {
     return root2 >= T(0) ? constant / (T(1) + sqrt(root2)) : nowhere;
 }
 
-/// `intersect` for a conic: c (x² + y² + (1 + k) z²) − 2 z = 0 along the ray from its closest approach p to the vertex,
-///     A s² + 2 B s + C = 0,   A = c (1 + k d_z²),   B = c k p_z d_z − d_z,   C = c (p·p + k p_z²) − 2 p_z.
-/// d·∇F at a root is −(B + A s) = ±√(B² − A C), so the heading picks the root as it does for the sphere.
+/// Where a ray meets a conic, and ∇F there, towards +z; without the sine, which `intersect` adds.
+///
+/// c (x² + y² + (1 + k) z²) − 2 z = 0 along the ray from its closest approach p to the vertex (p·d = 0) is
+///     A s² − 2 B s + C = 0,   A = c (1 + k d_z²),   B = d_z (1 − c k p_z),   C = f + c k p_z²,   f = c p·p − 2 p_z,
+/// and d·∇F at a root is B − A s = ±√(B² − A C), so the heading picks the root as it does for the sphere. In B² − A C
+/// the terms k² c² p_z² d_z² and 2 k c p_z d_z² stand twice; without them it is the sphere's discriminant and one term
+/// more, d_z² − c f − c² k (p_z² + d_z² p·p), which is still good to an ulp at k = 1e6. p is projected twice, for far
+/// origins: with k the linear term is too long to carry what rounding leaves of p·d.
+///
+/// Second, ∇F = (−c x, −c y, 1 − c (1 + k) z). Its z is √(1 − (1 + k) c² r²) as well, which does not amplify the error
+/// of z by k; it stands where the root is no small difference, the other form near an ellipsoid's equator.
 template <class T>
-Intersection<T> intersect_conic(const Vec3<T>& origin, const Vec3<T>& d, const T& c, const T& k, const T& heading) {
-    using std::copysign;
+std::pair<Intersection<T>, Vec3<T>> intersect_conic(const Vec3<T>& origin, const Vec3<T>& d, const T& c, const T& k,
+                                                    const T& heading) {
     using std::sqrt;
-    const T to_vertex = -dot(origin, d);
-    const Vec3<T> p = origin + to_vertex * d;
+    const T first = -dot(origin, d);
+    const Vec3<T> near_vertex = origin + first * d;
+    const T second = -dot(near_vertex, d);
+    const Vec3<T> p = near_vertex + second * d;
+    const T to_vertex = first + second;
+    const T p2 = dot(p, p);
+    const T f = c * p2 - T(2) * p.z;
     const T a = c * (T(1) + k * d.z * d.z);
-    const T minus_b = d.z - c * k * p.z * d.z;
-    const T constant = c * (dot(p, p) + k * p.z * p.z) - T(2) * p.z;
-    const T discriminant = minus_b * minus_b - a * constant;
+    const T b = d.z * (T(1) - c * k * p.z);
+    const T constant = f + c * k * p.z * p.z;
+    const T discriminant = d.z * d.z - c * f - c * c * k * (p.z * p.z + d.z * d.z * p2);
     const bool meets = discriminant > T(0);
     const T root = sqrt(meets ? discriminant : T(1));
-    const T q = minus_b + copysign(root, minus_b);
-    const bool along = minus_b * heading > T(0);
-    const bool curved = a * a > T(0);
+    const bool along = b * heading > T(0);
+    const bool curved = a < T(0) || a > T(0);
+    const T q = b + (along ? heading : -heading) * root;
     const T s = (along ? constant : q) / (along ? q : (curved ? a : T(1)));
     const Vec3<T> point = p + s * d;
-    const T gradient_z = T(1) - c * (T(1) + k) * point.z;
-    const T gradient = sqrt(c * c * (point.x * point.x + point.y * point.y) + gradient_z * gradient_z);
-    return {.point = point,
-            .distance = to_vertex + s,
-            .cos_incidence = root / gradient,
-            .hit = meets && (along || curved) && gradient_z > T(0)};
+    const T of_z = T(1) - c * (T(1) + k) * point.z;
+    const T across = c * c * (point.x * point.x + point.y * point.y);
+    const T of_r2 = T(1) - (T(1) + k) * across;
+    const T gradient_z = T(4) * of_r2 > T(1) ? sqrt(of_r2) : of_z;
+    return {{.point = point,
+             .distance = to_vertex + s,
+             .cos_incidence = root / sqrt(across + gradient_z * gradient_z),
+             .sin2_incidence = T(0),
+             .hit = meets && (along || curved) && of_z > T(0)},
+            {-c * point.x, -c * point.y, gradient_z}};
 }
 
-/// `intersect` for any shape. What is no conic is found by Newton's method from the conic's intersection (from the
-/// vertex's tangent plane where the ray misses that), until a step is below the precision of T. A surface that turns
-/// over may be met more than once; the root found is then the one next to the start. Returned with the unit normal
-/// there, turned along the ray.
+/// Newton's method along a ray from the point at `start` (mm) to where it crosses `shape` in the heading's sense, until
+/// a step is below the precision of T. A step to where there is no surface, or where the ray runs the other way through
+/// it, is halved. `hit` is false where that leads nowhere; cosine and sine are left to the caller.
 template <class T>
-std::pair<Intersection<T>, Vec3<T>> intersect(const SurfaceShape<T>& shape, const Vec3<T>& origin, const Vec3<T>& d,
-                                              const T& heading) {
+std::pair<Intersection<T>, Vec3<T>> newton_intersect(const SurfaceShape<T>& shape, const Vec3<T>& origin,
+                                                     const Vec3<T>& d, const T& heading, const T& start) {
     using std::abs;
     using std::sqrt;
-    Intersection<T> meeting = intersect_conic(origin, d, shape.curvature, shape.conic, heading);
-    if (shape.is_conic()) {
-        const T& c = shape.curvature;
-        const Vec3<T>& at = meeting.point;
-        const Vec3<T> gradient{-c * at.x, -c * at.y, T(1) - c * (T(1) + shape.conic) * at.z};
-        return {meeting, heading / sqrt(dot(gradient, gradient)) * gradient};
-    }
-    if (!meeting.hit || shape.is_toroid) {
-        const bool parallel = !(d.z * d.z > T(0));
-        meeting.distance = parallel ? T(0) : -origin.z / d.z;
-        meeting.point = origin + meeting.distance * d;
-    }
     // A step that no longer shrinks has come down to the noise of the terms' sum.
-    constexpr int kMostSteps = 50;
+    constexpr int kMostSteps = 60;
     const T precision = T(16) * std::numeric_limits<T>::epsilon();
-    meeting.hit = false;
+    Intersection<T> meeting{
+        .point = origin + start * d, .distance = start, .cos_incidence = T(1), .sin2_incidence = T(0), .hit = false};
     Vec3<T> gradient{T(0), T(0), T(1)};
+    T ahead = T(0);
     T last_step = std::numeric_limits<T>::infinity();
     for (int step = 0; step < kMostSteps && !meeting.hit; ++step) {
         const Implicit<T> here = implicit_surface(shape, meeting.point);
         const T rise = dot(here.gradient, d);
         if (!here.defined || !(rise * heading > T(0))) {
-            break;
+            ahead = ahead / T(2);
+            if (!(abs(ahead) > T(0))) {
+                break;
+            }
+            meeting.point = meeting.point - ahead * d;
+            meeting.distance -= ahead;
+            continue;
         }
-        const T ahead = -here.value / rise;
+        ahead = -here.value / rise;
         meeting.point = meeting.point + ahead * d;
         meeting.distance += ahead;
         const T size = sqrt(dot(meeting.point, meeting.point)) + T(1);
@@ -170,12 +182,56 @@ std::pair<Intersection<T>, Vec3<T>> intersect(const SurfaceShape<T>& shape, cons
         last_step = abs(ahead);
         gradient = here.gradient;
     }
-    if (!meeting.hit) {
-        return {{.point = {}, .distance = T(0), .cos_incidence = T(1), .hit = false}, {T(0), T(0), heading}};
+    return {meeting, gradient};
+}
+
+/// `intersect` for any shape. What is no conic is found by Newton's method: from the conic's intersection, else from
+/// the vertex's plane, else from the ray's point nearest to the vertex, and for a toroid at last from the spheres of
+/// its two curvatures, which rays from the side meet. A surface that turns over may be met more than once; the root
+/// found is then the one next to the start. Returned with the unit normal there, turned along the ray.
+template <class T>
+std::pair<Intersection<T>, Vec3<T>> intersect(const SurfaceShape<T>& shape, const Vec3<T>& origin, const Vec3<T>& d,
+                                              const T& heading) {
+    using std::sqrt;
+    const auto with_normal = [&](Intersection<T> met, const Vec3<T>& gradient) {
+        const Vec3<T> normal = heading / sqrt(dot(gradient, gradient)) * gradient;
+        const Vec3<T> across = d - met.cos_incidence * normal;
+        met.sin2_incidence = dot(across, across);
+        return std::pair{met, normal};
+    };
+    const auto conic_met = intersect_conic(origin, d, shape.curvature, shape.conic, heading);
+    const Intersection<T>& conic = conic_met.first;
+    if (shape.is_conic()) {
+        return with_normal(conic, conic_met.second);
     }
-    const Vec3<T> normal = heading / sqrt(dot(gradient, gradient)) * gradient;
-    meeting.cos_incidence = dot(d, normal);
-    return {meeting, normal};
+    const T nearest = -dot(origin, d);
+    const T across = length(origin + nearest * d);
+    const bool crosses_plane = d.z < T(0) || d.z > T(0);
+    std::pair<Intersection<T>, Vec3<T>> found{};
+    const auto finds_from = [&](const T& start) {
+        found = newton_intersect(shape, origin, d, heading, start);
+        return found.first.hit;
+    };
+    const auto finds_from_any = [&] {
+        if (!shape.is_toroid && conic.hit && finds_from(conic.distance)) {
+            return true;
+        }
+        if (crosses_plane && finds_from(-origin.z / d.z)) {
+            return true;
+        }
+        for (const int share : {0, 2, -2, 1, -1, 4, -4}) {
+            if (finds_from(nearest + T(share) / T(2) * across)) {
+                return true;
+            }
+        }
+        return false;
+    };
+    if (!finds_from_any()) {
+        found.first.hit = false;
+        found.second = {T(0), T(0), heading};
+    }
+    found.first.cos_incidence = heading * dot(d, found.second) / sqrt(dot(found.second, found.second));
+    return with_normal(found.first, found.second);
 }
 
 }  // namespace lensproof

@@ -17,7 +17,7 @@ template <class T>
 struct TraceSurface {
     T curvature;  // 1/mm, at the vertex (of a toroid: in y–z), positive where the centre of curvature lies at larger z
     T vertex_z;   // mm
-    T semi_diameter_squared;  // mm²
+    T semi_diameter_squared;  // mm²; −1 where nothing is open, so that no ray lies within
     T index_before;           // of the medium on the scene's side
     T index_after;            // of the medium on the sensor's side
     T forward_ratio;          // index_before / index_after, and its inverse: divisions that the inner loop is spared
@@ -47,7 +47,7 @@ TraceSurface<T> make_trace_surface(T curvature, T vertex_z, T semi_diameter, T i
                                    bool is_stop) {
     return {.curvature = curvature,
             .vertex_z = vertex_z,
-            .semi_diameter_squared = semi_diameter * semi_diameter,
+            .semi_diameter_squared = semi_diameter > T(0) ? semi_diameter * semi_diameter : T(-1),
             .index_before = index_before,
             .index_after = index_after,
             .forward_ratio = index_before / index_after,
@@ -138,7 +138,7 @@ TracedRay<T> trace_through(const TraceLens<T>& lens, const Ray<T>& ray, Visitor&
             meeting = intersect(from_vertex, own_way, c, heading);
             normal = heading * Vec3<T>{-c * meeting.point.x, -c * meeting.point.y, T(1) - c * meeting.point.z};
         }
-        if (!any(meeting.hit)) {
+        if (!meeting.hit) {
             status = RayStatus::missed;
             ended_at = index;
             report(index, status);
@@ -155,17 +155,18 @@ TracedRay<T> trace_through(const TraceLens<T>& lens, const Ray<T>& ray, Visitor&
         }
 
         RayStatus here = RayStatus::ok;
+        const T r2 = point.x * point.x + point.y * point.y;
+        const bool is_beyond = r2 > surface.semi_diameter_squared;
         T open_share = T(1);  // of the stop's texture
         if constexpr (has_specials) {
-            if (special != nullptr && !special->mask.is_full_circle()) {
+            if (special != nullptr && !special->mask.is_full_circle() && !is_beyond) {
                 using std::sqrt;
                 const T scale = T(1) / sqrt(surface.semi_diameter_squared);
                 open_share = static_cast<T>(special->mask.transmittance(static_cast<double>(scale * point.x),
                                                                         static_cast<double>(scale * point.y)));
             }
         }
-        const T r2 = point.x * point.x + point.y * point.y;
-        if (any(r2 > surface.semi_diameter_squared) || (has_specials && !(open_share > T(0)))) {
+        if (is_beyond || (has_specials && !(open_share > T(0)))) {
             if (status == RayStatus::ok) {  // only the first rim passed is named
                 here = surface.is_stop ? RayStatus::stopped : RayStatus::clipped;
                 status = here;
@@ -177,8 +178,8 @@ TracedRay<T> trace_through(const TraceLens<T>& lens, const Ray<T>& ray, Visitor&
             }
         }
 
-        const Refraction<T> bent = refract(own_way, normal, meeting.cos_incidence, ratio);
-        if (!any(bent.transmitted)) {
+        const Refraction<T> bent = refract(own_way, normal, meeting.cos_incidence, meeting.sin2_incidence, ratio);
+        if (!bent.transmitted) {
             status = RayStatus::total_internal_reflection;
             ended_at = index;
             report(index, status);

@@ -8,6 +8,7 @@
 #include "experiments/cli/progress.h"
 #include "experiments/report/report.h"
 #include "experiments/report_content.h"
+#include "experiments/stability/stability_report.h"
 
 namespace lensproof {
 
@@ -55,6 +56,24 @@ void print_checks(const std::vector<Check>& checks) {
     }
 }
 
+/// Writes report.json and report.html, prints the checks, and says how it went.
+int finish_report(const RunOptions& options, const std::filesystem::path& folder, const std::vector<Check>& checks,
+                  const nlohmann::ordered_json& report, const std::map<std::string, std::string>& pictures) {
+    for (const auto& [name, bytes] : pictures) {
+        write_file(folder / "images" / name, bytes);
+    }
+    write_file(folder / "report.json",
+               report.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n");
+    write_file(folder / "report.html", report_html(report, pictures));
+
+    write_json_result(options.common, report);
+    if (prints_text(options.common)) {
+        print_checks(checks);
+        fmt::print("{}: {}\n", verdict_name(overall(checks)), (folder / "report.html").string());
+    }
+    return overall(checks) == Verdict::pass ? kDone : kCheckFailed;
+}
+
 int run(const RunOptions& options) {
     const Experiment experiment = read_experiment(options.experiment);
     const std::filesystem::path folder =
@@ -66,27 +85,18 @@ int run(const RunOptions& options) {
     check_json_name(options.common);
     const RunSettings settings{.seed = options.common.seed, .threads = options.common.threads};
     const auto progress = std::make_shared<StepProgress>(options.common.quiet);
-    const ExperimentResult result = run_experiment(
-        experiment, settings, [progress](const std::string& step, double done) { (*progress)(step, done); });
-
-    const nlohmann::ordered_json report = report_json(experiment, result, settings);
-    const std::map<std::string, std::string> pictures = report_pictures(result);
-    for (const auto& [name, bytes] : pictures) {
-        write_file(folder / "images" / name, bytes);
+    const RunProgress report_progress = [progress](const std::string& step, double done) { (*progress)(step, done); };
+    if (experiment.stability) {
+        const std::vector<StabilitySweep> sweeps = run_stability(experiment, settings, report_progress);
+        return finish_report(options, folder, stability_checks(sweeps),
+                             stability_report_json(experiment, sweeps, settings), stability_charts(sweeps));
     }
+    const ExperimentResult result = run_experiment(experiment, settings, report_progress);
     for (const Subject& subject : result.subjects) {
         write_profile(subject.profile, folder / "profiles" / (subject.name + ".json"));
     }
-    write_file(folder / "report.json",
-               report.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n");
-    write_file(folder / "report.html", report_html(report, pictures));
-
-    write_json_result(options.common, report);
-    if (prints_text(options.common)) {
-        print_checks(result.checks);
-        fmt::print("{}: {}\n", verdict_name(overall(result.checks)), (folder / "report.html").string());
-    }
-    return overall(result.checks) == Verdict::pass ? kDone : kCheckFailed;
+    return finish_report(options, folder, result.checks, report_json(experiment, result, settings),
+                         report_pictures(result));
 }
 
 }  // namespace

@@ -1,6 +1,8 @@
 // experiments/cli/trace_command.cpp — `lensproof trace LENS --rays FILE`: every intersection of given rays.
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
 #include <map>
 #include <memory>
 #include <optional>
@@ -37,19 +39,21 @@ struct TraceOptions {
 };
 
 // Far beyond any scene, far below what would overflow when squared, in a float too.
-constexpr Bounds kCoordinate{.min = -1e12, .max = 1e12};
+constexpr Bounds kCoordinate{.min = -1e15, .max = 1e15};
 
 GivenRay read_ray(const CsvRow& row) {
     const auto vector = [&](const char* x, const char* y, const char* z) {
         return Vec3d{row.number(x, kCoordinate), row.number(y, kCoordinate), row.number(z, kCoordinate)};
     };
-    const Vec3d direction = vector("dx", "dy", "dz");
-    const double norm = length(direction);
-    if (!(norm > 0.0)) {
-        throw InputError(fmt::format("{} has length {}, expected a direction", row.where("the direction"), norm));
+    const Vec3d stated = vector("dx", "dy", "dz");
+    // Scaled first: the square of a tiny number is 0.
+    const double largest = std::max({std::abs(stated.x), std::abs(stated.y), std::abs(stated.z)});
+    if (!(largest > 0.0)) {
+        throw InputError(fmt::format("{} has length 0, expected a direction", row.where("the direction")));
     }
+    const Vec3d direction{stated.x / largest, stated.y / largest, stated.z / largest};
     return {.id = row.text("id"),
-            .ray = {vector("x_mm", "y_mm", "z_mm"), (1.0 / norm) * direction},
+            .ray = {vector("x_mm", "y_mm", "z_mm"), normalized(direction)},
             .wavelength_nm = row.number("wavelength_nm", kPositive)};
 }
 

@@ -198,8 +198,9 @@ std::string picture_html(const Json& picture, const std::string& id, const std::
     if (png == pngs.end()) {
         out += "<p class=\"missing\">not in this report: " + text(picture, "name") + "</p>";
     } else {
-        out += "<img alt=\"" + (caption.empty() ? text(picture, "name") : caption) + "\" src=\"data:image/png;base64," +
-               base64(png->second) + "\">";
+        const char* type = png->first.ends_with(".svg") ? "svg+xml" : "png";
+        out += "<img alt=\"" + (caption.empty() ? text(picture, "name") : caption) + "\" src=\"data:image/" + type +
+               ";base64," + base64(png->second) + "\">";
     }
     return out + "</div><figcaption><span class=\"caption\">" + caption + "</span></figcaption></figure>\n";
 }
@@ -306,8 +307,13 @@ std::string fill(std::string_view page, const std::map<std::string, std::string,
 
 std::string report_html(const Json& report, const std::map<std::string, std::string>& png_bytes_by_name) {
     const std::string title = text(report, "title");
+    const std::string subjects = text(report, "subjects_title");
+    // A report without the key has no curves to draw; one with none in its list says so.
+    const char* curves_hidden = report.is_object() && report.contains("plots") ? "" : "hidden";
     return fill({kTemplate, sizeof kTemplate}, {{"title", title.empty() ? "lensproof report" : title},
                                                 {"summary", text(report, "summary")},
+                                                {"curves_hidden", curves_hidden},
+                                                {"subjects_title", subjects.empty() ? "Renders and photos" : subjects},
                                                 {"verdict", verdict_html(report)},
                                                 {"tally", tally_html(report)},
                                                 {"checks", checks_html(report)},

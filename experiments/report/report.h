@@ -26,12 +26,13 @@ namespace lensproof {
 ///                                   | "differs",                   |value − target| > limit, a negative control
 ///                  "target"?: 0 where absent, "verdict", "explanation"?,
 ///                  "subject"?: an id below, for the group's colour}],
+///      "subjects_title"?: over the subjects; "Renders and photos" where absent,
 ///      "subjects": [{"id", "kind": "simulation" | "photos", "label",
 ///                    "facts"?: [{"label", "value": string or number}], "focal_length_px"?: {"value", "sigma"?},
 ///                    "pictures"?: [{"name", "caption", "width", "height",   of the picture that was measured, px; the
 ///                                                                           PNG may be a smaller copy of it
 ///                                   "points"?: [[x, y, dx, dy], …]}]}],     detected point and measured − model, px
-///      "plots": [{"id", "title", "subtitle"?, "x_label", "y_label", "x_unit"?, "y_unit"?,
+///      "plots"?: [{"id", "title", "subtitle"?, "x_label", "y_label", "x_unit"?, "y_unit"?,
 ///                 "limit"?: draws the band ± limit,
 ///                 "series": [{"label", "subject"?: an id above, which gives the colour,
 ///                             "style": "measured" (solid) | "reference" (dashed) | "difference" (solid),

@@ -88,7 +88,8 @@ void time_plain_loop(benchmark::State& state, const std::string& name) {
                 const Intersection<double> met = intersect(from_vertex, way, c, -1.0);
                 origin = {met.point.x, met.point.y, met.point.z + surface->vertex_z};
                 const Vec3d normal{c * met.point.x, c * met.point.y, c * met.point.z - 1.0};
-                const Refraction<double> bent = refract(way, normal, met.cos_incidence, surface->reverse_ratio);
+                const Refraction<double> bent =
+                    refract(way, normal, met.cos_incidence, met.sin2_incidence, surface->reverse_ratio);
                 way = bent.direction;
                 if (with_fresnel) {
                     transmittance *= fresnel_transmittance(surface->index_after, surface->index_before,

@@ -1,0 +1,63 @@
+// engine/optics/convert_lens.h — the same lens and the same ray in another number type.
+#pragma once
+#include <algorithm>
+#include <cmath>
+
+#include "engine/optics/trace.h"
+
+namespace lensproof {
+
+template <class To, class From>
+Vec3<To> convert_vector(const Vec3<From>& v) {
+    return {static_cast<To>(v.x), static_cast<To>(v.y), static_cast<To>(v.z)};
+}
+
+/// The ray with its direction normalised in To: a double's unit vector is not one to a multiprecision number's last
+/// digits.
+template <class To, class From>
+Ray<To> convert_ray(const Ray<From>& ray) {
+    return {convert_vector<To>(ray.origin), normalized(convert_vector<To>(ray.direction))};
+}
+
+template <class To, class From>
+SpecialSurface<To> convert_special(const SpecialSurface<From>& from) {
+    SpecialSurface<To> to;
+    to.has_shape = from.has_shape;
+    to.shape = {.curvature = static_cast<To>(from.shape.curvature),
+                .conic = static_cast<To>(from.shape.conic),
+                .terms = from.shape.terms,
+                .is_toroid = from.shape.is_toroid,
+                .curvature_x = static_cast<To>(from.shape.curvature_x)};
+    std::ranges::transform(from.shape.asphere, to.shape.asphere.begin(),
+                           [](const From& term) { return static_cast<To>(term); });
+    to.vertex = {static_cast<To>(from.vertex.x), static_cast<To>(from.vertex.y)};
+    std::ranges::transform(from.axes, to.axes.begin(), convert_vector<To, From>);
+    for (const auto& layer : from.coating.layers) {
+        to.coating.layers.push_back({static_cast<To>(layer.index), static_cast<To>(layer.thickness)});
+    }
+    if (from.coating.reflectance) {
+        to.coating.reflectance = static_cast<To>(*from.coating.reflectance);
+    }
+    to.mask = from.mask;
+    return to;
+}
+
+/// `lens` with exactly its numbers, each rounded to To where To is shorter; what follows from them (ratios of indices,
+/// squares of semi-diameters) is formed in To. A semi-diameter is the root of its square: √(fl(a²)) rounds back to a.
+template <class To, class From>
+TraceLens<To> convert_lens(const TraceLens<From>& lens) {
+    using std::sqrt;
+    TraceLens<To> converted{.surfaces = {}, .image_z = static_cast<To>(lens.image_z)};
+    for (const TraceSurface<From>& surface : lens.surfaces) {
+        const bool is_closed = surface.semi_diameter_squared < From(0);
+        const From semi_diameter = is_closed ? From(0) : sqrt(surface.semi_diameter_squared);
+        converted.surfaces.push_back(make_trace_surface<To>(
+            static_cast<To>(surface.curvature), static_cast<To>(surface.vertex_z), static_cast<To>(semi_diameter),
+            static_cast<To>(surface.index_before), static_cast<To>(surface.index_after), surface.is_stop));
+        converted.surfaces.back().special = surface.special;
+    }
+    std::ranges::transform(lens.specials, std::back_inserter(converted.specials), convert_special<To, From>);
+    return converted;
+}
+
+}  // namespace lensproof

@@ -1,0 +1,249 @@
+#include "experiments/stability/measure_stability.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "engine/io/input_error.h"
+#include "engine/optics/convert_lens.h"
+#include "engine/optics/multiprecision.h"
+#include "engine/optics/trace_packet.h"
+
+namespace lensproof {
+
+namespace {
+
+constexpr int kLanes = 8;
+// Draws of all inputs' rounding at once: how far a point moves, and whether the ray's fate changes.
+constexpr int kDraws = 8;
+constexpr double kHalfUlp = 0.5 * std::numeric_limits<double>::epsilon();
+
+/// A ray's points, on each surface that it met and on the image plane, and its fate.
+template <class T>
+struct Path {
+    std::vector<Vec3<T>> points;
+    RayStatus status = RayStatus::ok;
+    int surface = -1;
+    bool is_finite = true;
+};
+
+template <class From>
+bool same_fate(const Path<From>& a, const auto& b) {
+    return a.status == b.status && a.surface == b.surface && a.points.size() == b.points.size();
+}
+
+template <class T>
+bool is_finite(const Vec3<T>& v) {
+    using std::isfinite;
+    return isfinite(v.x) && isfinite(v.y) && isfinite(v.z);
+}
+
+template <class T>
+void add_event(Path<T>& path, const SurfaceEvent<T>& event) {
+    using std::isfinite;
+    if (event.status != RayStatus::missed) {  // that has no point
+        path.points.push_back(event.ray.origin);
+    }
+    // T = 4 r (1 − r) ≤ 1 but for rounding, a few ulps a surface.
+    const T most = T(1) + T(4 * (event.surface + 1)) * std::numeric_limits<T>::epsilon();
+    path.is_finite = path.is_finite && is_finite(event.ray.origin) && is_finite(event.ray.direction) &&
+                     isfinite(event.optical_path) && event.transmittance >= T(0) && event.transmittance <= most;
+}
+
+template <class T>
+void finish(Path<T>& path, const TracedRay<T>& traced, const TraceLens<T>& lens) {
+    path.status = traced.status;
+    path.surface = traced.surface;
+    if (traced.status == RayStatus::ok && traced.ray.direction.z > T(0)) {
+        path.points.push_back(meet_plane(traced.ray, lens.image_z).point);
+        path.is_finite = path.is_finite && is_finite(path.points.back());
+    }
+}
+
+template <class T>
+Path<T> path_of(const TraceLens<T>& lens, const Ray<T>& ray) {
+    Path<T> path;
+    const TracedRay<T> traced = trace(lens, ray, [&](const SurfaceEvent<T>& event) { add_event(path, event); });
+    finish(path, traced, lens);
+    return path;
+}
+
+/// The paths of float packets.
+std::vector<Path<float>> packet_paths(const TraceLens<float>& lens, const std::vector<Ray<float>>& rays) {
+    std::vector<Path<float>> paths(rays.size());
+    for (std::size_t first = 0; first < rays.size(); first += kLanes) {
+        const auto index = [&](int lane) { return std::min(first + static_cast<std::size_t>(lane), rays.size() - 1); };
+        Ray<Pack<float, kLanes>> packet;
+        for (int lane = 0; lane < kLanes; ++lane) {
+            set_lane(packet, lane, rays[index(lane)]);
+        }
+        std::array<Path<float>, kLanes> lanes;
+        const auto traced = trace_packet(lens, packet, [&](int lane, const SurfaceEvent<float>& event) {
+            add_event(lanes[static_cast<std::size_t>(lane)], event);
+        });
+        for (int lane = 0; lane < kLanes; ++lane) {
+            Path<float>& path = lanes[static_cast<std::size_t>(lane)];
+            finish(path, traced.lane(lane), lens);
+            paths[index(lane)] = path;
+        }
+    }
+    return paths;
+}
+
+using Exact = Multiprecision;
+
+/// The largest distance between two paths' points.
+template <class T>
+double distance(const Path<T>& a, const Path<Exact>& exact) {
+    Exact largest(0);
+    for (std::size_t i = 0; i < std::min(a.points.size(), exact.points.size()); ++i) {
+        largest = std::max(largest, length(convert_vector<Exact>(a.points[i]) - exact.points[i]));
+    }
+    return static_cast<double>(largest);
+}
+
+/// Rounds every number that the tracer is given anew: moves it by up to ± `relative` of itself, evenly distributed.
+/// Equal indices stay equal, for they are one glass; a ratio of indices that differ is a rounded number of its own.
+class Jitter {
+  public:
+    Jitter(double relative, std::mt19937_64& random) : relative_(relative), random_(random) {}
+
+    TraceLens<Exact> operator()(TraceLens<Exact> lens) {
+        std::map<Exact, Exact> moved_index{{Exact(1), Exact(1)}};
+        const auto index = [&](const Exact& n) { return moved_index.try_emplace(n, moved(n)).first->second; };
+        for (TraceSurface<Exact>& s : lens.surfaces) {
+            const bool is_closed = s.semi_diameter_squared < Exact(0);
+            const int special = s.special;
+            s = make_trace_surface<Exact>(moved(s.curvature), moved(s.vertex_z),
+                                          is_closed ? Exact(0) : moved(sqrt(s.semi_diameter_squared)),
+                                          index(s.index_before), index(s.index_after), s.is_stop);
+            s.special = special;
+            if (s.index_before != s.index_after) {
+                s.forward_ratio = moved(s.forward_ratio);
+                s.reverse_ratio = moved(s.reverse_ratio);
+            }
+        }
+        for (SpecialSurface<Exact>& special : lens.specials) {
+            special.shape.curvature = moved(special.shape.curvature);
+            special.shape.curvature_x = moved(special.shape.curvature_x);
+            special.shape.conic = moved(special.shape.conic);
+            std::ranges::transform(special.shape.asphere, special.shape.asphere.begin(),
+                                   [this](const Exact& term) { return moved(term); });
+            special.vertex = {moved(special.vertex.x), moved(special.vertex.y)};
+            std::ranges::transform(special.axes, special.axes.begin(),
+                                   [this](const Vec3<Exact>& axis) { return moved(axis); });
+        }
+        lens.image_z = moved(lens.image_z);
+        return lens;
+    }
+
+    Ray<Exact> operator()(const Ray<Exact>& ray) { return {moved(ray.origin), normalized(moved(ray.direction))}; }
+
+  private:
+    Exact moved(const Exact& number) { return number * (Exact(1) + Exact(relative_ * unit_(random_))); }
+    Vec3<Exact> moved(const Vec3<Exact>& v) { return {moved(v.x), moved(v.y), moved(v.z)}; }
+
+    double relative_;
+    std::mt19937_64& random_;
+    std::uniform_real_distribution<double> unit_{-1.0, 1.0};
+};
+
+/// One ray in a hundred digits: its path, how far rounding the input moves it, and whether that may change its fate.
+struct Judgement {
+    Path<Exact> path;
+    double conditioning_mm = 0.0;
+    bool is_at_a_change = false;
+};
+
+Judgement judge(const TraceLens<Exact>& lens, const Ray<double>& given, std::mt19937_64& random) {
+    const Ray<Exact> ray = convert_ray<Exact>(given);
+    Judgement judgement{.path = path_of(lens, ray)};
+    Jitter by_half_an_ulp(kHalfUlp, random);
+    Jitter by_more(kConditioningFactor * kHalfUlp, random);
+    for (int draw = 0; draw < kDraws; ++draw) {
+        for (Jitter* jitter : {&by_half_an_ulp, &by_more}) {
+            const TraceLens<Exact> moved_lens = (*jitter)(lens);
+            const Path<Exact> moved = path_of(moved_lens, (*jitter)(ray));
+            judgement.is_at_a_change = judgement.is_at_a_change || !same_fate(moved, judgement.path);
+            if (jitter == &by_half_an_ulp) {
+                judgement.conditioning_mm = std::max(judgement.conditioning_mm, distance(moved, judgement.path));
+            }
+        }
+    }
+    return judgement;
+}
+
+template <class T>
+void count(TypeResult& result, const Path<T>& path, const Path<Exact>& exact, bool is_at_a_change) {
+    result.not_finite += path.is_finite ? 0 : 1;
+    if (!same_fate(path, exact)) {
+        ++(is_at_a_change ? result.close_calls : result.other_statuses);
+    } else if (!is_at_a_change) {
+        result.error_mm = std::max(result.error_mm, distance(path, exact));
+    }
+}
+
+void measure_point(StabilityPoint& point, const StabilityCase& given, std::mt19937_64& random) {
+    const TraceLens<float> lens_in_float = convert_lens<float>(given.lens);
+    const TraceLens<Exact> exact_of_float = convert_lens<Exact>(lens_in_float);
+    const TraceLens<long double> lens_in_long = convert_lens<long double>(given.lens);
+    const TraceLens<Exact> exact_lens = convert_lens<Exact>(given.lens);
+    std::vector<Ray<float>> float_rays;
+    for (const Ray<double>& ray : given.rays) {
+        float_rays.push_back(convert_ray<float>(ray));
+    }
+    const std::vector<Path<float>> packets = packet_paths(lens_in_float, float_rays);
+    point.rays = static_cast<int>(given.rays.size());
+    for (std::size_t i = 0; i < given.rays.size(); ++i) {
+        const Judgement judged = judge(exact_lens, given.rays[i], random);
+        const bool at_a_change = judged.is_at_a_change;
+        point.at_a_change += at_a_change ? 1 : 0;
+
+        const Path<double> in_double = path_of(given.lens, given.rays[i]);
+        ++point.fates[status_name(in_double.status)];
+        count(point.types[kDouble], in_double, judged.path, at_a_change);
+        count(point.types[kLongDouble], path_of(lens_in_long, convert_ray<long double>(given.rays[i])), judged.path,
+              at_a_change);
+        if (!at_a_change && same_fate(in_double, judged.path)) {
+            const double bound = std::max(kErrorBoundMm, kConditioningFactor * judged.conditioning_mm);
+            point.conditioning_mm = std::max(point.conditioning_mm, judged.conditioning_mm);
+            point.excess = std::max(point.excess, distance(in_double, judged.path) / bound);
+        }
+
+        const Path<float> in_float = path_of(lens_in_float, float_rays[i]);
+        const Path<Exact> exact = path_of(exact_of_float, convert_ray<Exact>(float_rays[i]));
+        count(point.types[kFloat], in_float, exact, at_a_change);
+        count(point.types[kPacket], packets[i], exact, at_a_change);
+        const bool has_same_bits = same_fate(packets[i], in_float) && packets[i].points == in_float.points;
+        point.lanes_unlike_scalar += has_same_bits ? 0 : 1;
+    }
+}
+
+}  // namespace
+
+bool StabilitySweep::holds() const {
+    return std::ranges::all_of(points, [](const StabilityPoint& point) {
+        const TypeResult& result = point.types[kDouble];
+        return point.excess <= 1.0 && result.other_statuses == 0 && result.not_finite == 0;
+    });
+}
+
+StabilitySweep measure_stability(const Extreme& extreme, std::uint64_t seed, const StabilityProgress& progress) {
+    StabilitySweep sweep{.extreme = extreme, .points = {}};
+    for (std::size_t i = 0; i < extreme.values.size(); ++i) {
+        std::mt19937_64 random(seed * 1000 + i);
+        StabilityPoint point{.value = extreme.values[i]};
+        try {
+            measure_point(point, extreme.build(point.value, random), random);
+        } catch (const InputError& error) {
+            point.refusal = error.what();
+        }
+        sweep.points.push_back(std::move(point));
+        if (progress) {
+            progress(extreme.id, static_cast<double>(i + 1) / static_cast<double>(extreme.values.size()));
+        }
+    }
+    return sweep;
+}
+
+}  // namespace lensproof
