@@ -95,7 +95,7 @@ PerChannel light_at(const ChartCamera& camera, double height_mm) {
     const std::vector<WavelengthStratum>& strata = camera.spectral().strata;
     PerChannel light{};
     for (std::size_t k = 0; k < strata.size(); k += kIlluminationStride) {
-        const double transmitted = image_bundle(strata[k].lens, height_mm, 128).transmitted;
+        const double transmitted = image_bundle(strata[k].lens, height_mm).transmitted;
         const PerChannel w = channel_weights(strata[k]);
         for (std::size_t c = 0; c < 3; ++c) {
             light[c] += w[c] * transmitted;

@@ -1,61 +1,122 @@
 #include "engine/optics/chief_ray.h"
 
+#include <algorithm>
+#include <boost/math/tools/toms748_solve.hpp>
 #include <cmath>
+#include <cstdint>
+#include <limits>
 #include <numbers>
 
 namespace lensproof {
 
 namespace {
 
-// Halvings that take an angle of order 1 down to the last bit.
-constexpr int kHalvings = 60;
+// Halvings that take an angle of order 1 down to its last bits.
+constexpr int kHalvings = 52;
 
 /// Whether a half of a chief ray got through, or was followed past a rim.
 bool arrives(RayStatus status, Rims rims) {
     return status == RayStatus::ok || (rims == Rims::follow && status == RayStatus::clipped);
 }
 
+template <Direction direction>
+TracedRay<double> trace_half(const TraceLens<double>& half, const Ray<double>& ray, Rims rims) {
+    return rims == Rims::clip ? trace<direction>(half, ray) : trace<direction, Rims::follow>(half, ray);
+}
+
+double field_of(const Vec3d& incoming) {
+    return std::atan2(incoming.y, incoming.z);
+}
+
+/// The last number from `passing` towards `blocked` at which `passes` holds.
+template <class Predicate>
+double last_passing(double passing, double blocked, const Predicate& passes) {
+    for (int i = 0; i < kHalvings; ++i) {
+        const double middle = 0.5 * (passing + blocked);
+        (passes(middle) ? passing : blocked) = middle;
+    }
+    return passing;
+}
+
+/// The ray of a symmetric lens on the other side of its axis.
+ChiefRay mirrored(ChiefRay ray) {
+    ray.field_angle = -ray.field_angle;
+    ray.image_height = -ray.image_height;
+    for (double* y :
+         {&ray.front.origin.y, &ray.front.direction.y, &ray.rear.origin.y, &ray.rear.direction.y, &ray.image_point.y}) {
+        *y = -*y;
+    }
+    return ray;
+}
+
 }  // namespace
 
 ChiefRays::ChiefRays(const Lens& lens, double wavelength_nm, Rims rims)
-    : whole_(at_wavelength<double>(lens, wavelength_nm)), rims_(rims) {
+    : whole_(at_wavelength<double>(lens, wavelength_nm)), rims_(rims), is_symmetric_(lens.is_rotationally_symmetric) {
     const auto stop = whole_.surfaces.begin() + lens.stop_index();
     front_ = {.surfaces = {whole_.surfaces.begin(), stop}, .image_z = 0.0, .specials = whole_.specials};
     rear_ = {.surfaces = {stop + 1, whole_.surfaces.end()}, .image_z = whole_.image_z, .specials = whole_.specials};
-    stop_z_ = stop->vertex_z;
+    const LensSurface& surface = lens.surfaces[lens.stop_index()];
+    stop_centre_ = {surface.vertex.x, surface.vertex.y, surface.vertex_z};
+    stop_normal_ = surface.axes[2];
     stop_ratio_ = stop->reverse_ratio;
-
-    double passing = 0.0;
-    double blocked = 0.5 * std::numbers::pi;
-    for (int i = 0; i < kHalvings; ++i) {
-        const double middle = 0.5 * (passing + blocked);
-        (from_stop(middle) ? passing : blocked) = middle;
-    }
-    largest_stop_angle_ = passing;
-    largest_field_ = from_stop(passing).value_or(ChiefRay{}).field_angle;
+    largest_stop_angle_ = is_symmetric_ ? end_of_family() : 0.0;
+    largest_field_ = find_largest_field();
 }
 
-std::optional<ChiefRay> ChiefRays::from_stop(double stop_angle) const {
-    const Vec3d direction{0.0, std::sin(stop_angle), std::cos(stop_angle)};
+double ChiefRays::end_of_family() const {
+    constexpr int kSteps = 64;
+    constexpr double kStep = 0.5 * std::numbers::pi / kSteps;
+    constexpr double kNowhere = -std::numeric_limits<double>::infinity();
+    const auto field = [&](double angle) {
+        const std::optional<ChiefRay> ray = from_stop(angle);
+        return ray ? ray->field_angle : kNowhere;
+    };
+    const auto rises = [&](double angle) {
+        constexpr double kBehind = 1e-7;
+        return field(angle) > field(angle - kBehind);
+    };
+    int step = 1;
+    for (double last = field(0.0); step < kSteps; ++step) {
+        const double here = field(step * kStep);
+        if (!(here > last)) {
+            break;
+        }
+        last = here;
+    }
+    const double end =
+        last_passing((step - 1) * kStep, step * kStep, [&](double angle) { return field(angle) > kNowhere; });
+    // Where it turns back before it ends, that is on the way to here, or, if it has just done so, in the step before.
+    return rises(end) ? end : last_passing(std::max(0, step - 2) * kStep, end, rises);
+}
+
+double ChiefRays::find_largest_field() const {
+    if (is_symmetric_) {
+        const std::optional<ChiefRay> last = from_stop(largest_stop_angle_);
+        return last ? last->field_angle : 0.0;
+    }
+    return last_passing(0.0, std::numbers::pi, [&](double field) { return at_field(field).has_value(); });
+}
+
+std::optional<ChiefRay> ChiefRays::through_stop(const Vec3d& direction, Rims rims) const {
     // Where the stop is a glass surface, the ray bends at its vertex.
-    const double sine = stop_ratio_ * direction.y;
-    if (!(sine < 1.0)) {
+    const double cosine = dot(direction, stop_normal_);
+    const Refraction<double> outwards = refract(-1.0 * direction, -1.0 * stop_normal_, cosine, stop_ratio_);
+    if (!(cosine > 0.0) || !outwards.transmitted) {
         return std::nullopt;
     }
-    const Ray<double> outwards{{0.0, 0.0, stop_z_}, {0.0, -sine, -std::sqrt(1.0 - sine * sine)}};
-    const Ray<double> inwards{{0.0, 0.0, stop_z_}, direction};
-    const bool clips = rims_ == Rims::clip;
-    const auto front =
-        clips ? trace<Direction::reverse>(front_, outwards) : trace<Direction::reverse, Rims::follow>(front_, outwards);
-    const auto rear =
-        clips ? trace<Direction::forward>(rear_, inwards) : trace<Direction::forward, Rims::follow>(rear_, inwards);
-    if (!arrives(front.status, rims_) || !arrives(rear.status, rims_) || !(rear.ray.direction.z > 0.0)) {
+    const auto front = trace_half<Direction::reverse>(front_, {stop_centre_, outwards.direction}, rims);
+    const auto rear = trace_half<Direction::forward>(rear_, {stop_centre_, direction}, rims);
+    if (!arrives(front.status, rims) || !arrives(rear.status, rims) || !(rear.ray.direction.z > 0.0)) {
         return std::nullopt;
     }
     const Vec3d incoming = -1.0 * front.ray.direction;
-    ChiefRay chief{.field_angle = std::atan2(incoming.y, incoming.z),
+    const Vec3d image = meet_plane(rear.ray, rear_.image_z).point;
+    ChiefRay chief{.field_angle = field_of(incoming),
                    .front = {front.ray.origin, incoming},
-                   .image_height = meet_plane(rear.ray, rear_.image_z).point.y};
+                   .image_height = image.y,
+                   .rear = rear.ray,
+                   .image_point = {image.x, image.y}};
     if (front.status != RayStatus::ok || rear.status != RayStatus::ok) {
         const TracedRay<double> from_scene = trace<Direction::forward, Rims::follow>(whole_, chief.front);
         chief.status = from_scene.status;
@@ -64,35 +125,120 @@ std::optional<ChiefRay> ChiefRays::from_stop(double stop_angle) const {
     return chief;
 }
 
+std::optional<ChiefRay> ChiefRays::from_stop(double stop_angle) const {
+    return through_stop({0.0, std::sin(stop_angle), std::cos(stop_angle)}, rims_);
+}
+
+/// The ray of the symmetric family where `residual`, which rises with the stop angle, is 0.
 template <class Residual>
 std::optional<ChiefRay> ChiefRays::solve(const Residual& residual) const {
-    double low = 0.0;
-    double high = largest_stop_angle_;
-    const std::optional<ChiefRay> end = from_stop(high);
-    if (!end || residual(*end) < 0.0) {
+    const std::optional<ChiefRay> first = from_stop(0.0);
+    const std::optional<ChiefRay> last = from_stop(largest_stop_angle_);
+    if (!first || !last) {
         return std::nullopt;
     }
-    for (int i = 0; i < kHalvings; ++i) {
-        const double middle = 0.5 * (low + high);
-        const std::optional<ChiefRay> ray = from_stop(middle);
-        if (!ray) {
-            return std::nullopt;
-        }
-        (residual(*ray) < 0.0 ? low : high) = middle;
+    const double at_first = residual(*first);
+    const double at_last = residual(*last);
+    if (at_first == 0.0) {
+        return first;
     }
-    return from_stop(high);
+    if (at_first > 0.0 || at_last < 0.0) {
+        return std::nullopt;
+    }
+    bool is_family = true;
+    const auto at = [&](double angle) {
+        const std::optional<ChiefRay> ray = from_stop(angle);
+        is_family = is_family && ray.has_value();
+        return ray ? residual(*ray) : 0.0;
+    };
+    const auto is_exact = [](double a, double b) { return b - a <= 2e-16 * b; };
+    std::uintmax_t steps = 120;  // never needed: each takes a digit or more
+    const auto [low, high] =
+        boost::math::tools::toms748_solve(at, 0.0, largest_stop_angle_, at_first, at_last, is_exact, steps);
+    return is_family ? from_stop(high) : std::nullopt;
+}
+
+/// The ray whose `residual` (two small angles) is 0. The path starts at the ray along the stop's axis and takes its
+/// residual down in steps; within each, Newton's method with differences over `kDifference`, which are linear to 1e-6,
+/// so that three steps do.
+template <class Residual>
+std::optional<ChiefRay> ChiefRays::aim(const Residual& residual) const {
+    struct Aim {
+        Vec2d angles;
+        ChiefRay ray;
+        Vec2d residual;
+    };
+    const auto shoot = [&](Vec2d angles) -> std::optional<Aim> {
+        const Vec3d direction{std::sin(angles.x), std::cos(angles.x) * std::sin(angles.y),
+                              std::cos(angles.x) * std::cos(angles.y)};
+        const std::optional<ChiefRay> ray = through_stop(direction, Rims::follow);
+        return ray ? std::optional(Aim{angles, *ray, residual(*ray)}) : std::nullopt;
+    };
+    std::optional<Aim> best = shoot({std::asin(stop_normal_.x), std::atan2(stop_normal_.y, stop_normal_.z)});
+    if (!best) {
+        return std::nullopt;
+    }
+    constexpr double kDifference = 1e-6;
+    constexpr double kStride = 0.05;
+    constexpr int kMostSteps = 20;
+    const Vec2d start = best->residual;
+    const int strides = 1 + static_cast<int>(std::hypot(start.x, start.y) / kStride);
+    for (int stride = strides - 1; stride >= 0; --stride) {
+        const Vec2d goal{start.x * stride / strides, start.y * stride / strides};
+        const auto miss = [&](const Aim& aim) { return std::hypot(aim.residual.x - goal.x, aim.residual.y - goal.y); };
+        for (int step = 0; step < kMostSteps && miss(*best) > 0.0; ++step) {
+            const std::optional<Aim> in_x = shoot({best->angles.x + kDifference, best->angles.y});
+            const std::optional<Aim> in_y = shoot({best->angles.x, best->angles.y + kDifference});
+            if (!in_x || !in_y) {
+                break;
+            }
+            const Vec2d by_x{in_x->residual.x - best->residual.x, in_x->residual.y - best->residual.y};
+            const Vec2d by_y{in_y->residual.x - best->residual.x, in_y->residual.y - best->residual.y};
+            const Vec2d left{goal.x - best->residual.x, goal.y - best->residual.y};
+            const double determinant = by_x.x * by_y.y - by_y.x * by_x.y;
+            const Vec2d move{kDifference * (left.x * by_y.y - by_y.x * left.y) / determinant,
+                             kDifference * (by_x.x * left.y - left.x * by_x.y) / determinant};
+            const std::optional<Aim> next = shoot({best->angles.x + move.x, best->angles.y + move.y});
+            if (!next || !(miss(*next) < miss(*best))) {
+                break;
+            }
+            best = next;
+        }
+    }
+    constexpr double kAimed = 1e-12;
+    const bool is_aimed = std::hypot(best->residual.x, best->residual.y) <= kAimed;
+    const bool passes = rims_ == Rims::follow || best->ray.status == RayStatus::ok;
+    return is_aimed && passes ? std::optional(best->ray) : std::nullopt;
 }
 
 std::optional<ChiefRay> ChiefRays::at_field(double field_angle) const {
+    if (!is_symmetric_) {
+        return aim([&](const ChiefRay& ray) { return Vec2d{ray.front.direction.x, ray.field_angle - field_angle}; });
+    }
+    if (field_angle < 0.0) {
+        const std::optional<ChiefRay> ray = at_field(-field_angle);
+        return ray ? std::optional(mirrored(*ray)) : std::nullopt;
+    }
     return solve([&](const ChiefRay& ray) { return ray.field_angle - field_angle; });
 }
 
-std::optional<ChiefRay> ChiefRays::from_point(double y, double z) const {
+std::optional<ChiefRay> ChiefRays::from_point(const Vec3d& object) const {
+    if (!is_symmetric_) {
+        return aim([&](const ChiefRay& ray) {
+            const Vec3d wanted = normalized(ray.front.origin - object);
+            const Vec3d& found = ray.front.direction;
+            return Vec2d{found.x - wanted.x,
+                         std::remainder(field_of(found) - field_of(wanted), 2.0 * std::numbers::pi)};
+        });
+    }
+    if (object.y > 0.0) {
+        const std::optional<ChiefRay> ray = from_point({object.x, -object.y, object.z});
+        return ray ? std::optional(mirrored(*ray)) : std::nullopt;
+    }
     // The signed distance of the object point from the ray: positive once the ray passes below it.
     return solve([&](const ChiefRay& ray) {
-        const double dy = y - ray.front.origin.y;
-        const double dz = z - ray.front.origin.z;
-        return ray.front.direction.z * dy - ray.front.direction.y * dz;
+        const Vec3d to_object = object - ray.front.origin;
+        return ray.front.direction.z * to_object.y - ray.front.direction.y * to_object.z;
     });
 }
 

@@ -1,13 +1,19 @@
 // engine/optics/field_bundle.h — the light of one object point on its way into the lens.
 #pragma once
+#include <array>
 #include <limits>
 
 #include "engine/optics/chief_ray.h"
 
 namespace lensproof {
 
+/// Two unit vectors across the direction `along` and each other: the first as near to +x as can be, the second as near
+/// to +y (in the plane x = 0: (1, 0, 0) and (0, z, −y)). Not for a direction along x.
+std::array<Vec3d, 2> across_axes(const Vec3d& along);
+
 /// The rays of one object point around its chief ray. They are told apart by their offset (mm) across the chief ray at
-/// its point on the first surface: x along +x, y in the meridional plane towards +y. Lens space, mm, radians.
+/// its point on the first surface: x along +x, y in the meridional plane towards +y (where the chief ray has left the
+/// plane x = 0: x as near to +x as can be across it). Lens space, mm, radians.
 struct FieldBundle {
     ChiefRay chief;
     double object_distance = std::numeric_limits<double>::infinity();  // of the point's plane in front of z = 0, mm
@@ -16,10 +22,29 @@ struct FieldBundle {
     /// object's plane (θ ≥ 90°) the point is taken as one at infinity.
     [[nodiscard]] bool is_near() const;
 
+    /// The directions of an offset's x and y.
+    [[nodiscard]] std::array<Vec3d, 2> across() const { return across_axes(chief.front.direction); }
+
+    /// Along the chief ray from the object point to the chief ray's point on the first surface, mm; infinite where the
+    /// object is not near.
+    [[nodiscard]] double distance() const;
+
+    /// The object point; it has to be near.
+    [[nodiscard]] Vec3d object_point() const;
+
     /// The incoming ray at `offset`. All origins lie on one wavefront, next to the first surface (a plane for an object
     /// at infinity, else a sphere around the object point), so that differences of optical path from there are those
     /// from the object and lose no digits to its distance.
     [[nodiscard]] Ray<double> ray(Vec2d offset) const;
 };
+
+/// The bundle of the same object at another wavelength, around that wavelength's own chief ray: at infinity the same
+/// direction, else the same point. Nothing where there is no such ray.
+std::optional<FieldBundle> same_object(const FieldBundle& bundle, const ChiefRays& of_wavelength);
+
+/// The bundle of the object at `field_angle`, which the chief ray of the reference wavelength defines: at infinity the
+/// direction, else the point where that ray leaves the object's plane. Nothing where either ray does not exist.
+std::optional<FieldBundle> field_bundle(const ChiefRays& of_wavelength, const ChiefRays& reference, double field_angle,
+                                        double object_distance = std::numeric_limits<double>::infinity());
 
 }  // namespace lensproof

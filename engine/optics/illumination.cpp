@@ -1,95 +1,63 @@
 #include "engine/optics/illumination.h"
 
-#include <array>
+#include <algorithm>
 #include <cmath>
-#include <numbers>
-#include <optional>
+#include <limits>
+
+#include "engine/optics/rim_margin.h"
 
 namespace lensproof {
 
 namespace {
 
-/// A ray from the sensor, by its direction cosines (l, m).
-class SensorPoint {
-  public:
-    SensorPoint(const TraceLens<double>& lens, double height) : lens_(lens), height_(height) {}
+/// Rays from a sensor point outwards, by their direction cosines (l, m).
+struct SensorPoint {
+    const TraceLens<double>& lens;
+    Vec3d at;
 
-    /// The transmittance towards the scene; nothing where a rim or total reflection ends the ray.
-    [[nodiscard]] std::optional<double> transmittance(Vec2d cosines) const {
+    /// Nothing where the cosines are those of no ray.
+    [[nodiscard]] std::optional<Ray<double>> ray(Vec2d cosines) const {
         const double z2 = 1.0 - cosines.x * cosines.x - cosines.y * cosines.y;
-        if (z2 <= 0.0) {
-            return std::nullopt;
-        }
-        const Ray<double> ray{{0.0, height_, lens_.image_z}, {cosines.x, cosines.y, -std::sqrt(z2)}};
-        const TracedRay<double> traced = trace<Direction::reverse>(lens_, ray);
-        return traced.status == RayStatus::ok ? std::optional(traced.transmittance) : std::nullopt;
+        return z2 > 0.0 ? std::optional(Ray<double>{at, {cosines.x, cosines.y, -std::sqrt(z2)}}) : std::nullopt;
     }
 
-    /// The mean of passing directions on a grid over the rear element, refined around the first one found.
-    [[nodiscard]] std::optional<Vec2d> bundle_centre() const {
-        const TraceSurface<double>& rear = lens_.surfaces.back();
-        const double radius = std::sqrt(rear.semi_diameter_squared);
-        for (const int cells : {32, 128, 512}) {
-            Vec2d sum{};
-            int passed = 0;
-            for (int i = 0; i < cells; ++i) {
-                for (int k = 0; k < cells; ++k) {
-                    const double x = radius * (2.0 * (i + 0.5) / cells - 1.0);
-                    const double y = radius * (2.0 * (k + 0.5) / cells - 1.0);
-                    const Vec3d towards = normalized(Vec3d{x, y - height_, rear.vertex_z - lens_.image_z});
-                    if (transmittance({towards.x, towards.y})) {
-                        sum = {sum.x + towards.x, sum.y + towards.y};
-                        ++passed;
-                    }
-                }
-            }
-            if (passed >= 8) {
-                return Vec2d{sum.x / passed, sum.y / passed};
-            }
-        }
-        return std::nullopt;
+    [[nodiscard]] RegionSample margin(Vec2d cosines) const {
+        const std::optional<Ray<double>> outwards = ray(cosines);
+        return outwards ? rim_margin(lens, *outwards, Direction::reverse)
+                        : RegionSample{.margin = std::numeric_limits<double>::infinity()};
     }
 
-  private:
-    const TraceLens<double>& lens_;
-    double height_;
+    [[nodiscard]] double transmittance(Vec2d cosines) const {
+        return trace<Direction::reverse>(lens, *ray(cosines)).transmittance;
+    }
+
+    [[nodiscard]] RegionOutline outline(std::optional<Vec2d> towards) const {
+        const TraceSurface<double>& rear = lens.surfaces.back();
+        const Vec3d to_vertex = Vec3d{0.0, 0.0, rear.vertex_z} - at;
+        const Vec3d to_middle = normalized(to_vertex);
+        // Of a rear surface as deep as its semi-diameter, the rim is seen within twice the flat one's angle unless it
+        // is close; no two cosines are farther apart than 2.
+        const double reach = std::min(2.0, 2.0 * std::sqrt(rear.semi_diameter_squared) / std::abs(to_vertex.z));
+        const Vec2d start = towards.value_or(Vec2d{to_middle.x, to_middle.y});
+        return region_outline(
+            [this](Vec2d cosines) { return margin(cosines); },
+            {.start = start, .reach = reach, .is_mirror = is_mirror_symmetric(lens) && at.x == 0.0 && start.x == 0.0});
+    }
 };
-
-Vec2d along(Vec2d from, double azimuth, double distance) {
-    return {from.x + distance * std::cos(azimuth), from.y + distance * std::sin(azimuth)};
-}
-
-// Gauss-Legendre nodes and weights on [0, 1], six points (Abramowitz & Stegun, table 25.4).
-constexpr std::array<double, 6> kNodes = {0.033765242898424, 0.169395306766868, 0.380690406958402,
-                                          0.619309593041598, 0.830604693233132, 0.966234757101576};
-constexpr std::array<double, 6> kWeights = {0.085662246189585, 0.180380786524069, 0.233956967286346,
-                                            0.233956967286346, 0.180380786524069, 0.085662246189585};
 
 }  // namespace
 
-Bundle image_bundle(const TraceLens<double>& lens, double image_height, int azimuths) {
-    const SensorPoint point(lens, image_height);
-    const std::optional<Vec2d> centre = point.bundle_centre();
-    if (!centre || !point.transmittance(*centre)) {
-        return {};
-    }
-    Bundle bundle;
-    for (int i = 0; i < azimuths; ++i) {
-        const double azimuth = 2.0 * std::numbers::pi * (i + 0.5) / azimuths;
-        double inside = 0.0;
-        double outside = 2.0;
-        for (int halving = 0; halving < 50; ++halving) {
-            const double middle = 0.5 * (inside + outside);
-            (point.transmittance(along(*centre, azimuth, middle)) ? inside : outside) = middle;
-        }
-        double mean_transmittance = 0.0;  // over the wedge, weighted with the distance from its tip
-        for (std::size_t k = 0; k < kNodes.size(); ++k) {
-            const double share = point.transmittance(along(*centre, azimuth, inside * kNodes[k])).value_or(0.0);
-            mean_transmittance += 2.0 * kWeights[k] * kNodes[k] * share;
-        }
-        const double wedge = 0.5 * inside * inside * 2.0 * std::numbers::pi / azimuths;
-        bundle.projected_solid_angle += wedge;
-        bundle.transmitted += wedge * mean_transmittance;
+RegionOutline image_outline(const TraceLens<double>& lens, Vec2d sensor_point, std::optional<Vec2d> towards) {
+    return SensorPoint{lens, {sensor_point.x, sensor_point.y, lens.image_z}}.outline(towards);
+}
+
+Bundle image_bundle(const TraceLens<double>& lens, double image_height) {
+    const SensorPoint point{lens, {0.0, image_height, lens.image_z}};
+    const RegionOutline outline = point.outline(std::nullopt);
+    constexpr int kRings = 6;
+    Bundle bundle{.projected_solid_angle = outline.area};
+    for (const RegionNode& node : region_quadrature(outline, kRings)) {
+        bundle.transmitted += node.weight * point.transmittance(node.point);
     }
     return bundle;
 }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 #include "engine/io/image.h"
@@ -39,12 +40,28 @@ StopMask::StopMask(const StopShape& shape, const std::filesystem::path& folder) 
     }
 }
 
+double StopMask::Arc::margin(double at_x, double at_y) const {
+    const double along = x * at_x + y * at_y - centre;
+    const double across = x * at_y - y * at_x;
+    return radius_squared > 0.0 ? along * along + across * across - radius_squared : along;
+}
+
+StopMask::EdgeMargin StopMask::edge_margin(double x, double y) const {
+    if (texture_) {
+        return {transmittance(x, y) > 0.0 ? -1.0 : std::numeric_limits<double>::infinity(), 0};
+    }
+    EdgeMargin worst;
+    for (std::size_t i = 0; i < arcs_.size(); ++i) {
+        const double margin = arcs_[i].margin(x, y);
+        if (i == 0 || margin > worst.margin) {
+            worst = {margin, static_cast<int>(i)};
+        }
+    }
+    return worst;
+}
+
 double StopMask::transmittance(double x, double y) const {
-    const auto is_inside = [&](const Arc& arc) {
-        const double along = arc.x * x + arc.y * y - arc.centre;
-        const double across = arc.x * y - arc.y * x;
-        return arc.radius_squared > 0.0 ? along * along + across * across <= arc.radius_squared : along <= 0.0;
-    };
+    const auto is_inside = [&](const Arc& arc) { return arc.margin(x, y) <= 0.0; };
     if (!std::ranges::all_of(arcs_, is_inside)) {
         return 0.0;
     }

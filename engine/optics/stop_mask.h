@@ -22,6 +22,15 @@ class StopMask {
     /// The transmittance, 0 to 1, at a point of the stop's plane in units of its semi-diameter, inside the unit circle.
     [[nodiscard]] double transmittance(double x, double y) const;
 
+    /// How far a point stands inside (≤ 0) or outside (> 0) the blade's edge that is nearest to being crossed, and
+    /// which that is, from 0: smooth along each edge. A texture has no edges but where it is dark: an infinite margin
+    /// there, −1 elsewhere.
+    struct EdgeMargin {
+        double margin = -1.0;
+        int edge = 0;
+    };
+    [[nodiscard]] EdgeMargin edge_margin(double x, double y) const;
+
   private:
     struct Texture {
         int size_x = 0;
@@ -34,6 +43,8 @@ class StopMask {
         double y = 0.0;
         double centre = 0.0;          // along it, of the disc
         double radius_squared = 0.0;  // of the disc; 0: the half plane up to `centre`
+
+        [[nodiscard]] double margin(double at_x, double at_y) const;  // ≤ 0 inside
     };
 
     std::vector<Arc> arcs_;

@@ -62,6 +62,7 @@ bool prints_text(const CommonOptions& options);
 
 /// Each adds its subcommand to `app`; running it stores the exit status in `status`.
 void add_check_command(CLI::App& app, int& status);
+void add_analyze_command(CLI::App& app, int& status);
 void add_trace_command(CLI::App& app, int& status);
 void add_render_command(CLI::App& app, int& status);
 void add_measure_command(CLI::App& app, int& status);

@@ -60,6 +60,7 @@ int run(int argc, char** argv) {
     app.require_subcommand(1);
     add_check_command(app, status);
     add_convert_command(app, status);
+    add_analyze_command(app, status);
     add_trace_command(app, status);
     add_render_command(app, status);
     add_measure_command(app, status);

@@ -75,12 +75,12 @@ std::string spots_svg(const PlotHeading& heading, const std::vector<double>& def
                       const std::vector<FieldSpots>& fields);
 
 /// Light against the field, both over the axis: the illumination, and the cross-section of the passing beam.
-struct IlluminationPoint {
+struct FieldBrightness {
     double field_deg = 0.0;
     double relative_illumination = 0.0;
     double vignetting = 0.0;
 };
-std::string illumination_svg(const PlotHeading& heading, const std::vector<IlluminationPoint>& points);
+std::string illumination_svg(const PlotHeading& heading, const std::vector<FieldBrightness>& points);
 
 /// A square grid of values over a square: row by row from low y to high y.
 struct SquareMap {
@@ -90,22 +90,24 @@ struct SquareMap {
 };
 
 /// Optical path differences (waves) over the exit pupil.
-struct WavefrontMap {
+struct FieldWavefront {
     double field_deg = 0.0;
     double wavelength_nm = 0.0;
     SquareMap opd_waves{};  // the half width in units of the pupil coordinate
     double rms_waves = 0.0;
     double peak_to_valley_waves = 0.0;
+    std::string remark{};  // why there is no map where light arrives
 };
-std::string wavefront_svg(const PlotHeading& heading, const std::vector<WavefrontMap>& fields);
+std::string wavefront_svg(const PlotHeading& heading, const std::vector<FieldWavefront>& fields);
 
 /// The image of a point, in units of the peak of a perfect lens with the same pupil; the half width in µm.
 struct PsfMap {
     double field_deg = 0.0;
     SquareMap intensity{};
     double strehl = 0.0;
+    std::string remark{};  // why there is no picture where light arrives: "aberrations too large for the grid"
 };
-/// A row a field, linear beside logarithmic.
+/// A row a field: its middle linearly, beside all of it logarithmically.
 std::string psf_svg(const PlotHeading& heading, const std::vector<PsfMap>& fields);
 
 /// Modulation against spatial frequency (cycles/mm) at one field.
@@ -113,9 +115,11 @@ struct FieldMtf {
     double field_deg = 0.0;
     std::vector<Vec2d> tangential{};
     std::vector<Vec2d> sagittal{};
+    std::string remark{};  // beside the field in the legend: "by rays"; without curves, why there are none
 };
+/// `kind`: what the title adds, "geometric".
 std::string mtf_svg(const PlotHeading& heading, const std::vector<FieldMtf>& fields,
-                    const std::vector<Vec2d>& diffraction_limit);
+                    const std::vector<Vec2d>& diffraction_limit, const std::string& kind = {});
 
 /// Modulation against field (degrees) at one spatial frequency.
 struct FrequencyMtf {

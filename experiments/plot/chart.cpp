@@ -215,6 +215,7 @@ void draw_data(Svg& svg, const PlotChart& chart, const ChartFrame& frame) {
         const HeatMap& map = *chart.map;
         const SvgPoint corner = frame.to_page({map.x.low, map.y.high});
         const SvgPoint opposite = frame.to_page({map.x.high, map.y.low});
+        svg.rectangle({frame.box.x, frame.box.y}, frame.box.width, frame.box.height, {.fill = kMaskColour});
         draw_heat_map(svg, map, {corner.x, corner.y, opposite.x - corner.x, opposite.y - corner.y});
     }
     for (const ChartArea& area : chart.areas) {
@@ -319,7 +320,9 @@ void draw_chart(Svg& svg, const PlotChart& chart, const ChartFrame& frame, const
     if (look.has_y_numbers && has_marks(chart.y)) {
         draw_numbers(svg, frame, false);
     }
-    draw_axis_titles(svg, chart, frame, look);
+    draw_axis_titles(svg, chart, frame,
+                     {.has_x_numbers = look.has_x_numbers && has_marks(chart.x),
+                      .has_y_numbers = look.has_y_numbers && has_marks(chart.y)});
     if (chart.map && look.has_colour_bar && !is_empty(chart)) {
         draw_colour_bar(svg, *chart.map, box);
     }

@@ -64,7 +64,7 @@ struct PlotChart {
     std::string caption{};  // small, under the title
     ChartAxis x{};
     ChartAxis y{};
-    std::optional<HeatMap> map{};  // behind everything; the axes then show all of it, whatever they say
+    std::optional<HeatMap> map{};  // behind everything; the axes show all of it, and more where they say so
     std::vector<ChartArea> areas{};
     std::vector<ReferenceLine> references{};
     std::vector<ChartCurve> curves{};       // later ones above earlier ones

@@ -269,8 +269,10 @@ ResolvedAxes resolve_axes(const PlotChart& chart, double width, double height) {
     ChartAxis x = chart.x;
     ChartAxis y = chart.y;
     if (chart.map) {
-        x = {.low = chart.map->x.low, .high = chart.map->x.high};
-        y = {.low = chart.map->y.low, .high = chart.map->y.high};
+        x = {.low = std::min(chart.map->x.low, x.low.value_or(kInfinity)),
+             .high = std::max(chart.map->x.high, x.high.value_or(-kInfinity))};
+        y = {.low = std::min(chart.map->y.low, y.low.value_or(kInfinity)),
+             .high = std::max(chart.map->y.high, y.high.value_or(-kInfinity))};
     }
     ResolvedAxes axes{resolve(x, extent_along(chart, true), width, true),
                       resolve(y, extent_along(chart, false), height, false)};

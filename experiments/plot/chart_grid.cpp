@@ -87,7 +87,7 @@ double draw_grid_heading(Svg& svg, const ChartGrid& grid, double top, double wid
     }
     const std::vector<LegendEntry> entries = legend_entries(grid.panels);
     draw_legend(svg, entries, {kEdge, top + 2.0}, width);
-    return top + 4.0 + legend_height(entries, width);
+    return top + 8.0 + legend_height(entries, width);
 }
 
 }  // namespace

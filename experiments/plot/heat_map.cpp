@@ -96,7 +96,7 @@ void draw_heat_map(Svg& svg, const HeatMap& map, const PageBox& box) {
     if (map.columns == 0 || map.rows == 0 || map.values.size() != map.columns * map.rows) {
         return;
     }
-    constexpr Vec3d kPaper{0.88, 0.89, 0.9};  // linear
+    constexpr Vec3d kPaper{0.8796, 0.8879, 0.8963};  // kMaskColour in linear light
     const std::vector<Vec3d> table = shades(map.colours);
     const auto width = static_cast<int>(map.columns);
     const auto height = static_cast<int>(map.rows);

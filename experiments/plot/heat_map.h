@@ -23,6 +23,9 @@ struct HeatMap {
     std::string unit{};
 };
 
+/// Of masked pixels, and of the frame beside the map.
+inline constexpr const char* kMaskColour = "#f1f2f3";
+
 /// A range for a diverging map of values like these: symmetric about 0, at least `least` to either side.
 AxisRange symmetric_range(const std::vector<double>& values, double least);
 

@@ -4,6 +4,7 @@
 
 #include "experiments/plot/analysis_plots.h"
 #include "experiments/plot/chart.h"
+#include "experiments/plot/chart_axes.h"
 #include "experiments/plot/palette.h"
 #include "experiments/plot/plot_words.h"
 
@@ -186,14 +187,14 @@ std::string lateral_colour_svg(const PlotHeading& heading, const std::vector<Wav
         curve.points = turned(in_order(std::move(curve.points)));
         chart.curves.push_back(std::move(curve));
     }
-    if (edge.size() > 1) {
+    if (edge.size() > 1 && !is_empty(chart)) {
         chart.areas.push_back(std::move(band));
     }
     mark_single_points(chart);
     return chart_svg(chart, {480.0, 540.0});
 }
 
-std::string illumination_svg(const PlotHeading& heading, const std::vector<IlluminationPoint>& points) {
+std::string illumination_svg(const PlotHeading& heading, const std::vector<FieldBrightness>& points) {
     PlotChart chart{.title = plot_title(heading, "relative illumination"),
                     .caption = heading.conditions,
                     .x = field_axis(),
@@ -202,7 +203,7 @@ std::string illumination_svg(const PlotHeading& heading, const std::vector<Illum
     ChartCurve illumination{.label = "relative illumination", .colour = series_colour(0), .width = 2.0};
     ChartCurve vignetting{
         .label = "beam's cross-section (vignetting)", .colour = series_colour(1), .line = CurveLine::dashed};
-    for (const IlluminationPoint& point : points) {
+    for (const FieldBrightness& point : points) {
         illumination.points.push_back({point.field_deg, point.relative_illumination});
         vignetting.points.push_back({point.field_deg, point.vignetting});
     }

@@ -121,7 +121,7 @@ std::vector<PlotChart> legend_of(const SpotScale& scale) {
 
 /// The bar of known length that stands above the matrix, and what the circles are; returns where they end.
 double draw_scale_bar(Svg& svg, const SpotScale& scale, double y) {
-    const double length_um = linear_ticks(0.0, scale.half_side_um, 2).major.back();
+    const double length_um = linear_ticks(0.0, scale.half_side_um, 3).major.at(1);
     const double length = scale.px(length_um);
     const double middle = y + 9.0;
     svg.paths({{{kEdge, middle}, {kEdge + length, middle}},

@@ -6,90 +6,28 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <fstream>
 #include <map>
 #include <nlohmann/json.hpp>
-#include <sstream>
 
 #include "tests/cli/program.h"
+#include "tests/cli/trace_table.h"
 
 namespace lensproof {
 
 namespace {
 
 using Json = nlohmann::json;
-using Triple = std::array<double, 3>;
-
 constexpr double kPointTolerance_mm = 1e-9;
 constexpr double kDirectionTolerance = 1e-12;
-
-/// One row of the command's answer.
-struct Row {
-    std::string surface;
-    Triple point{};
-    Triple direction{};
-    double optical_path = 0.0;
-    std::string status;
-};
-
-using RowsById = std::map<std::string, std::vector<Row>>;
-
-/// The shortest text that reads back as the same double.
-std::string exact(double value) {
-    std::array<char, 32> text{};
-    return {text.data(), std::to_chars(text.data(), text.data() + text.size(), value).ptr};
-}
 
 Triple triple(const Json& list) {
     return {list[0], list[1], list[2]};
 }
 
-void add_ray(std::string& csv, const std::string& id, const Json& origin, const Json& direction, double wavelength_nm) {
-    csv += id;
-    for (const Json& list : {origin, direction}) {
-        for (const double value : triple(list)) {
-            csv += "," + exact(value);
-        }
-    }
-    csv += "," + exact(wavelength_nm) + "\n";
-}
-
-RowsById read_rows(const std::string& csv) {
-    RowsById rows;
-    std::istringstream lines(csv);
-    std::string line;
-    std::getline(lines, line);
-    EXPECT_EQ(line, "id,surface,x_mm,y_mm,z_mm,dx,dy,dz,optical_path_mm,transmittance,status");
-    while (std::getline(lines, line)) {
-        std::vector<std::string> cells;
-        std::istringstream stream(line);
-        for (std::string cell; std::getline(stream, cell, ',');) {
-            cells.push_back(cell);
-        }
-        if (cells.size() != 11) {
-            ADD_FAILURE() << line;
-            continue;
-        }
-        const auto number = [&](std::size_t i) { return std::stod(cells[i]); };
-        rows[cells[0]].push_back({.surface = cells[1],
-                                  .point = {number(2), number(3), number(4)},
-                                  .direction = {number(5), number(6), number(7)},
-                                  .optical_path = number(8),
-                                  .status = cells[10]});
-    }
-    return rows;
-}
-
-void expect_near(const Triple& found, const Triple& expected, double tolerance) {
-    for (std::size_t i = 0; i < 3; ++i) {
-        EXPECT_NEAR(found[i], expected[i], tolerance);
-    }
-}
-
 /// Surfaces are counted from 1; nothing where the ray passes every rim.
-Json first_clipped(const std::vector<Row>& rows) {
-    for (const Row& row : rows) {
+Json first_clipped(const std::vector<TraceRow>& rows) {
+    for (const TraceRow& row : rows) {
         if (row.status == "clipped" || row.status == "stopped") {
             EXPECT_EQ(row.status == "stopped", row.surface == "4") << "surface 4 is the stop";
             return std::stoi(row.surface);
@@ -99,7 +37,7 @@ Json first_clipped(const std::vector<Row>& rows) {
 }
 
 /// Where the ray of an image row meets another plane, x and y.
-std::array<double, 2> at_plane(const Row& image, double z) {
+std::array<double, 2> at_plane(const TraceRow& image, double z) {
     const double along = (z - image.point[2]) / image.direction[2];
     return {image.point[0] + along * image.direction[0], image.point[1] + along * image.direction[1]};
 }
@@ -110,19 +48,21 @@ class TracedReference {
     explicit TracedReference(const std::string& name) {
         std::ifstream stream(std::string(LENSPROOF_REFERENCE_DIR) + "/" + name);
         reference_ = Json::parse(stream);
-        std::string csv = "id,x_mm,y_mm,z_mm,dx,dy,dz,wavelength_nm\n";
+        std::string csv = kRayHeader;
         for (const Json& ray : reference_["rays"]["rays"]) {
-            add_ray(csv, ray["id"].get<std::string>() + wavelength_name(ray), ray["origin"], ray["direction"],
-                    wavelength(ray));
+            csv += ray_line(ray["id"].get<std::string>() + wavelength_name(ray), triple(ray["origin"]),
+                            triple(ray["direction"]), wavelength(ray));
         }
         const Json& chiefs = reference_["chief_rays"]["rows"];
         for (std::size_t i = 0; i < chiefs.size(); ++i) {
-            add_ray(csv, chief_id(i), chiefs[i]["origin"], chiefs[i]["direction"], wavelength(chiefs[i]));
+            csv += ray_line(chief_id(i), triple(chiefs[i]["origin"]), triple(chiefs[i]["direction"]),
+                            wavelength(chiefs[i]));
         }
         const Json& fans = reference_["ray_fans"]["fans"];
         for (std::size_t i = 0; i < fans.size(); ++i) {
             for (std::size_t k = 0; k < fans[i]["points"].size(); ++k) {
-                add_ray(csv, fan_id(i, k), fans[i]["points"][k]["origin"], fans[i]["direction"], wavelength(fans[i]));
+                csv += ray_line(fan_id(i, k), triple(fans[i]["points"][k]["origin"]), triple(fans[i]["direction"]),
+                                wavelength(fans[i]));
             }
         }
         place_.file("rays.csv", csv);
@@ -135,12 +75,12 @@ class TracedReference {
         const Outcome outcome = place_.run(arguments);
         EXPECT_EQ(outcome.status, 0) << outcome.err;
         EXPECT_EQ(outcome.out + outcome.err, "");
-        rows_ = read_rows(place_.content("out.csv"));
+        rows_ = read_trace_rows(place_.content("out.csv"));
     }
 
     [[nodiscard]] const Json& reference() const { return reference_; }
-    [[nodiscard]] const std::vector<Row>& rows(const std::string& id) const { return rows_.at(id); }
-    [[nodiscard]] const Row& image(const std::string& id) const { return rows(id).back(); }
+    [[nodiscard]] const std::vector<TraceRow>& rows(const std::string& id) const { return rows_.at(id); }
+    [[nodiscard]] const TraceRow& image(const std::string& id) const { return rows(id).back(); }
     [[nodiscard]] static std::string wavelength_name(const Json& entry) { return entry["wavelength"]; }
     [[nodiscard]] static std::string chief_id(std::size_t row) { return "chief" + std::to_string(row); }
     [[nodiscard]] static std::string fan_id(std::size_t fan, std::size_t point) {
@@ -165,7 +105,7 @@ class TracedReference {
 
     Workplace place_;
     Json reference_;
-    RowsById rows_;
+    TraceRows rows_;
 };
 
 class TraceReference : public testing::TestWithParam<const char*> {
@@ -189,7 +129,7 @@ TEST_P(TraceReference, EverySurfaceOfEveryRay) {
             continue;
         }
         ASSERT_EQ(ray["status"], "ok") << "the file has only rays that get through; teach this test the others";
-        const std::vector<Row>& rows = traced.rows(id);
+        const std::vector<TraceRow>& rows = traced.rows(id);
         ASSERT_EQ(rows.size(), ray["surfaces"].size() + 1);
         for (std::size_t i = 0; i + 1 < rows.size(); ++i) {
             const Json& surface = ray["surfaces"][i];
@@ -213,7 +153,7 @@ TEST_P(TraceReference, ChiefRaysMeetBothImagePlanesAtTheirHeights) {
     const Json& chiefs = traced.reference()["chief_rays"]["rows"];
     for (std::size_t i = 0; i < chiefs.size(); ++i) {
         SCOPED_TRACE(i);
-        const Row& image = traced.image(TracedReference::chief_id(i));
+        const TraceRow& image = traced.image(TracedReference::chief_id(i));
         EXPECT_NEAR(image.point[1], chiefs[i]["y_nominal"].get<double>(), kPointTolerance_mm);
         EXPECT_NEAR(at_plane(image, traced.plane_z("paraxial_d"))[1], chiefs[i]["y_paraxial_d"].get<double>(),
                     kPointTolerance_mm);
@@ -237,7 +177,7 @@ TEST_P(TraceReference, RayFansErrFromTheChiefRayAsTheReferenceSays) {
         for (std::size_t k = 0; k < fans[i]["points"].size(); ++k) {
             SCOPED_TRACE(TracedReference::fan_id(i, k));
             const Json& point = fans[i]["points"][k];
-            const std::vector<Row>& rows = traced.rows(TracedReference::fan_id(i, k));
+            const std::vector<TraceRow>& rows = traced.rows(TracedReference::fan_id(i, k));
             EXPECT_EQ(first_clipped(rows), point["first_clipped_surface"]);
             const std::array<double, 2> met = at_plane(rows.back(), z);
             EXPECT_NEAR(met[0], point["ex"].get<double>(), kPointTolerance_mm);

@@ -4,9 +4,12 @@
 
 #include <algorithm>
 #include <array>
+#include <regex>
 #include <string>
 #include <string_view>
 #include <vector>
+
+#include "experiments/plot/svg.h"
 
 namespace lensproof {
 
@@ -66,6 +69,64 @@ inline bool has_bad_number(const std::string& svg) {
         }
     }
     return false;
+}
+
+/// The `d` of every path of that class.
+inline std::vector<std::string> path_data(const std::string& svg, const std::string& class_name) {
+    std::vector<std::string> found;
+    const std::regex pattern("<path d=\"([^\"]*)\"[^>]*class=\"" + class_name + "\"");
+    for (std::sregex_iterator at(svg.begin(), svg.end(), pattern), end; at != end; ++at) {
+        found.push_back((*at)[1]);
+    }
+    return found;
+}
+
+/// A word of the drawing and the box that it takes, by the width that the layout reckons with.
+struct Word {
+    std::string text;
+    double left, top, right, bottom;
+};
+
+inline std::vector<Word> words(const std::string& svg) {
+    std::vector<Word> found;
+    const std::regex pattern("<text x=\"([^\"]*)\" y=\"([^\"]*)\" font-size=\"([^\"]*)\"([^>]*)>([^<]*)</text>");
+    for (std::sregex_iterator at(svg.begin(), svg.end(), pattern), end; at != end; ++at) {
+        const std::string rest = (*at)[4];
+        const double size = std::stod((*at)[3]);
+        const double width = svg_text_width(std::string((*at)[5]), size);
+        const double before = rest.find("\"middle\"") != std::string::npos ? 0.5
+                              : rest.find("\"end\"") != std::string::npos  ? 1.0
+                                                                           : 0.0;
+        const double x = std::stod((*at)[1]);
+        const double y = std::stod((*at)[2]);
+        // Ascenders reach 0.75 of the size above the baseline, descenders 0.2 below.
+        const bool is_upright = rest.find("rotate(-90") != std::string::npos;
+        found.push_back(
+            is_upright
+                ? Word{(*at)[5], x - 0.75 * size, y - (1.0 - before) * width, x + 0.2 * size, y + before * width}
+                : Word{(*at)[5], x - before * width, y - 0.75 * size, x + (1.0 - before) * width, y + 0.2 * size});
+    }
+    return found;
+}
+
+inline ::testing::AssertionResult words_keep_clear(const std::string& svg) {
+    const std::vector<Word> all = words(svg);
+    for (auto a = all.begin(); a != all.end(); ++a) {
+        for (auto b = a + 1; b != all.end(); ++b) {
+            if (a->left < b->right && b->left < a->right && a->top < b->bottom && b->top < a->bottom) {
+                return ::testing::AssertionFailure() << "'" << a->text << "' covers '" << b->text << "'";
+            }
+        }
+    }
+    return ::testing::AssertionSuccess();
+}
+
+inline ::testing::AssertionResult is_sound(const std::string& svg) {
+    if (has_bad_number(svg)) {
+        return ::testing::AssertionFailure() << "a number that is none";
+    }
+    const auto formed = is_well_formed(svg);
+    return formed ? words_keep_clear(svg) : formed;
 }
 
 }  // namespace lensproof

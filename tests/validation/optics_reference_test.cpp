@@ -1,12 +1,16 @@
-// First-order data, chief rays and illumination against an independent 50-digit tracer (../shared/optics_reference,
-// whose README gives its conventions). Skipped, and said so, where that folder is not there.
+// First-order data, Seidel sums, chief rays and illumination against an independent 50-digit tracer
+// (../shared/optics_reference, whose README gives its conventions). Skipped, and said so, where that folder is not
+// there.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <numbers>
 
+#include "engine/analysis/seidel.h"
+#include "engine/analysis/working_f_number.h"
 #include "engine/io/file.h"
 #include "engine/optics/chief_ray.h"
 #include "engine/optics/illumination.h"
@@ -62,6 +66,53 @@ TEST_P(OpticsReference, FirstOrderData) {
         near(data.exit_pupil_z, "exit_pupil_z_from_last");
         near(data.exit_pupil_diameter, "exit_pupil_diameter");
         near(data.f_number, "f_number");
+        near(data.front_principal_z, "z_front_principal");
+        near(lens_.last_vertex_z() + data.rear_principal_z, "z_rear_principal");
+        const double full_field = data_["lens"]["full_field_deg"].get<double>() * kDegree;
+        near(lagrange_invariant(at_wavelength<double>(lens_, wavelength(line)), full_field).value(),
+             "lagrange_invariant");
+    }
+    const ParaxialData data = paraxial_data(at_wavelength<double>(lens_, wavelength("d")));
+    EXPECT_NEAR(data.petzval_radius / data_["petzval"]["radius"].get<double>(), 1.0, 1e-12);
+}
+
+// The largest axial beam that passes every rim. Both were found by bisection to the last digits of a double.
+TEST_P(OpticsReference, RealWorkingFNumber) {
+    const double expected = data_["axial_real_beam_d"]["real_f_number_1_over_2sinU"];
+    EXPECT_NEAR(real_working_f_number(at_wavelength<double>(lens_, wavelength("d"))) / expected, 1.0, 1e-12);
+}
+
+// Each surface's share against the largest of its kind: a surface's terms are products of a handful of paraxial heights
+// and angles, good to 1e-13 of the largest.
+TEST_P(OpticsReference, SeidelSums) {
+    const double full_field = data_["lens"]["full_field_deg"].get<double>() * kDegree;
+    const auto sums =
+        seidel_sums(at_wavelength<double>(lens_, wavelength("d")), at_wavelength<double>(lens_, wavelength("F")),
+                    at_wavelength<double>(lens_, wavelength("C")), full_field);
+    ASSERT_TRUE(sums);
+    const nlohmann::json& expected = data_["seidel"];
+    ASSERT_EQ(sums->surfaces.size(), expected["per_surface"].size());
+    const auto compare = [&](const char* key, auto term) {
+        double largest = 0.0;
+        for (const auto& surface : expected["per_surface"]) {
+            largest = std::max(largest, std::abs(surface[key].get<double>()));
+        }
+        for (std::size_t i = 0; i < sums->surfaces.size(); ++i) {
+            EXPECT_NEAR(sums->surfaces[i].*term, expected["per_surface"][i][key].get<double>(), 1e-12 * largest)
+                << key << " of surface " << i + 1;
+        }
+        EXPECT_NEAR(sums->total.*term, expected["sum"][key].get<double>(), 1e-12 * largest) << key;
+    };
+    compare("S1", &SeidelTerms<double>::s1);
+    compare("S2", &SeidelTerms<double>::s2);
+    compare("S3", &SeidelTerms<double>::s3);
+    compare("S4", &SeidelTerms<double>::s4);
+    compare("S5", &SeidelTerms<double>::s5);
+    compare("CL", &SeidelTerms<double>::c1);
+    compare("CT", &SeidelTerms<double>::c2);
+    const SeidelTerms<double>& stop = sums->surfaces[lens_.stop_index()];
+    for (const double term : {stop.s1, stop.s2, stop.s3, stop.s4, stop.s5, stop.c1, stop.c2}) {
+        EXPECT_EQ(term, 0.0);
     }
 }
 
@@ -87,9 +138,8 @@ TEST_P(OpticsReference, ChiefRayHeights) {
     EXPECT_GT(compared, 40);
 }
 
-// The projected solid angle of the bundle at the d line. With 256 azimuths a wedge's mean of a smooth outline is exact
-// to 1e-8, but a corner between two rims' arcs costs up to half a wedge of the difference in slope: (2π/256)² / 8 ≈
-// 8e-5.
+// The projected solid angle of the bundle at the d line, to the reference's own accuracy of about 1e-7 (it does not
+// look for the corners between two rims' arcs).
 TEST_P(OpticsReference, ProjectedSolidAngle) {
     Lens lens = lens_;
     lens.image_z = data_["image_planes"]["paraxial_d"]["z"];
@@ -97,8 +147,8 @@ TEST_P(OpticsReference, ProjectedSolidAngle) {
     int compared = 0;
     for (const auto& row : data_["relative_illumination"]["rows"]) {
         const double expected = row["projected_solid_angle"];
-        const Bundle bundle = image_bundle(traced, row["image_y"], 256);
-        EXPECT_NEAR(bundle.projected_solid_angle / expected, 1.0, 1e-4) << row["field_deg"];
+        const Bundle bundle = image_bundle(traced, row["image_y"]);
+        EXPECT_NEAR(bundle.projected_solid_angle / expected, 1.0, 1e-7) << row["field_deg"];
         EXPECT_LT(bundle.transmitted, bundle.projected_solid_angle);
         ++compared;
     }

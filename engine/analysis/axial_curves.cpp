@@ -1,0 +1,41 @@
+#include "engine/analysis/axial_curves.h"
+
+#include "engine/analysis/ray_pencil.h"
+#include "engine/optics/paraxial.h"
+#include "engine/optics/rim_margin.h"
+
+namespace lensproof {
+
+double axial_semi_diameter(const TraceLens<double>& lens, const FieldBundle& axis) {
+    const Region region = [&](Vec2d offset) { return rim_margin(lens, axis.ray(offset), Direction::forward); };
+    if (!(region({}).margin < 0.0)) {
+        return 0.0;
+    }
+    const double hint = 0.5 * paraxial_data(lens).entrance_pupil_diameter;
+    return region_edge(region, {}, {0.0, 1.0}, hint).distance;
+}
+
+std::vector<AxialPoint> longitudinal_aberration(const TraceLens<double>& lens, const FieldBundle& axis,
+                                                double semi_diameter, int count) {
+    std::vector<AxialPoint> points;
+    const double efl = paraxial_data(lens).efl;
+    if (const std::optional<RayPencil> pencil = ray_pencil(lens, axis)) {
+        points.push_back({0.0, 0.0, astigmatic_foci(*pencil, lens.image_z).tangential});
+    }
+    for (int i = 1; i < count && semi_diameter > 0.0; ++i) {
+        const double zone = static_cast<double>(i) / (count - 1);
+        const double height = zone * semi_diameter;
+        const auto traced = trace<Direction::forward, Rims::follow>(lens, axis.ray({0.0, height}));
+        if (traced.status == RayStatus::missed || traced.status == RayStatus::total_internal_reflection) {
+            continue;
+        }
+        const Ray<double>& ray = traced.ray;
+        // Parallel to the axis: infinitely far.
+        const double crossing = ray.origin.z - ray.origin.y * ray.direction.z / ray.direction.y;
+        const double offence = axis.is_near() ? 0.0 : -height / ray.direction.y - efl;
+        points.push_back({zone, height, crossing - lens.image_z, offence});
+    }
+    return points;
+}
+
+}  // namespace lensproof

@@ -1,0 +1,119 @@
+#include "engine/analysis/lens_analysis.h"
+
+#include <algorithm>
+
+#include "engine/analysis/field_curves.h"
+#include "engine/analysis/spot.h"
+#include "engine/analysis/wavefront.h"
+
+namespace lensproof {
+
+namespace {
+
+/// A lens at one wavelength, with the axis's light that every field's is compared to.
+struct AnalysedColour {
+    ColourOfLens colour;
+    FieldLight axis{};
+
+    AnalysedColour(const Lens& lens, double wavelength_nm, const AnalysisSettings& settings)
+        : colour(lens, wavelength_nm) {
+        if (const auto axial = field_bundle(colour.chief_rays, colour.chief_rays, 0.0, settings.object_distance)) {
+            axis = field_light(colour.lens, *axial, axial->chief.image_point);
+        }
+    }
+};
+
+/// What the passing beam makes at the image.
+void add_image(FieldAnalysis& row, const ColourOfLens& colour, const FieldBundle& bundle, const RegionOutline& beam,
+               int rings) {
+    const SpotSize spot = spot_size(spot_rays(colour.lens, bundle, beam, rings));
+    row.spot_rms = spot.rms;
+    row.spot_centroid = spot.centroid;
+    if (const auto sphere = reference_sphere(colour.lens, bundle)) {
+        const Wavefront waves =
+            wavefront(colour.lens, colour.wavelength_nm, bundle, *sphere, beam_quadrature(beam, rings));
+        row.wavefront_rms_waves = wavefront_errors(waves).rms;
+    }
+}
+
+/// `reference`: the field's bundle at the reference wavelength, which says where the object is.
+FieldAnalysis analyze_field(double field, const AnalysedColour& analysed, const std::optional<FieldBundle>& reference,
+                            Projection projection, int rings) {
+    const ColourOfLens& colour = analysed.colour;
+    FieldAnalysis row{.field_angle = field, .wavelength_nm = colour.wavelength_nm};
+    const auto bundle = reference ? same_object(*reference, colour.chief_rays) : std::nullopt;
+    if (!bundle) {
+        row.status = RayStatus::missed;
+        return row;
+    }
+    row.status = bundle->chief.status;
+    row.surface = bundle->chief.surface;
+    row.chief_ray_height = bundle->chief.image_height;
+    row.lateral_colour = bundle->chief.image_height - reference->chief.image_height;
+    row.distortion_percent = distortion_percent(colour.lens, projection, *bundle);
+    if (const auto pencil = ray_pencil(colour.lens, *bundle)) {
+        const AstigmaticFoci foci = astigmatic_foci(*pencil, colour.lens.image_z);
+        row.tangential_focus = foci.tangential;
+        row.sagittal_focus = foci.sagittal;
+    }
+    const FieldLight light = field_light(colour.lens, *bundle, reference->chief.image_point);
+    if (!analysed.axis.beam.is_empty()) {
+        const FieldLightRatio ratio = light_ratio(light, analysed.axis);
+        row.vignetting = ratio.vignetting;
+        row.relative_illumination = ratio.relative_illumination;
+    }
+    if (!light.beam.is_empty()) {
+        add_image(row, colour, *bundle, light.beam, rings);
+    }
+    return row;
+}
+
+}  // namespace
+
+LensAnalysis analyze_lens(const Lens& lens, const AnalysisSettings& settings) {
+    const ColourOfLens reference(lens, settings.reference_wavelength_nm);
+    std::vector<AnalysedColour> colours;
+    LensAnalysis analysis;
+    for (const double wavelength_nm : settings.wavelengths_nm) {
+        colours.emplace_back(lens, wavelength_nm, settings);
+        analysis.paraxial.push_back(paraxial_data(colours.back().colour.lens));
+    }
+    analysis.reference_paraxial = paraxial_data(reference.lens);
+    analysis.conjugates = paraxial_conjugates(reference.lens, settings.object_distance);
+    analysis.real_working_f_number = real_working_f_number(reference.lens, settings.object_distance);
+
+    const double largest_field = std::ranges::max(settings.fields);
+    const auto [shortest, longest] = std::ranges::minmax_element(settings.wavelengths_nm);
+    analysis.seidel = seidel_sums(reference.lens, at_wavelength<double>(lens, *shortest),
+                                  at_wavelength<double>(lens, *longest), largest_field, settings.object_distance);
+    analysis.lagrange_invariant = lagrange_invariant(reference.lens, largest_field);
+    for (const double field : settings.fields) {
+        const auto bundle = field_bundle(reference.chief_rays, reference.chief_rays, field, settings.object_distance);
+        for (const AnalysedColour& colour : colours) {
+            analysis.fields.push_back(analyze_field(field, colour, bundle, lens.projection, settings.rings));
+        }
+    }
+    return analysis;
+}
+
+std::vector<std::optional<PolychromaticField>> polychromatic_fields(const Lens& lens,
+                                                                    const AnalysisSettings& settings) {
+    std::vector<WeightedWavelength> wavelengths;
+    for (const double wavelength_nm : settings.wavelengths_nm) {
+        wavelengths.push_back({.wavelength_nm = wavelength_nm});
+    }
+    const ChiefRays chief_rays(lens, settings.reference_wavelength_nm, Rims::follow);
+    std::vector<std::optional<PolychromaticField>> fields;
+    for (const double field : settings.fields) {
+        const auto bundle = field_bundle(chief_rays, chief_rays, field, settings.object_distance);
+        fields.push_back(
+            bundle ? std::optional(polychromatic_field(lens, *bundle, settings.reference_wavelength_nm, wavelengths))
+                   : std::nullopt);
+        if (fields.back() && fields.back()->parts.empty()) {
+            fields.back().reset();
+        }
+    }
+    return fields;
+}
+
+}  // namespace lensproof

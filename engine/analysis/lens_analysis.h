@@ -1,0 +1,59 @@
+// engine/analysis/lens_analysis.h — a lens's numbers over field and wavelength, as `lensproof analyze` prints them.
+#pragma once
+#include <limits>
+#include <optional>
+#include <vector>
+
+#include "engine/analysis/polychromatic_field.h"
+#include "engine/analysis/seidel.h"
+#include "engine/analysis/working_f_number.h"
+#include "engine/optics/lens.h"
+#include "engine/optics/paraxial.h"
+
+namespace lensproof {
+
+/// What a lens is analysed for. Angles in radians.
+struct AnalysisSettings {
+    std::vector<double> wavelengths_nm;                                // at least one
+    double reference_wavelength_nm = 0.0;                              // need not be among them
+    std::vector<double> fields;                                        // at least one, 0 ≤ θ < π
+    double object_distance = std::numeric_limits<double>::infinity();  // in front of the first vertex, mm
+    int rings = 12;                                                    // of the quadrature over a beam
+};
+
+/// One field at one wavelength. What does not exist, such as a chief ray beyond the field, is nothing; mm.
+struct FieldAnalysis {
+    double field_angle = 0.0;
+    double wavelength_nm = 0.0;
+    RayStatus status = RayStatus::ok;  // of the chief ray, past the rims where one clips it
+    int surface = -1;                  // where the status befell it, from 0
+    std::optional<double> chief_ray_height;
+    std::optional<double> distortion_percent;
+    std::optional<double> tangential_focus;  // from the image plane, positive beyond it
+    std::optional<double> sagittal_focus;
+    std::optional<double> relative_illumination;
+    std::optional<double> vignetting;  // beam cross-section over that on axis
+    std::optional<double> spot_rms;
+    std::optional<Vec2d> spot_centroid;
+    std::optional<double> wavefront_rms_waves;
+    std::optional<double> lateral_colour;  // chief ray height less that at the reference wavelength
+};
+
+struct LensAnalysis {
+    std::vector<ParaxialData> paraxial;        // by wavelength, as in the settings
+    ParaxialData reference_paraxial;           // at the reference wavelength, as all that follows
+    Conjugates conjugates;                     // of the settings' object
+    double real_working_f_number = 0.0;        // infinite where no axial light passes
+    std::optional<double> lagrange_invariant;  // for the largest field, as the sums; nothing at and beyond 90°
+    std::optional<SeidelSums<double>> seidel;  // colour from the longest to the shortest wavelength
+    std::vector<FieldAnalysis> fields;         // by field, and for each by wavelength
+};
+
+/// Throws InputError for a wavelength that a glass's formula does not cover, as does what follows.
+LensAnalysis analyze_lens(const Lens& lens, const AnalysisSettings& settings);
+
+/// The settings' fields with all of their wavelengths, of equal weight each: what focus, PSF and MTF are judged by.
+/// Nothing for a field whose object has no chief ray, or no light that passes.
+std::vector<std::optional<PolychromaticField>> polychromatic_fields(const Lens& lens, const AnalysisSettings& settings);
+
+}  // namespace lensproof

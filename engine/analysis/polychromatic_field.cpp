@@ -1,0 +1,158 @@
+#include "engine/analysis/polychromatic_field.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "engine/io/input_error.h"
+#include "engine/optics/rim_margin.h"
+
+namespace lensproof {
+
+namespace {
+
+constexpr double kTurn = 2.0 * std::numbers::pi;
+
+/// The beam's outline in polar coordinates that are stretched to its height and width, so that a slim one is seen
+/// evenly.
+class Outline {
+  public:
+    Outline(const PolychromaticField::Part& part, const FieldBundle& bundle)
+        : region_([&](Vec2d offset) { return rim_margin(part.lens, bundle.ray(offset), Direction::forward); }),
+          centre_(part.outline.centre) {
+        for (const OutlinePoint& point : part.outline.points) {
+            stretch_ = {std::max(stretch_.x, std::abs(point.edge.x)), std::max(stretch_.y, std::abs(point.edge.y))};
+        }
+    }
+
+    /// From the centre to the rim.
+    [[nodiscard]] Vec2d edge_at(double azimuth) const {
+        const Vec2d along = along_at(azimuth);
+        const double distance = region_edge(region_, centre_, along).distance;
+        return {distance * along.x, distance * along.y};
+    }
+
+    /// d area = factor · t dt d azimuth, t running from 0 to 1 along an edge.
+    [[nodiscard]] double area_factor(double azimuth, Vec2d edge) const {
+        const Vec2d along = along_at(azimuth);
+        const double stretched = dot2(edge, along) / dot2(along, along);
+        return stretch_.x * stretch_.y * stretched * stretched;
+    }
+
+    /// The azimuths, ascending, where one rim takes over from another; those between which no even azimuth lies are not
+    /// seen.
+    [[nodiscard]] std::vector<double> corners(int azimuths) const {
+        std::vector<double> found;
+        int last = limit_at(0.0);
+        for (int i = 1; i <= azimuths; ++i) {
+            const int here = limit_at(kTurn * i / azimuths);
+            if (here != last) {
+                double before = kTurn * (i - 1) / azimuths;
+                double behind = kTurn * i / azimuths;
+                for (int halving = 0; halving < 30; ++halving) {
+                    const double middle = 0.5 * (before + behind);
+                    (limit_at(middle) == last ? before : behind) = middle;
+                }
+                found.push_back(before);
+            }
+            last = here;
+        }
+        return found;
+    }
+
+  private:
+    static double dot2(Vec2d a, Vec2d b) { return a.x * b.x + a.y * b.y; }
+    [[nodiscard]] Vec2d along_at(double azimuth) const {
+        return {stretch_.x * std::cos(azimuth), stretch_.y * std::sin(azimuth)};
+    }
+    [[nodiscard]] int limit_at(double azimuth) const { return region_edge(region_, centre_, along_at(azimuth)).limit; }
+
+    Region region_;
+    Vec2d centre_;
+    Vec2d stretch_;
+};
+
+}  // namespace
+
+PolychromaticField polychromatic_field(const Lens& lens, const FieldBundle& bundle, double reference_nm,
+                                       std::span<const WeightedWavelength> wavelengths) {
+    PolychromaticField field{.bundle = bundle};
+    const TraceLens<double> reference = at_wavelength<double>(lens, reference_nm);
+    const std::optional<ReferenceSphere> sphere = reference_sphere(reference, bundle);
+    if (!sphere) {
+        return field;
+    }
+    field.sphere = *sphere;
+    field.chief_direction = trace<Direction::forward, Rims::follow>(reference, bundle.ray({})).ray.direction;
+    double total = 0.0;
+    for (const WeightedWavelength& share : wavelengths) {
+        if (!(share.weight >= 0.0) || !std::isfinite(share.weight)) {
+            throw InputError(fmt::format("the weight of {} nm is {}: expected 0 or a positive number",
+                                         share.wavelength_nm, share.weight));
+        }
+        TraceLens<double> traced = at_wavelength<double>(lens, share.wavelength_nm);
+        RegionOutline outline = beam_outline(traced, bundle);
+        if (share.weight > 0.0 && outline.area > 0.0) {
+            const double weight = share.weight * outline.area;
+            total += weight;
+            field.parts.push_back({share.wavelength_nm, weight, std::move(traced), std::move(outline)});
+        }
+    }
+    for (PolychromaticField::Part& part : field.parts) {
+        part.weight /= total;
+    }
+    return field;
+}
+
+std::vector<BeamNode> polar_nodes(const PolychromaticField::Part& part, const FieldBundle& bundle, int azimuths,
+                                  int rings) {
+    if (part.outline.is_empty()) {
+        return {};
+    }
+    const Outline outline(part, bundle);
+    std::vector<BeamNode> nodes;
+    const GaussRule radial = gauss_legendre(rings);
+    const auto add = [&](double azimuth, double width) {
+        const Vec2d edge = outline.edge_at(azimuth);
+        const double wedge = width * outline.area_factor(azimuth, edge);
+        for (std::size_t k = 0; k < radial.nodes.size(); ++k) {
+            const double t = radial.nodes[k];
+            nodes.push_back({{part.outline.centre.x + t * edge.x, part.outline.centre.y + t * edge.y},
+                             wedge * radial.weights[k] * t});
+        }
+    };
+    const std::vector<double> corners = outline.corners(azimuths);
+    if (corners.empty()) {
+        for (int i = 0; i < azimuths; ++i) {
+            add(kTurn * (i + 0.5) / azimuths, kTurn / azimuths);
+        }
+        return nodes;
+    }
+    for (std::size_t i = 0; i < corners.size(); ++i) {
+        const double from = corners[i];
+        const double arc = (i + 1 < corners.size() ? corners[i + 1] : corners.front() + kTurn) - from;
+        const GaussRule along = gauss_legendre(static_cast<int>(std::ceil(azimuths * arc / kTurn)) + 2);
+        for (std::size_t k = 0; k < along.nodes.size(); ++k) {
+            add(from + arc * along.nodes[k], arc * along.weights[k]);
+        }
+    }
+    return nodes;
+}
+
+std::optional<ImageRay> image_ray(const PolychromaticField::Part& part, const PolychromaticField& field, Vec2d offset) {
+    const TracedRay<double> traced = trace<Direction::forward, Rims::follow>(part.lens, field.bundle.ray(offset));
+    const ReferenceSphere plane{.centre = field.sphere.centre, .curvature = 0.0};
+    const std::optional<SphereMeeting> meeting = meet_sphere(part.lens, plane, traced);
+    if (!meeting || !(traced.ray.direction.z > 0.0)) {
+        return std::nullopt;
+    }
+    const Vec3d at = meet_plane(traced.ray, plane.centre.z).point - plane.centre;
+    return ImageRay{.direction = traced.ray.direction,
+                    .aberration = {at.x, at.y},
+                    .path = meeting->optical_path,
+                    .passes = traced.status == RayStatus::ok};
+}
+
+}  // namespace lensproof

@@ -1,0 +1,71 @@
+#include "engine/analysis/ray_fan.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "engine/optics/rim_margin.h"
+
+namespace lensproof {
+
+namespace {
+
+/// The offsets along the fan between which rays pass, lower first; nothing where none is known to.
+struct Extent {
+    double lower;
+    double upper;
+};
+
+std::optional<Extent> fan_extent(const TraceLens<double>& lens, const FieldBundle& bundle, const RegionOutline& outline,
+                                 FanPlane plane) {
+    const Region region = [&](Vec2d offset) { return rim_margin(lens, bundle.ray(offset), Direction::forward); };
+    const bool is_tangential = plane == FanPlane::tangential;
+    double inside = 0.0;
+    if (!(region({}).margin < 0.0)) {
+        if (!is_tangential || outline.centre.x != 0.0 || outline.is_empty()) {
+            return std::nullopt;
+        }
+        inside = outline.centre.y;
+    }
+    // As far as a disc of the beam's area reaches.
+    const double hint = std::sqrt(outline.area);
+    const auto reach = [&](double sign) {
+        const Vec2d from = is_tangential ? Vec2d{0.0, inside} : Vec2d{inside, 0.0};
+        const Vec2d along = is_tangential ? Vec2d{0.0, sign} : Vec2d{sign, 0.0};
+        return inside + sign * region_edge(region, from, along, hint).distance;
+    };
+    return Extent{reach(-1.0), reach(1.0)};
+}
+
+}  // namespace
+
+std::optional<Vec2d> transverse_error(const TraceLens<double>& lens, const FieldBundle& bundle, Vec2d offset,
+                                      Vec2d reference) {
+    const auto traced = trace<Direction::forward, Rims::follow>(lens, bundle.ray(offset));
+    if (traced.status == RayStatus::missed || traced.status == RayStatus::total_internal_reflection ||
+        !(traced.ray.direction.z > 0.0)) {
+        return std::nullopt;
+    }
+    const Vec3d point = meet_plane(traced.ray, lens.image_z).point;
+    return Vec2d{point.x - reference.x, point.y - reference.y};
+}
+
+std::vector<FanPoint> ray_fan(const TraceLens<double>& lens, const FieldBundle& bundle, const RegionOutline& outline,
+                              FanPlane plane, Vec2d reference, int count) {
+    const std::optional<Extent> extent = fan_extent(lens, bundle, outline, plane);
+    if (!extent) {
+        return {};
+    }
+    const double farther = std::max(std::abs(extent->lower), std::abs(extent->upper));
+    std::vector<FanPoint> fan;
+    for (int i = 0; i < count; ++i) {
+        const double share = static_cast<double>(i) / (count - 1);
+        const double offset = (1.0 - share) * extent->lower + share * extent->upper;
+        const Vec2d at = plane == FanPlane::tangential ? Vec2d{0.0, offset} : Vec2d{offset, 0.0};
+        if (const std::optional<Vec2d> error = transverse_error(lens, bundle, at, reference)) {
+            fan.push_back({.pupil = offset / farther, .offset = offset, .error = *error});
+        }
+    }
+    return fan;
+}
+
+}  // namespace lensproof

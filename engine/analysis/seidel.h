@@ -1,0 +1,192 @@
+// engine/analysis/seidel.h — third-order aberrations: Seidel's sums and the colour sums, surface by surface.
+#pragma once
+#include <limits>
+#include <optional>
+#include <vector>
+
+#include "engine/optics/paraxial.h"
+
+namespace lensproof {
+
+/// One surface's share of the sums, or their total; mm. Welford, Aberrations of Optical Systems (1986), ch. 8 and
+/// 10; signs as in rayoptics, so that S1 > 0 is undercorrected spherical aberration.
+template <class T>
+struct SeidelTerms {
+    T s1 = T(0);  // spherical aberration
+    T s2 = T(0);  // coma
+    T s3 = T(0);  // astigmatism
+    T s4 = T(0);  // Petzval's curvature
+    T s5 = T(0);  // distortion
+    T c1 = T(0);  // axial colour
+    T c2 = T(0);  // lateral colour
+
+    SeidelTerms& operator+=(const SeidelTerms& other) {
+        s1 += other.s1;
+        s2 += other.s2;
+        s3 += other.s3;
+        s4 += other.s4;
+        s5 += other.s5;
+        c1 += other.c1;
+        c2 += other.c2;
+        return *this;
+    }
+};
+
+template <class T>
+struct SeidelSums {
+    std::vector<SeidelTerms<T>> surfaces;  // as in the prescription; a plane within one medium, as the stop, has 0
+    SeidelTerms<T> total;
+    T image_slope = T(0);  // n' u' of the marginal ray behind the lens
+};
+
+/// The lens at three wavelengths: the sums S at `reference`, the colour sums for the change of index from
+/// `long_wavelength` to `short_wavelength` (F − C by custom), which have the same surfaces. For the full stop, the
+/// field `field_angle` at the entrance pupil and an object `object_distance` mm in front of the first vertex.
+///
+/// With A = n (u + y c), Ā = n (ū + ȳ c), H = A ȳ − Ā y and Δ the change at a surface,
+///     S1 = −A² y Δ(u/n),  S2 = −A Ā y Δ(u/n),  S3 = −Ā² y Δ(u/n),  S4 = −H² c Δ(1/n),
+///     S5 = −Ā³ y Δ(1/n²) + Ā ȳ (Ā y − H) c Δ(1/n),  C1 = A y Δ(δn/n),  C2 = Ā y Δ(δn/n),
+/// in which nothing is divided by A or y, and
+///     Δ(u/n) = A Δ(1/n²) − y c Δ(1/n),  Δ(1/n) = −(n' − n) / (n n'),
+/// so that a small step of index keeps its digits and none gives exactly 0. A surface whose sag is that of the sphere
+/// of its vertex curvature plus G r⁴ + O(r⁶) adds 8 G Δn (y⁴, y³ ȳ, y² ȳ², 0, y ȳ³). A toroid counts as its profile in
+/// y–z turned about the axis; tilts and decentres are left out.
+///
+/// The theory takes the field by its tangent, which grows without bound: for a fisheye the sums say little long before
+/// 90°. Nothing where there is no paraxial chief or marginal ray (paraxial.h): at and beyond 90°, with the entrance
+/// pupil at infinity, with the object's image in the stop, and for a stop without a semi-diameter.
+template <class T>
+std::optional<SeidelSums<T>> seidel_sums(
+    const TraceLens<T>& reference, const TraceLens<T>& short_wavelength, const TraceLens<T>& long_wavelength,
+    const std::type_identity_t<T>& field_angle,
+    const std::type_identity_t<T>& object_distance = std::numeric_limits<T>::infinity());
+
+/// The wavefront's aberrations at the edge of pupil and field, mm of optical path, positive where the wavefront runs
+/// ahead of the reference sphere about the paraxial image (Hopkins' coefficients; Welford, ch. 8):
+///     W = W040 ρ⁴ + W131 η ρ³ cos φ + W222 η² ρ² cos² φ + W220 η² ρ² + W311 η³ ρ cos φ  (+ W020 ρ² + W111 η ρ cos φ),
+/// ρ and η being relative to the edges, φ from +y. The last two are those of the short wavelength against the long one.
+template <class T>
+struct ThirdOrderWavefront {
+    T w040, w131, w222, w220, w311, w020, w111;
+};
+
+template <class T>
+ThirdOrderWavefront<T> third_order_wavefront(const SeidelTerms<T>& terms) {
+    return {.w040 = terms.s1 / 8,
+            .w131 = terms.s2 / 2,
+            .w222 = terms.s3 / 2,
+            .w220 = (terms.s3 + terms.s4) / 4,
+            .w311 = terms.s5 / 2,
+            .w020 = terms.c1 / 2,
+            .w111 = terms.c2};
+}
+
+/// How far (mm, x and y) from the paraxial image a ray meets the paraxial image plane: the ray through the pupil at
+/// `pupil` (relative to its edge) from the share `field` of the full field, which lies in +y. To third order, at the
+/// reference wavelength: the gradient of W over n' u'. Nothing where the image lies at infinity.
+template <class T>
+std::optional<Vec2<T>> third_order_ray_error(const SeidelSums<T>& sums, const Vec2<T>& pupil, const T& field) {
+    if (sums.image_slope == T(0)) {
+        return std::nullopt;
+    }
+    const SeidelTerms<T>& s = sums.total;
+    const T rho2 = pupil.x * pupil.x + pupil.y * pupil.y;
+    const T field2 = field * field;
+    const T scale = 1 / (2 * sums.image_slope);
+    const T x = (s.s1 * rho2 + 2 * s.s2 * field * pupil.y + (s.s3 + s.s4) * field2) * pupil.x;
+    const T y = (s.s1 * rho2 + (3 * s.s3 + s.s4) * field2) * pupil.y + s.s2 * field * (rho2 + 2 * pupil.y * pupil.y) +
+                s.s5 * field2 * field;
+    return Vec2<T>{scale * x, scale * y};
+}
+
+// ---------------------------------------------------------------------------------------------------------------------
+
+namespace seidel_detail {
+
+/// 8 G, where the sag departs from the sphere of the vertex's curvature by G r⁴. With the curvature c that the shape
+/// states and its r² term a, the vertex has c + 2 a, and 8 G = (1 + k) c³ − (c + 2 a)³ + 8 A4.
+template <class T>
+T departure_from_sphere(const TraceLens<T>& lens, const TraceSurface<T>& surface) {
+    if (surface.special < 0 || !lens.specials[surface.special].has_shape) {
+        return T(0);
+    }
+    const SurfaceShape<T>& shape = lens.specials[surface.special].shape;
+    const T& c = shape.curvature;
+    const T& c_vertex = surface.curvature;
+    const T r2_term = 2 * shape.asphere[0];
+    return shape.conic * c * c * c - r2_term * (c * c + c * c_vertex + c_vertex * c_vertex) + 8 * shape.asphere[1];
+}
+
+/// δn / n of one medium.
+template <class T>
+T dispersion(const T& index, const T& short_index, const T& long_index) {
+    return (short_index - long_index) / index;
+}
+
+template <class T>
+SeidelTerms<T> surface_terms(const TraceSurface<T>& surface, const T& departure, const BasicParaxialRay<T>& marginal,
+                             const BasicParaxialRay<T>& chief) {
+    const T& n = surface.index_before;
+    const T& n_after = surface.index_after;
+    const T& c = surface.curvature;
+    const T& y = marginal.height;
+    const T& y_chief = chief.height;
+    const T a = n * (marginal.slope + y * c);
+    const T a_chief = n * (chief.slope + y_chief * c);
+    const T invariant = a * y_chief - a_chief * y;
+    const T step = n_after - n;
+    const T change_1 = -step / (n * n_after);                   // Δ(1/n)
+    const T change_2 = change_1 * (T(1) / n + T(1) / n_after);  // Δ(1/n²)
+    const T bend = a * change_2 - y * c * change_1;             // Δ(u/n)
+    const T figure = departure * step * y;
+    return {.s1 = -a * a * y * bend + figure * y * y * y,
+            .s2 = -a * a_chief * y * bend + figure * y * y * y_chief,
+            .s3 = -a_chief * a_chief * y * bend + figure * y * y_chief * y_chief,
+            .s4 = -invariant * invariant * c * change_1,
+            .s5 = a_chief * (y_chief * (a_chief * y - invariant) * c * change_1 - a_chief * a_chief * y * change_2) +
+                  figure * y_chief * y_chief * y_chief,
+            .c1 = a * y,
+            .c2 = a_chief * y};
+}
+
+}  // namespace seidel_detail
+
+template <class T>
+std::optional<SeidelSums<T>> seidel_sums(const TraceLens<T>& reference, const TraceLens<T>& short_wavelength,
+                                         const TraceLens<T>& long_wavelength,
+                                         const std::type_identity_t<T>& field_angle,
+                                         const std::type_identity_t<T>& object_distance) {
+    auto marginal = paraxial_marginal_ray(reference, object_distance);
+    auto chief = paraxial_chief_ray(reference, field_angle);
+    if (!marginal || !chief) {
+        return std::nullopt;
+    }
+    SeidelSums<T> sums;
+    for (int i = 0; i < static_cast<int>(reference.surfaces.size()); ++i) {
+        const TraceSurface<T>& surface = reference.surfaces[i];
+        if (i > 0) {
+            const T gap = surface.vertex_z - reference.surfaces[i - 1].vertex_z;
+            marginal->height += gap * marginal->slope;
+            chief->height += gap * chief->slope;
+        }
+        SeidelTerms<T> terms = seidel_detail::surface_terms(
+            surface, seidel_detail::departure_from_sphere(reference, surface), *marginal, *chief);
+        const TraceSurface<T>& at_short = short_wavelength.surfaces[i];
+        const TraceSurface<T>& at_long = long_wavelength.surfaces[i];
+        const T change = seidel_detail::dispersion(surface.index_after, at_short.index_after, at_long.index_after) -
+                         seidel_detail::dispersion(surface.index_before, at_short.index_before, at_long.index_before);
+        terms.c1 *= change;
+        terms.c2 *= change;
+        sums.total += terms;
+        sums.surfaces.push_back(terms);
+        marginal = trace_paraxial(reference, *marginal, i, i);
+        chief = trace_paraxial(reference, *chief, i, i);
+    }
+    sums.image_slope = reference.surfaces.back().index_after * marginal->slope;
+    return sums;
+}
+
+extern template std::optional<SeidelSums<double>> seidel_sums(const TraceLens<double>&, const TraceLens<double>&,
+                                                              const TraceLens<double>&, const double&, const double&);
+
+}  // namespace lensproof

@@ -1,0 +1,164 @@
+#include "engine/analysis/spot.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+namespace lensproof {
+
+namespace {
+
+/// Nothing for a ray that leaves the lens away from the sensor.
+std::optional<SpotRay> at_image(const TraceLens<double>& lens, const TracedRay<double>& traced, double weight) {
+    const Vec3d& way = traced.ray.direction;
+    if (!(way.z > 0.0)) {
+        return std::nullopt;
+    }
+    const Vec3d point = meet_plane(traced.ray, lens.image_z).point;
+    return SpotRay{{point.x, point.y}, {way.x / way.z, way.y / way.z}, weight};
+}
+
+struct Means {
+    double weight = 0.0;
+    Vec2d point{};
+    Vec2d slope{};
+};
+
+Means means(std::span<const SpotRay> rays) {
+    Means sum;
+    for (const SpotRay& ray : rays) {
+        sum.weight += ray.weight;
+        sum.point = {sum.point.x + ray.weight * ray.point.x, sum.point.y + ray.weight * ray.point.y};
+        sum.slope = {sum.slope.x + ray.weight * ray.slope.x, sum.slope.y + ray.weight * ray.slope.y};
+    }
+    if (sum.weight > 0.0) {
+        sum.point = {sum.point.x / sum.weight, sum.point.y / sum.weight};
+        sum.slope = {sum.slope.x / sum.weight, sum.slope.y / sum.weight};
+    }
+    return sum;
+}
+
+}  // namespace
+
+std::vector<SpotRay> spot_rays(const TraceLens<double>& lens, const FieldBundle& bundle, const RegionOutline& outline,
+                               int rings) {
+    std::vector<SpotRay> rays;
+    const auto add = [&](Vec2d offset, double weight, bool is_mirrored) {
+        // A ray on the outline is inside to a rounding; it is followed all the same.
+        const TracedRay<double> traced = weight > 0.0
+                                             ? trace(lens, bundle.ray(offset))
+                                             : trace<Direction::forward, Rims::follow>(lens, bundle.ray(offset));
+        const bool arrives =
+            traced.status == RayStatus::ok ||
+            (weight == 0.0 && (traced.status == RayStatus::clipped || traced.status == RayStatus::stopped));
+        const std::optional<SpotRay> ray = arrives ? at_image(lens, traced, weight) : std::nullopt;
+        if (!ray) {
+            return;
+        }
+        rays.push_back(*ray);
+        if (is_mirrored) {
+            rays.push_back({{-ray->point.x, ray->point.y}, {-ray->slope.x, ray->slope.y}, ray->weight});
+        }
+    };
+    const GaussRule rule = gauss_legendre(rings);
+    for (const OutlinePoint& point : outline.points) {
+        for (std::size_t i = 0; i < rule.nodes.size(); ++i) {
+            add(outline.at(point, rule.nodes[i]), 2.0 * rule.nodes[i] * rule.weights[i] * point.wedge_area,
+                outline.is_half);
+        }
+        add(outline.at(point, 1.0), 0.0, outline.is_half);
+    }
+    return rays;
+}
+
+std::vector<SpotRay> spot_grid(const TraceLens<double>& lens, const FieldBundle& bundle, double half_width, int cells) {
+    std::vector<SpotRay> rays;
+    const double cell = 2.0 * half_width / cells;
+    for (int i = 0; i < cells; ++i) {
+        for (int k = 0; k < cells; ++k) {
+            const Vec2d offset{half_width * (2 * i + 1 - cells) / cells, half_width * (2 * k + 1 - cells) / cells};
+            const TracedRay<double> traced = trace(lens, bundle.ray(offset));
+            if (traced.status != RayStatus::ok) {
+                continue;
+            }
+            if (const std::optional<SpotRay> ray = at_image(lens, traced, cell * cell)) {
+                rays.push_back(*ray);
+            }
+        }
+    }
+    return rays;
+}
+
+std::vector<SpotRay> pooled(std::span<const std::vector<SpotRay>> spots, std::span<const double> spectral_weights) {
+    std::vector<SpotRay> all;
+    for (std::size_t i = 0; i < spots.size(); ++i) {
+        for (SpotRay ray : spots[i]) {
+            ray.weight *= spectral_weights[i];
+            all.push_back(ray);
+        }
+    }
+    return all;
+}
+
+SpotSize spot_size(std::span<const SpotRay> rays, double defocus_mm) {
+    const Means mean = means(rays);
+    if (!(mean.weight > 0.0)) {
+        return {};
+    }
+    SpotSize size;
+    size.centroid = {mean.point.x + defocus_mm * mean.slope.x, mean.point.y + defocus_mm * mean.slope.y};
+    double sum = 0.0;
+    double largest = 0.0;
+    for (const SpotRay& ray : rays) {
+        const Vec2d at = ray.at(defocus_mm);
+        const double x = at.x - size.centroid.x;
+        const double y = at.y - size.centroid.y;
+        sum += ray.weight * (x * x + y * y);
+        largest = std::max(largest, x * x + y * y);
+    }
+    size.rms = std::sqrt(sum / mean.weight);
+    size.max_radius = std::sqrt(largest);
+    return size;
+}
+
+std::vector<ThroughFocusPoint> through_focus(std::span<const SpotRay> rays, std::span<const double> defocus_mm) {
+    std::vector<ThroughFocusPoint> points;
+    points.reserve(defocus_mm.size());
+    for (const double defocus : defocus_mm) {
+        points.push_back({defocus, spot_size(rays, defocus)});
+    }
+    return points;
+}
+
+double best_spot_defocus(std::span<const SpotRay> rays) {
+    const Means mean = means(rays);
+    double covariance = 0.0;
+    double variance = 0.0;
+    for (const SpotRay& ray : rays) {
+        const Vec2d point{ray.point.x - mean.point.x, ray.point.y - mean.point.y};
+        const Vec2d slope{ray.slope.x - mean.slope.x, ray.slope.y - mean.slope.y};
+        covariance += ray.weight * (point.x * slope.x + point.y * slope.y);
+        variance += ray.weight * (slope.x * slope.x + slope.y * slope.y);
+    }
+    return variance > 0.0 ? -covariance / variance : 0.0;
+}
+
+std::vector<double> encircled_energy(std::span<const SpotRay> rays, std::span<const double> radii, double defocus_mm) {
+    const Vec2d centroid = spot_size(rays, defocus_mm).centroid;
+    double total = 0.0;
+    std::vector<double> shares(radii.size(), 0.0);
+    for (const SpotRay& ray : rays) {
+        const Vec2d at = ray.at(defocus_mm);
+        const double distance = std::hypot(at.x - centroid.x, at.y - centroid.y);
+        total += ray.weight;
+        for (std::size_t i = 0; i < radii.size(); ++i) {
+            shares[i] += distance <= radii[i] ? ray.weight : 0.0;
+        }
+    }
+    for (double& share : shares) {
+        share = total > 0.0 ? share / total : 0.0;
+    }
+    return shares;
+}
+
+}  // namespace lensproof

@@ -1,0 +1,68 @@
+#include "engine/optics/rim_margin.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace lensproof {
+
+namespace {
+
+/// The point on the surface in the surface's own axes.
+Vec3d own_point(const TraceLens<double>& lens, const TraceSurface<double>& surface, const Vec3d& at) {
+    const Vec3d from_vertex{at.x, at.y, at.z - surface.vertex_z};
+    if (surface.special < 0) {
+        return from_vertex;
+    }
+    const SpecialSurface<double>& special = lens.specials[surface.special];
+    return special.to_own({at.x - special.vertex.x, at.y - special.vertex.y, from_vertex.z});
+}
+
+template <Direction direction>
+RegionSample margin_along(const TraceLens<double>& lens, const Ray<double>& ray) {
+    const auto count = static_cast<int>(lens.surfaces.size());
+    constexpr int kStatuses = 6;  // 1 + the last status's number, and one more
+    RegionSample worst{.margin = -std::numeric_limits<double>::infinity()};
+    const auto compare = [&](const SurfaceEvent<double>& event) {
+        if (event.status == RayStatus::missed) {
+            return;
+        }
+        const TraceSurface<double>& surface = lens.surfaces[event.surface];
+        const Vec3d at = own_point(lens, surface, event.ray.origin);
+        // Through a closed stop nothing passes.
+        const double margin = surface.semi_diameter_squared > 0.0
+                                  ? (at.x * at.x + at.y * at.y) / surface.semi_diameter_squared - 1.0
+                                  : std::numeric_limits<double>::infinity();
+        if (margin > worst.margin) {
+            worst = {margin, event.surface};
+        }
+        if (surface.special >= 0 && !lens.specials[surface.special].mask.is_full_circle()) {
+            const double scale = 1.0 / std::sqrt(surface.semi_diameter_squared);
+            const auto blade = lens.specials[surface.special].mask.edge_margin(scale * at.x, scale * at.y);
+            if (blade.margin > worst.margin) {
+                worst = {blade.margin, count * (kStatuses + blade.edge) + event.surface};
+            }
+        }
+    };
+    const TracedRay<double> traced = trace<direction, Rims::follow>(lens, ray, compare);
+    if (traced.status == RayStatus::ok || worst.margin > 0.0) {
+        return worst;
+    }
+    return {.margin = std::numeric_limits<double>::infinity(),
+            .limit = count * (1 + static_cast<int>(traced.status)) + traced.surface};
+}
+
+}  // namespace
+
+RegionSample rim_margin(const TraceLens<double>& lens, const Ray<double>& ray, Direction direction) {
+    return direction == Direction::forward ? margin_along<Direction::forward>(lens, ray)
+                                           : margin_along<Direction::reverse>(lens, ray);
+}
+
+bool is_mirror_symmetric(const TraceLens<double>& lens) {
+    return std::ranges::all_of(lens.specials, [](const SpecialSurface<double>& special) {
+        return special.vertex.x == 0.0 && special.axes[0] == Vec3d{1.0, 0.0, 0.0} && special.mask.is_full_circle();
+    });
+}
+
+}  // namespace lensproof

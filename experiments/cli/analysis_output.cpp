@@ -1,0 +1,192 @@
+#include "experiments/cli/analysis_output.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "experiments/cli/command.h"
+
+namespace lensproof {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr double kDegree = std::numbers::pi / 180.0;
+constexpr double kMicrometre = 1e-3;  // in mm
+
+Json optional_json(const std::optional<double>& value, double unit = 1.0) {
+    return value ? number_or_null(*value / unit + 0.0) : Json(nullptr);
+}
+
+Json paraxial_json(const ParaxialData& data) {
+    return {{"efl_mm", number_or_null(data.efl)},
+            {"bfl_mm", number_or_null(data.bfl)},
+            {"ffl_mm", number_or_null(data.ffl)},
+            {"entrance_pupil_z_mm", number_or_null(data.entrance_pupil_z)},
+            {"entrance_pupil_diameter_mm", number_or_null(data.entrance_pupil_diameter)},
+            {"exit_pupil_z_mm", number_or_null(data.exit_pupil_z)},
+            {"exit_pupil_diameter_mm", number_or_null(data.exit_pupil_diameter)},
+            {"f_number", number_or_null(data.f_number)},
+            {"front_principal_z_mm", number_or_null(data.front_principal_z)},
+            {"rear_principal_z_mm", number_or_null(data.rear_principal_z)},
+            {"front_nodal_z_mm", number_or_null(data.front_nodal_z)},
+            {"rear_nodal_z_mm", number_or_null(data.rear_nodal_z)},
+            {"petzval_radius_mm", number_or_null(data.petzval_radius)}};
+}
+
+Json reference_json(const Lens& lens, const LensAnalysis& analysis) {
+    Json json = paraxial_json(analysis.reference_paraxial);
+    json["total_track_mm"] = number_or_null(lens.image_z - lens.surfaces.front().vertex_z);
+    json["lagrange_invariant_mm"] = optional_json(analysis.lagrange_invariant);
+    json["image_distance_mm"] = number_or_null(analysis.conjugates.image_distance);
+    json["magnification"] = number_or_null(analysis.conjugates.magnification);
+    json["working_f_number"] = number_or_null(analysis.conjugates.working_f_number);
+    json["real_working_f_number"] = number_or_null(analysis.real_working_f_number);
+    return json;
+}
+
+Json terms_json(const SeidelTerms<double>& terms) {
+    return {{"s1", number_or_null(terms.s1)}, {"s2", number_or_null(terms.s2)}, {"s3", number_or_null(terms.s3)},
+            {"s4", number_or_null(terms.s4)}, {"s5", number_or_null(terms.s5)}, {"c1", number_or_null(terms.c1)},
+            {"c2", number_or_null(terms.c2)}};
+}
+
+Json seidel_json(const std::optional<SeidelSums<double>>& sums) {
+    if (!sums) {
+        return nullptr;
+    }
+    Json surfaces = Json::array();
+    for (std::size_t i = 0; i < sums->surfaces.size(); ++i) {
+        Json row{{"surface", i + 1}};
+        row.update(terms_json(sums->surfaces[i]));
+        surfaces.push_back(std::move(row));
+    }
+    return {{"surfaces", std::move(surfaces)}, {"total", terms_json(sums->total)}};
+}
+
+Json field_json(const FieldAnalysis& row) {
+    return {{"field_deg", row.field_angle / kDegree},
+            {"wavelength_nm", row.wavelength_nm},
+            {"status", status_name(row.status)},
+            {"surface", row.surface >= 0 && row.status != RayStatus::ok ? Json(row.surface + 1) : Json(nullptr)},
+            {"chief_ray_height_mm", optional_json(row.chief_ray_height)},
+            {"distortion_percent", optional_json(row.distortion_percent)},
+            {"tangential_focus_mm", optional_json(row.tangential_focus)},
+            {"sagittal_focus_mm", optional_json(row.sagittal_focus)},
+            {"relative_illumination", optional_json(row.relative_illumination)},
+            {"vignetting", optional_json(row.vignetting)},
+            {"spot_rms_um", optional_json(row.spot_rms, kMicrometre)},
+            {"spot_centroid_mm", row.spot_centroid ? Json{row.spot_centroid->x, row.spot_centroid->y} : Json(nullptr)},
+            {"wavefront_rms_waves", optional_json(row.wavefront_rms_waves)},
+            {"lateral_colour_um", optional_json(row.lateral_colour, kMicrometre)}};
+}
+
+/// A cell of a table, a dash where there is nothing.
+std::string cell(const std::optional<double>& value, int width, int digits) {
+    // Adding 0 makes a 0 of −0.
+    return value && std::isfinite(*value) ? fmt::format("{:{}.{}f}", *value + 0.0, width, digits)
+                                          : fmt::format("{:>{}}", "-", width);
+}
+
+std::string paraxial_text(const Lens& lens, const LensAnalysis& analysis) {
+    const ParaxialData& data = analysis.reference_paraxial;
+    std::string text;
+    const auto line = [&](const char* name, const std::optional<double>& value, const char* unit) {
+        text += fmt::format("  {:<26}{} {}\n", name, cell(value, 14, 5), unit);
+    };
+    line("focal length", data.efl, "mm");
+    line("back focus", data.bfl, "mm");
+    line("front focus", data.ffl, "mm");
+    line("front principal point", data.front_principal_z, "mm");
+    line("rear principal point", data.rear_principal_z, "mm");
+    line("entrance pupil", data.entrance_pupil_z, "mm");
+    line("  diameter", data.entrance_pupil_diameter, "mm");
+    line("exit pupil", data.exit_pupil_z, "mm");
+    line("  diameter", data.exit_pupil_diameter, "mm");
+    line("f-number", data.f_number, "");
+    line("working f-number", analysis.conjugates.working_f_number, "");
+    line("  of real rays", analysis.real_working_f_number, "");
+    line("magnification", analysis.conjugates.magnification, "");
+    line("image distance", lens.image_z - lens.last_vertex_z(), "mm");
+    line("  of the paraxial image", analysis.conjugates.image_distance, "mm");
+    line("total track", lens.image_z - lens.surfaces.front().vertex_z, "mm");
+    line("Petzval radius", data.petzval_radius, "mm");
+    line("Lagrange invariant", analysis.lagrange_invariant, "mm");
+    return text;
+}
+
+std::string seidel_text(const SeidelSums<double>& sums) {
+    std::string text = fmt::format("  {:>7}{:>12}{:>12}{:>12}{:>12}{:>12}{:>12}{:>12}\n", "surface", "S1", "S2", "S3",
+                                   "S4", "S5", "C1", "C2");
+    const auto row = [&](const std::string& name, const SeidelTerms<double>& t) {
+        text += fmt::format("  {:>7}{}{}{}{}{}{}{}\n", name, cell(t.s1, 12, 6), cell(t.s2, 12, 6), cell(t.s3, 12, 6),
+                            cell(t.s4, 12, 6), cell(t.s5, 12, 6), cell(t.c1, 12, 6), cell(t.c2, 12, 6));
+    };
+    for (std::size_t i = 0; i < sums.surfaces.size(); ++i) {
+        row(std::to_string(i + 1), sums.surfaces[i]);
+    }
+    row("sum", sums.total);
+    return text;
+}
+
+std::string fields_text(const std::vector<FieldAnalysis>& fields) {
+    std::string text = fmt::format("  {:>8}{:>10}{:>11}{:>10}{:>10}{:>10}{:>8}{:>8}{:>10}{:>10}{:>10}  {}\n", "field",
+                                   "nm", "height", "distort.", "T focus", "S focus", "illum.", "vign.", "spot rms",
+                                   "wave rms", "lat. col.", "chief ray");
+    text += fmt::format("  {:>8}{:>10}{:>11}{:>10}{:>10}{:>10}{:>8}{:>8}{:>10}{:>10}{:>10}\n", "deg", "", "mm", "%",
+                        "mm", "mm", "", "", "um", "waves", "um");
+    for (const FieldAnalysis& row : fields) {
+        const auto in_um = [](const std::optional<double>& mm) {
+            return mm ? std::optional(*mm / kMicrometre) : std::nullopt;
+        };
+        text += fmt::format("  {:8.3f}{:10.4f}", row.field_angle / kDegree, row.wavelength_nm);
+        text += cell(row.chief_ray_height, 11, 5) + cell(row.distortion_percent, 10, 4) +
+                cell(row.tangential_focus, 10, 4) + cell(row.sagittal_focus, 10, 4) +
+                cell(row.relative_illumination, 8, 4) + cell(row.vignetting, 8, 4) + cell(in_um(row.spot_rms), 10, 3) +
+                cell(row.wavefront_rms_waves, 10, 4) + cell(in_um(row.lateral_colour), 10, 3);
+        text += row.status == RayStatus::ok ? "  ok\n"
+                : row.surface >= 0 ? fmt::format("  {} at surface {}\n", status_name(row.status), row.surface + 1)
+                                   : fmt::format("  {}\n", status_name(row.status));
+    }
+    return text;
+}
+
+}  // namespace
+
+Json analysis_json(const Lens& lens, const AnalysisSettings& settings, const LensAnalysis& analysis) {
+    Json json{{"lens", lens.id},
+              {"reference_wavelength_nm", settings.reference_wavelength_nm},
+              {"object_distance_mm", number_or_null(settings.object_distance)},
+              {"projection", projection_name(lens.projection)},
+              {"paraxial", reference_json(lens, analysis)},
+              {"seidel", seidel_json(analysis.seidel)},
+              {"fields", Json::array()},
+              {"wavelengths", Json::array()}};
+    for (const FieldAnalysis& row : analysis.fields) {
+        json["fields"].push_back(field_json(row));
+    }
+    for (std::size_t i = 0; i < settings.wavelengths_nm.size(); ++i) {
+        json["wavelengths"].push_back(
+            {{"wavelength_nm", settings.wavelengths_nm[i]}, {"paraxial", paraxial_json(analysis.paraxial[i])}});
+    }
+    return json;
+}
+
+std::string analysis_text(const Lens& lens, const AnalysisSettings& settings, const LensAnalysis& analysis) {
+    std::string text =
+        fmt::format("{}\nAt {} nm, object at {}:\n", lens.name, settings.reference_wavelength_nm,
+                    std::isinf(settings.object_distance) ? "infinity" : fmt::format("{} mm", settings.object_distance));
+    text += paraxial_text(lens, analysis);
+    const double largest = settings.fields.empty() ? 0.0 : *std::ranges::max_element(settings.fields);
+    if (analysis.seidel) {
+        text += fmt::format("Seidel sums for {:.4g} deg, mm:\n", largest / kDegree) + seidel_text(*analysis.seidel);
+    } else {
+        text += fmt::format("No Seidel sums: paraxial rays have no field of {:.4g} deg\n", largest / kDegree);
+    }
+    text += "Fields:\n" + fields_text(analysis.fields);
+    return text;
+}
+
+}  // namespace lensproof

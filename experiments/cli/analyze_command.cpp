@@ -1,0 +1,264 @@
+// experiments/cli/analyze_command.cpp — `lensproof analyze LENS`: what a lens does, in the numbers that lens people
+// use.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <memory>
+#include <numbers>
+#include <optional>
+
+#include "engine/analysis/best_focus.h"
+#include "engine/analysis/lens_analysis.h"
+#include "engine/io/file.h"
+#include "engine/io/input_error.h"
+#include "engine/io/prescription/prescription_file.h"
+#include "engine/io/text.h"
+#include "engine/optics/chief_ray.h"
+#include "engine/optics/focus.h"
+#include "engine/spectral/wavelengths.h"
+#include "experiments/cli/analysis_output.h"
+#include "experiments/cli/command.h"
+#include "experiments/plot/analysis_curves.h"
+#include "experiments/plot/lens_section.h"
+
+namespace lensproof {
+
+namespace {
+
+constexpr double kDegree = std::numbers::pi / 180.0;
+
+struct AnalyzeOptions {
+    CommonOptions common;
+    std::string lens;
+    std::string zoom;
+    std::vector<std::string> indices;
+    std::vector<std::string> glass_catalogues;
+    std::vector<double> wavelengths_nm;
+    std::optional<double> reference_wavelength_nm;
+    std::vector<double> fields_deg;
+    std::string focus;
+    std::optional<double> f_number;
+    std::optional<double> image_distance_mm;
+    int rings = 0;
+    std::string best_focus;
+    std::optional<double> focus_frequency;
+    std::string plots_folder;
+};
+
+constexpr double kFarthestImage = 1e15;  // mm
+
+constexpr const char* kCriteria[] = {"paraxial", "spot", "wavefront", "mtf"};
+
+/// The object's distance: the option's, or that which the table is set to.
+double object_distance(const std::string& option, const Prescription& prescription) {
+    if (option.empty()) {
+        return prescription.object_distance_mm;
+    }
+    const std::optional<double> distance = option == "infinity" ? INFINITY : parse_number(option);
+    if (!distance || !(*distance > 0.0)) {
+        throw InputError(
+            fmt::format("--focus is \"{}\", expected infinity, or a distance above 0 in mm", printable(option)));
+    }
+    return *distance;
+}
+
+/// The lens as it is analysed: zoomed, stopped down, focused, its sensor in place.
+Lens prepared_lens(const AnalyzeOptions& options, const Prescription& prescription, double distance,
+                   double reference_wavelength_nm) {
+    const GlassCatalogue glasses = with_own_catalogues(read_glass_catalogues(options.glass_catalogues), prescription);
+    Lens lens = make_lens(prescription, glasses, parse_indices(options.indices));
+    if (options.f_number) {
+        lens = with_f_number(std::move(lens), *options.f_number);
+    }
+    if (!lens.focus_groups.empty() && !options.focus.empty()) {
+        lens = focused_at(std::move(lens), distance);
+    }
+    if (options.image_distance_mm) {
+        if (!(std::abs(*options.image_distance_mm) <= kFarthestImage)) {
+            throw InputError(fmt::format("--image-distance is {}, expected mm from -{:g} to {:g}",
+                                         *options.image_distance_mm, kFarthestImage, kFarthestImage));
+        }
+        lens.image_z = lens.last_vertex_z() + *options.image_distance_mm;
+    } else if (lens.image_z == lens.last_vertex_z()) {  // the source does not say
+        const TraceLens<double> traced = at_wavelength<double>(lens, reference_wavelength_nm);
+        const double image = paraxial_image_distance(traced, distance - lens.surfaces.front().vertex_z);
+        if (std::isfinite(image)) {
+            lens.image_z += image;
+        }
+    }
+    return lens;
+}
+
+/// The fields to look at where none are given: the axis and four parts of what the source states, or of what the chief
+/// ray reaches.
+std::vector<double> usual_fields(const Lens& lens, double wavelength_nm) {
+    const double largest = lens.stated.half_field_deg ? *lens.stated.half_field_deg * kDegree
+                                                      : ChiefRays(lens, wavelength_nm).largest_field();
+    return {0.0, 0.25 * largest, 0.5 * largest, 0.75 * largest, largest};
+}
+
+std::vector<double> fields_of(const AnalyzeOptions& options, const Lens& lens, double wavelength_nm) {
+    if (options.fields_deg.empty()) {
+        return usual_fields(lens, wavelength_nm);
+    }
+    std::vector<double> fields;
+    for (const double field : options.fields_deg) {
+        if (!(field >= 0.0 && field < 180.0)) {
+            throw InputError(fmt::format("--fields holds {}, expected degrees from 0 to below 180", field));
+        }
+        fields.push_back(field * kDegree);
+    }
+    return fields;
+}
+
+std::vector<double> wavelengths_of(const AnalyzeOptions& options, const Prescription& prescription) {
+    if (options.wavelengths_nm.empty()) {
+        return prescription.wavelengths_nm.empty() ? std::vector{kLineD, kLineF, kLineC} : prescription.wavelengths_nm;
+    }
+    return options.wavelengths_nm;
+}
+
+/// Where the image is best, from where the image plane stands.
+double best_focus_shift(const AnalyzeOptions& options, const Lens& lens, const AnalysisSettings& settings) {
+    if (options.best_focus == "paraxial") {
+        return paraxial_focus_shift(lens, settings.reference_wavelength_nm, settings.object_distance);
+    }
+    std::vector<WeightedField> fields;
+    for (std::optional<PolychromaticField>& field : polychromatic_fields(lens, settings)) {
+        if (field) {
+            fields.push_back({.field = std::move(*field)});
+        }
+    }
+    if (options.best_focus == "spot") {
+        return spot_focus_shift(fields);
+    }
+    if (options.best_focus == "wavefront") {
+        return wavefront_focus_shift(fields);
+    }
+    if (!options.focus_frequency) {
+        throw InputError("--best-focus mtf needs --focus-frequency, in cycles/mm");
+    }
+    return mtf_focus_shift(fields, *options.focus_frequency);
+}
+
+/// "f/2.73, object at infinity, image plane 79.83 mm behind the last surface, 587.6 nm"
+std::string conditions(const Lens& lens, const AnalysisSettings& settings, const LensAnalysis& analysis) {
+    return fmt::format(
+        "f/{:.3g}, object at {}, image plane {:.6g} mm behind the last surface", analysis.reference_paraxial.f_number,
+        std::isinf(settings.object_distance) ? "infinity" : fmt::format("{:g} mm", settings.object_distance),
+        lens.image_z - lens.last_vertex_z());
+}
+
+void write_analysis_plots(const AnalyzeOptions& options, const Prescription& prescription, const Lens& lens,
+                          const AnalysisSettings& settings, const LensAnalysis& analysis) {
+    const AnalysisCurves curves = analysis_curves(lens, settings);
+    const WaveCurves waves = wave_curves(lens, settings, options.common.threads);
+    const PlotHeading heading{.lens = lens.name, .conditions = conditions(lens, settings, analysis)};
+    std::map<std::string, std::string> files = analysis_drawings(heading, lens.projection, curves, waves);
+    files["section.svg"] = lens_section_svg(prescription, &lens, {});
+    files["curves.json"] = curves_json(curves, waves).dump() + "\n";
+    write_plots(options.plots_folder, files);
+    for (const PsfMap& psf : waves.psfs) {
+        if (const std::optional<Image> image = psf_image(psf)) {
+            write_exr(*image, std::filesystem::path(options.plots_folder) / psf_file_name(psf));
+        }
+    }
+}
+
+int run_analyze(const AnalyzeOptions& options) {
+    check_json_name(options.common);
+    Prescription prescription = read_prescription(find_lens_file(options.lens));
+    prescription =
+        at_zoom_position(prescription, options.zoom.empty() ? 0 : find_zoom_position(prescription, options.zoom));
+    AnalysisSettings settings;
+    settings.wavelengths_nm = wavelengths_of(options, prescription);
+    settings.reference_wavelength_nm = options.reference_wavelength_nm.value_or(settings.wavelengths_nm.front());
+    settings.object_distance = object_distance(options.focus, prescription);
+    settings.rings = options.rings;
+    Lens lens = prepared_lens(options, prescription, settings.object_distance, settings.reference_wavelength_nm);
+    settings.fields = fields_of(options, lens, settings.reference_wavelength_nm);
+    if (!options.best_focus.empty()) {
+        lens = with_image_shift(std::move(lens), best_focus_shift(options, lens, settings));
+    }
+    const LensAnalysis analysis = analyze_lens(lens, settings);
+    if (!options.plots_folder.empty()) {
+        write_analysis_plots(options, prescription, lens, settings, analysis);
+    }
+    if (prints_text(options.common)) {
+        fmt::print("{}", analysis_text(lens, settings, analysis));
+    }
+    write_json_result(options.common, analysis_json(lens, settings, analysis));
+    return kDone;
+}
+
+}  // namespace
+
+void add_analyze_command(CLI::App& app, int& status) {
+    const auto options = std::make_shared<AnalyzeOptions>();
+    options->rings = AnalysisSettings{}.rings;
+    CLI::App* command =
+        app.add_subcommand("analyze", "First-order data, Seidel sums, real-ray curves, spots, wavefront");
+    command->footer(
+        "Example: lensproof analyze tessar --fields 0,12,24 --f-number 4 --plots tessar-plots\n"
+        "Fields are angles at the entrance pupil; what does not exist (light from beyond the field, say) is null or "
+        "a dash.");
+    command->add_option("LENS", options->lens, "A prescription file, or the name of a lens that ships")->required();
+    command
+        ->add_option("--wavelengths", options->wavelengths_nm,
+                     "nm; the first is the reference (default: those of a design program's file, else d, F, C)")
+        ->delimiter(',')
+        ->check(kPositiveOption)
+        ->type_name("NM,…");
+    command
+        ->add_option("--reference-wavelength", options->reference_wavelength_nm,
+                     "nm, of first-order data, Seidel sums and the image point of each field")
+        ->check(kPositiveOption)
+        ->type_name("NM");
+    command
+        ->add_option("--fields", options->fields_deg,
+                     "Field angles in degrees (default: five, up to the field that the source states)")
+        ->delimiter(',')
+        ->type_name("DEG,…");
+    command
+        ->add_option("--focus", options->focus,
+                     "Distance of the object in front of the first vertex (default: the prescription's). Its focusing "
+                     "groups move to it; a lens without any stays as it is, and --best-focus or --image-distance "
+                     "moves the image plane")
+        ->type_name("infinity|MM");
+    command->add_option("--f-number", options->f_number, "Close the stop to this paraxial f-number")
+        ->check(kPositiveOption)
+        ->type_name("N");
+    command
+        ->add_option("--image-distance", options->image_distance_mm,
+                     "Image plane behind the last vertex (default: the prescription's)")
+        ->type_name("MM");
+    command->add_option("--rings", options->rings, "Rings of rays over a beam, for spots and wavefronts")
+        ->check(CLI::Range(1, 1000))
+        ->capture_default_str();
+    auto* best_focus =
+        command
+            ->add_option("--best-focus", options->best_focus,
+                         "Move the image plane to the best image of all fields and wavelengths together: paraxial, "
+                         "spot (least rms), wavefront (least rms) or mtf (highest at --focus-frequency)")
+            ->check(CLI::IsMember(std::vector<std::string>(std::begin(kCriteria), std::end(kCriteria))))
+            ->type_name("CRITERION");
+    command->add_option("--focus-frequency", options->focus_frequency, "cycles/mm, for --best-focus mtf")
+        ->needs(best_focus)
+        ->check(kPositiveOption)
+        ->type_name("F");
+    command
+        ->add_option("--plots", options->plots_folder,
+                     "Draw the lens section, ray fans, field curves, spots, MTF and the rest into a folder (SVG), "
+                     "their numbers beside them (curves.json)")
+        ->type_name("DIR");
+    command->add_option("--zoom", options->zoom, "Position of a zoom lens, by name or number (default: the first)")
+        ->type_name("POSITION");
+    add_index_option(*command, options->indices);
+    add_glass_catalogue_option(*command, options->glass_catalogues);
+    add_common_options(*command, options->common);
+    command->callback([options, &status] { status = run_analyze(*options); });
+}
+
+}  // namespace lensproof

@@ -1,0 +1,189 @@
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "engine/analysis/field_curves.h"
+#include "engine/analysis/mtf.h"
+#include "engine/analysis/psf.h"
+#include "engine/analysis/wavefront_map.h"
+#include "engine/render/parallel.h"
+#include "experiments/plot/analysis_curves.h"
+
+namespace lensproof {
+
+namespace {
+
+constexpr double kDegree = std::numbers::pi / 180.0;
+constexpr double kNothing = std::numeric_limits<double>::quiet_NaN();
+
+constexpr int kMapCells = 64;        // across a wavefront map
+constexpr int kLargestPsf = 2048;    // pixels of a PSF's window
+constexpr int kMostRefinements = 3;  // of the rays that a geometric MTF sums over
+constexpr std::size_t kFrequencies = 51;
+constexpr double kHighestFrequency = 100.0;  // cycles/mm, or the cutoff where that is lower
+constexpr int kMtfFields = 16;
+constexpr double kShownFrequencies[] = {10.0, 20.0, 40.0};  // cycles/mm, over the field
+
+/// Path differences at one wavelength, in the directions that the image sees; `radius`, that of the axial beam in
+/// direction cosines, is the unit.
+FieldWavefront field_wavefront(const PolychromaticField& field, const PolychromaticField::Part& part, double radius,
+                               int rings) {
+    FieldWavefront shown{.field_deg = field.bundle.chief.field_angle / kDegree, .wavelength_nm = part.wavelength_nm};
+    const WavefrontMap map = wavefront_map(field, part, kMapCells);
+    if (map.status == PupilStatus::no_light || map.status == PupilStatus::folded) {
+        return shown;
+    }
+    shown.opd_waves = {.size = static_cast<std::size_t>(map.size),
+                       .half_width = 0.5 * map.size * map.spacing / radius,
+                       .values = map.opd_waves};
+    for (std::size_t i = 0; i < map.inside.size(); ++i) {
+        shown.opd_waves.values[i] = map.inside[i] != 0 ? map.opd_waves[i] : kNothing;
+    }
+    const WavefrontErrors errors = wavefront_errors(
+        wavefront(part.lens, part.wavelength_nm, field.bundle, field.sphere, beam_quadrature(part.outline, rings)));
+    shown.rms_waves = errors.rms;
+    shown.peak_to_valley_waves = errors.peak_to_valley;
+    return shown;
+}
+
+/// Why there is nothing to show.
+std::string status_remark(PupilStatus status) {
+    switch (status) {
+        case PupilStatus::aliased:
+            return "aberrations too large for the grid";
+        case PupilStatus::folded:
+            return "two rays leave in one direction";
+        case PupilStatus::ok:
+        case PupilStatus::no_light:
+            break;
+    }
+    return "";
+}
+
+/// The middle of a picture, wide enough for the rays and for some rings of Airy's disc.
+PsfMap psf_map(const PolychromaticField& field, double field_deg) {
+    PsfMap map{.field_deg = field_deg};
+    Psf psf = fft_psf(field);
+    if (psf.status == PupilStatus::aliased && psf.needed_size <= kLargestPsf) {
+        psf = fft_psf(field, {.size = psf.needed_size});
+    }
+    if (psf.status != PupilStatus::ok) {
+        map.remark = status_remark(psf.status);
+        return map;
+    }
+    constexpr double kAiryPixels = 2.44;  // of its radius at λ / (2 D) a pixel
+    const double wanted = std::max(8.0 * kAiryPixels, 1.2 * psf.largest_aberration_um / psf.pixel_um);
+    const int half = std::min(psf.size / 2 - 1, static_cast<int>(std::ceil(wanted)));
+    map.intensity = {.size = static_cast<std::size_t>(2 * half + 1), .half_width = (half + 0.5) * psf.pixel_um};
+    const int middle = psf.size / 2;
+    for (int row = middle - half; row <= middle + half; ++row) {
+        for (int column = middle - half; column <= middle + half; ++column) {
+            map.intensity.values.push_back(psf.at(row, column) / psf.perfect_peak);
+        }
+    }
+    map.strehl = psf.strehl;
+    return map;
+}
+
+MtfCurve ray_mtf(const PolychromaticField& field, std::span<const double> frequencies) {
+    GeometricMtfSettings rays;
+    MtfCurve curve = geometric_mtf(field, frequencies, rays);
+    for (int i = 0; i < kMostRefinements && curve.status == PupilStatus::aliased; ++i) {
+        rays = {.azimuths = 2 * rays.azimuths, .rings = 2 * rays.rings};
+        curve = geometric_mtf(field, frequencies, rays);
+    }
+    return curve;
+}
+
+FieldMtf field_mtf(const MtfCurve& curve, double field_deg, const std::string& remark = "") {
+    FieldMtf mtf{.field_deg = field_deg, .remark = remark};
+    if (curve.status != PupilStatus::ok) {
+        mtf.remark = status_remark(curve.status);
+        return mtf;
+    }
+    for (std::size_t i = 0; i < curve.frequency.size(); ++i) {
+        mtf.tangential.push_back({curve.frequency[i], curve.tangential[i]});
+        mtf.sagittal.push_back({curve.frequency[i], curve.sagittal[i]});
+    }
+    return mtf;
+}
+
+/// With diffraction, or by rays where the path differences are too steep to be sampled: there the two agree.
+FieldMtf resolved_mtf(const PolychromaticField& field, std::span<const double> frequencies, double field_deg) {
+    const MtfCurve curve = diffraction_mtf(field, frequencies);
+    return curve.status == PupilStatus::ok ? field_mtf(curve, field_deg)
+                                           : field_mtf(ray_mtf(field, frequencies), field_deg, "by rays");
+}
+
+std::vector<FrequencyMtf> mtf_over_field(const Lens& lens, AnalysisSettings settings, int threads) {
+    std::vector<FrequencyMtf> curves;
+    for (const double frequency : kShownFrequencies) {
+        curves.push_back({.cycles_per_mm = frequency});
+    }
+    settings.fields = even_fields(std::ranges::max(settings.fields), kMtfFields);
+    const auto fields = polychromatic_fields(lens, settings);
+    std::vector<FieldMtf> mtf(fields.size());
+    const auto compute = [&](int i) {
+        const double field_deg = settings.fields[i] / kDegree;
+        mtf[i] = fields[i] ? resolved_mtf(*fields[i], kShownFrequencies, field_deg) : FieldMtf{.field_deg = field_deg};
+    };
+    parallel_for(static_cast<int>(fields.size()), threads, compute, [](int) {});
+    for (const FieldMtf& field : mtf) {
+        for (std::size_t k = 0; k < curves.size(); ++k) {
+            const bool is_known = !field.tangential.empty();
+            curves[k].tangential.push_back({field.field_deg, is_known ? field.tangential[k].y : kNothing});
+            curves[k].sagittal.push_back({field.field_deg, is_known ? field.sagittal[k].y : kNothing});
+        }
+    }
+    return curves;
+}
+
+/// Frequencies in even steps up to where the axis is cut off, at the most.
+std::vector<double> shown_frequencies(const PolychromaticField& axis) {
+    const double highest = std::min(kHighestFrequency, cutoff_frequency(axis));
+    std::vector<double> frequencies;
+    for (std::size_t i = 0; i < kFrequencies; ++i) {
+        frequencies.push_back(highest * static_cast<double>(i) / (kFrequencies - 1));
+    }
+    return frequencies;
+}
+
+}  // namespace
+
+WaveCurves wave_curves(const Lens& lens, const AnalysisSettings& settings, int threads) {
+    WaveCurves curves;
+    AnalysisSettings on_axis = settings;
+    on_axis.fields = {0.0};
+    const std::optional<PolychromaticField> axis = polychromatic_fields(lens, on_axis).front();
+    if (!axis) {
+        return curves;
+    }
+    const std::vector<double> frequencies = shown_frequencies(*axis);
+    curves.diffraction_limit =
+        field_mtf(diffraction_mtf(*axis, frequencies, MtfKind::diffraction_limited), 0.0).tangential;
+    const double axial_radius = 0.5 * cosine_box(*axis, axis->parts.front()).width();
+    AnalysisSettings at_reference = settings;
+    at_reference.wavelengths_nm = {settings.reference_wavelength_nm};
+    const auto reference_fields = polychromatic_fields(lens, at_reference);
+    const auto fields = polychromatic_fields(lens, settings);
+    curves.wavefronts.resize(fields.size());
+    curves.psfs.resize(fields.size());
+    curves.mtf.resize(fields.size());
+    curves.geometric_mtf.resize(fields.size());
+    const auto compute = [&](int i) {
+        const double field_deg = settings.fields[i] / kDegree;
+        const auto& field = fields[i];
+        const auto& reference = reference_fields[i];
+        curves.wavefronts[i] = reference
+                                   ? field_wavefront(*reference, reference->parts.front(), axial_radius, settings.rings)
+                                   : FieldWavefront{.field_deg = field_deg};
+        curves.psfs[i] = field ? psf_map(*field, field_deg) : PsfMap{.field_deg = field_deg};
+        curves.mtf[i] = field ? resolved_mtf(*field, frequencies, field_deg) : FieldMtf{.field_deg = field_deg};
+        curves.geometric_mtf[i] = field_mtf(field ? ray_mtf(*field, frequencies) : MtfCurve{}, field_deg);
+    };
+    parallel_for(static_cast<int>(fields.size()), threads, compute, [](int) {});
+    curves.mtf_over_field = mtf_over_field(lens, settings, threads);
+    return curves;
+}
+
+}  // namespace lensproof

@@ -1,0 +1,38 @@
+// tests/cli/reference_numbers.h — the numbers of tests/validation/reference_numbers, computed with 50 digits.
+#pragma once
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "tests/cli/trace_table.h"
+
+namespace lensproof {
+
+/// The lenses that there are numbers for.
+inline constexpr const char* kNumberedLenses[] = {
+    "tessar", "petzval", "double-gauss-lowenthal", "triplet-cooke", "fisheye-220", "muller-fisheye", "conic-aspheres"};
+
+inline nlohmann::json reference_numbers(const std::string& lens) {
+    std::ifstream stream(std::string(LENSPROOF_NUMBERS_DIR) + "/" + lens + ".json");
+    return nlohmann::json::parse(stream);
+}
+
+/// As the command line takes it: a lens of lenses/, or one that lies beside the numbers.
+inline std::string numbered_lens(const std::string& lens) {
+    const std::string own = std::string(LENSPROOF_NUMBERS_DIR) + "/" + lens + ".toml";
+    return std::filesystem::exists(own) ? own : lens;
+}
+
+/// Three numbers of a list, from the one at `first`.
+inline Triple triple(const nlohmann::json& list, std::size_t first = 0) {
+    return {list[first], list[first + 1], list[first + 2]};
+}
+
+/// A test's name for a lens.
+inline std::string test_name(std::string lens) {
+    std::erase(lens, '-');
+    return lens;
+}
+
+}  // namespace lensproof
