@@ -69,7 +69,7 @@ void require_traceable(const Prescription& prescription) {
     }
     for (const PrescribedSurface& row : prescription.surfaces) {
         require(row.is_flat() || (std::isfinite(row.radius_mm) && std::abs(row.radius_mm) >= kSmallestRadius), row,
-                "radius_mm", row.radius_mm, "a radius in mm; a flat surface has inf, or no radius_mm");
+                "radius_mm", row.radius_mm, "a radius of at least 0.001 mm; a flat surface has inf, or no radius_mm");
         require(std::isfinite(row.conic), row, "conic", row.conic, "a conic constant");
         for (const double term : row.asphere) {
             require(std::isfinite(term), row, "A2 … A20", term, "aspheric coefficients");

@@ -20,8 +20,12 @@ StabilityCase plano(const SurfaceRow& front, std::vector<Ray<double>> rays) {
 
 StabilityCase radius_case(double radius, std::mt19937_64& random) {
     const double reach = std::min(0.9 * std::abs(radius), 10.0);
-    return plano({.radius = radius, .thickness = std::min(5.0, 2.0 * std::abs(radius)), .n = kIndex},
-                 random_rays(reach, 0.3, random, 2.0 * std::min(10.0, std::abs(radius))));
+    StabilityCase made = plano({.radius = radius, .thickness = std::min(5.0, 2.0 * std::abs(radius)), .n = kIndex},
+                               random_rays(reach, 0.3, random, 2.0 * std::min(10.0, std::abs(radius))));
+    if (std::isinf(radius)) {
+        made.lens.surfaces[1].curvature = std::copysign(0.0, radius);  // a prescription knows one zero only
+    }
+    return made;
 }
 
 std::vector<double> radii(double sign) {

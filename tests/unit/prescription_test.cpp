@@ -62,7 +62,7 @@ TEST_F(PrescriptionFile, EveryOtherDefectIsAnInputError) {
           std::string(kHead) + kStop + row + "radius_mm = 1e-9\n",
           std::string(kHead) + kStop + row + "semi_diamter_mm = 3\n", std::string(kHead) + kStop + row + "glass = 3\n",
           std::string(kHead) + "surfaces = 3\n",
-          std::string(kHead) + kStop + "[[surfaces]]\nthickness_mm = -1\nsemi_diameter_mm = 1\n",
+          std::string(kHead) + kStop + "[[surfaces]]\nn_d = 1.5\nthickness_mm = -1\nsemi_diameter_mm = 1\n" + row,
           std::string(kHead) + kStop + "[[surfaces]]\nthickness_mm = \"1\"\nsemi_diameter_mm = 1\n",
           std::string(kHead) + "projection = \"square\"\n" + kStop,
           std::string(kHead) + kStop + row + "glass = \"BK7\"\n"}) {
