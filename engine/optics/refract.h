@@ -34,6 +34,13 @@ Refraction<T> refract(const Vec3<T>& direction, const Vec3<T>& normal, const T& 
             .transmitted = transmitted};
 }
 
+/// The same where sin² i is not known: the square of d − cos i n, which keeps the digits of small angles.
+template <class T>
+Refraction<T> refract(const Vec3<T>& direction, const Vec3<T>& normal, const T& cos_incidence, const T& index_ratio) {
+    const Vec3<T> across = direction - cos_incidence * normal;
+    return refract(direction, normal, cos_incidence, dot(across, across), index_ratio);
+}
+
 /// The share of unpolarised light that passes an uncoated surface (Fresnel; Born & Wolf, Principles of Optics, 7th ed.,
 /// §1.5.2, eqs. 21a, 21b).
 ///

@@ -15,6 +15,7 @@ StabilityCase half_ball(double n, double angle, std::mt19937_64& random) {
     constexpr double kRadius = 10.0;
     std::uniform_real_distribution<double> about(-1.0, 1.0);
     std::vector<Ray<double>> rays;
+    rays.reserve(kRaysPerValue);
     for (int i = 0; i < kRaysPerValue; ++i) {
         const double turn = std::numbers::pi * about(random);
         const Vec3d direction{std::sin(angle) * std::sin(turn), std::sin(angle) * std::cos(turn), std::cos(angle)};
@@ -41,6 +42,7 @@ StabilityCase matched_case(double difference, std::mt19937_64& random) {
 StabilityCase matched_grazing_case(double difference, std::mt19937_64& random) {
     std::uniform_real_distribution<double> unit(0.5, 1.5);
     std::vector<Ray<double>> rays;
+    rays.reserve(kRaysPerValue);
     for (int i = 0; i < kRaysPerValue; ++i) {
         const double angle = 1e-3 * unit(random);
         rays.push_back({{0.0, 0.0, -0.01}, {0.0, std::cos(angle), std::sin(angle)}});
@@ -59,6 +61,7 @@ StabilityCase index_case(double n, std::mt19937_64& random) {
 std::vector<Ray<double>> rays_over(double gap, std::mt19937_64& random) {
     std::uniform_real_distribution<double> unit(-5.0, 5.0);
     std::vector<Ray<double>> rays;
+    rays.reserve(kRaysPerValue);
     for (int i = 0; i < kRaysPerValue; ++i) {
         const Vec3d from{unit(random), unit(random), -1.0};
         const Vec3d aim{unit(random), unit(random), gap};
@@ -92,6 +95,7 @@ StabilityCase backwards_case(double thickness, std::mt19937_64& random) {
 StabilityCase many_surfaces_case(double count, std::mt19937_64& random) {
     std::uniform_real_distribution<double> radius(40.0, 200.0);
     std::vector<SurfaceRow> rows;
+    rows.reserve(static_cast<std::size_t>(count));
     for (int i = 0; i < static_cast<int>(count); ++i) {
         const double sign = (random() & 1U) != 0 ? 1.0 : -1.0;
         const bool is_last = i + 1 == static_cast<int>(count);

@@ -21,6 +21,7 @@ TraceLens<double> doublet() {
 StabilityCase object_case(double distance, double field, std::mt19937_64& random) {
     std::uniform_real_distribution<double> unit(-10.0, 10.0);
     std::vector<Ray<double>> rays;
+    rays.reserve(kRaysPerValue);
     const bool is_far = std::isinf(distance);
     for (int i = 0; i < kRaysPerValue; ++i) {
         const double reach = is_far ? 1.0 : std::min(1.0, distance / 5.0);
@@ -43,6 +44,7 @@ StabilityCase grazing_case(double x_deg, bool is_plate, std::mt19937_64& random)
     const double angle = x_deg * kDegree;
     std::uniform_real_distribution<double> unit(0.5, 1.5);
     std::vector<Ray<double>> rays;
+    rays.reserve(kRaysPerValue);
     for (int i = 0; i < kRaysPerValue; ++i) {
         const double own = i == 0 ? angle : angle * unit(random);
         // From so near that it arrives within a few mm.
@@ -65,6 +67,7 @@ StabilityCase field_case(double field_deg, std::mt19937_64& random) {
     const Vec3d along{0.0, std::sin(field), field_deg == 90.0 ? 0.0 : std::cos(field)};
     std::uniform_real_distribution<double> unit(-1.0, 1.0);
     std::vector<Ray<double>> rays;
+    rays.reserve(kRaysPerValue);
     for (int i = 0; i < kRaysPerValue; ++i) {
         // Onto the part of the dome that faces the light.
         const double polar = std::min(field, 0.5 * std::numbers::pi) * 0.6 + 0.05 * unit(random);
@@ -108,6 +111,7 @@ StabilityCase rim_case(double beside, std::mt19937_64& random) {
 StabilityCase vertex_case(double beside, std::mt19937_64& random) {
     std::uniform_real_distribution<double> unit(-1.0, 1.0);
     std::vector<Ray<double>> rays;
+    rays.reserve(kRaysPerValue);
     for (int i = 0; i < kRaysPerValue; ++i) {
         rays.push_back(ray_through({4.0 * unit(random), 4.0 * unit(random), -10.0}, {beside, -beside, 0.0}));
     }

@@ -41,6 +41,7 @@ std::vector<double> radii(double sign) {
 StabilityCase tangent_case(double x, std::mt19937_64& random) {
     std::uniform_real_distribution<double> angle(0.0, 2.0 * std::numbers::pi);
     std::vector<Ray<double>> rays;
+    rays.reserve(kRaysPerValue);
     for (int i = 0; i < kRaysPerValue; ++i) {
         const double turn = i == 0 ? 0.0 : angle(random);
         const double height = kRadius * (1.0 - x);

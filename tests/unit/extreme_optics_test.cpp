@@ -67,6 +67,35 @@ TEST(ConvertLens, KeepsEveryNumberAndFormsTheRestAnew) {
     }
 }
 
+// At both ends of its range every glass that ships has an index, real and above 1; and those of Sellmeier's formula
+// have it to what rounding the wavelength and one addition of numbers of size n² leave, a few ulps, near the resonances
+// too.
+TEST(ExtremeOptics, GlassFormulasHoldAtTheEndsOfTheirRanges) {
+    int sellmeier = 0;
+    const GlassCatalogue catalogue = GlassCatalogue::shipped();
+    for (const Glass& glass : catalogue.glasses()) {
+        for (const double nm : {glass.min_wavelength_nm, glass.max_wavelength_nm}) {
+            const double index = refractive_index(glass.formula, nm);
+            EXPECT_TRUE(index > 1.0 && index < 5.0) << glass.name << " at " << nm << " nm: " << index;
+            const auto* formula = std::get_if<Sellmeier>(&glass.formula);
+            if (formula == nullptr) {
+                continue;
+            }
+            const Exact um2 = Exact(nm) * Exact(nm) / Exact(1000000);
+            Exact n2 = Exact(1) + Exact(formula->constant);
+            double amplified = 1.0;  // Σ of what each term makes of the relative error of λ²
+            for (const Sellmeier::Term& term : formula->terms) {
+                const Exact part = Exact(term.b) * um2 / (um2 - Exact(term.c));
+                n2 += part;
+                amplified += std::abs(static_cast<double>(part * um2 / (um2 - Exact(term.c))));
+            }
+            EXPECT_NEAR(index, static_cast<double>(sqrt(n2)), 4 * kUlp * amplified / index) << glass.name;
+            ++sellmeier;
+        }
+    }
+    EXPECT_GT(sellmeier, 500);
+}
+
 // From a point on the axis, however far, the ray's height and slope at the lens are known to an ulp, and so is where it
 // meets a sphere.
 TEST(ExtremeOptics, AFarObjectOnTheAxisLosesNothing) {
