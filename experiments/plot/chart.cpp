@@ -159,6 +159,7 @@ void draw_reference_labels(Svg& svg, const PlotChart& chart, const ChartFrame& f
     const PageBox& box = frame.box;
     const auto vertical = labelled(chart, frame, ReferenceDirection::vertical);
     std::vector<PlacedLabel> wishes;
+    wishes.reserve(vertical.size());
     for (const ReferenceLine* line : vertical) {
         wishes.push_back({box.x + frame.x.share(line->at) * box.width,
                           svg_text_width(shortened(line->label, kMostReferenceLetters), kSmallSize) + 8.0});

@@ -51,6 +51,7 @@ void set_pixel(Image& image, int x, int y, const Vec3d& rgb) {
 
 std::vector<Vec3d> shades(ColourMap colours) {
     std::vector<Vec3d> table;
+    table.reserve(kShades);
     for (int i = 0; i < kShades; ++i) {
         table.push_back(map_colour(colours, i / (kShades - 1.0)));
     }

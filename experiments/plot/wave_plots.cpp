@@ -44,8 +44,9 @@ SquareMap bright_middle(const SquareMap& map) {
     double reach = 4.0;  // px
     for (std::size_t i = 0; i < map.values.size(); ++i) {
         if (map.values[i] > least) {
+            const std::size_t row = i / map.size;
             const double x = static_cast<double>(i % map.size) - middle;
-            const double y = static_cast<double>(i / map.size) - middle;
+            const double y = static_cast<double>(row) - middle;
             reach = std::max({reach, std::abs(x), std::abs(y)});
         }
     }
