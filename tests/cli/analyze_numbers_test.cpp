@@ -109,6 +109,11 @@ void expect_spot(const Json& expected, const Json& found) {
                 1e-3 * kIllumination * rms_um);
 }
 
+void expect_wavefront(const Json& expected, const Json& found) {
+    const double rms = number(expected, "wavefront_rms_waves");
+    EXPECT_NEAR(number(found, "wavefront_rms_waves"), rms, kIllumination * rms);
+}
+
 class AnalyzeNumbers : public testing::TestWithParam<const char*> {
   protected:
     const Json numbers_ = reference_numbers(GetParam());
@@ -138,6 +143,7 @@ TEST_P(AnalyzeNumbers, Fields) {
         expect_chief_ray(expected, *row);
         expect_light(expected, *row);
         expect_spot(expected, *row);
+        expect_wavefront(expected, *row);
     }
 }
 

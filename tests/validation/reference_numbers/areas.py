@@ -19,9 +19,9 @@ class Beamlens:
         self.image_z = float(lens.image_z)
 
     def trace(self, p, d, heading=1):
-        """(end, p, d): where each ray ended, 3 i + (0 rim, 1 missed, 2 reflected), or −1; point and direction last."""
+        """(end, p, d, path): where each ray ended, 3 i + (0 rim, 1 missed, 2 reflected), or −1; point, direction, Σ n s."""
         p, d = [np.array(x, dtype=float) for x in p], [np.array(x, dtype=float) for x in d]
-        end = np.full(p[0].shape, -1)
+        end, path = np.full(p[0].shape, -1), np.zeros(p[0].shape)
         indices = range(len(self.rows)) if heading > 0 else reversed(range(len(self.rows)))
         for i in indices:
             c, k, asphere, z, semi, n, n2 = self.rows[i]
@@ -31,7 +31,8 @@ class Beamlens:
             # From the point of closest approach to the vertex, so that little cancels.
             t = -sum(a * b for a, b in zip(q, d))
             q = [a + t * b for a, b in zip(q, d)]
-            missed, q = meet(q, d, c, k, asphere, heading)
+            missed, q, s = meet(q, d, c, k, asphere, heading)
+            path = path + n * (t + s)
             slope2 = profile(q[0] ** 2 + q[1] ** 2, c, k, asphere)[1] * 2
             normal = [-q[0] * slope2, -q[1] * slope2, np.ones_like(slope2)]
             length = heading / np.sqrt(sum(a * a for a in normal))
@@ -48,7 +49,7 @@ class Beamlens:
             dead = end >= 0
             p = [np.where(dead, x, a) for a, x in zip(p, (0, 0, z))]
             d = [np.where(dead, x, a) for a, x in zip(d, (0, 0, heading))]
-        return end, p, d
+        return end, p, d, path
 
 
 def profile(r2, c, k, asphere):
@@ -61,7 +62,7 @@ def profile(r2, c, k, asphere):
 
 
 def meet(q, d, c, k, asphere, heading):
-    """(missed, point) for rays given at their closest approach to the vertex."""
+    """(missed, point, way) for rays given at their closest approach to the vertex."""
     a = c * (1 + k * d[2] ** 2)
     b = c * k * q[2] * d[2] - d[2]
     f = c * (q[0] ** 2 + q[1] ** 2 + (1 + k) * q[2] ** 2) - 2 * q[2]
@@ -82,9 +83,9 @@ def meet(q, d, c, k, asphere, heading):
             g, g1 = profile(at[0] ** 2 + at[1] ** 2, c, k, asphere)
             rise = d[2] - 2 * g1 * (at[0] * d[0] + at[1] * d[1])
             step = np.clip((at[2] - g) / np.where(rise * heading > 0, rise, heading), -1, 1)
-            at = [x - step * y for x, y in zip(at, d)]
+            at, s = [x - step * y for x, y in zip(at, d)], s - step
         missed = missed | ~(np.abs(step) < 1e-9)
-    return missed, [np.where(missed, 0, x) for x in at]
+    return missed, [np.where(missed, 0, x) for x in at], np.where(missed, 0, s)
 
 
 class Region:
@@ -216,10 +217,32 @@ def spot(beam, region, origin_y):
     rays = region.rays
 
     def moments(a, b):
-        _, p, d = beam.trace(*rays(a, b), 1)
+        _, p, d, _ = beam.trace(*rays(a, b), 1)
         s = (beam.image_z - p[2]) / d[2]
         x, y = p[0] + s * d[0], p[1] + s * d[1] - origin_y
         return np.array([np.ones_like(x), y, x * x + y * y])
     (area, first, second), error = region.means(moments)
     y = first / area
     return origin_y + y, np.sqrt(max(second / area - y * y, 0.0)), error
+
+
+def wavefront_rms(beam, region, centre, radius, wavelength_nm):
+    """Rms optical path difference, waves, over the beam's cross-section, less the mean.
+
+    Paths are taken up to the sphere of the given centre and radius: from the image point to the exit pupil, positive where
+    that lies in front of the image.
+    """
+    def moments(a, b):
+        _, p, d, path = beam.trace(*region.rays(a, b), 1)
+        to_centre = [c - x for c, x in zip(centre, p)]
+        foot = sum(x * y for x, y in zip(to_centre, d))
+        off2 = sum(x * x for x in to_centre) - foot * foot
+        waves = (path + foot - np.sign(radius) * np.sqrt(radius * radius - off2)) / (1e-6 * wavelength_nm)
+        waves = waves - waves_at_centre[0] if waves_at_centre else waves
+        return np.array([np.ones_like(waves), waves, waves * waves])
+
+    waves_at_centre = []
+    middle = moments(np.array([region.centre[0]]), np.array([region.centre[1]]))
+    waves_at_centre.append(middle[1][0])
+    (area, first, second), error = region.means(moments)
+    return np.sqrt(max(second / area - (first / area) ** 2, 0.0)), error

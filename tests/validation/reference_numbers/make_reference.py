@@ -130,27 +130,38 @@ def projected(projection, field):
 class FieldRows:
     """What `analyze` says of each field and wavelength."""
 
-    def __init__(self, case, lenses, chiefs, efl, pupil):
-        self.case, self.lenses, self.chiefs, self.efl, self.pupil = case, lenses, chiefs, efl, float(pupil)
+    def __init__(self, case, lenses, chiefs, first):
+        self.case, self.lenses, self.chiefs, self.first = case, lenses, chiefs, first
+        self.pupil = float(first[D]["entrance_pupil_diameter_mm"])
         self.beams = {w: areas.Beamlens(lens) for w, lens in lenses.items()}
         self.axial = {}
         self.worst = 0.0  # relative difference of the two last rules of any quadrature
 
-    def areas_at(self, f, w, chief, image_y):
-        lens, beam = self.lenses[w], self.beams[w]
+    def exit_pupil_distance(self, f, w, last):
+        """From the exit pupil, where the real chief ray crosses the axis, to its image point along it; signed."""
+        lens = self.lenses[w]
+        if f == 0:
+            return lens.image_z - lens.surfaces[-1].z - self.first[w]["exit_pupil_z_mm"]
+        point, _ = exact_rays.at_plane(last, lens.image_z)
+        return point[1] / last.d[1]
+
+    def areas_at(self, f, w, chief, last):
+        beam = self.beams[w]
+        image = [float(x) for x in exact_rays.at_plane(last, self.lenses[w].image_z)[0]]
         extents = [self.pupil, 5 * self.pupil, 25 * self.pupil]
         region = areas.Region(beam, areas.incoming_beam(beam, *chief), 1, extents)
         if region.centre is None:
             return {"vignetting": 0, "relative_illumination": 0}
         area, error_a = region.area()
-        centroid, rms, error_s = areas.spot(beam, region, image_y)
+        centroid, rms, error_s = areas.spot(beam, region, image[1])
+        waves, error_w = areas.wavefront_rms(beam, region, image, float(self.exit_pupil_distance(f, w, last)), w)
         cone = areas.Region(beam, areas.cones_of(beam, float(self.reference_y)), -1, [1.0])
         solid, error_i = cone.area()
-        self.worst = max(self.worst, error_a, error_i, error_s)
+        self.worst = max(self.worst, error_a, error_i, error_s, error_w)
         self.axial.setdefault(w, (area, solid))
         return {"beam_area_mm2": area, "projected_solid_angle_sr": solid, "vignetting": area / self.axial[w][0],
                 "relative_illumination": solid / self.axial[w][1], "spot_rms_um": 1000 * rms,
-                "spot_centroid_y_mm": centroid}
+                "spot_centroid_y_mm": centroid, "wavefront_rms_waves": waves}
 
     def row(self, f, w):
         lens, chief = self.lenses[w], self.chiefs[f, w]
@@ -169,8 +180,8 @@ class FieldRows:
         if f:
             ideal = projected(lens.projection, mp.radians(f))
             if not (lens.projection == "rectilinear" and f >= 90):
-                row["distortion_percent"] = number(100 * (y / (self.efl[w] * ideal) - 1))
-        row.update({k: number(v) for k, v in self.areas_at(f, w, chief, float(y)).items()})
+                row["distortion_percent"] = number(100 * (y / (self.first[w]["efl_mm"] * ideal) - 1))
+        row.update({k: number(v) for k, v in self.areas_at(f, w, chief, traced.last).items()})
         return row
 
     def reference_height(self, f, w, y):
@@ -194,7 +205,7 @@ def check_float_rays(case, entries, lenses):
             continue
         beam = areas.Beamlens(lenses[e["wavelength_nm"]])
         norm = float(mp.sqrt(sum(mpf(x) ** 2 for x in e["direction"])))
-        _, p, d = beam.trace([[x] for x in e["origin"]], [[x / norm] for x in e["direction"]])
+        _, p, d, _ = beam.trace([[x] for x in e["origin"]], [[x / norm] for x in e["direction"]])
         s = (beam.image_z - p[2][0]) / d[2][0]
         worst = max(worst, *(abs(p[i][0] + s * d[i][0] - e["image"][i]) for i in (0, 1)))
     return worst
@@ -215,7 +226,7 @@ def make(name):
     radius = first[D]["entrance_pupil_diameter_mm"] / 2
     entries = rays_of(case, lenses, chiefs, radius)
     ends = ended_rays(lenses[D])
-    rows = FieldRows(case, lenses, chiefs, {w: first[w]["efl_mm"] for w in first}, 2 * radius)
+    rows = FieldRows(case, lenses, chiefs, first)
     result = {
         "lens": name, "image_z_mm": number(lens.image_z), "fields_deg": case["fields"],
         "wavelengths_nm": case["wavelengths"],
