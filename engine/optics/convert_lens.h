@@ -49,8 +49,7 @@ TraceLens<To> convert_lens(const TraceLens<From>& lens) {
     using std::sqrt;
     TraceLens<To> converted{.surfaces = {}, .image_z = static_cast<To>(lens.image_z)};
     for (const TraceSurface<From>& surface : lens.surfaces) {
-        const bool is_closed = surface.semi_diameter_squared < From(0);
-        const From semi_diameter = is_closed ? From(0) : sqrt(surface.semi_diameter_squared);
+        const From semi_diameter = sqrt(surface.semi_diameter_squared);
         converted.surfaces.push_back(make_trace_surface<To>(
             static_cast<To>(surface.curvature), static_cast<To>(surface.vertex_z), static_cast<To>(semi_diameter),
             static_cast<To>(surface.index_before), static_cast<To>(surface.index_after), surface.is_stop));

@@ -17,7 +17,7 @@ template <class T>
 struct TraceSurface {
     T curvature;  // 1/mm, at the vertex (of a toroid: in y–z), positive where the centre of curvature lies at larger z
     T vertex_z;   // mm
-    T semi_diameter_squared;  // mm²; −1 where nothing is open, so that no ray lies within
+    T semi_diameter_squared;  // mm²; 0: closed, even to a ray through the vertex
     T index_before;           // of the medium on the scene's side
     T index_after;            // of the medium on the sensor's side
     T forward_ratio;          // index_before / index_after, and its inverse: divisions that the inner loop is spared
@@ -47,7 +47,7 @@ TraceSurface<T> make_trace_surface(T curvature, T vertex_z, T semi_diameter, T i
                                    bool is_stop) {
     return {.curvature = curvature,
             .vertex_z = vertex_z,
-            .semi_diameter_squared = semi_diameter > T(0) ? semi_diameter * semi_diameter : T(-1),
+            .semi_diameter_squared = semi_diameter * semi_diameter,
             .index_before = index_before,
             .index_after = index_after,
             .forward_ratio = index_before / index_after,
@@ -156,7 +156,7 @@ TracedRay<T> trace_through(const TraceLens<T>& lens, const Ray<T>& ray, Visitor&
 
         RayStatus here = RayStatus::ok;
         const T r2 = point.x * point.x + point.y * point.y;
-        const bool is_beyond = r2 > surface.semi_diameter_squared;
+        const bool is_beyond = r2 > surface.semi_diameter_squared || !(surface.semi_diameter_squared > T(0));
         T open_share = T(1);  // of the stop's texture
         if constexpr (has_specials) {
             if (special != nullptr && !special->mask.is_full_circle() && !is_beyond) {

@@ -68,8 +68,7 @@ TracedPacket<Scalar, N> trace_lanes(const TraceLens<Scalar>& lens, const Ray<Pac
 ///
 /// `visit(int lane, const SurfaceEvent<Scalar>&)` is called for each lane and surface as in `trace`.
 template <Direction direction = Direction::forward, Rims rims = Rims::clip, class Scalar, int N, class Visitor>
-TracedPacket<Scalar, N> trace_packet(const TraceLens<Scalar>& lens, const Ray<Pack<Scalar, N>>& rays,
-                                     Visitor&& visit) {
+TracedPacket<Scalar, N> trace_packet(const TraceLens<Scalar>& lens, const Ray<Pack<Scalar, N>>& rays, Visitor&& visit) {
     if (!lens.specials.empty()) {
         return trace_lanes<direction, rims>(lens, rays, visit);
     }
@@ -119,7 +118,9 @@ TracedPacket<Scalar, N> trace_packet(const TraceLens<Scalar>& lens, const Ray<Pa
         traced.optical_path = select(going, traced.optical_path + index_before * meeting.distance, traced.optical_path);
         origin = select(going, Vec3<Numbers>{point.x, point.y, point.z + vertex_z}, origin);
 
-        const Mask beyond = going && point.x * point.x + point.y * point.y > Numbers(surface.semi_diameter_squared);
+        const Mask closed(!(surface.semi_diameter_squared > Scalar(0)));
+        const Mask outside = point.x * point.x + point.y * point.y > Numbers(surface.semi_diameter_squared);
+        const Mask beyond = going && (outside || closed);
         mark(beyond, surface.is_stop ? RayStatus::stopped : RayStatus::clipped, index, true);
         if (rims == Rims::clip) {
             going = going && !beyond;

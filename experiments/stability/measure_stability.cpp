@@ -112,10 +112,8 @@ class Jitter {
         std::map<Exact, Exact> moved_index{{Exact(1), Exact(1)}};
         const auto index = [&](const Exact& n) { return moved_index.try_emplace(n, moved(n)).first->second; };
         for (TraceSurface<Exact>& s : lens.surfaces) {
-            const bool is_closed = s.semi_diameter_squared < Exact(0);
             const int special = s.special;
-            s = make_trace_surface<Exact>(moved(s.curvature), moved(s.vertex_z),
-                                          is_closed ? Exact(0) : moved(sqrt(s.semi_diameter_squared)),
+            s = make_trace_surface<Exact>(moved(s.curvature), moved(s.vertex_z), moved(sqrt(s.semi_diameter_squared)),
                                           index(s.index_before), index(s.index_after), s.is_stop);
             s.special = special;
             if (s.index_before != s.index_after) {

@@ -92,6 +92,18 @@ TEST(TracePacket, GoesBackwardsToo) {
     compare_lanes<Direction::reverse, Rims::follow, double, 2>(at_wavelength<double>(lens, 550.0), rays);
 }
 
+// A closed stop stops every lane, the one on the axis too.
+TEST(TracePacket, AClosedStopStopsEveryLane) {
+    const Lens lens = load_lens("tessar");
+    TraceLens<double> at = at_wavelength<double>(lens, 550.0);
+    at.surfaces[static_cast<std::size_t>(lens.stop_index())].semi_diameter_squared = 0.0;
+    std::vector<Ray<double>> rays = rays_at(lens, 7, 0.1);
+    rays.push_back({{0.0, 0.0, -10.0}, {0.0, 0.0, 1.0}});
+    const Fates fates = compare_lanes<Direction::forward, Rims::clip, float, 8>(at, rays);
+    EXPECT_EQ(fates[static_cast<std::size_t>(RayStatus::ok)], 0);
+    EXPECT_GT(fates[static_cast<std::size_t>(RayStatus::stopped)], 0);
+}
+
 // A lens with a shaped, tilted surface goes lane by lane.
 TEST(TracePacket, TracesWhatIsNoSphere) {
     const Lens lens = load_lens("tessar");
