@@ -1,6 +1,7 @@
 #include "engine/analysis/lens_analysis.h"
 
 #include <algorithm>
+#include <numbers>
 
 #include "engine/analysis/field_curves.h"
 #include "engine/analysis/spot.h"
@@ -9,6 +10,8 @@
 namespace lensproof {
 
 namespace {
+
+constexpr double kDegree = std::numbers::pi / 180.0;
 
 /// A lens at one wavelength, with the axis's light that every field's is compared to.
 struct AnalysedColour {
@@ -37,10 +40,10 @@ void add_image(FieldAnalysis& row, const ColourOfLens& colour, const FieldBundle
 }
 
 /// `reference`: the field's bundle at the reference wavelength, which says where the object is.
-FieldAnalysis analyze_field(double field, const AnalysedColour& analysed, const std::optional<FieldBundle>& reference,
-                            Projection projection, int rings) {
+FieldAnalysis analyze_field(double field_deg, const AnalysedColour& analysed,
+                            const std::optional<FieldBundle>& reference, Projection projection, int rings) {
     const ColourOfLens& colour = analysed.colour;
-    FieldAnalysis row{.field_angle = field, .wavelength_nm = colour.wavelength_nm};
+    FieldAnalysis row{.field_deg = field_deg, .wavelength_nm = colour.wavelength_nm};
     const auto bundle = reference ? same_object(*reference, colour.chief_rays) : std::nullopt;
     if (!bundle) {
         row.status = RayStatus::missed;
@@ -82,13 +85,14 @@ LensAnalysis analyze_lens(const Lens& lens, const AnalysisSettings& settings) {
     analysis.conjugates = paraxial_conjugates(reference.lens, settings.object_distance);
     analysis.real_working_f_number = real_working_f_number(reference.lens, settings.object_distance);
 
-    const double largest_field = std::ranges::max(settings.fields);
+    const double largest_field = std::ranges::max(settings.fields_deg) * kDegree;
     const auto [shortest, longest] = std::ranges::minmax_element(settings.wavelengths_nm);
     analysis.seidel = seidel_sums(reference.lens, at_wavelength<double>(lens, *shortest),
                                   at_wavelength<double>(lens, *longest), largest_field, settings.object_distance);
     analysis.lagrange_invariant = lagrange_invariant(reference.lens, largest_field);
-    for (const double field : settings.fields) {
-        const auto bundle = field_bundle(reference.chief_rays, reference.chief_rays, field, settings.object_distance);
+    for (const double field : settings.fields_deg) {
+        const auto bundle =
+            field_bundle(reference.chief_rays, reference.chief_rays, field * kDegree, settings.object_distance);
         for (const AnalysedColour& colour : colours) {
             analysis.fields.push_back(analyze_field(field, colour, bundle, lens.projection, settings.rings));
         }
@@ -104,8 +108,8 @@ std::vector<std::optional<PolychromaticField>> polychromatic_fields(const Lens& 
     }
     const ChiefRays chief_rays(lens, settings.reference_wavelength_nm, Rims::follow);
     std::vector<std::optional<PolychromaticField>> fields;
-    for (const double field : settings.fields) {
-        const auto bundle = field_bundle(chief_rays, chief_rays, field, settings.object_distance);
+    for (const double field : settings.fields_deg) {
+        const auto bundle = field_bundle(chief_rays, chief_rays, field * kDegree, settings.object_distance);
         fields.push_back(
             bundle ? std::optional(polychromatic_field(lens, *bundle, settings.reference_wavelength_nm, wavelengths))
                    : std::nullopt);

@@ -12,18 +12,18 @@
 
 namespace lensproof {
 
-/// What a lens is analysed for. Angles in radians.
+/// What a lens is analysed for.
 struct AnalysisSettings {
     std::vector<double> wavelengths_nm;                                // at least one
     double reference_wavelength_nm = 0.0;                              // need not be among them
-    std::vector<double> fields;                                        // at least one, 0 ≤ θ < π
+    std::vector<double> fields_deg;                                    // at least one, from 0 to below 180
     double object_distance = std::numeric_limits<double>::infinity();  // in front of the first vertex, mm
     int rings = 12;                                                    // of the quadrature over a beam
 };
 
 /// One field at one wavelength. What does not exist, such as a chief ray beyond the field, is nothing; mm.
 struct FieldAnalysis {
-    double field_angle = 0.0;
+    double field_deg = 0.0;
     double wavelength_nm = 0.0;
     RayStatus status = RayStatus::ok;  // of the chief ray, past the rims where one clips it
     int surface = -1;                  // where the status befell it, from 0

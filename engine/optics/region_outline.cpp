@@ -21,11 +21,13 @@ constexpr int kMostHalvings = 24;
 constexpr std::size_t kMostPoints = 1000;
 constexpr int kPoints = 15;
 
-/// Gauss-Kronrod's nodes on [−1, 1], ascending; `gauss` is 0 at those that the 7 Gauss nodes do not have.
+/// Gauss-Kronrod's nodes on [−1, 1], ascending; `gauss` is 0 at those that the 7 Gauss nodes do not have. The
+/// `barycentric` weights give the polynomial through values at the nodes (Berrut and Trefethen, SIAM Review 46, 2004).
 struct Kronrod {
     std::array<double, kPoints> node{};
     std::array<double, kPoints> weight{};
     std::array<double, kPoints> gauss{};
+    std::array<double, kPoints> barycentric{};
 };
 
 const Kronrod& kronrod() {
@@ -39,6 +41,12 @@ const Kronrod& kronrod() {
                 made.node[k] = (k < kMiddle ? -1.0 : 1.0) * gauss_kronrod<double, kPoints>::abscissa()[i];
                 made.weight[k] = gauss_kronrod<double, kPoints>::weights()[i];
                 made.gauss[k] = i % 2 == 0 ? gauss<double, kMiddle>::weights()[i / 2] : 0.0;
+            }
+        }
+        for (int i = 0; i < kPoints; ++i) {
+            made.barycentric[i] = 1.0;
+            for (int k = 0; k < kPoints; ++k) {
+                made.barycentric[i] /= k == i ? 1.0 : made.node[i] - made.node[k];
             }
         }
         return made;
@@ -148,9 +156,10 @@ class Outliner {
             gauss_area += rule.gauss[i] * square;
         }
         const double half_width = 0.5 * (to - from);
-        const double error = estimated_error(half_width, area, gauss_area, edges);
+        const PieceEnds ends = look_at_ends(from, to, edges);
+        const double error = estimated_error(half_width, area, gauss_area, edges) + half_width * ends.error;
         if (halvings > 0 && is_star_shaped && points.size() < kMostPoints && error > kAreaTolerance * 2.0 * kPi) {
-            const double split = split_point(azimuth, edges);
+            const double split = split_point(from, to, azimuth, edges, ends);
             append(from, split, halvings - 1);
             append(split, to, halvings - 1);
             return;
@@ -191,9 +200,50 @@ class Outliner {
         return half_width * variation * std::min(1.0, std::pow(200.0 * difference / variation, 1.5));
     }
 
+    /// The outline just inside a piece's ends, where no node of the rule is.
+    struct PieceEnds {
+        RegionEdge first;
+        RegionEdge last;
+        double error = 0.0;  // of the area over half the piece's width: what a corner between an end and its node costs
+    };
+
+    [[nodiscard]] PieceEnds look_at_ends(double from, double to, const std::array<RegionEdge, kPoints>& edges) const {
+        const double margin = end_margin(from, to);
+        PieceEnds ends{.first = frame_.edge(from + margin, edges.front().distance),
+                       .last = frame_.edge(to - margin, edges.back().distance)};
+        const double end = 1.0 - 2.0 * margin / (to - from);
+        const double gap = 1.0 - kronrod().node.back();
+        ends.error = 0.5 * gap *
+                     (std::abs(squared_distance(edges, -end) - ends.first.distance * ends.first.distance) +
+                      std::abs(squared_distance(edges, end) - ends.last.distance * ends.last.distance));
+        return ends;
+    }
+
+    /// What the nodes' polynomial expects at `place` in [−1, 1], where no node is.
+    static double squared_distance(const std::array<RegionEdge, kPoints>& edges, double place) {
+        const Kronrod& rule = kronrod();
+        double sum = 0.0;
+        double weights = 0.0;
+        for (std::size_t i = 0; i < kPoints; ++i) {
+            const double weight = rule.barycentric[i] / (place - rule.node[i]);
+            sum += weight * edges[i].distance * edges[i].distance;
+            weights += weight;
+        }
+        return sum / weights;
+    }
+
+    /// A corner that the piece was cut at is known to this; it does not count as one inside.
+    static double end_margin(double from, double to) { return std::min(2.0 * kCornerTolerance, 1e-3 * (to - from)); }
+
     /// The first corner, or the middle where there is none.
-    [[nodiscard]] double split_point(const std::array<double, kPoints>& azimuth,
-                                     const std::array<RegionEdge, kPoints>& edges) {
+    [[nodiscard]] double split_point(double from, double to, const std::array<double, kPoints>& azimuth,
+                                     const std::array<RegionEdge, kPoints>& edges, const PieceEnds& ends) {
+        if (ends.first.limit != edges.front().limit) {
+            return corner(from + end_margin(from, to), azimuth.front(), ends.first);
+        }
+        if (ends.last.limit != edges.back().limit) {
+            return corner(azimuth.back(), to - end_margin(from, to), edges.back());
+        }
         const auto last = std::ranges::adjacent_find(edges, std::ranges::not_equal_to{}, &RegionEdge::limit);
         if (last == edges.end()) {
             return azimuth[kPoints / 2];

@@ -2,8 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include "experiments/cli/command.h"
 
@@ -13,7 +13,6 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr double kDegree = std::numbers::pi / 180.0;
 constexpr double kMicrometre = 1e-3;  // in mm
 
 Json optional_json(const std::optional<double>& value, double unit = 1.0) {
@@ -67,7 +66,7 @@ Json seidel_json(const std::optional<SeidelSums<double>>& sums) {
 }
 
 Json field_json(const FieldAnalysis& row) {
-    return {{"field_deg", row.field_angle / kDegree},
+    return {{"field_deg", row.field_deg},
             {"wavelength_nm", row.wavelength_nm},
             {"status", status_name(row.status)},
             {"surface", row.surface >= 0 && row.status != RayStatus::ok ? Json(row.surface + 1) : Json(nullptr)},
@@ -141,7 +140,7 @@ std::string fields_text(const std::vector<FieldAnalysis>& fields) {
         const auto in_um = [](const std::optional<double>& mm) {
             return mm ? std::optional(*mm / kMicrometre) : std::nullopt;
         };
-        text += fmt::format("  {:8.3f}{:10.4f}", row.field_angle / kDegree, row.wavelength_nm);
+        text += fmt::format("  {:8.3f}{:10.4f}", row.field_deg, row.wavelength_nm);
         text += cell(row.chief_ray_height, 11, 5) + cell(row.distortion_percent, 10, 4) +
                 cell(row.tangential_focus, 10, 4) + cell(row.sagittal_focus, 10, 4) +
                 cell(row.relative_illumination, 8, 4) + cell(row.vignetting, 8, 4) + cell(in_um(row.spot_rms), 10, 3) +
@@ -179,11 +178,11 @@ std::string analysis_text(const Lens& lens, const AnalysisSettings& settings, co
         fmt::format("{}\nAt {} nm, object at {}:\n", lens.name, settings.reference_wavelength_nm,
                     std::isinf(settings.object_distance) ? "infinity" : fmt::format("{} mm", settings.object_distance));
     text += paraxial_text(lens, analysis);
-    const double largest = settings.fields.empty() ? 0.0 : *std::ranges::max_element(settings.fields);
+    const double largest = std::ranges::max(settings.fields_deg);
     if (analysis.seidel) {
-        text += fmt::format("Seidel sums for {:.4g} deg, mm:\n", largest / kDegree) + seidel_text(*analysis.seidel);
+        text += fmt::format("Seidel sums for {:.4g} deg, mm:\n", largest) + seidel_text(*analysis.seidel);
     } else {
-        text += fmt::format("No Seidel sums: paraxial rays have no field of {:.4g} deg\n", largest / kDegree);
+        text += fmt::format("No Seidel sums: paraxial rays have no field of {:.4g} deg\n", largest);
     }
     text += "Fields:\n" + fields_text(analysis.fields);
     return text;

@@ -10,6 +10,7 @@
 #include <optional>
 
 #include "engine/analysis/best_focus.h"
+#include "engine/analysis/field_curves.h"
 #include "engine/analysis/lens_analysis.h"
 #include "engine/io/file.h"
 #include "engine/io/input_error.h"
@@ -26,8 +27,6 @@
 namespace lensproof {
 
 namespace {
-
-constexpr double kDegree = std::numbers::pi / 180.0;
 
 struct AnalyzeOptions {
     CommonOptions common;
@@ -94,23 +93,17 @@ Lens prepared_lens(const AnalyzeOptions& options, const Prescription& prescripti
 /// The fields to look at where none are given: the axis and four parts of what the source states, or of what the chief
 /// ray reaches.
 std::vector<double> usual_fields(const Lens& lens, double wavelength_nm) {
-    const double largest = lens.stated.half_field_deg ? *lens.stated.half_field_deg * kDegree
-                                                      : ChiefRays(lens, wavelength_nm).largest_field();
-    return {0.0, 0.25 * largest, 0.5 * largest, 0.75 * largest, largest};
+    const double reached = ChiefRays(lens, wavelength_nm).largest_field() * 180.0 / std::numbers::pi;
+    return even_fields(lens.stated.half_field_deg.value_or(reached), 5);
 }
 
 std::vector<double> fields_of(const AnalyzeOptions& options, const Lens& lens, double wavelength_nm) {
-    if (options.fields_deg.empty()) {
-        return usual_fields(lens, wavelength_nm);
-    }
-    std::vector<double> fields;
     for (const double field : options.fields_deg) {
         if (!(field >= 0.0 && field < 180.0)) {
             throw InputError(fmt::format("--fields holds {}, expected degrees from 0 to below 180", field));
         }
-        fields.push_back(field * kDegree);
     }
-    return fields;
+    return options.fields_deg.empty() ? usual_fields(lens, wavelength_nm) : options.fields_deg;
 }
 
 std::vector<double> wavelengths_of(const AnalyzeOptions& options, const Prescription& prescription) {
@@ -178,7 +171,7 @@ int run_analyze(const AnalyzeOptions& options) {
     settings.object_distance = object_distance(options.focus, prescription);
     settings.rings = options.rings;
     Lens lens = prepared_lens(options, prescription, settings.object_distance, settings.reference_wavelength_nm);
-    settings.fields = fields_of(options, lens, settings.reference_wavelength_nm);
+    settings.fields_deg = fields_of(options, lens, settings.reference_wavelength_nm);
     if (!options.best_focus.empty()) {
         lens = with_image_shift(std::move(lens), best_focus_shift(options, lens, settings));
     }

@@ -51,9 +51,11 @@ GivenRay read_ray(const CsvRow& row) {
     if (!(largest > 0.0)) {
         throw InputError(fmt::format("{} has length 0, expected a direction", row.where("the direction")));
     }
-    const Vec3d direction{stated.x / largest, stated.y / largest, stated.z / largest};
+    // By a power of two, which is exact; `trace_one` makes it a unit vector in its own precision.
+    const int exponent = std::ilogb(largest);
+    const auto scaled = [&](double component) { return std::ldexp(component, -exponent); };
     return {.id = row.text("id"),
-            .ray = {vector("x_mm", "y_mm", "z_mm"), normalized(direction)},
+            .ray = {vector("x_mm", "y_mm", "z_mm"), {scaled(stated.x), scaled(stated.y), scaled(stated.z)}},
             .wavelength_nm = row.number("wavelength_nm", kPositive)};
 }
 

@@ -17,8 +17,7 @@ constexpr double kDegree = std::numbers::pi / 180.0;
 constexpr double kMicrometresPerMm = 1000.0;
 constexpr double kNothing = std::numeric_limits<double>::quiet_NaN();
 
-constexpr int kCurveFields = 61;         // of a curve over the field
-constexpr int kIlluminationFields = 31;  // slower: two outlines each
+constexpr int kCurveFields = 61;  // of a curve over the field
 constexpr int kFanRays = 41;
 constexpr int kZones = 41;
 constexpr int kSpotCells = 20;  // dots across a beam
@@ -78,8 +77,8 @@ WavelengthCurve fan_curve(const Beam& beam, FanPlane plane, Vec2d reference) {
     return curve;
 }
 
-FieldFans fans_of(const FieldBeams& field, double field_angle) {
-    FieldFans fans{.field_deg = field_angle / kDegree};
+FieldFans fans_of(const FieldBeams& field, double field_deg) {
+    FieldFans fans{.field_deg = field_deg};
     for (const Beam& beam : field.beams) {
         const Vec2d reference = field.reference->chief.image_point;
         fans.tangential.push_back(fan_curve(beam, FanPlane::tangential, reference));
@@ -164,9 +163,9 @@ std::vector<SpotRay> dots(const Beam& beam) {
     return spot_grid(beam.colour->lens, beam.bundle, half_width, kSpotCells);
 }
 
-FieldSpots spots_of(const FieldBeams& field, double field_angle, const std::vector<double>& defocus_mm,
+FieldSpots spots_of(const FieldBeams& field, double field_deg, const std::vector<double>& defocus_mm,
                     double airy_radius_um, int rings) {
-    FieldSpots spots{.field_deg = field_angle / kDegree, .airy_radius_um = airy_radius_um};
+    FieldSpots spots{.field_deg = field_deg, .airy_radius_um = airy_radius_um};
     std::vector<std::vector<SpotRay>> nodes;
     std::vector<std::vector<SpotRay>> shown;
     for (const Beam& beam : field.beams) {
@@ -204,15 +203,14 @@ AnalysisCurves analysis_curves(const Lens& lens, const AnalysisSettings& setting
     AnalysisCurves curves;
     const Colours colours(lens, settings);
     const double distance = settings.object_distance;
-    const double largest = std::ranges::max(settings.fields);
+    const double largest = std::ranges::max(settings.fields_deg) * kDegree;
     const std::vector<double> dense = even_fields(largest, kCurveFields);
     for (const ColourOfLens& colour : colours.all) {
         curves.field_curves.push_back(field_curve(colour, lens.projection, dense, distance));
     }
     curves.longitudinal = longitudinal_curves(colours, distance);
     curves.lateral_colour = lateral_curves(colours, dense, distance);
-    const std::vector<double> fewer = even_fields(largest, kIlluminationFields);
-    for (const IlluminationPoint& point : illumination_curve(colours.reference, colours.reference, fewer, distance)) {
+    for (const IlluminationPoint& point : illumination_curve(colours.reference, colours.reference, dense, distance)) {
         curves.illumination.push_back({.field_deg = point.field_angle / kDegree,
                                        .relative_illumination = point.light.relative_illumination,
                                        .vignetting = point.light.vignetting});
@@ -224,8 +222,8 @@ AnalysisCurves analysis_curves(const Lens& lens, const AnalysisSettings& setting
     curves.airy_radius = {{0.0, airy_radius_um}, {largest / kDegree, airy_radius_um}};
     const double step = defocus_step(colours, field_beams(colours, 0.0, distance), f_number, settings.rings);
     curves.defocus_mm = {-2.0 * step, -step, 0.0, step, 2.0 * step};
-    for (const double field : settings.fields) {
-        const FieldBeams beams = field_beams(colours, field, distance);
+    for (const double field : settings.fields_deg) {
+        const FieldBeams beams = field_beams(colours, field * kDegree, distance);
         curves.fans.push_back(fans_of(beams, field));
         curves.spots.push_back(spots_of(beams, field, curves.defocus_mm, airy_radius_um, settings.rings));
     }

@@ -1,6 +1,5 @@
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include "engine/analysis/field_curves.h"
 #include "engine/analysis/mtf.h"
@@ -13,7 +12,6 @@ namespace lensproof {
 
 namespace {
 
-constexpr double kDegree = std::numbers::pi / 180.0;
 constexpr double kNothing = std::numeric_limits<double>::quiet_NaN();
 
 constexpr int kMapCells = 64;        // across a wavefront map
@@ -23,28 +21,6 @@ constexpr std::size_t kFrequencies = 51;
 constexpr double kHighestFrequency = 100.0;  // cycles/mm, or the cutoff where that is lower
 constexpr int kMtfFields = 16;
 constexpr double kShownFrequencies[] = {10.0, 20.0, 40.0};  // cycles/mm, over the field
-
-/// Path differences at one wavelength, in the directions that the image sees; `radius`, that of the axial beam in
-/// direction cosines, is the unit.
-FieldWavefront field_wavefront(const PolychromaticField& field, const PolychromaticField::Part& part, double radius,
-                               int rings) {
-    FieldWavefront shown{.field_deg = field.bundle.chief.field_angle / kDegree, .wavelength_nm = part.wavelength_nm};
-    const WavefrontMap map = wavefront_map(field, part, kMapCells);
-    if (map.status == PupilStatus::no_light || map.status == PupilStatus::folded) {
-        return shown;
-    }
-    shown.opd_waves = {.size = static_cast<std::size_t>(map.size),
-                       .half_width = 0.5 * map.size * map.spacing / radius,
-                       .values = map.opd_waves};
-    for (std::size_t i = 0; i < map.inside.size(); ++i) {
-        shown.opd_waves.values[i] = map.inside[i] != 0 ? map.opd_waves[i] : kNothing;
-    }
-    const WavefrontErrors errors = wavefront_errors(
-        wavefront(part.lens, part.wavelength_nm, field.bundle, field.sphere, beam_quadrature(part.outline, rings)));
-    shown.rms_waves = errors.rms;
-    shown.peak_to_valley_waves = errors.peak_to_valley;
-    return shown;
-}
 
 /// Why there is nothing to show.
 std::string status_remark(PupilStatus status) {
@@ -58,6 +34,46 @@ std::string status_remark(PupilStatus status) {
             break;
     }
     return "";
+}
+
+/// The map over the exit pupil about the chief ray's point in it; `radius`, the axial beam's in direction cosines, is
+/// the unit. A ray that comes from above (+y) in the pupil runs downwards, so pupil coordinates are the cosines
+/// reversed.
+SquareMap over_pupil(const WavefrontMap& map, double radius) {
+    const auto shifted = [&](double centre) { return static_cast<int>(std::lround(-centre / map.spacing)); };
+    const int shift_x = shifted(map.centre.x);
+    const int shift_y = shifted(map.centre.y);
+    const int size = map.size + 2 * std::max(std::abs(shift_x), std::abs(shift_y));
+    SquareMap shown{.size = static_cast<std::size_t>(size),
+                    .half_width = 0.5 * size * map.spacing / radius,
+                    .values = std::vector<double>(static_cast<std::size_t>(size) * size, kNothing)};
+    const int margin = (size - map.size) / 2;
+    for (int row = 0; row < map.size; ++row) {
+        for (int column = 0; column < map.size; ++column) {
+            if (map.is_inside(row, column)) {
+                const int y = margin + map.size - 1 - row + shift_y;
+                const int x = margin + map.size - 1 - column + shift_x;
+                shown.values[static_cast<std::size_t>(y) * size + x] = map.at(row, column);
+            }
+        }
+    }
+    return shown;
+}
+
+FieldWavefront field_wavefront(const PolychromaticField& field, const PolychromaticField::Part& part, double field_deg,
+                               double radius, int rings) {
+    FieldWavefront shown{.field_deg = field_deg, .wavelength_nm = part.wavelength_nm};
+    const WavefrontMap map = wavefront_map(field, part, kMapCells);
+    if (map.status == PupilStatus::no_light || map.status == PupilStatus::folded) {
+        shown.remark = status_remark(map.status);
+        return shown;
+    }
+    shown.opd_waves = over_pupil(map, radius);
+    const WavefrontErrors errors = wavefront_errors(
+        wavefront(part.lens, part.wavelength_nm, field.bundle, field.sphere, beam_quadrature(part.outline, rings)));
+    shown.rms_waves = errors.rms;
+    shown.peak_to_valley_waves = errors.peak_to_valley;
+    return shown;
 }
 
 /// The middle of a picture, wide enough for the rays and for some rings of Airy's disc.
@@ -120,11 +136,11 @@ std::vector<FrequencyMtf> mtf_over_field(const Lens& lens, AnalysisSettings sett
     for (const double frequency : kShownFrequencies) {
         curves.push_back({.cycles_per_mm = frequency});
     }
-    settings.fields = even_fields(std::ranges::max(settings.fields), kMtfFields);
+    settings.fields_deg = even_fields(std::ranges::max(settings.fields_deg), kMtfFields);
     const auto fields = polychromatic_fields(lens, settings);
     std::vector<FieldMtf> mtf(fields.size());
     const auto compute = [&](int i) {
-        const double field_deg = settings.fields[i] / kDegree;
+        const double field_deg = settings.fields_deg[i];
         mtf[i] = fields[i] ? resolved_mtf(*fields[i], kShownFrequencies, field_deg) : FieldMtf{.field_deg = field_deg};
     };
     parallel_for(static_cast<int>(fields.size()), threads, compute, [](int) {});
@@ -153,7 +169,7 @@ std::vector<double> shown_frequencies(const PolychromaticField& axis) {
 WaveCurves wave_curves(const Lens& lens, const AnalysisSettings& settings, int threads) {
     WaveCurves curves;
     AnalysisSettings on_axis = settings;
-    on_axis.fields = {0.0};
+    on_axis.fields_deg = {0.0};
     const std::optional<PolychromaticField> axis = polychromatic_fields(lens, on_axis).front();
     if (!axis) {
         return curves;
@@ -171,12 +187,12 @@ WaveCurves wave_curves(const Lens& lens, const AnalysisSettings& settings, int t
     curves.mtf.resize(fields.size());
     curves.geometric_mtf.resize(fields.size());
     const auto compute = [&](int i) {
-        const double field_deg = settings.fields[i] / kDegree;
+        const double field_deg = settings.fields_deg[i];
         const auto& field = fields[i];
         const auto& reference = reference_fields[i];
-        curves.wavefronts[i] = reference
-                                   ? field_wavefront(*reference, reference->parts.front(), axial_radius, settings.rings)
-                                   : FieldWavefront{.field_deg = field_deg};
+        curves.wavefronts[i] =
+            reference ? field_wavefront(*reference, reference->parts.front(), field_deg, axial_radius, settings.rings)
+                      : FieldWavefront{.field_deg = field_deg};
         curves.psfs[i] = field ? psf_map(*field, field_deg) : PsfMap{.field_deg = field_deg};
         curves.mtf[i] = field ? resolved_mtf(*field, frequencies, field_deg) : FieldMtf{.field_deg = field_deg};
         curves.geometric_mtf[i] = field_mtf(field ? ray_mtf(*field, frequencies) : MtfCurve{}, field_deg);
