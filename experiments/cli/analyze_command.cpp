@@ -130,9 +130,6 @@ double best_focus_shift(const AnalyzeOptions& options, const Lens& lens, const A
     if (options.best_focus == "wavefront") {
         return wavefront_focus_shift(fields);
     }
-    if (!options.focus_frequency) {
-        throw InputError("--best-focus mtf needs --focus-frequency, in cycles/mm");
-    }
     return mtf_focus_shift(fields, *options.focus_frequency);
 }
 
@@ -162,6 +159,12 @@ void write_analysis_plots(const AnalyzeOptions& options, const Prescription& pre
 
 int run_analyze(const AnalyzeOptions& options) {
     check_json_name(options.common);
+    if (!options.plots_folder.empty()) {
+        check_output_name(std::filesystem::path(options.plots_folder) / "curves.json");
+    }
+    if (options.best_focus == "mtf" && !options.focus_frequency) {
+        throw InputError("--best-focus mtf needs --focus-frequency, in cycles/mm");
+    }
     Prescription prescription = read_prescription(find_lens_file(options.lens));
     prescription =
         at_zoom_position(prescription, options.zoom.empty() ? 0 : find_zoom_position(prescription, options.zoom));

@@ -17,4 +17,8 @@ void register_render_benchmarks();
 /// channel (counter: points per second).
 void register_measure_benchmarks();
 
+/// analyze/LENS/table: all rows of ten fields at three wavelengths; …/curves: fans, field curves, spots through focus
+/// and the rest that needs no diffraction. westrogon-24 has 14 surfaces and a stop.
+void register_analysis_benchmarks();
+
 }  // namespace lensproof

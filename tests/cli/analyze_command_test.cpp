@@ -1,0 +1,148 @@
+// tests/cli/analyze_command_test.cpp — `lensproof analyze` as a user meets it: its JSON, its plots, what it refuses.
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "tests/cli/program.h"
+
+namespace lensproof {
+namespace {
+
+using Json = nlohmann::json;
+
+Json analysis(const std::vector<std::string>& arguments) {
+    const Workplace place;
+    std::vector<std::string> words{"analyze"};
+    words.insert(words.end(), arguments.begin(), arguments.end());
+    words.insert(words.end(), {"--json", "-"});
+    const Outcome outcome = place.run(words);
+    EXPECT_EQ(outcome.status, 0) << outcome.err;
+    return Json::parse(outcome.out);
+}
+
+TEST(Analyze, TheJsonHasEveryKeyOfTheContract) {
+    const Json json = analysis({"tessar", "--fields", "0,5,30.1", "--wavelengths", "587.5618,486.1327"});
+    EXPECT_EQ(json["lens"], "tessar");
+    EXPECT_EQ(json["reference_wavelength_nm"], 587.5618);
+    for (const char* key :
+         {"efl_mm", "bfl_mm", "ffl_mm", "entrance_pupil_z_mm", "entrance_pupil_diameter_mm", "exit_pupil_z_mm",
+          "exit_pupil_diameter_mm", "f_number", "total_track_mm", "petzval_radius_mm", "lagrange_invariant_mm"}) {
+        EXPECT_TRUE(json["paraxial"][key].is_number()) << key;
+    }
+    ASSERT_EQ(json["seidel"]["surfaces"].size(), 8U);
+    EXPECT_EQ(json["seidel"]["surfaces"][7]["surface"], 8);
+    double s1 = 0.0;
+    for (const Json& surface : json["seidel"]["surfaces"]) {
+        s1 += surface["s1"].get<double>();
+    }
+    EXPECT_NEAR(s1, json["seidel"]["total"]["s1"].get<double>(), 1e-15);
+    ASSERT_EQ(json["fields"].size(), 6U);
+    for (const Json& row : json["fields"]) {
+        for (const char* key : {"field_deg", "wavelength_nm", "status", "chief_ray_height_mm", "distortion_percent",
+                                "tangential_focus_mm", "sagittal_focus_mm", "relative_illumination", "vignetting",
+                                "spot_rms_um", "spot_centroid_mm", "wavefront_rms_waves", "lateral_colour_um"}) {
+            EXPECT_TRUE(row.contains(key)) << key;
+        }
+    }
+    EXPECT_EQ(json["fields"][2]["field_deg"], 5.0);  // as it was given
+    EXPECT_EQ(json["fields"][0]["status"], "ok");
+    EXPECT_EQ(json["fields"][4]["status"], "clipped");  // 30.1° is beyond the field
+}
+
+TEST(Analyze, BeyondTheFieldThereIsNothing) {
+    const Json json = analysis({"petzval", "--fields", "85", "--wavelengths", "587.5618"});
+    const Json& row = json["fields"][0];
+    EXPECT_EQ(row["status"], "missed");
+    EXPECT_TRUE(row["chief_ray_height_mm"].is_null());
+    EXPECT_TRUE(row["spot_rms_um"].is_null());
+}
+
+// A fisheye of 220°: fields at and beyond 90° are ordinary, but for what paraxial rays say.
+TEST(Analyze, AFisheyeGoesBeyondNinetyDegrees) {
+    const Json json = analysis({"fisheye-220", "--fields", "0,90,105", "--wavelengths", "587.5618"});
+    EXPECT_TRUE(json["seidel"].is_null());
+    EXPECT_TRUE(json["paraxial"]["lagrange_invariant_mm"].is_null());
+    for (const Json& row : json["fields"]) {
+        EXPECT_EQ(row["status"], "ok");
+        EXPECT_GT(row["relative_illumination"].get<double>(), 0.1);
+    }
+    EXPECT_LT(json["fields"][1]["chief_ray_height_mm"].get<double>(),
+              json["fields"][2]["chief_ray_height_mm"].get<double>());
+}
+
+// The Tessar focused by its image plane: 1/f = 1/s + 1/s' from its principal points gives the paraxial image.
+TEST(Analyze, ANearObjectIsInFocusWhereItsImageIs) {
+    const Json json = analysis({"tessar", "--focus", "2000", "--best-focus", "paraxial", "--fields", "0"});
+    const Json& paraxial = json["paraxial"];
+    const double s = 2000.0 + paraxial["front_principal_z_mm"].get<double>();
+    const double f = paraxial["efl_mm"].get<double>();
+    const double image = f * s / (s - f) + paraxial["rear_principal_z_mm"].get<double>();
+    EXPECT_NEAR(paraxial["image_distance_mm"].get<double>(), image, 1e-9);
+    EXPECT_NEAR(paraxial["magnification"].get<double>(), -f / (s - f), 1e-12);
+    EXPECT_NEAR(json["fields"][0]["tangential_focus_mm"].get<double>(), 0.0, 1e-9);
+}
+
+// Undercorrected at full aperture: each criterion draws the image plane towards the lens, and improves on the others'
+// figure of merit.
+TEST(Analyze, BestFocusIsBestByItsOwnCriterion) {
+    const auto at_focus = [](const std::string& criterion) {
+        return analysis({"tessar", "--fields", "0", "--wavelengths", "587.5618", "--f-number", "4", "--best-focus",
+                         criterion})["fields"][0];
+    };
+    const Json paraxial = at_focus("paraxial");
+    const Json spot = at_focus("spot");
+    const Json wavefront = at_focus("wavefront");
+    EXPECT_LT(spot["spot_rms_um"].get<double>(), paraxial["spot_rms_um"].get<double>());
+    EXPECT_LE(spot["spot_rms_um"].get<double>(), wavefront["spot_rms_um"].get<double>());
+    EXPECT_LT(wavefront["wavefront_rms_waves"].get<double>(), spot["wavefront_rms_waves"].get<double>());
+}
+
+TEST(Analyze, PlotsAreWholeAndTheSameForAnyNumberOfThreads) {
+    const Workplace place;
+    for (const char* threads : {"1", "2"}) {
+        const Outcome outcome =
+            place.run({"analyze", "tessar", "--f-number", "11", "--fields", "0,20", "--wavelengths", "587.5618",
+                       "--plots", std::string("plots-") + threads, "--threads", threads});
+        ASSERT_EQ(outcome.status, 0) << outcome.err;
+    }
+    for (const char* name :
+         {"section.svg", "ray_fans.svg", "field_curves.svg", "longitudinal_aberration.svg", "lateral_colour.svg",
+          "spots.svg", "illumination.svg", "wavefront.svg", "psf.svg", "mtf.svg", "mtf_geometric.svg",
+          "mtf_over_field.svg", "curves.json", "psf_0deg.exr", "psf_20deg.exr"}) {
+        const std::string one = place.content(std::string("plots-1/") + name);
+        EXPECT_FALSE(one.empty()) << name;
+        EXPECT_EQ(one, place.content(std::string("plots-2/") + name)) << name;
+    }
+    const Json curves = Json::parse(place.content("plots-1/curves.json"));
+    EXPECT_GT(curves["psfs"][0]["strehl"].get<double>(), 0.0);
+    EXPECT_LE(curves["psfs"][0]["strehl"].get<double>(), 1.0);
+    for (const Json& field : curves["mtf"]) {
+        for (std::size_t i = 0; i < field["tangential"].size(); ++i) {
+            EXPECT_LE(field["tangential"][i][1].get<double>(), 1.0 + 1e-12);
+        }
+    }
+}
+
+TEST(Analyze, RefusesWhatMakesNoSense) {
+    const Workplace place;
+    place.file("not-a-folder", "x");
+    const std::vector<std::vector<std::string>> hopeless = {
+        {"--fields", "200"},         {"--fields", "nan"},       {"--fields", "-1"},
+        {"--wavelengths", "0"},      {"--wavelengths", "100"},  {"--focus", "0"},
+        {"--focus", "near"},         {"--f-number", "0.5"},     {"--image-distance", "nan"},
+        {"--image-distance", "inf"}, {"--rings", "0"},          {"--zoom", "2"},
+        {"--best-focus", "sharp"},   {"--best-focus", "mtf"},   {"--focus-frequency", "10"},
+        {"--plots", "not-a-folder"}, {"--index", "NOGLASS=1.5"}};
+    for (const std::vector<std::string>& words : hopeless) {
+        SCOPED_TRACE(words[0] + " " + words[1]);
+        const Outcome outcome = place.run({"analyze", "tessar", words[0], words[1]});
+        EXPECT_EQ(outcome.status, 2);
+        EXPECT_EQ(outcome.out, "");
+        const auto names = [&](const std::string& word) { return outcome.err.find(word) != std::string::npos; };
+        EXPECT_TRUE(names(words[0]) || names(words[1])) << outcome.err;
+    }
+    EXPECT_EQ(place.names(), std::vector<std::string>{"not-a-folder"});
+}
+
+}  // namespace
+}  // namespace lensproof
