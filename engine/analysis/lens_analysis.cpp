@@ -1,6 +1,7 @@
 #include "engine/analysis/lens_analysis.h"
 
 #include <algorithm>
+#include <cmath>
 #include <numbers>
 
 #include "engine/analysis/field_curves.h"
@@ -51,7 +52,7 @@ FieldAnalysis analyze_field(double field_deg, const AnalysedColour& analysed,
     }
     row.status = bundle->chief.status;
     row.surface = bundle->chief.surface;
-    row.chief_ray_height = bundle->chief.image_height;
+    row.chief_ray_point = bundle->chief.image_point;
     row.lateral_colour = bundle->chief.image_height - reference->chief.image_height;
     row.distortion_percent = distortion_percent(colour.lens, projection, *bundle);
     if (const auto pencil = ray_pencil(colour.lens, *bundle)) {
@@ -73,22 +74,32 @@ FieldAnalysis analyze_field(double field_deg, const AnalysedColour& analysed,
 
 }  // namespace
 
+double largest_field_deg(const AnalysisSettings& settings) {
+    return std::abs(std::ranges::max(settings.fields_deg, {}, [](double field) { return std::abs(field); }));
+}
+
+double distance_from_front(const Lens& lens, double object_distance) {
+    return object_distance + lens.surfaces.front().vertex_z;
+}
+
 LensAnalysis analyze_lens(const Lens& lens, const AnalysisSettings& settings) {
     const ColourOfLens reference(lens, settings.reference_wavelength_nm);
+    const double from_front = distance_from_front(lens, settings.object_distance);
     std::vector<AnalysedColour> colours;
+    colours.reserve(settings.wavelengths_nm.size());
     LensAnalysis analysis;
     for (const double wavelength_nm : settings.wavelengths_nm) {
         colours.emplace_back(lens, wavelength_nm, settings);
         analysis.paraxial.push_back(paraxial_data(colours.back().colour.lens));
     }
     analysis.reference_paraxial = paraxial_data(reference.lens);
-    analysis.conjugates = paraxial_conjugates(reference.lens, settings.object_distance);
-    analysis.real_working_f_number = real_working_f_number(reference.lens, settings.object_distance);
+    analysis.conjugates = paraxial_conjugates(reference.lens, from_front);
+    analysis.real_working_f_number = real_working_f_number(reference.lens, from_front);
 
-    const double largest_field = std::ranges::max(settings.fields_deg) * kDegree;
+    const double largest_field = largest_field_deg(settings) * kDegree;
     const auto [shortest, longest] = std::ranges::minmax_element(settings.wavelengths_nm);
     analysis.seidel = seidel_sums(reference.lens, at_wavelength<double>(lens, *shortest),
-                                  at_wavelength<double>(lens, *longest), largest_field, settings.object_distance);
+                                  at_wavelength<double>(lens, *longest), largest_field, from_front);
     analysis.lagrange_invariant = lagrange_invariant(reference.lens, largest_field);
     for (const double field : settings.fields_deg) {
         const auto bundle =
@@ -103,11 +114,13 @@ LensAnalysis analyze_lens(const Lens& lens, const AnalysisSettings& settings) {
 std::vector<std::optional<PolychromaticField>> polychromatic_fields(const Lens& lens,
                                                                     const AnalysisSettings& settings) {
     std::vector<WeightedWavelength> wavelengths;
+    wavelengths.reserve(settings.wavelengths_nm.size());
     for (const double wavelength_nm : settings.wavelengths_nm) {
         wavelengths.push_back({.wavelength_nm = wavelength_nm});
     }
     const ChiefRays chief_rays(lens, settings.reference_wavelength_nm, Rims::follow);
     std::vector<std::optional<PolychromaticField>> fields;
+    fields.reserve(settings.fields_deg.size());
     for (const double field : settings.fields_deg) {
         const auto bundle = field_bundle(chief_rays, chief_rays, field * kDegree, settings.object_distance);
         fields.push_back(

@@ -14,20 +14,21 @@ namespace lensproof {
 
 /// What a lens is analysed for.
 struct AnalysisSettings {
-    std::vector<double> wavelengths_nm;                                // at least one
-    double reference_wavelength_nm = 0.0;                              // need not be among them
-    std::vector<double> fields_deg;                                    // at least one, from 0 to below 180
-    double object_distance = std::numeric_limits<double>::infinity();  // in front of the first vertex, mm
-    int rings = 12;                                                    // of the quadrature over a beam
+    std::vector<double> wavelengths_nm;    // at least one
+    double reference_wavelength_nm = 0.0;  // need not be among them
+    std::vector<double> fields_deg;        // at least one, −180 < θ < 180
+    double object_distance =
+        std::numeric_limits<double>::infinity();  // in front of z = 0, the table's first vertex, mm
+    int rings = 12;                               // of the quadrature over a beam
 };
 
 /// One field at one wavelength. What does not exist, such as a chief ray beyond the field, is nothing; mm.
 struct FieldAnalysis {
     double field_deg = 0.0;
     double wavelength_nm = 0.0;
-    RayStatus status = RayStatus::ok;  // of the chief ray, past the rims where one clips it
-    int surface = -1;                  // where the status befell it, from 0
-    std::optional<double> chief_ray_height;
+    RayStatus status = RayStatus::ok;      // of the chief ray, past the rims where one clips it
+    int surface = -1;                      // where the status befell it, from 0
+    std::optional<Vec2d> chief_ray_point;  // in the image plane; y is the chief ray's height
     std::optional<double> distortion_percent;
     std::optional<double> tangential_focus;  // from the image plane, positive beyond it
     std::optional<double> sagittal_focus;
@@ -38,6 +39,12 @@ struct FieldAnalysis {
     std::optional<double> wavefront_rms_waves;
     std::optional<double> lateral_colour;  // chief ray height less that at the reference wavelength
 };
+
+/// The one farthest from the axis, without its sign.
+double largest_field_deg(const AnalysisSettings& settings);
+
+/// The object's distance from the first vertex where that stands now: focusing groups may have moved it.
+double distance_from_front(const Lens& lens, double object_distance);
 
 struct LensAnalysis {
     std::vector<ParaxialData> paraxial;        // by wavelength, as in the settings

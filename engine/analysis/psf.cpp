@@ -258,8 +258,7 @@ Psf huygens_psf(const PolychromaticField& field, const HuygensPsfSettings& setti
         }
         double aberration = 0.0;
         for (const OutlinePoint& point : part.outline.points) {
-            const Vec2d offset{part.outline.centre.x + point.edge.x, part.outline.centre.y + point.edge.y};
-            const Vec2d lands = image_ray(part, field, offset).value_or(ImageRay{}).aberration;
+            const Vec2d lands = image_ray(part, field, part.outline.at(point, 1.0)).value_or(ImageRay{}).aberration;
             aberration = std::max(aberration, std::hypot(lands.x, lands.y));
         }
         psf.largest_aberration_um = std::max(psf.largest_aberration_um, aberration / kMicrometre);

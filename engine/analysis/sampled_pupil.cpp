@@ -227,8 +227,8 @@ CosineBox cosine_box(const PolychromaticField& field, const PolychromaticField::
             }
             // A limit that no rim is (a total reflection) may let nothing pass on the very edge.
             for (const double share : {1.0, 0.999}) {
-                const Vec2d offset{side * (part.outline.centre.x + share * point.edge.x),
-                                   part.outline.centre.y + share * point.edge.y};
+                const Vec2d inside = part.outline.at(point, share);
+                const Vec2d offset{side * inside.x, inside.y};
                 if (const std::optional<ImageRay> ray = image_ray(part, field, offset)) {
                     box.low = {std::min(box.low.x, ray->direction.x), std::min(box.low.y, ray->direction.y)};
                     box.high = {std::max(box.high.x, ray->direction.x), std::max(box.high.y, ray->direction.y)};

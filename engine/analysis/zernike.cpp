@@ -127,7 +127,7 @@ double pupil_radius(const TraceLens<double>& lens, const FieldBundle& bundle, co
                     const RegionOutline& outline) {
     std::vector<BeamNode> rim;
     for (const OutlinePoint& point : outline.points) {
-        rim.push_back({{outline.centre.x + point.edge.x, outline.centre.y + point.edge.y}, 1.0});
+        rim.push_back({outline.at(point, 1.0), 1.0});
     }
     double radius = 0.0;
     for (const WavefrontRay& ray : wavefront(lens, 1.0, bundle, sphere, rim).rays) {

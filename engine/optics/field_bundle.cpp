@@ -1,6 +1,7 @@
 #include "engine/optics/field_bundle.h"
 
 #include <cmath>
+#include <utility>
 
 namespace lensproof {
 
@@ -42,9 +43,58 @@ Ray<double> FieldBundle::ray(Vec2d offset) const {
     return {origin - (r2 / (to_object + to_origin)) * direction, direction};
 }
 
+namespace {
+
+/// The chief ray from a near object point whose reference chief ray comes at `field_angle`: by the secant method on the
+/// angle, from there. Near a lens whose pupil wanders more than one chief ray may come from a point; this is the
+/// neighbour. Nothing where the steps leave the field or do not settle.
+std::optional<ChiefRay> neighbouring_chief_ray(const ChiefRays& chief_rays, const Vec3d& object, double field_angle) {
+    struct Try {
+        double angle;
+        ChiefRay ray;
+        double miss;  // how far the object point is from the ray, mm, with a sign
+    };
+    const auto shoot = [&](double angle) -> std::optional<Try> {
+        const std::optional<ChiefRay> ray = chief_rays.at_field(angle);
+        if (!ray) {
+            return std::nullopt;
+        }
+        const Vec3d from_ray = object - ray->front.origin;
+        return Try{angle, *ray, ray->front.direction.z * from_ray.y - ray->front.direction.y * from_ray.z};
+    };
+    std::optional<Try> before = shoot(field_angle);
+    constexpr double kFirstStep = 1e-6;
+    std::optional<Try> here = shoot(field_angle - kFirstStep);
+    constexpr int kMostSteps = 30;
+    for (int i = 0; before && here && i < kMostSteps; ++i) {
+        if (std::abs(before->miss) < std::abs(here->miss)) {
+            std::swap(before, here);
+        }
+        const double step = here->miss * (here->angle - before->angle) / (here->miss - before->miss);
+        // Twice the same miss: no more can be told.
+        if (here->miss == before->miss || std::abs(step) <= 1e-14 * (1.0 + std::abs(here->angle))) {
+            return here->ray;
+        }
+        before = std::exchange(here, shoot(here->angle - step));
+    }
+    return std::nullopt;
+}
+
+std::optional<ChiefRay> chief_ray_from(const FieldBundle& bundle, const ChiefRays& chief_rays) {
+    const Vec3d object = bundle.object_point();
+    if (object.x == 0.0 && bundle.chief.front.direction.x == 0.0) {
+        if (const auto neighbour = neighbouring_chief_ray(chief_rays, object, bundle.chief.field_angle)) {
+            return neighbour;
+        }
+    }
+    return chief_rays.from_point(object);
+}
+
+}  // namespace
+
 std::optional<FieldBundle> same_object(const FieldBundle& bundle, const ChiefRays& of_wavelength) {
-    const std::optional<ChiefRay> own = bundle.is_near() ? of_wavelength.from_point(bundle.object_point())
-                                                         : of_wavelength.at_field(bundle.chief.field_angle);
+    const std::optional<ChiefRay> own =
+        bundle.is_near() ? chief_ray_from(bundle, of_wavelength) : of_wavelength.at_field(bundle.chief.field_angle);
     return own ? std::optional(FieldBundle{.chief = *own, .object_distance = bundle.object_distance}) : std::nullopt;
 }
 

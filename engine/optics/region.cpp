@@ -50,7 +50,7 @@ RegionEdge region_edge(const Region& region, Vec2d inside, Vec2d along, double h
         return region({inside.x + distance * along.x, inside.y + distance * along.y});
     };
     double low = 0.0;
-    double high = hint;
+    double high = hint > 0.0 && std::isfinite(hint) ? hint : 1.0;
     RegionSample near = sample(low);
     RegionSample far = sample(high);
     constexpr double kStep = 1.3;

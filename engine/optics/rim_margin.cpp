@@ -29,10 +29,11 @@ RegionSample margin_along(const TraceLens<double>& lens, const Ray<double>& ray)
         }
         const TraceSurface<double>& surface = lens.surfaces[event.surface];
         const Vec3d at = own_point(lens, surface, event.ray.origin);
-        // Through a closed stop nothing passes.
-        const double margin = surface.semi_diameter_squared > 0.0
-                                  ? (at.x * at.x + at.y * at.y) / surface.semi_diameter_squared - 1.0
-                                  : std::numeric_limits<double>::infinity();
+        // Its sign is that of the tracer's comparison, to the last bit. Through a closed stop nothing passes.
+        const double margin =
+            surface.semi_diameter_squared > 0.0
+                ? (at.x * at.x + at.y * at.y - surface.semi_diameter_squared) / surface.semi_diameter_squared
+                : std::numeric_limits<double>::infinity();
         if (margin > worst.margin) {
             worst = {margin, event.surface};
         }

@@ -39,6 +39,7 @@ Json reference_json(const Lens& lens, const LensAnalysis& analysis) {
     Json json = paraxial_json(analysis.reference_paraxial);
     json["total_track_mm"] = number_or_null(lens.image_z - lens.surfaces.front().vertex_z);
     json["lagrange_invariant_mm"] = optional_json(analysis.lagrange_invariant);
+    json["image_plane_mm"] = number_or_null(lens.image_z - lens.last_vertex_z());
     json["image_distance_mm"] = number_or_null(analysis.conjugates.image_distance);
     json["magnification"] = number_or_null(analysis.conjugates.magnification);
     json["working_f_number"] = number_or_null(analysis.conjugates.working_f_number);
@@ -70,7 +71,8 @@ Json field_json(const FieldAnalysis& row) {
             {"wavelength_nm", row.wavelength_nm},
             {"status", status_name(row.status)},
             {"surface", row.surface >= 0 && row.status != RayStatus::ok ? Json(row.surface + 1) : Json(nullptr)},
-            {"chief_ray_height_mm", optional_json(row.chief_ray_height)},
+            {"chief_ray_height_mm", row.chief_ray_point ? number_or_null(row.chief_ray_point->y + 0.0) : Json(nullptr)},
+            {"chief_ray_x_mm", row.chief_ray_point ? number_or_null(row.chief_ray_point->x + 0.0) : Json(nullptr)},
             {"distortion_percent", optional_json(row.distortion_percent)},
             {"tangential_focus_mm", optional_json(row.tangential_focus)},
             {"sagittal_focus_mm", optional_json(row.sagittal_focus)},
@@ -85,8 +87,11 @@ Json field_json(const FieldAnalysis& row) {
 /// A cell of a table, a dash where there is nothing.
 std::string cell(const std::optional<double>& value, int width, int digits) {
     // Adding 0 makes a 0 of −0.
-    return value && std::isfinite(*value) ? fmt::format("{:{}.{}f}", *value + 0.0, width, digits)
-                                          : fmt::format("{:>{}}", "-", width);
+    if (!value || !std::isfinite(*value)) {
+        return fmt::format("{:>{}}", "-", width);
+    }
+    const std::string text = fmt::format(" {:.{}f}", *value + 0.0, digits);
+    return fmt::format("{:>{}}", static_cast<int>(text.size()) > width ? fmt::format(" {:.3g}", *value) : text, width);
 }
 
 std::string paraxial_text(const Lens& lens, const LensAnalysis& analysis) {
@@ -108,8 +113,8 @@ std::string paraxial_text(const Lens& lens, const LensAnalysis& analysis) {
     line("working f-number", analysis.conjugates.working_f_number, "");
     line("  of real rays", analysis.real_working_f_number, "");
     line("magnification", analysis.conjugates.magnification, "");
-    line("image distance", lens.image_z - lens.last_vertex_z(), "mm");
-    line("  of the paraxial image", analysis.conjugates.image_distance, "mm");
+    line("image plane", lens.image_z - lens.last_vertex_z(), "mm");
+    line("  paraxial image", analysis.conjugates.image_distance, "mm");
     line("total track", lens.image_z - lens.surfaces.front().vertex_z, "mm");
     line("Petzval radius", data.petzval_radius, "mm");
     line("Lagrange invariant", analysis.lagrange_invariant, "mm");
@@ -141,10 +146,11 @@ std::string fields_text(const std::vector<FieldAnalysis>& fields) {
             return mm ? std::optional(*mm / kMicrometre) : std::nullopt;
         };
         text += fmt::format("  {:8.3f}{:10.4f}", row.field_deg, row.wavelength_nm);
-        text += cell(row.chief_ray_height, 11, 5) + cell(row.distortion_percent, 10, 4) +
-                cell(row.tangential_focus, 10, 4) + cell(row.sagittal_focus, 10, 4) +
-                cell(row.relative_illumination, 8, 4) + cell(row.vignetting, 8, 4) + cell(in_um(row.spot_rms), 10, 3) +
-                cell(row.wavefront_rms_waves, 10, 4) + cell(in_um(row.lateral_colour), 10, 3);
+        text += cell(row.chief_ray_point ? std::optional(row.chief_ray_point->y) : std::nullopt, 11, 5) +
+                cell(row.distortion_percent, 10, 4) + cell(row.tangential_focus, 10, 4) +
+                cell(row.sagittal_focus, 10, 4) + cell(row.relative_illumination, 8, 4) + cell(row.vignetting, 8, 4) +
+                cell(in_um(row.spot_rms), 10, 3) + cell(row.wavefront_rms_waves, 10, 4) +
+                cell(in_um(row.lateral_colour), 10, 3);
         text += row.status == RayStatus::ok ? "  ok\n"
                 : row.surface >= 0 ? fmt::format("  {} at surface {}\n", status_name(row.status), row.surface + 1)
                                    : fmt::format("  {}\n", status_name(row.status));
@@ -156,6 +162,7 @@ std::string fields_text(const std::vector<FieldAnalysis>& fields) {
 
 Json analysis_json(const Lens& lens, const AnalysisSettings& settings, const LensAnalysis& analysis) {
     Json json{{"lens", lens.id},
+              {"name", lens.name},
               {"reference_wavelength_nm", settings.reference_wavelength_nm},
               {"object_distance_mm", number_or_null(settings.object_distance)},
               {"projection", projection_name(lens.projection)},
@@ -178,7 +185,7 @@ std::string analysis_text(const Lens& lens, const AnalysisSettings& settings, co
         fmt::format("{}\nAt {} nm, object at {}:\n", lens.name, settings.reference_wavelength_nm,
                     std::isinf(settings.object_distance) ? "infinity" : fmt::format("{} mm", settings.object_distance));
     text += paraxial_text(lens, analysis);
-    const double largest = std::ranges::max(settings.fields_deg);
+    const double largest = largest_field_deg(settings);
     if (analysis.seidel) {
         text += fmt::format("Seidel sums for {:.4g} deg, mm:\n", largest) + seidel_text(*analysis.seidel);
     } else {

@@ -82,7 +82,7 @@ Lens prepared_lens(const AnalyzeOptions& options, const Prescription& prescripti
         lens.image_z = lens.last_vertex_z() + *options.image_distance_mm;
     } else if (lens.image_z == lens.last_vertex_z()) {  // the source does not say
         const TraceLens<double> traced = at_wavelength<double>(lens, reference_wavelength_nm);
-        const double image = paraxial_image_distance(traced, distance - lens.surfaces.front().vertex_z);
+        const double image = paraxial_image_distance(traced, distance_from_front(lens, distance));
         if (std::isfinite(image)) {
             lens.image_z += image;
         }
@@ -93,14 +93,17 @@ Lens prepared_lens(const AnalyzeOptions& options, const Prescription& prescripti
 /// The fields to look at where none are given: the axis and four parts of what the source states, or of what the chief
 /// ray reaches.
 std::vector<double> usual_fields(const Lens& lens, double wavelength_nm) {
+    constexpr double kThousandths = 1000.0;  // a hair inside the last ray that passes, where rounding does not decide
     const double reached = ChiefRays(lens, wavelength_nm).largest_field() * 180.0 / std::numbers::pi;
-    return even_fields(lens.stated.half_field_deg.value_or(reached), 5);
+    const double largest = std::floor(kThousandths * reached) / kThousandths;
+    const double stated = lens.stated.half_field_deg.value_or(largest);
+    return even_fields(stated > 0.0 && stated < 180.0 ? stated : largest, 5);
 }
 
 std::vector<double> fields_of(const AnalyzeOptions& options, const Lens& lens, double wavelength_nm) {
     for (const double field : options.fields_deg) {
-        if (!(field >= 0.0 && field < 180.0)) {
-            throw InputError(fmt::format("--fields holds {}, expected degrees from 0 to below 180", field));
+        if (!(field > -180.0 && field < 180.0)) {
+            throw InputError(fmt::format("--fields holds {}, expected degrees between -180 and 180", field));
         }
     }
     return options.fields_deg.empty() ? usual_fields(lens, wavelength_nm) : options.fields_deg;
@@ -116,7 +119,8 @@ std::vector<double> wavelengths_of(const AnalyzeOptions& options, const Prescrip
 /// Where the image is best, from where the image plane stands.
 double best_focus_shift(const AnalyzeOptions& options, const Lens& lens, const AnalysisSettings& settings) {
     if (options.best_focus == "paraxial") {
-        return paraxial_focus_shift(lens, settings.reference_wavelength_nm, settings.object_distance);
+        return paraxial_focus_shift(lens, settings.reference_wavelength_nm,
+                                    distance_from_front(lens, settings.object_distance));
     }
     std::vector<WeightedField> fields;
     for (std::optional<PolychromaticField>& field : polychromatic_fields(lens, settings)) {
@@ -133,7 +137,7 @@ double best_focus_shift(const AnalyzeOptions& options, const Lens& lens, const A
     return mtf_focus_shift(fields, *options.focus_frequency);
 }
 
-/// "f/2.73, object at infinity, image plane 79.83 mm behind the last surface, 587.6 nm"
+/// "f/2.73, object at infinity, image plane 79.83 mm behind the last surface"
 std::string conditions(const Lens& lens, const AnalysisSettings& settings, const LensAnalysis& analysis) {
     return fmt::format(
         "f/{:.3g}, object at {}, image plane {:.6g} mm behind the last surface", analysis.reference_paraxial.f_number,
@@ -147,7 +151,10 @@ void write_analysis_plots(const AnalyzeOptions& options, const Prescription& pre
     const WaveCurves waves = wave_curves(lens, settings, options.common.threads);
     const PlotHeading heading{.lens = lens.name, .conditions = conditions(lens, settings, analysis)};
     std::map<std::string, std::string> files = analysis_drawings(heading, lens.projection, curves, waves);
-    files["section.svg"] = lens_section_svg(prescription, &lens, {});
+    Prescription shown = prescription;  // as it is analysed
+    shown.object_distance_mm = settings.object_distance;
+    shown.wavelengths_nm = {settings.reference_wavelength_nm};
+    files["section.svg"] = lens_section_svg(shown, &lens, {}, {.fields_deg = settings.fields_deg});
     files["curves.json"] = curves_json(curves, waves).dump() + "\n";
     write_plots(options.plots_folder, files);
     for (const PsfMap& psf : waves.psfs) {
@@ -166,8 +173,11 @@ int run_analyze(const AnalyzeOptions& options) {
         throw InputError("--best-focus mtf needs --focus-frequency, in cycles/mm");
     }
     Prescription prescription = read_prescription(find_lens_file(options.lens));
-    prescription =
-        at_zoom_position(prescription, options.zoom.empty() ? 0 : find_zoom_position(prescription, options.zoom));
+    const std::size_t position = options.zoom.empty() ? 0 : find_zoom_position(prescription, options.zoom);
+    if (!prescription.zoom.empty()) {
+        prescription.name += ", at " + prescription.zoom[position].name;
+    }
+    prescription = at_zoom_position(std::move(prescription), position);
     AnalysisSettings settings;
     settings.wavelengths_nm = wavelengths_of(options, prescription);
     settings.reference_wavelength_nm = options.reference_wavelength_nm.value_or(settings.wavelengths_nm.front());

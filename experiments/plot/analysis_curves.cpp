@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 #include "engine/analysis/axial_curves.h"
@@ -120,6 +121,7 @@ std::vector<WavelengthCurve> longitudinal_curves(const Colours& colours, double 
 std::vector<WavelengthCurve> lateral_curves(const Colours& colours, std::span<const double> fields,
                                             double object_distance) {
     std::vector<WavelengthCurve> curves;
+    curves.reserve(colours.all.size());
     for (const ColourOfLens& colour : colours.all) {
         curves.push_back({.wavelength_nm = colour.wavelength_nm, .points = {}});
     }
@@ -153,14 +155,16 @@ double defocus_step(const Colours& colours, const FieldBeams& axis, double worki
     return rounded_up(step);
 }
 
-/// The dots of a beam, on a grid over its own extent.
-std::vector<SpotRay> dots(const Beam& beam) {
+/// The dots of a beam: on a grid, or, where it is too slim to be met by many, at the nodes of its quadrature.
+std::vector<SpotRay> dots(const Beam& beam, const std::vector<SpotRay>& nodes) {
     double half_width = 0.0;
     for (const OutlinePoint& point : beam.outline.points) {
-        const Vec2d at{beam.outline.centre.x + point.edge.x, beam.outline.centre.y + point.edge.y};
+        const Vec2d at = beam.outline.at(point, 1.0);
         half_width = std::max({half_width, std::abs(at.x), std::abs(at.y)});
     }
-    return spot_grid(beam.colour->lens, beam.bundle, half_width, kSpotCells);
+    std::vector<SpotRay> grid = spot_grid(beam.colour->lens, beam.bundle, half_width, kSpotCells);
+    constexpr std::size_t kFewest = 40;
+    return grid.size() >= kFewest ? grid : nodes;
 }
 
 FieldSpots spots_of(const FieldBeams& field, double field_deg, const std::vector<double>& defocus_mm,
@@ -168,9 +172,11 @@ FieldSpots spots_of(const FieldBeams& field, double field_deg, const std::vector
     FieldSpots spots{.field_deg = field_deg, .airy_radius_um = airy_radius_um};
     std::vector<std::vector<SpotRay>> nodes;
     std::vector<std::vector<SpotRay>> shown;
+    nodes.reserve(field.beams.size());
+    shown.reserve(field.beams.size());
     for (const Beam& beam : field.beams) {
         nodes.push_back(spot_rays(beam.colour->lens, beam.bundle, beam.outline, rings));
-        shown.push_back(dots(beam));
+        shown.push_back(dots(beam, nodes.back()));
     }
     const std::vector<double> equal(nodes.size(), 1.0);
     const std::vector<SpotRay> all = pooled(nodes, equal);
@@ -203,7 +209,7 @@ AnalysisCurves analysis_curves(const Lens& lens, const AnalysisSettings& setting
     AnalysisCurves curves;
     const Colours colours(lens, settings);
     const double distance = settings.object_distance;
-    const double largest = std::ranges::max(settings.fields_deg) * kDegree;
+    const double largest = largest_field_deg(settings) * kDegree;
     const std::vector<double> dense = even_fields(largest, kCurveFields);
     for (const ColourOfLens& colour : colours.all) {
         curves.field_curves.push_back(field_curve(colour, lens.projection, dense, distance));
@@ -216,7 +222,8 @@ AnalysisCurves analysis_curves(const Lens& lens, const AnalysisSettings& setting
                                        .vignetting = point.light.vignetting});
     }
 
-    const double f_number = paraxial_conjugates(colours.reference.lens, distance).working_f_number;
+    const double f_number =
+        paraxial_conjugates(colours.reference.lens, distance_from_front(lens, distance)).working_f_number;
     const double airy_radius_um =
         1.219669891 * colours.reference.wavelength_nm * 1e-3 * f_number;  // J₁'s first zero / π
     curves.airy_radius = {{0.0, airy_radius_um}, {largest / kDegree, airy_radius_um}};

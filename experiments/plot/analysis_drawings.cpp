@@ -96,6 +96,7 @@ Json wavefronts_json(const std::vector<FieldWavefront>& maps) {
                         {"wavelength_nm", map.wavelength_nm},
                         {"wavefront_rms_waves", number(map.rms_waves)},
                         {"peak_to_valley_waves", number(map.peak_to_valley_waves)},
+                        {"zernike_noll_waves", map.zernike_waves},
                         {"opd_waves", map_json(map.opd_waves)}});
     }
     return json;
@@ -169,7 +170,7 @@ Json curves_json(const AnalysisCurves& curves, const WaveCurves& waves) {
 }
 
 std::string psf_file_name(const PsfMap& psf) {
-    return fmt::format("psf_{:.6g}deg.exr", psf.field_deg);
+    return fmt::format("psf_{}deg.exr", psf.field_deg);
 }
 
 std::optional<Image> psf_image(const PsfMap& psf) {

@@ -96,7 +96,8 @@ struct FieldWavefront {
     SquareMap opd_waves{};  // the half width in units of the pupil coordinate
     double rms_waves = 0.0;
     double peak_to_valley_waves = 0.0;
-    std::string remark{};  // why there is no map where light arrives
+    std::vector<double> zernike_waves{};  // coefficients in Noll's order, from piston on
+    std::string remark{};                 // why there is no map where light arrives
 };
 std::string wavefront_svg(const PlotHeading& heading, const std::vector<FieldWavefront>& fields);
 

@@ -322,7 +322,7 @@ double draw_legend(Svg& svg, const SectionView& view, const SectionGeometry& geo
     for (std::size_t i = 0; i < rays.bundles.size(); ++i) {
         svg.line({x, y}, {x + 22.0, y}, {.stroke = kFieldColours[i % kFieldColours.size()], .width = 2.0});
         x += 28.0;
-        words(fmt::format("{:.4g}°", std::round(10.0 * rays.bundles[i].field_angle / kDegree) / 10.0));
+        words(fmt::format("{:.4g}°", std::round(10.0 * rays.bundles[i].field_angle / kDegree) / 10.0 + 0.0));
     }
     if (!(view.sensor_half_height > 0.0)) {
         words(fmt::format("sensor at z = {:.6g} mm, off the page", geometry.image_z));
@@ -377,7 +377,7 @@ std::string lens_section_svg(const Prescription& prescription, const Lens* lens,
     SectionRays rays;
     if (lens != nullptr) {
         rays = section_rays(prescription, *lens, lead_in(geometry, glass, prescription.object_distance_mm),
-                            std::max(options.rays, 3));
+                            std::max(options.rays, 3), options.fields_deg);
     }
     SectionView view = view_of(geometry, rays, prescription.stated, options);
     const SurfaceLabels labels(geometry, view, sorted, options.width_px);

@@ -12,11 +12,12 @@ struct LensSectionOptions {
     double largest_height_px = 560.0;  // of the section itself
     int rays = 5;                      // of a bundle, the chief ray among them; at least 3
     std::size_t most_findings = 6;     // that are written out below the section
+    std::vector<double> fields_deg{};  // empty: the axis, 0.7 and all of the field that is stated or passes
 };
 
 /// An SVG file with the section x = 0 of a lens, to one scale along and across the axis: glasses tinted (crowns blue,
 /// flints ochre, stronger with the index) and named, the stop, rims and barrels as stated, the sensor, and bundles of
-/// rays that really pass, at three fields. Surfaces with an error among `findings` are red, with a warning orange, and
+/// rays that really pass, at some fields. Surfaces with an error among `findings` are red, with a warning orange, and
 /// carry its code; below stand the findings themselves, errors first.
 ///
 /// `lens`: made from `prescription`, or null where it could not be made; then what the table gives is drawn, and that

@@ -160,7 +160,7 @@ std::string longitudinal_aberration_svg(const PlotHeading& heading, const std::v
         curve.points = turned(in_order(std::move(curve.points)));
         chart.curves.push_back(std::move(curve));
     }
-    return chart_svg(chart, {460.0, 540.0});
+    return chart_svg(chart, {600.0, 540.0});
 }
 
 std::string lateral_colour_svg(const PlotHeading& heading, const std::vector<WavelengthCurve>& curves,

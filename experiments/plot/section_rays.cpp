@@ -89,7 +89,8 @@ double drawing_wavelength(const Prescription& prescription, const Lens& lens) {
     return asked >= range.min_nm && asked <= range.max_nm ? asked : 0.5 * (range.min_nm + range.max_nm);
 }
 
-SectionRays section_rays(const Prescription& prescription, const Lens& lens, double lead, int count) {
+SectionRays section_rays(const Prescription& prescription, const Lens& lens, double lead, int count,
+                         const std::vector<double>& fields_deg) {
     SectionRays rays;
     try {
         const double wavelength_nm = drawing_wavelength(prescription, lens);
@@ -99,9 +100,16 @@ SectionRays section_rays(const Prescription& prescription, const Lens& lens, dou
         const double wanted = wanted_field(lens.stated, chiefs);
         // A hair inside the last ray that passes, where rounding does not decide.
         const double edge = std::min(wanted, largest * (1.0 - 1e-6));
-        for (const double share : {0.0, 0.7, 1.0}) {
-            const std::optional<ChiefRay> chief = chiefs.at_field(share * edge);
-            if (chief && (share == 0.0 || edge > 0.0)) {
+        std::vector<double> fields{0.0};
+        if (edge > 0.0) {
+            fields = {0.0, 0.7 * edge, edge};
+        }
+        if (!fields_deg.empty()) {
+            fields.clear();
+            std::ranges::transform(fields_deg, std::back_inserter(fields), [](double deg) { return deg * kDegree; });
+        }
+        for (const double field : fields) {
+            if (const std::optional<ChiefRay> chief = chiefs.at_field(field)) {
                 const auto bundle = meridional_bundle(traced, *chief, prescription.object_distance_mm);
                 rays.bundles.push_back(drawn_bundle(traced, bundle, lead, count));
             }
@@ -109,7 +117,7 @@ SectionRays section_rays(const Prescription& prescription, const Lens& lens, dou
         if (rays.bundles.empty()) {
             rays.bundles.push_back(blocked_axis(traced, lead));
             rays.remark = "no ray through the middle of the stop reaches the sensor";
-        } else if (std::isfinite(wanted) && wanted > largest * (1.0 + 1e-6)) {
+        } else if (fields_deg.empty() && std::isfinite(wanted) && wanted > largest * (1.0 + 1e-6)) {
             rays.remark =
                 fmt::format("chief rays pass up to {:.4g}°; {:.4g}° is stated", largest / kDegree, wanted / kDegree);
         }

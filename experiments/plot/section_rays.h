@@ -27,7 +27,8 @@ struct SectionRays {
 /// largest field whose chief ray passes, where that is less. Each bundle holds `count` ≥ 3 rays that pass, from rim to
 /// rim and with the chief ray among them. Where not even the ray along the axis passes, it is drawn up to its block.
 /// Rays begin on a wavefront `lead` mm in front of the first surface (measured along the chief ray).
-SectionRays section_rays(const Prescription& prescription, const Lens& lens, double lead, int count);
+SectionRays section_rays(const Prescription& prescription, const Lens& lens, double lead, int count,
+                         const std::vector<double>& fields_deg = {});
 
 /// The wavelength that a drawing is made at, nm: the prescription's first, else the d line, or the middle of the
 /// glasses' common range where they do not cover it.

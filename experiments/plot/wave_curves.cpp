@@ -1,10 +1,12 @@
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "engine/analysis/field_curves.h"
 #include "engine/analysis/mtf.h"
 #include "engine/analysis/psf.h"
 #include "engine/analysis/wavefront_map.h"
+#include "engine/analysis/zernike.h"
 #include "engine/render/parallel.h"
 #include "experiments/plot/analysis_curves.h"
 
@@ -19,6 +21,7 @@ constexpr int kLargestPsf = 2048;    // pixels of a PSF's window
 constexpr int kMostRefinements = 3;  // of the rays that a geometric MTF sums over
 constexpr std::size_t kFrequencies = 51;
 constexpr double kHighestFrequency = 100.0;  // cycles/mm, or the cutoff where that is lower
+constexpr int kZernikeDegree = 6;
 constexpr int kMtfFields = 16;
 constexpr double kShownFrequencies[] = {10.0, 20.0, 40.0};  // cycles/mm, over the field
 
@@ -69,8 +72,13 @@ FieldWavefront field_wavefront(const PolychromaticField& field, const Polychroma
         return shown;
     }
     shown.opd_waves = over_pupil(map, radius);
-    const WavefrontErrors errors = wavefront_errors(
-        wavefront(part.lens, part.wavelength_nm, field.bundle, field.sphere, beam_quadrature(part.outline, rings)));
+    const Wavefront waves =
+        wavefront(part.lens, part.wavelength_nm, field.bundle, field.sphere, beam_quadrature(part.outline, rings));
+    const WavefrontErrors errors = wavefront_errors(waves);
+    if (waves.rays.size() >= static_cast<std::size_t>(zernike_count(kZernikeDegree))) {
+        const double pupil = pupil_radius(part.lens, field.bundle, field.sphere, part.outline);
+        shown.zernike_waves = wavefront_zernike(waves, pupil, kZernikeDegree).coefficients;
+    }
     shown.rms_waves = errors.rms;
     shown.peak_to_valley_waves = errors.peak_to_valley;
     return shown;
@@ -133,10 +141,11 @@ FieldMtf resolved_mtf(const PolychromaticField& field, std::span<const double> f
 
 std::vector<FrequencyMtf> mtf_over_field(const Lens& lens, AnalysisSettings settings, int threads) {
     std::vector<FrequencyMtf> curves;
+    curves.reserve(std::size(kShownFrequencies));
     for (const double frequency : kShownFrequencies) {
         curves.push_back({.cycles_per_mm = frequency});
     }
-    settings.fields_deg = even_fields(std::ranges::max(settings.fields_deg), kMtfFields);
+    settings.fields_deg = even_fields(largest_field_deg(settings), kMtfFields);
     const auto fields = polychromatic_fields(lens, settings);
     std::vector<FieldMtf> mtf(fields.size());
     const auto compute = [&](int i) {
@@ -158,6 +167,7 @@ std::vector<FrequencyMtf> mtf_over_field(const Lens& lens, AnalysisSettings sett
 std::vector<double> shown_frequencies(const PolychromaticField& axis) {
     const double highest = std::min(kHighestFrequency, cutoff_frequency(axis));
     std::vector<double> frequencies;
+    frequencies.reserve(kFrequencies);
     for (std::size_t i = 0; i < kFrequencies; ++i) {
         frequencies.push_back(highest * static_cast<double>(i) / (kFrequencies - 1));
     }
@@ -168,10 +178,19 @@ std::vector<double> shown_frequencies(const PolychromaticField& axis) {
 
 WaveCurves wave_curves(const Lens& lens, const AnalysisSettings& settings, int threads) {
     WaveCurves curves;
-    AnalysisSettings on_axis = settings;
-    on_axis.fields_deg = {0.0};
-    const std::optional<PolychromaticField> axis = polychromatic_fields(lens, on_axis).front();
+    // Frequencies and the pupil's unit are the axis's, or those of the first field with light.
+    AnalysisSettings axis_first = settings;
+    axis_first.fields_deg.insert(axis_first.fields_deg.begin(), 0.0);
+    auto candidates = polychromatic_fields(lens, axis_first);
+    const auto lit = std::ranges::find_if(candidates, [](const auto& field) { return field.has_value(); });
+    const std::optional<PolychromaticField> axis = lit != candidates.end() ? std::move(*lit) : std::nullopt;
     if (!axis) {
+        for (const double field_deg : settings.fields_deg) {
+            curves.wavefronts.push_back({.field_deg = field_deg});
+            curves.psfs.push_back({.field_deg = field_deg});
+            curves.mtf.push_back({.field_deg = field_deg});
+            curves.geometric_mtf.push_back({.field_deg = field_deg});
+        }
         return curves;
     }
     const std::vector<double> frequencies = shown_frequencies(*axis);

@@ -174,6 +174,7 @@ TEST(ExtremeOptics, SnellsInvariantHoldsUpToGrazing) {
 // |d'|² − 1 = μ² (|d|² − 1): over many surfaces the errors add up and do not grow.
 TEST(ExtremeOptics, DirectionsStayUnitVectorsOver200Surfaces) {
     std::vector<Row> rows;
+    rows.reserve(200);
     for (int i = 0; i < 200; ++i) {
         rows.push_back({(i % 3 - 1) / 80.0, 0.5 * i, i % 2 == 0 ? 1.7 : 1.0});
     }
