@@ -186,7 +186,8 @@ int run_analyze(const AnalyzeOptions& options) {
     Lens lens = prepared_lens(options, prescription, settings.object_distance, settings.reference_wavelength_nm);
     settings.fields_deg = fields_of(options, lens, settings.reference_wavelength_nm);
     if (!options.best_focus.empty()) {
-        lens = with_image_shift(std::move(lens), best_focus_shift(options, lens, settings));
+        const double shift = best_focus_shift(options, lens, settings);
+        lens = with_image_shift(std::move(lens), shift);
     }
     const LensAnalysis analysis = analyze_lens(lens, settings);
     if (!options.plots_folder.empty()) {
@@ -226,6 +227,7 @@ void add_analyze_command(CLI::App& app, int& status) {
         ->add_option("--fields", options->fields_deg,
                      "Field angles in degrees (default: five, up to the field that the source states)")
         ->delimiter(',')
+        ->check(kNumberOption)
         ->type_name("DEG,…");
     command
         ->add_option("--focus", options->focus,
@@ -247,7 +249,8 @@ void add_analyze_command(CLI::App& app, int& status) {
         command
             ->add_option("--best-focus", options->best_focus,
                          "Move the image plane to the best image of all fields and wavelengths together: paraxial, "
-                         "spot (least rms), wavefront (least rms) or mtf (highest at --focus-frequency)")
+                         "spot (least rms, lateral colour included), wavefront (least rms) or mtf (highest at "
+                         "--focus-frequency)")
             ->check(CLI::IsMember(std::vector<std::string>(std::begin(kCriteria), std::end(kCriteria))))
             ->type_name("CRITERION");
     command->add_option("--focus-frequency", options->focus_frequency, "cycles/mm, for --best-focus mtf")

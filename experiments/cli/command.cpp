@@ -31,8 +31,15 @@ std::string complain_unless_positive(const std::string& text) {
     return good ? "" : fmt::format("\"{}\", expected a finite number above 0", text);
 }
 
+std::string complain_unless_number(const std::string& text) {
+    const std::optional<double> value = parse_number(text);
+    const bool good = value && std::isfinite(*value);
+    return good ? "" : fmt::format("\"{}\", expected a number", printable(text));
+}
+
 }  // namespace
 
+const CLI::Validator kNumberOption(complain_unless_number, "NUMBER");
 const CLI::Validator kPositiveOption(complain_unless_positive, "POSITIVE");
 
 void add_common_options(CLI::App& command, CommonOptions& options) {

@@ -31,6 +31,9 @@ void add_common_options(CLI::App& command, CommonOptions& options);
 /// Whether an option's text is a finite number above 0. (CLI::PositiveNumber lets nan pass.)
 extern const CLI::Validator kPositiveOption;
 
+/// Whether an option's text is a finite number. (The library takes an empty text for 0.)
+extern const CLI::Validator kNumberOption;
+
 /// Adds --glass-catalogue FILE, which may be repeated.
 void add_glass_catalogue_option(CLI::App& command, std::vector<std::string>& files);
 

@@ -127,7 +127,7 @@ TEST(Analyze, RefusesWhatMakesNoSense) {
     const Workplace place;
     place.file("not-a-folder", "x");
     const std::vector<std::vector<std::string>> hopeless = {
-        {"--fields", "200"},         {"--fields", "nan"},       {"--fields", "-1"},
+        {"--fields", "200"},         {"--fields", "nan"},       {"--fields", "-200"},
         {"--wavelengths", "0"},      {"--wavelengths", "100"},  {"--focus", "0"},
         {"--focus", "near"},         {"--f-number", "0.5"},     {"--image-distance", "nan"},
         {"--image-distance", "inf"}, {"--rings", "0"},          {"--zoom", "2"},
