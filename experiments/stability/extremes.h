@@ -1,6 +1,7 @@
 // experiments/stability/extremes.h — lenses and rays that ask for more than lenses do: one number swept to breaking.
 #pragma once
 #include <functional>
+#include <limits>
 #include <random>
 #include <string>
 #include <vector>
@@ -28,6 +29,9 @@ struct Extreme {
     bool is_logarithmic = true;
     /// Throws InputError where the program refuses such a lens: its message is a part of the result.
     std::function<StabilityCase(double value, std::mt19937_64& random)> build;
+    /// What the program has to take; it has to refuse all other values.
+    double least_taken = -std::numeric_limits<double>::infinity();
+    double most_taken = std::numeric_limits<double>::infinity();
 };
 
 /// Every extreme, in the order of the report.

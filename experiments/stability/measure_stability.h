@@ -37,6 +37,7 @@ struct TypeResult {
 struct StabilityPoint {
     double value = 0.0;
     std::string refusal;  // the message of a lens that the program refuses; else empty, and the rest is filled in
+    bool is_rightly_refused = true;  // or rightly taken
     int rays = 0;
     int at_a_change = 0;               // rays within rounding of a change of status
     std::map<std::string, int> fates;  // status names of the double tracer, and how many rays had them
@@ -50,7 +51,8 @@ struct StabilitySweep {
     Extreme extreme;
     std::vector<StabilityPoint> points;
 
-    /// Whether a double kept every requirement at every value: its bound, the right status, finite numbers.
+    /// Whether a double kept every requirement at every value: its bound, the right status, finite numbers; and whether
+    /// the right values were refused.
     [[nodiscard]] bool holds() const;
 };
 

@@ -144,7 +144,9 @@ std::vector<Extreme> medium_extremes() {
          "",
          {1.0, 1.0000000001, 1.0001, 1.3, 1.5, 1.8, 2.0, 2.5, 3.0, 3.5, 4.0, 4.5, 5.0, 5.5},
          false,
-         index_case},
+         index_case,
+         1.0,
+         5.0},
         {"gap", "Air in front of a lens", "Rays that cross the gap and meet the lens.", "thickness", "mm",
          [] {
              std::vector<double> values = decades(1e-9, 1e9);
@@ -178,7 +180,9 @@ std::vector<Extreme> medium_extremes() {
          {1e-3, 200.0, 319.999999, 320.0, 320.000001, 400.0, 550.0, 1000.0, 2000.0, 2499.999999, 2500.0, 2500.000001,
           1e9},
          true,
-         wavelength_case},
+         wavelength_case,
+         320.0,
+         2500.0},
     };
 }
 

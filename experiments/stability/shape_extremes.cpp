@@ -92,14 +92,17 @@ StabilityCase decentre_case(double decentre_mm, std::mt19937_64& random) {
     return made;
 }
 
+constexpr double kLeastRadius = 1e-3;  // mm, that a prescription may have
+
 }  // namespace
 
 std::vector<Extreme> shape_extremes() {
     return {
         {"radius-convex", "Radius, convex", "Plano-convex, n = 1.5, rays over 0.9 R or 10 mm with slopes to 0.3.",
-         "radius", "mm", radii(1.0), true, radius_case},
+         "radius", "mm", radii(1.0), true, radius_case, kLeastRadius},
         {"radius-concave", "Radius, concave", "The same, with the curve turned; −∞ is a curvature of −0.", "−radius",
-         "mm", radii(1.0), true, [](double radius, std::mt19937_64& random) { return radius_case(-radius, random); }},
+         "mm", radii(1.0), true, [](double radius, std::mt19937_64& random) { return radius_case(-radius, random); },
+         kLeastRadius},
         {"hemisphere",
          "Hemispheres and beyond",
          "R = 10 mm, rays over the whole semi-diameter with slopes to 0.5.",

@@ -172,6 +172,10 @@ std::vector<Check> stability_checks(const std::vector<StabilitySweep>& sweeps) {
         none_of("packets", "SIMD: lanes that have not the bits of the float alone",
                 sum_over(sweeps, [](const StabilityPoint& point) { return point.lanes_unlike_scalar; }),
                 fmt::format("Of {} lanes. Lenses of centred spheres go in packets, all others lane by lane.", rays)));
+    checks.push_back(
+        none_of("refusals", "values that are refused and should not be, or taken and should not be",
+                sum_over(sweeps, [](const StabilityPoint& point) { return !point.is_rightly_refused; }),
+                "What lies beyond a prescription's limits or a glass's formula is refused with its reason."));
     return checks;
 }
 

@@ -82,6 +82,38 @@ TEST(Analyze, ANearObjectIsInFocusWhereItsImageIs) {
     EXPECT_NEAR(json["fields"][0]["tangential_focus_mm"].get<double>(), 0.0, 1e-9);
 }
 
+// The whole lens as its own focusing group: it moves out until the image is where the table has that of infinity, 0.25
+// µm before the sensor. The object keeps its distance from where the table's first vertex was.
+TEST(Analyze, FocusingGroupsMoveToTheObject) {
+    const Workplace place;
+    const Outcome copied = place.run({"convert", "tessar", "tessar.toml"});
+    ASSERT_EQ(copied.status, 0) << copied.err;
+    place.file("focusing.toml", place.content("tessar.toml") + "\n[[focus]]\nsurfaces = [1, 8]\n");
+    const Outcome outcome = place.run(
+        {"analyze", "focusing.toml", "--focus", "1000", "--fields", "0", "--wavelengths", "587.5618", "--json", "-"});
+    ASSERT_EQ(outcome.status, 0) << outcome.err;
+    const Json near = Json::parse(outcome.out);
+    const Json far = analysis({"tessar", "--fields", "0", "--wavelengths", "587.5618"});
+    const auto defocus = [](const Json& json) {
+        return json["paraxial"]["image_distance_mm"].get<double>() - json["paraxial"]["image_plane_mm"].get<double>();
+    };
+    EXPECT_NEAR(defocus(near), defocus(far), 1e-9);
+    EXPECT_NEAR(near["fields"][0]["tangential_focus_mm"].get<double>(), defocus(near), 1e-9);
+    EXPECT_GT(near["paraxial"]["image_plane_mm"].get<double>(), far["paraxial"]["image_plane_mm"].get<double>() + 10.0);
+}
+
+// In front of a fisheye, whose pupil wanders, more than one chief ray may come from a point.
+TEST(Analyze, ANearObjectBeforeAFisheyeHasChiefRaysAllOverTheField) {
+    const Json json = analysis({"fisheye-220", "--focus", "1", "--fields", "0,0.1,5,20,40,50,70"});
+    double last = -1.0;
+    for (std::size_t i = 0; i < json["fields"].size(); i += 3) {
+        EXPECT_EQ(json["fields"][i]["status"], "ok");
+        const double height = json["fields"][i]["chief_ray_height_mm"].get<double>();
+        EXPECT_GT(height, last);
+        last = height;
+    }
+}
+
 // Undercorrected at full aperture: each criterion draws the image plane towards the lens, and improves on the others'
 // figure of merit.
 TEST(Analyze, BestFocusIsBestByItsOwnCriterion) {

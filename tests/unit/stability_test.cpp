@@ -115,6 +115,16 @@ TEST(StabilityReport, AWrongStatusOrANaNFails) {
     }
 }
 
+TEST(StabilityReport, ARefusalThatIsNotMeantFails) {
+    StabilitySweep sweep = failing_sweep();
+    for (StabilityPoint& point : sweep.points) {
+        point.excess = 0.0;
+    }
+    sweep.points.back().is_rightly_refused = false;
+    EXPECT_FALSE(sweep.holds());
+    EXPECT_EQ(overall(stability_checks({sweep})), Verdict::fail);
+}
+
 TEST(StabilityReport, SaysWhatTheProgramDoes) {
     const std::vector<StabilitySweep> sweeps{failing_sweep()};
     const TestFolder folder;
