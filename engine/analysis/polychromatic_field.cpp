@@ -15,12 +15,20 @@ namespace {
 
 constexpr double kTurn = 2.0 * std::numbers::pi;
 
+/// From the plane in which the outline's radii are straight to offsets (RegionOutline::bend).
+Vec2d bent(const RegionOutline& outline, Vec2d straight) {
+    const double x = straight.x - outline.centre.x;
+    return {straight.x, straight.y + outline.bend * x * x};
+}
+
 /// The beam's outline in polar coordinates that are stretched to its height and width, so that a slim one is seen
 /// evenly.
 class Outline {
   public:
     Outline(const PolychromaticField::Part& part, const FieldBundle& bundle)
-        : region_([&](Vec2d offset) { return rim_margin(part.lens, bundle.ray(offset), Direction::forward); }),
+        : region_([&](Vec2d straight) {
+              return rim_margin(part.lens, bundle.ray(bent(part.outline, straight)), Direction::forward);
+          }),
           centre_(part.outline.centre) {
         for (const OutlinePoint& point : part.outline.points) {
             stretch_ = {std::max(stretch_.x, std::abs(point.edge.x)), std::max(stretch_.y, std::abs(point.edge.y))};
@@ -119,8 +127,8 @@ std::vector<BeamNode> polar_nodes(const PolychromaticField::Part& part, const Fi
         const double wedge = width * outline.area_factor(azimuth, edge);
         for (std::size_t k = 0; k < radial.nodes.size(); ++k) {
             const double t = radial.nodes[k];
-            nodes.push_back({{part.outline.centre.x + t * edge.x, part.outline.centre.y + t * edge.y},
-                             wedge * radial.weights[k] * t});
+            const Vec2d straight{part.outline.centre.x + t * edge.x, part.outline.centre.y + t * edge.y};
+            nodes.push_back({bent(part.outline, straight), wedge * radial.weights[k] * t});
         }
     };
     const std::vector<double> corners = outline.corners(azimuths);
