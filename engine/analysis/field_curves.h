@@ -23,7 +23,7 @@ struct ColourOfLens {
           chief_rays(whole, wavelength, rims) {}
 };
 
-/// `count` ≥ 2 field angles (radians) in even steps from 0 to `largest`.
+/// `count` ≥ 2 field angles in even steps from 0 to `largest`, in its unit.
 std::vector<double> even_fields(double largest, int count);
 
 struct FieldCurvePoint {

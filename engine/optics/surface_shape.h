@@ -185,10 +185,10 @@ std::pair<Intersection<T>, Vec3<T>> newton_intersect(const SurfaceShape<T>& shap
     return {meeting, gradient};
 }
 
-/// `intersect` for any shape. What is no conic is found by Newton's method: from the conic's intersection, else from
-/// the vertex's plane, else from the ray's point nearest to the vertex, and for a toroid at last from the spheres of
-/// its two curvatures, which rays from the side meet. A surface that turns over may be met more than once; the root
-/// found is then the one next to the start. Returned with the unit normal there, turned along the ray.
+/// `intersect` for any shape. What is no conic is found by Newton's method: from the conic's intersection (not a
+/// toroid's), else from the vertex's plane, else from seven points of the ray around that nearest to the vertex. A
+/// surface that turns over may be met more than once; the root found is then the one next to the start. Returned with
+/// the unit normal there, turned along the ray.
 template <class T>
 std::pair<Intersection<T>, Vec3<T>> intersect(const SurfaceShape<T>& shape, const Vec3<T>& origin, const Vec3<T>& d,
                                               const T& heading) {

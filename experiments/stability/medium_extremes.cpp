@@ -38,7 +38,7 @@ StabilityCase matched_case(double difference, std::mt19937_64& random) {
             random_rays(10.0, 0.5, random)};
 }
 
-/// A flat boundary that light in glass meets at a degree from grazing, and one of nearly the same index behind it.
+/// A flat boundary between nearly the same indices, which light meets about a thousandth of a radian from grazing.
 StabilityCase matched_grazing_case(double difference, std::mt19937_64& random) {
     std::uniform_real_distribution<double> unit(0.5, 1.5);
     std::vector<Ray<double>> rays;
@@ -107,7 +107,7 @@ StabilityCase many_surfaces_case(double count, std::mt19937_64& random) {
     return {lens_of(rows), random_rays(3.0, 0.02, random)};
 }
 
-/// A cemented doublet of catalogue glasses, whose formulas hold from 300 and 310 nm to 2500 nm.
+/// A cemented doublet of catalogue glasses, whose formulas hold from 300 (N-BK7) and 320 nm (F2) to 2500 nm.
 StabilityCase wavelength_case(double wavelength_nm, std::mt19937_64& random) {
     Prescription prescription = prescription_of({{.radius = 60.0, .thickness = 6.0},
                                                  {.radius = -45.0, .thickness = 2.0},
