@@ -48,8 +48,8 @@ TEST(Svg, TextFromAFileStaysText) {
     EXPECT_EQ(escape_markup("<script>\"a\" & 'b'"), "&lt;script&gt;&quot;a&quot; &amp; &#39;b&#39;");
     EXPECT_EQ(escape_markup("Müller – 9°"), "Müller – 9°");
     EXPECT_EQ(escape_markup(std::string_view("a\0b\x1b"
-                                        "c\x7f",
-                                        6)),
+                                             "c\x7f",
+                                             6)),
               "a\uFFFD"
               "b\uFFFD"
               "c\uFFFD");
