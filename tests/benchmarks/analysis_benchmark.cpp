@@ -23,7 +23,7 @@ AnalysisSettings usual_settings(const Lens& lens) {
 void analyze_table(benchmark::State& state, const std::string& name) {
     const Lens lens = load_lens(name);
     const AnalysisSettings settings = usual_settings(lens);
-    for (auto _ : state) {
+    while (state.KeepRunning()) {
         benchmark::DoNotOptimize(analyze_lens(lens, settings));
     }
 }
@@ -31,7 +31,7 @@ void analyze_table(benchmark::State& state, const std::string& name) {
 void analyze_curves(benchmark::State& state, const std::string& name) {
     const Lens lens = load_lens(name);
     const AnalysisSettings settings = usual_settings(lens);
-    for (auto _ : state) {
+    while (state.KeepRunning()) {
         benchmark::DoNotOptimize(analysis_curves(lens, settings));
     }
 }
