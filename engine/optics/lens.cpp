@@ -15,6 +15,7 @@
 #include "engine/io/prescription/prescription_file.h"
 #include "engine/io/text.h"
 #include "engine/optics/air.h"
+#include "engine/optics/convert_lens.h"
 #include "engine/optics/frame.h"
 #include "engine/optics/paraxial.h"
 #include "engine/spectral/wavelengths.h"
@@ -303,47 +304,20 @@ double index_in(Surroundings surroundings, const Glass& medium, double wavelengt
     return absolute_index(refractive_index(medium.formula, in_air_nm), in_air_nm);
 }
 
-template <class T>
-Vec3<T> converted(const Vec3d& v) {
-    return {static_cast<T>(v.x), static_cast<T>(v.y), static_cast<T>(v.z)};
-}
-
-template <class T>
-TraceCoating<T> traced_coating(const Coating& coating, double wavelength_nm) {
-    TraceCoating<T> traced;
+TraceCoating<double> traced_coating(const Coating& coating, double wavelength_nm) {
+    TraceCoating<double> traced;
     if (const auto* layers = std::get_if<std::vector<CoatingLayer>>(&coating)) {
         for (const CoatingLayer& layer : *layers) {
-            traced.layers.push_back({static_cast<T>(layer.index), static_cast<T>(layer.thickness_nm / wavelength_nm)});
+            traced.layers.push_back({layer.index, layer.thickness_nm / wavelength_nm});
         }
     } else {
-        traced.reflectance =
-            static_cast<T>(interpolated(std::get<std::vector<WavelengthValue>>(coating), wavelength_nm));
+        traced.reflectance = interpolated(std::get<std::vector<WavelengthValue>>(coating), wavelength_nm);
     }
     return traced;
 }
 
-template <class T>
-SpecialSurface<T> special_surface(const LensSurface& surface, double wavelength_nm) {
-    SpecialSurface<T> special;
-    special.has_shape = surface.has_shape;
-    special.shape = {.curvature = static_cast<T>(surface.shape.curvature),
-                     .conic = static_cast<T>(surface.shape.conic),
-                     .terms = surface.shape.terms,
-                     .is_toroid = surface.shape.is_toroid,
-                     .curvature_x = static_cast<T>(surface.shape.curvature_x)};
-    std::ranges::transform(surface.shape.asphere, special.shape.asphere.begin(),
-                           [](double term) { return static_cast<T>(term); });
-    special.vertex = {static_cast<T>(surface.vertex.x), static_cast<T>(surface.vertex.y)};
-    std::ranges::transform(surface.axes, special.axes.begin(), converted<T>);
-    special.coating = traced_coating<T>(surface.coating, wavelength_nm);
-    return special;
-}
-
-}  // namespace
-
-template <class T>
-TraceLens<T> at_wavelength(const Lens& lens, double wavelength_nm) {
-    TraceLens<T> traced{.surfaces = {}, .image_z = static_cast<T>(lens.image_z)};
+TraceLens<double> traced_lens(const Lens& lens, double wavelength_nm) {
+    TraceLens<double> traced{.surfaces = {}, .image_z = lens.image_z};
     double index_before = 1.0;
     for (const LensSurface& surface : lens.surfaces) {
         if (!covers(surface.medium, wavelength_nm)) {
@@ -354,11 +328,14 @@ TraceLens<T> at_wavelength(const Lens& lens, double wavelength_nm) {
         const double index_after = index_in(lens.surroundings, surface.medium, wavelength_nm);
         // At the vertex an r² term bends like the curvature: A2 r² = c r² / 2.
         const double vertex_curvature = surface.curvature + 2.0 * surface.shape.asphere[0];
-        traced.surfaces.push_back(make_trace_surface<T>(
-            static_cast<T>(vertex_curvature), static_cast<T>(surface.vertex_z), static_cast<T>(surface.semi_diameter),
-            static_cast<T>(index_before), static_cast<T>(index_after), surface.is_stop));
+        traced.surfaces.push_back(make_trace_surface(vertex_curvature, surface.vertex_z, surface.semi_diameter,
+                                                     index_before, index_after, surface.is_stop));
         const bool is_masked = surface.is_stop && !lens.stop_mask.is_full_circle();
-        SpecialSurface<T> special = special_surface<T>(surface, wavelength_nm);
+        SpecialSurface<double> special{.has_shape = surface.has_shape,
+                                       .shape = surface.shape,
+                                       .vertex = surface.vertex,
+                                       .axes = surface.axes,
+                                       .coating = traced_coating(surface.coating, wavelength_nm)};
         if (is_masked) {
             special.mask = lens.stop_mask;
         }
@@ -369,6 +346,13 @@ TraceLens<T> at_wavelength(const Lens& lens, double wavelength_nm) {
         index_before = index_after;
     }
     return traced;
+}
+
+}  // namespace
+
+template <class T>
+TraceLens<T> at_wavelength(const Lens& lens, double wavelength_nm) {
+    return convert_lens<T>(traced_lens(lens, wavelength_nm));
 }
 
 template TraceLens<float> at_wavelength(const Lens&, double);

@@ -21,7 +21,8 @@
 #include "engine/spectral/wavelengths.h"
 #include "experiments/cli/analysis_output.h"
 #include "experiments/cli/command.h"
-#include "experiments/plot/analysis_curves.h"
+#include "experiments/plot/analysis_drawings.h"
+#include "experiments/plot/curves_json.h"
 #include "experiments/plot/lens_section.h"
 
 namespace lensproof {

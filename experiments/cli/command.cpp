@@ -119,10 +119,6 @@ void write_json_result(const CommonOptions& options, const nlohmann::ordered_jso
     }
 }
 
-nlohmann::ordered_json number_or_null(double value) {
-    return std::isfinite(value) ? nlohmann::ordered_json(value) : nlohmann::ordered_json(nullptr);
-}
-
 nlohmann::ordered_json finding_json(const Finding& finding) {
     return {
         {"code", finding.code},

@@ -11,6 +11,7 @@
 #include "engine/optics/finding.h"
 #include "engine/optics/glass_catalogue.h"
 #include "engine/optics/lens.h"
+#include "experiments/json_number.h"
 
 namespace lensproof {
 
@@ -53,9 +54,6 @@ void check_json_name(const CommonOptions& options);
 /// Writes the machine-readable result where --json asked for it. Bytes that are not UTF-8, as in some files' names, are
 /// replaced.
 void write_json_result(const CommonOptions& options, const nlohmann::ordered_json& result);
-
-/// A number, or null where there is none: JSON knows no NaN.
-nlohmann::ordered_json number_or_null(double value);
 
 /// Every key is there; what does not apply is null: the surface of a finding about the lens as a whole, say.
 nlohmann::ordered_json finding_json(const Finding& finding);

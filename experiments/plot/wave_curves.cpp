@@ -1,3 +1,5 @@
+#include "experiments/plot/wave_curves.h"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -8,7 +10,6 @@
 #include "engine/analysis/wavefront_map.h"
 #include "engine/analysis/zernike.h"
 #include "engine/render/parallel.h"
-#include "experiments/plot/analysis_curves.h"
 
 namespace lensproof {
 
