@@ -9,4 +9,12 @@ T select(bool mask, const T& a, const T& b) {
     return mask ? a : b;
 }
 
+/// Whether a mask holds in any lane, in all lanes.
+constexpr bool any(bool mask) {
+    return mask;
+}
+constexpr bool all(bool mask) {
+    return mask;
+}
+
 }  // namespace lensproof
