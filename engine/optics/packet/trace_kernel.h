@@ -33,14 +33,7 @@ class BlockTracer {
         const int count = rays_.size - first_ < kBlock ? rays_.size - first_ : kBlock;
         packets_ = (count + kLanes - 1) / kLanes;
         for (int packet = 0; packet < packets_; ++packet) {
-            const Numbers lane = Numbers::iota() + Numbers(static_cast<Scalar>(packet * kLanes));
-            going_[packet] = lane < Numbers(static_cast<Scalar>(count));
-            if constexpr (carry != Carry::geometry) {
-                Numbers(Scalar(1)).store(rays_.transmittance + at(packet));
-            }
-            if constexpr (carry == Carry::all) {
-                Numbers(Scalar(0)).store(rays_.optical_path + at(packet));
-            }
+            start(packet, count);
         }
         for (int i = first_; i < first_ + count; ++i) {
             rays_.status[i] = RayStatus::ok;
@@ -50,7 +43,7 @@ class BlockTracer {
             pass(kForward ? step : lens_.count - 1 - step);
         }
         for (int packet = 0; packet < packets_; ++packet) {
-            to_global(packet, going_[packet]);
+            finish(packet, count);
         }
     }
 
@@ -72,35 +65,77 @@ class BlockTracer {
         Numbers after;
     };
 
+    // As numbers, since g++ 12 copies a mask in pieces of 16 bytes, for which a load of all of it has to wait.
+    [[nodiscard]] Mask going(int packet) const {
+        return Numbers::load(going_.data() + packet * kLanes) > Numbers(Scalar(0));
+    }
+    void set_going(int packet, const Mask& lanes) {
+        select(lanes, Numbers(Scalar(1)), Numbers(Scalar(0))).store(going_.data() + packet * kLanes);
+    }
+
     [[nodiscard]] int at(int packet) const { return first_ + packet * kLanes; }
 
     [[nodiscard]] State load(int packet) const {
+        const int i = packet * kLanes;
+        return {{Numbers::load(x_.data() + i), Numbers::load(y_.data() + i), Numbers::load(z_.data() + i)},
+                {Numbers::load(dx_.data() + i), Numbers::load(dy_.data() + i), Numbers::load(dz_.data() + i)}};
+    }
+
+    void store(int packet, const State& state) {
+        const int i = packet * kLanes;
+        state.origin.x.store(x_.data() + i);
+        state.origin.y.store(y_.data() + i);
+        state.origin.z.store(z_.data() + i);
+        state.way.x.store(dx_.data() + i);
+        state.way.y.store(dy_.data() + i);
+        state.way.z.store(dz_.data() + i);
+    }
+
+    void start(int packet, int count) {
         const int i = at(packet);
-        return {{Numbers::load(rays_.x + i), Numbers::load(rays_.y + i), Numbers::load(rays_.z + i)},
-                {Numbers::load(rays_.dx + i), Numbers::load(rays_.dy + i), Numbers::load(rays_.dz + i)}};
+        store(packet, {{Numbers::load(rays_.x + i), Numbers::load(rays_.y + i), Numbers::load(rays_.z + i)},
+                       {Numbers::load(rays_.dx + i), Numbers::load(rays_.dy + i), Numbers::load(rays_.dz + i)}});
+        set_going(packet, is_ray(packet, count));
+        Numbers(Scalar(1)).store(share_.data() + packet * kLanes);
+        Numbers(Scalar(0)).store(path_.data() + packet * kLanes);
     }
 
-    void store(int packet, const State& state) const {
+    /// Back into the batch, in lens space; the lanes behind the last ray keep what the batch has there.
+    void finish(int packet, int count) const {
         const int i = at(packet);
-        state.origin.x.store(rays_.x + i);
-        state.origin.y.store(rays_.y + i);
-        state.origin.z.store(rays_.z + i);
-        state.way.x.store(rays_.dx + i);
-        state.way.y.store(rays_.dy + i);
-        state.way.z.store(rays_.dz + i);
+        State state = load(packet);
+        state.origin.z = state.origin.z + select(going(packet), Numbers(last_vertex_z_), Numbers(Scalar(0)));
+        const Mask rays = is_ray(packet, count);
+        const auto put = [&](const Numbers& numbers, Scalar* column) {
+            select(rays, numbers, Numbers::load(column + i)).store(column + i);
+        };
+        put(state.origin.x, rays_.x);
+        put(state.origin.y, rays_.y);
+        put(state.origin.z, rays_.z);
+        put(state.way.x, rays_.dx);
+        put(state.way.y, rays_.dy);
+        put(state.way.z, rays_.dz);
+        if constexpr (carry != Carry::geometry) {
+            put(Numbers::load(share_.data() + packet * kLanes), rays_.transmittance);
+        }
+        if constexpr (carry == Carry::all) {
+            put(Numbers::load(path_.data() + packet * kLanes), rays_.optical_path);
+        }
     }
 
-    /// Turns the lanes' z from the last vertex passed into that of lens space.
-    void to_global(int packet, const Mask& lanes) const {
-        Scalar* z = rays_.z + at(packet);
-        const Numbers own = Numbers::load(z);
-        select(lanes, own + Numbers(last_vertex_z_), own).store(z);
+    static Mask is_ray(int packet, int count) {
+        return Numbers::iota() + Numbers(static_cast<Scalar>(packet * kLanes)) < Numbers(static_cast<Scalar>(count));
     }
 
+    template <bool per_lane>
     [[nodiscard]] Media media(int surface, int packet) const {
         const auto& of = lens_.indices[surface];
         const auto look_up = [&](const Scalar* table) {
-            return lens_.is_monochromatic ? Numbers(*table) : Numbers::gather(table, rays_.wavelength + at(packet));
+            if constexpr (per_lane) {
+                return Numbers::gather(table, rays_.wavelength + at(packet));
+            } else {
+                return Numbers(*table);
+            }
         };
         Media found{.ratio = look_up(kForward ? of.forward_ratio : of.reverse_ratio), .before = {}, .after = {}};
         if constexpr (carry != Carry::geometry) {
@@ -110,94 +145,147 @@ class BlockTracer {
         return found;
     }
 
+    /// What one surface is to every packet.
+    struct Here {
+        const TraceSurface<Scalar>& surface;
+        int index;
+        Scalar from_last_vertex;
+        Scalar limit;  // of r²; below 0 where the surface is closed
+    };
+
     void pass(int index) {
         const TraceSurface<Scalar>& surface = lens_.surfaces[index];
-        const Scalar from_last_vertex = surface.vertex_z - last_vertex_z_;
+        const Scalar limit = surface.semi_diameter_squared;
+        const Here here{.surface = surface,
+                        .index = index,
+                        .from_last_vertex = surface.vertex_z - last_vertex_z_,
+                        .limit = limit > Scalar(0) ? limit : Scalar(-1)};
         const bool from_far = !clip_ || (kForward ? surface.from_far_forward : surface.from_far_reverse);
-        for (int packet = 0; packet < packets_; ++packet) {
-            if (any(going_[packet])) {
-                pass(surface, index, packet, from_last_vertex, from_far);
-            }
+        if (lens_.is_monochromatic) {
+            from_far ? pass_packets<true, false>(here) : pass_packets<false, false>(here);
+        } else {
+            from_far ? pass_packets<true, true>(here) : pass_packets<false, true>(here);
         }
         last_vertex_z_ = surface.vertex_z;
     }
 
-    /// One packet through one surface, as `trace_through` takes one ray.
-    void pass(const TraceSurface<Scalar>& surface, int index, int packet, Scalar from_last_vertex, bool from_far) {
-        const Numbers heading(kForward ? Scalar(1) : Scalar(-1));
-        const Numbers c(surface.curvature);
-        const Mask going = going_[packet];
-        const State before = load(packet);
-        Vec3<Numbers> from_vertex = before.origin;
-        from_vertex.z = from_vertex.z - Numbers(from_last_vertex);
-        Numbers to_vertex(Scalar(0));
-        if (from_far) {
-            to_vertex = way_to_vertex(from_vertex, before.way);
-            from_vertex = from_vertex + to_vertex * before.way;
+    template <bool from_far, bool per_lane>
+    void pass_packets(const Here& here) {
+        for (int packet = 0; packet < packets_; ++packet) {
+            const Mask going = this->going(packet);
+            if (!any(going)) {
+                continue;
+            }
+            const State before = load(packet);
+            const Media media = this->template media<per_lane>(here.index, packet);
+            const Vec3<Numbers> near = moved_near<from_far>(here, before);
+            const Intersection<Numbers> met = intersect_from_near(near, before.way, curvature(here), heading());
+            const Refraction<Numbers> bent = bent_at(here, before, met, media);
+            if (any(going && (is_beyond(here, met) || !met.hit || !bent.transmitted))) {
+                pass_with_ends<from_far, per_lane>(here, packet);
+                continue;
+            }
+            const Vec3<Numbers>& at_surface = met.point;
+            if (all(going)) {
+                store(packet, {at_surface, bent.direction});
+            } else {
+                store(packet, {select(going, at_surface, before.origin), select(going, bent.direction, before.way)});
+            }
+            add_path(packet, media, way_moved<from_far>(here, before) + met.distance, going);
+            add_loss(packet, media, met, bent, going);
         }
-        const Intersection<Numbers> meeting = intersect_from_near(from_vertex, before.way, c, heading);
-        const Vec3<Numbers>& point = meeting.point;
-        const Numbers limit(surface.semi_diameter_squared);
-        const Mask beyond = point.x * point.x + point.y * point.y > limit || !(limit > Numbers(Scalar(0)));
-        const Media media = this->media(index, packet);
-        const Refraction<Numbers> bent = refract_at_sphere(before.way, point, c, heading, meeting.cos_incidence,
-                                                           meeting.sin2_incidence, media.ratio);
-        const Mask ends_here = !meeting.hit || !bent.transmitted || (clip_ ? beyond : Mask(false));
-        if (any(going && (ends_here || beyond))) {
-            note_ends(index, packet, before, meeting.hit, beyond, bent.transmitted, point, surface.is_stop);
-        }
-        const Mask on = going && !ends_here;
-        going_[packet] = on;
-        State after{point, bent.direction};
-        if (!all(on)) {
-            const State kept = load(packet);
-            after = {select(on, after.origin, kept.origin), select(on, after.way, kept.way)};
-        }
-        store(packet, after);
-        carry_on(packet, media, meeting, to_vertex, bent, going && meeting.hit, on);
     }
 
-    /// What the rays carry besides: the optical path of those that met the surface, the losses of those that go on.
-    void carry_on(int packet, const Media& media, const Intersection<Numbers>& meeting, const Numbers& to_vertex,
-                  const Refraction<Numbers>& bent, const Mask& met, const Mask& on) const {
-        if constexpr (carry == Carry::all) {
-            Scalar* path = rays_.optical_path + at(packet);
-            const Numbers so_far = Numbers::load(path);
-            select(met, so_far + media.before * (to_vertex + meeting.distance), so_far).store(path);
+    static Numbers heading() { return Numbers(kForward ? Scalar(1) : Scalar(-1)); }
+    static Numbers curvature(const Here& here) { return Numbers(here.surface.curvature); }
+
+    static Vec3<Numbers> from_vertex(const Here& here, const State& before) {
+        return {before.origin.x, before.origin.y, before.origin.z - Numbers(here.from_last_vertex)};
+    }
+
+    /// How far a ray from far off goes before it is met: to its closest approach to the vertex.
+    template <bool from_far>
+    static Numbers way_moved(const Here& here, const State& before) {
+        return from_far ? way_to_vertex(from_vertex(here, before), before.way) : Numbers(Scalar(0));
+    }
+
+    template <bool from_far>
+    static Vec3<Numbers> moved_near(const Here& here, const State& before) {
+        if constexpr (from_far) {
+            return from_vertex(here, before) + way_moved<from_far>(here, before) * before.way;
+        } else {
+            return from_vertex(here, before);  // and no copy of it: see going()
         }
+    }
+
+    static Mask is_beyond(const Here& here, const Intersection<Numbers>& met) {
+        return met.point.x * met.point.x + met.point.y * met.point.y > Numbers(here.limit);
+    }
+
+    static Refraction<Numbers> bent_at(const Here& here, const State& before, const Intersection<Numbers>& met,
+                                       const Media& media) {
+        return refract_at_sphere(before.way, met.point, curvature(here), heading(), met.cos_incidence,
+                                 met.sin2_incidence, media.ratio);
+    }
+
+    /// Adds a stretch to the optical path of the rays in `lanes`, where it is asked for.
+    void add_path(int packet, const Media& media, const Numbers& distance, const Mask& lanes) {
+        if constexpr (carry == Carry::all) {
+            Scalar* path = path_.data() + packet * kLanes;
+            const Numbers so_far = Numbers::load(path);
+            select(lanes, so_far + media.before * distance, so_far).store(path);
+        }
+    }
+
+    /// Takes a surface's loss from the rays in `lanes`, where it is asked for.
+    void add_loss(int packet, const Media& media, const Intersection<Numbers>& met, const Refraction<Numbers>& bent,
+                  const Mask& lanes) {
         if constexpr (carry != Carry::geometry) {
-            Scalar* share = rays_.transmittance + at(packet);
+            Scalar* share = share_.data() + packet * kLanes;
             const Numbers so_far = Numbers::load(share);
             const Numbers passing =
-                fresnel_transmittance(media.before, media.after, meeting.cos_incidence, bent.cos_refraction);
-            select(on, so_far * passing, so_far).store(share);
+                fresnel_transmittance(media.before, media.after, met.cos_incidence, bent.cos_refraction);
+            select(lanes, so_far * passing, so_far).store(share);
         }
     }
 
-    /// The fate of rays that end here or pass a rim, and the last points of those that end.
-    void note_ends(int index, int packet, const State& before, const Mask& hit, const Mask& beyond,
-                   const Mask& transmitted, const Vec3<Numbers>& point, bool is_stop) const {
-        const Mask going = going_[packet];
-        const auto mark = [&](const Mask& lanes, RayStatus status, bool only_first) {
-            for (int lane = 0; lane < kLanes; ++lane) {
-                const int i = at(packet) + lane;
-                if (lanes[lane] && !(only_first && rays_.status[i] != RayStatus::ok)) {
-                    rays_.status[i] = status;
-                    rays_.surface[i] = static_cast<std::int16_t>(index);
-                }
+    /// The same for a packet of which some rays end here or pass a rim: kept apart, since it is rare.
+    template <bool from_far, bool per_lane>
+    [[gnu::noinline, gnu::flatten]] void pass_with_ends(const Here& here, int packet) {
+        const Mask going = this->going(packet);
+        const State before = load(packet);
+        const Media media = this->template media<per_lane>(here.index, packet);
+        const Vec3<Numbers> near = moved_near<from_far>(here, before);
+        const Intersection<Numbers> met = intersect_from_near(near, before.way, curvature(here), heading());
+        const Refraction<Numbers> bent = bent_at(here, before, met, media);
+        const Mask beyond = is_beyond(here, met);
+        const Mask on_surface = going && met.hit;
+        const Mask inside = on_surface && (clip_ ? !beyond : Mask(true));
+        const Mask on = inside && bent.transmitted;
+        mark(going && !on_surface, packet, here.index, RayStatus::missed, false);
+        mark(on_surface && beyond, packet, here.index, here.surface.is_stop ? RayStatus::stopped : RayStatus::clipped,
+             true);
+        mark(inside && !on, packet, here.index, RayStatus::total_internal_reflection, false);
+        // A ray that missed stays where it was, others that end are on the surface; both in lens space from now on.
+        const Numbers vertex_z(here.surface.vertex_z);
+        Vec3<Numbers> last = select(on_surface, met.point, before.origin);
+        const Numbers global_z = last.z + select(on_surface, vertex_z, Numbers(last_vertex_z_));
+        last.z = select(going && !on, global_z, last.z);
+        store(packet, {last, select(on, bent.direction, before.way)});
+        add_path(packet, media, way_moved<from_far>(here, before) + met.distance, on_surface);
+        add_loss(packet, media, met, bent, on);
+        set_going(packet, on);
+    }
+
+    /// Notes the fate of the rays in `lanes`; of those that have none yet, if `only_first`.
+    void mark(const Mask& lanes, int packet, int index, RayStatus status, bool only_first) const {
+        for (int lane = 0; lane < kLanes; ++lane) {
+            const int i = at(packet) + lane;
+            if (lanes[lane] && !(only_first && rays_.status[i] != RayStatus::ok)) {
+                rays_.status[i] = status;
+                rays_.surface[i] = static_cast<std::int16_t>(index);
             }
-        };
-        mark(going && !hit, RayStatus::missed, false);
-        mark(going && hit && beyond, is_stop ? RayStatus::stopped : RayStatus::clipped, true);
-        const Mask inside = clip_ ? !beyond : Mask(true);
-        mark(going && hit && inside && !transmitted, RayStatus::total_internal_reflection, false);
-        // A ray that missed stays where it was, the others that end are on the surface; both in lens space.
-        const Mask missed = going && !hit;
-        const Mask ends = going && (!hit || !inside || !transmitted);
-        const Scalar vertex_z = lens_.surfaces[index].vertex_z;
-        Vec3<Numbers> last = select(missed, before.origin, point);
-        last.z = last.z + select(missed, Numbers(last_vertex_z_), Numbers(vertex_z));
-        store(packet, {select(ends, last, before.origin), before.way});
+        }
     }
 
     KernelLens<Scalar> lens_;
@@ -206,7 +294,17 @@ class BlockTracer {
     int first_;
     int packets_ = 0;
     Scalar last_vertex_z_ = Scalar(0);
-    std::array<Mask, kBlock / kLanes> going_;
+    // The block's own columns: at fixed distances from each other, they need but one address in the inner loop.
+    using Column = std::array<Scalar, kBlock>;
+    alignas(kPacketAlignment) Column x_;  // mm; z from the last vertex passed, until a ray ends
+    alignas(kPacketAlignment) Column y_;
+    alignas(kPacketAlignment) Column z_;
+    alignas(kPacketAlignment) Column dx_;
+    alignas(kPacketAlignment) Column dy_;
+    alignas(kPacketAlignment) Column dz_;
+    alignas(kPacketAlignment) Column path_;
+    alignas(kPacketAlignment) Column share_;
+    alignas(kPacketAlignment) Column going_;  // 1: on its way, 0: ended or no ray
 };
 
 template <class Scalar, class Abi, Direction direction, Carry carry>
