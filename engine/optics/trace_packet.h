@@ -39,13 +39,6 @@ void set_lane(Ray<Pack<Scalar, N>>& rays, int lane, const Ray<Scalar>& ray) {
     set(rays.direction, ray.direction);
 }
 
-/// Lane by lane, `a` where `mask` holds, else `b`.
-template <class Scalar, int N>
-Vec3<Pack<Scalar, N>> select(const PackMask<Scalar, N>& mask, const Vec3<Pack<Scalar, N>>& a,
-                             const Vec3<Pack<Scalar, N>>& b) {
-    return {select(mask, a.x, b.x), select(mask, a.y, b.y), select(mask, a.z, b.z)};
-}
-
 /// The rays of a packet one after the other: what `trace_packet` does for a lens that has more than centred spheres.
 template <Direction direction, Rims rims, class Scalar, int N, class Visitor>
 TracedPacket<Scalar, N> trace_lanes(const TraceLens<Scalar>& lens, const Ray<Pack<Scalar, N>>& rays, Visitor&& visit) {
