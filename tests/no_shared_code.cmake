@@ -1,0 +1,20 @@
+# What the files for wider registers define must be theirs alone: where two files define the same inline function, the
+# linker keeps either, and a machine without those registers would run code for them.
+# cmake -DNM=nm -DOBJECTS="a.o;b.o" -P no_shared_code.cmake
+foreach(object IN LISTS OBJECTS)
+    execute_process(COMMAND ${NM} --demangle --defined-only ${object} OUTPUT_VARIABLE symbols COMMAND_ERROR_IS_FATAL ANY)
+    string(REGEX MATCHALL "[^\n]+" lines "${symbols}")
+    set(of_its_own 0)
+    foreach(line IN LISTS lines)
+        if(line MATCHES "^[0-9a-f]* [WVu] " AND NOT line MATCHES "DW\\.ref\\.__gxx_personality")
+            if(line MATCHES "simd_abi::_Vec")
+                math(EXPR of_its_own "${of_its_own} + 1")
+            else()
+                message(SEND_ERROR "${object} shares with other machines' code: ${line}")
+            endif()
+        endif()
+    endforeach()
+    if(of_its_own EQUAL 0)
+        message(SEND_ERROR "${object} defines no packet code: is it the right file?")
+    endif()
+endforeach()
