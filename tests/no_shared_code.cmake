@@ -1,6 +1,10 @@
 # What the files for wider registers define must be theirs alone: where two files define the same inline function, the
 # linker keeps either, and a machine without those registers would run code for them.
-# cmake -DNM=nm -DOBJECTS="a.o;b.o" -P no_shared_code.cmake
+# cmake -DNM=nm -DOBJECTS=a.o,b.o -P no_shared_code.cmake
+string(REPLACE "," ";" OBJECTS "${OBJECTS}")
+if(NOT OBJECTS)
+    message(STATUS "No such files on this processor: nothing to look at")
+endif()
 foreach(object IN LISTS OBJECTS)
     execute_process(COMMAND ${NM} --demangle --defined-only ${object} OUTPUT_VARIABLE symbols COMMAND_ERROR_IS_FATAL ANY)
     string(REGEX MATCHALL "[^\n]+" lines "${symbols}")
