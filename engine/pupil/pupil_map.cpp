@@ -21,8 +21,7 @@ std::vector<TraceLens<double>> with_round_stops(std::vector<TraceLens<double>> b
 
 /// Calls use(region, guide) with the region at a lit place.
 template <class Use>
-auto with_region(const PupilNodes& nodes, const PupilGuides& guides, const PupilPlace& place, Vec2d sensor_point,
-                 const Use& use) {
+auto with_region(const PupilNodes& nodes, const PupilGuides& guides, const PupilPlace& place, const Use& use) {
     const auto at = [&](std::size_t position, std::size_t azimuth) {
         return &nodes.regions[nodes.index(position, azimuth, place.share)];
     };
@@ -36,7 +35,7 @@ auto with_region(const PupilNodes& nodes, const PupilGuides& guides, const Pupil
         return use(BlendedRegion<4>({below, below + 1, above, above + 1}, weights, nodes.symmetry),
                    guides.panels(nodes.index(band.below, 0, place.share)));
     }
-    const BetweenNodes turn = PupilGuides::azimuth(nodes, sensor_point);
+    const BetweenNodes& turn = place.azimuth;
     std::array<const PupilRegion*, 8> regions{};
     std::array<double, 8> shares{};
     for (std::size_t i = 0; i < weights.size(); ++i) {
@@ -73,13 +72,13 @@ PupilSample PupilMap::sample(Vec2d sensor_point, double band_position, double u,
     const PupilPlace place = guides_.place(nodes_, sensor_point, band_position);
     if (u < defensive_share_) {
         const Vec2d point = disc_.warped(u / defensive_share_, v);
-        return {point, disc_density + region_density(place, sensor_point, point)};
+        return {point, disc_density + region_density(place, point)};
     }
     if (!place.is_lit) {
         return {};
     }
     const double rest = std::min((u - defensive_share_) / (1.0 - defensive_share_), kBelowOne);
-    return with_region(nodes_, guides_, place, sensor_point, [&](const auto& region, const PanelGuide& guide) {
+    return with_region(nodes_, guides_, place, [&](const auto& region, const PanelGuide& guide) {
         const double area = region.area();
         if (!(area > 0.0)) {
             return PupilSample{};
@@ -91,15 +90,14 @@ PupilSample PupilMap::sample(Vec2d sensor_point, double band_position, double u,
 
 double PupilMap::density(Vec2d sensor_point, double band_position, Vec2d pupil_point) const {
     const PupilPlace place = guides_.place(nodes_, sensor_point, band_position);
-    return (disc_.contains(pupil_point) ? defensive_share_ / disc_.area() : 0.0) +
-           region_density(place, sensor_point, pupil_point);
+    return (disc_.contains(pupil_point) ? defensive_share_ / disc_.area() : 0.0) + region_density(place, pupil_point);
 }
 
-double PupilMap::region_density(const PupilPlace& place, Vec2d sensor_point, Vec2d pupil_point) const {
+double PupilMap::region_density(const PupilPlace& place, Vec2d pupil_point) const {
     if (!place.is_lit) {
         return 0.0;
     }
-    return with_region(nodes_, guides_, place, sensor_point, [&](const auto& region, const PanelGuide&) {
+    return with_region(nodes_, guides_, place, [&](const auto& region, const PanelGuide&) {
         const double area = region.area();
         return area > 0.0 && region.contains(place.to_own(pupil_point)) ? (1.0 - defensive_share_) / area : 0.0;
     });
@@ -107,7 +105,7 @@ double PupilMap::region_density(const PupilPlace& place, Vec2d sensor_point, Vec
 
 double PupilMap::region_area(Vec2d sensor_point, double band_position) const {
     const PupilPlace place = guides_.place(nodes_, sensor_point, band_position);
-    return place.is_lit ? with_region(nodes_, guides_, place, sensor_point,
+    return place.is_lit ? with_region(nodes_, guides_, place,
                                       [](const auto& region, const PanelGuide&) { return region.area(); })
                         : 0.0;
 }

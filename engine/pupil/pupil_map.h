@@ -77,7 +77,7 @@ class PupilMap {
     PupilMap(const RearDisc& disc, double defensive_share, PupilNodes nodes);
 
     /// Of what `sample` draws from the region alone.
-    [[nodiscard]] double region_density(const PupilPlace& place, Vec2d sensor_point, Vec2d pupil_point) const;
+    [[nodiscard]] double region_density(const PupilPlace& place, Vec2d pupil_point) const;
 
     RearDisc disc_;
     double defensive_share_;

@@ -15,7 +15,7 @@ struct PupilNodes {
     PupilSymmetry symmetry = PupilSymmetry::mirror;
     std::size_t azimuths = 1;       // evenly spread, from the sensor's +y towards +x
     std::vector<double> positions;  // in the band, rising from 0 to 1
-    std::vector<double> ends_mm;    // at each position: the light ends there, or the sensor does
+    std::vector<double> ends_mm;    // where the light or the sensor ends, at [position · azimuths + azimuth]
     std::vector<double> shares;     // of the end: rising from 0 to 1. None: no light at all
     std::vector<PupilRegion> regions;
 
