@@ -86,7 +86,7 @@ class ChartCamera {
     Camera camera_;
     Lens lens_;
     SpectralStrata spectral_;
-    PupilBounds pupil_;
+    PupilMap pupil_;  // over the band of the strata
     std::map<std::string, std::string> metadata_;
 };
 
