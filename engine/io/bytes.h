@@ -1,18 +1,15 @@
 // engine/io/bytes.h — numbers as this machine's bytes: what caches are keyed by and hold.
 #pragma once
-#include <cstring>
 #include <string>
-#include <string_view>
 #include <type_traits>
 
 namespace lensproof {
 
-template <class T>
-concept Number = std::is_arithmetic_v<T> || std::is_enum_v<T>;
-
-template <Number T>
-void append_bytes(std::string& bytes, const T& value) {
-    bytes.append(reinterpret_cast<const char*>(&value), sizeof value);
+/// Appends the numbers' bytes, one number after the other.
+template <class... Numbers>
+requires(... && (std::is_arithmetic_v<Numbers> ||
+                 std::is_enum_v<Numbers>)) void append_bytes(std::string& bytes, const Numbers&... numbers) {
+    (bytes.append(reinterpret_cast<const char*>(&numbers), sizeof numbers), ...);
 }
 
 }  // namespace lensproof

@@ -1,0 +1,91 @@
+#include "engine/pupil/entrance_beam.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "engine/optics/field_bundle.h"
+
+namespace lensproof {
+
+namespace {
+
+/// Where the surface ends: at its rim, or at the equator of an ellipsoid that is smaller.
+double outermost_radius(const SurfaceShape<double>& shape, double semi_diameter) {
+    const double bulge = (1.0 + shape.conic) * shape.curvature * shape.curvature;
+    return bulge > 0.0 ? std::min(semi_diameter, 1.0 / std::sqrt(bulge)) : semi_diameter;
+}
+
+/// About the rim's centre, in the surface's own axes.
+BoundingSphere own_sphere(const SurfaceShape<double>& shape, double semi_diameter) {
+    const double rim = outermost_radius(shape, semi_diameter);
+    // At an equator the sag has a square root in it; half the digits are left of what is within rounding of it.
+    const auto sag_at = [&](double x, double y) {
+        const double there = sag(shape, x, y);
+        return std::isfinite(there) ? there : sag(shape, (1.0 - 1e-12) * x, (1.0 - 1e-12) * y);
+    };
+    BoundingSphere sphere{.centre = {0.0, 0.0, sag_at(rim, 0.0)}, .radius = rim};
+    if (shape.is_conic() && shape.conic == 0.0) {
+        return sphere;
+    }
+    constexpr int kCells = 64;
+    constexpr double kMargin = 1.001;
+    double farthest = rim;
+    for (int i = 0; i <= kCells; ++i) {
+        const double radius = rim * std::sin(0.5 * std::numbers::pi * i / kCells);
+        for (int k = 0; k <= kCells; ++k) {
+            const double azimuth = 0.5 * std::numbers::pi * k / kCells;
+            const double z = sag_at(radius * std::cos(azimuth), radius * std::sin(azimuth));
+            farthest = std::max(farthest, std::hypot(radius, std::isfinite(z) ? z - sphere.centre.z : 0.0));
+        }
+    }
+    sphere.radius = kMargin * farthest;
+    return sphere;
+}
+
+}  // namespace
+
+BoundingSphere front_sphere(const TraceLens<double>& lens) {
+    const TraceSurface<double>& front = lens.surfaces.front();
+    const SpecialSurface<double>* special = front.special >= 0 ? &lens.specials[front.special] : nullptr;
+    const SurfaceShape<double> shape =
+        special != nullptr && special->has_shape ? special->shape : SurfaceShape<double>{.curvature = front.curvature};
+    BoundingSphere sphere = own_sphere(shape, std::sqrt(front.semi_diameter_squared));
+    if (special != nullptr) {
+        sphere.centre = special->from_own(sphere.centre) + Vec3d{special->vertex.x, special->vertex.y, 0.0};
+    }
+    sphere.centre.z += front.vertex_z;
+    return sphere;
+}
+
+Ray<double> EntranceBeam::ray(Vec2d offset) const {
+    return ray_beside(axis, across, distance, offset);
+}
+
+double EntranceBeam::solid_angle_per_mm2(Vec2d offset) const {
+    const double to_offset2 = distance * distance + offset.x * offset.x + offset.y * offset.y;
+    return std::isfinite(distance) ? distance / (to_offset2 * std::sqrt(to_offset2)) : 0.0;
+}
+
+EntranceBeam beam_along(const BoundingSphere& front, const Vec3d& direction) {
+    const double from_axis = std::hypot(direction.x, direction.y);
+    const Vec3d sideways =
+        from_axis > 0.0 ? Vec3d{direction.y / from_axis, -direction.x / from_axis, 0.0} : Vec3d{1.0, 0.0, 0.0};
+    return {
+        .axis = {front.centre, direction}, .across = {sideways, cross(direction, sideways)}, .radius = front.radius};
+}
+
+std::optional<EntranceBeam> beam_from(const BoundingSphere& front, const Vec3d& point) {
+    const Vec3d way = front.centre - point;
+    const double distance = length(way);
+    if (!(distance > front.radius)) {
+        return std::nullopt;
+    }
+    EntranceBeam beam = beam_along(front, (1.0 / distance) * way);
+    beam.distance = distance;
+    // The sphere's tangent cone, whose half angle has the sine radius / distance.
+    beam.radius = front.radius * distance / std::sqrt((distance - front.radius) * (distance + front.radius));
+    return beam;
+}
+
+}  // namespace lensproof
