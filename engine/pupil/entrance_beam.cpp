@@ -68,11 +68,12 @@ double EntranceBeam::solid_angle_per_mm2(Vec2d offset) const {
 }
 
 EntranceBeam beam_along(const BoundingSphere& front, const Vec3d& direction) {
-    const double from_axis = std::hypot(direction.x, direction.y);
-    const Vec3d sideways =
-        from_axis > 0.0 ? Vec3d{direction.y / from_axis, -direction.x / from_axis, 0.0} : Vec3d{1.0, 0.0, 0.0};
-    return {
-        .axis = {front.centre, direction}, .across = {sideways, cross(direction, sideways)}, .radius = front.radius};
+    const Vec3d& d = direction;
+    const double share = 1.0 / (1.0 + d.z);  // of a turn by θ about (−d_y, d_x, 0): (1 − cos θ) / sin² θ
+    return {.axis = {front.centre, d},
+            .across = {{{1.0 - share * d.x * d.x, -share * d.x * d.y, -d.x},
+                        {-share * d.x * d.y, 1.0 - share * d.y * d.y, -d.y}}},
+            .radius = front.radius};
 }
 
 std::optional<EntranceBeam> beam_from(const BoundingSphere& front, const Vec3d& point) {

@@ -21,11 +21,11 @@ struct BoundingSphere {
 BoundingSphere front_sphere(const TraceLens<double>& lens);
 
 /// All rays of one scene point, or from one direction, that may meet the first surface inside its rim. They are told
-/// apart by their offset (mm) in the plane through the front sphere's centre across the way there from the point: x
-/// across the meridional plane (that of the way and the direction of the lens's axis), y in it, as FieldBundle has them
-/// for a way towards +y. So a beam and its image turned about the axis have the same offsets. Each ray that meets the
-/// sphere crosses the plane within `radius` of its centre. No cosine of the field angle is divided by: light may come
-/// from the side and from behind the first vertex.
+/// apart by their offset (mm) in the plane through the front sphere's centre across the way there from the point, along
+/// x and y as the shortest turn from +z to the way carries them: for a way in the plane x = 0 those of FieldBundle, and
+/// a beam turned about the axis has its offsets turned with it. Each ray that meets the sphere crosses the plane within
+/// `radius` of its centre. No cosine of the field angle is divided by: light may come from the side and from behind the
+/// first vertex, only not along −z.
 struct EntranceBeam {
     Ray<double> axis;                                           // from the point through the sphere's centre
     std::array<Vec3d, 2> across;                                // the offsets' x and y, unit vectors

@@ -125,12 +125,28 @@ TEST(EntranceBeam, SolidAngleIsTheTangentCones) {
     EXPECT_EQ(beam_from(front, {0.0, 0.0, -16.9}), std::nullopt);
 }
 
-// In the meridional plane offsets are FieldBundle's, at every field angle.
+/// `v` turned about z by the azimuth, from +y towards +x.
+Vec3d turned(const Vec3d& v, double azimuth) {
+    return {std::cos(azimuth) * v.x + std::sin(azimuth) * v.y, std::cos(azimuth) * v.y - std::sin(azimuth) * v.x, v.z};
+}
+
+// In the meridional plane offsets are FieldBundle's, at every field angle, and a beam turned about the axis is the same
+// beam with its offsets turned; to a few ulps of the 1 / (1 + cos θ) that the turn has in it.
 TEST(EntranceBeam, OffsetsAreThoseOfTheFieldBundle) {
-    for (const double field : {0.0, 0.5, 0.5 * kPi, 1.9}) {
+    const BoundingSphere front{.centre = {0.0, 0.0, 3.0}, .radius = 1.0};
+    for (const double field : {0.0, 1e-9, 0.5, 0.5 * kPi, 1.9}) {
         const Vec3d way{0.0, std::sin(field), std::cos(field)};
-        const EntranceBeam beam = beam_along({.centre = {}, .radius = 1.0}, way);
-        EXPECT_EQ(beam.across, across_axes(way));
+        const EntranceBeam beam = beam_along(front, way);
+        for (int axis = 0; axis < 2; ++axis) {
+            EXPECT_LE(length(beam.across[axis] - across_axes(way)[axis]), 1e-15) << field;
+        }
+        for (const double azimuth : {0.3, 2.0, 4.5}) {
+            const EntranceBeam other = beam_along(front, turned(way, azimuth));
+            const Vec3d offset{0.3, 0.5, 0.0};
+            const Vec3d turned_offset = turned(offset, azimuth);
+            const Vec3d expected = turned(beam.ray({offset.x, offset.y}).origin, azimuth);
+            EXPECT_LE(length(other.ray({turned_offset.x, turned_offset.y}).origin - expected), 4e-15) << field;
+        }
     }
 }
 
