@@ -6,10 +6,17 @@
 #include <vector>
 
 #include "engine/optics/trace.h"
+#include "engine/pupil/pupil_guides.h"
 #include "engine/pupil/rear_disc.h"
-#include "engine/pupil/region_map.h"
 
 namespace lensproof {
+
+/// A point of the pupil, x and y in lens space in the plane z = plane_z, mm, and the density that it was drawn with,
+/// 1/mm².
+struct PupilSample {
+    Vec2d point;
+    double density = 0.0;
+};
 
 struct PupilMapSettings {
     /// The share of samples drawn over the whole rear element, whatever the map says: what the map missed costs noise
@@ -28,7 +35,9 @@ struct PupilMapSettings {
 /// of the band, at the nodes and in the middles between them. In the frame of a region its sensor point lies at
 /// (0, r), r ≥ 0. Blades and textures of the stop are taken for their full circle.
 ///
-/// A share of the samples is drawn over the whole disc, so that nothing is lost however wrong a region is (RegionMap).
+/// A sample's density is that of the mixture (1 − δ) · [in the region] / its area + δ / the whole disc's area, wherever
+/// it came from, with δ the defensive share; so ∫ f = E[f / density] for every f on the disc, however wrong a region
+/// is. Where no light was found it is the disc alone.
 class PupilMap {
   public:
     /// `band`: the lens at wavelengths across the band, at least at its ends. Sensor points lie within
@@ -39,16 +48,11 @@ class PupilMap {
     /// The whole rear element for every sensor point: the baseline that maps are judged against.
     static PupilMap whole_element(const TraceLens<double>& lens, double sensor_radius_mm);
 
-    /// The point that (u, v) in the unit square maps to, x and y in lens space in the plane z = plane_z, and its
-    /// density.
-    [[nodiscard]] PupilSample sample(Vec2d sensor_point, double u, double v) const {
-        return regions_.sample(sensor_point, u, v);
-    }
+    /// The point that (u, v) in the unit square maps to.
+    [[nodiscard]] PupilSample sample(Vec2d sensor_point, double u, double v) const;
 
-    /// The density that `sample` draws a point with, 1/mm²; 0 outside the disc and the region.
-    [[nodiscard]] double density(Vec2d sensor_point, Vec2d pupil_point) const {
-        return regions_.density(sensor_point, pupil_point);
-    }
+    /// The density that `sample` draws a point with, 1/mm²; 0 outside the disc.
+    [[nodiscard]] double density(Vec2d sensor_point, Vec2d pupil_point) const;
 
     /// z of the plane that the points lie in.
     [[nodiscard]] double plane_z() const { return disc_.plane_z; }
@@ -57,10 +61,10 @@ class PupilMap {
     [[nodiscard]] const RearDisc& disc() const { return disc_; }
 
     /// The area that is drawn from but for the defensive share, mm²; 0 where no light was found.
-    [[nodiscard]] double region_area(Vec2d sensor_point) const { return regions_.area(sensor_point); }
+    [[nodiscard]] double region_area(Vec2d sensor_point) const;
 
     /// How many regions are stored.
-    [[nodiscard]] std::size_t size() const { return regions_.nodes().regions.size(); }
+    [[nodiscard]] std::size_t size() const { return nodes_.regions.size(); }
 
     /// All of it as bytes, numbers as they lie in memory.
     [[nodiscard]] std::string serialized() const;
@@ -68,10 +72,12 @@ class PupilMap {
     static std::optional<PupilMap> deserialized(std::string_view bytes);
 
   private:
-    PupilMap(const RearDisc& disc, RegionMap regions);
+    PupilMap(const RearDisc& disc, double defensive_share, PupilNodes nodes);
 
     RearDisc disc_;
-    RegionMap regions_;
+    double defensive_share_;
+    PupilNodes nodes_;
+    PupilGuides guides_;  // made from the nodes
 };
 
 }  // namespace lensproof

@@ -1,7 +1,6 @@
 #include "engine/pupil/pupil_nodes.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <map>
 #include <numbers>
@@ -17,17 +16,15 @@ namespace {
 constexpr int kFirstRadii = 16;
 constexpr std::size_t kFirstAzimuths = 4;
 constexpr std::size_t kMostAzimuths = 32;
-// Of the end of the places: below the first, a step counts for little; below the second it is not halved any more.
+// Of the sensor's radius: below the first, a step counts for little; below the second it is not halved any more.
 constexpr double kSmallStep = 1.0 / 64.0;
 constexpr double kSmallestStep = 1.0 / 8192.0;
 
-/// A place; azimuths as shares of a turn. Ordered along the radii.
-struct NodePlace {
+/// A place on the sensor; azimuths as shares of a turn. Ordered along the radii.
+struct SensorPlace {
     double azimuth = 0.0;
     double radius = 0.0;
-    friend bool operator<(const NodePlace& a, const NodePlace& b) {
-        return a.azimuth < b.azimuth || (a.azimuth == b.azimuth && a.radius < b.radius);
-    }
+    friend auto operator<=>(const SensorPlace&, const SensorPlace&) = default;
 };
 
 /// The outlines there, one for each wavelength.
@@ -39,16 +36,16 @@ struct Station {
 
 class NodeFinder {
   public:
-    NodeFinder(const std::vector<TraceLens<double>>& band, const RayFamily& rays, const NodeSearch& search)
+    NodeFinder(const std::vector<TraceLens<double>>& band, const RearDisc& disc, const NodeSearch& search)
         : band_(band),
-          rays_(rays),
+          disc_(disc),
           search_(search),
           symmetry_(search.by_radius ? PupilSymmetry::mirror : PupilSymmetry::none),
           azimuths_(search.by_radius ? 1 : kFirstAzimuths) {}
 
     PupilNodes find() {
         for (int i = 0; i <= kFirstRadii; ++i) {
-            radii_.push_back(search_.end * i / kFirstRadii);
+            radii_.push_back(search_.sensor_radius_mm * i / kFirstRadii);
         }
         trace_nodes();
         drop_dark_nodes();
@@ -74,7 +71,7 @@ class NodeFinder {
     // --- Tracing ---
 
     void trace_nodes() {
-        std::vector<NodePlace> places;
+        std::vector<SensorPlace> places;
         for (std::size_t k = 0; k < azimuths_; ++k) {
             for (const double radius : radii_) {
                 places.push_back({azimuth(k), radius});
@@ -84,7 +81,7 @@ class NodeFinder {
     }
 
     void trace_radius_middles() {
-        std::vector<NodePlace> places;
+        std::vector<SensorPlace> places;
         for (std::size_t k = 0; k < azimuths_; ++k) {
             for (std::size_t i = 0; i + 1 < radii_.size(); ++i) {
                 places.push_back({azimuth(k), 0.5 * (radii_[i] + radii_[i + 1])});
@@ -97,7 +94,7 @@ class NodeFinder {
     }
 
     void trace_azimuth_middles() {
-        std::vector<NodePlace> places;
+        std::vector<SensorPlace> places;
         for (std::size_t k = 0; k < azimuths_; ++k) {
             for (const double radius : radii_) {
                 places.push_back({azimuth(k) + 0.5 / static_cast<double>(azimuths_), radius});
@@ -107,11 +104,11 @@ class NodeFinder {
     }
 
     /// Traces the outlines at the places that have none yet, all together.
-    void trace_at(std::vector<NodePlace> places) {
-        std::erase_if(places, [&](const NodePlace& place) { return stations_.contains(place); });
+    void trace_at(std::vector<SensorPlace> places) {
+        std::erase_if(places, [&](const SensorPlace& place) { return stations_.contains(place); });
         std::vector<std::optional<PupilFrame>> expected;
         for (std::size_t lens = 0; lens < band_.size(); ++lens) {
-            for (const NodePlace& place : places) {
+            for (const SensorPlace& place : places) {
                 expected.push_back(expected_frame(place, lens));
             }
         }
@@ -120,70 +117,63 @@ class NodeFinder {
                 const auto region = static_cast<std::size_t>(points[i].region);
                 const Ray<double> ray = ray_from(places[region % places.size()], points[i].point);
                 const TraceLens<double>& lens = band_[region / places.size()];
-                const RayStatus status = rays_.direction == Direction::forward
-                                             ? trace(lens, ray).status
-                                             : trace<Direction::reverse>(lens, ray).status;
-                answers[i] = status == RayStatus::ok ? 1 : 0;
+                answers[i] = trace<Direction::reverse>(lens, ray).status == RayStatus::ok ? 1 : 0;
             }
         };
-        const OutlineSearch search{
-            .radius = search_.disc.radius, .symmetry = symmetry_, .look_closer = [&](int region) {
-                const auto index = static_cast<std::size_t>(region);
-                return point_by_margin(band_[index / places.size()], places[index % places.size()]);
-            }};
+        const OutlineSearch search{.radius = disc_.radius, .symmetry = symmetry_, .look_closer = [&](int region) {
+                                       const auto index = static_cast<std::size_t>(region);
+                                       return point_by_margin(band_[index / places.size()],
+                                                              places[index % places.size()]);
+                                   }};
         std::vector<PupilOutline> outlines = pupil_outlines(passes, expected, search);
         for (std::size_t i = 0; i < outlines.size(); ++i) {
             stations_[places[i % places.size()]].outlines.push_back(std::move(outlines[i]));
         }
     }
 
-    /// The ray of a place through a point of the plane that is given in the place's frame.
-    [[nodiscard]] Ray<double> ray_from(const NodePlace& place, Vec2d own) const {
+    /// From the sensor through a point of the pupil that is given in the place's frame.
+    [[nodiscard]] Ray<double> ray_from(const SensorPlace& place, Vec2d pupil_point) const {
         const double angle = 2.0 * std::numbers::pi * place.azimuth;
         const double cosine = std::cos(angle);
         const double sine = std::sin(angle);
-        return rays_.ray({place.radius * sine, place.radius * cosine},
-                         {cosine * own.x + sine * own.y, cosine * own.y - sine * own.x});
+        const Vec3d from{place.radius * sine, place.radius * cosine, band_.front().image_z};
+        const Vec3d to{cosine * pupil_point.x + sine * pupil_point.y, cosine * pupil_point.y - sine * pupil_point.x,
+                       disc_.plane_z};
+        return {from, normalized(to - from)};
     }
 
     /// A point of a region that is thinner than a grid, by how far rays stand from the rims.
-    [[nodiscard]] std::optional<Vec2d> point_by_margin(const TraceLens<double>& lens, const NodePlace& place) const {
-        return find_inside([&](Vec2d at) { return rim_margin(lens, ray_from(place, at), rays_.direction); },
-                           {.start = {}, .reach = search_.disc.radius, .is_mirror = search_.by_radius});
+    [[nodiscard]] std::optional<Vec2d> point_by_margin(const TraceLens<double>& lens, const SensorPlace& place) const {
+        return find_inside([&](Vec2d at) { return rim_margin(lens, ray_from(place, at), Direction::reverse); },
+                           {.start = {}, .reach = disc_.radius, .is_mirror = search_.by_radius});
     }
 
     /// The mean of the neighbours' frames along the radius, or else along the azimuth; nothing where there are none.
-    [[nodiscard]] std::optional<PupilFrame> expected_frame(const NodePlace& place, std::size_t lens) const {
-        std::array<const PupilFrame*, 2> near{};
-        std::size_t count = 0;
-        const auto add = [&](const auto& it) {
-            if (it != stations_.end() && it->second.outlines.size() > lens && !it->second.outlines[lens].is_empty()) {
-                near[count] = &it->second.outlines[lens].frame;
-                ++count;
-            }
-        };
+    [[nodiscard]] std::optional<PupilFrame> expected_frame(const SensorPlace& place, std::size_t lens) const {
+        const double half_step = 0.5 / static_cast<double>(azimuths_);
+        const auto wrapped = [](double azimuth) { return azimuth - std::floor(azimuth); };
+        std::vector<std::map<SensorPlace, Station>::const_iterator> near;
         const auto above = stations_.upper_bound(place);
-        const bool is_above = above != stations_.end() && above->first.azimuth == place.azimuth;
-        const bool is_below = above != stations_.begin() && std::prev(above)->first.azimuth == place.azimuth;
-        if (is_above) {
-            add(above);
+        if (above != stations_.end() && above->first.azimuth == place.azimuth) {
+            near.push_back(above);
         }
-        if (is_below) {
-            add(std::prev(above));
+        if (above != stations_.begin() && std::prev(above)->first.azimuth == place.azimuth) {
+            near.push_back(std::prev(above));
         }
-        if (!is_above && !is_below) {
-            const auto wrapped = [](double azimuth) { return azimuth - std::floor(azimuth); };
-            const double half_step = 0.5 / static_cast<double>(azimuths_);
-            add(stations_.find({wrapped(place.azimuth - half_step), place.radius}));
-            add(stations_.find({wrapped(place.azimuth + half_step), place.radius}));
+        if (near.empty()) {
+            near = {stations_.find({wrapped(place.azimuth - half_step), place.radius}),
+                    stations_.find({wrapped(place.azimuth + half_step), place.radius})};
         }
-        if (count == 0) {
+        std::erase_if(near, [&](const auto& it) {
+            return it == stations_.end() || it->second.outlines.size() <= lens || it->second.outlines[lens].is_empty();
+        });
+        if (near.empty()) {
             return std::nullopt;
         }
-        const double share = 1.0 / static_cast<double>(count);
+        const double share = 1.0 / static_cast<double>(near.size());
         PupilFrame mean{.centre = {}, .scale = {}, .bend = 0.0};
-        for (std::size_t i = 0; i < count; ++i) {
-            const PupilFrame& frame = *near[i];
+        for (const auto& it : near) {
+            const PupilFrame& frame = it->second.outlines[lens].frame;
             mean.centre = {mean.centre.x + share * frame.centre.x, mean.centre.y + share * frame.centre.y};
             mean.scale = {mean.scale.x + share * frame.scale.x, mean.scale.y + share * frame.scale.y};
             mean.bend += share * frame.bend;
@@ -234,11 +224,12 @@ class NodeFinder {
     /// Halves the steps whose regions have to be enlarged too much; whether there are any, or the edge is still wide.
     bool split_radii() {
         std::vector<double> finer;
-        const double smallest = kSmallestStep * search_.end;
+        const double smallest = kSmallestStep * search_.sensor_radius_mm;
         for (std::size_t i = 0; i < radii_.size(); ++i) {
             finer.push_back(radii_[i]);
             if (i + 1 < radii_.size()) {
-                const double allowed = search_.most_excess * std::max(1.0, kSmallStep * search_.end / step(i));
+                const double allowed =
+                    search_.most_excess * std::max(1.0, kSmallStep * search_.sensor_radius_mm / step(i));
                 if (radius_excess_[i] > allowed && step(i) > smallest) {
                     finer.push_back(0.5 * (radii_[i] + radii_[i + 1]));
                 }
@@ -392,11 +383,11 @@ class NodeFinder {
     }
 
     const std::vector<TraceLens<double>>& band_;
-    const RayFamily& rays_;
+    const RearDisc& disc_;
     const NodeSearch& search_;
     PupilSymmetry symmetry_;
     std::size_t azimuths_;
-    std::map<NodePlace, Station> stations_;
+    std::map<SensorPlace, Station> stations_;
     std::vector<double> radii_;
     double first_dark_ = 0.0;  // 0: light reaches the whole sensor
     std::vector<PupilRegion> regions_;
@@ -406,13 +397,9 @@ class NodeFinder {
 
 }  // namespace
 
-PupilNodes find_pupil_nodes(std::vector<TraceLens<double>> band, const RayFamily& rays, const NodeSearch& search) {
-    for (TraceLens<double>& lens : band) {
-        for (SpecialSurface<double>& special : lens.specials) {
-            special.mask = {};
-        }
-    }
-    return NodeFinder(band, rays, search).find();
+PupilNodes find_pupil_nodes(const std::vector<TraceLens<double>>& band, const RearDisc& disc,
+                            const NodeSearch& search) {
+    return NodeFinder(band, disc, search).find();
 }
 
 }  // namespace lensproof
