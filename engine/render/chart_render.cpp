@@ -27,15 +27,17 @@ struct Sample {
     double irradiance = 0.0;  // this sample's estimate, W·m⁻²·nm⁻¹
 };
 
-Sample sample_path(const SeenChart& view, const std::vector<PupilMap>& pupils, const std::array<double, 5>& xi, int u,
-                   int v) {
+Sample sample_path(const SeenChart& view, const PupilMap& pupil, const std::array<double, 5>& xi, int u, int v) {
     const auto count = static_cast<double>(view.strata.size());
     Sample sample{.stratum = static_cast<int>(xi[4] * count)};
     const WavelengthStratum& stratum = view.strata[sample.stratum];
 
     const Vec2d at = view.sensor.position(u - 0.5 + xi[0], v - 0.5 + xi[1]);
-    const PupilMap& pupil = pupils[sample.stratum * pupils.size() / view.strata.size()];
-    const PupilSample in_pupil = pupil.sample(at, xi[2], xi[3]);
+    const double band_position = count > 1.0 ? sample.stratum / (count - 1.0) : 0.0;
+    const PupilSample in_pupil = pupil.sample(at, band_position, xi[2], xi[3]);
+    if (!(in_pupil.density > 0.0)) {
+        return sample;
+    }
     const Vec3d film_point{at.x, at.y, stratum.lens.image_z};
 
     const Vec3d way = Vec3d{in_pupil.point.x, in_pupil.point.y, pupil.plane_z()} - film_point;
@@ -50,8 +52,8 @@ Sample sample_path(const SeenChart& view, const std::vector<PupilMap>& pupils, c
     return sample;
 }
 
-void render_pixel(const SeenChart& view, const std::vector<PupilMap>& pupils, const RenderSettings& settings, int u,
-                  int v, Image& image) {
+void render_pixel(const SeenChart& view, const PupilMap& pupil, const RenderSettings& settings, int u, int v,
+                  Image& image) {
     const PixelSampler sampler(settings.seed, static_cast<std::uint32_t>(v) * static_cast<std::uint32_t>(image.width) +
                                                   static_cast<std::uint32_t>(u));
     const int n = settings.samples_per_pixel;
@@ -62,7 +64,7 @@ void render_pixel(const SeenChart& view, const std::vector<PupilMap>& pupils, co
     std::vector<double> layer_sum(view.layer_nm.size());
     std::vector<int> layer_samples(view.layer_nm.size());
     for (int i = 0; i < n; ++i) {
-        const Sample sample = sample_path(view, pupils, sampler.point(static_cast<std::uint32_t>(i)), u, v);
+        const Sample sample = sample_path(view, pupil, sampler.point(static_cast<std::uint32_t>(i)), u, v);
         const Vec3d& weights = view.strata[sample.stratum].rgb_weights;
         const std::array<double, 3> rgb = {band_nm * sample.irradiance * weights.x,
                                            band_nm * sample.irradiance * weights.y,
@@ -93,7 +95,7 @@ double Sensor::half_diagonal_mm() const {
     return 0.5 * std::hypot(width, height) * pixel_pitch_mm;
 }
 
-Image render_chart(const SeenChart& view, const std::vector<PupilMap>& pupils, const RenderSettings& settings,
+Image render_chart(const SeenChart& view, const PupilMap& pupil, const RenderSettings& settings,
                    const std::function<void(double)>& progress) {
     std::vector<std::string> channels = {"R", "G", "B", "error.R", "error.G", "error.B"};
     for (const double nm : view.layer_nm) {
@@ -104,7 +106,7 @@ Image render_chart(const SeenChart& view, const std::vector<PupilMap>& pupils, c
         image.height, settings.threads,
         [&](int v) {
             for (int u = 0; u < image.width; ++u) {
-                render_pixel(view, pupils, settings, u, v, image);
+                render_pixel(view, pupil, settings, u, v, image);
             }
         },
         [&](int rows) {
