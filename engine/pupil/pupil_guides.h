@@ -1,4 +1,4 @@
-// engine/pupil/pupil_guides.h — finds the nodes around a sensor point fast.
+// engine/pupil/pupil_guides.h — finds the nodes around a place fast.
 #pragma once
 #include <algorithm>
 #include <cmath>
@@ -16,9 +16,9 @@ struct BetweenNodes {
     double t = 0.0;
 };
 
-/// A sensor point at a position in the band among the nodes.
+/// A place at a position in the band among the nodes.
 struct PupilPlace {
-    double cosine = 1.0;  // of the point's azimuth, which turns the frame of its region
+    double cosine = 1.0;  // of its azimuth, which turns the frame of the region
     double sine = 0.0;
     BetweenNodes position{};
     std::size_t share = 0;  // between it and the next, after the share t
@@ -35,15 +35,14 @@ class PupilGuides {
     PupilGuides() = default;
     explicit PupilGuides(const PupilNodes& nodes);
 
-    [[nodiscard]] PupilPlace place(const PupilNodes& nodes, Vec2d sensor_point, double band_position) const {
+    [[nodiscard]] PupilPlace place(const PupilNodes& nodes, Vec2d at, double band_position) const {
         if (nodes.regions.empty()) {
             return {};
         }
         const BetweenNodes position = in_band(nodes, band_position);
-        const double end_mm =
-            (1.0 - position.t) * nodes.ends_mm[position.below] + position.t * nodes.ends_mm[position.above];
-        const double radius = std::sqrt(sensor_point.x * sensor_point.x + sensor_point.y * sensor_point.y);
-        const double share = radius / end_mm;
+        const double end = (1.0 - position.t) * nodes.ends[position.below] + position.t * nodes.ends[position.above];
+        const double radius = std::sqrt(at.x * at.x + at.y * at.y);
+        const double share = radius / end;
         if (!(share <= 1.0)) {
             return {};
         }
@@ -52,14 +51,14 @@ class PupilGuides {
             ++below;
         }
         const double per_radius = radius > 0.0 ? 1.0 / radius : 0.0;
-        return {.cosine = radius > 0.0 ? sensor_point.y * per_radius : 1.0,
-                .sine = sensor_point.x * per_radius,
+        return {.cosine = radius > 0.0 ? at.y * per_radius : 1.0,
+                .sine = at.x * per_radius,
                 .position = position,
                 .share = below,
                 .t = std::clamp((share - nodes.shares[below]) * per_step_[below], 0.0, 1.0),
                 .is_lit = true};
     }
-    [[nodiscard]] static BetweenNodes azimuth(const PupilNodes& nodes, Vec2d sensor_point);
+    [[nodiscard]] static BetweenNodes azimuth(const PupilNodes& nodes, Vec2d at);
 
     /// Of a region.
     [[nodiscard]] const PanelGuide& panels(std::size_t region) const { return panels_[region]; }

@@ -49,8 +49,8 @@ struct Mean {
 
 class NodeFinder {
   public:
-    NodeFinder(const std::vector<TraceLens<double>>& band, const RearDisc& disc, const NodeSearch& search)
-        : search_(search), last_lens_(band.size() - 1), stations_(band, disc, symmetry_of(search)) {
+    NodeFinder(const std::vector<TraceLens<double>>& band, const RayFamily& rays, const NodeSearch& search)
+        : search_(search), last_lens_(band.size() - 1), stations_(band, rays, search.disc, symmetry_of(search)) {
         nodes_.symmetry = symmetry_of(search);
         nodes_.azimuths = search.by_radius ? 1 : kFirstAzimuths;
     }
@@ -60,7 +60,7 @@ class NodeFinder {
         for (int i = 0; i <= kFirstShares; ++i) {
             nodes_.shares.push_back(static_cast<double>(i) / kFirstShares);
         }
-        if (std::ranges::any_of(nodes_.ends_mm, [](double end) { return !(end > 0.0); })) {
+        if (std::ranges::any_of(nodes_.ends, [](double end) { return !(end > 0.0); })) {
             return {};
         }
         do {
@@ -85,10 +85,10 @@ class NodeFinder {
         lenses_ = std::move(lenses);
         // Some wavelengths may end just inside the sensor, others just outside.
         constexpr double kBeyond = 1.1;
-        const double farthest = kBeyond * search_.sensor_radius_mm;
-        nodes_.ends_mm = find_ends(farthest);
-        if (std::ranges::all_of(nodes_.ends_mm, [&](double end) { return end == farthest; })) {
-            std::ranges::fill(nodes_.ends_mm, search_.sensor_radius_mm);
+        const double farthest = kBeyond * search_.end;
+        nodes_.ends = find_ends(farthest);
+        if (std::ranges::all_of(nodes_.ends, [&](double end) { return end == farthest; })) {
+            std::ranges::fill(nodes_.ends, search_.end);
         }
         nodes_.positions.clear();
         for (const std::size_t lens : lenses_) {
@@ -132,15 +132,15 @@ class NodeFinder {
         return lit;
     }
 
-    void add_around(std::size_t lens, double radius_mm, std::vector<PupilStations::Request>& requests) const {
+    void add_around(std::size_t lens, double radius, std::vector<PupilStations::Request>& requests) const {
         for (std::size_t k = 0; k < nodes_.azimuths; ++k) {
-            requests.push_back({.place = {lens, azimuth(k), radius_mm}});
+            requests.push_back({.place = {lens, azimuth(k), radius}});
         }
     }
 
-    [[nodiscard]] bool is_lit(std::size_t lens, double radius_mm) const {
+    [[nodiscard]] bool is_lit(std::size_t lens, double radius) const {
         for (std::size_t k = 0; k < nodes_.azimuths; ++k) {
-            if (is_lit(stations_.find({lens, azimuth(k), radius_mm}))) {
+            if (is_lit(stations_.find({lens, azimuth(k), radius}))) {
                 return true;
             }
         }
@@ -154,7 +154,7 @@ class NodeFinder {
         return static_cast<double>(k % nodes_.azimuths) / static_cast<double>(nodes_.azimuths);
     }
     [[nodiscard]] StationPlace node(std::size_t p, std::size_t k, std::size_t i) const {
-        return {lenses_[p], azimuth(k), nodes_.shares[i] * nodes_.ends_mm[p]};
+        return {lenses_[p], azimuth(k), nodes_.shares[i] * nodes_.ends[p]};
     }
 
     /// Calls see(place, between, neighbours) for each middle between two nodes; `between` without its outline.
@@ -175,11 +175,11 @@ class NodeFinder {
         const std::size_t index = nodes_.index(p, k, i);
         if (i + 1 < nodes_.shares.size()) {
             const StationPlace next = node(p, k, i + 1);
-            see(StationPlace{here.lens, here.azimuth, 0.5 * (here.radius_mm + next.radius_mm)},
+            see(StationPlace{here.lens, here.azimuth, 0.5 * (here.radius + next.radius)},
                 Between{nullptr, index, nodes_.index(p, k, i + 1), 0.5, Axis::radius, p, i}, here, next);
         }
         if (nodes_.azimuths > 1) {
-            see(StationPlace{here.lens, here.azimuth + 0.5 / static_cast<double>(nodes_.azimuths), here.radius_mm},
+            see(StationPlace{here.lens, here.azimuth + 0.5 / static_cast<double>(nodes_.azimuths), here.radius},
                 Between{nullptr, index, nodes_.index(p, (k + 1) % nodes_.azimuths, i), 0.5, Axis::azimuth, p, i}, here,
                 node(p, k + 1, i));
         }
@@ -187,7 +187,7 @@ class NodeFinder {
             const StationPlace next = node(p + 1, k, i);
             const std::size_t lens = (here.lens + next.lens) / 2;
             const double t = static_cast<double>(lens - here.lens) / static_cast<double>(next.lens - here.lens);
-            see(StationPlace{lens, here.azimuth, (1.0 - t) * here.radius_mm + t * next.radius_mm},
+            see(StationPlace{lens, here.azimuth, (1.0 - t) * here.radius + t * next.radius},
                 Between{nullptr, index, nodes_.index(p + 1, k, i), t, Axis::band, p, i}, here, next);
         }
     }
@@ -419,9 +419,13 @@ class NodeFinder {
 
 }  // namespace
 
-PupilNodes find_pupil_nodes(const std::vector<TraceLens<double>>& band, const RearDisc& disc,
-                            const NodeSearch& search) {
-    return NodeFinder(band, disc, search).find();
+PupilNodes find_pupil_nodes(std::vector<TraceLens<double>> band, const RayFamily& rays, const NodeSearch& search) {
+    for (TraceLens<double>& lens : band) {
+        for (SpecialSurface<double>& special : lens.specials) {
+            special.mask = {};
+        }
+    }
+    return NodeFinder(band, rays, search).find();
 }
 
 }  // namespace lensproof

@@ -49,22 +49,10 @@ std::vector<CapPoint> rear_cap(const TraceLens<double>& lens) {
 
 }  // namespace
 
-Vec2d RearDisc::warped(double u, double v) const {
-    const double a = 2.0 * u - 1.0;
-    const double b = 2.0 * v - 1.0;
-    if (a == 0.0 && b == 0.0) {
-        return {};
-    }
-    constexpr double kQuarter = 0.25 * std::numbers::pi;
-    const bool wide = std::abs(a) > std::abs(b);
-    const double distance = radius * (wide ? a : b);
-    const double angle = wide ? kQuarter * b / a : kQuarter * (2.0 - a / b);
-    return {distance * std::cos(angle), distance * std::sin(angle)};
-}
-
 RearDisc rear_disc(const TraceLens<double>& lens, double sensor_radius_mm) {
     const std::vector<CapPoint> cap = rear_cap(lens);
-    RearDisc disc{.plane_z = -std::numeric_limits<double>::infinity()};
+    RearDisc disc;
+    disc.plane_z = -std::numeric_limits<double>::infinity();
     for (const CapPoint& point : cap) {
         disc.plane_z = std::max(disc.plane_z, point.z);
     }
