@@ -67,26 +67,25 @@ double EntranceBeam::solid_angle_per_mm2(Vec2d offset) const {
     return std::isfinite(distance) ? distance / (to_offset2 * std::sqrt(to_offset2)) : 0.0;
 }
 
-EntranceBeam beam_along(const BoundingSphere& front, const Vec3d& direction) {
+EntranceBeam beam_along(const BoundingSphere& front, const Vec3d& direction, double distance_mm) {
     const Vec3d& d = direction;
     const double share = 1.0 / (1.0 + d.z);  // of a turn by θ about (−d_y, d_x, 0): (1 − cos θ) / sin² θ
-    return {.axis = {front.centre, d},
-            .across = {{{1.0 - share * d.x * d.x, -share * d.x * d.y, -d.x},
-                        {-share * d.x * d.y, 1.0 - share * d.y * d.y, -d.y}}},
-            .radius = front.radius};
+    EntranceBeam beam{.axis = {front.centre, d},
+                      .across = {{{1.0 - share * d.x * d.x, -share * d.x * d.y, -d.x},
+                                  {-share * d.x * d.y, 1.0 - share * d.y * d.y, -d.y}}},
+                      .distance = distance_mm,
+                      .radius = front.radius};
+    if (std::isfinite(distance_mm)) {
+        // Where the sphere's tangent cone, whose half angle has the sine radius / distance, crosses the plane.
+        beam.radius *= distance_mm / std::sqrt((distance_mm - front.radius) * (distance_mm + front.radius));
+    }
+    return beam;
 }
 
 std::optional<EntranceBeam> beam_from(const BoundingSphere& front, const Vec3d& point) {
     const Vec3d way = front.centre - point;
     const double distance = length(way);
-    if (!(distance > front.radius)) {
-        return std::nullopt;
-    }
-    EntranceBeam beam = beam_along(front, (1.0 / distance) * way);
-    beam.distance = distance;
-    // The sphere's tangent cone, whose half angle has the sine radius / distance.
-    beam.radius = front.radius * distance / std::sqrt((distance - front.radius) * (distance + front.radius));
-    return beam;
+    return distance > front.radius ? std::optional(beam_along(front, (1.0 / distance) * way, distance)) : std::nullopt;
 }
 
 }  // namespace lensproof

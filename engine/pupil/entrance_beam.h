@@ -39,8 +39,10 @@ struct EntranceBeam {
     [[nodiscard]] double solid_angle_per_mm2(Vec2d offset) const;
 };
 
-/// The light that travels along `direction` (of unit length; field angle θ: {0, sin θ, cos θ}).
-EntranceBeam beam_along(const BoundingSphere& front, const Vec3d& direction);
+/// The light that travels along `direction` (of unit length; field angle θ: {0, sin θ, cos θ}) to the sphere's centre
+/// from `distance_mm` before it, which is more than the sphere's radius.
+EntranceBeam beam_along(const BoundingSphere& front, const Vec3d& direction,
+                        double distance_mm = std::numeric_limits<double>::infinity());
 
 /// The light of a scene point. Nothing where the point lies in the sphere: closer than the front element's own
 /// semi-diameter to the centre of its rim.

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <numbers>
 
 #include "engine/pupil/column_fit.h"
 #include "engine/pupil/pupil_stations.h"
@@ -47,6 +48,26 @@ struct Mean {
     [[nodiscard]] double value() const { return weight > 0.0 ? sum / weight : 0.0; }
 };
 
+PupilSymmetry symmetry_of(const NodeSearch& search) {
+    return search.by_radius ? PupilSymmetry::mirror : PupilSymmetry::none;
+}
+
+void open_stops(std::vector<TraceLens<double>>& band) {
+    for (TraceLens<double>& lens : band) {
+        for (SpecialSurface<double>& special : lens.specials) {
+            special.mask = {};
+        }
+    }
+}
+
+void add_margin(PupilRegion& region, PupilSymmetry symmetry) {
+    double height = 0.0;
+    for (const PupilColumn& column : region.columns) {
+        height = std::max(height, column.upper - column.lower);
+    }
+    grow(region, ColumnGrowth(0.5 * kMargin * height), 1.0, symmetry);
+}
+
 class NodeFinder {
   public:
     NodeFinder(const std::vector<TraceLens<double>>& band, const RayFamily& rays, const NodeSearch& search)
@@ -72,10 +93,6 @@ class NodeFinder {
     }
 
   private:
-    static PupilSymmetry symmetry_of(const NodeSearch& search) {
-        return search.by_radius ? PupilSymmetry::mirror : PupilSymmetry::none;
-    }
-
     // --- Where the light ends ---
 
     /// Lets these lenses stand at the nodes of the band.
@@ -286,11 +303,7 @@ class NodeFinder {
             }
         }
         for (PupilRegion& region : nodes_.regions) {
-            double height = 0.0;
-            for (const PupilColumn& column : region.columns) {
-                height = std::max(height, column.upper - column.lower);
-            }
-            grow(region, ColumnGrowth(0.5 * kMargin * height), 1.0, nodes_.symmetry);
+            add_margin(region, nodes_.symmetry);
         }
     }
 
@@ -420,12 +433,36 @@ class NodeFinder {
 }  // namespace
 
 PupilNodes find_pupil_nodes(std::vector<TraceLens<double>> band, const RayFamily& rays, const NodeSearch& search) {
-    for (TraceLens<double>& lens : band) {
-        for (SpecialSurface<double>& special : lens.specials) {
-            special.mask = {};
-        }
-    }
+    open_stops(band);
     return NodeFinder(band, rays, search).find();
+}
+
+PupilNodes find_pupil_region(std::vector<TraceLens<double>> band, const RayFamily& rays, Vec2d place,
+                             const NodeSearch& search) {
+    open_stops(band);
+    PupilStations stations(band, rays, search.disc, symmetry_of(search));
+    const double azimuth = std::atan2(place.x, place.y) / (2.0 * std::numbers::pi);
+    std::vector<PupilStations::Request> requests;
+    for (std::size_t lens = 0; lens < band.size(); ++lens) {
+        requests.push_back({.place = {lens, azimuth, std::hypot(place.x, place.y)}});
+    }
+    stations.trace(requests);
+    std::vector<PupilOutline> outlines;
+    for (const PupilStations::Request& request : requests) {
+        outlines.push_back(*stations.find(request.place));
+    }
+    if (std::ranges::all_of(outlines, &PupilOutline::is_empty)) {
+        return {};
+    }
+    const Extent extent = extent_of(outlines);
+    PupilRegion region =
+        region_around(outlines, {search.by_radius ? 0.0 : extent.left, extent.right}, symmetry_of(search));
+    add_margin(region, symmetry_of(search));
+    return {.symmetry = symmetry_of(search),
+            .positions = {0.0},
+            .ends = {2.0 * std::hypot(place.x, place.y) + 1.0},
+            .shares = {0.0, 1.0},
+            .regions = {region, region}};
 }
 
 }  // namespace lensproof

@@ -37,4 +37,9 @@ struct NodeSearch {
 /// the full circle, which holds what any blades leave.
 PupilNodes find_pupil_nodes(std::vector<TraceLens<double>> band, const RayFamily& rays, const NodeSearch& search);
 
+/// The region of a single place, for all wavelengths of the band at once and in the form of nodes around it; none where
+/// no light was found.
+PupilNodes find_pupil_region(std::vector<TraceLens<double>> band, const RayFamily& rays, Vec2d place,
+                             const NodeSearch& search);
+
 }  // namespace lensproof
