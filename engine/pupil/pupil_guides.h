@@ -21,6 +21,7 @@ struct PupilPlace {
     double cosine = 1.0;  // of its azimuth, which turns the frame of the region
     double sine = 0.0;
     BetweenNodes position{};
+    BetweenNodes azimuth{};
     std::size_t share = 0;  // between it and the next, after the share t
     double t = 0.0;
     bool is_lit = false;
@@ -40,7 +41,9 @@ class PupilGuides {
             return {};
         }
         const BetweenNodes position = in_band(nodes, band_position);
-        const double end = (1.0 - position.t) * nodes.ends[position.below] + position.t * nodes.ends[position.above];
+        const BetweenNodes azimuth = nodes.azimuths > 1 ? on_turn(nodes.azimuths, at) : BetweenNodes{};
+        const double end = (1.0 - position.t) * end_between(nodes, position.below, azimuth) +
+                           position.t * end_between(nodes, position.above, azimuth);
         const double radius = std::sqrt(at.x * at.x + at.y * at.y);
         const double share = radius / end;
         if (!(share <= 1.0)) {
@@ -54,17 +57,24 @@ class PupilGuides {
         return {.cosine = radius > 0.0 ? at.y * per_radius : 1.0,
                 .sine = at.x * per_radius,
                 .position = position,
+                .azimuth = azimuth,
                 .share = below,
                 .t = std::clamp((share - nodes.shares[below]) * per_step_[below], 0.0, 1.0),
                 .is_lit = true};
     }
-    [[nodiscard]] static BetweenNodes azimuth(const PupilNodes& nodes, Vec2d at);
-
     /// Of a region.
     [[nodiscard]] const PanelGuide& panels(std::size_t region) const { return panels_[region]; }
 
   private:
     static constexpr int kSteps = 1024;
+
+    /// The azimuths around that of a place.
+    [[nodiscard]] static BetweenNodes on_turn(std::size_t azimuths, Vec2d at);
+
+    static double end_between(const PupilNodes& nodes, std::size_t position, const BetweenNodes& azimuth) {
+        const double* ends = &nodes.ends[position * nodes.azimuths];
+        return (1.0 - azimuth.t) * ends[azimuth.below] + azimuth.t * ends[azimuth.above];
+    }
 
     [[nodiscard]] BetweenNodes in_band(const PupilNodes& nodes, double band_position) const {
         if (nodes.positions.size() < 2) {

@@ -1,7 +1,9 @@
 #include "engine/pupil/pupil_map.h"
 
+#include <cmath>
 #include <utility>
 
+#include "engine/io/bytes.h"
 #include "engine/pupil/pupil_stations.h"
 
 namespace lensproof {
@@ -36,6 +38,24 @@ PupilMap::PupilMap(const std::vector<TraceLens<double>>& band, bool by_radius, d
 PupilMap PupilMap::whole_element(const TraceLens<double>& lens, double sensor_radius_mm) {
     const RearDisc disc = rear_disc(lens, sensor_radius_mm);
     return {disc, RegionMap(disc, 1.0, {})};
+}
+
+std::string PupilMap::serialized() const {
+    std::string bytes;
+    append_bytes(bytes, disc_.plane_z);
+    return bytes + regions_.serialized();
+}
+
+std::optional<PupilMap> PupilMap::deserialized(std::string_view bytes) {
+    const std::optional<double> plane_z = take_bytes<double>(bytes);
+    std::optional<RegionMap> regions = plane_z ? RegionMap::deserialized(bytes) : std::nullopt;
+    if (!regions || !std::isfinite(*plane_z)) {
+        return std::nullopt;
+    }
+    RearDisc disc;
+    disc.radius = regions->disc().radius;
+    disc.plane_z = *plane_z;
+    return PupilMap(disc, std::move(*regions));
 }
 
 }  // namespace lensproof

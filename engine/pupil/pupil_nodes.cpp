@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "engine/pupil/column_fit.h"
+#include "engine/pupil/light_end.h"
 #include "engine/pupil/pupil_stations.h"
 
 namespace lensproof {
@@ -14,7 +15,9 @@ namespace {
 
 constexpr int kFirstShares = 16;
 constexpr std::size_t kFirstAzimuths = 4;
-constexpr std::size_t kMostAzimuths = 32;
+constexpr std::size_t kMostAzimuths = 16;
+// Over azimuth too there are so many regions to be traced that they may each be this much larger.
+constexpr double kExcessOverAzimuth = 4.0;
 constexpr std::size_t kMostPositions = 9;
 // A step of the radius below the first counts for little; below the second it is not halved any more.
 constexpr double kSmallStep = 1.0 / 64.0;
@@ -71,7 +74,10 @@ void add_margin(PupilRegion& region, PupilSymmetry symmetry) {
 class NodeFinder {
   public:
     NodeFinder(const std::vector<TraceLens<double>>& band, const RayFamily& rays, const NodeSearch& search)
-        : search_(search), last_lens_(band.size() - 1), stations_(band, rays, search.disc, symmetry_of(search)) {
+        : search_(search),
+          most_excess_((search.by_radius ? 1.0 : kExcessOverAzimuth) * search.most_excess),
+          last_lens_(band.size() - 1),
+          stations_(band, rays, search.disc, symmetry_of(search)) {
         nodes_.symmetry = symmetry_of(search);
         nodes_.azimuths = search.by_radius ? 1 : kFirstAzimuths;
     }
@@ -95,7 +101,7 @@ class NodeFinder {
   private:
     // --- Where the light ends ---
 
-    /// Lets these lenses stand at the nodes of the band.
+    /// Lets these lenses stand at the nodes of the band, and looks where their light ends.
     void set_lenses(std::vector<std::size_t> lenses) {
         const auto repeated = std::ranges::unique(lenses);
         lenses.erase(repeated.begin(), repeated.end());
@@ -103,7 +109,12 @@ class NodeFinder {
         // Some wavelengths may end just inside the sensor, others just outside.
         constexpr double kBeyond = 1.1;
         const double farthest = kBeyond * search_.end;
-        nodes_.ends = find_ends(farthest);
+        std::vector<double> azimuths;
+        for (std::size_t k = 0; k < nodes_.azimuths; ++k) {
+            azimuths.push_back(azimuth(k));
+        }
+        nodes_.ends =
+            light_ends(stations_, lenses_, {.farthest = farthest, .precision = kSmallestStep, .azimuths = azimuths});
         if (std::ranges::all_of(nodes_.ends, [&](double end) { return end == farthest; })) {
             std::ranges::fill(nodes_.ends, search_.end);
         }
@@ -117,52 +128,6 @@ class NodeFinder {
         return last_lens_ > 0 ? static_cast<double>(lens) / static_cast<double>(last_lens_) : 0.0;
     }
 
-    /// The last radius that is lit, for each lens, up to `farthest`.
-    std::vector<double> find_ends(double farthest) {
-        constexpr int kFirstRadii = 16;
-        std::vector<PupilStations::Request> requests;
-        for (const std::size_t lens : lenses_) {
-            for (int i = 0; i <= kFirstRadii; ++i) {
-                add_around(lens, farthest * i / kFirstRadii, requests);
-            }
-        }
-        stations_.trace(requests);
-        std::vector<double> lit(lenses_.size(), 0.0);
-        std::vector<double> dark(lenses_.size(), farthest);
-        for (std::size_t p = 0; p < lenses_.size(); ++p) {
-            for (int i = 0; i <= kFirstRadii; ++i) {
-                lit[p] = is_lit(lenses_[p], farthest * i / kFirstRadii) ? farthest * i / kFirstRadii : lit[p];
-            }
-            dark[p] = std::min(farthest, lit[p] + farthest / kFirstRadii);
-        }
-        for (double step = 1.0 / kFirstRadii; step > kSmallestStep; step *= 0.5) {
-            requests.clear();
-            for (std::size_t p = 0; p < lenses_.size(); ++p) {
-                add_around(lenses_[p], 0.5 * (lit[p] + dark[p]), requests);
-            }
-            stations_.trace(requests);
-            for (std::size_t p = 0; p < lenses_.size(); ++p) {
-                const double middle = 0.5 * (lit[p] + dark[p]);
-                (is_lit(lenses_[p], middle) ? lit[p] : dark[p]) = middle;
-            }
-        }
-        return lit;
-    }
-
-    void add_around(std::size_t lens, double radius, std::vector<PupilStations::Request>& requests) const {
-        for (std::size_t k = 0; k < nodes_.azimuths; ++k) {
-            requests.push_back({.place = {lens, azimuth(k), radius}});
-        }
-    }
-
-    [[nodiscard]] bool is_lit(std::size_t lens, double radius) const {
-        for (std::size_t k = 0; k < nodes_.azimuths; ++k) {
-            if (is_lit(stations_.find({lens, azimuth(k), radius}))) {
-                return true;
-            }
-        }
-        return false;
-    }
     static bool is_lit(const PupilOutline* outline) { return outline != nullptr && !outline->is_empty(); }
 
     // --- Nodes and middles ---
@@ -171,7 +136,7 @@ class NodeFinder {
         return static_cast<double>(k % nodes_.azimuths) / static_cast<double>(nodes_.azimuths);
     }
     [[nodiscard]] StationPlace node(std::size_t p, std::size_t k, std::size_t i) const {
-        return {lenses_[p], azimuth(k), nodes_.shares[i] * nodes_.ends[p]};
+        return {lenses_[p], azimuth(k), nodes_.shares[i] * nodes_.ends[p * nodes_.azimuths + k % nodes_.azimuths]};
     }
 
     /// Calls see(place, between, neighbours) for each middle between two nodes; `between` without its outline.
@@ -196,9 +161,11 @@ class NodeFinder {
                 Between{nullptr, index, nodes_.index(p, k, i + 1), 0.5, Axis::radius, p, i}, here, next);
         }
         if (nodes_.azimuths > 1) {
-            see(StationPlace{here.lens, here.azimuth + 0.5 / static_cast<double>(nodes_.azimuths), here.radius},
+            const StationPlace next = node(p, k + 1, i);
+            see(StationPlace{here.lens, here.azimuth + 0.5 / static_cast<double>(nodes_.azimuths),
+                             0.5 * (here.radius + next.radius)},
                 Between{nullptr, index, nodes_.index(p, (k + 1) % nodes_.azimuths, i), 0.5, Axis::azimuth, p, i}, here,
-                node(p, k + 1, i));
+                next);
         }
         if (p + 1 < lenses_.size() && lenses_[p + 1] > lenses_[p] + 1) {
             const StationPlace next = node(p + 1, k, i);
@@ -234,7 +201,7 @@ class NodeFinder {
             finer.push_back(nodes_.shares[i]);
             if (i + 1 < nodes_.shares.size()) {
                 const double step = nodes_.shares[i + 1] - nodes_.shares[i];
-                if (share_excess_[i] > search_.most_excess * std::max(1.0, kSmallStep / step) && step > kSmallestStep) {
+                if (share_excess_[i] > most_excess_ * std::max(1.0, kSmallStep / step) && step > kSmallestStep) {
                     finer.push_back(0.5 * (nodes_.shares[i] + nodes_.shares[i + 1]));
                 }
             }
@@ -245,10 +212,11 @@ class NodeFinder {
     }
 
     bool split_azimuths() {
-        if (!(azimuth_excess_ > search_.most_excess) || nodes_.azimuths >= kMostAzimuths) {
+        if (!(azimuth_excess_ > most_excess_) || nodes_.azimuths >= kMostAzimuths) {
             return false;
         }
         nodes_.azimuths *= 2;
+        set_lenses(lenses_);
         return true;
     }
 
@@ -256,7 +224,7 @@ class NodeFinder {
         std::vector<std::size_t> finer;
         for (std::size_t p = 0; p < lenses_.size(); ++p) {
             finer.push_back(lenses_[p]);
-            if (p + 1 < lenses_.size() && band_excess_[p] > search_.most_excess && lenses_[p + 1] > lenses_[p] + 1) {
+            if (p + 1 < lenses_.size() && band_excess_[p] > most_excess_ && lenses_[p + 1] > lenses_[p] + 1) {
                 finer.push_back((lenses_[p] + lenses_[p + 1]) / 2);
             }
         }
@@ -420,6 +388,7 @@ class NodeFinder {
     }
 
     const NodeSearch& search_;
+    double most_excess_;
     std::size_t last_lens_;
     PupilStations stations_;
     std::vector<std::size_t> lenses_;  // at the nodes of the band

@@ -15,7 +15,7 @@ struct PupilNodes {
     PupilSymmetry symmetry = PupilSymmetry::mirror;
     std::size_t azimuths = 1;       // evenly spread, from +y towards +x
     std::vector<double> positions;  // in the band, rising from 0 to 1
-    std::vector<double> ends;       // radii, at each position: the light ends there, or the search did
+    std::vector<double> ends;       // radii, where the light or the search ends, at [position · azimuths + azimuth]
     std::vector<double> shares;     // of the end: rising from 0 to 1. None: no light at all
     std::vector<PupilRegion> regions;
 

@@ -2,8 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numbers>
+
+#include "engine/pupil/polygon.h"
 
 namespace lensproof {
 
@@ -15,15 +16,8 @@ constexpr double kCornerShare = 5e-5;  // of the region's area: what a corner ma
 constexpr int kCornerRounds = 8;
 constexpr int kCoarseAzimuths = 16;  // over the half plane x ≥ 0
 constexpr int kFineAzimuths = 48;
+constexpr int kFineAzimuthsOfWhole = 32;  // where there is no mirror image to be spared
 constexpr int kGrid = 32;
-
-double cross(Vec2d a, Vec2d b) {
-    return a.x * b.y - a.y * b.x;
-}
-
-Vec2d minus(Vec2d a, Vec2d b) {
-    return {a.x - b.x, a.y - b.y};
-}
 
 /// A ray from a region's centre, in its frame, and where it leaves the region: between `inside` and `outside`, which
 /// are first guessed.
@@ -45,30 +39,6 @@ struct Found {
     std::vector<EdgeRay> rays;  // by rising azimuth
 };
 
-/// Triangle over the side p q that the sides next to it, drawn on, meet in.
-struct Apex {
-    Vec2d point;
-    double area = 0.0;
-    bool exists = false;
-};
-
-Apex apex_over(Vec2d before, Vec2d p, Vec2d q, Vec2d after) {
-    const Vec2d along = minus(p, before);
-    const Vec2d back = minus(q, after);
-    const Vec2d side = minus(q, p);
-    if (!(cross(along, side) > 0.0 && cross(side, minus(after, q)) > 0.0)) {
-        return {};  // not convex here: the side itself bounds the region
-    }
-    // p + s along = q + t back, with s, t > 0 unless the outline turns by more than half a circle.
-    const double determinant = cross(along, back);
-    const double s = cross(side, back) / determinant;
-    if (!(determinant < 0.0 || determinant > 0.0) || !(s > 0.0)) {
-        return {.point = {}, .area = std::numeric_limits<double>::infinity(), .exists = false};
-    }
-    const Vec2d apex{p.x + s * along.x, p.y + s * along.y};
-    return {.point = apex, .area = 0.5 * std::abs(cross(side, minus(apex, p))), .exists = true};
-}
-
 class OutlineFinder {
   public:
     OutlineFinder(const PassTest& passes, const OutlineSearch& search)
@@ -84,7 +54,7 @@ class OutlineFinder {
         for (Found& found : found_) {
             all.push_back(&found);
         }
-        spread_rays(all, kFineAzimuths, 0.8, 1.25);
+        spread_rays(all, is_mirror_ ? kFineAzimuths : kFineAzimuthsOfWhole, 0.8, 1.25);
         for (int round = 0; round < kCornerRounds && look_at_corners(); ++round) {
         }
         std::vector<PupilOutline> outlines(expected.size());
@@ -356,8 +326,8 @@ class OutlineFinder {
             const std::vector<Vec2d> points = edge_points(found);
             double twice_area = 0.0;
             for (std::size_t i = 0; i < sides(found); ++i) {
-                twice_area += cross(minus(points[i], found.frame.centre),
-                                    minus(points[(i + 1) % points.size()], found.frame.centre));
+                twice_area += cross(from_to(found.frame.centre, points[i]),
+                                    from_to(found.frame.centre, points[(i + 1) % points.size()]));
             }
             std::vector<EdgeRay> rays;
             std::vector<std::size_t> added;
@@ -405,21 +375,6 @@ class OutlineFinder {
 };
 
 }  // namespace
-
-std::optional<Span> span_at(std::span<const Vec2d> polygon, double x) {
-    std::optional<Span> span;
-    for (std::size_t i = 0; i < polygon.size(); ++i) {
-        const Vec2d p = polygon[i];
-        const Vec2d q = polygon[(i + 1) % polygon.size()];
-        if ((p.x > x && q.x > x) || (p.x < x && q.x < x)) {
-            continue;
-        }
-        const double y = p.y + (x - p.x) / (q.x - p.x) * (q.y - p.y);
-        const Span here = p.x == q.x ? Span{std::min(p.y, q.y), std::max(p.y, q.y)} : Span{y, y};
-        span = span ? Span{std::min(span->lower, here.lower), std::max(span->upper, here.upper)} : here;
-    }
-    return span;
-}
 
 std::vector<PupilOutline> pupil_outlines(const PassTest& passes, std::span<const std::optional<PupilFrame>> expected,
                                          const OutlineSearch& search) {

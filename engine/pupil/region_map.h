@@ -1,5 +1,9 @@
 // engine/pupil/region_map.h — draws points of a plane from regions that change with place and wavelength.
 #pragma once
+#include <optional>
+#include <string>
+#include <string_view>
+
 #include "engine/pupil/disc.h"
 #include "engine/pupil/pupil_guides.h"
 
@@ -31,12 +35,17 @@ class RegionMap {
     /// The region's, mm²; 0 where there is none.
     [[nodiscard]] double area(Vec2d at, double band_position) const;
 
+    /// All of it as bytes, numbers as they lie in memory.
+    [[nodiscard]] std::string serialized() const;
+    /// Nothing where the bytes are not those of a map. Damage that leaves every number in its range is not seen.
+    static std::optional<RegionMap> deserialized(std::string_view bytes);
+
     [[nodiscard]] const Disc& disc() const { return disc_; }
     [[nodiscard]] const PupilNodes& nodes() const { return nodes_; }
 
   private:
     /// Of what `sample` draws from the region alone.
-    [[nodiscard]] double region_density(const PupilPlace& place, Vec2d at, Vec2d point) const;
+    [[nodiscard]] double region_density(const PupilPlace& place, Vec2d point) const;
 
     Disc disc_;
     double defensive_share_;
