@@ -1,10 +1,12 @@
 #include "engine/pupil/entrance_map.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <utility>
 
+#include "engine/io/bytes.h"
 #include "engine/pupil/pupil_nodes.h"
 
 namespace lensproof {
@@ -92,6 +94,28 @@ double EntranceMap::region_area(const EntranceBeam& beam, double band_position) 
 double EntranceMap::largest_angle() const {
     const std::vector<double>& ends = regions_.nodes().ends;
     return ends.empty() ? 0.0 : std::ranges::max(ends);
+}
+
+std::string EntranceMap::serialized() const {
+    std::string bytes;
+    append_bytes(bytes, front_.centre.x, front_.centre.y, front_.centre.z, front_.radius, distance_mm_);
+    return bytes + regions_.serialized();
+}
+
+std::optional<EntranceMap> EntranceMap::deserialized(std::string_view bytes) {
+    std::array<double, 5> numbers{};
+    for (double& number : numbers) {
+        const std::optional<double> taken = take_bytes<double>(bytes);
+        if (!taken || std::isnan(*taken)) {
+            return std::nullopt;
+        }
+        number = *taken;
+    }
+    const auto& [x, y, z, radius, distance_mm] = numbers;
+    const bool is_sound =
+        std::isfinite(x) && std::isfinite(y) && std::isfinite(z) && radius > 0.0 && distance_mm > radius;
+    std::optional<RegionMap> regions = is_sound ? RegionMap::deserialized(bytes) : std::nullopt;
+    return regions ? std::optional(EntranceMap({{x, y, z}, radius}, distance_mm, *std::move(regions))) : std::nullopt;
 }
 
 EntranceRegion::EntranceRegion(const std::vector<TraceLens<double>>& band, bool by_angle, const EntranceBeam& beam,

@@ -2,6 +2,8 @@
 #pragma once
 #include <limits>
 #include <optional>
+#include <string>
+#include <string_view>
 #include <vector>
 
 #include "engine/pupil/entrance_beam.h"
@@ -52,6 +54,10 @@ class EntranceMap {
 
     /// The largest field angle that light was found at in the band, rad; 0 where there is none.
     [[nodiscard]] double largest_angle() const;
+
+    /// All of it as bytes, and back, as PupilMap has it.
+    [[nodiscard]] std::string serialized() const;
+    static std::optional<EntranceMap> deserialized(std::string_view bytes);
 
   private:
     EntranceMap(const BoundingSphere& front, double distance_mm, RegionMap regions);
