@@ -115,6 +115,8 @@ class OutlineFinder {
         }
         const std::vector<std::uint8_t>& inside = ask(grid);
         const std::size_t points_per_box = static_cast<std::size_t>(kGrid - first_column) * kGrid;
+        std::vector<PupilFrame> frames;
+        std::vector<RegionPoint> centres;
         for (std::size_t b = 0; b < boxes.size(); ++b) {
             std::vector<Vec2d> hits;
             for (std::size_t i = b * points_per_box; i < (b + 1) * points_per_box; ++i) {
@@ -124,13 +126,27 @@ class OutlineFinder {
             }
             const auto& [region, box] = boxes[b];
             const Vec2d cell{2.0 * kMargin * box.scale.x / kGrid, 2.0 * kMargin * box.scale.y / kGrid};
-            if (!hits.empty()) {
-                found_.push_back({.region = region, .frame = frame_of(hits, cell), .is_settled = false, .rays = {}});
+            frames.push_back(hits.empty() ? PupilFrame{.centre = {}, .scale = cell} : frame_of(hits, cell));
+            centres.push_back({region, frames.back().centre});
+        }
+        add_around_centres(centres, frames);
+    }
+
+    /// Adds regions by frames whose centres lie inside. Where one does not, as between the ends of a bent strip, the
+    /// closer look may find another.
+    void add_around_centres(const std::vector<RegionPoint>& centres, std::vector<PupilFrame>& frames) {
+        const std::vector<std::uint8_t>& inside = ask(centres);
+        for (std::size_t i = 0; i < centres.size(); ++i) {
+            const int region = centres[i].region;
+            std::optional<Vec2d> centre;
+            if (inside[i] != 0) {
+                centre = centres[i].point;
             } else if (search_.look_closer) {
-                if (const std::optional<Vec2d> seed = search_.look_closer(region)) {
-                    found_.push_back(
-                        {.region = region, .frame = {.centre = *seed, .scale = cell}, .is_settled = false, .rays = {}});
-                }
+                centre = search_.look_closer(region);
+            }
+            if (centre) {
+                frames[i].centre = *centre;
+                found_.push_back({.region = region, .frame = frames[i], .is_settled = false, .rays = {}});
             }
         }
     }
