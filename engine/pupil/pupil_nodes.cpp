@@ -103,8 +103,7 @@ class NodeFinder {
 
     /// Lets these lenses stand at the nodes of the band, and looks where their light ends.
     void set_lenses(std::vector<std::size_t> lenses) {
-        const auto repeated = std::ranges::unique(lenses);
-        lenses.erase(repeated.begin(), repeated.end());
+        lenses.erase(std::unique(lenses.begin(), lenses.end()), lenses.end());
         lenses_ = std::move(lenses);
         // Some wavelengths may end just inside the sensor, others just outside.
         constexpr double kBeyond = 1.1;
@@ -308,9 +307,8 @@ class NodeFinder {
     /// Regions around the nodes' own outlines, as wide as the middles need.
     void set_own_regions(const std::vector<const PupilOutline*>& outlines, const std::vector<Between>& middles) {
         std::vector<Extent> extents;
-        for (const PupilOutline* outline : outlines) {
-            extents.push_back(own_extent(*outline));
-        }
+        std::ranges::transform(outlines, std::back_inserter(extents),
+                               [&](const PupilOutline* outline) { return own_extent(*outline); });
         std::array<std::vector<Extent>, kAxes> more;  // to be added
         more.fill(std::vector<Extent>(extents.size(), {0.0, 0.0}));
         for (const Between& middle : middles) {

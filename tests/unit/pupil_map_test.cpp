@@ -19,6 +19,7 @@ namespace {
 
 std::vector<TraceLens<double>> band_of(const Lens& lens, const std::vector<double>& wavelengths_nm) {
     std::vector<TraceLens<double>> band;
+    band.reserve(wavelengths_nm.size());
     for (const double nm : wavelengths_nm) {
         band.push_back(at_wavelength<double>(lens, nm));
     }

@@ -129,6 +129,7 @@ TEST(PupilRegion, DrawsEvenly) {
 TEST(PupilRegion, PointsFollowTheArea) {
     constexpr int kColumns = 24;
     constexpr int kParts = 4;
+    constexpr int kCells = kColumns * kParts;
     constexpr int kPoints = 200000;
     for (const Case& c : cases()) {
         const BlendedRegion<1> region = alone(c);
@@ -152,7 +153,7 @@ TEST(PupilRegion, PointsFollowTheArea) {
             share[i / 1000] += upper - lower;
             sum += upper - lower;
         }
-        std::vector<int> count(kColumns * kParts, 0);
+        std::vector<int> count(kCells, 0);
         std::mt19937_64 random(7);
         std::uniform_real_distribution<double> uniform(0.0, 1.0);
         const PanelGuide guide = panel_guide(c.region);
@@ -165,11 +166,11 @@ TEST(PupilRegion, PointsFollowTheArea) {
             ++count[column * kParts + part];
         }
         double chi2 = 0.0;
-        for (int i = 0; i < kColumns * kParts; ++i) {
+        for (int i = 0; i < kCells; ++i) {
             const double expected = kPoints * share[i / kParts] / sum / kParts;
             chi2 += std::pow(count[i] - expected, 2) / expected;
         }
-        constexpr double kDegrees = kColumns * kParts - 1;
+        constexpr double kDegrees = kCells - 1;
         EXPECT_LT(chi2, kDegrees + 5.0 * std::sqrt(2.0 * kDegrees)) << c.name;
         EXPECT_GT(chi2, kDegrees - 5.0 * std::sqrt(2.0 * kDegrees)) << c.name;
     }
