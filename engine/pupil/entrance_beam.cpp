@@ -5,26 +5,16 @@
 #include <numbers>
 
 #include "engine/optics/field_bundle.h"
+#include "engine/pupil/surface_cap.h"
 
 namespace lensproof {
 
 namespace {
 
-/// Where the surface ends: at its rim, or at the equator of an ellipsoid that is smaller.
-double outermost_radius(const SurfaceShape<double>& shape, double semi_diameter) {
-    const double bulge = (1.0 + shape.conic) * shape.curvature * shape.curvature;
-    return bulge > 0.0 ? std::min(semi_diameter, 1.0 / std::sqrt(bulge)) : semi_diameter;
-}
-
 /// About the rim's centre, in the surface's own axes.
-BoundingSphere own_sphere(const SurfaceShape<double>& shape, double semi_diameter) {
-    const double rim = outermost_radius(shape, semi_diameter);
-    // At an equator the sag has a square root in it; half the digits are left of what is within rounding of it.
-    const auto sag_at = [&](double x, double y) {
-        const double there = sag(shape, x, y);
-        return std::isfinite(there) ? there : sag(shape, (1.0 - 1e-12) * x, (1.0 - 1e-12) * y);
-    };
-    BoundingSphere sphere{.centre = {0.0, 0.0, sag_at(rim, 0.0)}, .radius = rim};
+BoundingSphere own_sphere(const SurfaceCap& cap) {
+    const auto& [shape, rim] = cap;
+    BoundingSphere sphere{.centre = {0.0, 0.0, sag(shape, rim, 0.0)}, .radius = rim};
     if (shape.is_conic() && shape.conic == 0.0) {
         return sphere;
     }
@@ -35,7 +25,7 @@ BoundingSphere own_sphere(const SurfaceShape<double>& shape, double semi_diamete
         const double radius = rim * std::sin(0.5 * std::numbers::pi * i / kCells);
         for (int k = 0; k <= kCells; ++k) {
             const double azimuth = 0.5 * std::numbers::pi * k / kCells;
-            const double z = sag_at(radius * std::cos(azimuth), radius * std::sin(azimuth));
+            const double z = sag(shape, radius * std::cos(azimuth), radius * std::sin(azimuth));
             farthest = std::max(farthest, std::hypot(radius, std::isfinite(z) ? z - sphere.centre.z : 0.0));
         }
     }
@@ -48,9 +38,7 @@ BoundingSphere own_sphere(const SurfaceShape<double>& shape, double semi_diamete
 BoundingSphere front_sphere(const TraceLens<double>& lens) {
     const TraceSurface<double>& front = lens.surfaces.front();
     const SpecialSurface<double>* special = front.special >= 0 ? &lens.specials[front.special] : nullptr;
-    const SurfaceShape<double> shape =
-        special != nullptr && special->has_shape ? special->shape : SurfaceShape<double>{.curvature = front.curvature};
-    BoundingSphere sphere = own_sphere(shape, std::sqrt(front.semi_diameter_squared));
+    BoundingSphere sphere = own_sphere(surface_cap(lens, front));
     if (special != nullptr) {
         sphere.centre = special->from_own(sphere.centre) + Vec3d{special->vertex.x, special->vertex.y, 0.0};
     }

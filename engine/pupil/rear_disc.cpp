@@ -5,6 +5,8 @@
 #include <limits>
 #include <vector>
 
+#include "engine/pupil/surface_cap.h"
+
 namespace lensproof {
 
 namespace {
@@ -24,12 +26,7 @@ struct CapPoint {
 std::vector<CapPoint> rear_cap(const TraceLens<double>& lens) {
     const TraceSurface<double>& rear = lens.surfaces.back();
     const SpecialSurface<double>* special = rear.special >= 0 ? &lens.specials[rear.special] : nullptr;
-    const SurfaceShape<double> shape =
-        special != nullptr && special->has_shape ? special->shape : SurfaceShape<double>{.curvature = rear.curvature};
-    // Beyond an ellipsoid's equator there is no surface on the vertex's side.
-    const double across = (1.0 + shape.conic) * shape.curvature * shape.curvature;
-    const double equator = across > 0.0 ? 1.0 / std::sqrt(across) : std::numeric_limits<double>::infinity();
-    const double rim = std::min(std::sqrt(rear.semi_diameter_squared), (1.0 - 1e-12) * equator);
+    const auto [shape, rim] = surface_cap(lens, rear);
     std::vector<CapPoint> cap;
     for (int ring = 0; ring <= kRings; ++ring) {
         for (int i = 0; i < kAzimuths; ++i) {

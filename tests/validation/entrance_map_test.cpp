@@ -6,15 +6,20 @@
 
 #include <array>
 #include <cmath>
+#include <filesystem>
+#include <limits>
 #include <numbers>
 #include <string>
 #include <vector>
 
 #include "engine/analysis/beam_outline.h"
+#include "engine/io/file.h"
+#include "engine/io/prescription/prescription_file.h"
 #include "engine/optics/focus.h"
+#include "engine/optics/rim_margin.h"
 #include "engine/pupil/pupil_map.h"
 #include "engine/render/sampler.h"
-#include "engine/spectral/wavelengths.h"
+#include "tests/test_folder.h"
 
 namespace lensproof {
 namespace {
@@ -105,6 +110,12 @@ double flux_by_quadrature(const TraceLens<double>& lens, const FieldBundle& bund
     return flux;
 }
 
+/// Of the beam that passes the rims, mm².
+double outline_area(const Band& band, const EntranceBeam& beam) {
+    const Region region = [&](Vec2d offset) { return rim_margin(band.seen(), beam.ray(offset), Direction::forward); };
+    return region_outline(region, {.start = {}, .reach = beam.radius}).area;
+}
+
 // Flux through the lens from a direction: regions against the outline's quadrature, which is exact to 1e-6 or so, to
 // five standard errors of at most 0.02 %; on the axis, where a stop or a rim is about to cut, and where the last light
 // enters. Between nodes of field angle and wavelength. The widest fisheye at 100°, too: its light comes from behind.
@@ -151,7 +162,7 @@ TEST(EntranceMap, SendsWhatTheWholeElementSends) {
                 });
             };
             const Estimate flux = flux_of(map, 1 << 13);
-            const Estimate baseline = flux_of(whole, 1 << 16);
+            const Estimate baseline = flux_of(whole, 1 << 15);
             EXPECT_NEAR(flux.mean, baseline.mean, 5.0 * std::hypot(flux.sigma, baseline.sigma)) << setting.lens;
             if (map.region_area(map.beam(way), Band::kPosition) > 0.05 * kPi * std::pow(whole.beam(way).radius, 2)) {
                 EXPECT_LT(baseline.sigma, 1e-3 * baseline.mean) << setting.lens << " at " << share;
@@ -257,6 +268,59 @@ TEST(EntranceMap, SendsANearPointsFlux) {
         };
         check([&](double u, double v) { return region.sample(u, v); }, "region");
         check([&](double u, double v) { return map.sample(beam, Band::kPosition, u, v); }, "map");
+    }
+}
+
+// A lens that is not round: its front group is tilted and decentred. On every side the map over azimuth and the region
+// for one direction send what the whole element sends, to five standard errors of the difference, of 0.1 % at most, and
+// nine in ten rays pass.
+TEST(EntranceMap, KnowsLensesThatAreNotRound) {
+    const TestFolder folder;
+    const std::filesystem::path file = folder.path() / "tilted.toml";
+    write_file(file, read_file(find_lens_file("double-gauss-tronnier")) +
+                         "[[groups]]\nsurfaces = [1, 5]\ntilt_deg = [0.3, 0.4, 0]\ndecentre_mm = [0.2, 0]\n");
+    const Band band = band_of(with_f_number(load_lens(file.string()), 2.0));
+    ASSERT_FALSE(band.lens.is_rotationally_symmetric);
+    const EntranceMap map(band.at, false);
+    const EntranceMap whole = EntranceMap::whole_element(band.seen());
+    for (const double azimuth : {0.0, 1.0, 2.5, 4.0, 5.9}) {
+        const double angle = 0.3 * map.largest_angle();
+        const Vec3d way{std::sin(angle) * std::sin(azimuth), std::sin(angle) * std::cos(azimuth), std::cos(angle)};
+        const EntranceBeam beam = map.beam(way);
+        const EntranceRegion region(band.at, false, beam);
+        const auto flux_of = [&](int samples_each, const auto& sample_at) {
+            return estimate(samples_each,
+                            [&](const auto& xi) { return passing(band.seen(), sample_at(xi[0], xi[1])); });
+        };
+        const Estimate baseline =
+            flux_of(1 << 14, [&](double u, double v) { return whole.sample(beam, Band::kPosition, u, v); });
+        const Estimate by_map =
+            flux_of(1 << 13, [&](double u, double v) { return map.sample(beam, Band::kPosition, u, v); });
+        const Estimate by_region = flux_of(1 << 13, [&](double u, double v) { return region.sample(u, v); });
+        EXPECT_LT(baseline.sigma, 1e-3 * baseline.mean);
+        EXPECT_NEAR(by_map.mean, baseline.mean, 5.0 * std::hypot(baseline.sigma, by_map.sigma)) << azimuth;
+        EXPECT_NEAR(by_region.mean, baseline.mean, 5.0 * std::hypot(baseline.sigma, by_region.sigma)) << azimuth;
+        const double beam_area = outline_area(band, beam);
+        EXPECT_LT(map.region_area(beam, Band::kPosition), beam_area / 0.9) << azimuth;
+        EXPECT_LT(region.area(), beam_area / 0.9) << azimuth;
+    }
+}
+
+// A region that is wrong costs noise and no light: of the f/8 lens's regions, the lens at f/2 gets its whole flux.
+TEST(EntranceMap, WrongRegionsLoseNoLight) {
+    const Band wide = band_of(Setting{"double-gauss-tronnier", 2.0});
+    const EntranceMap narrow(band_of(Setting{"double-gauss-tronnier", 8.0}).at, true,
+                             std::numeric_limits<double>::infinity(), {.defensive_share = 0.5});
+    const ChiefRays chief_rays = wide.chief_rays();
+    for (const double angle : {0.0, 0.2, 0.4}) {
+        const EntranceBeam beam = narrow.beam(way_at(angle));
+        const Estimate flux = estimate(1 << 13, [&](const auto& xi) {
+            return passing(wide.seen(), narrow.sample(beam, Band::kPosition, xi[0], xi[1]));
+        });
+        const double expected = flux_by_quadrature(wide.seen(), field_bundle(chief_rays, chief_rays, angle).value());
+        EXPECT_LT(flux.sigma, 2e-3 * expected);
+        EXPECT_NEAR(flux.mean, expected, 5.0 * flux.sigma) << angle;
+        EXPECT_LT(narrow.region_area(beam, Band::kPosition), 0.7 * expected) << "too small for it";
     }
 }
 
