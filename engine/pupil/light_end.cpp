@@ -8,7 +8,7 @@ namespace {
 
 constexpr int kFirstRadii = 16;
 
-/// Between which radii the light ends, mm.
+/// Between which radii the light ends.
 struct Bracket {
     StationPlace place;  // its radius is of no account
     double lit;
@@ -17,8 +17,8 @@ struct Bracket {
     [[nodiscard]] double middle() const { return 0.5 * (lit + dark); }
 };
 
-StationPlace at_radius(StationPlace place, double radius_mm) {
-    place.radius_mm = radius_mm;
+StationPlace at_radius(StationPlace place, double radius) {
+    place.radius = radius;
     return place;
 }
 
@@ -31,7 +31,7 @@ bool is_lit(const PupilStations& stations, const StationPlace& place) {
 
 std::vector<double> light_ends(PupilStations& stations, const std::vector<std::size_t>& lenses,
                                const LightEndSearch& search) {
-    const auto radius = [&](int i) { return search.farthest_mm * i / kFirstRadii; };
+    const auto radius = [&](int i) { return search.farthest * i / kFirstRadii; };
     std::vector<Bracket> brackets;
     std::vector<PupilStations::Request> requests;
     for (const std::size_t lens : lenses) {

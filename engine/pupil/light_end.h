@@ -1,4 +1,4 @@
-// engine/pupil/light_end.h — how far from the axis light reaches a sensor.
+// engine/pupil/light_end.h — up to which radius places are lit.
 #pragma once
 #include <vector>
 
@@ -8,12 +8,12 @@ namespace lensproof {
 
 /// Where it is looked for.
 struct LightEndSearch {
-    double farthest_mm = 0.0;
+    double farthest = 0.0;
     double precision = 0.0;        // as a share of that
     std::vector<double> azimuths;  // as shares of a turn
 };
 
-/// Of each of these lenses of the band, azimuth by azimuth, the last radius that light reaches: `farthest_mm` itself,
+/// Of each of these lenses of the band, azimuth by azimuth, the last radius that is lit: `farthest` itself,
 /// or a radius that is lit, with darkness a precision farther out. 0: no light at all.
 std::vector<double> light_ends(PupilStations& stations, const std::vector<std::size_t>& lenses,
                                const LightEndSearch& search);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <numbers>
 
 #include "engine/pupil/column_fit.h"
 #include "engine/pupil/light_end.h"
@@ -50,13 +51,33 @@ struct Mean {
     [[nodiscard]] double value() const { return weight > 0.0 ? sum / weight : 0.0; }
 };
 
+PupilSymmetry symmetry_of(const NodeSearch& search) {
+    return search.by_radius ? PupilSymmetry::mirror : PupilSymmetry::none;
+}
+
+void open_stops(std::vector<TraceLens<double>>& band) {
+    for (TraceLens<double>& lens : band) {
+        for (SpecialSurface<double>& special : lens.specials) {
+            special.mask = {};
+        }
+    }
+}
+
+void add_margin(PupilRegion& region, PupilSymmetry symmetry) {
+    double height = 0.0;
+    for (const PupilColumn& column : region.columns) {
+        height = std::max(height, column.upper - column.lower);
+    }
+    grow(region, ColumnGrowth(0.5 * kMargin * height), 1.0, symmetry);
+}
+
 class NodeFinder {
   public:
-    NodeFinder(const std::vector<TraceLens<double>>& band, const RearDisc& disc, const NodeSearch& search)
+    NodeFinder(const std::vector<TraceLens<double>>& band, const RayFamily& rays, const NodeSearch& search)
         : search_(search),
           most_excess_((search.by_radius ? 1.0 : kExcessOverAzimuth) * search.most_excess),
           last_lens_(band.size() - 1),
-          stations_(band, disc, symmetry_of(search)) {
+          stations_(band, rays, search.disc, symmetry_of(search)) {
         nodes_.symmetry = symmetry_of(search);
         nodes_.azimuths = search.by_radius ? 1 : kFirstAzimuths;
     }
@@ -66,7 +87,7 @@ class NodeFinder {
         for (int i = 0; i <= kFirstShares; ++i) {
             nodes_.shares.push_back(static_cast<double>(i) / kFirstShares);
         }
-        if (std::ranges::any_of(nodes_.ends_mm, [](double end) { return !(end > 0.0); })) {
+        if (std::ranges::any_of(nodes_.ends, [](double end) { return !(end > 0.0); })) {
             return {};
         }
         do {
@@ -78,10 +99,6 @@ class NodeFinder {
     }
 
   private:
-    static PupilSymmetry symmetry_of(const NodeSearch& search) {
-        return search.by_radius ? PupilSymmetry::mirror : PupilSymmetry::none;
-    }
-
     // --- Where the light ends ---
 
     /// Lets these lenses stand at the nodes of the band, and looks where their light ends.
@@ -90,15 +107,15 @@ class NodeFinder {
         lenses_ = std::move(lenses);
         // Some wavelengths may end just inside the sensor, others just outside.
         constexpr double kBeyond = 1.1;
-        const double farthest = kBeyond * search_.sensor_radius_mm;
+        const double farthest = kBeyond * search_.end;
         std::vector<double> azimuths;
         for (std::size_t k = 0; k < nodes_.azimuths; ++k) {
             azimuths.push_back(azimuth(k));
         }
-        nodes_.ends_mm =
-            light_ends(stations_, lenses_, {.farthest_mm = farthest, .precision = kSmallestStep, .azimuths = azimuths});
-        if (std::ranges::all_of(nodes_.ends_mm, [&](double end) { return end == farthest; })) {
-            std::ranges::fill(nodes_.ends_mm, search_.sensor_radius_mm);
+        nodes_.ends =
+            light_ends(stations_, lenses_, {.farthest = farthest, .precision = kSmallestStep, .azimuths = azimuths});
+        if (std::ranges::all_of(nodes_.ends, [&](double end) { return end == farthest; })) {
+            std::ranges::fill(nodes_.ends, search_.end);
         }
         nodes_.positions.clear();
         for (const std::size_t lens : lenses_) {
@@ -118,7 +135,7 @@ class NodeFinder {
         return static_cast<double>(k % nodes_.azimuths) / static_cast<double>(nodes_.azimuths);
     }
     [[nodiscard]] StationPlace node(std::size_t p, std::size_t k, std::size_t i) const {
-        return {lenses_[p], azimuth(k), nodes_.shares[i] * nodes_.ends_mm[p * nodes_.azimuths + k % nodes_.azimuths]};
+        return {lenses_[p], azimuth(k), nodes_.shares[i] * nodes_.ends[p * nodes_.azimuths + k % nodes_.azimuths]};
     }
 
     /// Calls see(place, between, neighbours) for each middle between two nodes; `between` without its outline.
@@ -139,13 +156,13 @@ class NodeFinder {
         const std::size_t index = nodes_.index(p, k, i);
         if (i + 1 < nodes_.shares.size()) {
             const StationPlace next = node(p, k, i + 1);
-            see(StationPlace{here.lens, here.azimuth, 0.5 * (here.radius_mm + next.radius_mm)},
+            see(StationPlace{here.lens, here.azimuth, 0.5 * (here.radius + next.radius)},
                 Between{nullptr, index, nodes_.index(p, k, i + 1), 0.5, Axis::radius, p, i}, here, next);
         }
         if (nodes_.azimuths > 1) {
             const StationPlace next = node(p, k + 1, i);
             see(StationPlace{here.lens, here.azimuth + 0.5 / static_cast<double>(nodes_.azimuths),
-                             0.5 * (here.radius_mm + next.radius_mm)},
+                             0.5 * (here.radius + next.radius)},
                 Between{nullptr, index, nodes_.index(p, (k + 1) % nodes_.azimuths, i), 0.5, Axis::azimuth, p, i}, here,
                 next);
         }
@@ -153,7 +170,7 @@ class NodeFinder {
             const StationPlace next = node(p + 1, k, i);
             const std::size_t lens = (here.lens + next.lens) / 2;
             const double t = static_cast<double>(lens - here.lens) / static_cast<double>(next.lens - here.lens);
-            see(StationPlace{lens, here.azimuth, (1.0 - t) * here.radius_mm + t * next.radius_mm},
+            see(StationPlace{lens, here.azimuth, (1.0 - t) * here.radius + t * next.radius},
                 Between{nullptr, index, nodes_.index(p + 1, k, i), t, Axis::band, p, i}, here, next);
         }
     }
@@ -253,11 +270,7 @@ class NodeFinder {
             }
         }
         for (PupilRegion& region : nodes_.regions) {
-            double height = 0.0;
-            for (const PupilColumn& column : region.columns) {
-                height = std::max(height, column.upper - column.lower);
-            }
-            grow(region, ColumnGrowth(0.5 * kMargin * height), 1.0, nodes_.symmetry);
+            add_margin(region, nodes_.symmetry);
         }
     }
 
@@ -386,9 +399,37 @@ class NodeFinder {
 
 }  // namespace
 
-PupilNodes find_pupil_nodes(const std::vector<TraceLens<double>>& band, const RearDisc& disc,
-                            const NodeSearch& search) {
-    return NodeFinder(band, disc, search).find();
+PupilNodes find_pupil_nodes(std::vector<TraceLens<double>> band, const RayFamily& rays, const NodeSearch& search) {
+    open_stops(band);
+    return NodeFinder(band, rays, search).find();
+}
+
+PupilNodes find_pupil_region(std::vector<TraceLens<double>> band, const RayFamily& rays, Vec2d place,
+                             const NodeSearch& search) {
+    open_stops(band);
+    PupilStations stations(band, rays, search.disc, symmetry_of(search));
+    const double azimuth = std::atan2(place.x, place.y) / (2.0 * std::numbers::pi);
+    std::vector<PupilStations::Request> requests;
+    for (std::size_t lens = 0; lens < band.size(); ++lens) {
+        requests.push_back({.place = {lens, azimuth, std::hypot(place.x, place.y)}});
+    }
+    stations.trace(requests);
+    std::vector<PupilOutline> outlines;
+    for (const PupilStations::Request& request : requests) {
+        outlines.push_back(*stations.find(request.place));
+    }
+    if (std::ranges::all_of(outlines, &PupilOutline::is_empty)) {
+        return {};
+    }
+    const Extent extent = extent_of(outlines);
+    PupilRegion region =
+        region_around(outlines, {search.by_radius ? 0.0 : extent.left, extent.right}, symmetry_of(search));
+    add_margin(region, symmetry_of(search));
+    return {.symmetry = symmetry_of(search),
+            .positions = {0.0},
+            .ends = {2.0 * std::hypot(place.x, place.y) + 1.0},
+            .shares = {0.0, 1.0},
+            .regions = {region, region}};
 }
 
 }  // namespace lensproof

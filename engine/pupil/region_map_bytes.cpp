@@ -1,10 +1,10 @@
-// A pupil map as bytes, and back.
+// A region map as bytes, and back.
 #include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <span>
 
-#include "engine/pupil/pupil_map.h"
+#include "engine/pupil/region_map.h"
 
 namespace lensproof {
 
@@ -12,7 +12,7 @@ namespace {
 
 // Comes first; to be changed with what follows it. Another order of bytes reads another number.
 constexpr double kMark = 20261121.01;
-constexpr std::size_t kHead = 8;
+constexpr std::size_t kHead = 7;
 constexpr std::size_t kNumbersPerRegion = 2 + 2 * (kPupilPanels + 1);
 
 void append(std::vector<double>& numbers, const std::vector<double>& more) {
@@ -58,7 +58,7 @@ bool is_sound_axis(const std::vector<double>& nodes) {
 
 bool is_sound(const PupilNodes& nodes) {
     return is_sound_axis(nodes.positions) && is_sound_axis(nodes.shares) && nodes.shares.size() > 1 &&
-           std::ranges::all_of(nodes.ends_mm, [](double end) { return end > 0.0; }) &&
+           std::ranges::all_of(nodes.ends, [](double end) { return end > 0.0; }) &&
            std::ranges::all_of(nodes.regions, [](const PupilRegion& region) { return is_sound(region); });
 }
 
@@ -69,9 +69,8 @@ bool is_count(double value) {
 
 }  // namespace
 
-std::string PupilMap::serialized() const {
+std::string RegionMap::serialized() const {
     std::vector<double> numbers = {kMark,
-                                   disc_.plane_z,
                                    disc_.radius,
                                    defensive_share_,
                                    nodes_.symmetry == PupilSymmetry::mirror ? 1.0 : 0.0,
@@ -79,7 +78,7 @@ std::string PupilMap::serialized() const {
                                    static_cast<double>(nodes_.positions.size()),
                                    static_cast<double>(nodes_.shares.size())};
     append(numbers, nodes_.positions);
-    append(numbers, nodes_.ends_mm);
+    append(numbers, nodes_.ends);
     append(numbers, nodes_.shares);
     for (const PupilRegion& region : nodes_.regions) {
         append_region(numbers, region);
@@ -89,39 +88,39 @@ std::string PupilMap::serialized() const {
     return bytes;
 }
 
-std::optional<PupilMap> PupilMap::deserialized(std::string_view bytes) {
+std::optional<RegionMap> RegionMap::deserialized(std::string_view bytes) {
     std::vector<double> numbers(bytes.size() / sizeof(double));
     if (bytes.size() % sizeof(double) != 0 || numbers.size() < kHead) {
         return std::nullopt;
     }
     std::memcpy(numbers.data(), bytes.data(), bytes.size());
     const bool is_finite = std::ranges::all_of(numbers, [](double value) { return std::isfinite(value); });
-    if (!is_finite || numbers[0] != kMark || !(numbers[2] > 0.0) || !(numbers[3] > 0.0 && numbers[3] <= 1.0) ||
-        !std::all_of(numbers.begin() + 4, numbers.begin() + kHead, is_count)) {
+    if (!is_finite || numbers[0] != kMark || !(numbers[1] > 0.0) || !(numbers[2] > 0.0 && numbers[2] <= 1.0) ||
+        !std::all_of(numbers.begin() + 3, numbers.begin() + kHead, is_count)) {
         return std::nullopt;
     }
-    PupilNodes nodes{.symmetry = numbers[4] == 1.0 ? PupilSymmetry::mirror : PupilSymmetry::none,
-                     .azimuths = static_cast<std::size_t>(numbers[5])};
-    const auto positions = static_cast<std::size_t>(numbers[6]);
-    const auto shares = static_cast<std::size_t>(numbers[7]);
-    const double regions = numbers[5] * numbers[6] * numbers[7];
+    PupilNodes nodes{.symmetry = numbers[3] == 1.0 ? PupilSymmetry::mirror : PupilSymmetry::none,
+                     .azimuths = static_cast<std::size_t>(numbers[4])};
+    const auto positions = static_cast<std::size_t>(numbers[5]);
+    const auto shares = static_cast<std::size_t>(numbers[6]);
+    const double regions = numbers[4] * numbers[5] * numbers[6];
     if (static_cast<double>(numbers.size()) !=
-        kHead + (1.0 + numbers[5]) * numbers[6] + numbers[7] + regions * static_cast<double>(kNumbersPerRegion)) {
+        kHead + (1.0 + numbers[4]) * numbers[5] + numbers[6] + regions * static_cast<double>(kNumbersPerRegion)) {
         return std::nullopt;
     }
-    const RearDisc disc{.plane_z = numbers[1], .radius = numbers[2]};
-    const double defensive_share = numbers[3];
+    const Disc disc{.radius = numbers[1]};
+    const double defensive_share = numbers[2];
     if (!(regions > 0.0)) {
-        return positions + shares == 0 ? std::optional(PupilMap(disc, defensive_share, {})) : std::nullopt;
+        return positions + shares == 0 ? std::optional(RegionMap(disc, defensive_share, {})) : std::nullopt;
     }
     std::span<const double> rest = std::span<const double>(numbers).subspan(kHead);
     nodes.positions = taken(rest, positions);
-    nodes.ends_mm = taken(rest, positions * nodes.azimuths);
+    nodes.ends = taken(rest, positions * nodes.azimuths);
     nodes.shares = taken(rest, shares);
     while (!rest.empty()) {
         nodes.regions.push_back(taken_region(rest, nodes.symmetry));
     }
-    return is_sound(nodes) ? std::optional(PupilMap(disc, defensive_share, std::move(nodes))) : std::nullopt;
+    return is_sound(nodes) ? std::optional(RegionMap(disc, defensive_share, std::move(nodes))) : std::nullopt;
 }
 
 }  // namespace lensproof
