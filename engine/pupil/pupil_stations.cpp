@@ -12,14 +12,6 @@ namespace lensproof {
 
 namespace {
 
-/// Which rays pass: 1, or 0.
-template <Direction direction>
-void passing(const TraceLens<double>& lens, std::span<const Ray<double>> rays, std::span<std::uint8_t> answers) {
-    for (std::size_t i = 0; i < rays.size(); ++i) {
-        answers[i] = trace<direction>(lens, rays[i]).status == RayStatus::ok ? 1 : 0;
-    }
-}
-
 PupilFrame mean_frame(const std::vector<PupilFrame>& frames, const std::vector<double>& weights) {
     PupilFrame mean{.centre = {}, .scale = {}, .bend = 0.0};
     for (std::size_t i = 0; i < frames.size(); ++i) {
@@ -59,19 +51,27 @@ Ray<double> PupilStations::ray(const StationPlace& place, Vec2d own_point) const
                      {cosine * own_point.x + sine * own_point.y, cosine * own_point.y - sine * own_point.x});
 }
 
-/// In batches of one lens each.
+/// In batches, whose rays have each their own wavelength.
 void PupilStations::ask(const std::vector<Request>& requests, std::span<const RegionPoint> points,
                         std::span<std::uint8_t> answers) const {
-    const auto lens_of = [&](std::size_t i) { return requests[static_cast<std::size_t>(points[i].region)].place.lens; };
-    std::vector<Ray<double>> rays;
-    for (std::size_t first = 0; first < points.size(); first += rays.size()) {
-        rays.clear();
-        for (std::size_t i = first; i < points.size() && lens_of(i) == lens_of(first); ++i) {
-            rays.push_back(ray(requests[static_cast<std::size_t>(points[i].region)].place, points[i].point));
+    constexpr std::size_t kMost = 1024;
+    RayBatch<double> batch(static_cast<int>(std::min(kMost, points.size())));
+    for (std::size_t first = 0; first < points.size(); first += kMost) {
+        const std::size_t count = std::min(kMost, points.size() - first);
+        batch.size = static_cast<int>(count);
+        for (std::size_t i = 0; i < count; ++i) {
+            const RegionPoint& point = points[first + i];
+            const StationPlace& place = requests[static_cast<std::size_t>(point.region)].place;
+            batch.set(static_cast<int>(i), ray(place, point.point));
+            batch.wavelength[i] = static_cast<std::uint16_t>(place.lens);
         }
-        const auto ask_all =
-            rays_.direction == Direction::forward ? passing<Direction::forward> : passing<Direction::reverse>;
-        ask_all(band_[lens_of(first)], rays, answers.subspan(first, rays.size()));
+        const auto trace_all = rays_.direction == Direction::forward ? trace_batch<Direction::forward, double>
+                                                                     : trace_batch<Direction::reverse, double>;
+        trace_all(lens_, batch, {.carry = Carry::geometry});
+        std::ranges::transform(batch.status.begin(), batch.status.begin() + batch.size,
+                               answers.begin() + static_cast<std::ptrdiff_t>(first), [](RayStatus status) {
+                                   return status == RayStatus::ok ? std::uint8_t{1} : std::uint8_t{0};
+                               });
     }
 }
 

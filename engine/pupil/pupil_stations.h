@@ -5,7 +5,7 @@
 #include <tuple>
 #include <vector>
 
-#include "engine/optics/trace.h"
+#include "engine/optics/packet/trace_batch.h"
 #include "engine/pupil/disc.h"
 #include "engine/pupil/pupil_outline.h"
 
@@ -36,7 +36,7 @@ class PupilStations {
   public:
     PupilStations(const std::vector<TraceLens<double>>& band, const RayFamily& rays, const Disc& disc,
                   PupilSymmetry symmetry)
-        : band_(band), rays_(rays), disc_(disc), symmetry_(symmetry) {}
+        : band_(band), lens_(band), rays_(rays), disc_(disc), symmetry_(symmetry) {}
 
     /// A place to be traced, and others whose regions are much like its own, should it have no neighbours along the
     /// radius yet.
@@ -62,6 +62,7 @@ class PupilStations {
     [[nodiscard]] std::optional<PupilFrame> expected_frame(const Request& request) const;
 
     const std::vector<TraceLens<double>>& band_;
+    SpectralLens<double> lens_;  // the same
     const RayFamily& rays_;
     const Disc& disc_;
     PupilSymmetry symmetry_;
