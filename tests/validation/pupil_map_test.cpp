@@ -82,6 +82,7 @@ double last_light(const std::vector<TraceLens<double>>& band) {
 Mapped mapped(const Setting& setting) {
     const Lens lens = lens_of(setting);
     std::vector<TraceLens<double>> band;
+    band.reserve(kWavelengths);
     for (int i = 0; i < kWavelengths; ++i) {
         band.push_back(at_wavelength<double>(lens, 400.0 + 300.0 * (i + 0.5) / kWavelengths));
     }
@@ -134,7 +135,8 @@ Estimate ring_irradiance(const Mapped& lens, const PupilMap& map, int ring, int 
         const PixelSampler sampler(static_cast<std::uint64_t>(wavelength),
                                    static_cast<std::uint32_t>(ring * kScrambles + scramble));
         double sum = 0.0;
-        for (int i = 0; i < points / kScrambles; ++i) {
+        const int share = points / kScrambles;
+        for (int i = 0; i < share; ++i) {
             const auto xi = sampler.point(static_cast<std::uint32_t>(i));
             const Vec2d at = in_ring(lens.circle_mm, ring, xi[0], 0.0);
             const PupilSample sample = map.sample(at, position(wavelength), xi[2], xi[3]);
@@ -142,7 +144,7 @@ Estimate ring_irradiance(const Mapped& lens, const PupilMap& map, int ring, int 
                 sum += film_irradiance(lens.band[wavelength], at, sample.point, map.plane_z()) / sample.density;
             }
         }
-        values.push_back(sum / (points / kScrambles));
+        values.push_back(sum / share);
     }
     return mean_of(values);
 }
