@@ -55,6 +55,8 @@ TraceLens<To> convert_lens(const TraceLens<From>& lens) {
             static_cast<To>(surface.curvature), static_cast<To>(surface.vertex_z), static_cast<To>(semi_diameter),
             static_cast<To>(surface.index_before), static_cast<To>(surface.index_after), surface.is_stop));
         converted.surfaces.back().special = surface.special;
+        converted.surfaces.back().from_far_forward = surface.from_far_forward;
+        converted.surfaces.back().from_far_reverse = surface.from_far_reverse;
     }
     std::ranges::transform(lens.specials, std::back_inserter(converted.specials), convert_special<To, From>);
     return converted;

@@ -19,16 +19,15 @@ struct Intersection {
 
 /// Where the ray from `origin` along `direction` crosses a sphere of curvature `c` (1/mm), whose vertex is (0, 0, 0),
 /// from the side of negative z to that of positive z (`heading` = +1, light towards the sensor) or back (`heading` =
-/// −1).
+/// −1). For an origin that is near the vertex in units of the radius, |c| |o| ≤ 2 or so: each unit of its square costs
+/// an ulp. `intersect` is for any origin.
 ///
-/// Solved about a point p of the ray next to its closest approach to the vertex, in curvature form:
-///     c s² − 2 b s + f = 0,   p = o − (o·d) d,   b = d_z − c p·d,   f = c p·p − 2 p_z,   cos² i = b² − c f,
-/// so that flat (c = 0) and nearly flat surfaces lose no digits and far-away origins do not matter (Feder 1951;
-/// Welford, Aberrations of Optical Systems, ch. 4). p·d would be zero but for rounding: from an object at 1e12 mm it is
-/// 1e-4 mm, and b carries it. Of the two roots the one is taken at which d·n has the heading's sign, each in the form
-/// that does not cancel: f / q or q / c with q = b ± cos i of equal signs. So a ray that enters a fisheye from 90° off
-/// the axis or more (d_z ≤ 0, heading +1) finds the front of the sphere too. Only the half of the sphere that carries
-/// the vertex counts (1 − c z > 0).
+/// Solved in curvature form, so that flat (c = 0) and nearly flat surfaces lose no digits:
+///     c s² − 2 b s + f = 0,   b = d_z − c o·d,   f = c o·o − 2 o_z,   cos² i = b² − c f
+/// (Feder 1951; Welford, Aberrations of Optical Systems, ch. 4). Of the two roots the one is taken at which d·n has the
+/// heading's sign, each in the form that does not cancel: f / q or q / c with q = b ± cos i of equal signs. So a ray
+/// that enters a fisheye from 90° off the axis or more (d_z ≤ 0, heading +1) finds the front of the sphere too. Only
+/// the half of the sphere that carries the vertex counts (1 − c z > 0).
 ///
 /// sin² i = 1 − b² + c f is formed from 1 − d_z² = d_x² + d_y². From the cosine it would be known to an ulp of 1 only,
 /// which at a critical angle weighs μ² times as much; and it need not wait for the root.
@@ -36,27 +35,48 @@ struct Intersection {
 /// T: float, double, long double, a multiprecision number, ceres::Jet or a packet. A ray that misses, or only
 /// touches, has `hit` false and meaningless numbers elsewhere.
 template <class T>
-Intersection<T> intersect(const Vec3<T>& origin, const Vec3<T>& direction, const T& c, const T& heading) {
+Intersection<T> intersect_from_near(const Vec3<T>& origin, const Vec3<T>& direction, const T& c, const T& heading) {
     using std::sqrt;
-    const T to_vertex = -dot(origin, direction);
-    const Vec3<T> p = origin + to_vertex * direction;
-    const T c_along = c * dot(p, direction);
+    const T c_along = c * dot(origin, direction);
     const T b = direction.z - c_along;
-    const T f = c * dot(p, p) - T(2) * p.z;
+    const T f = c * dot(origin, origin) - T(2) * origin.z;
     const T discriminant = b * b - c * f;
     const auto meets_sphere = discriminant > T(0);
     const T cos_incidence = sqrt(select(meets_sphere, discriminant, T(1)));
     const auto along = b * heading > T(0);
-    const auto curved = c < T(0) || c > T(0);
-    const T q = b + select(along, heading, -heading) * cos_incidence;
-    const T s = select(along, f, q) / select(along, q, select(curved, c, T(1)));
-    const T z = p.z + s * direction.z;
+    auto meets = meets_sphere;
+    T s;
+    if (all(along)) {  // but for light from beyond 90°
+        s = f / (b + heading * cos_incidence);
+    } else {
+        const auto curved = c < T(0) || c > T(0);
+        const T q = b + select(along, heading, -heading) * cos_incidence;
+        s = select(along, f, q) / select(along, q, select(curved, c, T(1)));
+        meets = meets && (along || curved);
+    }
+    const T z = origin.z + s * direction.z;
     const T across = direction.x * direction.x + direction.y * direction.y;
-    return {.point = {p.x + s * direction.x, p.y + s * direction.y, z},
-            .distance = to_vertex + s,
+    return {.point = {origin.x + s * direction.x, origin.y + s * direction.y, z},
+            .distance = s,
             .cos_incidence = cos_incidence,
             .sin2_incidence = across + (c * f + c_along * (direction.z + b)),
-            .hit = meets_sphere && (along || curved) && T(1) - c * z > T(0)};
+            .hit = meets && T(1) - c * z > T(0)};
+}
+
+/// Along the ray to its closest approach to the vertex (0, 0, 0), mm.
+template <class T>
+T way_to_vertex(const Vec3<T>& origin, const Vec3<T>& direction) {
+    return -dot(origin, direction);
+}
+
+/// The same from any origin o, by way of the ray's closest approach to the vertex, p = o − (o·d) d: far-away origins do
+/// not matter. p·d would be zero but for rounding: from an object at 1e12 mm it is 1e-4 mm, and b carries it.
+template <class T>
+Intersection<T> intersect(const Vec3<T>& origin, const Vec3<T>& direction, const T& c, const T& heading) {
+    const T to_vertex = way_to_vertex(origin, direction);
+    Intersection<T> meeting = intersect_from_near(origin + to_vertex * direction, direction, c, heading);
+    meeting.distance = to_vertex + meeting.distance;
+    return meeting;
 }
 
 template <class T>

@@ -345,6 +345,7 @@ TraceLens<double> traced_lens(const Lens& lens, double wavelength_nm) {
         }
         index_before = index_after;
     }
+    note_near_gaps(traced.surfaces);
     return traced;
 }
 

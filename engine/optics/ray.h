@@ -1,5 +1,7 @@
 // engine/optics/ray.h — a ray in lens space, and what became of it.
 #pragma once
+#include <cstdint>
+
 #include "engine/optics/vec.h"
 
 namespace lensproof {
@@ -13,7 +15,7 @@ struct Ray {
 };
 
 /// Why a ray ended, or `ok`.
-enum class RayStatus {
+enum class RayStatus : std::uint8_t {
     ok,
     missed,                     // does not meet the surface's sphere, or only its far side
     clipped,                    // meets a refracting surface beyond its rim

@@ -16,6 +16,21 @@ struct Refraction {
     decltype(T() < T()) transmitted;
 };
 
+/// The cosine after a surface and whether there is one.
+template <class T>
+struct CosRefraction {
+    T cosine;
+    decltype(T() < T()) transmitted;
+};
+
+template <class T>
+CosRefraction<T> cos_refraction(const T& cos_incidence, const T& sin2_incidence, const T& index_ratio) {
+    using std::sqrt;
+    const T squared = cos_incidence * cos_incidence + (T(1) - index_ratio) * (T(1) + index_ratio) * sin2_incidence;
+    const auto transmitted = squared > T(0);
+    return {.cosine = sqrt(select(transmitted, squared, T(1))), .transmitted = transmitted};
+}
+
 /// The direction after a surface, by Snell's law in vector form: d' = μ d + (cos i' − μ cos i) n with μ = n₁/n₂
 /// (Welford, Aberrations of Optical Systems, §4.3). `normal` has unit length and points along the ray (d·n = cos i >
 /// 0).
@@ -24,13 +39,24 @@ struct Refraction {
 template <class T>
 Refraction<T> refract(const Vec3<T>& direction, const Vec3<T>& normal, const T& cos_incidence, const T& sin2_incidence,
                       const T& index_ratio) {
-    using std::sqrt;
-    const T cos2_refraction =
-        cos_incidence * cos_incidence + (T(1) - index_ratio) * (T(1) + index_ratio) * sin2_incidence;
-    const auto transmitted = cos2_refraction > T(0);
-    const T cos_refraction = sqrt(select(transmitted, cos2_refraction, T(1)));
-    return {.direction = index_ratio * direction + (cos_refraction - index_ratio * cos_incidence) * normal,
-            .cos_refraction = cos_refraction,
+    const auto [cosine, transmitted] = cos_refraction(cos_incidence, sin2_incidence, index_ratio);
+    return {.direction = index_ratio * direction + (cosine - index_ratio * cos_incidence) * normal,
+            .cos_refraction = cosine,
+            .transmitted = transmitted};
+}
+
+/// The same at a point of the sphere of `intersect`, whose normal is heading · (−c x, −c y, 1 − c z): in fewer steps,
+/// for the inner loop.
+template <class T>
+Refraction<T> refract_at_sphere(const Vec3<T>& direction, const Vec3<T>& point, const T& c, const T& heading,
+                                const T& cos_incidence, const T& sin2_incidence, const T& index_ratio) {
+    const auto [cosine, transmitted] = cos_refraction(cos_incidence, sin2_incidence, index_ratio);
+    const T along_z = heading * (cosine - index_ratio * cos_incidence);
+    const T towards_centre = -c * along_z;
+    return {.direction = {index_ratio * direction.x + towards_centre * point.x,
+                          index_ratio * direction.y + towards_centre * point.y,
+                          index_ratio * direction.z + (along_z + towards_centre * point.z)},
+            .cos_refraction = cosine,
             .transmitted = transmitted};
 }
 

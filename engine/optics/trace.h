@@ -24,6 +24,9 @@ struct TraceSurface {
     T reverse_ratio;
     bool is_stop;
     int special = -1;  // into TraceLens::specials; -1: a bare, centred sphere with a round aperture
+    // Whether rays on their way forward, in reverse, may come from far off in units of the radius (`note_near_gaps`).
+    bool from_far_forward = true;
+    bool from_far_reverse = true;
 };
 
 /// What a surface has beyond a centred sphere's curvature and rim. Kept apart, so that a lens of spheres walks a short
@@ -37,10 +40,41 @@ struct SpecialSurface {
     TraceCoating<T> coating{};
     StopMask mask{};
 
-    /// From lens space to the surface's own axes, and back.
-    [[nodiscard]] Vec3<T> to_own(const Vec3<T>& v) const { return {dot(axes[0], v), dot(axes[1], v), dot(axes[2], v)}; }
-    [[nodiscard]] Vec3<T> from_own(const Vec3<T>& v) const { return v.x * axes[0] + (v.y * axes[1] + v.z * axes[2]); }
+    /// From lens space to the surface's own axes, and back; of packets too.
+    template <class V = T>
+    [[nodiscard]] Vec3<V> to_own(const Vec3<V>& v) const {
+        return {dot(axis<V>(0), v), dot(axis<V>(1), v), dot(axis<V>(2), v)};
+    }
+    template <class V = T>
+    [[nodiscard]] Vec3<V> from_own(const Vec3<V>& v) const {
+        return v.x * axis<V>(0) + (v.y * axis<V>(1) + v.z * axis<V>(2));
+    }
+
+  private:
+    template <class V>
+    [[nodiscard]] Vec3<V> axis(std::size_t i) const {
+        return {V(axes[i].x), V(axes[i].y), V(axes[i].z)};
+    }
 };
+
+/// The share of a stop's texture, or of its blades' opening, at a point inside its circle; 1 where it has neither.
+template <class T>
+T open_share(const TraceSurface<T>& surface, const SpecialSurface<T>& special, const T& x, const T& y) {
+    if (special.mask.is_full_circle()) {
+        return T(1);
+    }
+    using std::sqrt;
+    const T scale = T(1) / sqrt(surface.semi_diameter_squared);
+    return static_cast<T>(special.mask.transmittance(static_cast<double>(scale * x), static_cast<double>(scale * y)));
+}
+
+/// The share of unpolarised light that passes a coated surface, from either side.
+template <class T>
+T coated_share(const TraceSurface<T>& surface, const SpecialSurface<T>& special, bool forward, const T& cos_incidence,
+               const T& cos_refraction) {
+    return coating_transmittance(special.coating, surface.index_before, surface.index_after,
+                                 forward ? cos_incidence : cos_refraction, forward ? cos_refraction : cos_incidence);
+}
 
 template <class T>
 TraceSurface<T> make_trace_surface(T curvature, T vertex_z, T semi_diameter, T index_before, T index_after,
@@ -53,6 +87,28 @@ TraceSurface<T> make_trace_surface(T curvature, T vertex_z, T semi_diameter, T i
             .forward_ratio = index_before / index_after,
             .reverse_ratio = index_after / index_before,
             .is_stop = is_stop};
+}
+
+/// Finds the gaps that every ray inside both their rims crosses within two radii of the surface it goes to: there it is
+/// met by `intersect_from_near`, which is quicker. A lens without these notes is traced too.
+template <class T>
+void note_near_gaps(std::vector<TraceSurface<T>>& surfaces) {
+    using std::abs;
+    using std::sqrt;
+    const auto is_near = [](const TraceSurface<T>& to, T reach) { return abs(to.curvature) * reach <= T(2); };
+    for (std::size_t i = 1; i < surfaces.size(); ++i) {
+        TraceSurface<T>& a = surfaces[i - 1];
+        TraceSurface<T>& b = surfaces[i];
+        // From a point on one surface to the other's vertex; a sag inside the rim is no longer than the semi-diameter
+        // of a sphere.
+        const auto reach_from = [&](const TraceSurface<T>& from) {
+            return abs(b.vertex_z - a.vertex_z) + T(2) * sqrt(from.semi_diameter_squared);
+        };
+        if (a.special < 0 && b.special < 0) {
+            b.from_far_forward = !is_near(b, reach_from(a));
+            a.from_far_reverse = !is_near(a, reach_from(b));
+        }
+    }
 }
 
 /// A lens at one wavelength and in one precision: its surfaces from the scene to the sensor.
@@ -97,16 +153,18 @@ TracedRay<T> trace_through(const TraceLens<T>& lens, const Ray<T>& ray, Visitor&
     // The state in single variables, made a TracedRay only at the end, and two vectors for `intersect` rather than a
     // Ray: g++ 12 keeps the aggregates in memory, written 8 bytes at a time and copied 16 at a time, which processors
     // do not forward from store to load. That doubled the time of a surface (lensproof_benchmark, trace/tessar).
-    Vec3<T> origin = ray.origin;
+    Vec3<T> origin = ray.origin;  // z from the last vertex passed, where the numbers are small
+    T last_vertex_z = T(0);
     Vec3<T> way = ray.direction;
     T optical_path = T(0);
     T transmittance = T(1);
     RayStatus status = RayStatus::ok;
     int ended_at = -1;
+    const auto global = [&] { return Ray<T>{{origin.x, origin.y, origin.z + last_vertex_z}, way}; };
     const auto report = [&](int index, RayStatus here) {
-        visit(SurfaceEvent<T>{index, {origin, way}, optical_path, transmittance, here});
+        visit(SurfaceEvent<T>{index, global(), optical_path, transmittance, here});
     };
-    const auto traced = [&] { return TracedRay<T>{{origin, way}, optical_path, transmittance, status, ended_at}; };
+    const auto traced = [&] { return TracedRay<T>{global(), optical_path, transmittance, status, ended_at}; };
 
     const int count = static_cast<int>(lens.surfaces.size());
     const T heading = direction == Direction::forward ? T(1) : T(-1);
@@ -119,7 +177,7 @@ TracedRay<T> trace_through(const TraceLens<T>& lens, const Ray<T>& ray, Visitor&
         const T& c = surface.curvature;
 
         // In the surface's own frame, until the ray leaves it.
-        Vec3<T> from_vertex{origin.x, origin.y, origin.z - surface.vertex_z};
+        Vec3<T> from_vertex{origin.x, origin.y, origin.z - (surface.vertex_z - last_vertex_z)};
         Vec3<T> own_way = way;
         const SpecialSurface<T>* special = nullptr;
         if constexpr (has_specials) {
@@ -130,13 +188,19 @@ TracedRay<T> trace_through(const TraceLens<T>& lens, const Ray<T>& ray, Visitor&
                 own_way = special->to_own(way);
             }
         }
+        const bool is_shaped = has_specials && special != nullptr && special->has_shape;
+        T to_vertex = T(0);
         Intersection<T> meeting;
-        Vec3<T> normal;  // of unit length, turned along the ray
-        if (has_specials && special != nullptr && special->has_shape) {
-            std::tie(meeting, normal) = intersect(special->shape, from_vertex, own_way, heading);
+        Vec3<T> shape_normal;  // of unit length, turned along the ray
+        if (is_shaped) {
+            std::tie(meeting, shape_normal) = intersect(special->shape, from_vertex, own_way, heading);
         } else {
-            meeting = intersect(from_vertex, own_way, c, heading);
-            normal = heading * Vec3<T>{-c * meeting.point.x, -c * meeting.point.y, T(1) - c * meeting.point.z};
+            const bool from_far = direction == Direction::forward ? surface.from_far_forward : surface.from_far_reverse;
+            if (rims == Rims::follow || from_far) {
+                to_vertex = way_to_vertex(from_vertex, own_way);
+                from_vertex = from_vertex + to_vertex * own_way;
+            }
+            meeting = intersect_from_near(from_vertex, own_way, c, heading);
         }
         if (!meeting.hit) {
             status = RayStatus::missed;
@@ -145,28 +209,26 @@ TracedRay<T> trace_through(const TraceLens<T>& lens, const Ray<T>& ray, Visitor&
             return traced();
         }
         const Vec3<T>& point = meeting.point;
-        optical_path = optical_path + index_before * meeting.distance;
-        origin = {point.x, point.y, point.z + surface.vertex_z};
+        optical_path = optical_path + index_before * (to_vertex + meeting.distance);
+        origin = point;
+        last_vertex_z = surface.vertex_z;
         if constexpr (has_specials) {
             if (special != nullptr) {
                 const Vec3<T> turned = special->from_own(point);
-                origin = {turned.x + special->vertex.x, turned.y + special->vertex.y, turned.z + surface.vertex_z};
+                origin = {turned.x + special->vertex.x, turned.y + special->vertex.y, turned.z};
             }
         }
 
         RayStatus here = RayStatus::ok;
         const T r2 = point.x * point.x + point.y * point.y;
         const bool is_beyond = r2 > surface.semi_diameter_squared || !(surface.semi_diameter_squared > T(0));
-        T open_share = T(1);  // of the stop's texture
+        T open = T(1);
         if constexpr (has_specials) {
-            if (special != nullptr && !special->mask.is_full_circle() && !is_beyond) {
-                using std::sqrt;
-                const T scale = T(1) / sqrt(surface.semi_diameter_squared);
-                open_share = static_cast<T>(special->mask.transmittance(static_cast<double>(scale * point.x),
-                                                                        static_cast<double>(scale * point.y)));
+            if (special != nullptr && !is_beyond) {
+                open = open_share(surface, *special, point.x, point.y);
             }
         }
-        if (is_beyond || (has_specials && !(open_share > T(0)))) {
+        if (is_beyond || (has_specials && !(open > T(0)))) {
             if (status == RayStatus::ok) {  // only the first rim passed is named
                 here = surface.is_stop ? RayStatus::stopped : RayStatus::clipped;
                 status = here;
@@ -178,7 +240,12 @@ TracedRay<T> trace_through(const TraceLens<T>& lens, const Ray<T>& ray, Visitor&
             }
         }
 
-        const Refraction<T> bent = refract(own_way, normal, meeting.cos_incidence, meeting.sin2_incidence, ratio);
+        Refraction<T> bent;
+        if (is_shaped) {
+            bent = refract(own_way, shape_normal, meeting.cos_incidence, meeting.sin2_incidence, ratio);
+        } else {
+            bent = refract_at_sphere(own_way, point, c, heading, meeting.cos_incidence, meeting.sin2_incidence, ratio);
+        }
         if (!bent.transmitted) {
             status = RayStatus::total_internal_reflection;
             ended_at = index;
@@ -188,17 +255,15 @@ TracedRay<T> trace_through(const TraceLens<T>& lens, const Ray<T>& ray, Visitor&
         way = bent.direction;
         T passing = T(1);
         if (has_specials && special != nullptr && !special->coating.is_bare()) {
-            const bool forward = direction == Direction::forward;
-            passing = coating_transmittance(special->coating, surface.index_before, surface.index_after,
-                                            forward ? meeting.cos_incidence : bent.cos_refraction,
-                                            forward ? bent.cos_refraction : meeting.cos_incidence);
+            passing = coated_share(surface, *special, direction == Direction::forward, meeting.cos_incidence,
+                                   bent.cos_refraction);
         } else {
             passing = fresnel_transmittance(index_before, index_after, meeting.cos_incidence, bent.cos_refraction);
         }
         if constexpr (has_specials) {
             if (special != nullptr) {
                 way = special->from_own(way);
-                passing = passing * open_share;
+                passing = passing * open;
             }
         }
         transmittance = transmittance * passing;

@@ -7,13 +7,12 @@
 #include "engine/io/input_error.h"
 #include "engine/optics/convert_lens.h"
 #include "engine/optics/multiprecision.h"
-#include "engine/optics/trace_packet.h"
+#include "engine/optics/packet/trace_batch.h"
 
 namespace lensproof {
 
 namespace {
 
-constexpr int kLanes = 8;
 // Draws of all inputs' rounding at once: how far a point moves, and whether the ray's fate changes.
 constexpr int kDraws = 8;
 constexpr double kHalfUlp = 0.5 * std::numeric_limits<double>::epsilon();
@@ -68,26 +67,22 @@ Path<T> path_of(const TraceLens<T>& lens, const Ray<T>& ray) {
     return path;
 }
 
-/// The paths of float packets.
-std::vector<Path<float>> packet_paths(const TraceLens<float>& lens, const std::vector<Ray<float>>& rays) {
-    std::vector<Path<float>> paths(rays.size());
-    for (std::size_t first = 0; first < rays.size(); first += kLanes) {
-        const auto index = [&](int lane) { return std::min(first + static_cast<std::size_t>(lane), rays.size() - 1); };
-        Ray<Pack<float, kLanes>> packet;
-        for (int lane = 0; lane < kLanes; ++lane) {
-            set_lane(packet, lane, rays[index(lane)]);
-        }
-        std::array<Path<float>, kLanes> lanes;
-        const auto traced = trace_packet(lens, packet, [&](int lane, const SurfaceEvent<float>& event) {
-            add_event(lanes[static_cast<std::size_t>(lane)], event);
-        });
-        for (int lane = 0; lane < kLanes; ++lane) {
-            Path<float>& path = lanes[static_cast<std::size_t>(lane)];
-            finish(path, traced.lane(lane), lens);
-            paths[index(lane)] = path;
-        }
+/// The same rays in float packets.
+RayBatch<float> traced_in_packets(const TraceLens<float>& lens, const std::vector<Ray<float>>& rays) {
+    RayBatch<float> batch(static_cast<int>(rays.size()));
+    batch.size = batch.capacity;
+    for (int i = 0; i < batch.size; ++i) {
+        batch.set(i, rays[static_cast<std::size_t>(i)]);
     }
-    return paths;
+    trace_batch(SpectralLens<float>({lens}), batch);
+    return batch;
+}
+
+bool has_same_bits(const RayBatch<float>& batch, std::size_t i, const TracedRay<float>& alone) {
+    const Ray<float> lane = batch.ray(static_cast<int>(i));
+    return batch.status[i] == alone.status && batch.surface[i] == alone.surface && lane.origin == alone.ray.origin &&
+           lane.direction == alone.ray.direction && batch.optical_path[i] == alone.optical_path &&
+           batch.transmittance[i] == alone.transmittance;
 }
 
 using Exact = Multiprecision;
@@ -190,7 +185,7 @@ void measure_point(StabilityPoint& point, const StabilityCase& given, std::mt199
     for (const Ray<double>& ray : given.rays) {
         float_rays.push_back(convert_ray<float>(ray));
     }
-    const std::vector<Path<float>> packets = packet_paths(lens_in_float, float_rays);
+    const RayBatch<float> packets = traced_in_packets(lens_in_float, float_rays);
     point.rays = static_cast<int>(given.rays.size());
     for (std::size_t i = 0; i < given.rays.size(); ++i) {
         const Judgement judged = judge(exact_lens, given.rays[i], random);
@@ -211,9 +206,7 @@ void measure_point(StabilityPoint& point, const StabilityCase& given, std::mt199
         const Path<float> in_float = path_of(lens_in_float, float_rays[i]);
         const Path<Exact> exact = path_of(exact_of_float, convert_ray<Exact>(float_rays[i]));
         count(point.types[kFloat], in_float, exact, at_a_change);
-        count(point.types[kPacket], packets[i], exact, at_a_change);
-        const bool has_same_bits = same_fate(packets[i], in_float) && packets[i].points == in_float.points;
-        point.lanes_unlike_scalar += has_same_bits ? 0 : 1;
+        point.lanes_unlike_scalar += has_same_bits(packets, i, trace(lens_in_float, float_rays[i])) ? 0 : 1;
     }
 }
 

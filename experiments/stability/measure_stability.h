@@ -12,11 +12,10 @@
 namespace lensproof {
 
 /// The number types that are judged, in the order of all arrays here.
-inline constexpr std::array<const char*, 4> kNumberTypes = {"float", "float × 8 (SIMD)", "double", "long double"};
+inline constexpr std::array<const char*, 3> kNumberTypes = {"float", "double", "long double"};
 inline constexpr std::size_t kFloat = 0;
-inline constexpr std::size_t kPacket = 1;
-inline constexpr std::size_t kDouble = 2;
-inline constexpr std::size_t kLongDouble = 3;
+inline constexpr std::size_t kDouble = 1;
+inline constexpr std::size_t kLongDouble = 2;
 
 /// A double's error may be this large (mm), or so many times as large as what rounding the input does, whichever is
 /// more.
@@ -44,7 +43,7 @@ struct StabilityPoint {
     double conditioning_mm = 0.0;      // largest movement of a point when each input moves by half an ulp of double
     double excess = 0.0;               // largest double error over its own ray's bound; the requirement is ≤ 1
     std::array<TypeResult, kNumberTypes.size()> types{};
-    int lanes_unlike_scalar = 0;  // of the packets: rays whose lane has not the bits of the float alone
+    int lanes_unlike_scalar = 0;  // rays whose lane of a packet has not the bits of the float alone
 };
 
 struct StabilitySweep {

@@ -41,7 +41,7 @@ PlotChart chart_of(const StabilitySweep& sweep) {
               .scale = extreme.is_logarithmic ? AxisScale::logarithmic : AxisScale::linear},
         .y = {.label = "largest error", .unit = "mm", .scale = AxisScale::logarithmic},
         .references = {{.direction = ReferenceDirection::horizontal, .at = kErrorBoundMm, .label = "1e-9"}}};
-    constexpr std::array kMarkers = {CurveMarker::ring, CurveMarker::plus, CurveMarker::dot, CurveMarker::triangle};
+    constexpr std::array kMarkers = {CurveMarker::ring, CurveMarker::dot, CurveMarker::triangle};
     const auto add = [&](const std::string& label, const auto& y_of, ChartCurve look) {
         look.label = label;
         for (const StabilityPoint& point : sweep.points) {
@@ -57,7 +57,7 @@ PlotChart chart_of(const StabilitySweep& sweep) {
     };
     for (std::size_t type = 0; type < kNumberTypes.size(); ++type) {
         add(kNumberTypes.at(type), [type](const StabilityPoint& point) { return point.types.at(type).error_mm; },
-            {.colour = series_colour(type), .marker = kMarkers.at(type), .marker_size = type == kPacket ? 8.0 : 5.0});
+            {.colour = series_colour(type), .marker = kMarkers.at(type)});
     }
     add("half an ulp of the input moves a point by", [](const StabilityPoint& point) { return point.conditioning_mm; },
         {.colour = kQuiet, .line = CurveLine::dashed});

@@ -1,11 +1,13 @@
 #include <benchmark/benchmark.h>
 
+#include <array>
 #include <cmath>
 #include <random>
 #include <type_traits>
 
 #include "engine/optics/chief_ray.h"
-#include "engine/optics/lens.h"
+#include "engine/optics/convert_lens.h"
+#include "engine/optics/packet/trace_batch.h"
 #include "tests/benchmarks/benchmarks.h"
 
 namespace lensproof {
@@ -38,6 +40,36 @@ std::vector<Ray<double>> passing_rays(const Lens& lens, Direction way) {
     return rays;
 }
 
+void count(benchmark::State& state, std::size_t surfaces) {
+    const double rays = static_cast<double>(state.iterations()) * static_cast<double>(kRays);
+    state.counters["rays/s"] = benchmark::Counter(rays, benchmark::Counter::kIsRate);
+    state.counters["ray-surfaces/s"] =
+        benchmark::Counter(rays * static_cast<double>(surfaces), benchmark::Counter::kIsRate);
+}
+
+/// The batch tracer at one level; `wavelengths` of them, so that one is a broadcast and more are looked up.
+template <class T>
+void time_batch(benchmark::State& state, const std::string& name, SimdLevel level, Carry carry, int wavelengths) {
+    const Lens lens = load_lens(name);
+    const std::vector<Ray<double>> rays = passing_rays(lens, Direction::reverse);
+    std::vector<double> nm(static_cast<std::size_t>(wavelengths), kWavelengthNm);
+    const SpectralLens<T> at = at_wavelengths<T>(lens, nm);
+    RayBatch<T> given(static_cast<int>(kRays));
+    given.size = given.capacity;
+    for (int i = 0; i < given.size; ++i) {
+        given.set(i, convert_ray<T>(rays[static_cast<std::size_t>(i)]));
+        given.wavelength[static_cast<std::size_t>(i)] = static_cast<std::uint16_t>(i % wavelengths);
+    }
+    RayBatch<T> batch = given;
+    while (state.KeepRunning()) {
+        batch.origin = given.origin;
+        batch.direction = given.direction;
+        trace_batch<Direction::reverse>(at, batch, {.carry = carry, .level = level});
+        benchmark::ClobberMemory();
+    }
+    count(state, lens.surfaces.size());
+}
+
 template <class T>
 std::vector<Ray<T>> in_precision(const std::vector<Ray<double>>& rays) {
     const auto cast = [](const Vec3d& v) {
@@ -49,13 +81,6 @@ std::vector<Ray<T>> in_precision(const std::vector<Ray<double>>& rays) {
         result.push_back({cast(ray.origin), cast(ray.direction)});
     }
     return result;
-}
-
-void count(benchmark::State& state, std::size_t surfaces) {
-    const double rays = static_cast<double>(state.iterations()) * static_cast<double>(kRays);
-    state.counters["rays/s"] = benchmark::Counter(rays, benchmark::Counter::kIsRate);
-    state.counters["ray-surfaces/s"] =
-        benchmark::Counter(rays * static_cast<double>(surfaces), benchmark::Counter::kIsRate);
 }
 
 template <Direction way, Rims rims, class T>
@@ -71,7 +96,7 @@ void time_trace(benchmark::State& state, const std::string& name) {
     count(state, lens.surfaces.size());
 }
 
-/// The least that a surface costs: `intersect` and `refract`, and nothing that a renderer needs besides.
+/// What packets are judged by: the same physics in a plain loop over doubles, ray by ray, without statuses.
 template <bool with_fresnel>
 void time_plain_loop(benchmark::State& state, const std::string& name) {
     const Lens lens = load_lens(name);
@@ -86,10 +111,17 @@ void time_plain_loop(benchmark::State& state, const std::string& name) {
                 const double c = surface->curvature;
                 const Vec3d from_vertex{origin.x, origin.y, origin.z - surface->vertex_z};
                 const Intersection<double> met = intersect(from_vertex, way, c, -1.0);
+                if (!met.hit ||
+                    met.point.x * met.point.x + met.point.y * met.point.y > surface->semi_diameter_squared) {
+                    break;
+                }
                 origin = {met.point.x, met.point.y, met.point.z + surface->vertex_z};
                 const Vec3d normal{c * met.point.x, c * met.point.y, c * met.point.z - 1.0};
                 const Refraction<double> bent =
                     refract(way, normal, met.cos_incidence, met.sin2_incidence, surface->reverse_ratio);
+                if (!bent.transmitted) {
+                    break;
+                }
                 way = bent.direction;
                 if (with_fresnel) {
                     transmittance *= fresnel_transmittance(surface->index_after, surface->index_before,
@@ -121,6 +153,27 @@ void register_precision(const std::string& lens) {
     register_one<Direction::reverse, Rims::follow, T>(lens);
 }
 
+std::string batch_name(const std::string& lens, const std::string& rest) {
+    return "batch/" + lens + "/" + rest;
+}
+
+constexpr std::array kBatchLenses = {"tessar",       "petzval",       "double-gauss-tronnier",
+                                     "westrogon-24", "wide-nakamura", "muller-fisheye"};
+
+template <class T>
+void register_batches(const std::string& lens, const std::string& type) {
+    const auto add = [&](SimdLevel level, const std::string& what, Carry carry, int wavelengths) {
+        benchmark::RegisterBenchmark(
+            batch_name(lens, type + "/" + simd_name(level) + "/" + what).c_str(),
+            [=](benchmark::State& state) { time_batch<T>(state, lens, level, carry, wavelengths); });
+    };
+    for (const SimdLevel level : available_simd_levels()) {
+        add(level, "geometry", Carry::geometry, 1);
+        add(level, "fresnel", Carry::transmittance, 1);
+        add(level, "fresnel_64_wavelengths", Carry::transmittance, 64);
+    }
+}
+
 }  // namespace
 
 void register_trace_benchmarks() {
@@ -128,10 +181,14 @@ void register_trace_benchmarks() {
         register_precision<double>(lens);
         register_precision<float>(lens);
     }
-    benchmark::RegisterBenchmark("trace/tessar/reverse/plain",
-                                 [](benchmark::State& state) { time_plain_loop<false>(state, "tessar"); });
-    benchmark::RegisterBenchmark("trace/tessar/reverse/plain_fresnel",
-                                 [](benchmark::State& state) { time_plain_loop<true>(state, "tessar"); });
+    for (const char* lens : kBatchLenses) {
+        register_batches<double>(lens, "double");
+        register_batches<float>(lens, "float");
+        benchmark::RegisterBenchmark(batch_name(lens, "plain").c_str(),
+                                     [lens](benchmark::State& state) { time_plain_loop<false>(state, lens); });
+        benchmark::RegisterBenchmark(batch_name(lens, "plain_fresnel").c_str(),
+                                     [lens](benchmark::State& state) { time_plain_loop<true>(state, lens); });
+    }
 }
 
 }  // namespace lensproof

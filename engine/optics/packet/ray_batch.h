@@ -1,0 +1,84 @@
+// engine/optics/packet/ray_batch.h — many rays in structure of arrays, as the packet tracer takes and leaves them.
+#pragma once
+#include <cstdint>
+#include <new>
+#include <vector>
+
+#include "engine/optics/ray.h"
+
+namespace lensproof {
+
+/// What the widest packets ask of memory: their alignment in bytes, and how many lanes they may touch at once.
+inline constexpr std::size_t kPacketAlignment = 64;
+inline constexpr int kMostLanes = 16;
+
+template <class T>
+struct PacketAllocator {
+    using value_type = T;
+    PacketAllocator() = default;
+    template <class Other>
+    explicit PacketAllocator(const PacketAllocator<Other>&) {}
+    T* allocate(std::size_t count) {
+        return static_cast<T*>(::operator new(count * sizeof(T), std::align_val_t(kPacketAlignment)));
+    }
+    void deallocate(T* column, std::size_t) { ::operator delete(column, std::align_val_t(kPacketAlignment)); }
+    friend bool operator==(const PacketAllocator&, const PacketAllocator&) { return true; }
+};
+
+template <class T>
+using PacketColumn = std::vector<T, PacketAllocator<T>>;
+
+/// Up to `capacity` rays in lens space, a column a quantity. Columns are longer than that by what fills the last
+/// packet.
+template <class T>
+struct RayBatch {
+    explicit RayBatch(int most)
+        : origin{column(most), column(most), column(most)},
+          direction{column(most), column(most), column(most)},
+          optical_path(column(most)),
+          transmittance(column(most)),
+          wavelength(padded(most)),
+          status(padded(most)),
+          surface(padded(most)),
+          capacity(most) {}
+
+    struct Vectors {
+        PacketColumn<T> x;
+        PacketColumn<T> y;
+        PacketColumn<T> z;
+    };
+
+    Vectors origin;                // mm; given, then on the last surface that the ray reached
+    Vectors direction;             // of unit length; given, then after that surface
+    PacketColumn<T> optical_path;  // as TracedRay has them, where `trace_batch` is asked for them
+    PacketColumn<T> transmittance;
+    PacketColumn<std::uint16_t> wavelength;  // given: which of the lens's wavelengths
+    PacketColumn<RayStatus> status;
+    PacketColumn<std::int16_t> surface;
+    int capacity = 0;
+    int size = 0;  // rays in use
+
+    void set(int i, const Ray<T>& ray) {
+        const auto put = [i](Vectors& to, const Vec3<T>& from) {
+            to.x[static_cast<std::size_t>(i)] = from.x;
+            to.y[static_cast<std::size_t>(i)] = from.y;
+            to.z[static_cast<std::size_t>(i)] = from.z;
+        };
+        put(origin, ray.origin);
+        put(direction, ray.direction);
+    }
+
+    [[nodiscard]] Ray<T> ray(int i) const {
+        const auto at = static_cast<std::size_t>(i);
+        return {{origin.x[at], origin.y[at], origin.z[at]}, {direction.x[at], direction.y[at], direction.z[at]}};
+    }
+
+  private:
+    static std::size_t padded(int rays) {
+        const auto packets = static_cast<std::size_t>((rays + kMostLanes - 1) / kMostLanes);
+        return packets * kMostLanes;
+    }
+    static PacketColumn<T> column(int rays) { return PacketColumn<T>(padded(rays)); }
+};
+
+}  // namespace lensproof

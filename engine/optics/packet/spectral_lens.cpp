@@ -1,0 +1,63 @@
+#include "engine/optics/packet/spectral_lens.h"
+
+#include <stdexcept>
+
+namespace lensproof {
+
+namespace {
+
+template <class T>
+bool differ_in_indices_alone(const TraceLens<T>& a, const TraceLens<T>& b) {
+    if (a.surfaces.size() != b.surfaces.size() || a.specials.size() != b.specials.size()) {
+        return false;
+    }
+    for (std::size_t i = 0; i < a.surfaces.size(); ++i) {
+        const TraceSurface<T>& of_a = a.surfaces[i];
+        const TraceSurface<T>& of_b = b.surfaces[i];
+        if (of_a.curvature != of_b.curvature || of_a.vertex_z != of_b.vertex_z ||
+            of_a.semi_diameter_squared != of_b.semi_diameter_squared || of_a.is_stop != of_b.is_stop ||
+            of_a.special != of_b.special) {
+            return false;
+        }
+    }
+    return true;
+}
+
+enum Column { kBefore, kAfter, kForwardRatio, kReverseRatio, kColumns };
+
+}  // namespace
+
+template <class T>
+SpectralLens<T>::SpectralLens(std::vector<TraceLens<T>> at) : at_(std::move(at)) {
+    constexpr std::size_t kMost = 65536;
+    if (at_.empty() || at_.size() > kMost) {
+        throw std::invalid_argument("a spectral lens has 1 to 65536 wavelengths");
+    }
+    const std::size_t count = at_.size();
+    table_.resize(at_.front().surfaces.size() * kColumns * count);
+    for (std::size_t k = 0; k < count; ++k) {
+        if (!differ_in_indices_alone(at_.front(), at_[k])) {
+            throw std::invalid_argument("the lenses of a spectral lens differ in more than indices and coatings");
+        }
+        T* entry = table_.data() + k;
+        for (const TraceSurface<T>& surface : at_[k].surfaces) {
+            entry[kBefore * count] = surface.index_before;
+            entry[kAfter * count] = surface.index_after;
+            entry[kForwardRatio * count] = surface.forward_ratio;
+            entry[kReverseRatio * count] = surface.reverse_ratio;
+            entry += kColumns * count;
+        }
+    }
+    for (std::size_t i = 0; i < at_.front().surfaces.size(); ++i) {
+        const T* columns = table_.data() + i * kColumns * count;
+        indices_.push_back({.before = columns + kBefore * count,
+                            .after = columns + kAfter * count,
+                            .forward_ratio = columns + kForwardRatio * count,
+                            .reverse_ratio = columns + kReverseRatio * count});
+    }
+}
+
+template class SpectralLens<float>;
+template class SpectralLens<double>;
+
+}  // namespace lensproof

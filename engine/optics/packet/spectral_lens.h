@@ -1,0 +1,57 @@
+// engine/optics/packet/spectral_lens.h — a lens at several wavelengths at once, for packets whose rays differ in
+// theirs.
+#pragma once
+#include <vector>
+
+#include "engine/optics/lens.h"
+
+namespace lensproof {
+
+/// One lens at up to 65,536 wavelengths in one precision. The surfaces are the same in all of them but for indices and
+/// coatings; the indices lie in a table a surface, so that a packet can look its lanes' up.
+template <class T>
+class SpectralLens {
+  public:
+    /// Throws std::invalid_argument for lenses that differ in more than indices and coatings, and for none.
+    explicit SpectralLens(std::vector<TraceLens<T>> at);
+    SpectralLens(SpectralLens&&) noexcept = default;  // `indices` point into the table
+    SpectralLens& operator=(SpectralLens&&) noexcept = default;
+    SpectralLens(const SpectralLens&) = delete;
+    SpectralLens& operator=(const SpectralLens&) = delete;
+    ~SpectralLens() = default;
+
+    [[nodiscard]] const std::vector<TraceLens<T>>& at() const { return at_; }
+    [[nodiscard]] const TraceLens<T>& at(int wavelength) const { return at_[static_cast<std::size_t>(wavelength)]; }
+    [[nodiscard]] int wavelengths() const { return static_cast<int>(at_.size()); }
+    [[nodiscard]] int surfaces() const { return static_cast<int>(at_.front().surfaces.size()); }
+
+    /// One surface's numbers, each by wavelength.
+    struct Indices {
+        const T* before;
+        const T* after;
+        const T* forward_ratio;
+        const T* reverse_ratio;
+    };
+    [[nodiscard]] const std::vector<Indices>& indices() const { return indices_; }
+
+  private:
+    std::vector<TraceLens<T>> at_;
+    std::vector<T> table_;  // [surface][which][wavelength]
+    std::vector<Indices> indices_;
+};
+
+extern template class SpectralLens<float>;
+extern template class SpectralLens<double>;
+
+/// The lens at each of the wavelengths. Throws as `at_wavelength` does.
+template <class T>
+SpectralLens<T> at_wavelengths(const Lens& lens, const std::vector<double>& wavelengths_nm) {
+    std::vector<TraceLens<T>> at;
+    at.reserve(wavelengths_nm.size());
+    for (const double nm : wavelengths_nm) {
+        at.push_back(at_wavelength<T>(lens, nm));
+    }
+    return SpectralLens<T>(std::move(at));
+}
+
+}  // namespace lensproof

@@ -1,0 +1,413 @@
+// engine/optics/packet/trace_kernel.h — the packet tracer's inner loop, compiled once for each width of packets.
+//
+// Only the files trace_kernel_*.cpp include this. Each is compiled for its own instructions, so what it defines must
+// not be shared with code for other machines: everything here is a template over the packs' Abi, and inlined.
+#pragma once
+#include <array>
+#include <tuple>
+
+#include "engine/optics/intersect.h"
+#include "engine/optics/pack.h"
+#include "engine/optics/packet/trace_kernels.h"
+#include "engine/optics/refract.h"
+#include "engine/optics/surface_shape.h"
+
+namespace lensproof {
+
+/// A block of rays on its way through a lens. It walks surface by surface, each surface packet by packet: the packets
+/// are independent of each other, so that the processor works at several at once while one waits for its root.
+template <class Scalar, class Abi, Direction direction, Carry carry>
+class BlockTracer {
+  public:
+    static constexpr int kBlock = 128;  // rays; their columns stay in the first-level cache
+
+    BlockTracer(const KernelLens<Scalar>& lens, const KernelRays<Scalar>& rays, bool clip, int first)
+        : lens_(lens), rays_(rays), clip_(clip), first_(first) {}
+
+    void trace() {
+        const int count = rays_.size - first_ < kBlock ? rays_.size - first_ : kBlock;
+        packets_ = (count + kLanes - 1) / kLanes;
+        for (int packet = 0; packet < packets_; ++packet) {
+            start(packet, count);
+        }
+        for (int i = first_; i < first_ + count; ++i) {
+            rays_.status[i] = RayStatus::ok;
+            rays_.surface[i] = static_cast<std::int16_t>(kForward ? lens_.count - 1 : 0);
+        }
+        for (int step = 0; step < lens_.count; ++step) {
+            pass(kForward ? step : lens_.count - 1 - step);
+        }
+        for (int packet = 0; packet < packets_; ++packet) {
+            finish(packet, count);
+        }
+    }
+
+  private:
+    using Numbers = Pack<Scalar, Abi>;
+    using Mask = PackMask<Scalar, Abi>;
+    static constexpr int kLanes = Numbers::kLanes;
+    static constexpr bool kForward = direction == Direction::forward;
+
+    struct State {
+        Vec3<Numbers> origin;  // z from the last vertex passed
+        Vec3<Numbers> way;
+    };
+
+    /// A surface's numbers for a packet of rays.
+    struct Media {
+        Numbers ratio;
+        Numbers before;
+        Numbers after;
+    };
+
+    // As numbers, since g++ 12 copies a mask in pieces of 16 bytes, for which a load of all of it has to wait.
+    [[nodiscard]] Mask going(int packet) const {
+        return Numbers::load(going_.data() + packet * kLanes) > Numbers(Scalar(0));
+    }
+    void set_going(int packet, const Mask& lanes) {
+        select(lanes, Numbers(Scalar(1)), Numbers(Scalar(0))).store(going_.data() + packet * kLanes);
+    }
+
+    [[nodiscard]] int at(int packet) const { return first_ + packet * kLanes; }
+
+    [[nodiscard]] State load(int packet) const {
+        const int i = packet * kLanes;
+        return {{Numbers::load(x_.data() + i), Numbers::load(y_.data() + i), Numbers::load(z_.data() + i)},
+                {Numbers::load(dx_.data() + i), Numbers::load(dy_.data() + i), Numbers::load(dz_.data() + i)}};
+    }
+
+    void store(int packet, const State& state) {
+        const int i = packet * kLanes;
+        state.origin.x.store(x_.data() + i);
+        state.origin.y.store(y_.data() + i);
+        state.origin.z.store(z_.data() + i);
+        state.way.x.store(dx_.data() + i);
+        state.way.y.store(dy_.data() + i);
+        state.way.z.store(dz_.data() + i);
+    }
+
+    void start(int packet, int count) {
+        const int i = at(packet);
+        store(packet, {{Numbers::load(rays_.x + i), Numbers::load(rays_.y + i), Numbers::load(rays_.z + i)},
+                       {Numbers::load(rays_.dx + i), Numbers::load(rays_.dy + i), Numbers::load(rays_.dz + i)}});
+        set_going(packet, is_ray(packet, count));
+        Numbers(Scalar(1)).store(share_.data() + packet * kLanes);
+        Numbers(Scalar(0)).store(path_.data() + packet * kLanes);
+    }
+
+    /// Back into the batch, in lens space; the lanes behind the last ray keep what the batch has there.
+    void finish(int packet, int count) const {
+        const int i = at(packet);
+        State state = load(packet);
+        state.origin.z = state.origin.z + select(going(packet), Numbers(last_vertex_z_), Numbers(Scalar(0)));
+        const Mask rays = is_ray(packet, count);
+        const auto put = [&](const Numbers& numbers, Scalar* column) {
+            select(rays, numbers, Numbers::load(column + i)).store(column + i);
+        };
+        put(state.origin.x, rays_.x);
+        put(state.origin.y, rays_.y);
+        put(state.origin.z, rays_.z);
+        put(state.way.x, rays_.dx);
+        put(state.way.y, rays_.dy);
+        put(state.way.z, rays_.dz);
+        if constexpr (carry != Carry::geometry) {
+            put(Numbers::load(share_.data() + packet * kLanes), rays_.transmittance);
+        }
+        if constexpr (carry == Carry::all) {
+            put(Numbers::load(path_.data() + packet * kLanes), rays_.optical_path);
+        }
+    }
+
+    static Mask is_ray(int packet, int count) {
+        return Numbers::iota() + Numbers(static_cast<Scalar>(packet * kLanes)) < Numbers(static_cast<Scalar>(count));
+    }
+
+    template <bool per_lane>
+    [[nodiscard]] Media media(int surface, int packet) const {
+        const auto& of = lens_.indices[surface];
+        const auto look_up = [&](const Scalar* table) {
+            if constexpr (per_lane) {
+                return Numbers::gather(table, rays_.wavelength + at(packet));
+            } else {
+                return Numbers(*table);
+            }
+        };
+        Media found{.ratio = look_up(kForward ? of.forward_ratio : of.reverse_ratio), .before = {}, .after = {}};
+        if constexpr (carry != Carry::geometry) {
+            found.before = look_up(kForward ? of.before : of.after);
+            found.after = look_up(kForward ? of.after : of.before);
+        }
+        return found;
+    }
+
+    /// What one surface is to every packet.
+    struct Here {
+        const TraceSurface<Scalar>& surface;
+        int index;
+        Scalar from_last_vertex;
+        Scalar limit;  // of r²; below 0 where the surface is closed
+    };
+
+    void pass(int index) {
+        const TraceSurface<Scalar>& surface = lens_.surfaces[index];
+        const Scalar limit = surface.semi_diameter_squared;
+        const Here here{.surface = surface,
+                        .index = index,
+                        .from_last_vertex = surface.vertex_z - last_vertex_z_,
+                        .limit = limit > Scalar(0) ? limit : Scalar(-1)};
+        const bool from_far = !clip_ || (kForward ? surface.from_far_forward : surface.from_far_reverse);
+        if (surface.special >= 0) {
+            lens_.is_monochromatic ? pass_special<false>(here) : pass_special<true>(here);
+        } else if (lens_.is_monochromatic) {
+            from_far ? pass_packets<true, false>(here) : pass_packets<false, false>(here);
+        } else {
+            from_far ? pass_packets<true, true>(here) : pass_packets<false, true>(here);
+        }
+        last_vertex_z_ = surface.vertex_z;
+    }
+
+    template <bool from_far, bool per_lane>
+    void pass_packets(const Here& here) {
+        if constexpr (per_lane) {
+            for (int packet = 0; packet < packets_; ++packet) {
+                pass_packet<from_far, true>(here, packet, media<true>(here.index, packet));
+            }
+        } else {
+            const Media the_same = media<false>(here.index, 0);
+            for (int packet = 0; packet < packets_; ++packet) {
+                pass_packet<from_far, false>(here, packet, the_same);
+            }
+        }
+    }
+
+    template <bool from_far, bool per_lane>
+    void pass_packet(const Here& here, int packet, const Media& media) {
+        const Mask going = this->going(packet);
+        if (!any(going)) {
+            return;
+        }
+        const State before = load(packet);
+        const Vec3<Numbers> near = moved_near<from_far>(here, before);
+        const Intersection<Numbers> met = intersect_from_near(near, before.way, curvature(here), heading());
+        const Refraction<Numbers> bent = bent_at(here, before, met, media);
+        const Mask passes = met.hit && is_inside(here, met) && bent.transmitted;
+        if (!all(passes || !going)) {
+            pass_with_ends<from_far, per_lane>(here, packet);
+            return;
+        }
+        const Vec3<Numbers>& at_surface = met.point;
+        if (all(going)) {
+            store(packet, {at_surface, bent.direction});
+        } else {
+            store(packet, {select(going, at_surface, before.origin), select(going, bent.direction, before.way)});
+        }
+        add_path(packet, media, way_moved<from_far>(here, before) + met.distance, going);
+        add_loss(packet, fresnel(media, met, bent), going);
+    }
+
+    static Numbers heading() { return Numbers(kForward ? Scalar(1) : Scalar(-1)); }
+    static Numbers curvature(const Here& here) { return Numbers(here.surface.curvature); }
+
+    static Vec3<Numbers> from_vertex(const Here& here, const State& before) {
+        return {before.origin.x, before.origin.y, before.origin.z - Numbers(here.from_last_vertex)};
+    }
+
+    /// How far a ray from far off goes before it is met: to its closest approach to the vertex.
+    template <bool from_far>
+    static Numbers way_moved(const Here& here, const State& before) {
+        return from_far ? way_to_vertex(from_vertex(here, before), before.way) : Numbers(Scalar(0));
+    }
+
+    template <bool from_far>
+    static Vec3<Numbers> moved_near(const Here& here, const State& before) {
+        if constexpr (from_far) {
+            return from_vertex(here, before) + way_moved<from_far>(here, before) * before.way;
+        } else {
+            return from_vertex(here, before);  // and no copy of it: see going()
+        }
+    }
+
+    static Mask is_inside(const Here& here, const Intersection<Numbers>& met) {
+        return met.point.x * met.point.x + met.point.y * met.point.y <= Numbers(here.limit);
+    }
+
+    static Refraction<Numbers> bent_at(const Here& here, const State& before, const Intersection<Numbers>& met,
+                                       const Media& media) {
+        return refract_at_sphere(before.way, met.point, curvature(here), heading(), met.cos_incidence,
+                                 met.sin2_incidence, media.ratio);
+    }
+
+    /// Adds a stretch to the optical path of the rays in `lanes`, where it is asked for.
+    void add_path(int packet, const Media& media, const Numbers& distance, const Mask& lanes) {
+        if constexpr (carry == Carry::all) {
+            Scalar* path = path_.data() + packet * kLanes;
+            const Numbers so_far = Numbers::load(path);
+            select(lanes, so_far + media.before * distance, so_far).store(path);
+        }
+    }
+
+    /// Takes a surface's loss from the rays in `lanes`, where it is asked for.
+    void add_loss(int packet, const Numbers& passing, const Mask& lanes) {
+        if constexpr (carry != Carry::geometry) {
+            Scalar* share = share_.data() + packet * kLanes;
+            const Numbers so_far = Numbers::load(share);
+            select(lanes, so_far * passing, so_far).store(share);
+        }
+    }
+
+    /// The same for a packet of which some rays end here or pass a rim: kept apart, since it is rare.
+    template <bool from_far, bool per_lane>
+    [[gnu::noinline, gnu::flatten]] void pass_with_ends(const Here& here, int packet) {
+        const State before = load(packet);
+        const Media media = this->template media<per_lane>(here.index, packet);
+        const Vec3<Numbers> near = moved_near<from_far>(here, before);
+        const Intersection<Numbers> met = intersect_from_near(near, before.way, curvature(here), heading());
+        const Refraction<Numbers> bent = bent_at(here, before, met, media);
+        const Fate fate =
+            settle(here, packet, before, {met.point, bent.direction}, met.hit, !is_inside(here, met), bent.transmitted);
+        add_path(packet, media, way_moved<from_far>(here, before) + met.distance, fate.met);
+        add_loss(packet, fresnel(media, met, bent), fate.on);
+    }
+
+    /// A surface with a shape, a frame, a coating or an opening of its own.
+    template <bool per_lane>
+    [[gnu::noinline, gnu::flatten]] void pass_special(const Here& here) {
+        const SpecialSurface<Scalar>& special = lens_.specials[here.surface.special];
+        const Vec3<Numbers> vertex{Numbers(special.vertex.x), Numbers(special.vertex.y), Numbers(Scalar(0))};
+        for (int packet = 0; packet < packets_; ++packet) {
+            if (!any(going(packet))) {
+                continue;
+            }
+            const State before = load(packet);
+            const Media media = this->template media<per_lane>(here.index, packet);
+            const State own{special.to_own(from_vertex(here, before) - vertex), special.to_own(before.way)};
+            Intersection<Numbers> met;
+            Refraction<Numbers> bent;
+            if (special.has_shape) {
+                Vec3<Numbers> normal;
+                std::tie(met, normal) = intersect(special.shape, own.origin, own.way, heading());
+                bent = refract(own.way, normal, met.cos_incidence, met.sin2_incidence, media.ratio);
+            } else {
+                met = intersect(own.origin, own.way, curvature(here), heading());
+                bent = bent_at(here, own, met, media);
+            }
+            const Mask beyond = !is_inside(here, met);
+            const Numbers open = open_shares(here, special, met.point, going(packet) && met.hit && !beyond);
+            const State after{special.from_own(met.point) + vertex, special.from_own(bent.direction)};
+            const Fate fate =
+                settle(here, packet, before, after, met.hit, beyond || !(open > Numbers(Scalar(0))), bent.transmitted);
+            add_path(packet, media, met.distance, fate.met);
+            if constexpr (carry != Carry::geometry) {
+                const Numbers passing = special.coating.is_bare() ? fresnel(media, met, bent)
+                                                                  : coated_shares(here, packet, met, bent, fate.on);
+                add_loss(packet, passing * open, fate.on);
+            }
+        }
+    }
+
+    static Numbers fresnel(const Media& media, const Intersection<Numbers>& met, const Refraction<Numbers>& bent) {
+        return fresnel_transmittance(media.before, media.after, met.cos_incidence, bent.cos_refraction);
+    }
+
+    /// Of the rays in `lanes`, one by one; 1 for the others.
+    Numbers open_shares(const Here& here, const SpecialSurface<Scalar>& special, const Vec3<Numbers>& point,
+                        const Mask& lanes) const {
+        Numbers open(Scalar(1));
+        if (!special.mask.is_full_circle()) {
+            for (int lane = 0; lane < kLanes; ++lane) {
+                if (lanes[lane]) {
+                    open.set(lane, lane_open_share(*lens_.lens, here.index, point.x[lane], point.y[lane]));
+                }
+            }
+        }
+        return open;
+    }
+
+    Numbers coated_shares(const Here& here, int packet, const Intersection<Numbers>& met,
+                          const Refraction<Numbers>& bent, const Mask& lanes) const {
+        Numbers passing(Scalar(1));
+        for (int lane = 0; lane < kLanes; ++lane) {
+            if (lanes[lane]) {
+                const int wavelength = lens_.is_monochromatic ? 0 : rays_.wavelength[at(packet) + lane];
+                passing.set(lane, lane_coated_share(*lens_.lens, wavelength, here.index, kForward,
+                                                    met.cos_incidence[lane], bent.cos_refraction[lane]));
+            }
+        }
+        return passing;
+    }
+
+    /// Which rays of a packet met a surface, and which go on.
+    struct Fate {
+        Mask met;
+        Mask on;
+    };
+
+    /// Notes what becomes of each ray and stores it: one that ends is in lens space from now on.
+    Fate settle(const Here& here, int packet, const State& before, const State& after, const Mask& hit,
+                const Mask& beyond, const Mask& transmitted) {
+        const Mask going = this->going(packet);
+        const Mask met = going && hit;
+        const Mask inside = met && (clip_ ? !beyond : Mask(true));
+        const Mask on = inside && transmitted;
+        mark(going && !met, packet, here.index, RayStatus::missed, false);
+        mark(met && beyond, packet, here.index, here.surface.is_stop ? RayStatus::stopped : RayStatus::clipped, true);
+        mark(inside && !on, packet, here.index, RayStatus::total_internal_reflection, false);
+        Vec3<Numbers> last = select(met, after.origin, before.origin);
+        const Numbers global_z = last.z + select(met, Numbers(here.surface.vertex_z), Numbers(last_vertex_z_));
+        last.z = select(going && !on, global_z, last.z);
+        store(packet, {last, select(on, after.way, before.way)});
+        set_going(packet, on);
+        return {met, on};
+    }
+
+    /// Notes the fate of the rays in `lanes`; of those that have none yet, if `only_first`.
+    void mark(const Mask& lanes, int packet, int index, RayStatus status, bool only_first) const {
+        for (int lane = 0; lane < kLanes; ++lane) {
+            const int i = at(packet) + lane;
+            if (lanes[lane] && !(only_first && rays_.status[i] != RayStatus::ok)) {
+                rays_.status[i] = status;
+                rays_.surface[i] = static_cast<std::int16_t>(index);
+            }
+        }
+    }
+
+    KernelLens<Scalar> lens_;
+    KernelRays<Scalar> rays_;
+    bool clip_;
+    int first_;
+    int packets_ = 0;
+    Scalar last_vertex_z_ = Scalar(0);
+    // The block's own columns: at fixed distances from each other, they need but one address in the inner loop.
+    using Column = std::array<Scalar, kBlock>;
+    alignas(kPacketAlignment) Column x_;  // mm; z from the last vertex passed, until a ray ends
+    alignas(kPacketAlignment) Column y_;
+    alignas(kPacketAlignment) Column z_;
+    alignas(kPacketAlignment) Column dx_;
+    alignas(kPacketAlignment) Column dy_;
+    alignas(kPacketAlignment) Column dz_;
+    alignas(kPacketAlignment) Column path_;
+    alignas(kPacketAlignment) Column share_;
+    alignas(kPacketAlignment) Column going_;  // 1: on its way, 0: ended or no ray
+};
+
+template <class Scalar, class Abi, Direction direction, Carry carry>
+[[gnu::flatten]] void trace_blocks(const KernelLens<Scalar>& lens, const KernelRays<Scalar>& rays, bool clip) {
+    using Tracer = BlockTracer<Scalar, Abi, direction, carry>;
+    for (int first = 0; first < rays.size; first += Tracer::kBlock) {
+        Tracer(lens, rays, clip, first).trace();
+    }
+}
+
+template <class Scalar, class Abi, Direction direction>
+std::array<TraceKernel<Scalar>, 3> loops_by_carry() {
+    return {trace_blocks<Scalar, Abi, direction, Carry::geometry>,
+            trace_blocks<Scalar, Abi, direction, Carry::transmittance>,
+            trace_blocks<Scalar, Abi, direction, Carry::all>};
+}
+
+template <class Scalar, class Abi>
+TraceKernels<Scalar> kernels_of() {
+    return {{loops_by_carry<Scalar, Abi, Direction::forward>(), loops_by_carry<Scalar, Abi, Direction::reverse>()}};
+}
+
+}  // namespace lensproof

@@ -1,0 +1,63 @@
+// engine/optics/packet/trace_kernels.h — the packet tracer's inner loops, one for each width, as plain functions.
+#pragma once
+#include <array>
+#include <cstdint>
+
+#include "engine/optics/packet/spectral_lens.h"
+#include "engine/optics/packet/trace_batch.h"
+
+namespace lensproof {
+
+/// A lens as the inner loop sees it: plain arrays.
+template <class T>
+struct KernelLens {
+    const TraceSurface<T>* surfaces = nullptr;
+    const typename SpectralLens<T>::Indices* indices = nullptr;  // a surface
+    const SpecialSurface<T>* specials = nullptr;
+    const SpectralLens<T>* lens = nullptr;  // for what is done ray by ray
+    int count = 0;
+    bool is_monochromatic = false;  // `wavelength` of the rays is then not looked at
+};
+
+/// Rays as the inner loop sees them: the columns of a RayBatch.
+template <class T>
+struct KernelRays {
+    T* x;
+    T* y;
+    T* z;
+    T* dx;
+    T* dy;
+    T* dz;
+    T* optical_path;
+    T* transmittance;
+    const std::uint16_t* wavelength;
+    RayStatus* status;
+    std::int16_t* surface;
+    int size;
+};
+
+/// `open_share` and `coated_share` of one ray. Not inline, so that they are compiled for any machine.
+template <class T>
+T lane_open_share(const SpectralLens<T>& lens, int surface, T x, T y);
+template <class T>
+T lane_coated_share(const SpectralLens<T>& lens, int wavelength, int surface, bool forward, T cos_incidence,
+                    T cos_refraction);
+
+template <class T>
+using TraceKernel = void (*)(const KernelLens<T>& lens, const KernelRays<T>& rays, bool clip);
+
+/// The inner loops of one level by Direction and Carry.
+template <class T>
+using TraceKernels = std::array<std::array<TraceKernel<T>, 3>, 2>;
+
+/// Per level, for float and double.
+struct LevelKernels {
+    TraceKernels<float> in_float;
+    TraceKernels<double> in_double;
+};
+LevelKernels scalar_kernels();
+LevelKernels baseline_kernels();
+LevelKernels avx2_kernels();    // x86-64 alone
+LevelKernels avx512_kernels();  // x86-64 alone
+
+}  // namespace lensproof
