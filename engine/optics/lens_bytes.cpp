@@ -44,9 +44,9 @@ void append_lens_bytes(std::string& bytes, const TraceLens<double>& lens) {
     append_bytes(bytes, surfaces.size(), specials.size(), image_z);
     for (const TraceSurface<double>& surface : surfaces) {
         const auto& [curvature, vertex_z, semi_diameter_squared, index_before, index_after, forward_ratio,
-                     reverse_ratio, is_stop, special] = surface;
+                     reverse_ratio, is_stop, special, from_far_forward, from_far_reverse] = surface;
         append_bytes(bytes, curvature, vertex_z, semi_diameter_squared, index_before, index_after, forward_ratio,
-                     reverse_ratio, is_stop, special);
+                     reverse_ratio, is_stop, special, from_far_forward, from_far_reverse);
     }
     for (const SpecialSurface<double>& special : specials) {
         append_special(bytes, special);
