@@ -215,6 +215,8 @@ class OutlineFinder {
         }
         if (is_mirror_) {
             lower.x = -upper.x;
+            polygon.front().x = 0.0;  // which cosines of ±π/2 miss
+            polygon.back().x = 0.0;
         }
         const Vec2d half{0.5 * (upper.x - lower.x), 0.5 * (upper.y - lower.y)};
         const double middle_x = is_mirror_ ? 0.0 : 0.5 * (lower.x + upper.x);

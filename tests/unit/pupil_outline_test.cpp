@@ -150,5 +150,21 @@ TEST(PupilOutline, FindsWhatIsThere) {
     EXPECT_NEAR(extent_of({&speck, 1}).right, 1e-3, 2e-6);
 }
 
+// A cat's eye that the grid misses, from a point at its very edge: the frame settles in its middle, so that rays from
+// there see its corners as well as those of one that is met.
+TEST(PupilOutline, FramesAreCentred) {
+    const Shape eye{"small cat's eye",
+                    [](Vec2d p) {
+                        return in_disc(p, {0.0, 1.23}, 0.03) && in_disc(p, {0.0, 1.27}, 0.035);
+                    },
+                    1e-4 * lens_area(3.0, 3.5, 4.0),
+                    {0.0, 1.2599}};
+    const PupilOutline outline = outline_of(eye);
+    ASSERT_FALSE(outline.is_empty());
+    EXPECT_NEAR(outline.frame.centre.y, 0.5 * (1.235 + 1.26), 1e-5);
+    const PupilRegion region = region_of(eye);
+    EXPECT_LT(BlendedRegion<1>({&region}, {1.0}, eye.symmetry).area(), 1.007 * eye.area);
+}
+
 }  // namespace
 }  // namespace lensproof
