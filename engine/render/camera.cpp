@@ -4,10 +4,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 
 #include "engine/io/input_error.h"
 #include "engine/optics/focus.h"
+#include "engine/pupil/kept_maps.h"
 #include "engine/spectral/illuminant.h"
 #include "engine/spectral/spectral_exr.h"
 #include "engine/spectral/wavelengths.h"
@@ -37,9 +39,10 @@ Sensor read_sensor(TomlTable& table) {
     return sensor;
 }
 
-/// Wavelengths that the pupil's bounds are found at: the ends and the middle of the band.
-std::vector<TraceLens<double>> bounding_lenses(const std::vector<WavelengthStratum>& strata) {
-    return {strata.front().lens, strata[strata.size() / 2].lens, strata.back().lens};
+std::vector<TraceLens<double>> lenses_of(const std::vector<WavelengthStratum>& strata) {
+    std::vector<TraceLens<double>> lenses;
+    std::ranges::transform(strata, std::back_inserter(lenses), &WavelengthStratum::lens);
+    return lenses;
 }
 
 SpectralStrata make_strata(const Camera& camera, const Lens& lens, const Light& light,
@@ -146,14 +149,13 @@ Lens camera_lens(const Camera& camera) {
                       camera.focus_distance_mm);
 }
 
-ChartCamera::ChartCamera(const Camera& camera, const Light& light, const SpectralSampling& spectral)
+ChartCamera::ChartCamera(const Camera& camera, const Light& light, const SpectralSampling& spectral, const Cache& cache)
     : camera_(camera),
       lens_(camera_lens(camera)),
       spectral_(make_strata(camera, lens_, light, spectral)),
       // Pixels are areas: the corner pixel's own corner is the farthest point sampled.
-      pupil_(lens_.is_rotationally_symmetric
-                 ? PupilBounds(bounding_lenses(spectral_.strata), camera.sensor.half_diagonal_mm())
-                 : PupilBounds::whole_element(spectral_.strata.front().lens, camera.sensor.half_diagonal_mm())) {
+      pupil_(kept_pupil_map(cache, lenses_of(spectral_.strata), lens_.is_rotationally_symmetric,
+                            camera.sensor.half_diagonal_mm())) {
     const double values =
         static_cast<double>(camera.sensor.width) * camera.sensor.height * (6.0 + static_cast<double>(spectral.layers));
     if (values > kMostValues) {

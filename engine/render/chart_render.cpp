@@ -27,35 +27,32 @@ struct Sample {
     double irradiance = 0.0;  // this sample's estimate, W·m⁻²·nm⁻¹
 };
 
-Sample sample_path(const SeenChart& view, const PupilBounds& pupil, const std::array<double, 5>& xi, int u, int v) {
+Sample sample_path(const SeenChart& view, const PupilMap& pupil, const std::array<double, 5>& xi, int u, int v) {
     const auto count = static_cast<double>(view.strata.size());
     Sample sample{.stratum = static_cast<int>(xi[4] * count)};
     const WavelengthStratum& stratum = view.strata[sample.stratum];
 
     const Vec2d at = view.sensor.position(u - 0.5 + xi[0], v - 0.5 + xi[1]);
-    const double radius = std::hypot(at.x, at.y);
-    const PupilEllipse& ellipse = pupil.at(radius);
-    const Vec2d in_pupil = ellipse.warped(xi[2], xi[3]);
-    // From the frame in which the sensor point lies at (0, r).
-    const double cos_azimuth = radius > 0.0 ? at.y / radius : 1.0;
-    const double sin_azimuth = radius > 0.0 ? at.x / radius : 0.0;
-    const Vec3d pupil_point{cos_azimuth * in_pupil.x + sin_azimuth * in_pupil.y,
-                            cos_azimuth * in_pupil.y - sin_azimuth * in_pupil.x, pupil.plane_z()};
+    const double band_position = count > 1.0 ? sample.stratum / (count - 1.0) : 0.0;
+    const PupilSample in_pupil = pupil.sample(at, band_position, xi[2], xi[3]);
+    if (!(in_pupil.density > 0.0)) {
+        return sample;
+    }
     const Vec3d film_point{at.x, at.y, stratum.lens.image_z};
 
-    const Vec3d way = pupil_point - film_point;
+    const Vec3d way = Vec3d{in_pupil.point.x, in_pupil.point.y, pupil.plane_z()} - film_point;
     const double distance2 = dot(way, way);
     const Ray<double> ray{film_point, (1.0 / std::sqrt(distance2)) * way};
     const TracedRay<double> traced = trace<Direction::reverse>(stratum.lens, ray);
     if (traced.status == RayStatus::ok) {
         const double cos2 = ray.direction.z * ray.direction.z;
         sample.irradiance = seen_reflectance(view, traced.ray) * stratum.white_radiance * traced.transmittance * cos2 /
-                            distance2 * ellipse.area();
+                            (distance2 * in_pupil.density);
     }
     return sample;
 }
 
-void render_pixel(const SeenChart& view, const PupilBounds& pupil, const RenderSettings& settings, int u, int v,
+void render_pixel(const SeenChart& view, const PupilMap& pupil, const RenderSettings& settings, int u, int v,
                   Image& image) {
     const PixelSampler sampler(settings.seed, static_cast<std::uint32_t>(v) * static_cast<std::uint32_t>(image.width) +
                                                   static_cast<std::uint32_t>(u));
@@ -98,7 +95,7 @@ double Sensor::half_diagonal_mm() const {
     return 0.5 * std::hypot(width, height) * pixel_pitch_mm;
 }
 
-Image render_chart(const SeenChart& view, const PupilBounds& pupil, const RenderSettings& settings,
+Image render_chart(const SeenChart& view, const PupilMap& pupil, const RenderSettings& settings,
                    const std::function<void(double)>& progress) {
     std::vector<std::string> channels = {"R", "G", "B", "error.R", "error.G", "error.B"};
     for (const double nm : view.layer_nm) {

@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "engine/io/image.h"
-#include "engine/optics/pupil_bounds.h"
 #include "engine/optics/trace.h"
+#include "engine/pupil/pupil_map.h"
 #include "engine/scene/chart.h"
 #include "engine/scene/pose.h"
 
@@ -54,8 +54,9 @@ struct RenderSettings {
 /// mean film irradiance over its band, W·m⁻²·nm⁻¹.
 ///
 /// The estimator of the measurement equation at film point x (Kolb et al. 1995, eq. 4): E = ∫ L τ cos⁴θ / Z² dA over
-/// the pupil ellipse; pixels integrate over their whole area. The result depends on view, samples and seed alone.
-Image render_chart(const SeenChart& view, const PupilBounds& pupil, const RenderSettings& settings,
+/// the pupil, by points that `pupil` draws, a map of the strata's lenses; pixels integrate over their whole area. The
+/// result depends on view, pupil, samples and seed alone.
+Image render_chart(const SeenChart& view, const PupilMap& pupil, const RenderSettings& settings,
                    const std::function<void(double done)>& progress = {});
 
 }  // namespace lensproof

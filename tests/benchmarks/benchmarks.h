@@ -11,7 +11,7 @@ namespace lensproof {
 void register_trace_benchmarks();
 
 /// render/LENS/CHART: camera paths of the chart renderer on one thread (counter: paths per second);
-/// pupil_bounds/LENS: the whole table.
+/// pupil_map/LENS: setting one up over 400 to 700 nm; pupil_sample/LENS: one point of the pupil.
 void register_render_benchmarks();
 
 /// chief_rays/LENS/…: construction and aiming; refine/CHART: sub-pixel positions of all points of one chart in one
