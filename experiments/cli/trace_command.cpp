@@ -10,6 +10,7 @@
 #include "engine/io/csv.h"
 #include "engine/io/file.h"
 #include "engine/io/input_error.h"
+#include "engine/optics/float_error.h"
 #include "engine/optics/lens.h"
 #include "experiments/cli/command.h"
 
@@ -141,6 +142,62 @@ void trace_all(const Lens& lens, const std::vector<GivenRay>& rays, const TraceO
     }
 }
 
+/// The error of --precision float, measured: the same rays in double too.
+struct MeasuredError {
+    FloatError error;
+    bool reverse = false;
+    double system_length_mm = 0.0;
+
+    [[nodiscard]] double bound_um() const { return float_error_bound_um(system_length_mm); }
+};
+
+MeasuredError measure_float(const Lens& lens, const std::vector<GivenRay>& rays, const TraceOptions& options) {
+    MeasuredError measured{.reverse = options.reverse,
+                           .system_length_mm = lens.image_z - lens.surfaces.front().vertex_z};
+    std::map<double, std::pair<TraceLens<float>, TraceLens<double>>> lenses;
+    for (const GivenRay& given : rays) {
+        const double nm = given.wavelength_nm;
+        if (!lenses.contains(nm)) {
+            lenses.emplace(nm, std::pair{at_wavelength<float>(lens, nm), at_wavelength<double>(lens, nm)});
+        }
+        const auto& [in_float, in_double] = lenses.at(nm);
+        measured.error.add(trace_in_float(in_float, in_double, given.ray,
+                                          options.reverse ? Direction::reverse : Direction::forward,
+                                          options.no_clip ? Rims::follow : Rims::clip));
+    }
+    return measured;
+}
+
+void print_error(const MeasuredError& measured) {
+    const FloatError& error = measured.error;
+    const auto text = [](const Distances& distances, const char* where) {
+        return distances.points == 0 ? fmt::format("no point {}", where)
+                                     : fmt::format("at most {:.3g} µm {} ({:.3g} µm rms)", distances.largest_um, where,
+                                                   distances.rms_um());
+    };
+    fmt::print(stderr, "lensproof: float against double: {}, {}; {} of {} rays end otherwise; allowed: {:.3g} µm\n",
+               text(error.at_end, measured.reverse ? "on the first surface" : "on the image plane"),
+               text(error.anywhere, "anywhere"), error.other_fates, error.rays, measured.bound_um());
+}
+
+nlohmann::ordered_json error_json(const MeasuredError& measured) {
+    const auto json = [](const Distances& distances) -> nlohmann::ordered_json {
+        if (distances.points == 0) {
+            return nullptr;
+        }
+        return {{"points", distances.points},
+                {"largest_um", number_or_null(distances.largest_um)},
+                {"rms_um", number_or_null(distances.rms_um())}};
+    };
+    const FloatError& error = measured.error;
+    return {{"rays", error.rays},
+            {"other_statuses", error.other_fates},
+            {measured.reverse ? "first_surface" : "image_plane", json(error.at_end)},
+            {"all_points", json(error.anywhere)},
+            {"system_length_mm", measured.system_length_mm},
+            {"bound_um", measured.bound_um()}};
+}
+
 int run_trace(const TraceOptions& options) {
     if (!options.output_file.empty()) {
         check_output_name(options.output_file);
@@ -163,7 +220,15 @@ int run_trace(const TraceOptions& options) {
     } else if (prints_text(options.common)) {
         fmt::print("{}", table.csv());
     }
-    write_json_result(options.common, {{"lens", lens.id}, {"rows", table.json()}});
+    nlohmann::ordered_json result{{"lens", lens.id}, {"rows", table.json()}};
+    if (options.precision == "float") {
+        const MeasuredError measured = measure_float(lens, rays, options);
+        if (!options.common.quiet) {
+            print_error(measured);
+        }
+        result["float_error"] = error_json(measured);
+    }
+    write_json_result(options.common, result);
     return kDone;
 }
 
@@ -179,7 +244,7 @@ void add_trace_command(CLI::App& app, int& status) {
     command->add_option("--rays", options->rays_file, "CSV of rays")->required()->type_name("FILE");
     command->add_option("-o,--output", options->output_file, "CSV to write (default: standard output)")
         ->type_name("FILE");
-    command->add_option("--precision", options->precision, "float, double or extended")
+    command->add_option("--precision", options->precision, "float (and its error is measured), double or extended")
         ->check(CLI::IsMember({"float", "double", "extended"}))
         ->capture_default_str();
     add_index_option(*command, options->indices);

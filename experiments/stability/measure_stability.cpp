@@ -8,6 +8,7 @@
 #include "engine/optics/convert_lens.h"
 #include "engine/optics/multiprecision.h"
 #include "engine/optics/packet/trace_batch.h"
+#include "experiments/stability/jitter.h"
 
 namespace lensproof {
 
@@ -97,50 +98,6 @@ double distance(const Path<T>& a, const Path<Exact>& exact) {
     return static_cast<double>(largest);
 }
 
-/// Rounds every number that the tracer is given anew: moves it by up to ± `relative` of itself, evenly distributed.
-/// Equal indices stay equal, for they are one glass; a ratio of indices that differ is a rounded number of its own.
-class Jitter {
-  public:
-    Jitter(double relative, std::mt19937_64& random) : relative_(relative), random_(random) {}
-
-    TraceLens<Exact> operator()(TraceLens<Exact> lens) {
-        std::map<Exact, Exact> moved_index{{Exact(1), Exact(1)}};
-        const auto index = [&](const Exact& n) { return moved_index.try_emplace(n, moved(n)).first->second; };
-        for (TraceSurface<Exact>& s : lens.surfaces) {
-            const int special = s.special;
-            s = make_trace_surface<Exact>(moved(s.curvature), moved(s.vertex_z), moved(sqrt(s.semi_diameter_squared)),
-                                          index(s.index_before), index(s.index_after), s.is_stop);
-            s.special = special;
-            if (s.index_before != s.index_after) {
-                s.forward_ratio = moved(s.forward_ratio);
-                s.reverse_ratio = moved(s.reverse_ratio);
-            }
-        }
-        for (SpecialSurface<Exact>& special : lens.specials) {
-            special.shape.curvature = moved(special.shape.curvature);
-            special.shape.curvature_x = moved(special.shape.curvature_x);
-            special.shape.conic = moved(special.shape.conic);
-            std::ranges::transform(special.shape.asphere, special.shape.asphere.begin(),
-                                   [this](const Exact& term) { return moved(term); });
-            special.vertex = {moved(special.vertex.x), moved(special.vertex.y)};
-            std::ranges::transform(special.axes, special.axes.begin(),
-                                   [this](const Vec3<Exact>& axis) { return moved(axis); });
-        }
-        lens.image_z = moved(lens.image_z);
-        return lens;
-    }
-
-    Ray<Exact> operator()(const Ray<Exact>& ray) { return {moved(ray.origin), normalized(moved(ray.direction))}; }
-
-  private:
-    Exact moved(const Exact& number) { return number * (Exact(1) + Exact(relative_ * unit_(random_))); }
-    Vec3<Exact> moved(const Vec3<Exact>& v) { return {moved(v.x), moved(v.y), moved(v.z)}; }
-
-    double relative_;
-    std::mt19937_64& random_;
-    std::uniform_real_distribution<double> unit_{-1.0, 1.0};
-};
-
 /// One ray in a hundred digits: its path, how far rounding the input moves it, and whether that may change its fate.
 struct Judgement {
     Path<Exact> path;
@@ -151,10 +108,10 @@ struct Judgement {
 Judgement judge(const TraceLens<Exact>& lens, const Ray<double>& given, std::mt19937_64& random) {
     const Ray<Exact> ray = convert_ray<Exact>(given);
     Judgement judgement{.path = path_of(lens, ray)};
-    Jitter by_half_an_ulp(kHalfUlp, random);
-    Jitter by_more(kConditioningFactor * kHalfUlp, random);
+    Jitter<Exact> by_half_an_ulp(kHalfUlp, random);
+    Jitter<Exact> by_more(kConditioningFactor * kHalfUlp, random);
     for (int draw = 0; draw < kDraws; ++draw) {
-        for (Jitter* jitter : {&by_half_an_ulp, &by_more}) {
+        for (Jitter<Exact>* jitter : {&by_half_an_ulp, &by_more}) {
             const TraceLens<Exact> moved_lens = (*jitter)(lens);
             const Path<Exact> moved = path_of(moved_lens, (*jitter)(ray));
             judgement.is_at_a_change = judgement.is_at_a_change || !same_fate(moved, judgement.path);
