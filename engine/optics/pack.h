@@ -44,9 +44,12 @@ class Pack {
     explicit Pack(Scalar everywhere) : lanes_(everywhere) {}
     explicit Pack(const Lanes& lanes) : lanes_(lanes) {}
 
-    /// From kLanes numbers at `from`, which is aligned to their size in all.
+    /// From kLanes numbers at `from`, which is aligned to their size in all; and back, as another number type perhaps.
     static Pack load(const Scalar* from) { return Pack(Lanes(from, std::experimental::vector_aligned)); }
-    void store(Scalar* to) const { lanes_.copy_to(to, std::experimental::vector_aligned); }
+    template <class Other>
+    void store(Other* to) const {
+        lanes_.copy_to(to, std::experimental::vector_aligned);
+    }
 
     /// The pack of 0, 1, 2, …
     static Pack iota() {

@@ -1,0 +1,121 @@
+#include "engine/render/camera_paths.h"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+namespace lensproof {
+
+namespace {
+
+/// Points of the pupil for film points, one at a time.
+void draw_pupil_points(const PupilBounds& pupil, PathStarts& starts) {
+    for (std::size_t i = 0; i < static_cast<std::size_t>(starts.size); ++i) {
+        const Vec2d at{starts.film_x[i], starts.film_y[i]};
+        const double radius = std::hypot(at.x, at.y);
+        const PupilEllipse& ellipse = pupil.at(radius);
+        const Vec2d in_pupil = ellipse.warped(starts.pupil_u[i], starts.pupil_v[i]);
+        // From the frame in which the sensor point lies at (0, r).
+        const double cos_azimuth = radius > 0.0 ? at.y / radius : 1.0;
+        const double sin_azimuth = radius > 0.0 ? at.x / radius : 0.0;
+        starts.pupil_x[i] = cos_azimuth * in_pupil.x + sin_azimuth * in_pupil.y;
+        starts.pupil_y[i] = cos_azimuth * in_pupil.y - sin_azimuth * in_pupil.x;
+        starts.pupil_area[i] = ellipse.area();
+    }
+}
+
+/// Writes those of `from` that `kept` names to the end of a buffer's column.
+template <class To, class From>
+void append(To& to, int at, const From& from, const std::array<std::uint16_t, kPathChunk>& kept, int count) {
+    auto* end = to.data() + at;
+    const auto* column = from.data();
+    for (int k = 0; k < count; ++k) {
+        end[k] = column[kept[static_cast<std::size_t>(k)]];
+    }
+}
+
+}  // namespace
+
+template <class T>
+CameraPathBuffer<T>::CameraPathBuffer(int most) : capacity(most) {
+    if (most < 1) {
+        throw std::invalid_argument("a buffer of camera paths holds one at least");
+    }
+    const auto resize = [most](auto&... columns) { (columns.resize(static_cast<std::size_t>(most)), ...); };
+    resize(pixel, sample, wavelength, film_x, film_y, weight);
+    resize(origin.x, origin.y, origin.z, direction.x, direction.y, direction.z);
+}
+
+template <class T>
+CameraPathProducer<T>::CameraPathProducer(const CameraPathSource<T>& source, std::optional<SimdLevel> level)
+    : source_(source),
+      tracing_{.carry = Carry::transmittance, .level = level},
+      kernels_(&path_kernels<T>(level.value_or(available_simd_levels().back()))),
+      starts_(std::make_unique<PathStarts>()),
+      rays_(kPathChunk) {}
+
+template <class T>
+void CameraPathProducer<T>::start(const CameraPathRange& range) {
+    cursor_ = {.pixel = range.first_pixel, .sample = 0, .first_sample = range.first_sample, .samples = range.samples};
+    end_pixel_ = range.first_pixel + (range.samples > 0 ? range.pixels : 0);
+}
+
+template <class T>
+bool CameraPathProducer<T>::fill(CameraPathBuffer<T>& buffer) {
+    buffer.size = 0;
+    while (cursor_.pixel < end_pixel_) {
+        // As many as surely fit, in whole packets while there are such.
+        const int room = buffer.capacity - buffer.size;
+        if (room < kMostLanes && buffer.size > 0) {
+            break;
+        }
+        const int whole = room < kMostLanes ? room : room / kMostLanes * kMostLanes;
+        const std::uint64_t left = std::uint64_t{end_pixel_ - cursor_.pixel} * cursor_.samples - cursor_.sample;
+        draw_and_trace(static_cast<int>(std::min<std::uint64_t>(left, std::min(whole, kPathChunk))));
+        move_survivors(buffer);
+    }
+    return buffer.size > 0;
+}
+
+template <class T>
+void CameraPathProducer<T>::draw_and_trace(int count) {
+    kernels_->draw(source_.sensor, source_.seed, count, cursor_, *starts_);
+    draw_pupil_points(*source_.pupil, *starts_);
+    kernels_->aim(source_.lens->at(0).image_z, source_.pupil->plane_z(), source_.lens->wavelengths(), *starts_, rays_);
+    trace_batch<Direction::reverse>(*source_.lens, rays_, tracing_);
+    started_ += count;
+}
+
+template <class T>
+void CameraPathProducer<T>::move_survivors(CameraPathBuffer<T>& buffer) const {
+    std::array<std::uint16_t, kPathChunk> kept;
+    int count = 0;
+    for (int i = 0; i < rays_.size; ++i) {
+        kept[static_cast<std::size_t>(count)] = static_cast<std::uint16_t>(i);
+        count += rays_.status[static_cast<std::size_t>(i)] == RayStatus::ok ? 1 : 0;
+    }
+    const int at = buffer.size;
+    append(buffer.pixel, at, starts_->pixel, kept, count);
+    append(buffer.sample, at, starts_->sample, kept, count);
+    append(buffer.wavelength, at, rays_.wavelength, kept, count);
+    append(buffer.film_x, at, starts_->film_x, kept, count);
+    append(buffer.film_y, at, starts_->film_y, kept, count);
+    append(buffer.origin.x, at, rays_.origin.x, kept, count);
+    append(buffer.origin.y, at, rays_.origin.y, kept, count);
+    append(buffer.origin.z, at, rays_.origin.z, kept, count);
+    append(buffer.direction.x, at, rays_.direction.x, kept, count);
+    append(buffer.direction.y, at, rays_.direction.y, kept, count);
+    append(buffer.direction.z, at, rays_.direction.z, kept, count);
+    for (int k = 0; k < count; ++k) {
+        const auto i = static_cast<std::size_t>(kept[static_cast<std::size_t>(k)]);
+        buffer.weight[static_cast<std::size_t>(at + k)] = rays_.transmittance[i] * static_cast<T>(starts_->etendue[i]);
+    }
+    buffer.size += count;
+}
+
+template struct CameraPathBuffer<float>;
+template struct CameraPathBuffer<double>;
+template class CameraPathProducer<float>;
+template class CameraPathProducer<double>;
+
+}  // namespace lensproof

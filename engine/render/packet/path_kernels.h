@@ -1,0 +1,33 @@
+// engine/render/packet/path_kernels.h — the loops that camera paths start with, one of each for each width of packets.
+#pragma once
+#include <cstdint>
+
+#include "engine/optics/packet/trace_batch.h"
+#include "engine/render/packet/path_chunk.h"
+
+namespace lensproof {
+
+/// The loops of one level; all levels yield the same bits.
+template <class T>
+struct PathKernels {
+    /// Draws `count` samples: pixel, sample, film point, numbers for the pupil, wavelength. Moves the cursor.
+    void (*draw)(const Sensor& sensor, std::uint64_t seed, int count, PathCursor& cursor, PathStarts& starts);
+
+    /// From film and pupil points the rays and their etendue; which of `wavelengths` each ray has.
+    void (*aim)(double film_z, double pupil_z, int wavelengths, PathStarts& starts, RayBatch<T>& rays);
+};
+
+/// Those of an available level.
+template <class T>
+const PathKernels<T>& path_kernels(SimdLevel level);
+
+struct LevelPathKernels {
+    PathKernels<float> in_float;
+    PathKernels<double> in_double;
+};
+LevelPathKernels scalar_path_kernels();
+LevelPathKernels baseline_path_kernels();
+LevelPathKernels avx2_path_kernels();    // x86-64 alone
+LevelPathKernels avx512_path_kernels();  // x86-64 alone
+
+}  // namespace lensproof
