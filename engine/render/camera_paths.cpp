@@ -1,7 +1,6 @@
 #include "engine/render/camera_paths.h"
 
 #include <algorithm>
-#include <cmath>
 #include <stdexcept>
 
 namespace lensproof {
@@ -9,18 +8,14 @@ namespace lensproof {
 namespace {
 
 /// Points of the pupil for film points, one at a time.
-void draw_pupil_points(const PupilBounds& pupil, PathStarts& starts) {
+void draw_pupil_points(const std::vector<PupilMap>& pupils, int wavelengths, PathStarts& starts) {
     for (std::size_t i = 0; i < static_cast<std::size_t>(starts.size); ++i) {
-        const Vec2d at{starts.film_x[i], starts.film_y[i]};
-        const double radius = std::hypot(at.x, at.y);
-        const PupilEllipse& ellipse = pupil.at(radius);
-        const Vec2d in_pupil = ellipse.warped(starts.pupil_u[i], starts.pupil_v[i]);
-        // From the frame in which the sensor point lies at (0, r).
-        const double cos_azimuth = radius > 0.0 ? at.y / radius : 1.0;
-        const double sin_azimuth = radius > 0.0 ? at.x / radius : 0.0;
-        starts.pupil_x[i] = cos_azimuth * in_pupil.x + sin_azimuth * in_pupil.y;
-        starts.pupil_y[i] = cos_azimuth * in_pupil.y - sin_azimuth * in_pupil.x;
-        starts.pupil_area[i] = ellipse.area();
+        const PupilMap& pupil = pupils[starts.wavelength[i] * pupils.size() / static_cast<std::size_t>(wavelengths)];
+        const PupilSample sample =
+            pupil.sample({starts.film_x[i], starts.film_y[i]}, starts.pupil_u[i], starts.pupil_v[i]);
+        starts.pupil_x[i] = sample.point.x;
+        starts.pupil_y[i] = sample.point.y;
+        starts.pupil_density[i] = sample.density;
     }
 }
 
@@ -79,9 +74,11 @@ bool CameraPathProducer<T>::fill(CameraPathBuffer<T>& buffer) {
 
 template <class T>
 void CameraPathProducer<T>::draw_and_trace(int count) {
-    kernels_->draw(source_.sensor, source_.seed, count, cursor_, *starts_);
-    draw_pupil_points(*source_.pupil, *starts_);
-    kernels_->aim(source_.lens->at(0).image_z, source_.pupil->plane_z(), source_.lens->wavelengths(), *starts_, rays_);
+    const int wavelengths = source_.lens->wavelengths();
+    kernels_->draw({.sensor = source_.sensor, .seed = source_.seed, .wavelengths = wavelengths}, count, cursor_,
+                   *starts_);
+    draw_pupil_points(*source_.pupils, wavelengths, *starts_);
+    kernels_->aim(source_.lens->at(0).image_z, source_.pupils->front().plane_z(), *starts_, rays_);
     trace_batch<Direction::reverse>(*source_.lens, rays_, tracing_);
     started_ += count;
 }

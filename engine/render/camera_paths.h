@@ -3,9 +3,10 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <vector>
 
 #include "engine/optics/packet/trace_batch.h"
-#include "engine/optics/pupil_bounds.h"
+#include "engine/pupil/pupil_map.h"
 #include "engine/render/packet/path_kernels.h"
 #include "engine/render/sensor.h"
 
@@ -44,8 +45,8 @@ struct CameraPathBuffer {
 template <class T>
 struct CameraPathSource {
     Sensor sensor;
-    const SpectralLens<T>* lens = nullptr;  // at the wavelengths that samples spread evenly over
-    const PupilBounds* pupil = nullptr;
+    const SpectralLens<T>* lens = nullptr;          // at the wavelengths that samples spread evenly over
+    const std::vector<PupilMap>* pupils = nullptr;  // of bands of the wavelengths, which these are shared out among
     std::uint64_t seed = 0;
 };
 

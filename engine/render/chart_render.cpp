@@ -120,7 +120,7 @@ SpectralLens<double> spectral_lens(const std::vector<WavelengthStratum>& strata)
 
 }  // namespace
 
-Image render_chart(const SeenChart& view, const PupilBounds& pupil, const RenderSettings& settings,
+Image render_chart(const SeenChart& view, const std::vector<PupilMap>& pupils, const RenderSettings& settings,
                    const std::function<void(double)>& progress) {
     std::vector<std::string> channels = {"R", "G", "B", "error.R", "error.G", "error.B"};
     for (const double nm : view.layer_nm) {
@@ -128,7 +128,8 @@ Image render_chart(const SeenChart& view, const PupilBounds& pupil, const Render
     }
     Image image = make_image(view.sensor.width, view.sensor.height, std::move(channels));
     const SpectralLens<double> lens = spectral_lens(view.strata);
-    const CameraPathSource<double> source{.sensor = view.sensor, .lens = &lens, .pupil = &pupil, .seed = settings.seed};
+    const CameraPathSource<double> source{
+        .sensor = view.sensor, .lens = &lens, .pupils = &pupils, .seed = settings.seed};
     parallel_for_workers(
         image.height, settings.threads, [&] { return RowRenderer(view, source, settings.samples_per_pixel, image); },
         [&](int rows) {

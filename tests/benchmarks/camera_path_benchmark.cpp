@@ -31,11 +31,12 @@ void time_points_one_by_one(benchmark::State& state) {
 
 /// As camera paths take them: in columns, film positions included.
 void time_points_in_columns(benchmark::State& state, SimdLevel level) {
-    const Sensor sensor{.width = 64, .height = 48, .pixel_pitch_mm = 0.01};
+    const PathSampling sampling{
+        .sensor = {.width = 64, .height = 48, .pixel_pitch_mm = 0.01}, .seed = 0, .wavelengths = kSamples};
     const auto starts = std::make_unique<PathStarts>();
     PathCursor cursor{.samples = kSamples};
     while (state.KeepRunning()) {
-        path_kernels<double>(level).draw(sensor, 0, kSamples, cursor, *starts);
+        path_kernels<double>(level).draw(sampling, kSamples, cursor, *starts);
         benchmark::DoNotOptimize(*starts);
     }
     count_points(state);

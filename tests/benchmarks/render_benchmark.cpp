@@ -44,10 +44,10 @@ void time_render(benchmark::State& state, const Setting& setting, const Chart& c
         static_cast<double>(state.iterations()) * sensor.width * sensor.height * kSamples, benchmark::Counter::kIsRate);
 }
 
-void time_pupil_bounds(benchmark::State& state, const Setting& setting) {
+void time_pupil_map(benchmark::State& state, const Setting& setting) {
     const TraceLens<double> lens = at_wavelength<double>(camera_lens(camera_for(setting)), 550.0);
     while (state.KeepRunning()) {
-        benchmark::DoNotOptimize(PupilBounds({lens}, setting.half_diagonal_mm));
+        benchmark::DoNotOptimize(PupilMap({lens}, true, setting.half_diagonal_mm));
     }
 }
 
@@ -64,8 +64,8 @@ void register_render_benchmarks() {
                 [&setting, chart](benchmark::State& state) { time_render(state, setting, chart); })
                 ->Unit(benchmark::kMillisecond);
         }
-        benchmark::RegisterBenchmark(("pupil_bounds/" + setting.lens).c_str(), [&setting](benchmark::State& state) {
-            time_pupil_bounds(state, setting);
+        benchmark::RegisterBenchmark(("pupil_map/" + setting.lens).c_str(), [&setting](benchmark::State& state) {
+            time_pupil_map(state, setting);
         })->Unit(benchmark::kMillisecond);
     }
 }

@@ -16,21 +16,29 @@ namespace {
 constexpr std::uint64_t kSeed = 17;
 const std::vector<double> kWavelengths = {430.0, 490.0, 550.0, 610.0, 670.0};
 
+/// A map for the first three wavelengths, and one for the others.
+std::vector<PupilMap> make_pupils(const SpectralLens<double>& lens, double sensor_radius_mm) {
+    std::vector<PupilMap> pupils;
+    pupils.emplace_back(std::vector{lens.at(0), lens.at(2)}, true, sensor_radius_mm);
+    pupils.emplace_back(std::vector{lens.at(3), lens.at(4)}, true, sensor_radius_mm);
+    return pupils;
+}
+
 /// A camera whose corners lie outside its image circle, so that some pixels lose a part of their paths and some all.
 template <class T>
 struct TestCamera {
     explicit TestCamera(const std::string& name, double half_diagonal_mm)
         : lens(at_wavelengths<T>(load_lens(name), kWavelengths)),
           in_double(at_wavelengths<double>(load_lens(name), kWavelengths)),
-          pupil({in_double.at(0), in_double.at(2), in_double.at(4)}, half_diagonal_mm),
+          pupils(make_pupils(in_double, half_diagonal_mm)),
           source{.sensor = {.width = 8, .height = 6, .pixel_pitch_mm = half_diagonal_mm / 5.0},
                  .lens = &lens,
-                 .pupil = &pupil,
+                 .pupils = &pupils,
                  .seed = kSeed} {}
 
     SpectralLens<T> lens;
     SpectralLens<double> in_double;
-    PupilBounds pupil;
+    std::vector<PupilMap> pupils;
     CameraPathSource<T> source;
 };
 
@@ -60,18 +68,14 @@ std::vector<Path<T>> one_by_one(const TestCamera<T>& camera, const CameraPathRan
             const auto xi = sampler.point(sample);
             const int wavelength = static_cast<int>(xi[4] * static_cast<double>(kWavelengths.size()));
             const Vec2d film = sensor.position(pixel % 8 - 0.5 + xi[0], pixel / 8 - 0.5 + xi[1]);
-            const double radius = std::hypot(film.x, film.y);
-            const PupilEllipse& ellipse = camera.pupil.at(radius);
-            const Vec2d own = ellipse.warped(xi[2], xi[3]);
-            const double c = film.y / radius;
-            const double s = film.x / radius;
-            const Vec3d way{c * own.x + s * own.y - film.x, c * own.y - s * own.x - film.y,
-                            camera.pupil.plane_z() - film_z};
+            const PupilMap& pupil = camera.pupils[wavelength < 3 ? 0 : 1];
+            const PupilSample in_pupil = pupil.sample(film, xi[2], xi[3]);
+            const Vec3d way{in_pupil.point.x - film.x, in_pupil.point.y - film.y, pupil.plane_z() - film_z};
             const Vec3d direction = normalized(way);
             const Ray<T> start{convert_vector<T>(Vec3d{film.x, film.y, film_z}), convert_vector<T>(direction)};
             const TracedRay<T> traced = trace<Direction::reverse>(camera.lens.at(wavelength), start);
             if (traced.status == RayStatus::ok) {
-                const double etendue = direction.z * direction.z / dot(way, way) * ellipse.area();
+                const double etendue = direction.z * direction.z / (dot(way, way) * in_pupil.density);
                 paths.push_back(
                     {pixel, sample, wavelength, film, traced.transmittance * static_cast<T>(etendue), traced.ray});
             }

@@ -22,12 +22,20 @@ struct alignas(kPacketAlignment) PathStarts {
     PathColumn<double> film_y;
     PathColumn<double> pupil_u;  // in the unit square
     PathColumn<double> pupil_v;
-    PathColumn<double> wavelength;  // in the unit interval
+    PathColumn<double> wavelength_number;  // in the unit interval
+    PathColumn<std::uint16_t> wavelength;
     PathColumn<double> pupil_x;
     PathColumn<double> pupil_y;
-    PathColumn<double> pupil_area;  // 1 / the density of the pupil point, mm²
-    PathColumn<double> etendue;     // cos⁴θ / Z² · pupil_area, sr
+    PathColumn<double> pupil_density;  // that the pupil point was drawn with, 1/mm²
+    PathColumn<double> etendue;        // cos⁴θ / Z² / the density, sr
     int size = 0;
+};
+
+/// What samples are drawn from.
+struct PathSampling {
+    Sensor sensor;
+    std::uint64_t seed = 0;
+    int wavelengths = 1;
 };
 
 /// The next samples to draw: `samples` of each pixel from `first_sample` on.

@@ -22,7 +22,7 @@ void draw_in_pixel(Sensor sensor, std::uint64_t seed, const PathCursor& cursor, 
     PixelSampler(seed, cursor.pixel)
         .points(first_sample, static_cast<std::uint32_t>(count),
                 {film_x, film_y, starts.pupil_u.data() + first, starts.pupil_v.data() + first,
-                 starts.wavelength.data() + first});
+                 starts.wavelength_number.data() + first});
     const auto width = static_cast<std::uint32_t>(sensor.width);
     const double u = static_cast<double>(cursor.pixel % width) - 0.5;
     const double v = static_cast<double>(cursor.pixel / width) - 0.5;
@@ -37,14 +37,13 @@ void draw_in_pixel(Sensor sensor, std::uint64_t seed, const PathCursor& cursor, 
 }
 
 template <class Abi>
-[[gnu::flatten]] void draw(const Sensor& sensor, std::uint64_t seed, int count, PathCursor& cursor,
-                           PathStarts& starts) {
+[[gnu::flatten]] void draw(const PathSampling& sampling, int count, PathCursor& cursor, PathStarts& starts) {
     starts.size = count;
     for (int done = 0; done < count;) {
         const auto left_in_pixel =
             static_cast<int>(std::min(cursor.samples - cursor.sample, std::uint32_t{kPathChunk}));
         const int run = std::min(count - done, left_in_pixel);
-        draw_in_pixel<Abi>(sensor, seed, cursor, done, run, starts);
+        draw_in_pixel<Abi>(sampling.sensor, sampling.seed, cursor, done, run, starts);
         done += run;
         cursor.sample += static_cast<std::uint32_t>(run);
         if (cursor.sample == cursor.samples) {
@@ -52,10 +51,14 @@ template <class Abi>
             ++cursor.pixel;
         }
     }
+    for (int i = 0; i < count; ++i) {
+        starts.wavelength[static_cast<std::size_t>(i)] = static_cast<std::uint16_t>(
+            static_cast<int>(starts.wavelength_number[static_cast<std::size_t>(i)] * sampling.wavelengths));
+    }
 }
 
 template <class Abi, class T>
-[[gnu::flatten]] void aim(double film_z, double pupil_z, int wavelengths, PathStarts& starts, RayBatch<T>& rays) {
+[[gnu::flatten]] void aim(double film_z, double pupil_z, PathStarts& starts, RayBatch<T>& rays) {
     using Numbers = Pack<double, Abi>;
     const Numbers z(film_z);
     const Numbers way_z(pupil_z - film_z);
@@ -66,7 +69,8 @@ template <class Abi, class T>
                                 Numbers::load(starts.pupil_y.data() + i) - y, way_z};
         const Numbers distance2 = dot(way, way);
         const Vec3<Numbers> direction = (Numbers(1.0) / sqrt(distance2)) * way;
-        const Numbers etendue = direction.z * direction.z / distance2 * Numbers::load(starts.pupil_area.data() + i);
+        const Numbers etendue =
+            direction.z * direction.z / (distance2 * Numbers::load(starts.pupil_density.data() + i));
         etendue.store(starts.etendue.data() + i);
         x.store(rays.origin.x.data() + i);
         y.store(rays.origin.y.data() + i);
@@ -75,11 +79,7 @@ template <class Abi, class T>
         direction.y.store(rays.direction.y.data() + i);
         direction.z.store(rays.direction.z.data() + i);
     }
-    const double* number = starts.wavelength.data();
-    std::uint16_t* wavelength = rays.wavelength.data();
-    for (int i = 0; i < starts.size; ++i) {
-        wavelength[i] = static_cast<std::uint16_t>(static_cast<int>(number[i] * wavelengths));
-    }
+    std::copy_n(starts.wavelength.data(), starts.size, rays.wavelength.data());
     rays.size = starts.size;
 }
 

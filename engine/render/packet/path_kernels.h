@@ -10,11 +10,11 @@ namespace lensproof {
 /// The loops of one level; all levels yield the same bits.
 template <class T>
 struct PathKernels {
-    /// Draws `count` samples: pixel, sample, film point, numbers for the pupil, wavelength. Moves the cursor.
-    void (*draw)(const Sensor& sensor, std::uint64_t seed, int count, PathCursor& cursor, PathStarts& starts);
+    /// Draws `count` samples: pixel, sample, film point, wavelength, numbers for the pupil. Moves the cursor.
+    void (*draw)(const PathSampling& sampling, int count, PathCursor& cursor, PathStarts& starts);
 
-    /// From film and pupil points the rays and their etendue; which of `wavelengths` each ray has.
-    void (*aim)(double film_z, double pupil_z, int wavelengths, PathStarts& starts, RayBatch<T>& rays);
+    /// From film and pupil points the rays and their etendue.
+    void (*aim)(double film_z, double pupil_z, PathStarts& starts, RayBatch<T>& rays);
 };
 
 /// Those of an available level.

@@ -1,0 +1,83 @@
+// engine/pupil/pupil_map.h — from where on the rear element light reaches each point of the sensor.
+#pragma once
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "engine/optics/trace.h"
+#include "engine/pupil/pupil_guides.h"
+#include "engine/pupil/rear_disc.h"
+
+namespace lensproof {
+
+/// A point of the pupil, x and y in lens space in the plane z = plane_z, mm, and the density that it was drawn with,
+/// 1/mm².
+struct PupilSample {
+    Vec2d point;
+    double density = 0.0;
+};
+
+struct PupilMapSettings {
+    /// The share of samples drawn over the whole rear element, whatever the map says: what the map missed costs noise
+    /// then, and is not lost.
+    double defensive_share = 0.003;
+    /// A step in radius or azimuth is halved until regions between two nodes have to be enlarged by no more than this
+    /// share of their area. Steps below 1/64 of the sensor's radius, which few points lie in, may need more.
+    double most_excess = 0.005;
+};
+
+/// Draws paths' first points: for a point of the sensor, points of the pupil through which light may reach it, evenly
+/// over a region that holds all of them and little else (after Steinert et al. 2011, "pixel pupil sampling").
+///
+/// Regions are found by tracing at nodes, radii on the sensor and, for a lens that is not rotationally symmetric,
+/// azimuths; between nodes they are linear in both. They hold the traced regions of every lens given, one a wavelength
+/// of the band, at the nodes and in the middles between them. In the frame of a region its sensor point lies at
+/// (0, r), r ≥ 0. Blades and textures of the stop are taken for their full circle.
+///
+/// A sample's density is that of the mixture (1 − δ) · [in the region] / its area + δ / the whole disc's area, wherever
+/// it came from, with δ the defensive share; so ∫ f = E[f / density] for every f on the disc, however wrong a region
+/// is. Where no light was found it is the disc alone.
+class PupilMap {
+  public:
+    /// `band`: the lens at wavelengths across the band, at least at its ends. Sensor points lie within
+    /// `sensor_radius_mm` of the axis. `by_radius`: the lens is rotationally symmetric, its stop's blades aside.
+    PupilMap(const std::vector<TraceLens<double>>& band, bool by_radius, double sensor_radius_mm,
+             const PupilMapSettings& settings = {});
+
+    /// The whole rear element for every sensor point: the baseline that maps are judged against.
+    static PupilMap whole_element(const TraceLens<double>& lens, double sensor_radius_mm);
+
+    /// The point that (u, v) in the unit square maps to.
+    [[nodiscard]] PupilSample sample(Vec2d sensor_point, double u, double v) const;
+
+    /// The density that `sample` draws a point with, 1/mm²; 0 outside the disc.
+    [[nodiscard]] double density(Vec2d sensor_point, Vec2d pupil_point) const;
+
+    /// z of the plane that the points lie in.
+    [[nodiscard]] double plane_z() const { return disc_.plane_z; }
+
+    /// What every path crosses.
+    [[nodiscard]] const RearDisc& disc() const { return disc_; }
+
+    /// The area that is drawn from but for the defensive share, mm²; 0 where no light was found.
+    [[nodiscard]] double region_area(Vec2d sensor_point) const;
+
+    /// How many regions are stored.
+    [[nodiscard]] std::size_t size() const { return nodes_.regions.size(); }
+
+    /// All of it as bytes, numbers as they lie in memory.
+    [[nodiscard]] std::string serialized() const;
+    /// Nothing where the bytes are not those of a map. Damage that leaves every number in its range is not seen.
+    static std::optional<PupilMap> deserialized(std::string_view bytes);
+
+  private:
+    PupilMap(const RearDisc& disc, double defensive_share, PupilNodes nodes);
+
+    RearDisc disc_;
+    double defensive_share_;
+    PupilNodes nodes_;
+    PupilGuides guides_;  // made from the nodes
+};
+
+}  // namespace lensproof

@@ -1,0 +1,156 @@
+// engine/pupil/pupil_region.h — a region of the pupil plane in columns, and how to draw points evenly from it.
+#pragma once
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+
+#include "engine/optics/vec.h"
+
+namespace lensproof {
+
+/// Whether a region is its own mirror image in x = 0; then its half at x ≥ 0 is stored alone.
+enum class PupilSymmetry { none, mirror };
+
+/// How many panels a region is cut into, each a trapezoid between two columns.
+inline constexpr int kPupilPanels = 24;
+
+/// Where the columns stand, as shares of the region's width from its left end: closer together towards an end where an
+/// outline that is round there turns, so that equal arcs of an ellipse lie between them.
+struct PupilShares {
+    std::array<double, kPupilPanels + 1> at{};
+    std::array<double, kPupilPanels> per_width{};  // 1 / (the next share − this one)
+
+    explicit PupilShares(PupilSymmetry symmetry);
+    /// The panel that a share from 0 to 1 lies in.
+    [[nodiscard]] int panel(double share) const {
+        return static_cast<int>(std::upper_bound(at.begin() + 1, at.end() - 1, share) - at.begin()) - 1;
+    }
+};
+inline const PupilShares kWholeShares{PupilSymmetry::none};
+inline const PupilShares kHalfShares{PupilSymmetry::mirror};
+inline const PupilShares& pupil_shares(PupilSymmetry symmetry) {
+    return symmetry == PupilSymmetry::mirror ? kHalfShares : kWholeShares;
+}
+
+/// A column of a region: the points between two y, mm.
+struct PupilColumn {
+    double lower = 0.0;
+    double upper = 0.0;
+    double area_before = 0.0;  // of the panels before it, over the region's width: mm
+};
+
+/// A region of a plane, mm: at x = left + share · width, with straight lines between the columns. It may bend, and ends
+/// may be round, pointed or cut off; a line parallel to y meets it once. A mirror image stores x ≥ 0, and left is 0.
+struct PupilRegion {
+    double left = 0.0;
+    double width = 0.0;
+    std::array<PupilColumn, kPupilPanels + 1> columns{};
+
+    /// To be called when lower and upper are set: sums the panels' areas up.
+    void sum_areas(PupilSymmetry symmetry);
+};
+
+/// The panel that each 128th of a region's area begins in: where a search for a panel starts.
+inline constexpr int kGuideSteps = 128;
+using PanelGuide = std::array<std::uint8_t, kGuideSteps>;
+PanelGuide panel_guide(const PupilRegion& region);
+
+/// A mean of `Count` regions by weights that add up to 1, column by column: a region itself, of which nothing has to be
+/// made. The sums of areas are linear in the columns, so that the mean's are the mean of theirs. The regions are held
+/// by pointer.
+template <std::size_t Count>
+class BlendedRegion {
+  public:
+    BlendedRegion(const std::array<const PupilRegion*, Count>& regions, const std::array<double, Count>& weights,
+                  PupilSymmetry symmetry)
+        : regions_(regions),
+          weights_(weights),
+          shares_(&pupil_shares(symmetry)),
+          is_mirror_(symmetry == PupilSymmetry::mirror),
+          left_(mean([](const PupilRegion& region) { return region.left; })),
+          width_(mean([](const PupilRegion& region) { return region.width; })) {}
+
+    /// mm², of both halves.
+    [[nodiscard]] double area() const { return (is_mirror_ ? 2.0 : 1.0) * width_ * area_before(kPupilPanels); }
+
+    /// The point that (u, v) in the unit square maps to, evenly over a region whose area is not 0: u picks the panel by
+    /// its area, then x inside it, where the density is linear, and v picks y. Any guide yields the same point; a
+    /// guide of a similar region yields it sooner.
+    [[nodiscard]] Vec2d sample(double u, double v, const PanelGuide& guide) const {
+        const double share_of_area = is_mirror_ ? std::abs(2.0 * u - 1.0) : u;
+        const double target = share_of_area * area_before(kPupilPanels);
+        int panel = guide[std::min(kGuideSteps - 1, static_cast<int>(share_of_area * kGuideSteps))];
+        while (panel > 0 && area_before(panel) > target) {
+            --panel;
+        }
+        while (panel + 1 < kPupilPanels && area_before(panel + 1) <= target) {
+            ++panel;
+        }
+        const Panel p = at(panel);
+        const double height = p.upper - p.lower;
+        const double next_height = p.next_upper - p.next_lower;
+        const double rest = std::max(0.0, target - area_before(panel)) * p.per_share_width;
+        const double root = std::sqrt(std::max(0.0, height * height + 2.0 * (next_height - height) * rest));
+        const double t = height + root > 0.0 ? std::min(1.0, 2.0 * rest / (height + root)) : 0.5;
+        const double x = left_ + width_ * (p.share + t * (p.next_share - p.share));
+        return {is_mirror_ && u < 0.5 ? -x : x, (1.0 - v) * p.lower_at(t) + v * p.upper_at(t)};
+    }
+
+    [[nodiscard]] bool contains(Vec2d point) const {
+        const double share = ((is_mirror_ ? std::abs(point.x) : point.x) - left_) / width_;
+        if (!(share >= 0.0 && share <= 1.0)) {
+            return false;
+        }
+        const Panel p = at(shares_->panel(share));
+        const double t = (share - p.share) * p.per_share_width;
+        return point.y >= p.lower_at(t) && point.y <= p.upper_at(t);
+    }
+
+  private:
+    struct Panel {
+        double share;
+        double next_share;
+        double per_share_width;
+        double lower;
+        double upper;
+        double next_lower;
+        double next_upper;
+
+        [[nodiscard]] double lower_at(double t) const { return lower + t * (next_lower - lower); }
+        [[nodiscard]] double upper_at(double t) const { return upper + t * (next_upper - upper); }
+    };
+
+    template <class Of>
+    [[nodiscard]] double mean(const Of& of) const {
+        double sum = 0.0;
+        for (std::size_t i = 0; i < Count; ++i) {
+            sum += weights_[i] * of(*regions_[i]);
+        }
+        return sum;
+    }
+
+    [[nodiscard]] double area_before(int column) const {
+        return mean([&](const PupilRegion& region) { return region.columns[column].area_before; });
+    }
+
+    [[nodiscard]] Panel at(int panel) const {
+        return {.share = shares_->at[panel],
+                .next_share = shares_->at[panel + 1],
+                .per_share_width = shares_->per_width[panel],
+                .lower = mean([&](const PupilRegion& region) { return region.columns[panel].lower; }),
+                .upper = mean([&](const PupilRegion& region) { return region.columns[panel].upper; }),
+                .next_lower = mean([&](const PupilRegion& region) { return region.columns[panel + 1].lower; }),
+                .next_upper = mean([&](const PupilRegion& region) { return region.columns[panel + 1].upper; })};
+    }
+
+    std::array<const PupilRegion*, Count> regions_;
+    std::array<double, Count> weights_;
+    const PupilShares* shares_;
+    bool is_mirror_;
+    double left_;
+    double width_;
+};
+
+}  // namespace lensproof

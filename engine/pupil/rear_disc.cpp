@@ -1,0 +1,101 @@
+#include "engine/pupil/rear_disc.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+namespace lensproof {
+
+namespace {
+
+constexpr int kRings = 64;
+constexpr int kAzimuths = 64;
+// Between two azimuths a tilted circle bulges out of its chord by (π/64)² / 2 = 0.12 %.
+constexpr double kBulge = 1.0013;
+
+/// The rear surface inside its rim, seen from the axis: the distance from it, and z.
+struct CapPoint {
+    double radius;
+    double z;
+};
+
+/// The points of a polar grid on the surface, ring by ring from its vertex to its rim.
+std::vector<CapPoint> rear_cap(const TraceLens<double>& lens) {
+    const TraceSurface<double>& rear = lens.surfaces.back();
+    const SpecialSurface<double>* special = rear.special >= 0 ? &lens.specials[rear.special] : nullptr;
+    const SurfaceShape<double> shape =
+        special != nullptr && special->has_shape ? special->shape : SurfaceShape<double>{.curvature = rear.curvature};
+    // Beyond an ellipsoid's equator there is no surface on the vertex's side.
+    const double across = (1.0 + shape.conic) * shape.curvature * shape.curvature;
+    const double equator = across > 0.0 ? 1.0 / std::sqrt(across) : std::numeric_limits<double>::infinity();
+    const double rim = std::min(std::sqrt(rear.semi_diameter_squared), (1.0 - 1e-12) * equator);
+    std::vector<CapPoint> cap;
+    for (int ring = 0; ring <= kRings; ++ring) {
+        for (int i = 0; i < kAzimuths; ++i) {
+            const double radius = rim * ring / kRings;
+            const double azimuth = 2.0 * std::numbers::pi * i / kAzimuths;
+            Vec3d at{radius * std::cos(azimuth), radius * std::sin(azimuth), 0.0};
+            const double height = sag(shape, at.x, at.y);
+            at.z = std::isfinite(height) ? height : 0.0;
+            if (special != nullptr) {
+                at = special->from_own(at) + Vec3d{special->vertex.x, special->vertex.y, 0.0};
+            }
+            cap.push_back({special != nullptr ? kBulge * std::hypot(at.x, at.y) : radius, rear.vertex_z + at.z});
+        }
+    }
+    return cap;
+}
+
+}  // namespace
+
+Vec2d RearDisc::warped(double u, double v) const {
+    const double a = 2.0 * u - 1.0;
+    const double b = 2.0 * v - 1.0;
+    if (a == 0.0 && b == 0.0) {
+        return {};
+    }
+    constexpr double kQuarter = 0.25 * std::numbers::pi;
+    const bool wide = std::abs(a) > std::abs(b);
+    const double distance = radius * (wide ? a : b);
+    const double angle = wide ? kQuarter * b / a : kQuarter * (2.0 - a / b);
+    return {distance * std::cos(angle), distance * std::sin(angle)};
+}
+
+RearDisc rear_disc(const TraceLens<double>& lens, double sensor_radius_mm) {
+    const std::vector<CapPoint> cap = rear_cap(lens);
+    RearDisc disc{.plane_z = -std::numeric_limits<double>::infinity()};
+    for (const CapPoint& point : cap) {
+        disc.plane_z = std::max(disc.plane_z, point.z);
+    }
+    if (lens.surfaces.back().special >= 0) {
+        // Between the grid's points a tilted or aspheric surface may rise a little higher.
+        double largest_step = 0.0;
+        for (std::size_t i = kAzimuths; i < cap.size(); ++i) {
+            largest_step = std::max(largest_step, std::abs(cap[i].z - cap[i - kAzimuths].z));
+        }
+        disc.plane_z += 0.5 * largest_step;
+    }
+    const auto share_of_sensor = [&](const CapPoint& point) {
+        return (disc.plane_z - point.z) / (lens.image_z - point.z);
+    };
+    for (int ring = 0; ring < kRings; ++ring) {
+        for (int i = 0; i < kAzimuths; ++i) {
+            const int next = (i + 1) % kAzimuths;
+            double innermost = std::numeric_limits<double>::infinity();
+            double outermost = 0.0;
+            double largest_share = 0.0;
+            for (const int corner : {ring * kAzimuths + i, ring * kAzimuths + next, (ring + 1) * kAzimuths + i,
+                                     (ring + 1) * kAzimuths + next}) {
+                innermost = std::min(innermost, cap[corner].radius / kBulge);
+                outermost = std::max(outermost, cap[corner].radius);
+                largest_share = std::max(largest_share, share_of_sensor(cap[corner]));
+            }
+            disc.radius =
+                std::max(disc.radius, outermost + largest_share * std::max(0.0, sensor_radius_mm - innermost));
+        }
+    }
+    return disc;
+}
+
+}  // namespace lensproof
