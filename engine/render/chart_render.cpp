@@ -14,17 +14,6 @@ namespace lensproof {
 
 namespace {
 
-/// Reflectance of the world where a ray that left the lens arrives, in the white's own terms.
-double seen_reflectance(const SeenChart& view, const Ray<double>& outwards) {
-    const Vec3d origin = rotate_back(view.pose, camera_to_lens(outwards.origin) - view.pose.translation);
-    const Vec3d direction = rotate_back(view.pose, camera_to_lens(outwards.direction));
-    const double distance = -origin.z / direction.z;
-    if (!(distance > 0.0) || !std::isfinite(distance)) {
-        return view.chart.white_reflectance;
-    }
-    return reflectance(view.chart, origin.x + distance * direction.x, origin.y + distance * direction.y);
-}
-
 /// The sums that a pixel's samples leave.
 class PixelSums {
   public:
@@ -96,7 +85,7 @@ class RowRenderer {
                 }
                 const std::size_t stratum = paths_.wavelength[at];
                 const WavelengthStratum& of = view_->strata[stratum];
-                const double radiance = seen_reflectance(*view_, paths_.ray(i)) * of.white_radiance;
+                const double radiance = seen_reflectance(view_->chart, view_->pose, paths_.ray(i)) * of.white_radiance;
                 sums_.add(stratum, radiance * paths_.weight[at], of.rgb_weights);
             }
         }
@@ -119,6 +108,16 @@ SpectralLens<double> spectral_lens(const std::vector<WavelengthStratum>& strata)
 }
 
 }  // namespace
+
+double seen_reflectance(const Chart& chart, const RigidMotion& pose, const Ray<double>& outwards) {
+    const Vec3d origin = rotate_back(pose, camera_to_lens(outwards.origin) - pose.translation);
+    const Vec3d direction = rotate_back(pose, camera_to_lens(outwards.direction));
+    const double distance = -origin.z / direction.z;
+    if (!(distance > 0.0) || !std::isfinite(distance)) {
+        return chart.white_reflectance;
+    }
+    return reflectance(chart, origin.x + distance * direction.x, origin.y + distance * direction.y);
+}
 
 Image render_chart(const SeenChart& view, const std::vector<PupilMap>& pupils, const RenderSettings& settings,
                    const std::function<void(double)>& progress) {

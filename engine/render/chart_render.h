@@ -21,6 +21,10 @@ struct WavelengthStratum {
     Vec3d rgb_weights;  // linear RGB a film irradiance of 1 W·m⁻²·nm⁻¹ yields per nm, exposure included
 };
 
+/// Reflectance of the world where a ray that left the lens arrives; a world as white as the chart's white, in which the
+/// chart stands.
+double seen_reflectance(const Chart& chart, const RigidMotion& pose, const Ray<double>& outwards);
+
 /// What is seen. The world around the chart is as white as its white, in every direction.
 struct SeenChart {
     Chart chart;
