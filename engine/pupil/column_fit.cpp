@@ -85,10 +85,10 @@ ColumnGrowth missing_growth(const PupilRegion& region, std::span<const PupilOutl
     return growth;
 }
 
-void grow(PupilRegion& region, const ColumnGrowth& growth, PupilSymmetry symmetry) {
+void grow(PupilRegion& region, const ColumnGrowth& growth, double scale, PupilSymmetry symmetry) {
     for (std::size_t i = 0; i < region.columns.size(); ++i) {
-        region.columns[i].lower -= growth.down[i];
-        region.columns[i].upper += growth.up[i];
+        region.columns[i].lower -= scale * growth.down[i];
+        region.columns[i].upper += scale * growth.up[i];
     }
     region.sum_areas(symmetry);
 }
@@ -105,7 +105,7 @@ PupilRegion region_around(std::span<const PupilOutline> outlines, const Extent& 
         nearest = reach.lower[i] <= reach.upper[i] ? PupilColumn{reach.lower[i], reach.upper[i]} : nearest;
         region.columns[i] = nearest;
     }
-    grow(region, missing_growth(region, outlines, symmetry), symmetry);
+    grow(region, missing_growth(region, outlines, symmetry), 1.0, symmetry);
     return region;
 }
 

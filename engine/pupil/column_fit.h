@@ -21,6 +21,13 @@ struct ColumnGrowth {
     std::array<double, kPupilPanels + 1> down{};
     std::array<double, kPupilPanels + 1> up{};
 
+    ColumnGrowth() = default;
+    /// The same at every end.
+    explicit ColumnGrowth(double everywhere) {
+        down.fill(everywhere);
+        up.fill(everywhere);
+    }
+
     /// The larger of both, column by column.
     void include(const ColumnGrowth& other);
 };
@@ -28,8 +35,8 @@ struct ColumnGrowth {
 /// What `region` misses of the outlines, whose extent it has to hold.
 ColumnGrowth missing_growth(const PupilRegion& region, std::span<const PupilOutline> outlines, PupilSymmetry symmetry);
 
-/// Makes the columns longer; the areas are summed again.
-void grow(PupilRegion& region, const ColumnGrowth& growth, PupilSymmetry symmetry);
+/// Makes the columns longer, by `scale` times the growth; the areas are summed again.
+void grow(PupilRegion& region, const ColumnGrowth& growth, double scale, PupilSymmetry symmetry);
 
 /// A region over `extent`, which holds the outlines' own, that holds them. At least one outline is not empty.
 PupilRegion region_around(std::span<const PupilOutline> outlines, const Extent& extent, PupilSymmetry symmetry);

@@ -9,23 +9,24 @@
 
 namespace lensproof {
 
-/// A sensor point among the nodes: between the radii `radius` and the next, after the share `t`.
+/// Where something lies among nodes: between two, after the share t of the way.
+struct BetweenNodes {
+    std::size_t below = 0;
+    std::size_t above = 0;
+    double t = 0.0;
+};
+
+/// A sensor point at a position in the band among the nodes.
 struct PupilPlace {
     double cosine = 1.0;  // of the point's azimuth, which turns the frame of its region
     double sine = 0.0;
-    std::size_t radius = 0;
+    BetweenNodes position{};
+    std::size_t share = 0;  // between it and the next, after the share t
     double t = 0.0;
     bool is_lit = false;
 
     [[nodiscard]] Vec2d to_own(Vec2d p) const { return {cosine * p.x - sine * p.y, sine * p.x + cosine * p.y}; }
     [[nodiscard]] Vec2d from_own(Vec2d p) const { return {cosine * p.x + sine * p.y, cosine * p.y - sine * p.x}; }
-};
-
-/// Between which azimuths it lies, `below` and `above`, and after which share.
-struct AzimuthPlace {
-    std::size_t below = 0;
-    std::size_t above = 0;
-    double t = 0.0;
 };
 
 /// Where searches among nodes start; made from the nodes.
@@ -34,32 +35,54 @@ class PupilGuides {
     PupilGuides() = default;
     explicit PupilGuides(const PupilNodes& nodes);
 
-    [[nodiscard]] PupilPlace place(const PupilNodes& nodes, Vec2d sensor_point) const {
-        const double radius = std::sqrt(sensor_point.x * sensor_point.x + sensor_point.y * sensor_point.y);
-        if (!(radius <= end_)) {
+    [[nodiscard]] PupilPlace place(const PupilNodes& nodes, Vec2d sensor_point, double band_position) const {
+        if (nodes.regions.empty()) {
             return {};
         }
-        std::size_t below = radius_below_[static_cast<std::size_t>(radius * steps_per_mm_)];
-        while (below + 2 < nodes.radii.size() && nodes.radii[below + 1] < radius) {
+        const BetweenNodes position = in_band(nodes, band_position);
+        const double end_mm =
+            (1.0 - position.t) * nodes.ends_mm[position.below] + position.t * nodes.ends_mm[position.above];
+        const double radius = std::sqrt(sensor_point.x * sensor_point.x + sensor_point.y * sensor_point.y);
+        const double share = radius / end_mm;
+        if (!(share <= 1.0)) {
+            return {};
+        }
+        std::size_t below = share_below_[static_cast<std::size_t>(share * kSteps)];
+        while (below + 2 < nodes.shares.size() && nodes.shares[below + 1] < share) {
             ++below;
         }
         const double per_radius = radius > 0.0 ? 1.0 / radius : 0.0;
         return {.cosine = radius > 0.0 ? sensor_point.y * per_radius : 1.0,
                 .sine = sensor_point.x * per_radius,
-                .radius = below,
-                .t = std::clamp((radius - nodes.radii[below]) * per_step_[below], 0.0, 1.0),
+                .position = position,
+                .share = below,
+                .t = std::clamp((share - nodes.shares[below]) * per_step_[below], 0.0, 1.0),
                 .is_lit = true};
     }
-    [[nodiscard]] static AzimuthPlace azimuth_place(const PupilNodes& nodes, Vec2d sensor_point);
+    [[nodiscard]] static BetweenNodes azimuth(const PupilNodes& nodes, Vec2d sensor_point);
 
     /// Of a region.
     [[nodiscard]] const PanelGuide& panels(std::size_t region) const { return panels_[region]; }
 
   private:
-    double end_ = -1.0;  // the last radius; negative: there is none
-    double steps_per_mm_ = 0.0;
-    std::vector<std::uint32_t> radius_below_;  // for each step of radius, the last node below it
-    std::vector<double> per_step_;             // 1 / the step from each node to the next, 1/mm
+    static constexpr int kSteps = 1024;
+
+    [[nodiscard]] BetweenNodes in_band(const PupilNodes& nodes, double band_position) const {
+        if (nodes.positions.size() < 2) {
+            return {};
+        }
+        std::size_t below = 0;
+        while (below + 2 < nodes.positions.size() && nodes.positions[below + 1] < band_position) {
+            ++below;
+        }
+        return {.below = below,
+                .above = below + 1,
+                .t = std::clamp((band_position - nodes.positions[below]) * per_position_[below], 0.0, 1.0)};
+    }
+
+    std::vector<std::uint32_t> share_below_;  // for each step, the last node below it
+    std::vector<double> per_step_;            // 1 / the step from each share to the next
+    std::vector<double> per_position_;        // 1 / the step from each position to the next
     std::vector<PanelGuide> panels_;
 };
 

@@ -7,6 +7,8 @@ namespace lensproof {
 
 namespace {
 
+constexpr double kBelowOne = 1.0 - 0x1p-53;
+
 /// The band with its stops opened to the full circle, which holds what any blades leave.
 std::vector<TraceLens<double>> with_round_stops(std::vector<TraceLens<double>> band) {
     for (TraceLens<double>& lens : band) {
@@ -21,19 +23,31 @@ std::vector<TraceLens<double>> with_round_stops(std::vector<TraceLens<double>> b
 template <class Use>
 auto with_region(const PupilNodes& nodes, const PupilGuides& guides, const PupilPlace& place, Vec2d sensor_point,
                  const Use& use) {
-    const PupilRegion* inner = &nodes.regions[place.radius * nodes.azimuths];
-    const PupilRegion* outer = inner + nodes.azimuths;
-    if (nodes.azimuths == 1) {
-        return use(BlendedRegion<2>({inner, outer}, {1.0 - place.t, place.t}, nodes.symmetry),
-                   guides.panels(place.radius));
-    }
-    const AzimuthPlace azimuth = PupilGuides::azimuth_place(nodes, sensor_point);
-    const double s = azimuth.t;
+    const auto at = [&](std::size_t position, std::size_t azimuth) {
+        return &nodes.regions[nodes.index(position, azimuth, place.share)];
+    };
+    const BetweenNodes& band = place.position;
     const double t = place.t;
-    return use(
-        BlendedRegion<4>({inner + azimuth.below, inner + azimuth.above, outer + azimuth.below, outer + azimuth.above},
-                         {(1.0 - t) * (1.0 - s), (1.0 - t) * s, t * (1.0 - s), t * s}, nodes.symmetry),
-        guides.panels(place.radius * nodes.azimuths + azimuth.below));
+    const std::array<double, 4> weights = {(1.0 - band.t) * (1.0 - t), (1.0 - band.t) * t, band.t * (1.0 - t),
+                                           band.t * t};
+    if (nodes.azimuths == 1) {
+        const PupilRegion* below = at(band.below, 0);
+        const PupilRegion* above = at(band.above, 0);
+        return use(BlendedRegion<4>({below, below + 1, above, above + 1}, weights, nodes.symmetry),
+                   guides.panels(nodes.index(band.below, 0, place.share)));
+    }
+    const BetweenNodes turn = PupilGuides::azimuth(nodes, sensor_point);
+    std::array<const PupilRegion*, 8> regions{};
+    std::array<double, 8> shares{};
+    for (std::size_t i = 0; i < weights.size(); ++i) {
+        const std::size_t position = i < 2 ? band.below : band.above;
+        regions[i] = at(position, turn.below) + i % 2;
+        regions[i + 4] = at(position, turn.above) + i % 2;
+        shares[i] = (1.0 - turn.t) * weights[i];
+        shares[i + 4] = turn.t * weights[i];
+    }
+    return use(BlendedRegion<8>(regions, shares, nodes.symmetry),
+               guides.panels(nodes.index(band.below, turn.below, place.share)));
 }
 
 }  // namespace
@@ -54,48 +68,45 @@ PupilMap PupilMap::whole_element(const TraceLens<double>& lens, double sensor_ra
     return {rear_disc(lens, sensor_radius_mm), 1.0, {}};
 }
 
-PupilSample PupilMap::sample(Vec2d sensor_point, double u, double v) const {
-    const double over_disc = 1.0 / disc_.area();
-    const PupilPlace place = guides_.place(nodes_, sensor_point);
-    if (!place.is_lit) {
-        return {disc_.warped(u, v), over_disc};
+PupilSample PupilMap::sample(Vec2d sensor_point, double band_position, double u, double v) const {
+    const double disc_density = defensive_share_ / disc_.area();
+    const PupilPlace place = guides_.place(nodes_, sensor_point, band_position);
+    if (u < defensive_share_) {
+        const Vec2d point = disc_.warped(u / defensive_share_, v);
+        return {point, disc_density + region_density(place, sensor_point, point)};
     }
-    return with_region(nodes_, guides_, place, sensor_point,
-                       [&](const auto& region, const PanelGuide& guide) -> PupilSample {
-                           const double area = region.area();
-                           if (!(area > 0.0)) {
-                               return {disc_.warped(u, v), over_disc};
-                           }
-                           const double over_region = (1.0 - defensive_share_) / area;
-                           if (u < defensive_share_) {
-                               const Vec2d point = disc_.warped(u / defensive_share_, v);
-                               const bool is_inside = region.contains(place.to_own(point));
-                               return {point, defensive_share_ * over_disc + (is_inside ? over_region : 0.0)};
-                           }
-                           const Vec2d own = region.sample((u - defensive_share_) / (1.0 - defensive_share_), v, guide);
-                           const Vec2d point = place.from_own(own);
-                           return {point, over_region + (disc_.contains(point) ? defensive_share_ * over_disc : 0.0)};
-                       });
-}
-
-double PupilMap::density(Vec2d sensor_point, Vec2d pupil_point) const {
-    const double over_disc = disc_.contains(pupil_point) ? 1.0 / disc_.area() : 0.0;
-    const PupilPlace place = guides_.place(nodes_, sensor_point);
     if (!place.is_lit) {
-        return over_disc;
+        return {};
     }
-    return with_region(nodes_, guides_, place, sensor_point, [&](const auto& region, const PanelGuide&) {
+    const double rest = std::min((u - defensive_share_) / (1.0 - defensive_share_), kBelowOne);
+    return with_region(nodes_, guides_, place, sensor_point, [&](const auto& region, const PanelGuide& guide) {
         const double area = region.area();
         if (!(area > 0.0)) {
-            return over_disc;
+            return PupilSample{};
         }
-        const bool is_inside = region.contains(place.to_own(pupil_point));
-        return defensive_share_ * over_disc + (is_inside ? (1.0 - defensive_share_) / area : 0.0);
+        const Vec2d point = place.from_own(region.sample(rest, v, guide));
+        return PupilSample{point, (1.0 - defensive_share_) / area + (disc_.contains(point) ? disc_density : 0.0)};
     });
 }
 
-double PupilMap::region_area(Vec2d sensor_point) const {
-    const PupilPlace place = guides_.place(nodes_, sensor_point);
+double PupilMap::density(Vec2d sensor_point, double band_position, Vec2d pupil_point) const {
+    const PupilPlace place = guides_.place(nodes_, sensor_point, band_position);
+    return (disc_.contains(pupil_point) ? defensive_share_ / disc_.area() : 0.0) +
+           region_density(place, sensor_point, pupil_point);
+}
+
+double PupilMap::region_density(const PupilPlace& place, Vec2d sensor_point, Vec2d pupil_point) const {
+    if (!place.is_lit) {
+        return 0.0;
+    }
+    return with_region(nodes_, guides_, place, sensor_point, [&](const auto& region, const PanelGuide&) {
+        const double area = region.area();
+        return area > 0.0 && region.contains(place.to_own(pupil_point)) ? (1.0 - defensive_share_) / area : 0.0;
+    });
+}
+
+double PupilMap::region_area(Vec2d sensor_point, double band_position) const {
+    const PupilPlace place = guides_.place(nodes_, sensor_point, band_position);
     return place.is_lit ? with_region(nodes_, guides_, place, sensor_point,
                                       [](const auto& region, const PanelGuide&) { return region.area(); })
                         : 0.0;

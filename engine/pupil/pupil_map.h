@@ -12,7 +12,7 @@
 namespace lensproof {
 
 /// A point of the pupil, x and y in lens space in the plane z = plane_z, mm, and the density that it was drawn with,
-/// 1/mm².
+/// 1/mm². A density of 0: no path is to be started, its estimate is 0.
 struct PupilSample {
     Vec2d point;
     double density = 0.0;
@@ -22,25 +22,27 @@ struct PupilMapSettings {
     /// The share of samples drawn over the whole rear element, whatever the map says: what the map missed costs noise
     /// then, and is not lost.
     double defensive_share = 0.003;
-    /// A step in radius or azimuth is halved until regions between two nodes have to be enlarged by no more than this
-    /// share of their area. Steps below 1/64 of the sensor's radius, which few points lie in, may need more.
+    /// Steps in radius, azimuth and wavelength are halved until regions between two nodes have to be enlarged by no
+    /// more than this share of their area. Steps below 1/64 of the radius, where few points lie, may need more.
     double most_excess = 0.005;
 };
 
 /// Draws paths' first points: for a point of the sensor, points of the pupil through which light may reach it, evenly
 /// over a region that holds all of them and little else (after Steinert et al. 2011, "pixel pupil sampling").
 ///
-/// Regions are found by tracing at nodes, radii on the sensor and, for a lens that is not rotationally symmetric,
-/// azimuths; between nodes they are linear in both. They hold the traced regions of every lens given, one a wavelength
-/// of the band, at the nodes and in the middles between them. In the frame of a region its sensor point lies at
-/// (0, r), r ≥ 0. Blades and textures of the stop are taken for their full circle.
+/// Regions are found by tracing at nodes: wavelengths of a band, azimuths where the lens is not rotationally symmetric,
+/// and radii on the sensor as shares of the radius where the light ends. Between nodes they are linear in all three;
+/// they hold the regions traced at the nodes and in the middles between them. In the frame of a region its sensor point
+/// lies at (0, r), r ≥ 0. Blades and textures of the stop are taken for their full circle.
 ///
-/// A sample's density is that of the mixture (1 − δ) · [in the region] / its area + δ / the whole disc's area, wherever
-/// it came from, with δ the defensive share; so ∫ f = E[f / density] for every f on the disc, however wrong a region
-/// is. Where no light was found it is the disc alone.
+/// A sample's density is that of the mixture (1 − δ) · [in the region] / its area + δ / the disc's area, wherever it
+/// came from, with δ the defensive share; so ∫ f = E[f / density] for every f on the disc, however wrong a region is.
+/// Where no light was found, all but δ of the samples start no path.
+///
+/// A position in the band says which wavelength: i / (n − 1) is that of lens i of n.
 class PupilMap {
   public:
-    /// `band`: the lens at wavelengths across the band, at least at its ends. Sensor points lie within
+    /// `band`: the lens at wavelengths that are spread evenly over the band. Sensor points lie within
     /// `sensor_radius_mm` of the axis. `by_radius`: the lens is rotationally symmetric, its stop's blades aside.
     PupilMap(const std::vector<TraceLens<double>>& band, bool by_radius, double sensor_radius_mm,
              const PupilMapSettings& settings = {});
@@ -49,10 +51,10 @@ class PupilMap {
     static PupilMap whole_element(const TraceLens<double>& lens, double sensor_radius_mm);
 
     /// The point that (u, v) in the unit square maps to.
-    [[nodiscard]] PupilSample sample(Vec2d sensor_point, double u, double v) const;
+    [[nodiscard]] PupilSample sample(Vec2d sensor_point, double band_position, double u, double v) const;
 
     /// The density that `sample` draws a point with, 1/mm²; 0 outside the disc.
-    [[nodiscard]] double density(Vec2d sensor_point, Vec2d pupil_point) const;
+    [[nodiscard]] double density(Vec2d sensor_point, double band_position, Vec2d pupil_point) const;
 
     /// z of the plane that the points lie in.
     [[nodiscard]] double plane_z() const { return disc_.plane_z; }
@@ -61,7 +63,7 @@ class PupilMap {
     [[nodiscard]] const RearDisc& disc() const { return disc_; }
 
     /// The area that is drawn from but for the defensive share, mm²; 0 where no light was found.
-    [[nodiscard]] double region_area(Vec2d sensor_point) const;
+    [[nodiscard]] double region_area(Vec2d sensor_point, double band_position) const;
 
     /// How many regions are stored.
     [[nodiscard]] std::size_t size() const { return nodes_.regions.size(); }
@@ -73,6 +75,9 @@ class PupilMap {
 
   private:
     PupilMap(const RearDisc& disc, double defensive_share, PupilNodes nodes);
+
+    /// Of what `sample` draws from the region alone.
+    [[nodiscard]] double region_density(const PupilPlace& place, Vec2d sensor_point, Vec2d pupil_point) const;
 
     RearDisc disc_;
     double defensive_share_;

@@ -2,396 +2,418 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
-#include <numbers>
+#include <iterator>
 
-#include "engine/optics/rim_margin.h"
 #include "engine/pupil/column_fit.h"
-#include "engine/pupil/pupil_outline.h"
+#include "engine/pupil/pupil_stations.h"
 
 namespace lensproof {
 
 namespace {
 
-constexpr int kFirstRadii = 16;
+constexpr int kFirstShares = 16;
 constexpr std::size_t kFirstAzimuths = 4;
 constexpr std::size_t kMostAzimuths = 32;
-// Of the sensor's radius: below the first, a step counts for little; below the second it is not halved any more.
+constexpr std::size_t kMostPositions = 9;
+// A step of the radius below the first counts for little; below the second it is not halved any more.
 constexpr double kSmallStep = 1.0 / 64.0;
-constexpr double kSmallestStep = 1.0 / 8192.0;
+constexpr double kSmallestStep = 1.0 / 4096.0;
+// Between two nodes the middle alone is looked at, where a smooth region is missed by the most; the rest is for kinks,
+// where another rim takes over.
+constexpr double kSafety = 1.5;
+constexpr double kMargin = 0.0005;  // of a region's height, on both sides together
 
-/// A place on the sensor; azimuths as shares of a turn. Ordered along the radii.
-struct SensorPlace {
-    double azimuth = 0.0;
-    double radius = 0.0;
-    friend auto operator<=>(const SensorPlace&, const SensorPlace&) = default;
+enum class Axis { radius, azimuth, band };
+constexpr std::size_t kAxes = 3;
+
+/// Something traced between two nodes, after the share t of the way from `a` to `b`: they have to hold it.
+struct Between {
+    const PupilOutline* outline;
+    std::size_t a;
+    std::size_t b;
+    double t;
+    Axis axis;  // along which a and b are neighbours
+    std::size_t position;
+    std::size_t share;  // of a, among the nodes
 };
+struct Mean {
+    double sum = 0.0;
+    double weight = 0.0;
 
-/// The outlines there, one for each wavelength.
-struct Station {
-    std::vector<PupilOutline> outlines;
-
-    [[nodiscard]] bool is_dark() const { return std::ranges::all_of(outlines, &PupilOutline::is_empty); }
+    void add(double value_here, double weight_here) {
+        sum += weight_here * value_here;
+        weight += weight_here;
+    }
+    [[nodiscard]] double value() const { return weight > 0.0 ? sum / weight : 0.0; }
 };
 
 class NodeFinder {
   public:
     NodeFinder(const std::vector<TraceLens<double>>& band, const RearDisc& disc, const NodeSearch& search)
-        : band_(band),
-          disc_(disc),
-          search_(search),
-          symmetry_(search.by_radius ? PupilSymmetry::mirror : PupilSymmetry::none),
-          azimuths_(search.by_radius ? 1 : kFirstAzimuths) {}
+        : search_(search), last_lens_(band.size() - 1), stations_(band, disc, symmetry_of(search)) {
+        nodes_.symmetry = symmetry_of(search);
+        nodes_.azimuths = search.by_radius ? 1 : kFirstAzimuths;
+    }
 
     PupilNodes find() {
-        for (int i = 0; i <= kFirstRadii; ++i) {
-            radii_.push_back(search_.sensor_radius_mm * i / kFirstRadii);
+        set_lenses({0, last_lens_ / 2, last_lens_});
+        for (int i = 0; i <= kFirstShares; ++i) {
+            nodes_.shares.push_back(static_cast<double>(i) / kFirstShares);
         }
-        trace_nodes();
-        drop_dark_nodes();
+        if (std::ranges::any_of(nodes_.ends_mm, [](double end) { return !(end > 0.0); })) {
+            return {};
+        }
         do {
-            trace_radius_middles();
-            narrow_edge();
-            fit();
-        } while (split_radii());
-        while (!search_.by_radius && azimuths_ < kMostAzimuths) {
-            trace_azimuth_middles();
-            fit();
-            if (!(azimuth_excess_ > search_.most_excess)) {
-                break;
-            }
-            azimuths_ *= 2;
-            trace_nodes();
-            trace_radius_middles();
-        }
-        return finished();
+            trace();
+            measure_excess();
+        } while (split_shares() || split_azimuths() || split_band());
+        fit();
+        return nodes_;
     }
 
   private:
-    // --- Tracing ---
+    static PupilSymmetry symmetry_of(const NodeSearch& search) {
+        return search.by_radius ? PupilSymmetry::mirror : PupilSymmetry::none;
+    }
 
-    void trace_nodes() {
-        std::vector<SensorPlace> places;
-        for (std::size_t k = 0; k < azimuths_; ++k) {
-            for (const double radius : radii_) {
-                places.push_back({azimuth(k), radius});
+    // --- Where the light ends ---
+
+    /// Lets these lenses stand at the nodes of the band.
+    void set_lenses(std::vector<std::size_t> lenses) {
+        const auto repeated = std::ranges::unique(lenses);
+        lenses.erase(repeated.begin(), repeated.end());
+        lenses_ = std::move(lenses);
+        // Some wavelengths may end just inside the sensor, others just outside.
+        constexpr double kBeyond = 1.1;
+        const double farthest = kBeyond * search_.sensor_radius_mm;
+        nodes_.ends_mm = find_ends(farthest);
+        if (std::ranges::all_of(nodes_.ends_mm, [&](double end) { return end == farthest; })) {
+            std::ranges::fill(nodes_.ends_mm, search_.sensor_radius_mm);
+        }
+        nodes_.positions.clear();
+        for (const std::size_t lens : lenses_) {
+            nodes_.positions.push_back(position(lens));
+        }
+    }
+
+    [[nodiscard]] double position(std::size_t lens) const {
+        return last_lens_ > 0 ? static_cast<double>(lens) / static_cast<double>(last_lens_) : 0.0;
+    }
+
+    /// The last radius that is lit, for each lens, up to `farthest`.
+    std::vector<double> find_ends(double farthest) {
+        constexpr int kFirstRadii = 16;
+        std::vector<PupilStations::Request> requests;
+        for (const std::size_t lens : lenses_) {
+            for (int i = 0; i <= kFirstRadii; ++i) {
+                add_around(lens, farthest * i / kFirstRadii, requests);
             }
         }
-        trace_at(places);
-    }
-
-    void trace_radius_middles() {
-        std::vector<SensorPlace> places;
-        for (std::size_t k = 0; k < azimuths_; ++k) {
-            for (std::size_t i = 0; i + 1 < radii_.size(); ++i) {
-                places.push_back({azimuth(k), 0.5 * (radii_[i] + radii_[i + 1])});
+        stations_.trace(requests);
+        std::vector<double> lit(lenses_.size(), 0.0);
+        std::vector<double> dark(lenses_.size(), farthest);
+        for (std::size_t p = 0; p < lenses_.size(); ++p) {
+            for (int i = 0; i <= kFirstRadii; ++i) {
+                lit[p] = is_lit(lenses_[p], farthest * i / kFirstRadii) ? farthest * i / kFirstRadii : lit[p];
             }
-            if (has_edge()) {
-                places.push_back({azimuth(k), 0.5 * (radii_.back() + first_dark_)});
-            }
+            dark[p] = std::min(farthest, lit[p] + farthest / kFirstRadii);
         }
-        trace_at(places);
-    }
-
-    void trace_azimuth_middles() {
-        std::vector<SensorPlace> places;
-        for (std::size_t k = 0; k < azimuths_; ++k) {
-            for (const double radius : radii_) {
-                places.push_back({azimuth(k) + 0.5 / static_cast<double>(azimuths_), radius});
+        for (double step = 1.0 / kFirstRadii; step > kSmallestStep; step *= 0.5) {
+            requests.clear();
+            for (std::size_t p = 0; p < lenses_.size(); ++p) {
+                add_around(lenses_[p], 0.5 * (lit[p] + dark[p]), requests);
+            }
+            stations_.trace(requests);
+            for (std::size_t p = 0; p < lenses_.size(); ++p) {
+                const double middle = 0.5 * (lit[p] + dark[p]);
+                (is_lit(lenses_[p], middle) ? lit[p] : dark[p]) = middle;
             }
         }
-        trace_at(places);
+        return lit;
     }
 
-    /// Traces the outlines at the places that have none yet, all together.
-    void trace_at(std::vector<SensorPlace> places) {
-        std::erase_if(places, [&](const SensorPlace& place) { return stations_.contains(place); });
-        std::vector<std::optional<PupilFrame>> expected;
-        for (std::size_t lens = 0; lens < band_.size(); ++lens) {
-            for (const SensorPlace& place : places) {
-                expected.push_back(expected_frame(place, lens));
+    void add_around(std::size_t lens, double radius_mm, std::vector<PupilStations::Request>& requests) const {
+        for (std::size_t k = 0; k < nodes_.azimuths; ++k) {
+            requests.push_back({.place = {lens, azimuth(k), radius_mm}});
+        }
+    }
+
+    [[nodiscard]] bool is_lit(std::size_t lens, double radius_mm) const {
+        for (std::size_t k = 0; k < nodes_.azimuths; ++k) {
+            if (is_lit(stations_.find({lens, azimuth(k), radius_mm}))) {
+                return true;
             }
         }
-        const PassTest passes = [&](std::span<const RegionPoint> points, std::span<std::uint8_t> answers) {
-            for (std::size_t i = 0; i < points.size(); ++i) {
-                const auto region = static_cast<std::size_t>(points[i].region);
-                const Ray<double> ray = ray_from(places[region % places.size()], points[i].point);
-                const TraceLens<double>& lens = band_[region / places.size()];
-                answers[i] = trace<Direction::reverse>(lens, ray).status == RayStatus::ok ? 1 : 0;
-            }
-        };
-        const OutlineSearch search{.radius = disc_.radius, .symmetry = symmetry_, .look_closer = [&](int region) {
-                                       const auto index = static_cast<std::size_t>(region);
-                                       return point_by_margin(band_[index / places.size()],
-                                                              places[index % places.size()]);
-                                   }};
-        std::vector<PupilOutline> outlines = pupil_outlines(passes, expected, search);
-        for (std::size_t i = 0; i < outlines.size(); ++i) {
-            stations_[places[i % places.size()]].outlines.push_back(std::move(outlines[i]));
-        }
+        return false;
     }
+    static bool is_lit(const PupilOutline* outline) { return outline != nullptr && !outline->is_empty(); }
 
-    /// From the sensor through a point of the pupil that is given in the place's frame.
-    [[nodiscard]] Ray<double> ray_from(const SensorPlace& place, Vec2d pupil_point) const {
-        const double angle = 2.0 * std::numbers::pi * place.azimuth;
-        const double cosine = std::cos(angle);
-        const double sine = std::sin(angle);
-        const Vec3d from{place.radius * sine, place.radius * cosine, band_.front().image_z};
-        const Vec3d to{cosine * pupil_point.x + sine * pupil_point.y, cosine * pupil_point.y - sine * pupil_point.x,
-                       disc_.plane_z};
-        return {from, normalized(to - from)};
-    }
-
-    /// A point of a region that is thinner than a grid, by how far rays stand from the rims.
-    [[nodiscard]] std::optional<Vec2d> point_by_margin(const TraceLens<double>& lens, const SensorPlace& place) const {
-        return find_inside([&](Vec2d at) { return rim_margin(lens, ray_from(place, at), Direction::reverse); },
-                           {.start = {}, .reach = disc_.radius, .is_mirror = search_.by_radius});
-    }
-
-    /// The mean of the neighbours' frames along the radius, or else along the azimuth; nothing where there are none.
-    [[nodiscard]] std::optional<PupilFrame> expected_frame(const SensorPlace& place, std::size_t lens) const {
-        const double half_step = 0.5 / static_cast<double>(azimuths_);
-        const auto wrapped = [](double azimuth) { return azimuth - std::floor(azimuth); };
-        std::vector<std::map<SensorPlace, Station>::const_iterator> near;
-        const auto above = stations_.upper_bound(place);
-        if (above != stations_.end() && above->first.azimuth == place.azimuth) {
-            near.push_back(above);
-        }
-        if (above != stations_.begin() && std::prev(above)->first.azimuth == place.azimuth) {
-            near.push_back(std::prev(above));
-        }
-        if (near.empty()) {
-            near = {stations_.find({wrapped(place.azimuth - half_step), place.radius}),
-                    stations_.find({wrapped(place.azimuth + half_step), place.radius})};
-        }
-        std::erase_if(near, [&](const auto& it) {
-            return it == stations_.end() || it->second.outlines.size() <= lens || it->second.outlines[lens].is_empty();
-        });
-        if (near.empty()) {
-            return std::nullopt;
-        }
-        const double share = 1.0 / static_cast<double>(near.size());
-        PupilFrame mean{.centre = {}, .scale = {}, .bend = 0.0};
-        for (const auto& it : near) {
-            const PupilFrame& frame = it->second.outlines[lens].frame;
-            mean.centre = {mean.centre.x + share * frame.centre.x, mean.centre.y + share * frame.centre.y};
-            mean.scale = {mean.scale.x + share * frame.scale.x, mean.scale.y + share * frame.scale.y};
-            mean.bend += share * frame.bend;
-        }
-        return mean;
-    }
-
-    // --- Nodes ---
+    // --- Nodes and middles ---
 
     [[nodiscard]] double azimuth(std::size_t k) const {
-        return static_cast<double>(k % azimuths_) / static_cast<double>(azimuths_);
+        return static_cast<double>(k % nodes_.azimuths) / static_cast<double>(nodes_.azimuths);
     }
-    [[nodiscard]] const Station& station(double azimuth_share, double radius) const {
-        return stations_.at({azimuth_share, radius});
-    }
-    [[nodiscard]] bool is_dark_everywhere(double radius) const {
-        for (std::size_t k = 0; k < azimuths_; ++k) {
-            if (!station(azimuth(k), radius).is_dark()) {
-                return false;
-            }
-        }
-        return true;
-    }
-    [[nodiscard]] bool has_edge() const { return first_dark_ > 0.0; }
-    [[nodiscard]] double step(std::size_t i) const { return radii_[i + 1] - radii_[i]; }
-
-    void drop_dark_nodes() {
-        while (!radii_.empty() && is_dark_everywhere(radii_.back())) {
-            first_dark_ = radii_.back();
-            radii_.pop_back();
-        }
+    [[nodiscard]] StationPlace node(std::size_t p, std::size_t k, std::size_t i) const {
+        return {lenses_[p], azimuth(k), nodes_.shares[i] * nodes_.ends_mm[p]};
     }
 
-    /// Halves the step in which the light ends.
-    void narrow_edge() {
-        if (!has_edge() || radii_.empty()) {
-            return;
-        }
-        const double middle = 0.5 * (radii_.back() + first_dark_);
-        if (is_dark_everywhere(middle)) {
-            first_dark_ = middle;
-        } else {
-            radii_.push_back(middle);
-            trace_radius_middles();
-        }
-    }
-
-    /// Halves the steps whose regions have to be enlarged too much; whether there are any, or the edge is still wide.
-    bool split_radii() {
-        std::vector<double> finer;
-        const double smallest = kSmallestStep * search_.sensor_radius_mm;
-        for (std::size_t i = 0; i < radii_.size(); ++i) {
-            finer.push_back(radii_[i]);
-            if (i + 1 < radii_.size()) {
-                const double allowed =
-                    search_.most_excess * std::max(1.0, kSmallStep * search_.sensor_radius_mm / step(i));
-                if (radius_excess_[i] > allowed && step(i) > smallest) {
-                    finer.push_back(0.5 * (radii_[i] + radii_[i + 1]));
+    /// Calls see(place, between, neighbours) for each middle between two nodes; `between` without its outline.
+    template <class See>
+    void for_each_middle(const See& see) const {
+        for (std::size_t p = 0; p < lenses_.size(); ++p) {
+            for (std::size_t k = 0; k < nodes_.azimuths; ++k) {
+                for (std::size_t i = 0; i < nodes_.shares.size(); ++i) {
+                    see_middles(p, k, i, see);
                 }
             }
         }
-        const bool is_split = finer.size() > radii_.size();
-        radii_ = std::move(finer);
-        return is_split || (has_edge() && !radii_.empty() && first_dark_ - radii_.back() > smallest);
+    }
+
+    template <class See>
+    void see_middles(std::size_t p, std::size_t k, std::size_t i, const See& see) const {
+        const StationPlace here = node(p, k, i);
+        const std::size_t index = nodes_.index(p, k, i);
+        if (i + 1 < nodes_.shares.size()) {
+            const StationPlace next = node(p, k, i + 1);
+            see(StationPlace{here.lens, here.azimuth, 0.5 * (here.radius_mm + next.radius_mm)},
+                Between{nullptr, index, nodes_.index(p, k, i + 1), 0.5, Axis::radius, p, i}, here, next);
+        }
+        if (nodes_.azimuths > 1) {
+            see(StationPlace{here.lens, here.azimuth + 0.5 / static_cast<double>(nodes_.azimuths), here.radius_mm},
+                Between{nullptr, index, nodes_.index(p, (k + 1) % nodes_.azimuths, i), 0.5, Axis::azimuth, p, i}, here,
+                node(p, k + 1, i));
+        }
+        if (p + 1 < lenses_.size() && lenses_[p + 1] > lenses_[p] + 1) {
+            const StationPlace next = node(p + 1, k, i);
+            const std::size_t lens = (here.lens + next.lens) / 2;
+            const double t = static_cast<double>(lens - here.lens) / static_cast<double>(next.lens - here.lens);
+            see(StationPlace{lens, here.azimuth, (1.0 - t) * here.radius_mm + t * next.radius_mm},
+                Between{nullptr, index, nodes_.index(p + 1, k, i), t, Axis::band, p, i}, here, next);
+        }
+    }
+
+    /// Traces the nodes, and the middles between them.
+    void trace() {
+        std::vector<PupilStations::Request> requests;
+        for (std::size_t p = 0; p < lenses_.size(); ++p) {
+            for (std::size_t k = 0; k < nodes_.azimuths; ++k) {
+                for (std::size_t i = 0; i < nodes_.shares.size(); ++i) {
+                    requests.push_back({.place = node(p, k, i)});
+                }
+            }
+        }
+        stations_.trace(std::move(requests));
+        requests.clear();
+        for_each_middle([&](const StationPlace& place, const Between&, const StationPlace& a, const StationPlace& b) {
+            requests.push_back({.place = place, .alike = {a, b}});
+        });
+        stations_.trace(std::move(requests));
+    }
+
+    /// Halves the steps of the radius whose regions have to be enlarged too much; whether there are any.
+    bool split_shares() {
+        std::vector<double> finer;
+        for (std::size_t i = 0; i < nodes_.shares.size(); ++i) {
+            finer.push_back(nodes_.shares[i]);
+            if (i + 1 < nodes_.shares.size()) {
+                const double step = nodes_.shares[i + 1] - nodes_.shares[i];
+                if (share_excess_[i] > search_.most_excess * std::max(1.0, kSmallStep / step) && step > kSmallestStep) {
+                    finer.push_back(0.5 * (nodes_.shares[i] + nodes_.shares[i + 1]));
+                }
+            }
+        }
+        const bool is_split = finer.size() > nodes_.shares.size();
+        nodes_.shares = std::move(finer);
+        return is_split;
+    }
+
+    bool split_azimuths() {
+        if (!(azimuth_excess_ > search_.most_excess) || nodes_.azimuths >= kMostAzimuths) {
+            return false;
+        }
+        nodes_.azimuths *= 2;
+        return true;
+    }
+
+    bool split_band() {
+        std::vector<std::size_t> finer;
+        for (std::size_t p = 0; p < lenses_.size(); ++p) {
+            finer.push_back(lenses_[p]);
+            if (p + 1 < lenses_.size() && band_excess_[p] > search_.most_excess && lenses_[p + 1] > lenses_[p] + 1) {
+                finer.push_back((lenses_[p] + lenses_[p + 1]) / 2);
+            }
+        }
+        if (finer.size() == lenses_.size() || finer.size() > kMostPositions) {
+            return false;
+        }
+        set_lenses(std::move(finer));
+        return true;
     }
 
     // --- Regions ---
 
-    [[nodiscard]] std::size_t index(std::size_t i, std::size_t k) const { return i * azimuths_ + k % azimuths_; }
-
-    /// The outlines at a node; where it is dark, those of the next lit one on its azimuth, or of any.
-    [[nodiscard]] const std::vector<PupilOutline>& outlines_at_node(std::size_t i, std::size_t k) const {
-        for (std::size_t turn = 0; turn < azimuths_; ++turn) {
-            for (std::size_t back = 0; back <= i; ++back) {
-                const Station& here = station(azimuth(k + turn), radii_[i - back]);
-                if (!here.is_dark()) {
-                    return here.outlines;
-                }
+    /// The outline at a node; where it is dark, that of the next lit one inwards, outwards, or on another azimuth: at
+    /// the light's end one is lit.
+    [[nodiscard]] const PupilOutline& outline_at(std::size_t p, std::size_t k, std::size_t i) const {
+        const std::size_t count = nodes_.shares.size();
+        for (std::size_t turn = 0; turn + 1 < nodes_.azimuths * count; ++turn) {
+            const std::size_t step = turn % count;
+            const PupilOutline* outline = stations_.find(node(p, k + turn / count, step <= i ? i - step : step));
+            if (is_lit(outline)) {
+                return *outline;
             }
         }
-        return station(azimuth(k), radii_.back()).outlines;
+        return *stations_.find(node(p, k + nodes_.azimuths - 1, count - 1));
     }
 
-    /// Something traced between nodes: the nodes that it lies in the middle of have to hold it.
-    struct Middle {
-        const std::vector<PupilOutline>* outlines;
-        std::size_t a;
-        std::size_t b;
-        std::size_t step;  // of which radius step
-        bool is_in_radius;
-    };
-
-    [[nodiscard]] std::vector<Middle> middles() const {
-        std::vector<Middle> all;
-        const auto add = [&](double at_azimuth, double radius, const Middle& middle) {
-            const auto found = stations_.find({at_azimuth, radius});
-            if (found != stations_.end() && !found->second.is_dark()) {
-                all.push_back(middle);
-                all.back().outlines = &found->second.outlines;
-            }
-        };
-        for (std::size_t k = 0; k < azimuths_; ++k) {
-            for (std::size_t i = 0; i < radii_.size(); ++i) {
-                if (i + 1 < radii_.size()) {
-                    add(azimuth(k), 0.5 * (radii_[i] + radii_[i + 1]),
-                        {nullptr, index(i, k), index(i + 1, k), i, true});
-                }
-                add(azimuth(k) + 0.5 / static_cast<double>(azimuths_), radii_[i],
-                    {nullptr, index(i, k), index(i, k + 1), i, false});
-            }
-        }
-        return all;
-    }
-
-    /// Regions that hold the outlines at the nodes and at the middles between them, along the radius and along the
-    /// azimuth; what is missed in between adds up from both.
+    /// Regions that hold the outlines at the nodes and at the middles between them, along each axis; what is missed
+    /// away from the axes adds up from them.
     void fit() {
-        const std::vector<Middle> between = middles();
-        const std::vector<Extent> extents = fitted_extents(between);
-        regions_.clear();
-        for (std::size_t i = 0; i < radii_.size(); ++i) {
-            for (std::size_t k = 0; k < azimuths_; ++k) {
-                regions_.push_back(region_around(outlines_at_node(i, k), extents[index(i, k)], symmetry_));
+        const std::vector<Between> middles = lit_middles();
+        const std::vector<const PupilOutline*> outlines = node_outlines();
+        set_own_regions(outlines, middles);
+        std::array<std::vector<ColumnGrowth>, kAxes> growth;
+        growth.fill(std::vector<ColumnGrowth>(nodes_.regions.size()));
+        for (const Between& middle : middles) {
+            const PupilRegion between = mean_region(nodes_.regions[middle.a], nodes_.regions[middle.b], middle.t);
+            const ColumnGrowth missing = missing_growth(between, {middle.outline, 1}, nodes_.symmetry);
+            growth[static_cast<std::size_t>(middle.axis)][middle.a].include(missing);
+            growth[static_cast<std::size_t>(middle.axis)][middle.b].include(missing);
+        }
+        for (const std::vector<ColumnGrowth>& along : growth) {
+            for (std::size_t i = 0; i < along.size(); ++i) {
+                grow(nodes_.regions[i], along[i], kSafety, nodes_.symmetry);
             }
         }
-        std::vector<ColumnGrowth> along_radius(regions_.size());
-        std::vector<ColumnGrowth> along_azimuth(regions_.size());
-        for (const Middle& middle : between) {
-            const ColumnGrowth missing = missing_growth(mean_region(middle), *middle.outlines, symmetry_);
-            for (const std::size_t node : {middle.a, middle.b}) {
-                (middle.is_in_radius ? along_radius : along_azimuth)[node].include(missing);
+        for (PupilRegion& region : nodes_.regions) {
+            double height = 0.0;
+            for (const PupilColumn& column : region.columns) {
+                height = std::max(height, column.upper - column.lower);
             }
+            grow(region, ColumnGrowth(0.5 * kMargin * height), 1.0, nodes_.symmetry);
         }
-        for (std::size_t i = 0; i < regions_.size(); ++i) {
-            grow(regions_[i], along_radius[i], symmetry_);
-            grow(regions_[i], along_azimuth[i], symmetry_);
-        }
-        measure_excess(between);
     }
 
-    [[nodiscard]] std::vector<Extent> fitted_extents(const std::vector<Middle>& between) const {
+    [[nodiscard]] std::vector<Between> lit_middles() const {
+        std::vector<Between> middles;
+        for_each_middle([&](const StationPlace& place, Between middle, const StationPlace&, const StationPlace&) {
+            middle.outline = stations_.find(place);
+            if (is_lit(middle.outline)) {
+                middles.push_back(middle);
+            }
+        });
+        return middles;
+    }
+
+    [[nodiscard]] std::vector<const PupilOutline*> node_outlines() const {
+        std::vector<const PupilOutline*> outlines;
+        for (std::size_t p = 0; p < lenses_.size(); ++p) {
+            for (std::size_t k = 0; k < nodes_.azimuths; ++k) {
+                for (std::size_t i = 0; i < nodes_.shares.size(); ++i) {
+                    outlines.push_back(&outline_at(p, k, i));
+                }
+            }
+        }
+        return outlines;
+    }
+
+    /// What the extents of two nodes lack to hold that of an outline between them.
+    [[nodiscard]] Extent missing_extent(const Extent& a, const Extent& b, const Between& middle) const {
+        const Extent needed = own_extent(*middle.outline);
+        return {std::min(0.0, needed.left - (1.0 - middle.t) * a.left - middle.t * b.left),
+                std::max(0.0, needed.right - (1.0 - middle.t) * a.right - middle.t * b.right)};
+    }
+
+    /// Regions around the nodes' own outlines, as wide as the middles need.
+    void set_own_regions(const std::vector<const PupilOutline*>& outlines, const std::vector<Between>& middles) {
         std::vector<Extent> extents;
-        for (std::size_t i = 0; i < radii_.size(); ++i) {
-            for (std::size_t k = 0; k < azimuths_; ++k) {
-                extents.push_back(own_extent(outlines_at_node(i, k)));
-            }
+        for (const PupilOutline* outline : outlines) {
+            extents.push_back(own_extent(*outline));
         }
-        std::vector<Extent> along_radius(extents.size(), {0.0, 0.0});  // to be added
-        std::vector<Extent> along_azimuth = along_radius;
-        for (const Middle& middle : between) {
-            const Extent needed = own_extent(*middle.outlines);
-            const Extent& a = extents[middle.a];
-            const Extent& b = extents[middle.b];
+        std::array<std::vector<Extent>, kAxes> more;  // to be added
+        more.fill(std::vector<Extent>(extents.size(), {0.0, 0.0}));
+        for (const Between& middle : middles) {
+            const Extent missing = missing_extent(extents[middle.a], extents[middle.b], middle);
             for (const std::size_t node : {middle.a, middle.b}) {
-                Extent& more = (middle.is_in_radius ? along_radius : along_azimuth)[node];
-                more = {std::min(more.left, needed.left - 0.5 * (a.left + b.left)),
-                        std::max(more.right, needed.right - 0.5 * (a.right + b.right))};
+                Extent& here = more[static_cast<std::size_t>(middle.axis)][node];
+                here = {std::min(here.left, missing.left), std::max(here.right, missing.right)};
             }
         }
-        for (std::size_t i = 0; i < extents.size(); ++i) {
-            extents[i] = {extents[i].left + along_radius[i].left + along_azimuth[i].left,
-                          extents[i].right + along_radius[i].right + along_azimuth[i].right};
+        nodes_.regions.clear();
+        for (std::size_t i = 0; i < outlines.size(); ++i) {
+            Extent extent = extents[i];
+            for (const std::vector<Extent>& along : more) {
+                extent = {extent.left + kSafety * along[i].left, extent.right + kSafety * along[i].right};
+            }
+            nodes_.regions.push_back(region_around({outlines[i], 1}, extent, nodes_.symmetry));
         }
-        return extents;
     }
 
-    [[nodiscard]] Extent own_extent(std::span<const PupilOutline> outlines) const {
-        const Extent extent = extent_of(outlines);
+    [[nodiscard]] Extent own_extent(const PupilOutline& outline) const {
+        const Extent extent = extent_of({&outline, 1});
         return {search_.by_radius ? 0.0 : extent.left, extent.right};
     }
 
-    [[nodiscard]] PupilRegion mean_region(const Middle& middle) const {
-        const PupilRegion& a = regions_[middle.a];
-        const PupilRegion& b = regions_[middle.b];
-        PupilRegion mean{.left = 0.5 * (a.left + b.left), .width = 0.5 * (a.width + b.width)};
-        for (std::size_t i = 0; i < mean.columns.size(); ++i) {
-            mean.columns[i] = {.lower = 0.5 * (a.columns[i].lower + b.columns[i].lower),
-                               .upper = 0.5 * (a.columns[i].upper + b.columns[i].upper)};
+    [[nodiscard]] PupilRegion mean_region(const PupilRegion& a, const PupilRegion& b, double t) const {
+        const auto mean = [&](double of_a, double of_b) { return (1.0 - t) * of_a + t * of_b; };
+        PupilRegion between{.left = mean(a.left, b.left), .width = mean(a.width, b.width)};
+        for (std::size_t i = 0; i < between.columns.size(); ++i) {
+            between.columns[i] = {.lower = mean(a.columns[i].lower, b.columns[i].lower),
+                                  .upper = mean(a.columns[i].upper, b.columns[i].upper)};
         }
-        mean.sum_areas(symmetry_);
-        return mean;
+        between.sum_areas(nodes_.symmetry);
+        return between;
     }
 
-    /// By how much the regions between nodes are larger than those that are fitted to what was traced there.
-    void measure_excess(const std::vector<Middle>& between) {
-        radius_excess_.assign(radii_.size(), 0.0);
-        azimuth_excess_ = 0.0;
-        for (const Middle& middle : between) {
-            const PupilRegion mean = mean_region(middle);
-            const PupilRegion own = region_around(*middle.outlines, own_extent(*middle.outlines), symmetry_);
-            const double own_area = own.width * own.columns.back().area_before;
-            const double excess = mean.width * mean.columns.back().area_before / own_area - 1.0;
-            double& largest = middle.is_in_radius ? radius_excess_[middle.step] : azimuth_excess_;
-            largest = std::max(largest, excess);
-        }
+    /// By how much the region between two nodes, enlarged to hold what was traced there, is larger than that.
+    [[nodiscard]] double excess_of(const PupilOutline& at_a, const PupilOutline& at_b, const Between& middle) const {
+        const auto around = [&](const PupilOutline& outline, const Extent& more) {
+            const Extent own = own_extent(outline);
+            return region_around({&outline, 1}, {own.left + kSafety * more.left, own.right + kSafety * more.right},
+                                 nodes_.symmetry);
+        };
+        const Extent missing = missing_extent(own_extent(at_a), own_extent(at_b), middle);
+        PupilRegion between = mean_region(around(at_a, missing), around(at_b, missing), middle.t);
+        grow(between, missing_growth(between, {middle.outline, 1}, nodes_.symmetry), kSafety, nodes_.symmetry);
+        const PupilRegion own = around(*middle.outline, {0.0, 0.0});
+        return between.width * between.columns.back().area_before / (own.width * own.columns.back().area_before) - 1.0;
     }
 
-    [[nodiscard]] PupilNodes finished() const {
-        PupilNodes nodes{.symmetry = symmetry_, .azimuths = azimuths_, .radii = radii_, .regions = regions_};
-        if (has_edge() && !radii_.empty()) {
-            // The region shrinks to nothing in the last step, which keeps the larger end's.
-            nodes.radii.push_back(first_dark_);
-            nodes.regions.insert(nodes.regions.end(), regions_.end() - static_cast<std::ptrdiff_t>(azimuths_),
-                                 regions_.end());
+    /// The mean excess at each step of the radius, and over the sensor's area for the other axes.
+    void measure_excess() {
+        const std::vector<const PupilOutline*> outlines = node_outlines();
+        std::vector<Mean> by_share(nodes_.shares.size());
+        std::vector<Mean> by_position(lenses_.size());
+        Mean by_azimuth;
+        for (const Between& middle : lit_middles()) {
+            const auto [known, is_new] = excesses_.try_emplace({middle.outline, middle.axis}, 0.0);
+            if (is_new) {
+                known->second = excess_of(*outlines[middle.a], *outlines[middle.b], middle);
+            }
+            const double share = nodes_.shares[middle.share];
+            const double step = share - nodes_.shares[middle.share > 0 ? middle.share - 1 : 0];
+            if (middle.axis == Axis::radius) {
+                by_share[middle.share].add(known->second, 1.0);
+            } else {
+                (middle.axis == Axis::band ? by_position[middle.position] : by_azimuth)
+                    .add(known->second, share * step);
+            }
         }
-        return nodes;
+        share_excess_.clear();
+        std::ranges::transform(by_share, std::back_inserter(share_excess_), &Mean::value);
+        band_excess_.clear();
+        std::ranges::transform(by_position, std::back_inserter(band_excess_), &Mean::value);
+        azimuth_excess_ = by_azimuth.value();
     }
 
-    const std::vector<TraceLens<double>>& band_;
-    const RearDisc& disc_;
     const NodeSearch& search_;
-    PupilSymmetry symmetry_;
-    std::size_t azimuths_;
-    std::map<SensorPlace, Station> stations_;
-    std::vector<double> radii_;
-    double first_dark_ = 0.0;  // 0: light reaches the whole sensor
-    std::vector<PupilRegion> regions_;
-    std::vector<double> radius_excess_;
+    std::size_t last_lens_;
+    PupilStations stations_;
+    std::vector<std::size_t> lenses_;  // at the nodes of the band
+    PupilNodes nodes_;
+    std::map<std::pair<const PupilOutline*, Axis>, double> excesses_;  // of middles
+    std::vector<double> share_excess_;                                 // of each step of the radius
+    std::vector<double> band_excess_;                                  // of each step in the band
     double azimuth_excess_ = 0.0;
 };
 

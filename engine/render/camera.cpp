@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 
 #include "engine/io/input_error.h"
@@ -37,28 +38,10 @@ Sensor read_sensor(TomlTable& table) {
     return sensor;
 }
 
-/// Pupils change with the wavelength, most where the image circle ends.
-constexpr std::size_t kPupilBands = 4;
-
-/// The pupils of each band, found at its ends and its middle.
-std::vector<PupilMap> make_pupils(const Lens& lens, const std::vector<WavelengthStratum>& strata,
-                                  double sensor_radius_mm) {
-    const std::size_t bands = std::min(kPupilBands, strata.size());
-    std::vector<PupilMap> pupils;
-    for (std::size_t band = 0; band < bands; ++band) {
-        // Stratum i belongs to band ⌊i · bands / strata⌋.
-        const std::size_t first = (band * strata.size() + bands - 1) / bands;
-        const std::size_t last = ((band + 1) * strata.size() + bands - 1) / bands - 1;
-        std::vector<TraceLens<double>> lenses = {strata[first].lens};
-        if (last > first + 1) {
-            lenses.push_back(strata[(first + last) / 2].lens);
-        }
-        if (last > first) {
-            lenses.push_back(strata[last].lens);
-        }
-        pupils.emplace_back(lenses, lens.is_rotationally_symmetric, sensor_radius_mm);
-    }
-    return pupils;
+std::vector<TraceLens<double>> lenses_of(const std::vector<WavelengthStratum>& strata) {
+    std::vector<TraceLens<double>> lenses;
+    std::ranges::transform(strata, std::back_inserter(lenses), &WavelengthStratum::lens);
+    return lenses;
 }
 
 SpectralStrata make_strata(const Camera& camera, const Lens& lens, const Light& light,
@@ -170,7 +153,7 @@ ChartCamera::ChartCamera(const Camera& camera, const Light& light, const Spectra
       lens_(camera_lens(camera)),
       spectral_(make_strata(camera, lens_, light, spectral)),
       // Pixels are areas: the corner pixel's own corner is the farthest point sampled.
-      pupils_(make_pupils(lens_, spectral_.strata, camera.sensor.half_diagonal_mm())) {
+      pupil_(lenses_of(spectral_.strata), lens_.is_rotationally_symmetric, camera.sensor.half_diagonal_mm()) {
     const double values =
         static_cast<double>(camera.sensor.width) * camera.sensor.height * (6.0 + static_cast<double>(spectral.layers));
     if (values > kMostValues) {
@@ -198,7 +181,7 @@ Image ChartCamera::render(const Chart& chart, const Placement& placement, const 
                          .strata = spectral_.strata,
                          .stratum_width_nm = spectral_.width_nm,
                          .layer_nm = spectral_.layer_nm};
-    Image image = render_chart(view, pupils_, settings, progress);
+    Image image = render_chart(view, pupil_, settings, progress);
     image.metadata = metadata_;
     return image;
 }

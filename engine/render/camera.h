@@ -86,7 +86,7 @@ class ChartCamera {
     Camera camera_;
     Lens lens_;
     SpectralStrata spectral_;
-    std::vector<PupilMap> pupils_;  // of bands of the wavelengths, which the strata are shared out among
+    PupilMap pupil_;  // over the band of the strata
     std::map<std::string, std::string> metadata_;
 };
 

@@ -7,16 +7,19 @@ namespace lensproof {
 
 namespace {
 
-/// Points of the pupil for film points, one at a time.
-void draw_pupil_points(const std::vector<PupilMap>& pupils, int wavelengths, PathStarts& starts) {
+/// Points of the pupil for film points, one at a time. Returns how many have a density.
+int draw_pupil_points(const PupilMap& pupil, int wavelengths, PathStarts& starts) {
+    const double last = wavelengths > 1 ? wavelengths - 1.0 : 1.0;
+    int lit = 0;
     for (std::size_t i = 0; i < static_cast<std::size_t>(starts.size); ++i) {
-        const PupilMap& pupil = pupils[starts.wavelength[i] * pupils.size() / static_cast<std::size_t>(wavelengths)];
-        const PupilSample sample =
-            pupil.sample({starts.film_x[i], starts.film_y[i]}, starts.pupil_u[i], starts.pupil_v[i]);
+        const PupilSample sample = pupil.sample({starts.film_x[i], starts.film_y[i]}, starts.wavelength[i] / last,
+                                                starts.pupil_u[i], starts.pupil_v[i]);
         starts.pupil_x[i] = sample.point.x;
         starts.pupil_y[i] = sample.point.y;
         starts.pupil_density[i] = sample.density;
+        lit += sample.density > 0.0 ? 1 : 0;
     }
+    return lit;
 }
 
 /// Writes those of `from` that `kept` names to the end of a buffer's column.
@@ -66,21 +69,26 @@ bool CameraPathProducer<T>::fill(CameraPathBuffer<T>& buffer) {
         }
         const int whole = room < kMostLanes ? room : room / kMostLanes * kMostLanes;
         const std::uint64_t left = std::uint64_t{end_pixel_ - cursor_.pixel} * cursor_.samples - cursor_.sample;
-        draw_and_trace(static_cast<int>(std::min<std::uint64_t>(left, std::min(whole, kPathChunk))));
-        move_survivors(buffer);
+        if (draw_and_trace(static_cast<int>(std::min<std::uint64_t>(left, std::min(whole, kPathChunk))))) {
+            move_survivors(buffer);
+        }
     }
     return buffer.size > 0;
 }
 
 template <class T>
-void CameraPathProducer<T>::draw_and_trace(int count) {
+bool CameraPathProducer<T>::draw_and_trace(int count) {
     const int wavelengths = source_.lens->wavelengths();
     kernels_->draw({.sensor = source_.sensor, .seed = source_.seed, .wavelengths = wavelengths}, count, cursor_,
                    *starts_);
-    draw_pupil_points(*source_.pupils, wavelengths, *starts_);
-    kernels_->aim(source_.lens->at(0).image_z, source_.pupils->front().plane_z(), *starts_, rays_);
+    const int lit = draw_pupil_points(*source_.pupil, wavelengths, *starts_);
+    started_ += lit;
+    if (lit == 0) {
+        return false;
+    }
+    kernels_->aim(source_.lens->at(0).image_z, source_.pupil->plane_z(), *starts_, rays_);
     trace_batch<Direction::reverse>(*source_.lens, rays_, tracing_);
-    started_ += count;
+    return true;
 }
 
 template <class T>
@@ -88,8 +96,9 @@ void CameraPathProducer<T>::move_survivors(CameraPathBuffer<T>& buffer) const {
     std::array<std::uint16_t, kPathChunk> kept;
     int count = 0;
     for (int i = 0; i < rays_.size; ++i) {
+        const auto at = static_cast<std::size_t>(i);
         kept[static_cast<std::size_t>(count)] = static_cast<std::uint16_t>(i);
-        count += rays_.status[static_cast<std::size_t>(i)] == RayStatus::ok ? 1 : 0;
+        count += rays_.status[at] == RayStatus::ok && starts_->pupil_density[at] > 0.0 ? 1 : 0;
     }
     const int at = buffer.size;
     append(buffer.pixel, at, starts_->pixel, kept, count);

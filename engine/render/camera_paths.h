@@ -3,7 +3,6 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
-#include <vector>
 
 #include "engine/optics/packet/trace_batch.h"
 #include "engine/pupil/pupil_map.h"
@@ -45,8 +44,8 @@ struct CameraPathBuffer {
 template <class T>
 struct CameraPathSource {
     Sensor sensor;
-    const SpectralLens<T>* lens = nullptr;          // at the wavelengths that samples spread evenly over
-    const std::vector<PupilMap>* pupils = nullptr;  // of bands of the wavelengths, which these are shared out among
+    const SpectralLens<T>* lens = nullptr;  // at the wavelengths that samples spread evenly over
+    const PupilMap* pupil = nullptr;        // of those wavelengths
     std::uint64_t seed = 0;
 };
 
@@ -73,11 +72,13 @@ class CameraPathProducer {
     /// False when none is left.
     bool fill(CameraPathBuffer<T>& buffer);
 
-    /// Paths that were traced since the construction, stopped ones included.
+    /// Paths that were started since the construction, stopped ones included; samples where the film gets no light are
+    /// none.
     [[nodiscard]] std::int64_t started() const { return started_; }
 
   private:
-    void draw_and_trace(int count);
+    /// False where the film gets no light, and nothing was traced.
+    bool draw_and_trace(int count);
     void move_survivors(CameraPathBuffer<T>& buffer) const;
 
     CameraPathSource<T> source_;

@@ -119,7 +119,7 @@ double seen_reflectance(const Chart& chart, const RigidMotion& pose, const Ray<d
     return reflectance(chart, origin.x + distance * direction.x, origin.y + distance * direction.y);
 }
 
-Image render_chart(const SeenChart& view, const std::vector<PupilMap>& pupils, const RenderSettings& settings,
+Image render_chart(const SeenChart& view, const PupilMap& pupil, const RenderSettings& settings,
                    const std::function<void(double)>& progress) {
     std::vector<std::string> channels = {"R", "G", "B", "error.R", "error.G", "error.B"};
     for (const double nm : view.layer_nm) {
@@ -127,8 +127,7 @@ Image render_chart(const SeenChart& view, const std::vector<PupilMap>& pupils, c
     }
     Image image = make_image(view.sensor.width, view.sensor.height, std::move(channels));
     const SpectralLens<double> lens = spectral_lens(view.strata);
-    const CameraPathSource<double> source{
-        .sensor = view.sensor, .lens = &lens, .pupils = &pupils, .seed = settings.seed};
+    const CameraPathSource<double> source{.sensor = view.sensor, .lens = &lens, .pupil = &pupil, .seed = settings.seed};
     parallel_for_workers(
         image.height, settings.threads, [&] { return RowRenderer(view, source, settings.samples_per_pixel, image); },
         [&](int rows) {

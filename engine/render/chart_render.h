@@ -46,9 +46,9 @@ struct RenderSettings {
 /// mean film irradiance over its band, W·m⁻²·nm⁻¹.
 ///
 /// The estimator of the measurement equation at film point x (Kolb et al. 1995, eq. 4): E = ∫ L τ cos⁴θ / Z² dA over
-/// the pupil, by points that `pupils` draws; pixels integrate over their whole area. The strata are shared out among
-/// the maps in order, to each as many. The result depends on view, pupils, samples and seed alone.
-Image render_chart(const SeenChart& view, const std::vector<PupilMap>& pupils, const RenderSettings& settings,
+/// the pupil, by points that `pupil` draws, a map of the strata's lenses; pixels integrate over their whole area. The
+/// result depends on view, pupil, samples and seed alone.
+Image render_chart(const SeenChart& view, const PupilMap& pupil, const RenderSettings& settings,
                    const std::function<void(double done)>& progress = {});
 
 }  // namespace lensproof

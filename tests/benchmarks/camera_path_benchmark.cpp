@@ -64,14 +64,12 @@ class PathScene {
           in_float_(at_wavelengths<float>(lens_, wavelengths())),
           sensor_{.width = 40, .height = 30, .pixel_pitch_mm = setting.half_diagonal_mm / 25.0},
           pose_(place({.distance_mm = setting.focus_distance_mm})),
-          chart_{.pattern = DiscGrid{12, 9, 0.05 * setting.focus_distance_mm, 0.025 * setting.focus_distance_mm}} {
-        pupils_.emplace_back(std::vector{in_double_.at(0), in_double_.at(31), in_double_.at(63)},
-                             lens_.is_rotationally_symmetric, setting.half_diagonal_mm);
-    }
+          chart_{.pattern = DiscGrid{12, 9, 0.05 * setting.focus_distance_mm, 0.025 * setting.focus_distance_mm}},
+          pupil_(in_double_.at(), lens_.is_rotationally_symmetric, setting.half_diagonal_mm) {}
 
     [[nodiscard]] std::uint32_t pixels() const { return 40 * 30; }
     [[nodiscard]] const Sensor& sensor() const { return sensor_; }
-    [[nodiscard]] const PupilMap& pupil() const { return pupils_.front(); }
+    [[nodiscard]] const PupilMap& pupil() const { return pupil_; }
 
     template <class T>
     [[nodiscard]] const SpectralLens<T>& lens() const {
@@ -84,7 +82,7 @@ class PathScene {
 
     template <class T>
     [[nodiscard]] CameraPathSource<T> source() const {
-        return {.sensor = sensor_, .lens = &lens<T>(), .pupils = &pupils_, .seed = 0};
+        return {.sensor = sensor_, .lens = &lens<T>(), .pupil = &pupil_, .seed = 0};
     }
 
     /// Work as a scene makes it: what the ray sees of a chart.
@@ -107,9 +105,9 @@ class PathScene {
     SpectralLens<double> in_double_;
     SpectralLens<float> in_float_;
     Sensor sensor_;
-    std::vector<PupilMap> pupils_;
     RigidMotion pose_;
     Chart chart_;
+    PupilMap pupil_;
 };
 
 enum class Consumer { none, chart };
@@ -135,9 +133,13 @@ void time_one_by_one(benchmark::State& state, const Setting& setting, Consumer c
             const PixelSampler sampler(0, pixel);
             for (std::uint32_t sample = 0; sample < kSamples; ++sample) {
                 const auto xi = sampler.point(sample);
-                const TraceLens<double>& lens = scene.lens<double>().at(static_cast<int>(xi[4] * 64));
+                const int wavelength = static_cast<int>(xi[4] * 64);
+                const TraceLens<double>& lens = scene.lens<double>().at(wavelength);
                 const Vec2d at = scene.sensor().position(pixel % 40 - 0.5 + xi[0], pixel / 40 - 0.5 + xi[1]);
-                const PupilSample in_pupil = pupil.sample(at, xi[2], xi[3]);
+                const PupilSample in_pupil = pupil.sample(at, wavelength / 63.0, xi[2], xi[3]);
+                if (!(in_pupil.density > 0.0)) {
+                    continue;
+                }
                 ++started;
                 const Vec3d film{at.x, at.y, lens.image_z};
                 const Vec3d way = Vec3d{in_pupil.point.x, in_pupil.point.y, pupil.plane_z()} - film;

@@ -71,9 +71,9 @@ TEST(ChartRender, PupilMapsMissNoLight) {
                              .stratum_width_nm = 1.0 / 3.0,
                              .layer_nm = {550.0}};
         const double edge = camera.sensor.half_diagonal_mm();
-        const Image fast = render_chart(view, {PupilMap(lenses, true, edge)}, {.samples_per_pixel = 96, .seed = 1});
+        const Image fast = render_chart(view, PupilMap(lenses, true, edge), {.samples_per_pixel = 96, .seed = 1});
         const Image slow =
-            render_chart(view, {PupilMap::whole_element(lenses[0], edge)}, {.samples_per_pixel = 768, .seed = 2});
+            render_chart(view, PupilMap::whole_element(lenses[0], edge), {.samples_per_pixel = 768, .seed = 2});
         for (int ring = 0; ring < 8; ++ring) {
             const Mean a = ring_mean(fast, camera.sensor, edge * ring / 8, edge * (ring + 1) / 8);
             const Mean b = ring_mean(slow, camera.sensor, edge * ring / 8, edge * (ring + 1) / 8);

@@ -1,0 +1,120 @@
+#include "engine/pupil/pupil_stations.h"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <iterator>
+#include <numbers>
+
+#include "engine/optics/rim_margin.h"
+
+namespace lensproof {
+
+namespace {
+
+/// Which rays leave the front: 1, or 0.
+void passing(const TraceLens<double>& lens, std::span<const Ray<double>> rays, std::span<std::uint8_t> answers) {
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+        answers[i] = trace<Direction::reverse>(lens, rays[i]).status == RayStatus::ok ? 1 : 0;
+    }
+}
+
+PupilFrame mean_frame(const std::vector<PupilFrame>& frames, const std::vector<double>& weights) {
+    PupilFrame mean{.centre = {}, .scale = {}, .bend = 0.0};
+    for (std::size_t i = 0; i < frames.size(); ++i) {
+        const PupilFrame& frame = frames[i];
+        mean.centre = {mean.centre.x + weights[i] * frame.centre.x, mean.centre.y + weights[i] * frame.centre.y};
+        mean.scale = {mean.scale.x + weights[i] * frame.scale.x, mean.scale.y + weights[i] * frame.scale.y};
+        mean.bend += weights[i] * frame.bend;
+    }
+    return mean;
+}
+
+}  // namespace
+
+void PupilStations::trace(std::vector<Request> requests) {
+    std::erase_if(requests, [&](const Request& request) { return outlines_.contains(request.place); });
+    std::ranges::sort(requests, std::less<>{}, &Request::place);  // lens by lens
+    std::vector<std::optional<PupilFrame>> expected;
+    std::ranges::transform(requests, std::back_inserter(expected),
+                           [&](const Request& request) { return expected_frame(request); });
+    const OutlineSearch search{.radius = disc_.radius, .symmetry = symmetry_, .look_closer = [&](int region) {
+                                   return point_by_margin(requests[static_cast<std::size_t>(region)].place);
+                               }};
+    std::vector<PupilOutline> outlines = pupil_outlines(
+        [&](std::span<const RegionPoint> points, std::span<std::uint8_t> answers) { ask(requests, points, answers); },
+        expected, search);
+    for (std::size_t i = 0; i < outlines.size(); ++i) {
+        outlines_[requests[i].place] = std::move(outlines[i]);
+    }
+}
+
+/// From the sensor through a point of the pupil that is given in the place's frame.
+Ray<double> PupilStations::ray(const StationPlace& place, Vec2d pupil_point) const {
+    const double angle = 2.0 * std::numbers::pi * place.azimuth;
+    const double cosine = std::cos(angle);
+    const double sine = std::sin(angle);
+    const Vec3d from{place.radius_mm * sine, place.radius_mm * cosine, band_[place.lens].image_z};
+    const Vec3d to{cosine * pupil_point.x + sine * pupil_point.y, cosine * pupil_point.y - sine * pupil_point.x,
+                   disc_.plane_z};
+    return {from, normalized(to - from)};
+}
+
+/// In batches of one lens each.
+void PupilStations::ask(const std::vector<Request>& requests, std::span<const RegionPoint> points,
+                        std::span<std::uint8_t> answers) const {
+    const auto lens_of = [&](std::size_t i) { return requests[static_cast<std::size_t>(points[i].region)].place.lens; };
+    std::vector<Ray<double>> rays;
+    for (std::size_t first = 0; first < points.size(); first += rays.size()) {
+        rays.clear();
+        for (std::size_t i = first; i < points.size() && lens_of(i) == lens_of(first); ++i) {
+            rays.push_back(ray(requests[static_cast<std::size_t>(points[i].region)].place, points[i].point));
+        }
+        passing(band_[lens_of(first)], rays, answers.subspan(first, rays.size()));
+    }
+}
+
+/// A point of a region that is thinner than a grid, by how far rays stand from the rims.
+std::optional<Vec2d> PupilStations::point_by_margin(const StationPlace& place) const {
+    return find_inside([&](Vec2d at) { return rim_margin(band_[place.lens], ray(place, at), Direction::reverse); },
+                       {.start = {}, .reach = disc_.radius, .is_mirror = symmetry_ == PupilSymmetry::mirror});
+}
+
+/// Between the neighbours' frames along the radius, or else the mean of those alike; nothing where there are none.
+std::optional<PupilFrame> PupilStations::expected_frame(const Request& request) const {
+    const StationPlace& place = request.place;
+    std::vector<PupilFrame> frames;
+    std::vector<double> weights;
+    const auto is_lit_neighbour = [&](const auto& it) {
+        return it->first.lens == place.lens && it->first.azimuth == place.azimuth && !it->second.is_empty();
+    };
+    const auto add = [&](const PupilFrame& frame, double weight) {
+        frames.push_back(frame);
+        weights.push_back(weight);
+    };
+    const auto above = outlines_.upper_bound(place);
+    if (above != outlines_.end() && is_lit_neighbour(above)) {
+        add(above->second.frame, 1.0 / (above->first.radius_mm - place.radius_mm));
+    }
+    if (above != outlines_.begin() && is_lit_neighbour(std::prev(above))) {
+        add(std::prev(above)->second.frame, 1.0 / (place.radius_mm - std::prev(above)->first.radius_mm));
+    }
+    if (frames.empty()) {
+        for (const StationPlace& alike : request.alike) {
+            const PupilOutline* outline = find(alike);
+            if (outline != nullptr && !outline->is_empty()) {
+                add(outline->frame, 1.0);
+            }
+        }
+    }
+    double sum = 0.0;
+    for (const double weight : weights) {
+        sum += weight;
+    }
+    for (double& weight : weights) {
+        weight /= sum;
+    }
+    return frames.empty() ? std::nullopt : std::optional(mean_frame(frames, weights));
+}
+
+}  // namespace lensproof
