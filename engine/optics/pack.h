@@ -72,7 +72,10 @@ class Pack {
     friend Pack operator/(const Pack& a, const Pack& b) { return Pack(a.lanes_ / b.lanes_); }
     friend Mask operator<(const Pack& a, const Pack& b) { return Mask(a.lanes_ < b.lanes_); }
     friend Mask operator>(const Pack& a, const Pack& b) { return Mask(a.lanes_ > b.lanes_); }
+    friend Mask operator<=(const Pack& a, const Pack& b) { return Mask(a.lanes_ <= b.lanes_); }
+    friend Mask operator>=(const Pack& a, const Pack& b) { return Mask(a.lanes_ >= b.lanes_); }
 
+    friend Pack abs(const Pack& a) { return Pack(std::experimental::abs(a.lanes_)); }
     friend Pack sqrt(const Pack& a) { return Pack(std::experimental::sqrt(a.lanes_)); }
 
     /// Lane by lane, `a` where `mask` holds, else `b`.

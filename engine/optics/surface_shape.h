@@ -1,6 +1,5 @@
 // engine/optics/surface_shape.h — conics, even aspheres, toroids and cylinders: sag, and where a ray meets them.
 #pragma once
-#include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
@@ -29,33 +28,35 @@ struct SurfaceShape {
 
 /// The profile at r² and its derivative dg/d(r²). Beyond the equator of an ellipsoid, where there is no sag, `defined`
 /// is false and the values are those of the conic's tangent cone there, finite.
+///
+/// Here and below a shape's numbers are single ones (Scalar) and a ray's are T: the same type, or a pack of it, of
+/// which each lane has the bits that it would have alone.
 template <class T>
 struct SagProfile {
     T sag;
     T slope;         // dg / d(r²)
     T largest_term;  // of the sum, without its sign: its rounding is an ulp of this
-    bool defined;
+    MaskOf<T> defined;
 };
 
-template <class T>
-SagProfile<T> sag_profile(const SurfaceShape<T>& shape, const T& r2) {
+template <class Scalar, class T>
+inline SagProfile<T> sag_profile(const SurfaceShape<Scalar>& shape, const T& r2) {
     using std::abs;
-    using std::max;
     using std::sqrt;
-    const T& c = shape.curvature;
-    const T root2 = T(1) - (T(1) + shape.conic) * c * c * r2;
-    const bool defined = root2 > T(0);
-    const T root = defined ? sqrt(root2) : T(0);
-    T sag = c * r2 / (T(1) + root);
-    T slope = defined ? c / (T(2) * root) : T(0);
+    const Scalar& c = shape.curvature;
+    const T root2 = T(1) - T((Scalar(1) + shape.conic) * c * c) * r2;
+    const auto defined = root2 > T(0);
+    const T root = sqrt(select(defined, root2, T(1)));
+    T sag = T(c) * r2 / (T(1) + select(defined, root, T(0)));
+    T slope = select(defined, T(c) / (T(2) * root), T(0));
     T power = T(1);  // r^(2i)
     T largest_term = T(0);
     for (int i = 0; i < shape.terms; ++i) {
-        slope += T(i + 1) * shape.asphere[i] * power;
-        power *= r2;
-        const T term = shape.asphere[i] * power;
-        sag += term;
-        largest_term = max(largest_term, abs(term));
+        slope = slope + T(Scalar(i + 1) * shape.asphere[i]) * power;
+        power = power * r2;
+        const T term = T(shape.asphere[i]) * power;
+        sag = sag + term;
+        largest_term = select(largest_term < abs(term), abs(term), largest_term);
     }
     return {sag, slope, largest_term, defined};
 }
@@ -66,18 +67,18 @@ struct Implicit {
     T value;
     Vec3<T> gradient;
     T largest_term;  // of the profile
-    bool defined;
+    MaskOf<T> defined;
 };
 
 /// F = z − g(r²), or for a toroid F = z − g − c_x (x² + z² − g²) / 2, the curvature form of x² + (z − R)² = (R − g)².
-template <class T>
-Implicit<T> implicit_surface(const SurfaceShape<T>& shape, const Vec3<T>& p) {
+template <class Scalar, class T>
+Implicit<T> implicit_surface(const SurfaceShape<Scalar>& shape, const Vec3<T>& p) {
     if (!shape.is_toroid) {
         const SagProfile<T> g = sag_profile(shape, p.x * p.x + p.y * p.y);
         return {p.z - g.sag, {T(-2) * p.x * g.slope, T(-2) * p.y * g.slope, T(1)}, g.largest_term, g.defined};
     }
     const SagProfile<T> g = sag_profile(shape, p.y * p.y);
-    const T& c = shape.curvature_x;
+    const T c(shape.curvature_x);
     return {p.z - g.sag - c / T(2) * (p.x * p.x + p.z * p.z - g.sag * g.sag),
             {-c * p.x, T(-2) * p.y * g.slope * (T(1) - c * g.sag), T(1) - c * p.z},
             g.largest_term,
@@ -85,23 +86,32 @@ Implicit<T> implicit_surface(const SurfaceShape<T>& shape, const Vec3<T>& p) {
 }
 
 /// Where the surface is at (x, y): z above the vertex's plane. Not a number where there is no surface.
-template <class T>
-T sag(const SurfaceShape<T>& shape, const T& x, const T& y) {
+template <class Scalar, class T>
+T sag(const SurfaceShape<Scalar>& shape, const T& x, const T& y) {
     using std::sqrt;
     const SagProfile<T> g = sag_profile(shape, shape.is_toroid ? y * y : x * x + y * y);
-    const T nowhere = std::numeric_limits<T>::quiet_NaN();
-    if (!g.defined || !shape.is_toroid) {
-        return g.defined ? g.sag : nowhere;
+    const T nowhere(std::numeric_limits<Scalar>::quiet_NaN());
+    if (!shape.is_toroid) {
+        return select(g.defined, g.sag, nowhere);
     }
     // c_x z² − 2 z + (2 g + c_x (x² − g²)) = 0, the root on the vertex's side.
-    const T& c = shape.curvature_x;
+    const T c(shape.curvature_x);
     const T constant = T(2) * g.sag + c * (x * x - g.sag * g.sag);
     const T root2 = T(1) - c * constant;
-    return root2 >= T(0) ? constant / (T(1) + sqrt(root2)) : nowhere;
+    const auto is_there = root2 >= T(0);
+    return select(g.defined && is_there, constant / (T(1) + sqrt(select(is_there, root2, T(1)))), nowhere);
 }
 
-/// Where a ray meets a conic, and ∇F there, towards +z; without the sine, which `intersect` adds.
-///
+/// Where a ray meets a conic.
+template <class T>
+struct ConicRoot {
+    Vec3<T> point;
+    T distance;        // along the ray, signed, mm
+    T gradient_along;  // |d·∇F|
+    T gradient_z;
+    MaskOf<T> hit;
+};
+
 /// c (x² + y² + (1 + k) z²) − 2 z = 0 along the ray from its closest approach p to the vertex (p·d = 0) is
 ///     A s² − 2 B s + C = 0,   A = c (1 + k d_z²),   B = d_z (1 − c k p_z),   C = f + c k p_z²,   f = c p·p − 2 p_z,
 /// and d·∇F at a root is B − A s = ±√(B² − A C), so the heading picks the root as it does for the sphere. In B² − A C
@@ -109,129 +119,162 @@ T sag(const SurfaceShape<T>& shape, const T& x, const T& y) {
 /// more, d_z² − c f − c² k (p_z² + d_z² p·p), which is still good to an ulp at k = 1e6. p is projected twice, for far
 /// origins: with k the linear term is too long to carry what rounding leaves of p·d.
 ///
-/// Second, ∇F = (−c x, −c y, 1 − c (1 + k) z). Its z is √(1 − (1 + k) c² r²) as well, which does not amplify the error
-/// of z by k; it stands where the root is no small difference, the other form near an ellipsoid's equator.
+/// Here and in `sag_profile` the word `inline` is worth a tenth of an asphere's time: g++ 12 weighs it.
 template <class T>
-std::pair<Intersection<T>, Vec3<T>> intersect_conic(const Vec3<T>& origin, const Vec3<T>& d, const T& c, const T& k,
-                                                    const T& heading) {
+inline ConicRoot<T> conic_root(const Vec3<T>& origin, const Vec3<T>& d, const T& c, const T& k, const T& heading) {
     using std::sqrt;
     const T first = -dot(origin, d);
     const Vec3<T> near_vertex = origin + first * d;
     const T second = -dot(near_vertex, d);
     const Vec3<T> p = near_vertex + second * d;
-    const T to_vertex = first + second;
     const T p2 = dot(p, p);
     const T f = c * p2 - T(2) * p.z;
     const T a = c * (T(1) + k * d.z * d.z);
     const T b = d.z * (T(1) - c * k * p.z);
     const T constant = f + c * k * p.z * p.z;
     const T discriminant = d.z * d.z - c * f - c * c * k * (p.z * p.z + d.z * d.z * p2);
-    const bool meets = discriminant > T(0);
-    const T root = sqrt(meets ? discriminant : T(1));
-    const bool along = b * heading > T(0);
-    const bool curved = a < T(0) || a > T(0);
-    const T q = b + (along ? heading : -heading) * root;
-    const T s = (along ? constant : q) / (along ? q : (curved ? a : T(1)));
+    const auto meets = discriminant > T(0);
+    const T root = sqrt(select(meets, discriminant, T(1)));
+    const auto along = b * heading > T(0);
+    const auto curved = a < T(0) || a > T(0);
+    const T q = b + select(along, heading, -heading) * root;
+    const T s = select(along, constant, q) / select(along, q, select(curved, a, T(1)));
     const Vec3<T> point = p + s * d;
-    const T of_z = T(1) - c * (T(1) + k) * point.z;
+    const T gradient_z = T(1) - c * (T(1) + k) * point.z;
+    return {point, first + second + s, root, gradient_z, meets && (along || curved) && gradient_z > T(0)};
+}
+
+/// Where a ray meets a conic, and ∇F = (−c x, −c y, 1 − c (1 + k) z) there, towards +z; without the sine, which
+/// `intersect` adds. ∇F's z is √(1 − (1 + k) c² r²) as well, which does not amplify the error of z by k; it stands
+/// where the root is no small difference, the other form near an ellipsoid's equator.
+template <class T>
+std::pair<Intersection<T>, Vec3<T>> intersect_conic(const Vec3<T>& origin, const Vec3<T>& d, const T& c, const T& k,
+                                                    const T& heading) {
+    using std::sqrt;
+    const ConicRoot<T> met = conic_root(origin, d, c, k, heading);
+    const Vec3<T>& point = met.point;
     const T across = c * c * (point.x * point.x + point.y * point.y);
     const T of_r2 = T(1) - (T(1) + k) * across;
-    const T gradient_z = T(4) * of_r2 > T(1) ? sqrt(of_r2) : of_z;
+    const auto is_plain = T(4) * of_r2 > T(1);
+    const T gradient_z = select(is_plain, sqrt(select(is_plain, of_r2, T(1))), met.gradient_z);
     return {{.point = point,
-             .distance = to_vertex + s,
-             .cos_incidence = root / sqrt(across + gradient_z * gradient_z),
+             .distance = met.distance,
+             .cos_incidence = met.gradient_along / sqrt(across + gradient_z * gradient_z),
              .sin2_incidence = T(0),
-             .hit = meets && (along || curved) && of_z > T(0)},
+             .hit = met.hit},
             {-c * point.x, -c * point.y, gradient_z}};
 }
 
-/// Newton's method along a ray from the point at `start` (mm) to where it crosses `shape` in the heading's sense, until
-/// a step is below the precision of T. A step to where there is no surface, or where the ray runs the other way through
-/// it, is halved. `hit` is false where that leads nowhere; cosine and sine are left to the caller.
+/// A point of a ray on a surface, and ∇F there.
 template <class T>
-std::pair<Intersection<T>, Vec3<T>> newton_intersect(const SurfaceShape<T>& shape, const Vec3<T>& origin,
-                                                     const Vec3<T>& d, const T& heading, const T& start) {
-    using std::abs;
-    using std::sqrt;
-    // A step that no longer shrinks has come down to the noise of the terms' sum.
-    constexpr int kMostSteps = 60;
-    const T precision = T(16) * std::numeric_limits<T>::epsilon();
-    Intersection<T> meeting{
-        .point = origin + start * d, .distance = start, .cos_incidence = T(1), .sin2_incidence = T(0), .hit = false};
-    Vec3<T> gradient{T(0), T(0), T(1)};
-    T ahead = T(0);
-    T last_step = std::numeric_limits<T>::infinity();
-    for (int step = 0; step < kMostSteps && !meeting.hit; ++step) {
-        const Implicit<T> here = implicit_surface(shape, meeting.point);
-        const T rise = dot(here.gradient, d);
-        if (!here.defined || !(rise * heading > T(0))) {
-            ahead = ahead / T(2);
-            if (!(abs(ahead) > T(0))) {
-                break;
-            }
-            meeting.point = meeting.point - ahead * d;
-            meeting.distance -= ahead;
-            continue;
-        }
-        ahead = -here.value / rise;
-        meeting.point = meeting.point + ahead * d;
-        meeting.distance += ahead;
-        const T size = sqrt(dot(meeting.point, meeting.point)) + T(1);
-        const bool is_noise = abs(ahead) >= last_step && abs(ahead) <= T(4) * precision * (size + here.largest_term);
-        meeting.hit = abs(ahead) <= precision * size || is_noise;
-        last_step = abs(ahead);
-        gradient = here.gradient;
-    }
-    return {meeting, gradient};
+struct ShapeCrossing {
+    Vec3<T> point;
+    T distance;  // along the ray, signed, mm
+    Vec3<T> gradient;
+    MaskOf<T> found;
+};
+
+template <Packet T>
+void assign_where(const MaskOf<T>& mask, ShapeCrossing<T>& to, const ShapeCrossing<T>& value) {
+    to = {select(mask, value.point, to.point), select(mask, value.distance, to.distance),
+          select(mask, value.gradient, to.gradient), (mask && value.found) || (!mask && to.found)};
 }
 
-/// `intersect` for any shape. What is no conic is found by Newton's method: from the conic's intersection (not a
-/// toroid's), else from the vertex's plane, else from seven points of the ray around that nearest to the vertex. A
-/// surface that turns over may be met more than once; the root found is then the one next to the start. Returned with
-/// the unit normal there, turned along the ray.
-template <class T>
-std::pair<Intersection<T>, Vec3<T>> intersect(const SurfaceShape<T>& shape, const Vec3<T>& origin, const Vec3<T>& d,
-                                              const T& heading) {
+/// Newton's method along a ray from the point at `start` (mm) to where it crosses `shape` in the heading's sense, until
+/// a step is below the precision of the numbers. A step to where there is no surface, or where the ray runs the other
+/// way through it, is halved. `found` is false where that leads nowhere. Lanes outside `wanted` are not waited for, and
+/// are not found; a lane that has arrived stays while others go on.
+template <class Scalar, class T>
+ShapeCrossing<T> newton_intersect(const SurfaceShape<Scalar>& shape, const Vec3<T>& origin, const Vec3<T>& d,
+                                  const T& heading, const T& start, const MaskOf<T>& wanted) {
+    using std::abs;
     using std::sqrt;
-    const auto with_normal = [&](Intersection<T> met, const Vec3<T>& gradient) {
-        const Vec3<T> normal = heading / sqrt(dot(gradient, gradient)) * gradient;
-        const Vec3<T> across = d - met.cos_incidence * normal;
-        met.sin2_incidence = dot(across, across);
-        return std::pair{met, normal};
-    };
-    const auto conic_met = intersect_conic(origin, d, shape.curvature, shape.conic, heading);
-    const Intersection<T>& conic = conic_met.first;
-    if (shape.is_conic()) {
-        return with_normal(conic, conic_met.second);
+    constexpr int kMostSteps = 60;
+    const T precision(Scalar(16) * std::numeric_limits<Scalar>::epsilon());
+    ShapeCrossing<T> at{
+        .point = origin + start * d, .distance = start, .gradient = {T(0), T(0), T(1)}, .found = MaskOf<T>(false)};
+    T ahead(0);
+    T last_step(std::numeric_limits<Scalar>::infinity());
+    MaskOf<T> active = wanted;
+    for (int step = 0; step < kMostSteps && any(active); ++step) {
+        const Implicit<T> here = implicit_surface(shape, at.point);
+        const T rise = dot(here.gradient, d);
+        const auto crosses = here.defined && rise * heading > T(0);
+        ahead = select(crosses, -here.value / select(crosses, rise, T(1)), ahead / T(2));
+        const T length_ahead = abs(ahead);
+        active = active && (crosses || length_ahead > T(0));
+        if (!any(active)) {
+            break;
+        }
+        const T move = select(crosses, ahead, -ahead);
+        at.point = select(active, at.point + move * d, at.point);
+        at.distance = select(active, at.distance + move, at.distance);
+        at.gradient = select(active && crosses, here.gradient, at.gradient);
+        // A step that no longer shrinks has come down to the noise of the terms' sum.
+        const T size = sqrt(dot(at.point, at.point)) + T(1);
+        const auto is_noise =
+            length_ahead >= last_step && length_ahead <= T(4) * precision * (size + here.largest_term);
+        const auto arrives = active && crosses && (length_ahead <= precision * size || is_noise);
+        last_step = select(crosses, length_ahead, last_step);
+        at.found = at.found || arrives;
+        active = active && !arrives;
     }
-    const T nearest = -dot(origin, d);
-    const T across = length(origin + nearest * d);
-    const bool crosses_plane = d.z < T(0) || d.z > T(0);
-    std::pair<Intersection<T>, Vec3<T>> found{};
-    const auto finds_from = [&](const T& start) {
-        found = newton_intersect(shape, origin, d, heading, start);
-        return found.first.hit;
+    return at;
+}
+
+/// Where a ray crosses a shape that is no conic, by Newton's method: from the conic's intersection (not a toroid's),
+/// else from the vertex's plane, else from seven points of the ray around that nearest to the vertex.
+template <class Scalar, class T>
+ShapeCrossing<T> find_crossing(const SurfaceShape<Scalar>& shape, const Vec3<T>& origin, const Vec3<T>& d,
+                               const T& heading) {
+    ShapeCrossing<T> crossing{};
+    MaskOf<T> sought(true);
+    const auto try_from = [&](const T& start, const MaskOf<T>& where) {
+        const MaskOf<T> tried = sought && where;
+        if (any(tried)) {
+            assign_where(tried, crossing, newton_intersect(shape, origin, d, heading, start, tried));
+            sought = sought && !crossing.found;
+        }
     };
-    const auto finds_from_any = [&] {
-        if (!shape.is_toroid && conic.hit && finds_from(conic.distance)) {
-            return true;
-        }
-        if (crosses_plane && finds_from(-origin.z / d.z)) {
-            return true;
-        }
+    if (!shape.is_toroid) {
+        const ConicRoot<T> conic = conic_root(origin, d, T(shape.curvature), T(shape.conic), heading);
+        try_from(conic.distance, conic.hit);
+    }
+    if (any(sought)) {
+        const auto crosses_plane = d.z < T(0) || d.z > T(0);
+        try_from(-origin.z / select(crosses_plane, d.z, T(1)), crosses_plane);
+    }
+    if (any(sought)) {
+        const T nearest = -dot(origin, d);
+        const T across = length(origin + nearest * d);
         for (const int share : {0, 2, -2, 1, -1, 4, -4}) {
-            if (finds_from(nearest + T(share) / T(2) * across)) {
-                return true;
-            }
+            try_from(nearest + T(share) / T(2) * across, sought);
         }
-        return false;
-    };
-    if (!finds_from_any()) {
-        found.first.hit = false;
-        found.second = {T(0), T(0), heading};
     }
-    found.first.cos_incidence = heading * dot(d, found.second) / sqrt(dot(found.second, found.second));
-    return with_normal(found.first, found.second);
+    crossing.gradient = select(crossing.found, crossing.gradient, Vec3<T>{T(0), T(0), heading});
+    return crossing;
+}
+
+/// `intersect` for any shape. A surface that turns over may be met more than once; the root found is then the one next
+/// to the start (`find_crossing`). Returned with the unit normal there, turned along the ray.
+template <class Scalar, class T>
+std::pair<Intersection<T>, Vec3<T>> intersect(const SurfaceShape<Scalar>& shape, const Vec3<T>& origin,
+                                              const Vec3<T>& d, const T& heading) {
+    using std::sqrt;
+    const auto meeting = [&](const Vec3<T>& point, const T& distance, const T& cos_incidence, const Vec3<T>& gradient,
+                             const MaskOf<T>& hit) {
+        const Vec3<T> normal = heading / sqrt(dot(gradient, gradient)) * gradient;
+        const Vec3<T> across = d - cos_incidence * normal;
+        return std::pair{Intersection<T>{point, distance, cos_incidence, dot(across, across), hit}, normal};
+    };
+    if (shape.is_conic()) {
+        const auto [met, gradient] = intersect_conic(origin, d, T(shape.curvature), T(shape.conic), heading);
+        return meeting(met.point, met.distance, met.cos_incidence, gradient, met.hit);
+    }
+    const ShapeCrossing<T> met = find_crossing(shape, origin, d, heading);
+    const Vec3<T>& gradient = met.gradient;
+    const T cos_incidence = heading * dot(d, gradient) / sqrt(dot(gradient, gradient));
+    return meeting(met.point, met.distance, cos_incidence, gradient, met.found);
 }
 
 }  // namespace lensproof

@@ -40,10 +40,41 @@ struct SpecialSurface {
     TraceCoating<T> coating{};
     StopMask mask{};
 
-    /// From lens space to the surface's own axes, and back.
-    [[nodiscard]] Vec3<T> to_own(const Vec3<T>& v) const { return {dot(axes[0], v), dot(axes[1], v), dot(axes[2], v)}; }
-    [[nodiscard]] Vec3<T> from_own(const Vec3<T>& v) const { return v.x * axes[0] + (v.y * axes[1] + v.z * axes[2]); }
+    /// From lens space to the surface's own axes, and back; of packets too.
+    template <class V = T>
+    [[nodiscard]] Vec3<V> to_own(const Vec3<V>& v) const {
+        return {dot(axis<V>(0), v), dot(axis<V>(1), v), dot(axis<V>(2), v)};
+    }
+    template <class V = T>
+    [[nodiscard]] Vec3<V> from_own(const Vec3<V>& v) const {
+        return v.x * axis<V>(0) + (v.y * axis<V>(1) + v.z * axis<V>(2));
+    }
+
+  private:
+    template <class V>
+    [[nodiscard]] Vec3<V> axis(std::size_t i) const {
+        return {V(axes[i].x), V(axes[i].y), V(axes[i].z)};
+    }
 };
+
+/// The share of a stop's texture, or of its blades' opening, at a point inside its circle; 1 where it has neither.
+template <class T>
+T open_share(const TraceSurface<T>& surface, const SpecialSurface<T>& special, const T& x, const T& y) {
+    if (special.mask.is_full_circle()) {
+        return T(1);
+    }
+    using std::sqrt;
+    const T scale = T(1) / sqrt(surface.semi_diameter_squared);
+    return static_cast<T>(special.mask.transmittance(static_cast<double>(scale * x), static_cast<double>(scale * y)));
+}
+
+/// The share of unpolarised light that passes a coated surface, from either side.
+template <class T>
+T coated_share(const TraceSurface<T>& surface, const SpecialSurface<T>& special, bool forward, const T& cos_incidence,
+               const T& cos_refraction) {
+    return coating_transmittance(special.coating, surface.index_before, surface.index_after,
+                                 forward ? cos_incidence : cos_refraction, forward ? cos_refraction : cos_incidence);
+}
 
 template <class T>
 TraceSurface<T> make_trace_surface(T curvature, T vertex_z, T semi_diameter, T index_before, T index_after,
@@ -191,16 +222,13 @@ TracedRay<T> trace_through(const TraceLens<T>& lens, const Ray<T>& ray, Visitor&
         RayStatus here = RayStatus::ok;
         const T r2 = point.x * point.x + point.y * point.y;
         const bool is_beyond = r2 > surface.semi_diameter_squared || !(surface.semi_diameter_squared > T(0));
-        T open_share = T(1);  // of the stop's texture
+        T open = T(1);
         if constexpr (has_specials) {
-            if (special != nullptr && !special->mask.is_full_circle() && !is_beyond) {
-                using std::sqrt;
-                const T scale = T(1) / sqrt(surface.semi_diameter_squared);
-                open_share = static_cast<T>(special->mask.transmittance(static_cast<double>(scale * point.x),
-                                                                        static_cast<double>(scale * point.y)));
+            if (special != nullptr && !is_beyond) {
+                open = open_share(surface, *special, point.x, point.y);
             }
         }
-        if (is_beyond || (has_specials && !(open_share > T(0)))) {
+        if (is_beyond || (has_specials && !(open > T(0)))) {
             if (status == RayStatus::ok) {  // only the first rim passed is named
                 here = surface.is_stop ? RayStatus::stopped : RayStatus::clipped;
                 status = here;
@@ -227,17 +255,15 @@ TracedRay<T> trace_through(const TraceLens<T>& lens, const Ray<T>& ray, Visitor&
         way = bent.direction;
         T passing = T(1);
         if (has_specials && special != nullptr && !special->coating.is_bare()) {
-            const bool forward = direction == Direction::forward;
-            passing = coating_transmittance(special->coating, surface.index_before, surface.index_after,
-                                            forward ? meeting.cos_incidence : bent.cos_refraction,
-                                            forward ? bent.cos_refraction : meeting.cos_incidence);
+            passing = coated_share(surface, *special, direction == Direction::forward, meeting.cos_incidence,
+                                   bent.cos_refraction);
         } else {
             passing = fresnel_transmittance(index_before, index_after, meeting.cos_incidence, bent.cos_refraction);
         }
         if constexpr (has_specials) {
             if (special != nullptr) {
                 way = special->from_own(way);
-                passing = passing * open_share;
+                passing = passing * open;
             }
         }
         transmittance = transmittance * passing;

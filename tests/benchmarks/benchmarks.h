@@ -4,9 +4,10 @@
 
 namespace lensproof {
 
-/// trace/LENS/WAY/RIMS/TYPE: a bundle that fills the lens, over 70 % of its field. trace/tessar/reverse/plain and
-/// …/plain_fresnel are the floor: the same intersections and refractions in a loop without rims, statuses or path
-/// lengths, and the same with Fresnel's equations. Counters: rays and ray-surfaces per second.
+/// trace/LENS/WAY/RIMS/TYPE: a bundle that fills the lens, over 70 % of its field, ray by ray.
+/// batch/LENS/TYPE/LEVEL/WHAT: the same rays in batches, at every SIMD level of the machine; `geometry` alone, with
+/// `fresnel` losses, and with 64 wavelengths side by side. batch/LENS/plain and …/plain_fresnel are what these are
+/// judged by: the same physics in a scalar loop over doubles. Counters: rays and ray-surfaces per second.
 void register_trace_benchmarks();
 
 /// render/LENS/CHART: camera paths of the chart renderer on one thread (counter: paths per second);

@@ -8,9 +8,12 @@
 #include <random>
 #include <stdexcept>
 
+#include "engine/io/file.h"
+#include "engine/io/prescription/prescription_file.h"
 #include "engine/optics/convert_lens.h"
 #include "engine/optics/lens.h"
 #include "engine/optics/packet/trace_batch.h"
+#include "tests/test_folder.h"
 
 namespace lensproof {
 namespace {
@@ -154,6 +157,27 @@ TEST(TracePacket, AClosedStopStopsEveryLane) {
     const Fates fates = compare<Direction::forward>({at}, rays);
     EXPECT_EQ(fates[static_cast<std::size_t>(RayStatus::ok)], 0);
     EXPECT_GT(fates[static_cast<std::size_t>(RayStatus::stopped)], 0);
+}
+
+/// A file with the Tessar and more in it.
+Lens tessar_with(const std::string& more) {
+    const TestFolder folder;
+    const std::filesystem::path file = folder.path() / "tessar_with.toml";
+    write_file(file, read_file(find_lens_file("tessar")) + more);
+    return load_lens(file.string());
+}
+
+// Blades, coatings and turned, displaced groups, each at three wavelengths, where a coating's share differs.
+TEST(TracePacket, TracesBladesCoatingsAndTurnedGroups) {
+    for (const Lens& lens :
+         {tessar_with("[stop]\nblades = 6\nrotation_deg = 10\n"),
+          tessar_with("[[groups]]\nsurfaces = [3, 6]\ntilt_deg = [1, -2, 0]\ndecentre_mm = [0.3, 0.2]\n"),
+          load_lens("heliar-tronnier")}) {
+        ASSERT_FALSE(at_wavelength<double>(lens, 550.0).specials.empty());
+        const Fates fates = compare<Direction::forward>(at_three(lens), rays_at(lens, 400, 0.4));
+        EXPECT_GT(fates[static_cast<std::size_t>(RayStatus::ok)], 20);
+        EXPECT_GT(fates[static_cast<std::size_t>(RayStatus::clipped)], 20);
+    }
 }
 
 // A shaped, displaced surface.

@@ -44,24 +44,6 @@ const TraceKernels<T>& kernels_of(std::optional<SimdLevel> level) {
     }
 }
 
-/// Ray by ray, for a lens that has more than centred, bare spheres.
-template <Direction direction, Rims rims, class T>
-void trace_one_by_one(const SpectralLens<T>& lens, RayBatch<T>& rays, Carry carry) {
-    for (int i = 0; i < rays.size; ++i) {
-        const auto at = static_cast<std::size_t>(i);
-        const TracedRay<T> traced = trace<direction, rims>(lens.at(rays.wavelength[at]), rays.ray(i));
-        rays.set(i, traced.ray);
-        rays.status[at] = traced.status;
-        rays.surface[at] = static_cast<std::int16_t>(traced.surface);
-        if (carry != Carry::geometry) {
-            rays.transmittance[at] = traced.transmittance;
-        }
-        if (carry == Carry::all) {
-            rays.optical_path[at] = traced.optical_path;
-        }
-    }
-}
-
 }  // namespace
 
 const char* simd_name(SimdLevel level) {
@@ -84,16 +66,34 @@ std::vector<SimdLevel> available_simd_levels() {
     return levels;
 }
 
+template <class T>
+T lane_open_share(const SpectralLens<T>& lens, int surface, T x, T y) {
+    const TraceLens<T>& any = lens.at().front();
+    const TraceSurface<T>& stop = any.surfaces[static_cast<std::size_t>(surface)];
+    return open_share(stop, any.specials[static_cast<std::size_t>(stop.special)], x, y);
+}
+
+template <class T>
+T lane_coated_share(const SpectralLens<T>& lens, int wavelength, int surface, bool forward, T cos_incidence,
+                    T cos_refraction) {
+    const TraceLens<T>& at = lens.at(wavelength);
+    const TraceSurface<T>& coated = at.surfaces[static_cast<std::size_t>(surface)];
+    return coated_share(coated, at.specials[static_cast<std::size_t>(coated.special)], forward, cos_incidence,
+                        cos_refraction);
+}
+
+template float lane_open_share(const SpectralLens<float>&, int, float, float);
+template double lane_open_share(const SpectralLens<double>&, int, double, double);
+template float lane_coated_share(const SpectralLens<float>&, int, int, bool, float, float);
+template double lane_coated_share(const SpectralLens<double>&, int, int, bool, double, double);
+
 template <Direction direction, class T>
 void trace_batch(const SpectralLens<T>& lens, RayBatch<T>& rays, const BatchSettings& settings) {
-    if (!lens.at().front().specials.empty()) {
-        settings.rims == Rims::clip ? trace_one_by_one<direction, Rims::clip>(lens, rays, settings.carry)
-                                    : trace_one_by_one<direction, Rims::follow>(lens, rays, settings.carry);
-        return;
-    }
     const std::vector<TraceSurface<T>>& surfaces = lens.at().front().surfaces;
     const KernelLens<T> plain_lens{.surfaces = surfaces.data(),
                                    .indices = lens.indices().data(),
+                                   .specials = lens.at().front().specials.data(),
+                                   .lens = &lens,
                                    .count = static_cast<int>(surfaces.size()),
                                    .is_monochromatic = lens.wavelengths() == 1};
     const KernelRays<T> plain_rays{.x = rays.origin.x.data(),

@@ -4,20 +4,15 @@
 // not be shared with code for other machines: everything here is a template over the packs' Abi, and inlined.
 #pragma once
 #include <array>
+#include <tuple>
 
 #include "engine/optics/intersect.h"
 #include "engine/optics/pack.h"
 #include "engine/optics/packet/trace_kernels.h"
 #include "engine/optics/refract.h"
+#include "engine/optics/surface_shape.h"
 
 namespace lensproof {
-
-/// Lane by lane, `a` where `mask` holds, else `b`.
-template <class Scalar, class Abi>
-Vec3<Pack<Scalar, Abi>> select(const PackMask<Scalar, Abi>& mask, const Vec3<Pack<Scalar, Abi>>& a,
-                               const Vec3<Pack<Scalar, Abi>>& b) {
-    return {select(mask, a.x, b.x), select(mask, a.y, b.y), select(mask, a.z, b.z)};
-}
 
 /// A block of rays on its way through a lens. It walks surface by surface, each surface packet by packet: the packets
 /// are independent of each other, so that the processor works at several at once while one waits for its root.
@@ -161,7 +156,9 @@ class BlockTracer {
                         .from_last_vertex = surface.vertex_z - last_vertex_z_,
                         .limit = limit > Scalar(0) ? limit : Scalar(-1)};
         const bool from_far = !clip_ || (kForward ? surface.from_far_forward : surface.from_far_reverse);
-        if (lens_.is_monochromatic) {
+        if (surface.special >= 0) {
+            lens_.is_monochromatic ? pass_special<false>(here) : pass_special<true>(here);
+        } else if (lens_.is_monochromatic) {
             from_far ? pass_packets<true, false>(here) : pass_packets<false, false>(here);
         } else {
             from_far ? pass_packets<true, true>(here) : pass_packets<false, true>(here);
@@ -192,7 +189,7 @@ class BlockTracer {
                 store(packet, {select(going, at_surface, before.origin), select(going, bent.direction, before.way)});
             }
             add_path(packet, media, way_moved<from_far>(here, before) + met.distance, going);
-            add_loss(packet, media, met, bent, going);
+            add_loss(packet, fresnel(media, met, bent), going);
         }
     }
 
@@ -238,13 +235,10 @@ class BlockTracer {
     }
 
     /// Takes a surface's loss from the rays in `lanes`, where it is asked for.
-    void add_loss(int packet, const Media& media, const Intersection<Numbers>& met, const Refraction<Numbers>& bent,
-                  const Mask& lanes) {
+    void add_loss(int packet, const Numbers& passing, const Mask& lanes) {
         if constexpr (carry != Carry::geometry) {
             Scalar* share = share_.data() + packet * kLanes;
             const Numbers so_far = Numbers::load(share);
-            const Numbers passing =
-                fresnel_transmittance(media.before, media.after, met.cos_incidence, bent.cos_refraction);
             select(lanes, so_far * passing, so_far).store(share);
         }
     }
@@ -252,29 +246,106 @@ class BlockTracer {
     /// The same for a packet of which some rays end here or pass a rim: kept apart, since it is rare.
     template <bool from_far, bool per_lane>
     [[gnu::noinline, gnu::flatten]] void pass_with_ends(const Here& here, int packet) {
-        const Mask going = this->going(packet);
         const State before = load(packet);
         const Media media = this->template media<per_lane>(here.index, packet);
         const Vec3<Numbers> near = moved_near<from_far>(here, before);
         const Intersection<Numbers> met = intersect_from_near(near, before.way, curvature(here), heading());
         const Refraction<Numbers> bent = bent_at(here, before, met, media);
-        const Mask beyond = is_beyond(here, met);
-        const Mask on_surface = going && met.hit;
-        const Mask inside = on_surface && (clip_ ? !beyond : Mask(true));
-        const Mask on = inside && bent.transmitted;
-        mark(going && !on_surface, packet, here.index, RayStatus::missed, false);
-        mark(on_surface && beyond, packet, here.index, here.surface.is_stop ? RayStatus::stopped : RayStatus::clipped,
-             true);
+        const Fate fate =
+            settle(here, packet, before, {met.point, bent.direction}, met.hit, is_beyond(here, met), bent.transmitted);
+        add_path(packet, media, way_moved<from_far>(here, before) + met.distance, fate.met);
+        add_loss(packet, fresnel(media, met, bent), fate.on);
+    }
+
+    /// A surface with a shape, a frame, a coating or an opening of its own.
+    template <bool per_lane>
+    [[gnu::noinline, gnu::flatten]] void pass_special(const Here& here) {
+        const SpecialSurface<Scalar>& special = lens_.specials[here.surface.special];
+        const Vec3<Numbers> vertex{Numbers(special.vertex.x), Numbers(special.vertex.y), Numbers(Scalar(0))};
+        for (int packet = 0; packet < packets_; ++packet) {
+            if (!any(going(packet))) {
+                continue;
+            }
+            const State before = load(packet);
+            const Media media = this->template media<per_lane>(here.index, packet);
+            const State own{special.to_own(from_vertex(here, before) - vertex), special.to_own(before.way)};
+            Intersection<Numbers> met;
+            Refraction<Numbers> bent;
+            if (special.has_shape) {
+                Vec3<Numbers> normal;
+                std::tie(met, normal) = intersect(special.shape, own.origin, own.way, heading());
+                bent = refract(own.way, normal, met.cos_incidence, met.sin2_incidence, media.ratio);
+            } else {
+                met = intersect(own.origin, own.way, curvature(here), heading());
+                bent = bent_at(here, own, met, media);
+            }
+            const Mask beyond = is_beyond(here, met);
+            const Numbers open = open_shares(here, special, met.point, going(packet) && met.hit && !beyond);
+            const State after{special.from_own(met.point) + vertex, special.from_own(bent.direction)};
+            const Fate fate =
+                settle(here, packet, before, after, met.hit, beyond || !(open > Numbers(Scalar(0))), bent.transmitted);
+            add_path(packet, media, met.distance, fate.met);
+            if constexpr (carry != Carry::geometry) {
+                const Numbers passing = special.coating.is_bare() ? fresnel(media, met, bent)
+                                                                  : coated_shares(here, packet, met, bent, fate.on);
+                add_loss(packet, passing * open, fate.on);
+            }
+        }
+    }
+
+    static Numbers fresnel(const Media& media, const Intersection<Numbers>& met, const Refraction<Numbers>& bent) {
+        return fresnel_transmittance(media.before, media.after, met.cos_incidence, bent.cos_refraction);
+    }
+
+    /// Of the rays in `lanes`, one by one; 1 for the others.
+    Numbers open_shares(const Here& here, const SpecialSurface<Scalar>& special, const Vec3<Numbers>& point,
+                        const Mask& lanes) const {
+        Numbers open(Scalar(1));
+        if (!special.mask.is_full_circle()) {
+            for (int lane = 0; lane < kLanes; ++lane) {
+                if (lanes[lane]) {
+                    open.set(lane, lane_open_share(*lens_.lens, here.index, point.x[lane], point.y[lane]));
+                }
+            }
+        }
+        return open;
+    }
+
+    Numbers coated_shares(const Here& here, int packet, const Intersection<Numbers>& met,
+                          const Refraction<Numbers>& bent, const Mask& lanes) const {
+        Numbers passing(Scalar(1));
+        for (int lane = 0; lane < kLanes; ++lane) {
+            if (lanes[lane]) {
+                const int wavelength = lens_.is_monochromatic ? 0 : rays_.wavelength[at(packet) + lane];
+                passing.set(lane, lane_coated_share(*lens_.lens, wavelength, here.index, kForward,
+                                                    met.cos_incidence[lane], bent.cos_refraction[lane]));
+            }
+        }
+        return passing;
+    }
+
+    /// Which rays of a packet met a surface, and which go on.
+    struct Fate {
+        Mask met;
+        Mask on;
+    };
+
+    /// Notes what becomes of each ray and stores it: one that ends is in lens space from now on.
+    Fate settle(const Here& here, int packet, const State& before, const State& after, const Mask& hit,
+                const Mask& beyond, const Mask& transmitted) {
+        const Mask going = this->going(packet);
+        const Mask met = going && hit;
+        const Mask inside = met && (clip_ ? !beyond : Mask(true));
+        const Mask on = inside && transmitted;
+        mark(going && !met, packet, here.index, RayStatus::missed, false);
+        mark(met && beyond, packet, here.index, here.surface.is_stop ? RayStatus::stopped : RayStatus::clipped, true);
         mark(inside && !on, packet, here.index, RayStatus::total_internal_reflection, false);
-        // A ray that missed stays where it was, others that end are on the surface; both in lens space from now on.
-        const Numbers vertex_z(here.surface.vertex_z);
-        Vec3<Numbers> last = select(on_surface, met.point, before.origin);
-        const Numbers global_z = last.z + select(on_surface, vertex_z, Numbers(last_vertex_z_));
+        Vec3<Numbers> last = select(met, after.origin, before.origin);
+        const Numbers global_z = last.z + select(met, Numbers(here.surface.vertex_z), Numbers(last_vertex_z_));
         last.z = select(going && !on, global_z, last.z);
-        store(packet, {last, select(on, bent.direction, before.way)});
-        add_path(packet, media, way_moved<from_far>(here, before) + met.distance, on_surface);
-        add_loss(packet, media, met, bent, on);
+        store(packet, {last, select(on, after.way, before.way)});
         set_going(packet, on);
+        return {met, on};
     }
 
     /// Notes the fate of the rays in `lanes`; of those that have none yet, if `only_first`.

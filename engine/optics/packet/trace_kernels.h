@@ -13,6 +13,8 @@ template <class T>
 struct KernelLens {
     const TraceSurface<T>* surfaces = nullptr;
     const typename SpectralLens<T>::Indices* indices = nullptr;  // a surface
+    const SpecialSurface<T>* specials = nullptr;
+    const SpectralLens<T>* lens = nullptr;  // for what is done ray by ray
     int count = 0;
     bool is_monochromatic = false;  // `wavelength` of the rays is then not looked at
 };
@@ -33,6 +35,13 @@ struct KernelRays {
     std::int16_t* surface;
     int size;
 };
+
+/// `open_share` and `coated_share` of one ray. Not inline, so that they are compiled for any machine.
+template <class T>
+T lane_open_share(const SpectralLens<T>& lens, int surface, T x, T y);
+template <class T>
+T lane_coated_share(const SpectralLens<T>& lens, int wavelength, int surface, bool forward, T cos_incidence,
+                    T cos_refraction);
 
 template <class T>
 using TraceKernel = void (*)(const KernelLens<T>& lens, const KernelRays<T>& rays, bool clip);
