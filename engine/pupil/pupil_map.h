@@ -65,6 +65,9 @@ class PupilMap {
     /// The area that is drawn from but for the defensive share, mm²; 0 where no light was found.
     [[nodiscard]] double region_area(Vec2d sensor_point, double band_position) const;
 
+    [[nodiscard]] const PupilNodes& nodes() const { return nodes_; }
+    [[nodiscard]] double defensive_share() const { return defensive_share_; }
+
     /// How many regions are stored.
     [[nodiscard]] std::size_t size() const { return nodes_.regions.size(); }
 

@@ -7,29 +7,36 @@ namespace lensproof {
 
 namespace {
 
-/// Points of the pupil for film points, one at a time. Returns how many have a density.
-int draw_pupil_points(const PupilMap& pupil, int wavelengths, PathStarts& starts) {
-    const double last = wavelengths > 1 ? wavelengths - 1.0 : 1.0;
-    int lit = 0;
-    for (std::size_t i = 0; i < static_cast<std::size_t>(starts.size); ++i) {
-        const PupilSample sample = pupil.sample({starts.film_x[i], starts.film_y[i]}, starts.wavelength[i] / last,
-                                                starts.pupil_u[i], starts.pupil_v[i]);
-        starts.pupil_x[i] = sample.point.x;
-        starts.pupil_y[i] = sample.point.y;
-        starts.pupil_density[i] = sample.density;
-        lit += sample.density > 0.0 ? 1 : 0;
-    }
-    return lit;
+void draw_one_pupil_point(const PupilSlices& pupil, PathStarts& starts, std::size_t i) {
+    const PupilDraw<double> draw =
+        pupil.sample({starts.film_x[i], starts.film_y[i]}, starts.wavelength[i], starts.pupil_u[i], starts.pupil_v[i]);
+    starts.pupil_x[i] = draw.point.x;
+    starts.pupil_y[i] = draw.point.y;
+    starts.pupil_area[i] = draw.area;
 }
 
-/// Writes those of `from` that `kept` names to the end of a buffer's column.
-template <class To, class From>
-void append(To& to, int at, const From& from, const std::array<std::uint16_t, kPathChunk>& kept, int count) {
-    auto* end = to.data() + at;
-    const auto* column = from.data();
-    for (int k = 0; k < count; ++k) {
-        end[k] = column[kept[static_cast<std::size_t>(k)]];
+/// Which paths of a chunk left the lens, in their order.
+struct Survivors {
+    std::array<std::uint16_t, kPathChunk> path;
+    int count = 0;
+
+    /// Writes what a column has of them to `to`, one after the other.
+    template <class Number>
+    void copy(const Number* column, Number* to) const {
+        for (int k = 0; k < count; ++k) {
+            to[k] = column[path[static_cast<std::size_t>(k)]];
+        }
     }
+};
+
+template <class T>
+Survivors find_survivors(const PathStarts& starts, const RayBatch<T>& rays) {
+    Survivors survivors;
+    for (std::size_t i = 0; i < static_cast<std::size_t>(rays.size); ++i) {
+        survivors.path[static_cast<std::size_t>(survivors.count)] = static_cast<std::uint16_t>(i);
+        survivors.count += rays.status[i] == RayStatus::ok && starts.pupil_area[i] > 0.0 ? 1 : 0;
+    }
+    return survivors;
 }
 
 }  // namespace
@@ -78,45 +85,53 @@ bool CameraPathProducer<T>::fill(CameraPathBuffer<T>& buffer) {
 
 template <class T>
 bool CameraPathProducer<T>::draw_and_trace(int count) {
-    const int wavelengths = source_.lens->wavelengths();
-    kernels_->draw({.sensor = source_.sensor, .seed = source_.seed, .wavelengths = wavelengths}, count, cursor_,
-                   *starts_);
-    const int lit = draw_pupil_points(*source_.pupil, wavelengths, *starts_);
-    started_ += lit;
-    if (lit == 0) {
+    kernels_->draw({.sensor = source_.sensor, .seed = source_.seed, .wavelengths = source_.lens->wavelengths()}, count,
+                   cursor_, *starts_);
+    if (draw_pupil_points() == 0) {
         return false;
     }
-    kernels_->aim(source_.lens->at(0).image_z, source_.pupil->plane_z(), *starts_, rays_);
+    kernels_->aim(source_.lens->at(0).image_z, source_.pupil->map().plane_z(), *starts_, rays_);
     trace_batch<Direction::reverse>(*source_.lens, rays_, tracing_);
     return true;
 }
 
 template <class T>
-void CameraPathProducer<T>::move_survivors(CameraPathBuffer<T>& buffer) const {
-    std::array<std::uint16_t, kPathChunk> kept;
-    int count = 0;
-    for (int i = 0; i < rays_.size; ++i) {
-        const auto at = static_cast<std::size_t>(i);
-        kept[static_cast<std::size_t>(count)] = static_cast<std::uint16_t>(i);
-        count += rays_.status[at] == RayStatus::ok && starts_->pupil_density[at] > 0.0 ? 1 : 0;
+int CameraPathProducer<T>::draw_pupil_points() {
+    const PupilSliceTables* tables = source_.pupil->tables();
+    if (tables != nullptr) {
+        kernels_->draw_pupil(*tables, *starts_);
     }
-    const int at = buffer.size;
-    append(buffer.pixel, at, starts_->pixel, kept, count);
-    append(buffer.sample, at, starts_->sample, kept, count);
-    append(buffer.wavelength, at, rays_.wavelength, kept, count);
-    append(buffer.film_x, at, starts_->film_x, kept, count);
-    append(buffer.film_y, at, starts_->film_y, kept, count);
-    append(buffer.origin.x, at, rays_.origin.x, kept, count);
-    append(buffer.origin.y, at, rays_.origin.y, kept, count);
-    append(buffer.origin.z, at, rays_.origin.z, kept, count);
-    append(buffer.direction.x, at, rays_.direction.x, kept, count);
-    append(buffer.direction.y, at, rays_.direction.y, kept, count);
-    append(buffer.direction.z, at, rays_.direction.z, kept, count);
-    for (int k = 0; k < count; ++k) {
-        const auto i = static_cast<std::size_t>(kept[static_cast<std::size_t>(k)]);
-        buffer.weight[static_cast<std::size_t>(at + k)] = rays_.transmittance[i] * static_cast<T>(starts_->etendue[i]);
+    int lit = 0;
+    for (std::size_t i = 0; i < static_cast<std::size_t>(starts_->size); ++i) {
+        if (tables == nullptr || starts_->pupil_area[i] < 0.0) {
+            draw_one_pupil_point(*source_.pupil, *starts_, i);
+        }
+        lit += starts_->pupil_area[i] > 0.0 ? 1 : 0;
     }
-    buffer.size += count;
+    started_ += lit;
+    return lit;
+}
+
+template <class T>
+void CameraPathProducer<T>::move_survivors(CameraPathBuffer<T>& buffer) {
+    for (std::size_t i = 0; i < static_cast<std::size_t>(rays_.size); ++i) {
+        rays_.transmittance[i] *= static_cast<T>(starts_->etendue[i]);
+    }
+    const Survivors survivors = find_survivors(*starts_, rays_);
+    const auto append = [&](const auto& from, auto& to) { survivors.copy(from.data(), to.data() + buffer.size); };
+    append(starts_->pixel, buffer.pixel);
+    append(starts_->sample, buffer.sample);
+    append(starts_->wavelength, buffer.wavelength);
+    append(starts_->film_x, buffer.film_x);
+    append(starts_->film_y, buffer.film_y);
+    append(rays_.transmittance, buffer.weight);
+    append(rays_.origin.x, buffer.origin.x);
+    append(rays_.origin.y, buffer.origin.y);
+    append(rays_.origin.z, buffer.origin.z);
+    append(rays_.direction.x, buffer.direction.x);
+    append(rays_.direction.y, buffer.direction.y);
+    append(rays_.direction.z, buffer.direction.z);
+    buffer.size += survivors.count;
 }
 
 template struct CameraPathBuffer<float>;

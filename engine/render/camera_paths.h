@@ -5,7 +5,7 @@
 #include <optional>
 
 #include "engine/optics/packet/trace_batch.h"
-#include "engine/pupil/pupil_map.h"
+#include "engine/pupil/pupil_slices.h"
 #include "engine/render/packet/path_kernels.h"
 #include "engine/render/sensor.h"
 
@@ -45,7 +45,7 @@ template <class T>
 struct CameraPathSource {
     Sensor sensor;
     const SpectralLens<T>* lens = nullptr;  // at the wavelengths that samples spread evenly over
-    const PupilMap* pupil = nullptr;        // of those wavelengths
+    const PupilSlices* pupil = nullptr;     // at those wavelengths
     std::uint64_t seed = 0;
 };
 
@@ -77,9 +77,11 @@ class CameraPathProducer {
     [[nodiscard]] std::int64_t started() const { return started_; }
 
   private:
+    /// Returns how many samples start a path.
+    int draw_pupil_points();
     /// False where the film gets no light, and nothing was traced.
     bool draw_and_trace(int count);
-    void move_survivors(CameraPathBuffer<T>& buffer) const;
+    void move_survivors(CameraPathBuffer<T>& buffer);
 
     CameraPathSource<T> source_;
     BatchSettings tracing_;

@@ -127,7 +127,9 @@ Image render_chart(const SeenChart& view, const PupilMap& pupil, const RenderSet
     }
     Image image = make_image(view.sensor.width, view.sensor.height, std::move(channels));
     const SpectralLens<double> lens = spectral_lens(view.strata);
-    const CameraPathSource<double> source{.sensor = view.sensor, .lens = &lens, .pupil = &pupil, .seed = settings.seed};
+    const PupilSlices slices(pupil, lens.wavelengths());
+    const CameraPathSource<double> source{
+        .sensor = view.sensor, .lens = &lens, .pupil = &slices, .seed = settings.seed};
     parallel_for_workers(
         image.height, settings.threads, [&] { return RowRenderer(view, source, settings.samples_per_pixel, image); },
         [&](int rows) {

@@ -65,7 +65,8 @@ class PathScene {
           sensor_{.width = 40, .height = 30, .pixel_pitch_mm = setting.half_diagonal_mm / 25.0},
           pose_(place({.distance_mm = setting.focus_distance_mm})),
           chart_{.pattern = DiscGrid{12, 9, 0.05 * setting.focus_distance_mm, 0.025 * setting.focus_distance_mm}},
-          pupil_(in_double_.at(), lens_.is_rotationally_symmetric, setting.half_diagonal_mm) {}
+          pupil_(in_double_.at(), lens_.is_rotationally_symmetric, setting.half_diagonal_mm),
+          slices_(pupil_, in_double_.wavelengths()) {}
 
     [[nodiscard]] std::uint32_t pixels() const { return 40 * 30; }
     [[nodiscard]] const Sensor& sensor() const { return sensor_; }
@@ -82,7 +83,7 @@ class PathScene {
 
     template <class T>
     [[nodiscard]] CameraPathSource<T> source() const {
-        return {.sensor = sensor_, .lens = &lens<T>(), .pupil = &pupil_, .seed = 0};
+        return {.sensor = sensor_, .lens = &lens<T>(), .pupil = &slices_, .seed = 0};
     }
 
     /// Work as a scene makes it: what the ray sees of a chart.
@@ -108,6 +109,7 @@ class PathScene {
     RigidMotion pose_;
     Chart chart_;
     PupilMap pupil_;
+    PupilSlices slices_;
 };
 
 enum class Consumer { none, chart };

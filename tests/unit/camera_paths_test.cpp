@@ -23,14 +23,16 @@ struct TestCamera {
         : lens(at_wavelengths<T>(load_lens(name), kWavelengths)),
           in_double(at_wavelengths<double>(load_lens(name), kWavelengths)),
           pupil(in_double.at(), true, half_diagonal_mm),
+          slices(pupil, lens.wavelengths()),
           source{.sensor = {.width = 8, .height = 6, .pixel_pitch_mm = half_diagonal_mm / 5.0},
                  .lens = &lens,
-                 .pupil = &pupil,
+                 .pupil = &slices,
                  .seed = kSeed} {}
 
     SpectralLens<T> lens;
     SpectralLens<double> in_double;
     PupilMap pupil;
+    PupilSlices slices;
     CameraPathSource<T> source;
 };
 
@@ -66,17 +68,18 @@ Paths<T> one_by_one(const TestCamera<T>& camera, const CameraPathRange& range) {
             const auto xi = sampler.point(sample);
             const int wavelength = static_cast<int>(xi[4] * static_cast<double>(kWavelengths.size()));
             const Vec2d film = sensor.position(pixel % 8 - 0.5 + xi[0], pixel / 8 - 0.5 + xi[1]);
-            const PupilSample in_pupil = camera.pupil.sample(film, wavelength / 4.0, xi[2], xi[3]);
-            if (!(in_pupil.density > 0.0)) {
+            const PupilDraw<double> in_pupil = camera.slices.sample(film, wavelength, xi[2], xi[3]);
+            if (!(in_pupil.area > 0.0)) {
                 continue;
             }
             ++found.started;
             const Vec3d way{in_pupil.point.x - film.x, in_pupil.point.y - film.y, camera.pupil.plane_z() - film_z};
-            const Vec3d direction = normalized(way);
+            const double per_distance2 = 1.0 / dot(way, way);
+            const Vec3d direction = std::sqrt(per_distance2) * way;
             const Ray<T> start{convert_vector<T>(Vec3d{film.x, film.y, film_z}), convert_vector<T>(direction)};
             const TracedRay<T> traced = trace<Direction::reverse>(camera.lens.at(wavelength), start);
             if (traced.status == RayStatus::ok) {
-                const double etendue = direction.z * direction.z / (dot(way, way) * in_pupil.density);
+                const double etendue = direction.z * direction.z * per_distance2 * in_pupil.area;
                 found.valid.push_back(
                     {pixel, sample, wavelength, film, traced.transmittance * static_cast<T>(etendue), traced.ray});
             }

@@ -26,8 +26,8 @@ struct alignas(kPacketAlignment) PathStarts {
     PathColumn<std::uint16_t> wavelength;
     PathColumn<double> pupil_x;
     PathColumn<double> pupil_y;
-    PathColumn<double> pupil_density;  // that the pupil point was drawn with, 1/mm²
-    PathColumn<double> etendue;        // cos⁴θ / Z² / the density, sr
+    PathColumn<double> pupil_area;  // 1 / the density that the pupil point was drawn with, mm²; 0: no path
+    PathColumn<double> etendue;     // cos⁴θ / Z² · that area, sr
     int size = 0;
 };
 

@@ -57,6 +57,22 @@ template <class Abi>
     }
 }
 
+template <class Abi>
+[[gnu::flatten]] void draw_pupil(const PupilSliceTables& slices, PathStarts& starts) {
+    using Numbers = Pack<double, Abi>;
+    const Numbers defensive_share(slices.defensive_share);
+    for (int i = 0; i < starts.size; i += Numbers::kLanes) {
+        const PupilSlice<Numbers> slice(
+            slices, Numbers::load(starts.wavelength.data() + i),
+            {Numbers::load(starts.film_x.data() + i), Numbers::load(starts.film_y.data() + i)});
+        const Numbers u = Numbers::load(starts.pupil_u.data() + i);
+        const PupilDraw<Numbers> draw = slice.sample(u, Numbers::load(starts.pupil_v.data() + i));
+        draw.point.x.store(starts.pupil_x.data() + i);
+        draw.point.y.store(starts.pupil_y.data() + i);
+        select(u < defensive_share, Numbers(-1.0), draw.area).store(starts.pupil_area.data() + i);
+    }
+}
+
 template <class Abi, class T>
 [[gnu::flatten]] void aim(double film_z, double pupil_z, PathStarts& starts, RayBatch<T>& rays) {
     using Numbers = Pack<double, Abi>;
@@ -67,10 +83,9 @@ template <class Abi, class T>
         const Numbers y = Numbers::load(starts.film_y.data() + i);
         const Vec3<Numbers> way{Numbers::load(starts.pupil_x.data() + i) - x,
                                 Numbers::load(starts.pupil_y.data() + i) - y, way_z};
-        const Numbers distance2 = dot(way, way);
-        const Vec3<Numbers> direction = (Numbers(1.0) / sqrt(distance2)) * way;
-        const Numbers etendue =
-            direction.z * direction.z / (distance2 * Numbers::load(starts.pupil_density.data() + i));
+        const Numbers per_distance2 = Numbers(1.0) / dot(way, way);
+        const Vec3<Numbers> direction = sqrt(per_distance2) * way;
+        const Numbers etendue = direction.z * direction.z * per_distance2 * Numbers::load(starts.pupil_area.data() + i);
         etendue.store(starts.etendue.data() + i);
         x.store(rays.origin.x.data() + i);
         y.store(rays.origin.y.data() + i);
@@ -85,7 +100,8 @@ template <class Abi, class T>
 
 template <class Abi>
 LevelPathKernels path_kernels_of() {
-    return {.in_float = {draw<Abi>, aim<Abi, float>}, .in_double = {draw<Abi>, aim<Abi, double>}};
+    return {.in_float = {draw<Abi>, draw_pupil<Abi>, aim<Abi, float>},
+            .in_double = {draw<Abi>, draw_pupil<Abi>, aim<Abi, double>}};
 }
 
 }  // namespace lensproof

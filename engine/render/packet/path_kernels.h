@@ -3,6 +3,7 @@
 #include <cstdint>
 
 #include "engine/optics/packet/trace_batch.h"
+#include "engine/pupil/pupil_slice.h"
 #include "engine/render/packet/path_chunk.h"
 
 namespace lensproof {
@@ -12,6 +13,9 @@ template <class T>
 struct PathKernels {
     /// Draws `count` samples: pixel, sample, film point, wavelength, numbers for the pupil. Moves the cursor.
     void (*draw)(const PathSampling& sampling, int count, PathCursor& cursor, PathStarts& starts);
+
+    /// Points of the pupil and their areas; of those that are drawn in defence it leaves −1 as area.
+    void (*draw_pupil)(const PupilSliceTables& slices, PathStarts& starts);
 
     /// From film and pupil points the rays and their etendue.
     void (*aim)(double film_z, double pupil_z, PathStarts& starts, RayBatch<T>& rays);
