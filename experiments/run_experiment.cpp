@@ -113,7 +113,7 @@ class SimulationRun {
         : simulation_(simulation),
           settings_(settings),
           progress_(progress),
-          camera_(simulation.scene.camera, simulation.scene.light, simulation.scene.spectral) {}
+          camera_(simulation.scene.camera, simulation.scene.light, simulation.scene.spectral, settings.cache) {}
 
     Subject run() {
         Subject subject{.name = simulation_.name, .label = camera_.lens().name, .simulated = true};

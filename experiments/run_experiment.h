@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "calibration/profile.h"
+#include "engine/io/cache.h"
 #include "experiments/curve_difference.h"
 #include "experiments/experiment.h"
 #include "experiments/photo_set.h"
@@ -54,6 +55,7 @@ struct ExperimentResult {
 struct RunSettings {
     std::uint64_t seed = 0;
     int threads = 0;
+    Cache cache{};  // for what is found by tracing lenses
 };
 
 /// Reports what is being done ("tessar, view 2 of 6") and how much of it is.

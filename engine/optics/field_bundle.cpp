@@ -11,6 +11,20 @@ std::array<Vec3d, 2> across_axes(const Vec3d& along) {
              {0.0, along.z / from_x, -along.y / from_x}}};
 }
 
+Ray<double> ray_beside(const Ray<double>& axis, const std::array<Vec3d, 2>& across, double distance, Vec2d offset) {
+    const Vec3d sideways = offset.x * across[0] + offset.y * across[1];
+    const Vec3d origin = axis.origin + sideways;
+    if (!std::isfinite(distance)) {
+        return {origin, axis.direction};
+    }
+    // From the point at distance R along the axis to `origin` it is √(R² + r²): r² / (R + √(R² + r²)) beyond the
+    // wavefront.
+    const double r2 = dot(sideways, sideways);
+    const double to_origin = std::sqrt(distance * distance + r2);
+    const Vec3d direction = (1.0 / to_origin) * (distance * axis.direction + sideways);
+    return {origin - (r2 / (distance + to_origin)) * direction, direction};
+}
+
 bool FieldBundle::is_near() const {
     return std::isfinite(object_distance) && object_distance > 0.0 && chief.front.direction.z > 0.0;
 }
@@ -24,23 +38,6 @@ Vec3d FieldBundle::object_point() const {
     Vec3d point = chief.front.origin - distance() * chief.front.direction;
     point.z = -object_distance;
     return point;
-}
-
-Ray<double> FieldBundle::ray(Vec2d offset) const {
-    const Vec3d& along = chief.front.direction;
-    const std::array<Vec3d, 2> axes = across();
-    const Vec3d sideways = offset.x * axes[0] + offset.y * axes[1];
-    const Vec3d origin = chief.front.origin + sideways;
-    if (!is_near()) {
-        return {origin, along};
-    }
-    // From the object at distance R along the chief ray to `origin` it is √(R² + r²): r² / (R + √(R² + r²)) beyond the
-    // wavefront.
-    const double to_object = distance();
-    const double r2 = dot(sideways, sideways);
-    const double to_origin = std::sqrt(to_object * to_object + r2);
-    const Vec3d direction = (1.0 / to_origin) * (to_object * along + sideways);
-    return {origin - (r2 / (to_object + to_origin)) * direction, direction};
 }
 
 namespace {

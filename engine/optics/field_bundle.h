@@ -11,6 +11,12 @@ namespace lensproof {
 /// to +y (in the plane x = 0: (1, 0, 0) and (0, z, −y)). Not for a direction along x.
 std::array<Vec3d, 2> across_axes(const Vec3d& along);
 
+/// The ray of a pencil at `offset` (mm) across its `axis`, in multiples of two unit vectors `across`: parallel to it,
+/// or from the point `distance` mm before the axis's origin where that is finite. All origins lie on one wavefront,
+/// next to the axis's (a plane, else a sphere around the point), so that differences of optical path from there are
+/// those from the point and lose no digits to its distance.
+Ray<double> ray_beside(const Ray<double>& axis, const std::array<Vec3d, 2>& across, double distance, Vec2d offset);
+
 /// The rays of one object point around its chief ray. They are told apart by their offset (mm) across the chief ray at
 /// its point on the first surface: x along +x, y in the meridional plane towards +y (where the chief ray has left the
 /// plane x = 0: x as near to +x as can be across it). Lens space, mm, radians.
@@ -32,10 +38,8 @@ struct FieldBundle {
     /// The object point; it has to be near.
     [[nodiscard]] Vec3d object_point() const;
 
-    /// The incoming ray at `offset`. All origins lie on one wavefront, next to the first surface (a plane for an object
-    /// at infinity, else a sphere around the object point), so that differences of optical path from there are those
-    /// from the object and lose no digits to its distance.
-    [[nodiscard]] Ray<double> ray(Vec2d offset) const;
+    /// The incoming ray at `offset`. All origins lie on one wavefront next to the first surface, see `ray_beside`.
+    [[nodiscard]] Ray<double> ray(Vec2d offset) const { return ray_beside(chief.front, across(), distance(), offset); }
 };
 
 /// The bundle of the same object at another wavelength, around that wavelength's own chief ray: at infinity the same

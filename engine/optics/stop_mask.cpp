@@ -5,6 +5,7 @@
 #include <limits>
 #include <numbers>
 
+#include "engine/io/bytes.h"
 #include "engine/io/image.h"
 
 namespace lensproof {
@@ -74,6 +75,20 @@ double StopMask::transmittance(double x, double y) const {
     const int column = cell(x, texture_->size_x);
     const int row = cell(-y, texture_->size_y);
     return texture_->values[static_cast<std::size_t>(row) * texture_->size_x + column];
+}
+
+void StopMask::append_to(std::string& bytes) const {
+    append_bytes(bytes, arcs_.size());
+    for (const auto& [x, y, centre, radius_squared] : arcs_) {
+        append_bytes(bytes, x, y, centre, radius_squared);
+    }
+    append_bytes(bytes, texture_ != nullptr);
+    if (texture_) {
+        append_bytes(bytes, texture_->size_x, texture_->size_y);
+        for (const float value : texture_->values) {
+            append_bytes(bytes, value);
+        }
+    }
 }
 
 }  // namespace lensproof

@@ -2,6 +2,7 @@
 #pragma once
 #include <filesystem>
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "engine/optics/prescription.h"
@@ -30,6 +31,9 @@ class StopMask {
         int edge = 0;
     };
     [[nodiscard]] EdgeMargin edge_margin(double x, double y) const;
+
+    /// Appends all that tells this mask from another.
+    void append_to(std::string& bytes) const;
 
   private:
     struct Texture {

@@ -29,12 +29,12 @@ PupilGuides::PupilGuides(const PupilNodes& nodes)
     std::ranges::transform(nodes.regions, std::back_inserter(panels_), panel_guide);
 }
 
-BetweenNodes PupilGuides::azimuth(const PupilNodes& nodes, Vec2d sensor_point) {
-    const double turn = std::atan2(sensor_point.x, sensor_point.y) / (2.0 * std::numbers::pi);
-    const double at = (turn < 0.0 ? turn + 1.0 : turn) * static_cast<double>(nodes.azimuths);
-    const double whole = std::min(std::floor(at), static_cast<double>(nodes.azimuths - 1));
+BetweenNodes PupilGuides::on_turn(std::size_t azimuths, Vec2d at) {
+    const double turn = std::atan2(at.x, at.y) / (2.0 * std::numbers::pi);
+    const double turned = (turn < 0.0 ? turn + 1.0 : turn) * static_cast<double>(azimuths);
+    const double whole = std::min(std::floor(turned), static_cast<double>(azimuths - 1));
     const auto below = static_cast<std::size_t>(whole);
-    return {.below = below, .above = (below + 1) % nodes.azimuths, .t = at - whole};
+    return {.below = below, .above = (below + 1) % azimuths, .t = turned - whole};
 }
 
 }  // namespace lensproof

@@ -1,4 +1,4 @@
-// engine/pupil/pupil_guides.h — finds the nodes around a sensor point fast.
+// engine/pupil/pupil_guides.h — finds the nodes around a place fast.
 #pragma once
 #include <algorithm>
 #include <cmath>
@@ -16,11 +16,12 @@ struct BetweenNodes {
     double t = 0.0;
 };
 
-/// A sensor point at a position in the band among the nodes.
+/// A place at a position in the band among the nodes.
 struct PupilPlace {
-    double cosine = 1.0;  // of the point's azimuth, which turns the frame of its region
+    double cosine = 1.0;  // of its azimuth, which turns the frame of the region
     double sine = 0.0;
     BetweenNodes position{};
+    BetweenNodes azimuth{};
     std::size_t share = 0;  // between it and the next, after the share t
     double t = 0.0;
     bool is_lit = false;
@@ -35,15 +36,16 @@ class PupilGuides {
     PupilGuides() = default;
     explicit PupilGuides(const PupilNodes& nodes);
 
-    [[nodiscard]] PupilPlace place(const PupilNodes& nodes, Vec2d sensor_point, double band_position) const {
+    [[nodiscard]] PupilPlace place(const PupilNodes& nodes, Vec2d at, double band_position) const {
         if (nodes.regions.empty()) {
             return {};
         }
         const BetweenNodes position = in_band(nodes, band_position);
-        const double end_mm =
-            (1.0 - position.t) * nodes.ends_mm[position.below] + position.t * nodes.ends_mm[position.above];
-        const double radius = std::sqrt(sensor_point.x * sensor_point.x + sensor_point.y * sensor_point.y);
-        const double share = radius / end_mm;
+        const BetweenNodes azimuth = nodes.azimuths > 1 ? on_turn(nodes.azimuths, at) : BetweenNodes{};
+        const double end = (1.0 - position.t) * end_between(nodes, position.below, azimuth) +
+                           position.t * end_between(nodes, position.above, azimuth);
+        const double radius = std::sqrt(at.x * at.x + at.y * at.y);
+        const double share = radius / end;
         if (!(share <= 1.0)) {
             return {};
         }
@@ -52,20 +54,27 @@ class PupilGuides {
             ++below;
         }
         const double per_radius = radius > 0.0 ? 1.0 / radius : 0.0;
-        return {.cosine = radius > 0.0 ? sensor_point.y * per_radius : 1.0,
-                .sine = sensor_point.x * per_radius,
+        return {.cosine = radius > 0.0 ? at.y * per_radius : 1.0,
+                .sine = at.x * per_radius,
                 .position = position,
+                .azimuth = azimuth,
                 .share = below,
                 .t = std::clamp((share - nodes.shares[below]) * per_step_[below], 0.0, 1.0),
                 .is_lit = true};
     }
-    [[nodiscard]] static BetweenNodes azimuth(const PupilNodes& nodes, Vec2d sensor_point);
-
     /// Of a region.
     [[nodiscard]] const PanelGuide& panels(std::size_t region) const { return panels_[region]; }
 
   private:
     static constexpr int kSteps = 1024;
+
+    /// The azimuths around that of a place.
+    [[nodiscard]] static BetweenNodes on_turn(std::size_t azimuths, Vec2d at);
+
+    static double end_between(const PupilNodes& nodes, std::size_t position, const BetweenNodes& azimuth) {
+        const double* ends = &nodes.ends[position * nodes.azimuths];
+        return (1.0 - azimuth.t) * ends[azimuth.below] + azimuth.t * ends[azimuth.above];
+    }
 
     [[nodiscard]] BetweenNodes in_band(const PupilNodes& nodes, double band_position) const {
         if (nodes.positions.size() < 2) {

@@ -6,17 +6,10 @@
 #include <vector>
 
 #include "engine/optics/trace.h"
-#include "engine/pupil/pupil_guides.h"
 #include "engine/pupil/rear_disc.h"
+#include "engine/pupil/region_map.h"
 
 namespace lensproof {
-
-/// A point of the pupil, x and y in lens space in the plane z = plane_z, mm, and the density that it was drawn with,
-/// 1/mm². A density of 0: no path is to be started, its estimate is 0.
-struct PupilSample {
-    Vec2d point;
-    double density = 0.0;
-};
 
 struct PupilMapSettings {
     /// The share of samples drawn over the whole rear element, whatever the map says: what the map missed costs noise
@@ -35,11 +28,7 @@ struct PupilMapSettings {
 /// they hold the regions traced at the nodes and in the middles between them. In the frame of a region its sensor point
 /// lies at (0, r), r ≥ 0. Blades and textures of the stop are taken for their full circle.
 ///
-/// A sample's density is that of the mixture (1 − δ) · [in the region] / its area + δ / the disc's area, wherever it
-/// came from, with δ the defensive share; so ∫ f = E[f / density] for every f on the disc, however wrong a region is.
-/// Where no light was found, all but δ of the samples start no path.
-///
-/// A position in the band says which wavelength: i / (n − 1) is that of lens i of n.
+/// A share of the samples is drawn over the whole disc, so that nothing is lost however wrong a region is (RegionMap).
 class PupilMap {
   public:
     /// `band`: the lens at wavelengths that are spread evenly over the band. Sensor points lie within
@@ -50,11 +39,16 @@ class PupilMap {
     /// The whole rear element for every sensor point: the baseline that maps are judged against.
     static PupilMap whole_element(const TraceLens<double>& lens, double sensor_radius_mm);
 
-    /// The point that (u, v) in the unit square maps to.
-    [[nodiscard]] PupilSample sample(Vec2d sensor_point, double band_position, double u, double v) const;
+    /// The point that (u, v) in the unit square maps to, x and y in lens space in the plane z = plane_z, and its
+    /// density.
+    [[nodiscard]] PupilSample sample(Vec2d sensor_point, double band_position, double u, double v) const {
+        return regions_.sample(sensor_point, band_position, u, v);
+    }
 
-    /// The density that `sample` draws a point with, 1/mm²; 0 outside the disc.
-    [[nodiscard]] double density(Vec2d sensor_point, double band_position, Vec2d pupil_point) const;
+    /// The density that `sample` draws a point with, 1/mm²; 0 outside the disc and the region.
+    [[nodiscard]] double density(Vec2d sensor_point, double band_position, Vec2d pupil_point) const {
+        return regions_.density(sensor_point, band_position, pupil_point);
+    }
 
     /// z of the plane that the points lie in.
     [[nodiscard]] double plane_z() const { return disc_.plane_z; }
@@ -63,13 +57,15 @@ class PupilMap {
     [[nodiscard]] const RearDisc& disc() const { return disc_; }
 
     /// The area that is drawn from but for the defensive share, mm²; 0 where no light was found.
-    [[nodiscard]] double region_area(Vec2d sensor_point, double band_position) const;
+    [[nodiscard]] double region_area(Vec2d sensor_point, double band_position) const {
+        return regions_.area(sensor_point, band_position);
+    }
 
     [[nodiscard]] const PupilNodes& nodes() const { return nodes_; }
     [[nodiscard]] double defensive_share() const { return defensive_share_; }
 
     /// How many regions are stored.
-    [[nodiscard]] std::size_t size() const { return nodes_.regions.size(); }
+    [[nodiscard]] std::size_t size() const { return regions_.nodes().regions.size(); }
 
     /// All of it as bytes, numbers as they lie in memory.
     [[nodiscard]] std::string serialized() const;
@@ -77,15 +73,10 @@ class PupilMap {
     static std::optional<PupilMap> deserialized(std::string_view bytes);
 
   private:
-    PupilMap(const RearDisc& disc, double defensive_share, PupilNodes nodes);
-
-    /// Of what `sample` draws from the region alone.
-    [[nodiscard]] double region_density(const PupilPlace& place, Vec2d sensor_point, Vec2d pupil_point) const;
+    PupilMap(const RearDisc& disc, RegionMap regions);
 
     RearDisc disc_;
-    double defensive_share_;
-    PupilNodes nodes_;
-    PupilGuides guides_;  // made from the nodes
+    RegionMap regions_;
 };
 
 }  // namespace lensproof

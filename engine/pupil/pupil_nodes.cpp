@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <numbers>
 
 #include "engine/pupil/column_fit.h"
+#include "engine/pupil/light_end.h"
 #include "engine/pupil/pupil_stations.h"
 
 namespace lensproof {
@@ -13,7 +15,9 @@ namespace {
 
 constexpr int kFirstShares = 16;
 constexpr std::size_t kFirstAzimuths = 4;
-constexpr std::size_t kMostAzimuths = 32;
+constexpr std::size_t kMostAzimuths = 16;
+// Over azimuth too there are so many regions to be traced that they may each be this much larger.
+constexpr double kExcessOverAzimuth = 4.0;
 constexpr std::size_t kMostPositions = 9;
 // A step of the radius below the first counts for little; below the second it is not halved any more.
 constexpr double kSmallStep = 1.0 / 64.0;
@@ -47,10 +51,33 @@ struct Mean {
     [[nodiscard]] double value() const { return weight > 0.0 ? sum / weight : 0.0; }
 };
 
+PupilSymmetry symmetry_of(const NodeSearch& search) {
+    return search.by_radius ? PupilSymmetry::mirror : PupilSymmetry::none;
+}
+
+void open_stops(std::vector<TraceLens<double>>& band) {
+    for (TraceLens<double>& lens : band) {
+        for (SpecialSurface<double>& special : lens.specials) {
+            special.mask = {};
+        }
+    }
+}
+
+void add_margin(PupilRegion& region, PupilSymmetry symmetry) {
+    double height = 0.0;
+    for (const PupilColumn& column : region.columns) {
+        height = std::max(height, column.upper - column.lower);
+    }
+    grow(region, ColumnGrowth(0.5 * kMargin * height), 1.0, symmetry);
+}
+
 class NodeFinder {
   public:
-    NodeFinder(const std::vector<TraceLens<double>>& band, const RearDisc& disc, const NodeSearch& search)
-        : search_(search), last_lens_(band.size() - 1), stations_(band, disc, symmetry_of(search)) {
+    NodeFinder(const std::vector<TraceLens<double>>& band, const RayFamily& rays, const NodeSearch& search)
+        : search_(search),
+          most_excess_((search.by_radius ? 1.0 : kExcessOverAzimuth) * search.most_excess),
+          last_lens_(band.size() - 1),
+          stations_(band, rays, search.disc, symmetry_of(search)) {
         nodes_.symmetry = symmetry_of(search);
         nodes_.azimuths = search.by_radius ? 1 : kFirstAzimuths;
     }
@@ -60,7 +87,7 @@ class NodeFinder {
         for (int i = 0; i <= kFirstShares; ++i) {
             nodes_.shares.push_back(static_cast<double>(i) / kFirstShares);
         }
-        if (std::ranges::any_of(nodes_.ends_mm, [](double end) { return !(end > 0.0); })) {
+        if (std::ranges::any_of(nodes_.ends, [](double end) { return !(end > 0.0); })) {
             return {};
         }
         do {
@@ -72,23 +99,23 @@ class NodeFinder {
     }
 
   private:
-    static PupilSymmetry symmetry_of(const NodeSearch& search) {
-        return search.by_radius ? PupilSymmetry::mirror : PupilSymmetry::none;
-    }
-
     // --- Where the light ends ---
 
-    /// Lets these lenses stand at the nodes of the band.
+    /// Lets these lenses stand at the nodes of the band, and looks where their light ends.
     void set_lenses(std::vector<std::size_t> lenses) {
-        const auto repeated = std::ranges::unique(lenses);
-        lenses.erase(repeated.begin(), repeated.end());
+        lenses.erase(std::unique(lenses.begin(), lenses.end()), lenses.end());
         lenses_ = std::move(lenses);
         // Some wavelengths may end just inside the sensor, others just outside.
         constexpr double kBeyond = 1.1;
-        const double farthest = kBeyond * search_.sensor_radius_mm;
-        nodes_.ends_mm = find_ends(farthest);
-        if (std::ranges::all_of(nodes_.ends_mm, [&](double end) { return end == farthest; })) {
-            std::ranges::fill(nodes_.ends_mm, search_.sensor_radius_mm);
+        const double farthest = kBeyond * search_.end;
+        std::vector<double> azimuths;
+        for (std::size_t k = 0; k < nodes_.azimuths; ++k) {
+            azimuths.push_back(azimuth(k));
+        }
+        nodes_.ends =
+            light_ends(stations_, lenses_, {.farthest = farthest, .precision = kSmallestStep, .azimuths = azimuths});
+        if (std::ranges::all_of(nodes_.ends, [&](double end) { return end == farthest; })) {
+            std::ranges::fill(nodes_.ends, search_.end);
         }
         nodes_.positions.clear();
         for (const std::size_t lens : lenses_) {
@@ -100,52 +127,6 @@ class NodeFinder {
         return last_lens_ > 0 ? static_cast<double>(lens) / static_cast<double>(last_lens_) : 0.0;
     }
 
-    /// The last radius that is lit, for each lens, up to `farthest`.
-    std::vector<double> find_ends(double farthest) {
-        constexpr int kFirstRadii = 16;
-        std::vector<PupilStations::Request> requests;
-        for (const std::size_t lens : lenses_) {
-            for (int i = 0; i <= kFirstRadii; ++i) {
-                add_around(lens, farthest * i / kFirstRadii, requests);
-            }
-        }
-        stations_.trace(requests);
-        std::vector<double> lit(lenses_.size(), 0.0);
-        std::vector<double> dark(lenses_.size(), farthest);
-        for (std::size_t p = 0; p < lenses_.size(); ++p) {
-            for (int i = 0; i <= kFirstRadii; ++i) {
-                lit[p] = is_lit(lenses_[p], farthest * i / kFirstRadii) ? farthest * i / kFirstRadii : lit[p];
-            }
-            dark[p] = std::min(farthest, lit[p] + farthest / kFirstRadii);
-        }
-        for (double step = 1.0 / kFirstRadii; step > kSmallestStep; step *= 0.5) {
-            requests.clear();
-            for (std::size_t p = 0; p < lenses_.size(); ++p) {
-                add_around(lenses_[p], 0.5 * (lit[p] + dark[p]), requests);
-            }
-            stations_.trace(requests);
-            for (std::size_t p = 0; p < lenses_.size(); ++p) {
-                const double middle = 0.5 * (lit[p] + dark[p]);
-                (is_lit(lenses_[p], middle) ? lit[p] : dark[p]) = middle;
-            }
-        }
-        return lit;
-    }
-
-    void add_around(std::size_t lens, double radius_mm, std::vector<PupilStations::Request>& requests) const {
-        for (std::size_t k = 0; k < nodes_.azimuths; ++k) {
-            requests.push_back({.place = {lens, azimuth(k), radius_mm}});
-        }
-    }
-
-    [[nodiscard]] bool is_lit(std::size_t lens, double radius_mm) const {
-        for (std::size_t k = 0; k < nodes_.azimuths; ++k) {
-            if (is_lit(stations_.find({lens, azimuth(k), radius_mm}))) {
-                return true;
-            }
-        }
-        return false;
-    }
     static bool is_lit(const PupilOutline* outline) { return outline != nullptr && !outline->is_empty(); }
 
     // --- Nodes and middles ---
@@ -154,7 +135,7 @@ class NodeFinder {
         return static_cast<double>(k % nodes_.azimuths) / static_cast<double>(nodes_.azimuths);
     }
     [[nodiscard]] StationPlace node(std::size_t p, std::size_t k, std::size_t i) const {
-        return {lenses_[p], azimuth(k), nodes_.shares[i] * nodes_.ends_mm[p]};
+        return {lenses_[p], azimuth(k), nodes_.shares[i] * nodes_.ends[p * nodes_.azimuths + k % nodes_.azimuths]};
     }
 
     /// Calls see(place, between, neighbours) for each middle between two nodes; `between` without its outline.
@@ -175,19 +156,21 @@ class NodeFinder {
         const std::size_t index = nodes_.index(p, k, i);
         if (i + 1 < nodes_.shares.size()) {
             const StationPlace next = node(p, k, i + 1);
-            see(StationPlace{here.lens, here.azimuth, 0.5 * (here.radius_mm + next.radius_mm)},
+            see(StationPlace{here.lens, here.azimuth, 0.5 * (here.radius + next.radius)},
                 Between{nullptr, index, nodes_.index(p, k, i + 1), 0.5, Axis::radius, p, i}, here, next);
         }
         if (nodes_.azimuths > 1) {
-            see(StationPlace{here.lens, here.azimuth + 0.5 / static_cast<double>(nodes_.azimuths), here.radius_mm},
+            const StationPlace next = node(p, k + 1, i);
+            see(StationPlace{here.lens, here.azimuth + 0.5 / static_cast<double>(nodes_.azimuths),
+                             0.5 * (here.radius + next.radius)},
                 Between{nullptr, index, nodes_.index(p, (k + 1) % nodes_.azimuths, i), 0.5, Axis::azimuth, p, i}, here,
-                node(p, k + 1, i));
+                next);
         }
         if (p + 1 < lenses_.size() && lenses_[p + 1] > lenses_[p] + 1) {
             const StationPlace next = node(p + 1, k, i);
             const std::size_t lens = (here.lens + next.lens) / 2;
             const double t = static_cast<double>(lens - here.lens) / static_cast<double>(next.lens - here.lens);
-            see(StationPlace{lens, here.azimuth, (1.0 - t) * here.radius_mm + t * next.radius_mm},
+            see(StationPlace{lens, here.azimuth, (1.0 - t) * here.radius + t * next.radius},
                 Between{nullptr, index, nodes_.index(p + 1, k, i), t, Axis::band, p, i}, here, next);
         }
     }
@@ -217,7 +200,7 @@ class NodeFinder {
             finer.push_back(nodes_.shares[i]);
             if (i + 1 < nodes_.shares.size()) {
                 const double step = nodes_.shares[i + 1] - nodes_.shares[i];
-                if (share_excess_[i] > search_.most_excess * std::max(1.0, kSmallStep / step) && step > kSmallestStep) {
+                if (share_excess_[i] > most_excess_ * std::max(1.0, kSmallStep / step) && step > kSmallestStep) {
                     finer.push_back(0.5 * (nodes_.shares[i] + nodes_.shares[i + 1]));
                 }
             }
@@ -228,10 +211,11 @@ class NodeFinder {
     }
 
     bool split_azimuths() {
-        if (!(azimuth_excess_ > search_.most_excess) || nodes_.azimuths >= kMostAzimuths) {
+        if (!(azimuth_excess_ > most_excess_) || nodes_.azimuths >= kMostAzimuths) {
             return false;
         }
         nodes_.azimuths *= 2;
+        set_lenses(lenses_);
         return true;
     }
 
@@ -239,7 +223,7 @@ class NodeFinder {
         std::vector<std::size_t> finer;
         for (std::size_t p = 0; p < lenses_.size(); ++p) {
             finer.push_back(lenses_[p]);
-            if (p + 1 < lenses_.size() && band_excess_[p] > search_.most_excess && lenses_[p + 1] > lenses_[p] + 1) {
+            if (p + 1 < lenses_.size() && band_excess_[p] > most_excess_ && lenses_[p + 1] > lenses_[p] + 1) {
                 finer.push_back((lenses_[p] + lenses_[p + 1]) / 2);
             }
         }
@@ -286,11 +270,7 @@ class NodeFinder {
             }
         }
         for (PupilRegion& region : nodes_.regions) {
-            double height = 0.0;
-            for (const PupilColumn& column : region.columns) {
-                height = std::max(height, column.upper - column.lower);
-            }
-            grow(region, ColumnGrowth(0.5 * kMargin * height), 1.0, nodes_.symmetry);
+            add_margin(region, nodes_.symmetry);
         }
     }
 
@@ -327,9 +307,8 @@ class NodeFinder {
     /// Regions around the nodes' own outlines, as wide as the middles need.
     void set_own_regions(const std::vector<const PupilOutline*>& outlines, const std::vector<Between>& middles) {
         std::vector<Extent> extents;
-        for (const PupilOutline* outline : outlines) {
-            extents.push_back(own_extent(*outline));
-        }
+        std::ranges::transform(outlines, std::back_inserter(extents),
+                               [&](const PupilOutline* outline) { return own_extent(*outline); });
         std::array<std::vector<Extent>, kAxes> more;  // to be added
         more.fill(std::vector<Extent>(extents.size(), {0.0, 0.0}));
         for (const Between& middle : middles) {
@@ -407,6 +386,7 @@ class NodeFinder {
     }
 
     const NodeSearch& search_;
+    double most_excess_;
     std::size_t last_lens_;
     PupilStations stations_;
     std::vector<std::size_t> lenses_;  // at the nodes of the band
@@ -419,9 +399,37 @@ class NodeFinder {
 
 }  // namespace
 
-PupilNodes find_pupil_nodes(const std::vector<TraceLens<double>>& band, const RearDisc& disc,
-                            const NodeSearch& search) {
-    return NodeFinder(band, disc, search).find();
+PupilNodes find_pupil_nodes(std::vector<TraceLens<double>> band, const RayFamily& rays, const NodeSearch& search) {
+    open_stops(band);
+    return NodeFinder(band, rays, search).find();
+}
+
+PupilNodes find_pupil_region(std::vector<TraceLens<double>> band, const RayFamily& rays, Vec2d place,
+                             const NodeSearch& search) {
+    open_stops(band);
+    PupilStations stations(band, rays, search.disc, symmetry_of(search));
+    const double azimuth = std::atan2(place.x, place.y) / (2.0 * std::numbers::pi);
+    std::vector<PupilStations::Request> requests;
+    for (std::size_t lens = 0; lens < band.size(); ++lens) {
+        requests.push_back({.place = {lens, azimuth, std::hypot(place.x, place.y)}});
+    }
+    stations.trace(requests);
+    std::vector<PupilOutline> outlines;
+    for (const PupilStations::Request& request : requests) {
+        outlines.push_back(*stations.find(request.place));
+    }
+    if (std::ranges::all_of(outlines, &PupilOutline::is_empty)) {
+        return {};
+    }
+    const Extent extent = extent_of(outlines);
+    PupilRegion region =
+        region_around(outlines, {search.by_radius ? 0.0 : extent.left, extent.right}, symmetry_of(search));
+    add_margin(region, symmetry_of(search));
+    return {.symmetry = symmetry_of(search),
+            .positions = {0.0},
+            .ends = {2.0 * std::hypot(place.x, place.y) + 1.0},
+            .shares = {0.0, 1.0},
+            .regions = {region, region}};
 }
 
 }  // namespace lensproof

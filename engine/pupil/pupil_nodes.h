@@ -1,21 +1,21 @@
-// engine/pupil/pupil_nodes.h — the regions of the pupil that light passes, at nodes over sensor and wavelengths.
+// engine/pupil/pupil_nodes.h — the regions that light passes, at nodes over the sensor (or the field) and wavelengths.
 #pragma once
 #include <vector>
 
-#include "engine/optics/trace.h"
+#include "engine/pupil/disc.h"
 #include "engine/pupil/pupil_region.h"
-#include "engine/pupil/rear_disc.h"
+#include "engine/pupil/pupil_stations.h"
 
 namespace lensproof {
 
-/// Regions in the plane of the rear disc, each in the frame in which its sensor point lies at (0, r), at nodes in
-/// position in the band, azimuth, and radius as a share of where the light ends. Between nodes they are linear in all
+/// Regions of a plane, each in the frame in which its place (RayFamily) lies at (0, r), at nodes in position in the
+/// band, azimuth, and radius as a share of where the light ends. Between nodes they are linear in all
 /// three, and hold what passes.
 struct PupilNodes {
     PupilSymmetry symmetry = PupilSymmetry::mirror;
-    std::size_t azimuths = 1;       // evenly spread, from the sensor's +y towards +x
+    std::size_t azimuths = 1;       // evenly spread, from +y towards +x
     std::vector<double> positions;  // in the band, rising from 0 to 1
-    std::vector<double> ends_mm;    // at each position: the light ends there, or the sensor does
+    std::vector<double> ends;       // radii, where the light or the search ends, at [position · azimuths + azimuth]
     std::vector<double> shares;     // of the end: rising from 0 to 1. None: no light at all
     std::vector<PupilRegion> regions;
 
@@ -25,14 +25,21 @@ struct PupilNodes {
     }
 };
 
-/// Which part of the sensor the nodes are for, and how finely.
+/// Which places the nodes are for, and how finely.
 struct NodeSearch {
-    bool by_radius = true;  // the lens is rotationally symmetric
-    double sensor_radius_mm = 0.0;
+    Disc disc;                   // that no region reaches out of
+    bool by_radius = true;       // the lens is rotationally symmetric
+    double end = 0.0;            // no place has a larger radius
     double most_excess = 0.005;  // as PupilMapSettings has it
 };
 
-/// Traces regions of lenses across a band, one a wavelength, and sets nodes where they are needed.
-PupilNodes find_pupil_nodes(const std::vector<TraceLens<double>>& band, const RearDisc& disc, const NodeSearch& search);
+/// Traces regions of lenses across a band, one a wavelength, and sets nodes where they are needed. Stops are opened to
+/// the full circle, which holds what any blades leave.
+PupilNodes find_pupil_nodes(std::vector<TraceLens<double>> band, const RayFamily& rays, const NodeSearch& search);
+
+/// The region of a single place, for all wavelengths of the band at once and in the form of nodes around it; none where
+/// no light was found.
+PupilNodes find_pupil_region(std::vector<TraceLens<double>> band, const RayFamily& rays, Vec2d place,
+                             const NodeSearch& search);
 
 }  // namespace lensproof

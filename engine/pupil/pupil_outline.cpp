@@ -2,8 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numbers>
+
+#include "engine/pupil/polygon.h"
 
 namespace lensproof {
 
@@ -15,15 +16,8 @@ constexpr double kCornerShare = 5e-5;  // of the region's area: what a corner ma
 constexpr int kCornerRounds = 8;
 constexpr int kCoarseAzimuths = 16;  // over the half plane x ≥ 0
 constexpr int kFineAzimuths = 48;
+constexpr int kFineAzimuthsOfWhole = 32;  // where there is no mirror image to be spared
 constexpr int kGrid = 32;
-
-double cross(Vec2d a, Vec2d b) {
-    return a.x * b.y - a.y * b.x;
-}
-
-Vec2d minus(Vec2d a, Vec2d b) {
-    return {a.x - b.x, a.y - b.y};
-}
 
 /// A ray from a region's centre, in its frame, and where it leaves the region: between `inside` and `outside`, which
 /// are first guessed.
@@ -45,30 +39,6 @@ struct Found {
     std::vector<EdgeRay> rays;  // by rising azimuth
 };
 
-/// Triangle over the side p q that the sides next to it, drawn on, meet in.
-struct Apex {
-    Vec2d point;
-    double area = 0.0;
-    bool exists = false;
-};
-
-Apex apex_over(Vec2d before, Vec2d p, Vec2d q, Vec2d after) {
-    const Vec2d along = minus(p, before);
-    const Vec2d back = minus(q, after);
-    const Vec2d side = minus(q, p);
-    if (!(cross(along, side) > 0.0 && cross(side, minus(after, q)) > 0.0)) {
-        return {};  // not convex here: the side itself bounds the region
-    }
-    // p + s along = q + t back, with s, t > 0 unless the outline turns by more than half a circle.
-    const double determinant = cross(along, back);
-    const double s = cross(side, back) / determinant;
-    if (!(determinant < 0.0 || determinant > 0.0) || !(s > 0.0)) {
-        return {.point = {}, .area = std::numeric_limits<double>::infinity(), .exists = false};
-    }
-    const Vec2d apex{p.x + s * along.x, p.y + s * along.y};
-    return {.point = apex, .area = 0.5 * std::abs(cross(side, minus(apex, p))), .exists = true};
-}
-
 class OutlineFinder {
   public:
     OutlineFinder(const PassTest& passes, const OutlineSearch& search)
@@ -84,7 +54,7 @@ class OutlineFinder {
         for (Found& found : found_) {
             all.push_back(&found);
         }
-        spread_rays(all, kFineAzimuths, 0.8, 1.25);
+        spread_rays(all, is_mirror_ ? kFineAzimuths : kFineAzimuthsOfWhole, 0.8, 1.25);
         for (int round = 0; round < kCornerRounds && look_at_corners(); ++round) {
         }
         std::vector<PupilOutline> outlines(expected.size());
@@ -145,6 +115,8 @@ class OutlineFinder {
         }
         const std::vector<std::uint8_t>& inside = ask(grid);
         const std::size_t points_per_box = static_cast<std::size_t>(kGrid - first_column) * kGrid;
+        std::vector<PupilFrame> frames;
+        std::vector<RegionPoint> centres;
         for (std::size_t b = 0; b < boxes.size(); ++b) {
             std::vector<Vec2d> hits;
             for (std::size_t i = b * points_per_box; i < (b + 1) * points_per_box; ++i) {
@@ -154,13 +126,27 @@ class OutlineFinder {
             }
             const auto& [region, box] = boxes[b];
             const Vec2d cell{2.0 * kMargin * box.scale.x / kGrid, 2.0 * kMargin * box.scale.y / kGrid};
-            if (!hits.empty()) {
-                found_.push_back({.region = region, .frame = frame_of(hits, cell), .is_settled = false, .rays = {}});
+            frames.push_back(hits.empty() ? PupilFrame{.centre = {}, .scale = cell} : frame_of(hits, cell));
+            centres.push_back({region, frames.back().centre});
+        }
+        add_around_centres(centres, frames);
+    }
+
+    /// Adds regions by frames whose centres lie inside. Where one does not, as between the ends of a bent strip, the
+    /// closer look may find another.
+    void add_around_centres(const std::vector<RegionPoint>& centres, std::vector<PupilFrame>& frames) {
+        const std::vector<std::uint8_t>& inside = ask(centres);
+        for (std::size_t i = 0; i < centres.size(); ++i) {
+            const int region = centres[i].region;
+            std::optional<Vec2d> centre;
+            if (inside[i] != 0) {
+                centre = centres[i].point;
             } else if (search_.look_closer) {
-                if (const std::optional<Vec2d> seed = search_.look_closer(region)) {
-                    found_.push_back(
-                        {.region = region, .frame = {.centre = *seed, .scale = cell}, .is_settled = false, .rays = {}});
-                }
+                centre = search_.look_closer(region);
+            }
+            if (centre) {
+                frames[i].centre = *centre;
+                found_.push_back({.region = region, .frame = frames[i], .is_settled = false, .rays = {}});
             }
         }
     }
@@ -356,8 +342,8 @@ class OutlineFinder {
             const std::vector<Vec2d> points = edge_points(found);
             double twice_area = 0.0;
             for (std::size_t i = 0; i < sides(found); ++i) {
-                twice_area += cross(minus(points[i], found.frame.centre),
-                                    minus(points[(i + 1) % points.size()], found.frame.centre));
+                twice_area += cross(from_to(found.frame.centre, points[i]),
+                                    from_to(found.frame.centre, points[(i + 1) % points.size()]));
             }
             std::vector<EdgeRay> rays;
             std::vector<std::size_t> added;
@@ -405,21 +391,6 @@ class OutlineFinder {
 };
 
 }  // namespace
-
-std::optional<Span> span_at(std::span<const Vec2d> polygon, double x) {
-    std::optional<Span> span;
-    for (std::size_t i = 0; i < polygon.size(); ++i) {
-        const Vec2d p = polygon[i];
-        const Vec2d q = polygon[(i + 1) % polygon.size()];
-        if ((p.x > x && q.x > x) || (p.x < x && q.x < x)) {
-            continue;
-        }
-        const double y = p.y + (x - p.x) / (q.x - p.x) * (q.y - p.y);
-        const Span here = p.x == q.x ? Span{std::min(p.y, q.y), std::max(p.y, q.y)} : Span{y, y};
-        span = span ? Span{std::min(span->lower, here.lower), std::max(span->upper, here.upper)} : here;
-    }
-    return span;
-}
 
 std::vector<PupilOutline> pupil_outlines(const PassTest& passes, std::span<const std::optional<PupilFrame>> expected,
                                          const OutlineSearch& search) {

@@ -41,13 +41,6 @@ struct PupilOutline {
     [[nodiscard]] bool is_empty() const { return points.empty(); }
 };
 
-/// The lowest and the highest y that a closed polygon has at x; nothing beside it.
-struct Span {
-    double lower;
-    double upper;
-};
-std::optional<Span> span_at(std::span<const Vec2d> polygon, double x);
-
 struct OutlineSearch {
     double radius = 1.0;  // no region reaches farther from the origin, mm
     PupilSymmetry symmetry = PupilSymmetry::none;

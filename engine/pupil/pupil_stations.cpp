@@ -12,10 +12,11 @@ namespace lensproof {
 
 namespace {
 
-/// Which rays leave the front: 1, or 0.
+/// Which rays pass: 1, or 0.
+template <Direction direction>
 void passing(const TraceLens<double>& lens, std::span<const Ray<double>> rays, std::span<std::uint8_t> answers) {
     for (std::size_t i = 0; i < rays.size(); ++i) {
-        answers[i] = trace<Direction::reverse>(lens, rays[i]).status == RayStatus::ok ? 1 : 0;
+        answers[i] = trace<direction>(lens, rays[i]).status == RayStatus::ok ? 1 : 0;
     }
 }
 
@@ -49,15 +50,13 @@ void PupilStations::trace(std::vector<Request> requests) {
     }
 }
 
-/// From the sensor through a point of the pupil that is given in the place's frame.
-Ray<double> PupilStations::ray(const StationPlace& place, Vec2d pupil_point) const {
+/// Of a place through a point that is given in the place's frame.
+Ray<double> PupilStations::ray(const StationPlace& place, Vec2d own_point) const {
     const double angle = 2.0 * std::numbers::pi * place.azimuth;
     const double cosine = std::cos(angle);
     const double sine = std::sin(angle);
-    const Vec3d from{place.radius_mm * sine, place.radius_mm * cosine, band_[place.lens].image_z};
-    const Vec3d to{cosine * pupil_point.x + sine * pupil_point.y, cosine * pupil_point.y - sine * pupil_point.x,
-                   disc_.plane_z};
-    return {from, normalized(to - from)};
+    return rays_.ray({place.radius * sine, place.radius * cosine},
+                     {cosine * own_point.x + sine * own_point.y, cosine * own_point.y - sine * own_point.x});
 }
 
 /// In batches of one lens each.
@@ -70,13 +69,15 @@ void PupilStations::ask(const std::vector<Request>& requests, std::span<const Re
         for (std::size_t i = first; i < points.size() && lens_of(i) == lens_of(first); ++i) {
             rays.push_back(ray(requests[static_cast<std::size_t>(points[i].region)].place, points[i].point));
         }
-        passing(band_[lens_of(first)], rays, answers.subspan(first, rays.size()));
+        const auto ask_all =
+            rays_.direction == Direction::forward ? passing<Direction::forward> : passing<Direction::reverse>;
+        ask_all(band_[lens_of(first)], rays, answers.subspan(first, rays.size()));
     }
 }
 
 /// A point of a region that is thinner than a grid, by how far rays stand from the rims.
 std::optional<Vec2d> PupilStations::point_by_margin(const StationPlace& place) const {
-    return find_inside([&](Vec2d at) { return rim_margin(band_[place.lens], ray(place, at), Direction::reverse); },
+    return find_inside([&](Vec2d at) { return rim_margin(band_[place.lens], ray(place, at), rays_.direction); },
                        {.start = {}, .reach = disc_.radius, .is_mirror = symmetry_ == PupilSymmetry::mirror});
 }
 
@@ -94,10 +95,10 @@ std::optional<PupilFrame> PupilStations::expected_frame(const Request& request) 
     };
     const auto above = outlines_.upper_bound(place);
     if (above != outlines_.end() && is_lit_neighbour(above)) {
-        add(above->second.frame, 1.0 / (above->first.radius_mm - place.radius_mm));
+        add(above->second.frame, 1.0 / (above->first.radius - place.radius));
     }
     if (above != outlines_.begin() && is_lit_neighbour(std::prev(above))) {
-        add(std::prev(above)->second.frame, 1.0 / (place.radius_mm - std::prev(above)->first.radius_mm));
+        add(std::prev(above)->second.frame, 1.0 / (place.radius - std::prev(above)->first.radius));
     }
     if (frames.empty()) {
         for (const StationPlace& alike : request.alike) {

@@ -1,32 +1,42 @@
 // engine/pupil/pupil_stations.h — outlines of the regions that light passes, traced where they are asked for.
 #pragma once
+#include <functional>
 #include <map>
 #include <tuple>
 #include <vector>
 
 #include "engine/optics/trace.h"
+#include "engine/pupil/disc.h"
 #include "engine/pupil/pupil_outline.h"
-#include "engine/pupil/rear_disc.h"
 
 namespace lensproof {
 
-/// A point of the sensor, and which lens of a band it is seen through. Ordered along the radii.
+/// The rays whose passage makes the regions: one for each place and each point of the plane that the regions lie in. A
+/// place is a point of the sensor (mm), or a direction of the scene (the field angle, rad, along its azimuth). Turned
+/// about the axis together, place and point have the turned ray.
+struct RayFamily {
+    Direction direction = Direction::forward;
+    std::function<Ray<double>(Vec2d place, Vec2d point)> ray;
+};
+
+/// A place, and which lens of a band it is seen through. Ordered along the radii.
 struct StationPlace {
     std::size_t lens = 0;
-    double azimuth = 0.0;  // as a share of a turn, from the sensor's +y towards +x
-    double radius_mm = 0.0;
+    double azimuth = 0.0;  // as a share of a turn, from +y towards +x
+    double radius = 0.0;
 
     friend bool operator<(const StationPlace& a, const StationPlace& b) {
-        return std::tie(a.lens, a.azimuth, a.radius_mm) < std::tie(b.lens, b.azimuth, b.radius_mm);
+        return std::tie(a.lens, a.azimuth, a.radius) < std::tie(b.lens, b.azimuth, b.radius);
     }
 };
 
-/// The regions of the rear disc's plane that light passes, for a band of lenses, one a wavelength. Each is given in the
-/// frame in which its sensor point lies at (0, r).
+/// The regions that light passes, for a band of lenses, one a wavelength. Each is given in the frame in which its place
+/// lies at (0, r), and inside the disc.
 class PupilStations {
   public:
-    PupilStations(const std::vector<TraceLens<double>>& band, const RearDisc& disc, PupilSymmetry symmetry)
-        : band_(band), disc_(disc), symmetry_(symmetry) {}
+    PupilStations(const std::vector<TraceLens<double>>& band, const RayFamily& rays, const Disc& disc,
+                  PupilSymmetry symmetry)
+        : band_(band), rays_(rays), disc_(disc), symmetry_(symmetry) {}
 
     /// A place to be traced, and others whose regions are much like its own, should it have no neighbours along the
     /// radius yet.
@@ -45,14 +55,15 @@ class PupilStations {
     }
 
   private:
-    [[nodiscard]] Ray<double> ray(const StationPlace& place, Vec2d pupil_point) const;
+    [[nodiscard]] Ray<double> ray(const StationPlace& place, Vec2d own_point) const;
     void ask(const std::vector<Request>& requests, std::span<const RegionPoint> points,
              std::span<std::uint8_t> answers) const;
     [[nodiscard]] std::optional<Vec2d> point_by_margin(const StationPlace& place) const;
     [[nodiscard]] std::optional<PupilFrame> expected_frame(const Request& request) const;
 
     const std::vector<TraceLens<double>>& band_;
-    const RearDisc& disc_;
+    const RayFamily& rays_;
+    const Disc& disc_;
     PupilSymmetry symmetry_;
     std::map<StationPlace, PupilOutline> outlines_;
 };

@@ -5,6 +5,8 @@
 #include <limits>
 #include <vector>
 
+#include "engine/pupil/surface_cap.h"
+
 namespace lensproof {
 
 namespace {
@@ -24,12 +26,7 @@ struct CapPoint {
 std::vector<CapPoint> rear_cap(const TraceLens<double>& lens) {
     const TraceSurface<double>& rear = lens.surfaces.back();
     const SpecialSurface<double>* special = rear.special >= 0 ? &lens.specials[rear.special] : nullptr;
-    const SurfaceShape<double> shape =
-        special != nullptr && special->has_shape ? special->shape : SurfaceShape<double>{.curvature = rear.curvature};
-    // Beyond an ellipsoid's equator there is no surface on the vertex's side.
-    const double across = (1.0 + shape.conic) * shape.curvature * shape.curvature;
-    const double equator = across > 0.0 ? 1.0 / std::sqrt(across) : std::numeric_limits<double>::infinity();
-    const double rim = std::min(std::sqrt(rear.semi_diameter_squared), (1.0 - 1e-12) * equator);
+    const auto [shape, rim] = surface_cap(lens, rear);
     std::vector<CapPoint> cap;
     for (int ring = 0; ring <= kRings; ++ring) {
         for (int i = 0; i < kAzimuths; ++i) {
@@ -49,22 +46,10 @@ std::vector<CapPoint> rear_cap(const TraceLens<double>& lens) {
 
 }  // namespace
 
-Vec2d RearDisc::warped(double u, double v) const {
-    const double a = 2.0 * u - 1.0;
-    const double b = 2.0 * v - 1.0;
-    if (a == 0.0 && b == 0.0) {
-        return {};
-    }
-    constexpr double kQuarter = 0.25 * std::numbers::pi;
-    const bool wide = std::abs(a) > std::abs(b);
-    const double distance = radius * (wide ? a : b);
-    const double angle = wide ? kQuarter * b / a : kQuarter * (2.0 - a / b);
-    return {distance * std::cos(angle), distance * std::sin(angle)};
-}
-
 RearDisc rear_disc(const TraceLens<double>& lens, double sensor_radius_mm) {
     const std::vector<CapPoint> cap = rear_cap(lens);
-    RearDisc disc{.plane_z = -std::numeric_limits<double>::infinity()};
+    RearDisc disc;
+    disc.plane_z = -std::numeric_limits<double>::infinity();
     for (const CapPoint& point : cap) {
         disc.plane_z = std::max(disc.plane_z, point.z);
     }

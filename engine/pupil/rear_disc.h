@@ -1,22 +1,13 @@
 // engine/pupil/rear_disc.h — a disc behind a lens that every path from the sensor into the lens crosses.
 #pragma once
-#include <numbers>
-
 #include "engine/optics/trace.h"
+#include "engine/pupil/disc.h"
 
 namespace lensproof {
 
 /// A disc around the axis in the plane z = plane_z, mm.
-struct RearDisc {
+struct RearDisc : Disc {
     double plane_z = 0.0;
-    double radius = 0.0;
-
-    [[nodiscard]] double area() const { return std::numbers::pi * radius * radius; }
-    [[nodiscard]] bool contains(Vec2d point) const { return point.x * point.x + point.y * point.y <= radius * radius; }
-
-    /// The point that (u, v) in the unit square maps to, evenly over the disc (Shirley & Chiu, J. Graphics Tools 2(3),
-    /// 1997).
-    [[nodiscard]] Vec2d warped(double u, double v) const;
 };
 
 /// Every straight line from a point of the sensor, at most `sensor_radius_mm` from the axis, to a point of the rear

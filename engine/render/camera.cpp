@@ -9,6 +9,7 @@
 
 #include "engine/io/input_error.h"
 #include "engine/optics/focus.h"
+#include "engine/pupil/kept_maps.h"
 #include "engine/spectral/illuminant.h"
 #include "engine/spectral/spectral_exr.h"
 #include "engine/spectral/wavelengths.h"
@@ -148,12 +149,13 @@ Lens camera_lens(const Camera& camera) {
                       camera.focus_distance_mm);
 }
 
-ChartCamera::ChartCamera(const Camera& camera, const Light& light, const SpectralSampling& spectral)
+ChartCamera::ChartCamera(const Camera& camera, const Light& light, const SpectralSampling& spectral, const Cache& cache)
     : camera_(camera),
       lens_(camera_lens(camera)),
       spectral_(make_strata(camera, lens_, light, spectral)),
       // Pixels are areas: the corner pixel's own corner is the farthest point sampled.
-      pupil_(lenses_of(spectral_.strata), lens_.is_rotationally_symmetric, camera.sensor.half_diagonal_mm()) {
+      pupil_(kept_pupil_map(cache, lenses_of(spectral_.strata), lens_.is_rotationally_symmetric,
+                            camera.sensor.half_diagonal_mm())) {
     const double values =
         static_cast<double>(camera.sensor.width) * camera.sensor.height * (6.0 + static_cast<double>(spectral.layers));
     if (values > kMostValues) {

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "engine/io/cache.h"
 #include "engine/io/toml.h"
 #include "engine/optics/lens.h"
 #include "engine/render/chart_render.h"
@@ -73,7 +74,8 @@ struct SpectralStrata {
 /// A camera with everything about its lens computed once, ready for any number of charts.
 class ChartCamera {
   public:
-    ChartCamera(const Camera& camera, const Light& light, const SpectralSampling& spectral);
+    /// `cache`: for what is found by tracing the lens; the same pictures come from any.
+    ChartCamera(const Camera& camera, const Light& light, const SpectralSampling& spectral, const Cache& cache = {});
 
     [[nodiscard]] Image render(const Chart& chart, const Placement& placement, const RenderSettings& settings,
                                const std::function<void(double)>& progress = {}) const;

@@ -7,6 +7,7 @@
 #include <memory>
 
 #include "calibration/profile.h"
+#include "engine/io/cache.h"
 #include "engine/io/image.h"
 #include "engine/io/input_error.h"
 #include "experiments/cli/command.h"
@@ -54,7 +55,7 @@ Profile profile_of_lens(const std::string& lens, const Profile& like, const Comp
                         .sensor = {like.width_px, like.height_px, *like.pixel_pitch_um / 1e3},
                         .exposure = {},
                         .response = options.response};
-    return lens_profile(ChartCamera(camera, Light{}, SpectralSampling{}));
+    return lens_profile(ChartCamera(camera, Light{}, SpectralSampling{}, Cache::standard()));
 }
 
 struct Row {

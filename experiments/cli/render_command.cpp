@@ -3,6 +3,7 @@
 
 #include <memory>
 
+#include "engine/io/cache.h"
 #include "engine/io/file.h"
 #include "engine/io/input_error.h"
 #include "engine/render/camera.h"
@@ -35,7 +36,7 @@ std::filesystem::path exr_name(const RenderOptions& options) {
 /// The scene's camera. What its lens refuses is said of the scene's file.
 ChartCamera make_camera(const ChartScene& scene, const std::string& file) {
     try {
-        return {scene.camera, scene.light, scene.spectral};
+        return {scene.camera, scene.light, scene.spectral, Cache::standard()};
     } catch (const InputError& error) {
         throw InputError(fmt::format("{}: camera: {}", file, error.what()));
     }

@@ -3,6 +3,7 @@
 
 #include <memory>
 
+#include "engine/io/cache.h"
 #include "engine/io/file.h"
 #include "experiments/cli/command.h"
 #include "experiments/cli/progress.h"
@@ -83,7 +84,8 @@ int run(const RunOptions& options) {
     check_output_name(folder / "report.html");
     check_output_name(folder / "report.json");
     check_json_name(options.common);
-    const RunSettings settings{.seed = options.common.seed, .threads = options.common.threads};
+    const RunSettings settings{
+        .seed = options.common.seed, .threads = options.common.threads, .cache = Cache::standard()};
     const auto progress = std::make_shared<StepProgress>(options.common.quiet);
     const RunProgress report_progress = [progress](const std::string& step, double done) { (*progress)(step, done); };
     if (experiment.stability) {

@@ -11,7 +11,7 @@ namespace lensproof {
 void register_trace_benchmarks();
 
 /// render/LENS/CHART: camera paths of the chart renderer on one thread (counter: paths per second);
-/// pupil_map/LENS: setting one up, at one wavelength.
+/// pupil_map/LENS: setting one up over 400 to 700 nm; pupil_sample/LENS: one point of the pupil.
 void register_render_benchmarks();
 
 /// sampler/points/…: 64 points of a pixel, one by one, and in columns with their film positions (counter: points per

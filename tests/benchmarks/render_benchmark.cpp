@@ -1,6 +1,11 @@
 #include <benchmark/benchmark.h>
 
+#include <array>
+#include <vector>
+
+#include "engine/pupil/pupil_map.h"
 #include "engine/render/camera.h"
+#include "engine/render/sampler.h"
 #include "tests/benchmarks/benchmarks.h"
 
 namespace lensproof {
@@ -44,10 +49,35 @@ void time_render(benchmark::State& state, const Setting& setting, const Chart& c
         static_cast<double>(state.iterations()) * sensor.width * sensor.height * kSamples, benchmark::Counter::kIsRate);
 }
 
+/// The lens at 64 wavelengths, as a render has it.
+std::vector<TraceLens<double>> band_of(const Setting& setting) {
+    const Lens lens = camera_lens(camera_for(setting));
+    std::vector<TraceLens<double>> band;
+    for (int i = 0; i < 64; ++i) {
+        band.push_back(at_wavelength<double>(lens, 400.0 + 300.0 * (i + 0.5) / 64));
+    }
+    return band;
+}
+
 void time_pupil_map(benchmark::State& state, const Setting& setting) {
-    const TraceLens<double> lens = at_wavelength<double>(camera_lens(camera_for(setting)), 550.0);
+    const std::vector<TraceLens<double>> band = band_of(setting);
     while (state.KeepRunning()) {
-        benchmark::DoNotOptimize(PupilMap({lens}, true, setting.half_diagonal_mm));
+        benchmark::DoNotOptimize(PupilMap(band, true, setting.half_diagonal_mm));
+    }
+}
+
+void time_pupil_samples(benchmark::State& state, const Setting& setting) {
+    constexpr std::uint32_t kPoints = 4096;
+    const PupilMap map(band_of(setting), true, setting.half_diagonal_mm);
+    std::vector<std::array<double, 5>> points;
+    for (std::uint32_t i = 0; i < kPoints; ++i) {
+        points.push_back(PixelSampler(1, 0).point(i));
+    }
+    std::size_t i = 0;
+    while (state.KeepRunning()) {
+        const std::array<double, 5>& xi = points[i++ % kPoints];
+        const Vec2d at{0.6 * setting.half_diagonal_mm * xi[0], 0.6 * setting.half_diagonal_mm * xi[1]};
+        benchmark::DoNotOptimize(map.sample(at, xi[4], xi[2], xi[3]));
     }
 }
 
@@ -67,6 +97,8 @@ void register_render_benchmarks() {
         benchmark::RegisterBenchmark(("pupil_map/" + setting.lens).c_str(), [&setting](benchmark::State& state) {
             time_pupil_map(state, setting);
         })->Unit(benchmark::kMillisecond);
+        benchmark::RegisterBenchmark(("pupil_sample/" + setting.lens).c_str(),
+                                     [&setting](benchmark::State& state) { time_pupil_samples(state, setting); });
     }
 }
 

@@ -172,6 +172,23 @@ TEST(ChartRender, DependsOnTheSeedAlone) {
     EXPECT_NE(render(1, 5), render(1, 6));
 }
 
+// The same picture without a cache, with an empty one, and with what the render before has left in it.
+TEST(ChartRender, DoesNotDependOnTheCache) {
+    const TestFolder folder;
+    const Camera camera = small_camera("muller-fisheye", 8.0, 20.0, 24);
+    const Chart board{.pattern = Checkerboard{8, 6, 500.0}};
+    const auto render = [&](const Cache& cache) {
+        return ChartCamera(camera, Light{}, kSampling, cache)
+            .render(board, {.distance_mm = 10000.0}, {.samples_per_pixel = 16})
+            .pixels;
+    };
+    const std::vector<float> without = render({});
+    const Cache cache(folder.path());
+    EXPECT_EQ(render(cache), without) << "cold";
+    EXPECT_FALSE(std::filesystem::is_empty(folder.path()));
+    EXPECT_EQ(render(cache), without) << "warm";
+}
+
 // Pictures are upright: what stands at the right of the camera is at the right of the picture, what is low is low. The
 // board's top-left square is black, its top-right one (even column count) white.
 TEST(ChartRender, PicturesAreUpright) {

@@ -75,7 +75,8 @@ struct RayBatch {
 
   private:
     static std::size_t padded(int rays) {
-        return static_cast<std::size_t>((rays + kMostLanes - 1) / kMostLanes * kMostLanes);
+        const auto packets = static_cast<std::size_t>((rays + kMostLanes - 1) / kMostLanes);
+        return packets * kMostLanes;
     }
     static PacketColumn<T> column(int rays) { return PacketColumn<T>(padded(rays)); }
 };

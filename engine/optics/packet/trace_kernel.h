@@ -168,29 +168,41 @@ class BlockTracer {
 
     template <bool from_far, bool per_lane>
     void pass_packets(const Here& here) {
-        for (int packet = 0; packet < packets_; ++packet) {
-            const Mask going = this->going(packet);
-            if (!any(going)) {
-                continue;
+        if constexpr (per_lane) {
+            for (int packet = 0; packet < packets_; ++packet) {
+                pass_packet<from_far, true>(here, packet, media<true>(here.index, packet));
             }
-            const State before = load(packet);
-            const Media media = this->template media<per_lane>(here.index, packet);
-            const Vec3<Numbers> near = moved_near<from_far>(here, before);
-            const Intersection<Numbers> met = intersect_from_near(near, before.way, curvature(here), heading());
-            const Refraction<Numbers> bent = bent_at(here, before, met, media);
-            if (any(going && (is_beyond(here, met) || !met.hit || !bent.transmitted))) {
-                pass_with_ends<from_far, per_lane>(here, packet);
-                continue;
+        } else {
+            const Media the_same = media<false>(here.index, 0);
+            for (int packet = 0; packet < packets_; ++packet) {
+                pass_packet<from_far, false>(here, packet, the_same);
             }
-            const Vec3<Numbers>& at_surface = met.point;
-            if (all(going)) {
-                store(packet, {at_surface, bent.direction});
-            } else {
-                store(packet, {select(going, at_surface, before.origin), select(going, bent.direction, before.way)});
-            }
-            add_path(packet, media, way_moved<from_far>(here, before) + met.distance, going);
-            add_loss(packet, fresnel(media, met, bent), going);
         }
+    }
+
+    template <bool from_far, bool per_lane>
+    void pass_packet(const Here& here, int packet, const Media& media) {
+        const Mask going = this->going(packet);
+        if (!any(going)) {
+            return;
+        }
+        const State before = load(packet);
+        const Vec3<Numbers> near = moved_near<from_far>(here, before);
+        const Intersection<Numbers> met = intersect_from_near(near, before.way, curvature(here), heading());
+        const Refraction<Numbers> bent = bent_at(here, before, met, media);
+        const Mask passes = met.hit && is_inside(here, met) && bent.transmitted;
+        if (!all(passes || !going)) {
+            pass_with_ends<from_far, per_lane>(here, packet);
+            return;
+        }
+        const Vec3<Numbers>& at_surface = met.point;
+        if (all(going)) {
+            store(packet, {at_surface, bent.direction});
+        } else {
+            store(packet, {select(going, at_surface, before.origin), select(going, bent.direction, before.way)});
+        }
+        add_path(packet, media, way_moved<from_far>(here, before) + met.distance, going);
+        add_loss(packet, fresnel(media, met, bent), going);
     }
 
     static Numbers heading() { return Numbers(kForward ? Scalar(1) : Scalar(-1)); }
@@ -215,8 +227,8 @@ class BlockTracer {
         }
     }
 
-    static Mask is_beyond(const Here& here, const Intersection<Numbers>& met) {
-        return met.point.x * met.point.x + met.point.y * met.point.y > Numbers(here.limit);
+    static Mask is_inside(const Here& here, const Intersection<Numbers>& met) {
+        return met.point.x * met.point.x + met.point.y * met.point.y <= Numbers(here.limit);
     }
 
     static Refraction<Numbers> bent_at(const Here& here, const State& before, const Intersection<Numbers>& met,
@@ -252,7 +264,7 @@ class BlockTracer {
         const Intersection<Numbers> met = intersect_from_near(near, before.way, curvature(here), heading());
         const Refraction<Numbers> bent = bent_at(here, before, met, media);
         const Fate fate =
-            settle(here, packet, before, {met.point, bent.direction}, met.hit, is_beyond(here, met), bent.transmitted);
+            settle(here, packet, before, {met.point, bent.direction}, met.hit, !is_inside(here, met), bent.transmitted);
         add_path(packet, media, way_moved<from_far>(here, before) + met.distance, fate.met);
         add_loss(packet, fresnel(media, met, bent), fate.on);
     }
@@ -279,7 +291,7 @@ class BlockTracer {
                 met = intersect(own.origin, own.way, curvature(here), heading());
                 bent = bent_at(here, own, met, media);
             }
-            const Mask beyond = is_beyond(here, met);
+            const Mask beyond = !is_inside(here, met);
             const Numbers open = open_shares(here, special, met.point, going(packet) && met.hit && !beyond);
             const State after{special.from_own(met.point) + vertex, special.from_own(bent.direction)};
             const Fate fate =

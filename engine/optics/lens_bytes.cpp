@@ -1,0 +1,56 @@
+#include "engine/optics/lens_bytes.h"
+
+#include "engine/io/bytes.h"
+
+namespace lensproof {
+
+namespace {
+
+// Each struct is taken apart by all of its members' names at once: one that gets another member no longer compiles
+// here.
+
+void append_shape(std::string& bytes, const SurfaceShape<double>& shape) {
+    const auto& [curvature, conic, asphere, terms, is_toroid, curvature_x] = shape;
+    append_bytes(bytes, curvature, conic, terms, is_toroid, curvature_x);
+    for (const double coefficient : asphere) {
+        append_bytes(bytes, coefficient);
+    }
+}
+
+void append_coating(std::string& bytes, const TraceCoating<double>& coating) {
+    const auto& [layers, reflectance] = coating;
+    append_bytes(bytes, layers.size());
+    for (const auto& [index, thickness] : layers) {
+        append_bytes(bytes, index, thickness);
+    }
+    append_bytes(bytes, reflectance.has_value(), reflectance.value_or(0.0));
+}
+
+void append_special(std::string& bytes, const SpecialSurface<double>& special) {
+    const auto& [has_shape, shape, vertex, axes, coating, mask] = special;
+    append_bytes(bytes, has_shape, vertex.x, vertex.y);
+    append_shape(bytes, shape);
+    for (const Vec3d& axis : axes) {
+        append_bytes(bytes, axis.x, axis.y, axis.z);
+    }
+    append_coating(bytes, coating);
+    mask.append_to(bytes);
+}
+
+}  // namespace
+
+void append_lens_bytes(std::string& bytes, const TraceLens<double>& lens) {
+    const auto& [surfaces, image_z, specials] = lens;
+    append_bytes(bytes, surfaces.size(), specials.size(), image_z);
+    for (const TraceSurface<double>& surface : surfaces) {
+        const auto& [curvature, vertex_z, semi_diameter_squared, index_before, index_after, forward_ratio,
+                     reverse_ratio, is_stop, special] = surface;
+        append_bytes(bytes, curvature, vertex_z, semi_diameter_squared, index_before, index_after, forward_ratio,
+                     reverse_ratio, is_stop, special);
+    }
+    for (const SpecialSurface<double>& special : specials) {
+        append_special(bytes, special);
+    }
+}
+
+}  // namespace lensproof

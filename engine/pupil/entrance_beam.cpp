@@ -1,0 +1,79 @@
+#include "engine/pupil/entrance_beam.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "engine/optics/field_bundle.h"
+#include "engine/pupil/surface_cap.h"
+
+namespace lensproof {
+
+namespace {
+
+/// About the rim's centre, in the surface's own axes.
+BoundingSphere own_sphere(const SurfaceCap& cap) {
+    const auto& [shape, rim] = cap;
+    BoundingSphere sphere{.centre = {0.0, 0.0, sag(shape, rim, 0.0)}, .radius = rim};
+    if (shape.is_conic() && shape.conic == 0.0) {
+        return sphere;
+    }
+    constexpr int kCells = 64;
+    constexpr double kMargin = 1.001;
+    double farthest = rim;
+    for (int i = 0; i <= kCells; ++i) {
+        const double radius = rim * std::sin(0.5 * std::numbers::pi * i / kCells);
+        for (int k = 0; k <= kCells; ++k) {
+            const double azimuth = 0.5 * std::numbers::pi * k / kCells;
+            const double z = sag(shape, radius * std::cos(azimuth), radius * std::sin(azimuth));
+            farthest = std::max(farthest, std::hypot(radius, std::isfinite(z) ? z - sphere.centre.z : 0.0));
+        }
+    }
+    sphere.radius = kMargin * farthest;
+    return sphere;
+}
+
+}  // namespace
+
+BoundingSphere front_sphere(const TraceLens<double>& lens) {
+    const TraceSurface<double>& front = lens.surfaces.front();
+    const SpecialSurface<double>* special = front.special >= 0 ? &lens.specials[front.special] : nullptr;
+    BoundingSphere sphere = own_sphere(surface_cap(lens, front));
+    if (special != nullptr) {
+        sphere.centre = special->from_own(sphere.centre) + Vec3d{special->vertex.x, special->vertex.y, 0.0};
+    }
+    sphere.centre.z += front.vertex_z;
+    return sphere;
+}
+
+Ray<double> EntranceBeam::ray(Vec2d offset) const {
+    return ray_beside(axis, across, distance, offset);
+}
+
+double EntranceBeam::solid_angle_per_mm2(Vec2d offset) const {
+    const double to_offset2 = distance * distance + offset.x * offset.x + offset.y * offset.y;
+    return std::isfinite(distance) ? distance / (to_offset2 * std::sqrt(to_offset2)) : 0.0;
+}
+
+EntranceBeam beam_along(const BoundingSphere& front, const Vec3d& direction, double distance_mm) {
+    const Vec3d& d = direction;
+    const double share = 1.0 / (1.0 + d.z);  // of a turn by θ about (−d_y, d_x, 0): (1 − cos θ) / sin² θ
+    EntranceBeam beam{.axis = {front.centre, d},
+                      .across = {{{1.0 - share * d.x * d.x, -share * d.x * d.y, -d.x},
+                                  {-share * d.x * d.y, 1.0 - share * d.y * d.y, -d.y}}},
+                      .distance = distance_mm,
+                      .radius = front.radius};
+    if (std::isfinite(distance_mm)) {
+        // Where the sphere's tangent cone, whose half angle has the sine radius / distance, crosses the plane.
+        beam.radius *= distance_mm / std::sqrt((distance_mm - front.radius) * (distance_mm + front.radius));
+    }
+    return beam;
+}
+
+std::optional<EntranceBeam> beam_from(const BoundingSphere& front, const Vec3d& point) {
+    const Vec3d way = front.centre - point;
+    const double distance = length(way);
+    return distance > front.radius ? std::optional(beam_along(front, (1.0 / distance) * way, distance)) : std::nullopt;
+}
+
+}  // namespace lensproof

@@ -1,0 +1,14 @@
+// engine/pupil/surface_cap.h — the part of a surface that a ray can pass through.
+#pragma once
+#include "engine/optics/trace.h"
+
+namespace lensproof {
+
+/// A surface inside its rim, in its own axes, mm.
+struct SurfaceCap {
+    SurfaceShape<double> shape;
+    double radius = 0.0;  // of its rim; or of its equator, less 1e-12, where an ellipsoid ends before that
+};
+SurfaceCap surface_cap(const TraceLens<double>& lens, const TraceSurface<double>& surface);
+
+}  // namespace lensproof

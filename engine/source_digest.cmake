@@ -1,0 +1,13 @@
+# Writes HEADER, which holds a digest of FILES: where any of them changes, it does.
+foreach(file IN LISTS FILES)
+    file(SHA256 "${file}" digest)
+    string(APPEND digests "${digest}")
+endforeach()
+string(SHA256 digest "${digests}")
+file(WRITE "${HEADER}" "#pragma once
+#include <string_view>
+
+namespace lensproof {
+inline constexpr std::string_view kSourceDigest = \"${digest}\";
+}
+")
