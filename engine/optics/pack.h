@@ -2,6 +2,8 @@
 #pragma once
 #include <experimental/simd>
 
+#include "engine/optics/gather.h"
+
 namespace lensproof {
 
 /// A truth value for each lane of a pack.
@@ -44,9 +46,15 @@ class Pack {
     explicit Pack(Scalar everywhere) : lanes_(everywhere) {}
     explicit Pack(const Lanes& lanes) : lanes_(lanes) {}
 
-    /// From kLanes numbers at `from`, which is aligned to their size in all.
-    static Pack load(const Scalar* from) { return Pack(Lanes(from, std::experimental::vector_aligned)); }
-    void store(Scalar* to) const { lanes_.copy_to(to, std::experimental::vector_aligned); }
+    /// From kLanes numbers at `from`, perhaps of another type, which is aligned to their size in all; and back.
+    template <class Other>
+    static Pack load(const Other* from) {
+        return Pack(Lanes(from, std::experimental::vector_aligned));
+    }
+    template <class Other>
+    void store(Other* to) const {
+        lanes_.copy_to(to, std::experimental::vector_aligned);
+    }
 
     /// The pack of 0, 1, 2, …
     static Pack iota() {
@@ -54,11 +62,12 @@ class Pack {
     }
 
     /// table[index[lane]] for each lane.
-    template <class Index>
-    static Pack gather(const Scalar* table, const Index* index) {
-        return Pack(Lanes([&](auto lane) { return table[index[lane]]; }));
+    template <class Entry, class Index>
+    static Pack gather(const Entry* table, const Index* index) {
+        return Pack(gathered<Lanes>(table, index));
     }
 
+    [[nodiscard]] const Lanes& lanes() const { return lanes_; }
     Scalar operator[](int lane) const { return lanes_[static_cast<std::size_t>(lane)]; }
     void set(int lane, Scalar value) { lanes_[static_cast<std::size_t>(lane)] = value; }
 

@@ -7,6 +7,7 @@
 #include <cstdint>
 
 #include "engine/optics/vec.h"
+#include "engine/pupil/pupil_panel.h"
 
 namespace lensproof {
 
@@ -88,14 +89,10 @@ class BlendedRegion {
         while (panel + 1 < kPupilPanels && area_before(panel + 1) <= target) {
             ++panel;
         }
-        const Panel p = at(panel);
-        const double height = p.upper - p.lower;
-        const double next_height = p.next_upper - p.next_lower;
-        const double rest = std::max(0.0, target - area_before(panel)) * p.per_share_width;
-        const double root = std::sqrt(std::max(0.0, height * height + 2.0 * (next_height - height) * rest));
-        const double t = height + root > 0.0 ? std::min(1.0, 2.0 * rest / (height + root)) : 0.5;
-        const double x = left_ + width_ * (p.share + t * (p.next_share - p.share));
-        return {is_mirror_ && u < 0.5 ? -x : x, (1.0 - v) * p.lower_at(t) + v * p.upper_at(t)};
+        const PupilPanel<double> p = at(panel);
+        const Vec2d in_region = p.point(p.cut(target - area_before(panel)), v);
+        const double x = left_ + width_ * in_region.x;
+        return {is_mirror_ && u < 0.5 ? -x : x, in_region.y};
     }
 
     [[nodiscard]] bool contains(Vec2d point) const {
@@ -103,25 +100,12 @@ class BlendedRegion {
         if (!(share >= 0.0 && share <= 1.0)) {
             return false;
         }
-        const Panel p = at(shares_->panel(share));
+        const PupilPanel<double> p = at(shares_->panel(share));
         const double t = (share - p.share) * p.per_share_width;
         return point.y >= p.lower_at(t) && point.y <= p.upper_at(t);
     }
 
   private:
-    struct Panel {
-        double share;
-        double next_share;
-        double per_share_width;
-        double lower;
-        double upper;
-        double next_lower;
-        double next_upper;
-
-        [[nodiscard]] double lower_at(double t) const { return lower + t * (next_lower - lower); }
-        [[nodiscard]] double upper_at(double t) const { return upper + t * (next_upper - upper); }
-    };
-
     template <class Of>
     [[nodiscard]] double mean(const Of& of) const {
         double sum = 0.0;
@@ -135,7 +119,7 @@ class BlendedRegion {
         return mean([&](const PupilRegion& region) { return region.columns[column].area_before; });
     }
 
-    [[nodiscard]] Panel at(int panel) const {
+    [[nodiscard]] PupilPanel<double> at(int panel) const {
         return {.share = shares_->at[panel],
                 .next_share = shares_->at[panel + 1],
                 .per_share_width = shares_->per_width[panel],

@@ -1,98 +1,122 @@
 #include "engine/render/chart_render.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
+#include <optional>
 
+#include "engine/render/camera_paths.h"
 #include "engine/render/parallel.h"
-#include "engine/render/sampler.h"
 #include "engine/spectral/spectral_exr.h"
 
 namespace lensproof {
 
 namespace {
 
-/// Reflectance of the world where a ray that left the lens arrives, in the white's own terms.
-double seen_reflectance(const SeenChart& view, const Ray<double>& outwards) {
-    const Vec3d origin = rotate_back(view.pose, camera_to_lens(outwards.origin) - view.pose.translation);
-    const Vec3d direction = rotate_back(view.pose, camera_to_lens(outwards.direction));
-    const double distance = -origin.z / direction.z;
-    if (!(distance > 0.0) || !std::isfinite(distance)) {
-        return view.chart.white_reflectance;
-    }
-    return reflectance(view.chart, origin.x + distance * direction.x, origin.y + distance * direction.y);
-}
+/// The sums that a pixel's samples leave.
+class PixelSums {
+  public:
+    explicit PixelSums(const SeenChart& view)
+        : layers_(view.layer_nm.size()),
+          strata_per_layer_(view.strata.size() / layers_.size()),
+          band_nm_(view.stratum_width_nm * static_cast<double>(view.strata.size())) {}
 
-struct Sample {
-    int stratum = 0;
-    double irradiance = 0.0;  // this sample's estimate, W·m⁻²·nm⁻¹
+    /// A sample's estimate of the film irradiance, W·m⁻²·nm⁻¹. Samples that met no light need not be told.
+    void add(std::size_t stratum, double irradiance, const Vec3d& rgb_weights) {
+        const std::array<double, 3> rgb = {band_nm_ * irradiance * rgb_weights.x, band_nm_ * irradiance * rgb_weights.y,
+                                           band_nm_ * irradiance * rgb_weights.z};
+        for (std::size_t k = 0; k < 3; ++k) {
+            sum_[k] += rgb[k];
+            sum_of_squares_[k] += rgb[k] * rgb[k];
+        }
+        layers_[stratum / strata_per_layer_] += irradiance;
+    }
+
+    /// Writes what n samples make of a pixel, and begins anew.
+    void write(int n, int u, int v, Image& image) {
+        for (int k = 0; k < 3; ++k) {
+            const double mean = sum_[k] / n;
+            const double variance = n > 1 ? std::max(0.0, (sum_of_squares_[k] / n - mean * mean) / (n - 1)) : 0.0;
+            image.at(u, v, k) = static_cast<float>(mean);
+            image.at(u, v, 3 + k) = static_cast<float>(std::sqrt(variance));
+        }
+        // Per layer, the mean over the samples expected there, which keeps the layers' sum unbiased.
+        const double expected = static_cast<double>(n) / static_cast<double>(layers_.size());
+        for (std::size_t k = 0; k < layers_.size(); ++k) {
+            image.at(u, v, 6 + static_cast<int>(k)) = static_cast<float>(layers_[k] / expected);
+        }
+        sum_ = {};
+        sum_of_squares_ = {};
+        std::ranges::fill(layers_, 0.0);
+    }
+
+  private:
+    std::array<double, 3> sum_{};
+    std::array<double, 3> sum_of_squares_{};
+    std::vector<double> layers_;
+    std::size_t strata_per_layer_;
+    double band_nm_;
 };
 
-Sample sample_path(const SeenChart& view, const PupilMap& pupil, const std::array<double, 5>& xi, int u, int v) {
-    const auto count = static_cast<double>(view.strata.size());
-    Sample sample{.stratum = static_cast<int>(xi[4] * count)};
-    const WavelengthStratum& stratum = view.strata[sample.stratum];
+/// Renders rows, each from its camera paths, a buffer after the other.
+class RowRenderer {
+  public:
+    RowRenderer(const SeenChart& view, const CameraPathSource<double>& source, int samples_per_pixel, Image& image)
+        : view_(&view), producer_(source), sums_(view), samples_(samples_per_pixel), image_(&image) {}
 
-    const Vec2d at = view.sensor.position(u - 0.5 + xi[0], v - 0.5 + xi[1]);
-    const double band_position = count > 1.0 ? sample.stratum / (count - 1.0) : 0.0;
-    const PupilSample in_pupil = pupil.sample(at, band_position, xi[2], xi[3]);
-    if (!(in_pupil.density > 0.0)) {
-        return sample;
-    }
-    const Vec3d film_point{at.x, at.y, stratum.lens.image_z};
-
-    const Vec3d way = Vec3d{in_pupil.point.x, in_pupil.point.y, pupil.plane_z()} - film_point;
-    const double distance2 = dot(way, way);
-    const Ray<double> ray{film_point, (1.0 / std::sqrt(distance2)) * way};
-    const TracedRay<double> traced = trace<Direction::reverse>(stratum.lens, ray);
-    if (traced.status == RayStatus::ok) {
-        const double cos2 = ray.direction.z * ray.direction.z;
-        sample.irradiance = seen_reflectance(view, traced.ray) * stratum.white_radiance * traced.transmittance * cos2 /
-                            (distance2 * in_pupil.density);
-    }
-    return sample;
-}
-
-void render_pixel(const SeenChart& view, const PupilMap& pupil, const RenderSettings& settings, int u, int v,
-                  Image& image) {
-    const PixelSampler sampler(settings.seed, static_cast<std::uint32_t>(v) * static_cast<std::uint32_t>(image.width) +
-                                                  static_cast<std::uint32_t>(u));
-    const int n = settings.samples_per_pixel;
-    const int strata_per_layer = static_cast<int>(view.strata.size() / view.layer_nm.size());
-    const double band_nm = view.stratum_width_nm * static_cast<double>(view.strata.size());
-    std::array<double, 3> sum{};
-    std::array<double, 3> sum_of_squares{};
-    std::vector<double> layer_sum(view.layer_nm.size());
-    std::vector<int> layer_samples(view.layer_nm.size());
-    for (int i = 0; i < n; ++i) {
-        const Sample sample = sample_path(view, pupil, sampler.point(static_cast<std::uint32_t>(i)), u, v);
-        const Vec3d& weights = view.strata[sample.stratum].rgb_weights;
-        const std::array<double, 3> rgb = {band_nm * sample.irradiance * weights.x,
-                                           band_nm * sample.irradiance * weights.y,
-                                           band_nm * sample.irradiance * weights.z};
-        for (std::size_t k = 0; k < 3; ++k) {
-            sum[k] += rgb[k];
-            sum_of_squares[k] += rgb[k] * rgb[k];
+    void operator()(int v) {
+        const auto width = static_cast<std::uint32_t>(image_->width);
+        producer_.start({.first_pixel = static_cast<std::uint32_t>(v) * width,
+                         .pixels = width,
+                         .samples = static_cast<std::uint32_t>(samples_)});
+        std::optional<std::uint32_t> pixel;
+        const auto finish = [&] {
+            if (pixel) {
+                sums_.write(samples_, static_cast<int>(*pixel % width), v, *image_);
+            }
+        };
+        while (producer_.fill(paths_)) {
+            for (int i = 0; i < paths_.size; ++i) {
+                const auto at = static_cast<std::size_t>(i);
+                if (pixel != paths_.pixel[at]) {
+                    finish();
+                    pixel = paths_.pixel[at];
+                }
+                const std::size_t stratum = paths_.wavelength[at];
+                const WavelengthStratum& of = view_->strata[stratum];
+                const double radiance = seen_reflectance(view_->chart, view_->pose, paths_.ray(i)) * of.white_radiance;
+                sums_.add(stratum, radiance * paths_.weight[at], of.rgb_weights);
+            }
         }
-        layer_sum[sample.stratum / strata_per_layer] += sample.irradiance;
-        ++layer_samples[sample.stratum / strata_per_layer];
+        finish();  // a pixel that no path left stays black
     }
-    for (int k = 0; k < 3; ++k) {
-        const double mean = sum[k] / n;
-        const double variance = n > 1 ? std::max(0.0, (sum_of_squares[k] / n - mean * mean) / (n - 1)) : 0.0;
-        image.at(u, v, k) = static_cast<float>(mean);
-        image.at(u, v, 3 + k) = static_cast<float>(std::sqrt(variance));
-    }
-    // Per layer, the mean over the samples expected there, which keeps the layers' sum unbiased.
-    const double expected = static_cast<double>(n) / static_cast<double>(layer_sum.size());
-    for (std::size_t k = 0; k < layer_sum.size(); ++k) {
-        image.at(u, v, 6 + static_cast<int>(k)) = static_cast<float>(layer_sum[k] / expected);
-    }
+
+  private:
+    const SeenChart* view_;
+    CameraPathProducer<double> producer_;
+    CameraPathBuffer<double> paths_;
+    PixelSums sums_;
+    int samples_;
+    Image* image_;
+};
+
+SpectralLens<double> spectral_lens(const std::vector<WavelengthStratum>& strata) {
+    std::vector<TraceLens<double>> at;
+    std::ranges::transform(strata, std::back_inserter(at), &WavelengthStratum::lens);
+    return SpectralLens<double>(std::move(at));
 }
 
 }  // namespace
 
-double Sensor::half_diagonal_mm() const {
-    return 0.5 * std::hypot(width, height) * pixel_pitch_mm;
+double seen_reflectance(const Chart& chart, const RigidMotion& pose, const Ray<double>& outwards) {
+    const Vec3d origin = rotate_back(pose, camera_to_lens(outwards.origin) - pose.translation);
+    const Vec3d direction = rotate_back(pose, camera_to_lens(outwards.direction));
+    const double distance = -origin.z / direction.z;
+    if (!(distance > 0.0) || !std::isfinite(distance)) {
+        return chart.white_reflectance;
+    }
+    return reflectance(chart, origin.x + distance * direction.x, origin.y + distance * direction.y);
 }
 
 Image render_chart(const SeenChart& view, const PupilMap& pupil, const RenderSettings& settings,
@@ -102,13 +126,12 @@ Image render_chart(const SeenChart& view, const PupilMap& pupil, const RenderSet
         channels.push_back(spectral_channel_name(nm));
     }
     Image image = make_image(view.sensor.width, view.sensor.height, std::move(channels));
-    parallel_for(
-        image.height, settings.threads,
-        [&](int v) {
-            for (int u = 0; u < image.width; ++u) {
-                render_pixel(view, pupil, settings, u, v, image);
-            }
-        },
+    const SpectralLens<double> lens = spectral_lens(view.strata);
+    const PupilSlices slices(pupil, lens.wavelengths());
+    const CameraPathSource<double> source{
+        .sensor = view.sensor, .lens = &lens, .pupil = &slices, .seed = settings.seed};
+    parallel_for_workers(
+        image.height, settings.threads, [&] { return RowRenderer(view, source, settings.samples_per_pixel, image); },
         [&](int rows) {
             if (progress) {
                 progress(static_cast<double>(rows) / image.height);

@@ -7,23 +7,11 @@
 #include "engine/io/image.h"
 #include "engine/optics/trace.h"
 #include "engine/pupil/pupil_map.h"
+#include "engine/render/sensor.h"
 #include "engine/scene/chart.h"
 #include "engine/scene/pose.h"
 
 namespace lensproof {
-
-/// The sensor behind a lens: square pixels, centred on the axis. The picture is turned upright, as a camera does it:
-/// pixel (u, v) lies at x = −(u − (width − 1)/2) pitch, y = (v − (height − 1)/2) pitch in lens space.
-struct Sensor {
-    int width = 0;
-    int height = 0;
-    double pixel_pitch_mm = 0.0;
-
-    [[nodiscard]] Vec2d position(double u, double v) const {
-        return {-(u - 0.5 * (width - 1)) * pixel_pitch_mm, (v - 0.5 * (height - 1)) * pixel_pitch_mm};
-    }
-    [[nodiscard]] double half_diagonal_mm() const;
-};
 
 /// One of the wavelength strata that a render samples evenly.
 struct WavelengthStratum {
@@ -32,6 +20,10 @@ struct WavelengthStratum {
     double white_radiance = 0.0;  // of a perfect white diffuser in the scene's light, W·m⁻²·sr⁻¹·nm⁻¹
     Vec3d rgb_weights;  // linear RGB a film irradiance of 1 W·m⁻²·nm⁻¹ yields per nm, exposure included
 };
+
+/// Reflectance of the world where a ray that left the lens arrives; a world as white as the chart's white, in which the
+/// chart stands.
+double seen_reflectance(const Chart& chart, const RigidMotion& pose, const Ray<double>& outwards);
 
 /// What is seen. The world around the chart is as white as its white, in every direction.
 struct SeenChart {

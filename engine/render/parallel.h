@@ -9,10 +9,11 @@
 
 namespace lensproof {
 
-/// Calls work(i) for every i in [0, count) on up to `threads` threads (0: one a core), in no particular order, then
-/// done(finished) under a lock after each. The first exception stops the rest and is thrown here.
-template <class Work, class Done>
-void parallel_for(int count, int threads, const Work& work, const Done& done) {
+/// Calls make_worker() on up to `threads` threads (0: one a core), and what it returned with every i in [0, count), in
+/// no particular order, each i on one of them; then done(finished) under a lock after each. So a worker may own
+/// memory that it needs for every i. The first exception stops the rest and is thrown here.
+template <class MakeWorker, class Done>
+void parallel_for_workers(int count, int threads, const MakeWorker& make_worker, const Done& done) {
     const int available = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
     const int workers = std::clamp(threads > 0 ? threads : available, 1, std::max(1, count));
     std::atomic<int> next{0};
@@ -21,6 +22,7 @@ void parallel_for(int count, int threads, const Work& work, const Done& done) {
     std::exception_ptr failure;
     const auto run = [&] {
         try {
+            auto work = make_worker();
             for (int i = next++; i < count; i = next++) {
                 work(i);
                 const std::scoped_lock lock(mutex);
@@ -42,6 +44,13 @@ void parallel_for(int count, int threads, const Work& work, const Done& done) {
     if (failure) {
         std::rethrow_exception(failure);
     }
+}
+
+/// The same where workers own nothing: calls work(i).
+template <class Work, class Done>
+void parallel_for(int count, int threads, const Work& work, const Done& done) {
+    parallel_for_workers(
+        count, threads, [&work] { return [&work](int i) { work(i); }; }, done);
 }
 
 }  // namespace lensproof

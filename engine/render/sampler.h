@@ -1,5 +1,6 @@
 // engine/render/sampler.h — well-spread sample points, each a pure function of (seed, pixel, sample).
 #pragma once
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <cstdint>
@@ -16,7 +17,7 @@ constexpr std::uint64_t mixed(std::uint64_t x) {
     return x ^ (x >> 31U);
 }
 
-constexpr std::uint32_t reversed_bits(std::uint32_t x) {
+[[gnu::always_inline]] constexpr std::uint32_t reversed_bits(std::uint32_t x) {
     x = ((x >> 1U) & 0x55555555U) | ((x & 0x55555555U) << 1U);
     x = ((x >> 2U) & 0x33333333U) | ((x & 0x33333333U) << 2U);
     x = ((x >> 4U) & 0x0f0f0f0fU) | ((x & 0x0f0f0f0fU) << 4U);
@@ -24,15 +25,15 @@ constexpr std::uint32_t reversed_bits(std::uint32_t x) {
     return (x >> 16U) | (x << 16U);
 }
 
-/// Owen's nested uniform scramble by a hash (Laine & Karras 2011, as improved by Burley, JCGT 9(4), 2020, listing 3).
-constexpr std::uint32_t owen_scrambled(std::uint32_t x, std::uint32_t seed) {
-    x = reversed_bits(x);
-    x += seed;
+/// A number in (0, 1) from bits by Owen's nested uniform scramble, which a hash stands for (Laine & Karras 2011, as
+/// improved by Burley, JCGT 9(4), 2020, listing 3). The bits come in reverse.
+[[gnu::always_inline]] constexpr double scrambled_number(std::uint32_t reversed, std::uint32_t seed) {
+    std::uint32_t x = reversed + seed;
     x ^= x * 0x6c50b47cU;
     x ^= x * 0xb82f1e52U;
     x ^= x * 0xc7afe638U;
     x ^= x * 0x8d22f6e6U;
-    return reversed_bits(x);
+    return (reversed_bits(x) + 0.5) * 0x1p-32;
 }
 
 inline constexpr int kDimensions = 5;
@@ -72,6 +73,37 @@ constexpr DirectionNumbers make_direction_numbers() {
 
 inline constexpr DirectionNumbers kDirections = make_direction_numbers();
 
+using PointBits = std::array<std::uint32_t, kDimensions>;
+
+/// The point of the unscrambled sequence. It is linear in the bits of `sample`: the point of a ^ b is that of a ^ that
+/// of b.
+constexpr PointBits sobol_point(std::uint32_t sample) {
+    PointBits x{};
+    for (std::uint32_t rest = sample; rest != 0; rest &= rest - 1) {
+        for (int d = 0; d < kDimensions; ++d) {
+            x[d] ^= kDirections[d][std::countr_zero(rest)];
+        }
+    }
+    return x;
+}
+
+/// The first points, a column a dimension, with their bits in reverse, as the scramble wants them.
+inline constexpr std::uint32_t kBlock = 256;
+using PointBlock = std::array<std::array<std::uint32_t, kBlock>, kDimensions>;
+
+constexpr PointBlock make_first_points() {
+    PointBlock block{};
+    for (std::uint32_t i = 0; i < kBlock; ++i) {
+        const PointBits x = sobol_point(i);
+        for (int d = 0; d < kDimensions; ++d) {
+            block[d][i] = reversed_bits(x[d]);
+        }
+    }
+    return block;
+}
+
+inline constexpr PointBlock kFirstPoints = make_first_points();
+
 }  // namespace sampler_detail
 
 /// Five numbers in (0, 1), the `sample`-th point of a Sobol sequence that is Owen-scrambled per pixel and dimension:
@@ -89,17 +121,33 @@ class PixelSampler {
     }
 
     [[nodiscard]] constexpr std::array<double, kDimensions> point(std::uint32_t sample) const {
-        std::array<std::uint32_t, kDimensions> x{};
-        for (std::uint32_t rest = sample; rest != 0; rest &= rest - 1) {
-            for (int d = 0; d < kDimensions; ++d) {
-                x[d] ^= sampler_detail::kDirections[d][std::countr_zero(rest)];
-            }
-        }
+        const sampler_detail::PointBits x = sampler_detail::sobol_point(sample);
         std::array<double, kDimensions> values{};
         for (int d = 0; d < kDimensions; ++d) {
-            values[d] = (sampler_detail::owen_scrambled(x[d], scramble_[d]) + 0.5) * 0x1p-32;
+            values[d] = sampler_detail::scrambled_number(sampler_detail::reversed_bits(x[d]), scramble_[d]);
         }
         return values;
+    }
+
+    /// The points of the samples `first` … `first` + `count` − 1, a column a dimension: what `point` gives, in a
+    /// fraction of the time. Inlined everywhere, so that code for wider registers gets its own.
+    [[gnu::always_inline]] constexpr void points(std::uint32_t first, std::uint32_t count,
+                                                 const std::array<double*, kDimensions>& columns) const {
+        using sampler_detail::kBlock;
+        for (std::uint32_t done = 0; done < count;) {
+            const std::uint32_t in_block = (first + done) % kBlock;
+            const std::uint32_t end = std::min(count, done + (kBlock - in_block));
+            const sampler_detail::PointBits block = sampler_detail::sobol_point(first + done - in_block);
+            for (int d = 0; d < kDimensions; ++d) {
+                const std::uint32_t* x = sampler_detail::kFirstPoints[d].data() + in_block;
+                const std::uint32_t of_block = sampler_detail::reversed_bits(block[d]);
+                double* values = columns[d] + done;
+                for (std::uint32_t i = 0; i < end - done; ++i) {
+                    values[i] = sampler_detail::scrambled_number(x[i] ^ of_block, scramble_[d]);
+                }
+            }
+            done = end;
+        }
     }
 
   private:

@@ -1,7 +1,5 @@
 #include "engine/scene/chart.h"
 
-#include <cmath>
-
 namespace lensproof {
 
 namespace {
@@ -14,21 +12,26 @@ struct Overloaded : Fs... {
 template <class... Fs>
 Overloaded(Fs...) -> Overloaded<Fs...>;  // clang before 17 does not deduce it for an aggregate
 
+// Called for every camera path: whole numbers by conversion, which needs no function call on any machine, and no root.
+
 bool is_black(const Checkerboard& board, double x_mm, double y_mm) {
-    const double column = std::floor(x_mm / board.square_mm + 0.5 * board.columns);
-    const double row = std::floor(y_mm / board.square_mm + 0.5 * board.rows);
-    const bool on_board = column >= 0 && column < board.columns && row >= 0 && row < board.rows;
-    return on_board && std::fmod(column + row, 2.0) == 0.0;
+    const double x = x_mm / board.square_mm + 0.5 * board.columns;
+    const double y = y_mm / board.square_mm + 0.5 * board.rows;
+    const bool on_board = x >= 0.0 && x < board.columns && y >= 0.0 && y < board.rows;
+    return on_board && (static_cast<int>(x) + static_cast<int>(y)) % 2 == 0;
 }
 
 bool is_black(const DiscGrid& grid, double x_mm, double y_mm) {
-    const double first_x = -0.5 * (grid.columns - 1) * grid.pitch_mm;
-    const double first_y = -0.5 * (grid.rows - 1) * grid.pitch_mm;
-    const double column = std::round((x_mm - first_x) / grid.pitch_mm);
-    const double row = std::round((y_mm - first_y) / grid.pitch_mm);
-    const bool on_grid = column >= 0 && column < grid.columns && row >= 0 && row < grid.rows;
-    return on_grid && std::hypot(x_mm - first_x - column * grid.pitch_mm, y_mm - first_y - row * grid.pitch_mm) <
-                          0.5 * grid.diameter_mm;
+    // In cells of one pitch, each with its disc in the middle.
+    const double x = x_mm / grid.pitch_mm + 0.5 * grid.columns;
+    const double y = y_mm / grid.pitch_mm + 0.5 * grid.rows;
+    if (!(x >= 0.0 && x < grid.columns && y >= 0.0 && y < grid.rows)) {
+        return false;
+    }
+    const double from_middle_x = x - static_cast<int>(x) - 0.5;
+    const double from_middle_y = y - static_cast<int>(y) - 0.5;
+    const double radius = 0.5 * grid.diameter_mm / grid.pitch_mm;
+    return from_middle_x * from_middle_x + from_middle_y * from_middle_y < radius * radius;
 }
 
 bool is_black(const FlatField&, double, double) {

@@ -50,14 +50,4 @@ RigidMotion place(const Placement& placement) {
     return {.rotation_rows = product(facing, tilt), .translation = placement.distance_mm * direction};
 }
 
-Vec3d rotate(const RigidMotion& motion, const Vec3d& v) {
-    const auto& r = motion.rotation_rows;
-    return {dot(r[0], v), dot(r[1], v), dot(r[2], v)};
-}
-
-Vec3d rotate_back(const RigidMotion& motion, const Vec3d& v) {
-    const auto& r = motion.rotation_rows;
-    return v.x * r[0] + v.y * r[1] + v.z * r[2];
-}
-
 }  // namespace lensproof

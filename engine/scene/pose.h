@@ -31,7 +31,13 @@ inline Vec3d camera_to_lens(const Vec3d& v) {
 }
 
 /// R · v, and Rᵀ · v.
-Vec3d rotate(const RigidMotion& motion, const Vec3d& v);
-Vec3d rotate_back(const RigidMotion& motion, const Vec3d& v);
+inline Vec3d rotate(const RigidMotion& motion, const Vec3d& v) {
+    const auto& r = motion.rotation_rows;
+    return {dot(r[0], v), dot(r[1], v), dot(r[2], v)};
+}
+inline Vec3d rotate_back(const RigidMotion& motion, const Vec3d& v) {
+    const auto& r = motion.rotation_rows;
+    return v.x * r[0] + v.y * r[1] + v.z * r[2];
+}
 
 }  // namespace lensproof

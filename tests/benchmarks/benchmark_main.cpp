@@ -91,6 +91,7 @@ int main(int argc, char** argv) {
     }
     lensproof::register_trace_benchmarks();
     lensproof::register_render_benchmarks();
+    lensproof::register_camera_path_benchmarks();
     lensproof::register_measure_benchmarks();
     lensproof::register_analysis_benchmarks();
     lensproof::RatioReporter reporter;

@@ -14,6 +14,10 @@ void register_trace_benchmarks();
 /// pupil_map/LENS: setting one up over 400 to 700 nm; pupil_sample/LENS: one point of the pupil.
 void register_render_benchmarks();
 
+/// sampler/points/…: 64 points of a pixel, one by one, and in columns with their film positions (counter: points per
+/// second).
+void register_camera_path_benchmarks();
+
 /// chief_rays/LENS/…: construction and aiming; refine/CHART: sub-pixel positions of all points of one chart in one
 /// channel (counter: points per second).
 void register_measure_benchmarks();

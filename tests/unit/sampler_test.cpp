@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <array>
+#include <utility>
 
 namespace lensproof {
 namespace {
@@ -36,6 +37,26 @@ TEST(Sampler, ThePixelIsStratifiedInBothDirections) {
     }
     for (const int count : hits) {
         EXPECT_EQ(count, 1);
+    }
+}
+
+// Columns hold what single points are, to the bit: from any sample on, over the ends of the blocks that they are made
+// in, and of one point alone.
+TEST(Sampler, ColumnsHoldTheSinglePoints) {
+    constexpr std::uint32_t kMost = 600;
+    std::array<std::array<double, kMost>, PixelSampler::kDimensions> columns{};
+    const std::array<double*, PixelSampler::kDimensions> to{columns[0].data(), columns[1].data(), columns[2].data(),
+                                                            columns[3].data(), columns[4].data()};
+    const PixelSampler sampler(11, 4321);
+    for (const auto& [first, count] :
+         {std::pair{0U, 64U}, {3U, 1U}, {255U, 2U}, {256U, 256U}, {1000U, kMost}, {0x12345678U, 300U}, {7U, 0U}}) {
+        sampler.points(first, count, to);
+        for (std::uint32_t i = 0; i < count; ++i) {
+            const auto point = sampler.point(first + i);
+            for (int d = 0; d < PixelSampler::kDimensions; ++d) {
+                EXPECT_EQ(columns[d][i], point[d]) << "sample " << first + i << ", dimension " << d;
+            }
+        }
     }
 }
 

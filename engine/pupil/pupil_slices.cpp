@@ -1,0 +1,114 @@
+#include "engine/pupil/pupil_slices.h"
+
+#include <algorithm>
+#include <iterator>
+
+namespace lensproof {
+
+namespace {
+
+static_assert(PupilSliceTables::kPanels == kPupilPanels && PupilSliceTables::kAreaSteps == kGuideSteps);
+
+constexpr int kMostSlices = 256;  // of some 30 kB
+
+PupilRegion mean(const PupilRegion& a, const PupilRegion& b, double t) {
+    const auto between = [t](double from, double to) { return (1.0 - t) * from + t * to; };
+    PupilRegion region{.left = between(a.left, b.left), .width = between(a.width, b.width)};
+    for (std::size_t i = 0; i < region.columns.size(); ++i) {
+        const PupilColumn& from = a.columns[i];
+        const PupilColumn& to = b.columns[i];
+        region.columns[i] = {.lower = between(from.lower, to.lower),
+                             .upper = between(from.upper, to.upper),
+                             .area_before = between(from.area_before, to.area_before)};
+    }
+    return region;
+}
+
+double position_of(int slice, int slices) {
+    return slices > 1 ? slice / (slices - 1.0) : 0.0;
+}
+
+}  // namespace
+
+PupilSlices::PupilSlices(const PupilMap& map, int slices) : map_(map), slices_(slices) {
+    const PupilNodes& nodes = map.nodes();
+    if (nodes.regions.empty() || nodes.azimuths > 1 || nodes.symmetry != PupilSymmetry::mirror ||
+        slices > kMostSlices) {
+        return;
+    }
+    const std::size_t count = nodes.shares.size();
+    for (std::size_t i = 0; i + 1 < count; ++i) {
+        per_step_.push_back(1.0 / (nodes.shares[i + 1] - nodes.shares[i]));
+    }
+    std::int32_t below = 0;
+    for (int i = 0; i <= PupilSliceTables::kRadiusSteps; ++i) {
+        while (below + 2 < static_cast<std::int32_t>(count) &&
+               nodes.shares[below + 1] * PupilSliceTables::kRadiusSteps <= i) {
+            ++below;
+        }
+        node_below_.push_back(below);
+    }
+    for (int slice = 0; slice < slices; ++slice) {
+        add_slice(position_of(slice, slices));
+    }
+    panel_below_.insert(panel_below_.end(), kBytesBeyond, 0);
+    const PupilShares& shares = pupil_shares(nodes.symmetry);
+    const RearDisc& disc = map.disc();
+    tables_ = {.nodes = static_cast<int>(count),
+               .per_end = per_end_.data(),
+               .shares = nodes.shares.data(),
+               .per_step = per_step_.data(),
+               .node_below = node_below_.data(),
+               .regions = regions_.data(),
+               .panel_below = panel_below_.data(),
+               .panel_shares = shares.at.data(),
+               .per_panel = shares.per_width.data(),
+               .disc_radius2 = disc.radius * disc.radius,
+               .disc_density = map.defensive_share() / disc.area(),
+               .defensive_share = map.defensive_share(),
+               .per_other_share = 1.0 / (1.0 - map.defensive_share())};
+}
+
+void PupilSlices::add_slice(double position) {
+    const PupilNodes& nodes = map_.nodes();
+    const std::vector<double>& positions = nodes.positions;
+    std::size_t below = 0;
+    while (below + 2 < positions.size() && positions[below + 1] < position) {
+        ++below;
+    }
+    const std::size_t above = std::min(below + 1, positions.size() - 1);
+    const double t = above > below
+                         ? std::clamp((position - positions[below]) / (positions[above] - positions[below]), 0.0, 1.0)
+                         : 0.0;
+    per_end_.push_back(1.0 / ((1.0 - t) * nodes.ends_mm[below] + t * nodes.ends_mm[above]));
+    std::vector<PanelGuide> guides;
+    for (std::size_t i = 0; i < nodes.shares.size(); ++i) {
+        const PupilRegion region =
+            mean(nodes.regions[nodes.index(below, 0, i)], nodes.regions[nodes.index(above, 0, i)], t);
+        regions_.push_back(region.width);
+        for (const PupilColumn& column : region.columns) {
+            regions_.insert(regions_.end(), {column.lower, column.upper, column.area_before});
+        }
+        guides.push_back(panel_guide(region));
+    }
+    for (std::size_t i = 0; i < guides.size(); ++i) {
+        std::ranges::transform(guides[i], guides[std::min(i + 1, guides.size() - 1)], std::back_inserter(panel_below_),
+                               [](std::uint8_t a, std::uint8_t b) { return std::min(a, b); });
+    }
+}
+
+PupilDraw<double> PupilSlices::sample(Vec2d sensor_point, int slice, double u, double v) const {
+    if (tables() == nullptr) {
+        const PupilSample sample = map_.sample(sensor_point, position_of(slice, slices_), u, v);
+        return {sample.point, sample.density > 0.0 ? 1.0 / sample.density : 0.0};
+    }
+    const PupilSlice<double> region(tables_, slice, sensor_point);
+    if (u < tables_.defensive_share) {
+        const Vec2d point = map_.disc().warped(u / tables_.defensive_share, v);
+        const double of_region = region.contains(point) ? (1.0 - tables_.defensive_share) / region.area() : 0.0;
+        return {point, 1.0 / (tables_.disc_density + of_region)};
+    }
+    return region.sample(u, v);
+}
+
+}  // namespace lensproof

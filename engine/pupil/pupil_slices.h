@@ -1,0 +1,41 @@
+// engine/pupil/pupil_slices.h — a pupil map at the wavelengths that a renderer samples, for drawing many points fast.
+#pragma once
+#include <cstdint>
+#include <vector>
+
+#include "engine/pupil/pupil_map.h"
+#include "engine/pupil/pupil_slice.h"
+
+namespace lensproof {
+
+/// A PupilMap at the positions i / (n − 1) of its band: what it interpolates over the band is interpolated here once,
+/// and laid out for packets. The map is held by reference.
+class PupilSlices {
+  public:
+    PupilSlices(const PupilMap& map, int slices);
+    PupilSlices(const PupilSlices&) = delete;
+    PupilSlices& operator=(const PupilSlices&) = delete;
+
+    /// What the map draws at the slice's position, but for rounding.
+    [[nodiscard]] PupilDraw<double> sample(Vec2d sensor_point, int slice, double u, double v) const;
+
+    [[nodiscard]] const PupilMap& map() const { return map_; }
+
+    /// For inner loops, which draw with them what `sample` draws, to the bit. Nothing where the lens is not
+    /// rotationally symmetric, passes no light, or has more slices than are worth keeping: `sample` then asks the map.
+    [[nodiscard]] const PupilSliceTables* tables() const { return regions_.empty() ? nullptr : &tables_; }
+
+  private:
+    void add_slice(double position);
+
+    const PupilMap& map_;
+    int slices_;
+    std::vector<double> per_end_;
+    std::vector<double> per_step_;
+    std::vector<std::int32_t> node_below_;
+    std::vector<double> regions_;
+    std::vector<std::uint8_t> panel_below_;
+    PupilSliceTables tables_;
+};
+
+}  // namespace lensproof

@@ -1,0 +1,37 @@
+// engine/render/packet/path_kernels.h — the loops that camera paths start with, one of each for each width of packets.
+#pragma once
+#include <cstdint>
+
+#include "engine/optics/packet/trace_batch.h"
+#include "engine/pupil/pupil_slice.h"
+#include "engine/render/packet/path_chunk.h"
+
+namespace lensproof {
+
+/// The loops of one level; all levels yield the same bits.
+template <class T>
+struct PathKernels {
+    /// Draws `count` samples: pixel, sample, film point, wavelength, numbers for the pupil. Moves the cursor.
+    void (*draw)(const PathSampling& sampling, int count, PathCursor& cursor, PathStarts& starts);
+
+    /// Points of the pupil and their areas; of those that are drawn in defence it leaves −1 as area.
+    void (*draw_pupil)(const PupilSliceTables& slices, PathStarts& starts);
+
+    /// From film and pupil points the rays and their etendue.
+    void (*aim)(double film_z, double pupil_z, PathStarts& starts, RayBatch<T>& rays);
+};
+
+/// Those of an available level.
+template <class T>
+const PathKernels<T>& path_kernels(SimdLevel level);
+
+struct LevelPathKernels {
+    PathKernels<float> in_float;
+    PathKernels<double> in_double;
+};
+LevelPathKernels scalar_path_kernels();
+LevelPathKernels baseline_path_kernels();
+LevelPathKernels avx2_path_kernels();    // x86-64 alone
+LevelPathKernels avx512_path_kernels();  // x86-64 alone
+
+}  // namespace lensproof

@@ -1,0 +1,23 @@
+// engine/render/sensor.h — where the pixels of a sensor lie behind a lens.
+#pragma once
+#include <cmath>
+#include <cstdint>
+
+#include "engine/optics/vec.h"
+
+namespace lensproof {
+
+/// The sensor behind a lens: square pixels, centred on the axis. The picture is turned upright, as a camera does it:
+/// pixel (u, v) lies at x = −(u − (width − 1)/2) pitch, y = (v − (height − 1)/2) pitch in lens space.
+struct Sensor {
+    int width = 0;
+    int height = 0;
+    double pixel_pitch_mm = 0.0;
+
+    [[nodiscard]] Vec2d position(double u, double v) const {
+        return {-(u - 0.5 * (width - 1)) * pixel_pitch_mm, (v - 0.5 * (height - 1)) * pixel_pitch_mm};
+    }
+    [[nodiscard]] double half_diagonal_mm() const { return 0.5 * std::hypot(width, height) * pixel_pitch_mm; }
+};
+
+}  // namespace lensproof

@@ -1,0 +1,213 @@
+#include <benchmark/benchmark.h>
+#include <fmt/format.h>
+
+#include <memory>
+
+#include "engine/optics/focus.h"
+#include "engine/render/camera_paths.h"
+#include "engine/render/chart_render.h"
+#include "engine/render/sampler.h"
+#include "engine/scene/pose.h"
+#include "tests/benchmarks/benchmarks.h"
+
+namespace lensproof {
+
+namespace {
+
+constexpr std::uint32_t kSamples = 64;  // of a pixel
+
+void time_points_one_by_one(benchmark::State& state) {
+    std::uint32_t pixel = 0;
+    while (state.KeepRunning()) {
+        const PixelSampler sampler(0, pixel++);
+        for (std::uint32_t i = 0; i < kSamples; ++i) {
+            benchmark::DoNotOptimize(sampler.point(i));
+        }
+    }
+    state.counters["points/s"] =
+        benchmark::Counter(static_cast<double>(state.iterations()) * kSamples, benchmark::Counter::kIsRate);
+}
+
+/// As camera paths take them: in columns, film positions included.
+void time_points_in_columns(benchmark::State& state, SimdLevel level) {
+    const PathSampling sampling{
+        .sensor = {.width = 64, .height = 48, .pixel_pitch_mm = 0.01}, .seed = 0, .wavelengths = kSamples};
+    const auto starts = std::make_unique<PathStarts>();
+    PathCursor cursor{.samples = kSamples};
+    while (state.KeepRunning()) {
+        path_kernels<double>(level).draw(sampling, kSamples, cursor, *starts);
+        benchmark::DoNotOptimize(*starts);
+    }
+    state.counters["points/s"] =
+        benchmark::Counter(static_cast<double>(state.iterations()) * kSamples, benchmark::Counter::kIsRate);
+}
+
+struct Setting {
+    const char* lens;
+    double f_number;
+    double focus_distance_mm;
+    double half_diagonal_mm;  // of the sensor: about the image circle's radius
+};
+
+constexpr Setting kSettings[] = {
+    {"tessar", 2.8, 10000.0, 45.0},          {"petzval", 2.2, 10000.0, 22.5},
+    {"muller-fisheye", 8.0, 50000.0, 12.75}, {"double-gauss-tronnier", 2.0, 5000.0, 21.6},
+    {"wide-nakamura", 8.0, 5000.0, 17.0},    {"westrogon-24", 8.0, 5000.0, 18.0},
+};
+
+/// A picture of 40 × 30 pixels, at 64 wavelengths from 400 nm to 700 nm.
+class PathScene {
+  public:
+    explicit PathScene(const Setting& setting)
+        : lens_(focused_at(with_f_number(load_lens(setting.lens), setting.f_number), setting.focus_distance_mm)),
+          in_double_(at_wavelengths<double>(lens_, wavelengths())),
+          in_float_(at_wavelengths<float>(lens_, wavelengths())),
+          sensor_{.width = 40, .height = 30, .pixel_pitch_mm = setting.half_diagonal_mm / 25.0},
+          pose_(place({.distance_mm = setting.focus_distance_mm})),
+          chart_{.pattern = DiscGrid{12, 9, 0.05 * setting.focus_distance_mm, 0.025 * setting.focus_distance_mm}},
+          pupil_(in_double_.at(), lens_.is_rotationally_symmetric, setting.half_diagonal_mm),
+          slices_(pupil_, in_double_.wavelengths()) {}
+
+    [[nodiscard]] std::uint32_t pixels() const { return 40 * 30; }
+    [[nodiscard]] const Sensor& sensor() const { return sensor_; }
+    [[nodiscard]] const PupilMap& pupil() const { return pupil_; }
+
+    template <class T>
+    [[nodiscard]] const SpectralLens<T>& lens() const {
+        if constexpr (std::is_same_v<T, float>) {
+            return in_float_;
+        } else {
+            return in_double_;
+        }
+    }
+
+    template <class T>
+    [[nodiscard]] CameraPathSource<T> source() const {
+        return {.sensor = sensor_, .lens = &lens<T>(), .pupil = &slices_, .seed = 0};
+    }
+
+    /// Work as a scene makes it: what the ray sees of a chart.
+    template <class T>
+    [[nodiscard]] double look_up(const Ray<T>& ray) const {
+        const auto in_double = [](const Vec3<T>& v) { return Vec3d{v.x, v.y, v.z}; };
+        return seen_reflectance(chart_, pose_, {in_double(ray.origin), in_double(ray.direction)});
+    }
+
+  private:
+    static std::vector<double> wavelengths() {
+        std::vector<double> nm;
+        for (int i = 0; i < 64; ++i) {
+            nm.push_back(400.0 + 300.0 * (i + 0.5) / 64);
+        }
+        return nm;
+    }
+
+    Lens lens_;
+    SpectralLens<double> in_double_;
+    SpectralLens<float> in_float_;
+    Sensor sensor_;
+    RigidMotion pose_;
+    Chart chart_;
+    PupilMap pupil_;
+    PupilSlices slices_;
+};
+
+enum class Consumer { none, chart };
+
+void count_paths(benchmark::State& state, std::int64_t valid, std::int64_t started) {
+    const double total = static_cast<double>(valid) * static_cast<double>(state.iterations());
+    state.counters["valid_paths/s"] = benchmark::Counter(total, benchmark::Counter::kIsRate);
+    state.counters["s/valid_path"] =
+        benchmark::Counter(total, benchmark::Counter::kIsRate | benchmark::Counter::kInvert);
+    state.counters["passage"] = static_cast<double>(valid) / static_cast<double>(started);
+}
+
+/// Path by path through the scalar tracer, each shaded before the next is begun.
+void time_one_by_one(benchmark::State& state, const Setting& setting, Consumer consumer) {
+    const PathScene scene(setting);
+    const PupilMap& pupil = scene.pupil();
+    std::int64_t valid = 0;
+    std::int64_t started = 0;
+    while (state.KeepRunning()) {
+        valid = 0;
+        started = 0;
+        for (std::uint32_t pixel = 0; pixel < scene.pixels(); ++pixel) {
+            const PixelSampler sampler(0, pixel);
+            for (std::uint32_t sample = 0; sample < kSamples; ++sample) {
+                const auto xi = sampler.point(sample);
+                const int wavelength = static_cast<int>(xi[4] * 64);
+                const TraceLens<double>& lens = scene.lens<double>().at(wavelength);
+                const Vec2d at = scene.sensor().position(pixel % 40 - 0.5 + xi[0], pixel / 40 - 0.5 + xi[1]);
+                const PupilSample in_pupil = pupil.sample(at, wavelength / 63.0, xi[2], xi[3]);
+                if (!(in_pupil.density > 0.0)) {
+                    continue;
+                }
+                ++started;
+                const Vec3d film{at.x, at.y, lens.image_z};
+                const Vec3d way = Vec3d{in_pupil.point.x, in_pupil.point.y, pupil.plane_z()} - film;
+                const double distance2 = dot(way, way);
+                const Ray<double> ray{film, (1.0 / std::sqrt(distance2)) * way};
+                const TracedRay<double> traced = trace<Direction::reverse>(lens, ray);
+                if (traced.status == RayStatus::ok) {
+                    ++valid;
+                    const double weight =
+                        traced.transmittance * ray.direction.z * ray.direction.z / (distance2 * in_pupil.density);
+                    benchmark::DoNotOptimize(consumer == Consumer::chart ? weight * scene.look_up(traced.ray) : weight);
+                }
+            }
+        }
+    }
+    count_paths(state, valid, started);
+}
+
+template <class T>
+void time_buffers(benchmark::State& state, const Setting& setting, SimdLevel level, Consumer consumer) {
+    const PathScene scene(setting);
+    const CameraPathSource<T> source = scene.source<T>();
+    CameraPathProducer<T> producer(source, level);
+    CameraPathBuffer<T> paths;
+    std::int64_t valid = 0;
+    while (state.KeepRunning()) {
+        valid = 0;
+        producer.start({.pixels = scene.pixels(), .samples = kSamples});
+        while (producer.fill(paths)) {
+            valid += paths.size;
+            for (int i = 0; consumer == Consumer::chart && i < paths.size; ++i) {
+                benchmark::DoNotOptimize(paths.weight[static_cast<std::size_t>(i)] * scene.look_up(paths.ray(i)));
+            }
+            benchmark::ClobberMemory();
+        }
+    }
+    count_paths(state, valid, producer.started() / static_cast<std::int64_t>(state.iterations()));
+}
+
+void register_camera_paths(const Setting& setting, Consumer consumer) {
+    const SimdLevel widest = available_simd_levels().back();
+    const auto add = [&](const char* way, auto run) {
+        benchmark::RegisterBenchmark(
+            fmt::format("camera_paths/{}/{}{}", setting.lens, way, consumer == Consumer::chart ? "/chart" : "").c_str(),
+            run)
+            ->Unit(benchmark::kMillisecond);
+    };
+    add("one_by_one", [=](benchmark::State& state) { time_one_by_one(state, setting, consumer); });
+    add("buffers/scalar",
+        [=](benchmark::State& state) { time_buffers<double>(state, setting, SimdLevel::scalar, consumer); });
+    add("buffers/double", [=](benchmark::State& state) { time_buffers<double>(state, setting, widest, consumer); });
+    add("buffers/float", [=](benchmark::State& state) { time_buffers<float>(state, setting, widest, consumer); });
+}
+
+}  // namespace
+
+void register_camera_path_benchmarks() {
+    benchmark::RegisterBenchmark("sampler/points/one_by_one", time_points_one_by_one);
+    for (const SimdLevel level : available_simd_levels()) {
+        benchmark::RegisterBenchmark(fmt::format("sampler/points/{}", simd_name(level)).c_str(),
+                                     [level](benchmark::State& state) { time_points_in_columns(state, level); });
+    }
+    for (const Setting& setting : kSettings) {
+        register_camera_paths(setting, Consumer::none);
+        register_camera_paths(setting, Consumer::chart);
+    }
+}
+
+}  // namespace lensproof
