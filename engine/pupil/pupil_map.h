@@ -61,8 +61,7 @@ class PupilMap {
         return regions_.area(sensor_point, band_position);
     }
 
-    [[nodiscard]] const PupilNodes& nodes() const { return nodes_; }
-    [[nodiscard]] double defensive_share() const { return defensive_share_; }
+    [[nodiscard]] const RegionMap& regions() const { return regions_; }
 
     /// How many regions are stored.
     [[nodiscard]] std::size_t size() const { return regions_.nodes().regions.size(); }

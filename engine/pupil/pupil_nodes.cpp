@@ -415,9 +415,8 @@ PupilNodes find_pupil_region(std::vector<TraceLens<double>> band, const RayFamil
     }
     stations.trace(requests);
     std::vector<PupilOutline> outlines;
-    for (const PupilStations::Request& request : requests) {
-        outlines.push_back(*stations.find(request.place));
-    }
+    std::ranges::transform(requests, std::back_inserter(outlines),
+                           [&](const PupilStations::Request& request) { return *stations.find(request.place); });
     if (std::ranges::all_of(outlines, &PupilOutline::is_empty)) {
         return {};
     }

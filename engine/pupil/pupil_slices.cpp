@@ -31,7 +31,7 @@ double position_of(int slice, int slices) {
 }  // namespace
 
 PupilSlices::PupilSlices(const PupilMap& map, int slices) : map_(map), slices_(slices) {
-    const PupilNodes& nodes = map.nodes();
+    const PupilNodes& nodes = map.regions().nodes();
     if (nodes.regions.empty() || nodes.azimuths > 1 || nodes.symmetry != PupilSymmetry::mirror ||
         slices > kMostSlices) {
         return;
@@ -53,7 +53,8 @@ PupilSlices::PupilSlices(const PupilMap& map, int slices) : map_(map), slices_(s
     }
     panel_below_.insert(panel_below_.end(), kBytesBeyond, 0);
     const PupilShares& shares = pupil_shares(nodes.symmetry);
-    const RearDisc& disc = map.disc();
+    const Disc& disc = map.regions().disc();
+    const double defensive_share = map.regions().defensive_share();
     tables_ = {.nodes = static_cast<int>(count),
                .per_end = per_end_.data(),
                .shares = nodes.shares.data(),
@@ -64,13 +65,13 @@ PupilSlices::PupilSlices(const PupilMap& map, int slices) : map_(map), slices_(s
                .panel_shares = shares.at.data(),
                .per_panel = shares.per_width.data(),
                .disc_radius2 = disc.radius * disc.radius,
-               .disc_density = map.defensive_share() / disc.area(),
-               .defensive_share = map.defensive_share(),
-               .per_other_share = 1.0 / (1.0 - map.defensive_share())};
+               .disc_density = defensive_share / disc.area(),
+               .defensive_share = defensive_share,
+               .per_other_share = 1.0 / (1.0 - defensive_share)};
 }
 
 void PupilSlices::add_slice(double position) {
-    const PupilNodes& nodes = map_.nodes();
+    const PupilNodes& nodes = map_.regions().nodes();
     const std::vector<double>& positions = nodes.positions;
     std::size_t below = 0;
     while (below + 2 < positions.size() && positions[below + 1] < position) {
@@ -80,7 +81,7 @@ void PupilSlices::add_slice(double position) {
     const double t = above > below
                          ? std::clamp((position - positions[below]) / (positions[above] - positions[below]), 0.0, 1.0)
                          : 0.0;
-    per_end_.push_back(1.0 / ((1.0 - t) * nodes.ends_mm[below] + t * nodes.ends_mm[above]));
+    per_end_.push_back(1.0 / ((1.0 - t) * nodes.ends[below] + t * nodes.ends[above]));
     std::vector<PanelGuide> guides;
     for (std::size_t i = 0; i < nodes.shares.size(); ++i) {
         const PupilRegion region =
@@ -104,7 +105,7 @@ PupilDraw<double> PupilSlices::sample(Vec2d sensor_point, int slice, double u, d
     }
     const PupilSlice<double> region(tables_, slice, sensor_point);
     if (u < tables_.defensive_share) {
-        const Vec2d point = map_.disc().warped(u / tables_.defensive_share, v);
+        const Vec2d point = map_.regions().disc().warped(u / tables_.defensive_share, v);
         const double of_region = region.contains(point) ? (1.0 - tables_.defensive_share) / region.area() : 0.0;
         return {point, 1.0 / (tables_.disc_density + of_region)};
     }

@@ -41,6 +41,7 @@ class RegionMap {
     static std::optional<RegionMap> deserialized(std::string_view bytes);
 
     [[nodiscard]] const Disc& disc() const { return disc_; }
+    [[nodiscard]] double defensive_share() const { return defensive_share_; }
     [[nodiscard]] const PupilNodes& nodes() const { return nodes_; }
 
   private:

@@ -9,6 +9,7 @@
 
 #include "engine/io/input_error.h"
 #include "engine/optics/focus.h"
+#include "engine/optics/packet/spectral_lens.h"
 #include "engine/pupil/kept_maps.h"
 #include "engine/spectral/illuminant.h"
 #include "engine/spectral/spectral_exr.h"
@@ -54,12 +55,17 @@ SpectralStrata make_strata(const Camera& camera, const Lens& lens, const Light& 
         throw InputError(fmt::format("wavelengths of {} to {} nm: the glasses of {} are known from {} to {} nm only",
                                      spectral.min_nm, spectral.max_nm, lens.name, range.min_nm, range.max_nm));
     }
+    const int count = spectral.layers * spectral.strata_per_layer;
+    if (count > SpectralLens<double>::kMostWavelengths) {
+        throw InputError(fmt::format("{} layers of {} strata are {} wavelengths, expected {} at most", spectral.layers,
+                                     spectral.strata_per_layer, count, SpectralLens<double>::kMostWavelengths));
+    }
     SpectralStrata made;
     if (min_nm != spectral.min_nm || max_nm != spectral.max_nm) {
         made.clamp_note = fmt::format("wavelengths clamped to {} to {} nm, where the glasses of {} are known", min_nm,
                                       max_nm, lens.name);
     }
-    const WavelengthStrata bands = wavelength_strata(min_nm, max_nm, spectral.layers * spectral.strata_per_layer);
+    const WavelengthStrata bands = wavelength_strata(min_nm, max_nm, count);
     const Illuminant source = illuminant(light.illuminant);
     const Spectrum radiance = radiance_of(source, light.luminance_cd_m2);
     const SensorResponse response = sensor_response(camera.response, camera.exposure, source);

@@ -85,12 +85,12 @@ bool CameraPathProducer<T>::fill(CameraPathBuffer<T>& buffer) {
 
 template <class T>
 bool CameraPathProducer<T>::draw_and_trace(int count) {
-    kernels_->draw({.sensor = source_.sensor, .seed = source_.seed, .wavelengths = source_.lens->wavelengths()}, count,
-                   cursor_, *starts_);
+    kernels_->draw_samples({.sensor = source_.sensor, .seed = source_.seed, .wavelengths = source_.lens->wavelengths()},
+                           count, cursor_, *starts_);
     if (draw_pupil_points() == 0) {
         return false;
     }
-    kernels_->aim(source_.lens->at(0).image_z, source_.pupil->map().plane_z(), *starts_, rays_);
+    kernels_->aim_rays(source_.lens->at(0).image_z, source_.pupil->map().plane_z(), *starts_, rays_);
     trace_batch<Direction::reverse>(*source_.lens, rays_, tracing_);
     return true;
 }
@@ -99,7 +99,7 @@ template <class T>
 int CameraPathProducer<T>::draw_pupil_points() {
     const PupilSliceTables* tables = source_.pupil->tables();
     if (tables != nullptr) {
-        kernels_->draw_pupil(*tables, *starts_);
+        kernels_->draw_pupil_points(*tables, *starts_);
     }
     int lit = 0;
     for (std::size_t i = 0; i < static_cast<std::size_t>(starts_->size); ++i) {

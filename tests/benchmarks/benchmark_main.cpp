@@ -55,11 +55,28 @@ class RatioReporter : public benchmark::ConsoleReporter {
             }
         }
         print_speed_ups();
+        print_buffered_speed_ups();
     }
 
     [[nodiscard]] bool failed() const { return failed_; }
 
   private:
+    /// Of every camera_paths/LENS/buffers/WHAT over paths one by one with the same consumer.
+    void print_buffered_speed_ups() const {
+        fmt::print("\nCamera paths: times as fast as one by one\n");
+        for (const auto& [name, seconds] : seconds_) {
+            const std::size_t way = name.find("/buffers/");
+            if (!name.starts_with("camera_paths/") || way == std::string::npos) {
+                continue;
+            }
+            const auto alone =
+                seconds_.find(name.substr(0, way) + "/one_by_one" + (name.ends_with("/chart") ? "/chart" : ""));
+            if (alone != seconds_.end()) {
+                fmt::print("  {:<60} {:6.2f}\n", name.substr(name.find('/') + 1), alone->second / seconds);
+            }
+        }
+    }
+
     /// Of every batch/LENS/TYPE/LEVEL/WHAT over the plain loop of the same physics, batch/LENS/plain….
     void print_speed_ups() const {
         fmt::print("\nTimes as fast as the plain scalar loop in double\n");

@@ -11,11 +11,13 @@ namespace lensproof {
 void register_trace_benchmarks();
 
 /// render/LENS/CHART: camera paths of the chart renderer on one thread (counter: paths per second);
-/// pupil_map/LENS: setting one up over 400 to 700 nm; pupil_sample/LENS: one point of the pupil.
+/// pupil_sample/LENS: one point of the pupil.
 void register_render_benchmarks();
 
 /// sampler/points/…: 64 points of a pixel, one by one, and in columns with their film positions (counter: points per
-/// second).
+/// second). camera_paths/LENS/…: a picture's paths from the film out of the lens, one by one through the scalar tracer,
+/// and in buffers at one lane and at the widest level in double and float; …/chart looks each up on a chart besides.
+/// Counters: valid paths per second, seconds a valid path, and passage.
 void register_camera_path_benchmarks();
 
 /// chief_rays/LENS/…: construction and aiming; refine/CHART: sub-pixel positions of all points of one chart in one

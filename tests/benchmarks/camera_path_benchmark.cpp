@@ -35,7 +35,7 @@ void time_points_in_columns(benchmark::State& state, SimdLevel level) {
     const auto starts = std::make_unique<PathStarts>();
     PathCursor cursor{.samples = kSamples};
     while (state.KeepRunning()) {
-        path_kernels<double>(level).draw(sampling, kSamples, cursor, *starts);
+        path_kernels<double>(level).draw_samples(sampling, kSamples, cursor, *starts);
         benchmark::DoNotOptimize(*starts);
     }
     state.counters["points/s"] =
@@ -181,6 +181,16 @@ void time_buffers(benchmark::State& state, const Setting& setting, SimdLevel lev
     count_paths(state, valid, producer.started() / static_cast<std::int64_t>(state.iterations()));
 }
 
+/// What a start without a cache costs: the map and its tables.
+void time_set_up(benchmark::State& state, const Setting& setting) {
+    const PathScene scene(setting);
+    const std::vector<TraceLens<double>>& band = scene.lens<double>().at();
+    while (state.KeepRunning()) {
+        const PupilMap map(band, true, setting.half_diagonal_mm);
+        benchmark::DoNotOptimize(PupilSlices(map, scene.lens<double>().wavelengths()).tables());
+    }
+}
+
 void register_camera_paths(const Setting& setting, Consumer consumer) {
     const SimdLevel widest = available_simd_levels().back();
     const auto add = [&](const char* way, auto run) {
@@ -205,6 +215,9 @@ void register_camera_path_benchmarks() {
                                      [level](benchmark::State& state) { time_points_in_columns(state, level); });
     }
     for (const Setting& setting : kSettings) {
+        benchmark::RegisterBenchmark(fmt::format("camera_paths/{}/set_up", setting.lens).c_str(),
+                                     [&setting](benchmark::State& state) { time_set_up(state, setting); })
+            ->Unit(benchmark::kMillisecond);
         register_camera_paths(setting, Consumer::none);
         register_camera_paths(setting, Consumer::chart);
     }

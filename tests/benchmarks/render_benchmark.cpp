@@ -59,13 +59,6 @@ std::vector<TraceLens<double>> band_of(const Setting& setting) {
     return band;
 }
 
-void time_pupil_map(benchmark::State& state, const Setting& setting) {
-    const std::vector<TraceLens<double>> band = band_of(setting);
-    while (state.KeepRunning()) {
-        benchmark::DoNotOptimize(PupilMap(band, true, setting.half_diagonal_mm));
-    }
-}
-
 void time_pupil_samples(benchmark::State& state, const Setting& setting) {
     constexpr std::uint32_t kPoints = 4096;
     const PupilMap map(band_of(setting), true, setting.half_diagonal_mm);
@@ -94,9 +87,6 @@ void register_render_benchmarks() {
                 [&setting, chart](benchmark::State& state) { time_render(state, setting, chart); })
                 ->Unit(benchmark::kMillisecond);
         }
-        benchmark::RegisterBenchmark(("pupil_map/" + setting.lens).c_str(), [&setting](benchmark::State& state) {
-            time_pupil_map(state, setting);
-        })->Unit(benchmark::kMillisecond);
         benchmark::RegisterBenchmark(("pupil_sample/" + setting.lens).c_str(),
                                      [&setting](benchmark::State& state) { time_pupil_samples(state, setting); });
     }

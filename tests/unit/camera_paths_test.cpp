@@ -19,10 +19,10 @@ const std::vector<double> kWavelengths = {430.0, 490.0, 550.0, 610.0, 670.0};
 /// A camera whose corners lie outside its image circle, so that some pixels lose a part of their paths and some all.
 template <class T>
 struct TestCamera {
-    explicit TestCamera(const std::string& name, double half_diagonal_mm)
+    explicit TestCamera(const std::string& name, double half_diagonal_mm, bool by_radius = true)
         : lens(at_wavelengths<T>(load_lens(name), kWavelengths)),
           in_double(at_wavelengths<double>(load_lens(name), kWavelengths)),
-          pupil(in_double.at(), true, half_diagonal_mm),
+          pupil(in_double.at(), by_radius, half_diagonal_mm),
           slices(pupil, lens.wavelengths()),
           source{.sensor = {.width = 8, .height = 6, .pixel_pitch_mm = half_diagonal_mm / 5.0},
                  .lens = &lens,
@@ -154,6 +154,14 @@ TYPED_TEST(CameraPaths, DoNotDependOnTheRange) {
     const TestCamera<TypeParam> camera("tessar", 70.0);
     const CameraPathRange part{.first_pixel = 19, .pixels = 5, .first_sample = 250, .samples = 12};
     expect_same(through_buffers(camera, part, 64, available_simd_levels().back()), one_by_one(camera, part), "part");
+}
+
+// A lens that is not known to be round has no tables of pupils for packets.
+TYPED_TEST(CameraPaths, HaveTheSameBitsWherePupilsAreDrawnOneByOne) {
+    const TestCamera<TypeParam> camera("tessar", 30.0, false);
+    const CameraPathRange part{.first_pixel = 0, .pixels = 48, .first_sample = 0, .samples = 3};
+    ASSERT_EQ(camera.slices.tables(), nullptr);
+    expect_same(through_buffers(camera, part, 64, available_simd_levels().back()), one_by_one(camera, part), "turned");
 }
 
 // The top left pixel lies outside the fisheye's image circle: the few paths that the map starts there in defence all

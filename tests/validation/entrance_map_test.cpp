@@ -218,9 +218,14 @@ TEST(EntranceMap, StartsFewRaysInVain) {
 // sensor's plane, in air on both sides, through every aberration and rim. Both integrals by samples of four numbers, to
 // five standard errors of their difference, which is below 0.05 %. The sensor is as large as the last light needs.
 TEST(EntranceMap, EtendueIsTheSensors) {
-    const std::vector<std::pair<Setting, double>> sensors = {
-        {{"tessar", 2.8}, 75.0}, {{"double-gauss-tronnier", 2.0}, 40.0}, {{"muller-fisheye", 4.0}, 14.0}};
-    for (const auto& [setting, sensor_radius] : sensors) {
+    struct Case {
+        Setting setting;
+        double sensor_radius;
+    };
+    for (const Case& given : {Case{{"tessar", 2.8}, 75.0}, Case{{"double-gauss-tronnier", 2.0}, 40.0},
+                              Case{{"muller-fisheye", 4.0}, 14.0}}) {
+        const Setting& setting = given.setting;
+        const double sensor_radius = given.sensor_radius;
         const Band band = band_of(setting);
         const TraceLens<double>& lens = band.seen();
         const EntranceMap entrance(band.at, true);
@@ -253,13 +258,17 @@ TEST(EntranceMap, EtendueIsTheSensors) {
 // A near point's light, per its intensity, against quadrature over the cone's outline: by a region found for the point
 // alone, which serves a band, and by a map for its distance.
 TEST(EntranceMap, SendsANearPointsFlux) {
-    const std::vector<std::tuple<Setting, double, double>> points = {{{"tessar", 2.8}, 300.0, 0.3},
-                                                                     {{"double-gauss-tronnier", 2.0}, 60.0, 0.2},
-                                                                     {{"muller-fisheye", 4.0}, 80.0, 1.2}};
-    for (const auto& [setting, object_distance, angle] : points) {
+    struct Case {
+        Setting setting;
+        double object_distance;
+        double angle;
+    };
+    for (const Case& given : {Case{{"tessar", 2.8}, 300.0, 0.3}, Case{{"double-gauss-tronnier", 2.0}, 60.0, 0.2},
+                              Case{{"muller-fisheye", 4.0}, 80.0, 1.2}}) {
+        const Setting& setting = given.setting;
         const Band band = band_of(setting);
         const ChiefRays chief_rays = band.chief_rays();
-        const FieldBundle bundle = field_bundle(chief_rays, chief_rays, angle, object_distance).value();
+        const FieldBundle bundle = field_bundle(chief_rays, chief_rays, given.angle, given.object_distance).value();
         ASSERT_TRUE(bundle.is_near());
         const double expected = flux_by_quadrature(band.seen(), bundle);
         EXPECT_GT(expected, 0.0);

@@ -29,8 +29,7 @@ enum Column { kBefore, kAfter, kForwardRatio, kReverseRatio, kColumns };
 
 template <class T>
 SpectralLens<T>::SpectralLens(std::vector<TraceLens<T>> at) : at_(std::move(at)) {
-    constexpr std::size_t kMost = 65536;
-    if (at_.empty() || at_.size() > kMost) {
+    if (at_.empty() || at_.size() > static_cast<std::size_t>(kMostWavelengths)) {
         throw std::invalid_argument("a spectral lens has 1 to 65536 wavelengths");
     }
     const std::size_t count = at_.size();

@@ -12,6 +12,8 @@ namespace lensproof {
 template <class T>
 class SpectralLens {
   public:
+    static constexpr int kMostWavelengths = 65536;
+
     /// Throws std::invalid_argument for lenses that differ in more than indices and coatings, and for none.
     explicit SpectralLens(std::vector<TraceLens<T>> at);
     SpectralLens(SpectralLens&&) noexcept = default;  // `indices` point into the table

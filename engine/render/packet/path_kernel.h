@@ -24,8 +24,10 @@ void draw_in_pixel(Sensor sensor, std::uint64_t seed, const PathCursor& cursor, 
                 {film_x, film_y, starts.pupil_u.data() + first, starts.pupil_v.data() + first,
                  starts.wavelength_number.data() + first});
     const auto width = static_cast<std::uint32_t>(sensor.width);
-    const double u = static_cast<double>(cursor.pixel % width) - 0.5;
-    const double v = static_cast<double>(cursor.pixel / width) - 0.5;
+    const std::uint32_t row = cursor.pixel / width;
+    const std::uint32_t column = cursor.pixel - row * width;
+    const double u = static_cast<double>(column) - 0.5;
+    const double v = static_cast<double>(row) - 0.5;
     for (int i = 0; i < count; ++i) {
         film_x[i] = sensor.position(u + film_x[i], 0.0).x;
     }
@@ -37,7 +39,7 @@ void draw_in_pixel(Sensor sensor, std::uint64_t seed, const PathCursor& cursor, 
 }
 
 template <class Abi>
-[[gnu::flatten]] void draw(const PathSampling& sampling, int count, PathCursor& cursor, PathStarts& starts) {
+[[gnu::flatten]] void draw_samples(const PathSampling& sampling, int count, PathCursor& cursor, PathStarts& starts) {
     starts.size = count;
     for (int done = 0; done < count;) {
         const auto left_in_pixel =
@@ -58,7 +60,7 @@ template <class Abi>
 }
 
 template <class Abi>
-[[gnu::flatten]] void draw_pupil(const PupilSliceTables& slices, PathStarts& starts) {
+[[gnu::flatten]] void draw_pupil_points(const PupilSliceTables& slices, PathStarts& starts) {
     using Numbers = Pack<double, Abi>;
     const Numbers defensive_share(slices.defensive_share);
     for (int i = 0; i < starts.size; i += Numbers::kLanes) {
@@ -74,7 +76,7 @@ template <class Abi>
 }
 
 template <class Abi, class T>
-[[gnu::flatten]] void aim(double film_z, double pupil_z, PathStarts& starts, RayBatch<T>& rays) {
+[[gnu::flatten]] void aim_rays(double film_z, double pupil_z, PathStarts& starts, RayBatch<T>& rays) {
     using Numbers = Pack<double, Abi>;
     const Numbers z(film_z);
     const Numbers way_z(pupil_z - film_z);
@@ -100,8 +102,8 @@ template <class Abi, class T>
 
 template <class Abi>
 LevelPathKernels path_kernels_of() {
-    return {.in_float = {draw<Abi>, draw_pupil<Abi>, aim<Abi, float>},
-            .in_double = {draw<Abi>, draw_pupil<Abi>, aim<Abi, double>}};
+    return {.in_float = {draw_samples<Abi>, draw_pupil_points<Abi>, aim_rays<Abi, float>},
+            .in_double = {draw_samples<Abi>, draw_pupil_points<Abi>, aim_rays<Abi, double>}};
 }
 
 }  // namespace lensproof

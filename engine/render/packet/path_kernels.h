@@ -12,13 +12,13 @@ namespace lensproof {
 template <class T>
 struct PathKernels {
     /// Draws `count` samples: pixel, sample, film point, wavelength, numbers for the pupil. Moves the cursor.
-    void (*draw)(const PathSampling& sampling, int count, PathCursor& cursor, PathStarts& starts);
+    void (*draw_samples)(const PathSampling& sampling, int count, PathCursor& cursor, PathStarts& starts);
 
     /// Points of the pupil and their areas; of those that are drawn in defence it leaves −1 as area.
-    void (*draw_pupil)(const PupilSliceTables& slices, PathStarts& starts);
+    void (*draw_pupil_points)(const PupilSliceTables& slices, PathStarts& starts);
 
     /// From film and pupil points the rays and their etendue.
-    void (*aim)(double film_z, double pupil_z, PathStarts& starts, RayBatch<T>& rays);
+    void (*aim_rays)(double film_z, double pupil_z, PathStarts& starts, RayBatch<T>& rays);
 };
 
 /// Those of an available level.
