@@ -6,20 +6,25 @@ namespace lensproof {
 
 namespace {
 
+/// Each level's functions are asked for where the machine has the level, and not before: they are made of its
+/// instructions.
 const LevelPathKernels& kernels_at(SimdLevel level) {
-    static const LevelPathKernels scalar = scalar_path_kernels();
-    static const LevelPathKernels baseline = baseline_path_kernels();
 #ifdef LENSPROOF_X86_KERNELS
-    static const LevelPathKernels avx2 = avx2_path_kernels();
-    static const LevelPathKernels avx512 = avx512_path_kernels();
-    if (level == SimdLevel::avx2) {
-        return avx2;
-    }
     if (level == SimdLevel::avx512) {
+        static const LevelPathKernels avx512 = avx512_path_kernels();
         return avx512;
     }
+    if (level == SimdLevel::avx2) {
+        static const LevelPathKernels avx2 = avx2_path_kernels();
+        return avx2;
+    }
 #endif
-    return level == SimdLevel::scalar ? scalar : baseline;
+    if (level == SimdLevel::baseline) {
+        static const LevelPathKernels baseline = baseline_path_kernels();
+        return baseline;
+    }
+    static const LevelPathKernels scalar = scalar_path_kernels();
+    return scalar;
 }
 
 }  // namespace
