@@ -9,7 +9,6 @@
 #include <numbers>
 #include <random>
 
-#include "engine/io/prescription/prescription_file.h"
 #include "engine/optics/chief_ray.h"
 #include "engine/optics/field_bundle.h"
 #include "engine/optics/float_error.h"
@@ -17,6 +16,7 @@
 #include "engine/optics/paraxial.h"
 #include "engine/spectral/wavelengths.h"
 #include "experiments/stability/jitter.h"
+#include "tests/validation/shipped_settings.h"
 
 namespace lensproof {
 namespace {
@@ -53,20 +53,6 @@ Setting make_setting(const std::string& name, const std::string& zoom) {
     setting.image_radius_mm = std::abs(chief.at_field(0.999 * chief.largest_field()).value().image_height);
     setting.pupil_diameter_mm = paraxial_data(setting.in_double).entrance_pupil_diameter;
     return setting;
-}
-
-std::vector<Setting> all_settings() {
-    std::vector<Setting> made;
-    for (const std::string& name : shipped_lens_names()) {
-        const std::vector<ZoomPosition> positions = read_prescription(find_lens_file(name)).zoom;
-        for (const ZoomPosition& position : positions) {
-            made.push_back(make_setting(name, position.name));
-        }
-        if (positions.empty()) {
-            made.push_back(make_setting(name, ""));
-        }
-    }
-    return made;
 }
 
 /// Rays that have a point of the sensor or a direction of the scene in common, told apart by a point of a disc that
@@ -322,7 +308,7 @@ TEST(FloatPrecision, IsKeptByEveryLensThatShips) {
     int other_fates = 0;
     int over_bound = 0;
     print_heading();
-    for (const Setting& setting : all_settings()) {
+    for (const Setting& setting : of_shipped_settings(make_setting)) {
         const Row camera = Measurement(setting, Direction::reverse, random).run();
         const Row scene = Measurement(setting, Direction::forward, random).run();
         print_row(setting, camera, scene);

@@ -12,6 +12,7 @@
 #include "engine/optics/lens.h"
 #include "engine/optics/paraxial.h"
 #include "engine/spectral/wavelengths.h"
+#include "tests/validation/shipped_settings.h"
 
 namespace lensproof {
 namespace {
@@ -41,19 +42,7 @@ Setting make_setting(const std::string& name, const std::string& zoom) {
 }
 
 const std::vector<Setting>& settings() {
-    static const std::vector<Setting> all = [] {
-        std::vector<Setting> made;
-        for (const std::string& name : shipped_lens_names()) {
-            const std::vector<ZoomPosition> positions = read_prescription(find_lens_file(name)).zoom;
-            for (const ZoomPosition& position : positions) {
-                made.push_back(make_setting(name, position.name));
-            }
-            if (positions.empty()) {
-                made.push_back(make_setting(name, ""));
-            }
-        }
-        return made;
-    }();
+    static const std::vector<Setting> all = of_shipped_settings(make_setting);
     return all;
 }
 

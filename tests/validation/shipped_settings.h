@@ -1,0 +1,26 @@
+// tests/validation/shipped_settings.h — every lens that ships, at each of its zoom positions.
+#pragma once
+#include <string>
+#include <vector>
+
+#include "engine/io/prescription/prescription_file.h"
+
+namespace lensproof {
+
+/// make(name, position) of each; of a lens without zoom, with an empty position.
+template <class Make>
+auto of_shipped_settings(const Make& make) {
+    std::vector<decltype(make(std::string(), std::string()))> made;
+    for (const std::string& name : shipped_lens_names()) {
+        const std::vector<ZoomPosition> positions = read_prescription(find_lens_file(name)).zoom;
+        for (const ZoomPosition& position : positions) {
+            made.push_back(make(name, position.name));
+        }
+        if (positions.empty()) {
+            made.push_back(make(name, ""));
+        }
+    }
+    return made;
+}
+
+}  // namespace lensproof
