@@ -1,0 +1,29 @@
+// engine/scene/bsdf/directions.h — directions about a surface, whose normal is z.
+#pragma once
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "engine/optics/vec.h"
+
+namespace lensproof {
+
+/// Whether both point to the same side of the surface; neither lies in it.
+inline bool on_same_side(const Vec3d& a, const Vec3d& b) {
+    return a.z * b.z > 0.0;
+}
+
+/// The other side's direction.
+inline Vec3d mirrored(const Vec3d& w) {
+    return {w.x, w.y, -w.z};
+}
+
+/// A direction of z > 0 with the density z / π per solid angle, from u1, u2 in (0, 1): a point of the unit disc, lifted
+/// onto the hemisphere (Malley).
+inline Vec3d cosine_direction(double u1, double u2) {
+    const double radius = std::sqrt(u1);
+    const double angle = 2.0 * std::numbers::pi * u2;
+    return {radius * std::cos(angle), radius * std::sin(angle), std::sqrt(std::max(0.0, 1.0 - u1))};
+}
+
+}  // namespace lensproof
