@@ -8,11 +8,11 @@
 #include <variant>
 
 #include "engine/scene/bsdf/bsdf_sample.h"
-#include "engine/scene/bsdf/diffuse.h"
+#include "engine/scene/bsdf/mix.h"
 
 namespace lensproof {
 
-using Bsdf = std::variant<DiffuseBsdf>;
+using Bsdf = std::variant<DiffuseBsdf, ConductorBsdf, DielectricBsdf, PlasticBsdf, MixBsdf>;
 
 /// f(wo, wi) |cos wi|, 1/sr. Deltas, which no given pair of directions meets, count as 0.
 ///
@@ -27,5 +27,12 @@ double density(const Bsdf& bsdf, const Vec3d& wo, const Vec3d& wi, Transport tra
 /// Draws `wi` from u_lobe, u1, u2, independent and uniform in (0, 1). Nothing where light ends: the weight is then 0.
 std::optional<BsdfSample> sample(const Bsdf& bsdf, const Vec3d& wo, double u_lobe, double u1, double u2,
                                  Transport transport);
+
+/// Whether `evaluate` is 0 for every pair of directions: lights need not be sampled there.
+bool is_delta(const Bsdf& bsdf);
+
+/// The share of light from straight above that leaves the surface again, reflected or passed, as if facets lost
+/// nothing: the albedo layer that denoisers ask for.
+SpectralSample normal_albedo(const Bsdf& bsdf);
 
 }  // namespace lensproof

@@ -13,13 +13,11 @@ double density(const DiffuseBsdf&, const Vec3d& wo, const Vec3d& wi, Transport) 
 }
 
 std::optional<BsdfSample> sample(const DiffuseBsdf& bsdf, const Vec3d& wo, double, double u1, double u2, Transport) {
-    const Vec3d upwards = cosine_direction(u1, u2);
-    if (wo.z == 0.0 || upwards.z == 0.0) {
+    const Vec3d upward = cosine_direction(u1, u2);
+    if (wo.z == 0.0 || upward.z == 0.0) {
         return std::nullopt;
     }
-    return BsdfSample{.wi = wo.z > 0.0 ? upwards : mirrored(upwards),
-                      .weight = bsdf.albedo,
-                      .density = upwards.z * std::numbers::inv_pi};
+    return BsdfSample{.wi = on_side_of(wo, upward), .weight = bsdf.albedo, .density = upward.z * std::numbers::inv_pi};
 }
 
 }  // namespace lensproof

@@ -13,9 +13,14 @@ inline bool on_same_side(const Vec3d& a, const Vec3d& b) {
     return a.z * b.z > 0.0;
 }
 
-/// The other side's direction.
-inline Vec3d mirrored(const Vec3d& w) {
-    return {w.x, w.y, -w.z};
+/// `w`, or its mirror image in the surface where it points below.
+inline Vec3d upwards(const Vec3d& w) {
+    return {w.x, w.y, std::abs(w.z)};
+}
+
+/// `upward`, or its mirror image where `side` points below the surface.
+inline Vec3d on_side_of(const Vec3d& side, const Vec3d& upward) {
+    return {upward.x, upward.y, std::copysign(upward.z, side.z)};
 }
 
 /// A direction of z > 0 with the density z / π per solid angle, from u1, u2 in (0, 1): a point of the unit disc, lifted
