@@ -1,0 +1,78 @@
+#include "engine/scene/bsdf/bsdf.h"
+
+#include <algorithm>
+
+#include "engine/scene/bsdf/fresnel.h"
+
+namespace lensproof {
+
+namespace {
+
+bool is_delta(const DiffuseBsdf&) {
+    return false;
+}
+
+bool is_delta(const ConductorBsdf& bsdf) {
+    return bsdf.roughness.is_smooth();
+}
+
+bool is_delta(const PlasticBsdf& bsdf) {
+    return bsdf.coat->roughness().is_smooth() && is_black(bsdf.base);
+}
+
+bool is_delta(const MixBsdf& bsdf) {
+    return std::all_of(
+        bsdf.part.begin(), bsdf.part.begin() + static_cast<std::ptrdiff_t>(bsdf.count),
+        [](const auto& part) { return std::visit([](const auto& model) { return is_delta(model); }, part); });
+}
+
+SpectralSample normal_albedo(const DiffuseBsdf& bsdf) {
+    return bsdf.albedo;
+}
+
+SpectralSample normal_albedo(const ConductorBsdf& bsdf) {
+    return conductor_reflectance(bsdf.n, bsdf.k, 1.0);
+}
+
+SpectralSample normal_albedo(const DielectricBsdf&) {
+    return SpectralSample(1.0F);
+}
+
+SpectralSample normal_albedo(const PlasticBsdf& bsdf) {
+    const auto coat = static_cast<float>(bsdf.coat->reflectance(1.0));
+    return SpectralSample(coat) + (1.0F - coat) * bsdf.base;
+}
+
+SpectralSample normal_albedo(const MixBsdf& bsdf) {
+    SpectralSample sum;
+    for (std::size_t i = 0; i < bsdf.count; ++i) {
+        sum += static_cast<float>(bsdf.share[i]) *
+               std::visit([](const auto& part) { return normal_albedo(part); }, bsdf.part[i]);
+    }
+    return sum;
+}
+
+}  // namespace
+
+SpectralSample evaluate(const Bsdf& bsdf, const Vec3d& wo, const Vec3d& wi, Transport transport) {
+    return std::visit([&](const auto& model) { return evaluate(model, wo, wi, transport); }, bsdf);
+}
+
+double density(const Bsdf& bsdf, const Vec3d& wo, const Vec3d& wi, Transport transport) {
+    return std::visit([&](const auto& model) { return density(model, wo, wi, transport); }, bsdf);
+}
+
+std::optional<BsdfSample> sample(const Bsdf& bsdf, const Vec3d& wo, double u_lobe, double u1, double u2,
+                                 Transport transport) {
+    return std::visit([&](const auto& model) { return sample(model, wo, u_lobe, u1, u2, transport); }, bsdf);
+}
+
+bool is_delta(const Bsdf& bsdf) {
+    return std::visit([](const auto& model) { return is_delta(model); }, bsdf);
+}
+
+SpectralSample normal_albedo(const Bsdf& bsdf) {
+    return std::visit([](const auto& model) { return normal_albedo(model); }, bsdf);
+}
+
+}  // namespace lensproof

@@ -1,0 +1,23 @@
+#include "engine/scene/bsdf/diffuse.h"
+
+#include "engine/scene/bsdf/directions.h"
+
+namespace lensproof {
+
+SpectralSample evaluate(const DiffuseBsdf& bsdf, const Vec3d& wo, const Vec3d& wi, Transport transport) {
+    return static_cast<float>(density(bsdf, wo, wi, transport)) * bsdf.albedo;
+}
+
+double density(const DiffuseBsdf&, const Vec3d& wo, const Vec3d& wi, Transport) {
+    return on_same_side(wo, wi) ? std::abs(wi.z) * std::numbers::inv_pi : 0.0;
+}
+
+std::optional<BsdfSample> sample(const DiffuseBsdf& bsdf, const Vec3d& wo, double, double u1, double u2, Transport) {
+    const Vec3d upward = cosine_direction(u1, u2);
+    if (wo.z == 0.0 || upward.z == 0.0) {
+        return std::nullopt;
+    }
+    return BsdfSample{.wi = on_side_of(wo, upward), .weight = bsdf.albedo, .density = upward.z * std::numbers::inv_pi};
+}
+
+}  // namespace lensproof

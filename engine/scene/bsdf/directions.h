@@ -1,0 +1,34 @@
+// engine/scene/bsdf/directions.h — directions about a surface, whose normal is z.
+#pragma once
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "engine/optics/vec.h"
+
+namespace lensproof {
+
+/// Whether both point to the same side of the surface; neither lies in it.
+inline bool on_same_side(const Vec3d& a, const Vec3d& b) {
+    return a.z * b.z > 0.0;
+}
+
+/// `w`, or its mirror image in the surface where it points below.
+inline Vec3d upwards(const Vec3d& w) {
+    return {w.x, w.y, std::abs(w.z)};
+}
+
+/// `upward`, or its mirror image where `side` points below the surface.
+inline Vec3d on_side_of(const Vec3d& side, const Vec3d& upward) {
+    return {upward.x, upward.y, std::copysign(upward.z, side.z)};
+}
+
+/// A direction of z > 0 with the density z / π per solid angle, from u1, u2 in (0, 1): a point of the unit disc, lifted
+/// onto the hemisphere (Malley).
+inline Vec3d cosine_direction(double u1, double u2) {
+    const double radius = std::sqrt(u1);
+    const double angle = 2.0 * std::numbers::pi * u2;
+    return {radius * std::cos(angle), radius * std::sin(angle), std::sqrt(std::max(0.0, 1.0 - u1))};
+}
+
+}  // namespace lensproof

@@ -1,0 +1,43 @@
+#include "engine/scene/bsdf/mix.h"
+
+#include <algorithm>
+
+namespace lensproof {
+
+SpectralSample evaluate(const MixBsdf& bsdf, const Vec3d& wo, const Vec3d& wi, Transport transport) {
+    SpectralSample sum;
+    for (std::size_t i = 0; i < bsdf.count; ++i) {
+        sum += static_cast<float>(bsdf.share[i]) *
+               std::visit([&](const auto& part) { return evaluate(part, wo, wi, transport); }, bsdf.part[i]);
+    }
+    return sum;
+}
+
+double density(const MixBsdf& bsdf, const Vec3d& wo, const Vec3d& wi, Transport transport) {
+    double sum = 0.0;
+    for (std::size_t i = 0; i < bsdf.count; ++i) {
+        sum += bsdf.share[i] *
+               std::visit([&](const auto& part) { return density(part, wo, wi, transport); }, bsdf.part[i]);
+    }
+    return sum;
+}
+
+std::optional<BsdfSample> sample(const MixBsdf& bsdf, const Vec3d& wo, double u_lobe, double u1, double u2,
+                                 Transport transport) {
+    std::size_t drawn = 0;
+    double below = 0.0;
+    while (drawn + 1 < bsdf.count && u_lobe >= below + bsdf.share[drawn]) {
+        below += bsdf.share[drawn++];
+    }
+    const double u_part = std::clamp((u_lobe - below) / bsdf.share[drawn], 0.0, 1.0);
+    std::optional<BsdfSample> result =
+        std::visit([&](const auto& part) { return sample(part, wo, u_part, u1, u2, transport); }, bsdf.part[drawn]);
+    // A delta's share is as large as its probability.
+    if (result && !result->is_delta) {
+        result->density = density(bsdf, wo, result->wi, transport);
+        result->weight = static_cast<float>(1.0 / result->density) * evaluate(bsdf, wo, result->wi, transport);
+    }
+    return result;
+}
+
+}  // namespace lensproof

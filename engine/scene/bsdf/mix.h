@@ -1,0 +1,32 @@
+// engine/scene/bsdf/mix.h — surfaces side by side, finer than can be seen: worn paint, dusty metal.
+#pragma once
+#include <array>
+#include <optional>
+#include <variant>
+
+#include "engine/scene/bsdf/conductor.h"
+#include "engine/scene/bsdf/dielectric.h"
+#include "engine/scene/bsdf/diffuse.h"
+#include "engine/scene/bsdf/plastic.h"
+
+namespace lensproof {
+
+using SimpleBsdf = std::variant<DiffuseBsdf, ConductorBsdf, DielectricBsdf, PlasticBsdf>;
+
+/// How many surfaces a mix may have.
+inline constexpr std::size_t kMostMixed = 4;
+
+/// f = Σ share · f_part over the first `count` parts; the shares sum to 1.
+struct MixBsdf {
+    std::size_t count = 0;
+    std::array<SimpleBsdf, kMostMixed> part;
+    std::array<double, kMostMixed> share{};
+};
+
+// As in bsdf.h.
+SpectralSample evaluate(const MixBsdf& bsdf, const Vec3d& wo, const Vec3d& wi, Transport transport);
+double density(const MixBsdf& bsdf, const Vec3d& wo, const Vec3d& wi, Transport transport);
+std::optional<BsdfSample> sample(const MixBsdf& bsdf, const Vec3d& wo, double u_lobe, double u1, double u2,
+                                 Transport transport);
+
+}  // namespace lensproof

@@ -1,0 +1,61 @@
+// tests/bsdf_cases.h — surfaces and directions that the tests of scattering share.
+#pragma once
+#include <cmath>
+#include <cstdint>
+#include <numbers>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "engine/scene/bsdf/bsdf.h"
+
+namespace lensproof {
+
+/// Numbers in (0, 1), the same on every machine.
+class Uniform {
+  public:
+    explicit Uniform(std::uint64_t seed) : bits_(seed) {}
+    double operator()() { return (static_cast<double>(bits_() >> 11U) + 0.5) * 0x1p-53; }
+
+  private:
+    std::mt19937_64 bits_;
+};
+
+/// A unit vector of cosine `mu` and azimuth `phi`.
+inline Vec3d direction(double mu, double phi) {
+    const double sine = std::sqrt((1.0 - mu) * (1.0 + mu));
+    return {sine * std::cos(phi), sine * std::sin(phi), mu};
+}
+
+struct BsdfCase {
+    std::string name;
+    Bsdf bsdf;
+};
+
+/// Rough and diffuse surfaces: each with a density over directions. `coat` must outlive them.
+inline std::vector<BsdfCase> broad_cases(const DielectricCoat& smooth_coat, const DielectricCoat& rough_coat) {
+    const SpectralSample albedo({0.9F, 0.5F, 0.2F, 0.05F});
+    const DiffuseBsdf diffuse{.albedo = albedo};
+    const ConductorBsdf metal{.n = SpectralSample({0.2F, 0.6F, 1.3F, 1.4F}),
+                              .k = SpectralSample({3.5F, 2.1F, 1.9F, 1.8F}),
+                              .roughness = {.alpha_x = 0.3, .alpha_y = 0.3}};
+    ConductorBsdf brushed = metal;
+    brushed.roughness = {.alpha_x = 0.5, .alpha_y = 0.15};
+    const DielectricBsdf frosted{.eta = SpectralSample(1.5F), .roughness = {.alpha_x = 0.4, .alpha_y = 0.4}};
+    const DielectricBsdf prism{.eta = SpectralSample({1.5F, 1.53F, 1.56F, 1.6F}),
+                               .roughness = {.alpha_x = 0.3, .alpha_y = 0.2}};
+    MixBsdf mix;
+    mix.count = 3;
+    mix.part = {diffuse, brushed, frosted};
+    mix.share = {0.25, 0.25, 0.5};
+    return {{"diffuse", diffuse},
+            {"metal", metal},
+            {"brushed metal", brushed},
+            {"frosted glass", frosted},
+            {"frosted prism", prism},
+            {"smooth plastic", plastic_bsdf(albedo, smooth_coat)},
+            {"rough plastic", plastic_bsdf(albedo, rough_coat)},
+            {"mix", mix}};
+}
+
+}  // namespace lensproof

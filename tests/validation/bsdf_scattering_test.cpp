@@ -1,0 +1,312 @@
+// Rough and diffuse surfaces: what they sample is what they say, nothing is gained, and as much lost as theory has it.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <boost/math/distributions/chi_squared.hpp>
+#include <boost/math/quadrature/gauss.hpp>
+
+#include "engine/scene/bsdf/fresnel.h"
+#include "tests/bsdf_cases.h"
+
+namespace lensproof {
+namespace {
+
+using std::numbers::pi;
+
+const DielectricCoat& smooth_coat() {
+    static const DielectricCoat coat(1.5, 0.0);
+    return coat;
+}
+const DielectricCoat& rough_coat() {
+    static const DielectricCoat coat(1.5, 0.3);
+    return coat;
+}
+
+Vec3d random_direction(Uniform& uniform) {
+    const double mu = 2.0 * uniform() - 1.0;
+    return direction(mu, 2.0 * pi * uniform());
+}
+
+constexpr double kViews[] = {0.95, 0.6, 0.15, -0.9, -0.4};
+
+// A sample weighs f |cos| / density, and its density is what `density` says: to the rounding of floats, of which each
+// value takes some ten.
+TEST(Bsdf, SamplesWeighTheirValueOverTheirDensity) {
+    Uniform uniform(1);
+    for (const auto& [name, bsdf] : broad_cases(smooth_coat(), rough_coat())) {
+        for (int i = 0; i < 2000; ++i) {
+            const Vec3d wo = random_direction(uniform);
+            const auto drawn = sample(bsdf, wo, uniform(), uniform(), uniform(), Transport::radiance);
+            if (!drawn || drawn->is_delta) {
+                continue;
+            }
+            ASSERT_GT(drawn->density, 0.0) << name;
+            EXPECT_NEAR(length(drawn->wi), 1.0, 1e-12) << name;
+            const double again = density(bsdf, wo, drawn->wi, Transport::radiance);
+            // The facet is found again from the directions, to 1e-15 of its slope over α² and their sum's length.
+            EXPECT_NEAR(drawn->density, again, 1e-9 * again) << name;
+            const SpectralSample value = evaluate(bsdf, wo, drawn->wi, Transport::radiance);
+            for (std::size_t c = 0; c < kWavelengthsPerPath; ++c) {
+                EXPECT_NEAR(drawn->weight[c], value[c] / again, 2e-6 * drawn->weight[c]) << name;
+            }
+        }
+    }
+}
+
+// Helmholtz: light that can go one way can go the other. For reflection f(wo, wi) = f(wi, wo); for refraction n⁻² f is
+// symmetric, n being the index on wo's side, and importance's f is radiance's with the directions exchanged (Veach
+// 1997, §5.2). Single rounding to float of each, and of the index.
+TEST(Bsdf, IsReciprocal) {
+    Uniform uniform(2);
+    for (const auto& [name, bsdf] : broad_cases(smooth_coat(), rough_coat())) {
+        const auto* glass = std::get_if<DielectricBsdf>(&bsdf);
+        for (int i = 0; i < 2000; ++i) {
+            const Vec3d wo = random_direction(uniform);
+            const Vec3d wi = random_direction(uniform);
+            const SpectralSample there = evaluate(bsdf, wo, wi, Transport::radiance);
+            const SpectralSample back = evaluate(bsdf, wi, wo, Transport::radiance);
+            const SpectralSample adjoint = evaluate(bsdf, wi, wo, Transport::importance);
+            const bool passes = wo.z * wi.z < 0.0;
+            for (std::size_t c = 0; c < kWavelengthsPerPath; ++c) {
+                const double f = there[c] / std::abs(wi.z);
+                EXPECT_NEAR(f, adjoint[c] / std::abs(wo.z), 1e-6 * f) << name;
+                if (!passes || glass != nullptr) {
+                    const double eta = passes ? (wo.z > 0.0 ? glass->eta[c] : 1.0 / glass->eta[c]) : 1.0;
+                    EXPECT_NEAR(f * eta * eta, back[c] / std::abs(wo.z), 1e-6 * f * eta * eta) << name;
+                }
+            }
+        }
+    }
+}
+
+/// Cells of equal solid angle over the whole sphere.
+constexpr int kRings = 20;
+constexpr int kSectors = 24;
+constexpr int kCells = kRings * kSectors;
+
+int cell_of(const Vec3d& w) {
+    const int ring = std::clamp(static_cast<int>((w.z + 1.0) * 0.5 * kRings), 0, kRings - 1);
+    const double turn = std::atan2(w.y, w.x) / (2.0 * pi);
+    const int sector = std::clamp(static_cast<int>((turn - std::floor(turn)) * kSectors), 0, kSectors - 1);
+    return ring * kSectors + sector;
+}
+
+/// ∫ density over each cell.
+std::vector<double> cell_probabilities(const Bsdf& bsdf, const Vec3d& wo) {
+    using Gauss = boost::math::quadrature::gauss<double, 20>;
+    std::vector<double> probability;
+    for (int cell = 0; cell < kCells; ++cell) {
+        const double from_mu = -1.0 + 2.0 * (cell / kSectors) / kRings;
+        const double from_phi = 2.0 * pi * (cell % kSectors) / kSectors;
+        probability.push_back(Gauss::integrate(
+            [&](double mu) {
+                return Gauss::integrate(
+                    [&](double phi) { return density(bsdf, wo, direction(mu, phi), Transport::radiance); }, from_phi,
+                    from_phi + 2.0 * pi / kSectors);
+            },
+            from_mu, from_mu + 2.0 / kRings));
+    }
+    return probability;
+}
+
+// Pearson's test of what `sample` draws against the integral of what `density` says, over the sphere and one further
+// cell for deltas and lost light. Cells that expect below 8 are pooled. A right sampler fails once in 10⁶ such tests;
+// quadrature, whose error is below 1e-3 of a cell even at the edge where total reflection sets in, adds to χ² at most
+// N · 1e-6, nothing.
+TEST(Bsdf, DrawsDirectionsAsItsDensitySays) {
+    constexpr int kSamples = 40000;
+    Uniform uniform(3);
+    for (const auto& [name, bsdf] : broad_cases(smooth_coat(), rough_coat())) {
+        for (const double mu : kViews) {
+            const Vec3d wo = direction(mu, 0.7);
+            std::vector<double> expected = cell_probabilities(bsdf, wo);
+            double total = 0.0;
+            for (const double probability : expected) {
+                total += probability;
+            }
+            ASSERT_LE(total, 1.0 + 1e-3) << name;
+            expected.push_back(std::max(0.0, 1.0 - total));
+            std::vector<int> drawn(expected.size());
+            for (int i = 0; i < kSamples; ++i) {
+                const auto s = sample(bsdf, wo, uniform(), uniform(), uniform(), Transport::radiance);
+                ++drawn[static_cast<std::size_t>(s && !s->is_delta ? cell_of(s->wi) : kCells)];
+            }
+            double chi2 = 0.0;
+            int cells = 0;
+            double pooled_expected = 0.0;
+            double pooled_drawn = 0.0;
+            for (std::size_t cell = 0; cell < expected.size(); ++cell) {
+                pooled_expected += kSamples * expected[cell];
+                pooled_drawn += drawn[cell];
+                if (pooled_expected >= 8.0) {
+                    chi2 += std::pow(pooled_drawn - pooled_expected, 2) / pooled_expected;
+                    ++cells;
+                    pooled_expected = pooled_drawn = 0.0;
+                }
+            }
+            EXPECT_LE(pooled_drawn, pooled_expected + 10.0 * std::sqrt(pooled_expected + 1.0)) << name;
+            const boost::math::chi_squared distribution(cells - 1);
+            EXPECT_LT(chi2, quantile(complement(distribution, 1e-6))) << name << " seen from " << mu;
+        }
+    }
+}
+
+/// The mean weight of samples, and its standard error.
+struct Estimate {
+    double mean = 0.0;
+    double error = 0.0;
+};
+Estimate returned_light(const Bsdf& bsdf, const Vec3d& wo, std::size_t wavelength, Uniform& uniform) {
+    constexpr int kSamples = 40000;
+    double sum = 0.0;
+    double squares = 0.0;
+    for (int i = 0; i < kSamples; ++i) {
+        const auto drawn = sample(bsdf, wo, uniform(), uniform(), uniform(), Transport::importance);
+        const double weight = drawn ? drawn->weight[wavelength] : 0.0;
+        sum += weight;
+        squares += weight * weight;
+    }
+    const double mean = sum / kSamples;
+    return {.mean = mean, .error = std::sqrt(std::max(0.0, squares / kSamples - mean * mean) / kSamples)};
+}
+
+/// Λ of Smith's masking for GGX, as a textbook has it (Heitz 2014, eq. 72 with 80).
+double smith_lambda(const Roughness& r, const Vec3d& w) {
+    const double tan_alpha2 = (std::pow(r.alpha_x * w.x, 2) + std::pow(r.alpha_y * w.y, 2)) / (w.z * w.z);
+    return 0.5 * (std::sqrt(1.0 + tan_alpha2) - 1.0);
+}
+
+/// The mean of `per_facet(m)` (wo·m)⁺ / (wo.z m.z) over all facets by the ground that they cover, seen or not: it is
+/// even in azimuth and in u = tan²θ / (1 + tan²θ), θ being m's angle in the stretched frame. The integrand grows as
+/// 1 / √(1 − u), which steps of √(1 − u) flatten. By the midpoint rule on 600 × 600 points.
+template <class Function>
+double facet_mean(const Roughness& r, const Vec3d& wo, const Function& per_facet) {
+    constexpr int kPoints = 600;
+    double sum = 0.0;
+    for (int i = 0; i < kPoints; ++i) {
+        const double t = (i + 0.5) / kPoints;  // √(1 − u)
+        const double slope = std::sqrt((1.0 - t) * (1.0 + t)) / t;
+        for (int j = 0; j < kPoints; ++j) {
+            const double phi = 2.0 * pi * (j + 0.5) / kPoints;
+            const Vec3d m =
+                normalized(Vec3d{-r.alpha_x * slope * std::cos(phi), -r.alpha_y * slope * std::sin(phi), 1.0});
+            const double cosine = dot(wo, m);
+            sum += cosine > 0.0 ? 2.0 * t * per_facet(m, cosine) * cosine / (wo.z * m.z) : 0.0;
+        }
+    }
+    return sum / (kPoints * kPoints);
+}
+
+/// What single reflections at facets return of evenly spread light.
+template <class Reflectance>
+double single_reflections(const Roughness& r, const Vec3d& wo, const Reflectance& reflectance) {
+    return facet_mean(r, wo, [&](const Vec3d& m, double cosine) {
+        const Vec3d wi = 2.0 * cosine * m - wo;
+        return wi.z > 0.0 ? reflectance(cosine) / (1.0 + smith_lambda(r, wo) + smith_lambda(r, wi)) : 0.0;
+    });
+}
+
+/// The same for what facets refract below.
+double single_refractions(const Roughness& r, const Vec3d& wo, double eta) {
+    return facet_mean(r, wo, [&](const Vec3d& m, double cosine) {
+        const double sin2 = (1.0 - cosine * cosine) / (eta * eta);
+        if (sin2 >= 1.0) {
+            return 0.0;
+        }
+        const Vec3d wi = -1.0 / eta * wo + (cosine / eta - std::sqrt(1.0 - sin2)) * m;
+        return wi.z < 0.0 ? (1.0 - dielectric_reflectance(eta, cosine)) /
+                                ((1.0 + smith_lambda(r, wo)) * (1.0 + smith_lambda(r, wi)))
+                          : 0.0;
+    });
+}
+
+/// The quadrature's own error: the midpoint rule on a bounded integrand with a jump.
+constexpr double kQuadrature = 2e-4;
+
+// Smith's masking hides as much as makes the visible facets' area the surface's own: ∫ G₁ (wo·m)⁺ D dm = wo.z
+// (Heitz 2014, eq. 14). The test's own formulae, to be compared with from here on.
+TEST(RoughSurfaces, VisibleFacetsAddUpToTheSurface) {
+    for (const Roughness r : {Roughness{0.1, 0.1}, Roughness{0.5, 0.5}, Roughness{0.6, 0.2}}) {
+        for (const double mu : {0.95, 0.6, 0.15}) {
+            const Vec3d wo = direction(mu, 0.7);
+            EXPECT_NEAR(facet_mean(r, wo, [&](const Vec3d&, double) { return 1.0 / (1.0 + smith_lambda(r, wo)); }), 1.0,
+                        kQuadrature);
+        }
+    }
+}
+
+// A perfect metal's facets return all that they reflect out of the surface at once, and lose what falls on others.
+TEST(RoughSurfaces, MetalLosesWhatFallsOnOtherFacets) {
+    Uniform uniform(4);
+    for (const Roughness r : {Roughness{0.1, 0.1}, Roughness{0.5, 0.5}, Roughness{1.0, 1.0}, Roughness{0.6, 0.2}}) {
+        const Bsdf metal = ConductorBsdf{.n = SpectralSample(0.0F), .k = SpectralSample(3.0F), .roughness = r};
+        for (const double mu : {0.95, 0.6, 0.15}) {
+            const Vec3d wo = direction(mu, 0.7);
+            const Estimate returned = returned_light(metal, wo, 0, uniform);
+            const double expected = single_reflections(r, wo, [](double) { return 1.0; });
+            EXPECT_NEAR(returned.mean, expected, 5.0 * returned.error + kQuadrature) << r.alpha_x << " " << mu;
+            EXPECT_LE(returned.mean, 1.0 + 1e-6);
+        }
+    }
+}
+
+// Frosted glass, into it and out of it, at each of four wavelengths that disperse and share one direction: each
+// returns what its own index makes of it, though three in four directions are drawn for another.
+TEST(RoughSurfaces, GlassKeepsEachWavelengthsLight) {
+    Uniform uniform(5);
+    const SpectralSample indices({1.45F, 1.5F, 1.6F, 1.8F});
+    const Roughness r{.alpha_x = 0.25, .alpha_y = 0.4};
+    for (const bool is_dispersive : {false, true}) {
+        for (const double mu : kViews) {
+            const Vec3d wo = direction(std::abs(mu), 0.7);
+            for (std::size_t c = 0; c < kWavelengthsPerPath; c += is_dispersive ? 1 : 2) {
+                const Bsdf glass =
+                    DielectricBsdf{.eta = is_dispersive ? indices : SpectralSample(indices[c]), .roughness = r};
+                const double eta = mu > 0.0 ? double{indices[c]} : 1.0 / double{indices[c]};
+                const double expected =
+                    single_reflections(r, wo, [&](double cosine) { return dielectric_reflectance(eta, cosine); }) +
+                    single_refractions(r, wo, eta);
+                const Estimate returned = returned_light(glass, direction(mu, 0.7), c, uniform);
+                EXPECT_NEAR(returned.mean, expected, 5.0 * returned.error + kQuadrature) << mu << " " << indices[c];
+                EXPECT_LE(returned.mean, 1.0 + 5.0 * returned.error);
+            }
+        }
+    }
+}
+
+// White pigment under varnish returns all light, smooth or rough, and black pigment what the top of the varnish does
+// (Fresnel's; single reflections). The rough coat's table is within 1e-3.
+TEST(RoughSurfaces, WhiteVarnishLosesNothing) {
+    Uniform uniform(6);
+    for (const double alpha : {0.0, 0.1, 0.3, 0.8}) {
+        const DielectricCoat coat(1.5, alpha);
+        const Bsdf white = plastic_bsdf(SpectralSample(1.0F), coat);
+        const Bsdf black = plastic_bsdf(SpectralSample(0.0F), coat);
+        for (const double mu : {0.95, 0.6, 0.15, 0.03}) {
+            const Vec3d wo = direction(mu, 0.7);
+            const Estimate all = returned_light(white, wo, 0, uniform);
+            EXPECT_NEAR(all.mean, 1.0, 5.0 * all.error + (alpha == 0.0 ? 1e-6 : 1e-3)) << alpha << " " << mu;
+            const auto fresnel = [](double cosine) { return dielectric_reflectance(1.5, cosine); };
+            const double top = alpha == 0.0 ? fresnel(mu) : single_reflections({alpha, alpha}, wo, fresnel);
+            const Estimate gloss = returned_light(black, wo, 0, uniform);
+            EXPECT_NEAR(gloss.mean, top, 5.0 * gloss.error + (alpha == 0.0 ? 1e-6 : kQuadrature)) << alpha << " " << mu;
+            EXPECT_NEAR(coat.reflectance(mu), top, alpha == 0.0 ? 1e-15 : 1e-3 + kQuadrature) << alpha << " " << mu;
+        }
+    }
+}
+
+// Saunderson: grey pigment under a smooth coat returns E + (1 − E) ρ (1 − F̄) / (1 − ρ F̄) in all.
+TEST(RoughSurfaces, GreyVarnishIsSaundersons) {
+    Uniform uniform(7);
+    const double below = smooth_coat().mean_reflectance_below();
+    for (const float rho : {0.2F, 0.5F, 0.9F}) {
+        const Vec3d wo = direction(0.8, 0.7);
+        const Estimate returned = returned_light(plastic_bsdf(SpectralSample(rho), smooth_coat()), wo, 2, uniform);
+        const double top = dielectric_reflectance(1.5, 0.8);
+        const double expected = top + (1.0 - top) * rho * (1.0 - below) / (1.0 - rho * below);
+        EXPECT_NEAR(returned.mean, expected, 5.0 * returned.error + 1e-6) << rho;
+    }
+}
+
+}  // namespace
+}  // namespace lensproof
