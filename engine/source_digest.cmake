@@ -1,4 +1,4 @@
-# Writes HEADER, which holds a digest of FILES: where any of them changes, it does.
+# Writes HEADER, which holds a digest of FILES as the constant NAME: where any of them changes, it does.
 foreach(file IN LISTS FILES)
     file(SHA256 "${file}" digest)
     string(APPEND digests "${digest}")
@@ -8,6 +8,6 @@ file(WRITE "${HEADER}" "#pragma once
 #include <string_view>
 
 namespace lensproof {
-inline constexpr std::string_view kSourceDigest = \"${digest}\";
+inline constexpr std::string_view ${NAME} = \"${digest}\";
 }
 ")

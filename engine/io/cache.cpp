@@ -1,6 +1,5 @@
 #include "engine/io/cache.h"
 
-#include <OpenImageIO/hash.h>
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -12,6 +11,7 @@
 
 #include "engine/io/bytes.h"
 #include "engine/io/file.h"
+#include "engine/io/hash.h"
 
 namespace lensproof {
 
@@ -22,10 +22,6 @@ namespace {
 // The file's form. A number, not its digits: a machine of another byte order takes it for another version.
 constexpr std::uint32_t kVersion = 1;
 constexpr std::string_view kExtension = ".cache";
-
-std::uint64_t hash_of(std::string_view bytes) {
-    return OIIO::xxhash::XXH64(bytes.data(), bytes.size());
-}
 
 /// What stands in front of the payload. No length is ever read from a file: this is compared as a whole.
 std::string header(std::string_view kind, std::string_view key) {

@@ -1,6 +1,7 @@
 #include "engine/render/camera_paths.h"
 
 #include <algorithm>
+#include <functional>
 #include <stdexcept>
 
 namespace lensproof {
@@ -87,12 +88,45 @@ template <class T>
 bool CameraPathProducer<T>::draw_and_trace(int count) {
     kernels_->draw_samples({.sensor = source_.sensor, .seed = source_.seed, .wavelengths = source_.lens->wavelengths()},
                            count, cursor_, *starts_);
+    draw_from_filter();
     if (draw_pupil_points() == 0) {
         return false;
     }
     kernels_->aim_rays(source_.lens->at(0).image_z, source_.pupil->map().plane_z(), *starts_, rays_);
+    weigh_by_filter();
     trace_batch<Direction::reverse>(*source_.lens, rays_, tracing_);
     return true;
+}
+
+/// Film points are even over their pixel so far; where in it makes the number that the filter's draw takes.
+template <class T>
+void CameraPathProducer<T>::draw_from_filter() {
+    if (source_.filter.is_box()) {
+        return;
+    }
+    const Sensor& sensor = source_.sensor;
+    const auto width = static_cast<std::uint32_t>(sensor.width);
+    for (std::size_t i = 0; i < static_cast<std::size_t>(starts_->size); ++i) {
+        const double column = starts_->pixel[i] % width;
+        const double row = starts_->pixel[i] / width;
+        const Vec2d centre = sensor.position(column, row);
+        const PixelFilter::Draw across =
+            source_.filter.draw((centre.x - starts_->film_x[i]) / sensor.pixel_pitch_mm + 0.5);
+        const PixelFilter::Draw down =
+            source_.filter.draw((starts_->film_y[i] - centre.y) / sensor.pixel_pitch_mm + 0.5);
+        const Vec2d drawn = sensor.position(column + across.offset_px, row + down.offset_px);
+        starts_->film_x[i] = drawn.x;
+        starts_->film_y[i] = drawn.y;
+        filter_weight_[i] = across.weight * down.weight;
+    }
+}
+
+template <class T>
+void CameraPathProducer<T>::weigh_by_filter() {
+    if (!source_.filter.is_box()) {
+        std::transform(starts_->etendue.begin(), starts_->etendue.begin() + starts_->size, filter_weight_.begin(),
+                       starts_->etendue.begin(), std::multiplies<>());
+    }
 }
 
 template <class T>

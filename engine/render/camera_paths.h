@@ -7,6 +7,7 @@
 #include "engine/optics/packet/trace_batch.h"
 #include "engine/pupil/pupil_slices.h"
 #include "engine/render/packet/path_kernels.h"
+#include "engine/render/pixel_filter.h"
 #include "engine/render/sensor.h"
 
 namespace lensproof {
@@ -28,7 +29,7 @@ struct CameraPathBuffer {
     PacketColumn<std::uint16_t> wavelength;  // which of the lens's
     PacketColumn<double> film_x;             // mm, in lens space
     PacketColumn<double> film_y;
-    PacketColumn<T> weight;                   // τ cos⁴θ / Z² / the density of the pupil point, sr
+    PacketColumn<T> weight;                   // τ cos⁴θ / Z² / the density of the pupil point · the filter's, sr
     typename RayBatch<T>::Vectors origin;     // on the first surface, mm, in lens space
     typename RayBatch<T>::Vectors direction;  // away from the lens, of unit length
     int capacity = 0;
@@ -47,6 +48,7 @@ struct CameraPathSource {
     const SpectralLens<T>* lens = nullptr;  // at the wavelengths that samples spread evenly over
     const PupilSlices* pupil = nullptr;     // at those wavelengths
     std::uint64_t seed = 0;
+    PixelFilter filter;  // that film points are drawn from, around their pixel
 };
 
 /// Samples of consecutive pixels: of each pixel the same.
@@ -81,6 +83,8 @@ class CameraPathProducer {
     int draw_pupil_points();
     /// False where the film gets no light, and nothing was traced.
     bool draw_and_trace(int count);
+    void draw_from_filter();
+    void weigh_by_filter();
     void move_survivors(CameraPathBuffer<T>& buffer);
 
     CameraPathSource<T> source_;
@@ -89,6 +93,7 @@ class CameraPathProducer {
     PathCursor cursor_;
     std::uint32_t end_pixel_ = 0;
     std::unique_ptr<PathStarts> starts_;
+    PathColumn<double> filter_weight_{};  // unused for the box
     RayBatch<T> rays_;
     std::int64_t started_ = 0;
 };

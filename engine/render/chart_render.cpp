@@ -1,104 +1,95 @@
 #include "engine/render/chart_render.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <iterator>
-#include <optional>
+#include <memory>
+#include <utility>
 
 #include "engine/render/camera_paths.h"
-#include "engine/render/parallel.h"
-#include "engine/spectral/spectral_exr.h"
+#include "engine/render/film_image.h"
 
 namespace lensproof {
 
 namespace {
 
-/// The sums that a pixel's samples leave.
-class PixelSums {
-  public:
-    explicit PixelSums(const SeenChart& view)
-        : layers_(view.layer_nm.size()),
-          strata_per_layer_(view.strata.size() / layers_.size()),
-          band_nm_(view.stratum_width_nm * static_cast<double>(view.strata.size())) {}
-
-    /// A sample's estimate of the film irradiance, W·m⁻²·nm⁻¹. Samples that met no light need not be told.
-    void add(std::size_t stratum, double irradiance, const Vec3d& rgb_weights) {
-        const std::array<double, 3> rgb = {band_nm_ * irradiance * rgb_weights.x, band_nm_ * irradiance * rgb_weights.y,
-                                           band_nm_ * irradiance * rgb_weights.z};
-        for (std::size_t k = 0; k < 3; ++k) {
-            sum_[k] += rgb[k];
-            sum_of_squares_[k] += rgb[k] * rgb[k];
-        }
-        layers_[stratum / strata_per_layer_] += irradiance;
-    }
-
-    /// Writes what n samples make of a pixel, and begins anew.
-    void write(int n, int u, int v, Image& image) {
-        for (int k = 0; k < 3; ++k) {
-            const double mean = sum_[k] / n;
-            const double variance = n > 1 ? std::max(0.0, (sum_of_squares_[k] / n - mean * mean) / (n - 1)) : 0.0;
-            image.at(u, v, k) = static_cast<float>(mean);
-            image.at(u, v, 3 + k) = static_cast<float>(std::sqrt(variance));
-        }
-        // Per layer, the mean over the samples expected there, which keeps the layers' sum unbiased.
-        const double expected = static_cast<double>(n) / static_cast<double>(layers_.size());
-        for (std::size_t k = 0; k < layers_.size(); ++k) {
-            image.at(u, v, 6 + static_cast<int>(k)) = static_cast<float>(layers_[k] / expected);
-        }
-        sum_ = {};
-        sum_of_squares_ = {};
-        std::ranges::fill(layers_, 0.0);
-    }
-
-  private:
-    std::array<double, 3> sum_{};
-    std::array<double, 3> sum_of_squares_{};
-    std::vector<double> layers_;
-    std::size_t strata_per_layer_;
-    double band_nm_;
+/// Where a ray that left the lens meets the chart's plane.
+struct SeenPoint {
+    double x_mm = 0.0;  // on the chart
+    double y_mm = 0.0;
+    Vec3d origin;  // of the ray, in the chart's frame
+    bool exists = false;
 };
 
-/// Renders rows, each from its camera paths, a buffer after the other.
-class RowRenderer {
-  public:
-    RowRenderer(const SeenChart& view, const CameraPathSource<double>& source, int samples_per_pixel, Image& image)
-        : view_(&view), producer_(source), sums_(view), samples_(samples_per_pixel), image_(&image) {}
+SeenPoint seen_point(const RigidMotion& pose, const Ray<double>& outwards) {
+    const Vec3d origin = rotate_back(pose, camera_to_lens(outwards.origin) - pose.translation);
+    const Vec3d direction = rotate_back(pose, camera_to_lens(outwards.direction));
+    const double distance = -origin.z / direction.z;
+    return {.x_mm = origin.x + distance * direction.x,
+            .y_mm = origin.y + distance * direction.y,
+            .origin = origin,
+            .exists = distance > 0.0 && std::isfinite(distance)};
+}
 
-    void operator()(int v) {
-        const auto width = static_cast<std::uint32_t>(image_->width);
-        producer_.start({.first_pixel = static_cast<std::uint32_t>(v) * width,
-                         .pixels = width,
-                         .samples = static_cast<std::uint32_t>(samples_)});
-        std::optional<std::uint32_t> pixel;
-        const auto finish = [&] {
-            if (pixel) {
-                sums_.write(samples_, static_cast<int>(*pixel % width), v, *image_);
-            }
-        };
-        while (producer_.fill(paths_)) {
-            for (int i = 0; i < paths_.size; ++i) {
-                const auto at = static_cast<std::size_t>(i);
-                if (pixel != paths_.pixel[at]) {
-                    finish();
-                    pixel = paths_.pixel[at];
+double reflectance_at(const Chart& chart, const SeenPoint& point) {
+    return point.exists ? reflectance(chart, point.x_mm, point.y_mm) : chart.white_reflectance;
+}
+
+/// The chart's normal is the one towards the ray.
+PixelFeatures features_of(const SeenChart& view, const SeenPoint& point, double reflectance) {
+    const Vec3d at = rotate(view.pose, {point.x_mm, point.y_mm, 0.0}) + view.pose.translation;
+    return {.depth_mm = at.z,
+            .albedo_rgb = {reflectance, reflectance, reflectance},
+            .normal = rotate(view.pose, {0.0, 0.0, point.origin.z > 0.0 ? 1.0 : -1.0})};
+}
+
+/// Renders a tile row by row, each from its camera paths, a buffer after the other.
+class ChartTileRenderer {
+  public:
+    ChartTileRenderer(const SeenChart& view, const CameraPathSource<double>& source)
+        : view_(&view), producer_(source) {}
+
+    void operator()(const TileSamples& samples, FilmTile& tile) {
+        const PixelRect& rect = samples.rect;
+        const auto width = static_cast<std::uint32_t>(view_->sensor.width);
+        const std::int64_t started_before = producer_.started();
+        for (int y = rect.y; y < rect.y + rect.height; ++y) {
+            const std::uint32_t first_pixel =
+                static_cast<std::uint32_t>(y) * width + static_cast<std::uint32_t>(rect.x);
+            producer_.start({.first_pixel = first_pixel,
+                             .pixels = static_cast<std::uint32_t>(rect.width),
+                             .first_sample = samples.first,
+                             .samples = samples.end - samples.first});
+            const std::size_t first_of_row = tile.pixel(rect.x, y);
+            while (producer_.fill(paths_)) {
+                for (int i = 0; i < paths_.size; ++i) {
+                    const std::size_t at_pixel = paths_.pixel[static_cast<std::size_t>(i)] - first_pixel;
+                    add_path(i, first_of_row + at_pixel, tile);
                 }
-                const std::size_t stratum = paths_.wavelength[at];
-                const WavelengthStratum& of = view_->strata[stratum];
-                const double radiance = seen_reflectance(view_->chart, view_->pose, paths_.ray(i)) * of.white_radiance;
-                sums_.add(stratum, radiance * paths_.weight[at], of.rgb_weights);
             }
         }
-        finish();  // a pixel that no path left stays black
+        for (std::size_t pixel = 0; pixel < static_cast<std::size_t>(rect.pixels()); ++pixel) {
+            tile.count_samples(pixel, samples.end - samples.first);
+        }
+        tile.count_rays(static_cast<std::uint64_t>(producer_.started() - started_before));
     }
 
   private:
+    void add_path(int path, std::size_t pixel, FilmTile& tile) {
+        const auto at = static_cast<std::size_t>(path);
+        const std::size_t stratum = paths_.wavelength[at];
+        const SeenPoint point = seen_point(view_->pose, paths_.ray(path));
+        const double reflectance = reflectance_at(view_->chart, point);
+        const double radiance = reflectance * view_->strata[stratum].white_radiance;
+        tile.add(pixel, stratum, radiance * paths_.weight[at]);
+        if (view_->has_features && point.exists) {
+            tile.add_features(pixel, features_of(*view_, point, reflectance));
+        }
+    }
+
     const SeenChart* view_;
     CameraPathProducer<double> producer_;
     CameraPathBuffer<double> paths_;
-    PixelSums sums_;
-    int samples_;
-    Image* image_;
 };
 
 SpectralLens<double> spectral_lens(const std::vector<WavelengthStratum>& strata) {
@@ -110,34 +101,47 @@ SpectralLens<double> spectral_lens(const std::vector<WavelengthStratum>& strata)
 }  // namespace
 
 double seen_reflectance(const Chart& chart, const RigidMotion& pose, const Ray<double>& outwards) {
-    const Vec3d origin = rotate_back(pose, camera_to_lens(outwards.origin) - pose.translation);
-    const Vec3d direction = rotate_back(pose, camera_to_lens(outwards.direction));
-    const double distance = -origin.z / direction.z;
-    if (!(distance > 0.0) || !std::isfinite(distance)) {
-        return chart.white_reflectance;
-    }
-    return reflectance(chart, origin.x + distance * direction.x, origin.y + distance * direction.y);
+    return reflectance_at(chart, seen_point(pose, outwards));
+}
+
+ChartRender::ChartRender(SeenChart view, const PupilMap& pupil, std::uint64_t seed)
+    : view_(std::move(view)), lens_(spectral_lens(view_.strata)), pupil_(pupil, lens_.wavelengths()), seed_(seed) {}
+
+FilmLayout ChartRender::film() const {
+    FilmLayout layout{.width = view_.sensor.width,
+                      .height = view_.sensor.height,
+                      .layer_nm = view_.layer_nm,
+                      .rgb_weights = {},
+                      .band_nm = view_.stratum_width_nm * static_cast<double>(view_.strata.size()),
+                      .filter = view_.filter,
+                      .has_features = view_.has_features};
+    std::ranges::transform(view_.strata, std::back_inserter(layout.rgb_weights), &WavelengthStratum::rgb_weights);
+    return layout;
+}
+
+TileRenderer ChartRender::make_renderer() const {
+    const CameraPathSource<double> source{
+        .sensor = view_.sensor, .lens = &lens_, .pupil = &pupil_, .seed = seed_, .filter = view_.filter};
+    // On the heap, since std::function wants to be able to copy what it holds.
+    return [renderer = std::make_shared<ChartTileRenderer>(view_, source)](const TileSamples& samples, FilmTile& tile) {
+        (*renderer)(samples, tile);
+    };
 }
 
 Image render_chart(const SeenChart& view, const PupilMap& pupil, const RenderSettings& settings,
                    const std::function<void(double)>& progress) {
-    std::vector<std::string> channels = {"R", "G", "B", "error.R", "error.G", "error.B"};
-    for (const double nm : view.layer_nm) {
-        channels.push_back(spectral_channel_name(nm));
-    }
-    Image image = make_image(view.sensor.width, view.sensor.height, std::move(channels));
-    const SpectralLens<double> lens = spectral_lens(view.strata);
-    const PupilSlices slices(pupil, lens.wavelengths());
-    const CameraPathSource<double> source{
-        .sensor = view.sensor, .lens = &lens, .pupil = &slices, .seed = settings.seed};
-    parallel_for_workers(
-        image.height, settings.threads, [&] { return RowRenderer(view, source, settings.samples_per_pixel, image); },
-        [&](int rows) {
-            if (progress) {
-                progress(static_cast<double>(rows) / image.height);
-            }
-        });
-    return image;
+    const ChartRender render(view, pupil, settings.seed);
+    RenderState state(render.film(), {.first = 0, .end = static_cast<std::uint32_t>(settings.samples_per_pixel)});
+    render_progressively(state, [&] { return render.make_renderer(); }, {},
+                         {.threads = settings.threads,
+                          .in_passes = false,
+                          .is_interrupted = {},
+                          .on_progress = [&](const RenderState&, const RenderReport& report) {
+                              if (progress) {
+                                  progress(report.done);
+                              }
+                          }});
+    return film_image(state.film);
 }
 
 }  // namespace lensproof

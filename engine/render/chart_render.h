@@ -5,8 +5,12 @@
 #include <vector>
 
 #include "engine/io/image.h"
+#include "engine/optics/packet/spectral_lens.h"
 #include "engine/optics/trace.h"
 #include "engine/pupil/pupil_map.h"
+#include "engine/pupil/pupil_slices.h"
+#include "engine/render/film.h"
+#include "engine/render/progressive.h"
 #include "engine/render/sensor.h"
 #include "engine/scene/chart.h"
 #include "engine/scene/pose.h"
@@ -33,6 +37,32 @@ struct SeenChart {
     std::vector<WavelengthStratum> strata;  // of equal width
     double stratum_width_nm = 0.0;
     std::vector<double> layer_nm;  // centres of the spectral layers; strata.size() is a multiple of layer_nm.size()
+    PixelFilter filter;
+    bool has_features = false;  // depth, albedo and normal of the chart are kept too, in the camera's frame
+};
+
+/// A view ready to be rendered, tile by tile.
+///
+/// The estimator of the measurement equation at film point x (Kolb et al. 1995, eq. 4): E = ∫ L τ cos⁴θ / Z² dA over
+/// the pupil, by points that `pupil` draws, a map of the strata's lenses, out to where the pixel filter reaches around
+/// the sensor. A sample follows from view, pupil, seed, pixel and index alone.
+class ChartRender {
+  public:
+    /// `pupil` outlives it.
+    ChartRender(SeenChart view, const PupilMap& pupil, std::uint64_t seed);
+    ChartRender(const ChartRender&) = delete;
+    ChartRender& operator=(const ChartRender&) = delete;
+
+    [[nodiscard]] FilmLayout film() const;
+
+    /// A renderer for a thread; it is outlived by this.
+    [[nodiscard]] TileRenderer make_renderer() const;
+
+  private:
+    SeenChart view_;
+    SpectralLens<double> lens_;
+    PupilSlices pupil_;
+    std::uint64_t seed_;
 };
 
 struct RenderSettings {
@@ -41,13 +71,7 @@ struct RenderSettings {
     int threads = 0;
 };
 
-/// Renders the view. Channels: R, G, B (linear, 1 = saturation), their standard errors error.R, error.G, error.B
-/// (as if samples were independent: an upper bound, since they are stratified), then one spectral layer a wavelength:
-/// mean film irradiance over its band, W·m⁻²·nm⁻¹.
-///
-/// The estimator of the measurement equation at film point x (Kolb et al. 1995, eq. 4): E = ∫ L τ cos⁴θ / Z² dA over
-/// the pupil, by points that `pupil` draws, a map of the strata's lenses; pixels integrate over their whole area. The
-/// result depends on view, pupil, samples and seed alone.
+/// Renders the view with that many samples everywhere. Channels: as `film_image` has them.
 Image render_chart(const SeenChart& view, const PupilMap& pupil, const RenderSettings& settings,
                    const std::function<void(double done)>& progress = {});
 

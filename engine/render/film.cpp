@@ -1,0 +1,262 @@
+#include "engine/render/film.h"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <stdexcept>
+#include <utility>
+
+namespace lensproof {
+
+namespace {
+
+// Of what a pixel's sums consist: RGB, their squares, the spectral layers, the features.
+constexpr std::size_t kLayers = 6;
+constexpr std::size_t kFeatureSums = 8;  // depth, coverage, albedo, normal
+
+std::size_t colour_sums(const FilmLayout& layout) {
+    return kLayers + layout.layer_nm.size();
+}
+
+std::size_t all_sums(const FilmLayout& layout) {
+    return colour_sums(layout) + (layout.has_features ? kFeatureSums : 0);
+}
+
+/// s²/n of a mean over n, from sums and sums of squares.
+PixelEstimate estimate_from(const double* sums, double n) {
+    const auto variance = [&](int k) {
+        const double mean = sums[k] / n;
+        return n > 1.0 ? std::max(0.0, (sums[3 + k] / n - mean * mean) / (n - 1.0)) : 0.0;
+    };
+    return n > 0.0 ? PixelEstimate{.rgb = {sums[0] / n, sums[1] / n, sums[2] / n},
+                                   .variance = {variance(0), variance(1), variance(2)}}
+                   : PixelEstimate{};
+}
+
+/// The way back.
+void put_estimate(const PixelEstimate& estimate, double n, double* sums) {
+    const auto put = [&](int k, double mean, double variance) {
+        sums[k] = n * mean;
+        sums[3 + k] = n * (mean * mean + (n - 1.0) * variance);
+    };
+    put(0, estimate.rgb.x, estimate.variance.x);
+    put(1, estimate.rgb.y, estimate.variance.y);
+    put(2, estimate.rgb.z, estimate.variance.z);
+}
+
+bool is_same(const FilmLayout& a, const FilmLayout& b) {
+    return a.width == b.width && a.height == b.height && a.layer_nm == b.layer_nm && a.has_splats == b.has_splats &&
+           a.has_features == b.has_features;
+}
+
+template <class Number>
+void add_all(std::vector<Number>& to, const std::vector<Number>& from) {
+    std::ranges::transform(to, from, to.begin(), std::plus<>());
+}
+
+}  // namespace
+
+std::size_t film_bytes_per_pixel(const FilmLayout& layout) {
+    const std::size_t sums = all_sums(layout) + (layout.has_splats ? colour_sums(layout) : 0);
+    return sums * sizeof(double) + sizeof(std::uint32_t);
+}
+
+FilmTile::FilmTile(const FilmLayout& layout)
+    : band_nm_(layout.band_nm), stride_(all_sums(layout)), features_(colour_sums(layout)) {
+    const std::size_t strata_per_layer = layout.rgb_weights.size() / std::max<std::size_t>(1, layout.layer_nm.size());
+    for (std::size_t i = 0; i < layout.rgb_weights.size(); ++i) {
+        lights_.push_back({.rgb_weights = layout.rgb_weights[i],
+                           .layer = static_cast<std::uint32_t>(kLayers + i / strata_per_layer)});
+    }
+}
+
+void FilmTile::add(std::size_t pixel, std::span<const std::uint16_t, 4> strata, std::span<const float, 4> irradiance) {
+    double* sums = sums_.data() + pixel * stride_;
+    Vec3d rgb;
+    for (std::size_t i = 0; i < strata.size(); ++i) {
+        const Light& light = lights_[strata[i]];
+        const double share = 0.25 * static_cast<double>(irradiance[i]);
+        rgb = rgb + rgb_of(light, share);
+        sums[light.layer] += share;
+    }
+    add_rgb(sums, rgb);
+}
+
+void FilmTile::add_features(std::size_t pixel, const PixelFeatures& features) {
+    double* sums = sums_.data() + pixel * stride_ + features_;
+    const auto& [depth_mm, albedo, normal] = features;
+    const std::array<double, kFeatureSums> more = {depth_mm, 1.0,      albedo.x, albedo.y,
+                                                   albedo.z, normal.x, normal.y, normal.z};
+    std::transform(more.begin(), more.end(), sums, sums, std::plus<>());
+}
+
+void FilmTile::splat(double x_px, double y_px, std::span<const std::uint16_t, 4> strata,
+                     std::span<const float, 4> irradiance) {
+    Splat splat{.x_px = x_px, .y_px = y_px};
+    for (std::size_t i = 0; i < strata.size(); ++i) {
+        const Light& light = lights_[strata[i]];
+        splat.irradiance[i] = 0.25 * static_cast<double>(irradiance[i]);
+        splat.layer[i] = light.layer;
+        splat.rgb = splat.rgb + rgb_of(light, splat.irradiance[i]);
+    }
+    splats_.push_back(splat);
+}
+
+Film::Film(FilmLayout layout)
+    : layout_(std::move(layout)),
+      stride_(all_sums(layout_)),
+      splat_stride_(layout_.has_splats ? colour_sums(layout_) : 0),
+      features_(colour_sums(layout_)) {
+    const std::size_t pixels = static_cast<std::size_t>(layout_.width) * static_cast<std::size_t>(layout_.height);
+    if (layout_.layer_nm.empty() || layout_.rgb_weights.size() % layout_.layer_nm.size() != 0) {
+        throw std::invalid_argument("a film's spectral layers hold the same number of strata each");
+    }
+    sums_.resize(pixels * stride_);
+    samples_.resize(pixels);
+    splat_sums_.resize(pixels * splat_stride_);
+}
+
+void Film::load(const PixelRect& rect, FilmTile& tile) const {
+    tile.rect_ = rect;
+    tile.sums_.resize(static_cast<std::size_t>(rect.pixels()) * stride_);
+    tile.samples_.resize(static_cast<std::size_t>(rect.pixels()));
+    tile.splats_.clear();
+    tile.light_paths_ = 0;
+    tile.rays_ = 0;
+    const auto width = static_cast<std::size_t>(rect.width);
+    for (int row = 0; row < rect.height; ++row) {
+        const std::size_t from = at(rect.x, rect.y + row);
+        const std::size_t to = static_cast<std::size_t>(row) * width;
+        std::copy_n(sums_.data() + from * stride_, width * stride_, tile.sums_.data() + to * stride_);
+        std::copy_n(samples_.data() + from, width, tile.samples_.data() + to);
+    }
+}
+
+void Film::store(const FilmTile& tile) {
+    const auto width = static_cast<std::size_t>(tile.rect_.width);
+    for (int row = 0; row < tile.rect_.height; ++row) {
+        const std::size_t to = at(tile.rect_.x, tile.rect_.y + row);
+        const std::size_t from = static_cast<std::size_t>(row) * width;
+        std::copy_n(tile.sums_.data() + from * stride_, width * stride_, sums_.data() + to * stride_);
+        std::copy_n(tile.samples_.data() + from, width, samples_.data() + to);
+    }
+    light_paths_ += tile.light_paths_;
+    std::ranges::for_each(tile.splats_, [this](const FilmTile::Splat& splat) { add_splat(splat); });
+}
+
+void Film::add_splat(const FilmTile::Splat& splat) {
+    const double radius = layout_.filter.radius_px();
+    // Compared before they are made integers: a point far away has no such.
+    if (!(splat.x_px >= -radius && splat.x_px <= width() - 1 + radius && splat.y_px >= -radius &&
+          splat.y_px <= height() - 1 + radius)) {
+        return;
+    }
+    const int first_x = std::max(0, static_cast<int>(std::ceil(splat.x_px - radius)));
+    const int last_x = std::min(width() - 1, static_cast<int>(std::floor(splat.x_px + radius)));
+    const int first_y = std::max(0, static_cast<int>(std::ceil(splat.y_px - radius)));
+    const int last_y = std::min(height() - 1, static_cast<int>(std::floor(splat.y_px + radius)));
+    for (int y = first_y; y <= last_y; ++y) {
+        const double weight_y = layout_.filter(splat.y_px - y);
+        for (int x = first_x; x <= last_x; ++x) {
+            const double weight = weight_y * layout_.filter(splat.x_px - x);
+            if (weight == 0.0) {
+                continue;
+            }
+            double* sums = splat_sums_.data() + at(x, y) * splat_stride_;
+            FilmTile::add_rgb(sums, weight * splat.rgb);
+            for (std::size_t i = 0; i < splat.layer.size(); ++i) {
+                sums[splat.layer[i]] += weight * splat.irradiance[i];
+            }
+        }
+    }
+}
+
+void Film::merge(const Film& other) {
+    if (!is_same(layout_, other.layout_)) {
+        throw std::invalid_argument("films of different layouts do not add up");
+    }
+    add_all(sums_, other.sums_);
+    add_all(samples_, other.samples_);
+    add_all(splat_sums_, other.splat_sums_);
+    light_paths_ += other.light_paths_;
+}
+
+PixelEstimate Film::camera_estimate(int x, int y) const {
+    return estimate_from(sums_.data() + at(x, y) * stride_, samples(x, y));
+}
+
+PixelEstimate Film::light_estimate(int x, int y) const {
+    return layout_.has_splats
+               ? estimate_from(splat_sums_.data() + at(x, y) * splat_stride_, static_cast<double>(light_paths_))
+               : PixelEstimate{};
+}
+
+PixelEstimate Film::estimate(int x, int y) const {
+    const PixelEstimate camera = camera_estimate(x, y);
+    if (!layout_.has_splats) {
+        return camera;
+    }
+    const PixelEstimate light = light_estimate(x, y);
+    return {.rgb = camera.rgb + light.rgb, .variance = camera.variance + light.variance};
+}
+
+void Film::layers(int x, int y, std::span<double> irradiance) const {
+    // Per layer, the mean over the samples expected there, which keeps the layers' sum unbiased.
+    const double expected = static_cast<double>(samples(x, y)) / static_cast<double>(layout_.layer_nm.size());
+    light_layers(x, y, irradiance);
+    const double* sums = sums_.data() + at(x, y) * stride_ + kLayers;
+    for (std::size_t k = 0; k < layout_.layer_nm.size() && expected > 0.0; ++k) {
+        irradiance[k] += sums[k] / expected;
+    }
+}
+
+void Film::light_layers(int x, int y, std::span<double> irradiance) const {
+    std::ranges::fill(irradiance, 0.0);
+    const double expected = static_cast<double>(light_paths_) / static_cast<double>(layout_.layer_nm.size());
+    if (layout_.has_splats && expected > 0.0) {
+        const double* sums = splat_sums_.data() + at(x, y) * splat_stride_ + kLayers;
+        std::transform(sums, sums + layout_.layer_nm.size(), irradiance.begin(),
+                       [expected](double sum) { return sum / expected; });
+    }
+}
+
+double Film::coverage(int x, int y) const {
+    const std::uint32_t n = samples(x, y);
+    return layout_.has_features && n > 0 ? sums_[at(x, y) * stride_ + features_ + 1] / n : 0.0;
+}
+
+PixelFeatures Film::features(int x, int y) const {
+    const double n = samples(x, y);
+    if (!(coverage(x, y) > 0.0)) {
+        return {};
+    }
+    const double* sums = sums_.data() + at(x, y) * stride_ + features_;
+    return {.depth_mm = sums[0] / sums[1],
+            .albedo_rgb = {sums[2] / n, sums[3] / n, sums[4] / n},
+            .normal = {sums[5] / n, sums[6] / n, sums[7] / n}};
+}
+
+void Film::set_pixel(int x, int y, const PixelContent& content) {
+    const double n = content.samples;
+    const auto layers = static_cast<double>(layout_.layer_nm.size());
+    double* sums = sums_.data() + at(x, y) * stride_;
+    samples_[at(x, y)] = content.samples;
+    put_estimate(content.camera, n, sums);
+    std::ranges::transform(content.camera_layers, sums + kLayers, [&](double mean) { return mean * n / layers; });
+    if (layout_.has_features) {
+        const double met = content.coverage * n;
+        const auto& [depth_mm, albedo, normal] = content.features;
+        const std::array<double, kFeatureSums> features = {met * depth_mm, met,          n * albedo.x, n * albedo.y,
+                                                           n * albedo.z,   n * normal.x, n * normal.y, n * normal.z};
+        std::ranges::copy(features, sums + features_);
+    }
+    if (layout_.has_splats) {
+        const auto paths = static_cast<double>(light_paths_);
+        double* splats = splat_sums_.data() + at(x, y) * splat_stride_;
+        put_estimate(content.light, paths, splats);
+        std::ranges::transform(content.light_layers, splats + kLayers,
+                               [&](double mean) { return mean * paths / layers; });
+    }
+}
+
+}  // namespace lensproof

@@ -1,0 +1,220 @@
+// engine/render/film.h — the sums that samples leave: what an image, its variance and its layers are made of.
+#pragma once
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "engine/optics/vec.h"
+#include "engine/render/pixel_filter.h"
+
+namespace lensproof {
+
+/// Pixels [x, x + width) × [y, y + height).
+struct PixelRect {
+    int x = 0;
+    int y = 0;
+    int width = 0;
+    int height = 0;
+
+    [[nodiscard]] int pixels() const { return width * height; }
+    friend bool operator==(const PixelRect&, const PixelRect&) = default;
+};
+
+/// How large a film is, what it keeps, and what it makes of light.
+struct FilmLayout {
+    int width = 0;
+    int height = 0;
+    std::vector<double> layer_nm;  // centres of the spectral layers, of equal width
+    std::vector<Vec3d> rgb_weights;  // a wavelength stratum each: linear RGB of 1 W·m⁻²·nm⁻¹ on the film, per nm; as
+                                     // many strata as layers, or a multiple
+    double band_nm = 0.0;       // what all strata cover
+    PixelFilter filter;         // that splats are spread with
+    bool has_splats = false;    // sums for light paths are kept
+    bool has_features = false;  // depth, albedo, normals are kept
+};
+
+/// Bytes that a film holds for each of its pixels.
+std::size_t film_bytes_per_pixel(const FilmLayout& layout);
+
+/// What the first surface on a path is like.
+struct PixelFeatures {
+    double depth_mm = 0.0;  // along the camera's axis
+    Vec3d albedo_rgb;
+    Vec3d normal;  // of the surface, in the frame that the renderer says
+};
+
+/// The sums of a few pixels, for one thread to add to; it takes them from a film and gives them back.
+///
+/// Sums are of double: n of them differ from what was added by n · 1e-16 at most, relative to the sum of magnitudes.
+/// They are added to one by one, in the samples' order, so that it makes no difference to any bit where passes begin
+/// and end.
+class FilmTile {
+  public:
+    /// `layout` outlives it.
+    explicit FilmTile(const FilmLayout& layout);
+
+    [[nodiscard]] const PixelRect& rect() const { return rect_; }
+
+    /// The number of a pixel within the tile, by its place on the film.
+    [[nodiscard]] std::size_t pixel(int x, int y) const {
+        return static_cast<std::size_t>((y - rect_.y) * rect_.width + (x - rect_.x));
+    }
+
+    /// Adds a sample at one wavelength stratum: its estimate of the film irradiance, W·m⁻²·nm⁻¹, filter weight
+    /// included. Once a sample, with all that it met; samples that met no light need not be told.
+    void add(std::size_t pixel, std::size_t stratum, double irradiance) {
+        const Light& light = lights_[stratum];
+        double* sums = sums_.data() + pixel * stride_;
+        add_rgb(sums, rgb_of(light, irradiance));
+        sums[light.layer] += irradiance;
+    }
+
+    /// The same at the wavelengths of one path, of which each is as likely as any to be at any stratum (hero wavelength
+    /// sampling): the sample's value is the mean over them. A path that ends all but its first gives zeros for them and
+    /// four times the first's own estimate.
+    void add(std::size_t pixel, std::span<const std::uint16_t, 4> strata, std::span<const float, 4> irradiance);
+
+    /// Says that a pixel has had `samples` more, those without light included.
+    void count_samples(std::size_t pixel, std::uint32_t samples) { samples_[pixel] += samples; }
+
+    /// Adds what a sample's first surface is like; samples that met none need not be told.
+    void add_features(std::size_t pixel, const PixelFeatures& features);
+
+    /// Light at any point of the film, of the tile or not: the power that one light path brings there over the area of
+    /// a pixel, W·m⁻²·nm⁻¹, the mean over the path's wavelengths as above. Points outside the film, too, if the filter
+    /// of a pixel reaches them.
+    void splat(double x_px, double y_px, std::span<const std::uint16_t, 4> strata,
+               std::span<const float, 4> irradiance);
+
+    /// Says that so many more light paths were begun, those that brought nothing included.
+    void count_light_paths(std::uint64_t paths) { light_paths_ += paths; }
+
+    /// Rays that were traced: for whom it may interest.
+    void count_rays(std::uint64_t rays) { rays_ += rays; }
+    [[nodiscard]] std::uint64_t rays() const { return rays_; }
+
+  private:
+    friend class Film;
+
+    struct Light {  // what a stratum makes of irradiance
+        Vec3d rgb_weights;
+        std::uint32_t layer = 0;  // where its sum stands among a pixel's
+    };
+    struct Splat {
+        double x_px = 0.0;
+        double y_px = 0.0;
+        Vec3d rgb;
+        std::array<std::uint32_t, 4> layer{};
+        std::array<double, 4> irradiance{};
+    };
+
+    [[nodiscard]] Vec3d rgb_of(const Light& light, double irradiance) const {
+        const double over_band = band_nm_ * irradiance;
+        return {over_band * light.rgb_weights.x, over_band * light.rgb_weights.y, over_band * light.rgb_weights.z};
+    }
+    static void add_rgb(double* sums, const Vec3d& rgb) {
+        sums[0] += rgb.x;
+        sums[1] += rgb.y;
+        sums[2] += rgb.z;
+        sums[3] += rgb.x * rgb.x;
+        sums[4] += rgb.y * rgb.y;
+        sums[5] += rgb.z * rgb.z;
+    }
+
+    std::vector<Light> lights_;
+    double band_nm_ = 0.0;
+    std::size_t stride_ = 0;
+    std::size_t features_ = 0;  // where they stand among a pixel's sums
+    PixelRect rect_;
+    std::vector<double> sums_;
+    std::vector<std::uint32_t> samples_;
+    std::vector<Splat> splats_;
+    std::uint64_t light_paths_ = 0;
+    std::uint64_t rays_ = 0;
+};
+
+/// What n samples say of a pixel, and the variance of that.
+struct PixelEstimate {
+    Vec3d rgb;       // linear, 1 = saturation
+    Vec3d variance;  // of rgb: s²/n, as if samples were independent. Samples that are stratified do better: for them it
+                     // is an upper bound. Of splats, as if a path's met no pixel twice.
+};
+
+/// All pixels' sums. Two films of one layout that hold different samples add up to the film of all of them.
+class Film {
+  public:
+    explicit Film(FilmLayout layout);
+
+    [[nodiscard]] const FilmLayout& layout() const { return layout_; }
+    [[nodiscard]] int width() const { return layout_.width; }
+    [[nodiscard]] int height() const { return layout_.height; }
+
+    /// Gives a tile the sums of `rect`, so that more may be added.
+    void load(const PixelRect& rect, FilmTile& tile) const;
+
+    /// Takes a tile's sums in place of the film's, and its splats, in their order.
+    void store(const FilmTile& tile);
+
+    /// Adds another film's sums. Throws std::invalid_argument where it has another layout.
+    void merge(const Film& other);
+
+    [[nodiscard]] std::uint32_t samples(int x, int y) const { return samples_[at(x, y)]; }
+    [[nodiscard]] std::uint64_t light_paths() const { return light_paths_; }
+
+    /// What camera paths and light paths make of a pixel together, and each alone. Both are parts of one image: where
+    /// both can bring the same light, the renderer has weighed them to add up to it.
+    [[nodiscard]] PixelEstimate estimate(int x, int y) const;
+    [[nodiscard]] PixelEstimate camera_estimate(int x, int y) const;
+    [[nodiscard]] PixelEstimate light_estimate(int x, int y) const;
+
+    /// Mean film irradiance over the band of each spectral layer, W·m⁻²·nm⁻¹; of camera and light paths, or of the
+    /// latter alone.
+    void layers(int x, int y, std::span<double> irradiance) const;
+    void light_layers(int x, int y, std::span<double> irradiance) const;
+
+    /// Means of the features: of albedo and normal over all samples, of depth over those that met a surface, and
+    /// which share of the samples that is.
+    [[nodiscard]] PixelFeatures features(int x, int y) const;
+    [[nodiscard]] double coverage(int x, int y) const;
+
+    /// All that a film holds besides its layout, for checkpoints.
+    template <class Self, class Visit>
+    static void visit_sums(Self& film, const Visit& visit) {
+        visit(film.sums_);
+        visit(film.samples_);
+        visit(film.splat_sums_);
+        visit(film.light_paths_);
+    }
+
+    /// Puts a pixel's sums together from what was written of it: what `estimate`, … give for it. For shards.
+    struct PixelContent {
+        std::uint32_t samples = 0;
+        PixelEstimate camera;
+        std::span<const double> camera_layers;
+        PixelEstimate light;
+        std::span<const double> light_layers;
+        PixelFeatures features;
+        double coverage = 0.0;
+    };
+    void set_pixel(int x, int y, const PixelContent& content);
+    void set_light_paths(std::uint64_t paths) { light_paths_ = paths; }
+
+  private:
+    [[nodiscard]] std::size_t at(int x, int y) const {
+        return static_cast<std::size_t>(y) * static_cast<std::size_t>(layout_.width) + static_cast<std::size_t>(x);
+    }
+    void add_splat(const FilmTile::Splat& splat);
+
+    FilmLayout layout_;
+    std::size_t stride_ = 0;
+    std::size_t splat_stride_ = 0;
+    std::size_t features_ = 0;
+    std::vector<double> sums_;            // a pixel: RGB, their squares, layers, features
+    std::vector<std::uint32_t> samples_;  // of each pixel
+    std::vector<double> splat_sums_;      // a pixel: RGB, their squares, layers
+    std::uint64_t light_paths_ = 0;
+};
+
+}  // namespace lensproof

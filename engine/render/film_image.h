@@ -1,0 +1,15 @@
+// engine/render/film_image.h — the picture that a film's sums make.
+#pragma once
+#include "engine/io/image.h"
+#include "engine/render/film.h"
+
+namespace lensproof {
+
+/// Channels: R, G, B (linear, 1 = saturation), their standard errors error.R, error.G, error.B (`PixelEstimate`), then
+/// one spectral layer a wavelength: mean film irradiance over its band, W·m⁻²·nm⁻¹. A pixel without samples is black.
+Image film_image(const Film& film);
+
+/// R, G and B alone: for a preview.
+Image film_rgb(const Film& film);
+
+}  // namespace lensproof

@@ -1,0 +1,12 @@
+#include "engine/version.h"
+
+#include "engine/io/hash.h"
+#include "engine_digest.h"
+
+namespace lensproof {
+
+std::string engine_version() {
+    return LENSPROOF_VERSION "+" + hash_text(kEngineDigest);
+}
+
+}  // namespace lensproof
