@@ -4,6 +4,8 @@
 #include <functional>
 #include <stdexcept>
 
+#include "engine/render/film_points.h"
+
 namespace lensproof {
 
 namespace {
@@ -88,7 +90,7 @@ template <class T>
 bool CameraPathProducer<T>::draw_and_trace(int count) {
     kernels_->draw_samples({.sensor = source_.sensor, .seed = source_.seed, .wavelengths = source_.lens->wavelengths()},
                            count, cursor_, *starts_);
-    draw_from_filter();
+    draw_from_filter(source_.filter, source_.sensor, *starts_, filter_weight_);
     if (draw_pupil_points() == 0) {
         return false;
     }
@@ -96,29 +98,6 @@ bool CameraPathProducer<T>::draw_and_trace(int count) {
     weigh_by_filter();
     trace_batch<Direction::reverse>(*source_.lens, rays_, tracing_);
     return true;
-}
-
-/// Film points are even over their pixel so far; where in it makes the number that the filter's draw takes.
-template <class T>
-void CameraPathProducer<T>::draw_from_filter() {
-    if (source_.filter.is_box()) {
-        return;
-    }
-    const Sensor& sensor = source_.sensor;
-    const auto width = static_cast<std::uint32_t>(sensor.width);
-    for (std::size_t i = 0; i < static_cast<std::size_t>(starts_->size); ++i) {
-        const double column = starts_->pixel[i] % width;
-        const double row = starts_->pixel[i] / width;
-        const Vec2d centre = sensor.position(column, row);
-        const PixelFilter::Draw across =
-            source_.filter.draw((centre.x - starts_->film_x[i]) / sensor.pixel_pitch_mm + 0.5);
-        const PixelFilter::Draw down =
-            source_.filter.draw((starts_->film_y[i] - centre.y) / sensor.pixel_pitch_mm + 0.5);
-        const Vec2d drawn = sensor.position(column + across.offset_px, row + down.offset_px);
-        starts_->film_x[i] = drawn.x;
-        starts_->film_y[i] = drawn.y;
-        filter_weight_[i] = across.weight * down.weight;
-    }
 }
 
 template <class T>

@@ -83,7 +83,6 @@ class CameraPathProducer {
     int draw_pupil_points();
     /// False where the film gets no light, and nothing was traced.
     bool draw_and_trace(int count);
-    void draw_from_filter();
     void weigh_by_filter();
     void move_survivors(CameraPathBuffer<T>& buffer);
 

@@ -8,6 +8,7 @@
 
 #include "engine/render/camera_paths.h"
 #include "engine/render/film_image.h"
+#include "engine/render/tile_paths.h"
 
 namespace lensproof {
 
@@ -50,28 +51,8 @@ class ChartTileRenderer {
         : view_(&view), producer_(source) {}
 
     void operator()(const TileSamples& samples, FilmTile& tile) {
-        const PixelRect& rect = samples.rect;
-        const auto width = static_cast<std::uint32_t>(view_->sensor.width);
-        const std::int64_t started_before = producer_.started();
-        for (int y = rect.y; y < rect.y + rect.height; ++y) {
-            const std::uint32_t first_pixel =
-                static_cast<std::uint32_t>(y) * width + static_cast<std::uint32_t>(rect.x);
-            producer_.start({.first_pixel = first_pixel,
-                             .pixels = static_cast<std::uint32_t>(rect.width),
-                             .first_sample = samples.first,
-                             .samples = samples.end - samples.first});
-            const std::size_t first_of_row = tile.pixel(rect.x, y);
-            while (producer_.fill(paths_)) {
-                for (int i = 0; i < paths_.size; ++i) {
-                    const std::size_t at_pixel = paths_.pixel[static_cast<std::size_t>(i)] - first_pixel;
-                    add_path(i, first_of_row + at_pixel, tile);
-                }
-            }
-        }
-        for (std::size_t pixel = 0; pixel < static_cast<std::size_t>(rect.pixels()); ++pixel) {
-            tile.count_samples(pixel, samples.end - samples.first);
-        }
-        tile.count_rays(static_cast<std::uint64_t>(producer_.started() - started_before));
+        for_each_path(samples, view_->sensor.width, producer_, paths_, tile,
+                      [&](int path, std::size_t pixel) { add_path(path, pixel, tile); });
     }
 
   private:

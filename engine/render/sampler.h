@@ -25,15 +25,20 @@ constexpr std::uint64_t mixed(std::uint64_t x) {
     return (x >> 16U) | (x << 16U);
 }
 
-/// A number in (0, 1) from bits by Owen's nested uniform scramble, which a hash stands for (Laine & Karras 2011, as
-/// improved by Burley, JCGT 9(4), 2020, listing 3). The bits come in reverse.
-[[gnu::always_inline]] constexpr double scrambled_number(std::uint32_t reversed, std::uint32_t seed) {
+/// A hash in which every bit depends on those below it alone: a nested uniform scramble of bits that come in reverse
+/// (Laine & Karras 2011, as improved by Burley, JCGT 9(4), 2020, listing 3).
+[[gnu::always_inline]] constexpr std::uint32_t laine_karras(std::uint32_t reversed, std::uint32_t seed) {
     std::uint32_t x = reversed + seed;
     x ^= x * 0x6c50b47cU;
     x ^= x * 0xb82f1e52U;
     x ^= x * 0xc7afe638U;
     x ^= x * 0x8d22f6e6U;
-    return (reversed_bits(x) + 0.5) * 0x1p-32;
+    return x;
+}
+
+/// A number in (0, 1) from bits by Owen's scramble. The bits come in reverse.
+[[gnu::always_inline]] constexpr double scrambled_number(std::uint32_t reversed, std::uint32_t seed) {
+    return (reversed_bits(laine_karras(reversed, seed)) + 0.5) * 0x1p-32;
 }
 
 inline constexpr int kDimensions = 5;

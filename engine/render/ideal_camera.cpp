@@ -1,0 +1,151 @@
+#include "engine/render/ideal_camera.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <memory>
+#include <numbers>
+#include <utility>
+
+#include "engine/io/input_error.h"
+#include "engine/optics/paraxial.h"
+#include "engine/render/film_points.h"
+#include "engine/spectral/wavelengths.h"
+
+namespace lensproof {
+
+namespace {
+
+constexpr std::array<std::pair<CameraModel, const char*>, 4> kModels = {{{CameraModel::exact, "exact"},
+                                                                         {CameraModel::paraxial, "paraxial"},
+                                                                         {CameraModel::thin_lens, "thin-lens"},
+                                                                         {CameraModel::pinhole, "pinhole"}}};
+
+/// Of a ray along the axis; 1 where it does not come through (a stop with a central obstruction).
+double axial_transmittance(const TraceLens<double>& lens) {
+    const TracedRay<double> axis = trace<Direction::reverse>(lens, {{0.0, 0.0, lens.image_z}, {0.0, 0.0, -1.0}});
+    return axis.status == RayStatus::ok ? axis.transmittance : 1.0;
+}
+
+GaussianCamera thin_lens(const TraceLens<double>& lens, const ParaxialData& data) {
+    return {.film_z = lens.image_z - lens.surfaces.back().vertex_z - data.rear_principal_z,
+            .pupil_z = 0.0,
+            .pupil_radius_mm = 0.5 * data.entrance_pupil_diameter,
+            .object_z = data.front_principal_z,
+            .s_h = 1.0 / data.efl};
+}
+
+GaussianCamera paraxial_lens(const Lens& lens, const TraceLens<double>& traced, const ParaxialData& data) {
+    const double exit_pupil_z = data.exit_pupil_z;  // from the last vertex
+    if (!std::isfinite(exit_pupil_z) || !std::isfinite(data.exit_pupil_diameter)) {
+        throw InputError(fmt::format(
+            "the exit pupil of {} lies at infinity, which the paraxial model does not cover; try exact or thin-lens",
+            lens.name));
+    }
+    const int last = static_cast<int>(traced.surfaces.size()) - 1;
+    const auto backwards = [&](double height, double slope) {
+        return trace_paraxial(traced, ParaxialRay{height - exit_pupil_z * slope, slope}, last, 0);
+    };
+    const ParaxialRay of_height = backwards(1.0, 0.0);
+    const ParaxialRay of_slope = backwards(0.0, 1.0);
+    return {.film_z = traced.image_z,
+            .pupil_z = traced.surfaces.back().vertex_z + exit_pupil_z,
+            .pupil_radius_mm = 0.5 * std::abs(data.exit_pupil_diameter),
+            .object_z = traced.surfaces.front().vertex_z,
+            .h_h = of_height.height,
+            .h_s = of_slope.height,
+            .s_h = of_height.slope,
+            .s_s = of_slope.slope};
+}
+
+}  // namespace
+
+std::vector<std::string> camera_model_names() {
+    std::vector<std::string> names;
+    std::ranges::transform(kModels, std::back_inserter(names), [](const auto& model) { return model.second; });
+    return names;
+}
+
+CameraModel camera_model_named(const std::string& name) {
+    for (const auto& [model, known] : kModels) {
+        if (name == known) {
+            return model;
+        }
+    }
+    throw InputError(
+        fmt::format("\"{}\" is no camera model, expected one of {}", name, fmt::join(camera_model_names(), ", ")));
+}
+
+GaussianCamera gaussian_camera(const Lens& lens, CameraModel model, double wavelength_nm) {
+    const TraceLens<double> traced = at_wavelength<double>(lens, wavelength_nm);
+    // What has one focal length has that of the line by which lenses are focused and stopped down.
+    const TraceLens<double> reference = model == CameraModel::paraxial ? traced : at_wavelength<double>(lens, kLineD);
+    const ParaxialData data = paraxial_data(reference);
+    if (!std::isfinite(data.efl) || !std::isfinite(data.entrance_pupil_diameter)) {
+        throw InputError(fmt::format("{} has no focal length or no entrance pupil, which the {} model needs", lens.name,
+                                     kModels[static_cast<std::size_t>(model)].second));
+    }
+    GaussianCamera camera =
+        model == CameraModel::paraxial ? paraxial_lens(lens, reference, data) : thin_lens(reference, data);
+    camera.is_pinhole = model == CameraModel::pinhole;
+    camera.transmittance = axial_transmittance(traced);
+    return camera;
+}
+
+IdealPathProducer::IdealPathProducer(IdealPathSource source)
+    : source_(std::move(source)), kernels_(&path_kernels<double>({})), starts_(std::make_unique<PathStarts>()) {}
+
+void IdealPathProducer::start(const CameraPathRange& range) {
+    cursor_ = {.pixel = range.first_pixel, .sample = 0, .first_sample = range.first_sample, .samples = range.samples};
+    end_pixel_ = range.first_pixel + (range.samples > 0 ? range.pixels : 0);
+}
+
+bool IdealPathProducer::fill(CameraPathBuffer<double>& buffer) {
+    buffer.size = 0;
+    while (cursor_.pixel < end_pixel_ && buffer.size < buffer.capacity) {
+        const std::uint64_t left = std::uint64_t{end_pixel_ - cursor_.pixel} * cursor_.samples - cursor_.sample;
+        const int count =
+            static_cast<int>(std::min<std::uint64_t>(left, std::min(buffer.capacity - buffer.size, kPathChunk)));
+        kernels_->draw_samples(
+            {.sensor = source_.sensor, .seed = source_.seed, .wavelengths = static_cast<int>(source_.at->size())},
+            count, cursor_, *starts_);
+        draw_from_filter(source_.filter, source_.sensor, *starts_, filter_weight_);
+        for (int i = 0; i < count; ++i) {
+            append(static_cast<std::size_t>(i), buffer);
+        }
+        started_ += count;
+    }
+    return buffer.size > 0;
+}
+
+void IdealPathProducer::append(std::size_t sample, CameraPathBuffer<double>& buffer) {
+    const GaussianCamera& camera = (*source_.at)[starts_->wavelength[sample]];
+    const double radius = camera.is_pinhole ? 0.0 : camera.pupil_radius_mm * std::sqrt(starts_->pupil_u[sample]);
+    const double angle = 2.0 * std::numbers::pi * starts_->pupil_v[sample];
+    const Vec2d h{radius * std::cos(angle), radius * std::sin(angle)};
+    const double way_z = camera.pupil_z - camera.film_z;
+    const Vec3d way{h.x - starts_->film_x[sample], h.y - starts_->film_y[sample], way_z};
+    const Vec2d s{way.x / way_z, way.y / way_z};
+    const double distance2 = dot(way, way);
+    const double area = std::numbers::pi * camera.pupil_radius_mm * camera.pupil_radius_mm;
+    const Vec3d direction =
+        normalized(Vec3d{-(camera.s_h * h.x + camera.s_s * s.x), -(camera.s_h * h.y + camera.s_s * s.y), -1.0});
+
+    const auto at = static_cast<std::size_t>(buffer.size++);
+    buffer.pixel[at] = starts_->pixel[sample];
+    buffer.sample[at] = starts_->sample[sample];
+    buffer.wavelength[at] = starts_->wavelength[sample];
+    buffer.film_x[at] = starts_->film_x[sample];
+    buffer.film_y[at] = starts_->film_y[sample];
+    buffer.weight[at] = camera.transmittance * way_z * way_z / (distance2 * distance2) * area * filter_weight_[sample];
+    buffer.origin.x[at] = camera.h_h * h.x + camera.h_s * s.x;
+    buffer.origin.y[at] = camera.h_h * h.y + camera.h_s * s.y;
+    buffer.origin.z[at] = camera.object_z;
+    buffer.direction.x[at] = direction.x;
+    buffer.direction.y[at] = direction.y;
+    buffer.direction.z[at] = direction.z;
+}
+
+}  // namespace lensproof

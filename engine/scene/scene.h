@@ -1,0 +1,22 @@
+// engine/scene/scene.h — all that light meets: surfaces, what they are made of, and the lights.
+#pragma once
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "engine/scene/geometry.h"
+#include "engine/scene/light.h"
+#include "engine/scene/material.h"
+#include "engine/spectral/spectral_sample.h"
+
+namespace lensproof {
+
+/// A scene as renderers take it. World frame, mm; everything spectral is tabulated on `grid`.
+struct Scene {
+    SpectralGrid grid;
+    std::unique_ptr<const SceneGeometry> geometry;  // at a fixed place: `lights` refers to it
+    std::vector<Material> materials;                // as the geometry's objects name them
+    Lights lights;
+};
+
+}  // namespace lensproof

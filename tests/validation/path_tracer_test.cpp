@@ -1,0 +1,168 @@
+// Radiance by path tracing against closed forms: what a surface gets from lights of known shape, and furnaces.
+#include "engine/render/path_tracer.h"
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+#include <vector>
+
+#include "engine/scene/basis.h"
+
+namespace lensproof {
+namespace {
+
+constexpr double kPi = std::numbers::pi;
+
+const SpectralGrid kGrid = spectral_grid(400.0, 700.0, 8);
+
+/// Objects of one albedo each, and lights.
+struct SceneParts {
+    std::vector<Shape> shapes;
+    std::vector<SceneObject> objects;
+    std::vector<Material> materials;
+    std::vector<Light> lights;
+
+    /// Returns the object's index.
+    std::uint32_t add(Shape shape, const AffineMap& to_world, double albedo) {
+        shapes.push_back(std::move(shape));
+        materials.emplace_back(DiffuseMaterial{constant_spectrum(albedo, kGrid)});
+        const auto index = static_cast<std::uint32_t>(objects.size());
+        objects.push_back({.shape = index, .to_world = to_world, .material = index});
+        return index;
+    }
+
+    Scene scene() {
+        Scene made{.grid = kGrid,
+                   .geometry = std::make_unique<SceneGeometry>(shapes, objects),
+                   .materials = materials,
+                   .lights = {}};
+        made.lights = Lights(*made.geometry, lights);
+        return made;
+    }
+};
+
+AffineMap at(double x, double y, double z) {
+    return {.linear = kIdentity3, .translation = {x, y, z}};
+}
+
+struct Estimate {
+    double mean = 0.0;
+    double error = 0.0;  // standard
+};
+
+/// The mean over many paths along one ray, all wavelengths.
+Estimate radiance(const Scene& scene, const Ray<double>& ray, int paths, const PathSettings& settings = {}) {
+    double sum = 0.0;
+    double squares = 0.0;
+    for (int i = 0; i < paths; ++i) {
+        PathSampler numbers(7, 0, static_cast<std::uint32_t>(i));
+        const double found = mean(
+            trace_path(scene, ray, kGrid.path(i % kGrid.size()), SpectralSample(1.0F), settings, numbers).radiance);
+        sum += found;
+        squares += found * found;
+    }
+    const double n = paths;
+    const double mean = sum / n;
+    return {mean, std::sqrt(std::max(0.0, squares / n - mean * mean) / (n - 1.0))};
+}
+
+/// Four standard errors as if samples were independent, which stratified ones stay well within; and float's rounding.
+void expect_estimate(const Estimate& found, double expected) {
+    EXPECT_NEAR(found.mean, expected, 4.0 * found.error + 1e-6 * expected);
+    EXPECT_LT(found.error, 0.01 * expected);
+}
+
+const Ray<double> kDownwards{{0.0, 0.0, 50.0}, {0.0, 0.0, -1.0}};
+
+// A sphere of radiance L seen from a point of a plane under it gives the irradiance π L (R/d)² (Lambert; the sphere's
+// projected solid angle is that of its disc). A Lambertian plane then has the radiance ρ L (R/d)².
+TEST(PathTracer, SphereLightLightsAPlaneAsItsDiscDoes) {
+    SceneParts parts;
+    parts.add(Quad{1000.0, 1000.0}, {}, 0.5);
+    const std::uint32_t sphere = parts.add(Sphere{30.0}, at(0.0, 0.0, 200.0), 0.0);
+    parts.lights.emplace_back(AreaLight{.object = sphere, .radiance = constant_spectrum(10.0, kGrid)});
+    const Scene scene = parts.scene();
+    expect_estimate(radiance(scene, kDownwards, 4096), 0.5 * 10.0 * std::pow(30.0 / 200.0, 2));
+    // The same on a sphere that is none to the last digits, which is sampled by its area.
+    parts.objects.back().to_world.linear[2].z = 1.0 + 1e-9;
+    expect_estimate(radiance(parts.scene(), kDownwards, 65536), 0.5 * 10.0 * std::pow(30.0 / 200.0, 2));
+}
+
+// Of two directly opposed discs' kin, parallel squares: a point under the middle of a square light of side 2a at height
+// h gets E = π L F with F = 4/π · X/√(1+X²) · atan(X/√(1+X²)), X = a/h (Howell, A Catalog of Radiation Heat Transfer
+// Configuration Factors, B-3, four times the corner's).
+TEST(PathTracer, QuadLightHasItsConfigurationFactor) {
+    SceneParts parts;
+    parts.add(Quad{1000.0, 1000.0}, {}, 0.8);
+    AffineMap facing_down = at(0.0, 0.0, 100.0);
+    facing_down.linear = about_x(180.0);
+    const std::uint32_t quad = parts.add(Quad{120.0, 120.0}, facing_down, 0.0);
+    parts.lights.emplace_back(AreaLight{.object = quad, .radiance = constant_spectrum(3.0, kGrid)});
+    const Scene scene = parts.scene();
+    const double x = 60.0 / 100.0;
+    const double side = x / std::sqrt(1.0 + x * x);
+    const double factor = 4.0 / (2.0 * kPi) * 2.0 * side * std::atan(side);
+    expect_estimate(radiance(scene, kDownwards, 4096), 0.8 * 3.0 * factor);
+}
+
+// A point's irradiance is I cos θ / d², a spot's within its full cone the same, and the sun's L Ω cos θ.
+TEST(PathTracer, PointSpotAndSunKeepTheirLaws) {
+    const double height_m = 0.3;
+    const auto lit_by = [](const Light& light) {
+        SceneParts parts;
+        parts.add(Quad{1000.0, 1000.0}, {}, 0.5);
+        parts.lights.push_back(light);
+        return radiance(parts.scene(), kDownwards, 256).mean;
+    };
+    const Vec3d above{400.0, 0.0, 300.0};  // so that cos θ = 3/5 and d = 0.5 m
+    const double of_point = 0.5 / kPi * 2.0 * (height_m / 0.5) / (0.5 * 0.5);
+    EXPECT_NEAR(lit_by(PointLight{above, constant_spectrum(2.0, kGrid)}), of_point, 1e-6 * of_point);
+    EXPECT_NEAR(lit_by(SpotLight{above, normalized(-1.0 * above), 0.99, 0.9, constant_spectrum(2.0, kGrid)}), of_point,
+                1e-6 * of_point);
+    EXPECT_EQ(lit_by(SpotLight{above, {1.0, 0.0, 0.0}, 0.99, 0.9, constant_spectrum(2.0, kGrid)}), 0.0);
+    // The mean cosine over a disc of 0.265° differs from its centre's by less than its radius squared.
+    const double cos_radius = std::cos(0.265 * kPi / 180.0);
+    const double of_sun = 0.5 / kPi * 1e4 * 2.0 * kPi * (1.0 - cos_radius) * 0.6;
+    EXPECT_NEAR(lit_by(SunLight{normalized(above), cos_radius, constant_spectrum(1e4, kGrid)}), of_sun, 3e-5 * of_sun);
+}
+
+// In a closed room of albedo ρ whose walls radiate 1, the radiance after n bounces is 1 + ρ + … + ρⁿ everywhere.
+TEST(PathTracer, GlowingRoomSumsItsBounces) {
+    SceneParts parts;
+    const std::uint32_t walls = parts.add(Sphere{100.0}, {}, 0.6);
+    parts.lights.emplace_back(
+        AreaLight{.object = walls, .radiance = constant_spectrum(1.0, kGrid), .is_two_sided = true});
+    const Scene scene = parts.scene();
+    double expected = 0.0;
+    double power = 1.0;
+    for (const int bounces : {0, 1, 2, 3}) {
+        expected += power;
+        power *= 0.6;
+        const Estimate found =
+            radiance(scene, {{10.0, 20.0, 30.0}, normalized(Vec3d{1.0, 2.0, -0.5})}, 4096, {.max_bounces = bounces});
+        EXPECT_NEAR(found.mean, expected, 4.0 * found.error + 1e-5) << bounces;
+    }
+    // Roulette ends paths early and makes up for it.
+    const Estimate all =
+        radiance(scene, {{10.0, 20.0, 30.0}, {0.0, 0.0, 1.0}}, 16384, {.max_bounces = 200, .roulette_from = 1});
+    expect_estimate(all, 1.0 / (1.0 - 0.6));
+}
+
+// White surfaces of any shape vanish in an even sky: every path carries its radiance out again.
+TEST(PathTracer, WhiteVanishesInAnEvenSky) {
+    SceneParts parts;
+    parts.add(Sphere{30.0}, at(0.0, 0.0, 0.0), 1.0);
+    parts.add(Sphere{20.0}, at(40.0, 0.0, 10.0), 1.0);
+    parts.add(Quad{400.0, 400.0}, at(0.0, 0.0, -30.0), 1.0);
+    parts.lights.emplace_back(ConstantLight{constant_spectrum(5.0, kGrid)});
+    const Scene scene = parts.scene();
+    for (const double x : {0.0, 15.0, 25.0, 35.0}) {
+        const Estimate found = radiance(scene, {{x, 3.0, 200.0}, {0.0, 0.0, -1.0}}, 4096, {.max_bounces = 500});
+        EXPECT_NEAR(found.mean, 5.0, 4.0 * found.error + 5e-5) << x;
+    }
+}
+
+}  // namespace
+}  // namespace lensproof
