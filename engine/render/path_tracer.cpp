@@ -1,30 +1,14 @@
 #include "engine/render/path_tracer.h"
 
-#include <algorithm>
 #include <cmath>
 #include <limits>
 
-#include "engine/scene/basis.h"
 
 namespace lensproof {
 
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-
-/// A surface point on a path, with its scattering.
-struct Vertex {
-    SurfaceHit hit;
-    Basis frame;  // z: the shading normal
-    Vec3d wo;     // local, towards where the path comes from
-    Bsdf bsdf;
-};
-
-/// Whether a direction lies on the same side of the surface by its shading normal as by its geometry: where they differ
-/// light would leak through.
-bool is_consistent(const Vertex& vertex, const Vec3d& world, const Vec3d& local) {
-    return dot(world, vertex.hit.geometric_normal) * local.z > 0.0;
-}
 
 class PathWalk {
   public:
@@ -46,15 +30,11 @@ class PathWalk {
             if (bounce == settings_.max_bounces && bounce > 0) {
                 break;
             }
-            const Basis frame(hit->shading_normal, hit->tangent);
-            const Vertex vertex{.hit = *hit,
-                                .frame = frame,
-                                .wo = frame.to_local(-1.0 * ray.direction),
-                                .bsdf = bsdf_at(scene_.materials[hit->material], hit->uv, path_)};
+            const PathVertex vertex(*hit, -1.0 * ray.direction, scene_, path_);
             if (bounce == 0) {
                 note_first(vertex);
             }
-            if (bounce == settings_.max_bounces || !is_consistent(vertex, -1.0 * ray.direction, vertex.wo)) {
+            if (bounce == settings_.max_bounces || !vertex.is_consistent(-1.0 * ray.direction, vertex.wo)) {
                 break;
             }
             const auto numbers = numbers_.next();
@@ -67,7 +47,7 @@ class PathWalk {
                 break;
             }
             const Vec3d onwards = vertex.frame.to_world(scattered->wi);
-            if (!is_consistent(vertex, onwards, scattered->wi)) {
+            if (!vertex.is_consistent(onwards, scattered->wi)) {
                 break;
             }
             throughput *= scattered->weight;
@@ -75,7 +55,7 @@ class PathWalk {
                 throughput = static_cast<float>(kWavelengthsPerPath) * hero_alone(throughput);
                 carries_all = false;
             }
-            if (!survives_roulette(bounce, starts_with, numbers[3], throughput)) {
+            if (!survives_roulette(settings_, bounce, starts_with, numbers[3], throughput)) {
                 break;
             }
             scattering_density_ = scattered->is_delta ? 0.0 : scattered->density;
@@ -97,14 +77,14 @@ class PathWalk {
         result_.radiance += static_cast<float>(weight) * (throughput * light.radiance);
     }
 
-    void add_from_lights(const Vertex& vertex, const SpectralSample& throughput) {
+    void add_from_lights(const PathVertex& vertex, const SpectralSample& throughput) {
         const auto numbers = numbers_.next();
         const auto light = scene_.lights.sample(vertex.hit.point, path_, numbers[0], numbers[1], numbers[2]);
         if (!light) {
             return;
         }
         const Vec3d wi = vertex.frame.to_local(light->direction);
-        if (!is_consistent(vertex, light->direction, wi)) {
+        if (!vertex.is_consistent(light->direction, wi)) {
             return;
         }
         const SpectralSample scattering = evaluate(vertex.bsdf, vertex.wo, wi, Transport::radiance);
@@ -121,21 +101,7 @@ class PathWalk {
         result_.radiance += static_cast<float>(weight) * (throughput * scattering * light->value);
     }
 
-    /// Scales what goes on.
-    bool survives_roulette(int bounce, float starts_with, double number, SpectralSample& throughput) const {
-        const float carries = max_value(throughput) / starts_with;
-        if (!(carries > 0.0F)) {
-            return false;
-        }
-        if (bounce < settings_.roulette_from || carries >= 1.0F) {
-            return true;
-        }
-        const float survival = std::max(carries, 0.05F);
-        throughput *= 1.0F / survival;
-        return number < survival;
-    }
-
-    void note_first(const Vertex& vertex) {
+    void note_first(const PathVertex& vertex) {
         const bool is_behind = vertex.wo.z < 0.0;
         result_.first = FirstSurface{.point = vertex.hit.point,
                                      .normal = (is_behind ? -1.0 : 1.0) * vertex.frame.z,

@@ -5,16 +5,10 @@
 
 #include "engine/optics/ray.h"
 #include "engine/render/path_sampler.h"
+#include "engine/render/path_vertex.h"
 #include "engine/scene/scene.h"
 
 namespace lensproof {
-
-struct PathSettings {
-    int max_bounces = 8;  // scatterings on a path; 0 shows lights alone
-    /// From this bounce on, paths are ended at random by how little they still carry ("Russian roulette", Arvo & Kirk,
-    /// SIGGRAPH 1990); those that go on carry more for it.
-    int roulette_from = 3;
-};
 
 /// The first surface on a path.
 struct FirstSurface {

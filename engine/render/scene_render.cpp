@@ -92,12 +92,9 @@ class SceneTileRenderer {
         for (std::size_t i = 0; i < (is_achromatic_ ? kWavelengthsPerPath : 1); ++i) {
             albedo = albedo + share * first.albedo[i] * view_.albedo_weights[strata.index[i]];
         }
-        const auto in_camera = [&](const Vec3d& world) {
-            return Vec3d{dot(world, view_.pose.right), dot(world, view_.pose.down), dot(world, view_.pose.forward)};
-        };
-        tile.add_features(pixel, {.depth_mm = in_camera(first.point - view_.pose.position).z,
+        tile.add_features(pixel, {.depth_mm = view_.pose.to_camera(first.point).z,
                                   .albedo_rgb = albedo,
-                                  .normal = in_camera(first.normal)});
+                                  .normal = view_.pose.direction_to_camera(first.normal)});
     }
 
     SceneView view_;

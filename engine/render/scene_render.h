@@ -28,6 +28,10 @@ struct CameraPose {
         return in_camera.x * right + in_camera.y * down + in_camera.z * forward;
     }
     [[nodiscard]] Vec3d to_world(const Vec3d& in_camera) const { return position + direction_to_world(in_camera); }
+    [[nodiscard]] Vec3d direction_to_camera(const Vec3d& in_world) const {
+        return {dot(in_world, right), dot(in_world, down), dot(in_world, forward)};
+    }
+    [[nodiscard]] Vec3d to_camera(const Vec3d& in_world) const { return direction_to_camera(in_world - position); }
 };
 
 /// A camera at `position` that looks at `target`, `up` being upwards in the picture. Throws InputError where these do

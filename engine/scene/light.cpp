@@ -260,46 +260,73 @@ Lights::Emission Lights::at_infinity(const Entry& entry, const Vec3d& direction,
     return {.radiance = sun.radiance(path), .density = entry.probability / cone(sun.cos_radius)};
 }
 
-EmittedRay Lights::emit(const PathWavelengths& path, double u_light, const std::array<double, 4>& u) const {
+LightStart Lights::start(const PathWavelengths& path, double u_light, double u1, double u2) const {
     const auto [chosen, rest] = choose(u_light);
-    // Light from infinity crosses a disc in front of the scene, at right angles to its way.
-    const auto across_scene = [&](const Vec3d& towards, const SpectralSample& radiance, double per_solid_angle) {
-        const Vec2d at = in_disc(u[0], u[1]);
-        const Basis basis(towards);
-        const Vec3d origin = centre_ + radius_mm_ * basis.to_world({at.x, at.y, 1.0});
-        const double area = kPi * radius_mm_ * radius_mm_ * kSquareMetresPerSquareMm;
-        return EmittedRay{origin, -1.0 * towards, scaled(radiance, area / per_solid_angle)};
+    LightStart start;
+    start.light = static_cast<std::uint32_t>(chosen - lights_.data());
+    const auto from_infinity = [&](const Vec3d& towards, const SpectralSample& radiance, double solid_angle) {
+        start.is_at_infinity = true;
+        start.direction = -1.0 * towards;
+        start.value = scaled(radiance, solid_angle);
     };
-    EmittedRay ray = std::visit(
+    std::visit(
         Overloaded{
             [&, &entry = *chosen, &of_side = rest](const AreaLight& area) {
-                const SurfaceSample start = entry.surface->sample(u[0], u[1]);
+                const SurfaceSample drawn = entry.surface->sample(u1, u2);
                 const bool is_back = area.is_two_sided && of_side >= 0.5;
-                const Vec3d normal = is_back ? -1.0 * start.geometric_normal : start.geometric_normal;
-                const Vec3d direction = Basis(normal).to_world(cosine_direction(u[2], u[3]));
+                start.point = drawn.point;
+                start.normal = is_back ? -1.0 * drawn.geometric_normal : drawn.geometric_normal;
+                start.error_mm = drawn.error_mm;
                 const double sides = area.is_two_sided ? 2.0 : 1.0;
-                return EmittedRay{
-                    ray_origin(start.point, start.geometric_normal, start.error_mm, direction), direction,
-                    scaled(area.radiance(path), sides * kPi * kSquareMetresPerSquareMm / start.density_per_mm2)};
+                start.value = scaled(area.radiance(path), sides * kSquareMetresPerSquareMm / drawn.density_per_mm2);
             },
             [&](const PointLight& point) {
-                return EmittedRay{point.position, in_cone(-1.0, u[2], u[3]), scaled(point.intensity(path), 4.0 * kPi)};
+                start.point = point.position;
+                start.value = point.intensity(path);
             },
             [&](const SpotLight& spot) {
-                const Vec3d direction = Basis(spot.axis).to_world(in_cone(spot.cos_outer, u[2], u[3]));
-                const double share = spot_falloff(spot, dot(direction, spot.axis));
-                return EmittedRay{spot.position, direction, scaled(spot.intensity(path), share * cone(spot.cos_outer))};
+                start.point = spot.position;
+                start.value = spot.intensity(path);
             },
             [&](const SunLight& sun) {
-                const Vec3d towards = Basis(sun.towards).to_world(in_cone(sun.cos_radius, u[2], u[3]));
-                return across_scene(towards, sun.radiance(path), 1.0 / cone(sun.cos_radius));
+                from_infinity(Basis(sun.towards).to_world(in_cone(sun.cos_radius, u1, u2)), sun.radiance(path),
+                              cone(sun.cos_radius));
             },
-            [&](const ConstantLight& sky) {
-                return across_scene(in_cone(-1.0, u[2], u[3]), sky.radiance(path), 1.0 / (4.0 * kPi));
-            }},
+            [&](const ConstantLight& sky) { from_infinity(in_cone(-1.0, u1, u2), sky.radiance(path), 4.0 * kPi); }},
         chosen->light);
-    ray.power = scaled(ray.power, 1.0 / chosen->probability);
-    return ray;
+    start.value = scaled(start.value, 1.0 / chosen->probability);
+    return start;
+}
+
+SpectralSample Lights::intensity(const LightStart& start, const Vec3d& direction) const {
+    const Light& light = lights_[start.light].light;
+    if (const auto* spot = std::get_if<SpotLight>(&light)) {
+        return scaled(start.value, spot_falloff(*spot, dot(direction, spot->axis)));
+    }
+    return std::holds_alternative<AreaLight>(light) ? scaled(start.value, std::max(0.0, dot(direction, start.normal)))
+                                                    : start.value;
+}
+
+EmittedRay Lights::leave(const LightStart& start, double u1, double u2) const {
+    if (start.is_at_infinity) {
+        // It crosses a disc in front of the scene, at right angles to its way.
+        const Vec2d at = in_disc(u1, u2);
+        const Vec3d origin = centre_ + radius_mm_ * Basis(-1.0 * start.direction).to_world({at.x, at.y, 1.0});
+        const double area = kPi * radius_mm_ * radius_mm_ * kSquareMetresPerSquareMm;
+        return {{origin, start.direction}, scaled(start.value, area)};
+    }
+    const Light& light = lights_[start.light].light;
+    if (std::holds_alternative<AreaLight>(light)) {
+        // With the density cos / π.
+        const Vec3d direction = Basis(start.normal).to_world(cosine_direction(u1, u2));
+        return {{ray_origin(start.point, start.normal, start.error_mm, direction), direction},
+                scaled(start.value, kPi)};
+    }
+    const auto* spot = std::get_if<SpotLight>(&light);
+    const double cos_half_angle = spot != nullptr ? spot->cos_outer : -1.0;
+    const Vec3d in_frame = in_cone(cos_half_angle, u1, u2);
+    const Vec3d direction = spot != nullptr ? Basis(spot->axis).to_world(in_frame) : in_frame;
+    return {{start.point, direction}, scaled(intensity(start, direction), cone(cos_half_angle))};
 }
 
 }  // namespace lensproof

@@ -9,6 +9,7 @@
 #include <variant>
 #include <vector>
 
+#include "engine/optics/ray.h"
 #include "engine/scene/geometry.h"
 #include "engine/scene/surface_sampler.h"
 #include "engine/spectral/spectral_sample.h"
@@ -58,10 +59,22 @@ struct LightSample {
     double density = 0.0;  // per solid angle at the point, choice of the light included; 0 for a delta
 };
 
+/// Where a light path begins: a point of a source or, for one at infinity, a direction that its light comes along.
+struct LightStart {
+    std::uint32_t light = 0;
+    bool is_at_infinity = false;
+    Vec3d point;
+    Vec3d direction;        // of light from infinity, unit length
+    Vec3d normal;           // of a surface, on the side that shines here; else zeros
+    double error_mm = 0.0;  // for `ray_origin`
+    /// Over the density of having drawn the start. Of a surface radiance · m², of a point intensity, W·sr⁻¹·nm⁻¹; of
+    /// light from infinity radiance · sr, the irradiance across it.
+    SpectralSample value;
+};
+
 /// A ray of light as it leaves a source.
 struct EmittedRay {
-    Vec3d origin;
-    Vec3d direction;
+    Ray<double> ray;
     SpectralSample power;  // W·nm⁻¹: what the source sends out, over the density of having drawn this ray of it
 };
 
@@ -98,9 +111,17 @@ class Lights {
         }
     }
 
-    /// A ray that starts at a light. `u_light` chooses the light, the first two of `u` the point (or, of a light at
-    /// infinity, where the ray crosses the scene), the others the direction.
-    [[nodiscard]] EmittedRay emit(const PathWavelengths& path, double u_light, const std::array<double, 4>& u) const;
+    /// Draws where a light path begins. There has to be a light.
+    [[nodiscard]] LightStart start(const PathWavelengths& path, double u_light, double u1, double u2) const;
+
+    /// What a start that is not at infinity sends in a direction: W·sr⁻¹·nm⁻¹.
+    [[nodiscard]] SpectralSample intensity(const LightStart& start, const Vec3d& direction) const;
+
+    /// Draws the direction that a path goes on in; of light from infinity, where it crosses the scene.
+    [[nodiscard]] EmittedRay leave(const LightStart& start, double u1, double u2) const;
+
+    /// Of a sphere around the scene.
+    [[nodiscard]] double radius_mm() const { return radius_mm_; }
 
     /// W·nm⁻¹, the mean over the grid, that all lights send into the scene: what the choice goes by.
     [[nodiscard]] double power() const { return power_; }

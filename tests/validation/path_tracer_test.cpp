@@ -27,7 +27,7 @@ struct SceneParts {
     /// Returns the object's index.
     std::uint32_t add(Shape shape, const AffineMap& to_world, double albedo) {
         shapes.push_back(std::move(shape));
-        materials.emplace_back(DiffuseMaterial{constant_spectrum(albedo, kGrid)});
+        materials.push_back({.surface = DiffuseMaterial{constant_spectrum(albedo, kGrid)}, .radiance = {}});
         const auto index = static_cast<std::uint32_t>(objects.size());
         objects.push_back({.shape = index, .to_world = to_world, .material = index});
         return index;

@@ -1,0 +1,53 @@
+// engine/render/path_vertex.h — what paths from either end have in common.
+#pragma once
+#include <algorithm>
+
+#include "engine/scene/basis.h"
+#include "engine/scene/scene.h"
+
+namespace lensproof {
+
+struct PathSettings {
+    int max_bounces = 8;  // scatterings on a path; 0 shows lights alone
+    /// From this bounce on, paths are ended at random by how little they still carry ("Russian roulette", Arvo & Kirk,
+    /// SIGGRAPH 1990); those that go on carry more for it.
+    int roulette_from = 3;
+};
+
+/// A surface point on a path, with its scattering at the path's wavelengths.
+struct PathVertex {
+    SurfaceHit hit;
+    Basis frame;  // z: the shading normal
+    Vec3d wo;     // local, towards where the path comes from
+    Bsdf bsdf;
+
+    /// `backwards`: world, unit length, towards where the path comes from. The scene outlives the vertex.
+    PathVertex(const SurfaceHit& at, const Vec3d& backwards, const Scene& scene, const PathWavelengths& path)
+        : hit(at),
+          frame(at.shading_normal, at.tangent),
+          wo(frame.to_local(backwards)),
+          bsdf(bsdf_at(scene.materials[at.material], at.uv, path)) {}
+
+    /// Whether a direction lies on the same side of the surface by its shading normal as by its geometry: where they
+    /// differ light would leak through.
+    [[nodiscard]] bool is_consistent(const Vec3d& world, const Vec3d& local) const {
+        return dot(world, hit.geometric_normal) * local.z > 0.0;
+    }
+};
+
+/// Whether a path that carries `carries` of what it started with goes on after a bounce; scales what does.
+inline bool survives_roulette(const PathSettings& settings, int bounce, float starts_with, double number,
+                              SpectralSample& carries) {
+    const float share = max_value(carries) / starts_with;
+    if (!(share > 0.0F)) {
+        return false;
+    }
+    if (bounce < settings.roulette_from || share >= 1.0F) {
+        return true;
+    }
+    const float survival = std::max(share, 0.05F);
+    carries *= 1.0F / survival;
+    return number < survival;
+}
+
+}  // namespace lensproof
