@@ -38,9 +38,16 @@ Sensitivities colorimetric() {
         .relative = {blind_to(green, blue, observer), blind_to(blue, red, observer), blind_to(red, green, observer)}};
 }
 
-Sensitivities measured_camera() {
-    return {.channels = {"R", "G", "B"},
-            .relative = read_spectra(spectral_data("camera-nikon-d5100.csv"), {"red", "green", "blue"})};
+Sensitivities measured_camera(const char* file) {
+    return {.channels = {"R", "G", "B"}, .relative = read_spectra(spectral_data(file), {"red", "green", "blue"})};
+}
+
+Sensitivities nikon() {
+    return measured_camera("camera-nikon-d5100.csv");
+}
+
+Sensitivities sigma() {
+    return measured_camera("camera-sigma-sd1-merrill.csv");
 }
 
 Sensitivities photometer() {
@@ -56,8 +63,11 @@ struct Sensor {
     Sensitivities (*sensitivities)();
 };
 
-constexpr std::array<Sensor, 4> kSensors{
-    {{"cie-1931", colorimetric}, {"camera", measured_camera}, {"luminance", photometer}, {"monochrome", flat}}};
+constexpr std::array<Sensor, 5> kSensors{{{"cie-1931", colorimetric},
+                                          {"camera", nikon},
+                                          {"camera-sigma-sd1-merrill", sigma},
+                                          {"luminance", photometer},
+                                          {"monochrome", flat}}};
 
 Sensitivities sensitivities_of(const std::string& name) {
     for (const Sensor& sensor : kSensors) {
