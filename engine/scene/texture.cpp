@@ -95,15 +95,13 @@ double look_up(const ScalarImage& image, const Vec2d& uv) {
 /// The channels that give red, green and blue.
 std::array<int, 3> rgb_channels(const Image& image, const std::filesystem::path& file) {
     const std::array<int, 3> rgb{find_channel(image, "R"), find_channel(image, "G"), find_channel(image, "B")};
-    if (std::all_of(rgb.begin(), rgb.end(), [](int channel) { return channel >= 0; })) {
-        return rgb;
-    }
     const int grey = find_channel(image, "Y");
-    if (grey < 0 || image.width < 1 || image.height < 1) {
+    const bool has_rgb = std::all_of(rgb.begin(), rgb.end(), [](int channel) { return channel >= 0; });
+    if (image.width < 1 || image.height < 1 || (!has_rgb && grey < 0)) {
         throw InputError(fmt::format("{}: a picture of {} × {} pixels with channels {}, expected R, G and B, or Y",
                                      file.string(), image.width, image.height, fmt::join(image.channels, ", ")));
     }
-    return {grey, grey, grey};
+    return has_rgb ? rgb : std::array<int, 3>{grey, grey, grey};
 }
 
 /// The texture whose texels are `texel_of(rgb)`.
