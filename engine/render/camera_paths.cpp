@@ -55,7 +55,7 @@ template <class T>
 CameraPathProducer<T>::CameraPathProducer(const CameraPathSource<T>& source, std::optional<SimdLevel> level)
     : source_(source),
       tracing_{.carry = Carry::transmittance, .level = level},
-      kernels_(&path_kernels<T>(level.value_or(available_simd_levels().back()))),
+      kernels_(&path_kernels<T>(level)),
       starts_(std::make_unique<PathStarts>()),
       rays_(kPathChunk) {}
 

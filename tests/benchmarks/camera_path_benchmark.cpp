@@ -8,6 +8,7 @@
 #include "engine/render/chart_render.h"
 #include "engine/render/sampler.h"
 #include "engine/scene/pose.h"
+#include "engine/spectral/wavelengths.h"
 #include "tests/benchmarks/benchmarks.h"
 
 namespace lensproof {
@@ -94,13 +95,7 @@ class PathScene {
     }
 
   private:
-    static std::vector<double> wavelengths() {
-        std::vector<double> nm;
-        for (int i = 0; i < 64; ++i) {
-            nm.push_back(400.0 + 300.0 * (i + 0.5) / 64);
-        }
-        return nm;
-    }
+    static std::vector<double> wavelengths() { return WavelengthStrata{400.0, 700.0, 64}.midpoints(); }
 
     Lens lens_;
     SpectralLens<double> in_double_;
@@ -133,11 +128,12 @@ void time_one_by_one(benchmark::State& state, const Setting& setting, Consumer c
         started = 0;
         for (std::uint32_t pixel = 0; pixel < scene.pixels(); ++pixel) {
             const PixelSampler sampler(0, pixel);
+            const std::uint32_t row = pixel / 40;
             for (std::uint32_t sample = 0; sample < kSamples; ++sample) {
                 const auto xi = sampler.point(sample);
                 const int wavelength = static_cast<int>(xi[4] * 64);
                 const TraceLens<double>& lens = scene.lens<double>().at(wavelength);
-                const Vec2d at = scene.sensor().position(pixel % 40 - 0.5 + xi[0], pixel / 40 - 0.5 + xi[1]);
+                const Vec2d at = scene.sensor().position(pixel % 40 - 0.5 + xi[0], row - 0.5 + xi[1]);
                 const PupilSample in_pupil = pupil.sample(at, wavelength / 63.0, xi[2], xi[3]);
                 if (!(in_pupil.density > 0.0)) {
                     continue;

@@ -53,6 +53,7 @@ void time_render(benchmark::State& state, const Setting& setting, const Chart& c
 std::vector<TraceLens<double>> band_of(const Setting& setting) {
     const Lens lens = camera_lens(camera_for(setting));
     std::vector<TraceLens<double>> band;
+    band.reserve(64);
     for (int i = 0; i < 64; ++i) {
         band.push_back(at_wavelength<double>(lens, 400.0 + 300.0 * (i + 0.5) / 64));
     }

@@ -64,10 +64,11 @@ Paths<T> one_by_one(const TestCamera<T>& camera, const CameraPathRange& range) {
     Paths<T> found;
     for (std::uint32_t pixel = range.first_pixel; pixel < range.first_pixel + range.pixels; ++pixel) {
         const PixelSampler sampler(kSeed, pixel);
+        const std::uint32_t row = pixel / 8;
         for (std::uint32_t sample = range.first_sample; sample < range.first_sample + range.samples; ++sample) {
             const auto xi = sampler.point(sample);
             const int wavelength = static_cast<int>(xi[4] * static_cast<double>(kWavelengths.size()));
-            const Vec2d film = sensor.position(pixel % 8 - 0.5 + xi[0], pixel / 8 - 0.5 + xi[1]);
+            const Vec2d film = sensor.position(pixel % 8 - 0.5 + xi[0], row - 0.5 + xi[1]);
             const PupilDraw<double> in_pupil = camera.slices.sample(film, wavelength, xi[2], xi[3]);
             if (!(in_pupil.area > 0.0)) {
                 continue;

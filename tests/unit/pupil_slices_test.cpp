@@ -13,6 +13,7 @@ namespace {
 std::vector<TraceLens<double>> band_of(const std::string& name, int wavelengths) {
     const Lens lens = load_lens(name);
     std::vector<TraceLens<double>> band;
+    band.reserve(static_cast<std::size_t>(wavelengths));
     for (int i = 0; i < wavelengths; ++i) {
         band.push_back(at_wavelength<double>(lens, 420.0 + 260.0 * i / (wavelengths - 1)));
     }

@@ -57,15 +57,16 @@ RingProfile flat_field(const SpectralLens<double>& lens, double half_side_mm) {
     };
     // A pixel belongs to the ring that its middle lies in, so that each ring's number of samples is known.
     const auto ring_of = [&](std::uint32_t pixel) {
-        const Vec2d middle = sensor.position(pixel % kPixels, pixel / kPixels);
+        const std::uint32_t row = pixel / kPixels;
+        const Vec2d middle = sensor.position(pixel % kPixels, row);
         return static_cast<std::size_t>(std::hypot(middle.x, middle.y) / sensor.pixel_pitch_mm);
     };
-    std::vector<double> samples(2 * kPixels);
+    std::vector<double> samples(std::size_t{2} * kPixels);
     for (std::uint32_t pixel = 0; pixel < kPixels * kPixels; ++pixel) {
         samples[ring_of(pixel)] += kSamples;
     }
-    std::vector<double> sum(2 * kPixels);
-    std::vector<double> sum_of_squares(2 * kPixels);
+    std::vector<double> sum(samples.size());
+    std::vector<double> sum_of_squares(samples.size());
     CameraPathBuffer<double> paths;
     while (producer.fill(paths)) {
         for (std::size_t i = 0; i < static_cast<std::size_t>(paths.size); ++i) {

@@ -1,8 +1,5 @@
 #include "engine/optics/packet/trace_batch.h"
 
-#include <algorithm>
-#include <map>
-#include <stdexcept>
 #include <type_traits>
 
 #include "engine/optics/packet/trace_kernels.h"
@@ -11,60 +8,28 @@ namespace lensproof {
 
 namespace {
 
-std::map<SimdLevel, LevelKernels> find_kernels() {
-    std::map<SimdLevel, LevelKernels> found{{SimdLevel::scalar, scalar_kernels()},
-                                            {SimdLevel::baseline, baseline_kernels()}};
+const LoopsByLevel<LevelKernels>& kernels() {
+    static const LoopsByLevel<LevelKernels> found{
+        {SimdLevel::scalar, scalar_kernels},
+        {SimdLevel::baseline, baseline_kernels},
 #ifdef LENSPROOF_X86_KERNELS
-    if (__builtin_cpu_supports("avx2")) {
-        found.emplace(SimdLevel::avx2, avx2_kernels());
-    }
-    if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512bw") &&
-        __builtin_cpu_supports("avx512vl")) {
-        found.emplace(SimdLevel::avx512, avx512_kernels());
-    }
+        {SimdLevel::avx2, avx2_kernels},
+        {SimdLevel::avx512, avx512_kernels},
 #endif
-    return found;
-}
-
-const std::map<SimdLevel, LevelKernels>& kernels() {
-    static const std::map<SimdLevel, LevelKernels> found = find_kernels();
+    };
     return found;
 }
 
 template <class T>
 const TraceKernels<T>& kernels_of(std::optional<SimdLevel> level) {
-    const auto entry = level ? kernels().find(*level) : std::prev(kernels().end());
-    if (entry == kernels().end()) {
-        throw std::invalid_argument(std::string("this machine has no ") + simd_name(*level));
-    }
     if constexpr (std::is_same_v<T, float>) {
-        return entry->second.in_float;
+        return kernels().at(level).in_float;
     } else {
-        return entry->second.in_double;
+        return kernels().at(level).in_double;
     }
 }
 
 }  // namespace
-
-const char* simd_name(SimdLevel level) {
-    switch (level) {
-        case SimdLevel::scalar:
-            return "scalar";
-        case SimdLevel::baseline:
-            return "baseline";
-        case SimdLevel::avx2:
-            return "avx2";
-        case SimdLevel::avx512:
-            return "avx512";
-    }
-    return "unknown";
-}
-
-std::vector<SimdLevel> available_simd_levels() {
-    std::vector<SimdLevel> levels;
-    std::ranges::transform(kernels(), std::back_inserter(levels), [](const auto& entry) { return entry.first; });
-    return levels;
-}
 
 template <class T>
 T lane_open_share(const SpectralLens<T>& lens, int surface, T x, T y) {

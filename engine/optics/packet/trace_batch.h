@@ -5,23 +5,10 @@
 #include <vector>
 
 #include "engine/optics/packet/ray_batch.h"
+#include "engine/optics/packet/simd_level.h"
 #include "engine/optics/packet/spectral_lens.h"
 
 namespace lensproof {
-
-/// How many lanes a packet has: one, or as many as a register of the named instructions holds.
-enum class SimdLevel {
-    scalar,    // one ray at a time, on any machine
-    baseline,  // what every machine of the build's architecture has: SSE2, NEON
-    avx2,
-    avx512,
-};
-
-/// "scalar", "baseline", "avx2", "avx512".
-const char* simd_name(SimdLevel level);
-
-/// The levels that this build has and this machine runs, narrowest first; never empty.
-std::vector<SimdLevel> available_simd_levels();
 
 /// What is found of a ray besides its points and directions: each costs time.
 enum class Carry {

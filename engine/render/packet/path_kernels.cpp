@@ -6,39 +6,30 @@ namespace lensproof {
 
 namespace {
 
-/// Each level's functions are asked for where the machine has the level, and not before: they are made of its
-/// instructions.
-const LevelPathKernels& kernels_at(SimdLevel level) {
+const LoopsByLevel<LevelPathKernels>& kernels() {
+    static const LoopsByLevel<LevelPathKernels> found{
+        {SimdLevel::scalar, scalar_path_kernels},
+        {SimdLevel::baseline, baseline_path_kernels},
 #ifdef LENSPROOF_X86_KERNELS
-    if (level == SimdLevel::avx512) {
-        static const LevelPathKernels avx512 = avx512_path_kernels();
-        return avx512;
-    }
-    if (level == SimdLevel::avx2) {
-        static const LevelPathKernels avx2 = avx2_path_kernels();
-        return avx2;
-    }
+        {SimdLevel::avx2, avx2_path_kernels},
+        {SimdLevel::avx512, avx512_path_kernels},
 #endif
-    if (level == SimdLevel::baseline) {
-        static const LevelPathKernels baseline = baseline_path_kernels();
-        return baseline;
-    }
-    static const LevelPathKernels scalar = scalar_path_kernels();
-    return scalar;
+    };
+    return found;
 }
 
 }  // namespace
 
 template <class T>
-const PathKernels<T>& path_kernels(SimdLevel level) {
+const PathKernels<T>& path_kernels(std::optional<SimdLevel> level) {
     if constexpr (std::is_same_v<T, float>) {
-        return kernels_at(level).in_float;
+        return kernels().at(level).in_float;
     } else {
-        return kernels_at(level).in_double;
+        return kernels().at(level).in_double;
     }
 }
 
-template const PathKernels<float>& path_kernels<float>(SimdLevel);
-template const PathKernels<double>& path_kernels<double>(SimdLevel);
+template const PathKernels<float>& path_kernels<float>(std::optional<SimdLevel>);
+template const PathKernels<double>& path_kernels<double>(std::optional<SimdLevel>);
 
 }  // namespace lensproof

@@ -1,6 +1,7 @@
 // engine/render/packet/path_kernels.h — the loops that camera paths start with, one of each for each width of packets.
 #pragma once
 #include <cstdint>
+#include <optional>
 
 #include "engine/optics/packet/trace_batch.h"
 #include "engine/pupil/pupil_slice.h"
@@ -21,9 +22,9 @@ struct PathKernels {
     void (*aim_rays)(double film_z, double pupil_z, PathStarts& starts, RayBatch<T>& rays);
 };
 
-/// Those of an available level.
+/// Those of a level, or of the widest; throws as `LoopsByLevel` does.
 template <class T>
-const PathKernels<T>& path_kernels(SimdLevel level);
+const PathKernels<T>& path_kernels(std::optional<SimdLevel> level);
 
 struct LevelPathKernels {
     PathKernels<float> in_float;
