@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "engine/render/path_vertex.h"
+#include "engine/scene/pose.h"
 
 namespace lensproof {
 
@@ -90,8 +91,8 @@ class LightWalk {
             const EntranceBeam beam = beam_along(entrance_.front, to_lens(start.direction));
             join(beam, u[0], u[1], [&](const Ray<double>& ray, double) {
                 const Vec3d end = from_lens(ray.origin);
-                return is_blocked(end - 4.0 * scene_.lights.radius_mm() * start.direction, end) ? SpectralSample()
-                                                                                              : start.value;
+                return is_blocked(end - scene_.lights.beyond_mm(end) * start.direction, end) ? SpectralSample()
+                                                                                             : start.value;
             });
             return;
         }
@@ -102,7 +103,7 @@ class LightWalk {
                 const SpectralSample intensity = scene_.lights.intensity(start, direction);
                 const Vec3d from = ray_origin(start.point, start.normal, start.error_mm, direction);
                 return is_black(intensity) || is_blocked(from, start.point + distance * direction) ? SpectralSample()
-                                                                                                  : intensity;
+                                                                                                   : intensity;
             });
         }
     }
@@ -120,8 +121,8 @@ class LightWalk {
                 return SpectralSample();
             }
             const SpectralSample scattered = evaluate(vertex.bsdf, vertex.wo, wi, Transport::importance);
-            if (is_black(scattered) || is_blocked(ray_origin(vertex.hit, direction),
-                                                  vertex.hit.point + distance * direction)) {
+            if (is_black(scattered) ||
+                is_blocked(ray_origin(vertex.hit, direction), vertex.hit.point + distance * direction)) {
                 return SpectralSample();
             }
             return power * scattered * SpectralSample(shading_correction(vertex, direction, wi));
@@ -197,9 +198,7 @@ class LightWalk {
     [[nodiscard]] Vec3d direction_from_lens(const Vec3d& direction) const {
         return entrance_.pose.direction_to_world(camera_to_lens(direction));
     }
-    [[nodiscard]] Vec3d from_lens(const Vec3d& point) const {
-        return entrance_.pose.to_world(camera_to_lens(point));
-    }
+    [[nodiscard]] Vec3d from_lens(const Vec3d& point) const { return entrance_.pose.to_world(camera_to_lens(point)); }
 
     const Scene& scene_;
     const LensEntrance& entrance_;

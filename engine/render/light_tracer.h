@@ -8,8 +8,8 @@
 #include "engine/render/film.h"
 #include "engine/render/path_sampler.h"
 #include "engine/render/path_tracer.h"
-#include "engine/render/scene_render.h"
 #include "engine/render/sensor.h"
+#include "engine/scene/camera_pose.h"
 #include "engine/scene/scene.h"
 
 namespace lensproof {

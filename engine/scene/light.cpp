@@ -199,9 +199,8 @@ std::optional<LightSample> Lights::sample(const Vec3d& point, const PathWaveleng
     }
     const Entry& entry = *choose(u_light).entry;
     const auto towards_infinity = [&](const Vec3d& direction, const SpectralSample& radiance, double density) {
-        const double way = length(point - centre_) + 2.0 * radius_mm_ + 1.0;
         return LightSample{.direction = direction,
-                           .end = point + way * direction,
+                           .end = point + beyond_mm(point) * direction,
                            .value = scaled(radiance, 1.0 / density),
                            .density = density};
     };

@@ -120,8 +120,10 @@ class Lights {
     /// Draws the direction that a path goes on in; of light from infinity, where it crosses the scene.
     [[nodiscard]] EmittedRay leave(const LightStart& start, double u1, double u2) const;
 
-    /// Of a sphere around the scene.
-    [[nodiscard]] double radius_mm() const { return radius_mm_; }
+    /// How far from a point all of the scene lies behind, whatever the direction.
+    [[nodiscard]] double beyond_mm(const Vec3d& point) const {
+        return length(point - centre_) + 2.0 * radius_mm_ + 1.0;
+    }
 
     /// W·nm⁻¹, the mean over the grid, that all lights send into the scene: what the choice goes by.
     [[nodiscard]] double power() const { return power_; }

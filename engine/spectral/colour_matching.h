@@ -1,5 +1,7 @@
 // engine/spectral/colour_matching.h — what the CIE's standard observer sees of a spectrum: luminance and colour.
 #pragma once
+#include <array>
+
 #include "engine/optics/vec.h"
 #include "engine/spectral/spectrum.h"
 
@@ -28,7 +30,18 @@ Spectrum photopic_efficiency();
 /// of a spectral irradiance in W·m⁻²·nm⁻¹, the illuminance in lx.
 Vec3d tristimulus(const Spectrum& spectrum, const ColourMatching& observer);
 
+/// The x, y, z chromaticities of the Rec. 709 primaries, red, green and blue (ITU-R BT.709-6; the same in IEC
+/// 61966-2-1, sRGB).
+inline constexpr std::array<Vec3d, 3> kRec709Primaries{Vec3d{0.640, 0.330, 0.030}, Vec3d{0.300, 0.600, 0.100},
+                                                       Vec3d{0.150, 0.060, 0.790}};
+
+/// X, Y, Z of each Rec. 709 primary at full strength, all three of which together make X, Y, Z = `white`.
+std::array<Vec3d, 3> rec709_primaries(const Vec3d& white);
+
 /// (x, y) of X, Y, Z whose sum is positive.
 Vec2d chromaticity(const Vec3d& xyz);
+
+/// CIE 1976 L*, a*, b* of X, Y, Z as seen against `white` (ISO/CIE 11664-4:2019).
+Vec3d cielab(const Vec3d& xyz, const Vec3d& white);
 
 }  // namespace lensproof

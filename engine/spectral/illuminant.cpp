@@ -19,9 +19,23 @@ constexpr int kLastNm = 1100;
 constexpr double kColdest = 500.0;
 constexpr double kHottest = 100000.0;
 constexpr std::string_view kBlackbody = "blackbody:";
+constexpr int kFluorescentLamps = 12;
 
-Spectrum tabulated(const std::string& file) {
-    return read_spectra(spectral_data(file), {"relative_power"}).front();
+/// A CIE illuminant that is a table: a column of a file.
+struct Table {
+    std::string name;
+    const char* file;
+    std::string column;
+};
+
+std::vector<Table> tables() {
+    std::vector<Table> all = {{"D65", "illuminant-d65.csv", "relative_power"},
+                              {"D50", "illuminant-d50.csv", "relative_power"},
+                              {"A", "illuminant-a.csv", "relative_power"}};
+    for (int lamp = 1; lamp <= kFluorescentLamps; ++lamp) {
+        all.push_back({fmt::format("F{}", lamp), "illuminants-f.csv", fmt::format("f{}", lamp)});
+    }
+    return all;
 }
 
 Spectrum blackbody(double temperature_k) {
@@ -54,15 +68,19 @@ Spectrum at_luminous(const Illuminant& light, double luminous) {
 }  // namespace
 
 std::vector<std::string> known_illuminants() {
-    return {"D65", "A", "E", "blackbody:<kelvin>"};
+    std::vector<std::string> names;
+    for (const Table& table : tables()) {
+        names.push_back(table.name);
+    }
+    names.insert(names.end(), {"E", "blackbody:<kelvin>"});
+    return names;
 }
 
 Illuminant illuminant(const std::string& name) {
-    if (name == "D65") {
-        return {.name = name, .relative = tabulated("illuminant-d65.csv")};
-    }
-    if (name == "A") {
-        return {.name = name, .relative = tabulated("illuminant-a.csv")};
+    for (const Table& table : tables()) {
+        if (table.name == name) {
+            return {.name = name, .relative = read_spectra(spectral_data(table.file), {table.column}).front()};
+        }
     }
     if (name == "E") {
         return {.name = name, .relative = {.wavelength_nm = {kFirstNm, kLastNm}, .value = {1.0, 1.0}}};

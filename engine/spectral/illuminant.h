@@ -12,8 +12,9 @@ struct Illuminant {
     Spectrum relative;  // spectral power per nm, in any scale
 };
 
-/// The names that `illuminant` takes: "D65" and "A" (CIE standard illuminants, 300 to 830 nm), "E" (equal energy) and
-/// "blackbody:<kelvin>" (Planck's law, 500 to 100000 K), the last two from 300 to 1100 nm.
+/// The names that `illuminant` takes: "D65" and "A" (CIE standard illuminants, 300 to 830 nm), "D50" (to 780 nm), "F1"
+/// to "F12" (the CIE's fluorescent lamps, 380 to 780 nm), "E" (equal energy) and "blackbody:<kelvin>" (Planck's law,
+/// 500 to 100000 K), the last two from 300 to 1100 nm.
 std::vector<std::string> known_illuminants();
 
 /// The illuminant called `name`, say "A" or "blackbody:3200". Throws InputError listing the names known.

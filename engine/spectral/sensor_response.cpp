@@ -18,11 +18,6 @@ struct Sensitivities {
     std::vector<Spectrum> relative;
 };
 
-/// The x, y, z chromaticities of the Rec. 709 primaries (ITU-R BT.709-6; the same in IEC 61966-2-1).
-constexpr Vec3d kRed{0.640, 0.330, 0.030};
-constexpr Vec3d kGreen{0.300, 0.600, 0.100};
-constexpr Vec3d kBlue{0.150, 0.060, 0.790};
-
 /// The row of XYZ → RGB that is blind to the primaries `a` and `b`: up to scale, a row of the inverse of the matrix
 /// whose columns are the primaries. (red, green, blue) is right-handed, so cyclic order gives positive scales.
 Spectrum blind_to(const Vec3d& a, const Vec3d& b, const ColourMatching& observer) {
@@ -37,14 +32,22 @@ Spectrum blind_to(const Vec3d& a, const Vec3d& b, const ColourMatching& observer
 
 Sensitivities colorimetric() {
     const ColourMatching observer = cie_1931();
-    return {.channels = {"R", "G", "B"},
-            .relative = {blind_to(kGreen, kBlue, observer), blind_to(kBlue, kRed, observer),
-                         blind_to(kRed, kGreen, observer)}};
+    const auto& [red, green, blue] = kRec709Primaries;
+    return {
+        .channels = {"R", "G", "B"},
+        .relative = {blind_to(green, blue, observer), blind_to(blue, red, observer), blind_to(red, green, observer)}};
 }
 
-Sensitivities measured_camera() {
-    return {.channels = {"R", "G", "B"},
-            .relative = read_spectra(spectral_data("camera-nikon-d5100.csv"), {"red", "green", "blue"})};
+Sensitivities measured_camera(const char* file) {
+    return {.channels = {"R", "G", "B"}, .relative = read_spectra(spectral_data(file), {"red", "green", "blue"})};
+}
+
+Sensitivities nikon() {
+    return measured_camera("camera-nikon-d5100.csv");
+}
+
+Sensitivities sigma() {
+    return measured_camera("camera-sigma-sd1-merrill.csv");
 }
 
 Sensitivities photometer() {
@@ -60,8 +63,11 @@ struct Sensor {
     Sensitivities (*sensitivities)();
 };
 
-constexpr std::array<Sensor, 4> kSensors{
-    {{"cie-1931", colorimetric}, {"camera", measured_camera}, {"luminance", photometer}, {"monochrome", flat}}};
+constexpr std::array<Sensor, 5> kSensors{{{"cie-1931", colorimetric},
+                                          {"camera", nikon},
+                                          {"camera-sigma-sd1-merrill", sigma},
+                                          {"luminance", photometer},
+                                          {"monochrome", flat}}};
 
 Sensitivities sensitivities_of(const std::string& name) {
     for (const Sensor& sensor : kSensors) {

@@ -39,6 +39,9 @@ struct SensorResponse {
 ///                 outside the primaries' triangle, as all spectral ones are, give negative values, which stay.
 ///   "camera"      R, G, B of a Nikon D5100 as measured at NPL (Darrodi et al. 2015), 380 to 780 nm: the camera's own
 ///                 colours, without a matrix to a display's.
+///   "camera-sigma-sd1-merrill"  R, G, B of a Sigma SD1 Merrill, whose layers lie above each other (Foveon), as
+///   measured
+///                 there too, 400 to 680 nm: broad, overlapping bands.
 ///   "luminance"   Y, by V(λ): a photometer.
 ///   "monochrome"  Y, the same for each watt from 400 to 700 nm and none beyond: a sensor behind an ideal UV/IR filter.
 std::vector<std::string> known_sensors();

@@ -12,16 +12,6 @@ namespace {
 
 constexpr int kMostStrata = std::numeric_limits<std::uint16_t>::max() + 1;
 
-template <class Value>
-GridSpectrum tabulated(const SpectralGrid& grid, const Value& value_of_stratum) {
-    GridSpectrum table;
-    table.value.reserve(static_cast<std::size_t>(grid.size()));
-    for (int i = 0; i < grid.size(); ++i) {
-        table.value.push_back(static_cast<float>(value_of_stratum(i)));
-    }
-    return table;
-}
-
 }  // namespace
 
 PathWavelengths SpectralGrid::path(int hero) const {
@@ -51,8 +41,12 @@ SpectralGrid spectral_grid(double min_nm, double max_nm, int count) {
 
 GridSpectrum stratum_means(const Spectrum& spectrum, const SpectralGrid& grid) {
     const WavelengthStrata& strata = grid.strata;
-    return tabulated(
-        grid, [&](int i) { return integral(spectrum, strata.at(i, 0.0), strata.at(i, 1.0)) / strata.width_nm(); });
+    GridSpectrum table;
+    for (int i = 0; i < grid.size(); ++i) {
+        table.value.push_back(
+            static_cast<float>(integral(spectrum, strata.at(i, 0.0), strata.at(i, 1.0)) / strata.width_nm()));
+    }
+    return table;
 }
 
 GridSpectrum at_midpoints(const Spectrum& spectrum, const SpectralGrid& grid) {
@@ -61,11 +55,11 @@ GridSpectrum at_midpoints(const Spectrum& spectrum, const SpectralGrid& grid) {
     }
     const double first_nm = spectrum.wavelength_nm.front();
     const double last_nm = spectrum.wavelength_nm.back();
-    return tabulated(grid, [&](int i) { return spectrum(std::clamp(grid.strata.midpoint(i), first_nm, last_nm)); });
+    return tabulated(grid, [&](double nm) { return spectrum(std::clamp(nm, first_nm, last_nm)); });
 }
 
 GridSpectrum constant_spectrum(double value, const SpectralGrid& grid) {
-    return tabulated(grid, [&](int) { return value; });
+    return tabulated(grid, [&](double) { return value; });
 }
 
 }  // namespace lensproof

@@ -132,6 +132,17 @@ GridSpectrum stratum_means(const Spectrum& spectrum, const SpectralGrid& grid);
 /// reflectances and indices. Zero everywhere for a spectrum without samples.
 GridSpectrum at_midpoints(const Spectrum& spectrum, const SpectralGrid& grid);
 
+/// `function(wavelength_nm)` at each midpoint.
+template <class Function>
+GridSpectrum tabulated(const SpectralGrid& grid, const Function& function) {
+    GridSpectrum table;
+    table.value.reserve(static_cast<std::size_t>(grid.size()));
+    for (int i = 0; i < grid.size(); ++i) {
+        table.value.push_back(static_cast<float>(function(grid.strata.midpoint(i))));
+    }
+    return table;
+}
+
 /// The same number in each stratum.
 GridSpectrum constant_spectrum(double value, const SpectralGrid& grid);
 

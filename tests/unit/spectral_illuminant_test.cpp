@@ -111,14 +111,17 @@ TEST(Illuminant, ALightMeterReadsWhatWasAsked) {
 }
 
 TEST(Illuminant, UnknownNamesAreRefusedWithTheKnownOnes) {
-    for (const char* name : {"", "D50", "d65", "blackbody", "blackbody:", "blackbody:warm", "blackbody:3200K",
+    for (const char* name : {"", "D75", "d65", "blackbody", "blackbody:", "blackbody:warm", "blackbody:3200K",
                              "blackbody:-3", "blackbody:499", "blackbody:1e6", "blackbody:nan", "blackbody:inf"}) {
         EXPECT_THROW(illuminant(name), InputError) << name;
     }
     try {
-        illuminant("D50");
+        illuminant("D75");
     } catch (const InputError& error) {
-        EXPECT_STREQ(error.what(), "illuminant 'D50' is not known: expected one of D65, A, E, blackbody:<kelvin>");
+        EXPECT_STREQ(
+            error.what(),
+            "illuminant 'D75' is not known: expected one of D65, D50, A, F1, F2, F3, F4, F5, F6, F7, F8, F9, F10, "
+            "F11, F12, E, blackbody:<kelvin>");
     }
 }
 

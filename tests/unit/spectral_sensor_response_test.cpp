@@ -150,8 +150,10 @@ TEST(SensorResponse, WrongInputsAreRefused) {
         sensor_response("film", kExposure, d65);
         FAIL();
     } catch (const InputError& error) {
-        EXPECT_STREQ(error.what(),
-                     "sensor 'film' is not known: expected one of cie-1931, camera, luminance, monochrome");
+        EXPECT_STREQ(
+            error.what(),
+            "sensor 'film' is not known: expected one of cie-1931, camera, camera-sigma-sd1-merrill, luminance, "
+            "monochrome");
     }
 }
 

@@ -96,7 +96,8 @@ std::vector<double> cell_probabilities(const Bsdf& bsdf, const Vec3d& wo) {
     using Gauss = boost::math::quadrature::gauss<double, 20>;
     std::vector<double> probability;
     for (int cell = 0; cell < kCells; ++cell) {
-        const double from_mu = -1.0 + 2.0 * (cell / kSectors) / kRings;
+        const int ring = cell / kSectors;
+        const double from_mu = -1.0 + 2.0 * ring / kRings;
         const double from_phi = 2.0 * pi * (cell % kSectors) / kSectors;
         probability.push_back(Gauss::integrate(
             [&](double mu) {

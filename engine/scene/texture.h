@@ -1,0 +1,107 @@
+// engine/scene/texture.h — what varies over a surface: spectra, and the shares of a mix.
+//
+// (u, v) covers a texture once from 0 to 1: u runs to the right and v up, so that (0, 1) is a picture's top left
+// corner.
+#pragma once
+#include <array>
+#include <filesystem>
+#include <optional>
+#include <variant>
+#include <vector>
+
+#include "engine/io/image.h"
+#include "engine/optics/vec.h"
+#include "engine/scene/chart.h"
+#include "engine/spectral/rgb_uplift.h"
+#include "engine/spectral/spectral_sample.h"
+
+namespace lensproof {
+
+/// What lies beyond a picture's edge: the picture again, or its edge's pixels for ever.
+enum class Wrap { repeat, clamp };
+
+/// A picture's size and how it goes on, to look up between its pixels' centres.
+struct TexelGrid {
+    int width = 0;
+    int height = 0;
+    Wrap wrap_u = Wrap::repeat;
+    Wrap wrap_v = Wrap::repeat;
+};
+
+/// A picture whose pixels are spectra: `scale` · `shape` · `white`; between pixels bilinear, wavelength by wavelength.
+struct ImageTexture {
+    struct Texel {
+        SigmoidSpectrum shape;
+        float scale = 1.0F;
+    };
+    TexelGrid grid;
+    std::vector<Texel> texel;  // rows from the top
+    GridSpectrum abscissa;     // sigmoid_abscissa of the wavelengths
+    GridSpectrum white;        // 1 for reflectances
+};
+
+/// A chart on a surface of width_mm × height_mm, its centre in the middle: `black`, `white`, or what the chart says
+/// between them.
+struct ChartTexture {
+    Chart share;  // of white_reflectance 1 and black_reflectance 0
+    double width_mm = 0.0;
+    double height_mm = 0.0;
+    GridSpectrum white;
+    GridSpectrum black;
+};
+
+/// A colour checker that fills the surface: 6 × 4 patches in a frame.
+struct ColourCheckerTexture {
+    std::array<GridSpectrum, 24> patch;
+    GridSpectrum frame;
+    double patch_share =
+        0.87;  // a patch's side over the distance of two patches' centres: 40 mm / 46 mm on the Classic
+};
+
+/// A spectrum over a surface; a GridSpectrum is the same everywhere.
+using Texture = std::variant<GridSpectrum, ImageTexture, ChartTexture, ColourCheckerTexture>;
+
+SpectralSample value_at(const Texture& texture, const Vec2d& uv, const PathWavelengths& path);
+
+/// A picture's channels R, G, B, or Y, as reflectances of these colours under D65. Throws InputError naming `file`
+/// where there are no such channels.
+ImageTexture reflectance_texture(const Image& image, const std::filesystem::path& file, Wrap wrap,
+                                 const SpectralGrid& grid, const RgbUplift& uplift);
+
+/// A picture file in the same way. Throws InputError for a file that is missing, or as read_image says.
+ImageTexture reflectance_texture(const std::filesystem::path& file, Wrap wrap, const SpectralGrid& grid,
+                                 const RgbUplift& uplift);
+
+/// A picture as light: where it is (1, 1, 1) it is `white`, a spectral radiance or whatever the owner means, and
+/// otherwise as bright and of the colour that its RGB say. Brightness has no limit.
+ImageTexture emission_texture(const Image& image, const std::filesystem::path& file, Wrap wrap_u, Wrap wrap_v,
+                              const Spectrum& white, const SpectralGrid& grid, const RgbUplift& uplift);
+
+/// The smooth reflectance of colour `rgb` (linear sRGB, under D65), exactly: a fit of its own. Out of [0, 1]: the
+/// nearest inside.
+GridSpectrum rgb_reflectance(const Vec3d& rgb, const SpectralGrid& grid, const RgbUplift& uplift);
+
+/// The light of colour `rgb` (≥ 0, unbounded) against `white`, of which (1, 1, 1) is the whole.
+GridSpectrum rgb_emission(const Vec3d& rgb, const Spectrum& white, const SpectralGrid& grid, const RgbUplift& uplift);
+
+/// `chart` with its own two reflectances, alike at all wavelengths.
+ChartTexture chart_texture(const Chart& chart, double width_mm, double height_mm, const SpectralGrid& grid);
+
+/// The patches of engine/spectral/colour_checker.h in a frame of 4 % reflectance.
+ColourCheckerTexture colour_checker_texture(const SpectralGrid& grid);
+
+/// A picture of plain numbers.
+struct ScalarImage {
+    TexelGrid grid;
+    std::vector<float> texel;  // rows from the top
+};
+
+/// A number over a surface; a double is the same everywhere.
+using ScalarTexture = std::variant<double, ScalarImage>;
+
+double value_at(const ScalarTexture& texture, const Vec2d& uv);
+
+/// A picture file's channel Y, or else R, linear and held to [0, 1]. Throws InputError as reflectance_texture does.
+ScalarImage scalar_texture(const std::filesystem::path& file, Wrap wrap);
+
+}  // namespace lensproof
