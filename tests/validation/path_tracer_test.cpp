@@ -8,7 +8,7 @@
 #include <numbers>
 #include <vector>
 
-#include "engine/scene/basis.h"
+#include "tests/validation/small_scene.h"
 
 namespace lensproof {
 namespace {
@@ -16,32 +16,6 @@ namespace {
 constexpr double kPi = std::numbers::pi;
 
 const SpectralGrid kGrid = spectral_grid(400.0, 700.0, 8);
-
-/// Objects of one albedo each, and lights.
-struct SceneParts {
-    std::vector<Shape> shapes;
-    std::vector<SceneObject> objects;
-    std::vector<Material> materials;
-    std::vector<Light> lights;
-
-    /// Returns the object's index.
-    std::uint32_t add(Shape shape, const AffineMap& to_world, double albedo) {
-        shapes.push_back(std::move(shape));
-        materials.push_back({.surface = DiffuseMaterial{constant_spectrum(albedo, kGrid)}, .radiance = {}});
-        const auto index = static_cast<std::uint32_t>(objects.size());
-        objects.push_back({.shape = index, .to_world = to_world, .material = index});
-        return index;
-    }
-
-    Scene scene() {
-        Scene made{.grid = kGrid,
-                   .geometry = std::make_unique<SceneGeometry>(shapes, objects),
-                   .materials = materials,
-                   .lights = {}};
-        made.lights = Lights(*made.geometry, lights);
-        return made;
-    }
-};
 
 AffineMap at(double x, double y, double z) {
     return {.linear = kIdentity3, .translation = {x, y, z}};
@@ -83,11 +57,11 @@ TEST(PathTracer, SphereLightLightsAPlaneAsItsDiscDoes) {
     parts.add(Quad{1000.0, 1000.0}, {}, 0.5);
     const std::uint32_t sphere = parts.add(Sphere{30.0}, at(0.0, 0.0, 200.0), 0.0);
     parts.lights.emplace_back(AreaLight{.object = sphere, .radiance = constant_spectrum(10.0, kGrid)});
-    const Scene scene = parts.scene();
+    const Scene scene = parts.scene(kGrid);
     expect_estimate(radiance(scene, kDownwards, 4096), 0.5 * 10.0 * std::pow(30.0 / 200.0, 2));
     // The same on a sphere that is none to the last digits, which is sampled by its area.
     parts.objects.back().to_world.linear[2].z = 1.0 + 1e-9;
-    expect_estimate(radiance(parts.scene(), kDownwards, 65536), 0.5 * 10.0 * std::pow(30.0 / 200.0, 2));
+    expect_estimate(radiance(parts.scene(kGrid), kDownwards, 65536), 0.5 * 10.0 * std::pow(30.0 / 200.0, 2));
 }
 
 // Of two directly opposed discs' kin, parallel squares: a point under the middle of a square light of side 2a at height
@@ -100,7 +74,7 @@ TEST(PathTracer, QuadLightHasItsConfigurationFactor) {
     facing_down.linear = about_x(180.0);
     const std::uint32_t quad = parts.add(Quad{120.0, 120.0}, facing_down, 0.0);
     parts.lights.emplace_back(AreaLight{.object = quad, .radiance = constant_spectrum(3.0, kGrid)});
-    const Scene scene = parts.scene();
+    const Scene scene = parts.scene(kGrid);
     const double x = 60.0 / 100.0;
     const double side = x / std::sqrt(1.0 + x * x);
     const double factor = 4.0 / (2.0 * kPi) * 2.0 * side * std::atan(side);
@@ -114,7 +88,7 @@ TEST(PathTracer, PointSpotAndSunKeepTheirLaws) {
         SceneParts parts;
         parts.add(Quad{1000.0, 1000.0}, {}, 0.5);
         parts.lights.push_back(light);
-        return radiance(parts.scene(), kDownwards, 256).mean;
+        return radiance(parts.scene(kGrid), kDownwards, 256).mean;
     };
     const Vec3d above{400.0, 0.0, 300.0};  // so that cos θ = 3/5 and d = 0.5 m
     const double of_point = 0.5 / kPi * 2.0 * (height_m / 0.5) / (0.5 * 0.5);
@@ -134,7 +108,7 @@ TEST(PathTracer, GlowingRoomSumsItsBounces) {
     const std::uint32_t walls = parts.add(Sphere{100.0}, {}, 0.6);
     parts.lights.emplace_back(
         AreaLight{.object = walls, .radiance = constant_spectrum(1.0, kGrid), .is_two_sided = true});
-    const Scene scene = parts.scene();
+    const Scene scene = parts.scene(kGrid);
     double expected = 0.0;
     double power = 1.0;
     for (const int bounces : {0, 1, 2, 3}) {
@@ -157,7 +131,7 @@ TEST(PathTracer, WhiteVanishesInAnEvenSky) {
     parts.add(Sphere{20.0}, at(40.0, 0.0, 10.0), 1.0);
     parts.add(Quad{400.0, 400.0}, at(0.0, 0.0, -30.0), 1.0);
     parts.lights.emplace_back(ConstantLight{constant_spectrum(5.0, kGrid)});
-    const Scene scene = parts.scene();
+    const Scene scene = parts.scene(kGrid);
     for (const double x : {0.0, 15.0, 25.0, 35.0}) {
         const Estimate found = radiance(scene, {{x, 3.0, 200.0}, {0.0, 0.0, -1.0}}, 4096, {.max_bounces = 500});
         EXPECT_NEAR(found.mean, 5.0, 4.0 * found.error + 5e-5) << x;
