@@ -44,11 +44,6 @@ void put_estimate(const PixelEstimate& estimate, double n, double* sums) {
     put(2, estimate.rgb.z, estimate.variance.z);
 }
 
-bool is_same(const FilmLayout& a, const FilmLayout& b) {
-    return a.width == b.width && a.height == b.height && a.layer_nm == b.layer_nm && a.has_splats == b.has_splats &&
-           a.has_features == b.has_features;
-}
-
 template <class Number>
 void add_all(std::vector<Number>& to, const std::vector<Number>& from) {
     std::ranges::transform(to, from, to.begin(), std::plus<>());
@@ -171,8 +166,14 @@ void Film::add_splat(const FilmTile::Splat& splat) {
     }
 }
 
+bool Film::can_merge(const Film& other) const {
+    const FilmLayout& of = other.layout_;
+    return layout_.width == of.width && layout_.height == of.height && layout_.layer_nm == of.layer_nm &&
+           layout_.has_splats == of.has_splats && layout_.has_features == of.has_features;
+}
+
 void Film::merge(const Film& other) {
-    if (!is_same(layout_, other.layout_)) {
+    if (!can_merge(other)) {
         throw std::invalid_argument("films of different layouts do not add up");
     }
     add_all(sums_, other.sums_);

@@ -157,7 +157,9 @@ class Film {
     /// Takes a tile's sums in place of the film's, and its splats, in their order.
     void store(const FilmTile& tile);
 
-    /// Adds another film's sums. Throws std::invalid_argument where it has another layout.
+    /// Adds another film's sums. Throws std::invalid_argument unless it may: where sizes, layers and kinds are the
+    /// same.
+    [[nodiscard]] bool can_merge(const Film& other) const;
     void merge(const Film& other);
 
     [[nodiscard]] std::uint32_t samples(int x, int y) const { return samples_[at(x, y)]; }
