@@ -68,9 +68,6 @@ class ChartTileRenderer {
                 }
             }
         }
-        for (std::size_t pixel = 0; pixel < static_cast<std::size_t>(rect.pixels()); ++pixel) {
-            tile.count_samples(pixel, samples.end - samples.first);
-        }
         tile.count_rays(static_cast<std::uint64_t>(producer_.started() - started_before));
     }
 
@@ -81,7 +78,7 @@ class ChartTileRenderer {
         const SeenPoint point = seen_point(view_->pose, paths_.ray(path));
         const double reflectance = reflectance_at(view_->chart, point);
         const double radiance = reflectance * view_->strata[stratum].white_radiance;
-        tile.add(pixel, stratum, radiance * paths_.weight[at]);
+        tile.add(pixel, paths_.sample[at], stratum, radiance * paths_.weight[at]);
         if (view_->has_features && point.exists) {
             tile.add_features(pixel, features_of(*view_, point, reflectance));
         }

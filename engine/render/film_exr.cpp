@@ -25,8 +25,8 @@ constexpr const char* kIdentityPrefix = "lensproof:identity:";
 constexpr const char* kLightPaths = "lensproof:lightPaths";
 
 const std::vector<std::string> kRgb = {"R", "G", "B"};
-const std::vector<std::string> kError = {"error.R", "error.G", "error.B"};
 const std::vector<std::string> kVariance = {"variance.R", "variance.G", "variance.B"};
+const std::vector<std::string> kCounts = {"blocks", "samples"};  // in the order that files keep
 const std::vector<std::string> kFeatures = {"Z",        "albedo.R", "albedo.G", "albedo.B",
                                             "normal.X", "normal.Y", "normal.Z", "coverage"};
 
@@ -62,11 +62,8 @@ std::vector<Part> parts_of(const Film& film) {
     const std::vector<std::string> spectral = spectral_names(film.layout().layer_nm);
     std::vector<double> layers(film.layout().layer_nm.size());
     std::vector<Part> parts;
-    parts.push_back({"rgb", joined(kRgb, kError), [&film](int x, int y, std::vector<float>& values) {
-                         const auto [rgb, variance] = film.estimate(x, y);
-                         append(values, rgb);
-                         append(values, {std::sqrt(variance.x), std::sqrt(variance.y), std::sqrt(variance.z)});
-                     }});
+    parts.push_back(
+        {"rgb", kRgb, [&film](int x, int y, std::vector<float>& values) { append(values, film.estimate(x, y).rgb); }});
     parts.push_back({"spectral", spectral, [&film, layers](int x, int y, std::vector<float>& values) mutable {
                          film.layers(x, y, layers);
                          append(values, std::span<const double>(layers));
@@ -74,7 +71,7 @@ std::vector<Part> parts_of(const Film& film) {
     parts.push_back({"variance", kVariance, [&film](int x, int y, std::vector<float>& values) {
                          append(values, film.estimate(x, y).variance);
                      }});
-    parts.push_back({"samples", {"samples"}, {}});
+    parts.push_back({"samples", kCounts, {}});
     if (film.layout().has_features) {
         parts.push_back({"features", kFeatures, [&film](int x, int y, std::vector<float>& values) {
                              const PixelFeatures features = film.features(x, y);
@@ -102,7 +99,7 @@ OIIO::ImageSpec spec_of(const Part& part, const Film& film, const FilmNotes& not
                          part.append_pixel ? OIIO::TypeDesc::FLOAT : OIIO::TypeDesc::UINT32);
     spec.channelnames = part.channels;
     spec.attribute("oiio:subimagename", part.name);
-    spec.attribute("compression", "zip");
+    spec.attribute("compression", "zip:1");  // what noise is left takes no less room at higher levels, but longer
     spec.attribute("oiio:ColorSpace", "linear");
     spec.attribute("DateTime",
                    "1970:01:01 00:00:00");  // else the library writes the clock's: the same render, other bytes
@@ -147,7 +144,8 @@ bool write_rows(OIIO::ImageOutput& output, const Part& part, const Film& film) {
                 if (part.append_pixel) {
                     part.append_pixel(x, row, values);
                 } else {
-                    counts.push_back(film.samples(x, row));
+                    counts.push_back(film.counts(x, row).blocks);
+                    counts.push_back(film.counts(x, row).samples);
                 }
             }
         }
@@ -290,12 +288,16 @@ class FilmReader {
         return wanted;
     }
 
-    std::vector<std::uint32_t> sample_rows(int y, int end) {
+    std::vector<PixelCounts> count_rows(int y, int end) {
         const OIIO::ImageSpec spec = seek("samples");
-        std::vector<std::uint32_t> counts(static_cast<std::size_t>(spec.width) * (end - y));
-        if (spec.nchannels != 1 ||
-            !input_->read_scanlines(*find("samples"), 0, y, end, 0, 0, 1, OIIO::TypeDesc::UINT32, counts.data())) {
+        std::vector<std::uint32_t> numbers(static_cast<std::size_t>(spec.width) * (end - y) * kCounts.size());
+        if (spec.channelnames != kCounts || !input_->read_scanlines(*find("samples"), 0, y, end, 0, 0, spec.nchannels,
+                                                                    OIIO::TypeDesc::UINT32, numbers.data())) {
             fail(fmt::format("part \"samples\" is damaged ({})", input_->geterror()));
+        }
+        std::vector<PixelCounts> counts;
+        for (std::size_t i = 0; i < numbers.size(); i += 2) {
+            counts.push_back({.samples = numbers[i + 1], .blocks = numbers[i]});
         }
         return counts;
     }
@@ -304,7 +306,7 @@ class FilmReader {
         const FilmLayout& layout = film.layout();
         const std::vector<std::string> spectral = spectral_names(layout.layer_nm);
         const std::size_t layers = spectral.size();
-        const std::vector<std::uint32_t> samples = sample_rows(y, end);
+        const std::vector<PixelCounts> counts = count_rows(y, end);
         const std::vector<float> rgb = rows("rgb", kRgb, y, end);
         const std::vector<float> variance = rows("variance", kVariance, y, end);
         const std::vector<float> spectrum = rows("spectral", spectral, y, end);
@@ -317,8 +319,8 @@ class FilmReader {
         const auto vector_at = [](const std::vector<float>& values, std::size_t at) {
             return Vec3d{values[at], values[at + 1], values[at + 2]};
         };
-        for (std::size_t i = 0; i < samples.size(); ++i) {
-            Film::PixelContent content{.samples = samples[i],
+        for (std::size_t i = 0; i < counts.size(); ++i) {
+            Film::PixelContent content{.counts = counts[i],
                                        .camera = {vector_at(rgb, 3 * i), vector_at(variance, 3 * i)},
                                        .camera_layers = camera_layers,
                                        .light_layers = light_layers};

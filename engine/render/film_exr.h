@@ -24,10 +24,10 @@ struct FilmNotes {
 ///   whoever
 ///              takes the file for a picture gets it.
 ///   spectral   one channel a layer, in the layout of engine/spectral/spectral_exr.h: film irradiance, W·m⁻²·nm⁻¹
-///   variance   variance.R, variance.G, variance.B: of the pixel's value (`PixelEstimate`)
-///   samples    samples: how many camera paths each pixel has had, an unsigned integer
-///   features   Z (mm), albedo.R, …, normal.X, …, coverage (`Film::features`); where the film has them
-///   light      R, G, B, variance.R, …, and spectral layers: what of all these came by light paths, whose number is the
+///   variance   variance.R, variance.G, variance.B: of the pixel's value (`PixelEstimate`); its root is the standard
+///   error samples    samples: how many camera paths each pixel has had, an unsigned integer features   Z (mm),
+///   albedo.R, …, normal.X, …, coverage (`Film::features`); where the film has them light      R, G, B, variance.R, …,
+///   and spectral layers: what of all these came by light paths, whose number is the
 ///              attribute "lensproof:lightPaths"; where the film has them
 void write_film_exr(const Film& film, const FilmNotes& notes, const std::filesystem::path& file);
 

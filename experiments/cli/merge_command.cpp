@@ -52,7 +52,7 @@ RenderIdentity common_to_shards(const Part& part) {
     RenderIdentity identity = part.notes.identity;
     for (const auto& [name, value] : part.notes.metadata) {
         if (name != kShard) {
-            identity.push_back({name.substr(name.find(':') + 1), value});
+            identity.push_back({name, value});
         }
     }
     return identity;

@@ -110,7 +110,7 @@ double mean_samples(const RenderState& state) {
     double sum = 0.0;
     for (int y = 0; y < state.film.height(); ++y) {
         for (int x = 0; x < state.film.width(); ++x) {
-            sum += state.film.samples(x, y);
+            sum += state.film.counts(x, y).samples;
         }
     }
     return sum / (static_cast<double>(state.film.width()) * state.film.height());
