@@ -1,9 +1,13 @@
 #include "engine/io/file.h"
 
+#include <fcntl.h>
 #include <fmt/format.h>
+#include <sys/types.h>
 #include <unistd.h>
 
 #include <cerrno>
+#include <charconv>
+#include <csignal>
 #include <cstddef>
 #include <cstdlib>
 #include <fstream>
@@ -20,6 +24,27 @@ namespace {
 // No text, table or photo comes near; /dev/zero would go on for ever.
 constexpr std::size_t kLargestFile = std::size_t{256} << 20;
 constexpr std::size_t kChunk = std::size_t{1} << 20;
+
+constexpr std::string_view kTemporaryMark = ".part";
+
+/// The extension stays last: image libraries choose the format by it.
+fs::path temporary_name(const fs::path& file, pid_t process) {
+    return fs::path(file).replace_filename(
+        fmt::format(".{}.{}{}{}", file.stem().string(), process, kTemporaryMark, file.extension().string()));
+}
+
+/// Waits until what was written to a file or a folder is on the disk.
+void sync(const fs::path& path) {
+    const int descriptor = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
+    const bool is_synced = descriptor != -1 && ::fsync(descriptor) == 0;
+    const int failure = errno;
+    if (descriptor != -1) {
+        ::close(descriptor);
+    }
+    if (!is_synced && failure != EINVAL) {  // a file system that cannot
+        throw std::system_error(failure, std::generic_category(), path.string() + " cannot be written");
+    }
+}
 
 }  // namespace
 
@@ -68,7 +93,7 @@ void check_output_name(const fs::path& file) {
     }
 }
 
-void write_whole(const fs::path& named, const std::function<void(const fs::path&)>& write) {
+void write_whole(const fs::path& named, const std::function<void(const fs::path&)>& write, Durability durability) {
     check_output_name(named);
     std::error_code error;
     if (fs::exists(named, error) && !fs::is_regular_file(named, error)) {
@@ -79,16 +104,39 @@ void write_whole(const fs::path& named, const std::function<void(const fs::path&
     if (file.has_parent_path()) {
         fs::create_directories(file.parent_path());
     }
-    // The extension stays last: image libraries choose the format by it.
-    fs::path temporary = file;
-    temporary.replace_filename(
-        fmt::format(".{}.{}.part{}", file.stem().string(), ::getpid(), file.extension().string()));
+    const fs::path temporary = temporary_name(file, ::getpid());
     try {
         write(temporary);
+        if (durability == Durability::power_cut) {
+            sync(temporary);
+        }
         fs::rename(temporary, file);
+        if (durability == Durability::power_cut) {
+            sync(file.has_parent_path() ? file.parent_path() : fs::path("."));
+        }
     } catch (...) {
         fs::remove(temporary, error);
         throw;
+    }
+}
+
+void remove_leftovers(const fs::path& file) {
+    std::error_code error;
+    const std::string before = fmt::format(".{}.", file.stem().string());
+    const std::string after = std::string(kTemporaryMark) + file.extension().string();
+    for (const fs::directory_entry& entry :
+         fs::directory_iterator(file.has_parent_path() ? file.parent_path() : fs::path("."), error)) {
+        const std::string name = entry.path().filename().string();
+        if (name.size() <= before.size() + after.size() || !name.starts_with(before) || !name.ends_with(after)) {
+            continue;
+        }
+        const std::string number = name.substr(before.size(), name.size() - before.size() - after.size());
+        pid_t process = 0;
+        const auto [end, failure] = std::from_chars(number.data(), number.data() + number.size(), process);
+        if (failure == std::errc() && end == number.data() + number.size() && process > 0 && ::kill(process, 0) == -1 &&
+            errno == ESRCH) {
+            fs::remove(entry.path(), error);
+        }
     }
 }
 

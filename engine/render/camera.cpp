@@ -7,8 +7,10 @@
 #include <iterator>
 #include <limits>
 
+#include "engine/io/hash.h"
 #include "engine/io/input_error.h"
 #include "engine/optics/focus.h"
+#include "engine/optics/lens_bytes.h"
 #include "engine/optics/packet/spectral_lens.h"
 #include "engine/pupil/kept_maps.h"
 #include "engine/spectral/illuminant.h"
@@ -21,7 +23,7 @@ namespace {
 
 constexpr Bounds kSensorSide{.min = 0.0, .max = 1e4, .min_excluded = true};
 constexpr double kMostPixels = 200e6;
-constexpr double kMostValues = 2e9;  // 8 GB of floats
+constexpr double kMostValues = 2e9;  // 16 GB of sums
 
 Sensor read_sensor(TomlTable& table) {
     const std::vector<double> size = table.numbers("sensor_mm", 2, kSensorSide);
@@ -155,13 +157,16 @@ Lens camera_lens(const Camera& camera) {
                       camera.focus_distance_mm);
 }
 
-ChartCamera::ChartCamera(const Camera& camera, const Light& light, const SpectralSampling& spectral, const Cache& cache)
+ChartCamera::ChartCamera(const Camera& camera, const Light& light, const SpectralSampling& spectral, const Cache& cache,
+                         const PixelFilter& filter)
     : camera_(camera),
       lens_(camera_lens(camera)),
       spectral_(make_strata(camera, lens_, light, spectral)),
-      // Pixels are areas: the corner pixel's own corner is the farthest point sampled.
+      filter_(filter),
+      // Pixels are areas: the corner of what the corner pixel's filter reaches is the farthest point sampled.
       pupil_(kept_pupil_map(cache, lenses_of(spectral_.strata), lens_.is_rotationally_symmetric,
-                            camera.sensor.half_diagonal_mm())) {
+                            camera.sensor.half_diagonal_mm(filter.radius_px() - 0.5))),
+      colours_(rgb_space(camera.response, illuminant(light.illuminant))) {
     const double values =
         static_cast<double>(camera.sensor.width) * camera.sensor.height * (6.0 + static_cast<double>(spectral.layers));
     if (values > kMostValues) {
@@ -170,7 +175,6 @@ ChartCamera::ChartCamera(const Camera& camera, const Light& light, const Spectra
                         "at most: fewer pixels or layers",
                         camera.sensor.width, camera.sensor.height, spectral.layers, values / 1e9, kMostValues / 1e9));
     }
-    metadata_ = spectral_attributes(kFilmIrradianceUnits);
     metadata_["lensproof:lens"] = lens_.name;
     metadata_["lensproof:fNumber"] = fmt::format("{}", camera.f_number);
     metadata_["lensproof:focusDistance_mm"] = fmt::format("{}", camera.focus_distance_mm);
@@ -179,18 +183,34 @@ ChartCamera::ChartCamera(const Camera& camera, const Light& light, const Spectra
     metadata_["lensproof:iso"] = fmt::format("{}", camera.exposure.iso);
     metadata_["lensproof:response"] = camera.response;
     metadata_["lensproof:illuminant"] = light.illuminant;
+    metadata_["lensproof:pixelFilter"] = filter.name();
+    metadata_["lensproof:colourSpace"] = colours_ ? "linear, Rec. 709 primaries, the illuminant's white"
+                                                  : "linear, the sensor's own, balanced to the illuminant";
+}
+
+SeenChart ChartCamera::view(const Chart& chart, const Placement& placement) const {
+    return {.chart = chart,
+            .pose = place(placement),
+            .sensor = camera_.sensor,
+            .strata = spectral_.strata,
+            .stratum_width_nm = spectral_.width_nm,
+            .layer_nm = spectral_.layer_nm,
+            .filter = filter_};
+}
+
+std::string ChartCamera::lens_hash() const {
+    std::string bytes;
+    for (const WavelengthStratum& stratum : spectral_.strata) {
+        append_lens_bytes(bytes, stratum.lens);
+    }
+    return hash_text(bytes);
 }
 
 Image ChartCamera::render(const Chart& chart, const Placement& placement, const RenderSettings& settings,
                           const std::function<void(double)>& progress) const {
-    const SeenChart view{.chart = chart,
-                         .pose = place(placement),
-                         .sensor = camera_.sensor,
-                         .strata = spectral_.strata,
-                         .stratum_width_nm = spectral_.width_nm,
-                         .layer_nm = spectral_.layer_nm};
-    Image image = render_chart(view, pupil_, settings, progress);
+    Image image = render_chart(view(chart, placement), pupil_, settings, progress);
     image.metadata = metadata_;
+    image.metadata.merge(spectral_attributes(kFilmIrradianceUnits));
     return image;
 }
 

@@ -3,6 +3,8 @@
 #pragma once
 #include <filesystem>
 #include <functional>
+#include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -75,10 +77,22 @@ struct SpectralStrata {
 class ChartCamera {
   public:
     /// `cache`: for what is found by tracing the lens; the same pictures come from any.
-    ChartCamera(const Camera& camera, const Light& light, const SpectralSampling& spectral, const Cache& cache = {});
+    ChartCamera(const Camera& camera, const Light& light, const SpectralSampling& spectral, const Cache& cache = {},
+                const PixelFilter& filter = {});
 
     [[nodiscard]] Image render(const Chart& chart, const Placement& placement, const RenderSettings& settings,
                                const std::function<void(double)>& progress = {}) const;
+
+    /// What this camera sees of a chart, and the map of its pupil to render it with.
+    [[nodiscard]] SeenChart view(const Chart& chart, const Placement& placement) const;
+    [[nodiscard]] const PupilMap& pupil() const { return pupil_; }
+
+    /// What a picture's file says of the camera, and the space of its R, G, B where they are not the camera's own.
+    [[nodiscard]] const std::map<std::string, std::string>& metadata() const { return metadata_; }
+    [[nodiscard]] const std::optional<RgbSpace>& colours() const { return colours_; }
+
+    /// A hash of all that rays meet in the lens, at every wavelength.
+    [[nodiscard]] std::string lens_hash() const;
 
     [[nodiscard]] const Lens& lens() const { return lens_; }
     [[nodiscard]] const Sensor& sensor() const { return camera_.sensor; }
@@ -88,8 +102,10 @@ class ChartCamera {
     Camera camera_;
     Lens lens_;
     SpectralStrata spectral_;
+    PixelFilter filter_;
     PupilMap pupil_;  // over the band of the strata
     std::map<std::string, std::string> metadata_;
+    std::optional<RgbSpace> colours_;
 };
 
 }  // namespace lensproof

@@ -62,7 +62,7 @@ class ChartTileRenderer {
         const SeenPoint point = seen_point(view_->pose, paths_.ray(path));
         const double reflectance = reflectance_at(view_->chart, point);
         const double radiance = reflectance * view_->strata[stratum].white_radiance;
-        tile.add(pixel, stratum, radiance * paths_.weight[at]);
+        tile.add(pixel, paths_.sample[at], stratum, radiance * paths_.weight[at]);
         if (view_->has_features && point.exists) {
             tile.add_features(pixel, features_of(*view_, point, reflectance));
         }

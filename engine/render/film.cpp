@@ -10,7 +10,7 @@ namespace lensproof {
 
 namespace {
 
-// Of what a pixel's sums consist: RGB, their squares, the spectral layers, the features.
+// Of what a pixel's sums consist: RGB, Σ n_b m_b² of each, the spectral layers, the features.
 constexpr std::size_t kLayers = 6;
 constexpr std::size_t kFeatureSums = 8;  // depth, coverage, albedo, normal
 
@@ -22,11 +22,11 @@ std::size_t all_sums(const FilmLayout& layout) {
     return colour_sums(layout) + (layout.has_features ? kFeatureSums : 0);
 }
 
-/// s²/n of a mean over n, from sums and sums of squares.
-PixelEstimate estimate_from(const double* sums, double n) {
+/// A mean over n samples in `blocks` blocks, and its variance.
+PixelEstimate estimate_from(const double* sums, double n, double blocks) {
     const auto variance = [&](int k) {
         const double mean = sums[k] / n;
-        return n > 1.0 ? std::max(0.0, (sums[3 + k] / n - mean * mean) / (n - 1.0)) : 0.0;
+        return blocks > 1.0 ? std::max(0.0, (sums[3 + k] / n - mean * mean) / (blocks - 1.0)) : 0.0;
     };
     return n > 0.0 ? PixelEstimate{.rgb = {sums[0] / n, sums[1] / n, sums[2] / n},
                                    .variance = {variance(0), variance(1), variance(2)}}
@@ -34,19 +34,24 @@ PixelEstimate estimate_from(const double* sums, double n) {
 }
 
 /// The way back.
-void put_estimate(const PixelEstimate& estimate, double n, double* sums) {
+void put_estimate(const PixelEstimate& estimate, double n, double blocks, double* sums) {
     const auto put = [&](int k, double mean, double variance) {
         sums[k] = n * mean;
-        sums[3 + k] = n * (mean * mean + (n - 1.0) * variance);
+        sums[3 + k] = n * (mean * mean + std::max(0.0, blocks - 1.0) * variance);
     };
     put(0, estimate.rgb.x, estimate.variance.x);
     put(1, estimate.rgb.y, estimate.variance.y);
     put(2, estimate.rgb.z, estimate.variance.z);
 }
 
-bool is_same(const FilmLayout& a, const FilmLayout& b) {
-    return a.width == b.width && a.height == b.height && a.layer_nm == b.layer_nm && a.has_splats == b.has_splats &&
-           a.has_features == b.has_features;
+/// Adds the sum of n samples that count as one.
+void add_together(const Vec3d& rgb, double n, double* sums) {
+    sums[0] += rgb.x;
+    sums[1] += rgb.y;
+    sums[2] += rgb.z;
+    sums[3] += rgb.x * rgb.x / n;
+    sums[4] += rgb.y * rgb.y / n;
+    sums[5] += rgb.z * rgb.z / n;
 }
 
 template <class Number>
@@ -54,11 +59,34 @@ void add_all(std::vector<Number>& to, const std::vector<Number>& from) {
     std::ranges::transform(to, from, to.begin(), std::plus<>());
 }
 
+/// The pixels of one axis that a filter of this radius reaches from any of the coordinates that carry light.
+struct Reach {
+    int first = 0;
+    int last = -1;
+};
+
+template <class Splat, class CoordinateOf>
+Reach reach_of(const Splat& splat, double radius, int pixels, const CoordinateOf& coordinate_of) {
+    double low = pixels + radius;
+    double high = -1.0 - radius;
+    for (std::size_t i = 0; i < splat.at_px.size(); ++i) {
+        // Compared before it is made an integer: a point far away has no such.
+        const double at = coordinate_of(splat.at_px[i]);
+        if (splat.irradiance[i] != 0.0 && at >= -radius && at <= pixels - 1 + radius) {
+            low = std::min(low, at);
+            high = std::max(high, at);
+        }
+    }
+    return low > high ? Reach{}
+                      : Reach{std::max(0, static_cast<int>(std::ceil(low - radius))),
+                              std::min(pixels - 1, static_cast<int>(std::floor(high + radius)))};
+}
+
 }  // namespace
 
 std::size_t film_bytes_per_pixel(const FilmLayout& layout) {
     const std::size_t sums = all_sums(layout) + (layout.has_splats ? colour_sums(layout) : 0);
-    return sums * sizeof(double) + sizeof(std::uint32_t);
+    return sums * sizeof(double) + sizeof(PixelCounts);
 }
 
 FilmTile::FilmTile(const FilmLayout& layout)
@@ -70,7 +98,8 @@ FilmTile::FilmTile(const FilmLayout& layout)
     }
 }
 
-void FilmTile::add(std::size_t pixel, std::span<const std::uint16_t, 4> strata, std::span<const float, 4> irradiance) {
+void FilmTile::add(std::size_t pixel, std::uint32_t sample, std::span<const std::uint16_t, 4> strata,
+                   std::span<const float, 4> irradiance) {
     double* sums = sums_.data() + pixel * stride_;
     Vec3d rgb;
     for (std::size_t i = 0; i < strata.size(); ++i) {
@@ -79,7 +108,28 @@ void FilmTile::add(std::size_t pixel, std::span<const std::uint16_t, 4> strata, 
         rgb = rgb + rgb_of(light, share);
         sums[light.layer] += share;
     }
-    add_rgb(sums, rgb);
+    Block& block = block_of(pixel, sample);
+    block.rgb = block.rgb + rgb;
+}
+
+void FilmTile::end_block(std::size_t pixel) {
+    Block& block = blocks_[pixel];
+    if (block.index != kNoBlock) {
+        const std::uint32_t first = std::max(samples_.first, block.index * kSamplesPerBlock);
+        const std::uint32_t end = std::min(samples_.end, (block.index + 1) * kSamplesPerBlock);
+        add_together(block.rgb, end - first, sums_.data() + pixel * stride_);
+        block = {};
+    }
+}
+
+void FilmTile::finish() {
+    const std::uint32_t samples = samples_.end - samples_.first;
+    const std::uint32_t end_block_index = (samples_.end + kSamplesPerBlock - 1) / kSamplesPerBlock;
+    const std::uint32_t blocks = samples > 0 ? end_block_index - samples_.first / kSamplesPerBlock : 0;
+    for (std::size_t pixel = 0; pixel < counts_.size(); ++pixel) {
+        end_block(pixel);
+        counts_[pixel] = counts_[pixel] + PixelCounts{samples, blocks};
+    }
 }
 
 void FilmTile::add_features(std::size_t pixel, const PixelFeatures& features) {
@@ -90,14 +140,14 @@ void FilmTile::add_features(std::size_t pixel, const PixelFeatures& features) {
     std::transform(more.begin(), more.end(), sums, sums, std::plus<>());
 }
 
-void FilmTile::splat(double x_px, double y_px, std::span<const std::uint16_t, 4> strata,
+void FilmTile::splat(const std::array<Vec2d, 4>& at_px, std::span<const std::uint16_t, 4> strata,
                      std::span<const float, 4> irradiance) {
-    Splat splat{.x_px = x_px, .y_px = y_px};
+    Splat splat{.at_px = at_px, .rgb = {}};
     for (std::size_t i = 0; i < strata.size(); ++i) {
         const Light& light = lights_[strata[i]];
         splat.irradiance[i] = 0.25 * static_cast<double>(irradiance[i]);
         splat.layer[i] = light.layer;
-        splat.rgb = splat.rgb + rgb_of(light, splat.irradiance[i]);
+        splat.rgb[i] = rgb_of(light, splat.irradiance[i]);
     }
     splats_.push_back(splat);
 }
@@ -112,14 +162,17 @@ Film::Film(FilmLayout layout)
         throw std::invalid_argument("a film's spectral layers hold the same number of strata each");
     }
     sums_.resize(pixels * stride_);
-    samples_.resize(pixels);
+    counts_.resize(pixels);
     splat_sums_.resize(pixels * splat_stride_);
 }
 
-void Film::load(const PixelRect& rect, FilmTile& tile) const {
-    tile.rect_ = rect;
-    tile.sums_.resize(static_cast<std::size_t>(rect.pixels()) * stride_);
-    tile.samples_.resize(static_cast<std::size_t>(rect.pixels()));
+void Film::load(const TileSamples& samples, FilmTile& tile) const {
+    const PixelRect& rect = samples.rect;
+    const auto pixels = static_cast<std::size_t>(rect.pixels());
+    tile.samples_ = samples;
+    tile.sums_.resize(pixels * stride_);
+    tile.counts_.resize(pixels);
+    tile.blocks_.assign(pixels, {});
     tile.splats_.clear();
     tile.light_paths_ = 0;
     tile.rays_ = 0;
@@ -128,17 +181,18 @@ void Film::load(const PixelRect& rect, FilmTile& tile) const {
         const std::size_t from = at(rect.x, rect.y + row);
         const std::size_t to = static_cast<std::size_t>(row) * width;
         std::copy_n(sums_.data() + from * stride_, width * stride_, tile.sums_.data() + to * stride_);
-        std::copy_n(samples_.data() + from, width, tile.samples_.data() + to);
+        std::copy_n(counts_.data() + from, width, tile.counts_.data() + to);
     }
 }
 
 void Film::store(const FilmTile& tile) {
-    const auto width = static_cast<std::size_t>(tile.rect_.width);
-    for (int row = 0; row < tile.rect_.height; ++row) {
-        const std::size_t to = at(tile.rect_.x, tile.rect_.y + row);
+    const PixelRect& rect = tile.rect();
+    const auto width = static_cast<std::size_t>(rect.width);
+    for (int row = 0; row < rect.height; ++row) {
+        const std::size_t to = at(rect.x, rect.y + row);
         const std::size_t from = static_cast<std::size_t>(row) * width;
         std::copy_n(tile.sums_.data() + from * stride_, width * stride_, sums_.data() + to * stride_);
-        std::copy_n(tile.samples_.data() + from, width, samples_.data() + to);
+        std::copy_n(tile.counts_.data() + from, width, counts_.data() + to);
     }
     light_paths_ += tile.light_paths_;
     std::ranges::for_each(tile.splats_, [this](const FilmTile::Splat& splat) { add_splat(splat); });
@@ -146,49 +200,52 @@ void Film::store(const FilmTile& tile) {
 
 void Film::add_splat(const FilmTile::Splat& splat) {
     const double radius = layout_.filter.radius_px();
-    // Compared before they are made integers: a point far away has no such.
-    if (!(splat.x_px >= -radius && splat.x_px <= width() - 1 + radius && splat.y_px >= -radius &&
-          splat.y_px <= height() - 1 + radius)) {
-        return;
-    }
-    const int first_x = std::max(0, static_cast<int>(std::ceil(splat.x_px - radius)));
-    const int last_x = std::min(width() - 1, static_cast<int>(std::floor(splat.x_px + radius)));
-    const int first_y = std::max(0, static_cast<int>(std::ceil(splat.y_px - radius)));
-    const int last_y = std::min(height() - 1, static_cast<int>(std::floor(splat.y_px + radius)));
-    for (int y = first_y; y <= last_y; ++y) {
-        const double weight_y = layout_.filter(splat.y_px - y);
-        for (int x = first_x; x <= last_x; ++x) {
-            const double weight = weight_y * layout_.filter(splat.x_px - x);
-            if (weight == 0.0) {
-                continue;
-            }
+    const Reach across = reach_of(splat, radius, width(), [](Vec2d at) { return at.x; });
+    const Reach down = reach_of(splat, radius, height(), [](Vec2d at) { return at.y; });
+    for (int y = down.first; y <= down.last; ++y) {
+        for (int x = across.first; x <= across.last; ++x) {
+            Vec3d rgb;
             double* sums = splat_sums_.data() + at(x, y) * splat_stride_;
-            FilmTile::add_rgb(sums, weight * splat.rgb);
-            for (std::size_t i = 0; i < splat.layer.size(); ++i) {
-                sums[splat.layer[i]] += weight * splat.irradiance[i];
+            bool is_reached = false;
+            for (std::size_t i = 0; i < splat.at_px.size(); ++i) {
+                const double weight = layout_.filter(splat.at_px[i].y - y) * layout_.filter(splat.at_px[i].x - x);
+                if (weight != 0.0 && splat.irradiance[i] != 0.0) {
+                    rgb = rgb + weight * splat.rgb[i];
+                    sums[splat.layer[i]] += weight * splat.irradiance[i];
+                    is_reached = true;
+                }
+            }
+            if (is_reached) {
+                add_together(rgb, 1.0, sums);
             }
         }
     }
 }
 
+bool Film::can_merge(const Film& other) const {
+    const FilmLayout& of = other.layout_;
+    return layout_.width == of.width && layout_.height == of.height && layout_.layer_nm == of.layer_nm &&
+           layout_.has_splats == of.has_splats && layout_.has_features == of.has_features;
+}
+
 void Film::merge(const Film& other) {
-    if (!is_same(layout_, other.layout_)) {
+    if (!can_merge(other)) {
         throw std::invalid_argument("films of different layouts do not add up");
     }
     add_all(sums_, other.sums_);
-    add_all(samples_, other.samples_);
+    add_all(counts_, other.counts_);
     add_all(splat_sums_, other.splat_sums_);
     light_paths_ += other.light_paths_;
 }
 
 PixelEstimate Film::camera_estimate(int x, int y) const {
-    return estimate_from(sums_.data() + at(x, y) * stride_, samples(x, y));
+    return estimate_from(sums_.data() + at(x, y) * stride_, counts(x, y).samples, counts(x, y).blocks);
 }
 
 PixelEstimate Film::light_estimate(int x, int y) const {
-    return layout_.has_splats
-               ? estimate_from(splat_sums_.data() + at(x, y) * splat_stride_, static_cast<double>(light_paths_))
-               : PixelEstimate{};
+    const auto paths = static_cast<double>(light_paths_);
+    return layout_.has_splats ? estimate_from(splat_sums_.data() + at(x, y) * splat_stride_, paths, paths)
+                              : PixelEstimate{};
 }
 
 PixelEstimate Film::estimate(int x, int y) const {
@@ -202,7 +259,7 @@ PixelEstimate Film::estimate(int x, int y) const {
 
 void Film::layers(int x, int y, std::span<double> irradiance) const {
     // Per layer, the mean over the samples expected there, which keeps the layers' sum unbiased.
-    const double expected = static_cast<double>(samples(x, y)) / static_cast<double>(layout_.layer_nm.size());
+    const double expected = static_cast<double>(counts(x, y).samples) / static_cast<double>(layout_.layer_nm.size());
     light_layers(x, y, irradiance);
     const double* sums = sums_.data() + at(x, y) * stride_ + kLayers;
     for (std::size_t k = 0; k < layout_.layer_nm.size() && expected > 0.0; ++k) {
@@ -221,12 +278,12 @@ void Film::light_layers(int x, int y, std::span<double> irradiance) const {
 }
 
 double Film::coverage(int x, int y) const {
-    const std::uint32_t n = samples(x, y);
+    const std::uint32_t n = counts(x, y).samples;
     return layout_.has_features && n > 0 ? sums_[at(x, y) * stride_ + features_ + 1] / n : 0.0;
 }
 
 PixelFeatures Film::features(int x, int y) const {
-    const double n = samples(x, y);
+    const double n = counts(x, y).samples;
     if (!(coverage(x, y) > 0.0)) {
         return {};
     }
@@ -237,11 +294,11 @@ PixelFeatures Film::features(int x, int y) const {
 }
 
 void Film::set_pixel(int x, int y, const PixelContent& content) {
-    const double n = content.samples;
+    const double n = content.counts.samples;
     const auto layers = static_cast<double>(layout_.layer_nm.size());
     double* sums = sums_.data() + at(x, y) * stride_;
-    samples_[at(x, y)] = content.samples;
-    put_estimate(content.camera, n, sums);
+    counts_[at(x, y)] = content.counts;
+    put_estimate(content.camera, n, content.counts.blocks, sums);
     std::ranges::transform(content.camera_layers, sums + kLayers, [&](double mean) { return mean * n / layers; });
     if (layout_.has_features) {
         const double met = content.coverage * n;
@@ -253,7 +310,7 @@ void Film::set_pixel(int x, int y, const PixelContent& content) {
     if (layout_.has_splats) {
         const auto paths = static_cast<double>(light_paths_);
         double* splats = splat_sums_.data() + at(x, y) * splat_stride_;
-        put_estimate(content.light, paths, splats);
+        put_estimate(content.light, paths, paths, splats);
         std::ranges::transform(content.light_layers, splats + kLayers,
                                [&](double mean) { return mean * paths / layers; });
     }

@@ -22,6 +22,18 @@ struct PixelRect {
     friend bool operator==(const PixelRect&, const PixelRect&) = default;
 };
 
+/// Samples [first, end) of each pixel of a part of the film.
+struct TileSamples {
+    PixelRect rect;
+    std::uint32_t first = 0;
+    std::uint32_t end = 0;
+};
+
+/// Samples whose index has the same quotient by this are a block: a part of the sequence that is well spread in itself.
+/// Variances are estimated from the means of blocks, since those of single samples, which differ in wavelength and in
+/// place, say little of what a sum of well-spread ones is wrong by.
+inline constexpr std::uint32_t kSamplesPerBlock = 16;
+
 /// How large a film is, what it keeps, and what it makes of light.
 struct FilmLayout {
     int width = 0;
@@ -38,6 +50,15 @@ struct FilmLayout {
 /// Bytes that a film holds for each of its pixels.
 std::size_t film_bytes_per_pixel(const FilmLayout& layout);
 
+/// What a pixel's sums are of.
+struct PixelCounts {
+    std::uint32_t samples = 0;
+    std::uint32_t blocks = 0;  // begun or whole
+    friend PixelCounts operator+(const PixelCounts& a, const PixelCounts& b) {
+        return {a.samples + b.samples, a.blocks + b.blocks};
+    }
+};
+
 /// What the first surface on a path is like.
 struct PixelFeatures {
     double depth_mm = 0.0;  // along the camera's axis
@@ -45,51 +66,53 @@ struct PixelFeatures {
     Vec3d normal;  // of the surface, in the frame that the renderer says
 };
 
-/// The sums of a few pixels, for one thread to add to; it takes them from a film and gives them back.
+/// The sums of a few pixels, for one thread to add samples to; it takes them from a film and gives them back.
 ///
 /// Sums are of double: n of them differ from what was added by n · 1e-16 at most, relative to the sum of magnitudes.
-/// They are added to one by one, in the samples' order, so that it makes no difference to any bit where passes begin
-/// and end.
+/// They are added to block by block, in the samples' order, so that it makes no difference to any bit in how many turns
+/// samples are taken, where turns end between blocks.
 class FilmTile {
   public:
     /// `layout` outlives it.
     explicit FilmTile(const FilmLayout& layout);
 
-    [[nodiscard]] const PixelRect& rect() const { return rect_; }
+    [[nodiscard]] const PixelRect& rect() const { return samples_.rect; }
 
     /// The number of a pixel within the tile, by its place on the film.
     [[nodiscard]] std::size_t pixel(int x, int y) const {
-        return static_cast<std::size_t>((y - rect_.y) * rect_.width + (x - rect_.x));
+        return static_cast<std::size_t>((y - rect().y) * rect().width + (x - rect().x));
     }
 
-    /// Adds a sample at one wavelength stratum: its estimate of the film irradiance, W·m⁻²·nm⁻¹, filter weight
-    /// included. Once a sample, with all that it met; samples that met no light need not be told.
-    void add(std::size_t pixel, std::size_t stratum, double irradiance) {
+    /// Adds sample `sample` at one wavelength stratum: its estimate of the film irradiance, W·m⁻²·nm⁻¹, filter weight
+    /// included. Once a sample, with all that it met, and a pixel's samples in ascending order; samples that met no
+    /// light need not be told.
+    void add(std::size_t pixel, std::uint32_t sample, std::size_t stratum, double irradiance) {
         const Light& light = lights_[stratum];
-        double* sums = sums_.data() + pixel * stride_;
-        add_rgb(sums, rgb_of(light, irradiance));
-        sums[light.layer] += irradiance;
+        Vec3d& rgb = block_of(pixel, sample).rgb;
+        rgb = rgb + rgb_of(light, irradiance);
+        sums_[pixel * stride_ + light.layer] += irradiance;
     }
 
     /// The same at the wavelengths of one path, of which each is as likely as any to be at any stratum (hero wavelength
     /// sampling): the sample's value is the mean over them. A path that ends all but its first gives zeros for them and
     /// four times the first's own estimate.
-    void add(std::size_t pixel, std::span<const std::uint16_t, 4> strata, std::span<const float, 4> irradiance);
-
-    /// Says that a pixel has had `samples` more, those without light included.
-    void count_samples(std::size_t pixel, std::uint32_t samples) { samples_[pixel] += samples; }
+    void add(std::size_t pixel, std::uint32_t sample, std::span<const std::uint16_t, 4> strata,
+             std::span<const float, 4> irradiance);
 
     /// Adds what a sample's first surface is like; samples that met none need not be told.
     void add_features(std::size_t pixel, const PixelFeatures& features);
 
     /// Light at any point of the film, of the tile or not: the power that one light path brings there over the area of
-    /// a pixel, W·m⁻²·nm⁻¹, the mean over the path's wavelengths as above. Points outside the film, too, if the filter
-    /// of a pixel reaches them.
-    void splat(double x_px, double y_px, std::span<const std::uint16_t, 4> strata,
+    /// a pixel, W·m⁻²·nm⁻¹, the mean over the path's wavelengths as above. Each wavelength has its own point, in pixel
+    /// coordinates; points outside the film count too, if the filter of a pixel reaches them.
+    void splat(const std::array<Vec2d, 4>& at_px, std::span<const std::uint16_t, 4> strata,
                std::span<const float, 4> irradiance);
 
     /// Says that so many more light paths were begun, those that brought nothing included.
     void count_light_paths(std::uint64_t paths) { light_paths_ += paths; }
+
+    /// Says that all samples that the tile was loaded for are taken.
+    void finish();
 
     /// Rays that were traced: for whom it may interest.
     void count_rays(std::uint64_t rays) { rays_ += rays; }
@@ -102,10 +125,9 @@ class FilmTile {
         Vec3d rgb_weights;
         std::uint32_t layer = 0;  // where its sum stands among a pixel's
     };
-    struct Splat {
-        double x_px = 0.0;
-        double y_px = 0.0;
-        Vec3d rgb;
+    struct Splat {  // a wavelength each
+        std::array<Vec2d, 4> at_px;
+        std::array<Vec3d, 4> rgb;
         std::array<std::uint32_t, 4> layer{};
         std::array<double, 4> irradiance{};
     };
@@ -114,32 +136,45 @@ class FilmTile {
         const double over_band = band_nm_ * irradiance;
         return {over_band * light.rgb_weights.x, over_band * light.rgb_weights.y, over_band * light.rgb_weights.z};
     }
-    static void add_rgb(double* sums, const Vec3d& rgb) {
-        sums[0] += rgb.x;
-        sums[1] += rgb.y;
-        sums[2] += rgb.z;
-        sums[3] += rgb.x * rgb.x;
-        sums[4] += rgb.y * rgb.y;
-        sums[5] += rgb.z * rgb.z;
+    struct Block {
+        Vec3d rgb;  // the sum over its samples so far
+        std::uint32_t index = kNoBlock;
+    };
+    static constexpr std::uint32_t kNoBlock = ~0U;
+
+    Block& block_of(std::size_t pixel, std::uint32_t sample) {
+        Block& block = blocks_[pixel];
+        if (block.index != sample / kSamplesPerBlock) {
+            end_block(pixel);
+            block.index = sample / kSamplesPerBlock;
+        }
+        return block;
     }
+    void end_block(std::size_t pixel);
 
     std::vector<Light> lights_;
     double band_nm_ = 0.0;
     std::size_t stride_ = 0;
     std::size_t features_ = 0;  // where they stand among a pixel's sums
-    PixelRect rect_;
+    TileSamples samples_;
     std::vector<double> sums_;
-    std::vector<std::uint32_t> samples_;
+    std::vector<Block> blocks_;  // that each pixel is in
+    std::vector<PixelCounts> counts_;
     std::vector<Splat> splats_;
     std::uint64_t light_paths_ = 0;
     std::uint64_t rays_ = 0;
 };
 
-/// What n samples say of a pixel, and the variance of that.
+/// What samples say of a pixel, and the variance of that.
+///
+/// The variance of n samples' mean m is estimated from the means m_b of its M blocks of n_b samples:
+/// Σ n_b (m_b − m)² / (n (M − 1)). For independent samples that has the variance's expectation whatever the blocks are;
+/// blocks of one sequence lie between each other's points, so their mean does better than independent ones: then it is
+/// an upper bound. It is 0 where there is one block alone. Splats count one by one, as if a light path's met no pixel
+/// twice.
 struct PixelEstimate {
     Vec3d rgb;       // linear, 1 = saturation
-    Vec3d variance;  // of rgb: s²/n, as if samples were independent. Samples that are stratified do better: for them it
-                     // is an upper bound. Of splats, as if a path's met no pixel twice.
+    Vec3d variance;  // of rgb
 };
 
 /// All pixels' sums. Two films of one layout that hold different samples add up to the film of all of them.
@@ -151,16 +186,18 @@ class Film {
     [[nodiscard]] int width() const { return layout_.width; }
     [[nodiscard]] int height() const { return layout_.height; }
 
-    /// Gives a tile the sums of `rect`, so that more may be added.
-    void load(const PixelRect& rect, FilmTile& tile) const;
+    /// Gives a tile the sums of its pixels, so that these samples may be added.
+    void load(const TileSamples& samples, FilmTile& tile) const;
 
-    /// Takes a tile's sums in place of the film's, and its splats, in their order.
+    /// Takes a finished tile's sums in place of the film's, and its splats, in their order.
     void store(const FilmTile& tile);
 
-    /// Adds another film's sums. Throws std::invalid_argument where it has another layout.
+    /// Adds another film's sums. Throws std::invalid_argument unless it may: where sizes, layers and kinds are the
+    /// same.
+    [[nodiscard]] bool can_merge(const Film& other) const;
     void merge(const Film& other);
 
-    [[nodiscard]] std::uint32_t samples(int x, int y) const { return samples_[at(x, y)]; }
+    [[nodiscard]] const PixelCounts& counts(int x, int y) const { return counts_[at(x, y)]; }
     [[nodiscard]] std::uint64_t light_paths() const { return light_paths_; }
 
     /// What camera paths and light paths make of a pixel together, and each alone. Both are parts of one image: where
@@ -183,14 +220,14 @@ class Film {
     template <class Self, class Visit>
     static void visit_sums(Self& film, const Visit& visit) {
         visit(film.sums_);
-        visit(film.samples_);
+        visit(film.counts_);
         visit(film.splat_sums_);
         visit(film.light_paths_);
     }
 
     /// Puts a pixel's sums together from what was written of it: what `estimate`, … give for it. For shards.
     struct PixelContent {
-        std::uint32_t samples = 0;
+        PixelCounts counts;
         PixelEstimate camera;
         std::span<const double> camera_layers;
         PixelEstimate light;
@@ -211,9 +248,9 @@ class Film {
     std::size_t stride_ = 0;
     std::size_t splat_stride_ = 0;
     std::size_t features_ = 0;
-    std::vector<double> sums_;            // a pixel: RGB, their squares, layers, features
-    std::vector<std::uint32_t> samples_;  // of each pixel
-    std::vector<double> splat_sums_;      // a pixel: RGB, their squares, layers
+    std::vector<double> sums_;         // a pixel: RGB, Σ n_b m_b² of each, layers, features
+    std::vector<PixelCounts> counts_;  // of each pixel
+    std::vector<double> splat_sums_;   // a pixel: RGB, their squares, layers
     std::uint64_t light_paths_ = 0;
 };
 

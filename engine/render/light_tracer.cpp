@@ -166,14 +166,15 @@ class LightWalk {
         }
         const double pitch_m = 1e-3 * entrance_.sensor.pixel_pitch_mm;
         const double to_irradiance = per_mm2 / (drawn.density * pitch_m * pitch_m);
+        std::array<Vec2d, kWavelengthsPerPath> at_px{};
+        std::array<float, kWavelengthsPerPath> irradiance{};
         for (std::size_t i = 0; i < film.size(); ++i) {
             if (film[i]) {
-                std::array<float, kWavelengthsPerPath> irradiance{};
+                at_px[i] = entrance_.sensor.pixel(*film[i]);
                 irradiance[i] = static_cast<float>(to_irradiance * share[i] * carried[i]);
-                const Vec2d pixel = entrance_.sensor.pixel(*film[i]);
-                tile_.splat(pixel.x, pixel.y, path_.index, irradiance);
             }
         }
+        tile_.splat(at_px, path_.index, irradiance);
     }
 
     static double length_of(Vec2d v) { return std::hypot(v.x, v.y); }

@@ -27,11 +27,8 @@ std::uint32_t pass_end(std::uint32_t done, bool in_passes) {
     if (!in_passes) {
         return done + kLongestPass;
     }
-    if (done < 8) {
-        return done == 0 ? 1 : 8;
-    }
     if (done < 64) {
-        return std::bit_floor(done) * 2;
+        return std::bit_floor(std::max<std::uint32_t>(kSamplesPerBlock / 2, done)) * 2;
     }
     return done + std::max<std::uint32_t>(64, done / 256 * 64);
 }
@@ -54,7 +51,7 @@ class Pass {
     /// A tile to render `i` with, loaded. No other thread writes to these pixels.
     FilmTile take(int i) {
         FilmTile tile = take_spare();
-        state_->film.load(samples_of(i).rect, tile);
+        state_->film.load(samples_of(i), tile);
         return tile;
     }
 
@@ -202,6 +199,7 @@ class ProgressiveRender {
                     if (!has_to_end()) {
                         tile = pass.take(i);
                         render(pass.samples_of(i), *tile);
+                        tile->finish();
                     }
                 } catch (...) {
                     pass.give(i, std::nullopt, stored, done);  // or others would wait for it

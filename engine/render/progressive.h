@@ -10,14 +10,7 @@
 
 namespace lensproof {
 
-/// Samples [first, end) of each pixel of a part of the film.
-struct TileSamples {
-    PixelRect rect;
-    std::uint32_t first = 0;
-    std::uint32_t end = 0;
-};
-
-/// Renders these samples into the tile, which has been loaded and stands at `rect`. What a sample gives depends on the
+/// Renders these samples into the tile, which has been loaded for them. What a sample gives depends on the
 /// seed, its pixel and its index alone. A renderer belongs to one thread, and may own what it needs for every tile.
 using TileRenderer = std::function<void(const TileSamples&, FilmTile&)>;
 using MakeTileRenderer = std::function<TileRenderer()>;
@@ -66,11 +59,11 @@ struct RenderGoal {
     /// than going on to n2 be q. Then the bias of the pixel from that decision is (1 − n1/n2) cov(mean, stops), and
     /// |cov| ≤ σ |ρ| √(q (1 − q)) ≤ σ |ρ| / 2, ρ being the correlation of the pixel with the tile's error. Of K alike
     /// and independent pixels |ρ| ≤ 1/√K; n2/n1 ≤ 2 and K = 256 bound the bias by σ/64, and that of a tile's mean by a
-    /// quarter of its own standard error, or σ/64 too.
+    /// quarter of its own standard error, which is σ/64 too.
     double noise = 0.0;
 };
 
-inline constexpr std::uint32_t kFewestSamplesToJudge = 32;
+inline constexpr std::uint32_t kFewestSamplesToJudge = 64;
 
 /// How far a render is.
 struct RenderReport {
@@ -83,9 +76,9 @@ struct RenderReport {
 
 struct RenderControl {
     int threads = 0;  // 0: one a core
-    /// The whole picture early, then better and better, in passes that end at 1, 8, 16, 32, 64 samples and a quarter
-    /// more each time; else as few passes as there can be. It decides when tiles are judged, and the order in which
-    /// splats are added, so their last bits; no bit of anything else.
+    /// The whole picture early, then better and better, in passes that end at 16, 32, 64 samples and a quarter more
+    /// each time; else as few passes as there can be. It decides when tiles are judged, and the order in which splats
+    /// are added, so their last bits; no bit of anything else.
     bool in_passes = true;
     /// Asked before every tile, by any thread; true ends the render as soon as the tiles in work are done.
     std::function<bool()> is_interrupted;

@@ -62,26 +62,26 @@ class SceneTileRenderer {
             trace_path(*view_.scene, ray, strata, is_achromatic_ ? one : hero_alone(one), view_.paths, numbers);
         tile.count_rays(found.rays);
         if (is_achromatic_) {
-            add_all(pixel, strata, found.radiance, paths_.weight[at], tile);
+            add_all(pixel, at, strata, found.radiance, tile);
         } else {
-            tile.add(pixel, strata.index[0], found.radiance[0] * paths_.weight[at]);
+            tile.add(pixel, paths_.sample[at], strata.index[0], found.radiance[0] * paths_.weight[at]);
         }
         if (view_.film.has_features && found.first) {
             add_features(pixel, strata, *found.first, tile);
         }
     }
 
-    /// `weight` is the hero's; the others pass the camera by their own transmittance.
-    void add_all(std::size_t pixel, const PathWavelengths& strata, const SpectralSample& radiance, double weight,
+    /// A path's weight is its hero's; the others pass the camera by their own transmittance.
+    void add_all(std::size_t pixel, std::size_t path, const PathWavelengths& strata, const SpectralSample& radiance,
                  FilmTile& tile) const {
         const auto& cameras = std::get<std::vector<GaussianCamera>>(*view_.camera);
-        const double per_transmittance = weight / cameras[strata.index[0]].transmittance;
+        const double per_transmittance = paths_.weight[path] / cameras[strata.index[0]].transmittance;
         std::array<float, kWavelengthsPerPath> irradiance{};
         for (std::size_t i = 0; i < irradiance.size(); ++i) {
             irradiance[i] =
                 static_cast<float>(per_transmittance * cameras[strata.index[i]].transmittance * radiance[i]);
         }
-        tile.add(pixel, strata.index, irradiance);
+        tile.add(pixel, paths_.sample[path], strata.index, irradiance);
     }
 
     void add_features(std::size_t pixel, const PathWavelengths& strata, const FirstSurface& first,

@@ -9,7 +9,7 @@
 namespace lensproof {
 
 /// Calls add(path, pixel) for each path of these samples, `path` being its place in `buffer` and `pixel` its pixel's in
-/// the tile; counts samples and rays in the tile. `producer` draws for a sensor of `width` pixels a row.
+/// the tile; counts rays in the tile. `producer` draws for a sensor of `width` pixels a row.
 template <class Producer, class Add>
 void for_each_path(const TileSamples& samples, int width, Producer& producer, CameraPathBuffer<double>& buffer,
                    FilmTile& tile, const Add& add) {
@@ -28,9 +28,6 @@ void for_each_path(const TileSamples& samples, int width, Producer& producer, Ca
                 add(i, first_of_row + (buffer.pixel[static_cast<std::size_t>(i)] - first_pixel));
             }
         }
-    }
-    for (std::size_t pixel = 0; pixel < static_cast<std::size_t>(rect.pixels()); ++pixel) {
-        tile.count_samples(pixel, samples.end - samples.first);
     }
     tile.count_rays(static_cast<std::uint64_t>(producer.started() - started_before));
 }

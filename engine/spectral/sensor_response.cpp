@@ -127,6 +127,16 @@ SensorResponse sensor_response(const std::string& name, const Exposure& exposure
     return response;
 }
 
+std::optional<RgbSpace> rgb_space(const std::string& name, const Illuminant& white) {
+    if (name != "cie-1931") {
+        return std::nullopt;
+    }
+    return RgbSpace{.red = {kRed.x, kRed.y},
+                    .green = {kGreen.x, kGreen.y},
+                    .blue = {kBlue.x, kBlue.y},
+                    .white = chromaticity(tristimulus(white.relative, cie_1931()))};
+}
+
 std::vector<Vec3d> stratum_weights(const SensorResponse& sensor, const WavelengthStrata& strata,
                                    const Illuminant& light) {
     std::vector<Vec3d> weights(static_cast<std::size_t>(strata.count));

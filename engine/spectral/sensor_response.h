@@ -1,6 +1,7 @@
 // engine/spectral/sensor_response.h — from the light on the film to the numbers that a camera stores.
 #pragma once
 #include <array>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -53,6 +54,18 @@ std::vector<std::string> known_sensors();
 /// Throws InputError for an unknown name (listing those known), for a time or ISO that is not
 /// positive, and for a white that a channel does not see.
 SensorResponse sensor_response(const std::string& name, const Exposure& exposure, const Illuminant& white);
+
+/// CIE 1931 chromaticities of a linear RGB space.
+struct RgbSpace {
+    Vec2d red;
+    Vec2d green;
+    Vec2d blue;
+    Vec2d white;
+};
+
+/// The space of the R, G, B of the sensor called `name`, balanced to `white`; nothing for those whose colours are their
+/// own.
+std::optional<RgbSpace> rgb_space(const std::string& name, const Illuminant& white);
 
 /// For a renderer that traces one wavelength, the midpoint, for each stratum: the weights W_i, m²/W, in
 ///     v = Σ_i E(midpoint_i) · W_i · width,     W_i = ∫_i L w dλ / (L(midpoint_i) · width),

@@ -67,6 +67,7 @@ void add_analyze_command(CLI::App& app, int& status);
 void add_trace_command(CLI::App& app, int& status);
 void add_render_command(CLI::App& app, int& status);
 void add_measure_command(CLI::App& app, int& status);
+void add_merge_command(CLI::App& app, int& status);
 void add_compare_command(CLI::App& app, int& status);
 void add_convert_command(CLI::App& app, int& status);
 void add_run_command(CLI::App& app, int& status);

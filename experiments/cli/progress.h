@@ -18,7 +18,13 @@ class ProgressBar {
     /// `done` from 0 to 1. To be called by one thread at a time.
     void update(double done);
 
+    /// The same for work that knows better how long it takes, and has something to add, such as its speed.
+    void update(double done, double seconds_left, const std::string& note);
+
   private:
+    /// Whether it is time to draw the line again.
+    bool is_due();
+
     std::string label_;
     bool shown_;
     std::chrono::steady_clock::time_point start_;

@@ -2,88 +2,65 @@
 #include <fmt/format.h>
 
 #include <memory>
+#include <utility>
 
 #include "engine/io/cache.h"
 #include "engine/io/file.h"
+#include "engine/io/hash.h"
 #include "engine/io/input_error.h"
 #include "engine/render/camera.h"
-#include "experiments/cli/command.h"
-#include "experiments/cli/progress.h"
+#include "experiments/cli/render_job.h"
 
 namespace lensproof {
 
 namespace {
 
-struct RenderOptions {
-    CommonOptions common;
-    std::string scene;
-    std::string output;
-    int samples = 0;
-};
-
-/// The EXR's name; by default the scene's, in the current folder.
-std::filesystem::path exr_name(const RenderOptions& options) {
-    if (options.output.empty()) {
-        return std::filesystem::path(options.scene).filename().replace_extension(".exr");
-    }
-    std::filesystem::path exr(options.output);
-    if (exr.has_filename() && exr.extension() != ".exr") {
-        throw InputError(fmt::format("--output is \"{}\", expected a name that ends in .exr", options.output));
-    }
-    return exr;
-}
-
 /// The scene's camera. What its lens refuses is said of the scene's file.
-ChartCamera make_camera(const ChartScene& scene, const std::string& file) {
+ChartCamera make_camera(const ChartScene& scene, const RenderJobOptions& options) {
     try {
-        return {scene.camera, scene.light, scene.spectral, Cache::standard()};
+        return {scene.camera, scene.light, scene.spectral, Cache::standard(), PixelFilter::named(options.filter)};
     } catch (const InputError& error) {
-        throw InputError(fmt::format("{}: camera: {}", file, error.what()));
+        throw InputError(fmt::format("{}: camera: {}", options.scene, error.what()));
     }
 }
 
-int run_render(const RenderOptions& options) {
-    const std::filesystem::path exr = exr_name(options);
-    const std::filesystem::path png = std::filesystem::path(exr).replace_extension(".png");
-    check_output_name(exr);
-    check_output_name(png);
-    check_json_name(options.common);
+int run_render(const RenderJobOptions& options) {
+    render_files(options);  // before long work
     const ChartScene scene = read_chart_scene(options.scene);
-    const ChartCamera camera = make_camera(scene, options.scene);
+    const ChartCamera camera = make_camera(scene, options);
     if (!camera.spectral().clamp_note.empty()) {
         fmt::print(stderr, "lensproof: {}\n", camera.spectral().clamp_note);
     }
-    const RenderSettings settings{.samples_per_pixel = options.samples > 0 ? options.samples : scene.samples_per_pixel,
-                                  .seed = options.common.seed,
-                                  .threads = options.common.threads};
-    ProgressBar bar("rendering", options.common.quiet);
-    const Image image = camera.render(scene.chart, scene.placement, settings, [&](double done) { bar.update(done); });
-
-    write_exr(image, exr);
-    write_png(image, png);
-    write_json_result(options.common, {{"scene", options.scene},
-                                       {"lens", camera.lens().id},
-                                       {"samples_per_pixel", settings.samples_per_pixel},
-                                       {"seed", settings.seed},
-                                       {"exr", exr.string()},
-                                       {"png", png.string()}});
-    if (prints_text(options.common)) {
-        fmt::print("{}\n{}\n", exr.string(), png.string());
-    }
-    return kDone;
+    SeenChart view = camera.view(scene.chart, scene.placement);
+    view.has_features = options.has_features;
+    const ChartRender render(std::move(view), camera.pupil(), options.common.seed);
+    RenderJob job;
+    job.film = render.film();
+    job.make_renderer = [&render] { return render.make_renderer(); };
+    job.identity = {
+        {"scene", hash_text(read_file(options.scene))},
+        {"lens", camera.lens_hash()},
+        {"settings", fmt::format("{} filter, {} features", options.filter, options.has_features ? "with" : "no")}};
+    job.notes.metadata = camera.metadata();
+    job.notes.colours = camera.colours();
+    job.samples = static_cast<std::uint32_t>(scene.samples_per_pixel);
+    job.json["scene"] = options.scene;
+    job.json["lens"] = camera.lens().id;
+    return run_render_job(job, options);
 }
 
 }  // namespace
 
 void add_render_command(CLI::App& app, int& status) {
-    const auto options = std::make_shared<RenderOptions>();
+    const auto options = std::make_shared<RenderJobOptions>();
     CLI::App* command = app.add_subcommand("render", "Render a chart through a lens");
-    command->footer("Example: lensproof render experiments/scenes/tessar_checkerboard.toml -o chart.exr");
+    command->footer(
+        "Examples: lensproof render experiments/scenes/tessar_checkerboard.toml -o chart.exr\n"
+        "          lensproof render SCENE --noise 0.01 --time 3600 --preview now.png --checkpoint chart.checkpoint\n"
+        "          lensproof render SCENE --spp 1024 --shard 2/5 -o part2.exr; lensproof merge part*.exr -o chart.exr\n"
+        "Ctrl-C ends a render with a checkpoint written and exit status 3; a second one at once.");
     command->add_option("SCENE", options->scene, "A scene file")->required();
-    command->add_option("-o,--output", options->output, "EXR to write; a PNG appears beside it")->type_name("FILE");
-    command->add_option("--samples,--spp", options->samples, "Samples a pixel, in place of the scene's")
-        ->check(CLI::Range(1, 1 << 20));
-    add_common_options(*command, options->common);
+    add_render_job_options(*command, *options);
     command->callback([options, &status] { status = run_render(*options); });
 }
 

@@ -32,7 +32,7 @@ class Studio {
           camera_(ExactCamera{&traced_, &slices_}) {}
 
     Film by_camera(std::uint32_t samples) const {
-        return filled([&](FilmTile& tile) {
+        return filled(samples, [&](FilmTile& tile) {
             SceneView view{.scene = &scene_,
                            .camera = &camera_,
                            .pose = kPose,
@@ -51,7 +51,7 @@ class Studio {
                                     .front = front_sphere(traced_.at(0)),
                                     .pose = kPose,
                                     .sensor = sensor_};
-        return filled([&](FilmTile& tile) {
+        return filled(0, [&](FilmTile& tile) {
             for (std::uint32_t i = 0; i < paths; ++i) {
                 PathSampler numbers(2, 0, i);
                 const PathWavelengths strata = kGrid.path(static_cast<int>(i) % kGrid.size());
@@ -78,11 +78,12 @@ class Studio {
     }
 
     template <class Fill>
-    Film filled(const Fill& fill) const {
+    Film filled(std::uint32_t samples, const Fill& fill) const {
         Film film(layout());
         FilmTile tile(film.layout());
-        film.load({0, 0, sensor_.width, sensor_.height}, tile);
+        film.load({.rect = {0, 0, sensor_.width, sensor_.height}, .first = 0, .end = samples}, tile);
         fill(tile);
+        tile.finish();
         film.store(tile);
         return film;
     }

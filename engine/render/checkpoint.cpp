@@ -1,0 +1,279 @@
+#include "engine/render/checkpoint.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+#include <fstream>
+#include <string>
+#include <system_error>
+#include <utility>
+
+#include "engine/io/bytes.h"
+#include "engine/io/file.h"
+#include "engine/io/hash.h"
+#include "engine/io/input_error.h"
+
+namespace lensproof {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+// The file's form. A number, not its digits: a machine of another byte order takes it for another version.
+constexpr std::uint32_t kVersion = 1;
+constexpr std::string_view kMagic = "lensproof checkpoint\n";
+constexpr std::size_t kPiece = std::size_t{1} << 20U;
+constexpr std::size_t kDigestSize = sizeof(std::uint64_t);
+
+/// Writes bytes and at the end a digest of them, piece by piece: films are large.
+class DigestedWriter {
+  public:
+    explicit DigestedWriter(const fs::path& file) : stream_(file, std::ios::binary) { piece_.reserve(kPiece); }
+
+    void write(std::string_view bytes) {
+        while (!bytes.empty()) {
+            const std::size_t count = std::min(bytes.size(), kPiece - piece_.size());
+            piece_.append(bytes.substr(0, count));
+            bytes.remove_prefix(count);
+            if (piece_.size() == kPiece) {
+                flush();
+            }
+        }
+    }
+
+    template <class... Numbers>
+    void write_numbers(const Numbers&... numbers) {
+        std::string bytes;
+        append_bytes(bytes, numbers...);
+        write(bytes);
+    }
+
+    template <class Number>
+    void write_all(const std::vector<Number>& numbers) {
+        write({reinterpret_cast<const char*>(numbers.data()), numbers.size() * sizeof(Number)});
+    }
+
+    /// Returns whether all went well.
+    bool finish() {
+        flush();
+        std::string digest;
+        append_bytes(digest, digest_);
+        stream_.write(digest.data(), static_cast<std::streamsize>(digest.size()));
+        stream_.close();
+        return static_cast<bool>(stream_);
+    }
+
+  private:
+    void flush() {
+        digest_ = hash_of(piece_, digest_);
+        stream_.write(piece_.data(), static_cast<std::streamsize>(piece_.size()));
+        piece_.clear();
+    }
+
+    std::ofstream stream_;
+    std::string piece_;
+    std::uint64_t digest_ = 0;
+};
+
+/// Reads what the above wrote, after it has compared the digest of all of it.
+class DigestedReader {
+  public:
+    explicit DigestedReader(const fs::path& file) : file_(file) {
+        check_readable(file);
+        if (!fs::is_regular_file(file)) {
+            throw InputError(fmt::format("{}: is a device or a pipe, expected a checkpoint", file.string()));
+        }
+        left_ = fs::file_size(file);
+        stream_.open(file, std::ios::binary);
+        if (std::string magic(kMagic.size(), '\0');
+            left_ < kMagic.size() + kDigestSize || !stream_.read(magic.data(), kMagic.size()) || magic != kMagic) {
+            throw InputError(fmt::format("{}: is not a checkpoint of lensproof; another --checkpoint leaves it alone",
+                                         file.string()));
+        }
+        left_ -= kDigestSize;
+        check_digest();
+        stream_.seekg(kMagic.size());
+        left_ -= kMagic.size();
+    }
+
+    [[noreturn]] void fail() const {
+        throw InputError(fmt::format("{}: the checkpoint is damaged; remove it to begin anew", file_.string()));
+    }
+
+    template <class Number>
+    Number number() {
+        Number value{};
+        read(&value, sizeof value);
+        return value;
+    }
+
+    std::string text() {
+        const auto size = number<std::uint64_t>();
+        if (size > left_) {
+            fail();
+        }
+        std::string bytes(size, '\0');
+        read(bytes.data(), size);
+        return bytes;
+    }
+
+    template <class Number>
+    void read_all(std::vector<Number>& numbers) {
+        read(numbers.data(), numbers.size() * sizeof(Number));
+    }
+
+    void expect_left(std::uintmax_t bytes) const {
+        if (left_ != bytes) {
+            fail();
+        }
+    }
+
+  private:
+    void read(void* to, std::uintmax_t bytes) {
+        if (bytes > left_ || !stream_.read(static_cast<char*>(to), static_cast<std::streamsize>(bytes))) {
+            fail();
+        }
+        left_ -= bytes;
+    }
+
+    void check_digest() {
+        stream_.seekg(0);
+        std::string piece;
+        std::uint64_t digest = 0;
+        for (std::uintmax_t rest = left_; rest > 0; rest -= piece.size()) {
+            piece.resize(std::min<std::uintmax_t>(rest, kPiece));
+            if (!stream_.read(piece.data(), static_cast<std::streamsize>(piece.size()))) {
+                fail();
+            }
+            digest = hash_of(piece, digest);
+        }
+        std::uint64_t expected = 0;
+        if (!stream_.read(reinterpret_cast<char*>(&expected), sizeof expected) || digest != expected) {
+            fail();
+        }
+    }
+
+    fs::path file_;
+    std::ifstream stream_;
+    std::uintmax_t left_ = 0;
+};
+
+/// What a film's sums are shaped by.
+std::string shape_of(const RenderState& state) {
+    const FilmLayout& layout = state.film.layout();
+    std::string bytes;
+    append_bytes(bytes, layout.width, layout.height, layout.has_splats, layout.has_features, layout.layer_nm.size(),
+                 layout.rgb_weights.size(), state.tiles.size());
+    return bytes;
+}
+
+void write_text(DigestedWriter& writer, std::string_view text) {
+    writer.write_numbers(static_cast<std::uint64_t>(text.size()));
+    writer.write(text);
+}
+
+void write_state(DigestedWriter& writer, const RenderIdentity& identity, const RenderState& state) {
+    writer.write(kMagic);
+    writer.write_numbers(kVersion, static_cast<std::uint64_t>(identity.size()));
+    for (const IdentityPart& part : identity) {
+        write_text(writer, part.name);
+        write_text(writer, part.value);
+    }
+    write_text(writer, shape_of(state));
+    writer.write_numbers(state.range.first, state.range.end);
+    for (const TileProgress& tile : state.tiles) {
+        writer.write_numbers(tile.done, tile.target);
+    }
+    Film::visit_sums(state.film, [&]<class Sums>(const Sums& sums) {
+        if constexpr (std::is_arithmetic_v<Sums>) {
+            writer.write_numbers(sums);
+        } else {
+            writer.write_all(sums);
+        }
+    });
+}
+
+std::uintmax_t bytes_of_sums(const Film& film) {
+    std::uintmax_t bytes = 0;
+    Film::visit_sums(film, [&]<class Sums>(const Sums& sums) {
+        if constexpr (std::is_arithmetic_v<Sums>) {
+            bytes += sizeof sums;
+        } else {
+            bytes += sums.size() * sizeof sums[0];
+        }
+    });
+    return bytes;
+}
+
+RenderIdentity read_identity(DigestedReader& reader) {
+    RenderIdentity identity;
+    for (auto parts = reader.number<std::uint64_t>(); parts > 0; --parts) {
+        std::string name = reader.text();
+        identity.push_back({std::move(name), reader.text()});
+    }
+    return identity;
+}
+
+}  // namespace
+
+void write_checkpoint(const fs::path& file, const RenderIdentity& identity, const RenderState& state) {
+    write_whole(
+        file,
+        [&](const fs::path& temporary) {
+            errno = 0;
+            DigestedWriter writer(temporary);
+            write_state(writer, identity, state);
+            if (!writer.finish()) {
+                throw std::system_error(errno != 0 ? errno : EIO, std::generic_category(),
+                                        file.string() + " cannot be written");
+            }
+        },
+        Durability::power_cut);
+}
+
+void read_checkpoint(const fs::path& file, const RenderIdentity& identity, RenderState& state) {
+    DigestedReader reader(file);
+    const auto of_another_render = [&](const std::string& why) {
+        throw InputError(
+            fmt::format("{}: the checkpoint is of another render: {}; remove it to begin anew", file.string(), why));
+    };
+    if (const auto version = reader.number<std::uint32_t>(); version != kVersion) {
+        of_another_render(fmt::format("its form is version {}, expected {}", version, kVersion));
+    }
+    if (const auto difference = first_difference(read_identity(reader), identity)) {
+        of_another_render(*difference);
+    }
+    if (reader.text() != shape_of(state)) {
+        of_another_render("its film has another size or other layers");
+    }
+    const auto first = reader.number<std::uint32_t>();
+    reader.number<std::uint32_t>();
+    if (first != state.range.first) {
+        of_another_render(fmt::format("its samples begin at {}, expected {}", first, state.range.first));
+    }
+    std::vector<TileProgress> tiles(state.tiles.size());
+    for (TileProgress& tile : tiles) {
+        tile.done = reader.number<std::uint32_t>();
+        tile.target = std::min(reader.number<std::uint32_t>(), state.range.end);
+        if (tile.done > state.range.end) {
+            throw InputError(fmt::format("{}: the checkpoint has {} samples a pixel already, expected {} at most",
+                                         file.string(), tile.done - first, state.range.end - first));
+        }
+        if (tile.done < first || tile.target < tile.done) {
+            reader.fail();
+        }
+    }
+    reader.expect_left(bytes_of_sums(state.film));
+    state.tiles = std::move(tiles);
+    Film::visit_sums(state.film, [&]<class Sums>(Sums& sums) {
+        if constexpr (std::is_arithmetic_v<Sums>) {
+            sums = reader.number<Sums>();
+        } else {
+            reader.read_all(sums);
+        }
+    });
+}
+
+}  // namespace lensproof

@@ -1,0 +1,25 @@
+// experiments/cli/interruption.h — Ctrl-C and its like as a question, for commands that have something to save.
+#pragma once
+#include <array>
+#include <csignal>
+
+namespace lensproof {
+
+/// While it lives, SIGINT, SIGTERM and SIGHUP are noted rather than obeyed: the first of them, a second one ends the
+/// program at once. Those that the program was started to ignore, as `nohup` does, stay ignored. One at a time.
+class Interruption {
+  public:
+    Interruption();
+    ~Interruption();
+    Interruption(const Interruption&) = delete;
+    Interruption& operator=(const Interruption&) = delete;
+
+    /// Whether one has come. May be asked by any thread.
+    [[nodiscard]] static bool has_come();
+
+  private:
+    static constexpr std::array<int, 3> kSignals = {SIGINT, SIGTERM, SIGHUP};
+    std::array<struct sigaction, kSignals.size()> before_{};
+};
+
+}  // namespace lensproof

@@ -1,0 +1,263 @@
+#include "experiments/cli/render_job.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+
+#include "engine/io/file.h"
+#include "engine/io/input_error.h"
+#include "engine/render/checkpoint.h"
+#include "engine/render/film_image.h"
+#include "engine/version.h"
+#include "experiments/cli/interruption.h"
+#include "experiments/cli/progress.h"
+
+namespace lensproof {
+
+namespace {
+
+namespace fs = std::filesystem;
+using Clock = std::chrono::steady_clock;
+
+double seconds_since(Clock::time_point then) {
+    return std::chrono::duration<double>(Clock::now() - then).count();
+}
+
+/// The shard asked for; 1/1 where none is.
+Shard shard_of(const RenderJobOptions& options) {
+    if (options.shard.empty()) {
+        return {};
+    }
+    const std::optional<Shard> shard = parse_shard(options.shard);
+    if (!shard) {
+        throw InputError(fmt::format("--shard is \"{}\", expected i/n, such as 2/5, with 1 ≤ i ≤ n ≤ {}", options.shard,
+                                     kMostShards));
+    }
+    return *shard;
+}
+
+/// Samples a pixel of the whole render, of which a shard has a part: as many as asked for; else the scene's, or without
+/// end where something else ends it.
+std::uint32_t whole_samples(const RenderJob& job, const RenderJobOptions& options) {
+    if (options.samples > 0) {
+        return options.samples;
+    }
+    return options.time_s > 0.0 || options.noise > 0.0 ? kMostSamples : job.samples;
+}
+
+SampleRange range_of(const RenderJob& job, const RenderJobOptions& options) {
+    const Shard shard = shard_of(options);
+    const std::uint32_t samples = whole_samples(job, options);
+    const SampleRange range = shard.part_of(samples);
+    if (range.first == range.end) {
+        throw InputError(fmt::format("--shard is \"{}\": {} samples a pixel leave it none, expected {} shards at most",
+                                     options.shard, samples, samples));
+    }
+    return range;
+}
+
+RenderGoal goal_of(const RenderJobOptions& options) {
+    RenderGoal goal;
+    if (options.time_s > 0.0) {
+        goal.seconds = options.time_s;
+    }
+    // n shards of relative error e each have e/√n together.
+    goal.noise = options.noise * std::sqrt(static_cast<double>(shard_of(options).count));
+    return goal;
+}
+
+/// What is done from time to time while a render runs: the bar, the preview, the checkpoint.
+class RenderWatch {
+  public:
+    RenderWatch(const RenderJobOptions& options, const RenderIdentity& identity)
+        : options_(options), identity_(identity), bar_("rendering", options.common.quiet) {}
+
+    void look(const RenderState& state, const RenderReport& report) {
+        bar_.update(report.done, report.seconds_left, speed(report));
+        // Drawing takes a twentieth of the time at most.
+        if (!options_.preview.empty() && seconds_since(preview_) > std::max(1.0, 20.0 * preview_cost_s_)) {
+            const Clock::time_point start = Clock::now();
+            write_png(film_rgb(state.film), options_.preview);
+            preview_cost_s_ = seconds_since(start);
+            preview_ = Clock::now();
+        }
+        if (!options_.checkpoint.empty() && seconds_since(checkpoint_) > options_.checkpoint_interval_s) {
+            write_checkpoint(options_.checkpoint, identity_, state);
+            checkpoint_ = Clock::now();
+        }
+    }
+
+  private:
+    static std::string speed(const RenderReport& report) {
+        const bool has_rays = report.rays > 0;
+        const auto count = static_cast<double>(has_rays ? report.rays : report.samples);
+        return fmt::format("{:.2f} M {}/s", 1e-6 * count / std::max(1e-9, report.seconds),
+                           has_rays ? "rays" : "samples");
+    }
+
+    const RenderJobOptions& options_;
+    const RenderIdentity& identity_;
+    ProgressBar bar_;
+    Clock::time_point preview_ = Clock::now() - std::chrono::hours(1);  // the first at once
+    double preview_cost_s_ = 0.0;
+    Clock::time_point checkpoint_ = Clock::now();
+};
+
+/// Samples a pixel, the mean over the film.
+double mean_samples(const RenderState& state) {
+    double sum = 0.0;
+    for (int y = 0; y < state.film.height(); ++y) {
+        for (int x = 0; x < state.film.width(); ++x) {
+            sum += state.film.counts(x, y).samples;
+        }
+    }
+    return sum / (static_cast<double>(state.film.width()) * state.film.height());
+}
+
+/// Saves what there is, and says how to go on.
+int end_early(const RenderState& state, const RenderIdentity& identity, const RenderJobOptions& options,
+              const RenderFiles& files) {
+    const std::string checkpoint = options.checkpoint.empty() ? files.exr.string() + ".checkpoint" : options.checkpoint;
+    write_checkpoint(checkpoint, identity, state);
+    fmt::print(stderr,
+               "lensproof: interrupted after {:.1f} samples a pixel of {}; the same command with --checkpoint {} goes "
+               "on from there\n",
+               mean_samples(state), state.range.end - state.range.first, checkpoint);
+    return kInternalFailure;
+}
+
+FilmNotes notes_of(const RenderJob& job, const RenderJobOptions& options, const RenderIdentity& identity) {
+    FilmNotes notes = job.notes;
+    notes.identity = identity;
+    notes.metadata["lensproof:samplesPerPixel"] = fmt::format("{}", whole_samples(job, options));
+    if (options.time_s > 0.0) {
+        notes.metadata["lensproof:time_s"] = fmt::format("{}", options.time_s);
+    }
+    if (options.noise > 0.0) {
+        notes.metadata["lensproof:noise"] = fmt::format("{}", options.noise);
+    }
+    if (!options.shard.empty()) {
+        const Shard shard = shard_of(options);
+        notes.metadata["lensproof:shard"] = shard_set_text({.indices = {shard.index}, .count = shard.count});
+    }
+    return notes;
+}
+
+void report(const RenderJob& job, const RenderState& state, const RenderJobOptions& options, const RenderFiles& files) {
+    nlohmann::ordered_json json = job.json;
+    json["samples_per_pixel"] = mean_samples(state);
+    json["seed"] = options.common.seed;
+    if (!options.shard.empty()) {
+        json["shard"] = options.shard;
+    }
+    const PixelRect all{.x = 0, .y = 0, .width = state.film.width(), .height = state.film.height()};
+    json["relative_error"] = tile_error(state.film, all, 0.01 * mean_brightness(state.film));
+    json["exr"] = files.exr.string();
+    json["png"] = files.png.string();
+    write_json_result(options.common, json);
+    if (prints_text(options.common)) {
+        fmt::print("{}\n{}\n", files.exr.string(), files.png.string());
+    }
+}
+
+}  // namespace
+
+RenderFiles render_files(const RenderJobOptions& options) {
+    RenderFiles files{.exr = options.output, .png = {}};
+    if (options.output.empty()) {
+        const Shard shard = shard_of(options);
+        files.exr = fs::path(options.scene)
+                        .filename()
+                        .replace_extension(options.shard.empty()
+                                               ? ".exr"
+                                               : fmt::format(".shard-{}-of-{}.exr", shard.index, shard.count));
+    } else if (files.exr.has_filename() && files.exr.extension() != ".exr") {
+        throw InputError(fmt::format("--output is \"{}\", expected a name that ends in .exr", options.output));
+    }
+    files.png = fs::path(files.exr).replace_extension(".png");
+    check_output_name(files.exr);
+    check_output_name(files.png);
+    check_json_name(options.common);
+    if (!options.preview.empty()) {
+        if (fs::path(options.preview).extension() != ".png") {
+            throw InputError(fmt::format("--preview is \"{}\", expected a name that ends in .png", options.preview));
+        }
+        check_output_name(options.preview);
+    }
+    if (!options.checkpoint.empty()) {
+        check_output_name(options.checkpoint);
+    }
+    return files;
+}
+
+int run_render_job(const RenderJob& job, const RenderJobOptions& options) {
+    const RenderFiles files = render_files(options);
+    RenderIdentity identity = job.identity;
+    identity.push_back({"seed", fmt::format("{}", options.common.seed)});
+    identity.push_back({"version", engine_version()});
+
+    RenderState state(job.film, range_of(job, options));
+    if (!options.checkpoint.empty()) {
+        remove_leftovers(options.checkpoint);
+        if (fs::exists(options.checkpoint)) {
+            read_checkpoint(options.checkpoint, identity, state);
+        }
+    }
+    const Interruption interruption;
+    RenderEnd end{};
+    {
+        RenderWatch watch(options, identity);
+        const RenderControl control{
+            .threads = options.common.threads,
+            .in_passes = job.film.has_splats || !options.preview.empty() || options.time_s > 0.0,
+            .is_interrupted = [] { return Interruption::has_come(); },
+            .on_progress = [&](const RenderState& now, const RenderReport& report) { watch.look(now, report); }};
+        end = render_progressively(state, job.make_renderer, goal_of(options), control);
+    }
+    if (end == RenderEnd::interrupted) {
+        return end_early(state, identity, options, files);
+    }
+    if (!options.checkpoint.empty()) {
+        write_checkpoint(options.checkpoint, identity, state);
+    }
+    if (!options.preview.empty()) {
+        write_png(film_rgb(state.film), options.preview);
+    }
+    write_film_exr(state.film, notes_of(job, options, identity), files.exr);
+    write_png(film_rgb(state.film), files.png);
+    report(job, state, options, files);
+    return kDone;
+}
+
+void add_render_job_options(CLI::App& command, RenderJobOptions& options) {
+    const CLI::Range samples(1, static_cast<int>(kMostSamples));
+    command.add_option("-o,--output", options.output, "EXR to write; a PNG appears beside it")->type_name("FILE");
+    command
+        .add_option("--samples,--spp", options.samples,
+                    "Samples a pixel, in place of the scene's; with --time or --noise, at most so many")
+        ->check(samples);
+    command.add_option("--time", options.time_s, "End after so many seconds of rendering")->check(kPositiveOption);
+    command
+        .add_option("--noise", options.noise,
+                    "End where a pixel's standard error is this share of its value (0.01: 1 %), tile by tile")
+        ->check(kPositiveOption);
+    command.add_option("--preview", options.preview, "A PNG that shows the picture as it grows")->type_name("FILE");
+    command
+        .add_option("--checkpoint", options.checkpoint,
+                    "Keep the render's state here; where the file is there, go on from it")
+        ->type_name("FILE");
+    command.add_option("--checkpoint-interval", options.checkpoint_interval_s, "Seconds between two checkpoints")
+        ->check(kPositiveOption)
+        ->capture_default_str();
+    command.add_option("--shard", options.shard, "Render the i-th of n parts of the samples; `merge` adds them up")
+        ->type_name("i/n");
+    command.add_option("--filter", options.filter, "Pixel filter")
+        ->check(CLI::IsMember(PixelFilter::known_names()))
+        ->capture_default_str();
+    command.add_flag("--features", options.has_features, "Also write depth, albedo and normals");
+    add_common_options(command, options.common);
+}
+
+}  // namespace lensproof

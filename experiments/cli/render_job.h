@@ -1,0 +1,55 @@
+// experiments/cli/render_job.h — how `lensproof render` carries a render out, whatever is rendered: until when, in
+// which part, with which preview, checkpoint and files.
+#pragma once
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <string>
+
+#include "engine/render/film_exr.h"
+#include "engine/render/progressive.h"
+#include "experiments/cli/command.h"
+#include "experiments/cli/shard.h"
+
+namespace lensproof {
+
+struct RenderJobOptions {
+    CommonOptions common;
+    std::string scene;
+    std::string output;
+    std::uint32_t samples = 0;  // 0: the scene's; with --time or --noise as many as it takes
+    double time_s = 0.0;        // 0: no limit
+    double noise = 0.0;         // 0: none wanted
+    std::string preview;
+    std::string checkpoint;
+    double checkpoint_interval_s = 60.0;
+    std::string shard;
+    std::string filter = "box";
+    bool has_features = false;
+};
+
+/// Adds the options above, but those that name the scene.
+void add_render_job_options(CLI::App& command, RenderJobOptions& options);
+
+/// The files that a job writes. Throws InputError where one cannot be.
+struct RenderFiles {
+    std::filesystem::path exr;
+    std::filesystem::path png;
+};
+RenderFiles render_files(const RenderJobOptions& options);
+
+/// What is rendered.
+struct RenderJob {
+    FilmLayout film;
+    MakeTileRenderer make_renderer;
+    RenderIdentity identity;      // "scene", "lens", "settings"; seed and version are added
+    FilmNotes notes;              // metadata and colours
+    std::uint32_t samples = 0;    // a pixel, the scene's own
+    nlohmann::ordered_json json;  // what the machine-readable result begins with
+};
+
+/// Renders, writes the pictures and says where they are. Returns the exit status: kInternalFailure where a signal ended
+/// it before its goal, with a checkpoint written.
+int run_render_job(const RenderJob& job, const RenderJobOptions& options);
+
+}  // namespace lensproof
