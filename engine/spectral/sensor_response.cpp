@@ -131,9 +131,10 @@ std::optional<RgbSpace> rgb_space(const std::string& name, const Illuminant& whi
     if (name != "cie-1931") {
         return std::nullopt;
     }
-    return RgbSpace{.red = {kRed.x, kRed.y},
-                    .green = {kGreen.x, kGreen.y},
-                    .blue = {kBlue.x, kBlue.y},
+    const auto& [red, green, blue] = kRec709Primaries;
+    return RgbSpace{.red = {red.x, red.y},
+                    .green = {green.x, green.y},
+                    .blue = {blue.x, blue.y},
                     .white = chromaticity(tristimulus(white.relative, cie_1931()))};
 }
 
