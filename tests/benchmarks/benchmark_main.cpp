@@ -25,6 +25,7 @@ constexpr Ratio kRatios[] = {
     {"checkerboard / flat field, Tessar", "render/tessar/checkerboard", "render/tessar/flat-field"},
     {"disc grid / flat field, Tessar", "render/tessar/disc-grid", "render/tessar/flat-field"},
     {"fisheye / Tessar, flat field", "render/muller-fisheye/flat-field", "render/tessar/flat-field"},
+    {"scene: exact lens / pinhole", "scene/exact", "scene/pinhole"},
     {"analysis: curves / table", "analyze/westrogon-24/curves", "analyze/westrogon-24/table"},
     {"analysis: fisheye / Tessar, table", "analyze/muller-fisheye/table", "analyze/tessar/table"},
     {"discs / corners, refinement", "refine/disc-grid", "refine/checkerboard"},
@@ -108,6 +109,7 @@ int main(int argc, char** argv) {
     }
     lensproof::register_trace_benchmarks();
     lensproof::register_render_benchmarks();
+    lensproof::register_scene_benchmarks();
     lensproof::register_camera_path_benchmarks();
     lensproof::register_measure_benchmarks();
     lensproof::register_analysis_benchmarks();

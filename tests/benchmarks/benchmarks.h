@@ -20,6 +20,10 @@ void register_render_benchmarks();
 /// Counters: valid paths per second, seconds a valid path, and passage.
 void register_camera_path_benchmarks();
 
+/// scene/MODEL: camera paths of up to five bounces through a scene of a checkered wall, a sphere and an area light, with
+/// each camera model, the exact one being the double Gauss at f/2. Counters: paths per second, rays a path.
+void register_scene_benchmarks();
+
 /// chief_rays/LENS/…: construction and aiming; refine/CHART: sub-pixel positions of all points of one chart in one
 /// channel (counter: points per second).
 void register_measure_benchmarks();
