@@ -51,8 +51,9 @@ class ChartTileRenderer {
         : view_(&view), producer_(source) {}
 
     void operator()(const TileSamples& samples, FilmTile& tile) {
-        for_each_path(samples, view_->sensor.width, producer_, paths_, tile,
-                      [&](int path, std::size_t pixel) { add_path(path, pixel, tile); });
+        for_each_path(
+            samples, view_->sensor.width, producer_, paths_, tile, [] {},
+            [&](int path, std::size_t pixel) { add_path(path, pixel, tile); });
     }
 
   private:

@@ -35,10 +35,9 @@ class LightWalk {
     /// Carries on from surface to surface, and joins the lens from each.
     void scatter(EmittedRay light) {
         Ray<double> ray = light.ray;
-        SpectralSample power = light.power;
-        const float starts_with = max_value(power);
+        SpectralSample throughput(1.0F);
         bool carries_all = true;
-        for (int bounce = 1; max_value(power) > 0.0F; ++bounce) {
+        for (int bounce = 1; max_value(light.power) > 0.0F; ++bounce) {
             const auto hit = intersect(*scene_.geometry, ray.origin, ray.direction, 0.0, kInfinity);
             ++rays_;
             if (!hit) {
@@ -49,7 +48,7 @@ class LightWalk {
                 return;
             }
             if (!is_delta(vertex.bsdf)) {
-                join_from_surface(vertex, power);
+                join_from_surface(vertex, light.power * throughput);
             }
             if (bounce == settings_.max_bounces) {
                 return;
@@ -64,12 +63,12 @@ class LightWalk {
             if (!vertex.is_consistent(onwards, scattered->wi)) {
                 return;
             }
-            power *= scattered->weight * SpectralSample(shading_correction(vertex, onwards, scattered->wi));
+            throughput *= scattered->weight * SpectralSample(shading_correction(vertex, onwards, scattered->wi));
             if (scattered->is_dispersed && carries_all) {
-                power = static_cast<float>(kWavelengthsPerPath) * hero_alone(power);
+                throughput = static_cast<float>(kWavelengthsPerPath) * hero_alone(throughput);
                 carries_all = false;
             }
-            if (!survives_roulette(settings_, bounce, starts_with, numbers[3], power)) {
+            if (!survives_roulette(settings_, bounce, numbers[3], throughput)) {
                 return;
             }
             ray = {ray_origin(*hit, onwards), onwards};

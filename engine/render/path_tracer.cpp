@@ -14,9 +14,8 @@ class PathWalk {
     PathWalk(const Scene& scene, const PathWavelengths& path, const PathSettings& settings, PathSampler& numbers)
         : scene_(scene), path_(path), settings_(settings), numbers_(numbers) {}
 
-    PathRadiance walk(Ray<double> ray, SpectralSample throughput) {
-        const float starts_with = max_value(throughput);
-        bool carries_all = !is_black(throughput - hero_alone(throughput));
+    PathRadiance walk(Ray<double> ray) {
+        SpectralSample throughput(1.0F);
         for (int bounce = 0;; ++bounce) {
             const auto hit = intersect(*scene_.geometry, ray.origin, ray.direction, 0.0, kInfinity);
             ++result_.rays;
@@ -50,11 +49,8 @@ class PathWalk {
                 break;
             }
             throughput *= scattered->weight;
-            if (scattered->is_dispersed && carries_all) {
-                throughput = static_cast<float>(kWavelengthsPerPath) * hero_alone(throughput);
-                carries_all = false;
-            }
-            if (!survives_roulette(settings_, bounce, starts_with, numbers[3], throughput)) {
+            is_hero_alone_ = is_hero_alone_ || scattered->is_dispersed;
+            if (!survives_roulette(settings_, bounce, numbers[3], throughput)) {
                 break;
             }
             scattering_density_ = scattered->is_delta ? 0.0 : scattered->density;
@@ -65,6 +61,14 @@ class PathWalk {
     }
 
   private:
+    void add(const SpectralSample& light) {
+        if (is_hero_alone_) {
+            result_.hero_radiance += light[0];
+        } else {
+            result_.radiance += light;
+        }
+    }
+
     /// Light that the path ran into. Sampling lights would have found it from the surface before, unless that is a
     /// mirror or the camera.
     void add_found(const SpectralSample& throughput, const Lights::Emission& light) {
@@ -73,7 +77,7 @@ class PathWalk {
         }
         const double weight =
             scattering_density_ > 0.0 ? scattering_density_ / (scattering_density_ + light.density) : 1.0;
-        result_.radiance += static_cast<float>(weight) * (throughput * light.radiance);
+        add(static_cast<float>(weight) * (throughput * light.radiance));
     }
 
     void add_from_lights(const PathVertex& vertex, const SpectralSample& throughput) {
@@ -97,7 +101,7 @@ class PathWalk {
         const double by_scattering =
             light->density > 0.0 ? density(vertex.bsdf, vertex.wo, wi, Transport::radiance) : 0.0;
         const double weight = light->density > 0.0 ? light->density / (light->density + by_scattering) : 1.0;
-        result_.radiance += static_cast<float>(weight) * (throughput * scattering * light->value);
+        add(static_cast<float>(weight) * (throughput * scattering * light->value));
     }
 
     void note_first(const PathVertex& vertex) {
@@ -112,6 +116,7 @@ class PathWalk {
     const PathSettings& settings_;
     PathSampler& numbers_;
     PathRadiance result_;
+    bool is_hero_alone_ = false;
     Vec3d from_;                       // the surface point that the ray left
     double scattering_density_ = 0.0;  // with which its direction was drawn; 0: no light sample could stand for it
 };
@@ -119,8 +124,8 @@ class PathWalk {
 }  // namespace
 
 PathRadiance trace_path(const Scene& scene, const Ray<double>& ray, const PathWavelengths& path,
-                        const SpectralSample& throughput, const PathSettings& settings, PathSampler& numbers) {
-    return PathWalk(scene, path, settings, numbers).walk(ray, throughput);
+                        const PathSettings& settings, PathSampler& numbers) {
+    return PathWalk(scene, path, settings, numbers).walk(ray);
 }
 
 }  // namespace lensproof

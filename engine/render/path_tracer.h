@@ -20,6 +20,9 @@ struct FirstSurface {
 /// What a path brought.
 struct PathRadiance {
     SpectralSample radiance;  // W·m⁻²·sr⁻¹·nm⁻¹ along the ray, against its direction
+    /// What the hero brought besides, after its direction had become its own alone: the other wavelengths, as heroes,
+    /// could not have drawn these paths.
+    float hero_radiance = 0.0F;
     std::optional<FirstSurface> first;
     std::uint32_t rays = 0;  // that were asked of the geometry
 };
@@ -28,10 +31,9 @@ struct PathRadiance {
 /// wavelengths: unbiased but for paths of more than `max_bounces` scatterings, which are left out.
 ///
 /// Each surface point adds what lights send there directly, found by sampling lights and by following the BSDF, weighed
-/// by the balance heuristic (Veach & Guibas, SIGGRAPH 1995). `throughput` is what the path starts with: 1 at each
-/// wavelength, or `hero_alone(…)` where the ray is the hero's alone. Once a direction is the hero's alone, the
-/// others end, and the hero has the share of all: four times its own (Wilkie et al. 2014, §3.2).
+/// by the balance heuristic (Veach & Guibas, SIGGRAPH 1995). Where refraction parts the wavelengths the hero goes on
+/// alone (Wilkie et al. 2014, §3.2).
 PathRadiance trace_path(const Scene& scene, const Ray<double>& ray, const PathWavelengths& path,
-                        const SpectralSample& throughput, const PathSettings& settings, PathSampler& numbers);
+                        const PathSettings& settings, PathSampler& numbers);
 
 }  // namespace lensproof

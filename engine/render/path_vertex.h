@@ -35,10 +35,9 @@ struct PathVertex {
     }
 };
 
-/// Whether a path that carries `carries` of what it started with goes on after a bounce; scales what does.
-inline bool survives_roulette(const PathSettings& settings, int bounce, float starts_with, double number,
-                              SpectralSample& carries) {
-    const float share = max_value(carries) / starts_with;
+/// Whether a path that carries `carries`, having started with 1, goes on after a bounce; scales what does.
+inline bool survives_roulette(const PathSettings& settings, int bounce, double number, SpectralSample& carries) {
+    const float share = max_value(carries);
     if (!(share > 0.0F)) {
         return false;
     }

@@ -1,8 +1,11 @@
 #include "engine/render/scene_render.h"
 
-#include <cmath>
+#include <algorithm>
+#include <array>
 #include <memory>
+#include <utility>
 
+#include "engine/render/shared_rays.h"
 #include "engine/render/tile_paths.h"
 #include "engine/scene/pose.h"
 
@@ -10,86 +13,108 @@ namespace lensproof {
 
 namespace {
 
-bool is_achromatic(const SceneCamera& camera) {
-    const auto* ideal = std::get_if<std::vector<GaussianCamera>>(&camera);
-    return ideal != nullptr && std::ranges::all_of(*ideal, [&](const GaussianCamera& at) {
-               GaussianCamera like = at;
-               like.transmittance = ideal->front().transmittance;
-               return like == ideal->front();
-           });
+/// What a path counts at each of its wavelengths, sr, the mean over them being the sample.
+using PathWeights = std::array<float, kWavelengthsPerPath>;
+
+PathWeights hero_alone(double weight) {
+    return {static_cast<float>(kWavelengthsPerPath * weight)};
 }
 
-class SceneTileRenderer {
+/// Through the lens itself.
+class ExactPaths {
   public:
-    explicit SceneTileRenderer(const SceneView& view)
-        : view_(view), producer_(make_producer(view)), is_achromatic_(is_achromatic(*view.camera)) {}
+    ExactPaths(const SceneView& view, const ExactCamera& camera)
+        : producer_({.sensor = view.sensor,
+                     .lens = camera.lens,
+                     .pupil = camera.pupil,
+                     .seed = view.seed,
+                     .filter = view.film.filter}),
+          shared_(view.scene->grid, *camera.lens, *camera.pupil, view.sensor),
+          is_shared_(view.film.filter.is_box()) {}
 
-    void operator()(const TileSamples& samples, FilmTile& tile) {
-        std::visit(
-            [&](auto& producer) {
-                for_each_path(samples, view_.sensor.width, producer, paths_, tile,
-                              [&](int path, std::size_t pixel) { add_path(path, pixel, tile); });
-            },
-            producer_);
+    CameraPathProducer<double>& producer() { return producer_; }
+    void weigh(const CameraPathBuffer<double>& paths) { weights_ = is_shared_ ? &shared_.weigh(paths) : nullptr; }
+    [[nodiscard]] PathWeights weights(const CameraPathBuffer<double>& paths, std::size_t path,
+                                      const PathWavelengths& /*strata*/) const {
+        return weights_ != nullptr ? (*weights_)[path] : hero_alone(paths.weight[path]);
     }
 
   private:
-    using Producer = std::variant<CameraPathProducer<double>, IdealPathProducer>;
+    CameraPathProducer<double> producer_;
+    SharedRays shared_;
+    bool is_shared_;  // with wider filters, which draw film points unevenly, the hero stays alone
+    const std::vector<PathWeights>* weights_ = nullptr;
+};
 
-    static Producer make_producer(const SceneView& view) {
-        if (const auto* exact = std::get_if<ExactCamera>(view.camera)) {
-            return CameraPathProducer<double>({.sensor = view.sensor,
-                                               .lens = exact->lens,
-                                               .pupil = exact->pupil,
-                                               .seed = view.seed,
-                                               .filter = view.film.filter});
+/// Through ideal cameras. One whose colours take one way carries all wavelengths.
+class IdealPaths {
+  public:
+    IdealPaths(const SceneView& view, const std::vector<GaussianCamera>& cameras)
+        : producer_({.sensor = view.sensor, .at = &cameras, .seed = view.seed, .filter = view.film.filter}),
+          cameras_(&cameras),
+          is_achromatic_(std::ranges::all_of(cameras, [&](GaussianCamera like) {
+              like.transmittance = cameras.front().transmittance;
+              return like == cameras.front();
+          })) {}
+
+    IdealPathProducer& producer() { return producer_; }
+    void weigh(const CameraPathBuffer<double>& /*paths*/) {}
+    /// A path's weight is its hero's; the others pass the camera by their own transmittance.
+    [[nodiscard]] PathWeights weights(const CameraPathBuffer<double>& paths, std::size_t path,
+                                      const PathWavelengths& strata) const {
+        if (!is_achromatic_) {
+            return hero_alone(paths.weight[path]);
         }
-        return IdealPathProducer({.sensor = view.sensor,
-                                  .at = &std::get<std::vector<GaussianCamera>>(*view.camera),
-                                  .seed = view.seed,
-                                  .filter = view.film.filter});
+        const double per_transmittance = paths.weight[path] / (*cameras_)[strata.index[0]].transmittance;
+        PathWeights weights{};
+        for (std::size_t i = 0; i < weights.size(); ++i) {
+            weights[i] = static_cast<float>(per_transmittance * (*cameras_)[strata.index[i]].transmittance);
+        }
+        return weights;
     }
 
-    void add_path(int path, std::size_t pixel, FilmTile& tile) {
-        const auto at = static_cast<std::size_t>(path);
-        const Ray<double> in_lens = paths_.ray(path);
+  private:
+    IdealPathProducer producer_;
+    const std::vector<GaussianCamera>* cameras_;
+    bool is_achromatic_;
+};
+
+template <class Paths>
+class SceneTileRenderer {
+  public:
+    SceneTileRenderer(const SceneView& view, Paths paths) : view_(view), paths_(std::move(paths)) {}
+
+    void operator()(const TileSamples& samples, FilmTile& tile) {
+        for_each_path(
+            samples, view_.sensor.width, paths_.producer(), buffer_, tile, [&] { paths_.weigh(buffer_); },
+            [&](int path, std::size_t pixel) { add_path(static_cast<std::size_t>(path), pixel, tile); });
+    }
+
+  private:
+    void add_path(std::size_t path, std::size_t pixel, FilmTile& tile) {
+        const Ray<double> in_lens = buffer_.ray(static_cast<int>(path));
         const Ray<double> ray{view_.pose.to_world(camera_to_lens(in_lens.origin)),
                               view_.pose.direction_to_world(camera_to_lens(in_lens.direction))};
-        const PathWavelengths strata = view_.scene->grid.path(paths_.wavelength[at]);
-        PathSampler numbers(view_.seed, paths_.pixel[at], paths_.sample[at]);
-        const SpectralSample one(1.0F);
-        const PathRadiance found =
-            trace_path(*view_.scene, ray, strata, is_achromatic_ ? one : hero_alone(one), view_.paths, numbers);
+        const PathWavelengths strata = view_.scene->grid.path(buffer_.wavelength[path]);
+        PathSampler numbers(view_.seed, buffer_.pixel[path], buffer_.sample[path]);
+        const PathRadiance found = trace_path(*view_.scene, ray, strata, view_.paths, numbers);
         tile.count_rays(found.rays);
-        if (is_achromatic_) {
-            add_all(pixel, at, strata, found.radiance, tile);
-        } else {
-            tile.add(pixel, paths_.sample[at], strata.index[0], found.radiance[0] * paths_.weight[at]);
+        PathWeights irradiance = paths_.weights(buffer_, path, strata);
+        for (std::size_t i = 0; i < irradiance.size(); ++i) {
+            irradiance[i] *= found.radiance[i];
         }
+        irradiance[0] += hero_alone(buffer_.weight[path])[0] * found.hero_radiance;
+        tile.add(pixel, buffer_.sample[path], strata.index, irradiance);
         if (view_.film.has_features && found.first) {
             add_features(pixel, strata, *found.first, tile);
         }
     }
 
-    /// A path's weight is its hero's; the others pass the camera by their own transmittance.
-    void add_all(std::size_t pixel, std::size_t path, const PathWavelengths& strata, const SpectralSample& radiance,
-                 FilmTile& tile) const {
-        const auto& cameras = std::get<std::vector<GaussianCamera>>(*view_.camera);
-        const double per_transmittance = paths_.weight[path] / cameras[strata.index[0]].transmittance;
-        std::array<float, kWavelengthsPerPath> irradiance{};
-        for (std::size_t i = 0; i < irradiance.size(); ++i) {
-            irradiance[i] =
-                static_cast<float>(per_transmittance * cameras[strata.index[i]].transmittance * radiance[i]);
-        }
-        tile.add(pixel, paths_.sample[path], strata.index, irradiance);
-    }
-
     void add_features(std::size_t pixel, const PathWavelengths& strata, const FirstSurface& first,
                       FilmTile& tile) const {
         Vec3d albedo;
-        const double share = is_achromatic_ ? 1.0 / kWavelengthsPerPath : 1.0;
-        for (std::size_t i = 0; i < (is_achromatic_ ? kWavelengthsPerPath : 1); ++i) {
-            albedo = albedo + share * first.albedo[i] * view_.albedo_weights[strata.index[i]];
+        for (std::size_t i = 0; i < kWavelengthsPerPath; ++i) {
+            albedo = albedo + (first.albedo[i] / double{kWavelengthsPerPath}) * view_.albedo_weights[strata.index[i]];
         }
         tile.add_features(pixel, {.depth_mm = view_.pose.to_camera(first.point).z,
                                   .albedo_rgb = albedo,
@@ -97,18 +122,22 @@ class SceneTileRenderer {
     }
 
     SceneView view_;
-    Producer producer_;
-    CameraPathBuffer<double> paths_;
-    bool is_achromatic_;
+    Paths paths_;
+    CameraPathBuffer<double> buffer_;
 };
 
 }  // namespace
 
 TileRenderer scene_renderer(const SceneView& view) {
     // On the heap, since std::function wants to be able to copy what it holds.
-    return [renderer = std::make_shared<SceneTileRenderer>(view)](const TileSamples& samples, FilmTile& tile) {
-        (*renderer)(samples, tile);
+    const auto renderer_by = [&](auto paths) -> TileRenderer {
+        auto renderer = std::make_shared<SceneTileRenderer<decltype(paths)>>(view, std::move(paths));
+        return [renderer](const TileSamples& samples, FilmTile& tile) { (*renderer)(samples, tile); };
     };
+    if (const auto* exact = std::get_if<ExactCamera>(view.camera)) {
+        return renderer_by(ExactPaths(view, *exact));
+    }
+    return renderer_by(IdealPaths(view, std::get<std::vector<GaussianCamera>>(*view.camera)));
 }
 
 }  // namespace lensproof

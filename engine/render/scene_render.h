@@ -38,8 +38,9 @@ struct SceneView {
 
 /// A renderer of the view's tiles for one thread; it is outlived by the view, of which it keeps a copy.
 ///
-/// The estimator of the measurement equation is that of CameraPathBuffer. Through a lens each wavelength has its own
-/// way, so that a path is its hero's alone; through a camera without colour errors it carries all four wavelengths.
+/// The estimator of the measurement equation is that of CameraPathBuffer, at four wavelengths a path: through a lens
+/// each has its own way and weight (SharedRays), through a pinhole or a thin lens one way serves all. Where they part,
+/// and with pixel filters wider than the box, the hero goes alone.
 /// Features: depth along the camera's axis, albedo, and the shading normal in the camera's frame.
 TileRenderer scene_renderer(const SceneView& view);
 

@@ -8,11 +8,12 @@
 
 namespace lensproof {
 
-/// Calls add(path, pixel) for each path of these samples, `path` being its place in `buffer` and `pixel` its pixel's in
-/// the tile; counts rays in the tile. `producer` draws for a sensor of `width` pixels a row.
-template <class Producer, class Add>
+/// Calls filled() for each buffer of these samples' paths, and add(path, pixel) for each path in it, `path` being its
+/// place in `buffer` and `pixel` its pixel's in the tile; counts rays in the tile. `producer` draws for a sensor of
+/// `width` pixels a row.
+template <class Producer, class Filled, class Add>
 void for_each_path(const TileSamples& samples, int width, Producer& producer, CameraPathBuffer<double>& buffer,
-                   FilmTile& tile, const Add& add) {
+                   FilmTile& tile, const Filled& filled, const Add& add) {
     const PixelRect& rect = samples.rect;
     const std::int64_t started_before = producer.started();
     for (int y = rect.y; y < rect.y + rect.height; ++y) {
@@ -24,6 +25,7 @@ void for_each_path(const TileSamples& samples, int width, Producer& producer, Ca
                         .samples = samples.end - samples.first});
         const std::size_t first_of_row = tile.pixel(rect.x, y);
         while (producer.fill(buffer)) {
+            filled();
             for (int i = 0; i < buffer.size; ++i) {
                 add(i, first_of_row + (buffer.pixel[static_cast<std::size_t>(i)] - first_pixel));
             }

@@ -32,8 +32,7 @@ Estimate radiance(const Scene& scene, const Ray<double>& ray, int paths, const P
     double squares = 0.0;
     for (int i = 0; i < paths; ++i) {
         PathSampler numbers(7, 0, static_cast<std::uint32_t>(i));
-        const double found = mean(
-            trace_path(scene, ray, kGrid.path(i % kGrid.size()), SpectralSample(1.0F), settings, numbers).radiance);
+        const double found = mean(trace_path(scene, ray, kGrid.path(i % kGrid.size()), settings, numbers).radiance);
         sum += found;
         squares += found * found;
     }

@@ -1,0 +1,50 @@
+// engine/render/shared_rays.h — what a path outside the lens counts at each of its wavelengths.
+#pragma once
+#include <array>
+#include <cstddef>
+#include <vector>
+
+#include "engine/optics/packet/trace_batch.h"
+#include "engine/pupil/pupil_slices.h"
+#include "engine/render/camera_paths.h"
+#include "engine/render/sensor.h"
+#include "engine/spectral/spectral_sample.h"
+
+namespace lensproof {
+
+/// Camera paths are drawn for their hero; outside the lens the ray serves the other wavelengths too, each of which
+/// reaches it by its own way through the glass, from its own point on the film. Of the four strategies "draw the ray as
+/// wavelength m's hero, in this pixel" each could have drawn the ray with a density p_m of its own, 0 where its film
+/// point lies outside the pixel. Weighed by the balance heuristic (Veach & Guibas 1995; Wilkie et al. 2014, eq. 8),
+/// wavelength j counts
+///
+///     w_j = τ_j / (¼ Σ_m p_m)   if its film point lies in the pixel, else 0;
+///
+/// densities are per etendue, which is the same on both sides of the lens. Nothing crosses a pixel's border: what a
+/// wavelength brings elsewhere, that pixel's own paths bring. A lens whose colours part by more than a pixel leaves the
+/// hero alone, with w = 4 τ / p.
+class SharedRays {
+  public:
+    /// All outlive it. `lens` at the strata of `grid`; pixels are the filter (the box).
+    SharedRays(const SpectralGrid& grid, const SpectralLens<double>& lens, const PupilSlices& pupil,
+               const Sensor& sensor)
+        : grid_(grid), lens_(&lens), pupil_(&pupil), sensor_(sensor), rays_(kBlock * kWavelengthsPerPath) {}
+
+    /// For every path of the buffer, w of its four wavelengths, sr.
+    const std::vector<std::array<float, kWavelengthsPerPath>>& weigh(const CameraPathBuffer<double>& paths);
+
+  private:
+    static constexpr int kBlock = 64;  // paths; their rays stay in the first-level cache
+
+    void trace(const CameraPathBuffer<double>& paths, int first, int count);
+    [[nodiscard]] double etendue_density(std::size_t ray, int wavelength, Vec2d& film) const;
+
+    const SpectralGrid& grid_;
+    const SpectralLens<double>* lens_;
+    const PupilSlices* pupil_;
+    Sensor sensor_;
+    RayBatch<double> rays_;
+    std::vector<std::array<float, kWavelengthsPerPath>> weights_;
+};
+
+}  // namespace lensproof
