@@ -1,0 +1,99 @@
+// Rays that four wavelengths share outside the lens, against paths that belong to one.
+#include "engine/render/shared_rays.h"
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <vector>
+
+#include "engine/optics/focus.h"
+#include "engine/optics/lens.h"
+
+namespace lensproof {
+namespace {
+
+const SpectralGrid kGrid = spectral_grid(420.0, 680.0, 8);
+
+/// Film irradiance in an even world of radiance 1, a wavelength each, with standard errors; and which share of the
+/// paths' other wavelengths counted.
+struct Sums {
+    std::vector<double> mean;
+    std::vector<double> error;
+    double shared = 0.0;
+};
+
+/// Of a row of pixels, from their paths by heroes alone or by shared rays.
+Sums irradiance(const std::string& name, const Sensor& sensor, bool is_shared) {
+    constexpr std::uint32_t kSamples = 1U << 14U;
+    const Lens lens = focused_at(with_f_number(load_lens(name), 4.0), 1e6);
+    const auto traced = at_wavelengths<double>(lens, kGrid.strata.midpoints());
+    const PupilMap map(traced.at(), true, sensor.half_diagonal_mm());
+    const PupilSlices slices(map, kGrid.size());
+    CameraPathProducer<double> producer({.sensor = sensor, .lens = &traced, .pupil = &slices, .seed = 3, .filter = {}});
+    SharedRays shared(kGrid, traced, slices, sensor);
+    CameraPathBuffer<double> paths;
+    std::vector<double> sum(8);
+    std::vector<double> squares(8);
+    std::int64_t counted = 0;
+    std::int64_t others = 0;
+    // The leftmost pixel of the middle row, far off the axis.
+    producer.start({.first_pixel = static_cast<std::uint32_t>(sensor.height / 2 * sensor.width),
+                    .pixels = 1,
+                    .first_sample = 0,
+                    .samples = kSamples});
+    while (producer.fill(paths)) {
+        const auto& weights = shared.weigh(paths);
+        for (std::size_t i = 0; i < static_cast<std::size_t>(paths.size); ++i) {
+            const PathWavelengths strata = kGrid.path(paths.wavelength[i]);
+            for (std::size_t m = 0; m < kWavelengthsPerPath; ++m) {
+                const double hero = m == 0 ? 4.0 * paths.weight[i] : 0.0;
+                const double value = is_shared ? static_cast<double>(weights[i][m]) : hero;
+                sum[strata.index[m]] += value;
+                squares[strata.index[m]] += value * value;
+                counted += m > 0 && weights[i][m] > 0.0F ? 1 : 0;
+                others += m > 0 ? 1 : 0;
+            }
+        }
+    }
+    Sums result{.mean = {}, .error = {}, .shared = static_cast<double>(counted) / static_cast<double>(others)};
+    for (std::size_t k = 0; k < sum.size(); ++k) {
+        // A sample has each wavelength with the probability 1/2 (four of eight), and stands for the mean of four.
+        const double mean = sum[k] / kSamples;
+        result.mean.push_back(0.5 * mean * 4.0 / kWavelengthsPerPath);
+        result.error.push_back(0.5 * std::sqrt((squares[k] / kSamples - mean * mean) / kSamples));
+    }
+    return result;
+}
+
+// Both are unbiased, so at each wavelength they agree within their errors: where pixels are so large that nearly all
+// rays are shared, and where the fisheye's colours part by more than a pixel, so that hardly any is.
+TEST(SharedRays, CountEachWavelengthAsItsOwnPathsDo) {
+    struct Case {
+        const char* lens;
+        double pitch_mm;
+        int width;
+        double least_shared;
+        double most_shared;
+    };
+    for (const Case& c :
+         {Case{"double-gauss-tronnier", 0.3, 101, 0.9, 1.0}, Case{"muller-fisheye", 0.012, 1801, 0.0, 0.6}}) {
+        const Sensor sensor{.width = c.width, .height = 3, .pixel_pitch_mm = c.pitch_mm};
+        const Sums heroes = irradiance(c.lens, sensor, false);
+        const Sums shared = irradiance(c.lens, sensor, true);
+        fmt::print("{}: {:.1f} % shared; errors at the first wavelength {:.3f} and {:.3f} %\n", c.lens,
+                   100.0 * shared.shared, 100.0 * heroes.error[0] / heroes.mean[0],
+                   100.0 * shared.error[0] / shared.mean[0]);
+        EXPECT_GE(shared.shared, c.least_shared) << c.lens;
+        EXPECT_LE(shared.shared, c.most_shared) << c.lens;
+        for (std::size_t k = 0; k < heroes.mean.size(); ++k) {
+            EXPECT_GT(heroes.mean[k], 0.0);
+            EXPECT_LT(heroes.error[k], 0.05 * heroes.mean[k]) << c.lens;
+            EXPECT_NEAR(shared.mean[k], heroes.mean[k], 4.0 * std::hypot(shared.error[k], heroes.error[k]))
+                << c.lens << ", wavelength " << k;
+        }
+    }
+}
+
+}  // namespace
+}  // namespace lensproof
