@@ -28,7 +28,7 @@ class Studio {
           pupil_(traced_.at(), true, sensor.half_diagonal_mm()),
           slices_(pupil_, kGrid.size()),
           entrance_(traced_.at(), true, kInfinity, {.defensive_share = 0.2}),
-          scene_(parts.scene(kGrid)),
+          scene_(parts.scene()),
           camera_(ExactCamera{&traced_, &slices_}) {}
 
     Film by_camera(std::uint32_t samples) const {
@@ -130,7 +130,7 @@ void expect_same_image(const Studio& studio, const Sensor& sensor, std::uint32_t
 
 TEST(LightTracer, MakesTheCamerasImageOfALitWall) {
     const Sensor sensor{.width = 9, .height = 6, .pixel_pitch_mm = 4.0};
-    SceneParts parts;
+    SceneParts parts(kGrid);
     AffineMap towards_camera{.linear = about_x(180.0), .translation = {0.0, 0.0, 2000.0}};
     parts.add(Quad{4000.0, 4000.0}, towards_camera, 0.7);
     parts.add(Sphere{200.0}, {.linear = kIdentity3, .translation = {150.0, 0.0, 1700.0}}, 0.5);

@@ -52,28 +52,28 @@ const Ray<double> kDownwards{{0.0, 0.0, 50.0}, {0.0, 0.0, -1.0}};
 // A sphere of radiance L seen from a point of a plane under it gives the irradiance π L (R/d)² (Lambert; the sphere's
 // projected solid angle is that of its disc). A Lambertian plane then has the radiance ρ L (R/d)².
 TEST(PathTracer, SphereLightLightsAPlaneAsItsDiscDoes) {
-    SceneParts parts;
+    SceneParts parts(kGrid);
     parts.add(Quad{1000.0, 1000.0}, {}, 0.5);
     const std::uint32_t sphere = parts.add(Sphere{30.0}, at(0.0, 0.0, 200.0), 0.0);
     parts.lights.emplace_back(AreaLight{.object = sphere, .radiance = constant_spectrum(10.0, kGrid)});
-    const Scene scene = parts.scene(kGrid);
+    const Scene scene = parts.scene();
     expect_estimate(radiance(scene, kDownwards, 4096), 0.5 * 10.0 * std::pow(30.0 / 200.0, 2));
     // The same on a sphere that is none to the last digits, which is sampled by its area.
     parts.objects.back().to_world.linear[2].z = 1.0 + 1e-9;
-    expect_estimate(radiance(parts.scene(kGrid), kDownwards, 65536), 0.5 * 10.0 * std::pow(30.0 / 200.0, 2));
+    expect_estimate(radiance(parts.scene(), kDownwards, 65536), 0.5 * 10.0 * std::pow(30.0 / 200.0, 2));
 }
 
 // Of two directly opposed discs' kin, parallel squares: a point under the middle of a square light of side 2a at height
 // h gets E = π L F with F = 4/π · X/√(1+X²) · atan(X/√(1+X²)), X = a/h (Howell, A Catalog of Radiation Heat Transfer
 // Configuration Factors, B-3, four times the corner's).
 TEST(PathTracer, QuadLightHasItsConfigurationFactor) {
-    SceneParts parts;
+    SceneParts parts(kGrid);
     parts.add(Quad{1000.0, 1000.0}, {}, 0.8);
     AffineMap facing_down = at(0.0, 0.0, 100.0);
     facing_down.linear = about_x(180.0);
     const std::uint32_t quad = parts.add(Quad{120.0, 120.0}, facing_down, 0.0);
     parts.lights.emplace_back(AreaLight{.object = quad, .radiance = constant_spectrum(3.0, kGrid)});
-    const Scene scene = parts.scene(kGrid);
+    const Scene scene = parts.scene();
     const double x = 60.0 / 100.0;
     const double side = x / std::sqrt(1.0 + x * x);
     const double factor = 4.0 / (2.0 * kPi) * 2.0 * side * std::atan(side);
@@ -84,10 +84,10 @@ TEST(PathTracer, QuadLightHasItsConfigurationFactor) {
 TEST(PathTracer, PointSpotAndSunKeepTheirLaws) {
     const double height_m = 0.3;
     const auto lit_by = [](const Light& light) {
-        SceneParts parts;
+        SceneParts parts(kGrid);
         parts.add(Quad{1000.0, 1000.0}, {}, 0.5);
         parts.lights.push_back(light);
-        return radiance(parts.scene(kGrid), kDownwards, 256).mean;
+        return radiance(parts.scene(), kDownwards, 256).mean;
     };
     const Vec3d above{400.0, 0.0, 300.0};  // so that cos θ = 3/5 and d = 0.5 m
     const double of_point = 0.5 / kPi * 2.0 * (height_m / 0.5) / (0.5 * 0.5);
@@ -103,11 +103,11 @@ TEST(PathTracer, PointSpotAndSunKeepTheirLaws) {
 
 // In a closed room of albedo ρ whose walls radiate 1, the radiance after n bounces is 1 + ρ + … + ρⁿ everywhere.
 TEST(PathTracer, GlowingRoomSumsItsBounces) {
-    SceneParts parts;
+    SceneParts parts(kGrid);
     const std::uint32_t walls = parts.add(Sphere{100.0}, {}, 0.6);
     parts.lights.emplace_back(
         AreaLight{.object = walls, .radiance = constant_spectrum(1.0, kGrid), .is_two_sided = true});
-    const Scene scene = parts.scene(kGrid);
+    const Scene scene = parts.scene();
     double expected = 0.0;
     double power = 1.0;
     for (const int bounces : {0, 1, 2, 3}) {
@@ -125,15 +125,73 @@ TEST(PathTracer, GlowingRoomSumsItsBounces) {
 
 // White surfaces of any shape vanish in an even sky: every path carries its radiance out again.
 TEST(PathTracer, WhiteVanishesInAnEvenSky) {
-    SceneParts parts;
+    SceneParts parts(kGrid);
     parts.add(Sphere{30.0}, at(0.0, 0.0, 0.0), 1.0);
     parts.add(Sphere{20.0}, at(40.0, 0.0, 10.0), 1.0);
     parts.add(Quad{400.0, 400.0}, at(0.0, 0.0, -30.0), 1.0);
     parts.lights.emplace_back(ConstantLight{constant_spectrum(5.0, kGrid)});
-    const Scene scene = parts.scene(kGrid);
+    const Scene scene = parts.scene();
     for (const double x : {0.0, 15.0, 25.0, 35.0}) {
         const Estimate found = radiance(scene, {{x, 3.0, 200.0}, {0.0, 0.0, -1.0}}, 4096, {.max_bounces = 500});
         EXPECT_NEAR(found.mean, 5.0, 4.0 * found.error + 5e-5) << x;
+    }
+}
+
+// --- Dispersion ---
+
+/// The deviation of a ray that meets the first face of a prism straight on: it leaves the second at the angle of
+/// Snell's law, having met it at the apex angle.
+double prism_exit_angle(double index, double apex) {
+    return std::asin(index * std::sin(apex)) - apex;
+}
+
+// A white beam through a prism of dispersive glass: each wavelength meets a strip of a screen of its own where Snell's
+// law says, and no other's. Its radiance is the strip's times what Fresnel's equations let pass of both faces, the
+// squeeze of n² at the first being undone at the second. Faces choose at random between mirror and window, so the mean
+// of n walks has the error √(T (1 − T) / n).
+TEST(PathTracer, PrismSendsEachWavelengthWhereSnellSays) {
+    constexpr double kApex = 30.0 * kPi / 180.0;
+    constexpr double kScreen = 1000.0;  // from the prism
+    // Cauchy's formula with numbers like those of a dense flint.
+    const auto index_at = [](double nm) { return 1.70 + 13000.0 / (nm * nm); };
+    SceneParts parts(kGrid);
+    GridSpectrum eta;
+    for (const double nm : kGrid.strata.midpoints()) {
+        eta.value.push_back(static_cast<float>(index_at(nm)));
+    }
+    const Material glass{.surface = DielectricMaterial{.eta = eta, .roughness = {}}, .radiance = {}};
+    // Light comes down along −z: the first face looks up, the second down, turned by the apex about y.
+    parts.add(Quad{20.0, 20.0}, at(0.0, 0.0, 5.0), glass);
+    AffineMap second;
+    second.linear = product(about_y(30.0), about_x(180.0));
+    parts.add(Quad{20.0, 20.0}, second, glass);
+    const auto strip_centre = [&](double nm) {
+        // The ray along z meets the second face in the origin, and turns towards +x.
+        return kScreen * std::tan(prism_exit_angle(index_at(nm), kApex));
+    };
+    for (int k = 0; k < kGrid.size(); ++k) {
+        AffineMap facing_up = at(strip_centre(kGrid.strata.midpoint(k)), 0.0, -kScreen);
+        const std::uint32_t strip = parts.add(Quad{0.2, 50.0}, facing_up, 0.0);
+        parts.lights.emplace_back(AreaLight{.object = strip, .radiance = constant_spectrum(1.0 + k, kGrid)});
+    }
+    const Scene scene = parts.scene();
+    for (int k = 0; k < kGrid.size(); ++k) {
+        const double n = index_at(kGrid.strata.midpoint(k));
+        const double exit = prism_exit_angle(n, kApex) + kApex;
+        const double first = 4.0 * n / ((n + 1.0) * (n + 1.0));
+        const double across = std::sin(exit - kApex) / std::sin(exit + kApex);
+        const double along = std::tan(exit - kApex) / std::tan(exit + kApex);
+        const double passing = first * (1.0 - 0.5 * (across * across + along * along));
+        constexpr int kWalks = 4096;
+        double hero = 0.0;
+        for (int i = 0; i < kWalks; ++i) {
+            PathSampler numbers(11, 0, static_cast<std::uint32_t>(i));
+            const PathRadiance found =
+                trace_path(scene, {{0.0, 0.0, 100.0}, {0.0, 0.0, -1.0}}, kGrid.path(k), {.max_bounces = 2}, numbers);
+            EXPECT_EQ(found.radiance, SpectralSample());
+            hero += found.hero_radiance / kWalks;
+        }
+        EXPECT_NEAR(hero / (1.0 + k), passing, 4.0 * std::sqrt(passing * (1.0 - passing) / kWalks)) << k;
     }
 }
 

@@ -1,4 +1,4 @@
-// tests/validation/small_scene.h — scenes of a few diffuse objects, as tests put them together.
+// tests/validation/small_scene.h — scenes of a few objects, as tests put them together.
 #pragma once
 #include <cstdint>
 #include <memory>
@@ -9,31 +9,42 @@
 
 namespace lensproof {
 
-/// Objects of one albedo each, and lights.
-struct SceneParts {
-    std::vector<Shape> shapes;
-    std::vector<SceneObject> objects;
-    std::vector<double> albedos;
-    std::vector<Light> lights;
+/// Objects, each of its own material, and lights.
+class SceneParts {
+  public:
+    explicit SceneParts(const SpectralGrid& grid) : grid_(grid) {}
 
     /// Returns the object's index.
-    std::uint32_t add(Shape shape, const AffineMap& to_world, double albedo) {
+    std::uint32_t add(Shape shape, const AffineMap& to_world, Material material) {
         const auto index = static_cast<std::uint32_t>(objects.size());
         shapes.push_back(std::move(shape));
         objects.push_back({.shape = index, .to_world = to_world, .material = index});
-        albedos.push_back(albedo);
+        materials.push_back(std::move(material));
         return index;
     }
 
-    [[nodiscard]] Scene scene(const SpectralGrid& grid) const {
-        Scene made{
-            .grid = grid, .geometry = std::make_unique<SceneGeometry>(shapes, objects), .materials = {}, .lights = {}};
-        for (const double albedo : albedos) {
-            made.materials.push_back({.surface = DiffuseMaterial{constant_spectrum(albedo, grid)}, .radiance = {}});
-        }
+    /// A diffuse one.
+    std::uint32_t add(Shape shape, const AffineMap& to_world, double albedo) {
+        return add(std::move(shape), to_world,
+                   Material{.surface = DiffuseMaterial{constant_spectrum(albedo, grid_)}, .radiance = {}});
+    }
+
+    [[nodiscard]] Scene scene() const {
+        Scene made{.grid = grid_,
+                   .geometry = std::make_unique<SceneGeometry>(shapes, objects),
+                   .materials = materials,
+                   .lights = {}};
         made.lights = Lights(*made.geometry, lights);
         return made;
     }
+
+    std::vector<Shape> shapes;
+    std::vector<SceneObject> objects;
+    std::vector<Material> materials;
+    std::vector<Light> lights;
+
+  private:
+    SpectralGrid grid_;
 };
 
 }  // namespace lensproof
