@@ -36,7 +36,6 @@ class LightWalk {
     void scatter(EmittedRay light) {
         Ray<double> ray = light.ray;
         SpectralSample throughput(1.0F);
-        bool carries_all = true;
         for (int bounce = 1; max_value(light.power) > 0.0F; ++bounce) {
             const auto hit = intersect(*scene_.geometry, ray.origin, ray.direction, 0.0, kInfinity);
             ++rays_;
@@ -64,9 +63,9 @@ class LightWalk {
                 return;
             }
             throughput *= scattered->weight * SpectralSample(shading_correction(vertex, onwards, scattered->wi));
-            if (scattered->is_dispersed && carries_all) {
+            if (scattered->is_dispersed && !is_hero_alone_) {
                 throughput = static_cast<float>(kWavelengthsPerPath) * hero_alone(throughput);
-                carries_all = false;
+                is_hero_alone_ = true;
             }
             if (!survives_roulette(settings_, bounce, numbers[3], throughput)) {
                 return;
@@ -135,8 +134,8 @@ class LightWalk {
         if (!(beam.axis.direction.z > -1.0)) {
             return;  // from straight behind, where beams have no frame
         }
-        const double band = static_cast<double>(path_.index[0]) / (scene_.grid.size() - 1);
-        const EntranceSample drawn = entrance_.map->sample(entrance_.map->beam(beam.axis.direction), band, u, v);
+        const EntranceBeam far_beam = entrance_.map->beam(beam.axis.direction);
+        const EntranceSample drawn = entrance_.map->sample(far_beam, band_position(0), u, v);
         if (!(drawn.density > 0.0)) {
             return;
         }
@@ -164,7 +163,8 @@ class LightWalk {
             return;
         }
         const double pitch_m = 1e-3 * entrance_.sensor.pixel_pitch_mm;
-        const double to_irradiance = per_mm2 / (drawn.density * pitch_m * pitch_m);
+        const double density = is_hero_alone_ ? drawn.density : mean_density(far_beam, drawn.offset);
+        const double to_irradiance = per_mm2 / (density * pitch_m * pitch_m);
         std::array<Vec2d, kWavelengthsPerPath> at_px{};
         std::array<float, kWavelengthsPerPath> irradiance{};
         for (std::size_t i = 0; i < film.size(); ++i) {
@@ -174,6 +174,19 @@ class LightWalk {
             }
         }
         tile_.splat(at_px, path_.index, irradiance);
+    }
+
+    [[nodiscard]] double band_position(std::size_t wavelength) const {
+        return static_cast<double>(path_.index[wavelength]) / (scene_.grid.size() - 1);
+    }
+
+    /// Each of the wavelengths might have been the hero that drew the ray: the balance heuristic.
+    [[nodiscard]] double mean_density(const EntranceBeam& beam, Vec2d offset) const {
+        double sum = 0.0;
+        for (std::size_t i = 0; i < kWavelengthsPerPath; ++i) {
+            sum += entrance_.map->density(beam, band_position(i), offset);
+        }
+        return sum / kWavelengthsPerPath;
     }
 
     static double length_of(Vec2d v) { return std::hypot(v.x, v.y); }
@@ -207,6 +220,7 @@ class LightWalk {
     PathSampler& numbers_;
     FilmTile& tile_;
     std::uint32_t rays_ = 0;
+    bool is_hero_alone_ = false;
 };
 
 }  // namespace
