@@ -20,6 +20,10 @@ void register_render_benchmarks();
 /// Counters: valid paths per second, seconds a valid path, and passage.
 void register_camera_path_benchmarks();
 
+/// bsdf/SURFACE/sample: a direction drawn; bsdf/SURFACE/evaluate: value and density of a given one; texture/KIND: one
+/// look-up at a path's four wavelengths.
+void register_bsdf_benchmarks();
+
 /// chief_rays/LENS/…: construction and aiming; refine/CHART: sub-pixel positions of all points of one chart in one
 /// channel (counter: points per second).
 void register_measure_benchmarks();
