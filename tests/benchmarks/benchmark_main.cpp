@@ -32,6 +32,7 @@ constexpr Ratio kRatios[] = {
     {"rough plastic / diffuse, sample", "bsdf/rough-plastic/sample", "bsdf/diffuse/sample"},
     {"rough metal / diffuse, evaluate", "bsdf/metal/evaluate", "bsdf/diffuse/evaluate"},
     {"dispersive / plain frosted glass", "bsdf/frosted-prism/evaluate", "bsdf/frosted-glass/evaluate"},
+    {"lossless / brushed metal, evaluate", "bsdf/lossless-metal/evaluate", "bsdf/brushed-metal/evaluate"},
     {"texture: picture / constant", "texture/picture", "texture/constant"},
     {"discs / corners, refinement", "refine/disc-grid", "refine/checkerboard"},
 };

@@ -1,5 +1,6 @@
 #include <benchmark/benchmark.h>
 
+#include <algorithm>
 #include <string>
 #include <vector>
 
@@ -75,9 +76,8 @@ Texture picture(const SpectralGrid& grid) {
 }  // namespace
 
 void register_bsdf_benchmarks() {
-    static const DielectricCoat smooth_coat(1.5, 0.0);
-    static const DielectricCoat rough_coat(1.5, 0.3);
-    for (const auto& [name, bsdf] : broad_cases(smooth_coat, rough_coat)) {
+    static const BsdfTables tables;
+    for (const auto& [name, bsdf] : broad_cases(tables)) {
         std::string word = name;
         std::replace(word.begin(), word.end(), ' ', '-');
         benchmark::RegisterBenchmark(("bsdf/" + word + "/sample").c_str(), draw, bsdf);
