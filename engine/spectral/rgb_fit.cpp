@@ -74,7 +74,8 @@ RgbOfReflectance rgb_of_reflectance() {
         const Vec3d weight = light(nm) * Vec3d{x_bar(nm), y_bar(nm), z_bar(nm)};
         // A reflectance as the parabola through its values at the panel's ends and middle, u = −1, 1 and 0.
         const double u = (i % kStrataPerPanel + 0.5) / (0.5 * kStrataPerPanel) - 1.0;
-        Vec3d* const panel = &colour.xyz_weight[static_cast<std::size_t>(2 * (i / kStrataPerPanel))];
+        const int first = i / kStrataPerPanel * 2;
+        Vec3d* const panel = &colour.xyz_weight[static_cast<std::size_t>(first)];
         panel[0] = panel[0] + 0.5 * u * (u - 1.0) * weight;
         panel[1] = panel[1] + (1.0 - u) * (1.0 + u) * weight;
         panel[2] = panel[2] + 0.5 * u * (u + 1.0) * weight;

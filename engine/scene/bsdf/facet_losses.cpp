@@ -98,7 +98,8 @@ double FacetLosses::interpolated(double mu, double sin2_azimuth) const {
     const double place = std::sqrt(std::clamp(mu, 0.0, 1.0)) * kRootSteps;
     const int step = std::min(static_cast<int>(place), kRootSteps - 1);
     const auto along_mu = [&](int row) {
-        const float* const entry = &table_[static_cast<std::size_t>(row * (kRootSteps + 1) + step)];
+        const int index = row * (kRootSteps + 1) + step;
+        const float* const entry = &table_[static_cast<std::size_t>(index)];
         return entry[0] + (place - step) * (static_cast<double>(entry[1]) - entry[0]);
     };
     if (azimuth_steps_ == 0) {
@@ -167,7 +168,7 @@ const FacetLosses& BoundaryLosses::nearest(bool is_above, double eta) const {
         return side[0];
     }
     const double place = std::clamp((eta - least_eta_) / step_, 0.0, static_cast<double>(kIndexSteps));
-    return side[static_cast<std::size_t>(place + 0.5)];
+    return side[static_cast<std::size_t>(std::lround(place))];
 }
 
 double given_back(double mean_reflectance, double mean_loss) {
