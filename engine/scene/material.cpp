@@ -2,6 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <utility>
+
 #include "engine/io/input_error.h"
 
 namespace lensproof {
@@ -13,11 +16,18 @@ DiffuseBsdf at_point(const DiffuseMaterial& material, const Vec2d& uv, const Pat
 }
 
 ConductorBsdf at_point(const ConductorMaterial& material, const Vec2d&, const PathWavelengths& path) {
-    return {.n = material.n(path), .k = material.k(path), .roughness = material.roughness};
+    if (material.roughness.is_smooth()) {
+        return {.n = material.n(path), .k = material.k(path)};
+    }
+    return {.n = material.n(path),
+            .k = material.k(path),
+            .roughness = material.roughness,
+            .losses = material.losses.get(),
+            .given_back = material.given_back(path)};
 }
 
 DielectricBsdf at_point(const DielectricMaterial& material, const Vec2d&, const PathWavelengths& path) {
-    return {.eta = material.eta(path), .roughness = material.roughness};
+    return {.eta = material.eta(path), .roughness = material.roughness, .losses = material.losses.get()};
 }
 
 PlasticBsdf at_point(const PlasticMaterial& material, const Vec2d& uv, const PathWavelengths& path) {
@@ -63,6 +73,33 @@ std::vector<MixMaterial::Part> parts_of(const Material& material) {
 }
 
 }  // namespace
+
+ConductorMaterial conductor_material(GridSpectrum n, GridSpectrum k, const Roughness& roughness) {
+    ConductorMaterial material{.n = std::move(n), .k = std::move(k), .roughness = resolvable(roughness)};
+    if (material.roughness.is_smooth()) {
+        return material;
+    }
+    material.losses = std::make_shared<FacetLosses>(FacetLosses::of_mirrors(material.roughness));
+    for (std::size_t i = 0; i < material.n.value.size(); ++i) {
+        const SpectralSample mean =
+            mean_conductor_reflectance(SpectralSample(material.n.value[i]), SpectralSample(material.k.value[i]));
+        material.given_back.value.push_back(static_cast<float>(given_back(mean[0], material.losses->mean())));
+    }
+    return material;
+}
+
+DielectricMaterial dielectric_material(GridSpectrum eta, const Roughness& roughness) {
+    DielectricMaterial material{.eta = std::move(eta), .roughness = resolvable(roughness)};
+    if (!material.roughness.is_smooth()) {
+        const auto [least, most] = std::minmax_element(material.eta.value.begin(), material.eta.value.end());
+        material.losses = std::make_shared<BoundaryLosses>(material.roughness, *least, *most);
+    }
+    return material;
+}
+
+PlasticMaterial plastic_material(Texture albedo, double eta, double alpha) {
+    return {.albedo = std::move(albedo), .coat = std::make_shared<DielectricCoat>(eta, alpha)};
+}
 
 MixMaterial mixed(const Material& first, const Material& second, const ScalarTexture& share) {
     MixMaterial mix;

@@ -14,17 +14,23 @@ struct DiffuseMaterial {
     Texture albedo;  // in [0, 1]
 };
 
+/// Made by `conductor_material`.
 struct ConductorMaterial {
     GridSpectrum n;
     GridSpectrum k;
     Roughness roughness;  // `resolvable`
+    std::shared_ptr<const FacetLosses> losses;
+    GridSpectrum given_back;
 };
 
+/// Made by `dielectric_material`.
 struct DielectricMaterial {
     GridSpectrum eta;     // within over without
     Roughness roughness;  // `resolvable`
+    std::shared_ptr<const BoundaryLosses> losses;
 };
 
+/// Made by `plastic_material`.
 struct PlasticMaterial {
     Texture albedo;  // of the base under the coat, in [0, 1]
     std::shared_ptr<const DielectricCoat> coat;
@@ -50,6 +56,15 @@ struct Material {
     std::variant<DiffuseMaterial, ConductorMaterial, DielectricMaterial, PlasticMaterial, MixMaterial> surface;
     std::optional<Texture> radiance;  // of light that it sends out on its outer side, W·m⁻²·sr⁻¹·nm⁻¹
 };
+
+/// A metal of index n + ik (at_midpoints of ComplexIndex, say) on the grid, polished where `roughness` is {}.
+ConductorMaterial conductor_material(GridSpectrum n, GridSpectrum k, const Roughness& roughness);
+
+/// Glass of positive indices `eta` on the grid, polished where `roughness` is {}.
+DielectricMaterial dielectric_material(GridSpectrum eta, const Roughness& roughness);
+
+/// A base of `albedo` under a clear coat of index `eta` > 1, whose facets have the slope `alpha`, 0 for smooth.
+PlasticMaterial plastic_material(Texture albedo, double eta, double alpha);
 
 /// `second` in a share of `share` (0 to 1), else `first`; both may be mixes themselves. What either emits is left out.
 /// Throws InputError where more than kMostMixed materials come together.

@@ -80,8 +80,9 @@ SpectralSample look_up(const ColourCheckerTexture& checker, const Vec2d& uv, con
     const int column = static_cast<int>(x);
     const int row = static_cast<int>(y);
     const double from_middle = std::max(std::abs(x - column - 0.5), std::abs(y - row - 0.5));
-    const auto patch = static_cast<std::size_t>(row * kColumns + column);
-    return from_middle < 0.5 * checker.patch_share ? checker.patch[patch](path) : checker.frame(path);
+    const int patch = row * kColumns + column;
+    return from_middle < 0.5 * checker.patch_share ? checker.patch[static_cast<std::size_t>(patch)](path)
+                                                   : checker.frame(path);
 }
 
 double look_up(double everywhere, const Vec2d&) {

@@ -34,17 +34,27 @@ double lightness_slope(double ratio) {
 
 Miss miss(const RgbOfReflectance& colour, const Parabola& parabola, const Vec3d& target_lab) {
     Vec3d xyz;
-    std::array<Vec3d, 3> slope{};
+    Vec3d per_a;
+    Vec3d per_b;
+    Vec3d per_c;
+    const auto add = [](Vec3d& sum, double factor, const Vec3d& weight) {
+        sum.x += factor * weight.x;
+        sum.y += factor * weight.y;
+        sum.z += factor * weight.z;
+    };
+    // The innermost of half a million steps.
     for (std::size_t i = 0; i < colour.abscissa.size(); ++i) {
         const double t = colour.abscissa[i];
+        const Vec3d& weight = colour.xyz_weight[i];
         const double x = (parabola[0] * t + parabola[1]) * t + parabola[2];
         const double per_root = 1.0 / std::sqrt(1.0 + x * x);
-        xyz = xyz + (0.5 + 0.5 * x * per_root) * colour.xyz_weight[i];
-        const Vec3d per_c = 0.5 * per_root * per_root * per_root * colour.xyz_weight[i];
-        slope[0] = slope[0] + t * t * per_c;
-        slope[1] = slope[1] + t * per_c;
-        slope[2] = slope[2] + per_c;
+        const double slope = 0.5 * per_root * per_root * per_root;
+        add(xyz, 0.5 + 0.5 * x * per_root, weight);
+        add(per_a, slope * t * t, weight);
+        add(per_b, slope * t, weight);
+        add(per_c, slope, weight);
     }
+    const std::array<Vec3d, 3> slope{per_a, per_b, per_c};
     const Vec3d lab = cielab(xyz, colour.white);
     Miss result;
     result.lab << lab.x - target_lab.x, lab.y - target_lab.y, lab.z - target_lab.z;
@@ -74,7 +84,8 @@ RgbOfReflectance rgb_of_reflectance() {
         const Vec3d weight = light(nm) * Vec3d{x_bar(nm), y_bar(nm), z_bar(nm)};
         // A reflectance as the parabola through its values at the panel's ends and middle, u = −1, 1 and 0.
         const double u = (i % kStrataPerPanel + 0.5) / (0.5 * kStrataPerPanel) - 1.0;
-        Vec3d* const panel = &colour.xyz_weight[static_cast<std::size_t>(2 * (i / kStrataPerPanel))];
+        const int first = i / kStrataPerPanel * 2;
+        Vec3d* const panel = &colour.xyz_weight[static_cast<std::size_t>(first)];
         panel[0] = panel[0] + 0.5 * u * (u - 1.0) * weight;
         panel[1] = panel[1] + (1.0 - u) * (1.0 + u) * weight;
         panel[2] = panel[2] + 0.5 * u * (u + 1.0) * weight;

@@ -28,6 +28,13 @@ constexpr Ratio kRatios[] = {
     {"scene: exact lens / pinhole", "scene/exact", "scene/pinhole"},
     {"analysis: curves / table", "analyze/westrogon-24/curves", "analyze/westrogon-24/table"},
     {"analysis: fisheye / Tessar, table", "analyze/muller-fisheye/table", "analyze/tessar/table"},
+    {"rough metal / diffuse, sample", "bsdf/metal/sample", "bsdf/diffuse/sample"},
+    {"frosted glass / diffuse, sample", "bsdf/frosted-glass/sample", "bsdf/diffuse/sample"},
+    {"rough plastic / diffuse, sample", "bsdf/rough-plastic/sample", "bsdf/diffuse/sample"},
+    {"rough metal / diffuse, evaluate", "bsdf/metal/evaluate", "bsdf/diffuse/evaluate"},
+    {"dispersive / plain frosted glass", "bsdf/frosted-prism/evaluate", "bsdf/frosted-glass/evaluate"},
+    {"lossless / brushed metal, evaluate", "bsdf/lossless-metal/evaluate", "bsdf/brushed-metal/evaluate"},
+    {"texture: picture / constant", "texture/picture", "texture/constant"},
     {"discs / corners, refinement", "refine/disc-grid", "refine/checkerboard"},
 };
 
@@ -111,6 +118,7 @@ int main(int argc, char** argv) {
     lensproof::register_render_benchmarks();
     lensproof::register_scene_benchmarks();
     lensproof::register_camera_path_benchmarks();
+    lensproof::register_bsdf_benchmarks();
     lensproof::register_measure_benchmarks();
     lensproof::register_analysis_benchmarks();
     lensproof::RatioReporter reporter;

@@ -24,6 +24,10 @@ void register_camera_path_benchmarks();
 /// each camera model, the exact one being the double Gauss at f/2. Counters: paths per second, rays a path.
 void register_scene_benchmarks();
 
+/// bsdf/SURFACE/sample: a direction drawn; bsdf/SURFACE/evaluate: value and density of a given one; texture/KIND: one
+/// look-up at a path's four wavelengths.
+void register_bsdf_benchmarks();
+
 /// chief_rays/LENS/…: construction and aiming; refine/CHART: sub-pixel positions of all points of one chart in one
 /// channel (counter: points per second).
 void register_measure_benchmarks();

@@ -23,9 +23,8 @@ const Vec2d kMiddle{0.5, 0.5};
 TEST(Material, ScattersAsItsTablesSayThere) {
     const PathWavelengths path = grid().path(3);
     const ComplexIndex gold = metal("gold");
-    const Material mirror{.surface = ConductorMaterial{.n = at_midpoints(gold.n, grid()),
-                                                       .k = at_midpoints(gold.k, grid()),
-                                                       .roughness = {.alpha_x = 0.1, .alpha_y = 0.2}},
+    const Material mirror{.surface = conductor_material(at_midpoints(gold.n, grid()), at_midpoints(gold.k, grid()),
+                                                        {.alpha_x = 0.1, .alpha_y = 0.2}),
                           .radiance = {}};
     const auto metal_there = std::get<ConductorBsdf>(bsdf_at(mirror, kMiddle, path));
     for (std::size_t c = 0; c < kWavelengthsPerPath; ++c) {
@@ -33,14 +32,16 @@ TEST(Material, ScattersAsItsTablesSayThere) {
         EXPECT_EQ(metal_there.k[c], static_cast<float>(gold.k(grid().wavelengths_nm(path)[c])));
     }
     EXPECT_EQ(metal_there.roughness.alpha_y, 0.2);
+    ASSERT_NE(metal_there.losses, nullptr);
+    // What reflects R at a facet reflects R² and less after two: between the reflectance head on and its square.
+    const float head_on = normal_albedo(metal_there)[0];
+    EXPECT_LT(metal_there.given_back[0], head_on);
+    EXPECT_GT(metal_there.given_back[0], 0.5F * head_on * head_on);
     const auto cauchy = [](double nm) { return 1.5 + 5000.0 / (nm * nm); };
-    const Material glass{.surface = DielectricMaterial{.eta = tabulated(grid(), cauchy), .roughness = {}},
-                         .radiance = {}};
+    const Material glass{.surface = dielectric_material(tabulated(grid(), cauchy), {}), .radiance = {}};
     const auto glass_there = std::get<DielectricBsdf>(bsdf_at(glass, kMiddle, path));
     EXPECT_EQ(glass_there.eta[1], static_cast<float>(cauchy(grid().wavelengths_nm(path)[1])));
-    const Material plastic{.surface = PlasticMaterial{.albedo = constant_spectrum(1.0, grid()),
-                                                      .coat = std::make_shared<DielectricCoat>(1.5, 0.0)},
-                           .radiance = {}};
+    const Material plastic{.surface = plastic_material(constant_spectrum(1.0, grid()), 1.5, 0.0), .radiance = {}};
     EXPECT_EQ(std::get<PlasticBsdf>(bsdf_at(plastic, kMiddle, path)).base, SpectralSample(1.0F));
 }
 

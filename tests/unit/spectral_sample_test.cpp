@@ -14,7 +14,7 @@ namespace {
 // each place at face value counts every wavelength equally; and no path carries a wavelength twice.
 TEST(SpectralGrid, EveryPlaceOfAPathMeetsEveryStratumOnce) {
     const SpectralGrid grid = spectral_grid(400.0, 700.0, 64);
-    std::vector<int> met(64 * kWavelengthsPerPath);
+    std::vector<int> met(256);
     for (int hero = 0; hero < grid.size(); ++hero) {
         const PathWavelengths path = grid.path(hero);
         EXPECT_EQ(path.index[0], hero);

@@ -82,7 +82,9 @@ TEST(Texture, ColourCheckersPatchesAreAsMeasured) {
     const std::vector<ColourPatch> patches = colour_checker();
     const PathWavelengths path = grid().path(5);
     for (std::size_t i = 0; i < patches.size(); ++i) {
-        const Vec2d middle{(static_cast<double>(i % 6) + 0.5) / 6.0, 1.0 - (static_cast<double>(i / 6) + 0.5) / 4.0};
+        const std::size_t column = i % 6;
+        const std::size_t row = i / 6;
+        const Vec2d middle{(static_cast<double>(column) + 0.5) / 6.0, 1.0 - (static_cast<double>(row) + 0.5) / 4.0};
         const SpectralSample value = value_at(texture, middle, path);
         for (std::size_t c = 0; c < kWavelengthsPerPath; ++c) {
             EXPECT_NEAR(value[c], patches[i].reflectance(grid().wavelengths_nm(path)[c]), kFloatRounding);

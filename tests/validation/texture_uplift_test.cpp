@@ -68,7 +68,7 @@ void expect_rgb(const Vec3d& rgb, const Vec3d& expected, double tolerance) {
 
 // From a file to spectra and back through a sensor: within 0.005, what the table's 0.5 ΔE*ab of such colours comes to;
 // 5 nm strata to 780 nm add less than 0.001. Halfway between two pixels is the mean of their spectra and colours.
-TEST(TextureUplift, PicturesColoursComeBack) {
+void pictures_colours_come_back() {
     const TestFolder folder;
     const auto file = folder.path() / "colours.exr";
     write_exr(three_colours(), file);
@@ -85,7 +85,7 @@ TEST(TextureUplift, PicturesColoursComeBack) {
 }
 
 // A colour that a scene states by numbers is fitted exactly: only the strata are left, of which the white is exact.
-TEST(TextureUplift, StatedColoursComeBack) {
+void stated_colours_come_back() {
     for (const Vec3d& rgb : kColours) {
         expect_rgb(rgb_of(rgb_reflectance(rgb, grid(), uplift()).value), rgb, 0.001);
     }
@@ -93,7 +93,7 @@ TEST(TextureUplift, StatedColoursComeBack) {
 
 // Light of (1, 1, 1) is the white itself, to the 1e-4 and less that greys are off; of (40, 10, 2) that many times as
 // much, its colour within the table's error, here 1 % of the largest.
-TEST(TextureUplift, LightKeepsItsBrightnessAndColour) {
+void light_keeps_its_brightness_and_colour() {
     const Spectrum white = radiance_of(illuminant("D65"), 1000.0);
     const GridSpectrum means = stratum_means(white, grid());
     const GridSpectrum same = rgb_emission({1.0, 1.0, 1.0}, white, grid(), uplift());
@@ -112,12 +112,19 @@ TEST(TextureUplift, LightKeepsItsBrightnessAndColour) {
     expect_rgb(rgb_of(shape), {40.0, 10.0, 2.0}, 0.4);
 }
 
-TEST(TextureUplift, MissingAndColourlessPicturesAreNamed) {
+void missing_and_colourless_pictures_are_named() {
     EXPECT_THROW(reflectance_texture("no-such-picture.png", Wrap::repeat, grid(), uplift()), InputError);
     EXPECT_THROW(reflectance_texture(make_image(2, 2, {"R", "G"}), "two.exr", Wrap::repeat, grid(), uplift()),
                  InputError);
     EXPECT_THROW(reflectance_texture(make_image(0, 0, {"Y"}), "none.exr", Wrap::repeat, grid(), uplift()), InputError);
     EXPECT_NO_THROW(reflectance_texture(make_image(2, 2, {"Y"}), "grey.exr", Wrap::repeat, grid(), uplift()));
+}
+
+TEST(TextureUplift, TexturesAreTheirPictures) {
+    pictures_colours_come_back();
+    stated_colours_come_back();
+    light_keeps_its_brightness_and_colour();
+    missing_and_colourless_pictures_are_named();
 }
 
 }  // namespace

@@ -1,10 +1,9 @@
 #include "engine/scene/bsdf/coat.h"
 
 #include <algorithm>
-#include <boost/math/quadrature/gauss.hpp>
 #include <cmath>
-#include <numbers>
 
+#include "engine/scene/bsdf/facet_mean.h"
 #include "engine/scene/bsdf/fresnel.h"
 
 namespace lensproof {
@@ -12,29 +11,17 @@ namespace lensproof {
 namespace {
 
 constexpr int kTableSteps = 128;
-constexpr int kAzimuths = 24;  // over half a turn, the other half being its mirror image
 constexpr double kGrazing = 1e-6;
-
-template <int kPoints, class Function>
-double integral_over_unit(const Function& function) {
-    return boost::math::quadrature::gauss<double, kPoints>::integrate(function, 0.0, 1.0);
-}
 
 /// E(μ) of a rough boundary: the mean over the visible facets of what they reflect past the others.
 double facets_reflectance(double eta, const Roughness& roughness, double mu) {
     const Vec3d wo{std::sqrt((1.0 - mu) * (1.0 + mu)), 0.0, mu};
-    double sum = 0.0;
-    for (int i = 0; i < kAzimuths; ++i) {
-        const double u1 = 0.5 * (i + 0.5) / kAzimuths;
-        sum += integral_over_unit<60>([&](double u2) {
-            const Vec3d m = ggx_visible_normal(roughness, wo, u1, u2);
-            const Vec3d wi = reflected(wo, m);
-            return wi.z > 0.0 ? dielectric_reflectance(eta, std::min(dot(wo, m), 1.0)) *
-                                    ggx_reflection_weight(roughness, wo, wi)
-                              : 0.0;
-        });
-    }
-    return sum / kAzimuths;
+    return visible_facet_mean(roughness, wo, [&](const Vec3d& m) {
+        const Vec3d wi = reflected(wo, m);
+        return wi.z > 0.0
+                   ? dielectric_reflectance(eta, std::min(dot(wo, m), 1.0)) * ggx_reflection_weight(roughness, wo, wi)
+                   : 0.0;
+    });
 }
 
 }  // namespace

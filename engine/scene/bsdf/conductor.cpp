@@ -1,44 +1,84 @@
 #include "engine/scene/bsdf/conductor.h"
 
+#include <boost/math/quadrature/gauss.hpp>
+
 #include "engine/scene/bsdf/directions.h"
 #include "engine/scene/bsdf/fresnel.h"
 
 namespace lensproof {
 
-SpectralSample evaluate(const ConductorBsdf& bsdf, const Vec3d& wo, const Vec3d& wi, Transport) {
-    if (bsdf.roughness.is_smooth() || !on_same_side(wo, wi)) {
-        return {};
+namespace {
+
+/// How often `sample` draws light that meets several facets.
+double several_probability(const ConductorBsdf& bsdf, const Vec3d& wo) {
+    return bsdf.losses != nullptr ? bsdf.losses->at(wo) : 0.0;
+}
+
+/// f |cos wi| and the density for directions above the surface.
+struct Scattered {
+    SpectralSample value;
+    double density = 0.0;
+};
+Scattered scattered(const ConductorBsdf& bsdf, const Vec3d& wo, const Vec3d& wi) {
+    const GgxReflection facets = ggx_reflection(bsdf.roughness, wo, wi);
+    const double p_several = several_probability(bsdf, wo);
+    Scattered result{
+        .value = static_cast<float>(facets.value) * conductor_reflectance(bsdf.n, bsdf.k, facets.cos_facet),
+        .density = (1.0 - p_several) * facets.density};
+    if (p_several > 0.0) {
+        const double even = wi.z * std::numbers::inv_pi;
+        result.density += p_several * bsdf.losses->density(wi);
+        result.value +=
+            static_cast<float>(p_several * bsdf.losses->at(wi) / bsdf.losses->mean() * even) * bsdf.given_back;
     }
-    const GgxReflection facets = ggx_reflection(bsdf.roughness, upwards(wo), upwards(wi));
-    return static_cast<float>(facets.value) * conductor_reflectance(bsdf.n, bsdf.k, facets.cos_facet);
+    return result;
+}
+
+bool is_possible(const ConductorBsdf& bsdf, const Vec3d& wo, const Vec3d& wi) {
+    return !bsdf.roughness.is_smooth() && on_same_side(wo, wi);
+}
+
+}  // namespace
+
+SpectralSample mean_conductor_reflectance(const SpectralSample& n, const SpectralSample& k) {
+    using Gauss = boost::math::quadrature::gauss<double, 20>;
+    SpectralSample mean;
+    for (std::size_t i = 0; i < kWavelengthsPerPath; ++i) {
+        const auto integrand = [&](double mu) { return 2.0 * mu * conductor_reflectance(n, k, mu)[i]; };
+        mean[i] = static_cast<float>(Gauss::integrate(integrand, 0.0, 1.0));
+    }
+    return mean;
+}
+
+SpectralSample evaluate(const ConductorBsdf& bsdf, const Vec3d& wo, const Vec3d& wi, Transport) {
+    return is_possible(bsdf, wo, wi) ? scattered(bsdf, upwards(wo), upwards(wi)).value : SpectralSample();
 }
 
 double density(const ConductorBsdf& bsdf, const Vec3d& wo, const Vec3d& wi, Transport) {
-    if (bsdf.roughness.is_smooth() || !on_same_side(wo, wi)) {
-        return 0.0;
-    }
-    return ggx_reflection(bsdf.roughness, upwards(wo), upwards(wi)).density;
+    return is_possible(bsdf, wo, wi) ? scattered(bsdf, upwards(wo), upwards(wi)).density : 0.0;
 }
 
-std::optional<BsdfSample> sample(const ConductorBsdf& bsdf, const Vec3d& wo, double, double u1, double u2, Transport) {
+std::optional<BsdfSample> sample(const ConductorBsdf& bsdf, const Vec3d& wo, double u_lobe, double u1, double u2,
+                                 Transport) {
     if (wo.z == 0.0) {
         return std::nullopt;
     }
     if (bsdf.roughness.is_smooth()) {
         return BsdfSample{.wi = {-wo.x, -wo.y, wo.z},
-                          .weight = conductor_reflectance(bsdf.n, bsdf.k, std::abs(wo.z)),
+                          .weight = conductor_reflectance(bsdf.n, bsdf.k, std::min(std::abs(wo.z), 1.0)),
                           .is_delta = true};
     }
     const Vec3d from = upwards(wo);
-    const Vec3d m = ggx_visible_normal(bsdf.roughness, from, u1, u2);
-    const Vec3d wi = reflected(from, m);
+    const Vec3d wi = u_lobe < several_probability(bsdf, from)
+                         ? bsdf.losses->sample(u1, u2)
+                         : reflected(from, ggx_visible_normal(bsdf.roughness, from, u1, u2));
     if (!(wi.z > 0.0)) {
         return std::nullopt;
     }
-    const auto unmasked = static_cast<float>(ggx_reflection_weight(bsdf.roughness, from, wi));
+    const Scattered outcome = scattered(bsdf, from, wi);
     return BsdfSample{.wi = on_side_of(wo, wi),
-                      .weight = unmasked * conductor_reflectance(bsdf.n, bsdf.k, std::min(dot(from, m), 1.0)),
-                      .density = ggx_reflection(bsdf.roughness, from, wi).density};
+                      .weight = static_cast<float>(1.0 / outcome.density) * outcome.value,
+                      .density = outcome.density};
 }
 
 }  // namespace lensproof

@@ -44,13 +44,14 @@ double mean_over_indices(const DielectricBsdf& bsdf, const Vec3d& wo, const Func
     return sum / static_cast<double>(count);
 }
 
-/// What one facet refracts from wi, below the surface, to wo above it.
-struct FacetRefraction {
-    double value = 0.0;    // f |cos wi| for radiance (Walter et al. 2007, eq. 21)
-    double density = 0.0;  // of wi, as ggx_visible_normal draws facets and the facet's Fresnel transmittance passes
+/// At one index: f |cos wi| for radiance, and the density of wi where it is drawn for that index.
+struct Scattered {
+    double value = 0.0;
+    double density = 0.0;
 };
 
-FacetRefraction facet_refraction(const Roughness& roughness, const Vec3d& wo, const Vec3d& wi, double eta) {
+/// What facets refract from wi, below the surface, to wo above it (Walter et al. 2007, eq. 21).
+Scattered facet_refraction(const Roughness& roughness, const Vec3d& wo, const Vec3d& wi, double eta) {
     const Vec3d across = wo + eta * wi;  // along the facet's normal (eq. 16)
     const double size = length(across);
     if (!(size > 0.0)) {
@@ -67,6 +68,61 @@ FacetRefraction facet_refraction(const Roughness& roughness, const Vec3d& wo, co
                         (size * size);  // size = |wo·m + η wi·m|
     return {.value = seen * ggx_visible_per_cos(roughness, upwards(wi)) * -wi.z, .density = seen * eta * eta};
 }
+
+/// What leaves on the other side of the light that meets several facets. With L and L' the two sides' mean losses and η
+/// the index beyond, f is reciprocal where the shares that pass are as η² L' to L; the ones that add up to 1 are these.
+double passing_share(const BoundaryLosses::Loss& lost, double eta) {
+    const double beyond = eta * eta * lost.mean_beyond;
+    return beyond > 0.0 ? beyond / (lost.mean + beyond) : 0.0;
+}
+
+/// A rough boundary and a pair of directions.
+class RoughPair {
+  public:
+    RoughPair(const DielectricBsdf& bsdf, const Vec3d& wo, const Vec3d& wi)
+        : bsdf_(bsdf), wo_(wo), wi_(wi), is_reflection_(on_same_side(wo, wi)) {
+        if (is_reflection_) {
+            reflection_ = ggx_reflection(bsdf.roughness, upwards(wo), upwards(wi));
+        }
+    }
+
+    [[nodiscard]] bool is_reflection() const { return is_reflection_; }
+
+    /// `eta`: the index behind the boundary.
+    [[nodiscard]] Scattered at(double eta) const {
+        Scattered once = by_one_facet(eta);
+        return bsdf_.losses == nullptr ? once : with_several_facets(once, eta);
+    }
+
+  private:
+    [[nodiscard]] Scattered by_one_facet(double eta) const {
+        if (is_reflection_) {
+            const double reflectance = dielectric_reflectance(eta, reflection_.cos_facet);
+            return {.value = reflection_.value * reflectance, .density = reflection_.density * reflectance};
+        }
+        return facet_refraction(bsdf_.roughness, upwards(wo_), {wi_.x, wi_.y, -std::abs(wi_.z)}, eta);
+    }
+
+    [[nodiscard]] Scattered with_several_facets(const Scattered& once, double eta) const {
+        const double eta_below = wo_.z > 0.0 ? eta : 1.0 / eta;
+        const BoundaryLosses::Loss lost = bsdf_.losses->of(wo_, eta_below);
+        const BoundaryLosses::Loss at_wi = bsdf_.losses->of(wi_, eta_below);
+        const double passing = passing_share(lost, eta);
+        const double share = is_reflection_ ? 1.0 - passing : passing;
+        const double several = lost.at_direction * share;
+        const double returned =
+            at_wi.mean > 0.0 ? several * at_wi.at_direction / at_wi.mean * std::abs(wi_.z) * std::numbers::inv_pi : 0.0;
+        const double drawn = bsdf_.losses->nearest(wi_.z > 0.0, eta_below).density(upwards(wi_));
+        return {.value = once.value + (is_reflection_ ? returned : returned / (eta * eta)),
+                .density = (1.0 - lost.at_direction) * once.density + several * drawn};
+    }
+
+    const DielectricBsdf& bsdf_;
+    Vec3d wo_;
+    Vec3d wi_;
+    bool is_reflection_;
+    GgxReflection reflection_;
+};
 
 /// What refraction does to the light that passes: radiance spreads out by 1 / η², importance stays.
 float transmission_scale(double eta, Transport transport) {
@@ -103,13 +159,19 @@ std::optional<BsdfSample> sample_smooth(const DielectricBsdf& bsdf, const Vec3d&
                       .is_dispersed = is_dispersive(bsdf)};
 }
 
-/// Draws a direction from one of the wavelengths.
-std::optional<Vec3d> rough_direction(const DielectricBsdf& bsdf, const Vec3d& wo, double u_lobe, double u1, double u2) {
-    const std::size_t count = distinct_indices(bsdf);
-    const double scaled = u_lobe * static_cast<double>(count);
-    const std::size_t drawn = std::min(static_cast<std::size_t>(scaled), count - 1);
-    const double u_pass = scaled - static_cast<double>(drawn);
-    const double eta = eta_behind(bsdf, wo, drawn);
+/// Draws a direction below or above the boundary for light that meets several facets.
+Vec3d direction_after_several(const DielectricBsdf& bsdf, const Vec3d& wo, double eta, double u_pass, double u1,
+                              double u2) {
+    const double eta_below = wo.z > 0.0 ? eta : 1.0 / eta;
+    const bool passes = u_pass < passing_share(bsdf.losses->of(wo, eta_below), eta);
+    const bool is_above = (wo.z > 0.0) != passes;
+    const Vec3d upward = bsdf.losses->nearest(is_above, eta_below).sample(u1, u2);
+    return {upward.x, upward.y, is_above ? upward.z : -upward.z};
+}
+
+/// Draws a direction for one index; nothing where the facet sends light to others.
+std::optional<Vec3d> direction_after_one(const DielectricBsdf& bsdf, const Vec3d& wo, double eta, double u_pass,
+                                         double u1, double u2) {
     const Vec3d from = upwards(wo);
     const Vec3d m = ggx_visible_normal(bsdf.roughness, from, u1, u2);
     const double cos_facet = std::min(dot(from, m), 1.0);
@@ -124,6 +186,19 @@ std::optional<Vec3d> rough_direction(const DielectricBsdf& bsdf, const Vec3d& wo
     return wo.z > 0.0 ? *down : Vec3d{down->x, down->y, -down->z};
 }
 
+/// Draws a direction for one of the wavelengths, each as often.
+std::optional<Vec3d> rough_direction(const DielectricBsdf& bsdf, const Vec3d& wo, double u_lobe, double u1, double u2) {
+    const std::size_t count = distinct_indices(bsdf);
+    const double scaled = u_lobe * static_cast<double>(count);
+    const std::size_t drawn = std::min(static_cast<std::size_t>(scaled), count - 1);
+    const double u = scaled - static_cast<double>(drawn);
+    const double eta = eta_behind(bsdf, wo, drawn);
+    const double several =
+        bsdf.losses == nullptr ? 0.0 : bsdf.losses->of(wo, wo.z > 0.0 ? eta : 1.0 / eta).at_direction;
+    return u < several ? std::optional(direction_after_several(bsdf, wo, eta, u / several, u1, u2))
+                       : direction_after_one(bsdf, wo, eta, (u - several) / (1.0 - several), u1, u2);
+}
+
 }  // namespace
 
 bool is_delta(const DielectricBsdf& bsdf) {
@@ -134,33 +209,18 @@ SpectralSample evaluate(const DielectricBsdf& bsdf, const Vec3d& wo, const Vec3d
     if (is_delta(bsdf) || wo.z == 0.0 || wi.z == 0.0) {
         return {};
     }
-    const Vec3d from = upwards(wo);
-    if (on_same_side(wo, wi)) {
-        const GgxReflection facets = ggx_reflection(bsdf.roughness, from, upwards(wi));
-        return for_each_index(bsdf, wo,
-                              [&](double eta) { return facets.value * dielectric_reflectance(eta, facets.cos_facet); });
-    }
-    const Vec3d to{wi.x, wi.y, -std::abs(wi.z)};
-    return for_each_index(bsdf, wo, [&](double eta) {
-        // Importance, which refraction does not spread, is scattered by η² times as much.
-        const double adjoint = transport == Transport::radiance ? 1.0 : eta * eta;
-        return adjoint * facet_refraction(bsdf.roughness, from, to, eta).value;
-    });
+    const RoughPair pair(bsdf, wo, wi);
+    // Importance, which refraction does not spread, passes η² times as much.
+    const bool spreads = transport == Transport::radiance || pair.is_reflection();
+    return for_each_index(bsdf, wo, [&](double eta) { return pair.at(eta).value * (spreads ? 1.0 : eta * eta); });
 }
 
 double density(const DielectricBsdf& bsdf, const Vec3d& wo, const Vec3d& wi, Transport) {
     if (is_delta(bsdf) || wo.z == 0.0 || wi.z == 0.0) {
         return 0.0;
     }
-    const Vec3d from = upwards(wo);
-    if (on_same_side(wo, wi)) {
-        const GgxReflection facets = ggx_reflection(bsdf.roughness, from, upwards(wi));
-        return facets.density *
-               mean_over_indices(bsdf, wo, [&](double eta) { return dielectric_reflectance(eta, facets.cos_facet); });
-    }
-    const Vec3d to{wi.x, wi.y, -std::abs(wi.z)};
-    return mean_over_indices(bsdf, wo,
-                             [&](double eta) { return facet_refraction(bsdf.roughness, from, to, eta).density; });
+    const RoughPair pair(bsdf, wo, wi);
+    return mean_over_indices(bsdf, wo, [&](double eta) { return pair.at(eta).density; });
 }
 
 std::optional<BsdfSample> sample(const DielectricBsdf& bsdf, const Vec3d& wo, double u_lobe, double u1, double u2,

@@ -3,6 +3,7 @@
 #include <optional>
 
 #include "engine/scene/bsdf/bsdf_sample.h"
+#include "engine/scene/bsdf/facet_losses.h"
 #include "engine/scene/bsdf/ggx.h"
 
 namespace lensproof {
@@ -13,10 +14,12 @@ namespace lensproof {
 /// only the hero goes on. Rough, each facet of ggx.h does so once (Walter et al. 2007). There all wavelengths go on:
 /// the direction is drawn from one of them, each as often, and weighed by the mean of their densities (Wilkie et al.
 /// 2014). Masking is correlated by height where light is reflected, independent on the two sides where it passes
-/// (Walter's eq. 23).
+/// (Walter's eq. 23). Light that meets a second facet is given back by facet_losses.h, on both sides, so that nothing
+/// is lost; without `losses` it is.
 struct DielectricBsdf {
-    SpectralSample eta;   // positive
-    Roughness roughness;  // `resolvable`
+    SpectralSample eta;                      // positive
+    Roughness roughness;                     // `resolvable`
+    const BoundaryLosses* losses = nullptr;  // of this roughness and such indices; outlives it
 };
 
 // As in bsdf.h.
