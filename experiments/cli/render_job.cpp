@@ -166,8 +166,8 @@ void report(const RenderJob& job, const RenderState& state, const RenderJobOptio
 
 RenderFiles render_files(const RenderJobOptions& options) {
     RenderFiles files{.exr = options.output, .png = {}};
+    const Shard shard = shard_of(options);
     if (options.output.empty()) {
-        const Shard shard = shard_of(options);
         files.exr = fs::path(options.scene)
                         .filename()
                         .replace_extension(options.shard.empty()

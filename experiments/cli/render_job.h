@@ -31,7 +31,8 @@ struct RenderJobOptions {
 /// Adds the options above, but those that name the scene.
 void add_render_job_options(CLI::App& command, RenderJobOptions& options);
 
-/// The files that a job writes. Throws InputError where one cannot be.
+/// The files that a job writes. Throws InputError where one cannot be, or where the options make no sense by
+/// themselves: to be asked before long work begins.
 struct RenderFiles {
     std::filesystem::path exr;
     std::filesystem::path png;

@@ -6,6 +6,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <csignal>
 #include <cstdlib>
 #include <fstream>
 #include <iterator>
@@ -34,6 +35,23 @@ void redirect(int descriptor, Stream stream, const char* capture) {
     ::close(to);
 }
 
+/// In the child: becomes the program.
+[[noreturn]] void become_program(const std::vector<std::string>& arguments, const fs::path& where) {
+    std::vector<std::string> words = {LENSPROOF_PROGRAM};
+    words.insert(words.end(), arguments.begin(), arguments.end());
+    std::vector<char*> argv;
+    std::ranges::transform(words, std::back_inserter(argv), [](std::string& word) { return word.data(); });
+    argv.push_back(nullptr);
+    if (::chdir(where.c_str()) == 0) {
+        ::execv(argv[0], argv.data());
+    }
+    ::_exit(127);
+}
+
+int exit_status(int status) {
+    return WIFEXITED(status) ? WEXITSTATUS(status) : -WTERMSIG(status);
+}
+
 }  // namespace
 
 Outcome run_program(const std::vector<std::string>& arguments, const fs::path& where, Stream out, Stream err) {
@@ -41,28 +59,49 @@ Outcome run_program(const std::vector<std::string>& arguments, const fs::path& w
     const TestFolder captures;
     const std::string out_file = (captures.path() / "out").string();
     const std::string err_file = (captures.path() / "err").string();
-    const std::string folder = where.string();
-    std::vector<std::string> words = {LENSPROOF_PROGRAM};
-    words.insert(words.end(), arguments.begin(), arguments.end());
-    std::vector<char*> argv;
-    std::ranges::transform(words, std::back_inserter(argv), [](std::string& word) { return word.data(); });
-    argv.push_back(nullptr);
 
     const pid_t child = ::fork();
     if (child == 0) {
         redirect(STDOUT_FILENO, out, out_file.c_str());
         redirect(STDERR_FILENO, err, err_file.c_str());
-        if (::chdir(folder.c_str()) == 0) {
-            ::execv(argv[0], argv.data());
-        }
-        ::_exit(127);
+        become_program(arguments, where);
     }
     int status = 0;
     ::waitpid(child, &status, 0);
-    Outcome outcome{.status = WIFEXITED(status) ? WEXITSTATUS(status) : -WTERMSIG(status),
-                    .out = bytes_of(out_file),
-                    .err = bytes_of(err_file)};
+    Outcome outcome{.status = exit_status(status), .out = bytes_of(out_file), .err = bytes_of(err_file)};
     return outcome;
+}
+
+RunningProgram::RunningProgram(const std::vector<std::string>& arguments, const fs::path& where) : child_(::fork()) {
+    if (child_ == 0) {
+        redirect(STDOUT_FILENO, Stream::captured, "/dev/null");
+        redirect(STDERR_FILENO, Stream::captured, "/dev/null");
+        become_program(arguments, where);
+    }
+}
+
+RunningProgram::~RunningProgram() {
+    send(SIGKILL);
+    wait();
+}
+
+void RunningProgram::send(int signal) const {
+    if (!has_ended_) {
+        ::kill(child_, signal);
+    }
+}
+
+bool RunningProgram::has_ended() {
+    has_ended_ = has_ended_ || ::waitpid(child_, &status_, WNOHANG) == child_;
+    return has_ended_;
+}
+
+int RunningProgram::wait() {
+    if (!has_ended_) {
+        ::waitpid(child_, &status_, 0);
+        has_ended_ = true;
+    }
+    return exit_status(status_);
 }
 
 std::string Workplace::file(const std::string& name, std::string_view content) const {

@@ -22,6 +22,26 @@ struct Outcome {
 Outcome run_program(const std::vector<std::string>& arguments, const std::filesystem::path& where,
                     Stream out = Stream::captured, Stream err = Stream::captured);
 
+/// The program while it runs, its standard streams thrown away.
+class RunningProgram {
+  public:
+    RunningProgram(const std::vector<std::string>& arguments, const std::filesystem::path& where);
+    ~RunningProgram();
+    RunningProgram(const RunningProgram&) = delete;
+    RunningProgram& operator=(const RunningProgram&) = delete;
+
+    void send(int signal) const;
+    /// Whether it has ended.
+    bool has_ended();
+    /// Waits for its end: the exit status; minus the signal's number where one ended it.
+    int wait();
+
+  private:
+    int child_ = -1;
+    bool has_ended_ = false;
+    int status_ = 0;  // as waitpid gives it
+};
+
 /// A folder of its own for a test; gone with all that is in it at the end of its life.
 class Workplace {
   public:
@@ -32,6 +52,7 @@ class Workplace {
     [[nodiscard]] bool has(const std::string& name) const;
     /// Everything in it, sorted.
     [[nodiscard]] std::vector<std::string> names() const;
+    [[nodiscard]] const std::filesystem::path& path() const { return folder_.path(); }
     /// Runs the program here.
     [[nodiscard]] Outcome run(const std::vector<std::string>& arguments, Stream out = Stream::captured,
                               Stream err = Stream::captured) const;

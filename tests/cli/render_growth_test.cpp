@@ -1,0 +1,237 @@
+// tests/cli/render_growth_test.cpp — renders that grow: until when, through interruptions, in passing view.
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <csignal>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <thread>
+
+#include "tests/cli/program.h"
+
+namespace lensproof {
+
+namespace {
+
+using Json = nlohmann::json;
+
+/// 64 × 48 pixels, 12 tiles; 4000 samples a pixel take about a second of a core.
+std::string growing_scene() {
+    return with(small_scene(), "[8, 6]", "[64, 48]");
+}
+
+constexpr const char* kSamples = "4000";
+
+/// The machine-readable result of a render that went well.
+Json rendered(const Workplace& place, std::vector<std::string> arguments) {
+    arguments.insert(arguments.begin(), {"render", "scene.toml", "--json", "-"});
+    const Outcome outcome = place.run(arguments);
+    EXPECT_EQ(outcome.status, 0) << outcome.err;
+    return outcome.status == 0 ? Json::parse(outcome.out) : Json();
+}
+
+/// Waits until `file` is there, or the program has ended.
+void wait_for(const std::filesystem::path& file, RunningProgram& program) {
+    while (!program.has_ended() && !std::filesystem::exists(file)) {
+        std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    }
+}
+
+// A process that is killed, again and again, while it writes checkpoints all the time; then the render goes on to its
+// end. The EXR has every byte of that of a render that nobody touched.
+TEST(RenderGrowth, SurvivesKill9WithEveryByte) {
+    const Workplace place;
+    place.file("scene.toml", growing_scene());
+    rendered(place, {"--spp", kSamples, "-o", "whole.exr"});
+    const std::vector<std::string> killed = {
+        "render", "scene.toml", "--spp", kSamples, "-o", "killed.exr", "--checkpoint", "state", "--checkpoint-interval",
+        "0.001",  "--threads",  "1"};
+    int kills = 0;
+    for (int wait_ms = 0; kills < 6; wait_ms = 70 + 2 * wait_ms / 3) {
+        RunningProgram program(killed, place.path());
+        wait_for(place.path() / "state", program);  // there from the second time on
+        std::this_thread::sleep_for(std::chrono::milliseconds(wait_ms));
+        if (program.has_ended()) {
+            break;
+        }
+        program.send(SIGKILL);
+        EXPECT_EQ(program.wait(), -SIGKILL);
+        ++kills;
+    }
+    EXPECT_GT(kills, 0);
+    EXPECT_FALSE(place.has("killed.exr"));
+    EXPECT_EQ(place.run(killed).status, 0);
+    EXPECT_EQ(place.content("killed.exr"), place.content("whole.exr"));
+    EXPECT_EQ(place.content("killed.png"), place.content("whole.png"));
+    for (const std::string& name : place.names()) {
+        EXPECT_EQ(name.find(".part"), std::string::npos) << name << ": what killed processes left is gone";
+    }
+}
+
+// SIGTERM and Ctrl-C: status 3, no picture, and a checkpoint to go on from, though none was asked for. The preview says
+// that it has begun.
+TEST(RenderGrowth, EndsOnASignalWithACheckpoint) {
+    for (const int signal : {SIGTERM, SIGINT}) {
+        const Workplace place;
+        place.file("scene.toml", growing_scene());
+        RunningProgram program(
+            {"render", "scene.toml", "--spp", kSamples, "-o", "cut.exr", "--threads", "1", "--preview", "now.png"},
+            place.path());
+        wait_for(place.path() / "now.png", program);
+        program.send(signal);
+        EXPECT_EQ(program.wait(), 3);
+        EXPECT_FALSE(place.has("cut.exr"));
+        ASSERT_TRUE(place.has("cut.exr.checkpoint"));
+        rendered(place, {"--spp", kSamples, "-o", "whole.exr"});
+        rendered(place, {"--spp", kSamples, "-o", "cut.exr", "--checkpoint", "cut.exr.checkpoint"});
+        EXPECT_EQ(place.content("cut.exr"), place.content("whole.exr"));
+    }
+}
+
+// What is finished goes on to more samples, and is then what it would have been at once.
+TEST(RenderGrowth, GoesOnToMoreSamples) {
+    const Workplace place;
+    place.file("scene.toml", growing_scene());
+    rendered(place, {"--spp", "96", "-o", "whole.exr"});
+    rendered(place, {"--spp", "32", "-o", "part.exr", "--checkpoint", "state"});
+    EXPECT_NE(place.content("part.exr"), place.content("whole.exr"));
+    rendered(place, {"--spp", "96", "-o", "part.exr", "--checkpoint", "state"});
+    EXPECT_EQ(place.content("part.exr"), place.content("whole.exr"));
+}
+
+TEST(RenderGrowth, EndsInTime) {
+    const Workplace place;
+    place.file("scene.toml", growing_scene());
+    const Json result = rendered(place, {"--time", "0.2", "-o", "out.exr"});
+    EXPECT_GT(result["samples_per_pixel"], 0.0);
+    EXPECT_LT(result["samples_per_pixel"], 1 << 20);
+    EXPECT_TRUE(place.has("out.exr"));
+}
+
+// A flat field, where all tiles are alike: the error that was asked for, and less where less was.
+TEST(RenderGrowth, EndsWhereTheNoiseIsLow) {
+    const Workplace place;
+    std::string flat = with(growing_scene(), "\"checkerboard\"", "\"flat-field\"");
+    flat = with(flat, "squares = [12, 9]\nsquare_mm = 560.0\n", "");
+    place.file("scene.toml", with(flat, "[pose]\ndistance_mm = 10000.0\n", ""));
+    const Json coarse = rendered(place, {"--noise", "0.01", "-o", "coarse.exr"});
+    const Json fine = rendered(place, {"--noise", "0.005", "-o", "fine.exr"});
+    EXPECT_LE(coarse["relative_error"], 0.01);
+    EXPECT_LE(fine["relative_error"], 0.005);
+    EXPECT_GT(fine["relative_error"], 0.0025);
+    EXPECT_GT(fine["samples_per_pixel"], coarse["samples_per_pixel"]);
+    // Each shard of four has twice the error.
+    const Json shard = rendered(place, {"--noise", "0.005", "--shard", "3/4", "-o", "shard.exr"});
+    EXPECT_LE(shard["relative_error"], 0.01);
+    EXPECT_LT(shard["samples_per_pixel"], fine["samples_per_pixel"]);
+    EXPECT_EQ(shard["shard"], "3/4");
+}
+
+// The preview is there long before the end, and a whole picture whenever it is looked at.
+TEST(RenderGrowth, ShowsItselfWhileItGrows) {
+    const Workplace place;
+    place.file("scene.toml", growing_scene());
+    RunningProgram program({"render", "scene.toml", "--spp", "1000000", "-o", "out.exr", "--preview", "now.png"},
+                           place.path());
+    for (int i = 0; i < 600 && !place.has("now.png"); ++i) {
+        std::this_thread::sleep_for(std::chrono::milliseconds(50));
+    }
+    EXPECT_FALSE(program.has_ended());
+    const std::string png = place.content("now.png");
+    EXPECT_TRUE(png.starts_with("\x89PNG")) << "it begins";
+    EXPECT_NE(png.find("IEND"), std::string::npos) << "and ends";
+    EXPECT_FALSE(place.has("out.exr"));
+}
+
+// A wider filter spreads edges; the picture keeps its light: over 64 × 48 pixels and 64 samples the means of two
+// renders differ by much less than 2 %.
+TEST(RenderGrowth, FiltersPixelsAsAsked) {
+    const Workplace place;
+    place.file("scene.toml", growing_scene());
+    for (const char* filter : {"box", "mitchell", "gaussian"}) {
+        rendered(place, {"--filter", filter, "--features", "-o", std::string(filter) + ".exr"});
+    }
+    EXPECT_NE(place.content("box.exr"), place.content("gaussian.exr"));
+    EXPECT_EQ(place.run({"compare", "box.exr", "mitchell.exr", "--rms-limit", "0.3"}).status, 0);
+    EXPECT_EQ(place.run({"compare", "box.exr", "mitchell.exr", "--rms-limit", "1e-6"}).status, 1);
+    EXPECT_NE(place.content("box.exr").find("albedo.R"), std::string::npos);
+}
+
+/// Status 2, and all of the words in the message.
+void expect_refused(const Workplace& place, std::vector<std::string> arguments, const std::vector<std::string>& words) {
+    const std::vector<std::string> before = place.names();
+    const Outcome outcome = place.run(arguments);
+    EXPECT_EQ(outcome.status, 2) << outcome.err;
+    for (const std::string& word : words) {
+        EXPECT_NE(outcome.err.find(word), std::string::npos) << "no \"" << word << "\" in: " << outcome.err;
+    }
+    EXPECT_EQ(place.names(), before);
+}
+
+TEST(RenderGrowth, RefusesOptionsThatMakeNoSense) {
+    const Workplace place;
+    place.file("scene.toml", small_scene());
+    place.file("folder/inside", "");
+    place.file("text", "no checkpoint");
+    const std::vector<std::vector<std::string>> bad = {{"--spp", "0"},
+                                                       {"--samples", "-1"},
+                                                       {"--samples", "1e9"},
+                                                       {"--samples", "nan"},
+                                                       {"--time", "nan"},
+                                                       {"--time", "0"},
+                                                       {"--time", "-1"},
+                                                       {"--time", "inf"},
+                                                       {"--noise", "nan"},
+                                                       {"--noise", "0"},
+                                                       {"--noise", "-0.1"},
+                                                       {"--noise", "1 %"},
+                                                       {"--filter", "lanczos"},
+                                                       {"--shard", "3/2"},
+                                                       {"--shard", "0/0"},
+                                                       {"--shard", "0/2"},
+                                                       {"--shard", "-1/2"},
+                                                       {"--shard", "1/"},
+                                                       {"--shard", "/2"},
+                                                       {"--shard", "1.5/2"},
+                                                       {"--shard", "1/2/3"},
+                                                       {"--shard", "1-2/3"},
+                                                       {"--shard", "1/99999"},
+                                                       {"--shard", "1/5"},
+                                                       {"--preview", "now.jpg"},
+                                                       {"--preview", "folder/"},
+                                                       {"--checkpoint", "folder"},
+                                                       {"--checkpoint", "text"},
+                                                       {"--checkpoint-interval", "nan"},
+                                                       {"--checkpoint-interval", "-1"}};
+    for (const std::vector<std::string>& option : bad) {
+        SCOPED_TRACE(option[0] + " " + option[1]);
+        std::vector<std::string> arguments = {"render", "scene.toml", "-o", "out.exr"};
+        arguments.insert(arguments.end(), option.begin(), option.end());
+        const bool is_about_a_file = option[0] == "--checkpoint" || option[1] == "folder/";
+        expect_refused(place, arguments, {is_about_a_file ? option[1] : option[0]});
+    }
+}
+
+TEST(RenderGrowth, RefusesACheckpointOfAnotherRender) {
+    const Workplace place;
+    place.file("scene.toml", small_scene());
+    rendered(place, {"--checkpoint", "state", "-o", "out.exr"});
+    const auto with_more = [](std::vector<std::string> more) {
+        more.insert(more.begin(), {"render", "scene.toml", "-o", "out.exr", "--checkpoint", "state"});
+        return more;
+    };
+    expect_refused(place, with_more({"--seed", "1"}), {"state", "seed is 0, expected 1"});
+    expect_refused(place, with_more({"--filter", "tent"}), {"state", "settings", "tent"});
+    expect_refused(place, with_more({"--spp", "2"}), {"state", "4 samples a pixel already, expected 2"});
+    expect_refused(place, with_more({"--shard", "2/2"}), {"state", "samples begin"});
+    place.file("scene.toml", with(small_scene(), "f_number = 8.0", "f_number = 4.0"));
+    expect_refused(place, with_more({}), {"state", "scene"});
+    place.file("scene.toml", small_scene());
+    std::string bytes = place.content("state");
+    bytes[bytes.size() / 2] = static_cast<char>(bytes[bytes.size() / 2] ^ 1);
+    place.file("state", bytes);
+    expect_refused(place, with_more({}), {"state", "damaged"});
+}
+
+}  // namespace
+}  // namespace lensproof
