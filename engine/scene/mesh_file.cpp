@@ -17,6 +17,7 @@
 #include "engine/io/text.h"
 #include "engine/scene/affine.h"
 #include "engine/scene/mesh_normals.h"
+#include "engine/scene/ply_check.h"
 
 namespace lensproof {
 
@@ -154,8 +155,13 @@ const aiScene& read_scene(Assimp::Importer& importer, const std::filesystem::pat
     };
     const aiScene* scene = nullptr;
     try {
+        if (lower_extension(file) == ".ply") {
+            check_ply(read_file(file), file);
+        }
         scene = importer.ReadFile(file.string(), aiProcess_ValidateDataStructure | aiProcess_Triangulate |
                                                      aiProcess_SortByPType | aiProcess_JoinIdenticalVertices);
+    } catch (const InputError&) {
+        throw;
     } catch (const std::exception& error) {  // of a library that meets counts that cannot be
         refuse(error.what());
     }

@@ -36,7 +36,8 @@ struct MeshFile {
 /// animations are left out, and named in the remarks.
 ///
 /// Throws InputError naming the file: missing, another extension, damaged or truncated where the form lets one see it,
-/// no triangles, no such part, more vertices or triangles than 2³¹. The mesh still has to be repaired, as
+/// larger than 256 MiB (PLY), no triangles, no such part, more than 2³¹ vertices. A triangle of glTF whose
+/// indices lead beyond its vertices is left out by Assimp, without a word. The mesh still has to be repaired, as
 /// `SceneGeometry` does.
 MeshFile read_mesh(const std::filesystem::path& file, const MeshOptions& options = {});
 

@@ -4,10 +4,10 @@
 #include <array>
 #include <bit>
 #include <cmath>
-#include <compare>
 #include <map>
 #include <numbers>
 #include <tuple>
+#include <utility>
 
 namespace lensproof {
 
@@ -47,18 +47,14 @@ std::array<std::uint32_t, 3> key_of(const Vec3<float>& p) {
             std::bit_cast<std::uint32_t>(p.z + 0.0F)};
 }
 
-struct PlacedCorner {
-    std::array<std::uint32_t, 3> place{};
-    std::uint32_t corner = 0;
-    friend auto operator<=>(const PlacedCorner&, const PlacedCorner&) = default;
-};
+using PlacedCorner = std::pair<std::array<std::uint32_t, 3>, std::uint32_t>;  // and which corner it is
 
 /// All corners, those at one place next to each other.
 std::vector<PlacedCorner> by_place(const TriangleMesh& mesh, const std::vector<Corner>& corners) {
     std::vector<PlacedCorner> order;
     order.reserve(corners.size());
     for (const Corner& corner : corners) {
-        order.push_back({key_of(mesh.positions[corner.vertex]), static_cast<std::uint32_t>(order.size())});
+        order.emplace_back(key_of(mesh.positions[corner.vertex]), static_cast<std::uint32_t>(order.size()));
     }
     std::ranges::sort(order);
     return order;
@@ -71,21 +67,21 @@ std::vector<Vec3<float>> corner_normals(const TriangleMesh& mesh, const std::vec
     const std::vector<PlacedCorner> order = by_place(mesh, corners);
     std::vector<Vec3<float>> normals(corners.size());
     for (std::size_t begin = 0, end = 0; begin < order.size(); begin = end) {
-        while (end < order.size() && order[end].place == order[begin].place) {
+        while (end < order.size() && order[end].first == order[begin].first) {
             ++end;
         }
         const bool is_smooth = end - begin <= kMostThatMeet;
         for (std::size_t i = begin; i < end; ++i) {
-            const Corner& own = corners[order[i].corner];
+            const Corner& own = corners[order[i].second];
             Vec3d mean = own.angle * own.normal;
             for (std::size_t k = begin; is_smooth && k < end; ++k) {
-                const Corner& other = corners[order[k].corner];
+                const Corner& other = corners[order[k].second];
                 if (k != i && dot(own.normal, other.normal) > least_cosine) {
                     mean = mean + other.angle * other.normal;
                 }
             }
             if (length(mean) > 0.0) {
-                normals[order[i].corner] = converted<float>(normalized(mean));
+                normals[order[i].second] = converted<float>(normalized(mean));
             }
         }
     }

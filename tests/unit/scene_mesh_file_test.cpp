@@ -247,7 +247,7 @@ TEST_F(MeshFileTest, UnusableFilesAreRefusedByName) {
     };
     const auto expect_named = [&](const std::string& name, const std::string& content, const std::string& reason = "") {
         const std::string said = refusal(name, content);
-        EXPECT_NE(said.find(name + ":"), std::string::npos) << said;
+        EXPECT_NE(said.find(name + ":"), std::string::npos) << name << ": " << said;
         EXPECT_NE(said.find(reason), std::string::npos) << said;
     };
     expect_named("empty.obj", "");
@@ -272,6 +272,16 @@ TEST_F(MeshFileTest, UnusableFilesAreRefusedByName) {
     std::string more = box_binary_ply();
     more.replace(more.find("vertex 8"), 8, "vertex 2000000000");
     expect_named("more.ply", more);
+    const auto with = [](std::string text, const std::string& old, const std::string& put) {
+        return text.replace(text.find(old), old.size(), put);
+    };
+    write("box.bin", box_buffer());
+    const std::string gltf = box_gltf(R"("uri": "box.bin", )");
+    expect_named("count.gltf", with(gltf, R"("count": 8)", R"("count": 4000000000)"));
+    expect_named("indices.gltf", with(gltf, R"("count": 36)", R"("count": 360000000)"));
+    expect_named("length.gltf", with(gltf, R"("byteLength": 168)", R"("byteLength": 400000000000)"));
+    expect_named("offset.gltf", with(gltf, R"("byteOffset": 96)", R"("byteOffset": 160)"));
+    expect_named("loop.gltf", with(gltf, R"("children": [1])", R"("children": [0])"));
     EXPECT_NE(message_of([] { read_mesh("no/such.obj"); }).find("no/such.obj: no such file"), std::string::npos);
     EXPECT_NE(message_of([] { read_mesh(testing::TempDir()); }).find("is a folder"), std::string::npos);
 }
