@@ -219,7 +219,15 @@ std::optional<Points> numbered_as_chart(const cv::Mat& picture, const Points& po
 
 }  // namespace
 
+bool can_detect(const Chart& chart) {
+    return std::holds_alternative<Checkerboard>(chart.pattern) || std::holds_alternative<DiscGrid>(chart.pattern);
+}
+
 std::optional<std::vector<Vec2d>> detect(const Image& image, const Chart& chart) {
+    if (!can_detect(chart)) {
+        throw InputError("a chart of kind " + kind_name(chart) +
+                         " cannot be searched for: expected a checkerboard or a disc-grid");
+    }
     const cv::Size grid = grid_size(chart);
     if (grid.width < 3 || grid.height < 3) {
         throw InputError("a " + kind_name(chart) + " with " + std::to_string(grid.width) + " × " +

@@ -9,6 +9,9 @@
 
 namespace lensproof {
 
+/// Whether `detect` knows charts of this kind: checkerboards and disc grids.
+bool can_detect(const Chart& chart);
+
 /// Pixel coordinates of `feature_points(chart)`, in that order; none when the whole chart is not visible.
 ///
 /// OpenCV's detectors search an 8-bit working copy; where the lens bends the chart too much for them, copies that
@@ -17,7 +20,7 @@ namespace lensproof {
 /// Which corner is the first: the one whose square is black, as the chart says. Where that leaves a choice (a half
 /// turn of a board with an even number of columns + rows, every disc grid) the rows run to the right as far as
 /// possible. Mirror images are never taken. A checkerboard needs at least 3 × 3 inner corners, a disc grid 3 × 3 discs.
-/// Throws InputError for a chart without features or too few of them.
+/// Throws InputError for a chart that cannot be detected, or has too few points.
 std::optional<std::vector<Vec2d>> detect(const Image& image, const Chart& chart);
 
 }  // namespace lensproof

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <set>
 
+#include "calibration/detect.h"
 #include "engine/io/input_error.h"
 #include "experiments/stability/extremes.h"
 
@@ -75,6 +76,10 @@ Simulation read_simulation(TomlTable& table, TomlTable& top) {
     simulation.scene.chart = read_chart(chart);
     if (std::holds_alternative<FlatField>(simulation.scene.chart.pattern)) {
         chart.fail("kind", "is a flat field, expected a chart with points; the flat field is rendered besides");
+    }
+    if (!can_detect(simulation.scene.chart)) {
+        chart.fail("kind", fmt::format("is {}, which is not measured: expected a checkerboard or a disc-grid",
+                                       kind_name(simulation.scene.chart)));
     }
     if (auto light = top.optional_table("light")) {
         simulation.scene.light = read_light(*light);

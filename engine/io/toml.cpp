@@ -62,6 +62,16 @@ bool TomlTable::is_number(const std::string& key) const {
     return node != nullptr && node->is_number();
 }
 
+bool TomlTable::is_text(const std::string& key) const {
+    const toml::node* node = table_->get(key);
+    return node != nullptr && node->is_string();
+}
+
+bool TomlTable::is_table(const std::string& key) const {
+    const toml::node* node = table_->get(key);
+    return node != nullptr && node->is_table();
+}
+
 std::string TomlTable::qualified(const std::string& key) const {
     if (path_.empty() || key.empty()) {
         return path_ + key;

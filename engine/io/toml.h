@@ -39,6 +39,8 @@ class TomlTable {
     /// Whatever number stands there, nan and inf included.
     double any_number(const std::string& key);
     [[nodiscard]] bool is_number(const std::string& key) const;
+    [[nodiscard]] bool is_text(const std::string& key) const;
+    [[nodiscard]] bool is_table(const std::string& key) const;
     /// 1 where the key's value is inf, -1 where it is -inf, else 0.
     int infinity(const std::string& key);
     int integer(const std::string& key, int min, int max);

@@ -88,9 +88,9 @@ SpectralStrata make_strata(const Camera& camera, const Lens& lens, const Light& 
 
 }  // namespace
 
-Camera read_camera(TomlTable& table) {
+Camera read_camera_keys(TomlTable& table, bool may_lack_lens) {
     Camera camera;
-    camera.lens = table.text("lens");
+    camera.lens = may_lack_lens ? table.text_or("lens", "") : table.text("lens");
     camera.zoom = table.text_or("zoom", "");
     camera.f_number = table.number("f_number", {.min = 0.1, .max = 1000.0});
     camera.focus_distance_mm = table.infinity("focus_distance_mm") > 0 ? std::numeric_limits<double>::infinity()
@@ -99,6 +99,11 @@ Camera read_camera(TomlTable& table) {
     camera.exposure.time_s = table.number("shutter_s", kPositive);
     camera.exposure.iso = table.number("iso", kPositive);
     camera.response = table.choice("response", known_sensors());
+    return camera;
+}
+
+Camera read_camera(TomlTable& table) {
+    Camera camera = read_camera_keys(table);
     table.finish();
     return camera;
 }
@@ -116,18 +121,22 @@ Light read_light(TomlTable& table) {
     return light;
 }
 
-void read_render_table(TomlTable& table, ChartScene& scene) {
-    scene.samples_per_pixel = table.integer_or("samples_per_pixel", scene.samples_per_pixel, 1, 1 << 20);
+void read_spectral_sampling(TomlTable& table, SpectralSampling& sampling) {
     if (table.has("wavelengths_nm")) {
         const std::vector<double> range = table.numbers("wavelengths_nm", 2, {.min = 100.0, .max = 20000.0});
-        scene.spectral.min_nm = range[0];
-        scene.spectral.max_nm = range[1];
+        sampling.min_nm = range[0];
+        sampling.max_nm = range[1];
         if (!(range[0] < range[1])) {
             table.fail("wavelengths_nm", fmt::format("is [{}, {}], expected the shorter first", range[0], range[1]));
         }
     }
-    scene.spectral.layers = table.integer_or("layers", scene.spectral.layers, 1, 1000);
-    scene.spectral.strata_per_layer = table.integer_or("strata_per_layer", scene.spectral.strata_per_layer, 1, 100);
+    sampling.layers = table.integer_or("layers", sampling.layers, 1, 1000);
+    sampling.strata_per_layer = table.integer_or("strata_per_layer", sampling.strata_per_layer, 1, 100);
+}
+
+void read_render_table(TomlTable& table, ChartScene& scene) {
+    scene.samples_per_pixel = table.integer_or("samples_per_pixel", scene.samples_per_pixel, 1, 1 << 20);
+    read_spectral_sampling(table, scene.spectral);
     table.finish();
 }
 

@@ -31,6 +31,9 @@ struct Camera {
 /// = [w, h], shutter_s, iso, response. Throws InputError naming file, line and key; pixels have to be square.
 Camera read_camera(TomlTable& table);
 
+/// The same keys, for a table that has more; without a lens, if that `may_lack_lens`.
+Camera read_camera_keys(TomlTable& table, bool may_lack_lens = false);
+
 struct Light {
     std::string illuminant = "D65";
     double luminance_cd_m2 = 1000.0;  // of a perfect white in it
@@ -45,6 +48,9 @@ struct SpectralSampling {
     int layers = 32;  // with two strata each, as many as the default samples: each sample then has its own wavelength
     int strata_per_layer = 2;
 };
+
+/// Reads wavelengths_nm = [from, to], layers and strata_per_layer, all optional, over what `sampling` says.
+void read_spectral_sampling(TomlTable& table, SpectralSampling& sampling);
 
 /// What is rendered and how finely.
 struct ChartScene {

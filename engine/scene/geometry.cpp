@@ -45,21 +45,21 @@ Query& query_of(embree::Context* context) {
     return *reinterpret_cast<Query*>(context);
 }
 
-std::optional<Meeting> meet_analytic(const PlacedObject& placed, const Stretch& world_ray) {
-    const Stretch ray = mapped(placed.place.to_local, world_ray);
+std::optional<Meeting> meet_analytic(const PlacedObject& placed, const Stretch& ray) {
+    const AffineMap& to_local = placed.place.to_local;
     const auto* sphere = std::get_if<Sphere>(placed.shape);
-    return sphere != nullptr ? meet(*sphere, ray) : meet(std::get<Quad>(*placed.shape), ray);
+    return sphere != nullptr ? meet(*sphere, to_local, ray) : meet(*std::get_if<Quad>(placed.shape), to_local, ray);
 }
 
 ShapePoint point_met(const PlacedObject& placed, const Query& query) {
     if (const auto* mesh = std::get_if<TriangleMesh>(placed.shape)) {
         return shape_point(*mesh, query.primitive, query.nearest.b1, query.nearest.b2);
     }
+    if (const auto* quad = std::get_if<Quad>(placed.shape)) {
+        return shape_point(*quad, query.nearest.b1, query.nearest.b2);
+    }
     const Stretch ray = mapped(placed.place.to_local, query.ray);
-    const Vec3d point = ray.origin + query.nearest.at * ray.direction;
-    const auto* sphere = std::get_if<Sphere>(placed.shape);
-    return sphere != nullptr ? shape_point(*sphere, point)
-                             : shape_point(std::get<Quad>(*placed.shape), point.x, point.y);
+    return shape_point(std::get<Sphere>(*placed.shape), ray.origin + query.nearest.at * ray.direction);
 }
 
 bool is_usable(const Vec3d& origin, const Vec3d& direction) {
@@ -174,7 +174,19 @@ std::optional<SurfaceHit> intersect(const SceneGeometry& scene, const Vec3d& ori
     RTCRayHit ray{.ray = start(query, scene.data(), {origin, direction, from_mm, to_mm})};
     ray.hit.geomID = RTC_INVALID_GEOMETRY_ID;
     ray.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
-    embree::intersect(scene.data().scene.get(), query.context, ray);
+    if (scene.data().tests_analytic_one_by_one) {
+        for (const std::uint32_t object : scene.data().analytic) {
+            if (const auto meeting = meet_analytic(scene.data().objects[object], query.ray)) {
+                query.offer(*meeting, object, 0);
+            }
+        }
+        if (query.object != RTC_INVALID_GEOMETRY_ID) {
+            ray.ray.tfar = query.embree_distance(query.nearest.at);
+        }
+    }
+    if (scene.data().has_embree_geometry) {
+        embree::intersect(scene.data().scene.get(), query.context, ray);
+    }
     if (query.object == RTC_INVALID_GEOMETRY_ID) {
         return std::nullopt;
     }
@@ -202,7 +214,16 @@ bool is_occluded(const SceneGeometry& scene, const Vec3d& from, const Vec3d& to)
     Query query;
     query.is_occlusion = true;
     RTCRay ray = start(query, scene.data(), {origin, direction, margin, distance - margin});
-    embree::occluded(scene.data().scene.get(), query.context, ray);
+    if (scene.data().tests_analytic_one_by_one) {
+        for (const std::uint32_t object : scene.data().analytic) {
+            if (meet_analytic(scene.data().objects[object], query.ray)) {
+                return true;
+            }
+        }
+    }
+    if (scene.data().has_embree_geometry) {
+        embree::occluded(scene.data().scene.get(), query.context, ray);
+    }
     return ray.tfar < 0.0F;
 }
 

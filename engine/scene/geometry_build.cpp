@@ -220,9 +220,12 @@ void build(SceneGeometry::Data& data) {
             attach_instance(data, i);
         }
     }
-    if (!data.analytic.empty()) {
+    constexpr std::size_t kFew = 6;
+    data.tests_analytic_one_by_one = data.analytic.size() <= kFew;
+    if (!data.tests_analytic_one_by_one) {
         attach_analytic(data);
     }
+    data.has_embree_geometry = !data.tests_analytic_one_by_one || data.analytic.size() < data.objects.size();
     rtcCommitScene(data.scene.get());
     if (const RTCError error = rtcGetDeviceError(data.device.get()); error == RTC_ERROR_OUT_OF_MEMORY) {
         throw std::bad_alloc();

@@ -13,9 +13,9 @@ namespace {
 /// left (Duff et al., "Building an orthonormal basis, revisited", JCGT 6, 2017).
 Vec3d tangent_along(const Vec3d& v, const Vec3d& normal) {
     const Vec3d across = v - dot(v, normal) * normal;
-    const double size = length(across);
-    if (size > 1e-8 * length(v)) {
-        return (1.0 / size) * across;
+    const double squared = dot(across, across);
+    if (squared > 1e-16 * dot(v, v)) {
+        return (1.0 / std::sqrt(squared)) * across;
     }
     const double sign = std::copysign(1.0, normal.z);
     const double a = -1.0 / (sign + normal.z);
@@ -38,7 +38,8 @@ Stretch mapped(const AffineMap& map, const Stretch& ray) {
         .origin = map_point(map, ray.origin), .direction = map.linear * ray.direction, .from = ray.from, .to = ray.to};
 }
 
-std::optional<Meeting> meet(const Sphere& sphere, const Stretch& ray) {
+std::optional<Meeting> meet(const Sphere& sphere, const AffineMap& to_local, const Stretch& world_ray) {
+    const Stretch ray = mapped(to_local, world_ray);
     const double squared = dot(ray.direction, ray.direction);
     const double nearest = -dot(ray.origin, ray.direction) / squared;
     const Vec3d p = ray.origin + nearest * ray.direction;
@@ -60,14 +61,18 @@ std::optional<Meeting> meet(const Sphere& sphere, const Stretch& ray) {
     return std::nullopt;
 }
 
-std::optional<Meeting> meet(const Quad& quad, const Stretch& ray) {
-    const double at = -ray.origin.z / ray.direction.z;
-    const double x = ray.origin.x + at * ray.direction.x;
-    const double y = ray.origin.y + at * ray.direction.y;
-    if (at > ray.from && at < ray.to && std::abs(x) <= 0.5 * quad.width_mm && std::abs(y) <= 0.5 * quad.height_mm) {
-        return Meeting{.at = at};
+std::optional<Meeting> meet(const Quad& quad, const AffineMap& to_local, const Stretch& ray) {
+    // Of most rays the height above the plane alone says that they miss.
+    const double height = dot(to_local.linear[2], ray.origin) + to_local.translation.z;
+    const double at = -height / dot(to_local.linear[2], ray.direction);
+    if (!(at > ray.from && at < ray.to)) {
+        return std::nullopt;
     }
-    return std::nullopt;
+    const Vec3d point = ray.origin + at * ray.direction;
+    const double x = dot(to_local.linear[0], point) + to_local.translation.x;
+    const double y = dot(to_local.linear[1], point) + to_local.translation.y;
+    const bool is_inside = std::abs(x) <= 0.5 * quad.width_mm && std::abs(y) <= 0.5 * quad.height_mm;
+    return is_inside ? std::optional(Meeting{.at = at, .b1 = x, .b2 = y}) : std::nullopt;
 }
 
 std::optional<Meeting> meet(const std::array<Vec3d, 3>& triangle, double float_b1, double float_b2, double near,
@@ -110,7 +115,7 @@ ShapePoint shape_point(const TriangleMesh& mesh, std::uint32_t triangle, double 
     const Vec3d area = cross(e1, e2);
     ShapePoint at{.point = p[0] + b1 * e1 + b2 * e2, .geometric_normal = normalized(area), .uv = {b1, b2}};
     at.shading_normal = at.geometric_normal;
-    at.sharpness = length(e1) * length(e2) / length(area);
+    at.sharpness = std::sqrt(dot(e1, e1) * dot(e2, e2) / dot(area, area));
     const double b0 = 1.0 - b1 - b2;
     if (!mesh.normals.empty()) {
         const Vec3d mean = b0 * converted<double>(mesh.normals[i0]) + b1 * converted<double>(mesh.normals[i1]) +
@@ -133,7 +138,7 @@ ShapePoint shape_point(const Sphere& sphere, const Vec3d& towards) {
     const Vec3d n = normalized(towards);
     const double turn = std::atan2(n.y, n.x) / (2.0 * std::numbers::pi);
     // From the pole's distance as well: an arc sine alone loses half its digits there.
-    const double elevation = std::atan2(n.z, std::hypot(n.x, n.y)) / std::numbers::pi;
+    const double elevation = std::atan2(n.z, std::sqrt(n.x * n.x + n.y * n.y)) / std::numbers::pi;
     return {.point = sphere.radius_mm * n,
             .geometric_normal = n,
             .shading_normal = n,
@@ -155,7 +160,8 @@ SurfaceHit world_hit(const ObjectPlace& place, const ShapePoint& at) {
     SurfaceHit hit{.point = map_point(place.to_world, at.point), .uv = at.uv};
     const Matrix3& back = place.to_local.linear;  // normals are carried by its transpose
     hit.geometric_normal = normalized(transposed_times(back, at.geometric_normal));
-    hit.shading_normal = normalized(transposed_times(back, at.shading_normal));
+    const bool is_flat = at.shading_normal == at.geometric_normal;
+    hit.shading_normal = is_flat ? hit.geometric_normal : normalized(transposed_times(back, at.shading_normal));
     hit.tangent = tangent_along(place.to_world.linear * at.tangent, hit.shading_normal);
     // A point passes some ten operations on its way into the shape's frame and back, each with the rounding of the
     // largest number involved; a map that stretches unevenly carries an error along one direction to another.

@@ -20,18 +20,19 @@ struct Stretch {
 
 Stretch mapped(const AffineMap& map, const Stretch& ray);
 
-/// Where along the ray, and where on the surface: barycentric coordinates of a triangle's second and third vertex;
-/// nothing of use for other shapes.
+/// Where along the ray, and where on the surface: a triangle's barycentric coordinates of its second and third vertex,
+/// a quad's x and y; nothing of use for a sphere.
 struct Meeting {
     double at = 0.0;
     double b1 = 0.0;
     double b2 = 0.0;
 };
 
-/// The first meeting on the stretch. The sphere's roots are taken about the ray's nearest point to the centre, so that
-/// nothing cancels for a small sphere far away (Haines et al., Ray Tracing Gems, ch. 7).
-std::optional<Meeting> meet(const Sphere& sphere, const Stretch& ray);
-std::optional<Meeting> meet(const Quad& quad, const Stretch& ray);
+/// The first meeting on the stretch with a shape that `to_local` carries into its own frame. The sphere's roots are
+/// taken about the ray's nearest point to the centre, so that nothing cancels for a small sphere far away (Haines et
+/// al., Ray Tracing Gems, ch. 7).
+std::optional<Meeting> meet(const Sphere& sphere, const AffineMap& to_local, const Stretch& ray);
+std::optional<Meeting> meet(const Quad& quad, const AffineMap& to_local, const Stretch& ray);
 
 /// The triangle that Embree's float ray has met at barycentric coordinates (float_b1, float_b2).
 ///

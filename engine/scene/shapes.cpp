@@ -60,8 +60,12 @@ Vec3d area_vector(const TriangleMesh& mesh, const Triangle& t) {
     return cross(converted<double>(mesh.positions[t[1]]) - a, converted<double>(mesh.positions[t[2]]) - a);
 }
 
-bool are_usable(const std::vector<Vec3<float>>& normals) {
-    return std::ranges::all_of(normals, [](const Vec3<float>& n) { return is_finite(n) && length(n) > 0.0F; });
+bool has_usable_normals(const TriangleMesh& mesh) {
+    const auto is_usable = [&](std::uint32_t vertex) {
+        return is_finite(mesh.normals[vertex]) && length(mesh.normals[vertex]) > 0.0F;
+    };
+    return mesh.normals.empty() ||
+           std::ranges::all_of(mesh.triangles, [&](const Triangle& t) { return std::ranges::all_of(t, is_usable); });
 }
 
 std::size_t turn_to_normals(TriangleMesh& mesh) {
@@ -91,7 +95,7 @@ std::vector<std::string> repair(TriangleMesh& mesh) {
     if (mesh.triangles.empty()) {
         throw InputError(fmt::format("{}: holds no triangle that has an area", mesh.name));
     }
-    if (!are_usable(mesh.normals)) {
+    if (!has_usable_normals(mesh)) {
         mesh.normals.clear();
         remarks.push_back(
             fmt::format("{}: some normals are no directions; it is drawn flat, without any of them", mesh.name));

@@ -3,6 +3,7 @@
 
 #include <memory>
 
+#include "calibration/detect.h"
 #include "calibration/measure.h"
 #include "engine/io/file.h"
 #include "engine/io/input_error.h"
@@ -84,6 +85,12 @@ int run_measure(const MeasureOptions& options) {
             fmt::format("{}: the chart is a flat field, expected a checkerboard or a disc grid; pictures of an "
                         "even surface are given with --flat-field",
                         options.chart));
+    }
+    if (!can_detect(input.chart)) {
+        throw InputError(
+            fmt::format("{}: the chart is of kind {}, which is not measured: expected a checkerboard or a "
+                        "disc-grid",
+                        options.chart, kind_name(input.chart)));
     }
     input.model = model_kind(options.model);
     input.source = {.kind = options.kind, .images = {}, .camera = options.camera, .lens = options.lens};

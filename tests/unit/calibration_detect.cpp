@@ -146,6 +146,7 @@ TEST(CalibrationDetect, NothingIsFoundWhereNothingIs) {
     std::fill(grey.pixels.begin(), grey.pixels.end(), std::numeric_limits<float>::quiet_NaN());
     EXPECT_FALSE(detect(grey, kBoard));
     EXPECT_THROW(detect(grey, Chart{.pattern = FlatField{}}), InputError);
+    EXPECT_THROW(detect(grey, Chart{.pattern = PointGrid{9, 7, 20.0, 1.0}}), InputError);
     EXPECT_THROW(detect(grey, Chart{.pattern = Checkerboard{2, 2, 30.0}}), InputError);
 }
 

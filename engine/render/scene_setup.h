@@ -1,0 +1,29 @@
+// engine/render/scene_setup.h — a whole scene file: the camera and how finely it looks, and what it looks at.
+#pragma once
+#include <filesystem>
+#include <string>
+
+#include "engine/render/camera.h"
+#include "engine/scene/scene_description.h"
+
+namespace lensproof {
+
+struct SceneSetup {
+    Camera camera;  // without a lens where the view says a focal length
+    CameraView view;
+    SceneDescription scene;
+    SpectralSampling spectral;
+    int samples_per_pixel = 64;
+    int max_bounces = 16;  // scatterings on a path between camera and light; 0: lights alone are seen
+};
+
+/// Reads a scene file, as engine/scene/README.md documents it: [camera], [[materials]], [[objects]], [[lights]] and
+/// [render]. Lens, illuminants and the files that it names have to be there, but are not loaded but for the mesh
+/// files' names. Throws InputError naming file, line and key; besides what `read_scene` and `read_camera` refuse, a
+/// scene without a light, and a number of wavelengths that is no multiple of 4.
+SceneSetup read_scene_setup(const std::filesystem::path& file);
+
+/// The same from a text; `name` stands for the file in messages, and its folder is where files are looked for.
+SceneSetup parse_scene_setup(const std::string& text, const std::filesystem::path& name);
+
+}  // namespace lensproof
