@@ -18,11 +18,6 @@ namespace lensproof {
 
 namespace {
 
-constexpr std::array<std::pair<CameraModel, const char*>, 4> kModels = {{{CameraModel::exact, "exact"},
-                                                                         {CameraModel::paraxial, "paraxial"},
-                                                                         {CameraModel::thin_lens, "thin-lens"},
-                                                                         {CameraModel::pinhole, "pinhole"}}};
-
 /// Of a ray along the axis; 1 where it does not come through (a stop with a central obstruction).
 double axial_transmittance(const TraceLens<double>& lens) {
     const TracedRay<double> axis = trace<Direction::reverse>(lens, {{0.0, 0.0, lens.image_z}, {0.0, 0.0, -1.0}});
@@ -62,22 +57,6 @@ GaussianCamera paraxial_lens(const Lens& lens, const TraceLens<double>& traced, 
 
 }  // namespace
 
-std::vector<std::string> camera_model_names() {
-    std::vector<std::string> names;
-    std::ranges::transform(kModels, std::back_inserter(names), [](const auto& model) { return model.second; });
-    return names;
-}
-
-CameraModel camera_model_named(const std::string& name) {
-    for (const auto& [model, known] : kModels) {
-        if (name == known) {
-            return model;
-        }
-    }
-    throw InputError(
-        fmt::format("\"{}\" is no camera model, expected one of {}", name, fmt::join(camera_model_names(), ", ")));
-}
-
 GaussianCamera gaussian_camera(const Lens& lens, CameraModel model, double wavelength_nm) {
     const TraceLens<double> traced = at_wavelength<double>(lens, wavelength_nm);
     // What has one focal length has that of the line by which lenses are focused and stopped down.
@@ -85,13 +64,28 @@ GaussianCamera gaussian_camera(const Lens& lens, CameraModel model, double wavel
     const ParaxialData data = paraxial_data(reference);
     if (!std::isfinite(data.efl) || !std::isfinite(data.entrance_pupil_diameter)) {
         throw InputError(fmt::format("{} has no focal length or no entrance pupil, which the {} model needs", lens.name,
-                                     kModels[static_cast<std::size_t>(model)].second));
+                                     name_of(model)));
     }
     GaussianCamera camera =
         model == CameraModel::paraxial ? paraxial_lens(lens, reference, data) : thin_lens(reference, data);
     camera.is_pinhole = model == CameraModel::pinhole;
     camera.transmittance = axial_transmittance(traced);
     return camera;
+}
+
+GaussianCamera gaussian_camera(double focal_length_mm, double f_number, double focus_distance_mm, CameraModel model) {
+    if (model != CameraModel::thin_lens && model != CameraModel::pinhole) {
+        throw InputError(fmt::format("the {} model needs a lens", name_of(model)));
+    }
+    if (!(focus_distance_mm > focal_length_mm)) {
+        throw InputError(
+            fmt::format("a thin lens of {} mm cannot be focused at {} mm, expected more than its focal length",
+                        focal_length_mm, focus_distance_mm));
+    }
+    return {.film_z = 1.0 / (1.0 / focal_length_mm - 1.0 / focus_distance_mm),
+            .pupil_radius_mm = 0.5 * focal_length_mm / f_number,
+            .is_pinhole = model == CameraModel::pinhole,
+            .s_h = 1.0 / focal_length_mm};
 }
 
 IdealPathProducer::IdealPathProducer(IdealPathSource source)

@@ -9,23 +9,9 @@
 #include "engine/render/packet/path_kernels.h"
 #include "engine/render/pixel_filter.h"
 #include "engine/render/sensor.h"
+#include "engine/scene/camera_model.h"
 
 namespace lensproof {
-
-/// What stands for the lens. All are made from it and its settings, expose alike, and so can be compared:
-///
-///   exact       the lens itself, surface by surface
-///   paraxial    its Gaussian optics at each wavelength: pupils, principal planes, axial and lateral colour of first
-///               order; no other aberration, no rims but the stop
-///   thin-lens   focal length and entrance pupil of the reference line, at the front principal plane
-///   pinhole     the thin lens's centre alone, with the light of its whole opening: no blur
-///
-/// The last three pass what the lens passes along its axis.
-enum class CameraModel { exact, paraxial, thin_lens, pinhole };
-
-/// "exact", "paraxial", "thin-lens", "pinhole".
-std::vector<std::string> camera_model_names();
-CameraModel camera_model_named(const std::string& name);
 
 /// First-order optics between film and scene at one wavelength; lens space, mm. A film ray crosses the pupil's plane
 /// (z = `pupil_z`, behind the lens) at height h with slope s = dh/dz; in front of the lens it is the line that crosses
@@ -48,6 +34,11 @@ struct GaussianCamera {
 /// `lens`, stopped down and focused, as one of the ideal models at a wavelength. Throws InputError for a lens that has
 /// no focal length, and for a paraxial one whose exit pupil lies at infinity.
 GaussianCamera gaussian_camera(const Lens& lens, CameraModel model, double wavelength_nm);
+
+/// A pinhole or a thin lens that stands for no lens: of focal length and f-number, focused `focus_distance_mm` before
+/// it, at the frame's origin; it loses no light. Throws InputError for another model and for a focus within the focal
+/// length.
+GaussianCamera gaussian_camera(double focal_length_mm, double f_number, double focus_distance_mm, CameraModel model);
 
 /// What ideal camera paths are made of. `at`: the camera at the wavelengths that samples spread evenly over.
 struct IdealPathSource {

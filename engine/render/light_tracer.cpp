@@ -5,7 +5,6 @@
 #include <optional>
 
 #include "engine/render/path_vertex.h"
-#include "engine/scene/pose.h"
 
 namespace lensproof {
 
@@ -42,6 +41,7 @@ class LightWalk {
             if (!hit) {
                 return;
             }
+            throughput *= passes_body(scene_, *hit, ray.direction, path_);
             const PathVertex vertex(*hit, -1.0 * ray.direction, scene_, path_);
             if (!vertex.is_consistent(-1.0 * ray.direction, vertex.wo)) {
                 return;
@@ -203,15 +203,17 @@ class LightWalk {
 
     // Between world and lens space.
     [[nodiscard]] Vec3d to_lens(const Vec3d& direction) const {
-        return camera_to_lens(entrance_.pose.direction_to_camera(direction));
+        return camera_to_lens(rotate_back(entrance_.camera_to_world, direction));
     }
     [[nodiscard]] Vec3d to_lens_point(const Vec3d& point) const {
-        return camera_to_lens(entrance_.pose.to_camera(point));
+        return camera_to_lens(moved_back(entrance_.camera_to_world, point));
     }
     [[nodiscard]] Vec3d direction_from_lens(const Vec3d& direction) const {
-        return entrance_.pose.direction_to_world(camera_to_lens(direction));
+        return rotate(entrance_.camera_to_world, camera_to_lens(direction));
     }
-    [[nodiscard]] Vec3d from_lens(const Vec3d& point) const { return entrance_.pose.to_world(camera_to_lens(point)); }
+    [[nodiscard]] Vec3d from_lens(const Vec3d& point) const {
+        return moved(entrance_.camera_to_world, camera_to_lens(point));
+    }
 
     const Scene& scene_;
     const LensEntrance& entrance_;

@@ -9,7 +9,7 @@
 #include "engine/render/path_sampler.h"
 #include "engine/render/path_tracer.h"
 #include "engine/render/sensor.h"
-#include "engine/scene/camera_pose.h"
+#include "engine/scene/pose.h"
 #include "engine/scene/scene.h"
 
 namespace lensproof {
@@ -20,7 +20,7 @@ struct LensEntrance {
     const EntranceMap* map = nullptr;            // of the same band, for far light, with a large defensive share:
                                                  // where near points' light enters lies a little beside its regions
     BoundingSphere front;
-    CameraPose pose;
+    RigidMotion camera_to_world;  // of the frame of pose.h
     Sensor sensor;
 };
 

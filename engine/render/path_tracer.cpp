@@ -24,6 +24,7 @@ class PathWalk {
                                              [&](const Lights::Emission& light) { add_found(throughput, light); });
                 break;
             }
+            throughput *= passes_body(scene_, *hit, ray.direction, path_);
             add_found(throughput, scene_.lights.emitted(*hit, from_, ray.direction, path_));
             if (bounce == settings_.max_bounces && bounce > 0) {
                 break;

@@ -1,6 +1,7 @@
 // engine/render/path_vertex.h — what paths from either end have in common.
 #pragma once
 #include <algorithm>
+#include <cmath>
 
 #include "engine/scene/basis.h"
 #include "engine/scene/scene.h"
@@ -34,6 +35,17 @@ struct PathVertex {
         return dot(world, hit.geometric_normal) * local.z > 0.0;
     }
 };
+
+/// What passes of light that has come through a body to its surface from inside; 1 through the open.
+inline SpectralSample passes_body(const Scene& scene, const SurfaceHit& hit, const Vec3d& direction,
+                                  const PathWavelengths& path) {
+    if (scene.absorption.empty() || dot(hit.geometric_normal, direction) <= 0.0 || !scene.absorption[hit.material]) {
+        return SpectralSample(1.0F);
+    }
+    const auto distance_mm = static_cast<float>(hit.distance_mm);
+    return for_each_wavelength([&](float per_mm) { return std::exp(-per_mm * distance_mm); },
+                               (*scene.absorption[hit.material])(path));
+}
 
 /// Whether a path that carries `carries`, having started with 1, goes on after a bounce; scales what does.
 inline bool survives_roulette(const PathSettings& settings, int bounce, double number, SpectralSample& carries) {

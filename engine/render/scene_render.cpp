@@ -7,7 +7,6 @@
 
 #include "engine/render/shared_rays.h"
 #include "engine/render/tile_paths.h"
-#include "engine/scene/pose.h"
 
 namespace lensproof {
 
@@ -93,8 +92,8 @@ class SceneTileRenderer {
   private:
     void add_path(std::size_t path, std::size_t pixel, FilmTile& tile) {
         const Ray<double> in_lens = buffer_.ray(static_cast<int>(path));
-        const Ray<double> ray{view_.pose.to_world(camera_to_lens(in_lens.origin)),
-                              view_.pose.direction_to_world(camera_to_lens(in_lens.direction))};
+        const Ray<double> ray{moved(view_.camera_to_world, camera_to_lens(in_lens.origin)),
+                              rotate(view_.camera_to_world, camera_to_lens(in_lens.direction))};
         const PathWavelengths strata = view_.scene->grid.path(buffer_.wavelength[path]);
         PathSampler numbers(view_.seed, buffer_.pixel[path], buffer_.sample[path]);
         const PathRadiance found = trace_path(*view_.scene, ray, strata, view_.paths, numbers);
@@ -116,9 +115,9 @@ class SceneTileRenderer {
         for (std::size_t i = 0; i < kWavelengthsPerPath; ++i) {
             albedo = albedo + (first.albedo[i] / double{kWavelengthsPerPath}) * view_.albedo_weights[strata.index[i]];
         }
-        tile.add_features(pixel, {.depth_mm = view_.pose.to_camera(first.point).z,
+        tile.add_features(pixel, {.depth_mm = moved_back(view_.camera_to_world, first.point).z,
                                   .albedo_rgb = albedo,
-                                  .normal = view_.pose.direction_to_camera(first.normal)});
+                                  .normal = rotate_back(view_.camera_to_world, first.normal)});
     }
 
     SceneView view_;

@@ -11,7 +11,7 @@
 #include "engine/render/path_tracer.h"
 #include "engine/render/progressive.h"
 #include "engine/render/sensor.h"
-#include "engine/scene/camera_pose.h"
+#include "engine/scene/pose.h"
 #include "engine/scene/scene.h"
 
 namespace lensproof {
@@ -28,7 +28,7 @@ using SceneCamera = std::variant<ExactCamera, std::vector<GaussianCamera>>;
 struct SceneView {
     const Scene* scene = nullptr;
     const SceneCamera* camera = nullptr;
-    CameraPose pose;
+    RigidMotion camera_to_world;  // of the frame of pose.h
     Sensor sensor;
     FilmLayout film;
     std::vector<Vec3d> albedo_weights;  // a stratum each: RGB of a reflectance of 1 there; their mean is 1

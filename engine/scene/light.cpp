@@ -56,6 +56,11 @@ double spot_falloff(const SpotLight& spot, double cosine) {
     return t * t * (3.0 - 2.0 * t);
 }
 
+bool is_at_infinity(const LightSource& light) {
+    return std::holds_alternative<SunLight>(light) || std::holds_alternative<ConstantLight>(light) ||
+           std::holds_alternative<EnvironmentLight>(light);
+}
+
 SpectralSample scaled(const SpectralSample& sample, double scale) {
     return static_cast<float>(scale) * sample;
 }
@@ -79,13 +84,13 @@ double one_minus_cosine(double radius_mm, double distance2) {
 
 }  // namespace
 
-Lights::Lights(const SceneGeometry& scene, std::vector<Light> lights) : of_object_(scene.object_count(), -1) {
+Lights::Lights(const SceneGeometry& scene, std::vector<LightSource> lights) : of_object_(scene.object_count(), -1) {
     const Box& box = scene.bounds();
     centre_ = 0.5 * (box.low + box.high);
     radius_mm_ = 0.5 * length(box.high - box.low);
     const double cross_section = kPi * radius_mm_ * radius_mm_ * kSquareMetresPerSquareMm;
     std::vector<double> powers;
-    for (Light& light : lights) {
+    for (LightSource& light : lights) {
         std::optional<SurfaceSampler> surface;
         const auto index = static_cast<std::uint32_t>(lights_.size());
         const double power = std::visit(
@@ -102,13 +107,14 @@ Lights::Lights(const SceneGeometry& scene, std::vector<Light> lights) : of_objec
                     return 0.5 * (cone(spot.cos_inner) + cone(spot.cos_outer)) * mean_of(spot.intensity);
                 },
                 [&](const SunLight& sun) { return mean_of(sun.radiance) * cone(sun.cos_radius) * cross_section; },
-                [&](const ConstantLight& sky) { return mean_of(sky.radiance) * 4.0 * kPi * cross_section; }},
+                [&](const ConstantLight& sky) { return mean_of(sky.radiance) * 4.0 * kPi * cross_section; },
+                [&](const EnvironmentLight& sky) { return sky.map->mean_power() * cross_section; }},
             light);
         std::optional<Ball> ball;
         if (const auto* area = std::get_if<AreaLight>(&light); area != nullptr && !area->is_two_sided) {
             ball = ball_of(scene, area->object);
         }
-        if (std::holds_alternative<SunLight>(light) || std::holds_alternative<ConstantLight>(light)) {
+        if (is_at_infinity(light)) {
             at_infinity_.push_back(index);
         }
         lights_.push_back({.light = std::move(light), .surface = std::move(surface), .ball = ball});
@@ -222,6 +228,14 @@ std::optional<LightSample> Lights::sample(const Vec3d& point, const PathWaveleng
                    },
                    [&](const ConstantLight& sky) -> std::optional<LightSample> {
                        return towards_infinity(in_cone(-1.0, u1, u2), sky.radiance(path), 1.0 / (4.0 * kPi));
+                   },
+                   [&](const EnvironmentLight& sky) -> std::optional<LightSample> {
+                       const Environment::Draw drawn = sky.map->draw(u1, u2);
+                       if (!(drawn.density > 0.0)) {
+                           return {};
+                       }
+                       return towards_infinity(drawn.direction, sky.map->radiance(drawn.direction, path),
+                                               drawn.density);
                    }},
         entry.light);
     if (found) {
@@ -249,6 +263,10 @@ Lights::Emission Lights::emitted(const SurfaceHit& hit, const Vec3d& from, const
 Lights::Emission Lights::at_infinity(const Entry& entry, const Vec3d& direction, const PathWavelengths& path) {
     if (const auto* sky = std::get_if<ConstantLight>(&entry.light)) {
         return {.radiance = sky->radiance(path), .density = entry.probability / (4.0 * kPi)};
+    }
+    if (const auto* picture = std::get_if<EnvironmentLight>(&entry.light)) {
+        return {.radiance = picture->map->radiance(direction, path),
+                .density = entry.probability * picture->map->density(direction)};
     }
     const auto& sun = std::get<SunLight>(entry.light);
     // 1 − cos of the angle between unit vectors, from their difference: a narrow disc's edge does not cancel.
@@ -291,14 +309,19 @@ LightStart Lights::start(const PathWavelengths& path, double u_light, double u1,
                 from_infinity(Basis(sun.towards).to_world(in_cone(sun.cos_radius, u1, u2)), sun.radiance(path),
                               cone(sun.cos_radius));
             },
-            [&](const ConstantLight& sky) { from_infinity(in_cone(-1.0, u1, u2), sky.radiance(path), 4.0 * kPi); }},
+            [&](const ConstantLight& sky) { from_infinity(in_cone(-1.0, u1, u2), sky.radiance(path), 4.0 * kPi); },
+            [&](const EnvironmentLight& sky) {
+                const Environment::Draw drawn = sky.map->draw(u1, u2);
+                from_infinity(drawn.direction, sky.map->radiance(drawn.direction, path),
+                              drawn.density > 0.0 ? 1.0 / drawn.density : 0.0);
+            }},
         chosen->light);
     start.value = scaled(start.value, 1.0 / chosen->probability);
     return start;
 }
 
 SpectralSample Lights::intensity(const LightStart& start, const Vec3d& direction) const {
-    const Light& light = lights_[start.light].light;
+    const LightSource& light = lights_[start.light].light;
     if (const auto* spot = std::get_if<SpotLight>(&light)) {
         return scaled(start.value, spot_falloff(*spot, dot(direction, spot->axis)));
     }
@@ -314,7 +337,7 @@ EmittedRay Lights::leave(const LightStart& start, double u1, double u2) const {
         const double area = kPi * radius_mm_ * radius_mm_ * kSquareMetresPerSquareMm;
         return {{origin, start.direction}, scaled(start.value, area)};
     }
-    const Light& light = lights_[start.light].light;
+    const LightSource& light = lights_[start.light].light;
     if (std::holds_alternative<AreaLight>(light)) {
         // With the density cos / π.
         const Vec3d direction = Basis(start.normal).to_world(cosine_direction(u1, u2));

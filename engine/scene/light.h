@@ -5,11 +5,13 @@
 #pragma once
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <variant>
 #include <vector>
 
 #include "engine/optics/ray.h"
+#include "engine/scene/environment.h"
 #include "engine/scene/geometry.h"
 #include "engine/scene/surface_sampler.h"
 #include "engine/spectral/spectral_sample.h"
@@ -49,7 +51,12 @@ struct ConstantLight {
     GridSpectrum radiance;
 };
 
-using Light = std::variant<AreaLight, PointLight, SpotLight, SunLight, ConstantLight>;
+/// A picture of all directions at infinity.
+struct EnvironmentLight {
+    std::shared_ptr<const Environment> map;
+};
+
+using LightSource = std::variant<AreaLight, PointLight, SpotLight, SunLight, ConstantLight, EnvironmentLight>;
 
 /// Light that reaches a point: what next-event estimation adds, if nothing stands in the way.
 struct LightSample {
@@ -83,7 +90,7 @@ class Lights {
   public:
     Lights() = default;
     /// `scene` has to outlive it. Objects in the scene carry at most one area light.
-    Lights(const SceneGeometry& scene, std::vector<Light> lights);
+    Lights(const SceneGeometry& scene, std::vector<LightSource> lights);
 
     [[nodiscard]] bool is_empty() const { return lights_.empty(); }
     [[nodiscard]] std::size_t size() const { return lights_.size(); }
@@ -134,7 +141,7 @@ class Lights {
         double radius_mm = 0.0;
     };
     struct Entry {
-        Light light;
+        LightSource light;
         std::optional<SurfaceSampler> surface;  // of an area light
         std::optional<Ball> ball;               // of one that is a sphere in the world: points see a cone of it
         double probability = 0.0;

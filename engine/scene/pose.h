@@ -40,4 +40,12 @@ inline Vec3d rotate_back(const RigidMotion& motion, const Vec3d& v) {
     return v.x * r[0] + v.y * r[1] + v.z * r[2];
 }
 
+/// R · X + t of a point, and back.
+inline Vec3d moved(const RigidMotion& motion, const Vec3d& point) {
+    return rotate(motion, point) + motion.translation;
+}
+inline Vec3d moved_back(const RigidMotion& motion, const Vec3d& point) {
+    return rotate_back(motion, point - motion.translation);
+}
+
 }  // namespace lensproof

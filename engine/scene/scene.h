@@ -1,6 +1,7 @@
 // engine/scene/scene.h — all that light meets: surfaces, what they are made of, and the lights.
 #pragma once
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -16,6 +17,8 @@ struct Scene {
     SpectralGrid grid;
     std::unique_ptr<const SceneGeometry> geometry;  // at a fixed place: `lights` refers to it
     std::vector<Material> materials;                // as the geometry's objects name them
+    /// What light loses inside bodies of a material, 1/mm; a material each, or none at all.
+    std::vector<std::optional<GridSpectrum>> absorption;
     Lights lights;
 };
 

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "engine/scene/affine.h"
+#include "engine/scene/camera_model.h"
 #include "engine/scene/chart.h"
 #include "engine/scene/mesh_file.h"
 #include "engine/scene/pose.h"
@@ -37,13 +38,13 @@ struct SpectrumTable {
 using SpectrumDescription = std::variant<double, RgbColour, SpectrumName, SpectrumTable>;
 
 /// A picture on the surface, uplifted texel by texel. uv (0, 0) is its lower left corner.
-struct ImageTexture {
+struct ImageDescription {
     std::filesystem::path file;
     double scale = 1.0;       // of its linear values
     Vec2d repeats{1.0, 1.0};  // how often it stands side by side along u and v
 };
 
-using TextureDescription = std::variant<double, RgbColour, SpectrumName, SpectrumTable, ImageTexture>;
+using TextureDescription = std::variant<double, RgbColour, SpectrumName, SpectrumTable, ImageDescription>;
 
 // --- Materials -----------------------------------------------------------------------------------------------------
 
@@ -58,7 +59,7 @@ struct ConductorIndex {
 using DielectricIndex = std::variant<double, SpectrumName>;
 
 /// GGX's α along u and across it; 0: smooth.
-struct Roughness {
+struct RoughnessDescription {
     double along_u = 0.0;
     double along_v = 0.0;
 };
@@ -69,20 +70,20 @@ struct DiffuseDescription {
 
 struct ConductorDescription {
     ConductorIndex index;
-    Roughness roughness;
+    RoughnessDescription roughness;
 };
 
 struct DielectricDescription {
     DielectricIndex index = 1.5;
     SpectrumDescription absorption_per_mm = 0.0;  // inside
-    Roughness roughness;
+    RoughnessDescription roughness;
 };
 
 /// A diffuse body under a clear coat.
 struct PlasticDescription {
     TextureDescription reflectance = 0.5;
     DielectricIndex index = 1.5;
-    Roughness roughness;
+    RoughnessDescription roughness;
 };
 
 /// `share` of the second of two materials, the rest of the first; both indices of `SceneDescription::materials`, below
@@ -135,33 +136,33 @@ struct ObjectDescription {
 // --- Lights --------------------------------------------------------------------------------------------------------
 
 /// A surface's or the sky's light: the illuminant's spectrum at a luminance, or a table of radiance.
-struct Emission {
+struct EmissionDescription {
     std::string illuminant = "D65";
     double luminance_cd_m2 = 0.0;           // of it; 0 where a table says the radiance
     std::optional<SpectrumTable> radiance;  // W·m⁻²·sr⁻¹·nm⁻¹
 };
 
 /// An object that shines on its outward side, or on both; evenly in every direction.
-struct AreaLight {
+struct AreaLightDescription {
     std::size_t object = 0;
-    Emission emission;
+    EmissionDescription emission;
     bool is_two_sided = false;
 };
 
-struct SphereLight {
+struct SphereLightDescription {
     Vec3d position_mm;
     double radius_mm = 0.0;
-    Emission emission;
+    EmissionDescription emission;
 };
 
-struct PointLight {
+struct PointLightDescription {
     Vec3d position_mm;
     std::string illuminant;
     double intensity_cd = 0.0;
 };
 
 /// Full intensity within `full_deg` of the direction, none beyond `cone_deg`, smooth between.
-struct SpotLight {
+struct SpotLightDescription {
     Vec3d position_mm;
     Vec3d direction;  // of unit length, that of the light
     double cone_deg = 0.0;
@@ -171,7 +172,7 @@ struct SpotLight {
 };
 
 /// A disc at infinity of even radiance.
-struct SunLight {
+struct SunLightDescription {
     Vec3d direction;  // of unit length, towards the sun
     double angular_diameter_deg = 0.53;
     std::string illuminant;
@@ -181,14 +182,15 @@ struct SunLight {
 /// Light from every direction: the same, or as a picture in equirectangular projection, whose white (1, 1, 1) has the
 /// luminance and the illuminant. The picture's middle row is the horizon, its middle column the direction +x turned
 /// about +z by `rotate_deg`; columns to the left of it lie towards +y. `up` is the direction that the top row shows.
-struct EnvironmentLight {
+struct EnvironmentLightDescription {
     std::optional<std::filesystem::path> image;
-    Emission emission;
+    EmissionDescription emission;
     double rotate_deg = 0.0;
     Vec3d up{0, 0, 1};
 };
 
-using LightKind = std::variant<AreaLight, SphereLight, PointLight, SpotLight, SunLight, EnvironmentLight>;
+using LightKind = std::variant<AreaLightDescription, SphereLightDescription, PointLightDescription,
+                               SpotLightDescription, SunLightDescription, EnvironmentLightDescription>;
 
 struct LightDescription {
     LightKind kind;
@@ -197,11 +199,9 @@ struct LightDescription {
 
 // --- Camera --------------------------------------------------------------------------------------------------------
 
-enum class LensModel { exact, paraxial, thin_lens, pinhole };
-
 /// Where the camera stands in the world, and how it images.
 struct CameraView {
-    LensModel model = LensModel::exact;
+    CameraModel model = CameraModel::exact;
     Vec3d position_mm;  // of the vertex of the lens's first surface
     Vec3d look_at_mm{0, 0, 1};
     Vec3d up{0, 1, 0};

@@ -29,8 +29,8 @@ RgbColour read_rgb(TomlTable& table, const std::string& key, const Bounds& bound
     return {{rgb[0], rgb[1], rgb[2]}};
 }
 
-ImageTexture read_image_texture(TomlTable& table) {
-    ImageTexture texture{.file = read_file_name(table, "image")};
+ImageDescription read_image_texture(TomlTable& table) {
+    ImageDescription texture{.file = read_file_name(table, "image")};
     texture.scale = table.number_or("scale", texture.scale, kPositive);
     if (table.has("repeats")) {
         const std::vector<double> repeats = table.numbers("repeats", 2, kPositive);
@@ -151,13 +151,10 @@ CameraView read_camera_view(TomlTable& camera) {
     }
     if (camera.has("model")) {
         const std::string model = camera.choice("model", {"exact", "paraxial", "thin-lens", "pinhole"});
-        view.model = model == "exact"       ? LensModel::exact
-                     : model == "paraxial"  ? LensModel::paraxial
-                     : model == "thin-lens" ? LensModel::thin_lens
-                                            : LensModel::pinhole;
+        view.model = camera_model_named(model);
     }
     view.focal_length_mm = camera.optional_number("focal_length_mm", kPositive);
-    if (view.focal_length_mm && (view.model == LensModel::exact || view.model == LensModel::paraxial)) {
+    if (view.focal_length_mm && (view.model == CameraModel::exact || view.model == CameraModel::paraxial)) {
         camera.fail("focal_length_mm", "is for the models thin-lens and pinhole; here the lens says it");
     }
     return view;

@@ -22,7 +22,7 @@ std::string read_illuminant(TomlTable& table) {
     return name;
 }
 
-Emission read_emission(TomlTable& table) {
+EmissionDescription read_emission(TomlTable& table) {
     if (!table.has("radiance")) {
         return {.illuminant = read_illuminant(table), .luminance_cd_m2 = table.number("luminance_cd_m2", kPower)};
     }
@@ -37,8 +37,8 @@ Emission read_emission(TomlTable& table) {
     return {.illuminant = "", .radiance = *file};
 }
 
-SpotLight read_spot(TomlTable& table) {
-    SpotLight spot{.position_mm = read_vector(table, "position_mm")};
+SpotLightDescription read_spot(TomlTable& table) {
+    SpotLightDescription spot{.position_mm = read_vector(table, "position_mm")};
     if (table.has("look_at_mm")) {
         const Vec3d along = read_vector(table, "look_at_mm") - spot.position_mm;
         if (!(largest_coordinate(along) > 0.0)) {
@@ -55,8 +55,8 @@ SpotLight read_spot(TomlTable& table) {
     return spot;
 }
 
-SunLight read_sun(TomlTable& table) {
-    SunLight sun{.direction = read_direction(table, "direction")};
+SunLightDescription read_sun(TomlTable& table) {
+    SunLightDescription sun{.direction = read_direction(table, "direction")};
     sun.angular_diameter_deg = table.number_or("angular_diameter_deg", sun.angular_diameter_deg,
                                                {.min = 0.0, .max = 90.0, .min_excluded = true});
     sun.illuminant = read_illuminant(table);
@@ -64,8 +64,8 @@ SunLight read_sun(TomlTable& table) {
     return sun;
 }
 
-EnvironmentLight read_environment(TomlTable& table) {
-    EnvironmentLight sky;
+EnvironmentLightDescription read_environment(TomlTable& table) {
+    EnvironmentLightDescription sky;
     if (table.has("image")) {
         sky.image = read_file_name(table, "image");
         sky.rotate_deg = table.number_or("rotate_deg", 0.0, {.min = -360.0, .max = 360.0});
@@ -75,8 +75,8 @@ EnvironmentLight read_environment(TomlTable& table) {
     return sky;
 }
 
-AreaLight read_area(TomlTable& table, const NameIndex& objects) {
-    AreaLight light{.object = objects.find(table, "object"), .emission = read_emission(table)};
+AreaLightDescription read_area(TomlTable& table, const NameIndex& objects) {
+    AreaLightDescription light{.object = objects.find(table, "object"), .emission = read_emission(table)};
     light.is_two_sided = table.boolean_or("two_sided", false);
     return light;
 }
@@ -87,14 +87,14 @@ LightKind read_light_kind(TomlTable& table, const NameIndex& objects) {
         return read_area(table, objects);
     }
     if (kind == "sphere") {
-        return SphereLight{.position_mm = read_vector(table, "position_mm"),
-                           .radius_mm = table.number("radius_mm", kLength),
-                           .emission = read_emission(table)};
+        return SphereLightDescription{.position_mm = read_vector(table, "position_mm"),
+                                      .radius_mm = table.number("radius_mm", kLength),
+                                      .emission = read_emission(table)};
     }
     if (kind == "point") {
-        return PointLight{.position_mm = read_vector(table, "position_mm"),
-                          .illuminant = read_illuminant(table),
-                          .intensity_cd = table.number("intensity_cd", kPower)};
+        return PointLightDescription{.position_mm = read_vector(table, "position_mm"),
+                                     .illuminant = read_illuminant(table),
+                                     .intensity_cd = table.number("intensity_cd", kPower)};
     }
     if (kind == "spot") {
         return read_spot(table);
@@ -113,15 +113,15 @@ std::vector<LightDescription> read_lights(TomlTable& top, const NameIndex& objec
     for (TomlTable& table : top.tables("lights")) {
         LightDescription light{.kind = read_light_kind(table, objects), .where = table.where()};
         table.finish();
-        if (const auto* area = std::get_if<AreaLight>(&light.kind)) {
+        if (const auto* area = std::get_if<AreaLightDescription>(&light.kind)) {
             for (const LightDescription& other : lights) {
-                const auto* same = std::get_if<AreaLight>(&other.kind);
+                const auto* same = std::get_if<AreaLightDescription>(&other.kind);
                 if (same != nullptr && same->object == area->object) {
                     table.fail("object", "shines already, by " + other.where);
                 }
             }
         }
-        if (std::holds_alternative<EnvironmentLight>(light.kind)) {
+        if (std::holds_alternative<EnvironmentLightDescription>(light.kind)) {
             if (has_environment) {
                 table.fail("kind", "is a second environment, expected one at most");
             }

@@ -22,7 +22,7 @@ DielectricIndex read_index(TomlTable& table, double fallback) {
     return SpectrumName{table.text("ior")};
 }
 
-Roughness read_roughness(TomlTable& table) {
+RoughnessDescription read_roughness(TomlTable& table) {
     if (table.is_number("roughness")) {
         const double alpha = table.number("roughness", kRoughness);
         return {alpha, alpha};
@@ -72,9 +72,9 @@ MaterialKind read_kind(TomlTable& table, const NameIndex& earlier) {
     if (kind == "plastic") {
         return PlasticDescription{.reflectance = read_texture(table, "reflectance", kReflectance, "reflectance"),
                                   .index = read_index(table, 1.5),
-                                  .roughness = table.has("roughness") ? read_roughness(table) : Roughness{}};
+                                  .roughness = table.has("roughness") ? read_roughness(table) : RoughnessDescription{}};
     }
-    const Roughness roughness = kind.starts_with("rough-") ? read_roughness(table) : Roughness{};
+    const RoughnessDescription roughness = kind.starts_with("rough-") ? read_roughness(table) : RoughnessDescription{};
     if (kind.ends_with("conductor")) {
         return ConductorDescription{.index = read_metal(table), .roughness = roughness};
     }

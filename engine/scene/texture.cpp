@@ -56,7 +56,8 @@ SpectralSample look_up(const GridSpectrum& spectrum, const Vec2d&, const PathWav
 
 SpectralSample look_up(const ImageTexture& image, const Vec2d& uv, const PathWavelengths& path) {
     const SpectralSample abscissa = image.abscissa(path);
-    const SpectralSample value = bilinear(image.grid, uv, [&](std::size_t index) {
+    const Vec2d at{image.repeats.x * uv.x, image.repeats.y * uv.y};
+    const SpectralSample value = bilinear(image.grid, at, [&](std::size_t index) {
         const ImageTexture::Texel& texel = image.texel[index];
         return texel.scale * for_each_wavelength([&](float t) { return texel.shape.at(t); }, abscissa);
     });
@@ -111,7 +112,7 @@ ImageTexture image_texture(const Image& image, const std::filesystem::path& file
                            const SpectralGrid& grid, const TexelOf& texel_of) {
     const auto [r, g, b] = rgb_channels(image, file);
     ImageTexture texture{
-        .grid = texels, .abscissa = tabulated(grid, sigmoid_abscissa), .white = constant_spectrum(1.0, grid)};
+        .grid = texels, .texel = {}, .abscissa = tabulated(grid, sigmoid_abscissa), .white = constant_spectrum(1.0, grid)};
     texture.texel.reserve(static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height));
     for (int y = 0; y < image.height; ++y) {
         for (int x = 0; x < image.width; ++x) {

@@ -35,6 +35,7 @@ struct ImageTexture {
         float scale = 1.0F;
     };
     TexelGrid grid;
+    Vec2d repeats{1.0, 1.0};   // how often the picture covers the surface along u and v
     std::vector<Texel> texel;  // rows from the top
     GridSpectrum abscissa;     // sigmoid_abscissa of the wavelengths
     GridSpectrum white;        // 1 for reflectances

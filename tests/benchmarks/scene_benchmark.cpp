@@ -5,6 +5,7 @@
 #include "engine/optics/focus.h"
 #include "engine/render/light_tracer.h"
 #include "engine/render/scene_render.h"
+#include "engine/scene/scene_description.h"
 #include "tests/benchmarks/benchmarks.h"
 
 namespace lensproof {
@@ -26,6 +27,7 @@ Scene wall_sphere_and_lamp(const SpectralGrid& grid) {
     Scene scene{.grid = grid,
                 .geometry = std::make_unique<SceneGeometry>(std::move(shapes), std::move(objects)),
                 .materials = {},
+                .absorption = {},
                 .lights = {}};
     const Chart checks{.pattern = Checkerboard{.columns = 40, .rows = 40, .square_mm = 100.0},
                        .white_reflectance = 0.9,
@@ -49,7 +51,7 @@ struct Stage {
     [[nodiscard]] SceneView view(const SceneCamera& camera) const {
         return {.scene = &scene,
                 .camera = &camera,
-                .pose = look_at({0.0, 0.0, 0.0}, {0.0, 0.0, 1.0}, {0.0, 1.0, 0.0}),
+                .camera_to_world = camera_to_world({}),
                 .sensor = kSensor,
                 .film = {.width = kWidth,
                          .height = kHeight,

@@ -1,5 +1,6 @@
 // tests/unit/film_sample.h — a film and samples of known statistics for it.
 #pragma once
+#include <array>
 #include <cmath>
 #include <cstdint>
 
@@ -17,6 +18,11 @@ inline FilmLayout plain_film(int width, int height, int layers = 1) {
         layout.rgb_weights.push_back({1.0, 2.0, 3.0});
     }
     return layout;
+}
+
+/// A splat's points, the same at each wavelength.
+inline std::array<Vec2d, 4> all_at(double x_px, double y_px) {
+    return {{{x_px, y_px}, {x_px, y_px}, {x_px, y_px}, {x_px, y_px}}};
 }
 
 /// A number in (0, 1), independent of all others.

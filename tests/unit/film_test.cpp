@@ -169,10 +169,10 @@ constexpr std::array<float, 4> kOnes = {1.0F, 1.0F, 1.0F, 1.0F};
 TEST(Film, SpreadsSplatsByTheFilter) {
     const auto value = [](const Film& film, int x, int y) { return film.light_estimate(x, y).rgb.x; };
     const auto add = [](FilmTile& tile) {
-        tile.splat(6.75, 1.0, kStrata, kOnes);
-        tile.splat(-0.5, 8.0, kStrata, kOnes);
-        tile.splat(-1e300, 0.0, kStrata, kOnes);
-        tile.splat(4.0, 1e9, kStrata, kOnes);
+        tile.splat(all_at(6.75, 1.0), kStrata, kOnes);
+        tile.splat(all_at(-0.5, 8.0), kStrata, kOnes);
+        tile.splat(all_at(-1e300, 0.0), kStrata, kOnes);
+        tile.splat(all_at(4.0, 1e9), kStrata, kOnes);
         tile.count_light_paths(2);
     };
     const Film tent = with_splats("tent", add);
@@ -210,7 +210,8 @@ TEST(Film, FiltersCameraAndLightPathsAlike) {
             for (std::uint32_t i = 0; i < paths; ++i) {
                 const double x = side * even_number(1, 0, i) - margin - 0.5;
                 const auto e = static_cast<float>(side * side * irradiance(x));
-                tile.splat(x, side * even_number(1, 1, i) - margin - 0.5, kStrata, std::array<float, 4>{e, e, e, e});
+                tile.splat(all_at(x, side * even_number(1, 1, i) - margin - 0.5), kStrata,
+                           std::array<float, 4>{e, e, e, e});
             }
             tile.count_light_paths(paths);
         });

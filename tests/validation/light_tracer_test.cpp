@@ -10,6 +10,7 @@
 #include "engine/optics/focus.h"
 #include "engine/optics/lens.h"
 #include "engine/render/scene_render.h"
+#include "engine/scene/scene_description.h"
 #include "tests/validation/small_scene.h"
 
 namespace lensproof {
@@ -35,7 +36,7 @@ class Studio {
         return filled(samples, [&](FilmTile& tile) {
             SceneView view{.scene = &scene_,
                            .camera = &camera_,
-                           .pose = kPose,
+                           .camera_to_world = camera_to_world({}),
                            .sensor = sensor_,
                            .film = layout(),
                            .albedo_weights = {},
@@ -49,7 +50,7 @@ class Studio {
         const LensEntrance entrance{.lens = &traced_,
                                     .map = &entrance_,
                                     .front = front_sphere(traced_.at(0)),
-                                    .pose = kPose,
+                                    .camera_to_world = camera_to_world({}),
                                     .sensor = sensor_};
         return filled(0, [&](FilmTile& tile) {
             for (std::uint32_t i = 0; i < paths; ++i) {
@@ -64,7 +65,6 @@ class Studio {
 
   private:
     static constexpr PathSettings kPaths{.max_bounces = 3};
-    const CameraPose kPose = look_at({0.0, 0.0, 0.0}, {0.0, 0.0, 1.0}, {0.0, 1.0, 0.0});
 
     [[nodiscard]] FilmLayout layout() const {
         // R, G and B all are the mean irradiance over the band.

@@ -83,7 +83,7 @@ TEST(PathTracer, QuadLightHasItsConfigurationFactor) {
 // A point's irradiance is I cos θ / d², a spot's within its full cone the same, and the sun's L Ω cos θ.
 TEST(PathTracer, PointSpotAndSunKeepTheirLaws) {
     const double height_m = 0.3;
-    const auto lit_by = [](const Light& light) {
+    const auto lit_by = [](const LightSource& light) {
         SceneParts parts(kGrid);
         parts.add(Quad{1000.0, 1000.0}, {}, 0.5);
         parts.lights.push_back(light);

@@ -33,6 +33,7 @@ class SceneParts {
         Scene made{.grid = grid_,
                    .geometry = std::make_unique<SceneGeometry>(shapes, objects),
                    .materials = materials,
+                   .absorption = {},
                    .lights = {}};
         made.lights = Lights(*made.geometry, lights);
         return made;
@@ -41,7 +42,7 @@ class SceneParts {
     std::vector<Shape> shapes;
     std::vector<SceneObject> objects;
     std::vector<Material> materials;
-    std::vector<Light> lights;
+    std::vector<LightSource> lights;
 
   private:
     SpectralGrid grid_;
