@@ -288,6 +288,45 @@ TEST(SceneGeometry, NothingShadowsItselfAtAnyScale) {
     }
 }
 
+// Many spheres and quads are found by Embree, a few are tested one by one: the nearest of the many is the nearest of
+// those that each finds alone.
+TEST(SceneGeometry, ManyShapesAreMetAsEachAlone) {
+    std::mt19937_64 random(8);
+    const std::vector<Shape> shapes = {Sphere{3.0}, Quad{7.0, 5.0}, icosphere(3.0, 1)};
+    std::vector<SceneObject> objects;
+    std::vector<SceneGeometry> alone;
+    for (std::uint32_t i = 0; i < 60; ++i) {
+        const AffineMap place = at(uniform(random, 0.0, 25.0) * random_direction(random),
+                                   product(about_x(uniform(random, 0, 360)), scaled(1.0, 0.5, 1.5)));
+        objects.push_back({.shape = i % 3, .to_world = place});
+        alone.push_back(scene_of(shapes[i % 3], place));
+    }
+    const SceneGeometry all(shapes, objects);
+    int met = 0;
+    for (int i = 0; i < 3000; ++i) {
+        const Vec3d origin = 60.0 * random_direction(random);
+        const Vec3d direction = normalized(20.0 * random_direction(random) - origin);
+        std::optional<SurfaceHit> nearest;
+        for (std::uint32_t k = 0; k < alone.size(); ++k) {
+            auto hit = intersect(alone[k], origin, direction, 0.0, 200.0);
+            if (hit && (!nearest || hit->distance_mm < nearest->distance_mm)) {
+                nearest = hit;
+                nearest->object = k;
+            }
+        }
+        const auto hit = intersect(all, origin, direction, 0.0, 200.0);
+        ASSERT_EQ(hit.has_value(), nearest.has_value());
+        EXPECT_EQ(is_occluded(all, origin, origin + 200.0 * direction), nearest.has_value());
+        if (hit) {
+            ++met;
+            EXPECT_EQ(hit->object, nearest->object);
+            // Meshes are moved alone, and instances here: their floats differ by 2^-24 of 30 mm.
+            EXPECT_NEAR(hit->distance_mm, nearest->distance_mm, objects[hit->object].shape == 2 ? 1e-4 : 1e-11);
+        }
+    }
+    EXPECT_GT(met, 1000);
+}
+
 TEST(SceneGeometry, OcclusionIsTheSameFromBothEnds) {
     const SceneGeometry scene({icosphere(5.0, 2), Sphere{4.0}, Quad{6.0, 9.0}},
                               {{.shape = 0, .to_world = at({0, 0, 12})},
