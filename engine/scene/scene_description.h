@@ -135,11 +135,12 @@ struct ObjectDescription {
 
 // --- Lights --------------------------------------------------------------------------------------------------------
 
-/// A surface's or the sky's light: the illuminant's spectrum at a luminance, or a table of radiance.
+/// A surface's or the sky's light: an illuminant's spectrum, or a table of radiance; at a luminance, or as the table
+/// says.
 struct EmissionDescription {
-    std::string illuminant = "D65";
-    double luminance_cd_m2 = 0.0;           // of it; 0 where a table says the radiance
-    std::optional<SpectrumTable> radiance;  // W·m⁻²·sr⁻¹·nm⁻¹
+    std::string illuminant = "D65";         // unused with a table
+    double luminance_cd_m2 = 0.0;           // 0: the table is absolute
+    std::optional<SpectrumTable> radiance;  // W·m⁻²·sr⁻¹·nm⁻¹, or relative
 };
 
 /// An object that shines on its outward side, or on both; evenly in every direction.

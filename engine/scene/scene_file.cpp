@@ -43,7 +43,7 @@ ImageDescription read_image_texture(TomlTable& table) {
 }  // namespace
 
 std::string NameIndex::add(TomlTable& table, const std::string& key, std::size_t index, bool may_be_empty) {
-    const std::string name = may_be_empty ? table.text_or(key, "") : table.text(key);
+    std::string name = may_be_empty ? table.text_or(key, "") : table.text(key);
     if (name.empty()) {
         if (!may_be_empty || table.has(key)) {
             table.fail(key, "is empty, expected a name");

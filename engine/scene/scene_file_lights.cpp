@@ -26,15 +26,17 @@ EmissionDescription read_emission(TomlTable& table) {
     if (!table.has("radiance")) {
         return {.illuminant = read_illuminant(table), .luminance_cd_m2 = table.number("luminance_cd_m2", kPower)};
     }
-    if (table.has("luminance_cd_m2") || table.has("illuminant")) {
-        table.fail("radiance", "stands beside luminance_cd_m2 or illuminant, expected one or the other");
+    if (table.has("illuminant")) {
+        table.fail("radiance", "stands beside illuminant, expected one or the other");
     }
     const SpectrumDescription spectrum = read_spectrum(table, "radiance", kPower, "radiance");
     const auto* file = std::get_if<SpectrumTable>(&spectrum);
     if (file == nullptr) {
         table.fail("radiance", "expected a CSV table of W·m⁻²·sr⁻¹·nm⁻¹ over wavelength_nm");
     }
-    return {.illuminant = "", .radiance = *file};
+    return {.illuminant = "",
+            .luminance_cd_m2 = table.has("luminance_cd_m2") ? table.number("luminance_cd_m2", kPower) : 0.0,
+            .radiance = *file};
 }
 
 SpotLightDescription read_spot(TomlTable& table) {

@@ -45,9 +45,8 @@ Spectrum named_reflectance(const std::string& name) {
 
 /// "metal:Ag" or "metal:silver", with or without the prefix.
 ComplexIndex named_metal(std::string name) {
-    static const std::map<std::string, std::string> kBySymbol = {{"Ag", "silver"},   {"Al", "aluminium"},
-                                                                 {"Au", "gold"},     {"Cr", "chromium"},
-                                                                 {"Cu", "copper"},   {"Fe", "iron"}};
+    static const std::map<std::string, std::string> kBySymbol = {
+        {"Ag", "silver"}, {"Al", "aluminium"}, {"Au", "gold"}, {"Cr", "chromium"}, {"Cu", "copper"}, {"Fe", "iron"}};
     if (name.starts_with(kMetalPrefix)) {
         name.erase(0, kMetalPrefix.size());
     }
@@ -63,8 +62,8 @@ const GlassCatalogue& catalogue() {
 /// What a glass's formula gives, where it holds.
 double index_of(const Glass& glass, double nm) {
     if (!covers(glass, nm)) {
-        throw InputError(fmt::format("the glass {} is known from {:.1f} to {:.1f} nm only, not at {:.1f} nm", glass.name,
-                                     glass.min_wavelength_nm, glass.max_wavelength_nm, nm));
+        throw InputError(fmt::format("the glass {} is known from {:.1f} to {:.1f} nm only, not at {:.1f} nm",
+                                     glass.name, glass.min_wavelength_nm, glass.max_wavelength_nm, nm));
     }
     return refractive_index(glass.formula, nm);
 }
@@ -91,27 +90,26 @@ const RgbUplift& SceneSpectra::uplift() {
 
 GridSpectrum SceneSpectra::at_midpoints(const SpectrumDescription& spectrum) {
     return std::visit(
-        Overloaded{[&](double number) { return constant_spectrum(number, grid_); },
-                   [&](const RgbColour& colour) { return rgb_reflectance(colour.rgb, grid_, uplift()); },
-                   [&](const SpectrumName& name) {
-                       return lensproof::at_midpoints(named_reflectance(name.name), grid_);
-                   },
-                   [&](const SpectrumTable& table) { return lensproof::at_midpoints(read_column(table), grid_); }},
+        Overloaded{
+            [&](double number) { return constant_spectrum(number, grid_); },
+            [&](const RgbColour& colour) { return rgb_reflectance(colour.rgb, grid_, uplift()); },
+            [&](const SpectrumName& name) { return lensproof::at_midpoints(named_reflectance(name.name), grid_); },
+            [&](const SpectrumTable& table) { return lensproof::at_midpoints(read_column(table), grid_); }},
         spectrum);
 }
 
 Texture SceneSpectra::texture(const TextureDescription& texture) {
-    return std::visit(
-        Overloaded{[&](const ImageDescription& image) -> Texture {
-                       ImageTexture made = reflectance_texture(image.file, Wrap::repeat, grid_, uplift());
-                       made.repeats = image.repeats;
-                       for (ImageTexture::Texel& texel : made.texel) {
-                           texel.scale *= static_cast<float>(image.scale);
-                       }
-                       return made;
-                   },
-                   [&](const auto& even) -> Texture { return at_midpoints(SpectrumDescription(even)); }},
-        texture);
+    return std::visit(Overloaded{[&](const ImageDescription& image) -> Texture {
+                                     ImageDescription made =
+                                         reflectance_texture(image.file, Wrap::repeat, grid_, uplift());
+                                     made.repeats = image.repeats;
+                                     for (ImageDescription::Texel& texel : made.texel) {
+                                         texel.scale *= static_cast<float>(image.scale);
+                                     }
+                                     return made;
+                                 },
+                                 [&](const auto& even) -> Texture { return at_midpoints(SpectrumDescription(even)); }},
+                      texture);
 }
 
 SceneSpectra::Metal SceneSpectra::metal(const ConductorIndex& index) {

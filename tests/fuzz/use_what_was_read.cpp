@@ -1,8 +1,12 @@
 #include "tests/fuzz/use_what_was_read.h"
 
+#include <utility>
+
 #include "engine/check/checker.h"
 #include "engine/io/input_error.h"
 #include "engine/optics/lens.h"
+#include "engine/scene/geometry.h"
+#include "engine/scene/scene_shapes.h"
 
 namespace lensproof {
 
@@ -23,6 +27,17 @@ void use(const GlassFile& file) {
         refractive_index(glass.formula, glass.min_wavelength_nm);
         internal_transmittance(glass, 550.0, 10.0);
         dn_dT_relative(glass, glass.max_wavelength_nm);
+    }
+}
+
+void use(const SceneSetup& setup) {
+    try {
+        SceneShapes shapes = load_shapes(setup.scene);
+        const SceneGeometry geometry(std::move(shapes.shapes), std::move(shapes.objects));
+        const RigidMotion camera = camera_to_world(setup.view);
+        intersect(geometry, camera.translation, rotate(camera, {0.0, 0.0, 1.0}), 0.0, 1e12);
+    } catch (const InputError&) {
+        return;  // refused, as a render would
     }
 }
 

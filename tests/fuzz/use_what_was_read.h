@@ -2,6 +2,7 @@
 #pragma once
 #include "engine/io/glass/glass_file.h"
 #include "engine/optics/prescription.h"
+#include "engine/render/scene_setup.h"
 
 namespace lensproof {
 
@@ -11,5 +12,8 @@ void use(const Prescription& prescription);
 
 /// Asks each glass for its index, its transmittance and its change with temperature.
 void use(const GlassFile& file);
+
+/// Builds the scene's geometry, unless that is refused, and sends a ray from the camera.
+void use(const SceneSetup& setup);
 
 }  // namespace lensproof

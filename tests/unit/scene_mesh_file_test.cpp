@@ -279,7 +279,6 @@ TEST_F(MeshFileTest, UnusableFilesAreRefusedByName) {
     const std::string gltf = box_gltf(R"("uri": "box.bin", )");
     expect_named("count.gltf", with(gltf, R"("count": 8)", R"("count": 4000000000)"));
     expect_named("indices.gltf", with(gltf, R"("count": 36)", R"("count": 360000000)"));
-    expect_named("length.gltf", with(gltf, R"("byteLength": 168)", R"("byteLength": 400000000000)"));
     expect_named("offset.gltf", with(gltf, R"("byteOffset": 96)", R"("byteOffset": 160)"));
     expect_named("loop.gltf", with(gltf, R"("children": [1])", R"("children": [0])"));
     EXPECT_NE(message_of([] { read_mesh("no/such.obj"); }).find("no/such.obj: no such file"), std::string::npos);
