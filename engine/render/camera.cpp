@@ -13,6 +13,7 @@
 #include "engine/optics/lens_bytes.h"
 #include "engine/optics/packet/spectral_lens.h"
 #include "engine/pupil/kept_maps.h"
+#include "engine/scene/illuminant_key.h"
 #include "engine/spectral/illuminant.h"
 #include "engine/spectral/spectral_exr.h"
 #include "engine/spectral/wavelengths.h"
@@ -110,13 +111,8 @@ Camera read_camera(TomlTable& table) {
 
 Light read_light(TomlTable& table) {
     Light light;
-    light.illuminant = table.text_or("illuminant", light.illuminant);
+    light.illuminant = read_illuminant(table, "illuminant");
     light.luminance_cd_m2 = table.number_or("luminance_cd_m2", light.luminance_cd_m2, kPositive);
-    try {
-        illuminant(light.illuminant);
-    } catch (const InputError& error) {
-        table.fail("illuminant", error.what());
-    }
     table.finish();
     return light;
 }

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "engine/io/file.h"
+#include "engine/scene/illuminant_key.h"
 #include "engine/scene/scene_file.h"
 
 namespace lensproof {
@@ -32,6 +33,7 @@ SceneSetup parse_scene_setup(const std::string& text, const std::filesystem::pat
     TomlTable camera = top.table("camera");
     setup.view = read_camera_view(camera);
     setup.camera = read_camera_keys(camera, setup.view.focal_length_mm.has_value());
+    setup.white_balance = read_illuminant(camera, "white_balance");
     if (setup.view.focal_length_mm && !setup.camera.lens.empty()) {
         camera.fail("focal_length_mm", "stands beside lens, expected one or the other");
     }

@@ -11,6 +11,7 @@ namespace lensproof {
 struct SceneSetup {
     Camera camera;  // without a lens where the view says a focal length
     CameraView view;
+    std::string white_balance = "D65";  // the illuminant in which a white surface is R = G = B
     SceneDescription scene;
     SpectralSampling spectral;
     int samples_per_pixel = 64;

@@ -129,7 +129,8 @@ Environment::Draw Environment::draw(double u1, double u2) const {
     const double turn = 2.0 * kPi * (0.5 - u);
     const double sine = std::sin(polar);
     const Vec3d local{sine * std::cos(turn), sine * std::sin(turn), std::cos(polar)};
-    return {frame_.to_world(local), sine > 0.0 ? density_in_picture(pixel.index, row.index) / (2.0 * kPi * kPi * sine) : 0.0};
+    return {frame_.to_world(local),
+            sine > 0.0 ? density_in_picture(pixel.index, row.index) / (2.0 * kPi * kPi * sine) : 0.0};
 }
 
 double Environment::density(const Vec3d& direction) const {

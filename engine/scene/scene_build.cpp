@@ -5,11 +5,11 @@
 #include <cmath>
 #include <memory>
 #include <numbers>
+#include <set>
 #include <utility>
 
 #include "engine/io/input_error.h"
 #include "engine/scene/scene_spectra.h"
-#include "engine/spectral/colour_checker.h"
 #include "engine/spectral/illuminant.h"
 
 namespace lensproof {
@@ -226,6 +226,49 @@ class SceneBuilder {
 
 BuiltScene build_scene(const SceneDescription& description, const SpectralGrid& grid, const Cache& cache) {
     return SceneBuilder(description, grid, cache).build();
+}
+
+std::vector<std::filesystem::path> named_files(const SceneDescription& description) {
+    std::set<std::filesystem::path> files;
+    const auto of_spectrum =
+        Overloaded{[&](const SpectrumTable& table) { files.insert(table.file); },
+                   [&](const ImageDescription& image) { files.insert(image.file); }, [](const auto& /*no file*/) {}};
+    const auto of_emission = [&](const EmissionDescription& emission) {
+        if (emission.radiance) {
+            files.insert(emission.radiance->file);
+        }
+    };
+    for (const MaterialDescription& material : description.materials) {
+        std::visit(Overloaded{[&](const DiffuseDescription& diffuse) { std::visit(of_spectrum, diffuse.reflectance); },
+                              [&](const PlasticDescription& plastic) { std::visit(of_spectrum, plastic.reflectance); },
+                              [&](const DielectricDescription& dielectric) {
+                                  std::visit(of_spectrum, dielectric.absorption_per_mm);
+                              },
+                              [&](const ConductorDescription& conductor) {
+                                  std::visit(of_spectrum, conductor.index.n);
+                                  std::visit(of_spectrum, conductor.index.k);
+                              },
+                              [](const MixDescription& /*of others*/) {}},
+                   material.kind);
+    }
+    for (const ObjectDescription& object : description.objects) {
+        if (const auto* mesh = std::get_if<MeshFromFile>(&object.shape)) {
+            files.insert(mesh->file);
+        }
+    }
+    for (const LightDescription& light : description.lights) {
+        std::visit(Overloaded{[&](const AreaLightDescription& area) { of_emission(area.emission); },
+                              [&](const SphereLightDescription& sphere) { of_emission(sphere.emission); },
+                              [&](const EnvironmentLightDescription& sky) {
+                                  of_emission(sky.emission);
+                                  if (sky.image) {
+                                      files.insert(*sky.image);
+                                  }
+                              },
+                              [](const auto& /*no file*/) {}},
+                   light.kind);
+    }
+    return {files.begin(), files.end()};
 }
 
 }  // namespace lensproof

@@ -1,5 +1,6 @@
 // engine/scene/scene_build.h — from what a scene file says to what light meets.
 #pragma once
+#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -20,5 +21,8 @@ struct BuiltScene {
 /// what is wrong with what it names: a file that cannot be used, a name that is not known, an index of 0, a glass that
 /// does not cover the grid, a light that sends nothing within it.
 BuiltScene build_scene(const SceneDescription& description, const SpectralGrid& grid, const Cache& cache);
+
+/// The files that it reads, each once: what a scene's identity depends on besides its own text.
+std::vector<std::filesystem::path> named_files(const SceneDescription& description);
 
 }  // namespace lensproof

@@ -1,8 +1,8 @@
 #include <fmt/format.h>
 
 #include "engine/io/input_error.h"
+#include "engine/scene/illuminant_key.h"
 #include "engine/scene/scene_file_parts.h"
-#include "engine/spectral/illuminant.h"
 
 namespace lensproof {
 
@@ -12,19 +12,10 @@ constexpr Bounds kLength{.min = 0.0, .max = 1e12, .min_excluded = true};
 /// A light without power is an error: whoever wants none leaves it out.
 constexpr Bounds kPower{.min = 0.0, .max = 1e15, .min_excluded = true};
 
-std::string read_illuminant(TomlTable& table) {
-    std::string name = table.text_or("illuminant", "D65");
-    try {
-        illuminant(name);
-    } catch (const InputError& error) {
-        table.fail("illuminant", error.what());
-    }
-    return name;
-}
-
 EmissionDescription read_emission(TomlTable& table) {
     if (!table.has("radiance")) {
-        return {.illuminant = read_illuminant(table), .luminance_cd_m2 = table.number("luminance_cd_m2", kPower)};
+        return {.illuminant = read_illuminant(table, "illuminant"),
+                .luminance_cd_m2 = table.number("luminance_cd_m2", kPower)};
     }
     if (table.has("illuminant")) {
         table.fail("radiance", "stands beside illuminant, expected one or the other");
@@ -52,7 +43,7 @@ SpotLightDescription read_spot(TomlTable& table) {
     }
     spot.cone_deg = table.number("cone_deg", {.min = 0.0, .max = 90.0, .min_excluded = true});
     spot.full_deg = table.number_or("full_deg", spot.cone_deg, {.min = 0.0, .max = spot.cone_deg});
-    spot.illuminant = read_illuminant(table);
+    spot.illuminant = read_illuminant(table, "illuminant");
     spot.intensity_cd = table.number("intensity_cd", kPower);
     return spot;
 }
@@ -61,7 +52,7 @@ SunLightDescription read_sun(TomlTable& table) {
     SunLightDescription sun{.direction = read_direction(table, "direction")};
     sun.angular_diameter_deg = table.number_or("angular_diameter_deg", sun.angular_diameter_deg,
                                                {.min = 0.0, .max = 90.0, .min_excluded = true});
-    sun.illuminant = read_illuminant(table);
+    sun.illuminant = read_illuminant(table, "illuminant");
     sun.illuminance_lx = table.number("illuminance_lx", kPower);
     return sun;
 }
@@ -95,7 +86,7 @@ LightKind read_light_kind(TomlTable& table, const NameIndex& objects) {
     }
     if (kind == "point") {
         return PointLightDescription{.position_mm = read_vector(table, "position_mm"),
-                                     .illuminant = read_illuminant(table),
+                                     .illuminant = read_illuminant(table, "illuminant"),
                                      .intensity_cd = table.number("intensity_cd", kPower)};
     }
     if (kind == "spot") {

@@ -111,8 +111,10 @@ template <class TexelOf>
 ImageTexture image_texture(const Image& image, const std::filesystem::path& file, const TexelGrid& texels,
                            const SpectralGrid& grid, const TexelOf& texel_of) {
     const auto [r, g, b] = rgb_channels(image, file);
-    ImageTexture texture{
-        .grid = texels, .texel = {}, .abscissa = tabulated(grid, sigmoid_abscissa), .white = constant_spectrum(1.0, grid)};
+    ImageTexture texture{.grid = texels,
+                         .texel = {},
+                         .abscissa = tabulated(grid, sigmoid_abscissa),
+                         .white = constant_spectrum(1.0, grid)};
     texture.texel.reserve(static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height));
     for (int y = 0; y < image.height; ++y) {
         for (int x = 0; x < image.width; ++x) {

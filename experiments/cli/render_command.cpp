@@ -1,4 +1,4 @@
-// experiments/cli/render_command.cpp — `lensproof render SCENE`: a chart through a lens.
+// experiments/cli/render_command.cpp — `lensproof render SCENE`: a scene, or a chart, through a lens.
 #include <fmt/format.h>
 
 #include <memory>
@@ -9,6 +9,7 @@
 #include "engine/io/hash.h"
 #include "engine/io/input_error.h"
 #include "engine/render/camera.h"
+#include "engine/render/prepared_scene.h"
 #include "experiments/cli/render_job.h"
 
 namespace lensproof {
@@ -24,8 +25,11 @@ ChartCamera make_camera(const ChartScene& scene, const RenderJobOptions& options
     }
 }
 
-int run_render(const RenderJobOptions& options) {
-    render_files(options);  // before long work
+std::string settings_of(const RenderJobOptions& options) {
+    return fmt::format("{} filter, {} features", options.filter, options.has_features ? "with" : "no");
+}
+
+int render_chart_scene(const RenderJobOptions& options) {
     const ChartScene scene = read_chart_scene(options.scene);
     const ChartCamera camera = make_camera(scene, options);
     if (!camera.spectral().clamp_note.empty()) {
@@ -37,10 +41,9 @@ int run_render(const RenderJobOptions& options) {
     RenderJob job;
     job.film = render.film();
     job.make_renderer = [&render] { return render.make_renderer(); };
-    job.identity = {
-        {"scene", hash_text(read_file(options.scene))},
-        {"lens", camera.lens_hash()},
-        {"settings", fmt::format("{} filter, {} features", options.filter, options.has_features ? "with" : "no")}};
+    job.identity = {{"scene", hash_text(read_file(options.scene))},
+                    {"lens", camera.lens_hash()},
+                    {"settings", settings_of(options)}};
     job.notes.metadata = camera.metadata();
     job.notes.colours = camera.colours();
     job.samples = static_cast<std::uint32_t>(scene.samples_per_pixel);
@@ -49,13 +52,60 @@ int run_render(const RenderJobOptions& options) {
     return run_render_job(job, options);
 }
 
+/// What is wrong with a file that the scene names, or with its lens, is said of the scene's file.
+std::unique_ptr<PreparedScene> prepare(const SceneSetup& setup, const RenderJobOptions& options) {
+    const PixelFilter filter = PixelFilter::named(options.filter);
+    try {
+        return std::make_unique<PreparedScene>(setup, filter, Cache::standard());
+    } catch (const InputError& error) {
+        const std::string message = error.what();
+        throw InputError(message.starts_with(options.scene) ? message : fmt::format("{}: {}", options.scene, message));
+    }
+}
+
+/// Of the file and all files that it names.
+std::string scene_hash(const SceneSetup& setup, const std::string& file) {
+    std::string hashes = hash_text(read_file(file));
+    for (const std::filesystem::path& named : named_files(setup.scene)) {
+        hashes += hash_text(read_file(named));
+    }
+    return hash_text(hashes);
+}
+
+int render_scene(const RenderJobOptions& options) {
+    const SceneSetup setup = read_scene_setup(options.scene);
+    const std::unique_ptr<PreparedScene> scene = prepare(setup, options);
+    for (const std::string& remark : scene->remarks()) {
+        fmt::print(stderr, "lensproof: {}\n", remark);
+    }
+    const SceneView view = scene->view(options.common.seed, options.has_features);
+    RenderJob job;
+    job.film = view.film;
+    job.make_renderer = [&view] { return scene_renderer(view); };
+    job.identity = {{"scene", scene_hash(setup, options.scene)},
+                    {"lens", scene->camera_hash()},
+                    {"settings", settings_of(options)}};
+    job.notes.metadata = scene->metadata();
+    job.notes.colours = scene->colours();
+    job.samples = static_cast<std::uint32_t>(setup.samples_per_pixel);
+    job.json["scene"] = options.scene;
+    job.json["lens"] = scene->lens_id();
+    return run_render_job(job, options);
+}
+
+int run_render(const RenderJobOptions& options) {
+    render_files(options);  // before long work
+    return TomlTable::read(options.scene).has("chart") ? render_chart_scene(options) : render_scene(options);
+}
+
 }  // namespace
 
 void add_render_command(CLI::App& app, int& status) {
     const auto options = std::make_shared<RenderJobOptions>();
-    CLI::App* command = app.add_subcommand("render", "Render a chart through a lens");
+    CLI::App* command = app.add_subcommand("render", "Render a scene or a chart through a lens");
     command->footer(
         "Examples: lensproof render experiments/scenes/tessar_checkerboard.toml -o chart.exr\n"
+        "          lensproof render experiments/scenes/cornell_box.toml --spp 256 -o box.exr\n"
         "          lensproof render SCENE --noise 0.01 --time 3600 --preview now.png --checkpoint chart.checkpoint\n"
         "          lensproof render SCENE --spp 1024 --shard 2/5 -o part2.exr; lensproof merge part*.exr -o chart.exr\n"
         "Ctrl-C ends a render with a checkpoint written and exit status 3; a second one at once.");

@@ -1,0 +1,172 @@
+#include "engine/render/prepared_scene.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "engine/io/bytes.h"
+#include "engine/io/hash.h"
+#include "engine/io/input_error.h"
+#include "engine/optics/lens_bytes.h"
+#include "engine/pupil/kept_maps.h"
+#include "engine/render/film.h"
+#include "engine/spectral/illuminant.h"
+
+namespace lensproof {
+
+namespace {
+
+constexpr double kMostBytes = 16e9;  // of sums in memory
+
+/// Channels of one number make a grey picture.
+Vec3d in_three_channels(const SensorResponse& response, const Vec3d& weights) {
+    return response.channels.size() == 1 ? Vec3d{weights.x, weights.x, weights.x} : weights;
+}
+
+/// RGB of a reflectance of 1 in one stratum, such that a white in the balanced light gives 1 in all of them together
+/// and each stratum's samples count alike.
+std::vector<Vec3d> albedo_weights(const std::vector<Vec3d>& rgb_weights, const SpectralGrid& grid,
+                                  const Illuminant& white) {
+    std::vector<Vec3d> weights;
+    Vec3d sum;
+    for (int i = 0; i < grid.size(); ++i) {
+        weights.push_back(white.relative(grid.strata.midpoint(i)) * rgb_weights[static_cast<std::size_t>(i)]);
+        sum = sum + weights.back();
+    }
+    const auto share = [&](double weight, double whole) { return whole > 0.0 ? grid.size() * weight / whole : 0.0; };
+    for (Vec3d& weight : weights) {
+        weight = {share(weight.x, sum.x), share(weight.y, sum.y), share(weight.z, sum.z)};
+    }
+    return weights;
+}
+
+}  // namespace
+
+PreparedScene::PreparedScene(const SceneSetup& setup, const PixelFilter& filter, const Cache& cache)
+    : setup_(setup),
+      filter_(filter),
+      lens_(setup.camera.lens.empty() ? std::nullopt : std::optional(camera_lens(setup.camera))),
+      lens_id_(lens_ ? lens_->id : ""),
+      grid_(make_grid()),
+      built_(build_scene(setup.scene, grid_, cache)) {
+    if (!clamp_note_.empty()) {
+        built_.remarks.push_back(clamp_note_);
+    }
+    const Illuminant white = illuminant(setup.white_balance);
+    const SensorResponse response = sensor_response(setup.camera.response, setup.camera.exposure, white);
+    const std::vector<Vec3d> weights = stratum_weights(response, grid_.strata, white);
+    std::ranges::transform(weights, std::back_inserter(rgb_weights_),
+                           [&](const Vec3d& weight) { return in_three_channels(response, weight); });
+    albedo_weights_ = albedo_weights(rgb_weights_, grid_, white);
+    colours_ = rgb_space(setup.camera.response, white);
+    if (setup.view.model == CameraModel::exact) {
+        make_exact_camera(cache);
+    } else {
+        make_ideal_camera();
+    }
+    const Sensor& sensor = setup.camera.sensor;
+    const double bytes = static_cast<double>(film_bytes_per_pixel(view(0, true).film)) * sensor.width * sensor.height;
+    if (bytes > kMostBytes) {
+        throw InputError(
+            fmt::format("{} × {} pixels with {} spectral layers need {:.1f} GB, expected {:.0f} GB at most: "
+                        "fewer pixels or layers",
+                        sensor.width, sensor.height, setup.spectral.layers, bytes / 1e9, kMostBytes / 1e9));
+    }
+}
+
+SpectralGrid PreparedScene::make_grid() {
+    double min_nm = setup_.spectral.min_nm;
+    double max_nm = setup_.spectral.max_nm;
+    if (lens_) {
+        const WavelengthRange range = wavelength_range(*lens_);
+        min_nm = std::max(min_nm, range.min_nm);
+        max_nm = std::min(max_nm, range.max_nm);
+        if (!(min_nm < max_nm)) {
+            throw InputError(
+                fmt::format("wavelengths of {} to {} nm: the glasses of {} are known from {} to {} nm only",
+                            setup_.spectral.min_nm, setup_.spectral.max_nm, lens_->name, range.min_nm, range.max_nm));
+        }
+        if (min_nm != setup_.spectral.min_nm || max_nm != setup_.spectral.max_nm) {
+            clamp_note_ = fmt::format("wavelengths clamped to {} to {} nm, where the glasses of {} are known", min_nm,
+                                      max_nm, lens_->name);
+        }
+    }
+    return spectral_grid(min_nm, max_nm, setup_.spectral.layers * setup_.spectral.strata_per_layer);
+}
+
+void PreparedScene::make_exact_camera(const Cache& cache) {
+    if (!lens_) {
+        throw InputError("the exact camera model needs a lens");
+    }
+    traced_ = std::make_unique<SpectralLens<double>>(at_wavelengths<double>(*lens_, grid_.strata.midpoints()));
+    // Pixels are areas: the corner of what the corner pixel's filter reaches is the farthest point sampled.
+    pupil_ =
+        std::make_unique<PupilMap>(kept_pupil_map(cache, traced_->at(), lens_->is_rotationally_symmetric,
+                                                  setup_.camera.sensor.half_diagonal_mm(filter_.radius_px() - 0.5)));
+    slices_ = std::make_unique<PupilSlices>(*pupil_, grid_.size());
+    camera_ = ExactCamera{traced_.get(), slices_.get()};
+}
+
+void PreparedScene::make_ideal_camera() {
+    std::vector<GaussianCamera> cameras;
+    for (const double nm : grid_.strata.midpoints()) {
+        cameras.push_back(lens_ ? gaussian_camera(*lens_, setup_.view.model, nm)
+                                : gaussian_camera(setup_.view.focal_length_mm.value(), setup_.camera.f_number,
+                                                  setup_.camera.focus_distance_mm, setup_.view.model));
+    }
+    camera_ = std::move(cameras);
+}
+
+SceneView PreparedScene::view(std::uint64_t seed, bool has_features) const {
+    const WavelengthStrata& strata = grid_.strata;
+    return {.scene = &built_.scene,
+            .camera = &camera_,
+            .camera_to_world = camera_to_world(setup_.view),
+            .sensor = setup_.camera.sensor,
+            .film = {.width = setup_.camera.sensor.width,
+                     .height = setup_.camera.sensor.height,
+                     .layer_nm = WavelengthStrata{strata.min_nm, strata.max_nm, setup_.spectral.layers}.midpoints(),
+                     .rgb_weights = rgb_weights_,
+                     .band_nm = strata.max_nm - strata.min_nm,
+                     .filter = filter_,
+                     .has_features = has_features},
+            .albedo_weights = albedo_weights_,
+            .paths = {.max_bounces = setup_.max_bounces},
+            .seed = seed};
+}
+
+std::string PreparedScene::camera_hash() const {
+    std::string bytes;
+    if (traced_) {
+        for (const TraceLens<double>& lens : traced_->at()) {
+            append_lens_bytes(bytes, lens);
+        }
+    } else {
+        for (const GaussianCamera& camera : std::get<std::vector<GaussianCamera>>(camera_)) {
+            bytes += fmt::format("{} {} {} {} {} {} {} {} {} {}\n", camera.film_z, camera.pupil_z,
+                                 camera.pupil_radius_mm, camera.is_pinhole, camera.object_z, camera.h_h, camera.h_s,
+                                 camera.s_h, camera.s_s, camera.transmittance);
+        }
+    }
+    return hash_text(bytes);
+}
+
+std::map<std::string, std::string> PreparedScene::metadata() const {
+    const Camera& camera = setup_.camera;
+    return {{"lensproof:lens", lens_ ? lens_->name : fmt::format("{} mm", setup_.view.focal_length_mm.value_or(0.0))},
+            {"lensproof:cameraModel", name_of(setup_.view.model)},
+            {"lensproof:fNumber", fmt::format("{}", camera.f_number)},
+            {"lensproof:focusDistance_mm", fmt::format("{}", camera.focus_distance_mm)},
+            {"lensproof:pixelPitch_um", fmt::format("{}", 1e3 * camera.sensor.pixel_pitch_mm)},
+            {"lensproof:shutter_s", fmt::format("{}", camera.exposure.time_s)},
+            {"lensproof:iso", fmt::format("{}", camera.exposure.iso)},
+            {"lensproof:response", camera.response},
+            {"lensproof:illuminant", setup_.white_balance},
+            {"lensproof:pixelFilter", filter_.name()},
+            {"lensproof:maxBounces", fmt::format("{}", setup_.max_bounces)},
+            {"lensproof:colourSpace", colours_ ? "linear, Rec. 709 primaries, the illuminant's white"
+                                               : "linear, the sensor's own, balanced to the illuminant"}};
+}
+
+}  // namespace lensproof
