@@ -65,7 +65,7 @@ class SceneBuilder {
     }
 
   private:
-    static RoughnessDescription roughness_of(const RoughnessDescription& roughness) {
+    static Roughness roughness_of(const RoughnessDescription& roughness) {
         return {.alpha_x = roughness.along_u, .alpha_y = roughness.along_v};
     }
 
@@ -156,9 +156,9 @@ class SceneBuilder {
     }
 
     void add(const AreaLightDescription& light) {
-        lights_.emplace_back(AreaLightDescription{.object = static_cast<std::uint32_t>(light.object),
-                                                  .radiance = shining(spectra_.radiance(light.emission)),
-                                                  .is_two_sided = light.is_two_sided});
+        lights_.emplace_back(AreaLight{.object = static_cast<std::uint32_t>(light.object),
+                                       .radiance = shining(spectra_.radiance(light.emission)),
+                                       .is_two_sided = light.is_two_sided});
     }
 
     /// A black ball that shines.
@@ -167,8 +167,8 @@ class SceneBuilder {
         objects_.push_back({.shape = add_shape(Sphere{light.radius_mm}),
                             .to_world = {.linear = kIdentity3, .translation = light.position_mm},
                             .material = black});
-        lights_.emplace_back(AreaLightDescription{.object = static_cast<std::uint32_t>(objects_.size() - 1),
-                                                  .radiance = shining(spectra_.radiance(light.emission))});
+        lights_.emplace_back(AreaLight{.object = static_cast<std::uint32_t>(objects_.size() - 1),
+                                       .radiance = shining(spectra_.radiance(light.emission))});
     }
 
     /// W·sr⁻¹·nm⁻¹ of so many candela: as radiance follows from cd/m².
@@ -177,15 +177,15 @@ class SceneBuilder {
     }
 
     void add(const PointLightDescription& light) {
-        lights_.emplace_back(PointLightDescription{light.position_mm, intensity(light.illuminant, light.intensity_cd)});
+        lights_.emplace_back(PointLight{light.position_mm, intensity(light.illuminant, light.intensity_cd)});
     }
 
     void add(const SpotLightDescription& light) {
-        lights_.emplace_back(SpotLightDescription{.position = light.position_mm,
-                                                  .axis = light.direction,
-                                                  .cos_inner = std::cos(radians(light.full_deg)),
-                                                  .cos_outer = std::cos(radians(light.cone_deg)),
-                                                  .intensity = intensity(light.illuminant, light.intensity_cd)});
+        lights_.emplace_back(SpotLight{.position = light.position_mm,
+                                       .axis = light.direction,
+                                       .cos_inner = std::cos(radians(light.full_deg)),
+                                       .cos_outer = std::cos(radians(light.cone_deg)),
+                                       .intensity = intensity(light.illuminant, light.intensity_cd)});
     }
 
     /// An even disc of angular radius r gives a plane that faces it the irradiance L π sin²r.
@@ -193,10 +193,9 @@ class SceneBuilder {
         const double radius = radians(0.5 * light.angular_diameter_deg);
         const double per_projected = 1.0 / (kPi * std::sin(radius) * std::sin(radius));
         const Spectrum irradiance = irradiance_of(illuminant(light.illuminant), light.illuminance_lx);
-        lights_.emplace_back(
-            SunLightDescription{.towards = light.direction,
-                                .cos_radius = std::cos(radius),
-                                .radiance = shining(stratum_means(per_projected * irradiance, spectra_.grid()))});
+        lights_.emplace_back(SunLight{.towards = light.direction,
+                                      .cos_radius = std::cos(radius),
+                                      .radiance = shining(stratum_means(per_projected * irradiance, spectra_.grid()))});
     }
 
     void add(const EnvironmentLightDescription& light) {
@@ -207,7 +206,7 @@ class SceneBuilder {
         const Spectrum white = SceneSpectra::radiance_spectrum(light.emission);
         shining(stratum_means(white, spectra_.grid()));
         const Image image = read_image(*light.image);
-        lights_.emplace_back(EnvironmentLightDescription{std::make_shared<const Environment>(
+        lights_.emplace_back(EnvironmentLight{std::make_shared<const Environment>(
             emission_texture(image, *light.image, Wrap::repeat, Wrap::clamp, white, spectra_.grid(), spectra_.uplift()),
             light.up, light.rotate_deg)});
     }

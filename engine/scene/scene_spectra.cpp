@@ -100,10 +100,10 @@ GridSpectrum SceneSpectra::at_midpoints(const SpectrumDescription& spectrum) {
 
 Texture SceneSpectra::texture(const TextureDescription& texture) {
     return std::visit(Overloaded{[&](const ImageDescription& image) -> Texture {
-                                     ImageDescription made =
+                                     ImageTexture made =
                                          reflectance_texture(image.file, Wrap::repeat, grid_, uplift());
                                      made.repeats = image.repeats;
-                                     for (ImageDescription::Texel& texel : made.texel) {
+                                     for (ImageTexture::Texel& texel : made.texel) {
                                          texel.scale *= static_cast<float>(image.scale);
                                      }
                                      return made;
