@@ -19,9 +19,10 @@ struct SceneSetup {
 };
 
 /// Reads a scene file, as engine/scene/README.md documents it: [camera], [[materials]], [[objects]], [[lights]] and
-/// [render]. Lens, illuminants and the files that it names have to be there, but are not loaded but for the mesh
-/// files' names. Throws InputError naming file, line and key; besides what `read_scene` and `read_camera` refuse, a
-/// scene without a light, and a number of wavelengths that is no multiple of 4.
+/// [render]. Illuminants and the files that it names have to be there; lens, meshes, pictures, tables, metals and
+/// glasses are looked up by whoever builds the scene. Throws InputError naming file, line and key; besides what
+/// `read_scene` and `read_camera` refuse, a scene without a light, and a number of wavelengths that is no multiple
+/// of 4.
 SceneSetup read_scene_setup(const std::filesystem::path& file);
 
 /// The same from a text; `name` stands for the file in messages, and its folder is where files are looked for.
