@@ -57,24 +57,24 @@ GaussianCamera paraxial_lens(const Lens& lens, const TraceLens<double>& traced, 
 
 }  // namespace
 
-GaussianCamera gaussian_camera(const Lens& lens, CameraModel model, double wavelength_nm) {
+GaussianCamera gaussian_camera(const Lens& lens, LensModel model, double wavelength_nm) {
     const TraceLens<double> traced = at_wavelength<double>(lens, wavelength_nm);
     // What has one focal length has that of the line by which lenses are focused and stopped down.
-    const TraceLens<double> reference = model == CameraModel::paraxial ? traced : at_wavelength<double>(lens, kLineD);
+    const TraceLens<double> reference = model == LensModel::paraxial ? traced : at_wavelength<double>(lens, kLineD);
     const ParaxialData data = paraxial_data(reference);
     if (!std::isfinite(data.efl) || !std::isfinite(data.entrance_pupil_diameter)) {
         throw InputError(fmt::format("{} has no focal length or no entrance pupil, which the {} model needs", lens.name,
                                      name_of(model)));
     }
     GaussianCamera camera =
-        model == CameraModel::paraxial ? paraxial_lens(lens, reference, data) : thin_lens(reference, data);
-    camera.is_pinhole = model == CameraModel::pinhole;
+        model == LensModel::paraxial ? paraxial_lens(lens, reference, data) : thin_lens(reference, data);
+    camera.is_pinhole = model == LensModel::pinhole;
     camera.transmittance = axial_transmittance(traced);
     return camera;
 }
 
-GaussianCamera gaussian_camera(double focal_length_mm, double f_number, double focus_distance_mm, CameraModel model) {
-    if (model != CameraModel::thin_lens && model != CameraModel::pinhole) {
+GaussianCamera gaussian_camera(double focal_length_mm, double f_number, double focus_distance_mm, LensModel model) {
+    if (model != LensModel::thin_lens && model != LensModel::pinhole) {
         throw InputError(fmt::format("the {} model needs a lens", name_of(model)));
     }
     if (!(focus_distance_mm > focal_length_mm)) {
@@ -84,7 +84,7 @@ GaussianCamera gaussian_camera(double focal_length_mm, double f_number, double f
     }
     return {.film_z = 1.0 / (1.0 / focal_length_mm - 1.0 / focus_distance_mm),
             .pupil_radius_mm = 0.5 * focal_length_mm / f_number,
-            .is_pinhole = model == CameraModel::pinhole,
+            .is_pinhole = model == LensModel::pinhole,
             .s_h = 1.0 / focal_length_mm};
 }
 

@@ -9,7 +9,7 @@
 #include "engine/render/packet/path_kernels.h"
 #include "engine/render/pixel_filter.h"
 #include "engine/render/sensor.h"
-#include "engine/scene/camera_model.h"
+#include "engine/scene/lens_model.h"
 
 namespace lensproof {
 
@@ -33,12 +33,12 @@ struct GaussianCamera {
 
 /// `lens`, stopped down and focused, as one of the ideal models at a wavelength. Throws InputError for a lens that has
 /// no focal length, and for a paraxial one whose exit pupil lies at infinity.
-GaussianCamera gaussian_camera(const Lens& lens, CameraModel model, double wavelength_nm);
+GaussianCamera gaussian_camera(const Lens& lens, LensModel model, double wavelength_nm);
 
 /// A pinhole or a thin lens that stands for no lens: of focal length and f-number, focused `focus_distance_mm` before
 /// it, at the frame's origin; it loses no light. Throws InputError for another model and for a focus within the focal
 /// length.
-GaussianCamera gaussian_camera(double focal_length_mm, double f_number, double focus_distance_mm, CameraModel model);
+GaussianCamera gaussian_camera(double focal_length_mm, double f_number, double focus_distance_mm, LensModel model);
 
 /// What ideal camera paths are made of. `at`: the camera at the wavelengths that samples spread evenly over.
 struct IdealPathSource {

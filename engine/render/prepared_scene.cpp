@@ -60,7 +60,7 @@ PreparedScene::PreparedScene(const SceneSetup& setup, const PixelFilter& filter,
                            [&](const Vec3d& weight) { return in_three_channels(response, weight); });
     albedo_weights_ = albedo_weights(rgb_weights_, grid_, white);
     colours_ = rgb_space(setup.camera.response, white);
-    if (setup.view.model == CameraModel::exact) {
+    if (setup.view.model == LensModel::exact) {
         make_exact_camera(cache);
     } else {
         make_ideal_camera();

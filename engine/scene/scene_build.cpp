@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "engine/io/input_error.h"
+#include "engine/scene/scene_shapes.h"
 #include "engine/scene/scene_spectra.h"
 #include "engine/spectral/illuminant.h"
 
@@ -46,9 +47,7 @@ class SceneBuilder {
         for (const MaterialDescription& material : description_.materials) {
             said_of(material.where, [&] { add_material(material); });
         }
-        for (const ObjectDescription& object : description_.objects) {
-            said_of(object.where, [&] { add_object(object); });
-        }
+        add_objects();
         for (const LightDescription& light : description_.lights) {
             said_of(light.where, [&] { add_light(light); });
         }
@@ -103,38 +102,24 @@ class SceneBuilder {
         absorption_.push_back(std::move(absorption));
     }
 
-    std::uint32_t add_shape(Shape shape) {
-        shapes_.push_back(std::move(shape));
-        return static_cast<std::uint32_t>(shapes_.size() - 1);
-    }
-
-    void add_object(const ObjectDescription& description) {
-        const std::uint32_t shape =
-            std::visit(Overloaded{[&](const MeshFromFile& from) {
-                                      MeshFile file = read_mesh(from.file, from.options);
-                                      remarks_.insert(remarks_.end(), file.remarks.begin(), file.remarks.end());
-                                      return add_shape(std::move(file.mesh));
-                                  },
-                                  [&](const ChartOnQuad& chart) { return add_shape(chart.quad); },
-                                  [&](const InstanceOf& instance) { return objects_[instance.object].shape; },
-                                  [&](const auto& plain) { return add_shape(plain); }},
-                       description.shape);
-        objects_.push_back({.shape = shape,
-                            .to_world = description.to_world,
-                            .material = description.material ? static_cast<std::uint32_t>(*description.material)
-                                                             : own_material(description.shape)});
-    }
-
-    /// Of a chart that is its own material. An instance of one has it from there.
-    std::uint32_t own_material(const ShapeDescription& shape) {
-        if (const auto* instance = std::get_if<InstanceOf>(&shape)) {
-            return objects_[instance->object].material;
+    void add_objects() {
+        SceneShapes loaded = load_shapes(description_);
+        shapes_ = std::move(loaded.shapes);
+        objects_ = std::move(loaded.objects);
+        remarks_ = std::move(loaded.remarks);
+        for (const std::size_t object : loaded.own_charts) {
+            const auto& chart = chart_of(description_.objects[object]);
+            add_own(DiffuseMaterial{
+                chart_texture(chart.chart, chart.quad.width_mm, chart.quad.height_mm, spectra_.grid())});
         }
-        const auto& chart = std::get<ChartOnQuad>(shape);
-        return add_own(
-            DiffuseMaterial{chart_texture(chart.chart, chart.quad.width_mm, chart.quad.height_mm, spectra_.grid())});
     }
 
+    [[nodiscard]] const ChartOnQuad& chart_of(const ObjectDescription& object) const {
+        const auto* instance = std::get_if<InstanceOf>(&object.shape);
+        return std::get<ChartOnQuad>((instance != nullptr ? description_.objects[instance->object] : object).shape);
+    }
+
+    /// Returns the material's index.
     std::uint32_t add_own(DiffuseMaterial material) {
         materials_.push_back({.surface = std::move(material), .radiance = {}});
         absorption_.emplace_back();
@@ -164,7 +149,8 @@ class SceneBuilder {
     /// A black ball that shines.
     void add(const SphereLightDescription& light) {
         const std::uint32_t black = add_own(DiffuseMaterial{constant_spectrum(0.0, spectra_.grid())});
-        objects_.push_back({.shape = add_shape(Sphere{light.radius_mm}),
+        shapes_.emplace_back(Sphere{light.radius_mm});
+        objects_.push_back({.shape = static_cast<std::uint32_t>(shapes_.size() - 1),
                             .to_world = {.linear = kIdentity3, .translation = light.position_mm},
                             .material = black});
         lights_.emplace_back(AreaLight{.object = static_cast<std::uint32_t>(objects_.size() - 1),

@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "engine/scene/affine.h"
-#include "engine/scene/camera_model.h"
 #include "engine/scene/chart.h"
+#include "engine/scene/lens_model.h"
 #include "engine/scene/mesh_file.h"
 #include "engine/scene/pose.h"
 #include "engine/scene/shapes.h"
@@ -202,7 +202,7 @@ struct LightDescription {
 
 /// Where the camera stands in the world, and how it images.
 struct CameraView {
-    CameraModel model = CameraModel::exact;
+    LensModel model = LensModel::exact;
     Vec3d position_mm;  // of the vertex of the lens's first surface
     Vec3d look_at_mm{0, 0, 1};
     Vec3d up{0, 1, 0};

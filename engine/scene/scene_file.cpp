@@ -151,10 +151,10 @@ CameraView read_camera_view(TomlTable& camera) {
     }
     if (camera.has("model")) {
         const std::string model = camera.choice("model", {"exact", "paraxial", "thin-lens", "pinhole"});
-        view.model = camera_model_named(model);
+        view.model = lens_model_named(model);
     }
     view.focal_length_mm = camera.optional_number("focal_length_mm", kPositive);
-    if (view.focal_length_mm && (view.model == CameraModel::exact || view.model == CameraModel::paraxial)) {
+    if (view.focal_length_mm && (view.model == LensModel::exact || view.model == LensModel::paraxial)) {
         camera.fail("focal_length_mm", "is for the models thin-lens and pinhole; here the lens says it");
     }
     return view;

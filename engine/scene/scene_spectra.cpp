@@ -100,8 +100,7 @@ GridSpectrum SceneSpectra::at_midpoints(const SpectrumDescription& spectrum) {
 
 Texture SceneSpectra::texture(const TextureDescription& texture) {
     return std::visit(Overloaded{[&](const ImageDescription& image) -> Texture {
-                                     ImageTexture made =
-                                         reflectance_texture(image.file, Wrap::repeat, grid_, uplift());
+                                     ImageTexture made = reflectance_texture(image.file, Wrap::repeat, grid_, uplift());
                                      made.repeats = image.repeats;
                                      for (ImageTexture::Texel& texel : made.texel) {
                                          texel.scale *= static_cast<float>(image.scale);

@@ -64,8 +64,8 @@ struct Stage {
     }
 };
 
-SceneCamera camera_of(const Stage& stage, CameraModel model) {
-    if (model == CameraModel::exact) {
+SceneCamera camera_of(const Stage& stage, LensModel model) {
+    if (model == LensModel::exact) {
         return ExactCamera{&stage.traced, &stage.slices};
     }
     std::vector<GaussianCamera> at;
@@ -75,7 +75,7 @@ SceneCamera camera_of(const Stage& stage, CameraModel model) {
     return at;
 }
 
-void time_camera_paths(benchmark::State& state, CameraModel model) {
+void time_camera_paths(benchmark::State& state, LensModel model) {
     const Stage stage;
     const SceneCamera camera = camera_of(stage, model);
     const SceneView view = stage.view(camera);
@@ -105,9 +105,9 @@ void time_camera_paths(benchmark::State& state, CameraModel model) {
 }  // namespace
 
 void register_scene_benchmarks() {
-    for (const std::string& model : camera_model_names()) {
+    for (const std::string& model : lens_model_names()) {
         benchmark::RegisterBenchmark(("scene/" + model).c_str(), [model](benchmark::State& state) {
-            time_camera_paths(state, camera_model_named(model));
+            time_camera_paths(state, lens_model_named(model));
         })->Unit(benchmark::kMillisecond);
     }
 }

@@ -76,7 +76,7 @@ TEST(SceneFile, TheExamplesAreRead) {
     const auto read = [](const char* name) { return read_scene_setup(data_root() / "experiments/scenes" / name); };
     const SceneSetup box = read("cornell_box.toml");
     EXPECT_EQ(box.scene.objects.size(), 19U);
-    EXPECT_EQ(box.view.model, CameraModel::pinhole);
+    EXPECT_EQ(box.view.model, LensModel::pinhole);
     EXPECT_EQ(box.view.focal_length_mm, 35.0);
     EXPECT_EQ(box.scene.materials.size(), 4U);
     const auto& light = std::get<AreaLightDescription>(box.scene.lights.at(0).kind);
@@ -118,7 +118,7 @@ TEST(SceneFile, TheCornellBoxIsClosedButForItsFront) {
 
 TEST(SceneFile, DefaultsAreAsDocumented) {
     const SceneSetup setup = parse(kScene);
-    EXPECT_EQ(setup.view.model, CameraModel::exact);
+    EXPECT_EQ(setup.view.model, LensModel::exact);
     EXPECT_EQ(setup.samples_per_pixel, 64);
     EXPECT_EQ(setup.max_bounces, 16);
     EXPECT_EQ(setup.spectral.layers * setup.spectral.strata_per_layer, 64);

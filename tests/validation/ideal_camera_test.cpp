@@ -62,8 +62,8 @@ TEST(IdealCamera, ExposesByItsFNumber) {
     const TraceLens<double> traced = at_wavelength<double>(lens, kLineD);
     const double efl = paraxial_data(traced).efl;
     const Sensor sensor = small_pixels(40.0, 401);
-    const GaussianCamera pinhole = gaussian_camera(lens, CameraModel::pinhole, kLineD);
-    const GaussianCamera thin = gaussian_camera(lens, CameraModel::thin_lens, kLineD);
+    const GaussianCamera pinhole = gaussian_camera(lens, LensModel::pinhole, kLineD);
+    const GaussianCamera thin = gaussian_camera(lens, LensModel::thin_lens, kLineD);
     const double area = kPi * std::pow(efl / 4.0 / 2.0, 2);
     for (const std::uint32_t column : {200U, 300U, 400U}) {
         const double x = sensor.position(column, 0.0).x;
@@ -80,7 +80,7 @@ TEST(IdealCamera, ExposesByItsFNumber) {
 TEST(IdealCamera, ModelsExposeAlike) {
     const Lens lens = double_gauss(4.0, 1e9);
     const double exact = image_bundle(at_wavelength<double>(lens, kLineD), 0.0).transmitted;
-    for (const CameraModel model : {CameraModel::paraxial, CameraModel::thin_lens, CameraModel::pinhole}) {
+    for (const LensModel model : {LensModel::paraxial, LensModel::thin_lens, LensModel::pinhole}) {
         const double found = draw(gaussian_camera(lens, model, kLineD), small_pixels(0.1, 1), 0, 1e6).irradiance;
         EXPECT_NEAR(found / exact, 1.0, 0.03) << static_cast<int>(model);
     }
@@ -94,9 +94,9 @@ TEST(IdealCamera, ThinLensBlursByItsFormula) {
     const Lens lens = double_gauss(2.0, kFocus);
     const TraceLens<double> traced = at_wavelength<double>(lens, kLineD);
     const ParaxialData data = paraxial_data(traced);
-    const GaussianCamera thin = gaussian_camera(lens, CameraModel::thin_lens, kLineD);
-    const GaussianCamera pinhole = gaussian_camera(lens, CameraModel::pinhole, kLineD);
-    const GaussianCamera paraxial = gaussian_camera(lens, CameraModel::paraxial, kLineD);
+    const GaussianCamera thin = gaussian_camera(lens, LensModel::thin_lens, kLineD);
+    const GaussianCamera pinhole = gaussian_camera(lens, LensModel::pinhole, kLineD);
+    const GaussianCamera paraxial = gaussian_camera(lens, LensModel::paraxial, kLineD);
     const Sensor sensor = small_pixels(1e-4, 1);
     for (const double distance : {500.0, 1500.0, 2000.0, 3000.0, 20000.0}) {
         const double from_lens = distance + data.front_principal_z;
@@ -122,7 +122,7 @@ TEST(IdealCamera, LooksWhereTheLensLooks) {
     const Sensor sensor = small_pixels(2.001, 2001);
     const double x = sensor.position(2000.0, 0.0).x;
     EXPECT_NEAR(x, -1.0, 1e-12);
-    for (const CameraModel model : {CameraModel::paraxial, CameraModel::thin_lens, CameraModel::pinhole}) {
+    for (const LensModel model : {LensModel::paraxial, LensModel::thin_lens, LensModel::pinhole}) {
         const Drawn seen = draw(gaussian_camera(lens, model, kLineD), sensor, 2000, 1e9);
         EXPECT_NEAR(seen.mean_x_at / 1e9, 1.0 / efl, 1e-5 / efl) << static_cast<int>(model);
     }

@@ -1,4 +1,4 @@
-// engine/scene/camera_model.h — what stands for the lens of a camera.
+// engine/scene/lens_model.h — what stands for the lens of a camera.
 #pragma once
 #include <string>
 #include <vector>
@@ -14,12 +14,12 @@ namespace lensproof {
 ///   pinhole     the thin lens's centre alone, with the light of its whole opening: no blur
 ///
 /// The last three pass what the lens passes along its axis.
-enum class CameraModel { exact, paraxial, thin_lens, pinhole };
+enum class LensModel { exact, paraxial, thin_lens, pinhole };
 
 /// "exact", "paraxial", "thin-lens", "pinhole".
-std::vector<std::string> camera_model_names();
+std::vector<std::string> lens_model_names();
 /// Throws InputError for another name.
-CameraModel camera_model_named(const std::string& name);
-std::string name_of(CameraModel model);
+LensModel lens_model_named(const std::string& name);
+std::string name_of(LensModel model);
 
 }  // namespace lensproof

@@ -1,4 +1,4 @@
-#include "engine/scene/camera_model.h"
+#include "engine/scene/lens_model.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -9,21 +9,21 @@
 
 namespace lensproof {
 
-std::vector<std::string> camera_model_names() {
+std::vector<std::string> lens_model_names() {
     return {"exact", "paraxial", "thin-lens", "pinhole"};  // in the order of the enumeration
 }
 
-CameraModel camera_model_named(const std::string& name) {
-    const auto names = camera_model_names();
+LensModel lens_model_named(const std::string& name) {
+    const auto names = lens_model_names();
     const auto found = std::ranges::find(names, name);
     if (found == names.end()) {
         throw InputError(fmt::format("\"{}\" is no camera model, expected one of {}", name, fmt::join(names, ", ")));
     }
-    return static_cast<CameraModel>(found - names.begin());
+    return static_cast<LensModel>(found - names.begin());
 }
 
-std::string name_of(CameraModel model) {
-    return camera_model_names()[static_cast<std::size_t>(model)];
+std::string name_of(LensModel model) {
+    return lens_model_names()[static_cast<std::size_t>(model)];
 }
 
 }  // namespace lensproof
