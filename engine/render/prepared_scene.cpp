@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "engine/io/bytes.h"
 #include "engine/io/hash.h"
@@ -134,6 +135,24 @@ SceneView PreparedScene::view(std::uint64_t seed, bool has_features) const {
             .albedo_weights = albedo_weights_,
             .paths = {.max_bounces = setup_.max_bounces},
             .seed = seed};
+}
+
+const LensEntrance& PreparedScene::entrance(const Cache& cache) {
+    if (!traced_) {
+        throw InputError("light paths need the exact camera model");
+    }
+    if (!entrance_map_) {
+        // Drawn over the whole front in a fifth of all cases, since the map is that of far light.
+        entrance_map_ = std::make_unique<EntranceMap>(
+            kept_entrance_map(cache, traced_->at(), lens_->is_rotationally_symmetric,
+                              std::numeric_limits<double>::infinity(), {.defensive_share = 0.2}));
+        entrance_ = {.lens = traced_.get(),
+                     .map = entrance_map_.get(),
+                     .front = front_sphere(traced_->at().front()),
+                     .camera_to_world = camera_to_world(setup_.view),
+                     .sensor = setup_.camera.sensor};
+    }
+    return entrance_;
 }
 
 std::string PreparedScene::camera_hash() const {

@@ -31,6 +31,10 @@ class PreparedScene {
     /// What `scene_renderer` renders.
     [[nodiscard]] SceneView view(std::uint64_t seed, bool has_features) const;
 
+    /// The lens as the end of light paths, found on the first call. Throws InputError for a camera of another model
+    /// than the exact one.
+    [[nodiscard]] const LensEntrance& entrance(const Cache& cache);
+
     [[nodiscard]] const Scene& scene() const { return built_.scene; }
 
     /// What was repaired or left out, and that wavelengths were clamped to the glasses' range: a sentence each.
@@ -61,6 +65,8 @@ class PreparedScene {
     std::unique_ptr<SpectralLens<double>> traced_;
     std::unique_ptr<PupilMap> pupil_;
     std::unique_ptr<PupilSlices> slices_;
+    std::unique_ptr<EntranceMap> entrance_map_;
+    LensEntrance entrance_;
     SceneCamera camera_;
     std::vector<Vec3d> rgb_weights_;
     std::vector<Vec3d> albedo_weights_;

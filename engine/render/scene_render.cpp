@@ -139,4 +139,23 @@ TileRenderer scene_renderer(const SceneView& view) {
     return renderer_by(IdealPaths(view, std::get<std::vector<GaussianCamera>>(*view.camera)));
 }
 
+TileRenderer light_path_renderer(const SceneView& view, const LensEntrance& entrance) {
+    return [view, &entrance](const TileSamples& samples, FilmTile& tile) {
+        const PixelRect& rect = samples.rect;
+        const int wavelengths = view.scene->grid.size();
+        for (int y = rect.y; y < rect.y + rect.height; ++y) {
+            for (int x = rect.x; x < rect.x + rect.width; ++x) {
+                const auto pixel = static_cast<std::uint32_t>(y * view.sensor.width + x);
+                for (std::uint32_t sample = samples.first; sample < samples.end; ++sample) {
+                    PathSampler numbers(view.seed, pixel, sample);
+                    const PathWavelengths strata =
+                        view.scene->grid.path(static_cast<int>(numbers.next()[0] * wavelengths));
+                    tile.count_rays(trace_light_path(*view.scene, entrance, strata, view.paths, numbers, tile));
+                }
+            }
+        }
+        tile.count_light_paths(static_cast<std::uint64_t>(rect.pixels()) * (samples.end - samples.first));
+    };
+}
+
 }  // namespace lensproof

@@ -8,6 +8,7 @@
 #include "engine/pupil/pupil_slices.h"
 #include "engine/render/film.h"
 #include "engine/render/ideal_camera.h"
+#include "engine/render/light_tracer.h"
 #include "engine/render/path_tracer.h"
 #include "engine/render/progressive.h"
 #include "engine/render/sensor.h"
@@ -43,5 +44,9 @@ struct SceneView {
 /// and with pixel filters wider than the box, the hero goes alone.
 /// Features: depth along the camera's axis, albedo, and the shading normal in the camera's frame.
 TileRenderer scene_renderer(const SceneView& view);
+
+/// The same view by light paths (light_tracer.h), one for each sample of each pixel, wherever it lands: the film's
+/// layout has splats. `entrance` outlives it.
+TileRenderer light_path_renderer(const SceneView& view, const LensEntrance& entrance);
 
 }  // namespace lensproof

@@ -72,19 +72,24 @@ std::string scene_hash(const SceneSetup& setup, const std::string& file) {
     return hash_text(hashes);
 }
 
-int render_scene(const RenderJobOptions& options) {
+/// `by_light`: paths from the lights instead of from the camera.
+int render_scene(const RenderJobOptions& options, bool by_light) {
     const SceneSetup setup = read_scene_setup(options.scene);
     const std::unique_ptr<PreparedScene> scene = prepare(setup, options);
     for (const std::string& remark : scene->remarks()) {
         fmt::print(stderr, "lensproof: {}\n", remark);
     }
-    const SceneView view = scene->view(options.common.seed, options.has_features);
+    SceneView view = scene->view(options.common.seed, options.has_features);
+    view.film.has_splats = by_light;
     RenderJob job;
     job.film = view.film;
-    job.make_renderer = [&view] { return scene_renderer(view); };
+    const LensEntrance* entrance = by_light ? &scene->entrance(Cache::standard()) : nullptr;
+    job.make_renderer = [&view, entrance] {
+        return entrance != nullptr ? light_path_renderer(view, *entrance) : scene_renderer(view);
+    };
     job.identity = {{"scene", scene_hash(setup, options.scene)},
                     {"lens", scene->camera_hash()},
-                    {"settings", settings_of(options)}};
+                    {"settings", settings_of(options) + (by_light ? ", light paths" : "")}};
     job.notes.metadata = scene->metadata();
     job.notes.colours = scene->colours();
     job.samples = static_cast<std::uint32_t>(setup.samples_per_pixel);
@@ -93,9 +98,14 @@ int render_scene(const RenderJobOptions& options) {
     return run_render_job(job, options);
 }
 
-int run_render(const RenderJobOptions& options) {
+int run_render(const RenderJobOptions& options, const std::string& paths) {
     render_files(options);  // before long work
-    return TomlTable::read(options.scene).has("chart") ? render_chart_scene(options) : render_scene(options);
+    const bool by_light = paths == "light";
+    const bool is_chart = TomlTable::read(options.scene).has("chart");
+    if (by_light && (is_chart || options.noise > 0.0 || options.has_features)) {
+        throw InputError("--paths light is for scenes with lights, and goes neither with --noise nor with --features");
+    }
+    return is_chart ? render_chart_scene(options) : render_scene(options, by_light);
 }
 
 }  // namespace
@@ -111,7 +121,14 @@ void add_render_command(CLI::App& app, int& status) {
         "Ctrl-C ends a render with a checkpoint written and exit status 3; a second one at once.");
     command->add_option("SCENE", options->scene, "A scene file")->required();
     add_render_job_options(*command, *options);
-    command->callback([options, &status] { status = run_render(*options); });
+    const auto paths = std::make_shared<std::string>("camera");
+    command
+        ->add_option(
+            "--paths", *paths,
+            "Where paths begin: the camera, or the lights, which finds what shines through glass and cannot see "
+            "mirrors; one image by either")
+        ->check(CLI::IsMember({"camera", "light"}));
+    command->callback([options, paths, &status] { status = run_render(*options, *paths); });
 }
 
 }  // namespace lensproof
