@@ -107,8 +107,9 @@ void CameraPathProducer<T>::draw_from_filter() {
     const Sensor& sensor = source_.sensor;
     const auto width = static_cast<std::uint32_t>(sensor.width);
     for (std::size_t i = 0; i < static_cast<std::size_t>(starts_->size); ++i) {
-        const double column = starts_->pixel[i] % width;
-        const double row = starts_->pixel[i] / width;
+        const std::uint32_t row_number = starts_->pixel[i] / width;
+        const double row = row_number;
+        const double column = starts_->pixel[i] - row_number * width;
         const Vec2d centre = sensor.position(column, row);
         const PixelFilter::Draw across =
             source_.filter.draw((centre.x - starts_->film_x[i]) / sensor.pixel_pitch_mm + 0.5);

@@ -157,23 +157,12 @@ TEST(RenderGrowth, FiltersPixelsAsAsked) {
     EXPECT_NE(place.content("box.exr").find("albedo.R"), std::string::npos);
 }
 
-/// Status 2, and all of the words in the message.
-void expect_refused(const Workplace& place, std::vector<std::string> arguments, const std::vector<std::string>& words) {
-    const std::vector<std::string> before = place.names();
-    const Outcome outcome = place.run(arguments);
-    EXPECT_EQ(outcome.status, 2) << outcome.err;
-    for (const std::string& word : words) {
-        EXPECT_NE(outcome.err.find(word), std::string::npos) << "no \"" << word << "\" in: " << outcome.err;
-    }
-    EXPECT_EQ(place.names(), before);
-}
-
 TEST(RenderGrowth, RefusesOptionsThatMakeNoSense) {
     const Workplace place;
     place.file("scene.toml", small_scene());
     place.file("folder/inside", "");
     place.file("text", "no checkpoint");
-    const std::vector<std::vector<std::string>> bad = {{"--spp", "0"},
+    const std::vector<std::vector<std::string>> bad = {{"--samples", "0"},
                                                        {"--samples", "-1"},
                                                        {"--samples", "1e9"},
                                                        {"--samples", "nan"},
