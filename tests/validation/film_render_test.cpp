@@ -79,21 +79,21 @@ TEST(FilmRender, StatedErrorsBoundTheSpreadOfSeeds) {
     }
 }
 
-// Three shards, merged, are the whole: its values to rounding, and its variance as far as shards that end within blocks
-// have others: 4 of 15 instead of 14, so by a few per cent in the mean over 1296 numbers.
+// Three shards of whole blocks, merged, are the whole render: its values and its variances to rounding.
 TEST(FilmRender, ShardsAddUpWithTheirVariance) {
     const ChartCamera camera = tessar_camera();
     const SeenChart view = camera.view(kBoard, kFacing);
-    const Film whole = rendered(camera, view, 1, 0, 224);
-    Film sum = rendered(camera, view, 1, 149, 224);
-    sum.merge(rendered(camera, view, 1, 0, 74));
-    sum.merge(rendered(camera, view, 1, 74, 149));
+    const Film whole = rendered(camera, view, 1, 0, 220);
+    Film sum = rendered(camera, view, 1, 144, 220);
+    sum.merge(rendered(camera, view, 1, 0, 64));
+    sum.merge(rendered(camera, view, 1, 64, 144));
     for (int i = 0; i < kWidth * kHeight; ++i) {
-        const Vec3d expected = whole.estimate(i % kWidth, i / kWidth).rgb;
-        EXPECT_NEAR(sum.estimate(i % kWidth, i / kWidth).rgb.y, expected.y, 1e-12 * expected.y);
-        EXPECT_EQ(sum.counts(i % kWidth, i / kWidth).samples, 224U);
+        const auto [rgb, variance] = sum.estimate(i % kWidth, i / kWidth);
+        const PixelEstimate expected = whole.estimate(i % kWidth, i / kWidth);
+        EXPECT_NEAR(rgb.y, expected.rgb.y, 1e-12 * expected.rgb.y);
+        EXPECT_NEAR(variance.y, expected.variance.y, 1e-9 * expected.variance.y);
+        EXPECT_EQ(sum.counts(i % kWidth, i / kWidth).samples, 220U);
     }
-    EXPECT_NEAR(stated_variance(sum) / stated_variance(whole), 1.0, 0.15);
 }
 
 // Every filter has integral 1, so that a flat field, whose light falls off by a few per cent towards the corners, stays
@@ -130,7 +130,7 @@ TEST(FilmRender, FeaturesAreThoseOfTheChart) {
         EXPECT_NEAR(features.depth_mm, 10000.0, 1e-6);
         EXPECT_NEAR(features.normal.z, -film.coverage(i % kWidth, i / kWidth), 1e-12);
         EXPECT_GE(features.albedo_rgb.y, 0.04 * film.coverage(i % kWidth, i / kWidth) - 1e-12);
-        EXPECT_LE(features.albedo_rgb.y, 0.9);
+        EXPECT_LE(features.albedo_rgb.y, 0.9 + 1e-12);
     }
     EXPECT_GT(film.coverage(kWidth / 2, kHeight / 2), 0.95) << "a path that the lens stops meets nothing";
     SeenChart tilted = camera.view(kBoard, {.distance_mm = 10000.0, .tilt_deg = {0.0, 60.0, 0.0}});
