@@ -80,7 +80,8 @@ class FilmTile {
 
     /// The number of a pixel within the tile, by its place on the film.
     [[nodiscard]] std::size_t pixel(int x, int y) const {
-        return static_cast<std::size_t>((y - rect().y) * rect().width + (x - rect().x));
+        const int number = (y - rect().y) * rect().width + (x - rect().x);
+        return static_cast<std::size_t>(number);
     }
 
     /// Adds sample `sample` at one wavelength stratum: its estimate of the film irradiance, W·m⁻²·nm⁻¹, filter weight

@@ -12,8 +12,8 @@ void draw_from_filter(const PixelFilter& filter, const Sensor& sensor, PathStart
     }
     const auto width = static_cast<std::uint32_t>(sensor.width);
     for (std::size_t i = 0; i < static_cast<std::size_t>(starts.size); ++i) {
-        const double column = starts.pixel[i] % width;
         const std::uint32_t row = starts.pixel[i] / width;
+        const std::uint32_t column = starts.pixel[i] - row * width;
         const Vec2d centre = sensor.position(column, row);
         const PixelFilter::Draw across = filter.draw((centre.x - starts.film_x[i]) / sensor.pixel_pitch_mm + 0.5);
         const PixelFilter::Draw down = filter.draw((starts.film_y[i] - centre.y) / sensor.pixel_pitch_mm + 0.5);

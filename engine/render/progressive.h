@@ -59,7 +59,9 @@ struct RenderGoal {
     /// than going on to n2 be q. Then the bias of the pixel from that decision is (1 − n1/n2) cov(mean, stops), and
     /// |cov| ≤ σ |ρ| √(q (1 − q)) ≤ σ |ρ| / 2, ρ being the correlation of the pixel with the tile's error. Of K alike
     /// and independent pixels |ρ| ≤ 1/√K; n2/n1 ≤ 2 and K = 256 bound the bias by σ/64, and that of a tile's mean by a
-    /// quarter of its own standard error, which is σ/64 too.
+    /// quarter of its own standard error, which is σ/64 too. (Measured at the worst
+    /// place, pixels of σ = 6 %: 1.5e-4 ± 0.6e-4 of the value, bound 3.9e-4;
+    /// ProgressiveNoise.IsBiasedByNoMoreThanItSays.)
     double noise = 0.0;
 };
 

@@ -114,10 +114,10 @@ void add_render_command(CLI::App& app, int& status) {
     const auto options = std::make_shared<RenderJobOptions>();
     CLI::App* command = app.add_subcommand("render", "Render a scene or a chart through a lens");
     command->footer(
-        "Examples: lensproof render experiments/scenes/tessar_checkerboard.toml -o chart.exr\n"
-        "          lensproof render experiments/scenes/cornell_box.toml --spp 256 -o box.exr\n"
-        "          lensproof render SCENE --noise 0.01 --time 3600 --preview now.png --checkpoint chart.checkpoint\n"
-        "          lensproof render SCENE --spp 1024 --shard 2/5 -o part2.exr; lensproof merge part*.exr -o chart.exr\n"
+        "Example: lensproof render experiments/scenes/tessar_checkerboard.toml -o chart.exr\n"
+        "         lensproof render experiments/scenes/cornell_box.toml --spp 256 -o box.exr\n"
+        "         lensproof render SCENE --noise 0.01 --time 3600 --preview now.png --checkpoint chart.checkpoint\n"
+        "         lensproof render SCENE --spp 1024 --shard 2/5 -o part2.exr; lensproof merge part*.exr -o chart.exr\n"
         "Ctrl-C ends a render with a checkpoint written and exit status 3; a second one at once.");
     command->add_option("SCENE", options->scene, "A scene file")->required();
     add_render_job_options(*command, *options);

@@ -31,9 +31,12 @@ bool take(std::string_view& text, char wanted) {
 }  // namespace
 
 SampleRange Shard::part_of(std::uint32_t samples) const {
+    const std::uint32_t blocks = (samples + kSamplesPerBlock - 1) / kSamplesPerBlock;
+    const std::uint32_t unit = blocks >= static_cast<unsigned>(count) ? kSamplesPerBlock : 1;
+    const std::uint64_t units = unit > 1 ? blocks : samples;
     const auto end_of = [&](int shards) {
-        return static_cast<std::uint32_t>(std::uint64_t{samples} * static_cast<unsigned>(shards) /
-                                          static_cast<unsigned>(count));
+        const std::uint64_t whole_units = units * static_cast<unsigned>(shards) / static_cast<unsigned>(count);
+        return static_cast<std::uint32_t>(std::min<std::uint64_t>(samples, whole_units * unit));
     };
     return {.first = end_of(index - 1), .end = end_of(index)};
 }

@@ -14,7 +14,8 @@ struct Shard {
     int count = 1;
 
     /// Its part of `samples` a pixel: together the shards have each sample once, next to each other, so that each
-    /// shard's points are as well spread as a render's of its own.
+    /// shard's points are as well spread as a render's of its own; whole blocks of them where there are enough, so that
+    /// the variances add up to the whole's too.
     [[nodiscard]] SampleRange part_of(std::uint32_t samples) const;
 };
 

@@ -45,22 +45,6 @@ std::string grey_picture(int width, int height) {
            std::string(static_cast<std::size_t>(3 * width * height), '\x80');
 }
 
-/// Status 2, nothing on standard output, one message that holds every one of `words`, and no new file.
-void expect_refused(const Workplace& place, const std::vector<std::string>& arguments,
-                    const std::vector<std::string>& words) {
-    const std::vector<std::string> before = place.names();
-    const Outcome outcome = place.run(arguments);
-    EXPECT_EQ(outcome.status, 2) << outcome.err;
-    EXPECT_EQ(outcome.out, "");
-    EXPECT_EQ(outcome.err.rfind("lensproof: ", 0), 0U) << outcome.err;
-    EXPECT_EQ(std::ranges::count(outcome.err, '\n'), outcome.err.find("\nTry: ") == std::string::npos ? 1 : 2)
-        << outcome.err;
-    for (const std::string& word : words) {
-        EXPECT_NE(outcome.err.find(word), std::string::npos) << "no \"" << word << "\" in: " << outcome.err;
-    }
-    EXPECT_EQ(place.names(), before);
-}
-
 /// One edit to a good file, and what the message has to say of it.
 struct BadEdit {
     const char* what;

@@ -132,6 +132,21 @@ Outcome Workplace::run(const std::vector<std::string>& arguments, Stream out, St
     return run_program(arguments, folder_.path(), out, err);
 }
 
+void expect_refused(const Workplace& place, const std::vector<std::string>& arguments,
+                    const std::vector<std::string>& words) {
+    const std::vector<std::string> before = place.names();
+    const Outcome outcome = place.run(arguments);
+    EXPECT_EQ(outcome.status, 2) << outcome.err;
+    EXPECT_EQ(outcome.out, "");
+    EXPECT_EQ(outcome.err.rfind("lensproof: ", 0), 0U) << outcome.err;
+    EXPECT_EQ(std::ranges::count(outcome.err, '\n'), outcome.err.find("\nTry: ") == std::string::npos ? 1 : 2)
+        << outcome.err;
+    for (const std::string& word : words) {
+        EXPECT_NE(outcome.err.find(word), std::string::npos) << "no \"" << word << "\" in: " << outcome.err;
+    }
+    EXPECT_EQ(place.names(), before);
+}
+
 std::string with(std::string text, const std::string& from, const std::string& to) {
     const std::size_t at = text.find(from);
     EXPECT_NE(at, std::string::npos) << "no \"" << from << "\" to replace";

@@ -61,6 +61,11 @@ class Workplace {
     TestFolder folder_;
 };
 
+/// Runs the program in `place` and expects it to refuse: status 2, nothing on standard output, one message that holds
+/// every one of `words`, and no new file.
+void expect_refused(const Workplace& place, const std::vector<std::string>& arguments,
+                    const std::vector<std::string>& words);
+
 /// `text` with its first `from` replaced by `to`; fails the test where there is none.
 std::string with(std::string text, const std::string& from, const std::string& to);
 

@@ -33,10 +33,11 @@ Film full_film(std::uint32_t first, std::uint32_t end) {
                               {.depth_mm = 1000.0 + i, .albedo_rgb = {0.5, 0.2, 0.1}, .normal = {0.6, 0.0, -0.8}});
         }
         const float light = static_cast<float>(exponential_number(2, pixel, first));
-        tile.splat(all_at(pixel % 70, static_cast<double>(pixel / 70)), std::array<std::uint16_t, 4>{0, 1, 2, 3},
+        const std::uint32_t row = pixel / 70;
+        tile.splat(all_at(pixel % 70, row), std::array<std::uint16_t, 4>{0, 1, 2, 3},
                    std::array<float, 4>{light, light, 0.0F, light});
     }
-    tile.count_light_paths(100 * (end - first));
+    tile.count_light_paths(std::uint64_t{100} * (end - first));
     tile.finish();
     film.store(tile);
     return film;
