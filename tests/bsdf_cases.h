@@ -27,6 +27,12 @@ inline Vec3d direction(double mu, double phi) {
     return {sine * std::cos(phi), sine * std::sin(phi), mu};
 }
 
+/// Evenly over the sphere.
+inline Vec3d random_direction(Uniform& uniform) {
+    const double mu = 2.0 * uniform() - 1.0;
+    return direction(mu, 2.0 * std::numbers::pi * uniform());
+}
+
 struct BsdfCase {
     std::string name;
     Bsdf bsdf;

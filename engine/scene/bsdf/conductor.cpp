@@ -9,29 +9,26 @@ namespace lensproof {
 
 namespace {
 
-/// How often `sample` draws light that meets several facets.
+/// How often `sample` draws light that meets several facets: as much as single reflections lose.
 double several_probability(const ConductorBsdf& bsdf, const Vec3d& wo) {
     return bsdf.losses != nullptr ? bsdf.losses->at(wo) : 0.0;
 }
 
-/// f |cos wi| and the density for directions above the surface.
-struct Scattered {
-    SpectralSample value;
-    double density = 0.0;
-};
-Scattered scattered(const ConductorBsdf& bsdf, const Vec3d& wo, const Vec3d& wi) {
-    const GgxReflection facets = ggx_reflection(bsdf.roughness, wo, wi);
+// For directions above the surface.
+
+double density_above(const ConductorBsdf& bsdf, const Vec3d& wo, const Vec3d& wi, const GgxReflection& facets) {
     const double p_several = several_probability(bsdf, wo);
-    Scattered result{
-        .value = static_cast<float>(facets.value) * conductor_reflectance(bsdf.n, bsdf.k, facets.cos_facet),
-        .density = (1.0 - p_several) * facets.density};
-    if (p_several > 0.0) {
+    return (1.0 - p_several) * facets.density + (p_several > 0.0 ? p_several * bsdf.losses->density(wi) : 0.0);
+}
+
+SpectralSample value_above(const ConductorBsdf& bsdf, const Vec3d& wo, const Vec3d& wi, const GgxReflection& facets) {
+    SpectralSample value = static_cast<float>(facets.value) * conductor_reflectance(bsdf.n, bsdf.k, facets.cos_facet);
+    const double lost = several_probability(bsdf, wo);
+    if (lost > 0.0) {
         const double even = wi.z * std::numbers::inv_pi;
-        result.density += p_several * bsdf.losses->density(wi);
-        result.value +=
-            static_cast<float>(p_several * bsdf.losses->at(wi) / bsdf.losses->mean() * even) * bsdf.given_back;
+        value += static_cast<float>(lost * bsdf.losses->at(wi) / bsdf.losses->mean() * even) * bsdf.given_back;
     }
-    return result;
+    return value;
 }
 
 bool is_possible(const ConductorBsdf& bsdf, const Vec3d& wo, const Vec3d& wi) {
@@ -51,11 +48,21 @@ SpectralSample mean_conductor_reflectance(const SpectralSample& n, const Spectra
 }
 
 SpectralSample evaluate(const ConductorBsdf& bsdf, const Vec3d& wo, const Vec3d& wi, Transport) {
-    return is_possible(bsdf, wo, wi) ? scattered(bsdf, upwards(wo), upwards(wi)).value : SpectralSample();
+    if (!is_possible(bsdf, wo, wi)) {
+        return {};
+    }
+    const Vec3d from = upwards(wo);
+    const Vec3d to = upwards(wi);
+    return value_above(bsdf, from, to, ggx_reflection(bsdf.roughness, from, to));
 }
 
 double density(const ConductorBsdf& bsdf, const Vec3d& wo, const Vec3d& wi, Transport) {
-    return is_possible(bsdf, wo, wi) ? scattered(bsdf, upwards(wo), upwards(wi)).density : 0.0;
+    if (!is_possible(bsdf, wo, wi)) {
+        return 0.0;
+    }
+    const Vec3d from = upwards(wo);
+    const Vec3d to = upwards(wi);
+    return density_above(bsdf, from, to, ggx_reflection(bsdf.roughness, from, to));
 }
 
 std::optional<BsdfSample> sample(const ConductorBsdf& bsdf, const Vec3d& wo, double u_lobe, double u1, double u2,
@@ -75,10 +82,11 @@ std::optional<BsdfSample> sample(const ConductorBsdf& bsdf, const Vec3d& wo, dou
     if (!(wi.z > 0.0)) {
         return std::nullopt;
     }
-    const Scattered outcome = scattered(bsdf, from, wi);
+    const GgxReflection facets = ggx_reflection(bsdf.roughness, from, wi);
+    const double drawn_with = density_above(bsdf, from, wi, facets);
     return BsdfSample{.wi = on_side_of(wo, wi),
-                      .weight = static_cast<float>(1.0 / outcome.density) * outcome.value,
-                      .density = outcome.density};
+                      .weight = static_cast<float>(1.0 / drawn_with) * value_above(bsdf, from, wi, facets),
+                      .density = drawn_with};
 }
 
 }  // namespace lensproof
