@@ -9,25 +9,44 @@
 #include "engine/io/hash.h"
 #include "engine/io/input_error.h"
 #include "engine/render/camera.h"
+#include "experiments/cli/raw_files.h"
 #include "experiments/cli/render_job.h"
 
 namespace lensproof {
 
 namespace {
 
+/// What a pixel sees: the filter asked for, or what the scene's sensor says.
+PixelFilter filter_of(const ChartScene& scene, const RenderJobOptions& options) {
+    if (!scene.sensor) {
+        return PixelFilter::named(options.filter);
+    }
+    if (options.filter != "box") {
+        throw InputError(
+            fmt::format("--filter is \"{}\", but {} has a table [sensor], which says what a pixel sees: "
+                        "expected no filter",
+                        options.filter, options.scene));
+    }
+    return pixel_aperture(*scene.sensor);
+}
+
 /// The scene's camera. What its lens refuses is said of the scene's file.
-ChartCamera make_camera(const ChartScene& scene, const RenderJobOptions& options) {
+ChartCamera make_camera(const ChartScene& scene, const PixelFilter& filter, const RenderJobOptions& options) {
     try {
-        return {scene.camera, scene.light, scene.spectral, Cache::standard(), PixelFilter::named(options.filter)};
+        return {scene.camera, scene.light, scene.spectral, Cache::standard(), filter};
     } catch (const InputError& error) {
         throw InputError(fmt::format("{}: camera: {}", options.scene, error.what()));
     }
 }
 
 int run_render(const RenderJobOptions& options) {
-    render_files(options);  // before long work
+    const RenderFiles files = render_files(options);  // before long work
     const ChartScene scene = read_chart_scene(options.scene);
-    const ChartCamera camera = make_camera(scene, options);
+    if (scene.sensor) {
+        raw_files(files.exr);
+    }
+    const PixelFilter filter = filter_of(scene, options);
+    const ChartCamera camera = make_camera(scene, filter, options);
     if (!camera.spectral().clamp_note.empty()) {
         fmt::print(stderr, "lensproof: {}\n", camera.spectral().clamp_note);
     }
@@ -40,9 +59,10 @@ int run_render(const RenderJobOptions& options) {
     job.identity = {
         {"scene", hash_text(read_file(options.scene))},
         {"lens", camera.lens_hash()},
-        {"settings", fmt::format("{} filter, {} features", options.filter, options.has_features ? "with" : "no")}};
+        {"settings", fmt::format("{} filter, {} features", filter.name(), options.has_features ? "with" : "no")}};
     job.notes.metadata = camera.metadata();
     job.notes.colours = camera.colours();
+    job.sensor = scene.sensor;
     job.samples = static_cast<std::uint32_t>(scene.samples_per_pixel);
     job.json["scene"] = options.scene;
     job.json["lens"] = camera.lens().id;

@@ -1,0 +1,28 @@
+// experiments/cli/raw_files.h — the raw file that stands beside a rendered film.
+#pragma once
+#include <filesystem>
+#include <optional>
+
+#include "engine/render/film_exr.h"
+
+namespace lensproof {
+
+/// The note of a film that says what sensor is behind it (`raw_sensor_text`), and that of one that is a part of a
+/// render.
+inline constexpr const char* kSensorNote = "lensproof:sensor";
+inline constexpr const char* kShardNote = "lensproof:shard";
+
+/// NAME.raw.png, the sensor's values, and NAME.demosaiced.png, its picture; beside NAME.exr. Throws InputError where
+/// one cannot be written.
+struct RawFiles {
+    std::filesystem::path raw;
+    std::filesystem::path demosaiced;
+};
+RawFiles raw_files(const std::filesystem::path& exr);
+
+/// Writes both for the film whose file is `exr`, with noise by the render's seed, and says where; nothing where its
+/// notes name no sensor, or where it is a shard, whose noise says nothing of the whole's.
+std::optional<RawFiles> write_raw_files(const Film& film, const FilmNotes& notes, const std::filesystem::path& exr,
+                                        int threads);
+
+}  // namespace lensproof
