@@ -105,7 +105,7 @@ TEST(RawSensor, NamesWhatItCannotUse) {
         EXPECT_NE(said.find("xpected"), std::string::npos) << said;
     };
     expect(complaint("pattern = \"RGBG\"\n"), "1", "pattern");
-    expect(complaint("pattern = \"RGGB\"\n"), "1", "full_well_electrons");
+    EXPECT_EQ(complaint("pattern = \"RGGB\"\n"), "scene.toml:1: full_well_electrons: is missing");
     expect(complaint("pattern = \"RGGB\"\nfull_well_electrons = 0\n"), "2", "full_well_electrons");
     expect(complaint("pattern = \"RGGB\"\nfull_well_electrons = 9\nread_noise_electrons = -1\n"), "3", "read_noise");
     for (const char* line :
