@@ -47,40 +47,21 @@ class ValueRandom {
     std::uint64_t state_;
 };
 
-/// Electrons and converter, with all that is the same for each pixel found once.
-class Readout {
-  public:
-    explicit Readout(const RawSensor& sensor)
-        : saturation_(electrons_at_saturation(sensor)),
-          dark_(sensor.dark_current_electrons_per_s * sensor.camera.exposure.time_s),
-          read_noise_(sensor.read_noise_electrons),
-          gain_(dn_per_electron(sensor)),
-          black_(sensor.black_level_dn),
-          white_(sensor.white_level_dn),
-          // With so much the chance of less than saturation is below exp(−400) (Chernoff).
-          most_(4.0 * saturation_ + 1000.0 + 100.0 * read_noise_) {}
+/// With so many the chance of less than saturation is below exp(−400) (Chernoff).
+double most_electrons(const RawSensor& sensor) {
+    return 4.0 * electrons_at_saturation(sensor) + 1000.0 + 100.0 * sensor.read_noise_electrons;
+}
 
-    /// `light`: 1 fills a pixel to saturation.
-    [[nodiscard]] std::uint16_t value(double light, ValueRandom& random) const {
-        const double of_light = light > 0.0 ? light * saturation_ : 0.0;
-        const double mean = std::min(of_light + dark_, most_);
-        double electrons = 0.0;
-        if (mean > 0.0) {  // by inversion below 10, else Hörmann's PTRD (1993): both exact
-            electrons = static_cast<double>(boost::random::poisson_distribution<std::int64_t>(mean)(random));
-        }
-        electrons += boost::random::normal_distribution<double>(0.0, read_noise_)(random);
-        return static_cast<std::uint16_t>(std::lround(std::clamp(black_ + gain_ * electrons, 0.0, white_)));
+std::uint16_t raw_value(const RawSensor& sensor, double value, int channel, ValueRandom& random) {
+    const double mean = std::min(read_electrons(sensor, value, channel).mean, most_electrons(sensor));
+    double electrons = 0.0;
+    if (mean > 0.0) {  // by inversion below 10, else Hörmann's PTRD (1993): both exact
+        electrons = static_cast<double>(boost::random::poisson_distribution<std::int64_t>(mean)(random));
     }
-
-  private:
-    double saturation_;
-    double dark_;
-    double read_noise_;
-    double gain_;
-    double black_;
-    double white_;
-    double most_;
-};
+    electrons += boost::random::normal_distribution<double>(0.0, sensor.read_noise_electrons)(random);
+    const double level = sensor.black_level_dn + dn_per_electron(sensor) * electrons;
+    return static_cast<std::uint16_t>(std::lround(std::clamp(level, 0.0, 1.0 * sensor.white_level_dn)));
+}
 
 void read_levels(TomlTable& table, RawSensor& sensor) {
     sensor.bits = table.integer("bits", 8, 16);
@@ -219,6 +200,14 @@ double dn_per_electron(const RawSensor& sensor) {
     return (sensor.white_level_dn - sensor.black_level_dn) / electrons_at_saturation(sensor);
 }
 
+ReadElectrons read_electrons(const RawSensor& sensor, double value, int channel) {
+    const std::array<double, 3> neutral = {sensor.neutral.x, sensor.neutral.y, sensor.neutral.z};
+    const double of_light =
+        value > 0.0 ? value * neutral[static_cast<std::size_t>(channel)] * electrons_at_saturation(sensor) : 0.0;
+    const double mean = of_light + sensor.dark_current_electrons_per_s * sensor.camera.exposure.time_s;
+    return {.mean = mean, .variance = mean + sensor.read_noise_electrons * sensor.read_noise_electrons};
+}
+
 RawImage expose(const RawSensor& sensor, const Image& film, std::uint64_t seed, int threads) {
     const bool is_mosaic = !sensor.pattern.empty();
     const int channels = is_mosaic ? 1 : sensor.channels;
@@ -234,16 +223,13 @@ RawImage expose(const RawSensor& sensor, const Image& film, std::uint64_t seed, 
                  .neutral = sensor.neutral,
                  .demosaicing = sensor.demosaicing};
     raw.mosaic.values.resize(static_cast<std::size_t>(film.width) * film.height * channels);
-    const Readout readout(sensor);
-    const std::array<double, 3> neutral = {sensor.neutral.x, sensor.neutral.y, sensor.neutral.z};
     const auto read_row = [&](int y) {
         std::size_t value = static_cast<std::size_t>(y) * film.width * channels;
         for (int x = 0; x < film.width; ++x) {
             for (int layer = 0; layer < channels; ++layer, ++value) {
                 const int channel = is_mosaic ? mosaic_channel(sensor.pattern, x, y) : layer;
                 ValueRandom random(seed, value);
-                raw.mosaic.values[value] =
-                    readout.value(film.at(x, y, channel) * neutral[static_cast<std::size_t>(channel)], random);
+                raw.mosaic.values[value] = raw_value(sensor, film.at(x, y, channel), channel, random);
             }
         }
     };

@@ -82,6 +82,14 @@ PixelFilter pixel_aperture(const RawSensor& sensor);
 double electrons_at_saturation(const RawSensor& sensor);
 double dn_per_electron(const RawSensor& sensor);
 
+/// The electrons that light makes and the variance of what is read of them, both on average, where the film's channel
+/// (0 to 2) holds `value`.
+struct ReadElectrons {
+    double mean = 0.0;      // μ above
+    double variance = 0.0;  // μ + read noise²
+};
+ReadElectrons read_electrons(const RawSensor& sensor, double value, int channel);
+
 /// The raw of a film's R, G, B (of a sensor with one channel, the first). Each value's noise depends on (seed, pixel,
 /// channel) alone. `film`'s metadata go along; sensor, levels and gain are added to them.
 RawImage expose(const RawSensor& sensor, const Image& film, std::uint64_t seed, int threads = 0);

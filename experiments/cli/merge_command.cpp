@@ -127,17 +127,13 @@ int run_merge(const MergeOptions& options) {
     const std::optional<RawFiles> raw = write_raw_files(sum.film, sum.notes, exr, options.common.threads);
     nlohmann::ordered_json json = {
         {"shards", shards.indices}, {"missing", missing}, {"exr", exr.string()}, {"png", png.string()}};
-    if (raw) {
-        json["raw"] = raw->raw.string();
-        json["demosaiced"] = raw->demosaiced.string();
-    }
-    write_json_result(options.common, json);
     if (prints_text(options.common)) {
         fmt::print("{}\n{}\n", exr.string(), png.string());
-        if (raw) {
-            fmt::print("{}\n{}\n", raw->raw.string(), raw->demosaiced.string());
-        }
     }
+    if (raw) {
+        report_raw_files(*raw, json, options.common);
+    }
+    write_json_result(options.common, json);
     return kDone;
 }
 

@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "engine/render/film_exr.h"
+#include "experiments/cli/command.h"
 
 namespace lensproof {
 
@@ -17,6 +18,7 @@ inline constexpr const char* kShardNote = "lensproof:shard";
 struct RawFiles {
     std::filesystem::path raw;
     std::filesystem::path demosaiced;
+    double noise_ratio = 0.0;  // the film's own noise at most, over the sensor's: root mean square over all values
 };
 RawFiles raw_files(const std::filesystem::path& exr);
 
@@ -24,5 +26,8 @@ RawFiles raw_files(const std::filesystem::path& exr);
 /// notes name no sensor, or where it is a shard, whose noise says nothing of the whole's.
 std::optional<RawFiles> write_raw_files(const Film& film, const FilmNotes& notes, const std::filesystem::path& exr,
                                         int threads);
+
+/// Says what was written: keys of a machine-readable result, and where a person reads it.
+void report_raw_files(const RawFiles& files, nlohmann::ordered_json& json, const CommonOptions& common);
 
 }  // namespace lensproof

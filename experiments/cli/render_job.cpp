@@ -161,17 +161,13 @@ void report(const RenderJob& job, const RenderState& state, const RenderJobOptio
     json["relative_error"] = tile_error(state.film, all, 0.01 * mean_brightness(state.film));
     json["exr"] = files.exr.string();
     json["png"] = files.png.string();
-    if (raw) {
-        json["raw"] = raw->raw.string();
-        json["demosaiced"] = raw->demosaiced.string();
-    }
-    write_json_result(options.common, json);
     if (prints_text(options.common)) {
         fmt::print("{}\n{}\n", files.exr.string(), files.png.string());
-        if (raw) {
-            fmt::print("{}\n{}\n", raw->raw.string(), raw->demosaiced.string());
-        }
     }
+    if (raw) {
+        report_raw_files(*raw, json, options.common);
+    }
+    write_json_result(options.common, json);
 }
 
 }  // namespace

@@ -46,6 +46,21 @@ TEST(RawFiles, AreTheSameBytesOnAnyNumberOfThreadsAndOthersBySeed) {
     EXPECT_NE(place.content("a.raw.png"), place.content("c.raw.png"));
 }
 
+// What the samples are wrong by is added to the sensor's noise, and said: 16 times the samples take it to a quarter or
+// less. Said in words where one would see it.
+TEST(RawFiles, AreSaidToHoldTheRendersNoiseToo) {
+    const Workplace place;
+    place.file("scene.toml", small_scene() + sensor_table());
+    const Outcome coarse = place.run({"render", "scene.toml", "--spp", "64", "--json", "-"});
+    const Outcome fine = place.run({"render", "scene.toml", "--spp", "1024", "--json", "-"});
+    const auto ratio = [](const Outcome& outcome) {
+        return nlohmann::json::parse(outcome.out)["film_noise_over_sensor_noise"].get<double>();
+    };
+    EXPECT_GT(ratio(coarse), 0.3);
+    EXPECT_LT(ratio(fine), 0.4 * ratio(coarse));
+    EXPECT_NE(coarse.err.find("the render's own noise is"), std::string::npos) << coarse.err;
+}
+
 // A shard's light is a part's; the whole's raw comes with the whole.
 TEST(RawFiles, ComeOfAMergedWholeAndNotOfItsParts) {
     const Workplace place;
