@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <stdexcept>
 
 #include "engine/io/file.h"
@@ -99,12 +100,8 @@ void write_with_oiio(const OIIO::ImageSpec& spec, OIIO::TypeDesc type, const voi
     });
 }
 
-struct EncodedPng {
-    int channels = 0;
-    std::vector<unsigned char> pixels;
-};
-
-EncodedPng encode_srgb(const Image& image) {
+/// Channel by channel, which of the image's go into a PNG.
+std::vector<int> shown_channels(const Image& image) {
     std::vector<int> sources;
     for (const char* name : {"R", "G", "B"}) {
         sources.push_back(find_channel(image, name));
@@ -112,17 +109,44 @@ EncodedPng encode_srgb(const Image& image) {
     if (std::find(sources.begin(), sources.end(), -1) != sources.end()) {
         sources = {std::max(0, find_channel(image, "Y"))};
     }
-    EncodedPng encoded{.channels = static_cast<int>(sources.size()), .pixels = {}};
-    encoded.pixels.reserve(static_cast<std::size_t>(image.width) * image.height * sources.size());
+    return sources;
+}
+
+template <class Integer>
+std::vector<Integer> encode_srgb(const Image& image, const std::vector<int>& sources) {
+    std::vector<Integer> encoded;
+    encoded.reserve(static_cast<std::size_t>(image.width) * image.height * sources.size());
+    constexpr auto kFullScale = static_cast<float>(std::numeric_limits<Integer>::max());
     for (int y = 0; y < image.height; ++y) {
         for (int x = 0; x < image.width; ++x) {
             for (const int source : sources) {
-                encoded.pixels.push_back(
-                    static_cast<unsigned char>(std::lround(255.0F * linear_to_srgb(image.at(x, y, source)))));
+                encoded.push_back(
+                    static_cast<Integer>(std::lround(kFullScale * linear_to_srgb(image.at(x, y, source)))));
             }
         }
     }
     return encoded;
+}
+
+/// The bytes of a PNG whose pixels are of the type that `spec` says.
+std::string png_bytes(const OIIO::ImageSpec& spec, const void* pixels) {
+    std::vector<unsigned char> bytes;
+    OIIO::Filesystem::IOVecOutput sink(bytes);
+    const auto output = OIIO::ImageOutput::create("png", &sink);
+    if (!output || !output->open("picture.png", spec) || !output->write_image(spec.format, pixels) ||
+        !output->close()) {
+        throw std::runtime_error(
+            fmt::format("a PNG cannot be made: {}", output ? output->geterror() : OIIO::geterror()));
+    }
+    return {bytes.begin(), bytes.end()};
+}
+
+template <class Integer>
+std::string encode_srgb_png(const Image& image, OIIO::TypeDesc type) {
+    const std::vector<int> sources = shown_channels(image);
+    OIIO::ImageSpec spec(image.width, image.height, static_cast<int>(sources.size()), type);
+    spec.attribute("oiio:ColorSpace", "sRGB");
+    return png_bytes(spec, encode_srgb<Integer>(image, sources).data());
 }
 
 }  // namespace
@@ -202,23 +226,24 @@ void write_exr(const Image& image, const std::filesystem::path& file) {
 }
 
 void write_png(const Image& image, const std::filesystem::path& file) {
-    const std::string bytes = encode_png(image);
-    write_file(file, bytes);
+    write_file(file, encode_png(image));
+}
+
+void write_png_16(const Image& image, const std::filesystem::path& file) {
+    write_file(file, encode_srgb_png<std::uint16_t>(image, OIIO::TypeDesc::UINT16));
+}
+
+void write_png(const IntegerImage& image, const std::filesystem::path& file) {
+    OIIO::ImageSpec spec(image.width, image.height, image.channels, OIIO::TypeDesc::UINT16);
+    spec.attribute("oiio:ColorSpace", "linear");
+    for (const auto& [name, value] : image.metadata) {
+        spec.attribute(name, value);
+    }
+    write_file(file, png_bytes(spec, image.values.data()));
 }
 
 std::string encode_png(const Image& image) {
-    const EncodedPng encoded = encode_srgb(image);
-    OIIO::ImageSpec spec(image.width, image.height, encoded.channels, OIIO::TypeDesc::UINT8);
-    spec.attribute("oiio:ColorSpace", "sRGB");
-    std::vector<unsigned char> bytes;
-    OIIO::Filesystem::IOVecOutput sink(bytes);
-    const auto output = OIIO::ImageOutput::create("png", &sink);
-    if (!output || !output->open("picture.png", spec) ||
-        !output->write_image(OIIO::TypeDesc::UINT8, encoded.pixels.data()) || !output->close()) {
-        throw std::runtime_error(
-            fmt::format("a PNG cannot be made: {}", output ? output->geterror() : OIIO::geterror()));
-    }
-    return {bytes.begin(), bytes.end()};
+    return encode_srgb_png<unsigned char>(image, OIIO::TypeDesc::UINT8);
 }
 
 }  // namespace lensproof

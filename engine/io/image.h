@@ -1,5 +1,6 @@
 // engine/io/image.h — pictures in memory, as files, and the transfer curve between the two.
 #pragma once
+#include <cstdint>
 #include <filesystem>
 #include <map>
 #include <string>
@@ -45,6 +46,22 @@ void write_exr(const Image& image, const std::filesystem::path& file);
 
 /// Writes an 8-bit sRGB PNG of the R, G, B (or Y) channels; values above 1 saturate. Whole or not at all.
 void write_png(const Image& image, const std::filesystem::path& file);
+
+/// The same with 16 bits.
+void write_png_16(const Image& image, const std::filesystem::path& file);
+
+/// Integers as a device gave them: `channels` a pixel, 1 or 3, rows from the top.
+struct IntegerImage {
+    int width = 0;
+    int height = 0;
+    int channels = 1;
+    std::vector<std::uint16_t> values;
+    std::map<std::string, std::string> metadata;
+};
+
+/// Writes the integers as they are as a 16-bit PNG that states linear light, metadata as its texts. Whole or not at
+/// all.
+void write_png(const IntegerImage& image, const std::filesystem::path& file);
 
 /// The 8-bit sRGB PNG as bytes, for a report that holds its pictures inside.
 std::string encode_png(const Image& image);

@@ -153,6 +153,13 @@ ChartScene read_chart_scene(const std::filesystem::path& file) {
     if (auto render = top.optional_table("render")) {
         read_render_table(*render, scene);
     }
+    if (auto sensor = top.optional_table("sensor")) {
+        scene.sensor = read_raw_sensor(*sensor, {.response = scene.camera.response,
+                                                 .exposure = scene.camera.exposure,
+                                                 .white = scene.light.illuminant,
+                                                 .width = scene.camera.sensor.width,
+                                                 .height = scene.camera.sensor.height});
+    }
     top.finish();
     return scene;
 }

@@ -12,6 +12,7 @@
 #include "engine/io/toml.h"
 #include "engine/optics/lens.h"
 #include "engine/render/chart_render.h"
+#include "engine/render/raw_sensor.h"
 #include "engine/scene/chart_file.h"
 #include "engine/spectral/sensor_response.h"
 
@@ -55,6 +56,7 @@ void read_spectral_sampling(TomlTable& table, SpectralSampling& sampling);
 /// What is rendered and how finely.
 struct ChartScene {
     Camera camera;
+    std::optional<RawSensor> sensor;  // behind the film, for its raw file
     Light light;
     SpectralSampling spectral;
     int samples_per_pixel = 64;
@@ -65,7 +67,8 @@ struct ChartScene {
 /// Reads the optional table [render]: samples_per_pixel, wavelengths_nm = [from, to], layers, strata_per_layer.
 void read_render_table(TomlTable& table, ChartScene& scene);
 
-/// Reads a scene file: [camera], [light], [chart], [pose], [render]; the last two optional for a flat field.
+/// Reads a scene file: [camera], [light], [chart], [pose], [render] and [sensor] (`read_raw_sensor`); all but [camera]
+/// and [chart] optional, [pose] for a flat field alone.
 ChartScene read_chart_scene(const std::filesystem::path& file);
 
 /// The camera's lens: loaded, stopped down and focused.

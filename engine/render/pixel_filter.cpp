@@ -21,6 +21,10 @@ double tent(double x) {
     return 1.0 - std::abs(x);
 }
 
+double flat(double /*x*/) {
+    return 1.0;
+}
+
 double gaussian(double x) {
     return std::exp(-2.0 * x * x) - std::exp(-2.0 * kWindowRadius * kWindowRadius);
 }
@@ -62,6 +66,10 @@ PixelFilter PixelFilter::named(const std::string& name) {
             fmt::format("pixel filter \"{}\" is not known, expected one of {}", name, fmt::join(known_names(), ", ")));
     }
     return {known->name, known->shape, known->radius_px};
+}
+
+PixelFilter PixelFilter::square(double share) {
+    return share < 1.0 ? PixelFilter(fmt::format("box-{}", share), flat, 0.5 * std::sqrt(share)) : PixelFilter();
 }
 
 std::vector<std::string> PixelFilter::known_names() {

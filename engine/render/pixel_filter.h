@@ -28,6 +28,11 @@ class PixelFilter {
     static PixelFilter named(const std::string& name);
     static std::vector<std::string> known_names();
 
+    /// What a pixel sees whose light-sensitive part is a centred square of `share` of its area, in (0, 1], with nothing
+    /// to bring the rest of the light there: a box of side √share px. It is the sharper for it, by sinc(√share f) in
+    /// place of sinc(f) at f cycles a pixel, and aliases the more.
+    static PixelFilter square(double share);
+
     [[nodiscard]] const std::string& name() const { return name_; }
     [[nodiscard]] bool is_box() const { return quantile_.empty(); }
     /// Beyond it f is 0, px.

@@ -45,6 +45,13 @@ SceneSetup parse_scene_setup(const std::string& text, const std::filesystem::pat
     if (auto render = top.optional_table("render")) {
         read_render(*render, setup);
     }
+    if (auto sensor = top.optional_table("sensor")) {
+        setup.sensor = read_raw_sensor(*sensor, {.response = setup.camera.response,
+                                                 .exposure = setup.camera.exposure,
+                                                 .white = setup.white_balance,
+                                                 .width = setup.camera.sensor.width,
+                                                 .height = setup.camera.sensor.height});
+    }
     top.finish();
     return setup;
 }

@@ -4,6 +4,7 @@
 #include <string>
 
 #include "engine/render/camera.h"
+#include "engine/render/raw_sensor.h"
 #include "engine/scene/scene_description.h"
 
 namespace lensproof {
@@ -15,13 +16,14 @@ struct SceneSetup {
     SceneDescription scene;
     SpectralSampling spectral;
     int samples_per_pixel = 64;
-    int max_bounces = 16;  // scatterings on a path between camera and light; 0: lights alone are seen
+    std::optional<RawSensor> sensor;  // the electronics behind the film, where a raw file is wanted
+    int max_bounces = 16;             // scatterings on a path between camera and light; 0: lights alone are seen
 };
 
-/// Reads a scene file, as engine/scene/README.md documents it: [camera], [[materials]], [[objects]], [[lights]] and
-/// [render]. Illuminants and the files that it names have to be there; lens, meshes, pictures, tables, metals and
-/// glasses are looked up by whoever builds the scene. Throws InputError naming file, line and key; besides what
-/// `read_scene` and `read_camera` refuse, a scene without a light, and a number of wavelengths that is no multiple
+/// Reads a scene file, as engine/scene/README.md documents it: [camera], [[materials]], [[objects]], [[lights]],
+/// [render] and [sensor]. Illuminants and the files that it names have to be there; lens, meshes, pictures, tables,
+/// metals and glasses are looked up by whoever builds the scene. Throws InputError naming file, line and key; besides
+/// what `read_scene` and `read_camera` refuse, a scene without a light, and a number of wavelengths that is no multiple
 /// of 4.
 SceneSetup read_scene_setup(const std::filesystem::path& file);
 

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -16,6 +17,7 @@ namespace {
 struct Sensitivities {
     std::vector<std::string> channels;
     std::vector<Spectrum> relative;
+    bool is_balanced = false;  // for any white, by what the sensor is
 };
 
 /// The row of XYZ → RGB that is blind to the primaries `a` and `b`: up to scale, a row of the inverse of the matrix
@@ -35,7 +37,8 @@ Sensitivities colorimetric() {
     const auto& [red, green, blue] = kRec709Primaries;
     return {
         .channels = {"R", "G", "B"},
-        .relative = {blind_to(green, blue, observer), blind_to(blue, red, observer), blind_to(red, green, observer)}};
+        .relative = {blind_to(green, blue, observer), blind_to(blue, red, observer), blind_to(red, green, observer)},
+        .is_balanced = true};
 }
 
 Sensitivities measured_camera(const char* file) {
@@ -85,6 +88,18 @@ void require_positive(double value, const char* what, const char* unit) {
     }
 }
 
+/// What white light gives in a channel, in its sensitivity's unit.
+double white_value(const Sensitivities& sensitivities, std::size_t channel, const Spectrum& light,
+                   const std::string& name, const Illuminant& white) {
+    const double value = integral_of_product(light, sensitivities.relative[channel]);
+    if (!(value > 0.0)) {
+        throw InputError(
+            fmt::format("sensor '{}' cannot be balanced to illuminant '{}': its channel {} does not see it", name,
+                        white.name, sensitivities.channels[channel]));
+    }
+    return value;
+}
+
 }  // namespace
 
 double saturation_exposure_lx_s(double iso) {
@@ -116,12 +131,7 @@ SensorResponse sensor_response(const std::string& name, const Exposure& exposure
     const Spectrum saturating = irradiance_of(white, saturation_exposure_lx_s(exposure.iso) / exposure.time_s);
     SensorResponse response{.name = name, .channels = sensitivities.channels, .weight = {}};
     for (std::size_t channel = 0; channel < response.channels.size(); ++channel) {
-        const double of_white = integral_of_product(saturating, sensitivities.relative[channel]);
-        if (!(of_white > 0.0)) {
-            throw InputError(
-                fmt::format("sensor '{}' cannot be balanced to illuminant '{}': its channel {} does not see it", name,
-                            white.name, response.channels[channel]));
-        }
+        const double of_white = white_value(sensitivities, channel, saturating, name, white);
         response.weight[channel] = 1.0 / of_white * std::move(sensitivities.relative[channel]);
     }
     return response;
@@ -136,6 +146,21 @@ std::optional<RgbSpace> rgb_space(const std::string& name, const Illuminant& whi
                     .green = {green.x, green.y},
                     .blue = {blue.x, blue.y},
                     .white = chromaticity(tristimulus(white.relative, cie_1931()))};
+}
+
+std::vector<std::string> sensor_channels(const std::string& name) {
+    return sensitivities_of(name).channels;
+}
+
+Vec3d sensor_neutral(const std::string& name, const Illuminant& white) {
+    const Sensitivities sensitivities = sensitivities_of(name);
+    std::array<double, 3> value{};
+    for (std::size_t channel = 0; channel < sensitivities.channels.size(); ++channel) {
+        const double of_white = white_value(sensitivities, channel, white.relative, name, white);
+        value[channel] = sensitivities.is_balanced ? 1.0 : of_white;
+    }
+    const double largest = *std::ranges::max_element(value);
+    return {value[0] / largest, value[1] / largest, value[2] / largest};
 }
 
 std::vector<Vec3d> stratum_weights(const SensorResponse& sensor, const WavelengthStrata& strata,

@@ -55,6 +55,15 @@ std::vector<std::string> known_sensors();
 /// positive, and for a white that a channel does not see.
 SensorResponse sensor_response(const std::string& name, const Exposure& exposure, const Illuminant& white);
 
+/// The channels of the sensor called `name`.
+std::vector<std::string> sensor_channels(const std::string& name);
+
+/// What light of the spectrum `white` gives in the channels of the sensor called `name` before any balance, the largest
+/// 1; the white balance's multipliers are one over each. A measured camera's is by its data, in which each channel's
+/// peak is 1: the measurement does not tell them apart in height. For "cie-1931", whose channels are those of a
+/// balanced display, each is 1. Where there is no channel it is 0. Throws as above.
+Vec3d sensor_neutral(const std::string& name, const Illuminant& white);
+
 /// CIE 1931 chromaticities of a linear RGB space.
 struct RgbSpace {
     Vec2d red;

@@ -12,13 +12,12 @@
 #include "engine/render/film_exr.h"
 #include "engine/render/film_image.h"
 #include "experiments/cli/command.h"
+#include "experiments/cli/raw_files.h"
 #include "experiments/cli/shard.h"
 
 namespace lensproof {
 
 namespace {
-
-constexpr const char* kShard = "lensproof:shard";
 
 struct MergeOptions {
     CommonOptions common;
@@ -36,7 +35,7 @@ struct Part {
 
 Part look_at(const std::string& file) {
     FilmNotes notes = read_film_notes(file);
-    const auto text = notes.metadata.find(kShard);
+    const auto text = notes.metadata.find(kShardNote);
     if (text == notes.metadata.end()) {
         throw InputError(fmt::format("{}: is not a shard, expected a picture that `render --shard` made", file));
     }
@@ -51,7 +50,7 @@ Part look_at(const std::string& file) {
 RenderIdentity common_to_shards(const Part& part) {
     RenderIdentity identity = part.notes.identity;
     for (const auto& [name, value] : part.notes.metadata) {
-        if (name != kShard) {
+        if (name != kShardNote) {
             identity.push_back({name, value});
         }
     }
@@ -119,17 +118,22 @@ int run_merge(const MergeOptions& options) {
     }
     FilmFile sum = sum_of(std::move(parts));
     if (missing.empty()) {
-        sum.notes.metadata.erase(kShard);
+        sum.notes.metadata.erase(kShardNote);
     } else {
-        sum.notes.metadata[kShard] = shard_set_text(shards);
+        sum.notes.metadata[kShardNote] = shard_set_text(shards);
     }
     write_film_exr(sum.film, sum.notes, exr);
     write_png(film_rgb(sum.film), png);
-    write_json_result(options.common,
-                      {{"shards", shards.indices}, {"missing", missing}, {"exr", exr.string()}, {"png", png.string()}});
+    const std::optional<RawFiles> raw = write_raw_files(sum.film, sum.notes, exr, options.common.threads);
+    nlohmann::ordered_json json = {
+        {"shards", shards.indices}, {"missing", missing}, {"exr", exr.string()}, {"png", png.string()}};
     if (prints_text(options.common)) {
         fmt::print("{}\n{}\n", exr.string(), png.string());
     }
+    if (raw) {
+        report_raw_files(*raw, json, options.common);
+    }
+    write_json_result(options.common, json);
     return kDone;
 }
 

@@ -10,28 +10,52 @@
 #include "engine/io/input_error.h"
 #include "engine/render/camera.h"
 #include "engine/render/prepared_scene.h"
+#include "experiments/cli/raw_files.h"
 #include "experiments/cli/render_job.h"
 
 namespace lensproof {
 
 namespace {
 
-/// The scene's camera. What its lens refuses is said of the scene's file.
-ChartCamera make_camera(const ChartScene& scene, const RenderJobOptions& options) {
+/// What a pixel sees: the filter asked for, or what the scene's sensor says.
+PixelFilter filter_of(const std::optional<RawSensor>& sensor, const RenderJobOptions& options) {
+    if (!sensor) {
+        return PixelFilter::named(options.filter);
+    }
+    if (options.filter != "box") {
+        throw InputError(
+            fmt::format("--filter is \"{}\", but {} has a table [sensor], which says what a pixel sees: "
+                        "expected no filter",
+                        options.filter, options.scene));
+    }
+    return pixel_aperture(*sensor);
+}
+
+/// What is wrong with a file that the scene names, or with its lens, is said of the scene's file.
+template <class Make>
+auto said_of_scene(const RenderJobOptions& options, const Make& make) {
     try {
-        return {scene.camera, scene.light, scene.spectral, Cache::standard(), PixelFilter::named(options.filter)};
+        return make();
     } catch (const InputError& error) {
-        throw InputError(fmt::format("{}: camera: {}", options.scene, error.what()));
+        const std::string message = error.what();
+        throw InputError(message.starts_with(options.scene) ? message : fmt::format("{}: {}", options.scene, message));
     }
 }
 
-std::string settings_of(const RenderJobOptions& options) {
-    return fmt::format("{} filter, {} features", options.filter, options.has_features ? "with" : "no");
+std::string settings_of(const RenderJobOptions& options, const PixelFilter& filter) {
+    return fmt::format("{} filter, {} features", filter.name(), options.has_features ? "with" : "no");
 }
 
 int render_chart_scene(const RenderJobOptions& options) {
     const ChartScene scene = read_chart_scene(options.scene);
-    const ChartCamera camera = make_camera(scene, options);
+    if (scene.sensor) {
+        raw_files(render_files(options).exr);
+    }
+    const PixelFilter filter = filter_of(scene.sensor, options);
+    const auto prepared = said_of_scene(options, [&] {
+        return std::make_unique<ChartCamera>(scene.camera, scene.light, scene.spectral, Cache::standard(), filter);
+    });
+    const ChartCamera& camera = *prepared;
     if (!camera.spectral().clamp_note.empty()) {
         fmt::print(stderr, "lensproof: {}\n", camera.spectral().clamp_note);
     }
@@ -43,24 +67,14 @@ int render_chart_scene(const RenderJobOptions& options) {
     job.make_renderer = [&render] { return render.make_renderer(); };
     job.identity = {{"scene", hash_text(read_file(options.scene))},
                     {"lens", camera.lens_hash()},
-                    {"settings", settings_of(options)}};
+                    {"settings", settings_of(options, filter)}};
     job.notes.metadata = camera.metadata();
     job.notes.colours = camera.colours();
+    job.sensor = scene.sensor;
     job.samples = static_cast<std::uint32_t>(scene.samples_per_pixel);
     job.json["scene"] = options.scene;
     job.json["lens"] = camera.lens().id;
     return run_render_job(job, options);
-}
-
-/// What is wrong with a file that the scene names, or with its lens, is said of the scene's file.
-std::unique_ptr<PreparedScene> prepare(const SceneSetup& setup, const RenderJobOptions& options) {
-    const PixelFilter filter = PixelFilter::named(options.filter);
-    try {
-        return std::make_unique<PreparedScene>(setup, filter, Cache::standard());
-    } catch (const InputError& error) {
-        const std::string message = error.what();
-        throw InputError(message.starts_with(options.scene) ? message : fmt::format("{}: {}", options.scene, message));
-    }
 }
 
 /// Of the file and all files that it names.
@@ -75,7 +89,12 @@ std::string scene_hash(const SceneSetup& setup, const std::string& file) {
 /// `by_light`: paths from the lights instead of from the camera.
 int render_scene(const RenderJobOptions& options, bool by_light) {
     const SceneSetup setup = read_scene_setup(options.scene);
-    const std::unique_ptr<PreparedScene> scene = prepare(setup, options);
+    if (setup.sensor) {
+        raw_files(render_files(options).exr);
+    }
+    const PixelFilter filter = filter_of(setup.sensor, options);
+    const auto scene =
+        said_of_scene(options, [&] { return std::make_unique<PreparedScene>(setup, filter, Cache::standard()); });
     for (const std::string& remark : scene->remarks()) {
         fmt::print(stderr, "lensproof: {}\n", remark);
     }
@@ -83,15 +102,17 @@ int render_scene(const RenderJobOptions& options, bool by_light) {
     view.film.has_splats = by_light;
     RenderJob job;
     job.film = view.film;
-    const LensEntrance* entrance = by_light ? &scene->entrance(Cache::standard()) : nullptr;
+    const LensEntrance* entrance =
+        by_light ? said_of_scene(options, [&] { return &scene->entrance(Cache::standard()); }) : nullptr;
     job.make_renderer = [&view, entrance] {
         return entrance != nullptr ? light_path_renderer(view, *entrance) : scene_renderer(view);
     };
     job.identity = {{"scene", scene_hash(setup, options.scene)},
                     {"lens", scene->camera_hash()},
-                    {"settings", settings_of(options) + (by_light ? ", light paths" : "")}};
+                    {"settings", settings_of(options, filter) + (by_light ? ", light paths" : "")}};
     job.notes.metadata = scene->metadata();
     job.notes.colours = scene->colours();
+    job.sensor = setup.sensor;
     job.samples = static_cast<std::uint32_t>(setup.samples_per_pixel);
     job.json["scene"] = options.scene;
     job.json["lens"] = scene->lens_id();

@@ -13,6 +13,7 @@
 #include "engine/version.h"
 #include "experiments/cli/interruption.h"
 #include "experiments/cli/progress.h"
+#include "experiments/cli/raw_files.h"
 
 namespace lensproof {
 
@@ -131,6 +132,9 @@ int end_early(const RenderState& state, const RenderIdentity& identity, const Re
 FilmNotes notes_of(const RenderJob& job, const RenderJobOptions& options, const RenderIdentity& identity) {
     FilmNotes notes = job.notes;
     notes.identity = identity;
+    if (job.sensor) {
+        notes.metadata[kSensorNote] = raw_sensor_text(*job.sensor);
+    }
     notes.metadata["lensproof:samplesPerPixel"] = fmt::format("{}", whole_samples(job, options));
     if (options.time_s > 0.0) {
         notes.metadata["lensproof:time_s"] = fmt::format("{}", options.time_s);
@@ -140,12 +144,13 @@ FilmNotes notes_of(const RenderJob& job, const RenderJobOptions& options, const 
     }
     if (!options.shard.empty()) {
         const Shard shard = shard_of(options);
-        notes.metadata["lensproof:shard"] = shard_set_text({.indices = {shard.index}, .count = shard.count});
+        notes.metadata[kShardNote] = shard_set_text({.indices = {shard.index}, .count = shard.count});
     }
     return notes;
 }
 
-void report(const RenderJob& job, const RenderState& state, const RenderJobOptions& options, const RenderFiles& files) {
+void report(const RenderJob& job, const RenderState& state, const RenderJobOptions& options, const RenderFiles& files,
+            const std::optional<RawFiles>& raw) {
     nlohmann::ordered_json json = job.json;
     json["samples_per_pixel"] = mean_samples(state);
     json["seed"] = options.common.seed;
@@ -156,10 +161,13 @@ void report(const RenderJob& job, const RenderState& state, const RenderJobOptio
     json["relative_error"] = tile_error(state.film, all, 0.01 * mean_brightness(state.film));
     json["exr"] = files.exr.string();
     json["png"] = files.png.string();
-    write_json_result(options.common, json);
     if (prints_text(options.common)) {
         fmt::print("{}\n{}\n", files.exr.string(), files.png.string());
     }
+    if (raw) {
+        report_raw_files(*raw, json, options.common);
+    }
+    write_json_result(options.common, json);
 }
 
 }  // namespace
@@ -225,9 +233,10 @@ int run_render_job(const RenderJob& job, const RenderJobOptions& options) {
     if (!options.preview.empty()) {
         write_png(film_rgb(state.film), options.preview);
     }
-    write_film_exr(state.film, notes_of(job, options, identity), files.exr);
+    const FilmNotes notes = notes_of(job, options, identity);
+    write_film_exr(state.film, notes, files.exr);
     write_png(film_rgb(state.film), files.png);
-    report(job, state, options, files);
+    report(job, state, options, files, write_raw_files(state.film, notes, files.exr, options.common.threads));
     return kDone;
 }
 

@@ -8,6 +8,7 @@
 
 #include "engine/render/film_exr.h"
 #include "engine/render/progressive.h"
+#include "engine/render/raw_sensor.h"
 #include "experiments/cli/command.h"
 #include "experiments/cli/shard.h"
 
@@ -43,10 +44,11 @@ RenderFiles render_files(const RenderJobOptions& options);
 struct RenderJob {
     FilmLayout film;
     MakeTileRenderer make_renderer;
-    RenderIdentity identity;      // "scene", "lens", "settings"; seed and version are added
-    FilmNotes notes;              // metadata and colours
-    std::uint32_t samples = 0;    // a pixel, the scene's own
-    nlohmann::ordered_json json;  // what the machine-readable result begins with
+    RenderIdentity identity;          // "scene", "lens", "settings"; seed and version are added
+    FilmNotes notes;                  // metadata and colours
+    std::uint32_t samples = 0;        // a pixel, the scene's own
+    std::optional<RawSensor> sensor;  // for a raw file beside the film's, of a whole render
+    nlohmann::ordered_json json;      // what the machine-readable result begins with
 };
 
 /// Renders, writes the pictures and says where they are. Returns the exit status: kInternalFailure where a signal ended
