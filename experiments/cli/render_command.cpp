@@ -31,14 +31,15 @@ PixelFilter filter_of(const std::optional<RawSensor>& sensor, const RenderJobOpt
     return pixel_aperture(*sensor);
 }
 
-/// What is wrong with a file that the scene names, or with its lens, is said of the scene's file.
+/// What is wrong with the scene names its place in the file; what the camera's lens refuses is said of the camera.
 template <class Make>
 auto said_of_scene(const RenderJobOptions& options, const Make& make) {
     try {
         return make();
     } catch (const InputError& error) {
         const std::string message = error.what();
-        throw InputError(message.starts_with(options.scene) ? message : fmt::format("{}: {}", options.scene, message));
+        throw InputError(message.starts_with(options.scene) ? message
+                                                            : fmt::format("{}: camera: {}", options.scene, message));
     }
 }
 

@@ -1,0 +1,123 @@
+// tests/cli/render_scene_test.cpp — `render` of scenes: from either end, and what a scene may not be.
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include "tests/cli/program.h"
+
+namespace lensproof {
+
+namespace {
+
+/// A lamp over a floor, seen by `camera` lines; `more` is added.
+std::string lamp_over_floor(const std::string& camera, const std::string& more = "") {
+    return fmt::format(R"([camera]
+{}
+f_number = 4.0
+focus_distance_mm = 2000.0
+position_mm = [0.0, 300.0, 0.0]
+look_at_mm = [0.0, 0.0, 2000.0]
+sensor_mm = [36.0, 24.0]
+pixels = [24, 16]
+shutter_s = 0.01
+iso = 100.0
+response = "cie-1931"
+[render]
+samples_per_pixel = 32
+layers = 8
+[[materials]]
+name = "floor"
+kind = "diffuse"
+reflectance = [0.5, 0.4, 0.3]
+[[objects]]
+name = "floor"
+shape = "quad"
+size_mm = [4000.0, 4000.0]
+rotate_deg = [-90.0, 0.0, 0.0]
+translate_mm = [0.0, -200.0, 2000.0]
+material = "floor"
+[[lights]]
+kind = "sphere"
+position_mm = [200.0, 300.0, 1800.0]
+radius_mm = 80.0
+luminance_cd_m2 = 30000.0
+{})",
+                       camera, more);
+}
+
+const std::string kLens = "lens = \"double-gauss-tronnier\"";
+
+// Camera paths and light paths are estimates of one image, here with a noise of 0.02; upside down or mirrored it would
+// differ by a tenth at least.
+TEST(RenderScene, IsOneImageFromEitherEnd) {
+    const Workplace place;
+    place.file("scene.toml", lamp_over_floor(kLens));
+    ASSERT_EQ(place.run({"render", "scene.toml", "--spp", "256", "-o", "camera.exr"}).status, 0);
+    ASSERT_EQ(place.run({"render", "scene.toml", "--spp", "1024", "--paths", "light", "-o", "light.exr"}).status, 0);
+    const Outcome same = place.run({"compare", "camera.exr", "light.exr", "--rms-limit", "0.05"});
+    EXPECT_EQ(same.status, 0) << same.out;
+    const Outcome alike = place.run({"compare", "camera.exr", "light.exr", "--rms-limit", "1e-5"});
+    EXPECT_EQ(alike.status, 1) << alike.out;
+}
+
+TEST(RenderScene, IsTheSameForAnyNumberOfThreads) {
+    const Workplace place;
+    place.file("scene.toml", lamp_over_floor(kLens));
+    for (const char* paths : {"camera", "light"}) {
+        ASSERT_EQ(place.run({"render", "scene.toml", "--paths", paths, "--threads", "1", "-o", "one.exr"}).status, 0);
+        ASSERT_EQ(place.run({"render", "scene.toml", "--paths", paths, "--threads", "3", "-o", "three.exr"}).status, 0);
+        EXPECT_EQ(place.content("one.exr"), place.content("three.exr")) << paths;
+    }
+}
+
+TEST(RenderScene, TakesEveryModelOfTheLens) {
+    const Workplace place;
+    for (const std::string& camera :
+         {kLens + "\nmodel = \"paraxial\"", kLens + "\nmodel = \"thin-lens\"", kLens + "\nmodel = \"pinhole\"",
+          std::string("focal_length_mm = 50.0\nmodel = \"thin-lens\"")}) {
+        place.file("scene.toml", lamp_over_floor(camera));
+        const Outcome outcome = place.run({"render", "scene.toml", "--features", "-o", "a.exr"});
+        EXPECT_EQ(outcome.status, 0) << camera << outcome.err;
+    }
+}
+
+TEST(RenderScene, RefusesWhatItCannotRender) {
+    const Workplace place;
+    const auto refuses = [&](const std::string& scene, const std::vector<std::string>& more,
+                             const std::vector<std::string>& words) {
+        place.file("scene.toml", scene);
+        std::vector<std::string> arguments{"render", "scene.toml", "-o", "a.exr"};
+        arguments.insert(arguments.end(), more.begin(), more.end());
+        expect_refused(place, arguments, words);
+    };
+    refuses(lamp_over_floor("model = \"pinhole\"\nfocal_length_mm = 50.0"), {"--paths", "light"},
+            {"scene.toml", "exact"});
+    refuses(lamp_over_floor(kLens), {"--paths", "light", "--noise", "0.1"}, {"--noise"});
+    refuses(lamp_over_floor("lens = \"nothing\""), {}, {"scene.toml", "nothing"});
+    refuses(lamp_over_floor(kLens, "[[materials]]\nname = \"m\"\nkind = \"conductor\"\nior = \"metal:Xx\"\n"), {},
+            {"scene.toml", "materials", "Xx", "gold"});
+    refuses(lamp_over_floor(kLens, "[[materials]]\nname = \"m\"\nkind = \"dielectric\"\nior = \"N-BK77\"\n"), {},
+            {"scene.toml", "materials", "N-BK77", "N-BK7"});
+    place.file("dark.csv", "wavelength_nm,radiance\n800,1\n900,1\n");
+    refuses(lamp_over_floor(kLens, "[[lights]]\nkind = \"environment\"\nradiance = \"dark.csv\"\n"), {},
+            {"scene.toml", "lights", "no power"});
+    place.file("flat.obj", "v 0 0 0\nv 1 0 0\nv 2 0 0\nf 1 2 3\n");
+    refuses(lamp_over_floor(kLens, "[[objects]]\nshape = \"mesh\"\nfile = \"flat.obj\"\nmaterial = \"floor\"\n"), {},
+            {"scene.toml", "flat.obj"});
+}
+
+// A render goes on only from what it began with, the files that the scene names included.
+TEST(RenderScene, KnowsTheFilesThatASceneNames) {
+    const Workplace place;
+    const std::string mesh = "[[objects]]\nshape = \"mesh\"\nfile = \"m.obj\"\nmaterial = \"floor\"\n";
+    place.file("scene.toml", lamp_over_floor(kLens, mesh));
+    place.file("m.obj", "v 0 0 1500\nv 90 0 1500\nv 0 90 1500\nf 1 2 3\n");
+    ASSERT_EQ(place.run({"render", "scene.toml", "--checkpoint", "c", "-o", "a.exr"}).status, 0);
+    ASSERT_EQ(place.run({"render", "scene.toml", "--checkpoint", "c", "--spp", "64", "-o", "a.exr"}).status, 0);
+    place.file("m.obj", "v 0 0 1500\nv 91 0 1500\nv 0 90 1500\nf 1 2 3\n");
+    const Outcome other = place.run({"render", "scene.toml", "--checkpoint", "c", "--spp", "64", "-o", "a.exr"});
+    EXPECT_EQ(other.status, 2) << other.err;
+}
+
+}  // namespace
+
+}  // namespace lensproof
