@@ -20,8 +20,8 @@ void register_render_benchmarks();
 /// Counters: valid paths per second, seconds a valid path, and passage.
 void register_camera_path_benchmarks();
 
-/// scene/MODEL: camera paths of up to five bounces through a scene of a checkered wall, a sphere and an area light, with
-/// each camera model, the exact one being the double Gauss at f/2. Counters: paths per second, rays a path.
+/// scene/MODEL: camera paths of up to five bounces through a scene of a checkered wall, a sphere and an area light,
+/// with each camera model, the exact one being the double Gauss at f/2. Counters: paths per second, rays a path.
 void register_scene_benchmarks();
 
 /// bsdf/SURFACE/sample: a direction drawn; bsdf/SURFACE/evaluate: value and density of a given one; texture/KIND: one
