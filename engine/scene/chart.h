@@ -73,8 +73,8 @@ struct AstigmatismCrosses {
     double line_mm = 0.0;    // its width
 };
 
-/// The 6 × 4 patches of a colour checker, `gap_mm` apart and as far from the card's edge. What the patches reflect is
-/// another's to say; here they are white, on black.
+/// The 6 × 4 patches of a colour checker, `gap_mm` apart and as far from the card's edge. What the patches reflect
+/// texture.h knows; here they are white, on black.
 struct ColourChecker {
     double patch_mm = 0.0;
     double gap_mm = 0.0;

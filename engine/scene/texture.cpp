@@ -13,8 +13,6 @@ namespace lensproof {
 
 namespace {
 
-constexpr double kFrameReflectance = 0.04;
-
 /// Two neighbouring pixels along an axis, and how far from the first to the second.
 struct Neighbours {
     std::size_t first = 0;
@@ -65,25 +63,13 @@ SpectralSample look_up(const ImageTexture& image, const Vec2d& uv, const PathWav
 }
 
 SpectralSample look_up(const ChartTexture& chart, const Vec2d& uv, const PathWavelengths& path) {
-    const auto share =
-        static_cast<float>(reflectance(chart.share, (uv.x - 0.5) * chart.width_mm, (0.5 - uv.y) * chart.height_mm));
-    return share * chart.white(path) + (1.0F - share) * chart.black(path);
-}
-
-SpectralSample look_up(const ColourCheckerTexture& checker, const Vec2d& uv, const PathWavelengths& path) {
-    constexpr int kColumns = kColourCheckerColumns;
-    constexpr int kRows = kColourCheckerRows;
-    const double x = uv.x * kColumns;
-    const double y = (1.0 - uv.y) * kRows;
-    if (!(x >= 0.0 && x < kColumns && y >= 0.0 && y < kRows)) {
-        return checker.frame(path);
+    const Vec2d at{(uv.x - 0.5) * chart.width_mm, (0.5 - uv.y) * chart.height_mm};
+    if (!chart.patches.empty()) {
+        const std::optional<int> patch = patch_index(chart.share, at.x, at.y);
+        return patch ? chart.patches[static_cast<std::size_t>(*patch)](path) : chart.black(path);
     }
-    const int column = static_cast<int>(x);
-    const int row = static_cast<int>(y);
-    const double from_middle = std::max(std::abs(x - column - 0.5), std::abs(y - row - 0.5));
-    const int patch = row * kColumns + column;
-    return from_middle < 0.5 * checker.patch_share ? checker.patch[static_cast<std::size_t>(patch)](path)
-                                                   : checker.frame(path);
+    const auto share = static_cast<float>(reflectance(chart.share, at.x, at.y));
+    return share * chart.white(path) + (1.0F - share) * chart.black(path);
 }
 
 double look_up(double everywhere, const Vec2d&) {
@@ -175,17 +161,15 @@ ChartTexture chart_texture(const Chart& chart, double width_mm, double height_mm
                          .width_mm = width_mm,
                          .height_mm = height_mm,
                          .white = constant_spectrum(chart.white_reflectance, grid),
-                         .black = constant_spectrum(chart.black_reflectance, grid)};
+                         .black = constant_spectrum(chart.black_reflectance, grid),
+                         .patches = {}};
+    if (std::holds_alternative<ColourChecker>(chart.pattern)) {
+        for (const ColourPatch& patch : colour_checker()) {
+            texture.patches.push_back(at_midpoints(patch.reflectance, grid));
+        }
+    }
     texture.share.white_reflectance = 1.0;
     texture.share.black_reflectance = 0.0;
-    return texture;
-}
-
-ColourCheckerTexture colour_checker_texture(const SpectralGrid& grid) {
-    ColourCheckerTexture texture{.patch = {}, .frame = constant_spectrum(kFrameReflectance, grid)};
-    const std::vector<ColourPatch> patches = colour_checker();
-    std::transform(patches.begin(), patches.end(), texture.patch.begin(),
-                   [&](const ColourPatch& patch) { return at_midpoints(patch.reflectance, grid); });
     return texture;
 }
 

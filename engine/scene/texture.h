@@ -3,7 +3,6 @@
 // (u, v) covers a texture once from 0 to 1: u runs to the right and v up, so that (0, 1) is a picture's top left
 // corner.
 #pragma once
-#include <array>
 #include <filesystem>
 #include <optional>
 #include <variant>
@@ -42,25 +41,18 @@ struct ImageTexture {
 };
 
 /// A chart on a surface of width_mm × height_mm, its centre in the middle: `black`, `white`, or what the chart says
-/// between them.
+/// between them; a colour checker's patches as they were measured.
 struct ChartTexture {
     Chart share;  // of white_reflectance 1 and black_reflectance 0
     double width_mm = 0.0;
     double height_mm = 0.0;
     GridSpectrum white;
     GridSpectrum black;
-};
-
-/// A colour checker that fills the surface: 6 × 4 patches in a frame.
-struct ColourCheckerTexture {
-    std::array<GridSpectrum, 24> patch;
-    GridSpectrum frame;
-    double patch_share =
-        0.87;  // a patch's side over the distance of two patches' centres: 40 mm / 46 mm on the Classic
+    std::vector<GridSpectrum> patches;  // of a colour checker, row by row from the top left; else none
 };
 
 /// A spectrum over a surface; a GridSpectrum is the same everywhere.
-using Texture = std::variant<GridSpectrum, ImageTexture, ChartTexture, ColourCheckerTexture>;
+using Texture = std::variant<GridSpectrum, ImageTexture, ChartTexture>;
 
 SpectralSample value_at(const Texture& texture, const Vec2d& uv, const PathWavelengths& path);
 
@@ -85,11 +77,9 @@ GridSpectrum rgb_reflectance(const Vec3d& rgb, const SpectralGrid& grid, const R
 /// The light of colour `rgb` (≥ 0, unbounded) against `white`, of which (1, 1, 1) is the whole.
 GridSpectrum rgb_emission(const Vec3d& rgb, const Spectrum& white, const SpectralGrid& grid, const RgbUplift& uplift);
 
-/// `chart` with its own two reflectances, alike at all wavelengths.
+/// `chart` with its own two reflectances, alike at all wavelengths, and its patches, if it has such, by
+/// engine/spectral/colour_checker.h.
 ChartTexture chart_texture(const Chart& chart, double width_mm, double height_mm, const SpectralGrid& grid);
-
-/// The patches of engine/spectral/colour_checker.h in a frame of 4 % reflectance.
-ColourCheckerTexture colour_checker_texture(const SpectralGrid& grid);
 
 /// A picture of plain numbers.
 struct ScalarImage {

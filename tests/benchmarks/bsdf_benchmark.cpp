@@ -89,7 +89,9 @@ void register_bsdf_benchmarks() {
     const SpectralGrid grid = spectral_grid(400.0, 700.0, 64);
     benchmark::RegisterBenchmark("texture/constant", look_up, Texture(constant_spectrum(0.5, grid)), grid);
     benchmark::RegisterBenchmark("texture/picture", look_up, picture(grid), grid);
-    benchmark::RegisterBenchmark("texture/colour-checker", look_up, Texture(colour_checker_texture(grid)), grid);
+    benchmark::RegisterBenchmark(
+        "texture/colour-checker", look_up,
+        Texture(chart_texture({.pattern = ColourChecker{.patch_mm = 40.0, .gap_mm = 6.0}}, 282.0, 190.0, grid)), grid);
 }
 
 }  // namespace lensproof

@@ -78,7 +78,9 @@ TEST(Texture, ChartsAreTheCharts) {
 // Each patch's middle has the measured reflectance at the path's wavelengths, from dark skin at the top left to black
 // at the bottom right; between patches is the frame.
 TEST(Texture, ColourCheckersPatchesAreAsMeasured) {
-    const Texture texture = colour_checker_texture(grid());
+    // 6 × 4 patches of 40 mm, 6 mm apart: a card of 282 × 190 mm.
+    const Chart card{.pattern = ColourChecker{.patch_mm = 40.0, .gap_mm = 6.0}, .black_reflectance = 0.04};
+    const Texture texture = chart_texture(card, 276.0, 184.0, grid());
     const std::vector<ColourPatch> patches = colour_checker();
     const PathWavelengths path = grid().path(5);
     for (std::size_t i = 0; i < patches.size(); ++i) {
