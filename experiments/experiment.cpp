@@ -156,6 +156,20 @@ StabilityExperiment read_stability(TomlTable& table) {
     return stability;
 }
 
+PassageSetting read_passage(TomlTable& table) {
+    constexpr Bounds kPercent{.min = 0.0, .max = 100.0};
+    PassageSetting setting{
+        .lens = table.text("lens"), .f_number = table.number("f_number", {.min = 0.1, .max = 1000.0}), .published = {}};
+    if (auto published = table.optional_table("published_percent")) {
+        setting.published =
+            PassageSetting::Published{.whole_element_percent = published->number("whole_element", kPercent),
+                                      .pupil_percent = published->number("pupil", kPercent)};
+        published->finish();
+    }
+    table.finish();
+    return setting;
+}
+
 }  // namespace
 
 Experiment read_experiment(const std::filesystem::path& file) {
@@ -166,6 +180,13 @@ Experiment read_experiment(const std::filesystem::path& file) {
     experiment.summary = top.text_or("summary", "");
     if (auto stability = top.optional_table("stability")) {
         experiment.stability = read_stability(*stability);
+        top.finish();
+        return experiment;
+    }
+    for (TomlTable& table : top.tables("pupil_passage")) {
+        experiment.pupil_passage.push_back(read_passage(table));
+    }
+    if (!experiment.pupil_passage.empty()) {
         top.finish();
         return experiment;
     }
@@ -190,7 +211,7 @@ Experiment read_experiment(const std::filesystem::path& file) {
     top.optional_table("render");
     top.finish();
     if (names.empty()) {
-        top.fail("", "holds neither [[simulations]] nor [[photos]] nor [stability]");
+        top.fail("", "holds neither [[simulations]] nor [[photos]] nor [stability] nor [[pupil_passage]]");
     }
     return experiment;
 }

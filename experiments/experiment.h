@@ -60,6 +60,17 @@ struct StabilityExperiment {
     std::vector<std::string> extremes;  // ids; empty: all
 };
 
+/// A lens whose camera paths are counted (experiments/pupil_passage).
+struct PassageSetting {
+    std::string lens;
+    double f_number = 0.0;
+    struct Published {
+        double whole_element_percent = 0.0;
+        double pupil_percent = 0.0;
+    };
+    std::optional<Published> published;
+};
+
 struct Experiment {
     std::filesystem::path file;
     std::string title;
@@ -68,6 +79,7 @@ struct Experiment {
     std::vector<PhotoSubject> photos;
     std::vector<Comparison> comparisons;
     std::optional<StabilityExperiment> stability;  // then there is nothing else
+    std::vector<PassageSetting> pupil_passage;     // the same
 };
 
 /// Reads an experiment file (described in experiments/README.md). Throws InputError naming file, line and key.

@@ -31,7 +31,8 @@ struct LensEntrance {
 ///
 /// What lands is splatted: the flux over a pixel's area, so that the mean over light paths, times the film's share of
 /// them, is the film irradiance in W·m⁻²·nm⁻¹. Paths whose last point before the lens is a mirror (or smooth glass)
-/// cannot be joined to it and are missing; so is light from surfaces inside the front sphere.
+/// cannot be joined to it and are missing; so is light from surfaces inside the front sphere. Point and spot lights in
+/// view make points in the picture, which camera paths cannot find.
 /// Returns how many rays were traced, in the scene and into the lens.
 std::uint32_t trace_light_path(const Scene& scene, const LensEntrance& entrance, const PathWavelengths& path,
                                const PathSettings& settings, PathSampler& numbers, FilmTile& tile);

@@ -11,7 +11,7 @@ const std::vector<std::array<float, kWavelengthsPerPath>>& SharedRays::weigh(con
         const int count = std::min(kBlock, paths.size - first);
         trace(paths, first, count);
         for (int i = 0; i < count; ++i) {
-            const auto path = static_cast<std::size_t>(first + i);
+            const auto path = static_cast<std::size_t>(first) + static_cast<std::size_t>(i);
             const PathWavelengths strata = grid_.path(paths.wavelength[path]);
             std::array<double, kWavelengthsPerPath> transmittance{};
             double density = 0.0;
@@ -47,7 +47,8 @@ void SharedRays::trace(const CameraPathBuffer<double>& paths, int first, int cou
     for (int i = 0; i < count; ++i) {
         const Ray<double> out = paths.ray(first + i);
         const Ray<double> in{out.origin, -1.0 * out.direction};
-        const PathWavelengths strata = grid_.path(paths.wavelength[static_cast<std::size_t>(first + i)]);
+        const auto path = static_cast<std::size_t>(first) + static_cast<std::size_t>(i);
+        const PathWavelengths strata = grid_.path(paths.wavelength[path]);
         for (int m = 0; m < kWavelengthsPerPath; ++m) {
             const int ray = i * kWavelengthsPerPath + m;
             rays_.set(ray, in);

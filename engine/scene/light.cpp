@@ -7,6 +7,7 @@
 
 #include "engine/scene/basis.h"
 #include "engine/scene/bsdf/directions.h"
+#include "engine/scene/overloaded.h"
 
 namespace lensproof {
 
@@ -14,11 +15,6 @@ namespace {
 
 constexpr double kPi = std::numbers::pi;
 constexpr double kSquareMetresPerSquareMm = 1e-6;
-
-template <class... Functions>
-struct Overloaded : Functions... {
-    using Functions::operator()...;
-};
 
 double mean_of(const GridSpectrum& spectrum) {
     return std::accumulate(spectrum.value.begin(), spectrum.value.end(), 0.0) /

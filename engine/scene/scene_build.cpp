@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "engine/io/input_error.h"
+#include "engine/scene/overloaded.h"
 #include "engine/scene/scene_shapes.h"
 #include "engine/scene/scene_spectra.h"
 #include "engine/spectral/illuminant.h"
@@ -18,11 +19,6 @@ namespace lensproof {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
-
-template <class... Functions>
-struct Overloaded : Functions... {
-    using Functions::operator()...;
-};
 
 double radians(double degrees) {
     return degrees * kPi / 180.0;

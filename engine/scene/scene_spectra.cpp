@@ -10,6 +10,7 @@
 #include "engine/io/input_error.h"
 #include "engine/optics/dispersion.h"
 #include "engine/optics/glass_catalogue.h"
+#include "engine/scene/overloaded.h"
 #include "engine/spectral/colour_checker.h"
 #include "engine/spectral/colour_matching.h"
 #include "engine/spectral/illuminant.h"
@@ -17,11 +18,6 @@
 namespace lensproof {
 
 namespace {
-
-template <class... Functions>
-struct Overloaded : Functions... {
-    using Functions::operator()...;
-};
 
 constexpr std::string_view kPatchPrefix = "patch:";
 constexpr std::string_view kMetalPrefix = "metal:";

@@ -7,6 +7,7 @@
 #include "engine/io/file.h"
 #include "experiments/cli/command.h"
 #include "experiments/cli/progress.h"
+#include "experiments/pupil_passage/passage_report.h"
 #include "experiments/report/report.h"
 #include "experiments/report_content.h"
 #include "experiments/stability/stability_report.h"
@@ -92,6 +93,11 @@ int run(const RunOptions& options) {
         const std::vector<StabilitySweep> sweeps = run_stability(experiment, settings, report_progress);
         return finish_report(options, folder, stability_checks(sweeps),
                              stability_report_json(experiment, sweeps, settings), stability_charts(sweeps));
+    }
+    if (!experiment.pupil_passage.empty()) {
+        const std::vector<Passage> passages = run_pupil_passage(experiment, settings, report_progress);
+        return finish_report(options, folder, passage_checks(passages),
+                             passage_report_json(experiment, passages, settings), passage_drawings(passages));
     }
     const ExperimentResult result = run_experiment(experiment, settings, report_progress);
     for (const Subject& subject : result.subjects) {
