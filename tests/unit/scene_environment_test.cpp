@@ -49,7 +49,7 @@ TEST(Environment, StandsAsItSays) {
 // Directions are drawn with the density that is stated: a weighted mean over them gives the integral of any function,
 // here the sky's irradiance from above and its whole flux, which a sum over fine cells gives too; 1e-3 by the sequence.
 TEST(Environment, DrawsWithItsDensity) {
-    std::vector<float> values(16 * 8, 0.1F);
+    std::vector<float> values(std::size_t{16} * 8, 0.1F);
     values[3 * 16 + 5] = 100.0F;
     const Environment sky(grey_picture(16, 8, values), {0.0, 0.0, 1.0}, 0.0);
     const PathWavelengths path = kGrid.path(0);
