@@ -51,23 +51,13 @@ std::vector<TraceLens<double>> lenses_of(const std::vector<WavelengthStratum>& s
 
 SpectralStrata make_strata(const Camera& camera, const Lens& lens, const Light& light,
                            const SpectralSampling& spectral) {
-    const WavelengthRange range = wavelength_range(lens);
-    const double min_nm = std::max(spectral.min_nm, range.min_nm);
-    const double max_nm = std::min(spectral.max_nm, range.max_nm);
-    if (!(min_nm < max_nm)) {
-        throw InputError(fmt::format("wavelengths of {} to {} nm: the glasses of {} are known from {} to {} nm only",
-                                     spectral.min_nm, spectral.max_nm, lens.name, range.min_nm, range.max_nm));
-    }
+    const auto [min_nm, max_nm, clamp_note] = sampled_band(spectral, lens);
     const int count = spectral.layers * spectral.strata_per_layer;
     if (count > SpectralLens<double>::kMostWavelengths) {
         throw InputError(fmt::format("{} layers of {} strata are {} wavelengths, expected {} at most", spectral.layers,
                                      spectral.strata_per_layer, count, SpectralLens<double>::kMostWavelengths));
     }
-    SpectralStrata made;
-    if (min_nm != spectral.min_nm || max_nm != spectral.max_nm) {
-        made.clamp_note = fmt::format("wavelengths clamped to {} to {} nm, where the glasses of {} are known", min_nm,
-                                      max_nm, lens.name);
-    }
+    SpectralStrata made{.strata = {}, .layer_nm = {}, .clamp_note = clamp_note};
     const WavelengthStrata bands = wavelength_strata(min_nm, max_nm, count);
     const Illuminant source = illuminant(light.illuminant);
     const Spectrum radiance = radiance_of(source, light.luminance_cd_m2);
@@ -88,6 +78,38 @@ SpectralStrata make_strata(const Camera& camera, const Lens& lens, const Light& 
 }
 
 }  // namespace
+
+SampledBand sampled_band(const SpectralSampling& sampling, const Lens& lens) {
+    const WavelengthRange range = wavelength_range(lens);
+    SampledBand band{.min_nm = std::max(sampling.min_nm, range.min_nm),
+                     .max_nm = std::min(sampling.max_nm, range.max_nm),
+                     .clamp_note = {}};
+    if (!(band.min_nm < band.max_nm)) {
+        throw InputError(fmt::format("wavelengths of {} to {} nm: the glasses of {} are known from {} to {} nm only",
+                                     sampling.min_nm, sampling.max_nm, lens.name, range.min_nm, range.max_nm));
+    }
+    if (band.min_nm != sampling.min_nm || band.max_nm != sampling.max_nm) {
+        band.clamp_note = fmt::format("wavelengths clamped to {} to {} nm, where the glasses of {} are known",
+                                      band.min_nm, band.max_nm, lens.name);
+    }
+    return band;
+}
+
+std::map<std::string, std::string> camera_metadata(const Camera& camera, const std::string& lens_name,
+                                                   const std::string& illuminant, const PixelFilter& filter,
+                                                   bool has_colour_space) {
+    return {{"lensproof:lens", lens_name},
+            {"lensproof:fNumber", fmt::format("{}", camera.f_number)},
+            {"lensproof:focusDistance_mm", fmt::format("{}", camera.focus_distance_mm)},
+            {"lensproof:pixelPitch_um", fmt::format("{}", 1e3 * camera.sensor.pixel_pitch_mm)},
+            {"lensproof:shutter_s", fmt::format("{}", camera.exposure.time_s)},
+            {"lensproof:iso", fmt::format("{}", camera.exposure.iso)},
+            {"lensproof:response", camera.response},
+            {"lensproof:illuminant", illuminant},
+            {"lensproof:pixelFilter", filter.name()},
+            {"lensproof:colourSpace", has_colour_space ? "linear, Rec. 709 primaries, the illuminant's white"
+                                                       : "linear, the sensor's own, balanced to the illuminant"}};
+}
 
 Camera read_camera_keys(TomlTable& table, bool may_lack_lens) {
     Camera camera;
@@ -187,17 +209,7 @@ ChartCamera::ChartCamera(const Camera& camera, const Light& light, const Spectra
                         "at most: fewer pixels or layers",
                         camera.sensor.width, camera.sensor.height, spectral.layers, values / 1e9, kMostValues / 1e9));
     }
-    metadata_["lensproof:lens"] = lens_.name;
-    metadata_["lensproof:fNumber"] = fmt::format("{}", camera.f_number);
-    metadata_["lensproof:focusDistance_mm"] = fmt::format("{}", camera.focus_distance_mm);
-    metadata_["lensproof:pixelPitch_um"] = fmt::format("{}", 1e3 * camera.sensor.pixel_pitch_mm);
-    metadata_["lensproof:shutter_s"] = fmt::format("{}", camera.exposure.time_s);
-    metadata_["lensproof:iso"] = fmt::format("{}", camera.exposure.iso);
-    metadata_["lensproof:response"] = camera.response;
-    metadata_["lensproof:illuminant"] = light.illuminant;
-    metadata_["lensproof:pixelFilter"] = filter.name();
-    metadata_["lensproof:colourSpace"] = colours_ ? "linear, Rec. 709 primaries, the illuminant's white"
-                                                  : "linear, the sensor's own, balanced to the illuminant";
+    metadata_ = camera_metadata(camera, lens_.name, light.illuminant, filter, colours_.has_value());
 }
 
 SeenChart ChartCamera::view(const Chart& chart, const Placement& placement) const {

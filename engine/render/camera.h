@@ -53,6 +53,22 @@ struct SpectralSampling {
 /// Reads wavelengths_nm = [from, to], layers and strata_per_layer, all optional, over what `sampling` says.
 void read_spectral_sampling(TomlTable& table, SpectralSampling& sampling);
 
+/// The band of `sampling` that a lens's glasses are known in.
+struct SampledBand {
+    double min_nm = 0.0;
+    double max_nm = 0.0;
+    std::string clamp_note;  // says so where that is less than what was asked for
+};
+
+/// Throws InputError where they are known nowhere in it.
+SampledBand sampled_band(const SpectralSampling& sampling, const Lens& lens);
+
+/// What a picture's file says of its camera: the balance's illuminant, what the pixels see, and whether R, G, B are in
+/// a space of their own or in the sensor's.
+std::map<std::string, std::string> camera_metadata(const Camera& camera, const std::string& lens_name,
+                                                   const std::string& illuminant, const PixelFilter& filter,
+                                                   bool has_colour_space);
+
 /// What is rendered and how finely.
 struct ChartScene {
     Camera camera;

@@ -20,15 +20,13 @@ struct FilmNotes {
 
 /// Writes the film; whole or not at all, the same bytes for the same film and notes. Parts, each of 32-bit floats:
 ///
-///   rgb        R, G, B, linear, 1 = saturation; error.R, error.G, error.B, their standard errors. First, so that
-///   whoever
-///              takes the file for a picture gets it.
-///   spectral   one channel a layer, in the layout of engine/spectral/spectral_exr.h: film irradiance, W·m⁻²·nm⁻¹
-///   variance   variance.R, variance.G, variance.B: of the pixel's value (`PixelEstimate`); its root is the standard
-///   error samples    samples: how many camera paths each pixel has had, an unsigned integer features   Z (mm),
-///   albedo.R, …, normal.X, …, coverage (`Film::features`); where the film has them light      R, G, B, variance.R, …,
-///   and spectral layers: what of all these came by light paths, whose number is the
-///              attribute "lensproof:lightPaths"; where the film has them
+/// - rgb: R, G, B, linear, 1 = saturation. First, so that whoever takes the file for a picture gets it.
+/// - spectral: one channel a layer, in the layout of spectral_exr.h: film irradiance, W·m⁻²·nm⁻¹.
+/// - variance: variance.R, variance.G, variance.B, of the pixel's value (`PixelEstimate`).
+/// - samples: how many camera paths each pixel has had, and in how many blocks; unsigned integers.
+/// - features: Z (mm), albedo.R, …, normal.X, …, coverage (`Film::features`); where the film has them.
+/// - light: R, G, B, variance.R, …, and spectral layers, what of all these came by light paths, whose number is the
+///   attribute "lensproof:lightPaths"; where the film has them.
 void write_film_exr(const Film& film, const FilmNotes& notes, const std::filesystem::path& file);
 
 /// A film from its file, so that films add up: sums from means, variances and counts; of floats, so to 1e-7. Its layout

@@ -29,8 +29,8 @@ struct LensEntrance {
 /// is traced forward from there to where it meets the film. The ray outside is common to all wavelengths, the way
 /// through the lens and the film point are each one's own.
 ///
-/// What lands is splatted: the flux over a pixel's area, so that the mean over light paths, times the film's share of
-/// them, is the film irradiance in W·m⁻²·nm⁻¹. Paths whose last point before the lens is a mirror (or smooth glass)
+/// What lands is splatted: the flux over a pixel's area, whose mean over all light paths is the film irradiance in
+/// W·m⁻²·nm⁻¹. Paths whose last point before the lens is a mirror (or smooth glass)
 /// cannot be joined to it and are missing; so is light from surfaces inside the front sphere. Point and spot lights in
 /// view make points in the picture, which camera paths cannot find.
 /// Returns how many rays were traced, in the scene and into the lens.

@@ -77,23 +77,12 @@ PreparedScene::PreparedScene(const SceneSetup& setup, const PixelFilter& filter,
 }
 
 SpectralGrid PreparedScene::make_grid() {
-    double min_nm = setup_.spectral.min_nm;
-    double max_nm = setup_.spectral.max_nm;
-    if (lens_) {
-        const WavelengthRange range = wavelength_range(*lens_);
-        min_nm = std::max(min_nm, range.min_nm);
-        max_nm = std::min(max_nm, range.max_nm);
-        if (!(min_nm < max_nm)) {
-            throw InputError(
-                fmt::format("wavelengths of {} to {} nm: the glasses of {} are known from {} to {} nm only",
-                            setup_.spectral.min_nm, setup_.spectral.max_nm, lens_->name, range.min_nm, range.max_nm));
-        }
-        if (min_nm != setup_.spectral.min_nm || max_nm != setup_.spectral.max_nm) {
-            clamp_note_ = fmt::format("wavelengths clamped to {} to {} nm, where the glasses of {} are known", min_nm,
-                                      max_nm, lens_->name);
-        }
-    }
-    return spectral_grid(min_nm, max_nm, setup_.spectral.layers * setup_.spectral.strata_per_layer);
+    const SpectralSampling& sampling = setup_.spectral;
+    const SampledBand band = lens_
+                                 ? sampled_band(sampling, *lens_)
+                                 : SampledBand{.min_nm = sampling.min_nm, .max_nm = sampling.max_nm, .clamp_note = {}};
+    clamp_note_ = band.clamp_note;
+    return spectral_grid(band.min_nm, band.max_nm, sampling.layers * sampling.strata_per_layer);
 }
 
 void PreparedScene::make_exact_camera(const Cache& cache) {
@@ -172,20 +161,12 @@ std::string PreparedScene::camera_hash() const {
 }
 
 std::map<std::string, std::string> PreparedScene::metadata() const {
-    const Camera& camera = setup_.camera;
-    return {{"lensproof:lens", lens_ ? lens_->name : fmt::format("{} mm", setup_.view.focal_length_mm.value_or(0.0))},
-            {"lensproof:cameraModel", name_of(setup_.view.model)},
-            {"lensproof:fNumber", fmt::format("{}", camera.f_number)},
-            {"lensproof:focusDistance_mm", fmt::format("{}", camera.focus_distance_mm)},
-            {"lensproof:pixelPitch_um", fmt::format("{}", 1e3 * camera.sensor.pixel_pitch_mm)},
-            {"lensproof:shutter_s", fmt::format("{}", camera.exposure.time_s)},
-            {"lensproof:iso", fmt::format("{}", camera.exposure.iso)},
-            {"lensproof:response", camera.response},
-            {"lensproof:illuminant", setup_.white_balance},
-            {"lensproof:pixelFilter", filter_.name()},
-            {"lensproof:maxBounces", fmt::format("{}", setup_.max_bounces)},
-            {"lensproof:colourSpace", colours_ ? "linear, Rec. 709 primaries, the illuminant's white"
-                                               : "linear, the sensor's own, balanced to the illuminant"}};
+    std::map<std::string, std::string> metadata = camera_metadata(
+        setup_.camera, lens_ ? lens_->name : fmt::format("{} mm", setup_.view.focal_length_mm.value_or(0.0)),
+        setup_.white_balance, filter_, colours_.has_value());
+    metadata["lensproof:lensModel"] = name_of(setup_.view.model);
+    metadata["lensproof:maxBounces"] = fmt::format("{}", setup_.max_bounces);
+    return metadata;
 }
 
 }  // namespace lensproof

@@ -112,7 +112,7 @@ class Lights {
     template <class Visit>
     void visit_infinity(const Vec3d& direction, const PathWavelengths& path, const Visit& visit) const {
         for (const std::uint32_t index : at_infinity_) {
-            if (const Emission found = at_infinity(lights_[index], direction, path); found.density > 0.0) {
+            if (const Emission found = at_infinity(lights_[index], direction, path); !is_black(found.radiance)) {
                 visit(found);
             }
         }

@@ -78,7 +78,10 @@ class SceneBuilder {
                                            .radiance = {}};
                        },
                        [&](const DielectricDescription& dielectric) {
-                           absorption = spectra_.at_midpoints(dielectric.absorption_per_mm);
+                           const auto* even = std::get_if<double>(&dielectric.absorption_per_mm);
+                           if (even == nullptr || *even > 0.0) {
+                               absorption = spectra_.at_midpoints(dielectric.absorption_per_mm);
+                           }
                            return Material{.surface = dielectric_material(spectra_.index(dielectric.index),
                                                                           roughness_of(dielectric.roughness)),
                                            .radiance = {}};
@@ -137,6 +140,9 @@ class SceneBuilder {
     }
 
     void add(const AreaLightDescription& light) {
+        if (!shining_objects_.insert(light.object).second) {
+            throw InputError("the object shines already, by another light of the file; expected one light an object");
+        }
         lights_.emplace_back(AreaLight{.object = static_cast<std::uint32_t>(light.object),
                                        .radiance = shining(spectra_.radiance(light.emission)),
                                        .is_two_sided = light.is_two_sided});
@@ -200,6 +206,7 @@ class SceneBuilder {
     std::vector<Material> materials_;
     std::vector<std::optional<GridSpectrum>> absorption_;  // a material each
     std::vector<LightSource> lights_;
+    std::set<std::size_t> shining_objects_;
     std::vector<std::string> remarks_;
 };
 

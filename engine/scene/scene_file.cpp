@@ -150,8 +150,7 @@ CameraView read_camera_view(TomlTable& camera) {
         camera.fail(camera.has("up") ? "up" : "look_at_mm", "the camera looks along up, expected another direction");
     }
     if (camera.has("model")) {
-        const std::string model = camera.choice("model", {"exact", "paraxial", "thin-lens", "pinhole"});
-        view.model = lens_model_named(model);
+        view.model = lens_model_named(camera.choice("model", lens_model_names()));
     }
     view.focal_length_mm = camera.optional_number("focal_length_mm", kPositive);
     if (view.focal_length_mm && (view.model == LensModel::exact || view.model == LensModel::paraxial)) {

@@ -97,6 +97,10 @@ TEST(RenderScene, RefusesWhatItCannotRender) {
             {"scene.toml", "materials", "Xx", "gold"});
     refuses(lamp_over_floor(kLens, "[[materials]]\nname = \"m\"\nkind = \"dielectric\"\nior = \"N-BK77\"\n"), {},
             {"scene.toml", "materials", "N-BK77", "N-BK7"});
+    refuses(lamp_over_floor(kLens,
+                            "[[lights]]\nkind = \"area\"\nobject = \"floor\"\nluminance_cd_m2 = 1.0\n"
+                            "[[lights]]\nkind = \"area\"\nobject = \"floor\"\nluminance_cd_m2 = 2.0\n"),
+            {}, {"scene.toml", "lights", "shines already"});
     place.file("dark.csv", "wavelength_nm,radiance\n800,1\n900,1\n");
     refuses(lamp_over_floor(kLens, "[[lights]]\nkind = \"environment\"\nradiance = \"dark.csv\"\n"), {},
             {"scene.toml", "lights", "no power"});

@@ -137,6 +137,14 @@ TEST(PathTracer, WhiteVanishesInAnEvenSky) {
     }
 }
 
+// An empty scene has no size, so that its sky sends no power into it, and is seen all the same.
+TEST(PathTracer, SkyIsSeenBesideALampInAnEmptyScene) {
+    SceneParts parts(kGrid);
+    parts.lights.emplace_back(ConstantLight{constant_spectrum(5.0, kGrid)});
+    parts.lights.emplace_back(PointLight{{0.0, 0.0, 0.0}, constant_spectrum(1.0, kGrid)});
+    EXPECT_EQ(radiance(parts.scene(), kDownwards, 16).mean, 5.0);
+}
+
 // --- Dispersion ---
 
 /// The deviation of a ray that meets the first face of a prism straight on: it leaves the second at the angle of

@@ -58,9 +58,10 @@ Sums irradiance(const std::string& name, const Sensor& sensor, bool is_shared) {
     }
     Sums result{.mean = {}, .error = {}, .shared = static_cast<double>(counted) / static_cast<double>(others)};
     for (std::size_t k = 0; k < sum.size(); ++k) {
-        // A sample has each wavelength with the probability 1/2 (four of eight), and stands for the mean of four.
+        // A sample's value is the mean over its four wavelengths, and has this one among them half of the time: four of
+        // eight. So the irradiance is half of the mean of these values.
         const double mean = sum[k] / kSamples;
-        result.mean.push_back(0.5 * mean * 4.0 / kWavelengthsPerPath);
+        result.mean.push_back(0.5 * mean);
         result.error.push_back(0.5 * std::sqrt((squares[k] / kSamples - mean * mean) / kSamples));
     }
     return result;
