@@ -13,6 +13,7 @@
 
 #include "engine/io/file.h"
 #include "engine/io/input_error.h"
+#include "engine/io/srgb.h"
 
 namespace lensproof {
 
@@ -28,16 +29,6 @@ std::string one_line(std::string message) {
     }
     std::ranges::replace(message, '\n', ';');
     return message;
-}
-
-/// IEC 61966-2-1, full scale 1.
-float srgb_to_linear(float encoded) {
-    return encoded <= 0.04045F ? encoded / 12.92F : std::pow((encoded + 0.055F) / 1.055F, 2.4F);
-}
-
-float linear_to_srgb(float linear) {
-    const float clipped = std::clamp(linear, 0.0F, 1.0F);
-    return clipped <= 0.0031308F ? 12.92F * clipped : 1.055F * std::pow(clipped, 1.0F / 2.4F) - 0.055F;
 }
 
 void linearise(Image& image, const std::string& colour_space) {

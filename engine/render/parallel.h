@@ -53,4 +53,9 @@ void parallel_for(int count, int threads, const Work& work, const Done& done) {
         count, threads, [&work] { return [&work](int i) { work(i); }; }, done);
 }
 
+template <class Work>
+void parallel_for(int count, int threads, const Work& work) {
+    parallel_for(count, threads, work, [](int /*finished*/) {});
+}
+
 }  // namespace lensproof

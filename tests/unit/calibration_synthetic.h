@@ -8,6 +8,7 @@
 #include "calibration/camera_model.h"
 #include "calibration/fit_geometry.h"
 #include "calibration/planar_pose.h"
+#include "calibration/simulated_chart.h"
 #include "engine/io/image.h"
 #include "engine/scene/chart.h"
 
@@ -61,25 +62,6 @@ inline std::vector<Pose> tilted_poses(double distance_mm, double tilt_rad, doubl
     }
     poses.push_back({{0.02, -0.03, 0.0}, {0.0, 0.0, distance_mm}});
     return poses;
-}
-
-/// Where the ray of `pixel` meets the chart's plane, if it does in front of the camera.
-inline std::optional<Vec2d> chart_point(const CameraModel& camera, const Pose& pose, const Vec2d& pixel) {
-    const auto ray = unproject(camera, pixel);
-    if (!ray) {
-        return std::nullopt;
-    }
-    const Vec3d origin = pose.translation_mm;
-    const Vec3d x_axis = to_camera(pose, {1.0, 0.0}) - origin;
-    const Vec3d y_axis = to_camera(pose, {0.0, 1.0}) - origin;
-    const Vec3d normal = cross(x_axis, y_axis);
-    const double towards = dot(*ray, normal);
-    const double distance = towards != 0.0 ? dot(origin, normal) / towards : -1.0;
-    if (!(distance > 0.0)) {
-        return std::nullopt;
-    }
-    const Vec3d offset = distance * *ray - origin;
-    return Vec2d{dot(offset, x_axis), dot(offset, y_axis)};
 }
 
 /// A picture with n² point samples a pixel: `brightness(pixel)` times the chart's reflectance.
