@@ -14,6 +14,8 @@
 
 namespace lensproof {
 
+inline constexpr std::string_view kProfileSchema = "lensproof-profile/1";
+
 /// Where the pictures come from. What is unknown is empty.
 struct ProfileSource {
     std::string kind;  // "render" or "photo"
