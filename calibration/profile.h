@@ -47,6 +47,7 @@ struct ProfilePoint {
 struct ProfileView {
     std::string image;
     bool found = false;
+    std::string reason;  // why not (JSON key "reason"); empty where found
     Pose pose;
     std::vector<ProfilePoint> points;
 };

@@ -85,8 +85,11 @@ FittedTerms parse_terms(const Node& node) {
 }
 
 ProfileView parse_view(const Node& node) {
-    ProfileView view{.image = node.at("image").text(), .found = node.at("found").truth(), .pose = {}, .points = {}};
+    ProfileView view;
+    view.image = node.at("image").text();
+    view.found = node.at("found").truth();
     if (!view.found) {
+        view.reason = node.has("reason") ? node.at("reason").text() : "";
         return view;
     }
     view.pose = {node.at("rotation_vector_rad").triple(), node.at("translation_mm").triple()};

@@ -40,6 +40,9 @@ Json model_json(const ProfileGeometry& geometry) {
 Json view_json(const ProfileView& view) {
     Json json = {{"image", view.image}, {"found", view.found}};
     if (!view.found) {
+        if (!view.reason.empty()) {
+            json["reason"] = view.reason;
+        }
         return json;
     }
     json["rotation_vector_rad"] = triple(view.pose.rotation_rad);
