@@ -8,7 +8,10 @@
 #include <opencv2/calib3d.hpp>
 #include <opencv2/features2d.hpp>
 #include <opencv2/imgproc.hpp>
+#include <optional>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "calibration/working_copy.h"
 #include "engine/io/input_error.h"
@@ -26,6 +29,14 @@ constexpr double kSearchSide_px = 1600.0;  // larger pictures are searched at th
 cv::Size grid_size(const Chart& chart) {
     const GridSize grid = feature_grid(chart);
     return {grid.columns, grid.rows};
+}
+
+std::string size_in_words(cv::Size size) {
+    return std::to_string(size.width) + " × " + std::to_string(size.height);
+}
+
+std::string points_in_words(const Chart& chart) {
+    return std::holds_alternative<DiscGrid>(chart.pattern) ? "discs" : "corners";
 }
 
 bool find_classic(const cv::Mat& picture, cv::Size grid, Points& points) {
@@ -217,54 +228,79 @@ std::optional<Points> numbered_as_chart(const cv::Mat& picture, const Points& po
     return best;
 }
 
+// The chart's points in `picture`, as the chart numbers them; or why they could not be found.
+struct Search {
+    Points points;
+    std::string reason;
+};
+
+Search search(const cv::Mat& picture, const Chart& chart) {
+    const cv::Size grid = grid_size(chart);
+    Points points;
+    try {
+        cv::theRNG().state = 0;  // the disc detector clusters with OpenCV's global generator
+        if (!find_grid(picture, chart, points) || points.size() != static_cast<std::size_t>(grid.area())) {
+            points.clear();
+        }
+    } catch (const cv::Exception&) {
+        points.clear();  // OpenCV's detectors assert on some pictures that merely do not show the chart
+    }
+    if (points.empty()) {
+        return {.points = {}, .reason = "no grid of " + size_in_words(grid) + " " + points_in_words(chart) + " found"};
+    }
+    const auto numbered = numbered_as_chart(picture, points, chart);
+    if (!numbered) {
+        return {.points = {},
+                .reason = "a grid of " + size_in_words(grid) + " " + points_in_words(chart) +
+                          " found, but mirrored or with other colours than the chart"};
+    }
+    return {.points = *numbered, .reason = {}};
+}
+
+Detection not_found(std::string reason) {
+    return {.points = {}, .reason = std::move(reason)};
+}
+
 }  // namespace
 
 bool can_detect(const Chart& chart) {
     return std::holds_alternative<Checkerboard>(chart.pattern) || std::holds_alternative<DiscGrid>(chart.pattern);
 }
 
-std::optional<std::vector<Vec2d>> detect(const Image& image, const Chart& chart) {
+Detection detect(const Image& image, const Chart& chart) {
     if (!can_detect(chart)) {
         throw InputError("a chart of kind " + kind_name(chart) +
                          " cannot be searched for: expected a checkerboard or a disc-grid");
     }
     const cv::Size grid = grid_size(chart);
     if (grid.width < 3 || grid.height < 3) {
-        throw InputError("a " + kind_name(chart) + " with " + std::to_string(grid.width) + " × " +
-                         std::to_string(grid.height) + " points cannot be searched for: expected at least 3 × 3");
+        throw InputError("a " + kind_name(chart) + " with " + size_in_words(grid) +
+                         " points cannot be searched for: expected at least 3 × 3");
     }
     if (image.width < kSmallestSide_px || image.height < kSmallestSide_px || image.channel_count() == 0) {
-        return std::nullopt;
+        return not_found("the picture is too small: " + size_in_words({image.width, image.height}) + " pixels");
     }
     const cv::Mat full = detector_copy(image);
     if (full.empty()) {
-        return std::nullopt;
+        return not_found("the picture is black or of one tone: no contrast to find a chart by");
     }
     const double shrink = std::min(1.0, kSearchSide_px / std::max(image.width, image.height));
     cv::Mat picture = full;
     if (shrink < 1.0) {
         cv::resize(full, picture, {}, shrink, shrink, cv::INTER_AREA);
     }
-    cv::theRNG().state = 0;  // the disc detector clusters with OpenCV's global generator
-    Points points;
-    try {
-        if (!find_grid(picture, chart, points) || points.size() != static_cast<std::size_t>(grid.area())) {
-            return std::nullopt;
-        }
-    } catch (const cv::Exception&) {
-        return std::nullopt;  // OpenCV's detectors assert on some pictures that merely do not show the chart
-    }
-    const auto numbered = numbered_as_chart(picture, points, chart);
-    if (!numbered) {
-        return std::nullopt;
+    Search found = search(picture, chart);
+    if (!found.reason.empty()) {
+        return not_found(std::move(found.reason));
     }
     // Pixel centres are whole numbers in both sizes, so the scale acts on coordinates measured from the outer edge.
     const double scale_x = static_cast<double>(image.width) / picture.cols;
     const double scale_y = static_cast<double>(image.height) / picture.rows;
-    std::vector<Vec2d> result;
-    for (const cv::Point2f& point : *numbered) {
-        result.push_back({(point.x + 0.5) * scale_x - 0.5, (point.y + 0.5) * scale_y - 0.5});
+    Detection result;
+    for (const cv::Point2f& point : found.points) {
+        result.points.image_px.push_back({(point.x + 0.5) * scale_x - 0.5, (point.y + 0.5) * scale_y - 0.5});
     }
+    result.points.found.assign(found.points.size(), true);
     return result;
 }
 

@@ -17,7 +17,7 @@
 namespace lensproof {
 namespace {
 
-constexpr double kLeastFoundShare = 0.6;  // of a chart's points; with fewer the detection itself is doubtful
+constexpr double kLeastFoundShare = 0.6;  // of the points detected; with fewer the detection itself is doubtful
 
 // What is kept of the pictures once they are gone.
 struct Observations {
@@ -73,13 +73,24 @@ bool all_channels_alike(const Image& image) {
     return true;
 }
 
+// Why what was refined does not do; empty where it does.
+std::string too_few(const ChartPoints& refined, const ChartPoints& detected) {
+    const int count = count_found(refined);
+    const int seen = count_found(detected);
+    return count >= kLeastFoundShare * seen
+               ? ""
+               : "only " + std::to_string(count) + " of " + std::to_string(seen) +
+                     " points seen could be measured: too little contrast, clipped, or not this chart";
+}
+
 void observe_chart(Observations& seen, const Image& image, const std::string& name, const Chart& chart) {
-    ProfileView view{.image = name, .found = false, .pose = {}, .points = {}};
+    ProfileView view{.image = name, .found = false, .reason = {}, .pose = {}, .points = {}};
     const std::vector<Vec2d> features = feature_points(chart);
-    const auto approximate = detect(image, chart);
+    const Detection detection = detect(image, chart);
     const int reference = reference_channel(image);
-    const ChartPoints points = approximate ? refine(image, reference, *approximate, chart) : ChartPoints{};
-    view.found = approximate && count_found(points) >= kLeastFoundShare * static_cast<double>(features.size());
+    const ChartPoints points = detection.found() ? refine(image, reference, detection.points, chart) : ChartPoints{};
+    view.reason = detection.found() ? too_few(points, detection.points) : detection.reason;
+    view.found = view.reason.empty();
     if (view.found) {
         ChartView own{.name = name, .chart_mm = {}, .image_px = {}};
         for (std::size_t i = 0; i < features.size(); ++i) {
@@ -96,7 +107,7 @@ void observe_chart(Observations& seen, const Image& image, const std::string& na
             if (channel == reference || grey) {
                 continue;
             }
-            const ChartPoints other = refine(image, channel, points.image_px, chart);
+            const ChartPoints other = refine(image, channel, points, chart);
             for (std::size_t i = 0; i < features.size(); ++i) {
                 if (points.found[i] && other.found[i]) {
                     seen.chromatic_pairs[channel_name].push_back({points.image_px[i], other.image_px[i]});

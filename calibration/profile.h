@@ -14,6 +14,8 @@
 
 namespace lensproof {
 
+inline constexpr std::string_view kProfileSchema = "lensproof-profile/1";
+
 /// Where the pictures come from. What is unknown is empty.
 struct ProfileSource {
     std::string kind;  // "render" or "photo"
@@ -45,6 +47,7 @@ struct ProfilePoint {
 struct ProfileView {
     std::string image;
     bool found = false;
+    std::string reason;  // why not (JSON key "reason"); empty where found
     Pose pose;
     std::vector<ProfilePoint> points;
 };

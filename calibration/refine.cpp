@@ -55,21 +55,33 @@ struct Lattice {
     double nearest = std::numeric_limits<double>::infinity();
 };
 
-Lattice lattice_at(const std::vector<Vec2d>& points, GridSize grid, int column, int row) {
-    const auto at = [&](int c, int r) { return points[static_cast<std::size_t>(r) * grid.columns + c]; };
-    const int c0 = std::max(column - 1, 0);
-    const int c1 = std::min(column + 1, grid.columns - 1);
-    const int r0 = std::max(row - 1, 0);
-    const int r1 = std::min(row + 1, grid.rows - 1);
-    Lattice lattice;
-    const Vec2d dc = difference(at(c1, row), at(c0, row));
-    const Vec2d dr = difference(at(column, r1), at(column, r0));
-    lattice.column_step = {dc.x / (c1 - c0), dc.y / (c1 - c0)};
-    lattice.row_step = {dr.x / (r1 - r0), dr.y / (r1 - r0)};
-    for (int r = r0; r <= r1; ++r) {
-        for (int c = c0; c <= c1; ++c) {
-            if (c != column || r != row) {
-                lattice.nearest = std::min(lattice.nearest, norm(difference(at(c, r), at(column, row))));
+// None where no neighbour in the row, or none in the column, was found.
+std::optional<Lattice> lattice_at(const ChartPoints& points, GridSize grid, int column, int row) {
+    const auto index = [&](int c, int r) { return static_cast<std::size_t>(r) * grid.columns + c; };
+    const auto is_found = [&](int c, int r) {
+        return c >= 0 && r >= 0 && c < grid.columns && r < grid.rows && points.found[index(c, r)];
+    };
+    const auto step = [&](int dc, int dr) -> std::optional<Vec2d> {
+        const int before = is_found(column - dc, row - dr) ? 1 : 0;
+        const int after = is_found(column + dc, row + dr) ? 1 : 0;
+        if (before + after == 0) {
+            return std::nullopt;
+        }
+        const Vec2d difference_px = difference(points.image_px[index(column + after * dc, row + after * dr)],
+                                               points.image_px[index(column - before * dc, row - before * dr)]);
+        return Vec2d{difference_px.x / (before + after), difference_px.y / (before + after)};
+    };
+    const auto column_step = step(1, 0);
+    const auto row_step = step(0, 1);
+    if (!column_step || !row_step) {
+        return std::nullopt;
+    }
+    Lattice lattice{.column_step = *column_step, .row_step = *row_step};
+    for (int r = row - 1; r <= row + 1; ++r) {
+        for (int c = column - 1; c <= column + 1; ++c) {
+            if ((c != column || r != row) && is_found(c, r)) {
+                const Vec2d apart = difference(points.image_px[index(c, r)], points.image_px[index(column, row)]);
+                lattice.nearest = std::min(lattice.nearest, norm(apart));
             }
         }
     }
@@ -202,11 +214,13 @@ std::optional<Vec2d> refine_disc(const Image& image, int channel, const Vec2d& s
 
 }  // namespace
 
-ChartPoints refine(const Image& image, int channel, const std::vector<Vec2d>& approximate, const Chart& chart) {
+ChartPoints refine(const Image& image, int channel, const ChartPoints& approximate, const Chart& chart) {
     const GridSize grid = feature_grid(chart);
-    if (approximate.size() != static_cast<std::size_t>(grid.columns) * grid.rows || grid.columns < 2 || grid.rows < 2) {
-        throw InputError("refining a " + kind_name(chart) + ": " + std::to_string(approximate.size()) +
-                         " points given, expected " + std::to_string(grid.columns * grid.rows));
+    const auto expected = static_cast<std::size_t>(grid.columns) * grid.rows;
+    if (approximate.image_px.size() != expected || approximate.found.size() != expected || grid.columns < 2 ||
+        grid.rows < 2) {
+        throw InputError("refining a " + kind_name(chart) + ": " + std::to_string(approximate.image_px.size()) +
+                         " points given, expected " + std::to_string(expected));
     }
     if (channel < 0 || channel >= image.channel_count()) {
         throw InputError("refining a " + kind_name(chart) + ": the picture has no channel " + std::to_string(channel));
@@ -217,13 +231,17 @@ ChartPoints refine(const Image& image, int channel, const std::vector<Vec2d>& ap
         // Edges sharper than a pixel are aliased, which biases the search and the fit alike; the blur takes that away.
         cv::GaussianBlur(channel_plane(image, channel), plane, {}, kBlur_px);
     }
-    ChartPoints result{.image_px = approximate, .found = std::vector<bool>(approximate.size(), false)};
+    ChartPoints result{.image_px = approximate.image_px, .found = std::vector<bool>(expected, false)};
     for (int row = 0; row < grid.rows; ++row) {
         for (int column = 0; column < grid.columns; ++column) {
             const std::size_t i = static_cast<std::size_t>(row) * grid.columns + column;
-            const Lattice lattice = lattice_at(approximate, grid, column, row);
-            const auto refined = discs ? refine_disc(image, channel, approximate[i], lattice, *discs)
-                                       : refine_corner(image, plane, channel, approximate[i], lattice);
+            const auto lattice =
+                approximate.found[i] ? lattice_at(approximate, grid, column, row) : std::optional<Lattice>();
+            if (!lattice) {
+                continue;
+            }
+            const auto refined = discs ? refine_disc(image, channel, approximate.image_px[i], *lattice, *discs)
+                                       : refine_corner(image, plane, channel, approximate.image_px[i], *lattice);
             if (refined) {
                 result.image_px[i] = *refined;
                 result.found[i] = true;

@@ -15,7 +15,7 @@ struct ChartPoints {
     std::vector<bool> found;
 };
 
-/// Refines `approximate` (from `detect`, or another channel's points) in one channel.
+/// Refines those of `approximate` (from `detect`, or another channel's points) that were found, in one channel.
 ///
 /// Corners: found by cv::cornerSubPix from two starts that must agree, then fitted with a model of the two edges
 /// (calibration/corner_fit.h). The window is a part of the distance to the nearest neighbour, so that neither a
@@ -26,7 +26,7 @@ struct ChartPoints {
 ///
 /// Tests hold corners and discs of synthetic pictures with 1 % noise to 0.05 px rms
 /// (tests/unit/calibration_detect.cpp). `approximate` must have one point per feature.
-ChartPoints refine(const Image& image, int channel, const std::vector<Vec2d>& approximate, const Chart& chart);
+ChartPoints refine(const Image& image, int channel, const ChartPoints& approximate, const Chart& chart);
 
 /// How many points were found.
 int count_found(const ChartPoints& points);

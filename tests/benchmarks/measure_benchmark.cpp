@@ -58,21 +58,23 @@ Image painted(const Chart& chart) {
 
 void time_refinement(benchmark::State& state, const Chart& chart) {
     const Image image = painted(chart);
-    std::vector<Vec2d> approximate;
+    ChartPoints approximate;
     for (const Vec2d& point : feature_points(chart)) {
         const Vec2d exact = to_pixel(point);
-        approximate.push_back({exact.x + 0.4, exact.y - 0.3});  // as far off as a detector is
+        approximate.image_px.push_back({exact.x + 0.4, exact.y - 0.3});  // as far off as a detector is
+        approximate.found.push_back(true);
     }
     int found = 0;
     while (state.KeepRunning()) {
         found = count_found(refine(image, 0, approximate, chart));
         benchmark::DoNotOptimize(found);
     }
-    if (found != static_cast<int>(approximate.size())) {
+    if (found != static_cast<int>(approximate.found.size())) {
         state.SkipWithError("not every point was found");
     }
-    state.counters["points/s"] = benchmark::Counter(
-        static_cast<double>(state.iterations()) * static_cast<double>(approximate.size()), benchmark::Counter::kIsRate);
+    state.counters["points/s"] =
+        benchmark::Counter(static_cast<double>(state.iterations()) * static_cast<double>(approximate.found.size()),
+                           benchmark::Counter::kIsRate);
 }
 
 }  // namespace

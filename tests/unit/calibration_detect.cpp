@@ -31,11 +31,11 @@ struct Comparison {
 
 // Detected and refined points against the exact ones.
 Comparison compare(const Image& image, const Chart& chart, const std::vector<Vec2d>& expected) {
-    const auto approximate = detect(image, chart);
-    if (!approximate) {
+    const Detection detection = detect(image, chart);
+    if (!detection.found()) {
         return {};
     }
-    const ChartPoints points = refine(image, 0, *approximate, chart);
+    const ChartPoints points = refine(image, 0, detection.points, chart);
     Comparison result;
     for (std::size_t i = 0; i < expected.size(); ++i) {
         if (points.found[i]) {
@@ -133,21 +133,31 @@ TEST(CalibrationDetect, DiscsInAFisheye) {
 }
 
 TEST(CalibrationDetect, NothingIsFoundWhereNothingIs) {
-    EXPECT_FALSE(detect(Image{}, kBoard));
-    EXPECT_FALSE(detect(make_image(1, 1, {"R", "G", "B"}), kBoard));
-    EXPECT_FALSE(detect(make_image(640, 480, {"Y"}), kBoard));
+    EXPECT_FALSE(detect(Image{}, kBoard).found());
+    EXPECT_FALSE(detect(make_image(1, 1, {"R", "G", "B"}), kBoard).found());
+    EXPECT_FALSE(detect(make_image(640, 480, {"Y"}), kBoard).found());
     Image grey = make_image(320, 240, {"Y"});
     std::fill(grey.pixels.begin(), grey.pixels.end(), 0.5F);
-    EXPECT_FALSE(detect(grey, kBoard));
-    EXPECT_FALSE(detect(grey, kDiscs));
+    EXPECT_FALSE(detect(grey, kBoard).found());
+    EXPECT_FALSE(detect(grey, kDiscs).found());
     add_noise(grey, 0.1, 4);
-    EXPECT_FALSE(detect(grey, kBoard));
-    EXPECT_FALSE(detect(grey, kDiscs));
+    EXPECT_FALSE(detect(grey, kBoard).found());
+    EXPECT_FALSE(detect(grey, kDiscs).found());
     std::fill(grey.pixels.begin(), grey.pixels.end(), std::numeric_limits<float>::quiet_NaN());
-    EXPECT_FALSE(detect(grey, kBoard));
+    EXPECT_FALSE(detect(grey, kBoard).found());
     EXPECT_THROW(detect(grey, Chart{.pattern = FlatField{}}), InputError);
     EXPECT_THROW(detect(grey, Chart{.pattern = PointGrid{9, 7, 20.0, 1.0}}), InputError);
     EXPECT_THROW(detect(grey, Chart{.pattern = Checkerboard{2, 2, 30.0}}), InputError);
+}
+
+// A picture without the chart says why, in words that a photographer can act on.
+TEST(CalibrationDetect, AChartNotFoundHasItsReason) {
+    EXPECT_NE(detect(make_image(1, 1, {"Y"}), kBoard).reason.find("too small"), std::string::npos);
+    EXPECT_NE(detect(make_image(64, 48, {"Y"}), kBoard).reason.find("no contrast"), std::string::npos);
+    Image noise = make_image(64, 48, {"Y"});
+    add_noise(noise, 0.1, 4);
+    EXPECT_EQ(detect(noise, kBoard).reason, "no grid of 9 × 6 corners found");
+    EXPECT_EQ(detect(noise, kDiscs).reason, "no grid of 8 × 6 discs found");
 }
 
 // What cannot be measured is said to be missing: a corner under a NaN, one painted over, one at the picture's edge.
@@ -156,6 +166,7 @@ TEST(CalibrationDetect, SpoiledCornersAreMissing) {
     const Pose pose{{0.1, 0.1, 0.0}, {0.0, 0.0, 600.0}};
     Image image = picture(camera, pose, kBoard, 0.0);
     std::vector<Vec2d> points = view_of(camera, pose, kBoard).image_px;
+    const std::vector<bool> all(points.size(), true);
     image.at(static_cast<int>(points[10].x), static_cast<int>(points[10].y), 0) = std::nanf("");
     for (int y = -15; y <= 15; ++y) {
         for (int x = -15; x <= 15; ++x) {
@@ -163,13 +174,13 @@ TEST(CalibrationDetect, SpoiledCornersAreMissing) {
         }
     }
     points[0] = {1.0, 1.0};
-    const ChartPoints refined = refine(image, 0, points, kBoard);
+    const ChartPoints refined = refine(image, 0, {points, all}, kBoard);
     EXPECT_FALSE(refined.found[10]);
     EXPECT_FALSE(refined.found[30]);
     EXPECT_FALSE(refined.found[0]);
     EXPECT_GE(count_found(refined), 49);
     EXPECT_THROW(refine(image, 0, {}, kBoard), InputError);
-    EXPECT_THROW(refine(image, 3, points, kBoard), InputError);
+    EXPECT_THROW(refine(image, 3, {points, all}, kBoard), InputError);
 }
 
 }  // namespace

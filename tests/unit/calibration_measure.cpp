@@ -65,6 +65,7 @@ TEST(CalibrationMeasure, AProfileTellsWhatThePicturesWereMadeWith) {
     EXPECT_EQ(profile.geometry->views_used, 5);
     EXPECT_EQ(profile.views.size(), 6u);
     EXPECT_FALSE(profile.views[5].found);
+    EXPECT_FALSE(profile.views[5].reason.empty());
     EXPECT_LT(profile.geometry->reprojection_rms_px, 0.05);
     EXPECT_NEAR(focal_length_px(profile.geometry->model), 820.0, 0.5);
 

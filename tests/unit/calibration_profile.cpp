@@ -26,7 +26,7 @@ Profile example() {
                       .found = true,
                       .pose = {{0.1, 0.2, 0.3}, {1, 2, 3e5}},
                       .points = {{{30, 30}, {100.1, 1e-300}, {-0.01, 0.02}, false}}},
-                     {.image = "b", .found = false, .pose = {}, .points = {}}};
+                     {.image = "b", .found = false, .reason = "no contrast", .pose = {}, .points = {}}};
     profile.curves["field_angle_deg"] = {{0.0, 0.5}, {0.0, 10.0 / 3.0}, {0.0, 3.3}, {0.0, 3.4}, 0.7};
     profile.terms["chromatic_shift_R"] = {{"c1_px", "c3_px"}, {1.0 / 3.0, -2e-17}, {1e-4, 1e-5, 1e-5, 2e-4}};
     profile.not_measured["chromatic_shift"] = "the pictures are grey";
@@ -53,6 +53,7 @@ TEST(CalibrationProfile, ReadingReturnsTheSameBits) {
     EXPECT_EQ(read.geometry->reprojection_rms_px, 0.1 + 0.2);
     EXPECT_EQ(read.views[0].points[0].image_px, written.views[0].points[0].image_px);
     EXPECT_FALSE(read.views[0].points[0].used);
+    EXPECT_EQ(read.views[1].reason, written.views[1].reason);
     EXPECT_EQ(read.curves, written.curves);
     EXPECT_EQ(read.terms, written.terms);
     EXPECT_EQ(read.not_measured, written.not_measured);
