@@ -10,6 +10,7 @@
 #include "calibration/geometry_curves.h"
 #include "calibration/light_samples.h"
 #include "calibration/refine.h"
+#include "calibration/self_test.h"
 #include "calibration/vignetting.h"
 #include "calibration/working_copy.h"
 #include "engine/io/input_error.h"
@@ -84,7 +85,7 @@ std::string too_few(const ChartPoints& refined, const ChartPoints& detected) {
 }
 
 void observe_chart(Observations& seen, const Image& image, const std::string& name, const Chart& chart) {
-    ProfileView view{.image = name, .found = false, .reason = {}, .pose = {}, .points = {}};
+    ProfileView view{.image = name, .found = false, .reason = {}, .traits = {}, .pose = {}, .points = {}};
     const std::vector<Vec2d> features = feature_points(chart);
     const Detection detection = detect(image, chart);
     const int reference = reference_channel(image);
@@ -92,6 +93,7 @@ void observe_chart(Observations& seen, const Image& image, const std::string& na
     view.reason = detection.found() ? too_few(points, detection.points) : detection.reason;
     view.found = view.reason.empty();
     if (view.found) {
+        view.traits = picture_traits(image, reference, points);
         ChartView own{.name = name, .chart_mm = {}, .image_px = {}};
         for (std::size_t i = 0; i < features.size(); ++i) {
             if (points.found[i]) {
@@ -242,6 +244,18 @@ void add_chromatic_shift(Profile& profile, const Observations& seen, const Vec2d
     }
 }
 
+void add_self_test(Profile& profile, const MeasureInput& input) {
+    if (!profile.geometry) {
+        profile.not_measured["self_test"] = "without a geometry there is nothing to simulate";
+        return;
+    }
+    try {
+        profile.self_test = self_test(input, profile);
+    } catch (const InputError& e) {
+        profile.not_measured["self_test"] = e.what();
+    }
+}
+
 }  // namespace
 
 Profile measure(const MeasureInput& input) {
@@ -262,6 +276,7 @@ Profile measure(const MeasureInput& input) {
     }
     profile.width_px = seen.width;
     profile.height_px = seen.height;
+    profile.channels = seen.channels;
     profile.pixel_pitch_um = input.pixel_pitch_um;
     profile.views = seen.views;
 
@@ -275,6 +290,9 @@ Profile measure(const MeasureInput& input) {
     }
     add_vignetting(profile, seen, centre);
     add_chromatic_shift(profile, seen, centre);
+    if (input.self_test) {
+        add_self_test(profile, input);
+    }
     return profile;
 }
 

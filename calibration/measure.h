@@ -30,6 +30,8 @@ struct MeasureInput {
     GeometryOptions geometry;  // `model` and `disc_diameter_mm` are filled in by `measure`
     ProfileSource source;      // `images` is filled in
     std::optional<double> pixel_pitch_um;
+    /// Whether the profile is to say its own floor (calibration/self_test.h), which takes as long again.
+    bool self_test = false;
 };
 
 /// Finds the chart, and fits camera model, chromatic shift and vignetting.

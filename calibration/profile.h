@@ -10,7 +10,9 @@
 
 #include "calibration/camera_model.h"
 #include "calibration/curve.h"
+#include "calibration/picture_traits.h"
 #include "calibration/planar_pose.h"
+#include "calibration/self_test.h"
 
 namespace lensproof {
 
@@ -47,7 +49,8 @@ struct ProfilePoint {
 struct ProfileView {
     std::string image;
     bool found = false;
-    std::string reason;  // why not (JSON key "reason"); empty where found
+    std::string reason;                   // why not (JSON key "reason"); empty where found
+    std::optional<PictureTraits> traits;  // of the channel that geometry is measured in; where found
     Pose pose;
     std::vector<ProfilePoint> points;
 };
@@ -64,12 +67,13 @@ struct FittedTerms {
 /// Curves by name: "field_angle_deg", "distortion_percent" (against f tan θ), "distortion_equidistant_percent"
 /// (against f θ), and for a channel C "vignetting_C" (ratio to the axis), "vignetting_C_ev", "chromatic_shift_C_px".
 /// What could not be measured is absent there and has its reason in `not_measured`, under "geometry", "vignetting" or
-/// "chromatic_shift".
+/// "chromatic_shift"; a self-test that was asked for and could not be made under "self_test".
 struct Profile {
     std::string name;
     ProfileSource source;
     int width_px = 0;
     int height_px = 0;
+    std::vector<std::string> channels;
     std::optional<double> pixel_pitch_um;
     std::optional<ProfileGeometry> geometry;
     std::vector<ProfileView> views;
@@ -78,6 +82,7 @@ struct Profile {
     /// "vignetting_C" (the spline of ln V, calibration/vignetting.h).
     std::map<std::string, FittedTerms> terms;
     std::map<std::string, std::string> not_measured;
+    std::optional<SelfTest> self_test;
 };
 
 /// Half the picture's diagonal, px: the unit of image heights.

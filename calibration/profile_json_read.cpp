@@ -2,6 +2,7 @@
 
 #include "calibration/json_node.h"
 #include "calibration/profile.h"
+#include "calibration/self_test_json.h"
 #include "engine/io/file.h"
 #include "engine/io/input_error.h"
 
@@ -92,6 +93,9 @@ ProfileView parse_view(const Node& node) {
         view.reason = node.has("reason") ? node.at("reason").text() : "";
         return view;
     }
+    if (node.has("traits")) {
+        view.traits = parse_traits(node.at("traits"));
+    }
     view.pose = {node.at("rotation_vector_rad").triple(), node.at("translation_mm").triple()};
     for (const Node& point : node.at("points").elements()) {
         view.points.push_back({.chart_mm = point.at("chart_mm").pair(),
@@ -152,6 +156,9 @@ Profile parse_profile(std::string_view text, const std::string& file) {
             throw pitch.error("a positive length");
         }
     }
+    if (root.has("channels")) {
+        profile.channels = root.at("channels").texts();
+    }
     if (root.has("model")) {
         profile.geometry = parse_geometry(root);
     }
@@ -171,6 +178,9 @@ Profile parse_profile(std::string_view text, const std::string& file) {
     const Node reasons = root.at("not_measured");
     for (const std::string& name : reasons.keys()) {
         profile.not_measured[name] = reasons.at(name).text();
+    }
+    if (root.has("self_test")) {
+        profile.self_test = parse_self_test(root.at("self_test"));
     }
     return profile;
 }

@@ -2,6 +2,7 @@
 #include <cmath>
 
 #include "calibration/profile.h"
+#include "calibration/self_test_json.h"
 #include "engine/io/file.h"
 
 namespace lensproof {
@@ -45,6 +46,9 @@ Json view_json(const ProfileView& view) {
         }
         return json;
     }
+    if (view.traits) {
+        json["traits"] = to_json(*view.traits);
+    }
     json["rotation_vector_rad"] = triple(view.pose.rotation_rad);
     json["translation_mm"] = triple(view.pose.translation_mm);
     Json points = Json::array();
@@ -87,6 +91,7 @@ Json to_json(const Profile& profile) {
     json["name"] = profile.name;
     json["source"] = source_json(profile.source);
     json["image_size_px"] = {profile.width_px, profile.height_px};
+    json["channels"] = profile.channels;
     json["pixel_pitch_um"] = profile.pixel_pitch_um ? Json(*profile.pixel_pitch_um) : Json();
     json["pixel_convention"] = kPixelConvention;
     json["half_diagonal_px"] = half_diagonal_px(profile);
@@ -117,6 +122,9 @@ Json to_json(const Profile& profile) {
     json["not_measured"] = Json::object();
     for (const auto& [name, reason] : profile.not_measured) {
         json["not_measured"][name] = reason;
+    }
+    if (profile.self_test) {
+        json["self_test"] = to_json(*profile.self_test);
     }
     return json;
 }

@@ -134,15 +134,21 @@ double jitter(int x, int y, std::uint32_t salt) {
     return static_cast<double>(h ^ (h >> 15)) / 4294967296.0;
 }
 
+void fill(cv::Mat& plane, int i, int j, float value) {
+    for (int b = 0; b < kSubpixels; ++b) {
+        std::fill_n(plane.ptr<float>(j + b) + i, kSubpixels, value);
+    }
+}
+
 // The chart's reflectance in each sub-pixel of pixel (x, y), by kSubpixels² values written into `plane` from (i, j).
 void look(cv::Mat& plane, int i, int j, const ChartMap& map, int x, int y, const Chart& chart) {
     const ChartMap::Cell cell = map.cell(x, y);
     if (!cell.is_complete()) {
-        plane(cv::Rect(i, j, kSubpixels, kSubpixels)) = 0.0F;
+        fill(plane, i, j, 0.0F);
         return;
     }
     if (cell.is_even) {
-        plane(cv::Rect(i, j, kSubpixels, kSubpixels)) = reflectance(chart, cell.top[0]->x, cell.top[0]->y);
+        fill(plane, i, j, static_cast<float>(reflectance(chart, cell.top[0]->x, cell.top[0]->y)));
         return;
     }
     constexpr std::array<int, kPlaces> kOrder = {2, 0, 3, 1};
@@ -201,11 +207,12 @@ void paint_band(Image& image, int channel, int first, int last, const Frame& fra
         const int side = 2 * static_cast<int>(std::ceil(kBlurReach * sigma)) + 1;
         cv::GaussianBlur(fine, fine, {side, side}, sigma, sigma, cv::BORDER_REPLICATE);
     }
+    cv::Mat pixels;
+    cv::resize(fine, pixels, {columns, rows}, 0.0, 0.0, cv::INTER_AREA);  // means of whole blocks
     for (int y = first; y < last; ++y) {
         for (int x = 0; x < camera.width_px; ++x) {
-            const cv::Rect pixel((x + margin) * kSubpixels, (y - first + margin) * kSubpixels, kSubpixels, kSubpixels);
-            image.at(x, y, channel) =
-                static_cast<float>(cv::mean(fine(pixel))[0] * frame.light(camera.channels[channel], x, y));
+            image.at(x, y, channel) = static_cast<float>(pixels.at<float>(y - first + margin, x + margin) *
+                                                         frame.light(camera.channels[channel], x, y));
         }
     }
 }

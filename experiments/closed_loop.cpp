@@ -4,7 +4,7 @@
 
 #include <limits>
 
-#include "experiments/curve_difference.h"
+#include "calibration/curve_difference.h"
 
 namespace lensproof {
 

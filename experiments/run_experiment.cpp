@@ -102,6 +102,9 @@ void add_profile_facts(Subject& subject) {
         subject.facts.push_back({"points, views", fmt::format("{}, {}", geometry.points_used, geometry.views_used)});
         subject.facts.push_back({"covered image height", fmt::format("{:.3f}", geometry.covered_image_height)});
     }
+    if (profile.self_test) {
+        subject.facts.push_back({"floor of the measurement", describe_floor(*profile.self_test)});
+    }
     for (const auto& [what, why] : profile.not_measured) {
         subject.facts.push_back({what + " not measured", why});
     }
@@ -144,7 +147,8 @@ class SimulationRun {
                      .model = simulation_.model,
                      .geometry = {.fit_tangential = false},  // a centred lens
                      .source = {.kind = "render", .images = {}, .camera = "simulated", .lens = subject.label},
-                     .pixel_pitch_um = 1e3 * camera_.sensor().pixel_pitch_mm});
+                     .pixel_pitch_um = 1e3 * camera_.sensor().pixel_pitch_mm,
+                     .self_test = settings_.self_test});
         progress_(simulation_.name + ", tracing", 0.0);
         subject.traced = lens_profile(camera_);
         add_facts(subject);
@@ -185,7 +189,7 @@ class SimulationRun {
     std::uint64_t views_rendered_ = 0;
 };
 
-Subject run_photos(const PhotoSubject& photos, const PhotoSet& set, const RunProgress& progress) {
+Subject run_photos(const PhotoSubject& photos, const PhotoSet& set, bool self_test, const RunProgress& progress) {
     Subject subject{.name = photos.name, .label = set.name, .simulated = false};
     MeasureInput input{.name = photos.name,
                        .pictures = {},
@@ -193,7 +197,8 @@ Subject run_photos(const PhotoSubject& photos, const PhotoSet& set, const RunPro
                        .model = photos.model,
                        .geometry = {},
                        .source = {.kind = "photo", .images = {}, .camera = set.camera, .lens = set.lens},
-                       .pixel_pitch_um = set.pixel_pitch_um};
+                       .pixel_pitch_um = set.pixel_pitch_um,
+                       .self_test = self_test};
     const auto add = [&](const std::filesystem::path& file, PictureRole role, int view) {
         progress(fmt::format("{}, {}", photos.name, file.filename().string()), 0.0);
         const Image image = read_image(file);
@@ -333,7 +338,7 @@ ExperimentResult run_experiment(const Experiment& experiment, const RunSettings&
         result.subjects.push_back(std::move(subject));
     }
     for (std::size_t i = 0; i < sets.size(); ++i) {
-        Subject subject = run_photos(experiment.photos[i], sets[i], progress);
+        Subject subject = run_photos(experiment.photos[i], sets[i], settings.self_test, progress);
         append(result.checks, photo_checks(subject, experiment.photos[i].expected));
         result.subjects.push_back(std::move(subject));
         result.inputs.push_back(experiment.photos[i].manifest);

@@ -8,7 +8,7 @@
 
 #include "calibration/profile.h"
 #include "engine/io/cache.h"
-#include "experiments/curve_difference.h"
+#include "calibration/curve_difference.h"
 #include "experiments/experiment.h"
 #include "experiments/photo_set.h"
 
@@ -56,6 +56,7 @@ struct RunSettings {
     std::uint64_t seed = 0;
     int threads = 0;
     Cache cache{};  // for what is found by tracing lenses
+    bool self_test = true;  // each measurement says its own floor (calibration/self_test.h)
 };
 
 /// Reports what is being done ("tessar, view 2 of 6") and how much of it is.

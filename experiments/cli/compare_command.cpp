@@ -11,7 +11,7 @@
 #include "engine/io/image.h"
 #include "engine/io/input_error.h"
 #include "experiments/cli/command.h"
-#include "experiments/curve_difference.h"
+#include "calibration/curve_difference.h"
 #include "experiments/lens_profile.h"
 #include "experiments/verdict.h"
 

@@ -25,6 +25,7 @@ struct MeasureOptions {
     std::string camera = "unknown";
     std::string kind = "photo";
     double pixel_pitch_um = 0.0;
+    bool no_self_test = false;
 };
 
 std::optional<ModelKind> model_kind(const std::string& name) {
@@ -67,6 +68,9 @@ void print_profile(const Profile& profile) {
         print_curve(profile, fmt::format("chromatic_shift_{}_px", channel),
                     fmt::format("chromatic shift {}", channel).c_str(), "px");
     }
+    if (profile.self_test) {
+        fmt::print("{:22} {}\n", "floor of the method", describe_floor(*profile.self_test));
+    }
     for (const auto& [what, why] : profile.not_measured) {
         fmt::print("{} not measured: {}\n", what, why);
     }
@@ -92,6 +96,7 @@ int run_measure(const MeasureOptions& options) {
                         "disc-grid",
                         options.chart, kind_name(input.chart)));
     }
+    input.self_test = !options.no_self_test;
     input.model = model_kind(options.model);
     input.source = {.kind = options.kind, .images = {}, .camera = options.camera, .lens = options.lens};
     if (options.pixel_pitch_um > 0.0) {
@@ -139,6 +144,8 @@ void add_measure_command(CLI::App& app, int& status) {
     command->add_option("--kind", options->kind, "photo or render, noted in the profile")
         ->check(CLI::IsMember({"photo", "render"}))
         ->capture_default_str();
+    command->add_flag("--no-self-test", options->no_self_test,
+                      "Do not simulate and measure the pictures again to find the method's own error");
     command->add_option("-o,--output", options->output, "Profile JSON to write")->type_name("FILE");
     add_common_options(*command, options->common);
     command->callback([options, &status] { status = run_measure(*options); });

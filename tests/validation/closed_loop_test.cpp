@@ -6,7 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "engine/io/file.h"
-#include "experiments/curve_difference.h"
+#include "calibration/curve_difference.h"
 #include "experiments/run_experiment.h"
 
 namespace lensproof {
@@ -35,7 +35,7 @@ TEST_P(ClosedLoop, MeasurementFindsWhatTheRaysSay) {
     auto& board = std::get<Checkerboard>(half.simulations[0].scene.chart.pattern);
     board = {.columns = 11, .rows = 8, .square_mm = board.square_mm * board.columns / 11.0};
 
-    const ExperimentResult result = run_experiment(half, {}, [](const std::string&, double) {});
+    const ExperimentResult result = run_experiment(half, {.self_test = false}, [](const std::string&, double) {});
     const Subject& subject = result.subjects.at(0);
     const ClosedLoopLimits& limits = half.simulations[0].limits;
     for (const ProfileView& view : subject.profile.views) {
@@ -69,7 +69,7 @@ TEST(ClosedLoopDiscs, FindTheSameLens) {
     simulation.scene.chart.pattern = DiscGrid{.columns = 13, .rows = 9, .pitch_mm = 450.0, .diameter_mm = 260.0};
     simulation.views.resize(5);
     simulation.flat_field = false;
-    const ExperimentResult result = run_experiment(half, {}, [](const std::string&, double) {});
+    const ExperimentResult result = run_experiment(half, {.self_test = false}, [](const std::string&, double) {});
     const Subject& subject = result.subjects.at(0);
     const auto radial = radial_difference_px(subject.profile, *subject.traced);
     ASSERT_TRUE(radial);

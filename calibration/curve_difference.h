@@ -1,4 +1,4 @@
-// experiments/curve_difference.h — how far two measured curves are apart, and how sure that is.
+// calibration/curve_difference.h — how far two measured curves are apart, and how sure that is.
 #pragma once
 #include <optional>
 #include <string>

@@ -1,4 +1,4 @@
-#include "experiments/curve_difference.h"
+#include "calibration/curve_difference.h"
 
 #include <algorithm>
 #include <cmath>
