@@ -1,139 +1,238 @@
 #include "calibration/corner_fit.h"
 
-#include <ceres/ceres.h>
-
-#include <array>
+#include <Eigen/Dense>
+#include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <vector>
 
 namespace lensproof {
 namespace {
 
 constexpr int kCurvedFrom_px = 6;        // half window
-constexpr double kFarthest_px = 1.5;     // the start is better than that
 constexpr double kLeastContrast = 0.05;  // |b| of the window's mean light
+constexpr double kLeastExplained =
+    0.75;  // of the window's variance; noise as strong as a third of the step leaves that
+constexpr double kFirstGuard_px = 1.5;
+constexpr double kGuardBlurs = 2.0;  // standard deviations; 2 % of a marker's black reach farther
+constexpr double kSmallestBlur_px = 0.25;
+constexpr int kFewestPixels = 24;  // twice the unknowns
+constexpr int kMostSteps = 40;
 
 enum Parameter {
     kX,
     kY,
     kAngle1,
     kAngle2,
-    kCurvature1,
-    kCurvature2,
     kBlur,
     kLevel,
     kSlopeX,
     kSlopeY,
     kContrast,
+    kCurvature1,
+    kCurvature2,
     kCount
 };
+using Parameters = Eigen::Matrix<double, kCount, 1>;
+using Normal = Eigen::Matrix<double, kCount, kCount>;
 
-/// I(x, y) minus the model, at every pixel of the window.
-struct CornerResiduals {
-    const cv::Mat& plane;
-    int x0;
-    int y0;
-    int side;
-
-    template <class T>
-    bool operator()(const T* p, T* residuals) const {
-        using std::cos;
-        using std::sin;
-        const T c1 = cos(p[kAngle1]);
-        const T s1 = sin(p[kAngle1]);
-        const T c2 = cos(p[kAngle2]);
-        const T s2 = sin(p[kAngle2]);
-        const T scale = T(1.0) / (T(std::numbers::sqrt2) * p[kBlur]);
-        for (int j = 0; j < side; ++j) {
-            for (int i = 0; i < side; ++i) {
-                const T dx = T(x0 + i) - p[kX];
-                const T dy = T(y0 + j) - p[kY];
-                const T along1 = c1 * dx + s1 * dy;
-                const T along2 = c2 * dx + s2 * dy;
-                const T from1 = c1 * dy - s1 * dx + p[kCurvature1] * along1 * along1;
-                const T from2 = c2 * dy - s2 * dx + p[kCurvature2] * along2 * along2;
-                const T model = p[kLevel] + p[kSlopeX] * dx + p[kSlopeY] * dy +
-                                p[kContrast] * smooth_step(from1 * scale) * smooth_step(from2 * scale);
-                residuals[j * side + i] = model - T(static_cast<double>(plane.at<float>(y0 + j, x0 + i)));
-            }
-        }
-        return true;
-    }
-
-    static double smooth_step(double x) { return std::erf(x); }
-
-    template <int N>
-    static ceres::Jet<double, N> smooth_step(const ceres::Jet<double, N>& x) {
-        return ceres::Jet<double, N>(std::erf(x.a), 2.0 * std::numbers::inv_sqrtpi * std::exp(-x.a * x.a) * x.v);
-    }
+struct Pixel {
+    double x = 0.0;
+    double y = 0.0;
+    double light = 0.0;
 };
 
-double angle_of(const Vec2d& v) {
-    return std::atan2(v.y, v.x);
+/// erf(d / √2σ) of one edge at a pixel, and its derivatives by the parameters.
+struct Edge {
+    double value = 0.0;
+    double by_x = 0.0;
+    double by_y = 0.0;
+    double by_angle = 0.0;
+    double by_curvature = 0.0;
+    double by_blur = 0.0;
+};
+
+Edge edge_at(double dx, double dy, double angle, double curvature, double blur) {
+    const double c = std::cos(angle);
+    const double s = std::sin(angle);
+    const double along = c * dx + s * dy;
+    const double from = c * dy - s * dx + curvature * along * along;
+    const double scale = 1.0 / (std::numbers::sqrt2 * blur);
+    const double u = from * scale;
+    const double slope = 2.0 * std::numbers::inv_sqrtpi * std::exp(-u * u) * scale;
+    const double bend = 2.0 * curvature * along;
+    return {.value = std::erf(u),
+            .by_x = slope * (s - bend * c),
+            .by_y = slope * (-c - bend * s),
+            .by_angle = slope * (-along + bend * (c * dy - s * dx)),
+            .by_curvature = slope * along * along,
+            .by_blur = -slope * from / blur};
 }
 
-/// Mean light of the window, and the contrast's sign: the light in the quadrant between the two edges against the mean.
-void start_light(const cv::Mat& plane, const CornerResiduals& window, std::array<double, kCount>& p) {
-    double sum = 0.0;
-    double projected = 0.0;
-    for (int j = 0; j < window.side; ++j) {
-        for (int i = 0; i < window.side; ++i) {
-            const double dx = window.x0 + i - p[kX];
-            const double dy = window.y0 + j - p[kY];
-            const double from1 = std::cos(p[kAngle1]) * dy - std::sin(p[kAngle1]) * dx;
-            const double from2 = std::cos(p[kAngle2]) * dy - std::sin(p[kAngle2]) * dx;
-            const double light = plane.at<float>(window.y0 + j, window.x0 + i);
-            sum += light;
-            projected += from1 * from2 > 0.0 ? light : -light;
+/// Model minus light at a pixel, and its gradient.
+double residual(const Pixel& pixel, const Parameters& p, Parameters& gradient) {
+    const double dx = pixel.x - p[kX];
+    const double dy = pixel.y - p[kY];
+    const Edge first = edge_at(dx, dy, p[kAngle1], p[kCurvature1], p[kBlur]);
+    const Edge second = edge_at(dx, dy, p[kAngle2], p[kCurvature2], p[kBlur]);
+    const double b = p[kContrast];
+    gradient[kX] = -p[kSlopeX] + b * (first.by_x * second.value + first.value * second.by_x);
+    gradient[kY] = -p[kSlopeY] + b * (first.by_y * second.value + first.value * second.by_y);
+    gradient[kAngle1] = b * first.by_angle * second.value;
+    gradient[kAngle2] = b * first.value * second.by_angle;
+    gradient[kBlur] = b * (first.by_blur * second.value + first.value * second.by_blur);
+    gradient[kLevel] = 1.0;
+    gradient[kSlopeX] = dx;
+    gradient[kSlopeY] = dy;
+    gradient[kContrast] = first.value * second.value;
+    gradient[kCurvature1] = b * first.by_curvature * second.value;
+    gradient[kCurvature2] = b * first.value * second.by_curvature;
+    return p[kLevel] + p[kSlopeX] * dx + p[kSlopeY] * dy + b * first.value * second.value - pixel.light;
+}
+
+struct Sums {
+    Normal normal = Normal::Zero();
+    Parameters right = Parameters::Zero();
+    double squares = 0.0;
+};
+
+Sums sums_at(const std::vector<Pixel>& pixels, const Parameters& p) {
+    Sums sums;
+    Parameters gradient;
+    for (const Pixel& pixel : pixels) {
+        const double difference = residual(pixel, p, gradient);
+        sums.normal.selfadjointView<Eigen::Lower>().rankUpdate(gradient);
+        sums.right -= difference * gradient;
+        sums.squares += difference * difference;
+    }
+    sums.normal.triangularView<Eigen::StrictlyUpper>() = sums.normal.transpose();
+    return sums;
+}
+
+double cross(const Vec2d& a, const Vec2d& b) {
+    return a.x * b.y - a.y * b.x;
+}
+
+/// Which pixels a marker may darken: those farther from both edges than it stands, less what blur carries across, in
+/// the white squares (all four where `white` is 0; else where the product of the signed distances has its sign).
+struct MarkerMask {
+    double guard_px = 0.0;
+    double white = 0.0;
+};
+
+/// The window's pixels that belong to the model.
+std::vector<Pixel> pixels_of(const cv::Mat& plane, const CornerStart& start, const MarkerMask& mask) {
+    const int x = static_cast<int>(std::lround(start.corner_px.x));
+    const int y = static_cast<int>(std::lround(start.corner_px.y));
+    const int h = start.half_window;
+    const double first = std::hypot(start.along_first.x, start.along_first.y);
+    const double second = std::hypot(start.along_second.x, start.along_second.y);
+    const double clear_area = start.clear_squares * std::abs(cross(start.along_first, start.along_second));
+    std::vector<Pixel> pixels;
+    for (int j = std::max(y - h, 0); j <= std::min(y + h, plane.rows - 1); ++j) {
+        for (int i = std::max(x - h, 0); i <= std::min(x + h, plane.cols - 1); ++i) {
+            const Vec2d offset{i - start.corner_px.x, j - start.corner_px.y};
+            const double from_first = cross(start.along_first, offset) / first;
+            const double from_second = cross(start.along_second, offset) / second;
+            const bool is_far = std::abs(from_first) > clear_area / first - mask.guard_px &&
+                                std::abs(from_second) > clear_area / second - mask.guard_px;
+            if (!is_far || from_first * from_second * mask.white < 0.0) {
+                pixels.push_back({static_cast<double>(i), static_cast<double>(j), plane.at<float>(j, i)});
+            }
         }
     }
-    const double pixels = static_cast<double>(window.side) * window.side;
-    p[kLevel] = sum / pixels;
-    p[kContrast] = projected / pixels;
+    return pixels;
+}
+
+/// The sum of squared differences from the mean.
+double variance_of(const std::vector<Pixel>& pixels) {
+    double sum = 0.0;
+    double squares = 0.0;
+    for (const Pixel& pixel : pixels) {
+        sum += pixel.light;
+        squares += pixel.light * pixel.light;
+    }
+    return squares - sum * sum / static_cast<double>(pixels.size());
+}
+
+/// Sets the window's mean light, and the contrast with its sign; returns the variance.
+double start_light(const std::vector<Pixel>& pixels, Parameters& p) {
+    double sum = 0.0;
+    double projected = 0.0;
+    Parameters unused;
+    p[kContrast] = 1.0;
+    for (const Pixel& pixel : pixels) {
+        sum += pixel.light;
+        projected += residual({pixel.x, pixel.y, 0.0}, p, unused) * pixel.light;
+    }
+    const auto count = static_cast<double>(pixels.size());
+    p[kLevel] = sum / count;
+    p[kContrast] = projected / count;
+    return variance_of(pixels);
+}
+
+/// Least squares from `p`; whether it settled.
+bool descend(const std::vector<Pixel>& pixels, int free_count, double largest_blur, Parameters& p, double& squares) {
+    Sums sums = sums_at(pixels, p);
+    double damping = 1e-3;
+    for (int step = 0; step < kMostSteps; ++step) {
+        Normal damped = sums.normal;
+        damped.diagonal() *= 1.0 + damping;
+        Parameters change = Parameters::Zero();
+        change.head(free_count) =
+            damped.topLeftCorner(free_count, free_count).ldlt().solve(sums.right.head(free_count));
+        Parameters next = p + change;
+        next[kBlur] = std::clamp(next[kBlur], kSmallestBlur_px, largest_blur);
+        const Sums tried = next.allFinite() ? sums_at(pixels, next) : Sums{.squares = sums.squares};
+        const bool is_small = change.head(kAngle1).norm() < 1e-6;
+        if (tried.squares < sums.squares) {
+            p = next;
+            sums = tried;
+            damping = std::max(0.1 * damping, 1e-9);
+        } else {
+            damping *= 10.0;
+        }
+        squares = sums.squares;
+        if (is_small || damping > 1e9) {
+            return true;
+        }
+    }
+    return false;
 }
 
 }  // namespace
 
-std::optional<Vec2d> fit_corner(const cv::Mat& plane, const CornerStart& start, int half_window) {
-    const int side = 2 * half_window + 1;
-    const int x0 = static_cast<int>(std::lround(start.corner_px.x)) - half_window;
-    const int y0 = static_cast<int>(std::lround(start.corner_px.y)) - half_window;
-    if (x0 < 0 || y0 < 0 || x0 + side > plane.cols || y0 + side > plane.rows) {
-        return std::nullopt;
-    }
-    const CornerResiduals window{.plane = plane, .x0 = x0, .y0 = y0, .side = side};
-    std::array<double, kCount> p{};
+std::optional<Vec2d> fit_corner(const cv::Mat& plane, const CornerStart& start) {
+    const bool has_markers = std::isfinite(start.clear_squares);
+    const int free_count =
+        start.half_window < kCurvedFrom_px ? static_cast<int>(kCurvature1) : static_cast<int>(kCount);
+    CornerStart window = start;
+    MarkerMask mask{.guard_px = kFirstGuard_px};
+    Parameters p = Parameters::Zero();
     p[kX] = start.corner_px.x;
     p[kY] = start.corner_px.y;
-    p[kAngle1] = angle_of(start.along_first);
-    p[kAngle2] = angle_of(start.along_second);
-    p[kBlur] = 0.7;
-    start_light(plane, window, p);
-    const double level = p[kLevel];
-
-    ceres::Problem problem;
-    auto* cost = new ceres::AutoDiffCostFunction<CornerResiduals, ceres::DYNAMIC, kCount>(new CornerResiduals(window),
-                                                                                          side * side);
-    problem.AddResidualBlock(cost, nullptr, p.data());
-    if (half_window < kCurvedFrom_px) {
-        problem.SetManifold(p.data(), new ceres::SubsetManifold(kCount, {kCurvature1, kCurvature2}));
+    p[kAngle1] = std::atan2(start.along_first.y, start.along_first.x);
+    p[kAngle2] = std::atan2(start.along_second.y, start.along_second.x);
+    p[kBlur] = std::max(1.0, 0.15 * start.half_window);  // wide, so that a start a few pixels off still feels the edges
+    bool settled = false;
+    double unexplained = 1.0;
+    // Where markers stand, what is white and how far blur carries their black is known once the corner is.
+    for (int round = 0; round < (has_markers ? 2 : 1); ++round) {
+        const std::vector<Pixel> pixels = pixels_of(plane, window, mask);
+        if (pixels.size() < kFewestPixels) {
+            return std::nullopt;
+        }
+        double squares = 0.0;
+        const double variance = round == 0 ? start_light(pixels, p) : variance_of(pixels);
+        settled = descend(pixels, free_count, start.half_window, p, squares);
+        unexplained = squares / variance;
+        window.corner_px = {p[kX], p[kY]};
+        mask = {.guard_px = kGuardBlurs * p[kBlur], .white = p[kContrast]};
     }
-    problem.SetParameterLowerBound(p.data(), kBlur, 0.2);
-    problem.SetParameterUpperBound(p.data(), kBlur, half_window);
-    ceres::Solver::Options options;
-    options.linear_solver_type = ceres::DENSE_QR;
-    options.max_num_iterations = 30;
-    options.function_tolerance = 1e-9;
-    options.parameter_tolerance = 1e-7;
-    options.num_threads = 1;
-    options.logging_type = ceres::SILENT;
-    ceres::Solver::Summary summary;
-    ceres::Solve(options, &problem, &summary);
-
     const double moved = std::hypot(p[kX] - start.corner_px.x, p[kY] - start.corner_px.y);
-    const bool settled = summary.IsSolutionUsable() && summary.termination_type == ceres::CONVERGENCE;
-    if (!settled || !(moved < kFarthest_px) || !(std::abs(p[kContrast]) > kLeastContrast * level) ||
-        p[kBlur] > 0.5 * half_window) {
+    if (!settled || !(moved <= std::max(1.5, 0.5 * start.half_window)) ||
+        !(std::abs(p[kContrast]) > kLeastContrast * p[kLevel]) || p[kBlur] > 0.5 * start.half_window ||
+        !(unexplained < 1.0 - kLeastExplained)) {
         return std::nullopt;
     }
     return Vec2d{p[kX], p[kY]};

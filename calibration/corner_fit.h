@@ -1,5 +1,6 @@
 // calibration/corner_fit.h — where two edges cross, from a model of the light around the crossing.
 #pragma once
+#include <limits>
 #include <opencv2/core.hpp>
 #include <optional>
 
@@ -7,22 +8,26 @@
 
 namespace lensproof {
 
-/// What a corner fit starts from: the corner to about a pixel, and the directions of the two edges that cross there
-/// (px, any length).
+/// What a corner fit starts from.
 struct CornerStart {
-    Vec2d corner_px;
-    Vec2d along_first;
-    Vec2d along_second;
+    Vec2d corner_px;      // to a pixel or so
+    Vec2d along_first;    // directions of the two edges that cross there; one square long, px
+    Vec2d along_second;   //
+    int half_window = 0;  // px
+    /// How far from the edges a marker stands in each white square, in squares; what it may darken is left out.
+    double clear_squares = std::numeric_limits<double>::infinity();
 };
 
-/// The corner of a checkerboard, by least squares (Ceres) of
+/// The corner of a checkerboard, by least squares (Levenberg-Marquardt) of
 ///     I(x, y) = a + g·(x, y) + b erf(d₁ / √2σ) erf(d₂ / √2σ)
 /// over the (2 h + 1)² pixels around the start, where d₁, d₂ are the distances from the two edges: straight lines, or
 /// parabolas where the window is wide enough to tell (h ≥ 6; a fisheye bends edges by 0.05 px and more within one). σ
-/// is the edges' blur, the pixel's own box in it; g takes up uneven light.
+/// is the edges' blur, the pixel's own box in it; g takes up uneven light. Blur of any kind that looks the same after a
+/// half turn leaves the corner where it is, and so does ink that spreads.
 ///
-/// `plane` is CV_32F in linear light. None where the fit does not settle on an edge-like corner within 1.5 px of the
-/// start.
-std::optional<Vec2d> fit_corner(const cv::Mat& plane, const CornerStart& start, int half_window);
+/// `plane` is CV_32F in linear light; where the window reaches beyond it, the part inside has to do. None where the fit
+/// does not settle on an edge-like corner near the start (within half the window).
+/// Errors on synthetic pictures: tests/unit/calibration_corner_accuracy.cpp.
+std::optional<Vec2d> fit_corner(const cv::Mat& plane, const CornerStart& start);
 
 }  // namespace lensproof

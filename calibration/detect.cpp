@@ -13,6 +13,7 @@
 #include <utility>
 #include <vector>
 
+#include "calibration/detect_charuco.h"
 #include "calibration/working_copy.h"
 #include "engine/io/input_error.h"
 
@@ -231,30 +232,37 @@ std::optional<Points> numbered_as_chart(const cv::Mat& picture, const Points& po
 // The chart's points in `picture`, as the chart numbers them; or why they could not be found.
 struct Search {
     Points points;
+    std::vector<bool> found;
     std::string reason;
 };
 
-Search search(const cv::Mat& picture, const Chart& chart) {
+// A chart that is seen as a whole or not at all.
+Search search_whole(const cv::Mat& picture, const Chart& chart) {
     const cv::Size grid = grid_size(chart);
     Points points;
-    try {
-        cv::theRNG().state = 0;  // the disc detector clusters with OpenCV's global generator
-        if (!find_grid(picture, chart, points) || points.size() != static_cast<std::size_t>(grid.area())) {
-            points.clear();
-        }
-    } catch (const cv::Exception&) {
-        points.clear();  // OpenCV's detectors assert on some pictures that merely do not show the chart
-    }
-    if (points.empty()) {
-        return {.points = {}, .reason = "no grid of " + size_in_words(grid) + " " + points_in_words(chart) + " found"};
+    if (!find_grid(picture, chart, points) || points.size() != static_cast<std::size_t>(grid.area())) {
+        return {.reason = "no grid of " + size_in_words(grid) + " " + points_in_words(chart) + " found"};
     }
     const auto numbered = numbered_as_chart(picture, points, chart);
     if (!numbered) {
-        return {.points = {},
-                .reason = "a grid of " + size_in_words(grid) + " " + points_in_words(chart) +
+        return {.reason = "a grid of " + size_in_words(grid) + " " + points_in_words(chart) +
                           " found, but mirrored or with other colours than the chart"};
     }
-    return {.points = *numbered, .reason = {}};
+    return {.points = *numbered, .found = std::vector<bool>(points.size(), true)};
+}
+
+Search search(const cv::Mat& picture, const Chart& chart) {
+    try {
+        cv::theRNG().state = 0;  // the disc detector clusters with OpenCV's global generator
+        if (const auto* board = std::get_if<CharucoBoard>(&chart.pattern)) {
+            CharucoSearch found = find_charuco(picture, *board);
+            return {std::move(found.points), std::move(found.found), std::move(found.reason)};
+        }
+        return search_whole(picture, chart);
+    } catch (const cv::Exception&) {
+        // OpenCV's detectors assert on some pictures that merely do not show the chart.
+        return {.reason = "no " + kind_name(chart) + " found"};
+    }
 }
 
 Detection not_found(std::string reason) {
@@ -264,13 +272,14 @@ Detection not_found(std::string reason) {
 }  // namespace
 
 bool can_detect(const Chart& chart) {
-    return std::holds_alternative<Checkerboard>(chart.pattern) || std::holds_alternative<DiscGrid>(chart.pattern);
+    return std::holds_alternative<Checkerboard>(chart.pattern) || std::holds_alternative<DiscGrid>(chart.pattern) ||
+           std::holds_alternative<CharucoBoard>(chart.pattern);
 }
 
 Detection detect(const Image& image, const Chart& chart) {
     if (!can_detect(chart)) {
         throw InputError("a chart of kind " + kind_name(chart) +
-                         " cannot be searched for: expected a checkerboard or a disc-grid");
+                         " cannot be searched for: expected a checkerboard, a charuco board or a disc-grid");
     }
     const cv::Size grid = grid_size(chart);
     if (grid.width < 3 || grid.height < 3) {
@@ -300,7 +309,7 @@ Detection detect(const Image& image, const Chart& chart) {
     for (const cv::Point2f& point : found.points) {
         result.points.image_px.push_back({(point.x + 0.5) * scale_x - 0.5, (point.y + 0.5) * scale_y - 0.5});
     }
-    result.points.found.assign(found.points.size(), true);
+    result.points.found = std::move(found.found);
     return result;
 }
 

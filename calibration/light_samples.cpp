@@ -164,7 +164,7 @@ double white_share(const Chart& chart) {
         const double share = 1.0 - 1.15 * radius * std::numbers::sqrt2;
         return share > 0.15 ? share : 0.0;
     }
-    return kWhiteShare;
+    return std::holds_alternative<Checkerboard>(chart.pattern) ? kWhiteShare : 0.0;
 }
 
 }  // namespace

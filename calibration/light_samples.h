@@ -30,7 +30,7 @@ struct LightGroup {
 LightGroup flat_field_samples(const Image& image, int channel);
 
 /// The white between a chart's found points: the inner 60 % of white squares, or patches between four discs.
-/// Same rule for clipped pixels. May be empty (a disc grid without room between the discs, a flat field).
+/// Same rule for clipped pixels. May be empty (a disc grid without room between the discs, other kinds of chart).
 LightGroup chart_white_samples(const Image& image, int channel, const ChartPoints& points, const Chart& chart);
 
 }  // namespace lensproof

@@ -15,22 +15,21 @@
 namespace lensproof {
 namespace {
 
-constexpr double kWindowShare = 0.4;   // half window of the distance to the nearest corner
-constexpr int kSmallestWindow_px = 2;  // half window: 5 × 5 pixels
-constexpr int kLargestWindow_px = 14;  // half window; more pixels than noise asks for, and lines bend
-constexpr int kFitFrom_px = 3;         // half window; in a smaller one the edge model has too few pixels to hold it
-constexpr double kBlur_px = 1.0;
+constexpr double kWindowShare = 0.4;    // half window of the distance to the nearest corner
+constexpr int kSmallestWindow_px = 2;   // half window: 5 × 5 pixels
+constexpr int kLargestWindow_px = 14;   // half window; more pixels than noise asks for, and lines bend
+constexpr int kFitFrom_px = 3;          // half window; in a smaller one the edge model has too few pixels to hold it
+constexpr double kBlur_px = 0.7;        // passes 6e-5 of what aliases to nothing; more would cost more of the noise
+constexpr double kFrame_px = 2.5;       // closer to the frame, blurring has mirrored what is not there
 constexpr double kAgreement_px = 0.05;  // of two searches from different starts
 constexpr double kLeastContrast = 0.1;  // (white − black) / (white + black) around a corner
 
+/// Whether every pixel within `reach` that the picture has is a number.
 bool all_finite(const Image& image, int channel, const Vec2d& at, double reach) {
-    const int x0 = static_cast<int>(std::floor(at.x - reach));
-    const int x1 = static_cast<int>(std::ceil(at.x + reach));
-    const int y0 = static_cast<int>(std::floor(at.y - reach));
-    const int y1 = static_cast<int>(std::ceil(at.y + reach));
-    if (x0 < 0 || y0 < 0 || x1 >= image.width || y1 >= image.height) {
-        return false;
-    }
+    const int x0 = std::max(static_cast<int>(std::floor(at.x - reach)), 0);
+    const int x1 = std::min(static_cast<int>(std::ceil(at.x + reach)), image.width - 1);
+    const int y0 = std::max(static_cast<int>(std::floor(at.y - reach)), 0);
+    const int y1 = std::min(static_cast<int>(std::ceil(at.y + reach)), image.height - 1);
     for (int y = y0; y <= y1; ++y) {
         for (int x = x0; x <= x1; ++x) {
             if (!std::isfinite(image.at(x, y, channel))) {
@@ -39,6 +38,14 @@ bool all_finite(const Image& image, int channel, const Vec2d& at, double reach) 
         }
     }
     return true;
+}
+
+bool is_inside(const Image& image, const Vec2d& at, double margin) {
+    return at.x >= margin && at.y >= margin && at.x <= image.width - 1 - margin && at.y <= image.height - 1 - margin;
+}
+
+bool is_near_frame(const Image& image, const Vec2d& at) {
+    return !is_inside(image, at, kFrame_px);
 }
 
 Vec2d difference(const Vec2d& a, const Vec2d& b) {
@@ -111,28 +118,40 @@ Vec2d corner_search(const cv::Mat& plane, const Vec2d& start, int half_window) {
     return {point[0].x, point[0].y};
 }
 
-std::optional<Vec2d> refine_corner(const Image& image, const cv::Mat& plane, int channel, const Vec2d& start,
-                                   const Lattice& lattice) {
-    const int half_window =
-        std::clamp(static_cast<int>(kWindowShare * lattice.nearest), kSmallestWindow_px, kLargestWindow_px);
-    if (!all_finite(image, channel, start, half_window + 4.0)) {
-        return std::nullopt;
-    }
+// A search in windows too small for a model: cv::cornerSubPix from two starts that must agree.
+std::optional<Vec2d> search_corner(const cv::Mat& plane, const Vec2d& start, int half_window) {
     // cornerSubPix hands back its start when it runs away, so the second start must differ from the first's result.
     const Vec2d first = corner_search(plane, start, half_window);
     const double displacement = 0.25 * half_window;
     const Vec2d second = corner_search(plane, {first.x + displacement, first.y - 0.6 * displacement}, half_window);
-    if (norm(difference(first, second)) > kAgreement_px || norm(difference(second, start)) > half_window ||
-        !all_finite(image, channel, second, half_window + 3.0) ||
-        corner_contrast(plane, second, lattice, 0.25) < kLeastContrast) {
+    const bool agree = norm(difference(first, second)) <= kAgreement_px;
+    return agree && norm(difference(second, start)) <= half_window ? std::optional(second) : std::nullopt;
+}
+
+std::optional<Vec2d> refine_corner(const Image& image, const cv::Mat& plane, int channel, const Vec2d& start,
+                                   const Lattice& lattice, double clear_squares) {
+    const int half_window =
+        std::clamp(static_cast<int>(kWindowShare * lattice.nearest), kSmallestWindow_px, kLargestWindow_px);
+    if (!all_finite(image, channel, start, half_window) || is_near_frame(image, start)) {
         return std::nullopt;
     }
-    if (half_window < kFitFrom_px) {
-        return second;
+    const auto corner = half_window < kFitFrom_px ? search_corner(plane, start, half_window)
+                                                  : fit_corner(plane, {.corner_px = start,
+                                                                       .along_first = lattice.column_step,
+                                                                       .along_second = lattice.row_step,
+                                                                       .half_window = half_window,
+                                                                       .clear_squares = clear_squares});
+    if (!corner || is_near_frame(image, *corner) ||
+        corner_contrast(plane, *corner, lattice, std::min(0.25, 0.7 * clear_squares)) < kLeastContrast) {
+        return std::nullopt;
     }
-    return fit_corner(plane,
-                      {.corner_px = second, .along_first = lattice.column_step, .along_second = lattice.row_step},
-                      half_window);
+    return corner;
+}
+
+// How far from the edges of its square a marker stands, in squares.
+double clear_squares(const Chart& chart) {
+    const auto* board = std::get_if<CharucoBoard>(&chart.pattern);
+    return board ? 0.5 * (1.0 - board->marker_mm / board->square_mm) : std::numeric_limits<double>::infinity();
 }
 
 // In units of the pitch: discs end at `disc`, light that belongs to the paper alone is taken from `inner` to `outer`.
@@ -146,7 +165,8 @@ std::optional<Vec2d> disc_centroid(const Image& image, int channel, const Vec2d&
                                    const DiscWindow& window) {
     const double determinant = lattice.column_step.x * lattice.row_step.y - lattice.column_step.y * lattice.row_step.x;
     const double reach = window.outer * (norm(lattice.column_step) + norm(lattice.row_step));
-    if (!(std::abs(determinant) > 1.0) || !all_finite(image, channel, start, reach)) {
+    if (!(std::abs(determinant) > 1.0) || !is_inside(image, start, reach + 1.0) ||
+        !all_finite(image, channel, start, reach)) {
         return std::nullopt;
     }
     const auto distance = [&](double dx, double dy) {  // from the disc's centre, in pitches
@@ -228,7 +248,7 @@ ChartPoints refine(const Image& image, int channel, const ChartPoints& approxima
     const auto* discs = std::get_if<DiscGrid>(&chart.pattern);
     cv::Mat plane;
     if (!discs) {
-        // Edges sharper than a pixel are aliased, which biases the search and the fit alike; the blur takes that away.
+        // Edges sharper than a pixel are aliased, which biases search and fit alike; the blur takes that away.
         cv::GaussianBlur(channel_plane(image, channel), plane, {}, kBlur_px);
     }
     ChartPoints result{.image_px = approximate.image_px, .found = std::vector<bool>(expected, false)};
@@ -240,8 +260,9 @@ ChartPoints refine(const Image& image, int channel, const ChartPoints& approxima
             if (!lattice) {
                 continue;
             }
-            const auto refined = discs ? refine_disc(image, channel, approximate.image_px[i], *lattice, *discs)
-                                       : refine_corner(image, plane, channel, approximate.image_px[i], *lattice);
+            const auto refined =
+                discs ? refine_disc(image, channel, approximate.image_px[i], *lattice, *discs)
+                      : refine_corner(image, plane, channel, approximate.image_px[i], *lattice, clear_squares(chart));
             if (refined) {
                 result.image_px[i] = *refined;
                 result.found[i] = true;

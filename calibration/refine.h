@@ -17,12 +17,12 @@ struct ChartPoints {
 
 /// Refines those of `approximate` (from `detect`, or another channel's points) that were found, in one channel.
 ///
-/// Corners: found by cv::cornerSubPix from two starts that must agree, then fitted with a model of the two edges
-/// (calibration/corner_fit.h). The window is a part of the distance to the nearest neighbour, so that neither a
-/// fisheye's squeezed rim nor a large picture's noise spoils it; one of less than 7 × 7 pixels is too small for the fit
-/// and keeps the search's result.
-/// Discs: the centroid of 1 − I/W, where W is the paper's light, a plane fitted around each disc. That is the centroid
-/// of the disc's image, not the image of its centre; `fit_geometry` models the difference (`disc_diameter_mm`).
+/// Corners: fitted with a model of the two edges (calibration/corner_fit.h), which leaves a ChArUco board's markers
+/// out. The window is a part of the distance to the nearest neighbour, so that neither a fisheye's squeezed rim nor a
+/// large picture's noise spoils it; one of less than 7 × 7 pixels is too small for the fit and gets cv::cornerSubPix
+/// from two starts that must agree. Discs: the centroid of 1 − I/W, where W is the paper's light, a plane fitted around
+/// each disc. That is the centroid of the disc's image, not the image of its centre; `fit_geometry` models the
+/// difference (`disc_diameter_mm`).
 ///
 /// Tests hold corners and discs of synthetic pictures with 1 % noise to 0.05 px rms
 /// (tests/unit/calibration_detect.cpp). `approximate` must have one point per feature.

@@ -64,12 +64,28 @@ inline std::vector<Pose> tilted_poses(double distance_mm, double tilt_rad, doubl
     return poses;
 }
 
+/// Heights of n² samples in a pixel, from its middle, px: a golden-ratio lattice, so that along both axes they lie in
+/// different places and no edge falls between them; about their own mean, so that they pull no edge to one side.
+inline std::vector<double> sample_heights(int n) {
+    std::vector<double> heights;
+    double mean = 0.0;
+    for (int k = 0; k < n * n; ++k) {
+        heights.push_back(std::fmod((k + 0.5) * 0.6180339887498949, 1.0));
+        mean += heights.back() / (n * n);
+    }
+    for (double& height : heights) {
+        height -= mean;
+    }
+    return heights;
+}
+
 /// A picture with n² point samples a pixel: `brightness(pixel)` times the chart's reflectance.
 ///
 /// The map to the chart is exact every 2 px and bilinear between, which moves an edge by less than 1e-3 px.
 inline void paint(
     Image& image, int channel, const CameraModel& camera, const Pose& pose, const Chart& chart, int n,
     const std::function<double(const Vec2d&)>& brightness = [](const Vec2d&) { return 1.0; }) {
+    const std::vector<double> heights = sample_heights(n);
     const int columns = image.width / 2 + 2;
     const int rows = image.height / 2 + 2;
     std::vector<std::optional<Vec2d>> knots;
@@ -87,9 +103,8 @@ inline void paint(
             const auto& d = knots[first + columns + 1];
             double sum = 0.0;
             for (int k = 0; k < n * n && a && b && c && d; ++k) {
-                // A golden-ratio lattice: along both axes n² different places, so that no edge falls between samples.
                 const double u = (x % 2 + (k + 0.5) / (n * n)) / 2.0;
-                const double v = (y % 2 + std::fmod((k + 0.5) * 0.6180339887498949, 1.0)) / 2.0;
+                const double v = (y % 2 + 0.5 + heights[k]) / 2.0;
                 sum += reflectance(chart, std::lerp(std::lerp(a->x, b->x, u), std::lerp(c->x, d->x, u), v),
                                    std::lerp(std::lerp(a->y, b->y, u), std::lerp(c->y, d->y, u), v));
             }
