@@ -3,6 +3,7 @@
 #include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 
 namespace lensproof {
@@ -118,6 +119,14 @@ std::optional<LinearFit> fit_linear(const LinearProblem& problem, double outlier
         fit.used.push_back(w > 0.0);
     }
     return fit;
+}
+
+double aicc(double chi_squared, double rows, double parameters) {
+    const double k = parameters + 1.0;
+    if (rows <= k + 1.0) {
+        return std::numeric_limits<double>::infinity();
+    }
+    return rows * std::log(std::max(chi_squared / rows, 1e-20)) + 2.0 * k * rows / (rows - k - 1.0);
 }
 
 }  // namespace lensproof

@@ -32,4 +32,9 @@ struct LinearFit {
 /// when the columns are not independent or the rows not more than the columns.
 std::optional<LinearFit> fit_linear(const LinearProblem& problem, double outlier_sigmas, double smallest_scale = 0.0);
 
+/// Akaike's criterion with its small-sample correction (Hurvich & Tsai 1989) of a fit with `parameters` parameters and
+/// a scale: n ln(χ²/n) + 2 k n / (n − k − 1), k = parameters + 1. The smallest wins; infinite when there are too few
+/// rows to say, finite for a perfect fit.
+double aicc(double chi_squared, double rows, double parameters);
+
 }  // namespace lensproof

@@ -109,16 +109,6 @@ LinearProblem linear_problem(const std::vector<Row>& rows, const EvenSpline& spl
     return problem;
 }
 
-// Akaike's criterion with its small-sample correction; −∞ for a perfect fit is kept finite.
-double aicc(const LinearFit& fit, double parameters) {
-    const double n = fit.rows_used;
-    const double k = parameters + 1.0;  // and the scale
-    if (n <= k + 1.0) {
-        return std::numeric_limits<double>::infinity();
-    }
-    return n * std::log(std::max(fit.chi_squared / n, 1e-20)) + 2.0 * k * n / (n - k - 1.0);
-}
-
 struct Chosen {
     EvenSpline spline;
     LinearFit fit;
@@ -249,7 +239,8 @@ Vignetting fit_vignetting(const std::vector<LightGroup>& groups, const Vec2d& ce
         if (!fit) {
             continue;
         }
-        if (const double criterion = aicc(*fit, static_cast<double>(problem.a.cols())); criterion < best_criterion) {
+        if (const double criterion = aicc(fit->chi_squared, fit->rows_used, static_cast<double>(problem.a.cols()));
+            criterion < best_criterion) {
             best_criterion = criterion;
             best = candidates.size();
         }

@@ -1,0 +1,156 @@
+#include "calibration/sharpness/chart_edges.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <optional>
+#include <variant>
+
+namespace lensproof {
+namespace {
+
+constexpr double kLengthShare = 0.7;  // of a side: corners stay outside, also where perspective shears the square
+constexpr double kDepthShare = 0.4;   // of a square, on either side of its edge
+constexpr double kGapShare = 0.8;     // of the white up to the next dark thing
+constexpr double kLeastHalfLength_px = 8.0;
+constexpr double kLeastHalfWidth_px = 4.0;
+constexpr double kMostHalfLength_px = 48.0;
+constexpr double kMostHalfWidth_px = 24.0;
+
+// The chart's neighbourhood of a point: image = at + x_axis · x_mm + y_axis · y_mm.
+struct LocalMap {
+    Vec2d at;
+    Vec2d x_axis;
+    Vec2d y_axis;
+
+    [[nodiscard]] Vec2d direction(const Vec2d& mm) const {
+        return {x_axis.x * mm.x + y_axis.x * mm.y, x_axis.y * mm.x + y_axis.y * mm.y};
+    }
+};
+
+// The edge through `middle` (mm from the map's point) along `along`, the tones reaching `depth_mm` across.
+std::optional<EdgeRegion> region(const LocalMap& map, const Vec2d& middle, const Vec2d& along, double half_length_mm,
+                                 double depth_mm) {
+    const Vec2d offset = map.direction(middle);
+    const Vec2d side = map.direction(along);
+    const double length = std::hypot(side.x, side.y);
+    const Vec2d across = map.direction({-along.y, along.x});
+    if (!(length > 0.0)) {
+        return std::nullopt;
+    }
+    const double depth = std::abs(side.x * across.y - side.y * across.x) / length;  // px per mm, at right angles
+    EdgeRegion result{.centre_px = {map.at.x + offset.x, map.at.y + offset.y},
+                      .along = {side.x / length, side.y / length},
+                      .half_length_px = std::min(kLengthShare * half_length_mm * length, kMostHalfLength_px),
+                      .half_width_px = std::min(depth_mm * depth, kMostHalfWidth_px)};
+    const bool is_large = result.half_length_px >= kLeastHalfLength_px && result.half_width_px >= kLeastHalfWidth_px;
+    return is_large ? std::optional(result) : std::nullopt;
+}
+
+// A point of the chart's grid, with what its neighbours say about the map there.
+class Grid {
+  public:
+    Grid(const ChartPoints& points, const Chart& chart, double pitch_mm)
+        : points_(points), size_(feature_grid(chart)), pitch_mm_(pitch_mm) {}
+
+    [[nodiscard]] GridSize size() const { return size_; }
+    [[nodiscard]] const Vec2d* at(int column, int row) const {
+        if (column < 0 || row < 0 || column >= size_.columns || row >= size_.rows) {
+            return nullptr;
+        }
+        const std::size_t i = static_cast<std::size_t>(row) * size_.columns + column;
+        return points_.found[i] ? &points_.image_px[i] : nullptr;
+    }
+    [[nodiscard]] std::optional<LocalMap> map(int column, int row) const {
+        const Vec2d* here = at(column, row);
+        const auto x_axis = axis(column, row, 1, 0);
+        const auto y_axis = axis(column, row, 0, 1);
+        return here != nullptr && x_axis && y_axis ? std::optional(LocalMap{*here, *x_axis, *y_axis}) : std::nullopt;
+    }
+
+  private:
+    // Pixels per mm along a row or a column: between both neighbours, or to the one there is.
+    [[nodiscard]] std::optional<Vec2d> axis(int column, int row, int right, int down) const {
+        const Vec2d* here = at(column, row);
+        const Vec2d* before = at(column - right, row - down);
+        const Vec2d* after = at(column + right, row + down);
+        const Vec2d* from = before != nullptr ? before : here;
+        const Vec2d* to = after != nullptr ? after : here;
+        if (from == nullptr || to == nullptr || from == to) {
+            return std::nullopt;
+        }
+        const double mm = pitch_mm_ * (before != nullptr && after != nullptr ? 2.0 : 1.0);
+        return Vec2d{(to->x - from->x) / mm, (to->y - from->y) / mm};
+    }
+
+    const ChartPoints& points_;
+    GridSize size_;
+    double pitch_mm_;
+};
+
+std::vector<EdgeRegion> edges_of_squares(const ChartPoints& points, const Chart& chart, const SlantedEdges& squares) {
+    const double angle = squares.angle_deg * std::numbers::pi / 180.0;
+    const double half = 0.5 * squares.square_mm;
+    const double gap = squares.pitch_mm - squares.square_mm * (std::abs(std::cos(angle)) + std::abs(std::sin(angle)));
+    const double depth = std::min(kDepthShare * squares.square_mm, kGapShare * gap);
+    const Grid grid(points, chart, squares.pitch_mm);
+    std::vector<EdgeRegion> regions;
+    for (int row = 0; row < grid.size().rows; ++row) {
+        for (int column = 0; column < grid.size().columns; ++column) {
+            const auto map = grid.map(column, row);
+            for (int side = 0; side < 4 && map; ++side) {
+                const double turn = angle + 0.5 * std::numbers::pi * side;
+                const Vec2d outwards{std::cos(turn), std::sin(turn)};
+                if (const auto edge =
+                        region(*map, {half * outwards.x, half * outwards.y}, {-outwards.y, outwards.x}, half, depth)) {
+                    regions.push_back(*edge);
+                }
+            }
+        }
+    }
+    return regions;
+}
+
+std::vector<EdgeRegion> edges_of_board(const ChartPoints& points, const Chart& chart, double square, double depth) {
+    const Grid grid(points, chart, square);
+    std::vector<EdgeRegion> regions;
+    for (int row = 0; row < grid.size().rows; ++row) {
+        for (int column = 0; column < grid.size().columns; ++column) {
+            const auto map = grid.map(column, row);
+            for (const bool to_the_right : {true, false}) {
+                const Vec2d* end = to_the_right ? grid.at(column + 1, row) : grid.at(column, row + 1);
+                if (!map || end == nullptr) {
+                    continue;
+                }
+                LocalMap side = *map;  // exactly through both corners
+                (to_the_right ? side.x_axis : side.y_axis) = {(end->x - side.at.x) / square,
+                                                              (end->y - side.at.y) / square};
+                const Vec2d along = to_the_right ? Vec2d{1.0, 0.0} : Vec2d{0.0, 1.0};
+                if (const auto edge =
+                        region(side, {0.5 * square * along.x, 0.5 * square * along.y}, along, 0.5 * square, depth)) {
+                    regions.push_back(*edge);
+                }
+            }
+        }
+    }
+    return regions;
+}
+
+}  // namespace
+
+std::vector<EdgeRegion> chart_edges(const ChartPoints& points, const Chart& chart) {
+    if (const auto* squares = std::get_if<SlantedEdges>(&chart.pattern)) {
+        return edges_of_squares(points, chart, *squares);
+    }
+    if (const auto* board = std::get_if<Checkerboard>(&chart.pattern)) {
+        return edges_of_board(points, chart, board->square_mm, kDepthShare * board->square_mm);
+    }
+    if (const auto* board = std::get_if<CharucoBoard>(&chart.pattern)) {
+        const double margin = 0.5 * (board->square_mm - board->marker_mm);
+        return edges_of_board(points, chart, board->square_mm,
+                              std::min(kDepthShare * board->square_mm, kGapShare * margin));
+    }
+    return {};
+}
+
+}  // namespace lensproof
