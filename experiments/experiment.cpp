@@ -140,18 +140,22 @@ Comparison read_comparison(TomlTable& table, const std::set<std::string>& subjec
     return comparison;
 }
 
-StabilityExperiment read_stability(TomlTable& table) {
-    StabilityExperiment stability;
-    if (table.has("extremes")) {
-        std::vector<std::string> known;
-        std::ranges::transform(stability_extremes(), std::back_inserter(known), &Extreme::id);
-        stability.extremes = table.texts("extremes");
-        for (const std::string& id : stability.extremes) {
-            if (std::ranges::find(known, id) == known.end()) {
-                table.fail("extremes", fmt::format("names \"{}\", expected one of {}", id, fmt::join(known, ", ")));
-            }
+/// The names that the file lists under `key`, each of which is known; none where it does not.
+std::vector<std::string> names_of(TomlTable& table, const char* key, const std::vector<std::string>& known) {
+    std::vector<std::string> names = table.has(key) ? table.texts(key) : std::vector<std::string>{};
+    for (const std::string& name : names) {
+        if (std::ranges::find(known, name) == known.end()) {
+            table.fail(key, fmt::format("names \"{}\", expected one of {}", name, fmt::join(known, ", ")));
         }
     }
+    return names;
+}
+
+StabilityExperiment read_stability(TomlTable& table) {
+    StabilityExperiment stability;
+    std::vector<std::string> known;
+    std::ranges::transform(stability_extremes(), std::back_inserter(known), &Extreme::id);
+    stability.extremes = names_of(table, "extremes", known);
     table.finish();
     return stability;
 }
@@ -168,6 +172,16 @@ PassageSetting read_passage(TomlTable& table) {
     }
     table.finish();
     return setting;
+}
+
+FloorSettings read_measurement_floor(TomlTable& table) {
+    FloorSettings settings;
+    settings.sweeps = names_of(table, "sweeps", detector_sweeps());
+    settings.detectors = names_of(table, "detectors", floor_detectors());
+    settings.pictures = table.integer_or("pictures", settings.pictures, 1, 1000);
+    settings.trials = table.integer_or("trials", settings.trials, 20, 100000);
+    table.finish();
+    return settings;
 }
 
 }  // namespace
@@ -187,6 +201,11 @@ Experiment read_experiment(const std::filesystem::path& file) {
         experiment.pupil_passage.push_back(read_passage(table));
     }
     if (!experiment.pupil_passage.empty()) {
+        top.finish();
+        return experiment;
+    }
+    if (auto floor = top.optional_table("measurement_floor")) {
+        experiment.measurement_floor = read_measurement_floor(*floor);
         top.finish();
         return experiment;
     }
@@ -211,7 +230,9 @@ Experiment read_experiment(const std::filesystem::path& file) {
     top.optional_table("render");
     top.finish();
     if (names.empty()) {
-        top.fail("", "holds neither [[simulations]] nor [[photos]] nor [stability] nor [[pupil_passage]]");
+        top.fail("",
+                 "holds neither [[simulations]] nor [[photos]] nor [stability] nor [[pupil_passage]] nor "
+                 "[measurement_floor]");
     }
     return experiment;
 }

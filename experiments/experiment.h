@@ -8,6 +8,7 @@
 
 #include "calibration/fit_geometry.h"
 #include "engine/render/camera.h"
+#include "experiments/measurement_floor/measure_floor.h"
 #include "experiments/verdict.h"
 
 namespace lensproof {
@@ -78,8 +79,9 @@ struct Experiment {
     std::vector<Simulation> simulations;
     std::vector<PhotoSubject> photos;
     std::vector<Comparison> comparisons;
-    std::optional<StabilityExperiment> stability;  // then there is nothing else
-    std::vector<PassageSetting> pupil_passage;     // the same
+    std::optional<StabilityExperiment> stability;    // then there is nothing else
+    std::vector<PassageSetting> pupil_passage;       // the same
+    std::optional<FloorSettings> measurement_floor;  // the same
 };
 
 /// Reads an experiment file (described in experiments/README.md). Throws InputError naming file, line and key.

@@ -7,6 +7,7 @@
 #include "engine/io/file.h"
 #include "experiments/cli/command.h"
 #include "experiments/cli/progress.h"
+#include "experiments/measurement_floor/floor_report.h"
 #include "experiments/pupil_passage/passage_report.h"
 #include "experiments/report/report.h"
 #include "experiments/report_content.h"
@@ -98,6 +99,11 @@ int run(const RunOptions& options) {
         const std::vector<Passage> passages = run_pupil_passage(experiment, settings, report_progress);
         return finish_report(options, folder, passage_checks(passages),
                              passage_report_json(experiment, passages, settings), passage_drawings(passages));
+    }
+    if (experiment.measurement_floor) {
+        const MeasurementFloor floor = run_measurement_floor(experiment, settings, report_progress);
+        return finish_report(options, folder, floor.checks, floor_report_json(experiment, floor, settings),
+                             floor_charts(floor));
     }
     const ExperimentResult result = run_experiment(experiment, settings, report_progress);
     for (const Subject& subject : result.subjects) {

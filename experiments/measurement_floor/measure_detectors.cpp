@@ -1,0 +1,263 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <limits>
+
+#include "calibration/detect.h"
+#include "calibration/fit_geometry.h"
+#include "calibration/refine.h"
+#include "calibration/simulated_chart.h"
+#include "engine/render/parallel.h"
+#include "engine/scene/aruco.h"
+#include "experiments/measurement_floor/measure_floor.h"
+#include "experiments/measurement_floor/random_poses.h"
+
+namespace lensproof {
+
+namespace {
+
+constexpr double kUsualNoise_percent = 1.0;  // of the white
+constexpr double kUsualBlur_px = 0.6;
+constexpr double kUsualTilt_deg = 20.0;
+constexpr double kWhite = 0.7;
+constexpr double kCorner_px = 0.02;  // what is asked of points, rms of one coordinate at 1 % noise
+constexpr double kBias_px = 0.02;
+
+struct Detector {
+    std::string label;
+    Chart chart;
+    double width_mm;
+    double disc_diameter_mm = 0.0;
+};
+
+std::vector<std::uint64_t> markers_of(const std::string& dictionary, std::size_t count) {
+    std::vector<std::uint64_t> markers = aruco_dictionary(dictionary).markers;
+    markers.resize(count);
+    return markers;
+}
+
+std::vector<Detector> detectors() {
+    const auto chart = [](ChartPattern pattern) {
+        return Chart{.pattern = std::move(pattern), .white_reflectance = 1.0, .black_reflectance = 0.05};
+    };
+    std::vector<Detector> all = {
+        {"checkerboard", chart(Checkerboard{10, 7, 30.0}), 300.0},
+        {"charuco",
+         chart(CharucoBoard{.columns = 9,
+                            .rows = 6,
+                            .square_mm = 33.0,
+                            .marker_mm = 24.0,
+                            .cells = 5,
+                            .markers = markers_of("DICT_5X5_50", 27)}),
+         300.0},
+        {"disc grid", chart(DiscGrid{9, 6, 33.0, 18.0}), 300.0, 18.0},
+        {"point grid", chart(PointGrid{9, 6, 33.0, 10.0}), 300.0, 10.0},
+    };
+    std::erase_if(all, [](const Detector& detector) { return !can_detect(detector.chart); });
+    return all;
+}
+
+/// What is varied in a sweep, and how it enters the simulation.
+struct Varied {
+    std::string id;
+    std::string title;
+    std::string parameter;
+    std::string unit;
+    std::vector<double> values;
+    void (*apply)(double value, SimulatedCamera& camera, PoseWish& wish);
+};
+
+std::vector<Varied> varied() {
+    return {
+        {"noise",
+         "Points against noise",
+         "noise of the white",
+         "%",
+         {0.0, 0.25, 0.5, 1.0, 2.0, 4.0},
+         [](double value, SimulatedCamera& camera, PoseWish&) { camera.read_noise = value / 100.0 * kWhite; }},
+        {"blur",
+         "Points against blur",
+         "blur, σ",
+         "px",
+         {0.2, 0.4, 0.6, 1.0, 1.5, 2.5},
+         [](double value, SimulatedCamera& camera, PoseWish&) { camera.blur_px = value; }},
+        {"tilt",
+         "Points against tilt",
+         "tilt",
+         "°",
+         {0.0, 15.0, 30.0, 45.0, 55.0},
+         [](double value, SimulatedCamera&, PoseWish& wish) { wish.tilt_deg = value; }},
+        {"jpeg",
+         "Points against JPEG's quality",
+         "quality",
+         "",
+         {100.0, 95.0, 90.0, 80.0, 60.0, 40.0},
+         [](double value, SimulatedCamera& camera, PoseWish&) { camera.jpeg_quality = static_cast<int>(value); }},
+    };
+}
+
+struct Errors {
+    int expected = 0;
+    int found = 0;
+    double squares = 0.0;  // of both coordinates
+    Vec2d sum;
+
+    void add(const Errors& other) {
+        expected += other.expected;
+        found += other.found;
+        squares += other.squares;
+        sum = {sum.x + other.sum.x, sum.y + other.sum.y};
+    }
+    [[nodiscard]] double rms() const {
+        return found > 0 ? std::sqrt(squares / (2.0 * found)) : std::numeric_limits<double>::quiet_NaN();
+    }
+    /// Of the rms, as if errors were independent and normal.
+    [[nodiscard]] double sigma() const { return found > 0 ? rms() / std::sqrt(4.0 * found) : 0.0; }
+    [[nodiscard]] double bias() const { return found > 0 ? std::hypot(sum.x, sum.y) / found : 0.0; }
+};
+
+/// One picture, simulated, searched and refined.
+Errors look(const Detector& detector, const SimulatedCamera& camera, const PoseWish& wish, std::uint32_t seed) {
+    std::mt19937 random(seed);
+    const Pose pose = draw_pose(camera.model, camera.width_px, camera.height_px, detector.width_mm, wish, random);
+    const Image image = simulate_chart(camera, pose, detector.chart, seed);
+    const std::vector<Vec2d> features = feature_points(detector.chart);
+    Errors errors{.expected = static_cast<int>(features.size())};
+    const Detection detection = detect(image, detector.chart);
+    if (!detection.found()) {
+        return errors;
+    }
+    const ChartPoints points = refine(image, 0, detection.points, detector.chart);
+    for (std::size_t i = 0; i < features.size(); ++i) {
+        const auto truth = predict(camera.model, pose, features[i], detector.disc_diameter_mm);
+        if (points.found[i] && truth) {
+            const Vec2d error{points.image_px[i].x - truth->x, points.image_px[i].y - truth->y};
+            errors.add({.expected = 0, .found = 1, .squares = error.x * error.x + error.y * error.y, .sum = error});
+        }
+    }
+    return errors;
+}
+
+SimulatedCamera usual_camera() {
+    return {.model = BrownConrady{{820.0, 318.5, 243.0, -0.24, 0.09, -0.01, 0.0008, -0.0005}},
+            .width_px = 640,
+            .height_px = 480,
+            .channels = {{.name = "Y"}},
+            .white = kWhite,
+            .blur_px = kUsualBlur_px,
+            .read_noise = kUsualNoise_percent / 100.0 * kWhite,
+            .shot_noise = 0.0,
+            .jpeg_quality = {},
+            .threads = 1};
+}
+
+Check target_check(const std::string& id, const Detector& detector, const std::string& label, double value,
+                   double sigma, double limit) {
+    return {
+        .id = fmt::format("{}-{}", detector.label, id),
+        .group = "Points at 1 % noise",
+        .subject = "noise",
+        .label = fmt::format("{}: {}", detector.label, label),
+        .value = value,
+        .sigma = sigma,
+        .unit = "px",
+        .limit = limit,
+        .expectation = Expectation::at_most,
+        .target = 0.0,
+        .explanation = fmt::format("Blur of {} px, tilts of {}°, 640 × 480 pixels.", kUsualBlur_px, kUsualTilt_deg)};
+}
+
+/// Whether a list of names asks for this one; an empty list asks for all.
+bool is_wanted(const std::vector<std::string>& wanted, const std::string& name) {
+    return wanted.empty() || std::ranges::find(wanted, name) != wanted.end();
+}
+
+}  // namespace
+
+std::vector<std::string> detector_sweeps() {
+    std::vector<std::string> ids;
+    std::ranges::transform(varied(), std::back_inserter(ids), &Varied::id);
+    return ids;
+}
+
+std::vector<std::string> floor_detectors() {
+    std::vector<std::string> labels;
+    std::ranges::transform(detectors(), std::back_inserter(labels), &Detector::label);
+    return labels;
+}
+
+MeasurementFloor measure_detectors(const FloorSettings& settings, std::uint64_t seed, int threads,
+                                   const FloorProgress& progress) {
+    std::vector<Detector> all = detectors();
+    std::erase_if(all, [&](const Detector& detector) { return !is_wanted(settings.detectors, detector.label); });
+    std::vector<Varied> sweeps = varied();
+    std::erase_if(sweeps, [&](const Varied& what) { return !is_wanted(settings.sweeps, what.id); });
+    struct Job {
+        std::size_t sweep, detector, value;
+        int picture;
+    };
+    std::vector<Job> jobs;
+    for (std::size_t s = 0; s < sweeps.size(); ++s) {
+        for (std::size_t d = 0; d < all.size(); ++d) {
+            for (std::size_t v = 0; v < sweeps[s].values.size(); ++v) {
+                for (int p = 0; p < settings.pictures; ++p) {
+                    jobs.push_back({s, d, v, p});
+                }
+            }
+        }
+    }
+    std::vector<Errors> results(jobs.size());
+    const int count = static_cast<int>(jobs.size());
+    parallel_for(
+        count, threads,
+        [&](int i) {
+            const Job& job = jobs[static_cast<std::size_t>(i)];
+            SimulatedCamera camera = usual_camera();
+            PoseWish wish{.tilt_deg = kUsualTilt_deg};
+            sweeps[job.sweep].apply(sweeps[job.sweep].values[job.value], camera, wish);
+            // The same poses and noise at every value and for every chart, so that curves differ by these alone.
+            const auto own = static_cast<std::uint32_t>(seed * 1000U + static_cast<std::uint64_t>(job.picture));
+            results[static_cast<std::size_t>(i)] = look(all[job.detector], camera, wish, own);
+        },
+        [&](int done) { progress("detectors", static_cast<double>(done) / count); });
+
+    MeasurementFloor floor;
+    std::size_t next = 0;
+    for (const Varied& what : sweeps) {
+        FloorSweep sweep{.id = what.id,
+                         .title = what.title,
+                         .setting = fmt::format("else {} % noise, a blur of {} px, tilts of {}°, no JPEG",
+                                                kUsualNoise_percent, kUsualBlur_px, kUsualTilt_deg),
+                         .parameter = what.parameter,
+                         .unit = what.unit,
+                         .error = "rms of one coordinate",
+                         .error_unit = "px",
+                         .curves = {}};
+        for (const Detector& detector : all) {
+            FloorCurve curve{.label = detector.label, .points = {}};
+            for (const double value : what.values) {
+                Errors errors;
+                for (int p = 0; p < settings.pictures; ++p) {
+                    errors.add(results[next++]);
+                }
+                curve.points.push_back({.value = value,
+                                        .error = errors.rms(),
+                                        .sigma = errors.sigma(),
+                                        .found_percent = 100.0 * errors.found / errors.expected});
+                if (what.id == "noise" && value == 1.0) {
+                    floor.checks.push_back(target_check("rms", detector, "rms of one coordinate", errors.rms(),
+                                                        errors.sigma(), kCorner_px));
+                    floor.checks.push_back(target_check("bias", detector, "mean error", errors.bias(),
+                                                        errors.rms() / std::sqrt(std::max(1, errors.found)), kBias_px));
+                }
+            }
+            sweep.curves.push_back(std::move(curve));
+        }
+        floor.sweeps.push_back(std::move(sweep));
+    }
+    return floor;
+}
+
+}  // namespace lensproof

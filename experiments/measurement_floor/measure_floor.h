@@ -1,0 +1,69 @@
+// experiments/measurement_floor/measure_floor.h — what the measurement of a chart gets wrong by itself, on pictures
+// whose truth is known.
+#pragma once
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "experiments/verdict.h"
+
+namespace lensproof {
+
+/// What an experiment file states, [measurement_floor].
+struct FloorSettings {
+    std::vector<std::string> sweeps;     // ids of `detector_sweeps()`; empty: all
+    std::vector<std::string> detectors;  // of `floor_detectors()`; empty: all
+    int pictures = 6;                    // simulated for each value of a sweep
+    int trials = 500;                    // of each interval
+};
+
+/// An error at one value of what is varied.
+struct FloorPoint {
+    double value = 0.0;
+    double error = 0.0;            // rms; NaN where nothing was found
+    double sigma = 0.0;            // its standard error
+    double found_percent = 100.0;  // of the points, pictures or trials
+};
+
+struct FloorCurve {
+    std::string label;  // the detector or the model
+    std::vector<FloorPoint> points;
+};
+
+/// One quantity varied, everything else as `setting` says.
+struct FloorSweep {
+    std::string id;
+    std::string title;
+    std::string setting;
+    std::string parameter;  // "noise"
+    std::string unit;
+    std::string error;  // "rms of one coordinate"
+    std::string error_unit;
+    std::vector<FloorCurve> curves;
+};
+
+struct MeasurementFloor {
+    std::vector<FloorSweep> sweeps;
+    std::vector<Check> checks;
+};
+
+/// Reports what is being done and how much of it is.
+using FloorProgress = std::function<void(const std::string& step, double done)>;
+
+/// What detectors are swept over, and the detectors.
+std::vector<std::string> detector_sweeps();
+std::vector<std::string> floor_detectors();
+
+/// The parts, each on up to `threads` threads with the same result for any number of them. `seed` draws poses and
+/// noise.
+///
+/// Detectors: the error of found points against noise, blur, tilt and JPEG's quality, for each kind of chart.
+MeasurementFloor measure_detectors(const FloorSettings& settings, std::uint64_t seed, int threads,
+                                   const FloorProgress& progress);
+/// Intervals: in how many of the trials the stated 95 % intervals hold the truth.
+MeasurementFloor measure_intervals(const FloorSettings& settings, std::uint64_t seed, int threads,
+                                   const FloorProgress& progress);
+
+}  // namespace lensproof

@@ -1,0 +1,44 @@
+#include "experiments/measurement_floor/random_poses.h"
+
+#include <ceres/rotation.h>
+
+#include <cmath>
+#include <numbers>
+
+namespace lensproof {
+
+namespace {
+
+constexpr double kDegree = std::numbers::pi / 180.0;
+
+}  // namespace
+
+double normal(std::mt19937& random) {
+    const double radius = std::sqrt(-2.0 * std::log(1.0 - uniform(random)));
+    return radius * std::cos(2.0 * std::numbers::pi * uniform(random));
+}
+
+Pose draw_pose(const CameraModel& model, int width_px, int height_px, double width_mm, const PoseWish& wish,
+               std::mt19937& random) {
+    const double azimuth = 2.0 * std::numbers::pi * uniform(random);
+    const double tilt[3] = {wish.tilt_deg * kDegree * std::cos(azimuth), wish.tilt_deg * kDegree * std::sin(azimuth),
+                            0.0};
+    const double roll[3] = {0.0, 0.0, (2.0 * uniform(random) - 1.0) * wish.largest_roll_deg * kDegree};
+    double tilt_quaternion[4];
+    double roll_quaternion[4];
+    double both[4];
+    double rotation[3];
+    ceres::AngleAxisToQuaternion(tilt, tilt_quaternion);
+    ceres::AngleAxisToQuaternion(roll, roll_quaternion);
+    ceres::QuaternionProduct(tilt_quaternion, roll_quaternion, both);
+    ceres::QuaternionToAngleAxis(both, rotation);
+
+    const Vec2d middle{(width_px - 1) / 2.0, (height_px - 1) / 2.0};
+    const Vec2d seen_at{middle.x + (2.0 * uniform(random) - 1.0) * wish.reach * width_px / 2.0,
+                        middle.y + (2.0 * uniform(random) - 1.0) * wish.reach * height_px / 2.0};
+    const Vec3d direction = unproject(model, seen_at).value_or(Vec3d{0.0, 0.0, 1.0});
+    const double distance = focal_length_px(model) * width_mm / (wish.fill * width_px);
+    return {{rotation[0], rotation[1], rotation[2]}, distance * direction};
+}
+
+}  // namespace lensproof
