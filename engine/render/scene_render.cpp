@@ -150,11 +150,11 @@ TileRenderer light_path_renderer(const SceneView& view, const LensEntrance& entr
                     PathSampler numbers(view.seed, pixel, sample);
                     const PathWavelengths strata =
                         view.scene->grid.path(static_cast<int>(numbers.next()[0] * wavelengths));
+                    tile.begin_light_path();
                     tile.count_rays(trace_light_path(*view.scene, entrance, strata, view.paths, numbers, tile));
                 }
             }
         }
-        tile.count_light_paths(static_cast<std::uint64_t>(rect.pixels()) * (samples.end - samples.first));
     };
 }
 

@@ -55,11 +55,11 @@ class Studio {
         return filled(0, [&](FilmTile& tile) {
             for (std::uint32_t i = 0; i < paths; ++i) {
                 PathSampler numbers(2, 0, i);
+                tile.begin_light_path();
                 // By a number of its own: the index itself goes with the strata of every other number.
                 const PathWavelengths strata = kGrid.path(static_cast<int>(numbers.next()[0] * kGrid.size()));
                 trace_light_path(scene_, entrance, strata, kPaths, numbers, tile);
             }
-            tile.count_light_paths(paths);
         });
     }
 
