@@ -1,6 +1,6 @@
 // engine/render/path_weight.h — how much a path counts that camera paths and light paths both can make.
 //
-// A path of light from a source over the surface points x_{n}, …, x_1 to the camera can come about in three ways:
+// A path of light from a source over the surface points x_n, …, x_1 to the camera can come about in three ways:
 //
 //   hit     a camera path scatters at each of its points and runs into the light,
 //   sample  a camera path reaches x_n and samples the light from there (next-event estimation),
@@ -11,15 +11,15 @@
 // path has p = 0. (The balance heuristic would let light paths add more of their noise where camera paths have hardly
 // any, at a lamp in view: 1.65 times the variance in `BothPaths.AreNoNoisierThanTheBetter`.) The ratios grow point by
 // point as a path goes, as in I. Georgiev, "Implementing Vertex Connection and Merging" (2012), for these three of its
-// ways. With densities per etendue all distances and all but one of the cosines cancel:
+// ways. With densities per etendue and per projected solid angle all distances cancel:
 //
-//   p_join / p_hit = leaving · Π_{i=2..n} (j_i / |cos θ_i|) · (entrance / |cos θ_1|) / (drawn · Π_{i=1..n} (c_i / |cos
-//   θ'_i|)),
+//   p_join / p_hit = leaving · (entrance / cos_1) · j_2 … j_n / (drawn · c_1 … c_n),
 //
-// `leaving` being the density with which light paths leave the source, c_i and j_i those per solid angle with which a
-// camera path turns towards the light and a light path towards the camera at x_i, at θ'_i and θ_i from its geometric
-// normal, `entrance` that of the ray which joins x_1 to the camera, and `drawn` the one with which the camera draws it.
-// p_sample is p_hit with the light's density from x_n in the place of c_n.
+// `leaving` being the density with which light paths leave the source, c_i that with which a camera path turns towards
+// the light at x_i and j_i that with which a light path turns towards the camera, both about the geometric normal,
+// `entrance` that per solid angle of the ray which joins x_1 to the camera, at the cosine cos_1 from x_1's normal, and
+// `drawn` the one with which the camera draws it. p_sample is p_hit with the light's density from x_n in the place of
+// c_n.
 //
 // Mirrors and smooth glass: their turns have the same probability from both sides and count as ratios of 1, so does the
 // n² by which glass squeezes etendue, which a path that leaves the glass again returns. x_1 there cannot be joined,
