@@ -22,7 +22,7 @@ namespace fs = std::filesystem;
 namespace {
 
 // The file's form. A number, not its digits: a machine of another byte order takes it for another version.
-constexpr std::uint32_t kVersion = 1;
+constexpr std::uint32_t kVersion = 2;
 constexpr std::string_view kMagic = "lensproof checkpoint\n";
 constexpr std::size_t kPiece = std::size_t{1} << 20U;
 constexpr std::size_t kDigestSize = sizeof(std::uint64_t);

@@ -59,6 +59,15 @@ void add_all(std::vector<Number>& to, const std::vector<Number>& from) {
     std::ranges::transform(to, from, to.begin(), std::plus<>());
 }
 
+/// Whether a filter of this radius reaches a pixel of an axis from a coordinate.
+bool reaches(double at, double pixels, double radius) {
+    return at >= -radius && at <= pixels - 1.0 + radius;
+}
+
+bool is_finite(std::span<const float, 4> irradiance) {
+    return std::ranges::all_of(irradiance, [](float value) { return std::isfinite(value); });
+}
+
 /// The pixels of one axis that a filter of this radius reaches from any of the coordinates that carry light.
 struct Reach {
     int first = 0;
@@ -72,7 +81,7 @@ Reach reach_of(const Splat& splat, double radius, int pixels, const CoordinateOf
     for (std::size_t i = 0; i < splat.at_px.size(); ++i) {
         // Compared before it is made an integer: a point far away has no such.
         const double at = coordinate_of(splat.at_px[i]);
-        if (splat.irradiance[i] != 0.0 && at >= -radius && at <= pixels - 1 + radius) {
+        if (splat.irradiance[i] != 0.0F && reaches(at, pixels, radius)) {
             low = std::min(low, at);
             high = std::max(high, at);
         }
@@ -90,7 +99,11 @@ std::size_t film_bytes_per_pixel(const FilmLayout& layout) {
 }
 
 FilmTile::FilmTile(const FilmLayout& layout)
-    : band_nm_(layout.band_nm), stride_(all_sums(layout)), features_(colour_sums(layout)) {
+    : band_nm_(layout.band_nm),
+      film_px_{static_cast<double>(layout.width), static_cast<double>(layout.height)},
+      filter_radius_px_(layout.filter.radius_px()),
+      stride_(all_sums(layout)),
+      features_(colour_sums(layout)) {
     const std::size_t strata_per_layer = layout.rgb_weights.size() / std::max<std::size_t>(1, layout.layer_nm.size());
     for (std::size_t i = 0; i < layout.rgb_weights.size(); ++i) {
         lights_.push_back({.rgb_weights = layout.rgb_weights[i],
@@ -100,6 +113,10 @@ FilmTile::FilmTile(const FilmLayout& layout)
 
 void FilmTile::add(std::size_t pixel, std::uint32_t sample, std::span<const std::uint16_t, 4> strata,
                    std::span<const float, 4> irradiance) {
+    if (!is_finite(irradiance)) {
+        ++left_out_;
+        return;
+    }
     double* sums = sums_.data() + pixel * stride_;
     Vec3d rgb;
     for (std::size_t i = 0; i < strata.size(); ++i) {
@@ -137,19 +154,31 @@ void FilmTile::add_features(std::size_t pixel, const PixelFeatures& features) {
     const auto& [depth_mm, albedo, normal] = features;
     const std::array<double, kFeatureSums> more = {depth_mm, 1.0,      albedo.x, albedo.y,
                                                    albedo.z, normal.x, normal.y, normal.z};
+    if (!std::ranges::all_of(more, [](double value) { return std::isfinite(value); })) {
+        ++left_out_;
+        return;
+    }
     std::transform(more.begin(), more.end(), sums, sums, std::plus<>());
 }
 
 void FilmTile::splat(const std::array<Vec2d, 4>& at_px, std::span<const std::uint16_t, 4> strata,
                      std::span<const float, 4> irradiance) {
-    Splat splat{.at_px = at_px, .rgb = {}};
+    Splat splat{.at_px = at_px, .path = light_paths_};
+    bool is_seen = false;
     for (std::size_t i = 0; i < strata.size(); ++i) {
-        const Light& light = lights_[strata[i]];
-        splat.irradiance[i] = 0.25 * static_cast<double>(irradiance[i]);
-        splat.layer[i] = light.layer;
-        splat.rgb[i] = rgb_of(light, splat.irradiance[i]);
+        splat.irradiance[i] = irradiance[i];
+        splat.strata[i] = strata[i];
+        const auto& [x, y] = at_px[i];
+        if (irradiance[i] != 0.0F && !std::isfinite(irradiance[i] + x + y)) {
+            ++left_out_;
+            return;
+        }
+        is_seen = is_seen || (irradiance[i] != 0.0F && reaches(x, film_px_.x, filter_radius_px_) &&
+                              reaches(y, film_px_.y, filter_radius_px_));
     }
-    splats_.push_back(splat);
+    if (is_seen) {
+        splats_.push_back(splat);
+    }
 }
 
 Film::Film(FilmLayout layout)
@@ -175,6 +204,7 @@ void Film::load(const TileSamples& samples, FilmTile& tile) const {
     tile.blocks_.assign(pixels, {});
     tile.splats_.clear();
     tile.light_paths_ = 0;
+    tile.left_out_ = 0;
     tile.rays_ = 0;
     const auto width = static_cast<std::size_t>(rect.width);
     for (int row = 0; row < rect.height; ++row) {
@@ -195,13 +225,31 @@ void Film::store(const FilmTile& tile) {
         std::copy_n(tile.counts_.data() + from, width, counts_.data() + to);
     }
     light_paths_ += tile.light_paths_;
-    std::ranges::for_each(tile.splats_, [this](const FilmTile::Splat& splat) { add_splat(splat); });
+    left_out_ += tile.left_out_;
+    std::vector<PathLight> lit;
+    for (auto first = tile.splats_.begin(); first != tile.splats_.end();) {
+        const auto end =
+            std::find_if(first, tile.splats_.end(), [&](const auto& splat) { return splat.path != first->path; });
+        add_light_path({first, end}, lit);
+        first = end;
+    }
 }
 
-void Film::add_splat(const FilmTile::Splat& splat) {
+void Film::add_light_path(std::span<const FilmTile::Splat> splats, std::vector<PathLight>& lit) {
+    lit.clear();
+    for (const FilmTile::Splat& splat : splats) {
+        add_splat(splat, lit);
+    }
+    for (const PathLight& light : lit) {
+        add_together(light.rgb, 1.0, splat_sums_.data() + light.pixel * splat_stride_);
+    }
+}
+
+void Film::add_splat(const FilmTile::Splat& splat, std::vector<PathLight>& lit) {
     const double radius = layout_.filter.radius_px();
     const Reach across = reach_of(splat, radius, width(), [](Vec2d at) { return at.x; });
     const Reach down = reach_of(splat, radius, height(), [](Vec2d at) { return at.y; });
+    const std::size_t strata_per_layer = layout_.rgb_weights.size() / layout_.layer_nm.size();
     for (int y = down.first; y <= down.last; ++y) {
         for (int x = across.first; x <= across.last; ++x) {
             Vec3d rgb;
@@ -209,14 +257,20 @@ void Film::add_splat(const FilmTile::Splat& splat) {
             bool is_reached = false;
             for (std::size_t i = 0; i < splat.at_px.size(); ++i) {
                 const double weight = layout_.filter(splat.at_px[i].y - y) * layout_.filter(splat.at_px[i].x - x);
-                if (weight != 0.0 && splat.irradiance[i] != 0.0) {
-                    rgb = rgb + weight * splat.rgb[i];
-                    sums[splat.layer[i]] += weight * splat.irradiance[i];
+                if (weight != 0.0 && splat.irradiance[i] != 0.0F) {
+                    const double irradiance = 0.25 * weight * static_cast<double>(splat.irradiance[i]);
+                    rgb = rgb + (layout_.band_nm * irradiance) * layout_.rgb_weights[splat.strata[i]];
+                    sums[kLayers + splat.strata[i] / strata_per_layer] += irradiance;
                     is_reached = true;
                 }
             }
             if (is_reached) {
-                add_together(rgb, 1.0, sums);
+                const auto before = std::ranges::find(lit, at(x, y), &PathLight::pixel);
+                if (before == lit.end()) {
+                    lit.push_back({at(x, y), rgb});
+                } else {
+                    before->rgb = before->rgb + rgb;
+                }
             }
         }
     }
@@ -236,6 +290,7 @@ void Film::merge(const Film& other) {
     add_all(counts_, other.counts_);
     add_all(splat_sums_, other.splat_sums_);
     light_paths_ += other.light_paths_;
+    left_out_ += other.left_out_;
 }
 
 PixelEstimate Film::camera_estimate(int x, int y) const {

@@ -1,6 +1,7 @@
 // engine/render/film.h — the sums that samples leave: what an image, its variance and its layers are made of.
 #pragma once
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -86,8 +87,12 @@ class FilmTile {
 
     /// Adds sample `sample` at one wavelength stratum: its estimate of the film irradiance, W·m⁻²·nm⁻¹, filter weight
     /// included. Once a sample, with all that it met, and a pixel's samples in ascending order; samples that met no
-    /// light need not be told.
+    /// light need not be told. One that is not a finite number is left out, as if it had met no light, and counted.
     void add(std::size_t pixel, std::uint32_t sample, std::size_t stratum, double irradiance) {
+        if (!std::isfinite(irradiance)) {
+            ++left_out_;
+            return;
+        }
         const Light& light = lights_[stratum];
         Vec3d& rgb = block_of(pixel, sample).rgb;
         rgb = rgb + rgb_of(light, irradiance);
@@ -100,17 +105,20 @@ class FilmTile {
     void add(std::size_t pixel, std::uint32_t sample, std::span<const std::uint16_t, 4> strata,
              std::span<const float, 4> irradiance);
 
-    /// Adds what a sample's first surface is like; samples that met none need not be told.
+    /// Adds what a sample's first surface is like; samples that met none need not be told. Left out and counted where a
+    /// number is not finite.
     void add_features(std::size_t pixel, const PixelFeatures& features);
+
+    /// Says that a light path begins, to be told of those that bring nothing too: the splats up to the next one are
+    /// its, and count together for the variance.
+    void begin_light_path() { ++light_paths_; }
 
     /// Light at any point of the film, of the tile or not: the power that one light path brings there over the area of
     /// a pixel, W·m⁻²·nm⁻¹, the mean over the path's wavelengths as above. Each wavelength has its own point, in pixel
-    /// coordinates; points outside the film count too, if the filter of a pixel reaches them.
+    /// coordinates; points outside the film count too, if the filter of a pixel reaches them. A splat with a number
+    /// that is not finite is left out and counted.
     void splat(const std::array<Vec2d, 4>& at_px, std::span<const std::uint16_t, 4> strata,
                std::span<const float, 4> irradiance);
-
-    /// Says that so many more light paths were begun, those that brought nothing included.
-    void count_light_paths(std::uint64_t paths) { light_paths_ += paths; }
 
     /// Says that all samples that the tile was loaded for are taken.
     void finish();
@@ -128,9 +136,9 @@ class FilmTile {
     };
     struct Splat {  // a wavelength each
         std::array<Vec2d, 4> at_px;
-        std::array<Vec3d, 4> rgb;
-        std::array<std::uint32_t, 4> layer{};
-        std::array<double, 4> irradiance{};
+        std::array<float, 4> irradiance{};  // of which the mean counts
+        std::array<std::uint16_t, 4> strata{};
+        std::uint64_t path = 0;
     };
 
     [[nodiscard]] Vec3d rgb_of(const Light& light, double irradiance) const {
@@ -155,6 +163,8 @@ class FilmTile {
 
     std::vector<Light> lights_;
     double band_nm_ = 0.0;
+    Vec2d film_px_;  // its size
+    double filter_radius_px_ = 0.0;
     std::size_t stride_ = 0;
     std::size_t features_ = 0;  // where they stand among a pixel's sums
     TileSamples samples_;
@@ -163,6 +173,7 @@ class FilmTile {
     std::vector<PixelCounts> counts_;
     std::vector<Splat> splats_;
     std::uint64_t light_paths_ = 0;
+    std::uint64_t left_out_ = 0;
     std::uint64_t rays_ = 0;
 };
 
@@ -171,8 +182,8 @@ class FilmTile {
 /// The variance of n samples' mean m is estimated from the means m_b of its M blocks of n_b samples:
 /// Σ n_b (m_b − m)² / (n (M − 1)). For independent samples that has the variance's expectation whatever the blocks are;
 /// blocks of one sequence lie between each other's points, so their mean does better than independent ones: then it is
-/// an upper bound. It is 0 where there is one block alone. Splats count one by one, as if a light path's met no pixel
-/// twice.
+/// an upper bound. It is 0 where there is one block alone. Of light paths each is a block of its own, with all that it
+/// brings to the pixel: the variance's expectation again if they are independent, an upper bound as they are spread.
 struct PixelEstimate {
     Vec3d rgb;       // linear, 1 = saturation
     Vec3d variance;  // of rgb
@@ -200,6 +211,8 @@ class Film {
 
     [[nodiscard]] const PixelCounts& counts(int x, int y) const { return counts_[at(x, y)]; }
     [[nodiscard]] std::uint64_t light_paths() const { return light_paths_; }
+    /// Samples and splats that were no finite numbers, and count as if they had met no light.
+    [[nodiscard]] std::uint64_t left_out() const { return left_out_; }
 
     /// What camera paths and light paths make of a pixel together, and each alone. Both are parts of one image: where
     /// both can bring the same light, the renderer has weighed them to add up to it.
@@ -224,6 +237,7 @@ class Film {
         visit(film.counts_);
         visit(film.splat_sums_);
         visit(film.light_paths_);
+        visit(film.left_out_);
     }
 
     /// Puts a pixel's sums together from what was written of it: what `estimate`, … give for it. For shards.
@@ -238,12 +252,18 @@ class Film {
     };
     void set_pixel(int x, int y, const PixelContent& content);
     void set_light_paths(std::uint64_t paths) { light_paths_ = paths; }
+    void set_left_out(std::uint64_t samples) { left_out_ = samples; }
 
   private:
     [[nodiscard]] std::size_t at(int x, int y) const {
         return static_cast<std::size_t>(y) * static_cast<std::size_t>(layout_.width) + static_cast<std::size_t>(x);
     }
-    void add_splat(const FilmTile::Splat& splat);
+    struct PathLight {  // what a light path brings to a pixel
+        std::size_t pixel = 0;
+        Vec3d rgb;
+    };
+    void add_light_path(std::span<const FilmTile::Splat> splats, std::vector<PathLight>& lit);
+    void add_splat(const FilmTile::Splat& splat, std::vector<PathLight>& lit);
 
     FilmLayout layout_;
     std::size_t stride_ = 0;
@@ -253,6 +273,7 @@ class Film {
     std::vector<PixelCounts> counts_;  // of each pixel
     std::vector<double> splat_sums_;   // a pixel: RGB, their squares, layers
     std::uint64_t light_paths_ = 0;
+    std::uint64_t left_out_ = 0;
 };
 
 }  // namespace lensproof

@@ -23,6 +23,7 @@ constexpr int kRowsAtOnce = 64;
 constexpr double kMostPixels = 200e6;
 constexpr const char* kIdentityPrefix = "lensproof:identity:";
 constexpr const char* kLightPaths = "lensproof:lightPaths";
+constexpr const char* kLeftOut = "lensproof:leftOut";
 
 const std::vector<std::string> kRgb = {"R", "G", "B"};
 const std::vector<std::string> kVariance = {"variance.R", "variance.G", "variance.B"};
@@ -127,6 +128,9 @@ OIIO::ImageSpec spec_of(const Part& part, const Film& film, const FilmNotes& not
         if (film.layout().has_splats) {
             spec.attribute(kLightPaths, fmt::format("{}", film.light_paths()));
         }
+        if (film.left_out() > 0) {
+            spec.attribute(kLeftOut, fmt::format("{}", film.left_out()));
+        }
     }
     return spec;
 }
@@ -193,11 +197,9 @@ class FilmReader {
                           .has_splats = find("light").has_value(),
                           .has_features = find("features").has_value()};
         layout.rgb_weights.resize(layout.layer_nm.size());
-        const std::string light_paths = first.get_string_attribute(kLightPaths, "0");
         Film film(std::move(layout));
-        std::uint64_t paths = 0;
-        std::from_chars(light_paths.data(), light_paths.data() + light_paths.size(), paths);
-        film.set_light_paths(paths);
+        film.set_light_paths(count_in(first, kLightPaths));
+        film.set_left_out(count_in(first, kLeftOut));
         for (int y = 0; y < film.height(); y += kRowsAtOnce) {
             read_rows(film, y, std::min(film.height(), y + kRowsAtOnce));
         }
@@ -237,6 +239,13 @@ class FilmReader {
         return spec;
     }
 
+    [[nodiscard]] static std::uint64_t count_in(const OIIO::ImageSpec& spec, const char* name) {
+        const std::string text = spec.get_string_attribute(name, "0");
+        std::uint64_t count = 0;
+        std::from_chars(text.data(), text.data() + text.size(), count);
+        return count;
+    }
+
     [[nodiscard]] static FilmNotes notes_of(const OIIO::ImageSpec& spec) {
         FilmNotes notes;
         const std::string prefix = kIdentityPrefix;
@@ -244,7 +253,7 @@ class FilmReader {
             const std::string name = attribute.name().string();
             if (name.starts_with(prefix)) {
                 notes.identity.push_back({name.substr(prefix.size()), attribute.get_string()});
-            } else if (name.starts_with("lensproof:") && name != kLightPaths) {
+            } else if (name.starts_with("lensproof:") && name != kLightPaths && name != kLeftOut) {
                 notes.metadata[name] = attribute.get_string();
             }
         }

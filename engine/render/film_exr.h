@@ -27,6 +27,8 @@ struct FilmNotes {
 /// - features: Z (mm), albedo.R, …, normal.X, …, coverage (`Film::features`); where the film has them.
 /// - light: R, G, B, variance.R, …, and spectral layers, what of all these came by light paths, whose number is the
 ///   attribute "lensproof:lightPaths"; where the film has them.
+///
+/// The attribute "lensproof:leftOut" says how many samples were left out (`Film::left_out`), where any were.
 void write_film_exr(const Film& film, const FilmNotes& notes, const std::filesystem::path& file);
 
 /// A film from its file, so that films add up: sums from means, variances and counts; of floats, so to 1e-7. Its layout

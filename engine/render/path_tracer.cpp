@@ -3,6 +3,8 @@
 #include <cmath>
 #include <limits>
 
+#include "engine/render/path_weight.h"
+
 namespace lensproof {
 
 namespace {
@@ -11,21 +13,26 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 class PathWalk {
   public:
-    PathWalk(const Scene& scene, const PathWavelengths& path, const PathSettings& settings, PathSampler& numbers)
-        : scene_(scene), path_(path), settings_(settings), numbers_(numbers) {}
+    PathWalk(const Scene& scene, const PathWavelengths& path, const PathSettings& settings, PathSampler& numbers,
+             const DrawnByCamera* drawn)
+        : scene_(scene), path_(path), settings_(settings), numbers_(numbers), drawn_(drawn) {}
 
     PathRadiance walk(Ray<double> ray) {
         SpectralSample throughput(1.0F);
         for (int bounce = 0;; ++bounce) {
             const auto hit = intersect(*scene_.geometry, ray.origin, ray.direction, 0.0, kInfinity);
             ++result_.rays;
+            if (bounce == 0 && drawn_ != nullptr) {
+                enter(hit ? LightOrigin{hit->point, false} : LightOrigin{-1.0 * ray.direction, true});
+            }
             if (!hit) {
                 scene_.lights.visit_infinity(ray.direction, path_,
-                                             [&](const Lights::Emission& light) { add_found(throughput, light); });
+                                             [&](const Lights::Emission& light) { add_found(throughput, light, 1.0); });
                 break;
             }
             throughput *= passes_body(scene_, *hit, ray.direction, path_);
-            add_found(throughput, scene_.lights.emitted(*hit, from_, ray.direction, path_));
+            add_found(throughput, scene_.lights.emitted(*hit, from_, ray.direction, path_),
+                      std::abs(dot(hit->geometric_normal, ray.direction)));
             if (bounce == settings_.max_bounces && bounce > 0) {
                 break;
             }
@@ -50,11 +57,14 @@ class PathWalk {
                 break;
             }
             throughput *= scattered->weight;
-            is_hero_alone_ = is_hero_alone_ || scattered->is_dispersed;
+            if (scattered->is_dispersed) {
+                is_hero_alone_ = true;
+                weight_.hero_goes_alone();
+            }
             if (!survives_roulette(settings_, bounce, numbers[3], throughput)) {
                 break;
             }
-            scattering_density_ = scattered->is_delta ? 0.0 : scattered->density;
+            weight_.turn(turn_of(vertex, onwards, *scattered));
             from_ = hit->point;
             ray = {ray_origin(*hit, onwards), onwards};
         }
@@ -70,15 +80,24 @@ class PathWalk {
         }
     }
 
-    /// Light that the path ran into. Sampling lights would have found it from the surface before, unless that is a
-    /// mirror or the camera.
-    void add_found(const SpectralSample& throughput, const Lights::Emission& light) {
-        if (is_black(light.radiance)) {
-            return;
+    void enter(const LightOrigin& first) {
+        weight_.enter(drawn_->end->ratio(drawn_->end->density(first, drawn_->ray, path_), drawn_->density));
+    }
+
+    /// Only as much of a turn as weights need.
+    [[nodiscard]] PathTurn turn_of(const PathVertex& vertex, const Vec3d& onwards, const BsdfSample& scattered) const {
+        if (scattered.is_delta) {
+            return {.is_delta = true};
         }
-        const double weight =
-            scattering_density_ > 0.0 ? scattering_density_ / (scattering_density_ + light.density) : 1.0;
-        add(static_cast<float>(weight) * (throughput * light.radiance));
+        return drawn_ != nullptr ? camera_turn(vertex, onwards, scattered.wi, scattered.density)
+                                 : PathTurn{.to_light = scattered.density};
+    }
+
+    /// Light that the path ran into, at `cosine` from its normal.
+    void add_found(const SpectralSample& throughput, const Lights::Emission& light, double cosine) {
+        if (!is_black(light.radiance)) {
+            add(static_cast<float>(weight_.of_hit(light, cosine)) * (throughput * light.radiance));
+        }
     }
 
     void add_from_lights(const PathVertex& vertex, const SpectralSample& throughput) {
@@ -99,10 +118,10 @@ class PathWalk {
         if (is_occluded(*scene_.geometry, ray_origin(vertex.hit, light->direction), light->end)) {
             return;
         }
-        const double by_scattering =
-            light->density > 0.0 ? density(vertex.bsdf, vertex.wo, wi, Transport::radiance) : 0.0;
-        const double weight = light->density > 0.0 ? light->density / (light->density + by_scattering) : 1.0;
-        add(static_cast<float>(weight) * (throughput * scattering * light->value));
+        const double to_light = light->density > 0.0 ? density(vertex.bsdf, vertex.wo, wi, Transport::radiance) : 0.0;
+        const PathTurn turn =
+            drawn_ != nullptr ? camera_turn(vertex, light->direction, wi, to_light) : PathTurn{.to_light = to_light};
+        add(static_cast<float>(weight_.of_sample(*light, turn)) * (throughput * scattering * light->value));
     }
 
     void note_first(const PathVertex& vertex) {
@@ -118,15 +137,16 @@ class PathWalk {
     PathSampler& numbers_;
     PathRadiance result_;
     bool is_hero_alone_ = false;
-    Vec3d from_;                       // the surface point that the ray left
-    double scattering_density_ = 0.0;  // with which its direction was drawn; 0: no light sample could stand for it
+    Vec3d from_;  // the surface point that the ray left
+    CameraPathWeight weight_;
+    const DrawnByCamera* drawn_;
 };
 
 }  // namespace
 
 PathRadiance trace_path(const Scene& scene, const Ray<double>& ray, const PathWavelengths& path,
-                        const PathSettings& settings, PathSampler& numbers) {
-    return PathWalk(scene, path, settings, numbers).walk(ray);
+                        const PathSettings& settings, PathSampler& numbers, const DrawnByCamera* drawn) {
+    return PathWalk(scene, path, settings, numbers, drawn).walk(ray);
 }
 
 }  // namespace lensproof

@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "engine/optics/ray.h"
+#include "engine/render/camera_end.h"
 #include "engine/render/path_sampler.h"
 #include "engine/render/path_vertex.h"
 #include "engine/scene/scene.h"
@@ -27,13 +28,24 @@ struct PathRadiance {
     std::uint32_t rays = 0;  // that were asked of the geometry
 };
 
+/// For paths that share their work with light paths: the camera as these see it, and the density with which it drew
+/// the ray (`FilmArrival::drawn`).
+struct DrawnByCamera {
+    const CameraEnd* end = nullptr;
+    Ray<double> ray;  // lens space, away from the camera
+    PathDensity density;
+};
+
 /// One estimate of the radiance that arrives at `ray.origin` against `ray.direction` (world frame, mm), at the path's
 /// wavelengths: unbiased but for paths of more than `max_bounces` scatterings, which are left out.
 ///
 /// Each surface point adds what lights send there directly, found by sampling lights and by following the BSDF, weighed
-/// by the balance heuristic (Veach & Guibas, SIGGRAPH 1995). Where refraction parts the wavelengths the hero goes on
+/// by the power heuristic (Veach & Guibas, SIGGRAPH 1995). Where refraction parts the wavelengths the hero goes on
 /// alone (Wilkie et al. 2014, §3.2).
+///
+/// `drawn`: what light paths bring to the camera, one for each path of each pixel, is added to this: each path counts
+/// as much as path_weight.h gives it, and this is a part of the radiance. Nothing: it is all of it.
 PathRadiance trace_path(const Scene& scene, const Ray<double>& ray, const PathWavelengths& path,
-                        const PathSettings& settings, PathSampler& numbers);
+                        const PathSettings& settings, PathSampler& numbers, const DrawnByCamera* drawn = nullptr);
 
 }  // namespace lensproof

@@ -18,8 +18,9 @@ struct PathSettings {
 /// A surface point on a path, with its scattering at the path's wavelengths.
 struct PathVertex {
     SurfaceHit hit;
-    Basis frame;  // z: the shading normal
-    Vec3d wo;     // local, towards where the path comes from
+    Basis frame;           // z: the shading normal
+    Vec3d wo;              // local, towards where the path comes from
+    double cos_backwards;  // |cos| of that about the geometric normal
     Bsdf bsdf;
 
     /// `backwards`: world, unit length, towards where the path comes from. The scene outlives the vertex.
@@ -27,6 +28,7 @@ struct PathVertex {
         : hit(at),
           frame(at.shading_normal, at.tangent),
           wo(frame.to_local(backwards)),
+          cos_backwards(std::abs(dot(backwards, at.geometric_normal))),
           bsdf(bsdf_at(scene.materials[at.material], at.uv, path)) {}
 
     /// Whether a direction lies on the same side of the surface by its shading normal as by its geometry: where they

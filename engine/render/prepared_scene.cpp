@@ -126,22 +126,24 @@ SceneView PreparedScene::view(std::uint64_t seed, bool has_features) const {
             .seed = seed};
 }
 
-const LensEntrance& PreparedScene::entrance(const Cache& cache) {
-    if (!traced_) {
-        throw InputError("light paths need the exact camera model");
+const CameraEnd& PreparedScene::camera_end(const Cache& cache) {
+    if (!end_) {
+        end_ =
+            CameraEnd{.entrance = {}, .camera_to_world = camera_to_world(setup_.view), .sensor = setup_.camera.sensor};
+        if (traced_) {
+            // Drawn over the whole front in a fifth of all cases, since the map is that of far light.
+            entrance_map_ = std::make_unique<EntranceMap>(
+                kept_entrance_map(cache, traced_->at(), lens_->is_rotationally_symmetric,
+                                  std::numeric_limits<double>::infinity(), {.defensive_share = 0.2}));
+            end_->entrance = LensEntrance{.lens = traced_.get(),
+                                          .pupil = pupil_.get(),
+                                          .map = entrance_map_.get(),
+                                          .front = front_sphere(traced_->at().front())};
+        } else {
+            end_->entrance = IdealEntrance{&std::get<std::vector<GaussianCamera>>(camera_)};
+        }
     }
-    if (!entrance_map_) {
-        // Drawn over the whole front in a fifth of all cases, since the map is that of far light.
-        entrance_map_ = std::make_unique<EntranceMap>(
-            kept_entrance_map(cache, traced_->at(), lens_->is_rotationally_symmetric,
-                              std::numeric_limits<double>::infinity(), {.defensive_share = 0.2}));
-        entrance_ = {.lens = traced_.get(),
-                     .map = entrance_map_.get(),
-                     .front = front_sphere(traced_->at().front()),
-                     .camera_to_world = camera_to_world(setup_.view),
-                     .sensor = setup_.camera.sensor};
-    }
-    return entrance_;
+    return *end_;
 }
 
 std::string PreparedScene::camera_hash() const {

@@ -31,9 +31,8 @@ class PreparedScene {
     /// What `scene_renderer` renders.
     [[nodiscard]] SceneView view(std::uint64_t seed, bool has_features) const;
 
-    /// The lens as the end of light paths, found on the first call. Throws InputError for a camera of another model
-    /// than the exact one.
-    [[nodiscard]] const LensEntrance& entrance(const Cache& cache);
+    /// The camera as the end of light paths; where their light enters a lens is found on the first call.
+    [[nodiscard]] const CameraEnd& camera_end(const Cache& cache);
 
     [[nodiscard]] const Scene& scene() const { return built_.scene; }
 
@@ -66,7 +65,7 @@ class PreparedScene {
     std::unique_ptr<PupilMap> pupil_;
     std::unique_ptr<PupilSlices> slices_;
     std::unique_ptr<EntranceMap> entrance_map_;
-    LensEntrance entrance_;
+    std::optional<CameraEnd> end_;
     SceneCamera camera_;
     std::vector<Vec3d> rgb_weights_;
     std::vector<Vec3d> albedo_weights_;

@@ -5,6 +5,7 @@
 #include <memory>
 #include <utility>
 
+#include "engine/render/light_tracer.h"
 #include "engine/render/shared_rays.h"
 #include "engine/render/tile_paths.h"
 
@@ -28,11 +29,20 @@ class ExactPaths {
                      .pupil = camera.pupil,
                      .seed = view.seed,
                      .filter = view.film.filter}),
-          shared_(view.scene->grid, *camera.lens, *camera.pupil, view.sensor),
+          shared_(view.scene->grid, *camera.lens, *camera.pupil, view.sensor, view.film.filter.is_box()),
           is_shared_(view.film.filter.is_box()) {}
 
     CameraPathProducer<double>& producer() { return producer_; }
-    void weigh(const CameraPathBuffer<double>& paths) { weights_ = is_shared_ ? &shared_.weigh(paths) : nullptr; }
+    void weigh(const CameraPathBuffer<double>& paths, bool needs_densities) {
+        if (is_shared_ || needs_densities) {
+            const auto& weights = shared_.weigh(paths);
+            weights_ = is_shared_ ? &weights : nullptr;
+        }
+    }
+    [[nodiscard]] PathDensity density(std::size_t path, const CameraEnd& /*end*/, const Ray<double>& /*out*/,
+                                      const PathWavelengths& /*strata*/) const {
+        return shared_.densities()[path];
+    }
     [[nodiscard]] PathWeights weights(const CameraPathBuffer<double>& paths, std::size_t path,
                                       const PathWavelengths& /*strata*/) const {
         return weights_ != nullptr ? (*weights_)[path] : hero_alone(paths.weight[path]);
@@ -57,7 +67,12 @@ class IdealPaths {
           })) {}
 
     IdealPathProducer& producer() { return producer_; }
-    void weigh(const CameraPathBuffer<double>& /*paths*/) {}
+    void weigh(const CameraPathBuffer<double>& /*paths*/, bool /*needs_densities*/) {}
+    [[nodiscard]] static PathDensity density(std::size_t /*path*/, const CameraEnd& end, const Ray<double>& out,
+                                             const PathWavelengths& strata) {
+        const FilmArrival film = end.arrive({out.origin, -1.0 * out.direction}, strata);
+        return {.shared = film.shared_density(0), .hero = film.drawn[0]};
+    }
     /// A path's weight is its hero's; the others pass the camera by their own transmittance.
     [[nodiscard]] PathWeights weights(const CameraPathBuffer<double>& paths, std::size_t path,
                                       const PathWavelengths& strata) const {
@@ -81,11 +96,14 @@ class IdealPaths {
 template <class Paths>
 class SceneTileRenderer {
   public:
-    SceneTileRenderer(const SceneView& view, Paths paths) : view_(view), paths_(std::move(paths)) {}
+    /// `end`: for paths that share their work with light paths; else null.
+    SceneTileRenderer(const SceneView& view, Paths paths, const CameraEnd* end)
+        : view_(view), paths_(std::move(paths)), end_(end) {}
 
     void operator()(const TileSamples& samples, FilmTile& tile) {
         for_each_path(
-            samples, view_.sensor.width, paths_.producer(), buffer_, tile, [&] { paths_.weigh(buffer_); },
+            samples, view_.sensor.width, paths_.producer(), buffer_, tile,
+            [&] { paths_.weigh(buffer_, end_ != nullptr); },
             [&](int path, std::size_t pixel) { add_path(static_cast<std::size_t>(path), pixel, tile); });
     }
 
@@ -96,7 +114,12 @@ class SceneTileRenderer {
                               rotate(view_.camera_to_world, camera_to_lens(in_lens.direction))};
         const PathWavelengths strata = view_.scene->grid.path(buffer_.wavelength[path]);
         PathSampler numbers(view_.seed, buffer_.pixel[path], buffer_.sample[path]);
-        const PathRadiance found = trace_path(*view_.scene, ray, strata, view_.paths, numbers);
+        DrawnByCamera drawn{.end = end_, .ray = in_lens, .density = {}};
+        if (end_ != nullptr) {
+            drawn.density = paths_.density(path, *end_, in_lens, strata);
+        }
+        const PathRadiance found =
+            trace_path(*view_.scene, ray, strata, view_.paths, numbers, end_ != nullptr ? &drawn : nullptr);
         tile.count_rays(found.rays);
         PathWeights irradiance = paths_.weights(buffer_, path, strata);
         for (std::size_t i = 0; i < irradiance.size(); ++i) {
@@ -122,15 +145,14 @@ class SceneTileRenderer {
 
     SceneView view_;
     Paths paths_;
+    const CameraEnd* end_;
     CameraPathBuffer<double> buffer_;
 };
 
-}  // namespace
-
-TileRenderer scene_renderer(const SceneView& view) {
+TileRenderer camera_path_renderer(const SceneView& view, const CameraEnd* end) {
     // On the heap, since std::function wants to be able to copy what it holds.
     const auto renderer_by = [&](auto paths) -> TileRenderer {
-        auto renderer = std::make_shared<SceneTileRenderer<decltype(paths)>>(view, std::move(paths));
+        auto renderer = std::make_shared<SceneTileRenderer<decltype(paths)>>(view, std::move(paths), end);
         return [renderer](const TileSamples& samples, FilmTile& tile) { (*renderer)(samples, tile); };
     };
     if (const auto* exact = std::get_if<ExactCamera>(view.camera)) {
@@ -139,23 +161,47 @@ TileRenderer scene_renderer(const SceneView& view) {
     return renderer_by(IdealPaths(view, std::get<std::vector<GaussianCamera>>(*view.camera)));
 }
 
-TileRenderer light_path_renderer(const SceneView& view, const LensEntrance& entrance) {
-    return [view, &entrance](const TileSamples& samples, FilmTile& tile) {
+/// Light paths have numbers of their own: those of camera paths of the same sample would go with them.
+std::uint64_t seed_of_light_paths(std::uint64_t seed) {
+    return sampler_detail::mixed(seed ^ 0xbb67ae8584caa73bULL);
+}
+
+TileRenderer light_renderer(const SceneView& view, const CameraEnd& end, LightPaths paths) {
+    return [view, &end, paths, seed = seed_of_light_paths(view.seed)](const TileSamples& samples, FilmTile& tile) {
         const PixelRect& rect = samples.rect;
         const int wavelengths = view.scene->grid.size();
         for (int y = rect.y; y < rect.y + rect.height; ++y) {
             for (int x = rect.x; x < rect.x + rect.width; ++x) {
                 const auto pixel = static_cast<std::uint32_t>(y * view.sensor.width + x);
                 for (std::uint32_t sample = samples.first; sample < samples.end; ++sample) {
-                    PathSampler numbers(view.seed, pixel, sample);
+                    PathSampler numbers(seed, pixel, sample);
                     const PathWavelengths strata =
                         view.scene->grid.path(static_cast<int>(numbers.next()[0] * wavelengths));
-                    tile.count_rays(trace_light_path(*view.scene, entrance, strata, view.paths, numbers, tile));
+                    tile.begin_light_path();
+                    tile.count_rays(trace_light_path(*view.scene, end, strata, view.paths, numbers, tile, paths));
                 }
             }
         }
-        tile.count_light_paths(static_cast<std::uint64_t>(rect.pixels()) * (samples.end - samples.first));
     };
+}
+
+}  // namespace
+
+TileRenderer scene_renderer(const SceneView& view) {
+    return camera_path_renderer(view, nullptr);
+}
+
+TileRenderer light_path_renderer(const SceneView& view, const CameraEnd& end) {
+    return light_renderer(view, end, LightPaths::alone);
+}
+
+TileRenderer both_paths_renderer(const SceneView& view, const CameraEnd& end) {
+    return
+        [camera = camera_path_renderer(view, &end), light = light_renderer(view, end, LightPaths::with_camera_paths)](
+            const TileSamples& samples, FilmTile& tile) {
+            camera(samples, tile);
+            light(samples, tile);
+        };
 }
 
 }  // namespace lensproof

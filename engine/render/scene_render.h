@@ -1,4 +1,4 @@
-// engine/render/scene_render.h — a scene seen through a camera: the pass of camera paths.
+// engine/render/scene_render.h — a scene seen through a camera, by camera paths, by light paths or by both.
 #pragma once
 #include <cstdint>
 #include <variant>
@@ -6,9 +6,9 @@
 
 #include "engine/optics/packet/spectral_lens.h"
 #include "engine/pupil/pupil_slices.h"
+#include "engine/render/camera_end.h"
 #include "engine/render/film.h"
 #include "engine/render/ideal_camera.h"
-#include "engine/render/light_tracer.h"
 #include "engine/render/path_tracer.h"
 #include "engine/render/progressive.h"
 #include "engine/render/sensor.h"
@@ -46,7 +46,12 @@ struct SceneView {
 TileRenderer scene_renderer(const SceneView& view);
 
 /// The same view by light paths (light_tracer.h), one for each sample of each pixel, wherever it lands: the film's
-/// layout has splats. `entrance` outlives it.
-TileRenderer light_path_renderer(const SceneView& view, const LensEntrance& entrance);
+/// layout has splats. `end` is the view's camera and outlives it.
+TileRenderer light_path_renderer(const SceneView& view, const CameraEnd& end);
+
+/// The same view by a camera path and a light path for each sample of each pixel, weighed by how well each makes what
+/// they find (path_weight.h): what glass gathers comes by light paths, what mirrors show by camera paths, and all else
+/// by both. With --noise some pixels have fewer of either; weights stay those of one for one, and shares sum to one.
+TileRenderer both_paths_renderer(const SceneView& view, const CameraEnd& end);
 
 }  // namespace lensproof

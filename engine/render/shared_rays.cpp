@@ -5,40 +5,64 @@
 
 namespace lensproof {
 
+FilmMeeting meet_film(const PupilMap& pupil, double film_z, double band_position, const Ray<double>& behind) {
+    const auto crossing = [&](double z) {
+        const double along = (z - behind.origin.z) / behind.direction.z;
+        return Vec2d{behind.origin.x + along * behind.direction.x, behind.origin.y + along * behind.direction.y};
+    };
+    const Vec2d film = crossing(film_z);
+    const double density = pupil.density(film, band_position, crossing(pupil.plane_z()));
+    const double way = (film_z - pupil.plane_z()) / behind.direction.z;
+    return {.point = film, .density = density * way * way / (behind.direction.z * behind.direction.z)};
+}
+
 const std::vector<std::array<float, kWavelengthsPerPath>>& SharedRays::weigh(const CameraPathBuffer<double>& paths) {
     weights_.resize(static_cast<std::size_t>(paths.size));
+    densities_.resize(weights_.size());
     for (int first = 0; first < paths.size; first += kBlock) {
         const int count = std::min(kBlock, paths.size - first);
         trace(paths, first, count);
         for (int i = 0; i < count; ++i) {
             const auto path = static_cast<std::size_t>(first) + static_cast<std::size_t>(i);
             const PathWavelengths strata = grid_.path(paths.wavelength[path]);
+            const Vec2d centre = pixel_of(paths, path);
             std::array<double, kWavelengthsPerPath> transmittance{};
-            double density = 0.0;
+            PathDensity& density = densities_[path] = {};
             for (std::size_t m = 0; m < kWavelengthsPerPath; ++m) {
                 const std::size_t ray = static_cast<std::size_t>(i) * kWavelengthsPerPath + m;
                 if (rays_.status[ray] != RayStatus::ok) {
                     continue;
                 }
-                Vec2d film{paths.film_x[path], paths.film_y[path]};
-                const double own = etendue_density(ray, strata.index[m], film);
-                const Vec2d pixel = sensor_.pixel(film);
-                const auto width = static_cast<std::uint32_t>(sensor_.width);
-                const std::uint32_t row = paths.pixel[path] / width;
-                const double across = pixel.x - paths.pixel[path] % width;
-                const double down = pixel.y - row;
+                const double band = static_cast<double>(strata.index[m]) / (lens_->wavelengths() - 1);
+                const FilmMeeting film =
+                    meet_film(pupil_->map(), lens_->at(0).image_z, band, rays_.ray(static_cast<int>(ray)));
+                const Vec2d pixel = sensor_.pixel(film.point);
+                const double across = pixel.x - centre.x;
+                const double down = pixel.y - centre.y;
                 // The hero's point lies in the pixel, wherever rounding may see it.
                 if (m == 0 || (across >= -0.5 && across < 0.5 && down >= -0.5 && down < 0.5)) {
                     transmittance[m] = rays_.transmittance[ray];
-                    density += own / kWavelengthsPerPath;
+                    density.shared += film.density / kWavelengthsPerPath;
+                    density.hero = m == 0 ? film.density : density.hero;
                 }
             }
             for (std::size_t m = 0; m < kWavelengthsPerPath; ++m) {
-                weights_[path][m] = density > 0.0 ? static_cast<float>(transmittance[m] / density) : 0.0F;
+                weights_[path][m] = density.shared > 0.0 ? static_cast<float>(transmittance[m] / density.shared) : 0.0F;
             }
         }
     }
     return weights_;
+}
+
+/// The centre of the pixel that the path belongs to.
+Vec2d SharedRays::pixel_of(const CameraPathBuffer<double>& paths, std::size_t path) const {
+    if (is_box_) {
+        const auto width = static_cast<std::uint32_t>(sensor_.width);
+        const std::uint32_t row = paths.pixel[path] / width;
+        return {static_cast<double>(paths.pixel[path] % width), static_cast<double>(row)};
+    }
+    const Vec2d at = sensor_.pixel({paths.film_x[path], paths.film_y[path]});
+    return {std::floor(at.x + 0.5), std::floor(at.y + 0.5)};
 }
 
 /// From the ray outside forward through the lens, at each wavelength.
@@ -56,23 +80,6 @@ void SharedRays::trace(const CameraPathBuffer<double>& paths, int first, int cou
         }
     }
     trace_batch<Direction::forward>(*lens_, rays_, {.carry = Carry::transmittance});
-}
-
-/// The density per etendue, 1/(mm² sr) times a pixel's area, with which the wavelength as hero would draw this ray; and
-/// its film point.
-double SharedRays::etendue_density(std::size_t ray, int wavelength, Vec2d& film) const {
-    const Ray<double> behind = rays_.ray(static_cast<int>(ray));
-    const auto crossing = [&](double z) {
-        const double along = (z - behind.origin.z) / behind.direction.z;
-        return Vec2d{behind.origin.x + along * behind.direction.x, behind.origin.y + along * behind.direction.y};
-    };
-    const double film_z = lens_->at(0).image_z;
-    const double pupil_z = pupil_->map().plane_z();
-    film = crossing(film_z);
-    const double band = static_cast<double>(wavelength) / (lens_->wavelengths() - 1);
-    const double density = pupil_->map().density(film, band, crossing(pupil_z));
-    const double way = (film_z - pupil_z) / behind.direction.z;
-    return density * way * way / (behind.direction.z * behind.direction.z);
 }
 
 }  // namespace lensproof

@@ -61,7 +61,14 @@ SpectralSample scaled(const SpectralSample& sample, double scale) {
     return static_cast<float>(scale) * sample;
 }
 
-std::optional<LightSample> from_point(const Vec3d& position, const SpectralSample& intensity, const Vec3d& seen_from) {
+/// A cosine about the normal, from each of the sides that shine with the density of a point there.
+double leaving_surface(const AreaLight& area, double per_mm2) {
+    return per_mm2 / ((area.is_two_sided ? 2.0 : 1.0) * kPi);
+}
+
+/// `cone`: the solid angle that light paths leave the point in.
+std::optional<LightSample> from_point(const Vec3d& position, const SpectralSample& intensity, const Vec3d& seen_from,
+                                      double cone) {
     const Vec3d way = position - seen_from;
     const double distance2 = dot(way, way);
     if (!(distance2 > 0.0)) {
@@ -69,7 +76,8 @@ std::optional<LightSample> from_point(const Vec3d& position, const SpectralSampl
     }
     return LightSample{.direction = normalized(way),
                        .end = position,
-                       .value = scaled(intensity, 1.0 / (distance2 * kSquareMetresPerSquareMm))};
+                       .value = scaled(intensity, 1.0 / (distance2 * kSquareMetresPerSquareMm)),
+                       .leaving_per_sample = 1.0 / (cone * distance2)};
 }
 
 /// The cone under which a point outside sees a ball: 1 − the cosine of its half-angle, without cancelling.
@@ -85,6 +93,7 @@ Lights::Lights(const SceneGeometry& scene, std::vector<LightSource> lights) : of
     centre_ = 0.5 * (box.low + box.high);
     radius_mm_ = 0.5 * length(box.high - box.low);
     const double cross_section = kPi * radius_mm_ * radius_mm_ * kSquareMetresPerSquareMm;
+    crossing_density_ = radius_mm_ > 0.0 ? 1.0 / (kPi * radius_mm_ * radius_mm_) : 0.0;
     std::vector<double> powers;
     for (LightSource& light : lights) {
         std::optional<SurfaceSampler> surface;
@@ -161,7 +170,8 @@ std::optional<LightSample> Lights::sample_area(const Entry& entry, const AreaLig
         return LightSample{.direction = direction,
                            .end = point + (along - depth - clear) * direction,
                            .value = scaled(radiance, 1.0 / density),
-                           .density = density};
+                           .density = density,
+                           .leaving_per_sample = leaving_surface(area, 1.0 / entry.surface->area_mm2()) / density};
     }
     const SurfaceSample on_light = entry.surface->sample(u1, u2);
     const Vec3d way = on_light.point - point;
@@ -176,16 +186,17 @@ std::optional<LightSample> Lights::sample_area(const Entry& entry, const AreaLig
         .direction = direction,
         .end = ray_origin(on_light.point, on_light.geometric_normal, on_light.error_mm, -1.0 * direction),
         .value = scaled(radiance, 1.0 / density),
-        .density = density};
+        .density = density,
+        .leaving_per_sample = leaving_surface(area, on_light.density_per_mm2) / density};
 }
 
-double Lights::area_density(const Entry& entry, const SurfaceHit& hit, const Vec3d& from, double cosine) {
+double Lights::area_density(const Entry& entry, const Vec3d& at, double per_mm2, const Vec3d& from, double cosine) {
     if (const auto& ball = entry.ball; ball && is_outside(*ball, from)) {
         const Vec3d way = ball->centre - from;
         return 1.0 / (2.0 * kPi * one_minus_cosine(ball->radius_mm, dot(way, way)));
     }
-    const Vec3d way = hit.point - from;
-    return entry.surface->density_per_mm2(hit) * dot(way, way) / std::abs(cosine);
+    const Vec3d way = at - from;
+    return per_mm2 * dot(way, way) / std::abs(cosine);
 }
 
 /// By a millionth of the radius squared: nearer points see nearly half of the ball, and sample its area.
@@ -204,13 +215,16 @@ std::optional<LightSample> Lights::sample(const Vec3d& point, const PathWaveleng
         return LightSample{.direction = direction,
                            .end = point + beyond_mm(point) * direction,
                            .value = scaled(radiance, 1.0 / density),
-                           .density = density};
+                           .density = density,
+                           .leaving_per_sample = crossing_density_};
     };
     std::optional<LightSample> found = std::visit(
         Overloaded{[&](const AreaLight& area) { return sample_area(entry, area, point, path, u1, u2); },
-                   [&](const PointLight& light) { return from_point(light.position, light.intensity(path), point); },
+                   [&](const PointLight& light) {
+                       return from_point(light.position, light.intensity(path), point, cone(-1.0));
+                   },
                    [&](const SpotLight& spot) -> std::optional<LightSample> {
-                       auto lit = from_point(spot.position, spot.intensity(path), point);
+                       auto lit = from_point(spot.position, spot.intensity(path), point, cone(spot.cos_outer));
                        const double share = lit ? spot_falloff(spot, -dot(lit->direction, spot.axis)) : 0.0;
                        if (share == 0.0) {
                            return {};
@@ -253,16 +267,26 @@ Lights::Emission Lights::emitted(const SurfaceHit& hit, const Vec3d& from, const
     if (cosine == 0.0 || (cosine < 0.0 && !area.is_two_sided)) {
         return {};
     }
-    return {.radiance = area.radiance(path), .density = entry.probability * area_density(entry, hit, from, cosine)};
+    const double per_mm2 = entry.surface->density_per_mm2(hit);
+    return {.radiance = area.radiance(path),
+            .density = entry.probability * area_density(entry, hit.point, per_mm2, from, cosine),
+            .start_density = entry.probability * per_mm2 / (area.is_two_sided ? 2.0 : 1.0),
+            .leaving_density = entry.probability * leaving_surface(area, per_mm2)};
 }
 
-Lights::Emission Lights::at_infinity(const Entry& entry, const Vec3d& direction, const PathWavelengths& path) {
+Lights::Emission Lights::at_infinity(const Entry& entry, const Vec3d& direction, const PathWavelengths& path) const {
+    const auto emission = [&](const SpectralSample& radiance, double density) {
+        const double chosen = entry.probability * density;
+        return Emission{.radiance = radiance,
+                        .density = chosen,
+                        .start_density = chosen,
+                        .leaving_density = chosen * crossing_density_};
+    };
     if (const auto* sky = std::get_if<ConstantLight>(&entry.light)) {
-        return {.radiance = sky->radiance(path), .density = entry.probability / (4.0 * kPi)};
+        return emission(sky->radiance(path), 1.0 / (4.0 * kPi));
     }
     if (const auto* picture = std::get_if<EnvironmentLight>(&entry.light)) {
-        return {.radiance = picture->map->radiance(direction, path),
-                .density = entry.probability * picture->map->density(direction)};
+        return emission(picture->map->radiance(direction, path), picture->map->density(direction));
     }
     const auto& sun = std::get<SunLight>(entry.light);
     // 1 − cos of the angle between unit vectors, from their difference: a narrow disc's edge does not cancel.
@@ -270,50 +294,73 @@ Lights::Emission Lights::at_infinity(const Entry& entry, const Vec3d& direction,
     if (0.5 * dot(apart, apart) > 1.0 - sun.cos_radius) {
         return {};
     }
-    return {.radiance = sun.radiance(path), .density = entry.probability / cone(sun.cos_radius)};
+    return emission(sun.radiance(path), 1.0 / cone(sun.cos_radius));
 }
 
 LightStart Lights::start(const PathWavelengths& path, double u_light, double u1, double u2) const {
     const auto [chosen, rest] = choose(u_light);
     LightStart start;
     start.light = static_cast<std::uint32_t>(chosen - lights_.data());
-    const auto from_infinity = [&](const Vec3d& towards, const SpectralSample& radiance, double solid_angle) {
+    const auto from_infinity = [&](const Vec3d& towards, const SpectralSample& radiance, double density) {
         start.is_at_infinity = true;
         start.direction = -1.0 * towards;
-        start.value = scaled(radiance, solid_angle);
+        start.value = scaled(radiance, density > 0.0 ? 1.0 / density : 0.0);
+        start.density = density;
     };
-    std::visit(
-        Overloaded{
-            [&, &entry = *chosen, &of_side = rest](const AreaLight& area) {
-                const SurfaceSample drawn = entry.surface->sample(u1, u2);
-                const bool is_back = area.is_two_sided && of_side >= 0.5;
-                start.point = drawn.point;
-                start.normal = is_back ? -1.0 * drawn.geometric_normal : drawn.geometric_normal;
-                start.error_mm = drawn.error_mm;
-                const double sides = area.is_two_sided ? 2.0 : 1.0;
-                start.value = scaled(area.radiance(path), sides * kSquareMetresPerSquareMm / drawn.density_per_mm2);
-            },
-            [&](const PointLight& point) {
-                start.point = point.position;
-                start.value = point.intensity(path);
-            },
-            [&](const SpotLight& spot) {
-                start.point = spot.position;
-                start.value = spot.intensity(path);
-            },
-            [&](const SunLight& sun) {
-                from_infinity(Basis(sun.towards).to_world(in_cone(sun.cos_radius, u1, u2)), sun.radiance(path),
-                              cone(sun.cos_radius));
-            },
-            [&](const ConstantLight& sky) { from_infinity(in_cone(-1.0, u1, u2), sky.radiance(path), 4.0 * kPi); },
-            [&](const EnvironmentLight& sky) {
-                const Environment::Draw drawn = sky.map->draw(u1, u2);
-                from_infinity(drawn.direction, sky.map->radiance(drawn.direction, path),
-                              drawn.density > 0.0 ? 1.0 / drawn.density : 0.0);
-            }},
-        chosen->light);
+    std::visit(Overloaded{[&, &entry = *chosen, &of_side = rest](const AreaLight& area) {
+                              const SurfaceSample drawn = entry.surface->sample(u1, u2);
+                              const bool is_back = area.is_two_sided && of_side >= 0.5;
+                              start.point = drawn.point;
+                              start.normal = is_back ? -1.0 * drawn.geometric_normal : drawn.geometric_normal;
+                              start.error_mm = drawn.error_mm;
+                              const double sides = area.is_two_sided ? 2.0 : 1.0;
+                              start.value =
+                                  scaled(area.radiance(path), sides * kSquareMetresPerSquareMm / drawn.density_per_mm2);
+                              start.density = drawn.density_per_mm2 / sides;
+                          },
+                          [&](const PointLight& point) {
+                              start.point = point.position;
+                              start.value = point.intensity(path);
+                          },
+                          [&](const SpotLight& spot) {
+                              start.point = spot.position;
+                              start.value = spot.intensity(path);
+                          },
+                          [&](const SunLight& sun) {
+                              from_infinity(Basis(sun.towards).to_world(in_cone(sun.cos_radius, u1, u2)),
+                                            sun.radiance(path), 1.0 / cone(sun.cos_radius));
+                          },
+                          [&](const ConstantLight& sky) {
+                              from_infinity(in_cone(-1.0, u1, u2), sky.radiance(path), 1.0 / (4.0 * kPi));
+                          },
+                          [&](const EnvironmentLight& sky) {
+                              const Environment::Draw drawn = sky.map->draw(u1, u2);
+                              from_infinity(drawn.direction, sky.map->radiance(drawn.direction, path), drawn.density);
+                          }},
+               chosen->light);
     start.value = scaled(start.value, 1.0 / chosen->probability);
+    start.density *= chosen->probability;
     return start;
+}
+
+LightWay Lights::way(const LightStart& start, const Vec3d& to) const {
+    const Entry& entry = lights_[start.light];
+    if (start.is_at_infinity) {
+        return {.hit_per_leaving = 1.0 / (start.density * crossing_density_),
+                .sample_per_leaving = 1.0 / crossing_density_};
+    }
+    const Vec3d way = to - start.point;
+    if (const auto* area = std::get_if<AreaLight>(&entry.light)) {
+        const double leaving = start.density / kPi;
+        const double per_mm2 = start.density * (area->is_two_sided ? 2.0 : 1.0);
+        const double cosine = dot(start.normal, normalized(way));
+        const double sampled = entry.ball && is_outside(*entry.ball, to)
+                                   ? entry.probability * area_density(entry, start.point, 0.0, to, cosine)
+                                   : area_density(entry, start.point, per_mm2, to, cosine);
+        return {.hit_per_leaving = 1.0 / leaving, .sample_per_leaving = sampled / leaving};
+    }
+    const auto* spot = std::get_if<SpotLight>(&entry.light);
+    return {.sample_per_leaving = cone(spot != nullptr ? spot->cos_outer : -1.0) * dot(way, way)};
 }
 
 SpectralSample Lights::intensity(const LightStart& start, const Vec3d& direction) const {

@@ -64,6 +64,8 @@ struct LightSample {
     Vec3d end;             // the way is free if nothing stands between the point and this
     SpectralSample value;  // radiance over density, or irradiance on a surface that faces a delta light
     double density = 0.0;  // per solid angle at the point, choice of the light included; 0 for a delta
+    /// The density per etendue with which a light path would leave along this way, over that of this sample, 1/mm².
+    double leaving_per_sample = 0.0;
 };
 
 /// Where a light path begins: a point of a source or, for one at infinity, a direction that its light comes along.
@@ -77,6 +79,19 @@ struct LightStart {
     /// Over the density of having drawn the start. Of a surface radiance · m², of a point intensity, W·sr⁻¹·nm⁻¹; of
     /// light from infinity radiance · sr, the irradiance across it.
     SpectralSample value;
+    /// With which it was drawn, choice of the light included: per mm² of a surface, per solid angle of directions from
+    /// infinity; 0 of a point.
+    double density = 0.0;
+
+    /// Of a point light or a spot, which has an intensity and no radiance.
+    [[nodiscard]] bool is_point() const { return density == 0.0; }
+};
+
+/// The way of light from a start to a surface point, and how likely each kind of path is to take it.
+struct LightWay {
+    double hit_per_leaving = 0.0;  // mm² sr: 1 over the density per etendue with which light paths leave along it; 0
+                                   // of a point, which no path runs into
+    double sample_per_leaving = 0.0;  // mm²: the density with which the surface point samples it, over the same
 };
 
 /// A ray of light as it leaves a source.
@@ -103,7 +118,9 @@ class Lights {
     /// `sample` would have drawn that direction from `from`.
     struct Emission {
         SpectralSample radiance;
-        double density = 0.0;  // per solid angle, choice of the light included
+        double density = 0.0;          // per solid angle, choice of the light included
+        double start_density = 0.0;    // with which `start` draws this point or direction (LightStart)
+        double leaving_density = 0.0;  // per etendue, 1/(mm² sr): of `start` and `leave` together
     };
     [[nodiscard]] Emission emitted(const SurfaceHit& hit, const Vec3d& from, const Vec3d& direction,
                                    const PathWavelengths& path) const;
@@ -126,6 +143,9 @@ class Lights {
 
     /// Draws the direction that a path goes on in; of light from infinity, where it crosses the scene.
     [[nodiscard]] EmittedRay leave(const LightStart& start, double u1, double u2) const;
+
+    /// Of the way from a start to a surface point that it shines on.
+    [[nodiscard]] LightWay way(const LightStart& start, const Vec3d& to) const;
 
     /// How far from a point all of the scene lies behind, whatever the direction.
     [[nodiscard]] double beyond_mm(const Vec3d& point) const {
@@ -153,10 +173,12 @@ class Lights {
     [[nodiscard]] Chosen choose(double u) const;
     static std::optional<Ball> ball_of(const SceneGeometry& scene, std::uint32_t object);
     static bool is_outside(const Ball& ball, const Vec3d& point);
-    static double area_density(const Entry& entry, const SurfaceHit& hit, const Vec3d& from, double cosine);
+    /// With which `sample` draws a point of the light; `per_mm2` is that of its surface's sampler, `cosine` that of the
+    /// way from `from` there.
+    static double area_density(const Entry& entry, const Vec3d& at, double per_mm2, const Vec3d& from, double cosine);
     static std::optional<LightSample> sample_area(const Entry& entry, const AreaLight& area, const Vec3d& point,
                                                   const PathWavelengths& path, double u1, double u2);
-    static Emission at_infinity(const Entry& entry, const Vec3d& direction, const PathWavelengths& path);
+    [[nodiscard]] Emission at_infinity(const Entry& entry, const Vec3d& direction, const PathWavelengths& path) const;
 
     std::vector<Entry> lights_;
     std::vector<double> cumulative_;          // of the probabilities
@@ -164,6 +186,7 @@ class Lights {
     std::vector<std::uint32_t> at_infinity_;  // indices
     Vec3d centre_;                            // of a sphere around the scene
     double radius_mm_ = 0.0;
+    double crossing_density_ = 0.0;  // 1/mm²: of light paths from infinity over the disc in front of the scene
     double power_ = 0.0;
 };
 

@@ -13,6 +13,7 @@
 #include "engine/render/film_image.h"
 #include "experiments/cli/command.h"
 #include "experiments/cli/raw_files.h"
+#include "experiments/cli/render_job.h"
 #include "experiments/cli/shard.h"
 
 namespace lensproof {
@@ -127,6 +128,7 @@ int run_merge(const MergeOptions& options) {
     const std::optional<RawFiles> raw = write_raw_files(sum.film, sum.notes, exr, options.common.threads);
     nlohmann::ordered_json json = {
         {"shards", shards.indices}, {"missing", missing}, {"exr", exr.string()}, {"png", png.string()}};
+    report_left_out(sum.film, json);
     if (prints_text(options.common)) {
         fmt::print("{}\n{}\n", exr.string(), png.string());
     }

@@ -1,8 +1,10 @@
 // experiments/cli/render_command.cpp — `lensproof render SCENE`: a scene, or a chart, through a lens.
 #include <fmt/format.h>
 
+#include <array>
 #include <memory>
 #include <utility>
+#include <vector>
 
 #include "engine/io/cache.h"
 #include "engine/io/file.h"
@@ -87,8 +89,25 @@ std::string scene_hash(const SceneSetup& setup, const std::string& file) {
     return hash_text(hashes);
 }
 
-/// `by_light`: paths from the lights instead of from the camera.
-int render_scene(const RenderJobOptions& options, bool by_light) {
+/// Where paths begin.
+enum class PathsFrom { camera, light, both };
+
+constexpr std::array<std::pair<const char*, PathsFrom>, 3> kPathsFrom = {
+    {{"camera", PathsFrom::camera}, {"light", PathsFrom::light}, {"both", PathsFrom::both}}};
+
+/// What of it stands among a render's settings.
+std::string kept_apart(PathsFrom from) {
+    return from == PathsFrom::camera ? "" : from == PathsFrom::light ? ", light paths" : ", camera and light paths";
+}
+
+TileRenderer renderer_of(const SceneView& view, const CameraEnd* end, PathsFrom from) {
+    if (from == PathsFrom::camera) {
+        return scene_renderer(view);
+    }
+    return from == PathsFrom::light ? light_path_renderer(view, *end) : both_paths_renderer(view, *end);
+}
+
+int render_scene(const RenderJobOptions& options, PathsFrom from) {
     const SceneSetup setup = read_scene_setup(options.scene);
     if (setup.sensor) {
         raw_files(render_files(options).exr);
@@ -100,17 +119,14 @@ int render_scene(const RenderJobOptions& options, bool by_light) {
         fmt::print(stderr, "lensproof: {}\n", remark);
     }
     SceneView view = scene->view(options.common.seed, options.has_features);
-    view.film.has_splats = by_light;
+    view.film.has_splats = from != PathsFrom::camera;
     RenderJob job;
     job.film = view.film;
-    const LensEntrance* entrance =
-        by_light ? said_of_scene(options, [&] { return &scene->entrance(Cache::standard()); }) : nullptr;
-    job.make_renderer = [&view, entrance] {
-        return entrance != nullptr ? light_path_renderer(view, *entrance) : scene_renderer(view);
-    };
+    const CameraEnd* end = from != PathsFrom::camera ? &scene->camera_end(Cache::standard()) : nullptr;
+    job.make_renderer = [&view, end, from] { return renderer_of(view, end, from); };
     job.identity = {{"scene", scene_hash(setup, options.scene)},
                     {"lens", scene->camera_hash()},
-                    {"settings", settings_of(options, filter) + (by_light ? ", light paths" : "")}};
+                    {"settings", settings_of(options, filter) + kept_apart(from)}};
     job.notes.metadata = scene->metadata();
     job.notes.colours = scene->colours();
     job.sensor = setup.sensor;
@@ -120,14 +136,16 @@ int render_scene(const RenderJobOptions& options, bool by_light) {
     return run_render_job(job, options);
 }
 
-int run_render(const RenderJobOptions& options, const std::string& paths) {
+int run_render(const RenderJobOptions& options, PathsFrom from) {
     render_files(options);  // before long work
-    const bool by_light = paths == "light";
     const bool is_chart = TomlTable::read(options.scene).has("chart");
-    if (by_light && (is_chart || options.noise > 0.0 || options.has_features)) {
-        throw InputError("--paths light is for scenes with lights, and goes neither with --noise nor with --features");
+    if (from != PathsFrom::camera && is_chart) {
+        throw InputError("--paths light and both are for scenes with lights, not for a [chart] in an even world");
     }
-    return is_chart ? render_chart_scene(options) : render_scene(options, by_light);
+    if (from == PathsFrom::light && (options.noise > 0.0 || options.has_features)) {
+        throw InputError("--paths light goes neither with --noise nor with --features; --paths both does");
+    }
+    return is_chart ? render_chart_scene(options) : render_scene(options, from);
 }
 
 }  // namespace
@@ -143,13 +161,13 @@ void add_render_command(CLI::App& app, int& status) {
         "Ctrl-C ends a render with a checkpoint written and exit status 3; a second one at once.");
     command->add_option("SCENE", options->scene, "A scene file")->required();
     add_render_job_options(*command, *options);
-    const auto paths = std::make_shared<std::string>("camera");
+    const auto paths = std::make_shared<PathsFrom>(PathsFrom::camera);
     command
-        ->add_option(
-            "--paths", *paths,
-            "Where paths begin: the camera, or the lights, which finds what shines through glass and cannot see "
-            "mirrors; one image by either")
-        ->check(CLI::IsMember({"camera", "light"}));
+        ->add_option("--paths", *paths,
+                     "Where paths begin: camera (the default); light, which finds what shines through glass and cannot "
+                     "see mirrors; or both, each counted by how well it makes what it finds. One image by each")
+        ->transform(CLI::CheckedTransformer(
+            std::vector<std::pair<std::string, PathsFrom>>(kPathsFrom.begin(), kPathsFrom.end())));
     command->callback([options, paths, &status] { status = run_render(*options, *paths); });
 }
 

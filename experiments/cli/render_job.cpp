@@ -159,6 +159,7 @@ void report(const RenderJob& job, const RenderState& state, const RenderJobOptio
     }
     const PixelRect all{.x = 0, .y = 0, .width = state.film.width(), .height = state.film.height()};
     json["relative_error"] = tile_error(state.film, all, 0.01 * mean_brightness(state.film));
+    report_left_out(state.film, json);
     json["exr"] = files.exr.string();
     json["png"] = files.png.string();
     if (prints_text(options.common)) {
@@ -238,6 +239,15 @@ int run_render_job(const RenderJob& job, const RenderJobOptions& options) {
     write_png(film_rgb(state.film), files.png);
     report(job, state, options, files, write_raw_files(state.film, notes, files.exr, options.common.threads));
     return kDone;
+}
+
+void report_left_out(const Film& film, nlohmann::ordered_json& json) {
+    if (film.left_out() > 0) {
+        fmt::print(stderr,
+                   "lensproof: {} samples were no finite numbers; they were left out, as if they had met no light\n",
+                   film.left_out());
+        json["samples_left_out"] = film.left_out();
+    }
 }
 
 void add_render_job_options(CLI::App& command, RenderJobOptions& options) {

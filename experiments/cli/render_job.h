@@ -51,6 +51,9 @@ struct RenderJob {
     nlohmann::ordered_json json;      // what the machine-readable result begins with
 };
 
+/// Says on standard error, and in `json`, how many samples were left out of the film, where any were.
+void report_left_out(const Film& film, nlohmann::ordered_json& json);
+
 /// Renders, writes the pictures and says where they are. Returns the exit status: kInternalFailure where a signal ended
 /// it before its goal, with a checkpoint written.
 int run_render_job(const RenderJob& job, const RenderJobOptions& options);

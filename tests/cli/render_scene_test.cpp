@@ -2,6 +2,8 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <nlohmann/json.hpp>
+
 #include "tests/cli/program.h"
 
 namespace lensproof {
@@ -55,6 +57,9 @@ TEST(RenderScene, IsOneImageFromEitherEnd) {
     ASSERT_EQ(place.run({"render", "scene.toml", "--spp", "1024", "--paths", "light", "-o", "light.exr"}).status, 0);
     const Outcome same = place.run({"compare", "camera.exr", "light.exr", "--rms-limit", "0.05"});
     EXPECT_EQ(same.status, 0) << same.out;
+    ASSERT_EQ(place.run({"render", "scene.toml", "--spp", "256", "--paths", "both", "-o", "both.exr"}).status, 0);
+    const Outcome together = place.run({"compare", "camera.exr", "both.exr", "--rms-limit", "0.05"});
+    EXPECT_EQ(together.status, 0) << together.out;
     const Outcome alike = place.run({"compare", "camera.exr", "light.exr", "--rms-limit", "1e-5"});
     EXPECT_EQ(alike.status, 1) << alike.out;
 }
@@ -62,7 +67,7 @@ TEST(RenderScene, IsOneImageFromEitherEnd) {
 TEST(RenderScene, IsTheSameForAnyNumberOfThreads) {
     const Workplace place;
     place.file("scene.toml", lamp_over_floor(kLens));
-    for (const char* paths : {"camera", "light"}) {
+    for (const char* paths : {"camera", "both"}) {
         ASSERT_EQ(place.run({"render", "scene.toml", "--paths", paths, "--threads", "1", "-o", "one.exr"}).status, 0);
         ASSERT_EQ(place.run({"render", "scene.toml", "--paths", paths, "--threads", "3", "-o", "three.exr"}).status, 0);
         EXPECT_EQ(place.content("one.exr"), place.content("three.exr")) << paths;
@@ -75,9 +80,51 @@ TEST(RenderScene, TakesEveryModelOfTheLens) {
          {kLens + "\nmodel = \"paraxial\"", kLens + "\nmodel = \"thin-lens\"", kLens + "\nmodel = \"pinhole\"",
           std::string("focal_length_mm = 50.0\nmodel = \"thin-lens\"")}) {
         place.file("scene.toml", lamp_over_floor(camera));
-        const Outcome outcome = place.run({"render", "scene.toml", "--features", "-o", "a.exr"});
+        const Outcome outcome = place.run({"render", "scene.toml", "--features", "--paths", "both", "-o", "a.exr"});
         EXPECT_EQ(outcome.status, 0) << camera << outcome.err;
     }
+}
+
+// Camera and light paths together go on from a checkpoint with every byte, add up from shards to 1e-6 of values of size
+// 1, and end where the noise is low.
+TEST(RenderScene, GrowsByBothPaths) {
+    const Workplace place;
+    place.file("scene.toml", lamp_over_floor(kLens));
+    const auto render = [&](std::vector<std::string> more) {
+        more.insert(more.begin(), {"render", "scene.toml", "--paths", "both", "--json", "-"});
+        const Outcome outcome = place.run(more);
+        EXPECT_EQ(outcome.status, 0) << outcome.err;
+        return nlohmann::json::parse(outcome.out);
+    };
+    render({"--spp", "64", "-o", "whole.exr"});
+    render({"--spp", "16", "--checkpoint", "state", "-o", "grown.exr"});
+    render({"--spp", "64", "--checkpoint", "state", "-o", "grown.exr"});
+    EXPECT_EQ(place.content("grown.exr"), place.content("whole.exr"));
+    const Outcome other = place.run({"render", "scene.toml", "--spp", "64", "--checkpoint", "state", "-o", "o.exr"});
+    EXPECT_EQ(other.status, 2) << "a checkpoint of both is none of camera paths";
+
+    render({"--spp", "64", "--shard", "1/2", "-o", "part1.exr"});
+    render({"--spp", "64", "--shard", "2/2", "-o", "part2.exr"});
+    ASSERT_EQ(place.run({"merge", "part2.exr", "part1.exr", "-o", "sum.exr"}).status, 0);
+    const Outcome sum = place.run({"compare", "sum.exr", "whole.exr", "--rms-limit", "1e-6"});
+    EXPECT_EQ(sum.status, 0) << sum.out;
+
+    const nlohmann::json quiet = render({"--noise", "0.015", "-o", "quiet.exr"});
+    EXPECT_LE(quiet["relative_error"], 0.015);
+    EXPECT_GT(quiet["samples_per_pixel"], 64.0);
+}
+
+// A sky so bright that what is sampled of it is no finite number of float: it is left out, and that is said.
+TEST(RenderScene, SaysWhatItLeftOut) {
+    const Workplace place;
+    place.file("bright.csv", "wavelength_nm,radiance\n300,1e38\n900,1e38\n");
+    place.file("scene.toml", lamp_over_floor("model = \"pinhole\"\nfocal_length_mm = 50.0",
+                                             "[[lights]]\nkind = \"environment\"\nradiance = \"bright.csv\"\n"));
+    const Outcome outcome = place.run({"render", "scene.toml", "--paths", "both", "-o", "a.exr", "--json", "-"});
+    EXPECT_EQ(outcome.status, 0);
+    EXPECT_NE(outcome.err.find("left out"), std::string::npos) << outcome.err;
+    EXPECT_GT(nlohmann::json::parse(outcome.out)["samples_left_out"], 0);
+    EXPECT_NE(place.content("a.exr").find("lensproof:leftOut"), std::string::npos);
 }
 
 TEST(RenderScene, RefusesWhatItCannotRender) {
@@ -89,9 +136,9 @@ TEST(RenderScene, RefusesWhatItCannotRender) {
         arguments.insert(arguments.end(), more.begin(), more.end());
         expect_refused(place, arguments, words);
     };
-    refuses(lamp_over_floor("model = \"pinhole\"\nfocal_length_mm = 50.0"), {"--paths", "light"},
-            {"scene.toml", "exact"});
-    refuses(lamp_over_floor(kLens), {"--paths", "light", "--noise", "0.1"}, {"--noise"});
+    refuses(lamp_over_floor(kLens), {"--paths", "light", "--noise", "0.1"}, {"--noise", "--paths both"});
+    refuses(lamp_over_floor(kLens), {"--paths", "lamp"}, {"--paths", "lamp"});
+    refuses(small_scene(), {"--paths", "both"}, {"--paths", "[chart]"});
     refuses(lamp_over_floor("lens = \"nothing\""), {}, {"scene.toml", "nothing"});
     refuses(lamp_over_floor(kLens, "[[materials]]\nname = \"m\"\nkind = \"conductor\"\nior = \"metal:Xx\"\n"), {},
             {"scene.toml", "materials", "Xx", "gold"});

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <limits>
+
 #include "engine/io/file.h"
 #include "engine/io/image.h"
 #include "engine/io/input_error.h"
@@ -28,16 +30,22 @@ Film full_film(std::uint32_t first, std::uint32_t end) {
     film.load({.rect = {0, 0, 70, 33}, .first = first, .end = end}, tile);
     for (std::uint32_t pixel = 0; pixel < 70 * 33; ++pixel) {
         for (std::uint32_t i = first; i < end; ++i) {
+            if (pixel == 0) {
+                tile.add(pixel, i, 0, std::numeric_limits<double>::quiet_NaN());  // is left out
+            }
             tile.add(pixel, i, i % 4, exponential_number(1, pixel, i));
             tile.add_features(pixel,
                               {.depth_mm = 1000.0 + i, .albedo_rgb = {0.5, 0.2, 0.1}, .normal = {0.6, 0.0, -0.8}});
         }
         const float light = static_cast<float>(exponential_number(2, pixel, first));
         const std::uint32_t row = pixel / 70;
+        tile.begin_light_path();
         tile.splat(all_at(pixel % 70, row), std::array<std::uint16_t, 4>{0, 1, 2, 3},
                    std::array<float, 4>{light, light, 0.0F, light});
     }
-    tile.count_light_paths(std::uint64_t{100} * (end - first));
+    for (std::uint32_t i = 0; i < 100 * (end - first); ++i) {
+        tile.begin_light_path();  // which brings nothing
+    }
     tile.finish();
     film.store(tile);
     return film;
@@ -71,6 +79,8 @@ void expect_same(const Film& a, const Film& b, double relative) {
         }
     }
     EXPECT_EQ(a.light_paths(), b.light_paths());
+    EXPECT_EQ(a.left_out(), b.left_out());
+    EXPECT_GT(a.left_out(), 0U);
 }
 
 TEST(FilmExr, HoldsAFilm) {

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <functional>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -169,11 +170,12 @@ constexpr std::array<float, 4> kOnes = {1.0F, 1.0F, 1.0F, 1.0F};
 TEST(Film, SpreadsSplatsByTheFilter) {
     const auto value = [](const Film& film, int x, int y) { return film.light_estimate(x, y).rgb.x; };
     const auto add = [](FilmTile& tile) {
+        tile.begin_light_path();
         tile.splat(all_at(6.75, 1.0), kStrata, kOnes);
+        tile.begin_light_path();
         tile.splat(all_at(-0.5, 8.0), kStrata, kOnes);
         tile.splat(all_at(-1e300, 0.0), kStrata, kOnes);
         tile.splat(all_at(4.0, 1e9), kStrata, kOnes);
-        tile.count_light_paths(2);
     };
     const Film tent = with_splats("tent", add);
     EXPECT_EQ(value(tent, 6, 1), 0.125);
@@ -209,11 +211,11 @@ TEST(Film, FiltersCameraAndLightPathsAlike) {
         const Film light = with_splats(name, [&](FilmTile& tile) {
             for (std::uint32_t i = 0; i < paths; ++i) {
                 const double x = side * even_number(1, 0, i) - margin - 0.5;
+                tile.begin_light_path();
                 const auto e = static_cast<float>(side * side * irradiance(x));
                 tile.splat(all_at(x, side * even_number(1, 1, i) - margin - 0.5), kStrata,
                            std::array<float, 4>{e, e, e, e});
             }
-            tile.count_light_paths(paths);
         });
         const FilmLayout layout = plain_film(9, 1);
         Film camera(layout);
@@ -238,6 +240,52 @@ TEST(Film, FiltersCameraAndLightPathsAlike) {
             }
         }
     }
+}
+
+// A path that brings 1, then 2 to one pixel brings it 3: of four paths, three of which bring it nothing, the mean is
+// 3/4 and its variance (9/4 − 9/16) / 3 (the unbiased estimate of a mean's variance).
+TEST(Film, TakesALightPathsSplatsTogether) {
+    const Film film = with_splats("box", [](FilmTile& tile) {
+        tile.begin_light_path();
+        tile.splat(all_at(5.0, 5.0), kStrata, kOnes);
+        tile.splat(all_at(1.0, 5.0), kStrata, kOnes);
+        tile.splat(all_at(5.0, 5.0), kStrata, std::array<float, 4>{2.0F, 2.0F, 2.0F, 2.0F});
+        for (int i = 0; i < 3; ++i) {
+            tile.begin_light_path();
+        }
+    });
+    EXPECT_EQ(film.light_estimate(5, 5).rgb.x, 0.75);
+    EXPECT_EQ(film.light_estimate(5, 5).variance.x, (9.0 / 4.0 - 9.0 / 16.0) / 3.0);
+    EXPECT_EQ(film.light_estimate(1, 5).variance.x, (1.0 / 4.0 - 1.0 / 16.0) / 3.0);
+}
+
+// What is no finite number is counted and leaves the pixel as it was.
+TEST(Film, LeavesOutWhatIsNoFiniteNumber) {
+    const float nan = std::numeric_limits<float>::quiet_NaN();
+    const float inf = std::numeric_limits<float>::infinity();
+    FilmLayout layout = plain_film(1, 1, 4);
+    layout.has_splats = true;
+    layout.has_features = true;
+    Film film(layout);
+    FilmTile tile(layout);
+    film.load({.rect = {0, 0, 1, 1}, .first = 0, .end = 4}, tile);
+    tile.add(0, 0, kStrata, kOnes);
+    tile.add(0, 1, kStrata, std::array<float, 4>{1.0F, nan, 1.0F, 1.0F});
+    tile.add(0, 2, 1, -inf);
+    tile.add_features(0, {.depth_mm = nan, .albedo_rgb = {}, .normal = {}});
+    tile.begin_light_path();
+    tile.splat(all_at(0.0, 0.0), kStrata, std::array<float, 4>{inf, 1.0F, 1.0F, 1.0F});
+    tile.splat(all_at(nan, 0.0), kStrata, kOnes);
+    tile.splat(all_at(0.0, 0.0), kStrata, kOnes);
+    tile.finish();
+    film.store(tile);
+    EXPECT_EQ(film.left_out(), 5U);
+    EXPECT_EQ(film.camera_estimate(0, 0).rgb.x, 0.25);
+    EXPECT_EQ(film.light_estimate(0, 0).rgb.x, 1.0);
+    EXPECT_EQ(film.coverage(0, 0), 0.0);
+    Film other(layout);
+    other.merge(film);
+    EXPECT_EQ(other.left_out(), 5U);
 }
 
 // Depth is the mean over samples that met something, albedo and normal over all, as denoisers want them.

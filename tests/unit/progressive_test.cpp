@@ -40,9 +40,9 @@ TileRenderer splatting_renderer(const FilmLayout& layout) {
         const auto place = static_cast<std::uint32_t>(samples.rect.y * 50 + samples.rect.x);
         for (std::uint32_t i = samples.first; i < samples.end; ++i) {
             const float light = static_cast<float>(even_number(2, place, i));
+            tile.begin_light_path();
             tile.splat(all_at(50.0 * even_number(3, place, i), 37.0 * even_number(4, place, i)),
                        std::array<std::uint16_t, 4>{0, 1, 2, 3}, std::array<float, 4>{light, light, light, light});
-            tile.count_light_paths(1);
         }
     };
 }
