@@ -11,6 +11,7 @@
 #include "calibration/light_samples.h"
 #include "calibration/refine.h"
 #include "calibration/self_test.h"
+#include "calibration/sharpness/measure_sharpness.h"
 #include "calibration/vignetting.h"
 #include "calibration/working_copy.h"
 #include "engine/io/input_error.h"
@@ -30,6 +31,7 @@ struct Observations {
     std::vector<ChartView> chart_views;                                  // of the views found
     std::map<std::string, std::vector<ChromaticPair>> chromatic_pairs;   // by channel
     std::map<std::string, std::vector<LightGroup>> flat_fields, whites;  // by channel
+    SharpnessObservations sharpness;
 };
 
 std::string describe(const Chart& chart) {
@@ -106,6 +108,9 @@ void observe_chart(Observations& seen, const Image& image, const std::string& na
         for (int channel = 0; channel < image.channel_count(); ++channel) {
             const std::string& channel_name = image.channels[channel];
             seen.whites[channel_name].push_back(chart_white_samples(image, channel, points, chart));
+            if (channel == reference || !grey) {
+                observe_chart_edges(seen.sharpness, image, channel, name, points, chart);
+            }
             if (channel == reference || grey) {
                 continue;
             }
@@ -122,6 +127,7 @@ void observe_chart(Observations& seen, const Image& image, const std::string& na
 
 Observations observe(const MeasureInput& input) {
     Observations seen;
+    seen.sharpness.focus_position_mm = input.focus_position_mm;
     for (const Picture& picture : input.pictures) {
         if (!picture.load) {
             throw InputError(picture.name + ": the picture cannot be loaded");
@@ -135,6 +141,13 @@ Observations observe(const MeasureInput& input) {
         if (picture.role == PictureRole::flat_field) {
             for (int channel = 0; channel < image.channel_count(); ++channel) {
                 seen.flat_fields[image.channels[channel]].push_back(flat_field_samples(image, channel));
+            }
+        } else if (picture.role == PictureRole::edges) {
+            const bool grey = all_channels_alike(image);
+            for (int channel = 0; channel < image.channel_count(); ++channel) {
+                if (!grey || channel == reference_channel(image)) {
+                    observe_edges(seen.sharpness, image, channel, picture.name, input.edges);
+                }
             }
         } else {
             observe_chart(seen, image, picture.name, input.chart);
@@ -282,12 +295,13 @@ Profile measure(const MeasureInput& input) {
 
     Vec2d centre{(seen.width - 1) / 2.0, (seen.height - 1) / 2.0};
     if (seen.chart_views.empty()) {
-        profile.not_measured["geometry"] = "there are flat fields only";
+        profile.not_measured["geometry"] = input.edges.empty() ? "there are flat fields only" : "there is no chart";
     } else {
         const GeometryFit geometry = fit(input, seen);
         centre = centre_px(geometry.model);
         add_geometry(profile, seen, geometry);
     }
+    add_sharpness(profile, seen.sharpness, centre);
     add_vignetting(profile, seen, centre);
     add_chromatic_shift(profile, seen, centre);
     if (input.self_test) {

@@ -1,6 +1,7 @@
 // calibration/measure.h — from pictures to a profile.
 #pragma once
 #include <functional>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -12,7 +13,8 @@
 
 namespace lensproof {
 
-enum class PictureRole { chart, flat_field };
+/// `edges`: what is to be measured is the edges in `MeasureInput::edges`; no chart is looked for.
+enum class PictureRole { chart, flat_field, edges };
 
 /// A picture to measure. It is loaded when its turn comes and forgotten after, so a large set needs no large memory.
 struct Picture {
@@ -32,14 +34,19 @@ struct MeasureInput {
     std::optional<double> pixel_pitch_um;
     /// Whether the profile is to say its own floor (calibration/self_test.h), which takes as long again.
     bool self_test = false;
+    /// In pictures of the role `edges`: rectangles with one edge each; one without a size is the whole picture.
+    std::vector<PixelRectangle> edges;
+    /// Where the focus stood in which picture (by name), mm, for field curvature; empty: not known.
+    std::map<std::string, double> focus_position_mm;
 };
 
-/// Finds the chart, and fits camera model, chromatic shift and vignetting.
+/// Finds the chart, and fits camera model, chromatic shift, vignetting and sharpness.
 ///
 /// Pictures in which the chart, or most of it, cannot be found are listed as such. Vignetting comes from the flat
 /// fields where there are any, else from the charts' white.
 /// Throws InputError for no pictures, pictures of different sizes or channels, no chart found in any, and whatever
-/// `fit_geometry` refuses. Vignetting and chromatic shift that fail are not errors; the profile says why.
+/// `fit_geometry` and `observe_edges` refuse. Vignetting, chromatic shift and sharpness that fail are not errors; the
+/// profile says why.
 Profile measure(const MeasureInput& input);
 
 }  // namespace lensproof

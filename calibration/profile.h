@@ -13,6 +13,7 @@
 #include "calibration/picture_traits.h"
 #include "calibration/planar_pose.h"
 #include "calibration/self_test.h"
+#include "calibration/sharpness/profile_edge.h"
 
 namespace lensproof {
 
@@ -65,9 +66,11 @@ struct FittedTerms {
 };
 
 /// Curves by name: "field_angle_deg", "distortion_percent" (against f tan θ), "distortion_equidistant_percent"
-/// (against f θ), and for a channel C "vignetting_C" (ratio to the axis), "vignetting_C_ev", "chromatic_shift_C_px".
-/// What could not be measured is absent there and has its reason in `not_measured`, under "geometry", "vignetting" or
-/// "chromatic_shift"; a self-test that was asked for and could not be made under "self_test".
+/// (against f θ), and for a channel C "vignetting_C" (ratio to the axis), "vignetting_C_ev", "chromatic_shift_C_px",
+/// and those of sharpness and focus (calibration/sharpness/measure_sharpness.h).
+/// What could not be measured is absent there and has its reason in `not_measured`, under "geometry", "vignetting",
+/// "chromatic_shift", "sharpness_over_the_field" or "field_curvature"; a self-test that was asked for and could not be
+/// made under "self_test".
 struct Profile {
     std::string name;
     ProfileSource source;
@@ -79,8 +82,11 @@ struct Profile {
     std::vector<ProfileView> views;
     std::map<std::string, Curve> curves;
     /// Behind the curves, by the curve's name without its unit: "chromatic_shift_C" (calibration/chromatic_shift.h) and
-    /// "vignetting_C" (the spline of ln V, calibration/vignetting.h).
+    /// "vignetting_C" (the spline of ln V, calibration/vignetting.h), "sharpness_C" (of 1/MTF50², px²) and
+    /// "best_focus_C" (calibration/sharpness/sharpness_field.h).
     std::map<std::string, FittedTerms> terms;
+    /// The edges measured, by channel (JSON key "sharpness", calibration/sharpness/profile_edge.h).
+    std::map<std::string, std::vector<ProfileEdge>> sharpness;
     std::map<std::string, std::string> not_measured;
     std::optional<SelfTest> self_test;
 };

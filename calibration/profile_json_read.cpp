@@ -175,6 +175,14 @@ Profile parse_profile(std::string_view text, const std::string& file) {
             profile.terms[name] = parse_terms(terms.at(name));
         }
     }
+    if (root.has("sharpness")) {
+        const Node channels = root.at("sharpness");
+        for (const std::string& channel : channels.keys()) {
+            for (const Node& edge : channels.at(channel).elements()) {
+                profile.sharpness[channel].push_back(parse_edge(edge));
+            }
+        }
+    }
     const Node reasons = root.at("not_measured");
     for (const std::string& name : reasons.keys()) {
         profile.not_measured[name] = reasons.at(name).text();

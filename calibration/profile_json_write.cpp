@@ -119,6 +119,13 @@ Json to_json(const Profile& profile) {
     for (const auto& [name, terms] : profile.terms) {
         json["terms"][name] = terms_json(terms);
     }
+    for (const auto& [channel, edges] : profile.sharpness) {
+        Json list = Json::array();
+        for (const ProfileEdge& edge : edges) {
+            list.push_back(to_json(edge, profile.pixel_pitch_um));
+        }
+        json["sharpness"][channel] = std::move(list);
+    }
     json["not_measured"] = Json::object();
     for (const auto& [name, reason] : profile.not_measured) {
         json["not_measured"][name] = reason;

@@ -1,6 +1,8 @@
 // experiments/cli/measure_command.cpp — `lensproof measure IMAGE… --chart CHART`: from pictures to a profile.
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <charconv>
 #include <memory>
 
 #include "calibration/detect.h"
@@ -26,6 +28,8 @@ struct MeasureOptions {
     std::string kind = "photo";
     double pixel_pitch_um = 0.0;
     bool no_self_test = false;
+    std::vector<std::string> edges;
+    std::vector<double> focus_positions_mm;
 };
 
 std::optional<ModelKind> model_kind(const std::string& name) {
@@ -41,10 +45,35 @@ void print_curve(const Profile& profile, const std::string& name, const char* la
         return;
     }
     const Curve& curve = found->second;
-    const std::optional<Banded> end = sample(curve, curve.covered_image_height);
-    if (end) {
+    const double height =  // some curves are extrapolated beyond what was covered, some end before it
+        curve.image_height.empty() ? 0.0 : std::min(curve.covered_image_height, curve.image_height.back());
+    if (const std::optional<Banded> end = sample(curve, height)) {
         fmt::print("{:22} {:9.4f} ± {:.4f} {} at image height {:.2f}\n", label, end->value,
-                   (end->upper_95 - end->lower_95) / (2.0 * k95), unit, curve.covered_image_height);
+                   (end->upper_95 - end->lower_95) / (2.0 * k95), unit, height);
+    }
+}
+
+void print_edge(const std::string& channel, const ProfileEdge& listed) {
+    const EdgeMtf& edge = listed.edge;
+    if (edge.mtf50) {
+        fmt::print("{:22} {:9.4f} ± {:.4f} cycles/px at ({:.1f}, {:.1f}) px, edge normal {:.1f}°\n",
+                   fmt::format("MTF50 {}", channel), edge.mtf50->cycles_per_px, edge.mtf50->standard_error,
+                   edge.centre_px.x, edge.centre_px.y, edge.normal_deg);
+    }
+}
+
+void print_sharpness(const Profile& profile) {
+    constexpr std::size_t few = 6;  // edges that are listed one by one; more make a curve
+    for (const auto& [channel, edges] : profile.sharpness) {
+        for (std::size_t i = 0; i < edges.size() && edges.size() < few; ++i) {
+            print_edge(channel, edges[i]);
+        }
+        for (const char* direction : {"tangential", "sagittal"}) {
+            print_curve(profile, fmt::format("mtf50_{}_{}", direction, channel),
+                        fmt::format("MTF50 {} {}", direction, channel).c_str(), "cycles/px");
+            print_curve(profile, fmt::format("best_focus_{}_{}_mm", direction, channel),
+                        fmt::format("focus {} {}", direction, channel).c_str(), "mm");
+        }
     }
 }
 
@@ -71,9 +100,65 @@ void print_profile(const Profile& profile) {
     if (profile.self_test) {
         fmt::print("{:22} {}\n", "floor of the method", describe_floor(*profile.self_test));
     }
+    print_sharpness(profile);
     for (const auto& [what, why] : profile.not_measured) {
         fmt::print("{} not measured: {}\n", what, why);
     }
+}
+
+// "x,y,width,height" or "whole".
+PixelRectangle parse_rectangle(const std::string& text) {
+    if (text == "whole") {
+        return {};
+    }
+    std::vector<int> numbers;
+    for (const std::string& field : CLI::detail::split(text, ',')) {
+        int value = 0;
+        const auto [end, error] = std::from_chars(field.data(), field.data() + field.size(), value);
+        if (error != std::errc() || end != field.data() + field.size()) {
+            break;
+        }
+        numbers.push_back(value);
+    }
+    const bool is_rectangle = numbers.size() == 4 && std::count(text.begin(), text.end(), ',') == 3 &&
+                              numbers[0] >= 0 && numbers[1] >= 0 && numbers[2] > 0 && numbers[3] > 0;
+    if (!is_rectangle) {
+        throw InputError(fmt::format("--edge: found \"{}\", expected x,y,width,height in pixels, or whole", text));
+    }
+    return {numbers[0], numbers[1], numbers[2], numbers[3]};
+}
+
+void add_sharpness_input(MeasureInput& input, const MeasureOptions& options) {
+    for (const std::string& edge : options.edges) {
+        input.edges.push_back(parse_rectangle(edge));
+    }
+    if (options.focus_positions_mm.empty()) {
+        return;
+    }
+    if (options.focus_positions_mm.size() != options.images.size()) {
+        throw InputError(fmt::format("--focus-positions: {} positions for {} pictures, expected one for each",
+                                     options.focus_positions_mm.size(), options.images.size()));
+    }
+    for (std::size_t i = 0; i < options.images.size(); ++i) {
+        input.focus_position_mm[options.images[i]] = options.focus_positions_mm[i];
+    }
+}
+
+Chart chart_to_find(const std::string& file) {
+    Chart chart = read_chart_file(file);
+    if (std::holds_alternative<FlatField>(chart.pattern)) {
+        throw InputError(
+            fmt::format("{}: the chart is a flat field, expected a checkerboard or a disc grid; pictures of an "
+                        "even surface are given with --flat-field",
+                        file));
+    }
+    if (!can_detect(chart)) {
+        throw InputError(
+            fmt::format("{}: the chart is of kind {}, which is not measured: expected a checkerboard or a "
+                        "disc-grid",
+                        file, kind_name(chart)));
+    }
+    return chart;
 }
 
 int run_measure(const MeasureOptions& options) {
@@ -83,20 +168,14 @@ int run_measure(const MeasureOptions& options) {
     check_json_name(options.common);
     MeasureInput input;
     input.name = options.images.front();
-    input.chart = read_chart_file(options.chart);
-    if (std::holds_alternative<FlatField>(input.chart.pattern)) {
-        throw InputError(
-            fmt::format("{}: the chart is a flat field, expected a checkerboard or a disc grid; pictures of an "
-                        "even surface are given with --flat-field",
-                        options.chart));
+    if (options.chart.empty() == options.edges.empty()) {
+        throw InputError("measure: expected --chart FILE, or --edge for pictures of edges without a chart");
     }
-    if (!can_detect(input.chart)) {
-        throw InputError(
-            fmt::format("{}: the chart is of kind {}, which is not measured: expected a checkerboard or a "
-                        "disc-grid",
-                        options.chart, kind_name(input.chart)));
+    if (options.edges.empty()) {
+        input.chart = chart_to_find(options.chart);
     }
     input.self_test = !options.no_self_test;
+    add_sharpness_input(input, options);
     input.model = model_kind(options.model);
     input.source = {.kind = options.kind, .images = {}, .camera = options.camera, .lens = options.lens};
     if (options.pixel_pitch_um > 0.0) {
@@ -106,7 +185,7 @@ int run_measure(const MeasureOptions& options) {
         input.pictures.push_back({.name = file, .role = role, .load = [file] { return read_image(file); }});
     };
     for (const std::string& image : options.images) {
-        add(image, PictureRole::chart);
+        add(image, options.edges.empty() ? PictureRole::chart : PictureRole::edges);
     }
     for (const std::string& image : options.flat_fields) {
         add(image, PictureRole::flat_field);
@@ -126,13 +205,22 @@ int run_measure(const MeasureOptions& options) {
 
 void add_measure_command(CLI::App& app, int& status) {
     const auto options = std::make_shared<MeasureOptions>();
-    CLI::App* command =
-        app.add_subcommand("measure", "Find a chart in pictures; estimate distortion, vignetting and chromatic shift");
+    CLI::App* command = app.add_subcommand(
+        "measure", "Find a chart in pictures; estimate distortion, vignetting, chromatic shift and sharpness");
     command->footer(
         "Example: lensproof measure photos/*.jpg --chart photos/manifest.toml -o profile.json\n"
         "CHART is any TOML file with a [chart] table: a chart's own, a photo set's manifest, a scene.");
     command->add_option("IMAGE", options->images, "Pictures of the chart (JPEG, PNG, TIFF, EXR, …)")->required();
-    command->add_option("--chart", options->chart, "TOML file with a [chart] table")->required()->type_name("FILE");
+    command->add_option("--chart", options->chart, "TOML file with a [chart] table")->type_name("FILE");
+    command
+        ->add_option("--edge", options->edges,
+                     "Instead of a chart: a rectangle x,y,width,height (px) that holds one slanted edge; or whole")
+        ->allow_extra_args(false)
+        ->type_name("RECTANGLE");
+    command
+        ->add_option("--focus-positions", options->focus_positions_mm,
+                     "Where the focus stood in each IMAGE, mm, for field curvature")
+        ->delimiter(',');
     command->add_option("--flat-field", options->flat_fields, "Pictures of an even surface, for vignetting")
         ->type_name("FILE");
     command->add_option("--model", options->model, "brown-conrady or kannala-brandt (default: what fits better)")

@@ -198,7 +198,7 @@ TEST(CalibrationSharpnessEdge, RegionsOfAChartLieOnItsEdges) {
     charuco.markers.assign(15, 0);
     const Chart charts[] = {
         {.pattern = SlantedEdges{5, 4, 60.0, 40.0, 8.0}}, {.pattern = Checkerboard{7, 6, 40.0}}, {.pattern = charuco}};
-    const std::size_t expected[] = {4u * 20u, 5u * 5u + 6u * 4u, 4u * 4u + 5u * 3u};
+    const std::size_t expected[] = {80, 49, 31};  // 4 · 20, 5 · 5 + 6 · 4, 4 · 4 + 5 · 3
     for (std::size_t i = 0; i < std::size(charts); ++i) {
         const std::vector<Vec2d> features = feature_points(charts[i]);
         const ChartPoints points{.image_px = view_of(camera, pose, charts[i]).image_px,

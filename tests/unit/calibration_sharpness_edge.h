@@ -53,7 +53,8 @@ struct EdgePicture {
     std::function<double(const Vec2d&)> light = [](const Vec2d&) { return 1.0; };
 };
 
-/// Pixels are exact integrals of the blurred edge over their box, by n × n Gauss-Legendre points of order 2.
+/// Pixels are exact integrals of the blurred edge over their box, by n × n cells of 2 × 2 Gauss-Legendre
+/// points.
 inline Image paint_edge(const EdgePicture& edge, const Blur& blur, int n = 4) {
     const double a = edge.normal_deg * std::numbers::pi / 180.0;
     Image image = make_image(edge.width, edge.height, {"Y"});
@@ -62,7 +63,8 @@ inline Image paint_edge(const EdgePicture& edge, const Blur& blur, int n = 4) {
             double sum = 0.0;
             for (int i = 0; i < 4 * n * n; ++i) {
                 const auto offset = [&](int k) {
-                    return (k / 2 + 0.5 + (k % 2 == 0 ? -0.5 : 0.5) / std::numbers::sqrt3) / n - 0.5;
+                    const int cell = k / 2;
+                    return (cell + 0.5 + (k % 2 == 0 ? -0.5 : 0.5) / std::numbers::sqrt3) / n - 0.5;
                 };
                 const double dx = x + offset(i % (2 * n)) - edge.middle.x;
                 const double dy = y + offset(i / (2 * n)) - edge.middle.y;

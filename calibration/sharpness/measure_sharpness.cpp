@@ -1,0 +1,186 @@
+#include "calibration/sharpness/measure_sharpness.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "calibration/sharpness/chart_edges.h"
+#include "calibration/sharpness/sharpness_field.h"
+#include "engine/io/input_error.h"
+
+namespace lensproof {
+namespace {
+
+constexpr std::size_t kMostCurves = 200;
+constexpr double kCurveDigit = 1e-5;  // far below any error
+constexpr double kMostRelativeError = 0.2;
+
+void round_curve(std::vector<double>& values) {
+    for (double& value : values) {
+        value = std::round(value / kCurveDigit) * kCurveDigit;
+    }
+}
+
+// Null, or why the edge is not worth listing.
+const char* too_uncertain(const EdgeMtf& edge) {
+    if (!edge.mtf50) {
+        return "does not fall to half its contrast below one cycle per pixel";
+    }
+    return edge.mtf50->standard_error < kMostRelativeError * edge.mtf50->cycles_per_px ? nullptr : "is too noisy";
+}
+
+std::string listed(const std::map<std::string, int>& refusals) {
+    std::string text;
+    for (const auto& [reason, count] : refusals) {
+        text += (text.empty() ? "" : "; ") + std::to_string(count) + (count == 1 ? " edge " : " edges: each ") + reason;
+    }
+    return text;
+}
+
+// The curve in cycles per mm.
+Curve per_mm(Curve curve, double pixel_pitch_um) {
+    for (std::vector<double>* values : {&curve.value, &curve.lower_95, &curve.upper_95}) {
+        for (double& value : *values) {
+            value *= 1e3 / pixel_pitch_um;
+        }
+    }
+    return curve;
+}
+
+double median_mtf50(const std::vector<EdgeMtf>& edges) {
+    std::vector<double> values;
+    for (const EdgeMtf& edge : edges) {
+        if (edge.mtf50) {
+            values.push_back(edge.mtf50->cycles_per_px);
+        }
+    }
+    if (values.empty()) {
+        return 0.0;
+    }
+    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+    std::nth_element(values.begin(), middle, values.end());
+    return *middle;
+}
+
+std::vector<FocusedEdges> by_position(const SharpnessObservations& seen, const std::vector<ProfileEdge>& edges) {
+    std::map<double, FocusedEdges> series;
+    for (const ProfileEdge& edge : edges) {
+        const auto position = seen.focus_position_mm.find(edge.image);
+        if (position != seen.focus_position_mm.end()) {
+            FocusedEdges& focused = series[position->second];
+            focused.position_mm = position->second;
+            focused.edges.push_back(edge.edge);
+        }
+    }
+    std::vector<FocusedEdges> result;
+    for (auto& [position, focused] : series) {
+        result.push_back(std::move(focused));
+    }
+    return result;
+}
+
+void add_field(Profile& profile, const std::string& channel, const std::vector<EdgeMtf>& edges, const Vec2d& centre) {
+    SharpnessField field = fit_sharpness_field(edges, centre, half_diagonal_px(profile));
+    for (const auto& [name, curve] : {std::pair("mtf50_tangential_", &field.tangential_cycles_per_px),
+                                      std::pair("mtf50_sagittal_", &field.sagittal_cycles_per_px)}) {
+        if (profile.pixel_pitch_um) {
+            profile.curves[name + channel + "_cycles_per_mm"] = per_mm(*curve, *profile.pixel_pitch_um);
+        }
+        profile.curves[name + channel] = std::move(*curve);
+    }
+    profile.curves["mtf50_tangential_over_sagittal_" + channel] = std::move(field.tangential_over_sagittal);
+    profile.terms["sharpness_" + channel] = {.names = std::move(field.names),
+                                             .values = std::move(field.coefficients),
+                                             .covariance = std::move(field.covariance)};
+}
+
+void add_best_focus(Profile& profile, const std::string& channel, const std::vector<FocusedEdges>& series,
+                    const Vec2d& centre) {
+    BestFocus focus = fit_best_focus(series, centre, half_diagonal_px(profile));
+    profile.curves["best_focus_tangential_" + channel + "_mm"] = std::move(focus.tangential_mm);
+    profile.curves["best_focus_sagittal_" + channel + "_mm"] = std::move(focus.sagittal_mm);
+    profile.terms["best_focus_" + channel] = {
+        .names = {"axis_position_mm"},
+        .values = {focus.axis_position_mm},
+        .covariance = {focus.axis_standard_error_mm * focus.axis_standard_error_mm}};
+}
+
+}  // namespace
+
+void observe_chart_edges(SharpnessObservations& seen, const Image& image, int channel, const std::string& name,
+                         const ChartPoints& points, const Chart& chart) {
+    std::vector<ProfileEdge>& own = seen.edges[image.channels[static_cast<std::size_t>(channel)]];
+    for (const EdgeRegion& region : chart_edges(points, chart)) {
+        const auto result = measure_edge(image, channel, region);
+        if (const auto* refusal = std::get_if<EdgeRefusal>(&result)) {
+            ++seen.refusals[refusal->reason];
+        } else if (const char* reason = too_uncertain(std::get<EdgeMtf>(result))) {
+            ++seen.refusals[reason];
+        } else {
+            own.push_back({name, std::get<EdgeMtf>(result)});
+        }
+    }
+}
+
+void observe_edges(SharpnessObservations& seen, const Image& image, int channel, const std::string& name,
+                   const std::vector<PixelRectangle>& rectangles) {
+    for (PixelRectangle r : rectangles) {
+        if (r.width == 0 && r.height == 0) {
+            r = {0, 0, image.width, image.height};
+        }
+        const auto refuse = [&](const std::string& reason) {
+            return InputError(name + ": the rectangle " + std::to_string(r.x) + "," + std::to_string(r.y) + "," +
+                              std::to_string(r.width) + "," + std::to_string(r.height) + " in channel " +
+                              image.channels[static_cast<std::size_t>(channel)] + " " + reason +
+                              ": expected one slanted edge with room on either side");
+        };
+        const auto region = find_edge(image, channel, r);
+        if (const auto* refusal = std::get_if<EdgeRefusal>(&region)) {
+            throw refuse(refusal->reason);
+        }
+        auto result = measure_edge(image, channel, std::get<EdgeRegion>(region));
+        if (const auto* refusal = std::get_if<EdgeRefusal>(&result)) {
+            throw refuse(refusal->reason);
+        }
+        seen.edges[image.channels[static_cast<std::size_t>(channel)]].push_back(
+            {name, std::move(std::get<EdgeMtf>(result))});
+    }
+}
+
+void add_sharpness(Profile& profile, const SharpnessObservations& seen, const Vec2d& centre_px) {
+    for (const auto& [channel, listed_edges] : seen.edges) {
+        std::vector<FocusedEdges> series = by_position(seen, listed_edges);
+        std::vector<EdgeMtf> edges;
+        for (const ProfileEdge& edge : listed_edges) {
+            edges.push_back(edge.edge);
+        }
+        try {
+            if (!series.empty()) {
+                edges =
+                    std::max_element(series.begin(), series.end(), [](const FocusedEdges& a, const FocusedEdges& b) {
+                        return median_mtf50(a.edges) < median_mtf50(b.edges);
+                    })->edges;
+                add_best_focus(profile, channel, series, centre_px);
+            }
+        } catch (const InputError& e) {
+            profile.not_measured["field_curvature"] = e.what();
+        }
+        try {
+            add_field(profile, channel, edges, centre_px);
+        } catch (const InputError& e) {
+            const std::string refused = listed(seen.refusals);
+            profile.not_measured["sharpness_over_the_field"] = e.what() + (refused.empty() ? "" : " (" + refused + ")");
+        }
+        std::vector<ProfileEdge>& kept = profile.sharpness[channel];
+        kept = listed_edges;
+        for (ProfileEdge& edge : kept) {
+            if (kept.size() > kMostCurves) {
+                edge.edge.mtf.clear();
+                edge.edge.mtf_standard_error.clear();
+            }
+            round_curve(edge.edge.mtf);
+            round_curve(edge.edge.mtf_standard_error);
+        }
+    }
+}
+
+}  // namespace lensproof

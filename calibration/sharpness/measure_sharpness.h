@@ -1,0 +1,39 @@
+// calibration/sharpness/measure_sharpness.h — from pictures' edges to the sharpness in a profile.
+#pragma once
+#include <map>
+#include <string>
+#include <vector>
+
+#include "calibration/profile.h"
+#include "calibration/refine.h"
+#include "calibration/sharpness/profile_edge.h"
+#include "engine/io/image.h"
+#include "engine/scene/chart.h"
+
+namespace lensproof {
+
+/// The edges seen so far.
+struct SharpnessObservations {
+    std::map<std::string, std::vector<ProfileEdge>> edges;  // by channel
+    std::map<std::string, int> refusals;                    // how many edges were refused for which reason
+    /// Where the focus stood, mm, by picture; empty when that is not known.
+    std::map<std::string, double> focus_position_mm;
+};
+
+/// Measures the chart's edges (`chart_edges`) in one channel of a picture.
+void observe_chart_edges(SharpnessObservations& seen, const Image& image, int channel, const std::string& name,
+                         const ChartPoints& points, const Chart& chart);
+
+/// Measures the one edge in each rectangle in one channel; one without width and height is the whole picture.
+/// Throws InputError naming the picture, the rectangle and why its edge cannot be measured.
+void observe_edges(SharpnessObservations& seen, const Image& image, int channel, const std::string& name,
+                   const std::vector<PixelRectangle>& rectangles);
+
+/// Adds to the profile: the edges; of each channel C with enough edges the curves "mtf50_tangential_C" and
+/// "mtf50_sagittal_C" in cycles per pixel (and "…_cycles_per_mm" where the pixel pitch is known) and
+/// "mtf50_tangential_over_sagittal_C"; with focus positions also "best_focus_tangential_C_mm" and
+/// "best_focus_sagittal_C_mm". The field is that of the pictures in `seen` together; of a focus series, that of the
+/// position at which the edges are sharpest. Whole MTF curves are kept of channels with at most 200 edges.
+void add_sharpness(Profile& profile, const SharpnessObservations& seen, const Vec2d& centre_px);
+
+}  // namespace lensproof

@@ -1,0 +1,25 @@
+// calibration/sharpness/profile_edge.h — an edge as a profile lists it.
+#pragma once
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+
+#include "calibration/json_node.h"
+#include "calibration/sharpness/slanted_edge.h"
+
+namespace lensproof {
+
+struct ProfileEdge {
+    std::string image;
+    EdgeMtf edge;
+};
+
+/// `image`, `centre_px`, `normal_deg` (from dark to bright, from +x towards +y), `rise_px`, `bend_px`; for MTF50 and
+/// MTF10, where they were reached, `mtf50_cycles_per_px`, `mtf50_standard_error`, `mtf50_lower_95`, `mtf50_upper_95`,
+/// and `mtf50_cycles_per_mm` where the pixel pitch is known; `curve`: `step_cycles_per_px`, `mtf`, `standard_error`.
+nlohmann::ordered_json to_json(const ProfileEdge& edge, std::optional<double> pixel_pitch_um);
+
+/// Throws InputError as JsonNode says.
+ProfileEdge parse_edge(const JsonNode& node);
+
+}  // namespace lensproof
