@@ -1,10 +1,8 @@
 // experiments/cli/render_command.cpp — `lensproof render SCENE`: a scene, or a chart, through a lens.
 #include <fmt/format.h>
 
-#include <array>
 #include <memory>
 #include <utility>
-#include <vector>
 
 #include "engine/io/cache.h"
 #include "engine/io/file.h"
@@ -92,8 +90,9 @@ std::string scene_hash(const SceneSetup& setup, const std::string& file) {
 /// Where paths begin.
 enum class PathsFrom { camera, light, both };
 
-constexpr std::array<std::pair<const char*, PathsFrom>, 3> kPathsFrom = {
-    {{"camera", PathsFrom::camera}, {"light", PathsFrom::light}, {"both", PathsFrom::both}}};
+PathsFrom paths_from(const std::string& name) {
+    return name == "camera" ? PathsFrom::camera : name == "light" ? PathsFrom::light : PathsFrom::both;
+}
 
 /// What of it stands among a render's settings.
 std::string kept_apart(PathsFrom from) {
@@ -161,14 +160,13 @@ void add_render_command(CLI::App& app, int& status) {
         "Ctrl-C ends a render with a checkpoint written and exit status 3; a second one at once.");
     command->add_option("SCENE", options->scene, "A scene file")->required();
     add_render_job_options(*command, *options);
-    const auto paths = std::make_shared<PathsFrom>(PathsFrom::camera);
+    const auto paths = std::make_shared<std::string>("camera");
     command
         ->add_option("--paths", *paths,
                      "Where paths begin: camera (the default); light, which finds what shines through glass and cannot "
                      "see mirrors; or both, each counted by how well it makes what it finds. One image by each")
-        ->transform(CLI::CheckedTransformer(
-            std::vector<std::pair<std::string, PathsFrom>>(kPathsFrom.begin(), kPathsFrom.end())));
-    command->callback([options, paths, &status] { status = run_render(*options, *paths); });
+        ->check(CLI::IsMember({"camera", "light", "both"}));
+    command->callback([options, paths, &status] { status = run_render(*options, paths_from(*paths)); });
 }
 
 }  // namespace lensproof
