@@ -6,6 +6,7 @@
 #include <cmath>
 #include <iterator>
 #include <limits>
+#include <utility>
 
 #include "engine/io/hash.h"
 #include "engine/io/input_error.h"
@@ -41,6 +42,20 @@ Sensor read_sensor(TomlTable& table) {
                                          sensor.pixel_pitch_mm, size[1] / pixels[1]));
     }
     return sensor;
+}
+
+std::optional<PolygonStop> read_blades(TomlTable& table) {
+    if (table.has("blades")) {
+        return PolygonStop{.blades = table.integer("blades", 3, 64),
+                           .curvature = table.number_or("blade_curvature", 0.0, {.min = 0.0, .max = 1.0}),
+                           .rotation_deg = table.number_or("blade_rotation_deg", 0.0)};
+    }
+    for (const char* key : {"blade_curvature", "blade_rotation_deg"}) {
+        if (table.has(key)) {
+            table.fail(key, "stands without blades, expected their number too");
+        }
+    }
+    return std::nullopt;
 }
 
 std::vector<TraceLens<double>> lenses_of(const std::vector<WavelengthStratum>& strata) {
@@ -115,6 +130,7 @@ Camera read_camera_keys(TomlTable& table, bool may_lack_lens) {
     Camera camera;
     camera.lens = may_lack_lens ? table.text_or("lens", "") : table.text("lens");
     camera.zoom = table.text_or("zoom", "");
+    camera.blades = read_blades(table);
     camera.f_number = table.number("f_number", {.min = 0.1, .max = 1000.0});
     camera.focus_distance_mm = table.infinity("focus_distance_mm") > 0 ? std::numeric_limits<double>::infinity()
                                                                        : table.number("focus_distance_mm", kPositive);
@@ -187,8 +203,11 @@ ChartScene read_chart_scene(const std::filesystem::path& file) {
 }
 
 Lens camera_lens(const Camera& camera) {
-    return focused_at(with_f_number(load_lens(camera.lens, {.zoom = camera.zoom}), camera.f_number),
-                      camera.focus_distance_mm);
+    Lens lens = load_lens(camera.lens, {.zoom = camera.zoom});
+    if (camera.blades) {
+        lens.stop_mask = StopMask(*camera.blades, {});
+    }
+    return focused_at(with_f_number(std::move(lens), camera.f_number), camera.focus_distance_mm);
 }
 
 ChartCamera::ChartCamera(const Camera& camera, const Light& light, const SpectralSampling& spectral, const Cache& cache,

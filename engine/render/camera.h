@@ -21,6 +21,8 @@ namespace lensproof {
 struct Camera {
     std::string lens;  // a file, or the name of a lens that ships
     std::string zoom;  // the position's name or number; empty: the first
+    /// Blades in place of what shape the lens's stop has, in the circle that the f-number says.
+    std::optional<PolygonStop> blades;
     double f_number = 0.0;
     double focus_distance_mm = 0.0;  // from the first vertex; may be infinite
     Sensor sensor;
@@ -28,8 +30,9 @@ struct Camera {
     std::string response;
 };
 
-/// Reads a camera's table: lens, zoom (optional), f_number, focus_distance_mm (inf allowed), sensor_mm = [w, h], pixels
-/// = [w, h], shutter_s, iso, response. Throws InputError naming file, line and key; pixels have to be square.
+/// Reads a camera's table: lens, zoom (optional), blades with blade_curvature and blade_rotation_deg (optional),
+/// f_number, focus_distance_mm (inf allowed), sensor_mm = [w, h], pixels = [w, h], shutter_s, iso, response. Throws
+/// InputError naming file, line and key; pixels have to be square.
 Camera read_camera(TomlTable& table);
 
 /// The same keys, for a table that has more; without a lens, if that `may_lack_lens`.
@@ -87,7 +90,7 @@ void read_render_table(TomlTable& table, ChartScene& scene);
 /// and [chart] optional, [pose] for a flat field alone.
 ChartScene read_chart_scene(const std::filesystem::path& file);
 
-/// The camera's lens: loaded, stopped down and focused.
+/// The camera's lens: loaded, given its blades, stopped down and focused.
 Lens camera_lens(const Camera& camera);
 
 /// A lens at the wavelengths that a render samples.

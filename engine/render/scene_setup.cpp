@@ -37,6 +37,11 @@ SceneSetup parse_scene_setup(const std::string& text, const std::filesystem::pat
     if (setup.view.focal_length_mm && !setup.camera.lens.empty()) {
         camera.fail("focal_length_mm", "stands beside lens, expected one or the other");
     }
+    if (setup.camera.blades && setup.view.model != LensModel::exact) {
+        camera.fail("blades",
+                    fmt::format("stands beside model = \"{}\", whose pupil is round; expected the exact model",
+                                name_of(setup.view.model)));
+    }
     camera.finish();
     setup.scene = read_scene(top);
     if (setup.scene.lights.empty()) {

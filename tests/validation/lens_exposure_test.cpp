@@ -1,0 +1,223 @@
+// How bright the scene renderer makes an even scene through a lens: furnaces and Lambertian planes against solid
+// angles.
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+
+#include "engine/analysis/lens_analysis.h"
+#include "engine/io/input_error.h"
+#include "engine/optics/chief_ray.h"
+#include "engine/optics/focus.h"
+#include "engine/optics/illumination.h"
+#include "engine/spectral/illuminant.h"
+#include "tests/validation/rendered_scene.h"
+
+namespace lensproof {
+namespace {
+
+constexpr double kPi = std::numbers::pi;
+constexpr int kSeeds = 8;
+constexpr double kLuminance = 1000.0;
+const std::vector<double> kWavelengths{456.25, 518.75, 581.25, 643.75};  // the middles of four layers over 425 … 675 nm
+constexpr Sensor kSensor{.width = 421, .height = 1, .pixel_pitch_mm = 0.1};
+
+/// A camera that looks along +z at whatever stands there, lit by an even sky.
+SceneSetup setup_of(const std::string& camera, const std::string& objects) {
+    return parse_scene_setup(
+        fmt::format("[camera]\n{}\nposition_mm = [0, 0, 0]\nlook_at_mm = [0, 0, 1]\nsensor_mm = [{}, {}]\n"
+                    "pixels = [{}, {}]\nshutter_s = 0.01\niso = 100\nresponse = \"luminance\"\n{}\n"
+                    "[[lights]]\nkind = \"environment\"\nluminance_cd_m2 = {}\nilluminant = \"E\"\n"
+                    "[render]\nmax_bounces = 200\nlayers = 4\nstrata_per_layer = 1\nwavelengths_nm = [425, 675]\n",
+                    camera, kSensor.width * kSensor.pixel_pitch_mm, kSensor.pixel_pitch_mm, kSensor.width,
+                    kSensor.height, objects, kLuminance),
+        "even.toml");
+}
+
+/// Film irradiance over the radiance of the sky, sr: [pixel][wavelength]. The pixels are `columns` of the sensor.
+std::vector<std::array<Measured, 4>> exposures(const SceneSetup& setup, const std::vector<int>& columns,
+                                               std::uint32_t samples) {
+    const PreparedScene scene(setup, {}, {});
+    const Spectrum radiance = radiance_of(illuminant("E"), kLuminance);
+    std::vector<PixelRect> windows;
+    windows.reserve(columns.size());
+    for (const int column : columns) {
+        windows.push_back({column, 0, 1, 1});
+    }
+    std::vector<std::array<std::vector<double>, 4>> found(columns.size());
+    for (int seed = 0; seed < kSeeds; ++seed) {
+        const Film film = rendered(scene, windows, samples, static_cast<std::uint64_t>(seed));
+        for (std::size_t i = 0; i < columns.size(); ++i) {
+            std::array<double, 4> layers{};
+            film.layers(columns[i], 0, layers);
+            for (std::size_t k = 0; k < layers.size(); ++k) {
+                found[i][k].push_back(layers[k] / radiance(kWavelengths[k]));
+            }
+        }
+    }
+    std::vector<std::array<Measured, 4>> means(columns.size());
+    for (std::size_t i = 0; i < columns.size(); ++i) {
+        std::ranges::transform(found[i], means[i].begin(), [](const auto& values) { return mean_of(values); });
+    }
+    return means;
+}
+
+double height_mm(int column) {
+    return std::abs(kSensor.position(column, 0.0).x);
+}
+
+/// Eight standard errors of eight seeds, which one of 10 000 numbers exceeds (Student's t), and a share of the number.
+void expect_measured(const Measured& found, double expected, double share) {
+    EXPECT_NEAR(found.value, expected, 8.0 * found.error + share * expected);
+    EXPECT_LT(found.error, 0.004 * expected);
+}
+
+const std::vector<int> kColumns{210, 310, 370, 410};  // the axis, 10, 16 and 20 mm beside it
+
+const std::string kDoubleGauss = "lens = \"double-gauss-tronnier\"\nf_number = 2.8\nfocus_distance_mm = 2000";
+const Lens& double_gauss() {
+    static const Lens lens = focused_at(with_f_number(load_lens("double-gauss-tronnier"), 2.8), 2000.0);
+    return lens;
+}
+
+// In an even sky, which white things of any shape do not disturb, a film point's irradiance is L ∫ τ dΩ_p: the sky's
+// radiance times the projected solid angle of the bundle that reaches it through every rim, weighed with the
+// transmittance of each ray: without losses π / (4 N²) on the axis, N being the working f-number. That is found here by
+// quadrature over the bundle's outline, without any sampler.
+TEST(LensExposure, WhiteFurnaceStaysWhiteThroughTheLens) {
+    const std::string white =
+        "[[materials]]\nname = \"white\"\nkind = \"diffuse\"\nreflectance = 1.0\n"
+        "[[objects]]\nshape = \"sphere\"\nradius_mm = 400\ntranslate_mm = [300, 0, 2000]\nmaterial = \"white\"\n"
+        "[[objects]]\nshape = \"quad\"\nsize_mm = [9000, 9000]\nrotate_deg = [0, 180, 0]\n"
+        "translate_mm = [0, 0, 3000]\nmaterial = \"white\"\n";
+    const auto found = exposures(setup_of(kDoubleGauss, white), kColumns, 4096);
+    for (std::size_t i = 0; i < kColumns.size(); ++i) {
+        for (std::size_t k = 0; k < kWavelengths.size(); ++k) {
+            const Bundle bundle =
+                image_bundle(at_wavelength<double>(double_gauss(), kWavelengths[k]), height_mm(kColumns[i]));
+            fmt::print("{:.1f} mm, {} nm: {:.5f} ± {:.5f} sr, traced {:.5f}, of which passes {:.3f}\n",
+                       height_mm(kColumns[i]), kWavelengths[k], found[i][k].value, found[i][k].error,
+                       bundle.transmitted, bundle.transmitted / bundle.projected_solid_angle);
+            // Roulette ends no path for good, 200 bounces end hardly any; a float's weights round by 1e-6.
+            expect_measured(found[i][k], bundle.transmitted, 1e-4);
+        }
+    }
+}
+
+/// Of the chief ray that reaches this height from a plane at 2 m, by secants.
+double field_deg_of(const ChiefRays& chiefs, double height) {
+    double object = 40.0 * height;  // about where a lens of 50 mm images it
+    double before = 0.0;
+    double height_before = 0.0;
+    for (int step = 0; step < 20; ++step) {
+        const double reached = chiefs.from_point(-object, -2000.0).value().image_height;
+        if (std::abs(reached - height) < 1e-9) {
+            break;
+        }
+        const double next = object + (height - reached) * (object - before) / (reached - height_before);
+        before = object;
+        height_before = reached;
+        object = next;
+    }
+    return chiefs.from_point(-object, -2000.0).value().field_angle * 180.0 / kPi;
+}
+
+// A matt plane across the axis that an even sky lights has the radiance ρ L, the same in every direction. Its image
+// falls off from the axis as `analyze` says (relative illumination) times the transmittance of the field's rays.
+TEST(LensExposure, MattPlaneFallsOffAsAnalyzeSays) {
+    const std::string plane =
+        "[[materials]]\nname = \"matt\"\nkind = \"diffuse\"\nreflectance = 0.4\n"
+        "[[objects]]\nshape = \"quad\"\nsize_mm = [4000, 4000]\nrotate_deg = [0, 180, 0]\ntranslate_mm = [0, 0, 2000]\n"
+        "material = \"matt\"\n";
+    const auto found = exposures(setup_of(kDoubleGauss, plane), kColumns, 2048);
+    const double reference_nm = kWavelengths[2];
+    const TraceLens<double> traced = at_wavelength<double>(double_gauss(), reference_nm);
+    const ChiefRays chiefs(double_gauss(), reference_nm);
+    const Bundle axis = image_bundle(traced, 0.0);
+    for (std::size_t i = 1; i < kColumns.size(); ++i) {
+        const double height = height_mm(kColumns[i]);
+        const double field = field_deg_of(chiefs, height);
+        const LensAnalysis analysis = analyze_lens(double_gauss(), {.wavelengths_nm = {reference_nm},
+                                                                    .reference_wavelength_nm = reference_nm,
+                                                                    .fields_deg = {field},
+                                                                    .object_distance = 2000.0});
+        const Bundle bundle = image_bundle(traced, height);
+        const double passing = bundle.transmitted / bundle.projected_solid_angle;
+        const double passing_axis = axis.transmitted / axis.projected_solid_angle;
+        const double expected = analysis.fields[0].relative_illumination.value() * passing / passing_axis;
+        const double ratio = found[i][2].value / found[0][2].value;
+        const double error =
+            ratio * std::hypot(found[i][2].error / found[i][2].value, found[0][2].error / found[0][2].value);
+        const double cos = std::cos(field * kPi / 180.0);
+        fmt::print("{:.1f} mm, {:.2f}°: {:.4f} ± {:.4f} of the axis, by analyze {:.4f}; cos⁴ {:.4f}\n", height, field,
+                   ratio, error, expected, std::pow(cos, 4));
+        expect_measured({ratio, error}, expected, 1e-4);
+        expect_measured(found[0][2], 0.4 * axis.transmitted, 1e-4);
+    }
+}
+
+// Seven straight blades leave of the stop's circle 7 / (2π) sin(2π / 7) = 0.871, and of the light on the axis as much,
+// where the lens is stopped down so far that pupils are images of the stop to scale: the irradiance of the rim's rays
+// is less than the middle's by cos⁴ of 3.5° of their angle, a percent, of which the ratio sees a tenth.
+TEST(LensExposure, BladesLeaveTheirPolygonsShare) {
+    const std::string camera = "lens = \"double-gauss-tronnier\"\nf_number = 8\nfocus_distance_mm = 2000\n";
+    const auto round = exposures(setup_of(camera, ""), {210}, 4096)[0][2];
+    const auto bladed = exposures(setup_of(camera + "blades = 7\nblade_rotation_deg = 10", ""), {210}, 4096)[0][2];
+    const auto curved = exposures(setup_of(camera + "blades = 7\nblade_curvature = 1.0", ""), {210}, 4096)[0][2];
+    const double share = 7.0 / (2.0 * kPi) * std::sin(2.0 * kPi / 7.0);
+    expect_measured(bladed, share * round.value, 2e-3);
+    expect_measured(curved, round.value, 2e-3);
+}
+
+TEST(LensExposure, BladesWithoutALensOrANumberAreRefused) {
+    const auto message = [](const std::string& camera) -> std::string {
+        try {
+            setup_of(camera, "");
+        } catch (const InputError& error) {
+            return error.what();
+        }
+        return "";
+    };
+    EXPECT_NE(message(kDoubleGauss + "\nmodel = \"thin-lens\"\nblades = 7").find("thin-lens"), std::string::npos);
+    EXPECT_NE(message(kDoubleGauss + "\nblade_rotation_deg = 7").find("blade_rotation_deg"), std::string::npos);
+    EXPECT_NE(message(kDoubleGauss + "\nblades = 2").find("blades"), std::string::npos);
+}
+
+// Through a pinhole the same plane falls off as cos⁴θ. Through a thin lens it does as a disc of radius a seen from the
+// film at the distance s does (Foote, Bull. Bur. Standards 12, 1915): E = π L / 2 · (1 − (1 + tan²θ − tan²α) /
+// √(tan⁴θ + 2 tan²θ (1 − tan²α) + 1 / cos⁴α)), tan α = a / s.
+TEST(LensExposure, IdealCamerasFallOffByTheirFormulas) {
+    constexpr double kFocal = 35.0;
+    constexpr double kFNumber = 1.4;
+    const std::string plane =
+        "[[materials]]\nname = \"matt\"\nkind = \"diffuse\"\nreflectance = 0.4\n"
+        "[[objects]]\nshape = \"quad\"\nsize_mm = [9000, 9000]\nrotate_deg = [0, 180, 0]\ntranslate_mm = [0, 0, 2000]\n"
+        "material = \"matt\"\n";
+    const std::string settings =
+        fmt::format("focal_length_mm = {}\nf_number = {}\nfocus_distance_mm = 2000", kFocal, kFNumber);
+    const double film = 1.0 / (1.0 / kFocal - 1.0 / 2000.0);
+    const double radius = 0.5 * kFocal / kFNumber;
+    const double tan2a = radius * radius / (film * film);
+    const auto pinhole = exposures(setup_of("model = \"pinhole\"\n" + settings, plane), kColumns, 1024);
+    const auto thin = exposures(setup_of("model = \"thin-lens\"\n" + settings, plane), kColumns, 1024);
+    for (std::size_t i = 0; i < kColumns.size(); ++i) {
+        const double tan2 = std::pow(height_mm(kColumns[i]) / film, 2);
+        const double cos4 = 1.0 / ((1.0 + tan2) * (1.0 + tan2));
+        const double disc = 0.5 * kPi *
+                            (1.0 - (1.0 + tan2 - tan2a) / std::sqrt(tan2 * tan2 + 2.0 * tan2 * (1.0 - tan2a) +
+                                                                    (1.0 + tan2a) * (1.0 + tan2a)));
+        fmt::print("{:.1f} mm: pinhole {:.5f} ± {:.5f} sr, cos⁴ {:.5f}; thin lens {:.5f} ± {:.5f}, Foote {:.5f}\n",
+                   height_mm(kColumns[i]), pinhole[i][0].value, pinhole[i][0].error, 0.4 * kPi * tan2a * cos4,
+                   thin[i][0].value, thin[i][0].error, 0.4 * disc);
+        for (std::size_t k = 0; k < kWavelengths.size(); ++k) {
+            expect_measured(pinhole[i][k], 0.4 * kPi * tan2a * cos4, 1e-4);
+            expect_measured(thin[i][k], 0.4 * disc, 1e-4);
+        }
+    }
+}
+
+}  // namespace
+}  // namespace lensproof
