@@ -82,15 +82,13 @@ int run_measure(const MeasureOptions& options) {
     input.chart = read_chart_file(options.chart);
     if (std::holds_alternative<FlatField>(input.chart.pattern)) {
         throw InputError(
-            fmt::format("{}: the chart is a flat field, expected a checkerboard or a disc grid; pictures of an "
-                        "even surface are given with --flat-field",
-                        options.chart));
+            fmt::format("{}: the chart is a flat field, expected one of {}; pictures of an even surface "
+                        "are given with --flat-field",
+                        options.chart, detectable_kinds()));
     }
     if (!can_detect(input.chart)) {
-        throw InputError(
-            fmt::format("{}: the chart is of kind {}, which is not measured: expected a checkerboard or a "
-                        "disc-grid",
-                        options.chart, kind_name(input.chart)));
+        throw InputError(fmt::format("{}: the chart is of kind {}, which is not measured: expected one of {}",
+                                     options.chart, kind_name(input.chart), detectable_kinds()));
     }
     input.model = model_kind(options.model);
     input.source = {.kind = options.kind, .images = {}, .camera = options.camera, .lens = options.lens};
