@@ -42,7 +42,29 @@ struct Pixel {
     double light = 0.0;
 };
 
-/// erf(d / √2σ) of one edge at a pixel, and its derivatives by the parameters.
+/// A step, or a line, across one direction: its value at a distance, and the derivatives by distance and blur.
+struct Profile {
+    double value = 0.0;
+    double slope = 0.0;
+    double by_blur = 0.0;
+};
+
+Profile step_at(double distance, double blur) {
+    const double scale = 1.0 / (std::numbers::sqrt2 * blur);
+    const double u = distance * scale;
+    const double slope = 2.0 * std::numbers::inv_sqrtpi * std::exp(-u * u) * scale;
+    return {.value = std::erf(u), .slope = slope, .by_blur = -slope * distance / blur};
+}
+
+Profile line_at(double distance, double width, double blur) {
+    const Profile left = step_at(distance + 0.5 * width, blur);
+    const Profile right = step_at(distance - 0.5 * width, blur);
+    return {.value = 1.0 - 0.5 * (left.value - right.value),
+            .slope = -0.5 * (left.slope - right.slope),
+            .by_blur = -0.5 * (left.by_blur - right.by_blur)};
+}
+
+/// One factor of the model at a pixel, and its derivatives by the parameters.
 struct Edge {
     double value = 0.0;
     double by_x = 0.0;
@@ -52,29 +74,33 @@ struct Edge {
     double by_blur = 0.0;
 };
 
-Edge edge_at(double dx, double dy, double angle, double curvature, double blur) {
+Edge edge_at(double dx, double dy, double angle, double curvature, double blur, double line_px) {
     const double c = std::cos(angle);
     const double s = std::sin(angle);
     const double along = c * dx + s * dy;
     const double from = c * dy - s * dx + curvature * along * along;
-    const double scale = 1.0 / (std::numbers::sqrt2 * blur);
-    const double u = from * scale;
-    const double slope = 2.0 * std::numbers::inv_sqrtpi * std::exp(-u * u) * scale;
+    const Profile profile = line_px > 0.0 ? line_at(from, line_px, blur) : step_at(from, blur);
     const double bend = 2.0 * curvature * along;
-    return {.value = std::erf(u),
-            .by_x = slope * (s - bend * c),
-            .by_y = slope * (-c - bend * s),
-            .by_angle = slope * (-along + bend * (c * dy - s * dx)),
-            .by_curvature = slope * along * along,
-            .by_blur = -slope * from / blur};
+    return {.value = profile.value,
+            .by_x = profile.slope * (s - bend * c),
+            .by_y = profile.slope * (-c - bend * s),
+            .by_angle = profile.slope * (-along + bend * (c * dy - s * dx)),
+            .by_curvature = profile.slope * along * along,
+            .by_blur = profile.by_blur};
 }
 
+/// Widths of the two lines, px; 0 for edges.
+struct LineWidths {
+    double first_px = 0.0;
+    double second_px = 0.0;
+};
+
 /// Model minus light at a pixel, and its gradient.
-double residual(const Pixel& pixel, const Parameters& p, Parameters& gradient) {
+double residual(const Pixel& pixel, const Parameters& p, const LineWidths& widths, Parameters& gradient) {
     const double dx = pixel.x - p[kX];
     const double dy = pixel.y - p[kY];
-    const Edge first = edge_at(dx, dy, p[kAngle1], p[kCurvature1], p[kBlur]);
-    const Edge second = edge_at(dx, dy, p[kAngle2], p[kCurvature2], p[kBlur]);
+    const Edge first = edge_at(dx, dy, p[kAngle1], p[kCurvature1], p[kBlur], widths.first_px);
+    const Edge second = edge_at(dx, dy, p[kAngle2], p[kCurvature2], p[kBlur], widths.second_px);
     const double b = p[kContrast];
     gradient[kX] = -p[kSlopeX] + b * (first.by_x * second.value + first.value * second.by_x);
     gradient[kY] = -p[kSlopeY] + b * (first.by_y * second.value + first.value * second.by_y);
@@ -96,11 +122,11 @@ struct Sums {
     double squares = 0.0;
 };
 
-Sums sums_at(const std::vector<Pixel>& pixels, const Parameters& p) {
+Sums sums_at(const std::vector<Pixel>& pixels, const Parameters& p, const LineWidths& widths) {
     Sums sums;
     Parameters gradient;
     for (const Pixel& pixel : pixels) {
-        const double difference = residual(pixel, p, gradient);
+        const double difference = residual(pixel, p, widths, gradient);
         sums.normal.selfadjointView<Eigen::Lower>().rankUpdate(gradient);
         sums.right -= difference * gradient;
         sums.squares += difference * difference;
@@ -155,25 +181,32 @@ double variance_of(const std::vector<Pixel>& pixels) {
     return squares - sum * sum / static_cast<double>(pixels.size());
 }
 
-/// Sets the window's mean light, and the contrast with its sign; returns the variance.
-double start_light(const std::vector<Pixel>& pixels, Parameters& p) {
-    double sum = 0.0;
-    double projected = 0.0;
-    Parameters unused;
+/// Sets level and contrast to what explains the window best, the rest of `p` given.
+void start_light(const std::vector<Pixel>& pixels, const LineWidths& widths, Parameters& p) {
+    p[kLevel] = 0.0;
     p[kContrast] = 1.0;
+    double sum = 0.0;
+    double model_sum = 0.0;
+    double model_squares = 0.0;
+    double products = 0.0;
+    Parameters unused;
     for (const Pixel& pixel : pixels) {
+        const double model = residual({pixel.x, pixel.y, 0.0}, p, widths, unused);
         sum += pixel.light;
-        projected += residual({pixel.x, pixel.y, 0.0}, p, unused) * pixel.light;
+        model_sum += model;
+        model_squares += model * model;
+        products += model * pixel.light;
     }
     const auto count = static_cast<double>(pixels.size());
-    p[kLevel] = sum / count;
-    p[kContrast] = projected / count;
-    return variance_of(pixels);
+    const double spread = model_squares - model_sum * model_sum / count;
+    p[kContrast] = spread > 0.0 ? (products - sum * model_sum / count) / spread : 0.0;
+    p[kLevel] = (sum - p[kContrast] * model_sum) / count;
 }
 
 /// Least squares from `p`; whether it settled.
-bool descend(const std::vector<Pixel>& pixels, int free_count, double largest_blur, Parameters& p, double& squares) {
-    Sums sums = sums_at(pixels, p);
+bool descend(const std::vector<Pixel>& pixels, const LineWidths& widths, int free_count, double largest_blur,
+             Parameters& p, double& squares) {
+    Sums sums = sums_at(pixels, p, widths);
     double damping = 1e-3;
     for (int step = 0; step < kMostSteps; ++step) {
         Normal damped = sums.normal;
@@ -183,7 +216,7 @@ bool descend(const std::vector<Pixel>& pixels, int free_count, double largest_bl
             damped.topLeftCorner(free_count, free_count).ldlt().solve(sums.right.head(free_count));
         Parameters next = p + change;
         next[kBlur] = std::clamp(next[kBlur], kSmallestBlur_px, largest_blur);
-        const Sums tried = next.allFinite() ? sums_at(pixels, next) : Sums{.squares = sums.squares};
+        const Sums tried = next.allFinite() ? sums_at(pixels, next, widths) : Sums{.squares = sums.squares};
         const bool is_small = change.head(kAngle1).norm() < 1e-6;
         if (tried.squares < sums.squares) {
             p = next;
@@ -206,6 +239,9 @@ std::optional<Vec2d> fit_corner(const cv::Mat& plane, const CornerStart& start) 
     const bool has_markers = std::isfinite(start.clear_squares);
     const int free_count =
         start.half_window < kCurvedFrom_px ? static_cast<int>(kCurvature1) : static_cast<int>(kCount);
+    const double area = std::abs(cross(start.along_first, start.along_second));
+    const LineWidths widths{start.line_squares * area / std::hypot(start.along_first.x, start.along_first.y),
+                            start.line_squares * area / std::hypot(start.along_second.x, start.along_second.y)};
     CornerStart window = start;
     MarkerMask mask{.guard_px = kFirstGuard_px};
     Parameters p = Parameters::Zero();
@@ -223,15 +259,17 @@ std::optional<Vec2d> fit_corner(const cv::Mat& plane, const CornerStart& start) 
             return std::nullopt;
         }
         double squares = 0.0;
-        const double variance = round == 0 ? start_light(pixels, p) : variance_of(pixels);
-        settled = descend(pixels, free_count, start.half_window, p, squares);
-        unexplained = squares / variance;
+        if (round == 0) {
+            start_light(pixels, widths, p);
+        }
+        settled = descend(pixels, widths, free_count, start.half_window, p, squares);
+        unexplained = squares / variance_of(pixels);
         window.corner_px = {p[kX], p[kY]};
         mask = {.guard_px = kGuardBlurs * p[kBlur], .white = p[kContrast]};
     }
     const double moved = std::hypot(p[kX] - start.corner_px.x, p[kY] - start.corner_px.y);
     if (!settled || !(moved <= std::max(1.5, 0.5 * start.half_window)) ||
-        !(std::abs(p[kContrast]) > kLeastContrast * p[kLevel]) || p[kBlur] > 0.5 * start.half_window ||
+        !(std::abs(p[kContrast]) > kLeastContrast * std::abs(p[kLevel])) || p[kBlur] > 0.5 * start.half_window ||
         !(unexplained < 1.0 - kLeastExplained)) {
         return std::nullopt;
     }

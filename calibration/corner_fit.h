@@ -16,6 +16,7 @@ struct CornerStart {
     int half_window = 0;  // px
     /// How far from the edges a marker stands in each white square, in squares; what it may darken is left out.
     double clear_squares = std::numeric_limits<double>::infinity();
+    double line_squares = 0.0;  // above 0: two dark lines of this width cross on a bright ground, not two edges
 };
 
 /// The corner of a checkerboard, by least squares (Levenberg-Marquardt) of
@@ -24,6 +25,8 @@ struct CornerStart {
 /// parabolas where the window is wide enough to tell (h ≥ 6; a fisheye bends edges by 0.05 px and more within one). σ
 /// is the edges' blur, the pixel's own box in it; g takes up uneven light. Blur of any kind that looks the same after a
 /// half turn leaves the corner where it is, and so does ink that spreads.
+///
+/// Where dark lines cross, each factor is 1 − ½ [erf((d + w/2) / √2σ) − erf((d − w/2) / √2σ)] for their width w.
 ///
 /// `plane` is CV_32F in linear light; where the window reaches beyond it, the part inside has to do. None where the fit
 /// does not settle on an edge-like corner near the start (within half the window).

@@ -6,7 +6,6 @@
 #include <functional>
 #include <numbers>
 #include <opencv2/calib3d.hpp>
-#include <opencv2/features2d.hpp>
 #include <opencv2/imgproc.hpp>
 #include <optional>
 #include <string>
@@ -14,6 +13,7 @@
 #include <vector>
 
 #include "calibration/detect_charuco.h"
+#include "calibration/detect_lattice.h"
 #include "calibration/working_copy.h"
 #include "engine/io/input_error.h"
 
@@ -24,7 +24,6 @@ using Points = std::vector<cv::Point2f>;
 using Finder = std::function<bool(const cv::Mat&, Points&)>;
 
 constexpr int kSmallestSide_px = 16;
-constexpr std::size_t kMostBlobsPerDisc = 2;
 constexpr double kSearchSide_px = 1600.0;  // larger pictures are searched at this size: corners lie well within a pixel
 
 cv::Size grid_size(const Chart& chart) {
@@ -36,10 +35,6 @@ std::string size_in_words(cv::Size size) {
     return std::to_string(size.width) + " × " + std::to_string(size.height);
 }
 
-std::string points_in_words(const Chart& chart) {
-    return std::holds_alternative<DiscGrid>(chart.pattern) ? "discs" : "corners";
-}
-
 bool find_classic(const cv::Mat& picture, cv::Size grid, Points& points) {
     return cv::findChessboardCorners(picture, grid, points,
                                      cv::CALIB_CB_ADAPTIVE_THRESH | cv::CALIB_CB_NORMALIZE_IMAGE);
@@ -47,37 +42,6 @@ bool find_classic(const cv::Mat& picture, cv::Size grid, Points& points) {
 
 bool find_sector_based(const cv::Mat& picture, cv::Size grid, Points& points, int flags) {
     return cv::findChessboardCornersSB(picture, grid, points, cv::CALIB_CB_NORMALIZE_IMAGE | flags);
-}
-
-bool find_discs(const cv::Mat& picture, cv::Size grid, Points& points) {
-    // Discs between 4 px across and the largest that `grid` of them could be within the picture.
-    cv::SimpleBlobDetector::Params tuning;
-    tuning.minThreshold = 20;
-    tuning.maxThreshold = 230;
-    tuning.thresholdStep = 10;
-    tuning.minDistBetweenBlobs = 4;
-    tuning.filterByArea = true;
-    tuning.minArea = 12;
-    tuning.maxArea =
-        static_cast<float>(picture.cols) * static_cast<float>(picture.rows) / static_cast<float>(grid.area());
-    tuning.filterByCircularity = false;
-    tuning.filterByInertia = true;
-    tuning.minInertiaRatio = 0.05F;  // squeezed to 1 : 4 at the rim of a fisheye
-    tuning.filterByConvexity = true;
-    tuning.minConvexity = 0.85F;
-    const auto blobs = cv::SimpleBlobDetector::create(tuning);
-    std::vector<cv::KeyPoint> keypoints;
-    blobs->detect(picture, keypoints);
-    // The grid search takes minutes where a texture yields hundreds of candidates, and finds no grid among them.
-    const auto wanted = static_cast<std::size_t>(grid.area());
-    if (keypoints.size() < wanted || keypoints.size() > kMostBlobsPerDisc * wanted) {
-        return false;
-    }
-    Points candidates;
-    cv::KeyPoint::convert(keypoints, candidates);
-    return cv::findCirclesGrid(candidates, grid, points, cv::CALIB_CB_SYMMETRIC_GRID, nullptr) ||
-           cv::findCirclesGrid(candidates, grid, points, cv::CALIB_CB_SYMMETRIC_GRID | cv::CALIB_CB_CLUSTERING,
-                               nullptr);
 }
 
 // A copy as a rectilinear lens would have taken it, if the picture came from an equidistant fisheye whose half-diagonal
@@ -138,12 +102,7 @@ bool find_bent(const cv::Mat& picture, const std::vector<Finder>& finders, Point
     return false;
 }
 
-bool find_grid(const cv::Mat& picture, const Chart& chart, Points& points) {
-    const cv::Size grid = grid_size(chart);
-    if (std::holds_alternative<DiscGrid>(chart.pattern)) {
-        const Finder discs = [grid](const cv::Mat& p, Points& found) { return find_discs(p, grid, found); };
-        return discs(picture, points) || find_bent(picture, {discs}, points);
-    }
+bool find_board(const cv::Mat& picture, cv::Size grid, Points& points) {
     const Finder sector_based = [grid](const cv::Mat& p, Points& found) {
         return find_sector_based(p, grid, found, 0);
     };
@@ -201,8 +160,7 @@ double darkness_of_black(const cv::Mat& picture, const Points& points, cv::Size 
 }
 
 // The numbering that the chart asks for; none when no numbering fits (a mirror image, or not this chart).
-std::optional<Points> numbered_as_chart(const cv::Mat& picture, const Points& points, const Chart& chart) {
-    const cv::Size grid = grid_size(chart);
+std::optional<Points> numbered_as_chart(const cv::Mat& picture, const Points& points, cv::Size grid) {
     std::optional<Points> best;
     double best_uprightness = -2.0;
     for (const bool transpose : {false, true}) {
@@ -215,8 +173,7 @@ std::optional<Points> numbered_as_chart(const cv::Mat& picture, const Points& po
             if (row.cross(along_column(candidate, grid)) <= 0.0F) {
                 continue;  // mirrored
             }
-            if (std::holds_alternative<Checkerboard>(chart.pattern) &&
-                darkness_of_black(picture, candidate, grid) <= 0.0) {
+            if (darkness_of_black(picture, candidate, grid) <= 0.0) {
                 continue;
             }
             const double uprightness = row.x / std::hypot(row.x, row.y);
@@ -229,36 +186,27 @@ std::optional<Points> numbered_as_chart(const cv::Mat& picture, const Points& po
     return best;
 }
 
-// The chart's points in `picture`, as the chart numbers them; or why they could not be found.
-struct Search {
-    Points points;
-    std::vector<bool> found;
-    std::string reason;
-};
-
-// A chart that is seen as a whole or not at all.
-Search search_whole(const cv::Mat& picture, const Chart& chart) {
+// A checkerboard, which is seen as a whole or not at all.
+ChartSearch find_checkerboard(const cv::Mat& picture, const Chart& chart) {
     const cv::Size grid = grid_size(chart);
     Points points;
-    if (!find_grid(picture, chart, points) || points.size() != static_cast<std::size_t>(grid.area())) {
-        return {.reason = "no grid of " + size_in_words(grid) + " " + points_in_words(chart) + " found"};
+    if (!find_board(picture, grid, points) || points.size() != static_cast<std::size_t>(grid.area())) {
+        return {.reason = "no checkerboard of " + size_in_words(grid) + " inner corners found"};
     }
-    const auto numbered = numbered_as_chart(picture, points, chart);
+    const auto numbered = numbered_as_chart(picture, points, grid);
     if (!numbered) {
-        return {.reason = "a grid of " + size_in_words(grid) + " " + points_in_words(chart) +
-                          " found, but mirrored or with other colours than the chart"};
+        return {.reason = "a checkerboard of " + size_in_words(grid) +
+                          " inner corners found, but mirrored or with other colours than the chart"};
     }
     return {.points = *numbered, .found = std::vector<bool>(points.size(), true)};
 }
 
-Search search(const cv::Mat& picture, const Chart& chart) {
+ChartSearch search(const cv::Mat& picture, const Chart& chart) {
     try {
-        cv::theRNG().state = 0;  // the disc detector clusters with OpenCV's global generator
         if (const auto* board = std::get_if<CharucoBoard>(&chart.pattern)) {
-            CharucoSearch found = find_charuco(picture, *board);
-            return {std::move(found.points), std::move(found.found), std::move(found.reason)};
+            return find_charuco(picture, *board);
         }
-        return search_whole(picture, chart);
+        return is_lattice(chart) ? find_lattice(picture, chart) : find_checkerboard(picture, chart);
     } catch (const cv::Exception&) {
         // OpenCV's detectors assert on some pictures that merely do not show the chart.
         return {.reason = "no " + kind_name(chart) + " found"};
@@ -272,14 +220,18 @@ Detection not_found(std::string reason) {
 }  // namespace
 
 bool can_detect(const Chart& chart) {
-    return std::holds_alternative<Checkerboard>(chart.pattern) || std::holds_alternative<DiscGrid>(chart.pattern) ||
-           std::holds_alternative<CharucoBoard>(chart.pattern);
+    return std::holds_alternative<Checkerboard>(chart.pattern) || std::holds_alternative<CharucoBoard>(chart.pattern) ||
+           is_lattice(chart);
+}
+
+std::string detectable_kinds() {
+    return "checkerboard, charuco, disc-grid, point-grid, slanted-edges, straight-lines";
 }
 
 Detection detect(const Image& image, const Chart& chart) {
     if (!can_detect(chart)) {
-        throw InputError("a chart of kind " + kind_name(chart) +
-                         " cannot be searched for: expected a checkerboard, a charuco board or a disc-grid");
+        throw InputError("a chart of kind " + kind_name(chart) + " cannot be searched for: expected one of " +
+                         detectable_kinds());
     }
     const cv::Size grid = grid_size(chart);
     if (grid.width < 3 || grid.height < 3) {
@@ -298,7 +250,7 @@ Detection detect(const Image& image, const Chart& chart) {
     if (shrink < 1.0) {
         cv::resize(full, picture, {}, shrink, shrink, cv::INTER_AREA);
     }
-    Search found = search(picture, chart);
+    ChartSearch found = search(picture, chart);
     if (!found.reason.empty()) {
         return not_found(std::move(found.reason));
     }

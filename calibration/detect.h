@@ -8,8 +8,12 @@
 
 namespace lensproof {
 
-/// Whether `detect` knows charts of this kind: checkerboards and disc grids.
+/// Whether `detect` knows charts of this kind: all but flat fields, astigmatism crosses and colour checkers, and
+/// Siemens stars, which have but one point.
 bool can_detect(const Chart& chart);
+
+/// The names of those kinds, for messages.
+std::string detectable_kinds();
 
 /// What a picture shows of a chart.
 struct Detection {
@@ -21,13 +25,16 @@ struct Detection {
 
 /// Looks for `feature_points(chart)`; `points.found` says which of them the picture shows.
 ///
-/// OpenCV's detectors search an 8-bit working copy; where the lens bends the chart too much for them, copies that
-/// undo a guessed fisheye projection are searched too. Accurate to a pixel or so: `refine` gives the final positions.
+/// An 8-bit working copy is searched: for checkerboards by OpenCV's detectors, as a whole (where the lens bends the
+/// board too much for them, also copies that undo a guessed fisheye projection); for the others by their markers
+/// (calibration/detect_charuco.h) or spots (calibration/detect_lattice.h), of which a part will do. Accurate to a pixel
+/// or so: `refine` gives the final positions.
 ///
-/// Which corner is the first: the one whose square is black, as the chart says. Where that leaves a choice (a half
-/// turn of a board with an even number of columns + rows, every disc grid) the rows run to the right as far as
-/// possible. Mirror images are never taken. A checkerboard needs at least 3 × 3 inner corners, a disc grid 3 × 3 discs.
-/// Throws InputError for a chart that cannot be detected, or has too few points.
+/// Which point is the first: a ChArUco board's markers say so. On a checkerboard it is the corner whose square is
+/// black, as the chart says; where that leaves a choice (a half turn of a board with an even number of columns + rows),
+/// and on all other charts, the rows run to the right as far as possible. Mirror images are never taken, where they can
+/// be told. A chart needs at least 3 × 3 points. Throws InputError for a chart that cannot be detected, or has too few
+/// points.
 Detection detect(const Image& image, const Chart& chart);
 
 }  // namespace lensproof

@@ -169,7 +169,7 @@ std::vector<Marker> agreeing_markers(const cv::Mat& picture, const cv::Ptr<cv::a
 
 }  // namespace
 
-CharucoSearch find_charuco(const cv::Mat& picture, const CharucoBoard& board) {
+ChartSearch find_charuco(const cv::Mat& picture, const CharucoBoard& board) {
     const std::vector<cv::Point2d> centres = marker_centres(board);
     const double side_squares = board.marker_mm / board.square_mm;
     const auto dictionary = dictionary_of(board, centres.size());
@@ -180,7 +180,7 @@ CharucoSearch find_charuco(const cv::Mat& picture, const CharucoBoard& board) {
         const bool is_mirrored = !agreeing_markers(mirrored, dictionary, centres, side_squares).empty();
         return {.reason = is_mirrored ? "the board is seen mirrored" : "none of the board's markers found"};
     }
-    CharucoSearch result;
+    ChartSearch result;
     for (int row = 1; row < board.rows; ++row) {
         for (int column = 1; column < board.columns; ++column) {
             const cv::Point2d corner(column, row);

@@ -1,19 +1,11 @@
 // calibration/detect_charuco.h — finds the inner corners of a ChArUco board by its markers.
 #pragma once
 #include <opencv2/core.hpp>
-#include <string>
-#include <vector>
 
+#include "calibration/chart_search.h"
 #include "engine/scene/chart.h"
 
 namespace lensproof {
-
-/// Corners of a board in a picture, by number (row by row from the top left); or why there are none.
-struct CharucoSearch {
-    std::vector<cv::Point2f> points;
-    std::vector<bool> found;
-    std::string reason;
-};
 
 /// `picture` is CV_8U. Markers are OpenCV's find, from the board's own markers. A corner lies where the markers nearest
 /// to it put it, by a homography of their own (so the lens may bend the board), and counts as found when a marker that
@@ -21,6 +13,6 @@ struct CharucoSearch {
 ///
 /// OpenCV's `interpolateCornersCharuco` is not used: in version 4.6 its corners come back about 0.53 px off, and its
 /// boards are laid out otherwise than those of 4.7 and later.
-CharucoSearch find_charuco(const cv::Mat& picture, const CharucoBoard& board);
+ChartSearch find_charuco(const cv::Mat& picture, const CharucoBoard& board);
 
 }  // namespace lensproof

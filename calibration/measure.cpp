@@ -158,8 +158,7 @@ Observations observe(const MeasureInput& input) {
 
 GeometryFit fit(const MeasureInput& input, const Observations& seen) {
     GeometryOptions options = input.geometry;
-    const auto* discs = std::get_if<DiscGrid>(&input.chart.pattern);
-    options.disc_diameter_mm = discs ? discs->diameter_mm : 0.0;
+    options.disc_diameter_mm = disc_diameter_mm(input.chart);
     const auto with = [&](ModelKind kind) {
         options.model = kind;
         return fit_geometry(seen.chart_views, seen.width, seen.height, options);

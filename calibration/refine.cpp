@@ -15,11 +15,12 @@
 namespace lensproof {
 namespace {
 
-constexpr double kWindowShare = 0.4;    // half window of the distance to the nearest corner
-constexpr int kSmallestWindow_px = 2;   // half window: 5 × 5 pixels
-constexpr int kLargestWindow_px = 14;   // half window; more pixels than noise asks for, and lines bend
-constexpr int kFitFrom_px = 3;          // half window; in a smaller one the edge model has too few pixels to hold it
-constexpr double kBlur_px = 0.7;        // passes 6e-5 of what aliases to nothing; more would cost more of the noise
+constexpr double kWindowShare = 0.4;   // half window of the distance to the nearest corner
+constexpr int kSmallestWindow_px = 2;  // half window: 5 × 5 pixels
+constexpr int kLargestWindow_px = 14;  // half window; more pixels than noise asks for, and lines bend
+constexpr int kFitFrom_px = 3;         // half window; in a smaller one the edge model has too few pixels to hold it
+constexpr double kBlur_px = 0.7;       // passes 6e-5 of what aliases to nothing; more would cost more of the noise
+constexpr double kSpotMargin_px = 3.0;
 constexpr double kFrame_px = 2.5;       // closer to the frame, blurring has mirrored what is not there
 constexpr double kAgreement_px = 0.05;  // of two searches from different starts
 constexpr double kLeastContrast = 0.1;  // (white − black) / (white + black) around a corner
@@ -128,48 +129,59 @@ std::optional<Vec2d> search_corner(const cv::Mat& plane, const Vec2d& start, int
     return agree && norm(difference(second, start)) <= half_window ? std::optional(second) : std::nullopt;
 }
 
-std::optional<Vec2d> refine_corner(const Image& image, const cv::Mat& plane, int channel, const Vec2d& start,
-                                   const Lattice& lattice, double clear_squares) {
-    const int half_window =
-        std::clamp(static_cast<int>(kWindowShare * lattice.nearest), kSmallestWindow_px, kLargestWindow_px);
-    if (!all_finite(image, channel, start, half_window) || is_near_frame(image, start)) {
-        return std::nullopt;
-    }
-    const auto corner = half_window < kFitFrom_px ? search_corner(plane, start, half_window)
-                                                  : fit_corner(plane, {.corner_px = start,
-                                                                       .along_first = lattice.column_step,
-                                                                       .along_second = lattice.row_step,
-                                                                       .half_window = half_window,
-                                                                       .clear_squares = clear_squares});
-    if (!corner || is_near_frame(image, *corner) ||
-        corner_contrast(plane, *corner, lattice, std::min(0.25, 0.7 * clear_squares)) < kLeastContrast) {
-        return std::nullopt;
-    }
-    return corner;
-}
-
 // How far from the edges of its square a marker stands, in squares.
 double clear_squares(const Chart& chart) {
     const auto* board = std::get_if<CharucoBoard>(&chart.pattern);
     return board ? 0.5 * (1.0 - board->marker_mm / board->square_mm) : std::numeric_limits<double>::infinity();
 }
 
-// In units of the pitch: discs end at `disc`, light that belongs to the paper alone is taken from `inner` to `outer`.
-struct DiscWindow {
-    double disc = 0.0;
+// Width of the lines that cross, in pitches; 0 where squares meet.
+double line_squares(const Chart& chart) {
+    const auto* lines = std::get_if<StraightLines>(&chart.pattern);
+    return lines ? lines->line_mm / lines->pitch_mm : 0.0;
+}
+
+std::optional<Vec2d> refine_corner(const Image& image, const cv::Mat& plane, int channel, const Vec2d& start,
+                                   const Lattice& lattice, const Chart& chart) {
+    const int half_window =
+        std::clamp(static_cast<int>(kWindowShare * lattice.nearest), kSmallestWindow_px, kLargestWindow_px);
+    if (!all_finite(image, channel, start, half_window) || is_near_frame(image, start)) {
+        return std::nullopt;
+    }
+    const CornerStart corner_start{.corner_px = start,
+                                   .along_first = lattice.column_step,
+                                   .along_second = lattice.row_step,
+                                   .half_window = half_window,
+                                   .clear_squares = clear_squares(chart),
+                                   .line_squares = line_squares(chart)};
+    const bool is_line = corner_start.line_squares > 0.0;
+    const auto corner =
+        half_window < kFitFrom_px ? search_corner(plane, start, half_window) : fit_corner(plane, corner_start);
+    if (!corner || is_near_frame(image, *corner) ||
+        (!is_line &&
+         corner_contrast(plane, *corner, lattice, std::min(0.25, 0.7 * corner_start.clear_squares)) < kLeastContrast)) {
+        return std::nullopt;
+    }
+    return corner;
+}
+
+// In units of the pitch: spots end at `spot`, light that belongs to the ground alone is taken from `inner` to `outer`.
+struct SpotWindow {
+    double spot = 0.0;
     double inner = 0.0;
     double outer = 0.5;
+    bool is_bright = false;
 };
 
-std::optional<Vec2d> disc_centroid(const Image& image, int channel, const Vec2d& start, const Lattice& lattice,
-                                   const DiscWindow& window) {
+std::optional<Vec2d> spot_centroid(const Image& image, int channel, const Vec2d& start, const Lattice& lattice,
+                                   const SpotWindow& window) {
     const double determinant = lattice.column_step.x * lattice.row_step.y - lattice.column_step.y * lattice.row_step.x;
     const double reach = window.outer * (norm(lattice.column_step) + norm(lattice.row_step));
     if (!(std::abs(determinant) > 1.0) || !is_inside(image, start, reach + 1.0) ||
         !all_finite(image, channel, start, reach)) {
         return std::nullopt;
     }
-    const auto distance = [&](double dx, double dy) {  // from the disc's centre, in pitches
+    const auto distance = [&](double dx, double dy) {  // from the spot's centre, in pitches
         const double u = (dx * lattice.row_step.y - dy * lattice.row_step.x) / determinant;
         const double v = (dy * lattice.column_step.x - dx * lattice.column_step.y) / determinant;
         return std::hypot(u, v);
@@ -191,11 +203,11 @@ std::optional<Vec2d> disc_centroid(const Image& image, int channel, const Vec2d&
             }
         }
     }
-    const Eigen::LDLT<Eigen::Matrix3d> paper(normal);
-    if (normal(0, 0) < 6.0 || paper.info() != Eigen::Success || paper.rcond() < 1e-9) {
+    const Eigen::LDLT<Eigen::Matrix3d> ground(normal);
+    if (normal(0, 0) < 6.0 || ground.info() != Eigen::Success || ground.rcond() < 1e-9) {
         return std::nullopt;
     }
-    const Eigen::Vector3d plane = paper.solve(right);
+    const Eigen::Vector3d plane = ground.solve(right);
 
     double mass = 0.0;
     Vec2d moment;
@@ -203,31 +215,51 @@ std::optional<Vec2d> disc_centroid(const Image& image, int channel, const Vec2d&
         for (int x = x0; x <= x1; ++x) {
             const double dx = x - start.x;
             const double dy = y - start.y;
-            const double white = plane(0) + plane(1) * dx + plane(2) * dy;
-            if (!(white > 0.0) || distance(dx, dy) > window.inner) {
+            const double level = plane(0) + plane(1) * dx + plane(2) * dy;
+            if (!(level > 0.0) || distance(dx, dy) > window.inner) {
                 continue;
             }
-            const double darkness = 1.0 - image.at(x, y, channel) / white;
-            mass += darkness;
-            moment.x += darkness * dx;
-            moment.y += darkness * dy;
+            // Of a dark spot by the light that falls on it, which the ground shows; black ground shows it too noisily.
+            const double contrast = (level - image.at(x, y, channel)) / (window.is_bright ? plane(0) : level);
+            mass += contrast;
+            moment.x += contrast * dx;
+            moment.y += contrast * dy;
         }
     }
-    const double area_px = std::numbers::pi * window.disc * window.disc * std::abs(determinant);
-    if (mass < kLeastContrast * area_px || mass > 1.5 * area_px) {
+    const double area_px = std::numbers::pi * window.spot * window.spot * std::abs(determinant);
+    // Dark spots are black at most; a bright one may outshine its ground by any factor.
+    const double share = (window.is_bright ? -mass : mass) / area_px;
+    if (share < kLeastContrast || (!window.is_bright && share > 1.5)) {
         return std::nullopt;
     }
     const Vec2d centre{start.x + moment.x / mass, start.y + moment.y / mass};
     return distance(centre.x - start.x, centre.y - start.y) < window.outer ? std::optional(centre) : std::nullopt;
 }
 
-std::optional<Vec2d> refine_disc(const Image& image, int channel, const Vec2d& start, const Lattice& lattice,
-                                 const DiscGrid& discs) {
-    const double radius = 0.5 * discs.diameter_mm / discs.pitch_mm;
-    const DiscWindow window{.disc = radius, .inner = 0.6 * radius + 0.4 * 0.5, .outer = 0.5};
+// The radius that holds a chart's spot, in pitches; none where its points are no spots.
+std::optional<double> spot_radius(const Chart& chart) {
+    if (const auto* discs = std::get_if<DiscGrid>(&chart.pattern)) {
+        return 0.5 * discs->diameter_mm / discs->pitch_mm;
+    }
+    if (const auto* points = std::get_if<PointGrid>(&chart.pattern)) {
+        return 0.5 * points->dot_mm / points->pitch_mm;
+    }
+    if (const auto* edges = std::get_if<SlantedEdges>(&chart.pattern)) {
+        return edges->square_mm / (std::numbers::sqrt2 * edges->pitch_mm);
+    }
+    return std::nullopt;
+}
+
+std::optional<Vec2d> refine_spot(const Image& image, int channel, const Vec2d& start, const Lattice& lattice,
+                                 double radius, bool is_bright) {
+    // Far enough out for blur, and no farther: ground adds nothing but noise.
+    const double step_px = std::min(norm(lattice.column_step), norm(lattice.row_step));
+    const SpotWindow window{.spot = radius,
+                            .inner = std::min(0.6 * radius + 0.4 * 0.5, radius + kSpotMargin_px / step_px),
+                            .is_bright = is_bright};
     std::optional<Vec2d> centre = start;
-    for (int iteration = 0; iteration < 5 && centre; ++iteration) {  // the window follows the disc
-        centre = disc_centroid(image, channel, *centre, lattice, window);
+    for (int iteration = 0; iteration < 5 && centre; ++iteration) {  // the window follows the spot
+        centre = spot_centroid(image, channel, *centre, lattice, window);
     }
     return centre;
 }
@@ -245,9 +277,10 @@ ChartPoints refine(const Image& image, int channel, const ChartPoints& approxima
     if (channel < 0 || channel >= image.channel_count()) {
         throw InputError("refining a " + kind_name(chart) + ": the picture has no channel " + std::to_string(channel));
     }
-    const auto* discs = std::get_if<DiscGrid>(&chart.pattern);
+    const std::optional<double> spot = spot_radius(chart);
+    const bool is_bright = std::holds_alternative<PointGrid>(chart.pattern);
     cv::Mat plane;
-    if (!discs) {
+    if (!spot) {
         // Edges sharper than a pixel are aliased, which biases search and fit alike; the blur takes that away.
         cv::GaussianBlur(channel_plane(image, channel), plane, {}, kBlur_px);
     }
@@ -260,9 +293,9 @@ ChartPoints refine(const Image& image, int channel, const ChartPoints& approxima
             if (!lattice) {
                 continue;
             }
-            const auto refined =
-                discs ? refine_disc(image, channel, approximate.image_px[i], *lattice, *discs)
-                      : refine_corner(image, plane, channel, approximate.image_px[i], *lattice, clear_squares(chart));
+            const Vec2d& start = approximate.image_px[i];
+            const auto refined = spot ? refine_spot(image, channel, start, *lattice, *spot, is_bright)
+                                      : refine_corner(image, plane, channel, start, *lattice, chart);
             if (refined) {
                 result.image_px[i] = *refined;
                 result.found[i] = true;
@@ -270,6 +303,17 @@ ChartPoints refine(const Image& image, int channel, const ChartPoints& approxima
         }
     }
     return result;
+}
+
+double disc_diameter_mm(const Chart& chart) {
+    if (const auto* discs = std::get_if<DiscGrid>(&chart.pattern)) {
+        return discs->diameter_mm;
+    }
+    if (const auto* points = std::get_if<PointGrid>(&chart.pattern)) {
+        return points->dot_mm;
+    }
+    const auto* edges = std::get_if<SlantedEdges>(&chart.pattern);
+    return edges ? 2.0 / std::numbers::sqrt3 * edges->square_mm : 0.0;
 }
 
 int count_found(const ChartPoints& points) {

@@ -20,13 +20,19 @@ struct ChartPoints {
 /// Corners: fitted with a model of the two edges (calibration/corner_fit.h), which leaves a ChArUco board's markers
 /// out. The window is a part of the distance to the nearest neighbour, so that neither a fisheye's squeezed rim nor a
 /// large picture's noise spoils it; one of less than 7 × 7 pixels is too small for the fit and gets cv::cornerSubPix
-/// from two starts that must agree. Discs: the centroid of 1 − I/W, where W is the paper's light, a plane fitted around
-/// each disc. That is the centroid of the disc's image, not the image of its centre; `fit_geometry` models the
-/// difference (`disc_diameter_mm`).
+/// from two starts that must agree.
+/// Crossings of lines: the same, with lines for edges.
+/// Discs, dots and squares: the centroid of 1 − I/W, where W is the ground's light, a plane fitted around each. That is
+/// the centroid of the disc's image, not the image of its centre; `fit_geometry` models the difference
+/// (`disc_diameter_mm`).
 ///
-/// Tests hold corners and discs of synthetic pictures with 1 % noise to 0.05 px rms
-/// (tests/unit/calibration_detect.cpp). `approximate` must have one point per feature.
+/// Tests hold points of synthetic pictures with 1 % noise to 0.02 px rms (tests/unit/calibration_corner_accuracy.cpp
+/// and calibration_lattice.cpp). `approximate` must have one point per feature.
 ChartPoints refine(const Image& image, int channel, const ChartPoints& approximate, const Chart& chart);
+
+/// The diameter of the discs whose images' centroids `refine` measures, mm; of squares, the discs with their second
+/// moments; 0 for points.
+double disc_diameter_mm(const Chart& chart);
 
 /// How many points were found.
 int count_found(const ChartPoints& points);

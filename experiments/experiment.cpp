@@ -78,8 +78,8 @@ Simulation read_simulation(TomlTable& table, TomlTable& top) {
         chart.fail("kind", "is a flat field, expected a chart with points; the flat field is rendered besides");
     }
     if (!can_detect(simulation.scene.chart)) {
-        chart.fail("kind", fmt::format("is {}, which is not measured: expected a checkerboard or a disc-grid",
-                                       kind_name(simulation.scene.chart)));
+        chart.fail("kind", fmt::format("is {}, which is not measured: expected one of {}",
+                                       kind_name(simulation.scene.chart), detectable_kinds()));
     }
     if (auto light = top.optional_table("light")) {
         simulation.scene.light = read_light(*light);

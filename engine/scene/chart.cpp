@@ -112,6 +112,12 @@ bool is_black(const AstigmatismCrosses& crosses, double x_mm, double y_mm) {
     return (along < half_length && across < half_line) || (along < half_line && across < half_length);
 }
 
+bool is_black(const StraightLines& lines, double x_mm, double y_mm) {
+    const Cell cell = cell_at({lines.columns, lines.rows}, lines.pitch_mm, x_mm, y_mm);
+    const double half_line = 0.5 * lines.line_mm / lines.pitch_mm;
+    return cell.is_on_grid && (std::abs(cell.x) < half_line || std::abs(cell.y) < half_line);
+}
+
 double pitch_mm(const ColourChecker& checker) {
     return checker.patch_mm + checker.gap_mm;
 }
@@ -176,6 +182,9 @@ Kind kind_of(const PointGrid& grid) {
 }
 Kind kind_of(const AstigmatismCrosses& crosses) {
     return cells_of("astigmatism-crosses", crosses);
+}
+Kind kind_of(const StraightLines& lines) {
+    return cells_of("straight-lines", lines);
 }
 Kind kind_of(const ColourChecker& checker) {
     return {"colour-checker", {ColourChecker::kColumns, ColourChecker::kRows}, pitch_mm(checker), size_mm(checker)};

@@ -73,6 +73,16 @@ struct AstigmatismCrosses {
     double line_mm = 0.0;    // its width
 };
 
+/// Black lines of width `line_mm`, `columns` from top to bottom and `rows` across, `pitch_mm` apart, each of which goes
+/// on for half a pitch beyond the outermost that it crosses: what is straight here and bent in a picture, the lens
+/// bent.
+struct StraightLines {
+    int columns = 0;
+    int rows = 0;
+    double pitch_mm = 0.0;
+    double line_mm = 0.0;
+};
+
 /// The 6 × 4 patches of a colour checker, `gap_mm` apart and as far from the card's edge. What the patches reflect
 /// texture.h knows; here they are white, on black.
 struct ColourChecker {
@@ -84,7 +94,7 @@ struct ColourChecker {
 };
 
 using ChartPattern = std::variant<Checkerboard, DiscGrid, FlatField, CharucoBoard, SiemensStar, SlantedEdges, PointGrid,
-                                  AstigmatismCrosses, ColourChecker>;
+                                  AstigmatismCrosses, ColourChecker, StraightLines>;
 
 /// A flat chart in its own plane: origin at its centre, x to the right, y down as a camera that faces it sees it, mm.
 /// Around the pattern lies white without end, so that a frame that looks past the chart stays defined.
@@ -105,7 +115,7 @@ double reflectance(const Chart& chart, double x_mm, double y_mm);
 std::optional<int> patch_index(const Chart& chart, double x_mm, double y_mm);
 
 /// The chart's points, row by row from the top left; mm: inner corners of a checkerboard or a ChArUco board; centres of
-/// discs, squares, dots, crosses or patches; the star's centre. None on a flat field.
+/// discs, squares, dots, crosses or patches; where straight lines cross; the star's centre. None on a flat field.
 std::vector<Vec2d> feature_points(const Chart& chart);
 
 /// Columns and rows of `feature_points`; {0, 0} on a flat field.
@@ -119,7 +129,7 @@ GridSize feature_grid(const Chart& chart);
 Vec2d pattern_size_mm(const Chart& chart);
 
 /// The kind's name in files: "checkerboard", "disc-grid", "flat-field", "charuco", "siemens-star", "slanted-edges",
-/// "point-grid", "astigmatism-crosses" or "colour-checker".
+/// "point-grid", "astigmatism-crosses", "colour-checker" or "straight-lines".
 std::string kind_name(const Chart& chart);
 
 }  // namespace lensproof

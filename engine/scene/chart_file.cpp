@@ -91,10 +91,16 @@ AstigmatismCrosses read_crosses(TomlTable& table) {
     return {size.columns, size.rows, pitch_mm, length_mm, read_smaller(table, "line_mm", "length_mm", length_mm)};
 }
 
+StraightLines read_straight_lines(TomlTable& table) {
+    const GridSize size = read_grid(table, "lines", 2);
+    const double pitch_mm = table.number("pitch_mm", kLength);
+    return {size.columns, size.rows, pitch_mm, read_smaller(table, "line_mm", "pitch_mm", pitch_mm)};
+}
+
 ChartPattern read_pattern(TomlTable& table) {
     const std::string kind =
         table.choice("kind", {"checkerboard", "disc-grid", "flat-field", "charuco", "siemens-star", "slanted-edges",
-                              "point-grid", "astigmatism-crosses", "colour-checker"});
+                              "point-grid", "astigmatism-crosses", "colour-checker", "straight-lines"});
     if (kind == "checkerboard") {
         return read_checkerboard(table);
     }
@@ -115,6 +121,9 @@ ChartPattern read_pattern(TomlTable& table) {
     }
     if (kind == "astigmatism-crosses") {
         return read_crosses(table);
+    }
+    if (kind == "straight-lines") {
+        return read_straight_lines(table);
     }
     if (kind == "colour-checker") {
         return ColourChecker{table.number("patch_mm", kLength), table.number("gap_mm", kLength)};

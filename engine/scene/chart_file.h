@@ -18,9 +18,10 @@ namespace lensproof {
 ///     kind = "point-grid"     points = [21, 15]   pitch_mm = 20.0   dot_mm = 0.2
 ///     kind = "astigmatism-crosses"  crosses = [11, 7]  pitch_mm = 40.0  length_mm = 24.0  line_mm = 0.5
 ///     kind = "colour-checker" patch_mm = 40.0     gap_mm = 4.0
+///     kind = "straight-lines" lines = [13, 9]     pitch_mm = 20.0   line_mm = 0.5
 ///     white_reflectance = 0.9   black_reflectance = 0.04     (optional)
-/// squares, discs, points and crosses count columns and rows; `chart.h` says what the rest means. Throws InputError
-/// naming file, line and key, also where discs, markers, squares, dots or lines do not fit into their pitch.
+/// squares, discs, points, crosses and lines count columns and rows; `chart.h` says what the rest means. Throws
+/// InputError naming file, line and key, also where discs, markers, squares, dots or lines do not fit into their pitch.
 Chart read_chart(TomlTable& table);
 
 /// The [chart] table of a TOML file: a chart's own, a photo set's manifest and a scene file all serve.

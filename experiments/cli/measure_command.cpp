@@ -148,15 +148,13 @@ Chart chart_to_find(const std::string& file) {
     Chart chart = read_chart_file(file);
     if (std::holds_alternative<FlatField>(chart.pattern)) {
         throw InputError(
-            fmt::format("{}: the chart is a flat field, expected a checkerboard or a disc grid; pictures of an "
-                        "even surface are given with --flat-field",
-                        file));
+            fmt::format("{}: the chart is a flat field, expected one of {}; pictures of an even surface "
+                        "are given with --flat-field",
+                        file, detectable_kinds()));
     }
     if (!can_detect(chart)) {
-        throw InputError(
-            fmt::format("{}: the chart is of kind {}, which is not measured: expected a checkerboard or a "
-                        "disc-grid",
-                        file, kind_name(chart)));
+        throw InputError(fmt::format("{}: the chart is of kind {}, which is not measured: expected one of {}", file,
+                                     kind_name(chart), detectable_kinds()));
     }
     return chart;
 }

@@ -146,7 +146,7 @@ TEST(CalibrationDetect, NothingIsFoundWhereNothingIs) {
     std::fill(grey.pixels.begin(), grey.pixels.end(), std::numeric_limits<float>::quiet_NaN());
     EXPECT_FALSE(detect(grey, kBoard).found());
     EXPECT_THROW(detect(grey, Chart{.pattern = FlatField{}}), InputError);
-    EXPECT_THROW(detect(grey, Chart{.pattern = PointGrid{9, 7, 20.0, 1.0}}), InputError);
+    EXPECT_THROW(detect(grey, Chart{.pattern = AstigmatismCrosses{9, 7, 20.0, 10.0, 1.0}}), InputError);
     EXPECT_THROW(detect(grey, Chart{.pattern = Checkerboard{2, 2, 30.0}}), InputError);
 }
 
@@ -156,7 +156,7 @@ TEST(CalibrationDetect, AChartNotFoundHasItsReason) {
     EXPECT_NE(detect(make_image(64, 48, {"Y"}), kBoard).reason.find("no contrast"), std::string::npos);
     Image noise = make_image(64, 48, {"Y"});
     add_noise(noise, 0.1, 4);
-    EXPECT_EQ(detect(noise, kBoard).reason, "no grid of 9 × 6 corners found");
+    EXPECT_EQ(detect(noise, kBoard).reason, "no checkerboard of 9 × 6 inner corners found");
     EXPECT_EQ(detect(noise, kDiscs).reason, "no grid of 8 × 6 discs found");
 }
 

@@ -30,6 +30,7 @@ const char* const kCharts[] = {
     "kind = 'point-grid'\npoints = [7, 5]\npitch_mm = 30\ndot_mm = 3",
     "kind = 'astigmatism-crosses'\ncrosses = [7, 5]\npitch_mm = 30\nlength_mm = 20\nline_mm = 1.5",
     "kind = 'colour-checker'\npatch_mm = 30\ngap_mm = 4",
+    "kind = 'straight-lines'\nlines = [7, 5]\npitch_mm = 30\nline_mm = 2",
 };
 
 /// The share of black in the pattern's own rectangle, by `side`² points in the cells of a grid that lies askew to it.
@@ -57,6 +58,7 @@ TEST(SceneChart, PatternsBlackenTheirShapesAreas) {
         1.0 - kPi / 4 * 9 / 900,
         (2 * 20 * 1.5 - 1.5 * 1.5) / 900,
         1.0 - 24 * 900.0 / (208 * 140),
+        (2 * 30 * 2.0 - 2.0 * 2.0) / 900,
     };
     for (std::size_t i = 0; i < std::size(kCharts); ++i) {
         if (expected[i] >= 0.0) {
@@ -193,9 +195,9 @@ TEST(SceneChart, PatchesAreCountedRowByRow) {
 }
 
 TEST(SceneChart, KindsSurviveTheirFiles) {
-    const char* const names[] = {"checkerboard",        "disc-grid",     "charuco",
-                                 "siemens-star",        "slanted-edges", "point-grid",
-                                 "astigmatism-crosses", "colour-checker"};
+    const char* const names[] = {"checkerboard",        "disc-grid",      "charuco",
+                                 "siemens-star",        "slanted-edges",  "point-grid",
+                                 "astigmatism-crosses", "colour-checker", "straight-lines"};
     for (std::size_t i = 0; i < std::size(kCharts); ++i) {
         const Chart chart = chart_of(kCharts[i]);
         EXPECT_EQ(kind_name(chart), names[i]);
