@@ -3,7 +3,9 @@
 #include <ceres/jet.h>
 
 #include <algorithm>
+#include <array>
 #include <numbers>
+#include <utility>
 
 namespace lensproof {
 namespace {
@@ -12,7 +14,17 @@ constexpr double kScanStep = std::numbers::pi / 180.0;  // no 4-term polynomial 
 constexpr int kFoldSteps = 64;                          // a fold is located to 1/64°
 
 double largest_angle(const CameraModel& model) {
-    return std::holds_alternative<BrownConrady>(model) ? std::numbers::pi / 2 - 1e-6 : std::numbers::pi;
+    return std::visit([](const auto& m) { return m.largest_angle; }, model);
+}
+
+// Every kind of model once, without distortion.
+template <std::size_t... kind>
+std::array<CameraModel, sizeof...(kind)> make_all(std::index_sequence<kind...> /*kinds*/) {
+    return {CameraModel(std::in_place_index<kind>)...};
+}
+
+std::array<CameraModel, std::variant_size_v<CameraModel>> all_models() {
+    return make_all(std::make_index_sequence<std::variant_size_v<CameraModel>>());
 }
 
 Vec3d direction(double angle, double azimuth_x, double azimuth_y) {
@@ -78,15 +90,16 @@ double angle_within(const CameraModel& model, double radius, Bracket bracket) {
 }
 
 // Newton's method for the direction (x, y, 1) from a start that ignores the tangential terms.
-std::optional<Vec3d> unproject_newton(const BrownConrady& model, const Vec2d& pixel, double x, double y) {
+template <class Model>
+std::optional<Vec3d> unproject_newton(const Model& model, const Vec2d& pixel, double x, double y) {
     using Jet = ceres::Jet<double, 2>;
-    std::array<Jet, BrownConrady::count> parameters;
+    std::array<Jet, Model::count> parameters;
     std::transform(model.parameters.begin(), model.parameters.end(), parameters.begin(),
                    [](double p) { return Jet(p); });
     double last_step = 1e300;
     for (int iteration = 0; iteration < 50; ++iteration) {
         Vec2<Jet> image;
-        BrownConrady::project(parameters.data(), Vec3<Jet>{Jet(x, 0), Jet(y, 1), Jet(1.0)}, image);
+        Model::project(parameters.data(), Vec3<Jet>{Jet(x, 0), Jet(y, 1), Jet(1.0)}, image);
         const double ex = image.x.a - pixel.x;
         const double ey = image.y.a - pixel.y;
         const double determinant = image.x.v[0] * image.y.v[1] - image.x.v[1] * image.y.v[0];
@@ -108,6 +121,31 @@ std::optional<Vec3d> unproject_newton(const BrownConrady& model, const Vec2d& pi
 
 }  // namespace
 
+std::vector<std::string> model_kind_names() {
+    std::vector<std::string> names;
+    for (const CameraModel& model : all_models()) {
+        names.push_back(kind_name(model));
+    }
+    return names;
+}
+
+std::optional<ModelKind> model_kind(std::string_view name) {
+    for (const CameraModel& model : all_models()) {
+        if (kind_name(model) == name) {
+            return kind(model);
+        }
+    }
+    return std::nullopt;
+}
+
+ModelKind kind(const CameraModel& model) {
+    return static_cast<ModelKind>(model.index());
+}
+
+CameraModel empty_model(ModelKind kind) {
+    return all_models()[static_cast<std::size_t>(kind)];
+}
+
 std::string kind_name(const CameraModel& model) {
     return std::visit([](const auto& m) { return std::string(m.kind); }, model);
 }
@@ -127,6 +165,19 @@ CameraModel with_parameters(const CameraModel& model, const std::vector<double>&
     return result;
 }
 
+ModelTerms model_terms(const CameraModel& model) {
+    return std::visit(
+        [](const auto& m) {
+            return ModelTerms{{m.radial_terms.begin(), m.radial_terms.end()},
+                              {m.tangential_terms.begin(), m.tangential_terms.end()}};
+        },
+        model);
+}
+
+bool is_perspective(const CameraModel& model) {
+    return model.index() <= static_cast<std::size_t>(ModelKind::ptlens);
+}
+
 double focal_length_px(const CameraModel& model) {
     return std::visit([](const auto& m) { return m.parameters[0]; }, model);
 }
@@ -143,6 +194,10 @@ std::optional<Vec2d> project(const CameraModel& model, const Vec3d& point) {
 
 double radius_px(const CameraModel& model, double angle_rad) {
     return std::visit([&](const auto& m) { return m.radius(m.parameters.data(), angle_rad); }, model);
+}
+
+double undistorted_angle_rad(ModelKind kind, double focal_px, double radius_px) {
+    return std::visit([&](const auto& m) { return m.undistorted_angle(focal_px, radius_px); }, empty_model(kind));
 }
 
 std::optional<double> field_angle_rad(const CameraModel& model, double radius) {
@@ -164,11 +219,16 @@ std::optional<Vec3d> unproject(const CameraModel& model, const Vec2d& pixel) {
     }
     const double azimuth_x = radius > 0.0 ? dx / radius : 1.0;
     const double azimuth_y = radius > 0.0 ? dy / radius : 0.0;
-    if (const auto* brown = std::get_if<BrownConrady>(&model);
-        brown && (brown->parameters[6] != 0.0 || brown->parameters[7] != 0.0)) {
-        return unproject_newton(*brown, pixel, std::tan(*angle) * azimuth_x, std::tan(*angle) * azimuth_y);
-    }
-    return direction(*angle, azimuth_x, azimuth_y);
+    return std::visit(
+        [&]<class Model>(const Model& m) -> std::optional<Vec3d> {
+            if constexpr (!Model::tangential_terms.empty()) {
+                if (m.parameters[6] != 0.0 || m.parameters[7] != 0.0) {
+                    return unproject_newton(m, pixel, std::tan(*angle) * azimuth_x, std::tan(*angle) * azimuth_y);
+                }
+            }
+            return direction(*angle, azimuth_x, azimuth_y);
+        },
+        model);
 }
 
 }  // namespace lensproof

@@ -4,24 +4,19 @@
 #include <string>
 #include <vector>
 
+#include "calibration/board_shape.h"
+#include "calibration/bundle.h"
 #include "calibration/camera_model.h"
 #include "calibration/planar_pose.h"
 #include "engine/optics/vec.h"
 
 namespace lensproof {
 
-/// The points of one picture: where they are on the chart and in the picture.
-struct ChartView {
-    std::string name;  // for messages
-    std::vector<Vec2d> chart_mm;
-    std::vector<Vec2d> image_px;
-};
-
 struct GeometryOptions {
     ModelKind model = ModelKind::brown_conrady;
-    /// Terms k1, k2, … that are fitted; the others stay 0. Default: all that the model has.
+    /// Terms k1, k2, … that are fitted (ModelTerms::radial); the others stay 0. Default: all that the model has.
     std::optional<int> radial_terms;
-    /// p1 and p2 of Brown-Conrady. Off: a lens without decentring, e.g. a render.
+    /// p1 and p2 of the Brown-Conrady models. Off: a lens without decentring, e.g. a render.
     bool fit_tangential = true;
     /// Holds the principal point at the middle of the picture.
     bool fix_centre = false;
@@ -30,7 +25,11 @@ struct GeometryOptions {
     /// Diameter of the chart's discs: their centroids were measured, and perspective and distortion move the centroid
     /// of a disc's image away from the image of its centre (by 0.1 px and more). 0: points (corners).
     double disc_diameter_mm = 0.0;
-    /// Points farther from the fit than this many standard deviations (estimated robustly) are left out; 0 keeps all.
+    /// Fits how far the chart is from flat (board_shape.h), one shape for all views.
+    bool fit_board_shape = false;
+    /// Points farther from the fit than this many standard deviations (estimated robustly) are left out. Where there
+    /// are any, the fit goes through Cauchy's loss first, so that they do not pull at what they are judged by. 0: plain
+    /// least squares over all points.
     double outlier_sigmas = 6.0;
 };
 
@@ -43,6 +42,9 @@ struct PointResidual {
 struct FittedView {
     Pose pose;
     std::vector<PointResidual> residuals;
+    /// See BundleInformation::View; the covariance is that of the measured residuals.
+    std::array<double, 36> pose_covariance{};
+    std::vector<double> pose_follows;
 };
 
 /// What the views say about the camera. Covariances scale with the residuals' own variance (2 N − parameters degrees
@@ -51,6 +53,9 @@ struct GeometryFit {
     CameraModel model;
     /// Row by row, in the order of `parameter_names(model)`; rows of parameters that were held are 0.
     std::vector<double> covariance;
+    std::optional<BoardShape> board;  // if it was fitted
+    /// The covariance of the intrinsics and the board's heights together, row by row.
+    std::vector<double> shared_covariance;
     std::vector<FittedView> views;
     double sigma_px = 0.0;  // standard deviation of one coordinate of one point
     double rms_px = 0.0;    // root of the mean of dx² + dy² over the points used (OpenCV's reprojection error)
@@ -68,8 +73,12 @@ struct GeometryFit {
 GeometryFit fit_geometry(const std::vector<ChartView>& views, int width_px, int height_px,
                          const GeometryOptions& options);
 
-/// Where a view's feature is expected: the image of a point, or the centroid of the image of a disc.
-std::optional<Vec2d> predict(const CameraModel& model, const Pose& pose, const Vec2d& chart_mm,
-                             double disc_diameter_mm);
+/// The same from a start that is known to be near: another fit of the same views, of any model, or the same model's fit
+/// of these and more views (then with the poses of those that are left).
+GeometryFit refit_geometry(const std::vector<ChartView>& views, int width_px, int height_px,
+                           const GeometryOptions& options, const BundleState& start);
+
+/// A fit as a start for another.
+BundleState state_of(const GeometryFit& fit);
 
 }  // namespace lensproof

@@ -9,6 +9,7 @@
 #include "calibration/detect.h"
 #include "calibration/geometry_curves.h"
 #include "calibration/light_samples.h"
+#include "calibration/model_choice.h"
 #include "calibration/refine.h"
 #include "calibration/self_test.h"
 #include "calibration/sharpness/measure_sharpness.h"
@@ -156,44 +157,34 @@ Observations observe(const MeasureInput& input) {
     return seen;
 }
 
-GeometryFit fit(const MeasureInput& input, const Observations& seen) {
+struct Geometry {
+    GeometryFit fit;
+    std::optional<ModelChoice> choice;
+};
+
+Geometry fit(const MeasureInput& input, const Observations& seen) {
     GeometryOptions options = input.geometry;
     options.disc_diameter_mm = disc_diameter_mm(input.chart);
-    const auto with = [&](ModelKind kind) {
-        options.model = kind;
-        return fit_geometry(seen.chart_views, seen.width, seen.height, options);
-    };
     if (input.model) {
-        return with(*input.model);
+        options.model = *input.model;
+        return {fit_geometry(seen.chart_views, seen.width, seen.height, options), std::nullopt};
     }
-    std::optional<GeometryFit> best;
-    std::optional<InputError> refusal;
-    for (const ModelKind kind : {ModelKind::brown_conrady, ModelKind::kannala_brandt}) {
-        try {
-            GeometryFit candidate = with(kind);
-            // Outliers are a model's failure too: the one that uses more points is not punished for it.
-            const double own = candidate.sigma_px / candidate.points_used;
-            if (!best || own < best->sigma_px / best->points_used) {
-                best = std::move(candidate);
-            }
-        } catch (const InputError& e) {
-            refusal = refusal ? refusal : e;
-        }
-    }
-    if (!best) {
-        throw *refusal;
-    }
-    return *best;
+    ChosenGeometry chosen = choose_model(seen.chart_views, seen.width, seen.height, options);
+    return {std::move(chosen.fit), std::move(chosen.choice)};
 }
 
 void add_geometry(Profile& profile, const Observations& seen, const GeometryFit& geometry) {
     const double half_diagonal = half_diagonal_px(profile);
-    profile.geometry = ProfileGeometry{.model = geometry.model,
-                                       .covariance = geometry.covariance,
-                                       .reprojection_rms_px = geometry.rms_px,
-                                       .views_used = static_cast<int>(geometry.views.size()),
-                                       .points_used = geometry.points_used,
-                                       .covered_image_height = geometry.covered_radius_px / half_diagonal};
+    profile.geometry =
+        ProfileGeometry{.model = geometry.model,
+                        .covariance = geometry.covariance,
+                        .reprojection_rms_px = geometry.rms_px,
+                        .views_used = static_cast<int>(geometry.views.size()),
+                        .points_used = geometry.points_used,
+                        .covered_image_height = geometry.covered_radius_px / half_diagonal,
+                        .board = geometry.board,
+                        .uncertainty = uncertainty_map(geometry, seen.chart_views, seen.width, seen.height),
+                        .choice = std::nullopt};
     std::size_t next = 0;
     for (ProfileView& view : profile.views) {
         if (!view.found) {
@@ -296,9 +287,10 @@ Profile measure(const MeasureInput& input) {
     if (seen.chart_views.empty()) {
         profile.not_measured["geometry"] = input.edges.empty() ? "there are flat fields only" : "there is no chart";
     } else {
-        const GeometryFit geometry = fit(input, seen);
-        centre = centre_px(geometry.model);
-        add_geometry(profile, seen, geometry);
+        Geometry geometry = fit(input, seen);
+        centre = centre_px(geometry.fit.model);
+        add_geometry(profile, seen, geometry.fit);
+        profile.geometry->choice = std::move(geometry.choice);
     }
     add_sharpness(profile, seen.sharpness, centre);
     add_vignetting(profile, seen, centre);

@@ -27,7 +27,7 @@ struct MeasureInput {
     std::string name;  // of the profile
     std::vector<Picture> pictures;
     Chart chart;  // a FlatField when every picture is a flat field
-    /// Not set: both models are fitted, and the one with the smaller residuals (per degree of freedom) is taken.
+    /// Not set: several models are fitted, and one is chosen (calibration/model_choice.h).
     std::optional<ModelKind> model;
     GeometryOptions geometry;  // `model` and `disc_diameter_mm` are filled in by `measure`
     ProfileSource source;      // `images` is filled in

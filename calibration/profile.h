@@ -8,10 +8,13 @@
 #include <string_view>
 #include <vector>
 
+#include "calibration/board_shape.h"
 #include "calibration/camera_model.h"
 #include "calibration/curve.h"
+#include "calibration/model_choice.h"
 #include "calibration/picture_traits.h"
 #include "calibration/planar_pose.h"
+#include "calibration/projection_uncertainty.h"
 #include "calibration/self_test.h"
 #include "calibration/sharpness/profile_edge.h"
 
@@ -35,6 +38,9 @@ struct ProfileGeometry {
     int views_used = 0;
     int points_used = 0;
     double covered_image_height = 0.0;
+    std::optional<BoardShape> board;            // "board_shape": where it was fitted
+    std::optional<UncertaintyMap> uncertainty;  // "projection_uncertainty"
+    std::optional<ModelChoice> choice;          // "model_choice": where the model was chosen, not given
 
     [[nodiscard]] double standard_error(std::size_t parameter) const;
 };

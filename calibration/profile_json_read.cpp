@@ -1,5 +1,6 @@
 #include <algorithm>
 
+#include "calibration/geometry_json.h"
 #include "calibration/json_node.h"
 #include "calibration/profile.h"
 #include "calibration/self_test_json.h"
@@ -21,19 +22,24 @@ ProfileSource parse_source(const Node& node) {
 }
 
 CameraModel parse_model(const Node& node) {
-    CameraModel model;
-    const Node kind = node.at("kind");
-    if (kind.text() == KannalaBrandt::kind) {
-        model = KannalaBrandt{};
-    } else if (kind.text() != BrownConrady::kind) {
-        throw kind.error("\"" + std::string(BrownConrady::kind) + "\" or \"" + std::string(KannalaBrandt::kind) + "\"");
+    const Node kind_node = node.at("kind");
+    const std::optional<ModelKind> found = model_kind(kind_node.text());
+    if (!found) {
+        std::string known;
+        for (const std::string& one : model_kind_names()) {
+            known += (known.empty() ? "" : ", ") + one;
+        }
+        throw kind_node.error("one of " + known);
     }
+    const CameraModel model = empty_model(*found);
     std::vector<double> values;
     for (const std::string& name : parameter_names(model)) {
-        values.push_back(node.at("parameters").at(name).at("value").number());
-    }
-    if (!(values[0] > 0.0)) {
-        throw node.at("parameters").at("focal_length_px").at("value").error("a positive length");
+        const Node value = node.at("parameters").at(name).at("value");
+        values.push_back(value.number());
+        const bool length = name == "focal_length_px" || name == "normalisation_px" || name == "spline_end_rad";
+        if (length && !(values.back() > 0.0)) {
+            throw value.error("a positive value");
+        }
     }
     return with_parameters(model, values);
 }
@@ -65,6 +71,15 @@ ProfileGeometry parse_geometry(const Node& root) {
     geometry.views_used = root.at("views_used").count();
     geometry.points_used = root.at("points_used").count();
     geometry.covered_image_height = root.at("covered_image_height").number();
+    if (root.has("board_shape")) {
+        geometry.board = parse_board_shape(root.at("board_shape"));
+    }
+    if (root.has("model_choice")) {
+        geometry.choice = parse_model_choice(root.at("model_choice"));
+    }
+    if (root.has("projection_uncertainty")) {
+        geometry.uncertainty = parse_uncertainty_map(root.at("projection_uncertainty"));
+    }
     return geometry;
 }
 

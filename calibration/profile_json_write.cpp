@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "calibration/geometry_json.h"
 #include "calibration/profile.h"
 #include "calibration/self_test_json.h"
 #include "engine/io/file.h"
@@ -106,6 +107,15 @@ Json to_json(const Profile& profile) {
         json["views_used"] = profile.geometry->views_used;
         json["points_used"] = profile.geometry->points_used;
         json["covered_image_height"] = profile.geometry->covered_image_height;
+        if (profile.geometry->board) {
+            json["board_shape"] = to_json(*profile.geometry->board);
+        }
+        if (profile.geometry->choice) {
+            json["model_choice"] = to_json(*profile.geometry->choice);
+        }
+        if (profile.geometry->uncertainty) {
+            json["projection_uncertainty"] = to_json(*profile.geometry->uncertainty);
+        }
     }
     json["views"] = Json::array();
     for (const ProfileView& view : profile.views) {

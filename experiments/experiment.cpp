@@ -34,8 +34,9 @@ std::optional<ModelKind> read_model(TomlTable& table) {
     if (!table.has("model")) {
         return std::nullopt;
     }
-    const bool perspective = table.choice("model", {"brown-conrady", "kannala-brandt"}) == "brown-conrady";
-    return perspective ? ModelKind::brown_conrady : ModelKind::kannala_brandt;
+    std::vector<std::string> names = model_kind_names();
+    names.emplace_back("auto");
+    return model_kind(table.choice("model", names));
 }
 
 std::string read_name(TomlTable& table) {

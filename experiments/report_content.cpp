@@ -137,7 +137,7 @@ Plot closed_loop_plot(const ExperimentResult& result, const std::vector<Simulati
 }
 
 bool is_fisheye(const Subject& subject) {
-    return subject.profile.geometry && std::holds_alternative<KannalaBrandt>(subject.profile.geometry->model);
+    return subject.profile.geometry && !is_perspective(subject.profile.geometry->model);
 }
 
 Json plots_json(const Experiment& experiment, const ExperimentResult& result) {

@@ -21,7 +21,7 @@ struct MeasureOptions {
     std::vector<std::string> images;
     std::vector<std::string> flat_fields;
     std::string chart;
-    std::string model;
+    std::string model = "auto";
     std::string output;
     std::string lens = "unknown";
     std::string camera = "unknown";
@@ -30,14 +30,8 @@ struct MeasureOptions {
     bool no_self_test = false;
     std::vector<std::string> edges;
     std::vector<double> focus_positions_mm;
+    bool fit_board_shape = false;
 };
-
-std::optional<ModelKind> model_kind(const std::string& name) {
-    if (name.empty()) {
-        return std::nullopt;
-    }
-    return name == "brown-conrady" ? ModelKind::brown_conrady : ModelKind::kannala_brandt;
-}
 
 void print_curve(const Profile& profile, const std::string& name, const char* label, const char* unit) {
     const auto found = profile.curves.find(name);
@@ -87,6 +81,15 @@ void print_profile(const Profile& profile) {
         for (std::size_t i = 0; i < names.size(); ++i) {
             fmt::print("{:22} {:.6g} ± {:.2g}\n", names[i], values[i], geometry.standard_error(i));
         }
+    }
+    if (profile.geometry && profile.geometry->board) {
+        for (std::size_t i = 0; i < kBoardTerms; ++i) {
+            fmt::print("{:22} {:.4f} ± {:.2g}\n", kBoardTermNames[i], profile.geometry->board->height_mm[i],
+                       standard_error_mm(*profile.geometry->board, i));
+        }
+    }
+    if (profile.geometry && profile.geometry->choice) {
+        fmt::print("chosen because: {}\n", profile.geometry->choice->why);
     }
     print_curve(profile, "distortion_percent", "distortion", "%");
     for (const char* channel : {"R", "G", "B", "Y"}) {
@@ -174,8 +177,9 @@ int run_measure(const MeasureOptions& options) {
     }
     input.self_test = !options.no_self_test;
     add_sharpness_input(input, options);
-    input.model = model_kind(options.model);
+    input.model = model_kind(options.model);  // none for "auto"
     input.source = {.kind = options.kind, .images = {}, .camera = options.camera, .lens = options.lens};
+    input.geometry.fit_board_shape = options.fit_board_shape;
     if (options.pixel_pitch_um > 0.0) {
         input.pixel_pitch_um = options.pixel_pitch_um;
     }
@@ -221,8 +225,14 @@ void add_measure_command(CLI::App& app, int& status) {
         ->delimiter(',');
     command->add_option("--flat-field", options->flat_fields, "Pictures of an even surface, for vignetting")
         ->type_name("FILE");
-    command->add_option("--model", options->model, "brown-conrady or kannala-brandt (default: what fits better)")
-        ->check(CLI::IsMember({"brown-conrady", "kannala-brandt"}));
+    std::vector<std::string> models = model_kind_names();
+    models.emplace_back("auto");
+    command
+        ->add_option("--model", options->model,
+                     "The lens model; auto chooses by held-out error and uncertainty, and says why")
+        ->check(CLI::IsMember(models))
+        ->capture_default_str();
+    command->add_flag("--board-shape", options->fit_board_shape, "Fit how far the chart is from flat, with the lens");
     command->add_option("--pixel-pitch", options->pixel_pitch_um, "Pixel pitch in µm, for lengths in mm")
         ->check(kPositiveOption);
     command->add_option("--lens", options->lens, "The lens's name, noted in the profile")->capture_default_str();

@@ -4,7 +4,6 @@
 
 #include "calibration/disc_centroid.h"
 #include "calibration/fit_geometry.h"
-#include "calibration/geometry_curves.h"
 #include "engine/io/input_error.h"
 #include "tests/unit/calibration_synthetic.h"
 
@@ -79,44 +78,6 @@ TEST(CalibrationGeometry, ExactViewsGiveBackTheFisheyeBeyond90Degrees) {
     for (std::size_t i = 0; i < truth.parameters.size(); ++i) {
         EXPECT_NEAR(parameters(fit.model)[i], truth.parameters[i], 1e-6) << KannalaBrandt::names[i];
     }
-}
-
-// 200 repetitions with normal noise: the share of 95 % intervals that hold the truth is binomial with standard
-// deviation 1.5 %, so 90 to 98 % are +2 and −3.3 of them. The curve's band must hold just as often.
-TEST(CalibrationGeometry, StatedErrorsCoverTheTruth) {
-    const Chart small{.pattern = Checkerboard{7, 6, 40.0}};
-    BrownConrady truth = perspective_camera();
-    truth.parameters[5] = truth.parameters[6] = truth.parameters[7] = 0.0;
-    const auto exact = views_of(truth, tilted_poses(600.0, 0.4, 60.0), small);
-    GeometryOptions options = options_for(ModelKind::brown_conrady);
-    options.radial_terms = 2;
-    options.fit_tangential = false;
-    Noise noise(1);
-    constexpr int trials = 200;
-    std::array<int, 5> covered{};
-    int covered_curve = 0;
-    for (int trial = 0; trial < trials; ++trial) {
-        auto views = exact;
-        add_noise(views, 0.1, noise);
-        const GeometryFit fit = fit_geometry(views, kWidth, kHeight, options);
-        for (int i = 0; i < 5; ++i) {
-            const double error =
-                parameters(fit.model)[static_cast<std::size_t>(i)] - truth.parameters[static_cast<std::size_t>(i)];
-            covered[static_cast<std::size_t>(i)] += std::abs(error) < k95 * fit.standard_error(i) ? 1 : 0;
-        }
-        const auto band = sample(rectilinear_distortion_curve(fit, 400.0), 0.5).value();
-        const double angle = field_angle_rad(truth, 200.0).value();
-        const double distortion = 100.0 * (200.0 / (truth.parameters[0] * std::tan(angle)) - 1.0);
-        covered_curve += distortion > band.lower_95 && distortion < band.upper_95 ? 1 : 0;
-    }
-    for (int i = 0; i < 5; ++i) {
-        EXPECT_GE(covered[static_cast<std::size_t>(i)], 0.90 * trials)
-            << BrownConrady::names[static_cast<std::size_t>(i)];
-        EXPECT_LE(covered[static_cast<std::size_t>(i)], 0.985 * trials)
-            << BrownConrady::names[static_cast<std::size_t>(i)];
-    }
-    EXPECT_GE(covered_curve, 0.90 * trials);
-    EXPECT_LE(covered_curve, 0.985 * trials);
 }
 
 // Moving a point by 20 px must not move the camera: the point is left out and said to be.
