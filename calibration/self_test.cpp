@@ -89,7 +89,6 @@ CurveFloor floor_of(const CurveDifference& difference) {
 }
 
 void add_points(SelfTest& result, const MeasureInput& input, const Profile& truth, const Profile& again) {
-    const auto* discs = std::get_if<DiscGrid>(&input.chart.pattern);
     std::map<std::string, Pose> poses;
     for (const ProfileView& view : truth.views) {
         poses[view.image] = view.pose;
@@ -99,7 +98,7 @@ void add_points(SelfTest& result, const MeasureInput& input, const Profile& trut
     for (const ProfileView& view : again.views) {
         for (const ProfilePoint& point : view.points) {
             const auto expected =
-                predict(truth.geometry->model, poses.at(view.image), point.chart_mm, discs ? discs->diameter_mm : 0.0);
+                predict(truth.geometry->model, poses.at(view.image), point.chart_mm, disc_diameter_mm(input.chart));
             if (!expected) {
                 continue;
             }
@@ -120,8 +119,10 @@ void add_points(SelfTest& result, const MeasureInput& input, const Profile& trut
 SelfTest self_test(const MeasureInput& input, const Profile& profile) {
     MeasureInput simulated = input;
     simulated.self_test = false;
-    simulated.model = std::holds_alternative<BrownConrady>(profile.geometry->model) ? ModelKind::brown_conrady
-                                                                                    : ModelKind::kannala_brandt;
+    simulated.model = kind(profile.geometry->model);
+    if (const auto& choice = profile.geometry->choice) {
+        simulated.geometry.radial_terms = choice->candidates[static_cast<std::size_t>(choice->chosen)].radial_terms;
+    }
     simulated.pictures = simulated_pictures(input, profile);
     const Profile again = measure(simulated);
     SelfTest result;

@@ -103,6 +103,7 @@ MeasurementFloor run_measurement_floor(const Experiment& experiment, const RunSe
     const FloorSettings& wanted = *experiment.measurement_floor;
     MeasurementFloor floor;
     append(floor, measure_detectors(wanted, settings.seed, settings.threads, progress));
+    append(floor, measure_models(wanted, settings.seed, settings.threads, progress));
     append(floor, measure_intervals(wanted, settings.seed, settings.threads, progress));
     return floor;
 }

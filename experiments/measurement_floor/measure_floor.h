@@ -62,6 +62,10 @@ std::vector<std::string> floor_detectors();
 /// Detectors: the error of found points against noise, blur, tilt and JPEG's quality, for each kind of chart.
 MeasurementFloor measure_detectors(const FloorSettings& settings, std::uint64_t seed, int threads,
                                    const FloorProgress& progress);
+/// Models: the error of fitted mappings against the number of photos and their coverage, for the models that one might
+/// fit to a lens; and what the model that is chosen by itself makes of the usual set. A value's "pictures" are sets.
+MeasurementFloor measure_models(const FloorSettings& settings, std::uint64_t seed, int threads,
+                                const FloorProgress& progress);
 /// Intervals: in how many of the trials the stated 95 % intervals hold the truth.
 MeasurementFloor measure_intervals(const FloorSettings& settings, std::uint64_t seed, int threads,
                                    const FloorProgress& progress);

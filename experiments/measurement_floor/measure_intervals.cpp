@@ -55,26 +55,9 @@ std::vector<Quantity> at_heights(const std::string& id, const std::string& label
 Held geometry_trial(std::uint32_t seed) {
     std::mt19937 random(seed);
     const BrownConrady camera = true_camera();
-    std::vector<ChartView> views;
-    for (int v = 0; v < 8; ++v) {
-        const Pose pose = draw_pose(camera, kWidth, kHeight, 300.0,
-                                    {.tilt_deg = 30.0, .largest_roll_deg = 20.0, .fill = 0.8, .reach = 0.4}, random);
-        ChartView view{.name = fmt::format("view {}", v), .chart_mm = {}, .image_px = {}};
-        for (int j = 0; j < 6; ++j) {
-            for (int i = 0; i < 9; ++i) {
-                const Vec2d chart{30.0 * (i - 4), 30.0 * (j - 2.5)};
-                const auto pixel = project(camera, to_camera(pose, chart));
-                if (pixel && pixel->x > 5 && pixel->y > 5 && pixel->x < kWidth - 6 && pixel->y < kHeight - 6) {
-                    view.chart_mm.push_back(chart);
-                    view.image_px.push_back(
-                        {pixel->x + kPointNoise_px * normal(random), pixel->y + kPointNoise_px * normal(random)});
-                }
-            }
-        }
-        if (view.chart_mm.size() >= 12) {
-            views.push_back(std::move(view));
-        }
-    }
+    const std::vector<ChartView> views =
+        draw_views({.model = camera, .width_px = kWidth, .height_px = kHeight, .noise_px = kPointNoise_px}, 8,
+                   {.tilt_deg = 30.0, .largest_roll_deg = 20.0, .fill = 0.8, .reach = 0.4}, random);
     const GeometryFit fit = fit_geometry(views, kWidth, kHeight, {.model = ModelKind::brown_conrady});
     const double focal = focal_length_px(fit.model);
     const double half = k95 * fit.standard_error(0);

@@ -1,6 +1,7 @@
 #include "experiments/measurement_floor/random_poses.h"
 
 #include <ceres/rotation.h>
+#include <fmt/format.h>
 
 #include <cmath>
 #include <numbers>
@@ -39,6 +40,36 @@ Pose draw_pose(const CameraModel& model, int width_px, int height_px, double wid
     const Vec3d direction = unproject(model, seen_at).value_or(Vec3d{0.0, 0.0, 1.0});
     const double distance = focal_length_px(model) * width_mm / (wish.fill * width_px);
     return {{rotation[0], rotation[1], rotation[2]}, distance * direction};
+}
+
+std::vector<ChartView> draw_views(const SeenThrough& camera, int count, const PoseWish& wish, std::mt19937& random) {
+    constexpr int kColumns = 9;
+    constexpr int kRows = 6;
+    constexpr double kPitch_mm = 30.0;
+    constexpr double kMargin_px = 5.0;
+    constexpr std::size_t kFewest = 12;
+    std::vector<ChartView> views;
+    while (static_cast<int>(views.size()) < count) {
+        const Pose pose =
+            draw_pose(camera.model, camera.width_px, camera.height_px, kPitch_mm * (kColumns + 1), wish, random);
+        ChartView view{.name = fmt::format("view {}", views.size() + 1), .chart_mm = {}, .image_px = {}};
+        for (int j = 0; j < kRows; ++j) {
+            for (int i = 0; i < kColumns; ++i) {
+                const Vec2d chart{kPitch_mm * (i - 0.5 * (kColumns - 1)), kPitch_mm * (j - 0.5 * (kRows - 1))};
+                const auto pixel = project(camera.model, to_camera(pose, chart));
+                if (pixel && pixel->x > kMargin_px && pixel->y > kMargin_px &&
+                    pixel->x < camera.width_px - 1 - kMargin_px && pixel->y < camera.height_px - 1 - kMargin_px) {
+                    view.chart_mm.push_back(chart);
+                    view.image_px.push_back(
+                        {pixel->x + camera.noise_px * normal(random), pixel->y + camera.noise_px * normal(random)});
+                }
+            }
+        }
+        if (view.chart_mm.size() >= kFewest) {
+            views.push_back(std::move(view));
+        }
+    }
+    return views;
 }
 
 }  // namespace lensproof

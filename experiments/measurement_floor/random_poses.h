@@ -1,8 +1,10 @@
-// experiments/measurement_floor/random_poses.h — places of a chart in front of a camera, drawn.
+// experiments/measurement_floor/random_poses.h — places of a chart in front of a camera, drawn, and what is seen there.
 #pragma once
 #include <random>
+#include <vector>
 
 #include "calibration/camera_model.h"
+#include "calibration/fit_geometry.h"
 #include "calibration/planar_pose.h"
 #include "engine/optics/vec.h"
 
@@ -26,5 +28,17 @@ struct PoseWish {
 /// A chart `width_mm` wide, centred at its origin, in a picture of `width_px` × `height_px`.
 Pose draw_pose(const CameraModel& model, int width_px, int height_px, double width_mm, const PoseWish& wish,
                std::mt19937& random);
+
+/// The picture that points are seen in, and their noise.
+struct SeenThrough {
+    CameraModel model;
+    int width_px = 640;
+    int height_px = 480;
+    double noise_px = 0.02;  // standard deviation of one coordinate of one point
+};
+
+/// `count` views of a board of 9 × 6 points, 30 mm apart, each with the points that are at least 5 px inside the
+/// picture; views with fewer than 12 points are drawn again.
+std::vector<ChartView> draw_views(const SeenThrough& camera, int count, const PoseWish& wish, std::mt19937& random);
 
 }  // namespace lensproof
