@@ -37,7 +37,7 @@ T board_height(const BoardFrame& frame, const T* h, double x_mm, double y_mm) {
 struct BoardShape {
     BoardFrame frame;
     std::array<double, kBoardTerms> height_mm{};
-    std::array<double, kBoardTerms * kBoardTerms> covariance{};  // row by row
+    std::array<double, std::size_t{kBoardTerms} * kBoardTerms> covariance{};  // row by row
 };
 
 /// Of one term.

@@ -37,12 +37,11 @@ struct BrownConradyModel {
 
     template <class T>
     static T radial_factor(const T* p, const T& rho2) {
-        const T numerator = T(1) + rho2 * (p[3] + rho2 * (p[4] + rho2 * p[5]));
+        T factor = T(1) + rho2 * (p[3] + rho2 * (p[4] + rho2 * p[5]));
         if constexpr (rational) {
-            return numerator / (T(1) + rho2 * (p[8] + rho2 * (p[9] + rho2 * p[10])));
-        } else {
-            return numerator;
+            factor = factor / (T(1) + rho2 * (p[8] + rho2 * (p[9] + rho2 * p[10])));
         }
+        return factor;
     }
 
     /// False, and `pixel` untouched, for a point that is not in front of the camera.
