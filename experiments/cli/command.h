@@ -62,6 +62,7 @@ nlohmann::ordered_json finding_json(const Finding& finding);
 bool prints_text(const CommonOptions& options);
 
 /// Each adds its subcommand to `app`; running it stores the exit status in `status`.
+void add_chart_command(CLI::App& app, int& status);
 void add_check_command(CLI::App& app, int& status);
 void add_analyze_command(CLI::App& app, int& status);
 void add_trace_command(CLI::App& app, int& status);

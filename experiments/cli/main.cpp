@@ -64,6 +64,7 @@ int run(int argc, char** argv) {
     add_trace_command(app, status);
     add_render_command(app, status);
     add_merge_command(app, status);
+    add_chart_command(app, status);
     add_measure_command(app, status);
     add_compare_command(app, status);
     add_run_command(app, status);

@@ -1,0 +1,122 @@
+// experiments/cli/chart_command.cpp — `lensproof chart KIND`: a chart to print, and the file that describes it.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <memory>
+#include <utility>
+
+#include "engine/io/file.h"
+#include "engine/io/input_error.h"
+#include "engine/scene/chart_file.h"
+#include "experiments/chart_print/chart_words.h"
+#include "experiments/cli/command.h"
+
+namespace lensproof {
+
+namespace {
+
+struct ChartOptions {
+    CommonOptions common;
+    ChartWish wish;
+    std::map<std::string, std::string> counts;
+    std::string paper = "A4";
+    bool portrait = false;
+    double margin_mm = 10.0;
+    double dpi = 600.0;
+    std::string output;
+};
+
+std::string option_of(std::string key) {
+    std::replace(key.begin(), key.end(), '_', '-');
+    return "--" + key;
+}
+
+PrintLayout layout_of(const ChartOptions& options) {
+    PrintLayout layout{.paper = parse_paper(options.paper), .margin_mm = options.margin_mm, .dpi = options.dpi};
+    if (options.portrait) {
+        std::swap(layout.paper.width_mm, layout.paper.height_mm);
+    }
+    if (2.0 * layout.margin_mm >= layout.paper.width_mm ||
+        2.0 * layout.margin_mm + kCaptionHeight_mm >= layout.paper.height_mm) {
+        throw InputError(fmt::format("--margin {:g}: leaves nothing of a paper of {:g} × {:g} mm", layout.margin_mm,
+                                     layout.paper.width_mm, layout.paper.height_mm));
+    }
+    return layout;
+}
+
+int print(const ChartOptions& options) {
+    check_json_name(options.common);
+    const PrintLayout layout = layout_of(options);
+    ChartWish wish = options.wish;
+    for (const auto& [key, text] : options.counts) {
+        if (!text.empty()) {
+            wish.counts[key] = parse_grid_size(option_of(key), text);
+        }
+    }
+    const std::string toml = chart_toml(wish, layout);
+    const std::filesystem::path file = options.output.empty() ? wish.kind + ".pdf" : options.output;
+    std::filesystem::path description = file;
+    description.replace_extension(".toml");
+    check_output_name(file);
+    check_output_name(description);
+    // What is drawn is what the file says: read back from it.
+    TomlTable top = TomlTable::parse(toml, description.string());
+    TomlTable table = top.table("chart");
+    const Chart chart = read_chart(table);
+    print_chart(chart, layout, chart_caption(toml), file);
+    write_file(description,
+               "# " + file.filename().string() +
+                   ", for `lensproof measure … --chart`. Lengths are those of a print at 100 %: measure its "
+                   "scale.\n" +
+                   toml);
+    const Vec2d size = pattern_size_mm(chart);
+    write_json_result(options.common, {{"kind", wish.kind},
+                                       {"file", file.string()},
+                                       {"description", description.string()},
+                                       {"paper_mm", {layout.paper.width_mm, layout.paper.height_mm}},
+                                       {"pattern_mm", {size.x, size.y}}});
+    if (prints_text(options.common) && !options.common.quiet) {
+        fmt::print("{}: {}, {:g} × {:g} mm on {:g} × {:g} mm; print at 100 %\n{}: for measure --chart\n", file.string(),
+                   wish.kind, size.x, size.y, layout.paper.width_mm, layout.paper.height_mm, description.string());
+    }
+    return kDone;
+}
+
+}  // namespace
+
+void add_chart_command(CLI::App& app, int& status) {
+    const auto options = std::make_shared<ChartOptions>();
+    CLI::App* command = app.add_subcommand("chart", "Write a chart to print, and the file that describes it");
+    command->footer(
+        "Example: lensproof chart charuco --squares 12x8 --square-mm 30 --paper A3 -o board.pdf\n"
+        "writes board.pdf and, for `lensproof measure`, board.toml. What is not said is chosen to fill the page.");
+    command->add_option("KIND", options->wish.kind, fmt::format("{}", fmt::join(printable_kinds(), ", ")))->required();
+    command->add_option("-o,--output", options->output, "PDF, SVG or PNG to write (default: KIND.pdf)")
+        ->type_name("FILE");
+    command->add_option("--paper", options->paper, "A0 to A5, letter, tabloid, or WIDTHxHEIGHT in mm")
+        ->capture_default_str();
+    command->add_flag("--portrait", options->portrait, "The paper's shorter side across");
+    command->add_option("--margin", options->margin_mm, "Least margin in mm")
+        ->check(kNumberOption)
+        ->check(CLI::NonNegativeNumber)
+        ->capture_default_str();
+    command->add_option("--dpi", options->dpi, "Pixels per inch of a PNG")
+        ->check(kPositiveOption)
+        ->capture_default_str();
+    for (const std::string& key : count_keys()) {
+        command->add_option(option_of(key), options->counts[key], "Columns and rows, as in 10x7")->type_name("CxR");
+    }
+    for (const std::string& key : number_keys()) {
+        const CLI::Validator& check = key == "angle_deg" ? kNumberOption : kPositiveOption;
+        command
+            ->add_option_function<double>(
+                option_of(key), [options, key](const double& value) { options->wish.numbers[key] = value; },
+                "As in the chart's file")
+            ->check(check);
+    }
+    command->add_option("--dictionary", options->wish.dictionary, "Of a ChArUco board's markers, such as DICT_4X4_50");
+    add_common_options(*command, options->common);
+    command->callback([options, &status] { status = print(*options); });
+}
+
+}  // namespace lensproof
