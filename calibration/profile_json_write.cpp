@@ -2,6 +2,7 @@
 #include <cmath>
 
 #include "calibration/profile.h"
+#include "calibration/vignetting_json.h"
 #include "engine/io/file.h"
 
 namespace lensproof {
@@ -120,6 +121,12 @@ Json to_json(const Profile& profile) {
             list.push_back(to_json(edge, profile.pixel_pitch_um));
         }
         json["sharpness"][channel] = std::move(list);
+    }
+    for (const auto& [channel, models] : profile.vignetting_models) {
+        json["vignetting_models"][channel] = to_json(models);
+    }
+    for (const auto& [channel, grid] : profile.shading) {
+        json["shading"][channel] = to_json(grid);
     }
     json["not_measured"] = Json::object();
     for (const auto& [name, reason] : profile.not_measured) {

@@ -72,6 +72,7 @@ std::vector<FocusedEdges> by_position(const SharpnessObservations& seen, const s
         }
     }
     std::vector<FocusedEdges> result;
+    result.reserve(series.size());
     for (auto& [position, focused] : series) {
         result.push_back(std::move(focused));
     }
@@ -150,6 +151,7 @@ void add_sharpness(Profile& profile, const SharpnessObservations& seen, const Ve
     for (const auto& [channel, listed_edges] : seen.edges) {
         std::vector<FocusedEdges> series = by_position(seen, listed_edges);
         std::vector<EdgeMtf> edges;
+        edges.reserve(listed_edges.size());
         for (const ProfileEdge& edge : listed_edges) {
             edges.push_back(edge.edge);
         }
