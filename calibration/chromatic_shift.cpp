@@ -12,22 +12,25 @@ namespace {
 
 constexpr double kOutlierSigmas = 4.5;
 constexpr double kLeastSigma_px = 0.005;  // no detector is better
-constexpr int kUnknowns = 5;
+constexpr int kUnknowns = 7;
+constexpr std::size_t kFewestPairs = 7;
 
-Curve radial_curve(const ChromaticShift& shift, double covered) {
+// Σ term_i h^(2i+1) of the terms from `first` on, as far as `covered`.
+Curve odd_curve(const std::vector<double>& terms, const ChromaticShift& shift, std::size_t first, double covered) {
     Curve curve;
     curve.covered_image_height = covered;
     for (const double h : standard_image_heights()) {
         if (h > covered) {
             break;
         }
-        const std::array<double, 3> basis = {h, h * h * h, h * h * h * h * h};
         double value = 0.0;
         double variance = 0.0;
-        for (std::size_t i = 0; i < 3; ++i) {
-            value += basis[i] * shift.radial_px[i];
-            for (std::size_t j = 0; j < 3; ++j) {
-                variance += basis[i] * shift.covariance[i * kUnknowns + j] * basis[j];
+        for (std::size_t i = 0; i < terms.size(); ++i) {
+            const double own = std::pow(h, static_cast<double>(2 * i + 1));
+            value += own * terms[i];
+            for (std::size_t j = 0; j < terms.size(); ++j) {
+                variance += own * shift.covariance[(first + i) * kUnknowns + first + j] *
+                            std::pow(h, static_cast<double>(2 * j + 1));
             }
         }
         const double half_width = k95 * std::sqrt(std::max(variance, 0.0));
@@ -40,9 +43,9 @@ Curve radial_curve(const ChromaticShift& shift, double covered) {
 
 ChromaticShift fit_chromatic_shift(const std::vector<ChromaticPair>& pairs, const Vec2d& centre_px,
                                    double half_diagonal_px) {
-    if (!(half_diagonal_px > 0.0) || pairs.size() < kUnknowns + 1) {
+    if (!(half_diagonal_px > 0.0) || pairs.size() < kFewestPairs) {
         throw InputError("chromatic shift: " + std::to_string(pairs.size()) +
-                         " points found in both channels: expected at least " + std::to_string(kUnknowns + 1));
+                         " points found in both channels: expected at least " + std::to_string(kFewestPairs));
     }
     const auto rows = static_cast<Eigen::Index>(2 * pairs.size());
     LinearProblem problem{.a = Eigen::MatrixXd::Zero(rows, kUnknowns),
@@ -57,8 +60,8 @@ ChromaticShift fit_chromatic_shift(const std::vector<ChromaticPair>& pairs, cons
         const Vec2d q = offset(pairs[i]);
         const double rho2 = q.x * q.x + q.y * q.y;
         const auto row = static_cast<Eigen::Index>(2 * i);
-        problem.a.row(row) << q.x, q.x * rho2, q.x * rho2 * rho2, 1.0, 0.0;
-        problem.a.row(row + 1) << q.y, q.y * rho2, q.y * rho2 * rho2, 0.0, 1.0;
+        problem.a.row(row) << q.x, q.x * rho2, q.x * rho2 * rho2, -q.y, -q.y * rho2, 1.0, 0.0;
+        problem.a.row(row + 1) << q.y, q.y * rho2, q.y * rho2 * rho2, q.x, q.x * rho2, 0.0, 1.0;
         problem.y(row) = pairs[i].channel_px.x - pairs[i].green_px.x;
         problem.y(row + 1) = pairs[i].channel_px.y - pairs[i].green_px.y;
         problem.group[2 * i] = problem.group[2 * i + 1] = static_cast<int>(i);
@@ -70,7 +73,8 @@ ChromaticShift fit_chromatic_shift(const std::vector<ChromaticPair>& pairs, cons
     }
     ChromaticShift shift;
     std::copy_n(fit->parameters.begin(), 3, shift.radial_px.begin());
-    shift.translation_px = {fit->parameters(3), fit->parameters(4)};
+    std::copy_n(fit->parameters.begin() + 3, 2, shift.tangential_px.begin());
+    shift.translation_px = {fit->parameters(5), fit->parameters(6)};
     std::copy_n(fit->covariance.data(), kUnknowns * kUnknowns, shift.covariance.begin());
     shift.rms_px = std::sqrt(fit->chi_squared / fit->rows_used);
     shift.pairs_used = fit->rows_used / 2;
@@ -81,7 +85,8 @@ ChromaticShift fit_chromatic_shift(const std::vector<ChromaticPair>& pairs, cons
             covered = std::max(covered, std::hypot(q.x, q.y));
         }
     }
-    shift.curve = radial_curve(shift, covered);
+    shift.radial = odd_curve({shift.radial_px.begin(), shift.radial_px.end()}, shift, 0, covered);
+    shift.tangential = odd_curve({shift.tangential_px.begin(), shift.tangential_px.end()}, shift, 3, covered);
     return shift;
 }
 

@@ -9,6 +9,7 @@
 #include "calibration/detect.h"
 #include "calibration/geometry_curves.h"
 #include "calibration/light_samples.h"
+#include "calibration/measure_bands.h"
 #include "calibration/model_choice.h"
 #include "calibration/refine.h"
 #include "calibration/self_test.h"
@@ -209,6 +210,8 @@ void add_vignetting(Profile& profile, const Observations& seen, const Vec2d& cen
     for (const auto& [channel, samples] : groups) {
         try {
             Vignetting vignetting = fit_vignetting(samples, centre, half_diagonal_px(profile));
+            profile.vignetting_models[channel] = fit_vignetting_models(vignetting);
+            profile.shading[channel] = shading_grid(vignetting, seen.width, seen.height);
             FittedTerms& terms = profile.terms["vignetting_" + channel];
             for (std::size_t i = 0; i < vignetting.coefficients.size(); ++i) {
                 terms.names.push_back("spline_" + std::to_string(i));
@@ -223,7 +226,7 @@ void add_vignetting(Profile& profile, const Observations& seen, const Vec2d& cen
     }
 }
 
-void add_chromatic_shift(Profile& profile, const Observations& seen, const Vec2d& centre) {
+void add_chromatic_shifts(Profile& profile, const Observations& seen, const Vec2d& centre) {
     if (seen.grey) {
         profile.not_measured["chromatic_shift"] = "the pictures are grey";
         return;
@@ -234,13 +237,7 @@ void add_chromatic_shift(Profile& profile, const Observations& seen, const Vec2d
     }
     for (const auto& [channel, pairs] : seen.chromatic_pairs) {
         try {
-            ChromaticShift shift = fit_chromatic_shift(pairs, centre, half_diagonal_px(profile));
-            const auto& [c1, c3, c5] = shift.radial_px;
-            profile.terms["chromatic_shift_" + channel] = {
-                .names = {"c1_px", "c3_px", "c5_px", "translation_x_px", "translation_y_px"},
-                .values = {c1, c3, c5, shift.translation_px.x, shift.translation_px.y},
-                .covariance = {shift.covariance.begin(), shift.covariance.end()}};
-            profile.curves["chromatic_shift_" + channel + "_px"] = std::move(shift.curve);
+            add_chromatic_shift(profile, channel_label(channel), pairs, centre);
         } catch (const InputError& e) {
             profile.not_measured["chromatic_shift"] = e.what();
         }
@@ -294,7 +291,7 @@ Profile measure(const MeasureInput& input) {
     }
     add_sharpness(profile, seen.sharpness, centre);
     add_vignetting(profile, seen, centre);
-    add_chromatic_shift(profile, seen, centre);
+    add_chromatic_shifts(profile, seen, centre);
     if (input.self_test) {
         add_self_test(profile, input);
     }

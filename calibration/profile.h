@@ -17,6 +17,7 @@
 #include "calibration/projection_uncertainty.h"
 #include "calibration/self_test.h"
 #include "calibration/sharpness/profile_edge.h"
+#include "calibration/vignetting_models.h"
 
 namespace lensproof {
 
@@ -72,11 +73,11 @@ struct FittedTerms {
 };
 
 /// Curves by name: "field_angle_deg", "distortion_percent" (against f tan θ), "distortion_equidistant_percent"
-/// (against f θ), and for a channel C "vignetting_C" (ratio to the axis), "vignetting_C_ev", "chromatic_shift_C_px",
-/// and those of sharpness and focus (calibration/sharpness/measure_sharpness.h).
-/// What could not be measured is absent there and has its reason in `not_measured`, under "geometry", "vignetting",
-/// "chromatic_shift", "sharpness_over_the_field" or "field_curvature"; a self-test that was asked for and could not be
-/// made under "self_test".
+/// (against f θ), and for a channel C "vignetting_C" (ratio to the axis), "vignetting_C_ev", "chromatic_shift_C_px"
+/// (radial) and "chromatic_shift_tangential_C_px" (a spectral layer's C is its wavelength, "450nm"), and those of
+/// sharpness and focus (calibration/sharpness/measure_sharpness.h). What could not be measured is absent there and has
+/// its reason in `not_measured`, under "geometry", "vignetting", "chromatic_shift", "sharpness_over_the_field" or
+/// "field_curvature"; a self-test that was asked for and could not be made under "self_test".
 struct Profile {
     std::string name;
     ProfileSource source;
@@ -93,6 +94,10 @@ struct Profile {
     std::map<std::string, FittedTerms> terms;
     /// The edges measured, by channel (JSON key "sharpness", calibration/sharpness/profile_edge.h).
     std::map<std::string, std::vector<ProfileEdge>> sharpness;
+    /// Formulas for the vignetting of each channel, the one to choose first, and what they are held against (JSON keys
+    /// "vignetting_models" and "shading", calibration/vignetting_json.h).
+    std::map<std::string, std::vector<VignettingModel>> vignetting_models;
+    std::map<std::string, ShadingGrid> shading;
     std::map<std::string, std::string> not_measured;
     std::optional<SelfTest> self_test;
 };

@@ -4,6 +4,7 @@
 #include "calibration/json_node.h"
 #include "calibration/profile.h"
 #include "calibration/self_test_json.h"
+#include "calibration/vignetting_json.h"
 #include "engine/io/file.h"
 #include "engine/io/input_error.h"
 
@@ -196,6 +197,18 @@ Profile parse_profile(std::string_view text, const std::string& file) {
             for (const Node& edge : channels.at(channel).elements()) {
                 profile.sharpness[channel].push_back(parse_edge(edge));
             }
+        }
+    }
+    if (root.has("vignetting_models")) {
+        const Node models = root.at("vignetting_models");
+        for (const std::string& channel : models.keys()) {
+            profile.vignetting_models[channel] = parse_vignetting_models(models.at(channel));
+        }
+    }
+    if (root.has("shading")) {
+        const Node grids = root.at("shading");
+        for (const std::string& channel : grids.keys()) {
+            profile.shading[channel] = parse_shading_grid(grids.at(channel));
         }
     }
     const Node reasons = root.at("not_measured");

@@ -4,6 +4,7 @@
 #include "calibration/geometry_json.h"
 #include "calibration/profile.h"
 #include "calibration/self_test_json.h"
+#include "calibration/vignetting_json.h"
 #include "engine/io/file.h"
 
 namespace lensproof {
@@ -135,6 +136,12 @@ Json to_json(const Profile& profile) {
             list.push_back(to_json(edge, profile.pixel_pitch_um));
         }
         json["sharpness"][channel] = std::move(list);
+    }
+    for (const auto& [channel, models] : profile.vignetting_models) {
+        json["vignetting_models"][channel] = to_json(models);
+    }
+    for (const auto& [channel, grid] : profile.shading) {
+        json["shading"][channel] = to_json(grid);
     }
     json["not_measured"] = Json::object();
     for (const auto& [name, reason] : profile.not_measured) {

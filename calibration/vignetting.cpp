@@ -48,6 +48,8 @@ struct EvenSpline {
 };
 
 struct Row {
+    Vec2d pixel_px;
+    Vec2d at;  // from the centre, in half-diagonals
     double r = 0.0;
     double log_value = 0.0;
     double sigma = 0.0;
@@ -63,7 +65,10 @@ std::vector<Row> rows_of(const std::vector<LightGroup>& groups, const Vec2d& cen
         std::vector<Row> own;
         for (const LightSample& s : group.samples) {
             if (std::isfinite(s.value) && s.value > 0.0 && std::isfinite(s.relative_error)) {
-                own.push_back({.r = std::hypot(s.pixel_px.x - centre.x, s.pixel_px.y - centre.y) / half_diagonal,
+                const Vec2d at{(s.pixel_px.x - centre.x) / half_diagonal, (s.pixel_px.y - centre.y) / half_diagonal};
+                own.push_back({.pixel_px = s.pixel_px,
+                               .at = at,
+                               .r = std::hypot(at.x, at.y),
                                .log_value = std::log(s.value),
                                .sigma = std::hypot(s.relative_error, kLeastRelativeError),
                                .chart = {s.chart_mm.x / kGradientUnit_mm, s.chart_mm.y / kGradientUnit_mm},
@@ -165,8 +170,20 @@ void renumber(std::vector<Row>& rows) {
     }
 }
 
-Vignetting sampled(const Chosen& chosen, double covered) {
-    Vignetting result{.ratio = {}, .ev = {}, .spans = chosen.spline.spans, .samples_used = chosen.fit.rows_used};
+Vignetting sampled(const Chosen& chosen, const std::vector<Row>& rows, double covered) {
+    Vignetting result;
+    result.spans = chosen.spline.spans;
+    result.samples_used = chosen.fit.rows_used;
+    result.chi_squared = chosen.fit.chi_squared;
+    result.gain_terms = static_cast<int>(chosen.fit.parameters.size()) - chosen.spline.size();
+    result.samples.reserve(rows.size());
+    for (std::size_t i = 0; i < rows.size(); ++i) {  // the spline plus what it leaves: gains and gradients are out
+        const double on_curve = chosen.spline.basis(rows[i].r).dot(chosen.fit.parameters.head(chosen.spline.size()));
+        result.samples.push_back({.pixel_px = rows[i].pixel_px,
+                                  .at = rows[i].at,
+                                  .log_ratio = on_curve + chosen.fit.residuals(static_cast<Eigen::Index>(i)),
+                                  .sigma = rows[i].sigma});
+    }
     result.ratio.covered_image_height = result.ev.covered_image_height = covered;
     const int size = chosen.spline.size();
     for (const double h : standard_image_heights()) {
@@ -249,7 +266,7 @@ Vignetting fit_vignetting(const std::vector<LightGroup>& groups, const Vec2d& ce
     if (candidates.empty()) {
         throw fail();
     }
-    return sampled(candidates[std::min(best + 1, candidates.size() - 1)], reach);
+    return sampled(candidates[std::min(best + 1, candidates.size() - 1)], rows, reach);
 }
 
 PolynomialVignetting polynomial_vignetting(const Curve& ratio) {

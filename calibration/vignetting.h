@@ -8,6 +8,14 @@
 
 namespace lensproof {
 
+/// A sample as the fit used it: the light relative to the axis, its group's gain and gradient taken out.
+struct ShadingSample {
+    Vec2d pixel_px;
+    Vec2d at;  // from the centre, in half-diagonals
+    double log_ratio = 0.0;
+    double sigma = 0.0;  // of log_ratio, up to a common factor that the residuals tell
+};
+
 /// Relative illumination V of one channel against the image height, V = 1 on the axis. It is what a picture of an
 /// even tone shows: what the rims cut, cos⁴, and whatever the sensor adds, together.
 struct Vignetting {
@@ -18,6 +26,9 @@ struct Vignetting {
     std::vector<double> covariance;    // theirs, row by row
     int samples_used = 0;
     double relative_rms = 0.0;  // of the samples about the fit
+    std::vector<ShadingSample> samples;
+    double chi_squared = 0.0;  // of the samples about the fit
+    int gain_terms = 0;        // columns of the fit that were gains and gradients
 };
 
 /// Fits ln(value) = ln(gain of the group) + s(r) + (on charts) b_x X + b_y Y.

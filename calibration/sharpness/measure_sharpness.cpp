@@ -72,6 +72,7 @@ std::vector<FocusedEdges> by_position(const SharpnessObservations& seen, const s
         }
     }
     std::vector<FocusedEdges> result;
+    result.reserve(series.size());
     for (auto& [position, focused] : series) {
         result.push_back(std::move(focused));
     }
@@ -104,6 +105,13 @@ void add_best_focus(Profile& profile, const std::string& channel, const std::vec
         .covariance = {focus.axis_standard_error_mm * focus.axis_standard_error_mm}};
 }
 
+InputError refused(const std::string& name, const std::string& channel, const PixelRectangle& r,
+                   const std::string& reason) {
+    return InputError(name + ": the rectangle " + std::to_string(r.x) + "," + std::to_string(r.y) + "," +
+                      std::to_string(r.width) + "," + std::to_string(r.height) + " in channel " + channel + " " +
+                      reason + ": expected one slanted edge with room on either side");
+}
+
 }  // namespace
 
 void observe_chart_edges(SharpnessObservations& seen, const Image& image, int channel, const std::string& name,
@@ -123,16 +131,12 @@ void observe_chart_edges(SharpnessObservations& seen, const Image& image, int ch
 
 void observe_edges(SharpnessObservations& seen, const Image& image, int channel, const std::string& name,
                    const std::vector<PixelRectangle>& rectangles) {
+    const std::string& own = image.channels[static_cast<std::size_t>(channel)];
     for (PixelRectangle r : rectangles) {
         if (r.width == 0 && r.height == 0) {
             r = {0, 0, image.width, image.height};
         }
-        const auto refuse = [&](const std::string& reason) {
-            return InputError(name + ": the rectangle " + std::to_string(r.x) + "," + std::to_string(r.y) + "," +
-                              std::to_string(r.width) + "," + std::to_string(r.height) + " in channel " +
-                              image.channels[static_cast<std::size_t>(channel)] + " " + reason +
-                              ": expected one slanted edge with room on either side");
-        };
+        const auto refuse = [&](const std::string& reason) { return refused(name, own, r, reason); };
         const auto region = find_edge(image, channel, r);
         if (const auto* refusal = std::get_if<EdgeRefusal>(&region)) {
             throw refuse(refusal->reason);
@@ -141,8 +145,7 @@ void observe_edges(SharpnessObservations& seen, const Image& image, int channel,
         if (const auto* refusal = std::get_if<EdgeRefusal>(&result)) {
             throw refuse(refusal->reason);
         }
-        seen.edges[image.channels[static_cast<std::size_t>(channel)]].push_back(
-            {name, std::move(std::get<EdgeMtf>(result))});
+        seen.edges[own].push_back({name, std::move(std::get<EdgeMtf>(result))});
     }
 }
 
@@ -150,6 +153,7 @@ void add_sharpness(Profile& profile, const SharpnessObservations& seen, const Ve
     for (const auto& [channel, listed_edges] : seen.edges) {
         std::vector<FocusedEdges> series = by_position(seen, listed_edges);
         std::vector<EdgeMtf> edges;
+        edges.reserve(listed_edges.size());
         for (const ProfileEdge& edge : listed_edges) {
             edges.push_back(edge.edge);
         }

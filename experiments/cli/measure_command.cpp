@@ -3,12 +3,16 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cmath>
 #include <memory>
 
 #include "calibration/detect.h"
 #include "calibration/measure.h"
+#include "calibration/measure_bands.h"
+#include "calibration/mosaic.h"
 #include "engine/io/file.h"
 #include "engine/io/input_error.h"
+#include "engine/io/srgb.h"
 #include "engine/scene/chart_file.h"
 #include "experiments/cli/command.h"
 
@@ -31,6 +35,10 @@ struct MeasureOptions {
     std::vector<std::string> edges;
     std::vector<double> focus_positions_mm;
     bool fit_board_shape = false;
+    std::vector<std::string> bands;
+    double reference_band_nm = 550.0;
+    std::string mosaic;
+    std::vector<double> image_centre_px;
 };
 
 void print_curve(const Profile& profile, const std::string& name, const char* label, const char* unit) {
@@ -96,9 +104,28 @@ void print_profile(const Profile& profile) {
         print_curve(profile, fmt::format("vignetting_{}_ev", channel), fmt::format("vignetting {}", channel).c_str(),
                     "EV");
     }
-    for (const char* channel : {"R", "B"}) {
-        print_curve(profile, fmt::format("chromatic_shift_{}_px", channel),
-                    fmt::format("chromatic shift {}", channel).c_str(), "px");
+    for (const auto& [channel, models] : profile.vignetting_models) {
+        if (models.front().values.empty()) {
+            fmt::print("{:22} no formula, but a spline (rms {:.3f} %)\n", "vignetting " + channel,
+                       100.0 * models.front().relative_rms);
+        } else {
+            fmt::print("{:22} {} (rms {:.3f} %)\n", "vignetting " + channel, models.front().name,
+                       100.0 * models.front().relative_rms);
+        }
+    }
+    for (const auto& [name, terms] : profile.terms) {
+        for (std::size_t i = 0; i < terms.names.size() && name.starts_with("chromatic_shift_mean_"); ++i) {
+            fmt::print("{:22} {:9.4f} ± {:.4f} px, {} of all points\n",
+                       "shift " + name.substr(std::string("chromatic_shift_mean_").size()), terms.values[i],
+                       std::sqrt(terms.covariance[i * (terms.names.size() + 1)]), terms.names[i]);
+        }
+    }
+    for (const auto& [name, curve] : profile.curves) {
+        if (const std::string kind = "chromatic_shift_"; name.starts_with(kind)) {
+            std::string label = name.substr(kind.size(), name.size() - kind.size() - std::string("_px").size());
+            std::replace(label.begin(), label.end(), '_', ' ');
+            print_curve(profile, name, fmt::format("chromatic shift {}", label).c_str(), "px");
+        }
     }
     if (profile.self_test) {
         fmt::print("{:22} {}\n", "floor of the method", describe_floor(*profile.self_test));
@@ -162,11 +189,84 @@ Chart chart_to_find(const std::string& file) {
     return chart;
 }
 
+double parse_wavelength(const std::string& text) {
+    double value = 0.0;
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+    if (error != std::errc() || end != text.data() + text.size() || !(value > 0.0) || !std::isfinite(value)) {
+        throw InputError(fmt::format("--bands: found \"{}\", expected a wavelength in nm", text));
+    }
+    return value;
+}
+
+// A raw mosaic holds the sensor's own, linear values; `read_image` took integers for sRGB.
+Image read_mosaic(const std::string& file, MosaicPattern pattern) {
+    Image image = read_image(file);
+    if (!file.ends_with(".exr")) {
+        for (float& value : image.pixels) {
+            value = linear_to_srgb(value);
+        }
+    }
+    try {
+        return mosaic_plane(image, pattern);
+    } catch (const InputError& e) {
+        throw InputError(fmt::format("{}: {}", file, e.what()));
+    }
+}
+
+Profile run_bands(const MeasureOptions& options, const ProfileSource& source) {
+    BandInput input{.name = "bands",
+                    .bands = {},
+                    .reference_wavelength_nm = options.reference_band_nm,
+                    .chart = {},
+                    .centre_px = {},
+                    .source = source,
+                    .pixel_pitch_um = {}};
+    for (const std::string& band : options.bands) {
+        const std::size_t sign = band.find('=');
+        if (sign == std::string::npos || sign + 1 == band.size()) {
+            throw InputError(fmt::format("--bands: found \"{}\", expected NM=FILE", band));
+        }
+        const std::string file = band.substr(sign + 1);
+        const auto pattern = mosaic_pattern(options.mosaic);
+        input.bands.push_back({.wavelength_nm = parse_wavelength(band.substr(0, sign)), .name = file, .load = [=] {
+                                   return pattern ? read_mosaic(file, *pattern) : read_image(file);
+                               }});
+    }
+    if (!options.chart.empty()) {
+        input.chart = chart_to_find(options.chart);
+    }
+    if (!options.image_centre_px.empty()) {
+        input.centre_px = Vec2d{options.image_centre_px[0], options.image_centre_px[1]};
+    }
+    if (options.pixel_pitch_um > 0.0) {
+        input.pixel_pitch_um = options.pixel_pitch_um;
+    }
+    return measure_bands(input);
+}
+
+void write_and_print(const MeasureOptions& options, const Profile& profile) {
+    if (!options.output.empty()) {
+        write_profile(profile, options.output);
+    }
+    write_json_result(options.common, to_json(profile));
+    if (prints_text(options.common)) {
+        print_profile(profile);
+    }
+}
+
 int run_measure(const MeasureOptions& options) {
     if (!options.output.empty()) {
         check_output_name(options.output);
     }
     check_json_name(options.common);
+    const ProfileSource source{.kind = options.kind, .images = {}, .camera = options.camera, .lens = options.lens};
+    if (options.bands.empty() == options.images.empty()) {
+        throw InputError("measure: expected pictures, or --bands NM=FILE,… instead of them");
+    }
+    if (!options.bands.empty()) {
+        write_and_print(options, run_bands(options, source));
+        return kDone;
+    }
     MeasureInput input;
     input.name = options.images.front();
     if (options.chart.empty() == options.edges.empty()) {
@@ -178,7 +278,7 @@ int run_measure(const MeasureOptions& options) {
     input.self_test = !options.no_self_test;
     add_sharpness_input(input, options);
     input.model = model_kind(options.model);  // none for "auto"
-    input.source = {.kind = options.kind, .images = {}, .camera = options.camera, .lens = options.lens};
+    input.source = source;
     input.geometry.fit_board_shape = options.fit_board_shape;
     if (options.pixel_pitch_um > 0.0) {
         input.pixel_pitch_um = options.pixel_pitch_um;
@@ -192,14 +292,7 @@ int run_measure(const MeasureOptions& options) {
     for (const std::string& image : options.flat_fields) {
         add(image, PictureRole::flat_field);
     }
-    const Profile profile = measure(input);
-    if (!options.output.empty()) {
-        write_profile(profile, options.output);
-    }
-    write_json_result(options.common, to_json(profile));
-    if (prints_text(options.common)) {
-        print_profile(profile);
-    }
+    write_and_print(options, measure(input));
     return kDone;
 }
 
@@ -212,7 +305,7 @@ void add_measure_command(CLI::App& app, int& status) {
     command->footer(
         "Example: lensproof measure photos/*.jpg --chart photos/manifest.toml -o profile.json\n"
         "CHART is any TOML file with a [chart] table: a chart's own, a photo set's manifest, a scene.");
-    command->add_option("IMAGE", options->images, "Pictures of the chart (JPEG, PNG, TIFF, EXR, …)")->required();
+    command->add_option("IMAGE", options->images, "Pictures of the chart (JPEG, PNG, TIFF, EXR, …)");
     command->add_option("--chart", options->chart, "TOML file with a [chart] table")->type_name("FILE");
     command
         ->add_option("--edge", options->edges,
@@ -243,6 +336,20 @@ void add_measure_command(CLI::App& app, int& status) {
     command->add_flag("--no-self-test", options->no_self_test,
                       "Do not simulate and measure the pictures again to find the method's own error");
     command->add_option("-o,--output", options->output, "Profile JSON to write")->type_name("FILE");
+    command
+        ->add_option("--bands", options->bands,
+                     "Instead of pictures: one scene in narrow bands, for the chromatic shift per wavelength (nm)")
+        ->delimiter(',')
+        ->type_name("NM=FILE");
+    command->add_option("--reference-band", options->reference_band_nm, "The band that shifts are counted from, nm")
+        ->capture_default_str();
+    command->add_option("--mosaic", options->mosaic, "The bands are raw Bayer mosaics: their top left 2 x 2 colours")
+        ->check(CLI::IsMember({"rggb", "bggr", "grbg", "gbrg"}));
+    command
+        ->add_option("--image-centre", options->image_centre_px,
+                     "Of the bands' pictures: the optical centre x,y, px (default: their middle)")
+        ->delimiter(',')
+        ->expected(2);
     add_common_options(*command, options->common);
     command->callback([options, &status] { status = run_measure(*options); });
 }
