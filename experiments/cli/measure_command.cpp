@@ -1,10 +1,12 @@
 // experiments/cli/measure_command.cpp — `lensproof measure IMAGE… --chart CHART`: from pictures to a profile.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <memory>
 
 #include "calibration/detect.h"
 #include "calibration/measure.h"
+#include "calibration/photo_survey.h"
 #include "engine/io/file.h"
 #include "engine/io/input_error.h"
 #include "engine/scene/chart_file.h"
@@ -14,6 +16,8 @@ namespace lensproof {
 
 namespace {
 
+constexpr const char* kUnknown = "unknown";
+
 struct MeasureOptions {
     CommonOptions common;
     std::vector<std::string> images;
@@ -21,9 +25,10 @@ struct MeasureOptions {
     std::string chart;
     std::string model;
     std::string output;
-    std::string lens = "unknown";
-    std::string camera = "unknown";
+    std::string lens = kUnknown;
+    std::string camera = kUnknown;
     std::string kind = "photo";
+    std::string transfer;
     double pixel_pitch_um = 0.0;
     bool no_self_test = false;
 };
@@ -48,7 +53,30 @@ void print_curve(const Profile& profile, const std::string& name, const char* la
     }
 }
 
+/// A line for each picture: used or left out, and why.
+void print_account(const Profile& profile) {
+    const auto used = std::ranges::count_if(profile.pictures, [](const PictureAccount& p) { return p.used; });
+    fmt::print("{} of {} pictures used\n", used, profile.pictures.size());
+    std::size_t widest = 0;
+    for (const PictureAccount& picture : profile.pictures) {
+        widest = std::max(widest, picture.image.size());
+    }
+    for (const PictureAccount& picture : profile.pictures) {
+        const std::string held = picture.orientation == 1
+                                     ? ""
+                                     : fmt::format("EXIF orientation {} not applied: the sensor's rows count{}",
+                                                   picture.orientation, picture.reason.empty() ? "" : "; ");
+        const std::string line = fmt::format("  {:8}  {:{}}  {}{}", picture.used ? "used" : "left out", picture.image,
+                                             widest, held, picture.reason);
+        fmt::print("{}\n", line.substr(0, line.find_last_not_of(' ') + 1));
+    }
+    for (const std::string& suspicion : profile.source.suspicions) {
+        fmt::print("correction suspected: {}\n", suspicion);
+    }
+}
+
 void print_profile(const Profile& profile) {
+    print_account(profile);
     if (profile.geometry) {
         const ProfileGeometry& geometry = *profile.geometry;
         const std::vector<std::string> names = parameter_names(geometry.model);
@@ -73,6 +101,45 @@ void print_profile(const Profile& profile) {
     }
     for (const auto& [what, why] : profile.not_measured) {
         fmt::print("{} not measured: {}\n", what, why);
+    }
+}
+
+const CLI::Validator kTransferOption(
+    [](const std::string& text) {
+        return parse_transfer_curve(text)
+                   ? std::string()
+                   : fmt::format("'{}' is no curve: expected srgb, rec709, linear or gamma:2.2", text);
+    },
+    "CURVE");
+
+/// Folders stand for the pictures in them. A name that was given has to be there.
+std::vector<std::filesystem::path> expanded(const std::vector<std::string>& names) {
+    std::vector<std::filesystem::path> files;
+    for (const std::string& name : names) {
+        if (!std::filesystem::is_directory(name)) {
+            check_readable(name);
+        }
+        const std::vector<std::filesystem::path> found = picture_files(name);
+        files.insert(files.end(), found.begin(), found.end());
+    }
+    return files;
+}
+
+/// What the camera noted, where the command line says nothing else.
+void take_notes(MeasureInput& input, const PhotoSurvey& survey) {
+    const CameraNotes& notes = survey.notes;
+    if (notes != CameraNotes{.transfer = notes.transfer}) {
+        input.source.notes = notes;
+    }
+    input.source.suspicions = survey.suspicions;
+    if (input.source.camera == kUnknown && !notes.model.empty()) {
+        input.source.camera = notes.make.empty() ? notes.model : notes.make + " " + notes.model;
+    }
+    if (input.source.lens == kUnknown && !notes.lens.empty()) {
+        input.source.lens = notes.lens;
+    }
+    if (!input.pixel_pitch_um) {
+        input.pixel_pitch_um = notes.pixel_pitch_um;
     }
 }
 
@@ -102,16 +169,14 @@ int run_measure(const MeasureOptions& options) {
     if (options.pixel_pitch_um > 0.0) {
         input.pixel_pitch_um = options.pixel_pitch_um;
     }
-    const auto add = [&](const std::string& file, PictureRole role) {
-        input.pictures.push_back({.name = file, .role = role, .load = [file] { return read_image(file); }});
-    };
-    for (const std::string& image : options.images) {
-        add(image, PictureRole::chart);
+    const PhotoSurvey survey =
+        survey_photos(expanded(options.images), expanded(options.flat_fields), parse_transfer_curve(options.transfer));
+    input.pictures = survey.pictures;
+    take_notes(input, survey);
+    Profile profile = measure(input);
+    for (const std::string& sign : suspicions_of(profile)) {
+        profile.source.suspicions.push_back(sign);
     }
-    for (const std::string& image : options.flat_fields) {
-        add(image, PictureRole::flat_field);
-    }
-    const Profile profile = measure(input);
     if (!options.output.empty()) {
         write_profile(profile, options.output);
     }
@@ -131,7 +196,10 @@ void add_measure_command(CLI::App& app, int& status) {
     command->footer(
         "Example: lensproof measure photos/*.jpg --chart photos/manifest.toml -o profile.json\n"
         "CHART is any TOML file with a [chart] table: a chart's own, a photo set's manifest, a scene.");
-    command->add_option("IMAGE", options->images, "Pictures of the chart (JPEG, PNG, TIFF, EXR, …)")->required();
+    command
+        ->add_option("IMAGE", options->images,
+                     "Pictures of the chart (JPEG, PNG, TIFF, EXR, RAW, …), or folders of them")
+        ->required();
     command->add_option("--chart", options->chart, "TOML file with a [chart] table")->required()->type_name("FILE");
     command->add_option("--flat-field", options->flat_fields, "Pictures of an even surface, for vignetting")
         ->type_name("FILE");
@@ -146,6 +214,10 @@ void add_measure_command(CLI::App& app, int& status) {
         ->capture_default_str();
     command->add_flag("--no-self-test", options->no_self_test,
                       "Do not simulate and measure the pictures again to find the method's own error");
+    command
+        ->add_option("--transfer", options->transfer,
+                     "The curve of pictures that state none: srgb, rec709, linear or gamma:2.2 (default: srgb)")
+        ->check(kTransferOption);
     command->add_option("-o,--output", options->output, "Profile JSON to write")->type_name("FILE");
     add_common_options(*command, options->common);
     command->callback([options, &status] { status = run_measure(*options); });
