@@ -13,7 +13,7 @@
 namespace lensproof {
 namespace {
 
-Feature feature(const Bundle& bundle, std::size_t view, std::size_t point) {
+Feature feature(const PointBundle& bundle, std::size_t view, std::size_t point) {
     const ChartView& v = bundle.views[view];
     return {v.chart_mm[point], v.image_px[point], bundle.disc_diameter_mm};
 }
@@ -44,8 +44,8 @@ ceres::Solver::Options solver_options() {
 
 }  // namespace
 
-Bundle make_bundle(const std::vector<ChartView>& views, double disc_diameter_mm) {
-    Bundle bundle{.views = views, .used = {}, .disc_diameter_mm = disc_diameter_mm, .frame = {}};
+PointBundle make_bundle(const std::vector<ChartView>& views, double disc_diameter_mm) {
+    PointBundle bundle{.views = views, .used = {}, .disc_diameter_mm = disc_diameter_mm, .frame = {}};
     Vec2d low{std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity()};
     Vec2d high{-low.x, -low.y};
     for (const ChartView& view : views) {
@@ -62,7 +62,7 @@ Bundle make_bundle(const std::vector<ChartView>& views, double disc_diameter_mm)
     return bundle;
 }
 
-int count_used(const Bundle& bundle) {
+int count_used(const PointBundle& bundle) {
     std::ptrdiff_t count = 0;
     for (const auto& view : bundle.used) {
         count += std::count(view.begin(), view.end(), true);
@@ -70,7 +70,7 @@ int count_used(const Bundle& bundle) {
     return static_cast<int>(count);
 }
 
-double solve(const Bundle& bundle, BundleState& state, const Held& held, double cauchy_scale_px) {
+double solve(const PointBundle& bundle, BundleState& state, const Held& held, double cauchy_scale_px) {
     ceres::Problem::Options ownership;
     ownership.loss_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
     ceres::Problem problem(ownership);
@@ -111,7 +111,8 @@ double solve(const Bundle& bundle, BundleState& state, const Held& held, double 
                                                                            : std::numeric_limits<double>::infinity();
 }
 
-std::optional<Vec2d> residual(const Bundle& bundle, const BundleState& state, std::size_t view, std::size_t point) {
+std::optional<Vec2d> residual(const PointBundle& bundle, const BundleState& state, std::size_t view,
+                              std::size_t point) {
     const auto cost = reprojection_cost(kind(state.model), feature(bundle, view, point), bundle.frame);
     const std::vector<double> intrinsics = parameters(state.model);
     const double* blocks[3] = {intrinsics.data(), state.poses[view].data(), state.heights.data()};

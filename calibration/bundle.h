@@ -17,7 +17,7 @@ struct ChartView {
 };
 
 /// What was measured.
-struct Bundle {
+struct PointBundle {
     std::vector<ChartView> views;
     std::vector<std::vector<bool>> used;  // of each view's points
     double disc_diameter_mm = 0.0;
@@ -25,9 +25,9 @@ struct Bundle {
 };
 
 /// The bundle of all points; the frame encloses them.
-Bundle make_bundle(const std::vector<ChartView>& views, double disc_diameter_mm);
+PointBundle make_bundle(const std::vector<ChartView>& views, double disc_diameter_mm);
 
-int count_used(const Bundle& bundle);
+int count_used(const PointBundle& bundle);
 
 /// What explains it.
 struct BundleState {
@@ -46,10 +46,10 @@ struct Held {
 /// Brings `state` to the least sum of squared residuals of the points used (Levenberg and Marquardt, by Ceres), and
 /// returns half that sum; infinity when nothing usable was found. With `cauchy_scale_px` > 0 the squares beyond about
 /// that length are weighted down by Cauchy's loss.
-double solve(const Bundle& bundle, BundleState& state, const Held& held, double cauchy_scale_px = 0.0);
+double solve(const PointBundle& bundle, BundleState& state, const Held& held, double cauchy_scale_px = 0.0);
 
 /// Measured minus predicted; none where the model images nothing.
-std::optional<Vec2d> residual(const Bundle& bundle, const BundleState& state, std::size_t view, std::size_t point);
+std::optional<Vec2d> residual(const PointBundle& bundle, const BundleState& state, std::size_t view, std::size_t point);
 
 /// What the points tell about each parameter, to first order about `state` and per unit variance of a coordinate.
 /// "Shared" are the intrinsics followed by the board's heights.
@@ -64,6 +64,6 @@ struct BundleInformation {
 };
 
 /// What the points do not determine has a huge variance. None for numbers that are not finite.
-std::optional<BundleInformation> information(const Bundle& bundle, const BundleState& state, const Held& held);
+std::optional<BundleInformation> information(const PointBundle& bundle, const BundleState& state, const Held& held);
 
 }  // namespace lensproof

@@ -20,7 +20,7 @@ struct ViewNormal {
     Matrix6 pose = Matrix6::Zero();
 };
 
-ViewNormal view_normal(const Bundle& bundle, const BundleState& state, const std::vector<double>& intrinsics,
+ViewNormal view_normal(const PointBundle& bundle, const BundleState& state, const std::vector<double>& intrinsics,
                        std::size_t view) {
     const int n = static_cast<int>(intrinsics.size());
     ViewNormal normal{.shared = Eigen::MatrixXd::Zero(n + kBoardTerms, n + kBoardTerms),
@@ -64,7 +64,7 @@ std::vector<int> free_parameters(const Held& held, int intrinsics) {
 
 // The inverse of the shared parameters' normal matrix after the poses have been eliminated view by view (Schur
 // complement), columns scaled to unit length so that ranks mean something.
-std::optional<BundleInformation> information(const Bundle& bundle, const BundleState& state, const Held& held) {
+std::optional<BundleInformation> information(const PointBundle& bundle, const BundleState& state, const Held& held) {
     const std::vector<double> intrinsics = parameters(state.model);
     const int count = static_cast<int>(intrinsics.size()) + kBoardTerms;
     const std::vector<int> free = free_parameters(held, static_cast<int>(intrinsics.size()));

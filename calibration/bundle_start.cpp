@@ -11,7 +11,7 @@ namespace lensproof {
 namespace {
 
 // Poses under an undistorted model of the given focal length, and the rms misfit of the rays in px.
-std::optional<double> start_at(const Bundle& bundle, ModelKind model, double focal, const Vec2d& middle,
+std::optional<double> start_at(const PointBundle& bundle, ModelKind model, double focal, const Vec2d& middle,
                                BundleState& state) {
     std::vector<double> values = parameters(empty_model(model));
     values[0] = focal;
@@ -51,7 +51,7 @@ std::optional<double> start_at(const Bundle& bundle, ModelKind model, double foc
 
 }  // namespace
 
-std::vector<BundleStart> bundle_starts(const Bundle& bundle, ModelKind model, int width, int height,
+std::vector<BundleStart> bundle_starts(const PointBundle& bundle, ModelKind model, int width, int height,
                                        std::optional<double> known_focal_px) {
     std::vector<double> focals;
     const double half_diagonal = 0.5 * std::hypot(width, height);

@@ -45,7 +45,7 @@ std::vector<ChartView> some_points(const std::vector<ChartView>& views, const Ke
 
 // Mean squared distance of a view's points from where `fit`'s camera, brought to the view's own pose, expects them.
 double held_out_error(const ChartView& view, const PoseParameters& start, const GeometryFit& fit, double disc) {
-    Bundle bundle = make_bundle({view}, disc);
+    PointBundle bundle = make_bundle({view}, disc);
     if (fit.board) {
         bundle.frame = fit.board->frame;
     }
@@ -199,7 +199,7 @@ class Validation {
             const auto left_out = [&](std::size_t /*view*/, std::size_t i) { return in_fold(i, fold, kFolds); };
             const auto rest = some_points(views_, [&](std::size_t v, std::size_t i) { return !left_out(v, i); });
             const GeometryFit fit = refit_geometry(rest, width_, height_, options_, state_of(fit_));
-            Bundle tested = make_bundle(some_points(views_, left_out), options_.disc_diameter_mm);
+            PointBundle tested = make_bundle(some_points(views_, left_out), options_.disc_diameter_mm);
             if (fit.board) {
                 tested.frame = fit.board->frame;
             }

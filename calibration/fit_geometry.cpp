@@ -324,7 +324,7 @@ class Fit {
         }
     }
 
-    Bundle bundle_;
+    PointBundle bundle_;
     const GeometryOptions& options_;
     int width_;
     int height_;

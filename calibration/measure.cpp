@@ -11,11 +11,13 @@
 #include "calibration/light_samples.h"
 #include "calibration/measure_bands.h"
 #include "calibration/model_choice.h"
+#include "calibration/picture_quality.h"
 #include "calibration/refine.h"
 #include "calibration/self_test.h"
 #include "calibration/sharpness/measure_sharpness.h"
 #include "calibration/vignetting.h"
 #include "calibration/working_copy.h"
+#include "engine/io/hash.h"
 #include "engine/io/input_error.h"
 
 namespace lensproof {
@@ -29,6 +31,8 @@ struct Observations {
     int height = 0;
     std::vector<std::string> channels;
     bool grey = true;  // every picture has one channel, or all channels alike
+    std::vector<PictureAccount> pictures;
+    std::map<std::string, std::string> names_by_pixels;  // the pictures in use, by their pixels' hash
     std::vector<ProfileView> views;
     std::vector<ChartView> chart_views;                                  // of the views found
     std::map<std::string, std::vector<ChromaticPair>> chromatic_pairs;   // by channel
@@ -88,14 +92,31 @@ std::string too_few(const ChartPoints& refined, const ChartPoints& detected) {
                      " points seen could be measured: too little contrast, clipped, or not this chart";
 }
 
-void observe_chart(Observations& seen, const Image& image, const std::string& name, const Chart& chart) {
+// What the profile keeps of a picture in which a chart was looked for; adds to `account`.
+void observe_chart(Observations& seen, const Image& image, const Picture& picture, const Chart& chart,
+                   PictureAccount& account) {
+    const std::string& name = picture.name;
     ProfileView view{.image = name, .found = false, .reason = {}, .traits = {}, .pose = {}, .points = {}};
     const std::vector<Vec2d> features = feature_points(chart);
     const Detection detection = detect(image, chart);
     const int reference = reference_channel(image);
     const ChartPoints points = detection.found() ? refine(image, reference, detection.points, chart) : ChartPoints{};
     view.reason = detection.found() ? too_few(points, detection.points) : detection.reason;
+    if (!detection.found()) {
+        const std::string fault = visible_fault(image, reference);
+        view.reason += (fault.empty() ? "" : "; ") + fault;
+    }
+    const ChartQuality quality = view.reason.empty() ? chart_quality(image, reference, points, chart) : ChartQuality{};
+    if (view.reason.empty()) {
+        view.reason = too_blurred(quality);
+    }
     view.found = view.reason.empty();
+    account.used = view.found;
+    account.reason = view.found ? picture.remark : view.reason;
+    if (view.found && quality.clipped_white_share > 0.5) {
+        account.reason += std::string(account.reason.empty() ? "" : "; ") +
+                          "over-exposed: the chart's white is clipped, so it says nothing of vignetting";
+    }
     if (view.found) {
         view.traits = picture_traits(image, reference, points);
         ChartView own{.name = name, .chart_mm = {}, .image_px = {}};
@@ -109,9 +130,11 @@ void observe_chart(Observations& seen, const Image& image, const std::string& na
         const bool grey = all_channels_alike(image);
         for (int channel = 0; channel < image.channel_count(); ++channel) {
             const std::string& channel_name = image.channels[channel];
-            seen.whites[channel_name].push_back(chart_white_samples(image, channel, points, chart));
+            if (picture.use_light) {
+                seen.whites[channel_name].push_back(chart_white_samples(image, channel, points, chart));
+            }
             if (channel == reference || !grey) {
-                observe_chart_edges(seen.sharpness, image, channel, name, points, chart);
+                observe_chart_edges(seen.sharpness, image, channel, picture.name, points, chart);
             }
             if (channel == reference || grey) {
                 continue;
@@ -127,35 +150,102 @@ void observe_chart(Observations& seen, const Image& image, const std::string& na
     seen.views.push_back(std::move(view));
 }
 
+// The picture, checked against those before it. Throws InputError for one that is not to be used.
+Image load(const Observations& seen, const Picture& picture) {
+    if (!picture.left_out.empty()) {
+        throw InputError(picture.left_out);
+    }
+    if (!picture.load) {
+        throw InputError("the picture cannot be loaded");
+    }
+    Image image = picture.load();
+    check_alike(seen, image, picture.name);
+    return image;
+}
+
+std::string hash_of_pixels(const Image& image) {
+    return hash_text({reinterpret_cast<const char*>(image.pixels.data()), image.pixels.size() * sizeof(float)});
+}
+
+std::string role_name(PictureRole role) {
+    return role == PictureRole::chart ? "chart" : role == PictureRole::edges ? "edges" : "flat field";
+}
+
+// A message without the picture's name, which stands beside it.
+std::string without_name(const std::string& message, const std::string& name) {
+    return message.rfind(name + ": ", 0) == 0 ? message.substr(name.size() + 2) : message;
+}
+
+void observe_picture(Observations& seen, const Picture& picture, const MeasureInput& input, PictureAccount& account) {
+    const Image image = load(seen, picture);
+    const auto [same, is_new] = seen.names_by_pixels.emplace(hash_of_pixels(image), picture.name);
+    if (!is_new) {
+        throw InputError("the same picture as " + same->second);
+    }
+    seen.width = image.width;
+    seen.height = image.height;
+    seen.channels = image.channels;
+    seen.grey = seen.grey && all_channels_alike(image);
+    if (picture.role == PictureRole::chart) {
+        observe_chart(seen, image, picture, input.chart, account);
+        return;
+    }
+    if (picture.role == PictureRole::edges) {
+        const bool grey = all_channels_alike(image);
+        for (int channel = 0; channel < image.channel_count(); ++channel) {
+            if (!grey || channel == reference_channel(image)) {
+                observe_edges(seen.sharpness, image, channel, picture.name, input.edges);
+            }
+        }
+        account.used = true;
+        return;
+    }
+    for (int channel = 0; channel < image.channel_count() && picture.use_light; ++channel) {
+        seen.flat_fields[image.channels[channel]].push_back(flat_field_samples(image, channel));
+    }
+    account.used = picture.use_light;
+    account.reason = picture.remark;
+}
+
 Observations observe(const MeasureInput& input) {
     Observations seen;
     seen.sharpness.focus_position_mm = input.focus_position_mm;
     for (const Picture& picture : input.pictures) {
-        if (!picture.load) {
-            throw InputError(picture.name + ": the picture cannot be loaded");
-        }
-        const Image image = picture.load();
-        check_alike(seen, image, picture.name);
-        seen.width = image.width;
-        seen.height = image.height;
-        seen.channels = image.channels;
-        seen.grey = seen.grey && all_channels_alike(image);
-        if (picture.role == PictureRole::flat_field) {
-            for (int channel = 0; channel < image.channel_count(); ++channel) {
-                seen.flat_fields[image.channels[channel]].push_back(flat_field_samples(image, channel));
+        const bool is_chart = picture.role == PictureRole::chart;
+        PictureAccount account{.image = picture.name,
+                               .role = role_name(picture.role),
+                               .used = false,
+                               .reason = {},
+                               .orientation = picture.orientation};
+        try {
+            observe_picture(seen, picture, input, account);
+        } catch (const InputError& e) {
+            account.reason = without_name(e.what(), picture.name);
+            if (is_chart) {
+                seen.views.push_back({.image = picture.name,
+                                      .found = false,
+                                      .reason = account.reason,
+                                      .traits = {},
+                                      .pose = {},
+                                      .points = {}});
             }
-        } else if (picture.role == PictureRole::edges) {
-            const bool grey = all_channels_alike(image);
-            for (int channel = 0; channel < image.channel_count(); ++channel) {
-                if (!grey || channel == reference_channel(image)) {
-                    observe_edges(seen.sharpness, image, channel, picture.name, input.edges);
-                }
-            }
-        } else {
-            observe_chart(seen, image, picture.name, input.chart);
         }
+        seen.pictures.push_back(std::move(account));
     }
     return seen;
+}
+
+// That no picture does, and why each does not.
+InputError none_usable(const MeasureInput& input, const Observations& seen) {
+    constexpr std::size_t kMostNamed = 8;
+    const std::size_t count = seen.pictures.size();
+    const std::string what = seen.views.empty() ? "no flat field" : "no " + describe(input.chart) + " found in any";
+    std::string text =
+        input.name + ": " + what + " of " + std::to_string(count) + (count == 1 ? " picture" : " pictures");
+    for (std::size_t i = 0; i < std::min(count, kMostNamed); ++i) {
+        text += (i == 0 ? ": " : "; ") + seen.pictures[i].image + ": " + seen.pictures[i].reason;
+    }
+    return InputError(text + (count > kMostNamed ? "; …" : ""));
 }
 
 struct Geometry {
@@ -263,9 +353,8 @@ Profile measure(const MeasureInput& input) {
         throw InputError("measuring " + input.name + ": no pictures given: expected at least one");
     }
     const Observations seen = observe(input);
-    if (!seen.views.empty() && seen.chart_views.empty()) {
-        throw InputError(input.name + ": no " + describe(input.chart) + " found in any of " +
-                         std::to_string(seen.views.size()) + (seen.views.size() == 1 ? " picture" : " pictures"));
+    if (seen.chart_views.empty() && (!seen.views.empty() || seen.flat_fields.empty())) {
+        throw none_usable(input, seen);
     }
     Profile profile;
     profile.name = input.name;
@@ -279,6 +368,7 @@ Profile measure(const MeasureInput& input) {
     profile.channels = seen.channels;
     profile.pixel_pitch_um = input.pixel_pitch_um;
     profile.views = seen.views;
+    profile.pictures = seen.pictures;
 
     Vec2d centre{(seen.width - 1) / 2.0, (seen.height - 1) / 2.0};
     if (seen.chart_views.empty()) {

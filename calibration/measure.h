@@ -21,6 +21,10 @@ struct Picture {
     std::string name;
     PictureRole role = PictureRole::chart;
     std::function<Image()> load;  // linear light; may throw InputError
+    std::string left_out;         // why it is not to be used, known beforehand; empty: it is
+    std::string remark;           // what is to be known of it though it is used
+    bool use_light = true;        // whether it may say something of vignetting
+    int orientation = 1;          // EXIF's, for the account
 };
 
 struct MeasureInput {
@@ -42,11 +46,11 @@ struct MeasureInput {
 
 /// Finds the chart, and fits camera model, chromatic shift, vignetting and sharpness.
 ///
-/// Pictures in which the chart, or most of it, cannot be found are listed as such. Vignetting comes from the flat
-/// fields where there are any, else from the charts' white.
-/// Throws InputError for no pictures, pictures of different sizes or channels, no chart found in any, and whatever
-/// `fit_geometry` and `observe_edges` refuse. Vignetting, chromatic shift and sharpness that fail are not errors; the
-/// profile says why.
+/// A picture that cannot be loaded, is of another size or other channels than those before it, is the same as one
+/// before it, shows no chart, or shows it blurred, is left out; `pictures` in the profile says why. Vignetting comes
+/// from the flat fields where there are any, else from the charts' white. Throws InputError for no pictures, where none
+/// can be used (with each one's reason), and whatever `fit_geometry` refuses. Vignetting, chromatic shift and sharpness
+/// that fail are not errors; the profile says why.
 Profile measure(const MeasureInput& input);
 
 }  // namespace lensproof

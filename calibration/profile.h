@@ -12,6 +12,7 @@
 #include "calibration/camera_model.h"
 #include "calibration/curve.h"
 #include "calibration/model_choice.h"
+#include "calibration/picture_account.h"
 #include "calibration/picture_traits.h"
 #include "calibration/planar_pose.h"
 #include "calibration/projection_uncertainty.h"
@@ -29,6 +30,10 @@ struct ProfileSource {
     std::vector<std::string> images;
     std::string camera;
     std::string lens;
+    /// What the camera noted in the pictures used (JSON key "settings").
+    std::optional<CameraNotes> notes = std::nullopt;
+    /// Signs of corrections in the camera, or by a program since, in words (JSON key "suspicions").
+    std::vector<std::string> suspicions = {};
 };
 
 /// The camera model with its uncertainty.
@@ -86,7 +91,9 @@ struct Profile {
     std::vector<std::string> channels;
     std::optional<double> pixel_pitch_um;
     std::optional<ProfileGeometry> geometry;
-    std::vector<ProfileView> views;
+    /// Every picture, used or left out, in the order given (JSON key "pictures").
+    std::vector<PictureAccount> pictures;
+    std::vector<ProfileView> views;  // the pictures in which a chart was looked for
     std::map<std::string, Curve> curves;
     /// Behind the curves, by the curve's name without its unit: "chromatic_shift_C" (calibration/chromatic_shift.h) and
     /// "vignetting_C" (the spline of ln V, calibration/vignetting.h), "sharpness_C" (of 1/MTF50², px²) and

@@ -16,10 +16,17 @@ using Node = JsonNode;
 
 ProfileSource parse_source(const Node& node) {
     const std::string kind = node.at("kind").text();
-    return {.kind = kind,
-            .images = node.at("images").texts(),
-            .camera = node.at("camera").text(),
-            .lens = node.at("lens").text()};
+    ProfileSource source{.kind = kind,
+                         .images = node.at("images").texts(),
+                         .camera = node.at("camera").text(),
+                         .lens = node.at("lens").text()};
+    if (node.has("settings")) {
+        source.notes = parse_camera_notes(node.at("settings"));
+    }
+    if (node.has("suspicions")) {
+        source.suspicions = node.at("suspicions").texts();
+    }
+    return source;
 }
 
 CameraModel parse_model(const Node& node) {
@@ -177,6 +184,11 @@ Profile parse_profile(std::string_view text, const std::string& file) {
     }
     if (root.has("model")) {
         profile.geometry = parse_geometry(root);
+    }
+    if (root.has("pictures")) {
+        for (const Node& picture : root.at("pictures").elements()) {
+            profile.pictures.push_back(parse_picture_account(picture));
+        }
     }
     for (const Node& view : root.at("views").elements()) {
         profile.views.push_back(parse_view(view));

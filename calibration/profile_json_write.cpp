@@ -22,7 +22,14 @@ Json triple(const Vec3d& v) {
 }
 
 Json source_json(const ProfileSource& source) {
-    return {{"kind", source.kind}, {"images", source.images}, {"camera", source.camera}, {"lens", source.lens}};
+    Json json = {{"kind", source.kind}, {"images", source.images}, {"camera", source.camera}, {"lens", source.lens}};
+    if (source.notes) {
+        json["settings"] = to_json(*source.notes);
+    }
+    if (!source.suspicions.empty()) {
+        json["suspicions"] = source.suspicions;
+    }
+    return json;
 }
 
 Json model_json(const ProfileGeometry& geometry) {
@@ -117,6 +124,10 @@ Json to_json(const Profile& profile) {
         if (profile.geometry->uncertainty) {
             json["projection_uncertainty"] = to_json(*profile.geometry->uncertainty);
         }
+    }
+    json["pictures"] = Json::array();
+    for (const PictureAccount& picture : profile.pictures) {
+        json["pictures"].push_back(to_json(picture));
     }
     json["views"] = Json::array();
     for (const ProfileView& view : profile.views) {

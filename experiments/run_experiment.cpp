@@ -10,6 +10,7 @@
 #include "engine/io/file.h"
 #include "engine/io/image.h"
 #include "engine/io/input_error.h"
+#include "engine/io/photo.h"
 #include "engine/io/prescription/prescription_file.h"
 #include "engine/optics/glass_catalogue.h"
 #include "engine/optics/paraxial.h"
@@ -201,11 +202,12 @@ Subject run_photos(const PhotoSubject& photos, const PhotoSet& set, bool self_te
                        .self_test = self_test};
     const auto add = [&](const std::filesystem::path& file, PictureRole role, int view) {
         progress(fmt::format("{}, {}", photos.name, file.filename().string()), 0.0);
-        const Image image = read_image(file);
+        const Image image = read_photo(file, std::nullopt);
         subject.pictures.push_back(
             shown(fmt::format("{}/{:02}-{}.png", photos.name, subject.pictures.size() + 1, file.stem().string()),
                   file.filename().string(), image, view));
-        input.pictures.push_back({.name = file.string(), .role = role, .load = [file] { return read_image(file); }});
+        input.pictures.push_back(
+            {.name = file.string(), .role = role, .load = [file] { return read_photo(file, std::nullopt); }});
     };
     for (std::size_t i = 0; i < set.photos.size(); ++i) {
         add(set.photos[i], PictureRole::chart, static_cast<int>(i));

@@ -1,8 +1,6 @@
 #include "engine/io/image.h"
 
 #include <OpenImageIO/filesystem.h>
-#include <OpenImageIO/imagebuf.h>
-#include <OpenImageIO/imagebufalgo.h>
 #include <OpenImageIO/imageio.h>
 #include <fmt/format.h>
 
@@ -12,36 +10,18 @@
 #include <stdexcept>
 
 #include "engine/io/file.h"
+#include "engine/io/frame_placement.h"
 #include "engine/io/input_error.h"
 #include "engine/io/srgb.h"
+#include "engine/io/stored_picture.h"
 
 namespace lensproof {
 
 namespace {
 
-constexpr double kMostPixels = 200e6;
-constexpr double kMostValues = 2e9;  // in all channels
-
-/// The library's message without its line breaks.
-std::string one_line(std::string message) {
-    while (!message.empty() && message.back() == '\n') {
-        message.pop_back();
-    }
-    std::ranges::replace(message, '\n', ';');
-    return message;
-}
-
 void linearise(Image& image, const std::string& colour_space) {
-    // OpenImageIO writes a stated gamma as "GammaX.Y" (older) or "gamma"; PNG's gAMA of 1/2.2 stands for sRGB in
-    // practice.
-    float gamma = 0.0F;
-    if (colour_space.rfind("Gamma", 0) == 0) {
-        try {
-            gamma = std::stof(colour_space.substr(5));
-        } catch (const std::exception&) {
-            gamma = 0.0F;
-        }
-    }
+    // PNG's gAMA of 1/2.2 stands for sRGB in practice.
+    const float gamma = stated_gamma(colour_space);
     const bool linear = colour_space == "linear" || colour_space == "Linear";
     for (float& value : image.pixels) {
         if (gamma > 0.0F && std::abs(gamma - 2.2F) > 0.05F) {
@@ -50,33 +30,6 @@ void linearise(Image& image, const std::string& colour_space) {
             value = srgb_to_linear(value);
         }
     }
-}
-
-std::vector<std::string> channel_names(const OIIO::ImageSpec& spec) {
-    std::vector<std::string> names = spec.channelnames;
-    if (names.size() == 1) {
-        names[0] = "Y";
-    }
-    return names;
-}
-
-void drop_channel(Image& image, int dropped) {
-    Image kept = make_image(image.width, image.height, [&] {
-        std::vector<std::string> names = image.channels;
-        names.erase(names.begin() + dropped);
-        return names;
-    }());
-    kept.metadata = image.metadata;
-    for (int y = 0; y < image.height; ++y) {
-        for (int x = 0; x < image.width; ++x) {
-            for (int from = 0, to = 0; from < image.channel_count(); ++from) {
-                if (from != dropped) {
-                    kept.at(x, y, to++) = image.at(x, y, from);
-                }
-            }
-        }
-    }
-    image = std::move(kept);
 }
 
 void write_with_oiio(const OIIO::ImageSpec& spec, OIIO::TypeDesc type, const void* pixels,
@@ -154,58 +107,28 @@ int find_channel(const Image& image, const std::string& name) {
 }
 
 Image read_image(const std::filesystem::path& file) {
-    check_readable(file);
-    if (!std::filesystem::is_regular_file(file)) {
-        throw InputError(fmt::format("{}: is a device or a pipe, expected a picture's file", file.string()));
+    StoredPicture stored = read_stored(file, {});
+    Image image = turned(std::move(stored.image), stored.spec.get_int_attribute("Orientation", 1));
+    if (!stored.spec.format.is_floating_point()) {
+        linearise(image, stored.spec.get_string_attribute("oiio:ColorSpace", "sRGB"));
     }
-    auto input = OIIO::ImageInput::open(file.string());
-    if (!input) {
-        throw InputError(
-            fmt::format("{}: not a picture that can be read: {}", file.string(), one_line(OIIO::geterror())));
-    }
-    const OIIO::ImageSpec spec = input->spec();
-    if (spec.width < 1 || spec.height < 1 || spec.depth > 1 || spec.nchannels < 1) {
-        throw InputError(fmt::format("{}: a picture of {} × {} pixels with {} channels, expected a flat picture",
-                                     file.string(), spec.width, spec.height, spec.nchannels));
-    }
-    if (static_cast<double>(spec.width) * spec.height > kMostPixels) {
-        throw InputError(fmt::format("{}: {} × {} pixels, expected at most {:.0f} million", file.string(), spec.width,
-                                     spec.height, kMostPixels / 1e6));
-    }
-    if (static_cast<double>(spec.width) * spec.height * spec.nchannels > kMostValues) {
-        throw InputError(fmt::format("{}: {} × {} pixels with {} channels, expected at most {:.0f} million values",
-                                     file.string(), spec.width, spec.height, spec.nchannels, kMostValues / 1e6));
-    }
-    Image image = make_image(spec.width, spec.height, channel_names(spec));
-    if (!input->read_image(0, 0, 0, spec.nchannels, OIIO::TypeDesc::FLOAT, image.pixels.data())) {
-        throw InputError(fmt::format("{}: the picture is damaged: {}", file.string(), one_line(input->geterror())));
-    }
-    input->close();
-
-    const int orientation = spec.get_int_attribute("Orientation", 1);
-    if (orientation != 1) {
-        OIIO::ImageBuf stored(spec, image.pixels.data());
-        const OIIO::ImageBuf upright = OIIO::ImageBufAlgo::reorient(stored);
-        Image turned = make_image(upright.spec().width, upright.spec().height, image.channels);
-        upright.get_pixels(OIIO::ROI::All(), OIIO::TypeDesc::FLOAT, turned.pixels.data());
-        image = std::move(turned);
-    }
-    const int alpha = find_channel(image, "A");
-    if (alpha >= 0 && image.channel_count() > 1) {
-        drop_channel(image, alpha);
-    }
-    if (!spec.format.is_floating_point()) {
-        linearise(image, spec.get_string_attribute("oiio:ColorSpace", "sRGB"));
-    }
-    for (const auto& attribute : spec.extra_attribs) {
+    for (const auto& attribute : stored.spec.extra_attribs) {
         image.metadata[attribute.name().string()] = attribute.get_string();
     }
     return image;
 }
 
 void write_exr(const Image& image, const std::filesystem::path& file) {
+    write_exr(image, file, {.x = 0, .y = 0, .frame_width = image.width, .frame_height = image.height});
+}
+
+void write_exr(const Image& image, const std::filesystem::path& file, const FramePlacement& placement) {
     OIIO::ImageSpec spec(image.width, image.height, image.channel_count(), OIIO::TypeDesc::FLOAT);
     spec.channelnames = image.channels;
+    spec.x = placement.x;
+    spec.y = placement.y;
+    spec.full_width = placement.frame_width;
+    spec.full_height = placement.frame_height;
     spec.attribute("compression", "zip");
     spec.attribute("oiio:ColorSpace", "linear");
     spec.attribute("DateTime",

@@ -71,6 +71,7 @@ void add_measure_command(CLI::App& app, int& status);
 void add_merge_command(CLI::App& app, int& status);
 void add_compare_command(CLI::App& app, int& status);
 void add_convert_command(CLI::App& app, int& status);
+void add_export_command(CLI::App& app, int& status);
 void add_run_command(CLI::App& app, int& status);
 void add_lenses_command(CLI::App& app, int& status);
 void add_glasses_command(CLI::App& app, int& status);

@@ -67,6 +67,7 @@ int run(int argc, char** argv) {
     add_chart_command(app, status);
     add_measure_command(app, status);
     add_compare_command(app, status);
+    add_export_command(app, status);
     add_run_command(app, status);
     add_lenses_command(app, status);
     add_glasses_command(app, status);

@@ -36,7 +36,7 @@ struct Quantity {
     std::string id;
     std::string label;
 };
-using Held = std::vector<int>;  // a quantity each: 1 held, 0 not, -1 no interval
+using Outcome = std::vector<int>;  // a quantity each: 1 held, 0 not, -1 no interval
 
 int holds(const std::optional<Banded>& stated, double truth) {
     return !stated ? -1 : stated->lower_95 <= truth && truth <= stated->upper_95 ? 1 : 0;
@@ -52,7 +52,7 @@ std::vector<Quantity> at_heights(const std::string& id, const std::string& label
 }
 
 // Eight views of a board of 9 × 6 points whose positions have normal errors.
-Held geometry_trial(std::uint32_t seed) {
+Outcome geometry_trial(std::uint32_t seed) {
     std::mt19937 random(seed);
     const BrownConrady camera = true_camera();
     const std::vector<ChartView> views =
@@ -61,7 +61,7 @@ Held geometry_trial(std::uint32_t seed) {
     const GeometryFit fit = fit_geometry(views, kWidth, kHeight, {.model = ModelKind::brown_conrady});
     const double focal = focal_length_px(fit.model);
     const double half = k95 * fit.standard_error(0);
-    Held held{holds(Banded{focal, focal - half, focal + half}, focal_length_px(camera))};
+    Outcome held{holds(Banded{focal, focal - half, focal + half}, focal_length_px(camera))};
     const Curve angle = field_angle_curve(fit, kHalfDiagonal);
     for (const double height : kHeights) {
         held.push_back(holds(sample(angle, height), *field_angle_rad(camera, height * kHalfDiagonal) / kDegree));
@@ -74,7 +74,7 @@ double true_vignetting(double height) {
 }
 
 // One flat field with a noise of 1 % of the white.
-Held vignetting_trial(std::uint32_t seed) {
+Outcome vignetting_trial(std::uint32_t seed) {
     SimulatedCamera camera{.model = BrownConrady{{400.0, 159.5, 119.5}},
                            .width_px = kWidth / 2,
                            .height_px = kHeight / 2,
@@ -87,7 +87,7 @@ Held vignetting_trial(std::uint32_t seed) {
                            .threads = 1};
     const Image image = simulate_flat_field(camera, seed);
     const Vignetting fit = fit_vignetting({flat_field_samples(image, 0)}, centre_px(camera.model), kHalfDiagonal / 2.0);
-    Held held;
+    Outcome held;
     for (const double height : kHeights) {
         held.push_back(holds(sample(fit.ratio, height), true_vignetting(height)));
     }
@@ -95,7 +95,7 @@ Held vignetting_trial(std::uint32_t seed) {
 }
 
 // 54 points of five views, in two channels.
-Held chromatic_trial(std::uint32_t seed) {
+Outcome chromatic_trial(std::uint32_t seed) {
     std::mt19937 random(seed);
     const Vec2d centre{(kWidth - 1) / 2.0, (kHeight - 1) / 2.0};
     const auto shift = [](double height) { return 0.8 * height - 0.5 * std::pow(height, 3.0); };
@@ -110,16 +110,16 @@ Held chromatic_trial(std::uint32_t seed) {
                          {green.x + scale * q.x + noise(), green.y + scale * q.y + noise()}});
     }
     const ChromaticShift fit = fit_chromatic_shift(pairs, centre, kHalfDiagonal);
-    Held held;
+    Outcome held;
     for (const double height : kHeights) {
-        held.push_back(holds(sample(fit.curve, height), shift(height)));
+        held.push_back(holds(sample(fit.radial, height), shift(height)));
     }
     return held;
 }
 
 struct Study {
     std::vector<Quantity> quantities;
-    Held (*trial)(std::uint32_t seed);
+    Outcome (*trial)(std::uint32_t seed);
 };
 
 std::vector<Study> studies() {
@@ -135,7 +135,8 @@ std::vector<Study> studies() {
 MeasurementFloor measure_intervals(const FloorSettings& settings, std::uint64_t seed, int threads,
                                    const FloorProgress& progress) {
     const std::vector<Study> all = studies();
-    std::vector<std::vector<Held>> outcomes(all.size(), std::vector<Held>(static_cast<std::size_t>(settings.trials)));
+    std::vector<std::vector<Outcome>> outcomes(all.size(),
+                                               std::vector<Outcome>(static_cast<std::size_t>(settings.trials)));
     const int count = static_cast<int>(all.size()) * settings.trials;
     parallel_for(
         count, threads,
@@ -152,7 +153,7 @@ MeasurementFloor measure_intervals(const FloorSettings& settings, std::uint64_t 
         for (std::size_t q = 0; q < all[s].quantities.size(); ++q) {
             int stated = 0;
             int held = 0;
-            for (const Held& outcome : outcomes[s]) {
+            for (const Outcome& outcome : outcomes[s]) {
                 stated += outcome[q] >= 0 ? 1 : 0;
                 held += outcome[q] == 1 ? 1 : 0;
             }

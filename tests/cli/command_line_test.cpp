@@ -18,8 +18,8 @@ using Json = nlohmann::json;
 
 constexpr const char* kRayHeader = "id,x_mm,y_mm,z_mm,dx,dy,dz,wavelength_nm\n";
 constexpr const char* kAxialRay = "a,0,1,-10,0,0,1,587.5618\n";
-const std::vector<std::string> kCommands = {"check",   "convert", "trace", "render", "merge",
-                                            "measure", "compare", "run",   "lenses", "glasses"};
+const std::vector<std::string> kCommands = {"check",   "convert", "trace", "render", "merge",  "measure",
+                                            "compare", "export",  "run",   "lenses", "glasses"};
 
 std::string rays_text() {
     return std::string(kRayHeader) + kAxialRay + "b,0,19,-10,0,0,1,486.1327\nc,0,40,-10,0,0,1,587.5618\n";

@@ -18,7 +18,7 @@
 namespace lensproof {
 namespace {
 
-const std::filesystem::path kPhotos = LENSPROOF_PHOTO_DIR;
+const std::filesystem::path kPhotos = LENSPROOF_PHOTOS_DIR;
 
 std::string unzipped(const std::filesystem::path& file) {
     const std::string command = "gzip -dc '" + file.string() + "'";

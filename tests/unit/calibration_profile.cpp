@@ -11,6 +11,10 @@ Profile example() {
     Profile profile;
     profile.name = "example";
     profile.source = {.kind = "photo", .images = {"a.jpg", "b \"quoted\" ä.jpg"}, .camera = "", .lens = "a lens"};
+    profile.source.notes = CameraNotes{.make = "Maker", .focal_length_mm = 18.0, .f_number = 1.0 / 3.0};
+    profile.source.suspicions = {"a sign"};
+    profile.pictures = {{.image = "a.jpg", .role = "chart", .used = true, .orientation = 6},
+                        {.image = "b", .role = "flat field", .used = false, .reason = "unreadable"}};
     profile.width_px = 640;
     profile.height_px = 480;
     profile.pixel_pitch_um = 1.0 / 3.0;
@@ -58,6 +62,9 @@ TEST(CalibrationProfile, ReadingReturnsTheSameBits) {
     EXPECT_EQ(read.terms, written.terms);
     EXPECT_EQ(read.not_measured, written.not_measured);
     EXPECT_EQ(read.source.images, written.source.images);
+    EXPECT_EQ(read.source.notes, written.source.notes);
+    EXPECT_EQ(read.source.suspicions, written.source.suspicions);
+    EXPECT_EQ(read.pictures, written.pictures);
 }
 
 TEST(CalibrationProfile, AFlatFieldProfileHasNoCamera) {

@@ -1,0 +1,46 @@
+// experiments/cli/measure_parts.h — the parts of the command `measure`.
+#pragma once
+#include <string>
+#include <vector>
+
+#include "calibration/profile.h"
+#include "engine/scene/chart.h"
+#include "experiments/cli/command.h"
+
+namespace lensproof {
+
+inline constexpr const char* kUnknown = "unknown";
+
+/// The command line as it was given.
+struct MeasureOptions {
+    CommonOptions common;
+    std::vector<std::string> images;
+    std::vector<std::string> flat_fields;
+    std::string chart;
+    std::string model = "auto";
+    std::string output;
+    std::string lens = kUnknown;
+    std::string camera = kUnknown;
+    std::string kind = "photo";
+    std::string transfer;
+    double pixel_pitch_um = 0.0;
+    bool no_self_test = false;
+    std::vector<std::string> edges;
+    std::vector<double> focus_positions_mm;
+    bool fit_board_shape = false;
+    std::vector<std::string> bands;
+    double reference_band_nm = 550.0;
+    std::string mosaic;
+    std::vector<double> image_centre_px;
+};
+
+/// The chart of a file that has one. Throws InputError for a kind that is not measured.
+Chart chart_to_find(const std::string& file);
+
+/// `--bands`: one scene in narrow bands.
+Profile run_bands(const MeasureOptions& options, const ProfileSource& source);
+
+/// The profile as text on standard output.
+void print_profile(const Profile& profile);
+
+}  // namespace lensproof

@@ -1,0 +1,133 @@
+// experiments/cli/measure_print.cpp — a profile as text.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "experiments/cli/measure_parts.h"
+
+namespace lensproof {
+
+namespace {
+
+void print_curve(const Profile& profile, const std::string& name, const char* label, const char* unit) {
+    const auto found = profile.curves.find(name);
+    if (found == profile.curves.end()) {
+        return;
+    }
+    const Curve& curve = found->second;
+    const double height =  // some curves are extrapolated beyond what was covered, some end before it
+        curve.image_height.empty() ? 0.0 : std::min(curve.covered_image_height, curve.image_height.back());
+    if (const std::optional<Banded> end = sample(curve, height)) {
+        fmt::print("{:22} {:9.4f} ± {:.4f} {} at image height {:.2f}\n", label, end->value,
+                   (end->upper_95 - end->lower_95) / (2.0 * k95), unit, height);
+    }
+}
+
+void print_edge(const std::string& channel, const ProfileEdge& listed) {
+    const EdgeMtf& edge = listed.edge;
+    if (edge.mtf50) {
+        fmt::print("{:22} {:9.4f} ± {:.4f} cycles/px at ({:.1f}, {:.1f}) px, edge normal {:.1f}°\n",
+                   fmt::format("MTF50 {}", channel), edge.mtf50->cycles_per_px, edge.mtf50->standard_error,
+                   edge.centre_px.x, edge.centre_px.y, edge.normal_deg);
+    }
+}
+
+void print_sharpness(const Profile& profile) {
+    constexpr std::size_t few = 6;  // edges that are listed one by one; more make a curve
+    for (const auto& [channel, edges] : profile.sharpness) {
+        for (std::size_t i = 0; i < edges.size() && edges.size() < few; ++i) {
+            print_edge(channel, edges[i]);
+        }
+        for (const char* direction : {"tangential", "sagittal"}) {
+            print_curve(profile, fmt::format("mtf50_{}_{}", direction, channel),
+                        fmt::format("MTF50 {} {}", direction, channel).c_str(), "cycles/px");
+            print_curve(profile, fmt::format("best_focus_{}_{}_mm", direction, channel),
+                        fmt::format("focus {} {}", direction, channel).c_str(), "mm");
+        }
+    }
+}
+
+/// A line for each picture: used or left out, and why.
+void print_account(const Profile& profile) {
+    const auto used = std::ranges::count_if(profile.pictures, [](const PictureAccount& p) { return p.used; });
+    fmt::print("{} of {} pictures used\n", used, profile.pictures.size());
+    std::size_t widest = 0;
+    for (const PictureAccount& picture : profile.pictures) {
+        widest = std::max(widest, picture.image.size());
+    }
+    for (const PictureAccount& picture : profile.pictures) {
+        const std::string held = picture.orientation == 1
+                                     ? ""
+                                     : fmt::format("EXIF orientation {} not applied: the sensor's rows count{}",
+                                                   picture.orientation, picture.reason.empty() ? "" : "; ");
+        const std::string line = fmt::format("  {:8}  {:{}}  {}{}", picture.used ? "used" : "left out", picture.image,
+                                             widest, held, picture.reason);
+        fmt::print("{}\n", line.substr(0, line.find_last_not_of(' ') + 1));
+    }
+    for (const std::string& suspicion : profile.source.suspicions) {
+        fmt::print("correction suspected: {}\n", suspicion);
+    }
+}
+
+}  // namespace
+
+void print_profile(const Profile& profile) {
+    print_account(profile);
+    if (profile.geometry) {
+        const ProfileGeometry& geometry = *profile.geometry;
+        const std::vector<std::string> names = parameter_names(geometry.model);
+        const std::vector<double> values = parameters(geometry.model);
+        fmt::print("{}: {} points in {} views, rms {:.4f} px\n", kind_name(geometry.model), geometry.points_used,
+                   geometry.views_used, geometry.reprojection_rms_px);
+        for (std::size_t i = 0; i < names.size(); ++i) {
+            fmt::print("{:22} {:.6g} ± {:.2g}\n", names[i], values[i], geometry.standard_error(i));
+        }
+    }
+    if (profile.geometry && profile.geometry->board) {
+        for (std::size_t i = 0; i < kBoardTerms; ++i) {
+            fmt::print("{:22} {:.4f} ± {:.2g}\n", kBoardTermNames[i], profile.geometry->board->height_mm[i],
+                       standard_error_mm(*profile.geometry->board, i));
+        }
+    }
+    if (profile.geometry && profile.geometry->choice) {
+        fmt::print("chosen because: {}\n", profile.geometry->choice->why);
+    }
+    print_curve(profile, "distortion_percent", "distortion", "%");
+    for (const char* channel : {"R", "G", "B", "Y"}) {
+        print_curve(profile, fmt::format("vignetting_{}_ev", channel), fmt::format("vignetting {}", channel).c_str(),
+                    "EV");
+    }
+    for (const auto& [channel, models] : profile.vignetting_models) {
+        if (models.front().values.empty()) {
+            fmt::print("{:22} no formula, but a spline (rms {:.3f} %)\n", "vignetting " + channel,
+                       100.0 * models.front().relative_rms);
+        } else {
+            fmt::print("{:22} {} (rms {:.3f} %)\n", "vignetting " + channel, models.front().name,
+                       100.0 * models.front().relative_rms);
+        }
+    }
+    for (const auto& [name, terms] : profile.terms) {
+        for (std::size_t i = 0; i < terms.names.size() && name.starts_with("chromatic_shift_mean_"); ++i) {
+            fmt::print("{:22} {:9.4f} ± {:.4f} px, {} of all points\n",
+                       "shift " + name.substr(std::string("chromatic_shift_mean_").size()), terms.values[i],
+                       std::sqrt(terms.covariance[i * (terms.names.size() + 1)]), terms.names[i]);
+        }
+    }
+    for (const auto& [name, curve] : profile.curves) {
+        if (const std::string kind = "chromatic_shift_"; name.starts_with(kind)) {
+            std::string label = name.substr(kind.size(), name.size() - kind.size() - std::string("_px").size());
+            std::replace(label.begin(), label.end(), '_', ' ');
+            print_curve(profile, name, fmt::format("chromatic shift {}", label).c_str(), "px");
+        }
+    }
+    if (profile.self_test) {
+        fmt::print("{:22} {}\n", "floor of the method", describe_floor(*profile.self_test));
+    }
+    print_sharpness(profile);
+    for (const auto& [what, why] : profile.not_measured) {
+        fmt::print("{} not measured: {}\n", what, why);
+    }
+}
+
+}  // namespace lensproof

@@ -1,0 +1,85 @@
+// Profiles written for OpenCV, read by cv::FileStorage and applied by OpenCV's own projections.
+#include <gtest/gtest.h>
+
+#include <opencv2/calib3d.hpp>
+#include <opencv2/core/persistence.hpp>
+
+#include "calibration/export/opencv_yaml.h"
+#include "engine/io/input_error.h"
+#include "tests/unit/export_profile.h"
+
+namespace lensproof {
+namespace {
+
+using namespace synthetic;
+
+struct ReadCamera {
+    int width = 0;
+    int height = 0;
+    int fisheye = -1;
+    cv::Mat matrix;
+    cv::Mat distortion;
+
+    explicit ReadCamera(const std::string& yaml) {
+        cv::FileStorage file(yaml, cv::FileStorage::READ | cv::FileStorage::MEMORY);
+        file["image_width"] >> width;
+        file["image_height"] >> height;
+        file["fisheye_model"] >> fisheye;
+        file["camera_matrix"] >> matrix;
+        file["distortion_coefficients"] >> distortion;
+    }
+    [[nodiscard]] Vec2d project(const Vec3d& direction) const {
+        std::vector<cv::Point2d> pixels;
+        const std::vector<cv::Point3d> points{{direction.x, direction.y, direction.z}};
+        const cv::Vec3d none(0.0, 0.0, 0.0);
+        if (fisheye == 1) {
+            cv::fisheye::projectPoints(points, pixels, none, none, matrix, distortion);
+        } else {
+            cv::projectPoints(points, none, none, matrix, distortion, pixels);
+        }
+        return {pixels[0].x, pixels[0].y};
+    }
+};
+
+double largest_difference(const Profile& profile, const ReadCamera& camera) {
+    double largest = 0.0;
+    for (const Vec2d& pixel : covered_pixels(profile)) {
+        const Vec2d there = camera.project(*unproject(profile.geometry->model, pixel));
+        largest = std::max(largest, std::hypot(there.x - pixel.x, there.y - pixel.y));
+    }
+    return largest;
+}
+
+// OpenCV has these two models: the file says the same to the digits that the YAML keeps (16).
+TEST(ExportOpencv, ModelsThatOpencvHasAreWrittenAsTheyAre) {
+    for (const CameraModel& model : {CameraModel(perspective_camera()), CameraModel(fisheye_camera())}) {
+        const Profile profile = profile_of(model, 640, 480, 0.75);  // to 80° at most: OpenCV divides by Z
+        const OpencvExport result = opencv_export(profile);
+        const ReadCamera camera(result.yaml);
+        EXPECT_EQ(camera.width, 640);
+        EXPECT_EQ(camera.height, 480);
+        EXPECT_EQ(camera.fisheye, std::holds_alternative<KannalaBrandt>(model) ? 1 : 0);
+        EXPECT_EQ(camera.matrix.at<double>(0, 0), focal_length_px(model));
+        EXPECT_LT(result.largest_difference_px, 1e-9);
+        EXPECT_LT(largest_difference(profile, camera), 1e-9);
+    }
+}
+
+// A fisheye that sees beyond 90° keeps its coefficients; what OpenCV's functions cannot project is said.
+TEST(ExportOpencv, AFieldBeyondARightAngleIsSaid) {
+    KannalaBrandt wide = fisheye_camera();
+    wide.parameters[0] = 200.0;
+    const OpencvExport result = opencv_export(profile_of(wide, 640, 480, 0.95));
+    EXPECT_EQ(result.model, "fisheye");
+    ASSERT_EQ(result.notes.size(), 2u);
+    EXPECT_NE(result.notes[1].find("88°"), std::string::npos);
+}
+
+TEST(ExportOpencv, WithoutACameraModelThereIsNothingToWrite) {
+    Profile profile = profile_of(perspective_camera(), 640, 480);
+    profile.geometry.reset();
+    EXPECT_THROW(opencv_export(profile), InputError);
+}
+
+}  // namespace
+}  // namespace lensproof
