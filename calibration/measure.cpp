@@ -239,7 +239,9 @@ Observations observe(const MeasureInput& input) {
 InputError none_usable(const MeasureInput& input, const Observations& seen) {
     constexpr std::size_t kMostNamed = 8;
     const std::size_t count = seen.pictures.size();
-    const std::string what = seen.views.empty() ? "no flat field" : "no " + describe(input.chart) + " found in any";
+    const std::string what = !seen.views.empty()   ? "no " + describe(input.chart) + " found in any"
+                             : input.edges.empty() ? "no flat field"
+                                                   : "no edge";
     std::string text =
         input.name + ": " + what + " of " + std::to_string(count) + (count == 1 ? " picture" : " pictures");
     for (std::size_t i = 0; i < std::min(count, kMostNamed); ++i) {
@@ -353,7 +355,8 @@ Profile measure(const MeasureInput& input) {
         throw InputError("measuring " + input.name + ": no pictures given: expected at least one");
     }
     const Observations seen = observe(input);
-    if (seen.chart_views.empty() && (!seen.views.empty() || seen.flat_fields.empty())) {
+    const bool has_light_or_edges = !seen.flat_fields.empty() || !seen.sharpness.edges.empty();
+    if (seen.chart_views.empty() && (!seen.views.empty() || !has_light_or_edges)) {
         throw none_usable(input, seen);
     }
     Profile profile;

@@ -137,7 +137,7 @@ TEST(PhotoFolder, MeasuresWithAnAccountOfWhatWasLeftOut) {
     EXPECT_EQ(account_of(profile, "IMG_2.jpg")["exif_orientation"], 6);
     const std::vector<std::pair<std::string, std::string>> left_out = {
         {"IMG_6.jpg", "blurred"},
-        {"IMG_7.jpg", "no grid"},
+        {"IMG_7.jpg", "no checkerboard"},
         {"IMG_8.jpg", "IMG_1.jpg"},
         {"IMG_9.jpg", "cut off"},
         {"IMG_a.jpg", "8 mm, most of the others have focal length 4 mm"},
@@ -167,7 +167,7 @@ TEST(PhotoFolder, WhereNoPictureDoesEachReasonIsGiven) {
     write_jpeg(place.path() / "photos/room.jpg", without_chart(), {});
     place.file("photos/damaged.jpg", "no picture at all");
     expect_refused(place, {"measure", "photos", "--chart", "board.toml", "-o", "profile.json"},
-                   {"room.jpg: no grid", "damaged.jpg: not a picture"});
+                   {"room.jpg: no checkerboard", "damaged.jpg: not a picture"});
     std::filesystem::create_directory(place.path() / "empty");
     expect_refused(place, {"measure", "empty", "--chart", "board.toml"}, {"empty", "no picture"});
     expect_refused(place, {"measure", "photos", "--chart", "board.toml", "--transfer", "gamma:x"}, {"--transfer"});

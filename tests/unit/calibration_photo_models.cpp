@@ -101,11 +101,11 @@ TEST(CalibrationPhotoModels, TheFisheyeBoardAgreesWithItsManifest) {
             GTEST_SKIP() << "needs ../shared/photos/fisheye_board";
         }
         const Image image = read_image(file);
-        const auto approximate = detect(image, board);
-        if (!approximate) {
+        const Detection detection = detect(image, board);
+        if (!detection.found()) {
             continue;
         }
-        const ChartPoints points = refine(image, reference_channel(image), *approximate, board);
+        const ChartPoints points = refine(image, reference_channel(image), detection.points, board);
         const std::vector<Vec2d> features = feature_points(board);
         ChartView view{.name = file.filename().string(), .chart_mm = {}, .image_px = {}};
         for (std::size_t i = 0; i < features.size(); ++i) {
