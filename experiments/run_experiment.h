@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
+#include "calibration/curve_difference.h"
 #include "calibration/profile.h"
 #include "engine/io/cache.h"
-#include "calibration/curve_difference.h"
 #include "experiments/experiment.h"
 #include "experiments/photo_set.h"
 
@@ -55,7 +55,7 @@ struct ExperimentResult {
 struct RunSettings {
     std::uint64_t seed = 0;
     int threads = 0;
-    Cache cache{};  // for what is found by tracing lenses
+    Cache cache{};          // for what is found by tracing lenses
     bool self_test = true;  // each measurement says its own floor (calibration/self_test.h)
 };
 

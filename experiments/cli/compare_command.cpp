@@ -6,12 +6,12 @@
 #include <limits>
 #include <memory>
 
+#include "calibration/curve_difference.h"
 #include "calibration/profile.h"
 #include "engine/io/cache.h"
 #include "engine/io/image.h"
 #include "engine/io/input_error.h"
 #include "experiments/cli/command.h"
-#include "calibration/curve_difference.h"
 #include "experiments/lens_profile.h"
 #include "experiments/verdict.h"
 
