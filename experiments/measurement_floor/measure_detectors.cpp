@@ -28,7 +28,7 @@ constexpr double kBias_px = 0.02;
 struct Detector {
     std::string label;
     Chart chart;
-    double width_mm;
+    double width_mm = 0.0;
     double disc_diameter_mm = 0.0;
 };
 
@@ -38,24 +38,27 @@ std::vector<std::uint64_t> markers_of(const std::string& dictionary, std::size_t
     return markers;
 }
 
+Detector detector(const std::string& label, const ChartPattern& pattern, double width_mm) {
+    Detector made{.label = label, .chart = {}, .width_mm = width_mm};
+    made.chart.pattern = pattern;
+    made.chart.white_reflectance = 1.0;
+    made.chart.black_reflectance = 0.05;
+    made.disc_diameter_mm = disc_diameter_mm(made.chart);
+    return made;
+}
+
 std::vector<Detector> detectors() {
-    const auto chart = [](ChartPattern pattern) {
-        return Chart{.pattern = std::move(pattern), .white_reflectance = 1.0, .black_reflectance = 0.05};
-    };
-    std::vector<Detector> all = {
-        {"checkerboard", chart(Checkerboard{10, 7, 30.0}), 300.0},
-        {"charuco",
-         chart(CharucoBoard{.columns = 9,
-                            .rows = 6,
-                            .square_mm = 33.0,
-                            .marker_mm = 24.0,
-                            .cells = 5,
-                            .markers = markers_of("DICT_5X5_50", 27)}),
-         300.0},
-        {"disc grid", chart(DiscGrid{9, 6, 33.0, 18.0}), 300.0, 18.0},
-        {"point grid", chart(PointGrid{9, 6, 33.0, 10.0}), 300.0, 10.0},
-    };
-    std::erase_if(all, [](const Detector& detector) { return !can_detect(detector.chart); });
+    const CharucoBoard charuco{.columns = 9,
+                               .rows = 6,
+                               .square_mm = 33.0,
+                               .marker_mm = 24.0,
+                               .cells = 5,
+                               .markers = markers_of("DICT_5X5_50", 27)};
+    std::vector<Detector> all;
+    all.push_back(detector("checkerboard", Checkerboard{10, 7, 30.0}, 300.0));
+    all.push_back(detector("charuco", charuco, 300.0));
+    all.push_back(detector("disc grid", DiscGrid{9, 6, 33.0, 18.0}, 300.0));
+    all.push_back(detector("point grid", PointGrid{9, 6, 33.0, 10.0}, 300.0));
     return all;
 }
 

@@ -44,6 +44,7 @@ int holds(const std::optional<Banded>& stated, double truth) {
 
 std::vector<Quantity> at_heights(const std::string& id, const std::string& label) {
     std::vector<Quantity> quantities;
+    quantities.reserve(kHeights.size());
     for (const double height : kHeights) {
         quantities.push_back(
             {fmt::format("{}-{:g}", id, height), fmt::format("{} at image height {:g}", label, height)});

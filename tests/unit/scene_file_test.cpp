@@ -87,6 +87,12 @@ TEST(SceneFile, TheExamplesAreRead) {
     const SceneSetup room = read("fisheye_room.toml");
     EXPECT_EQ(std::get<ConductorDescription>(room.scene.materials[3].kind).index.name, "metal:Au");
     EXPECT_EQ(std::get<Sphere>(load_shapes(room.scene).shapes.at(9)).radius_mm, 300.0);
+    for (const char* name : {"bokeh_lights.toml", "cornell_box_petzval.toml", "glass_caustic.toml"}) {
+        const SceneSetup setup = read(name);
+        EXPECT_EQ(setup.view.model, LensModel::exact) << name;
+        EXPECT_FALSE(setup.scene.objects.empty()) << name;
+        EXPECT_FALSE(setup.scene.lights.empty()) << name;
+    }
 }
 
 // The Cornell box's published dimensions: of its 19 polygons, the areas by the shoelace formula in each one's plane.

@@ -5,8 +5,8 @@
 
 #include <gtest/gtest.h>
 
-#include "engine/io/file.h"
 #include "calibration/curve_difference.h"
+#include "engine/io/file.h"
 #include "experiments/run_experiment.h"
 
 namespace lensproof {
