@@ -124,6 +124,7 @@ TEST(CalibrationUncertainty, TheMapIsTheScatterOfRefits) {
     constexpr int trials = 200;
     const GeometryFit typical = study.fit(sigma, noise);
     std::vector<GeometryFit> fits;
+    fits.reserve(trials);
     for (int trial = 0; trial < trials; ++trial) {
         fits.push_back(study.fit(sigma, noise));
     }
