@@ -97,7 +97,7 @@ TEST(Photo, AStatedCurveWinsOverTheGivenOne) {
     OIIO::ImageSpec spec(1, 1, 1, OIIO::TypeDesc::UINT16);
     const std::uint16_t half = 32768;
     const auto write = [&](const char* name) {
-        const auto file = folder.path() / name;
+        std::filesystem::path file = folder.path() / name;
         const auto output = OIIO::ImageOutput::create(file.string());
         EXPECT_TRUE(output->open(file.string(), spec) && output->write_image(OIIO::TypeDesc::UINT16, &half));
         output->close();
