@@ -123,8 +123,9 @@ std::vector<EdgeRegion> edges_of_board(const ChartPoints& points, const Chart& c
                     continue;
                 }
                 LocalMap side = *map;  // exactly through both corners
-                (to_the_right ? side.x_axis : side.y_axis) = {(end->x - side.at.x) / square,
-                                                              (end->y - side.at.y) / square};
+                // By a reference: under its sanitizers GCC 12 leaves out an assignment to (a ? b : c) itself.
+                Vec2d& axis = to_the_right ? side.x_axis : side.y_axis;
+                axis = Vec2d{(end->x - side.at.x) / square, (end->y - side.at.y) / square};
                 const Vec2d along = to_the_right ? Vec2d{1.0, 0.0} : Vec2d{0.0, 1.0};
                 if (const auto edge =
                         region(side, {0.5 * square * along.x, 0.5 * square * along.y}, along, 0.5 * square, depth)) {
