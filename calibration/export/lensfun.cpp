@@ -11,6 +11,7 @@
 #include "calibration/linear_fit.h"
 #include "calibration/vignetting.h"
 #include "engine/io/input_error.h"
+#include "engine/io/markup.h"
 
 namespace lensproof {
 namespace {
@@ -195,29 +196,6 @@ IdealProjection nearest_type(const Profile& profile) {
     return nearest;
 }
 
-std::string escaped(const std::string& text) {
-    std::string out;
-    for (const char c : text) {
-        switch (c) {
-            case '&':
-                out += "&amp;";
-                break;
-            case '<':
-                out += "&lt;";
-                break;
-            case '>':
-                out += "&gt;";
-                break;
-            case '"':
-                out += "&quot;";
-                break;
-            default:
-                out += static_cast<unsigned char>(c) < 0x20 ? ' ' : c;
-        }
-    }
-    return out;
-}
-
 /// A comment in XML must not hold two hyphens in a row.
 std::string comment(std::string text) {
     std::ranges::replace(text, '-', '_');
@@ -375,9 +353,9 @@ LensfunExport lensfun_export(const Profile& profile, const LensfunOptions& optio
         "        <cropfactor>{:.9g}</cropfactor>\n        <aspect-ratio>{}:{}</aspect-ratio>\n"
         "        <center x=\"{:.9g}\" y=\"{:.9g}\"/>\n        <calibration>\n{}        </calibration>\n"
         "    </lens>\n</lensdatabase>\n",
-        notes, escaped(options.maker), escaped(options.model), escaped(options.mount), name_of(result.type),
-        options.crop_factor, longer / common, shorter / common, (centre.x - width / 2.0) / centre_unit_px,
-        (centre.y - height / 2.0) / centre_unit_px, calibration);
+        notes, escape_markup(options.maker), escape_markup(options.model), escape_markup(options.mount),
+        name_of(result.type), options.crop_factor, longer / common, shorter / common,
+        (centre.x - width / 2.0) / centre_unit_px, (centre.y - height / 2.0) / centre_unit_px, calibration);
     return result;
 }
 

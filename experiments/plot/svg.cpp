@@ -5,7 +5,7 @@
 #include <charconv>
 #include <cmath>
 
-#include "experiments/markup.h"
+#include "engine/io/markup.h"
 
 namespace lensproof {
 

@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-#include "experiments/markup.h"
+#include "engine/io/markup.h"
 #include "experiments/report/html_text.h"
 
 namespace lensproof {

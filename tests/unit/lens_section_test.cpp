@@ -9,10 +9,10 @@
 #include <numbers>
 #include <optional>
 
+#include "engine/io/markup.h"
 #include "engine/io/prescription/prescription_file.h"
 #include "engine/optics/meridional_bundle.h"
 #include "engine/spectral/wavelengths.h"
-#include "experiments/markup.h"
 #include "experiments/plot/label_row.h"
 #include "experiments/plot/section_rays.h"
 #include "experiments/plot/svg.h"

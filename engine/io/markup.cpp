@@ -1,4 +1,4 @@
-#include "experiments/markup.h"
+#include "engine/io/markup.h"
 
 #include <algorithm>
 #include <cstdint>

@@ -1,4 +1,4 @@
-// experiments/markup.h — text that may come from anyone, made safe to stand in a page or a drawing.
+// engine/io/markup.h — text that may come from anyone, made safe to stand in a page or a drawing.
 #pragma once
 #include <string>
 #include <string_view>
