@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "calibration/fit_geometry.h"
-#include "calibration/profile.h"
+#include "calibration/geometry/fit_geometry.h"
+#include "calibration/profile/profile.h"
 #include "engine/io/image.h"
 #include "engine/scene/chart.h"
 
@@ -31,12 +31,12 @@ struct MeasureInput {
     std::string name;  // of the profile
     std::vector<Picture> pictures;
     Chart chart;  // a FlatField when every picture is a flat field
-    /// Not set: several models are fitted, and one is chosen (calibration/model_choice.h).
+    /// Not set: several models are fitted, and one is chosen (calibration/geometry/model_choice.h).
     std::optional<ModelKind> model;
     GeometryOptions geometry;  // `model` and `disc_diameter_mm` are filled in by `measure`
     ProfileSource source;      // `images` is filled in
     std::optional<double> pixel_pitch_um;
-    /// Whether the profile is to say its own floor (calibration/self_test.h), which takes as long again.
+    /// Whether the profile is to say its own floor (calibration/self_test/self_test.h), which takes as long again.
     bool self_test = false;
     /// In pictures of the role `edges`: rectangles with one edge each; one without a size is the whole picture.
     std::vector<PixelRectangle> edges;

@@ -4,7 +4,7 @@
 
 #include <limits>
 
-#include "calibration/curve_difference.h"
+#include "calibration/profile/curve_difference.h"
 
 namespace lensproof {
 

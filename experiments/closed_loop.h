@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "calibration/profile.h"
+#include "calibration/profile/profile.h"
 #include "experiments/experiment.h"
 #include "experiments/verdict.h"
 

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <set>
 
-#include "calibration/detect.h"
+#include "calibration/detection/detect.h"
 #include "engine/io/input_error.h"
 #include "experiments/stability/extremes.h"
 
@@ -14,7 +14,7 @@ namespace lensproof {
 
 namespace {
 
-/// Curves that two subjects may have in common: calibration/profile.h's, and positions in pixels.
+/// Curves that two subjects may have in common: calibration/profile/profile.h's, and positions in pixels.
 const std::vector<std::string> kComparedCurves = {"radial_px",
                                                   "field_angle_deg",
                                                   "distortion_percent",

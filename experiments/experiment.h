@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "calibration/fit_geometry.h"
+#include "calibration/geometry/fit_geometry.h"
 #include "engine/render/camera.h"
 #include "experiments/measurement_floor/measure_floor.h"
 #include "experiments/verdict.h"
@@ -51,7 +51,7 @@ struct PhotoSubject {
 struct Comparison {
     std::string of;
     std::string with;
-    std::string curve;  // as in calibration/profile.h; "radial_px" for positions of the same camera
+    std::string curve;  // as in calibration/profile/profile.h; "radial_px" for positions of the same camera
     std::optional<double> limit;
     Expectation expectation = Expectation::at_most;
 };

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "calibration/curve_difference.h"
-#include "calibration/profile.h"
+#include "calibration/profile/curve_difference.h"
+#include "calibration/profile/profile.h"
 #include "engine/io/cache.h"
 #include "experiments/experiment.h"
 #include "experiments/photo_set.h"
@@ -56,7 +56,7 @@ struct RunSettings {
     std::uint64_t seed = 0;
     int threads = 0;
     Cache cache{};          // for what is found by tracing lenses
-    bool self_test = true;  // each measurement says its own floor (calibration/self_test.h)
+    bool self_test = true;  // each measurement says its own floor (calibration/self_test/self_test.h)
 };
 
 /// Reports what is being done ("tessar, view 2 of 6") and how much of it is.

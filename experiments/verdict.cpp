@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "calibration/curve.h"
+#include "calibration/statistics/curve.h"
 
 namespace lensproof {
 

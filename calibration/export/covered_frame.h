@@ -4,7 +4,7 @@
 #include <optional>
 #include <vector>
 
-#include "calibration/profile.h"
+#include "calibration/profile/profile.h"
 #include "engine/optics/vec.h"
 
 namespace lensproof {

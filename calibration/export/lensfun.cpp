@@ -8,8 +8,8 @@
 #include <numeric>
 
 #include "calibration/export/covered_frame.h"
-#include "calibration/linear_fit.h"
-#include "calibration/vignetting.h"
+#include "calibration/light/vignetting.h"
+#include "calibration/statistics/linear_fit.h"
 #include "engine/io/input_error.h"
 #include "engine/io/markup.h"
 

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "calibration/export/ideal_projection.h"
-#include "calibration/profile.h"
+#include "calibration/profile/profile.h"
 
 namespace lensproof {
 

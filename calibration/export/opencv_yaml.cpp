@@ -8,7 +8,7 @@
 #include <opencv2/core/persistence.hpp>
 
 #include "calibration/export/covered_frame.h"
-#include "calibration/linear_fit.h"
+#include "calibration/statistics/linear_fit.h"
 #include "engine/io/input_error.h"
 
 namespace lensproof {

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "calibration/export/ideal_projection.h"
-#include "calibration/profile.h"
+#include "calibration/profile/profile.h"
 #include "engine/io/frame_placement.h"
 #include "engine/io/image.h"
 

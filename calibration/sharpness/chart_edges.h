@@ -2,7 +2,7 @@
 #pragma once
 #include <vector>
 
-#include "calibration/refine.h"
+#include "calibration/detection/refine.h"
 #include "calibration/sharpness/slanted_edge.h"
 #include "engine/scene/chart.h"
 

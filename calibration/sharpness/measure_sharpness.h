@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "calibration/profile.h"
-#include "calibration/refine.h"
+#include "calibration/detection/refine.h"
+#include "calibration/profile/profile.h"
 #include "calibration/sharpness/profile_edge.h"
 #include "engine/io/image.h"
 #include "engine/scene/chart.h"

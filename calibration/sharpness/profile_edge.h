@@ -4,7 +4,7 @@
 #include <optional>
 #include <string>
 
-#include "calibration/json_node.h"
+#include "calibration/profile/json_node.h"
 #include "calibration/sharpness/slanted_edge.h"
 
 namespace lensproof {

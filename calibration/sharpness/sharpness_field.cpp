@@ -7,7 +7,7 @@
 #include <limits>
 #include <numbers>
 
-#include "calibration/linear_fit.h"
+#include "calibration/statistics/linear_fit.h"
 #include "engine/io/input_error.h"
 
 namespace lensproof {

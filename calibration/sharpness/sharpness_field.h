@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "calibration/curve.h"
 #include "calibration/sharpness/slanted_edge.h"
+#include "calibration/statistics/curve.h"
 
 namespace lensproof {
 

@@ -8,7 +8,7 @@
 #include <numbers>
 
 #include "calibration/sharpness/edge_alignment.h"
-#include "calibration/student.h"
+#include "calibration/statistics/student.h"
 
 namespace lensproof {
 namespace {

@@ -6,8 +6,8 @@
 #include <limits>
 #include <memory>
 
-#include "calibration/curve_difference.h"
-#include "calibration/profile.h"
+#include "calibration/profile/curve_difference.h"
+#include "calibration/profile/profile.h"
 #include "engine/io/cache.h"
 #include "engine/io/image.h"
 #include "engine/io/input_error.h"

@@ -7,7 +7,7 @@
 #include "calibration/export/lensfun.h"
 #include "calibration/export/opencv_yaml.h"
 #include "calibration/export/st_map.h"
-#include "calibration/profile.h"
+#include "calibration/profile/profile.h"
 #include "engine/io/file.h"
 #include "engine/io/input_error.h"
 #include "experiments/cli/command.h"

@@ -4,8 +4,8 @@
 #include <charconv>
 #include <cmath>
 
-#include "calibration/measure_bands.h"
-#include "calibration/mosaic.h"
+#include "calibration/chromatic/measure_bands.h"
+#include "calibration/chromatic/mosaic.h"
 #include "engine/io/input_error.h"
 #include "engine/io/photo.h"
 #include "experiments/cli/measure_parts.h"

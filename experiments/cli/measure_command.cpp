@@ -5,9 +5,9 @@
 #include <charconv>
 #include <memory>
 
-#include "calibration/detect.h"
+#include "calibration/detection/detect.h"
 #include "calibration/measure.h"
-#include "calibration/photo_survey.h"
+#include "calibration/photos/photo_survey.h"
 #include "engine/io/file.h"
 #include "engine/io/input_error.h"
 #include "engine/scene/chart_file.h"

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "calibration/profile.h"
+#include "calibration/profile/profile.h"
 #include "engine/scene/chart.h"
 #include "experiments/cli/command.h"
 

@@ -5,10 +5,10 @@
 #include <iterator>
 #include <limits>
 
-#include "calibration/detect.h"
-#include "calibration/fit_geometry.h"
-#include "calibration/refine.h"
-#include "calibration/simulated_chart.h"
+#include "calibration/detection/detect.h"
+#include "calibration/detection/refine.h"
+#include "calibration/geometry/fit_geometry.h"
+#include "calibration/self_test/simulated_chart.h"
 #include "engine/render/parallel.h"
 #include "engine/scene/aruco.h"
 #include "experiments/measurement_floor/measure_floor.h"

@@ -5,12 +5,12 @@
 #include <cmath>
 #include <numbers>
 
-#include "calibration/chromatic_shift.h"
-#include "calibration/fit_geometry.h"
-#include "calibration/geometry_curves.h"
-#include "calibration/light_samples.h"
-#include "calibration/simulated_chart.h"
-#include "calibration/vignetting.h"
+#include "calibration/chromatic/chromatic_shift.h"
+#include "calibration/geometry/fit_geometry.h"
+#include "calibration/geometry/geometry_curves.h"
+#include "calibration/light/light_samples.h"
+#include "calibration/light/vignetting.h"
+#include "calibration/self_test/simulated_chart.h"
 #include "engine/io/input_error.h"
 #include "engine/render/parallel.h"
 #include "experiments/measurement_floor/measure_floor.h"

@@ -5,10 +5,10 @@
 #include <cmath>
 #include <limits>
 
-#include "calibration/cross_validation.h"
-#include "calibration/fit_geometry.h"
-#include "calibration/model_choice.h"
-#include "calibration/projection_uncertainty.h"
+#include "calibration/geometry/cross_validation.h"
+#include "calibration/geometry/fit_geometry.h"
+#include "calibration/geometry/model_choice.h"
+#include "calibration/geometry/projection_uncertainty.h"
 #include "engine/io/input_error.h"
 #include "engine/render/parallel.h"
 #include "experiments/measurement_floor/measure_floor.h"

@@ -3,9 +3,9 @@
 #include <random>
 #include <vector>
 
-#include "calibration/camera_model.h"
-#include "calibration/fit_geometry.h"
-#include "calibration/planar_pose.h"
+#include "calibration/geometry/camera_model.h"
+#include "calibration/geometry/fit_geometry.h"
+#include "calibration/geometry/planar_pose.h"
 #include "engine/optics/vec.h"
 
 namespace lensproof {

@@ -1,6 +1,6 @@
 #include <benchmark/benchmark.h>
 
-#include "calibration/refine.h"
+#include "calibration/detection/refine.h"
 #include "engine/optics/chief_ray.h"
 #include "engine/scene/chart.h"
 #include "tests/benchmarks/benchmarks.h"

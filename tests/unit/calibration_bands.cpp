@@ -3,10 +3,10 @@
 #include <cmath>
 #include <filesystem>
 
-#include "calibration/loose_discs.h"
-#include "calibration/measure_bands.h"
-#include "calibration/mosaic.h"
-#include "calibration/simulated_chart.h"
+#include "calibration/chromatic/measure_bands.h"
+#include "calibration/chromatic/mosaic.h"
+#include "calibration/detection/loose_discs.h"
+#include "calibration/self_test/simulated_chart.h"
 #include "engine/io/input_error.h"
 #include "engine/io/srgb.h"
 #include "tests/unit/calibration_synthetic.h"

@@ -2,7 +2,7 @@
 
 #include <numbers>
 
-#include "calibration/camera_model.h"
+#include "calibration/geometry/camera_model.h"
 #include "tests/unit/calibration_synthetic.h"
 
 namespace lensproof {

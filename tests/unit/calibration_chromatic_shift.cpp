@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 
-#include "calibration/chromatic_shift.h"
+#include "calibration/chromatic/chromatic_shift.h"
 #include "engine/io/input_error.h"
 #include "tests/unit/calibration_synthetic.h"
 

@@ -6,8 +6,8 @@
 #include <utility>
 #include <vector>
 
-#include "calibration/detect.h"
-#include "calibration/refine.h"
+#include "calibration/detection/detect.h"
+#include "calibration/detection/refine.h"
 #include "engine/scene/aruco.h"
 #include "tests/unit/calibration_shot.h"
 

@@ -2,8 +2,8 @@
 
 #include <limits>
 
-#include "calibration/detect.h"
-#include "calibration/refine.h"
+#include "calibration/detection/detect.h"
+#include "calibration/detection/refine.h"
 #include "engine/io/input_error.h"
 #include "tests/unit/calibration_synthetic.h"
 

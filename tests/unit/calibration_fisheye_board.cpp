@@ -3,8 +3,8 @@
 #include <filesystem>
 #include <string>
 
-#include "calibration/detect.h"
-#include "calibration/refine.h"
+#include "calibration/detection/detect.h"
+#include "calibration/detection/refine.h"
 
 namespace lensproof {
 namespace {

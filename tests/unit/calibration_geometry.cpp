@@ -2,8 +2,8 @@
 
 #include <numbers>
 
-#include "calibration/disc_centroid.h"
-#include "calibration/fit_geometry.h"
+#include "calibration/detection/disc_centroid.h"
+#include "calibration/geometry/fit_geometry.h"
 #include "engine/io/input_error.h"
 #include "tests/unit/calibration_synthetic.h"
 

@@ -5,7 +5,7 @@
 #include <numbers>
 #include <opencv2/calib3d.hpp>
 
-#include "calibration/fit_geometry.h"
+#include "calibration/geometry/fit_geometry.h"
 #include "tests/unit/calibration_synthetic.h"
 
 namespace lensproof {

@@ -3,8 +3,8 @@
 #include <filesystem>
 
 #include "calibration/measure.h"
+#include "calibration/self_test/simulated_chart.h"
 #include "calibration/sharpness/measure_sharpness.h"
-#include "calibration/simulated_chart.h"
 #include "engine/io/input_error.h"
 #include "tests/unit/calibration_sharpness_edge.h"
 

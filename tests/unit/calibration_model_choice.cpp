@@ -1,8 +1,8 @@
 // The choice of a lens model.
 #include <gtest/gtest.h>
 
-#include "calibration/geometry_json.h"
-#include "calibration/model_choice.h"
+#include "calibration/geometry/geometry_json.h"
+#include "calibration/geometry/model_choice.h"
 #include "engine/io/input_error.h"
 #include "tests/unit/calibration_synthetic.h"
 

@@ -8,11 +8,11 @@
 #include <memory>
 #include <sstream>
 
-#include "calibration/cross_validation.h"
-#include "calibration/detect.h"
-#include "calibration/model_choice.h"
-#include "calibration/refine.h"
-#include "calibration/working_copy.h"
+#include "calibration/detection/detect.h"
+#include "calibration/detection/refine.h"
+#include "calibration/detection/working_copy.h"
+#include "calibration/geometry/cross_validation.h"
+#include "calibration/geometry/model_choice.h"
 #include "engine/io/image.h"
 
 namespace lensproof {

@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 
-#include "calibration/profile.h"
+#include "calibration/profile/profile.h"
 #include "engine/io/input_error.h"
 #include "tests/unit/calibration_synthetic.h"
 

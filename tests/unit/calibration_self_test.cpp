@@ -3,8 +3,8 @@
 #include <cmath>
 
 #include "calibration/measure.h"
-#include "calibration/picture_traits.h"
-#include "calibration/self_test.h"
+#include "calibration/photos/picture_traits.h"
+#include "calibration/self_test/self_test.h"
 #include "tests/unit/calibration_synthetic.h"
 
 namespace lensproof {

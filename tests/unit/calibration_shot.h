@@ -7,8 +7,8 @@
 #include <numbers>
 #include <vector>
 
-#include "calibration/detect.h"
-#include "calibration/refine.h"
+#include "calibration/detection/detect.h"
+#include "calibration/detection/refine.h"
 #include "tests/unit/calibration_synthetic.h"
 
 namespace lensproof::synthetic {

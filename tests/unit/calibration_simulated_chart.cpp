@@ -3,7 +3,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "calibration/simulated_chart.h"
+#include "calibration/self_test/simulated_chart.h"
 
 namespace lensproof {
 namespace {

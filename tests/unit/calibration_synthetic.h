@@ -5,10 +5,10 @@
 #include <random>
 #include <vector>
 
-#include "calibration/camera_model.h"
-#include "calibration/fit_geometry.h"
-#include "calibration/planar_pose.h"
-#include "calibration/simulated_chart.h"
+#include "calibration/geometry/camera_model.h"
+#include "calibration/geometry/fit_geometry.h"
+#include "calibration/geometry/planar_pose.h"
+#include "calibration/self_test/simulated_chart.h"
 #include "engine/io/image.h"
 #include "engine/scene/chart.h"
 

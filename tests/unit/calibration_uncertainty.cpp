@@ -6,10 +6,10 @@
 #include <cmath>
 #include <numbers>
 
-#include "calibration/cross_validation.h"
-#include "calibration/fit_geometry.h"
-#include "calibration/geometry_curves.h"
-#include "calibration/projection_uncertainty.h"
+#include "calibration/geometry/cross_validation.h"
+#include "calibration/geometry/fit_geometry.h"
+#include "calibration/geometry/geometry_curves.h"
+#include "calibration/geometry/projection_uncertainty.h"
 #include "tests/unit/calibration_synthetic.h"
 
 namespace lensproof {

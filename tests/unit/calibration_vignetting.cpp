@@ -3,7 +3,7 @@
 #include <functional>
 #include <numbers>
 
-#include "calibration/vignetting_models.h"
+#include "calibration/light/vignetting_models.h"
 #include "engine/io/input_error.h"
 #include "tests/unit/calibration_synthetic.h"
 

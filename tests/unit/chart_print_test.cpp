@@ -4,8 +4,8 @@
 #include <filesystem>
 #include <string>
 
-#include "calibration/detect.h"
-#include "calibration/refine.h"
+#include "calibration/detection/detect.h"
+#include "calibration/detection/refine.h"
 #include "engine/io/file.h"
 #include "engine/io/image.h"
 #include "engine/io/input_error.h"

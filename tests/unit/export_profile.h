@@ -2,7 +2,7 @@
 #pragma once
 #include <cmath>
 
-#include "calibration/profile.h"
+#include "calibration/profile/profile.h"
 #include "tests/unit/calibration_synthetic.h"
 
 namespace lensproof::synthetic {

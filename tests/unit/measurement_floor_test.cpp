@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "calibration/fit_geometry.h"
+#include "calibration/geometry/fit_geometry.h"
 #include "experiments/measurement_floor/floor_report.h"
 #include "experiments/measurement_floor/random_poses.h"
 

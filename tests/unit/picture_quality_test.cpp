@@ -1,10 +1,10 @@
 // Whether pictures are judged as blurred, badly exposed or corrected where they are, and only there.
-#include "calibration/picture_quality.h"
+#include "calibration/photos/picture_quality.h"
 
 #include <gtest/gtest.h>
 
-#include "calibration/geometry_curves.h"
-#include "calibration/photo_survey.h"
+#include "calibration/geometry/geometry_curves.h"
+#include "calibration/photos/photo_survey.h"
 #include "tests/unit/export_profile.h"
 
 namespace lensproof {

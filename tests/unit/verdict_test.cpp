@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "calibration/curve_difference.h"
+#include "calibration/profile/curve_difference.h"
 
 namespace lensproof {
 namespace {

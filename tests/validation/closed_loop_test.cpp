@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-#include "calibration/curve_difference.h"
+#include "calibration/profile/curve_difference.h"
 #include "engine/io/file.h"
 #include "experiments/run_experiment.h"
 

@@ -1,0 +1,93 @@
+#include "calibration/chromatic/chromatic_shift.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "calibration/statistics/linear_fit.h"
+#include "engine/io/input_error.h"
+
+namespace lensproof {
+namespace {
+
+constexpr double kOutlierSigmas = 4.5;
+constexpr double kLeastSigma_px = 0.005;  // no detector is better
+constexpr int kUnknowns = 7;
+constexpr std::size_t kFewestPairs = 7;
+
+// Σ term_i h^(2i+1) of the terms from `first` on, as far as `covered`.
+Curve odd_curve(const std::vector<double>& terms, const ChromaticShift& shift, std::size_t first, double covered) {
+    Curve curve;
+    curve.covered_image_height = covered;
+    for (const double h : standard_image_heights()) {
+        if (h > covered) {
+            break;
+        }
+        double value = 0.0;
+        double variance = 0.0;
+        for (std::size_t i = 0; i < terms.size(); ++i) {
+            const double own = std::pow(h, static_cast<double>(2 * i + 1));
+            value += own * terms[i];
+            for (std::size_t j = 0; j < terms.size(); ++j) {
+                variance += own * shift.covariance[(first + i) * kUnknowns + first + j] *
+                            std::pow(h, static_cast<double>(2 * j + 1));
+            }
+        }
+        const double half_width = k95 * std::sqrt(std::max(variance, 0.0));
+        append(curve, h, {value, value - half_width, value + half_width});
+    }
+    return curve;
+}
+
+}  // namespace
+
+ChromaticShift fit_chromatic_shift(const std::vector<ChromaticPair>& pairs, const Vec2d& centre_px,
+                                   double half_diagonal_px) {
+    if (!(half_diagonal_px > 0.0) || pairs.size() < kFewestPairs) {
+        throw InputError("chromatic shift: " + std::to_string(pairs.size()) +
+                         " points found in both channels: expected at least " + std::to_string(kFewestPairs));
+    }
+    const auto rows = static_cast<Eigen::Index>(2 * pairs.size());
+    LinearProblem problem{.a = Eigen::MatrixXd::Zero(rows, kUnknowns),
+                          .y = Eigen::VectorXd(rows),
+                          .row_sigma = Eigen::VectorXd::Ones(rows),
+                          .group = std::vector<int>(static_cast<std::size_t>(rows))};
+    const auto offset = [&](const ChromaticPair& pair) {
+        return Vec2d{(pair.green_px.x - centre_px.x) / half_diagonal_px,
+                     (pair.green_px.y - centre_px.y) / half_diagonal_px};
+    };
+    for (std::size_t i = 0; i < pairs.size(); ++i) {
+        const Vec2d q = offset(pairs[i]);
+        const double rho2 = q.x * q.x + q.y * q.y;
+        const auto row = static_cast<Eigen::Index>(2 * i);
+        problem.a.row(row) << q.x, q.x * rho2, q.x * rho2 * rho2, -q.y, -q.y * rho2, 1.0, 0.0;
+        problem.a.row(row + 1) << q.y, q.y * rho2, q.y * rho2 * rho2, q.x, q.x * rho2, 0.0, 1.0;
+        problem.y(row) = pairs[i].channel_px.x - pairs[i].green_px.x;
+        problem.y(row + 1) = pairs[i].channel_px.y - pairs[i].green_px.y;
+        problem.group[2 * i] = problem.group[2 * i + 1] = static_cast<int>(i);
+    }
+    const auto fit = fit_linear(problem, kOutlierSigmas, kLeastSigma_px);
+    if (!fit) {
+        throw InputError("chromatic shift: the " + std::to_string(pairs.size()) +
+                         " points do not determine it: expected points at several distances from the centre");
+    }
+    ChromaticShift shift;
+    std::copy_n(fit->parameters.begin(), 3, shift.radial_px.begin());
+    std::copy_n(fit->parameters.begin() + 3, 2, shift.tangential_px.begin());
+    shift.translation_px = {fit->parameters(5), fit->parameters(6)};
+    std::copy_n(fit->covariance.data(), kUnknowns * kUnknowns, shift.covariance.begin());
+    shift.rms_px = std::sqrt(fit->chi_squared / fit->rows_used);
+    shift.pairs_used = fit->rows_used / 2;
+    double covered = 0.0;
+    for (std::size_t i = 0; i < pairs.size(); ++i) {
+        if (fit->used[2 * i]) {
+            const Vec2d q = offset(pairs[i]);
+            covered = std::max(covered, std::hypot(q.x, q.y));
+        }
+    }
+    shift.radial = odd_curve({shift.radial_px.begin(), shift.radial_px.end()}, shift, 0, covered);
+    shift.tangential = odd_curve({shift.tangential_px.begin(), shift.tangential_px.end()}, shift, 3, covered);
+    return shift;
+}
+
+}  // namespace lensproof

@@ -1,0 +1,55 @@
+// calibration/chromatic/measure_bands.h — the chromatic shift between pictures of one scene at different wavelengths.
+#pragma once
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "calibration/chromatic/chromatic_shift.h"
+#include "calibration/profile/profile.h"
+#include "engine/io/image.h"
+#include "engine/scene/chart.h"
+
+namespace lensproof {
+
+/// A picture taken in a narrow band.
+struct BandPicture {
+    double wavelength_nm = 0.0;
+    std::string name;
+    std::function<Image()> load;  // linear light, of one channel or of several that are alike; may throw InputError
+};
+
+/// Camera, chart and focus are the same in every picture.
+struct BandInput {
+    std::string name;  // of the profile
+    std::vector<BandPicture> bands;
+    double reference_wavelength_nm = 0.0;  // one of the bands'
+    /// Not set: dark discs are found without knowing their chart, and matched by their place.
+    std::optional<Chart> chart;
+    /// The optical centre, px; it may lie outside a cropped picture. Not set: the picture's middle.
+    std::optional<Vec2d> centre_px;
+    ProfileSource source;  // `images` is filled in
+    std::optional<double> pixel_pitch_um;
+};
+
+/// For each band but the reference's, here 450 nm, the curves "chromatic_shift_450nm_px" (radial) and
+/// "chromatic_shift_tangential_450nm_px", and the terms "chromatic_shift_450nm"
+/// (calibration/chromatic/chromatic_shift.h).
+///
+/// Of a crop that does not hold the optical centre, the model's terms trade against each other, above all radial
+/// terms against the translation; there the means over the points, "chromatic_shift_mean_450nm", are what is known.
+///
+/// A disc's centroid moves with perspective by as much in every band, so it drops out of the difference.
+/// Throws InputError for fewer than two bands, bands of the same wavelength, none at the reference's, pictures of
+/// different sizes, and where too few points are found in common.
+Profile measure_bands(const BandInput& input);
+
+/// Adds the curves and terms of one channel's pairs to a profile: "chromatic_shift_LABEL_px" and so on.
+/// Throws InputError as `fit_chromatic_shift` does.
+void add_chromatic_shift(Profile& profile, const std::string& label, const std::vector<ChromaticPair>& pairs,
+                         const Vec2d& centre_px);
+
+/// What a channel is called in names of curves: "450nm" of a spectral layer "S0.450nm", else its own name.
+std::string channel_label(const std::string& channel);
+
+}  // namespace lensproof

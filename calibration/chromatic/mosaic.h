@@ -1,0 +1,25 @@
+// calibration/chromatic/mosaic.h — a plane of light from a raw Bayer mosaic.
+#pragma once
+#include <optional>
+#include <string_view>
+
+#include "engine/io/image.h"
+
+namespace lensproof {
+
+/// The colours of the top left 2 × 2 sites, row by row.
+enum class MosaicPattern { rggb, bggr, grbg, gbrg };
+
+/// "rggb", "bggr", "grbg" or "gbrg"; none for anything else.
+std::optional<MosaicPattern> mosaic_pattern(std::string_view name);
+
+/// One plane "Y" at full resolution from a mosaic under light of a narrow band, where the sites' colours differ by
+/// nothing but a factor.
+///
+/// The strongest colour (by its mean) is taken as it is, and so are colours at least a quarter as strong, times the
+/// ratio of the means; weaker ones are mostly noise, and their sites take the mean of the taken sites around them,
+/// weighted by the inverse of the squared distance. That mean is symmetric about the site, so no edge or centroid
+/// moves. Throws InputError for a picture of more than one channel or below 4 × 4 pixels, or without light.
+Image mosaic_plane(const Image& raw, MosaicPattern pattern);
+
+}  // namespace lensproof

@@ -1,0 +1,16 @@
+// calibration/detection/chart_search.h — what a search for a chart in OpenCV's copy of a picture comes back with.
+#pragma once
+#include <opencv2/core.hpp>
+#include <string>
+#include <vector>
+
+namespace lensproof {
+
+/// The chart's points by number, to a pixel or two; or why there are none.
+struct ChartSearch {
+    std::vector<cv::Point2f> points;
+    std::vector<bool> found;  // which of them the picture shows
+    std::string reason;       // empty where the chart was found
+};
+
+}  // namespace lensproof

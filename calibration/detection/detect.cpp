@@ -1,0 +1,268 @@
+#include "calibration/detection/detect.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <functional>
+#include <numbers>
+#include <opencv2/calib3d.hpp>
+#include <opencv2/imgproc.hpp>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "calibration/detection/detect_charuco.h"
+#include "calibration/detection/detect_lattice.h"
+#include "calibration/detection/working_copy.h"
+#include "engine/io/input_error.h"
+
+namespace lensproof {
+namespace {
+
+using Points = std::vector<cv::Point2f>;
+using Finder = std::function<bool(const cv::Mat&, Points&)>;
+
+constexpr int kSmallestSide_px = 16;
+constexpr double kSearchSide_px = 1600.0;  // larger pictures are searched at this size: corners lie well within a pixel
+
+cv::Size grid_size(const Chart& chart) {
+    const GridSize grid = feature_grid(chart);
+    return {grid.columns, grid.rows};
+}
+
+std::string size_in_words(cv::Size size) {
+    return std::to_string(size.width) + " × " + std::to_string(size.height);
+}
+
+bool find_classic(const cv::Mat& picture, cv::Size grid, Points& points) {
+    return cv::findChessboardCorners(picture, grid, points,
+                                     cv::CALIB_CB_ADAPTIVE_THRESH | cv::CALIB_CB_NORMALIZE_IMAGE);
+}
+
+bool find_sector_based(const cv::Mat& picture, cv::Size grid, Points& points, int flags) {
+    return cv::findChessboardCornersSB(picture, grid, points, cv::CALIB_CB_NORMALIZE_IMAGE | flags);
+}
+
+// A copy as a rectilinear lens would have taken it, if the picture came from an equidistant fisheye whose half-diagonal
+// is `corner_angle`. Straight lines in the scene become nearly straight again, which is all a detector needs.
+struct Unbent {
+    cv::Mat picture;
+    cv::Point2d source_centre;
+    cv::Point2d centre;
+    double source_focal = 0.0;
+    double focal = 0.0;
+
+    Unbent(const cv::Mat& source, double corner_angle) {
+        source_centre = {(source.cols - 1) / 2.0, (source.rows - 1) / 2.0};
+        source_focal = 0.5 * std::hypot(source.cols, source.rows) / corner_angle;
+        // Magnification at the frame's edge grows as 1 / cos²; shrink the middle and enlarge the frame to hold it.
+        const double enlarged = std::min(2.0, std::tan(corner_angle) / corner_angle);
+        const cv::Size size(static_cast<int>(source.cols * enlarged), static_cast<int>(source.rows * enlarged));
+        focal = std::max(0.35 * source_focal, 0.5 * std::hypot(size.width, size.height) / std::tan(corner_angle));
+        centre = {(size.width - 1) / 2.0, (size.height - 1) / 2.0};
+        cv::Mat map(size, CV_32FC2);
+        for (int y = 0; y < size.height; ++y) {
+            for (int x = 0; x < size.width; ++x) {
+                map.at<cv::Point2f>(y, x) = to_source({static_cast<float>(x), static_cast<float>(y)});
+            }
+        }
+        cv::remap(source, picture, map, cv::noArray(), cv::INTER_LINEAR, cv::BORDER_CONSTANT);
+    }
+
+    [[nodiscard]] cv::Point2f to_source(cv::Point2f point) const {
+        const cv::Point2d offset = cv::Point2d(point) - centre;
+        const double radius = std::hypot(offset.x, offset.y);
+        const double scale = radius > 0.0 ? source_focal * std::atan(radius / focal) / radius : source_focal / focal;
+        return source_centre + scale * offset;
+    }
+};
+
+bool inside(const Points& points, const cv::Mat& picture) {
+    return std::all_of(points.begin(), points.end(), [&](const cv::Point2f& p) {
+        return p.x >= 0.0F && p.y >= 0.0F && p.x <= static_cast<float>(picture.cols - 1) &&
+               p.y <= static_cast<float>(picture.rows - 1);
+    });
+}
+
+bool find_bent(const cv::Mat& picture, const std::vector<Finder>& finders, Points& points) {
+    for (const double corner_angle_deg : {50.0, 70.0, 85.0}) {
+        const Unbent unbent(picture, corner_angle_deg * std::numbers::pi / 180.0);
+        for (const Finder& find : finders) {
+            if (find(unbent.picture, points)) {
+                for (cv::Point2f& point : points) {
+                    point = unbent.to_source(point);
+                }
+                if (inside(points, picture)) {
+                    return true;
+                }
+            }
+        }
+    }
+    return false;
+}
+
+bool find_board(const cv::Mat& picture, cv::Size grid, Points& points) {
+    const Finder sector_based = [grid](const cv::Mat& p, Points& found) {
+        return find_sector_based(p, grid, found, 0);
+    };
+    const Finder classic = [grid](const cv::Mat& p, Points& found) { return find_classic(p, grid, found); };
+    return sector_based(picture, points) || classic(picture, points) ||
+           find_sector_based(picture, grid, points, cv::CALIB_CB_EXHAUSTIVE) ||
+           find_bent(picture, {sector_based, classic}, points);
+}
+
+// One of the eight ways to number a grid: where the first point is, and whether rows and columns are swapped.
+struct Numbering {
+    bool flip_columns = false;
+    bool flip_rows = false;
+    bool transpose = false;
+
+    [[nodiscard]] Points apply(const Points& points, cv::Size grid) const {
+        Points result;
+        result.reserve(points.size());
+        for (int row = 0; row < grid.height; ++row) {
+            for (int column = 0; column < grid.width; ++column) {
+                const int c = flip_columns ? grid.width - 1 - column : column;
+                const int r = flip_rows ? grid.height - 1 - row : row;
+                result.push_back(transpose ? points[static_cast<std::size_t>(c) * grid.width + r]
+                                           : points[static_cast<std::size_t>(r) * grid.width + c]);
+            }
+        }
+        return result;
+    }
+};
+
+// Directions of rows and columns through the whole grid.
+cv::Point2f along_row(const Points& p, cv::Size grid) {
+    return p[grid.width - 1] - p[0] + p[p.size() - 1] - p[p.size() - grid.width];
+}
+cv::Point2f along_column(const Points& p, cv::Size grid) {
+    return p[p.size() - grid.width] - p[0] + p[p.size() - 1] - p[grid.width - 1];
+}
+
+// How much darker the squares are that should be black than those that should be white (grey levels, may be negative).
+double darkness_of_black(const cv::Mat& picture, const Points& points, cv::Size grid) {
+    double sum[2] = {0.0, 0.0};
+    int count[2] = {0, 0};
+    for (int row = 0; row + 1 < grid.height; ++row) {
+        for (int column = 0; column + 1 < grid.width; ++column) {
+            const int i = row * grid.width + column;
+            const cv::Point2f centre =
+                0.25F * (points[i] + points[i + 1] + points[i + grid.width] + points[i + grid.width + 1]);
+            const int parity = (row + column) % 2;
+            sum[parity] += picture.at<uchar>(std::clamp(cvRound(centre.y), 0, picture.rows - 1),
+                                             std::clamp(cvRound(centre.x), 0, picture.cols - 1));
+            ++count[parity];
+        }
+    }
+    return sum[1] / count[1] - sum[0] / count[0];
+}
+
+// The numbering that the chart asks for; none when no numbering fits (a mirror image, or not this chart).
+std::optional<Points> numbered_as_chart(const cv::Mat& picture, const Points& points, cv::Size grid) {
+    std::optional<Points> best;
+    double best_uprightness = -2.0;
+    for (const bool transpose : {false, true}) {
+        if (transpose && grid.width != grid.height) {
+            continue;
+        }
+        for (const int flips : {0, 1, 2, 3}) {
+            const Points candidate = Numbering{(flips & 1) != 0, (flips & 2) != 0, transpose}.apply(points, grid);
+            const cv::Point2f row = along_row(candidate, grid);
+            if (row.cross(along_column(candidate, grid)) <= 0.0F) {
+                continue;  // mirrored
+            }
+            if (darkness_of_black(picture, candidate, grid) <= 0.0) {
+                continue;
+            }
+            const double uprightness = row.x / std::hypot(row.x, row.y);
+            if (uprightness > best_uprightness) {
+                best_uprightness = uprightness;
+                best = candidate;
+            }
+        }
+    }
+    return best;
+}
+
+// A checkerboard, which is seen as a whole or not at all.
+ChartSearch find_checkerboard(const cv::Mat& picture, const Chart& chart) {
+    const cv::Size grid = grid_size(chart);
+    Points points;
+    if (!find_board(picture, grid, points) || points.size() != static_cast<std::size_t>(grid.area())) {
+        return {.reason = "no checkerboard of " + size_in_words(grid) + " inner corners found"};
+    }
+    const auto numbered = numbered_as_chart(picture, points, grid);
+    if (!numbered) {
+        return {.reason = "a checkerboard of " + size_in_words(grid) +
+                          " inner corners found, but mirrored or with other colours than the chart"};
+    }
+    return {.points = *numbered, .found = std::vector<bool>(points.size(), true)};
+}
+
+ChartSearch search(const cv::Mat& picture, const Chart& chart) {
+    try {
+        if (const auto* board = std::get_if<CharucoBoard>(&chart.pattern)) {
+            return find_charuco(picture, *board);
+        }
+        return is_lattice(chart) ? find_lattice(picture, chart) : find_checkerboard(picture, chart);
+    } catch (const cv::Exception&) {
+        // OpenCV's detectors assert on some pictures that merely do not show the chart.
+        return {.reason = "no " + kind_name(chart) + " found"};
+    }
+}
+
+Detection not_found(std::string reason) {
+    return {.points = {}, .reason = std::move(reason)};
+}
+
+}  // namespace
+
+bool can_detect(const Chart& chart) {
+    return std::holds_alternative<Checkerboard>(chart.pattern) || std::holds_alternative<CharucoBoard>(chart.pattern) ||
+           is_lattice(chart);
+}
+
+std::string detectable_kinds() {
+    return "checkerboard, charuco, disc-grid, point-grid, slanted-edges, straight-lines";
+}
+
+Detection detect(const Image& image, const Chart& chart) {
+    if (!can_detect(chart)) {
+        throw InputError("a chart of kind " + kind_name(chart) + " cannot be searched for: expected one of " +
+                         detectable_kinds());
+    }
+    const cv::Size grid = grid_size(chart);
+    if (grid.width < 3 || grid.height < 3) {
+        throw InputError("a " + kind_name(chart) + " with " + size_in_words(grid) +
+                         " points cannot be searched for: expected at least 3 × 3");
+    }
+    if (image.width < kSmallestSide_px || image.height < kSmallestSide_px || image.channel_count() == 0) {
+        return not_found("the picture is too small: " + size_in_words({image.width, image.height}) + " pixels");
+    }
+    const cv::Mat full = detector_copy(image);
+    if (full.empty()) {
+        return not_found("the picture is black or of one tone: no contrast to find a chart by");
+    }
+    const double shrink = std::min(1.0, kSearchSide_px / std::max(image.width, image.height));
+    cv::Mat picture = full;
+    if (shrink < 1.0) {
+        cv::resize(full, picture, {}, shrink, shrink, cv::INTER_AREA);
+    }
+    ChartSearch found = search(picture, chart);
+    if (!found.reason.empty()) {
+        return not_found(std::move(found.reason));
+    }
+    // Pixel centres are whole numbers in both sizes, so the scale acts on coordinates measured from the outer edge.
+    const double scale_x = static_cast<double>(image.width) / picture.cols;
+    const double scale_y = static_cast<double>(image.height) / picture.rows;
+    Detection result;
+    for (const cv::Point2f& point : found.points) {
+        result.points.image_px.push_back({(point.x + 0.5) * scale_x - 0.5, (point.y + 0.5) * scale_y - 0.5});
+    }
+    result.points.found = std::move(found.found);
+    return result;
+}
+
+}  // namespace lensproof

@@ -1,0 +1,191 @@
+#include "calibration/detection/detect_lattice.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <limits>
+#include <map>
+#include <opencv2/imgproc.hpp>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "calibration/detection/blob_lattice.h"
+
+namespace lensproof {
+namespace {
+
+constexpr double kLeastShare = 0.25;   // of the chart's points that have to be seen
+constexpr double kInWindow = 0.9;      // of the spots found that have to fit into the chart
+constexpr double kLineDarkness = 0.8;  // grey level of a line at most, of the ground's
+constexpr std::size_t kFewestSpots = 9;
+
+GridSize size_of(const std::vector<LatticeSpot>& spots) {
+    GridSize size;
+    for (const LatticeSpot& spot : spots) {
+        size = {std::max(size.columns, spot.column + 1), std::max(size.rows, spot.row + 1)};
+    }
+    return size;
+}
+
+std::string in_words(GridSize size) {
+    return std::to_string(size.columns) + " × " + std::to_string(size.rows);
+}
+
+/// The lattice as a chart that was turned by a quarter turn numbers it.
+std::vector<LatticeSpot> turned(std::vector<LatticeSpot> spots) {
+    const int columns = size_of(spots).columns;
+    for (LatticeSpot& spot : spots) {
+        spot = {spot.row, columns - 1 - spot.column, spot.middle};
+    }
+    return spots;
+}
+
+/// Where the chart's first column (or row) stands in a lattice, were it as long as `seen`.
+std::pair<int, int> offsets(int chart, int seen) {
+    return seen <= chart ? std::pair(-(chart - seen) / 2, -(chart - seen) / 2) : std::pair(0, seen - chart);
+}
+
+struct Placing {
+    std::size_t inside = 0;
+    int column = 0;
+    int row = 0;
+};
+
+bool is_within(const LatticeSpot& spot, const Placing& placing, GridSize grid) {
+    return spot.column >= placing.column && spot.column < placing.column + grid.columns && spot.row >= placing.row &&
+           spot.row < placing.row + grid.rows;
+}
+
+/// The chart's place in the lattice that holds most of the spots.
+Placing best_placing(const std::vector<LatticeSpot>& spots, GridSize grid) {
+    const GridSize seen = size_of(spots);
+    const auto [first_column, last_column] = offsets(grid.columns, seen.columns);
+    const auto [first_row, last_row] = offsets(grid.rows, seen.rows);
+    Placing best;
+    for (int row = first_row; row <= last_row; ++row) {
+        for (int column = first_column; column <= last_column; ++column) {
+            Placing placing{.column = column, .row = row};
+            placing.inside = static_cast<std::size_t>(std::count_if(
+                spots.begin(), spots.end(), [&](const LatticeSpot& spot) { return is_within(spot, placing, grid); }));
+            if (placing.inside > best.inside) {
+                best = placing;
+            }
+        }
+    }
+    return best;
+}
+
+double darkest_near(const cv::Mat& picture, cv::Point2f place) {
+    const cv::Rect around(cvRound(place.x) - 2, cvRound(place.y) - 2, 5, 5);
+    const cv::Rect seen = around & cv::Rect(0, 0, picture.cols, picture.rows);
+    double darkest = 255.0;
+    if (!seen.empty()) {
+        cv::minMaxLoc(picture(seen), &darkest);
+    }
+    return darkest;
+}
+
+/// Crossings of lines from the white cells between them: the corners of each cell, by the steps to its neighbours.
+std::vector<LatticeSpot> crossings_of(const cv::Mat& picture, const std::vector<LatticeSpot>& cells) {
+    std::map<std::pair<int, int>, cv::Point2f> middles;
+    for (const LatticeSpot& cell : cells) {
+        middles[{cell.column, cell.row}] = cell.middle;
+    }
+    const auto step = [&](const LatticeSpot& cell, int dc, int dr) {
+        const auto after = middles.find({cell.column + dc, cell.row + dr});
+        const auto before = middles.find({cell.column - dc, cell.row - dr});
+        const bool has_after = after != middles.end();
+        const bool has_before = before != middles.end();
+        const cv::Point2f difference =
+            (has_after ? after->second : cell.middle) - (has_before ? before->second : cell.middle);
+        return difference * (has_after && has_before ? 0.5F : 1.0F);
+    };
+    std::map<std::pair<int, int>, std::vector<cv::Point2f>> corners;
+    for (const LatticeSpot& cell : cells) {
+        const cv::Point2f along_row = step(cell, 1, 0);
+        const cv::Point2f along_column = step(cell, 0, 1);
+        for (const int i : {0, 1}) {
+            for (const int j : {0, 1}) {
+                const cv::Point2f corner = cell.middle + (static_cast<float>(i) - 0.5F) * along_row +
+                                           (static_cast<float>(j) - 0.5F) * along_column;
+                // Beyond the outermost lines there are cells too, which end in nothing.
+                if (darkest_near(picture, corner) < kLineDarkness * darkest_near(picture, cell.middle)) {
+                    corners[{cell.row + j, cell.column + i}].push_back(corner);
+                }
+            }
+        }
+    }
+    std::pair<int, int> least{std::numeric_limits<int>::max(), std::numeric_limits<int>::max()};
+    for (const auto& [place, around] : corners) {
+        least = {std::min(least.first, place.first), std::min(least.second, place.second)};
+    }
+    std::vector<LatticeSpot> crossings;
+    for (const auto& [place, around] : corners) {
+        cv::Point2f sum;
+        for (const cv::Point2f& corner : around) {
+            sum += corner;
+        }
+        crossings.push_back(
+            {place.second - least.second, place.first - least.first, sum / static_cast<float>(around.size())});
+    }
+    return crossings;
+}
+
+const char* name_of_points(const Chart& chart) {
+    if (std::holds_alternative<DiscGrid>(chart.pattern)) {
+        return "discs";
+    }
+    if (std::holds_alternative<PointGrid>(chart.pattern)) {
+        return "dots";
+    }
+    return std::holds_alternative<SlantedEdges>(chart.pattern) ? "squares" : "crossings of lines";
+}
+
+}  // namespace
+
+bool is_lattice(const Chart& chart) {
+    return std::holds_alternative<DiscGrid>(chart.pattern) || std::holds_alternative<PointGrid>(chart.pattern) ||
+           std::holds_alternative<SlantedEdges>(chart.pattern) || std::holds_alternative<StraightLines>(chart.pattern);
+}
+
+ChartSearch find_lattice(const cv::Mat& picture, const Chart& chart) {
+    const GridSize grid = feature_grid(chart);
+    const bool is_lines = std::holds_alternative<StraightLines>(chart.pattern);
+    const bool is_dark = !is_lines && !std::holds_alternative<PointGrid>(chart.pattern);
+    std::vector<LatticeSpot> spots = find_blob_lattice(picture, is_dark, !is_lines);
+    if (is_lines) {
+        spots = crossings_of(picture, spots);
+    }
+    const auto total = static_cast<std::size_t>(grid.columns) * grid.rows;
+    const std::string wanted = in_words(grid) + " " + name_of_points(chart);
+    if (spots.size() < kFewestSpots) {
+        return {.reason = "no grid of " + wanted + " found"};
+    }
+    Placing placing = best_placing(spots, grid);
+    std::vector<LatticeSpot> other = turned(spots);
+    const Placing other_placing = best_placing(other, grid);
+    if (other_placing.inside > placing.inside) {
+        spots = std::move(other);
+        placing = other_placing;
+    }
+    if (static_cast<double>(placing.inside) < kInWindow * static_cast<double>(spots.size())) {
+        return {.reason = "a grid of " + in_words(size_of(spots)) + " " + name_of_points(chart) +
+                          " found, more than the " + wanted + " of the chart"};
+    }
+    if (static_cast<double>(placing.inside) < kLeastShare * static_cast<double>(total)) {
+        return {.reason = "only " + std::to_string(placing.inside) + " of " + wanted + " found in rows and columns"};
+    }
+    ChartSearch result{.points = std::vector<cv::Point2f>(total), .found = std::vector<bool>(total, false)};
+    for (const LatticeSpot& spot : spots) {
+        if (is_within(spot, placing, grid)) {
+            const std::size_t i =
+                static_cast<std::size_t>(spot.row - placing.row) * grid.columns + (spot.column - placing.column);
+            result.points[i] = spot.middle;
+            result.found[i] = true;
+        }
+    }
+    return result;
+}
+
+}  // namespace lensproof

@@ -1,0 +1,64 @@
+#include "calibration/detection/working_copy.h"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+namespace lensproof {
+namespace {
+
+constexpr double kWhitePercentile = 0.995;
+constexpr double kLeastContrast =
+    0.02;  // of white, in linear light: less than a chart's black and white ever differ by
+
+double srgb_encode(double linear) {
+    return linear <= 0.0031308 ? 12.92 * linear : 1.055 * std::pow(linear, 1.0 / 2.4) - 0.055;
+}
+
+float percentile(std::vector<float>& values, double fraction) {
+    const auto nth = values.begin() + static_cast<std::ptrdiff_t>(fraction * static_cast<double>(values.size() - 1));
+    std::nth_element(values.begin(), nth, values.end());
+    return *nth;
+}
+
+}  // namespace
+
+cv::Mat channel_plane(const Image& image, int channel) {
+    cv::Mat plane(image.height, image.width, CV_32F);
+    for (int y = 0; y < image.height; ++y) {
+        auto* row = plane.ptr<float>(y);
+        for (int x = 0; x < image.width; ++x) {
+            const float value = image.at(x, y, channel);
+            row[x] = std::isfinite(value) ? value : 0.0F;
+        }
+    }
+    return plane;
+}
+
+cv::Mat detector_copy(const Image& image) {
+    cv::Mat mean = cv::Mat::zeros(image.height, image.width, CV_32F);
+    for (int channel = 0; channel < image.channel_count(); ++channel) {
+        mean += channel_plane(image, channel) / static_cast<double>(image.channel_count());
+    }
+    std::vector<float> values(mean.begin<float>(), mean.end<float>());
+    if (values.empty()) {
+        return {};
+    }
+    const float white = percentile(values, kWhitePercentile);
+    const float black = percentile(values, 1.0 - kWhitePercentile);
+    if (!(white > 0.0F) || white - black < kLeastContrast * white) {
+        return {};
+    }
+    cv::Mat encoded(image.height, image.width, CV_8U);
+    std::transform(mean.begin<float>(), mean.end<float>(), encoded.begin<uchar>(), [white](float value) {
+        return static_cast<uchar>(std::lround(255.0 * srgb_encode(std::clamp(value / white, 0.0F, 1.0F))));
+    });
+    return encoded;
+}
+
+int reference_channel(const Image& image) {
+    const int green = find_channel(image, "G");
+    return green >= 0 ? green : image.channel_count() / 2;
+}
+
+}  // namespace lensproof

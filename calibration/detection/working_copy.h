@@ -1,0 +1,19 @@
+// calibration/detection/working_copy.h — OpenCV's views of a picture.
+#pragma once
+#include <opencv2/core.hpp>
+
+#include "engine/io/image.h"
+
+namespace lensproof {
+
+/// One channel in linear light as CV_32F. What is not finite becomes 0.
+cv::Mat channel_plane(const Image& image, int channel);
+
+/// The picture as CV_8U for a detector: the channels' mean, scaled so that its 99.5th percentile is white (dark
+/// pictures become usable), sRGB-encoded. Empty when the picture holds no light or no contrast at all.
+cv::Mat detector_copy(const Image& image);
+
+/// The channel that geometry is measured in: green where there is one, else the only or middle channel.
+int reference_channel(const Image& image);
+
+}  // namespace lensproof

@@ -1,0 +1,69 @@
+// calibration/geometry/bundle.h — one least-squares step of a bundle adjustment: a camera, a board and its poses.
+#pragma once
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "calibration/geometry/camera_model.h"
+#include "calibration/geometry/reprojection.h"
+
+namespace lensproof {
+
+/// The points of one picture: where they are on the chart and in the picture.
+struct ChartView {
+    std::string name;  // for messages
+    std::vector<Vec2d> chart_mm;
+    std::vector<Vec2d> image_px;
+};
+
+/// What was measured.
+struct PointBundle {
+    std::vector<ChartView> views;
+    std::vector<std::vector<bool>> used;  // of each view's points
+    double disc_diameter_mm = 0.0;
+    BoardFrame frame;
+};
+
+/// The bundle of all points; the frame encloses them.
+PointBundle make_bundle(const std::vector<ChartView>& views, double disc_diameter_mm);
+
+int count_used(const PointBundle& bundle);
+
+/// What explains it.
+struct BundleState {
+    CameraModel model;
+    std::vector<PoseParameters> poses;
+    BoardHeights heights{};
+};
+
+/// What a step leaves alone.
+struct Held {
+    std::vector<int> intrinsics;  // indices into `parameters(model)`, ascending
+    bool poses = false;
+    bool heights = true;
+};
+
+/// Brings `state` to the least sum of squared residuals of the points used (Levenberg and Marquardt, by Ceres), and
+/// returns half that sum; infinity when nothing usable was found. With `cauchy_scale_px` > 0 the squares beyond about
+/// that length are weighted down by Cauchy's loss.
+double solve(const PointBundle& bundle, BundleState& state, const Held& held, double cauchy_scale_px = 0.0);
+
+/// Measured minus predicted; none where the model images nothing.
+std::optional<Vec2d> residual(const PointBundle& bundle, const BundleState& state, std::size_t view, std::size_t point);
+
+/// What the points tell about each parameter, to first order about `state` and per unit variance of a coordinate.
+/// "Shared" are the intrinsics followed by the board's heights.
+struct BundleInformation {
+    int shared = 0;
+    std::vector<double> shared_covariance;  // rows of held parameters are 0
+    struct View {
+        std::array<double, 36> pose_covariance{};  // were the shared parameters known
+        std::vector<double> pose_follows;          // 6 × shared: how the pose moves with the shared parameters
+    };
+    std::vector<View> views;
+};
+
+/// What the points do not determine has a huge variance. None for numbers that are not finite.
+std::optional<BundleInformation> information(const PointBundle& bundle, const BundleState& state, const Held& held);
+
+}  // namespace lensproof

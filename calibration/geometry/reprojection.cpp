@@ -1,0 +1,150 @@
+#include "calibration/geometry/reprojection.h"
+
+#include <ceres/cost_function.h>
+#include <ceres/jet.h>
+#include <ceres/rotation.h>
+
+#include <utility>
+
+#include "calibration/detection/disc_centroid.h"
+
+namespace lensproof {
+namespace {
+
+template <class T>
+using Project = bool (*)(const T*, const Vec3<T>&, Vec2<T>&);
+
+template <class T, std::size_t... kind>
+constexpr std::array<Project<T>, sizeof...(kind)> projections(std::index_sequence<kind...> /*kinds*/) {
+    return {&std::variant_alternative_t<kind, CameraModel>::template project<T>...};
+}
+
+// Every model's projection, in the order of ModelKind.
+template <class T>
+constexpr auto kProjections = projections<T>(std::make_index_sequence<std::variant_size_v<CameraModel>>());
+
+constexpr int kLargestModel = SplineRadial::coefficients + 4;
+
+class ReprojectionCost final : public ceres::CostFunction {
+  public:
+    ReprojectionCost(ModelKind kind, int parameters, const Feature& feature, const BoardFrame& frame)
+        : kind_(kind), feature_(feature), frame_(frame) {
+        set_num_residuals(2);
+        *mutable_parameter_block_sizes() = {parameters, 6, kBoardTerms};
+    }
+
+    bool Evaluate(const double* const* blocks, double* residuals, double** jacobians) const override {
+        const std::array<double*, 3> wanted = jacobians != nullptr
+                                                  ? std::array<double*, 3>{jacobians[0], jacobians[1], jacobians[2]}
+                                                  : std::array<double*, 3>{};
+        int derivatives = 0;
+        for (std::size_t b = 0; b < wanted.size(); ++b) {
+            derivatives += wanted[b] != nullptr ? parameter_block_sizes()[b] : 0;
+        }
+        if (derivatives == 0) {
+            return evaluate_plain(blocks, residuals);
+        }
+        // The fewer derivatives are carried, the faster: a pose alone, a small model with a pose, everything.
+        if (derivatives <= 6) {
+            return evaluate<6>(blocks, residuals, wanted);
+        }
+        if (derivatives <= 14) {
+            return evaluate<14>(blocks, residuals, wanted);
+        }
+        return evaluate<kLargestModel + 6 + kBoardTerms>(blocks, residuals, wanted);
+    }
+
+  private:
+    template <class T>
+    bool predict(const T* intrinsics, const T* pose, const T* heights, Vec2<T>& predicted) const {
+        const auto map = [&](double x, double y, Vec2<T>& pixel) {
+            const T point[3] = {T(x), T(y), board_height(frame_, heights, x, y)};
+            T rotated[3];
+            ceres::AngleAxisRotatePoint(pose, point, rotated);
+            return kProjections<T>[static_cast<std::size_t>(kind_)](
+                intrinsics, Vec3<T>{rotated[0] + pose[3], rotated[1] + pose[4], rotated[2] + pose[5]}, pixel);
+        };
+        const Vec2d& at = feature_.chart_mm;
+        return feature_.disc_diameter_mm > 0.0 ? disc_centroid(map, at.x, at.y, feature_.disc_diameter_mm, predicted)
+                                               : map(at.x, at.y, predicted);
+    }
+
+    bool evaluate_plain(const double* const* blocks, double* residuals) const {
+        Vec2d predicted;
+        if (!predict(blocks[0], blocks[1], blocks[2], predicted)) {
+            return false;
+        }
+        residuals[0] = feature_.image_px.x - predicted.x;
+        residuals[1] = feature_.image_px.y - predicted.y;
+        return true;
+    }
+
+    template <int stride>
+    bool evaluate(const double* const* blocks, double* residuals, const std::array<double*, 3>& jacobians) const {
+        using Jet = ceres::Jet<double, stride>;
+        std::array<Jet, kLargestModel> intrinsics;
+        std::array<Jet, 6> pose;
+        std::array<Jet, kBoardTerms> heights;
+        const std::array<Jet*, 3> jets{intrinsics.data(), pose.data(), heights.data()};
+        int next = 0;
+        for (std::size_t b = 0; b < jets.size(); ++b) {
+            for (int i = 0; i < parameter_block_sizes()[b]; ++i) {
+                jets[b][i] = jacobians[b] != nullptr ? Jet(blocks[b][i], next++) : Jet(blocks[b][i]);
+            }
+        }
+        Vec2<Jet> predicted;
+        if (!predict(jets[0], jets[1], jets[2], predicted)) {
+            return false;
+        }
+        residuals[0] = feature_.image_px.x - predicted.x.a;
+        residuals[1] = feature_.image_px.y - predicted.y.a;
+        next = 0;
+        for (std::size_t b = 0; b < jets.size(); ++b) {
+            if (jacobians[b] == nullptr) {
+                continue;
+            }
+            const int size = parameter_block_sizes()[b];
+            for (int i = 0; i < size; ++i, ++next) {
+                jacobians[b][i] = -predicted.x.v[next];
+                jacobians[b][size + i] = -predicted.y.v[next];
+            }
+        }
+        return true;
+    }
+
+    ModelKind kind_;
+    Feature feature_;
+    BoardFrame frame_;
+};
+
+}  // namespace
+
+PoseParameters pose_parameters(const Pose& pose) {
+    const auto& [r, t] = pose;
+    return {r.x, r.y, r.z, t.x, t.y, t.z};
+}
+
+Pose to_pose(const PoseParameters& p) {
+    return {{p[0], p[1], p[2]}, {p[3], p[4], p[5]}};
+}
+
+std::optional<Vec2d> predict(const CameraModel& model, const Pose& pose, const Vec2d& chart_mm,
+                             double disc_diameter_mm) {
+    const auto map = [&](double x, double y, Vec2d& pixel) {
+        const auto imaged = project(model, to_camera(pose, {x, y}));
+        pixel = imaged.value_or(Vec2d{});
+        return imaged.has_value();
+    };
+    Vec2d predicted;
+    const bool imaged = disc_diameter_mm > 0.0 ? disc_centroid(map, chart_mm.x, chart_mm.y, disc_diameter_mm, predicted)
+                                               : map(chart_mm.x, chart_mm.y, predicted);
+    return imaged ? std::optional(predicted) : std::nullopt;
+}
+
+std::unique_ptr<ceres::CostFunction> reprojection_cost(ModelKind kind, const Feature& feature,
+                                                       const BoardFrame& frame) {
+    const int count = static_cast<int>(parameters(empty_model(kind)).size());
+    return std::make_unique<ReprojectionCost>(kind, count, feature, frame);
+}
+
+}  // namespace lensproof

@@ -1,0 +1,294 @@
+#include "calibration/light/vignetting.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <optional>
+#include <string>
+
+#include "calibration/statistics/linear_fit.h"
+#include "engine/io/input_error.h"
+
+namespace lensproof {
+namespace {
+
+constexpr std::array<int, 9> kSpans = {1, 2, 3, 4, 6, 8, 12, 16, 24};
+constexpr double kOutlierSigmas = 5.0;
+constexpr std::size_t kFewestSamples = 12;
+constexpr std::size_t kFewestPerGroup = 5;  // a group's own terms are three
+constexpr int kSamplesPerParameter = 4;
+constexpr double kLeastRelativeError = 1e-3;  // dust, print and pixel response: no patch is evener than that
+constexpr double kLeastScale = 2.0;           // of that: within 1 % nothing is an outlier
+constexpr double kGradientUnit_mm = 100.0;
+
+double cardinal_cubic(double t) {  // the uniform cubic B-spline, support [-2, 2]
+    const double a = std::abs(t);
+    if (a >= 2.0) {
+        return 0.0;
+    }
+    return a >= 1.0 ? (2.0 - a) * (2.0 - a) * (2.0 - a) / 6.0 : 2.0 / 3.0 - a * a * (1.0 - 0.5 * a);
+}
+
+// s(r) = Σ c_i φ_i(r): an even spline with s(0) = 0.
+struct EvenSpline {
+    int spans = 1;
+    double reach = 1.0;  // the outermost knot
+
+    [[nodiscard]] int size() const { return spans + 1; }
+    [[nodiscard]] Eigen::RowVectorXd basis(double r) const {
+        const double t = r * spans / reach;
+        Eigen::RowVectorXd phi(size());
+        for (int i = 0; i < size(); ++i) {
+            phi(i) = cardinal_cubic(t - (i + 1));
+        }
+        phi(0) += cardinal_cubic(t + 1.0) - 1.0 / 3.0;  // the mirror image, and its value on the axis
+        return phi;
+    }
+};
+
+struct Row {
+    Vec2d pixel_px;
+    Vec2d at;  // from the centre, in half-diagonals
+    double r = 0.0;
+    double log_value = 0.0;
+    double sigma = 0.0;
+    Vec2d chart;  // in units of kGradientUnit_mm
+    int group = 0;
+    bool on_chart = false;
+};
+
+std::vector<Row> rows_of(const std::vector<LightGroup>& groups, const Vec2d& centre, double half_diagonal) {
+    std::vector<Row> rows;
+    int index = 0;
+    for (const LightGroup& group : groups) {
+        std::vector<Row> own;
+        for (const LightSample& s : group.samples) {
+            if (std::isfinite(s.value) && s.value > 0.0 && std::isfinite(s.relative_error)) {
+                const Vec2d at{(s.pixel_px.x - centre.x) / half_diagonal, (s.pixel_px.y - centre.y) / half_diagonal};
+                own.push_back({.pixel_px = s.pixel_px,
+                               .at = at,
+                               .r = std::hypot(at.x, at.y),
+                               .log_value = std::log(s.value),
+                               .sigma = std::hypot(s.relative_error, kLeastRelativeError),
+                               .chart = {s.chart_mm.x / kGradientUnit_mm, s.chart_mm.y / kGradientUnit_mm},
+                               .group = index,
+                               .on_chart = group.on_chart});
+            }
+        }
+        if (own.size() >= kFewestPerGroup) {
+            rows.insert(rows.end(), own.begin(), own.end());
+            ++index;
+        }
+    }
+    return rows;
+}
+
+// Columns: the spline's coefficients, then a gain for every group, then two gradients for every chart.
+LinearProblem linear_problem(const std::vector<Row>& rows, const EvenSpline& spline) {
+    std::vector<int> first_column;
+    int columns = spline.size();
+    for (const Row& row : rows) {
+        if (row.group == static_cast<int>(first_column.size())) {
+            first_column.push_back(columns);
+            columns += row.on_chart ? 3 : 1;
+        }
+    }
+    const auto count = static_cast<Eigen::Index>(rows.size());
+    LinearProblem problem{.a = Eigen::MatrixXd::Zero(count, columns),
+                          .y = Eigen::VectorXd(count),
+                          .row_sigma = Eigen::VectorXd(count),
+                          .group = {}};
+    for (Eigen::Index i = 0; i < count; ++i) {
+        const Row& row = rows[static_cast<std::size_t>(i)];
+        const int own = first_column[static_cast<std::size_t>(row.group)];
+        problem.a.row(i).head(spline.size()) = spline.basis(row.r);
+        problem.a(i, own) = 1.0;
+        if (row.on_chart) {
+            problem.a(i, own + 1) = row.chart.x;
+            problem.a(i, own + 2) = row.chart.y;
+        }
+        problem.y(i) = row.log_value;
+        problem.row_sigma(i) = row.sigma;
+    }
+    return problem;
+}
+
+struct Chosen {
+    EvenSpline spline;
+    LinearFit fit;
+};
+
+std::optional<Chosen> richest(const std::vector<Row>& rows, double reach) {
+    for (auto spans = kSpans.rbegin(); spans != kSpans.rend(); ++spans) {
+        const EvenSpline spline{*spans, reach};
+        const LinearProblem problem = linear_problem(rows, spline);
+        if (problem.a.cols() * kSamplesPerParameter > problem.a.rows() && *spans != kSpans.front()) {
+            continue;
+        }
+        if (auto fit = fit_linear(problem, kOutlierSigmas, kLeastScale)) {
+            return Chosen{spline, std::move(*fit)};
+        }
+    }
+    return std::nullopt;
+}
+
+// Without outliers, and with errors that charts and flat fields show themselves.
+std::vector<Row> cleaned(const std::vector<Row>& rows, const LinearFit& fit) {
+    double squares[2] = {0.0, 0.0};
+    int count[2] = {0, 0};
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+        if (fit.used[i]) {
+            const double normalized = fit.residuals(static_cast<Eigen::Index>(i)) / rows[i].sigma;
+            squares[rows[i].on_chart ? 1 : 0] += normalized * normalized;
+            ++count[rows[i].on_chart ? 1 : 0];
+        }
+    }
+    std::vector<Row> result;
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+        if (fit.used[i]) {
+            const int kind = rows[i].on_chart ? 1 : 0;
+            result.push_back(rows[i]);
+            if (squares[kind] > 0.0 && squares[1 - kind] > 0.0) {  // one kind alone: a common factor changes nothing
+                result.back().sigma *= std::sqrt(squares[kind] / count[kind]);
+            }
+        }
+    }
+    return result;
+}
+
+// Groups whose samples all went are closed up, so that no column is empty.
+void renumber(std::vector<Row>& rows) {
+    int next = -1;
+    int last = -1;
+    for (Row& row : rows) {
+        if (row.group != last) {
+            last = row.group;
+            ++next;
+        }
+        row.group = next;
+    }
+}
+
+Vignetting sampled(const Chosen& chosen, const std::vector<Row>& rows, double covered) {
+    Vignetting result;
+    result.spans = chosen.spline.spans;
+    result.samples_used = chosen.fit.rows_used;
+    result.chi_squared = chosen.fit.chi_squared;
+    result.gain_terms = static_cast<int>(chosen.fit.parameters.size()) - chosen.spline.size();
+    result.samples.reserve(rows.size());
+    for (std::size_t i = 0; i < rows.size(); ++i) {  // the spline plus what it leaves: gains and gradients are out
+        const double on_curve = chosen.spline.basis(rows[i].r).dot(chosen.fit.parameters.head(chosen.spline.size()));
+        result.samples.push_back({.pixel_px = rows[i].pixel_px,
+                                  .at = rows[i].at,
+                                  .log_ratio = on_curve + chosen.fit.residuals(static_cast<Eigen::Index>(i)),
+                                  .sigma = rows[i].sigma});
+    }
+    result.ratio.covered_image_height = result.ev.covered_image_height = covered;
+    const int size = chosen.spline.size();
+    for (const double h : standard_image_heights()) {
+        if (h > covered) {
+            break;
+        }
+        const Eigen::RowVectorXd phi = chosen.spline.basis(h);
+        const double log_v = h > 0.0 ? phi.dot(chosen.fit.parameters.head(size)) : 0.0;
+        const double variance = phi * chosen.fit.covariance.topLeftCorner(size, size) * phi.transpose();
+        const double half_width = k95 * std::sqrt(std::max(variance, 0.0));
+        const Banded log_band{log_v, log_v - half_width, log_v + half_width};
+        append(result.ratio, h, {std::exp(log_band.value), std::exp(log_band.lower_95), std::exp(log_band.upper_95)});
+        append(result.ev, h,
+               {log_band.value * std::numbers::log2e, log_band.lower_95 * std::numbers::log2e,
+                log_band.upper_95 * std::numbers::log2e});
+    }
+    for (int i = 0; i < size; ++i) {
+        result.coefficients.push_back(chosen.fit.parameters(i));
+        for (int k = 0; k < size; ++k) {
+            result.covariance.push_back(chosen.fit.covariance(i, k));
+        }
+    }
+    double squares = 0.0;
+    for (std::size_t i = 0; i < chosen.fit.used.size(); ++i) {
+        const double residual = chosen.fit.residuals(static_cast<Eigen::Index>(i));
+        squares += chosen.fit.used[i] ? residual * residual : 0.0;
+    }
+    result.relative_rms = std::sqrt(squares / chosen.fit.rows_used);
+    return result;
+}
+
+}  // namespace
+
+Vignetting fit_vignetting(const std::vector<LightGroup>& groups, const Vec2d& centre_px, double half_diagonal_px) {
+    if (!(half_diagonal_px > 0.0) || !std::isfinite(centre_px.x + centre_px.y)) {
+        throw InputError("vignetting: the picture has no size or no centre");
+    }
+    std::vector<Row> rows = rows_of(groups, centre_px, half_diagonal_px);
+    if (rows.size() < kFewestSamples) {
+        throw InputError("vignetting: " + std::to_string(rows.size()) +
+                         " lit patches of even tone: expected at least " + std::to_string(kFewestSamples));
+    }
+    const auto reach_of = [](const std::vector<Row>& list) {
+        return std::max_element(list.begin(), list.end(), [](const Row& a, const Row& b) { return a.r < b.r; })->r;
+    };
+    const auto fail = [&] {
+        return InputError("vignetting: the " + std::to_string(rows.size()) +
+                          " patches do not determine it: expected patches from the middle to the edge of the picture");
+    };
+    if (!(reach_of(rows) > 0.0)) {
+        throw fail();
+    }
+    const auto first = richest(rows, reach_of(rows));
+    if (!first) {
+        throw fail();
+    }
+    rows = cleaned(rows, first->fit);
+    renumber(rows);
+    const double reach = reach_of(rows);
+    std::vector<Chosen> candidates;
+    std::size_t best = 0;
+    double best_criterion = std::numeric_limits<double>::infinity();
+    for (const int spans : kSpans) {
+        const EvenSpline spline{spans, reach};
+        const LinearProblem problem = linear_problem(rows, spline);
+        if (problem.a.cols() * kSamplesPerParameter > problem.a.rows() && spans != kSpans.front()) {
+            break;
+        }
+        auto fit = fit_linear(problem, 0.0);
+        if (!fit) {
+            continue;
+        }
+        if (const double criterion = aicc(fit->chi_squared, fit->rows_used, static_cast<double>(problem.a.cols()));
+            criterion < best_criterion) {
+            best_criterion = criterion;
+            best = candidates.size();
+        }
+        candidates.push_back({spline, std::move(*fit)});
+    }
+    if (candidates.empty()) {
+        throw fail();
+    }
+    return sampled(candidates[std::min(best + 1, candidates.size() - 1)], rows, reach);
+}
+
+PolynomialVignetting polynomial_vignetting(const Curve& ratio) {
+    const auto count = static_cast<Eigen::Index>(ratio.image_height.size());
+    LinearProblem problem{.a = Eigen::MatrixXd(count, 3),
+                          .y = Eigen::VectorXd(count),
+                          .row_sigma = Eigen::VectorXd::Ones(count),
+                          .group = {}};
+    for (Eigen::Index i = 0; i < count; ++i) {
+        const double r2 = std::pow(ratio.image_height[static_cast<std::size_t>(i)], 2);
+        problem.a.row(i) << r2, r2 * r2, r2 * r2 * r2;
+        problem.y(i) = ratio.value[static_cast<std::size_t>(i)] - 1.0;
+    }
+    const auto fit = fit_linear(problem, 0.0);
+    if (!fit) {
+        throw InputError("vignetting: a curve of " + std::to_string(count) +
+                         " samples cannot be fitted by three terms");
+    }
+    PolynomialVignetting result;
+    std::copy_n(fit->parameters.begin(), 3, result.a.begin());
+    result.largest_error = fit->residuals.cwiseAbs().maxCoeff();
+    return result;
+}
+
+}  // namespace lensproof

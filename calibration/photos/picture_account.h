@@ -1,0 +1,29 @@
+// calibration/photos/picture_account.h — what became of each picture of a set, and what its camera noted.
+#pragma once
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "calibration/profile/json_node.h"
+#include "engine/io/photo.h"
+
+namespace lensproof {
+
+/// Used or left out, and why.
+struct PictureAccount {
+    std::string image;
+    std::string role;  // "chart" or "flat field"
+    bool used = false;
+    std::string reason;   // why it was left out, in words; or what is to be known of one that was used
+    int orientation = 1;  // EXIF's, not applied: pixels are the sensor's
+
+    friend bool operator==(const PictureAccount&, const PictureAccount&) = default;
+};
+
+nlohmann::ordered_json to_json(const CameraNotes& notes);
+CameraNotes parse_camera_notes(const JsonNode& node);
+
+nlohmann::ordered_json to_json(const PictureAccount& account);
+PictureAccount parse_picture_account(const JsonNode& node);
+
+}  // namespace lensproof

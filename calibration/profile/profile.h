@@ -1,0 +1,128 @@
+// calibration/profile/profile.h — what was measured about a lens in a picture, as a value and as a JSON file.
+#pragma once
+#include <filesystem>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "calibration/geometry/board_shape.h"
+#include "calibration/geometry/camera_model.h"
+#include "calibration/geometry/model_choice.h"
+#include "calibration/geometry/planar_pose.h"
+#include "calibration/geometry/projection_uncertainty.h"
+#include "calibration/light/vignetting_models.h"
+#include "calibration/photos/picture_account.h"
+#include "calibration/photos/picture_traits.h"
+#include "calibration/self_test/self_test.h"
+#include "calibration/sharpness/profile_edge.h"
+#include "calibration/statistics/curve.h"
+
+namespace lensproof {
+
+inline constexpr std::string_view kProfileSchema = "lensproof-profile/1";
+
+/// Where the pictures come from. What is unknown is empty.
+struct ProfileSource {
+    std::string kind;  // "render" or "photo"
+    std::vector<std::string> images;
+    std::string camera;
+    std::string lens;
+    /// What the camera noted in the pictures used (JSON key "settings").
+    std::optional<CameraNotes> notes = std::nullopt;
+    /// Signs of corrections in the camera, or by a program since, in words (JSON key "suspicions").
+    std::vector<std::string> suspicions = {};
+};
+
+/// The camera model with its uncertainty.
+struct ProfileGeometry {
+    CameraModel model;
+    std::vector<double> covariance;  // row by row, in the order of parameter_names(model)
+    double reprojection_rms_px = 0.0;
+    int views_used = 0;
+    int points_used = 0;
+    double covered_image_height = 0.0;
+    std::optional<BoardShape> board;            // "board_shape": where it was fitted
+    std::optional<UncertaintyMap> uncertainty;  // "projection_uncertainty"
+    std::optional<ModelChoice> choice;          // "model_choice": where the model was chosen, not given
+
+    [[nodiscard]] double standard_error(std::size_t parameter) const;
+};
+
+struct ProfilePoint {
+    Vec2d chart_mm;
+    Vec2d image_px;
+    Vec2d residual_px;  // measured minus model
+    bool used = true;   // false: an outlier that the fit left out
+};
+
+/// A picture in which a chart was looked for.
+struct ProfileView {
+    std::string image;
+    bool found = false;
+    std::string reason;                   // why not (JSON key "reason"); empty where found
+    std::optional<PictureTraits> traits;  // of the channel that geometry is measured in; where found
+    Pose pose;
+    std::vector<ProfilePoint> points;
+};
+
+/// The terms of a fit, with their covariance (row by row, in the order of the names).
+struct FittedTerms {
+    std::vector<std::string> names;
+    std::vector<double> values;
+    std::vector<double> covariance;
+
+    friend bool operator==(const FittedTerms&, const FittedTerms&) = default;
+};
+
+/// Curves by name: "field_angle_deg", "distortion_percent" (against f tan θ), "distortion_equidistant_percent"
+/// (against f θ), and for a channel C "vignetting_C" (ratio to the axis), "vignetting_C_ev", "chromatic_shift_C_px"
+/// (radial) and "chromatic_shift_tangential_C_px" (a spectral layer's C is its wavelength, "450nm"), and those of
+/// sharpness and focus (calibration/sharpness/measure_sharpness.h). What could not be measured is absent there and has
+/// its reason in `not_measured`, under "geometry", "vignetting", "chromatic_shift", "sharpness_over_the_field" or
+/// "field_curvature"; a self-test that was asked for and could not be made under "self_test".
+struct Profile {
+    std::string name;
+    ProfileSource source;
+    int width_px = 0;
+    int height_px = 0;
+    std::vector<std::string> channels;
+    std::optional<double> pixel_pitch_um;
+    std::optional<ProfileGeometry> geometry;
+    /// Every picture, used or left out, in the order given (JSON key "pictures").
+    std::vector<PictureAccount> pictures;
+    std::vector<ProfileView> views;  // the pictures in which a chart was looked for
+    std::map<std::string, Curve> curves;
+    /// Behind the curves, by the curve's name without its unit: "chromatic_shift_C"
+    /// (calibration/chromatic/chromatic_shift.h) and "vignetting_C" (the spline of ln V,
+    /// calibration/light/vignetting.h), "sharpness_C" (of 1/MTF50², px²) and "best_focus_C"
+    /// (calibration/sharpness/sharpness_field.h).
+    std::map<std::string, FittedTerms> terms;
+    /// The edges measured, by channel (JSON key "sharpness", calibration/sharpness/profile_edge.h).
+    std::map<std::string, std::vector<ProfileEdge>> sharpness;
+    /// Formulas for the vignetting of each channel, the one to choose first, and what they are held against (JSON keys
+    /// "vignetting_models" and "shading", calibration/light/vignetting_json.h).
+    std::map<std::string, std::vector<VignettingModel>> vignetting_models;
+    std::map<std::string, ShadingGrid> shading;
+    std::map<std::string, std::string> not_measured;
+    std::optional<SelfTest> self_test;
+};
+
+/// Half the picture's diagonal, px: the unit of image heights.
+double half_diagonal_px(const Profile& profile);
+
+/// The profile as JSON, schema "lensproof-profile/1"; numbers are written so that reading returns the same bits.
+nlohmann::ordered_json to_json(const Profile& profile);
+
+/// Reads what `to_json` wrote. Unknown keys are ignored. Throws InputError naming `file`, the key, what was found and
+/// what is expected.
+Profile parse_profile(std::string_view text, const std::string& file);
+
+Profile read_profile(const std::filesystem::path& file);
+
+/// Whole or not at all.
+void write_profile(const Profile& profile, const std::filesystem::path& file);
+
+}  // namespace lensproof

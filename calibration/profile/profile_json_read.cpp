@@ -1,0 +1,240 @@
+#include <algorithm>
+
+#include "calibration/geometry/geometry_json.h"
+#include "calibration/light/vignetting_json.h"
+#include "calibration/profile/json_node.h"
+#include "calibration/profile/profile.h"
+#include "calibration/self_test/self_test_json.h"
+#include "engine/io/file.h"
+#include "engine/io/input_error.h"
+
+namespace lensproof {
+namespace {
+
+using Json = nlohmann::ordered_json;
+using Node = JsonNode;
+
+ProfileSource parse_source(const Node& node) {
+    const std::string kind = node.at("kind").text();
+    ProfileSource source{.kind = kind,
+                         .images = node.at("images").texts(),
+                         .camera = node.at("camera").text(),
+                         .lens = node.at("lens").text()};
+    if (node.has("settings")) {
+        source.notes = parse_camera_notes(node.at("settings"));
+    }
+    if (node.has("suspicions")) {
+        source.suspicions = node.at("suspicions").texts();
+    }
+    return source;
+}
+
+CameraModel parse_model(const Node& node) {
+    const Node kind_node = node.at("kind");
+    const std::optional<ModelKind> found = model_kind(kind_node.text());
+    if (!found) {
+        std::string known;
+        for (const std::string& one : model_kind_names()) {
+            known += (known.empty() ? "" : ", ") + one;
+        }
+        throw kind_node.error("one of " + known);
+    }
+    const CameraModel model = empty_model(*found);
+    std::vector<double> values;
+    for (const std::string& name : parameter_names(model)) {
+        const Node value = node.at("parameters").at(name).at("value");
+        values.push_back(value.number());
+        const bool length = name == "focal_length_px" || name == "normalisation_px" || name == "spline_end_rad";
+        if (length && !(values.back() > 0.0)) {
+            throw value.error("a positive value");
+        }
+    }
+    return with_parameters(model, values);
+}
+
+ProfileGeometry parse_geometry(const Node& root) {
+    ProfileGeometry geometry;
+    const Node model = root.at("model");
+    geometry.model = parse_model(model);
+    const std::vector<std::string> names = parameter_names(geometry.model);
+    const Node order = model.at("covariance").at("parameter_order");
+    if (order.texts() != names) {
+        throw order.error("the parameters in the model's order");
+    }
+    const Node matrix = model.at("covariance").at("matrix");
+    const std::vector<Node> rows = matrix.elements();
+    if (rows.size() != names.size()) {
+        throw matrix.error("a matrix of " + std::to_string(names.size()) + " rows");
+    }
+    for (const Node& row : rows) {
+        const std::vector<double> values = row.numbers(names.size());
+        geometry.covariance.insert(geometry.covariance.end(), values.begin(), values.end());
+    }
+    for (std::size_t i = 0; i < names.size(); ++i) {
+        if (!(geometry.covariance[i * (names.size() + 1)] >= 0.0)) {
+            throw matrix.error("variances that are not negative");
+        }
+    }
+    geometry.reprojection_rms_px = root.at("reprojection_rms_px").number();
+    geometry.views_used = root.at("views_used").count();
+    geometry.points_used = root.at("points_used").count();
+    geometry.covered_image_height = root.at("covered_image_height").number();
+    if (root.has("board_shape")) {
+        geometry.board = parse_board_shape(root.at("board_shape"));
+    }
+    if (root.has("model_choice")) {
+        geometry.choice = parse_model_choice(root.at("model_choice"));
+    }
+    if (root.has("projection_uncertainty")) {
+        geometry.uncertainty = parse_uncertainty_map(root.at("projection_uncertainty"));
+    }
+    return geometry;
+}
+
+FittedTerms parse_terms(const Node& node) {
+    FittedTerms terms;
+    const Node parameters = node.at("parameters");
+    terms.names = parameters.keys();
+    for (const std::string& name : terms.names) {
+        terms.values.push_back(parameters.at(name).at("value").number());
+    }
+    for (const Node& row : node.at("covariance").elements()) {
+        const std::vector<double> values = row.numbers(terms.names.size());
+        terms.covariance.insert(terms.covariance.end(), values.begin(), values.end());
+    }
+    if (terms.covariance.size() != terms.names.size() * terms.names.size()) {
+        throw node.at("covariance").error("a row and a column per parameter");
+    }
+    return terms;
+}
+
+ProfileView parse_view(const Node& node) {
+    ProfileView view;
+    view.image = node.at("image").text();
+    view.found = node.at("found").truth();
+    if (!view.found) {
+        view.reason = node.has("reason") ? node.at("reason").text() : "";
+        return view;
+    }
+    if (node.has("traits")) {
+        view.traits = parse_traits(node.at("traits"));
+    }
+    view.pose = {node.at("rotation_vector_rad").triple(), node.at("translation_mm").triple()};
+    for (const Node& point : node.at("points").elements()) {
+        view.points.push_back({.chart_mm = point.at("chart_mm").pair(),
+                               .image_px = point.at("image_px").pair(),
+                               .residual_px = point.at("residual_px").pair(),
+                               .used = point.at("used").truth()});
+    }
+    return view;
+}
+
+Curve parse_curve(const Node& node) {
+    Curve curve;
+    curve.covered_image_height = node.at("covered_image_height").number();
+    curve.image_height = node.at("image_height").numbers();
+    const std::size_t count = curve.image_height.size();
+    curve.value = node.at("value").numbers(count);
+    curve.lower_95 = node.at("lower_95").numbers(count);
+    curve.upper_95 = node.at("upper_95").numbers(count);
+    if (!std::is_sorted(curve.image_height.begin(), curve.image_height.end())) {
+        throw node.at("image_height").error("ascending heights");
+    }
+    return curve;
+}
+
+Json parse_json(std::string_view text, const std::string& file) {
+    try {
+        return Json::parse(text);
+    } catch (const Json::exception& e) {
+        throw InputError(file + ": not JSON: " + e.what());
+    }
+}
+
+}  // namespace
+
+Profile parse_profile(std::string_view text, const std::string& file) {
+    const Json json = parse_json(text, file);
+    const Node root(json, file, "");
+    const Node schema = root.at("schema");
+    if (schema.text() != kProfileSchema) {
+        throw schema.error("\"" + std::string(kProfileSchema) + "\"");
+    }
+    Profile profile;
+    profile.name = root.at("name").text();
+    profile.source = parse_source(root.at("source"));
+    const Node size = root.at("image_size_px");
+    const std::vector<Node> sides = size.elements();
+    if (sides.size() != 2) {
+        throw size.error("[width, height]");
+    }
+    profile.width_px = sides[0].count();
+    profile.height_px = sides[1].count();
+    if (profile.width_px < 1 || profile.height_px < 1) {
+        throw size.error("a width and a height of at least 1");
+    }
+    if (const Node pitch = root.at("pixel_pitch_um"); !pitch.is_null()) {
+        profile.pixel_pitch_um = pitch.number();
+        if (!(*profile.pixel_pitch_um > 0.0)) {
+            throw pitch.error("a positive length");
+        }
+    }
+    if (root.has("channels")) {
+        profile.channels = root.at("channels").texts();
+    }
+    if (root.has("model")) {
+        profile.geometry = parse_geometry(root);
+    }
+    if (root.has("pictures")) {
+        for (const Node& picture : root.at("pictures").elements()) {
+            profile.pictures.push_back(parse_picture_account(picture));
+        }
+    }
+    for (const Node& view : root.at("views").elements()) {
+        profile.views.push_back(parse_view(view));
+    }
+    const Node curves = root.at("curves");
+    for (const std::string& name : curves.keys()) {
+        profile.curves[name] = parse_curve(curves.at(name));
+    }
+    if (root.has("terms")) {
+        const Node terms = root.at("terms");
+        for (const std::string& name : terms.keys()) {
+            profile.terms[name] = parse_terms(terms.at(name));
+        }
+    }
+    if (root.has("sharpness")) {
+        const Node channels = root.at("sharpness");
+        for (const std::string& channel : channels.keys()) {
+            for (const Node& edge : channels.at(channel).elements()) {
+                profile.sharpness[channel].push_back(parse_edge(edge));
+            }
+        }
+    }
+    if (root.has("vignetting_models")) {
+        const Node models = root.at("vignetting_models");
+        for (const std::string& channel : models.keys()) {
+            profile.vignetting_models[channel] = parse_vignetting_models(models.at(channel));
+        }
+    }
+    if (root.has("shading")) {
+        const Node grids = root.at("shading");
+        for (const std::string& channel : grids.keys()) {
+            profile.shading[channel] = parse_shading_grid(grids.at(channel));
+        }
+    }
+    const Node reasons = root.at("not_measured");
+    for (const std::string& name : reasons.keys()) {
+        profile.not_measured[name] = reasons.at(name).text();
+    }
+    if (root.has("self_test")) {
+        profile.self_test = parse_self_test(root.at("self_test"));
+    }
+    return profile;
+}
+
+Profile read_profile(const std::filesystem::path& file) {
+    return parse_profile(read_file(file), file.string());
+}
+
+}  // namespace lensproof

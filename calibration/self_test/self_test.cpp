@@ -1,0 +1,165 @@
+#include "calibration/self_test/self_test.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <string_view>
+
+#include "calibration/measure.h"
+#include "calibration/profile/curve_difference.h"
+#include "calibration/self_test/simulated_chart.h"
+
+namespace lensproof {
+namespace {
+
+constexpr double kPixelBox_px2 = 1.0 / 12.0;  // variance of a pixel's own box, which the simulation adds by itself
+constexpr double kUsualBlur_px = 0.5;
+
+// The curve between its samples, and as at its end beyond.
+std::function<double(double)> function_of(const Profile& profile, const std::string& name, double otherwise) {
+    const auto found = profile.curves.find(name);
+    if (found == profile.curves.end() || found->second.value.empty()) {
+        return [otherwise](double) { return otherwise; };
+    }
+    return [curve = found->second](double height) {
+        return sample(curve, std::clamp(height, curve.image_height.front(), curve.image_height.back()))->value;
+    };
+}
+
+SimulatedCamera camera_of(const Profile& profile, const PictureTraits& traits) {
+    SimulatedCamera camera{.model = profile.geometry->model,
+                           .width_px = profile.width_px,
+                           .height_px = profile.height_px,
+                           .channels = {},
+                           .white = traits.white,
+                           .blur_px = kUsualBlur_px,
+                           .read_noise = traits.noise,
+                           .shot_noise = 0.0,
+                           .jpeg_quality = {},
+                           .threads = 0};
+    for (const std::string& name : profile.channels) {
+        camera.channels.push_back({.name = name,
+                                   .radial_shift_px = function_of(profile, "chromatic_shift_" + name + "_px", 0.0),
+                                   .vignetting = function_of(profile, "vignetting_" + name, 1.0)});
+    }
+    if (traits.blur_px) {
+        camera.blur_px = std::sqrt(std::max(*traits.blur_px * *traits.blur_px - kPixelBox_px2, 0.0));
+    }
+    return camera;
+}
+
+// The chart as it looks in the picture: white as white, black as dark as it was seen.
+Chart chart_of(const Chart& chart, const PictureTraits& traits) {
+    Chart own = chart;
+    own.white_reflectance = 1.0;
+    own.black_reflectance = std::clamp(traits.black / traits.white, 0.0, 1.0);
+    return own;
+}
+
+std::vector<Picture> simulated_pictures(const MeasureInput& input, const Profile& profile) {
+    std::vector<Picture> pictures;
+    std::uint32_t seed = 0;
+    PictureTraits last;
+    for (const ProfileView& view : profile.views) {
+        if (view.found && view.traits) {
+            last = *view.traits;
+            pictures.push_back(
+                {view.image, PictureRole::chart,
+                 [camera = camera_of(profile, last), pose = view.pose, chart = chart_of(input.chart, last), seed] {
+                     return simulate_chart(camera, pose, chart, seed);
+                 }});
+            ++seed;
+        }
+    }
+    for (const Picture& picture : input.pictures) {
+        if (picture.role == PictureRole::flat_field && !pictures.empty()) {
+            pictures.push_back({picture.name, PictureRole::flat_field, [camera = camera_of(profile, last), seed] {
+                                    return simulate_flat_field(camera, seed);
+                                }});
+            ++seed;
+        }
+    }
+    return pictures;
+}
+
+CurveFloor floor_of(const CurveDifference& difference) {
+    return {.rms = difference.rms, .largest = difference.largest, .largest_at = difference.largest_at};
+}
+
+void add_points(SelfTest& result, const MeasureInput& input, const Profile& truth, const Profile& again) {
+    std::map<std::string, Pose> poses;
+    for (const ProfileView& view : truth.views) {
+        poses[view.image] = view.pose;
+    }
+    double squares = 0.0;
+    Vec2d sum;
+    for (const ProfileView& view : again.views) {
+        for (const ProfilePoint& point : view.points) {
+            const auto expected =
+                predict(truth.geometry->model, poses.at(view.image), point.chart_mm, disc_diameter_mm(input.chart));
+            if (!expected) {
+                continue;
+            }
+            const Vec2d error{point.image_px.x - expected->x, point.image_px.y - expected->y};
+            sum = {sum.x + error.x, sum.y + error.y};
+            squares += error.x * error.x + error.y * error.y;
+            ++result.points;
+        }
+    }
+    if (result.points > 0) {
+        result.point_rms_px = std::sqrt(squares / (2.0 * result.points));
+        result.point_bias_px = std::hypot(sum.x, sum.y) / result.points;
+    }
+}
+
+}  // namespace
+
+SelfTest self_test(const MeasureInput& input, const Profile& profile) {
+    MeasureInput simulated = input;
+    simulated.self_test = false;
+    simulated.model = kind(profile.geometry->model);
+    if (const auto& choice = profile.geometry->choice) {
+        simulated.geometry.radial_terms = choice->candidates[static_cast<std::size_t>(choice->chosen)].radial_terms;
+    }
+    simulated.pictures = simulated_pictures(input, profile);
+    const Profile again = measure(simulated);
+    SelfTest result;
+    result.pictures = static_cast<int>(simulated.pictures.size());
+    add_points(result, input, profile, again);
+    if (const auto radial = radial_difference_px(again, profile)) {
+        result.curves["radial_px"] = floor_of(*radial);
+    }
+    for (const auto& [name, curve] : profile.curves) {
+        if (const auto apart = difference(again, profile, name)) {
+            result.curves[name] = floor_of(*apart);
+        }
+    }
+    return result;
+}
+
+std::string describe_floor(const SelfTest& test) {
+    std::string text = fmt::format("points {:.3f} px", test.point_rms_px);
+    if (const auto radial = test.curves.find("radial_px"); radial != test.curves.end()) {
+        text += fmt::format(", image position {:.3f} px rms", radial->second.rms);
+    }
+    const auto largest = [&](std::string_view prefix, std::string_view suffix) {
+        std::optional<double> most;
+        for (const auto& [name, floor] : test.curves) {
+            if (name.starts_with(prefix) && name.ends_with(suffix)) {
+                most = std::max(most.value_or(0.0), floor.largest);
+            }
+        }
+        return most;
+    };
+    if (const auto ev = largest("vignetting_", "_ev")) {
+        text += fmt::format(", vignetting {:.2f} %", 100.0 * (std::exp2(*ev) - 1.0));
+    }
+    if (const auto shift = largest("chromatic_shift_", "_px")) {
+        text += fmt::format(", chromatic shift {:.3f} px", *shift);
+    }
+    return text;
+}
+
+}  // namespace lensproof

@@ -1,0 +1,40 @@
+// calibration/self_test/self_test.h — what a measurement would get wrong by itself: its floor.
+#pragma once
+#include <map>
+#include <string>
+
+namespace lensproof {
+
+struct MeasureInput;
+struct Profile;
+
+/// How far a measurement of simulated pictures is from what they were made with, over the covered image heights.
+struct CurveFloor {
+    double rms = 0.0;         // over the picture's area
+    double largest = 0.0;     // of the absolute difference, and
+    double largest_at = 0.0;  // the image height where it stands
+};
+
+/// The profile's own camera, its views, its blur and its noise, made into pictures and measured again by the same
+/// method. A difference between a profile and something else that is not larger than this may be the method's. It holds
+/// what detector, refinement and fits do, and a draw of the noise; not what the model cannot say, nor a board that is
+/// not flat, light that is not even, or a picture's compression.
+struct SelfTest {
+    double point_rms_px = 0.0;   // of one coordinate of a found point
+    double point_bias_px = 0.0;  // length of the mean error
+    int points = 0;
+    int pictures = 0;
+    /// By the curve's name as in Profile::curves; beside them "radial_px", how far apart the two fits image a
+    /// direction.
+    std::map<std::string, CurveFloor> curves;
+};
+
+/// Simulates and measures as many pictures as `profile`, measured from `input`, used. Its views have to know their
+/// traits (calibration/photos/picture_traits.h). Throws InputError where the simulated pictures cannot be measured.
+SelfTest self_test(const MeasureInput& input, const Profile& profile);
+
+/// One line for people: "points 0.012 px, image position 0.004 px rms, vignetting 0.05 %, chromatic shift 0.006 px",
+/// the last two the largest of any channel.
+std::string describe_floor(const SelfTest& test);
+
+}  // namespace lensproof

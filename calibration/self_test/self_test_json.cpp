@@ -1,0 +1,55 @@
+#include "calibration/self_test/self_test_json.h"
+
+namespace lensproof {
+
+using Json = nlohmann::ordered_json;
+
+Json to_json(const PictureTraits& traits) {
+    Json json{{"white", traits.white}, {"black", traits.black}, {"noise", traits.noise}};
+    if (traits.blur_px) {
+        json["blur_px"] = *traits.blur_px;
+    }
+    return json;
+}
+
+Json to_json(const SelfTest& test) {
+    Json json{{"pictures", test.pictures},
+              {"points", test.points},
+              {"point_rms_px", test.point_rms_px},
+              {"point_bias_px", test.point_bias_px},
+              {"curves", Json::object()}};
+    for (const auto& [name, floor] : test.curves) {
+        json["curves"][name] = {
+            {"rms", floor.rms}, {"largest", floor.largest}, {"largest_at_image_height", floor.largest_at}};
+    }
+    return json;
+}
+
+PictureTraits parse_traits(const JsonNode& node) {
+    PictureTraits traits{.white = node.at("white").number(),
+                         .black = node.at("black").number(),
+                         .noise = node.at("noise").number(),
+                         .blur_px = {}};
+    if (node.has("blur_px")) {
+        traits.blur_px = node.at("blur_px").number();
+    }
+    return traits;
+}
+
+SelfTest parse_self_test(const JsonNode& node) {
+    SelfTest test{.point_rms_px = node.at("point_rms_px").number(),
+                  .point_bias_px = node.at("point_bias_px").number(),
+                  .points = node.at("points").count(),
+                  .pictures = node.at("pictures").count(),
+                  .curves = {}};
+    const JsonNode curves = node.at("curves");
+    for (const std::string& name : curves.keys()) {
+        const JsonNode floor = curves.at(name);
+        test.curves[name] = {.rms = floor.at("rms").number(),
+                             .largest = floor.at("largest").number(),
+                             .largest_at = floor.at("largest_at_image_height").number()};
+    }
+    return test;
+}
+
+}  // namespace lensproof

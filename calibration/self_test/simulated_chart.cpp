@@ -1,0 +1,297 @@
+#include "calibration/self_test/simulated_chart.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <opencv2/imgproc.hpp>
+#include <random>
+
+#include "engine/io/jpeg.h"
+#include "engine/render/parallel.h"
+#include "engine/scene/overloaded.h"
+
+namespace lensproof {
+namespace {
+
+constexpr int kSubpixels = 4;       // along a pixel's side: the grid that the blur acts on
+constexpr int kPlaces = 4;          // looked at in each
+constexpr int kKnot_px = 2;         // between exact points of the map to the chart
+constexpr int kBandRows = 64;       // of pixels, made at a time
+constexpr double kBlurReach = 4.0;  // standard deviations
+
+// The width that every white or black part of a chart has at least, mm; 0 where none is stated.
+double narrowest_part_mm(const Chart& chart) {
+    const Overloaded narrowest{
+        [](const Checkerboard& c) { return c.square_mm; },
+        [](const DiscGrid& c) { return std::min(c.diameter_mm, c.pitch_mm - c.diameter_mm); },
+        [](const CharucoBoard& c) { return std::min(c.marker_mm / (c.cells + 2), 0.5 * (c.square_mm - c.marker_mm)); },
+        [](const PointGrid& c) { return std::min(c.dot_mm, c.pitch_mm - c.dot_mm); },
+        [](const auto& /*other*/) { return 0.0; },
+    };
+    return std::visit(narrowest, chart.pattern);
+}
+
+// Directions are mapped knot by knot; in a cell of four knots bilinearly.
+class ChartMap {
+  public:
+    ChartMap(const CameraModel& model, const SimulatedChannel& channel, const Pose& pose, double half_diagonal,
+             int first_x, int first_y, int columns, int rows)
+        : first_x_(first_x), first_y_(first_y), columns_(columns / kKnot_px + 2), rows_(rows / kKnot_px + 2) {
+        knots_.reserve(static_cast<std::size_t>(columns_) * rows_);
+        const Vec2d centre = centre_px(model);
+        for (int j = 0; j < rows_; ++j) {
+            for (int i = 0; i < columns_; ++i) {
+                const Vec2d pixel{first_x + kKnot_px * i - 0.5, first_y + kKnot_px * j - 0.5};
+                knots_.push_back(
+                    chart_point(model, pose, without_shift(pixel, centre, channel.radial_shift_px, half_diagonal)));
+            }
+        }
+    }
+
+    struct Cell {
+        const std::optional<Vec2d>*top, *bottom;  // two knots each
+        bool is_even;                             // the whole cell is as its top left knot
+
+        [[nodiscard]] bool is_complete() const { return top[0] && top[1] && bottom[0] && bottom[1]; }
+        /// At (u, v) of the cell, each from 0 to 1.
+        [[nodiscard]] Vec2d at(double u, double v) const {
+            const auto mix = [&](double a, double b, double c, double d) {
+                return std::lerp(std::lerp(a, b, u), std::lerp(c, d, u), v);
+            };
+            return {mix(top[0]->x, top[1]->x, bottom[0]->x, bottom[1]->x),
+                    mix(top[0]->y, top[1]->y, bottom[0]->y, bottom[1]->y)};
+        }
+    };
+    /// The cell that pixel (x, y) lies in.
+    [[nodiscard]] Cell cell(int x, int y) const {
+        return cell_at((x - first_x_) / kKnot_px, (y - first_y_) / kKnot_px);
+    }
+
+    /// Marks the cells that no edge is near: five by five cells around are of one tone at all knots and middles, which
+    /// no part of the chart that is four pixels wide slips through.
+    void find_even_cells(const Chart& chart) {
+        const double narrowest = narrowest_part_mm(chart);
+        for (int j = 0; j + 1 < rows_; ++j) {
+            for (int i = 0; i + 1 < columns_; ++i) {
+                even_.at<unsigned char>(j, i) = is_one_tone(cell_at(i, j), chart, narrowest) ? 1 : 0;
+            }
+        }
+        cv::erode(even_, even_, cv::Mat::ones(5, 5, CV_8U), {-1, -1}, 1, cv::BORDER_CONSTANT, cv::Scalar(0));
+    }
+
+  private:
+    [[nodiscard]] Cell cell_at(int i, int j) const {
+        const std::size_t first = static_cast<std::size_t>(j) * columns_ + i;
+        return {&knots_[first], &knots_[first + static_cast<std::size_t>(columns_)],
+                even_.at<unsigned char>(j, i) != 0};
+    }
+
+    static bool is_one_tone(const Cell& cell, const Chart& chart, double narrowest_mm) {
+        if (!cell.is_complete()) {
+            return false;
+        }
+        const double diagonal_mm = std::hypot(cell.bottom[1]->x - cell.top[0]->x, cell.bottom[1]->y - cell.top[0]->y) +
+                                   std::hypot(cell.bottom[0]->x - cell.top[1]->x, cell.bottom[0]->y - cell.top[1]->y);
+        if (!(diagonal_mm <= narrowest_mm)) {  // both diagonals: over five pixels
+            return false;
+        }
+        const double tone = reflectance(chart, cell.top[0]->x, cell.top[0]->y);
+        const Vec2d middle = cell.at(0.5, 0.5);
+        return reflectance(chart, cell.top[1]->x, cell.top[1]->y) == tone &&
+               reflectance(chart, cell.bottom[0]->x, cell.bottom[0]->y) == tone &&
+               reflectance(chart, cell.bottom[1]->x, cell.bottom[1]->y) == tone &&
+               reflectance(chart, middle.x, middle.y) == tone;
+    }
+
+    // The pixel of the camera model whose light a shift by `shift_px` brings to `pixel`.
+    static Vec2d without_shift(const Vec2d& pixel, const Vec2d& centre, const std::function<double(double)>& shift_px,
+                               double half_diagonal) {
+        const double x = pixel.x - centre.x;
+        const double y = pixel.y - centre.y;
+        const double radius = std::hypot(x, y);
+        double unshifted = radius;
+        for (int i = 0; i < 8; ++i) {  // shifts change slowly with the radius, so each round gains two digits
+            unshifted = radius - shift_px(unshifted / half_diagonal);
+        }
+        const double scale = radius > 0.0 ? unshifted / radius : 1.0;
+        return {centre.x + scale * x, centre.y + scale * y};
+    }
+
+    int first_x_;
+    int first_y_;
+    int columns_;
+    int rows_;
+    std::vector<std::optional<Vec2d>> knots_;
+    cv::Mat even_ = cv::Mat::zeros(rows_, columns_, CV_8U);  // by a cell's top left knot
+};
+
+// A number in [0, 1) that looks random, of a pixel.
+double jitter(int x, int y, std::uint32_t salt) {
+    std::uint32_t h = static_cast<std::uint32_t>(x) * 0x9E3779B1U ^ static_cast<std::uint32_t>(y) * 0x85EBCA77U ^ salt;
+    h = (h ^ (h >> 15)) * 0x2C1B3C6DU;
+    h = (h ^ (h >> 12)) * 0x297A2D39U;
+    return static_cast<double>(h ^ (h >> 15)) / 4294967296.0;
+}
+
+void fill(cv::Mat& plane, int i, int j, float value) {
+    for (int b = 0; b < kSubpixels; ++b) {
+        std::fill_n(plane.ptr<float>(j + b) + i, kSubpixels, value);
+    }
+}
+
+// The chart's reflectance in each sub-pixel of pixel (x, y), by kSubpixels² values written into `plane` from (i, j).
+void look(cv::Mat& plane, int i, int j, const ChartMap& map, int x, int y, const Chart& chart) {
+    const ChartMap::Cell cell = map.cell(x, y);
+    if (!cell.is_complete()) {
+        fill(plane, i, j, 0.0F);
+        return;
+    }
+    if (cell.is_even) {
+        fill(plane, i, j, static_cast<float>(reflectance(chart, cell.top[0]->x, cell.top[0]->y)));
+        return;
+    }
+    constexpr std::array<int, kPlaces> kOrder = {2, 0, 3, 1};
+    constexpr int kStrata = kSubpixels * kPlaces;  // in a sub-pixel, along x and along y
+    const double jitter_x = jitter(x, y, 0U);
+    const double jitter_y = jitter(x, y, 0x27D4EB2FU);
+    const int in_cell_x = (x + kKnot_px * kBandRows) % kKnot_px;
+    const int in_cell_y = (y + kKnot_px * kBandRows) % kKnot_px;
+    for (int b = 0; b < kSubpixels; ++b) {
+        for (int a = 0; a < kSubpixels; ++a) {
+            double sum = 0.0;
+            for (int k = 0; k < kPlaces; ++k) {
+                const double u = (a + (k * kSubpixels + b + jitter_x) / kStrata) / kSubpixels;
+                const double v = (b + (kOrder[k] * kSubpixels + a + jitter_y) / kStrata) / kSubpixels;
+                const Vec2d place = cell.at((in_cell_x + u) / kKnot_px, (in_cell_y + v) / kKnot_px);
+                sum += reflectance(chart, place.x, place.y);
+            }
+            plane.at<float>(j + b, i + a) = static_cast<float>(sum / kPlaces);
+        }
+    }
+}
+
+struct Frame {
+    const SimulatedCamera& camera;
+    double half_diagonal;
+    Vec2d centre;
+
+    [[nodiscard]] double light(const SimulatedChannel& channel, int x, int y) const {
+        return camera.white * channel.vignetting(std::hypot(x - centre.x, y - centre.y) / half_diagonal);
+    }
+};
+
+Frame frame_of(const SimulatedCamera& camera) {
+    return {camera, 0.5 * std::hypot(camera.width_px, camera.height_px), centre_px(camera.model)};
+}
+
+// Rows [first, last) of one channel.
+void paint_band(Image& image, int channel, int first, int last, const Frame& frame, const Pose& pose,
+                const Chart& chart) {
+    const SimulatedCamera& camera = frame.camera;
+    // Whole cells of knots, so that every pixel's cell begins at an even place.
+    const int margin = kKnot_px * (1 + static_cast<int>(std::ceil(kBlurReach * camera.blur_px / kKnot_px)));
+    const int columns = camera.width_px + 2 * margin;
+    const int rows = last - first + 2 * margin;
+    ChartMap map(camera.model, camera.channels[channel], pose, frame.half_diagonal, -margin, first - margin, columns,
+                 rows);
+    map.find_even_cells(chart);
+    cv::Mat fine(rows * kSubpixels, columns * kSubpixels, CV_32F);
+    for (int y = 0; y < rows; ++y) {
+        for (int x = 0; x < columns; ++x) {
+            look(fine, x * kSubpixels, y * kSubpixels, map, x - margin, y + first - margin, chart);
+        }
+    }
+    if (camera.blur_px > 0.0) {
+        const double sigma = camera.blur_px * kSubpixels;
+        const int side = 2 * static_cast<int>(std::ceil(kBlurReach * sigma)) + 1;
+        cv::GaussianBlur(fine, fine, {side, side}, sigma, sigma, cv::BORDER_REPLICATE);
+    }
+    cv::Mat pixels;
+    cv::resize(fine, pixels, {columns, rows}, 0.0, 0.0, cv::INTER_AREA);  // means of whole blocks
+    for (int y = first; y < last; ++y) {
+        for (int x = 0; x < camera.width_px; ++x) {
+            image.at(x, y, channel) = static_cast<float>(pixels.at<float>(y - first + margin, x + margin) *
+                                                         frame.light(camera.channels[channel], x, y));
+        }
+    }
+}
+
+void add_noise(Image& image, int row, const SimulatedCamera& camera, std::uint32_t seed) {
+    std::seed_seq sequence{seed, static_cast<std::uint32_t>(row)};
+    std::mt19937 engine(sequence);
+    const auto uniform = [&] { return (static_cast<double>(engine()) + 0.5) / 4294967296.0; };
+    for (int x = 0; x < image.width; ++x) {
+        for (int c = 0; c < image.channel_count(); ++c) {
+            float& value = image.at(x, row, c);
+            const double variance =
+                camera.read_noise * camera.read_noise + camera.shot_noise * camera.shot_noise * value;
+            // Box and Muller 1958; std::normal_distribution differs between libraries.
+            const double normal = std::sqrt(-2.0 * std::log(uniform())) * std::cos(2.0 * std::numbers::pi * uniform());
+            value += static_cast<float>(std::sqrt(std::max(variance, 0.0)) * normal);
+        }
+    }
+}
+
+Image empty_picture(const SimulatedCamera& camera) {
+    std::vector<std::string> names;
+    names.reserve(camera.channels.size());
+    for (const SimulatedChannel& channel : camera.channels) {
+        names.push_back(channel.name);
+    }
+    return make_image(camera.width_px, camera.height_px, std::move(names));
+}
+
+Image with_noise_and_compression(Image image, const SimulatedCamera& camera, std::uint32_t seed) {
+    if (camera.read_noise > 0.0 || camera.shot_noise > 0.0) {
+        parallel_for(image.height, camera.threads, [&](int row) { add_noise(image, row, camera, seed); });
+    }
+    return camera.jpeg_quality ? after_jpeg(image, *camera.jpeg_quality) : image;
+}
+
+}  // namespace
+
+std::optional<Vec2d> chart_point(const CameraModel& model, const Pose& pose, const Vec2d& pixel) {
+    const auto direction = unproject(model, pixel);
+    if (!direction) {
+        return std::nullopt;
+    }
+    const Vec3d origin = pose.translation_mm;
+    const Vec3d x_axis = to_camera(pose, {1.0, 0.0}) - origin;
+    const Vec3d y_axis = to_camera(pose, {0.0, 1.0}) - origin;
+    const Vec3d normal = cross(x_axis, y_axis);
+    const double towards = dot(*direction, normal);
+    const double distance = towards != 0.0 ? dot(origin, normal) / towards : -1.0;
+    if (!(distance > 0.0)) {
+        return std::nullopt;
+    }
+    const Vec3d offset = distance * *direction - origin;
+    return Vec2d{dot(offset, x_axis), dot(offset, y_axis)};
+}
+
+Image simulate_chart(const SimulatedCamera& camera, const Pose& pose, const Chart& chart, std::uint32_t seed) {
+    Image image = empty_picture(camera);
+    const Frame frame = frame_of(camera);
+    const int bands = (camera.height_px + kBandRows - 1) / kBandRows;
+    parallel_for(bands * image.channel_count(), camera.threads, [&](int i) {
+        const int first = i / image.channel_count() * kBandRows;
+        paint_band(image, i % image.channel_count(), first, std::min(first + kBandRows, camera.height_px), frame, pose,
+                   chart);
+    });
+    return with_noise_and_compression(std::move(image), camera, seed);
+}
+
+Image simulate_flat_field(const SimulatedCamera& camera, std::uint32_t seed) {
+    Image image = empty_picture(camera);
+    const Frame frame = frame_of(camera);
+    parallel_for(camera.height_px, camera.threads, [&](int y) {
+        for (int x = 0; x < camera.width_px; ++x) {
+            for (int c = 0; c < image.channel_count(); ++c) {
+                image.at(x, y, c) = static_cast<float>(frame.light(camera.channels[c], x, y));
+            }
+        }
+    });
+    return with_noise_and_compression(std::move(image), camera, seed);
+}
+
+}  // namespace lensproof
