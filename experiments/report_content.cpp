@@ -3,9 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <functional>
 
+#include "experiments/certainty_map.h"
 #include "experiments/provenance.h"
 
 namespace lensproof {
@@ -13,6 +15,9 @@ namespace lensproof {
 namespace {
 
 using Json = nlohmann::ordered_json;
+
+/// .s0 … .s6 of the report's page, on white.
+constexpr std::array kSubjectColours = {"#0072b2", "#c77b00", "#b5548a", "#3d9fd8", "#8a8200", "#009e73", "#d55e00"};
 
 Json number(double value) {
     return std::isfinite(value) ? Json(value) : Json(nullptr);
@@ -232,6 +237,46 @@ Json plots_json(const Experiment& experiment, const ExperimentResult& result) {
     return plots;
 }
 
+bool has_certainty(const Subject& subject) {
+    return subject.profile.geometry && subject.profile.geometry->uncertainty;
+}
+
+std::string certainty_name(const Subject& subject) {
+    return subject.name + "/certainty.svg";
+}
+
+/// The subjects' certainty over their frames, in one range of colours; with the subject's place in the report.
+std::map<std::string, CertaintyMap> certainty_maps(const ExperimentResult& result) {
+    std::vector<const Profile*> profiles;
+    profiles.reserve(result.subjects.size());
+    for (const Subject& subject : result.subjects) {
+        profiles.push_back(&subject.profile);
+    }
+    const AxisRange range = certainty_range(profiles);
+    std::map<std::string, CertaintyMap> maps;
+    for (std::size_t i = 0; i < result.subjects.size(); ++i) {
+        const Subject& subject = result.subjects[i];
+        if (has_certainty(subject)) {
+            maps[certainty_name(subject)] =
+                certainty_map(subject.profile, fmt::format("{}, {}", subject.name, subject.label),
+                              kSubjectColours.at(i % kSubjectColours.size()), range);
+        }
+    }
+    return maps;
+}
+
+Json maps_json(const ExperimentResult& result) {
+    const std::map<std::string, CertaintyMap> maps = certainty_maps(result);
+    Json json = Json::array();
+    for (const Subject& subject : result.subjects) {
+        if (has_certainty(subject)) {
+            const std::string name = certainty_name(subject);
+            json.push_back({{"name", name}, {"subject", subject.name}, {"caption", maps.at(name).caption}});
+        }
+    }
+    return json;
+}
+
 std::string summary_of(const Experiment& experiment, const ExperimentResult& result) {
     int passed = 0;
     for (const Check& check : result.checks) {
@@ -283,6 +328,7 @@ nlohmann::ordered_json report_json(const Experiment& experiment, const Experimen
         report["subjects"].push_back(subject_json(subject));
     }
     report["plots"] = plots_json(experiment, result);
+    report["maps"] = maps_json(result);
     report["provenance"] = provenance_json(result.inputs, settings);
     report["reproduce"] = fmt::format("./lensproof run {} --seed {}", portable_path(experiment.file), settings.seed);
     return report;
@@ -294,6 +340,9 @@ std::map<std::string, std::string> report_pictures(const ExperimentResult& resul
         for (const ShownPicture& picture : subject.pictures) {
             pictures[picture.name] = picture.png;
         }
+    }
+    for (auto& [name, map] : certainty_maps(result)) {
+        pictures[name] = std::move(map.svg);
     }
     return pictures;
 }

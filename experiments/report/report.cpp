@@ -205,6 +205,18 @@ std::string picture_html(const Json& picture, const std::string& id, const std::
     return out + "</div><figcaption><span class=\"caption\">" + caption + "</span></figcaption></figure>\n";
 }
 
+/// Where the measurements are sure, beside the curves that say how sure they are along the radius.
+std::string maps_html(const Json& report, const std::map<std::string, std::string>& pngs) {
+    std::string out;
+    const Json& maps = list(report, "maps");
+    for (std::size_t i = 0; i < maps.size(); ++i) {
+        out += picture_html(maps[i], "map-" + std::to_string(i), pngs);
+    }
+    return out.empty() ? ""
+                       : "<h3 class=\"maps-title\">Certainty and coverage over the frame</h3>\n<div class=\"maps\">\n" +
+                             out + "</div>\n";
+}
+
 std::string subjects_html(const Json& report, const std::map<std::string, std::string>& pngs) {
     const Json& subjects = list(report, "subjects");
     if (subjects.empty()) return "<p class=\"empty\">This report shows no lens and no photo.</p>\n";
@@ -317,6 +329,7 @@ std::string report_html(const Json& report, const std::map<std::string, std::str
                                                 {"verdict", verdict_html(report)},
                                                 {"tally", tally_html(report)},
                                                 {"checks", checks_html(report)},
+                                                {"maps", maps_html(report, png_bytes_by_name)},
                                                 {"subjects", subjects_html(report, png_bytes_by_name)},
                                                 {"provenance", provenance_html(report)},
                                                 {"reproduce", reproduce_html(report)},

@@ -10,7 +10,7 @@ namespace lensproof {
 /// checks, the facts, the pictures and the provenance; the script adds the scales, the curves and the overlays.
 ///
 /// `png_bytes_by_name` holds the files' bytes under the `name` that a picture in `report` has. A name that is missing
-/// leaves a labelled gap; a picture that no subject names is left out.
+/// leaves a labelled gap; a picture that neither a subject nor a map names is left out. Names in .svg are SVG.
 ///
 /// Whatever `report` holds is shown as text: no string in it can become markup or script. Any key may be absent or
 /// null, and a number that is not finite counts as null; nothing throws but std::bad_alloc. The same arguments give the
@@ -38,6 +38,7 @@ namespace lensproof {
 ///                             "style": "measured" (solid) | "reference" (dashed) | "difference" (solid),
 ///                             "x": [rising], "y": [null leaves a gap], "lower"?, "upper"?: the 95 % band,
 ///                             "covered_to"?: beyond this x the data ended, and the curve is drawn faded}]}],
+///      "maps"?: [{"name", "subject"?, "caption"?}],         drawings over the frame, after the plots
 ///      "provenance"?: {"program", "version", "commit", "inputs": [{"file", "sha256"}], "settings": {…}, …},
 ///      "reproduce"?: "lensproof run …"}
 ///

@@ -156,6 +156,7 @@ def reports():
                         check(3, expect="differs", value=9), check(4, value=None, verdict="INCONCLUSIVE"),
                         check(5, limit=0), check(6, limit=None), check(7, expect=ATTACK, value=-1, sigma=1e9)],
              "subjects": [subject], "plots": [plot, {**plot, "id": "again"}],
+             "maps": [{"name": "a/1.png", "subject": "a", "caption": "map " + ATTACK}, None],
              "provenance": {"program": ATTACK, "inputs": [{"file": ATTACK, "sha256": "0" * 64}],
                             "settings": {"a": {"b": 1}}},
              "reproduce": "./lensproof run x.toml"}
@@ -199,6 +200,7 @@ def ticks(browser):
 
 def test_curves(browser):
     expect(browser.js("document.querySelectorAll('[data-plot=distortion] path.line').length") >= 4, "curves are drawn")
+    expect(browser.js("document.querySelector('#curves .maps img').naturalWidth") == 320, "a map stands beside them")
     expect(browser.js("document.querySelector('[data-plot=distortion] path.line.measured').getTotalLength()") > 200,
            "a curve has length")
     expect(browser.js("document.querySelectorAll('[data-plot=distortion] path.band').length") == 1,
