@@ -12,6 +12,7 @@
 #include "calibration/detection/working_copy.h"
 #include "calibration/geometry/geometry_curves.h"
 #include "calibration/geometry/model_choice.h"
+#include "calibration/light/light_gradient.h"
 #include "calibration/light/light_samples.h"
 #include "calibration/light/vignetting.h"
 #include "calibration/photos/picture_quality.h"
@@ -37,6 +38,8 @@ struct Observations {
     std::vector<ChartView> chart_views;                                  // of the views found
     std::map<std::string, std::vector<ChromaticPair>> chromatic_pairs;   // by channel
     std::map<std::string, std::vector<LightGroup>> flat_fields, whites;  // by channel
+    /// By view: the channel that geometry is measured in, and where among its `whites` the view's stands.
+    std::map<std::size_t, std::pair<std::string, std::size_t>> reference_whites;
     SharpnessObservations sharpness;
 };
 
@@ -131,6 +134,9 @@ void observe_chart(Observations& seen, const Image& image, const Picture& pictur
         for (int channel = 0; channel < image.channel_count(); ++channel) {
             const std::string& channel_name = image.channels[channel];
             if (picture.use_light) {
+                if (channel == reference) {
+                    seen.reference_whites[seen.views.size()] = {channel_name, seen.whites[channel_name].size()};
+                }
                 seen.whites[channel_name].push_back(chart_white_samples(image, channel, points, chart));
             }
             if (channel == reference || !grey) {
@@ -318,6 +324,22 @@ void add_vignetting(Profile& profile, const Observations& seen, const Vec2d& cen
     }
 }
 
+// What the charts' white shows of the lamps, now that the vignetting is known.
+void add_light_gradients(Profile& profile, const Observations& seen, const Vec2d& centre) {
+    for (std::size_t v = 0; v < profile.views.size(); ++v) {
+        const auto white = seen.reference_whites.find(v);
+        if (white == seen.reference_whites.end()) {
+            continue;
+        }
+        const auto curve = profile.curves.find("vignetting_" + white->second.first);
+        if (curve != profile.curves.end()) {
+            const auto& [channel, index] = white->second;
+            profile.views[v].traits->light_gradient_per_mm =
+                light_gradient_per_mm(seen.whites.at(channel)[index], curve->second, centre, half_diagonal_px(profile));
+        }
+    }
+}
+
 void add_chromatic_shifts(Profile& profile, const Observations& seen, const Vec2d& centre) {
     if (seen.grey) {
         profile.not_measured["chromatic_shift"] = "the pictures are grey";
@@ -384,6 +406,7 @@ Profile measure(const MeasureInput& input) {
     }
     add_sharpness(profile, seen.sharpness, centre);
     add_vignetting(profile, seen, centre);
+    add_light_gradients(profile, seen, centre);
     add_chromatic_shifts(profile, seen, centre);
     if (input.self_test) {
         add_self_test(profile, input);
