@@ -99,12 +99,8 @@ void print_profile(const Profile& profile) {
                     "EV");
     }
     for (const auto& [channel, models] : profile.vignetting_models) {
-        if (models.front().values.empty()) {
-            fmt::print("{:22} no formula, but a spline (rms {:.3f} %)\n", "vignetting " + channel,
-                       100.0 * models.front().relative_rms);
-        } else {
-            fmt::print("{:22} {} (rms {:.3f} %)\n", "vignetting " + channel, models.front().name,
-                       100.0 * models.front().relative_rms);
+        if (!models.empty()) {
+            fmt::print("{:22} {}: {}\n", "vignetting " + channel, models.front().name, models.front().verdict);
         }
     }
     for (const auto& [name, terms] : profile.terms) {
