@@ -277,6 +277,7 @@ void add_geometry(Profile& profile, const Observations& seen, const GeometryFit&
     profile.geometry =
         ProfileGeometry{.model = geometry.model,
                         .covariance = geometry.covariance,
+                        .view_standard_error = geometry.view_standard_error,
                         .reprojection_rms_px = geometry.rms_px,
                         .views_used = static_cast<int>(geometry.views.size()),
                         .points_used = geometry.points_used,

@@ -330,6 +330,11 @@ LensfunExport lensfun_export(const Profile& profile, const LensfunOptions& optio
         distortion->model, name_of(result.type), kind_name(geometry.model), result.largest_difference_px,
         100.0 * geometry.covered_image_height));
 
+    if (stretch_y(geometry.model) != 0.0) {
+        result.notes.push_back(
+            fmt::format("lensfun knows square pixels only: a stretch of heights by {:.3g} % is left out",
+                        100.0 * stretch_y(geometry.model)));
+    }
     std::string calibration = fmt::format("            <distortion model=\"{}\" focal=\"{:.9g}\"", distortion->model,
                                           options.focal_length_mm);
     for (const auto& [name, value] : distortion->terms) {

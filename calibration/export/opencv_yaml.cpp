@@ -21,13 +21,15 @@ constexpr int kReweightings = 12;
 struct OpencvCamera {
     bool fisheye = false;
     double focal_px = 0.0;
+    double stretch_y = 0.0;  // the vertical focal length over the horizontal one, less 1
     Vec2d centre_px;
     std::vector<double> distortion;
     double largest_difference_px = 0.0;
 };
 
 cv::Matx33d camera_matrix(const OpencvCamera& camera) {
-    return {camera.focal_px, 0.0, camera.centre_px.x, 0.0, camera.focal_px, camera.centre_px.y, 0.0, 0.0, 1.0};
+    const double vertical_px = camera.focal_px * (1.0 + camera.stretch_y);
+    return {camera.focal_px, 0.0, camera.centre_px.x, 0.0, vertical_px, camera.centre_px.y, 0.0, 0.0, 1.0};
 }
 
 bool is_in_front(const Vec3d& direction) {
@@ -186,15 +188,35 @@ std::optional<OpencvCamera> same_model(const CameraModel& model) {
     const std::vector<double> values = parameters(model);
     OpencvCamera camera{.fisheye = !brown,
                         .focal_px = focal_length_px(model),
+                        .stretch_y = stretch_y(model),
                         .centre_px = centre_px(model),
                         .distortion = std::vector<double>(order.size(), 0.0)};
-    for (std::size_t i = 3; i < names.size(); ++i) {
+    for (std::size_t i = 3; i + 1 < names.size(); ++i) {
         const auto place = std::ranges::find(order, names[i]);
         if (place != order.end()) {
             camera.distortion[static_cast<std::size_t>(place - order.begin())] = values[i];
         } else if (values[i] != 0.0) {
             return std::nullopt;
         }
+    }
+    return camera;
+}
+
+/// The frame with square pixels: heights over the principal point without their stretch.
+std::vector<FramePoint> square_pixels(std::vector<FramePoint> frame, const CameraModel& model) {
+    const double centre = centre_px(model).y;
+    for (FramePoint& point : frame) {
+        point.pixel_px.y = centre + (point.pixel_px.y - centre) / (1.0 + stretch_y(model));
+    }
+    return frame;
+}
+
+/// A camera that was fitted to square pixels, with the model's stretch.
+std::optional<OpencvCamera> stretched(std::optional<OpencvCamera> camera, const CameraModel& model) {
+    if (camera) {
+        const double centre = centre_px(model).y;
+        camera->stretch_y = stretch_y(model);
+        camera->centre_px.y = centre + (camera->centre_px.y - centre) * (1.0 + camera->stretch_y);
     }
     return camera;
 }
@@ -238,9 +260,10 @@ OpencvExport opencv_export(const Profile& profile) {
     };
     consider(same_model(geometry.model));
     if (!best) {
-        consider(fit_pinhole(frame, false));
-        consider(fit_pinhole(frame, true));
-        consider(fit_fisheye(frame));
+        const std::vector<FramePoint> square = square_pixels(frame, geometry.model);
+        consider(stretched(fit_pinhole(square, false), geometry.model));
+        consider(stretched(fit_pinhole(square, true), geometry.model));
+        consider(stretched(fit_fisheye(square), geometry.model));
     }
     if (!best) {
         throw InputError(profile.name + ": none of OpenCV's camera models follows the profile's " +

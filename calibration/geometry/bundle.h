@@ -56,6 +56,10 @@ std::optional<Vec2d> residual(const PointBundle& bundle, const BundleState& stat
 struct BundleInformation {
     int shared = 0;
     std::vector<double> shared_covariance;  // rows of held parameters are 0
+    /// The scatter of the shared parameters when views are left out one by one (the jackknife, to first order: Miller
+    /// 1974, Biometrika 61, 1; its clusters are the views), px² and all. Knows nothing of a noise model; (views − 1)
+    /// degrees of freedom. Empty for fewer than five views.
+    std::vector<double> view_covariance;
     struct View {
         std::array<double, 36> pose_covariance{};  // were the shared parameters known
         std::vector<double> pose_follows;          // 6 × shared: how the pose moves with the shared parameters

@@ -11,6 +11,7 @@ namespace {
 using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 using Matrix6 = Eigen::Matrix<double, 6, 6, Eigen::RowMajor>;
 
+constexpr std::size_t kFewestViews = 5;
 constexpr double kLeastEigenvalue = 1e-13;  // of a matrix with a unit diagonal: rounding
 
 // One view's part of the normal matrix.
@@ -18,13 +19,22 @@ struct ViewNormal {
     Eigen::MatrixXd shared;
     Eigen::MatrixXd mixed;  // shared × pose
     Matrix6 pose = Matrix6::Zero();
+    Eigen::VectorXd shared_gradient;
+    Eigen::Matrix<double, 6, 1> pose_gradient = Eigen::Matrix<double, 6, 1>::Zero();
+};
+
+// What a view adds to the normal equations of the shared parameters that are free, its pose eliminated.
+struct ViewShare {
+    Eigen::MatrixXd normal;
+    Eigen::VectorXd gradient;
 };
 
 ViewNormal view_normal(const PointBundle& bundle, const BundleState& state, const std::vector<double>& intrinsics,
                        std::size_t view) {
     const int n = static_cast<int>(intrinsics.size());
     ViewNormal normal{.shared = Eigen::MatrixXd::Zero(n + kBoardTerms, n + kBoardTerms),
-                      .mixed = Eigen::MatrixXd::Zero(n + kBoardTerms, 6)};
+                      .mixed = Eigen::MatrixXd::Zero(n + kBoardTerms, 6),
+                      .shared_gradient = Eigen::VectorXd::Zero(n + kBoardTerms)};
     const ChartView& points = bundle.views[view];
     RowMajor by_intrinsics(2, n);
     Eigen::Matrix<double, 2, 6, Eigen::RowMajor> by_pose;
@@ -46,6 +56,9 @@ ViewNormal view_normal(const PointBundle& bundle, const BundleState& state, cons
         normal.shared += by_shared.transpose() * by_shared;
         normal.mixed += by_shared.transpose() * by_pose;
         normal.pose += by_pose.transpose() * by_pose;
+        const Eigen::Map<const Eigen::Vector2d> residual(values);
+        normal.shared_gradient += by_shared.transpose() * residual;
+        normal.pose_gradient += by_pose.transpose() * residual;
     }
     return normal;
 }
@@ -60,10 +73,39 @@ std::vector<int> free_parameters(const Held& held, int intrinsics) {
     return indices;
 }
 
+// Columns scaled to unit length by `size`, so that ranks mean something: a combination of terms that the points say
+// nothing about gets an error that is huge rather than infinite. None for numbers that are not finite.
+std::optional<Eigen::MatrixXd> inverse_of(const Eigen::MatrixXd& normal, const Eigen::VectorXd& size) {
+    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(size.asDiagonal() * normal * size.asDiagonal());
+    if (eigen.info() != Eigen::Success) {
+        return std::nullopt;
+    }
+    const Eigen::VectorXd eigenvalues = eigen.eigenvalues().cwiseMax(kLeastEigenvalue);
+    return size.asDiagonal() * eigen.eigenvectors() * eigenvalues.cwiseInverse().asDiagonal() *
+           eigen.eigenvectors().transpose() * size.asDiagonal();
+}
+
+// How far the solution moves when each view is left out: δ = (N − N_v)⁻¹ g_v, the least squares' own step.
+std::optional<Eigen::MatrixXd> jackknife(const std::vector<ViewShare>& views, const Eigen::MatrixXd& reduced,
+                                         const Eigen::VectorXd& size) {
+    Eigen::MatrixXd steps(reduced.rows(), static_cast<Eigen::Index>(views.size()));
+    for (std::size_t v = 0; v < views.size(); ++v) {
+        const auto inverse = inverse_of(reduced - views[v].normal, size);
+        if (!inverse) {
+            return std::nullopt;
+        }
+        steps.col(static_cast<Eigen::Index>(v)) = *inverse * views[v].gradient;
+    }
+    const Eigen::VectorXd mean = steps.rowwise().mean();
+    steps.colwise() -= mean;
+    const auto count = static_cast<double>(views.size());
+    return (count - 1.0) / count * steps * steps.transpose();
+}
+
 }  // namespace
 
 // The inverse of the shared parameters' normal matrix after the poses have been eliminated view by view (Schur
-// complement), columns scaled to unit length so that ranks mean something.
+// complement).
 std::optional<BundleInformation> information(const PointBundle& bundle, const BundleState& state, const Held& held) {
     const std::vector<double> intrinsics = parameters(state.model);
     const int count = static_cast<int>(intrinsics.size()) + kBoardTerms;
@@ -73,6 +115,7 @@ std::optional<BundleInformation> information(const PointBundle& bundle, const Bu
     Eigen::MatrixXd reduced = Eigen::MatrixXd::Zero(n, n);
     BundleInformation result;
     result.shared = count;
+    std::vector<ViewShare> shares;
     for (std::size_t v = 0; v < bundle.views.size(); ++v) {
         const ViewNormal own = view_normal(bundle, state, intrinsics, v);
         const Eigen::Matrix<double, 6, 1> size = own.pose.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
@@ -82,7 +125,9 @@ std::optional<BundleInformation> information(const PointBundle& bundle, const Bu
         const Eigen::MatrixXd own_mixed = own.mixed(free, Eigen::all);
         const Eigen::MatrixXd own_shared = own.shared(free, free);
         normal += own_shared;
-        reduced += own_shared - own_mixed * inverse * own_mixed.transpose();
+        shares.push_back({own_shared - own_mixed * inverse * own_mixed.transpose(),
+                          own.shared_gradient(free) - own_mixed * inverse * own.pose_gradient});
+        reduced += shares.back().normal;
         BundleInformation::View view;
         Eigen::Map<Matrix6>(view.pose_covariance.data()) = inverse;
         view.pose_follows.resize(static_cast<std::size_t>(6) * count);
@@ -95,16 +140,15 @@ std::optional<BundleInformation> information(const PointBundle& bundle, const Bu
     }
     Eigen::Map<RowMajor> covariance(result.shared_covariance.data(), count, count);
     const Eigen::VectorXd size = normal.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
-    const Eigen::MatrixXd scaled = size.asDiagonal() * reduced * size.asDiagonal();
-    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(scaled);
-    if (eigen.info() != Eigen::Success) {
+    const auto inverse = inverse_of(reduced, size);
+    if (!inverse) {
         return std::nullopt;
     }
-    // A combination of terms that the points say nothing about gets an error that is huge rather than infinite.
-    const Eigen::VectorXd eigenvalues = eigen.eigenvalues().cwiseMax(kLeastEigenvalue);
-    const Eigen::MatrixXd inverse = size.asDiagonal() * eigen.eigenvectors() * eigenvalues.cwiseInverse().asDiagonal() *
-                                    eigen.eigenvectors().transpose() * size.asDiagonal();
-    covariance(free, free) = inverse;
+    covariance(free, free) = *inverse;
+    if (const auto scatter = shares.size() >= kFewestViews ? jackknife(shares, reduced, size) : std::nullopt) {
+        result.view_covariance.assign(result.shared_covariance.size(), 0.0);
+        Eigen::Map<RowMajor>(result.view_covariance.data(), count, count)(free, free) = *scatter;
+    }
     return result;
 }
 

@@ -161,7 +161,11 @@ std::vector<double> parameters(const CameraModel& model) {
 
 CameraModel with_parameters(const CameraModel& model, const std::vector<double>& values) {
     CameraModel result = model;
-    std::visit([&](auto& m) { std::copy_n(values.begin(), m.parameters.size(), m.parameters.begin()); }, result);
+    std::visit(
+        [&](auto& m) {
+            std::copy_n(values.begin(), std::min(values.size(), m.parameters.size()), m.parameters.begin());
+        },
+        result);
     return result;
 }
 
@@ -180,6 +184,10 @@ bool is_perspective(const CameraModel& model) {
 
 double focal_length_px(const CameraModel& model) {
     return std::visit([](const auto& m) { return m.parameters[0]; }, model);
+}
+
+double stretch_y(const CameraModel& model) {
+    return std::visit([](const auto& m) { return m.parameters.back(); }, model);
 }
 
 Vec2d centre_px(const CameraModel& model) {
@@ -211,7 +219,7 @@ std::optional<double> field_angle_rad(const CameraModel& model, double radius) {
 std::optional<Vec3d> unproject(const CameraModel& model, const Vec2d& pixel) {
     const Vec2d centre = centre_px(model);
     const double dx = pixel.x - centre.x;
-    const double dy = pixel.y - centre.y;
+    const double dy = (pixel.y - centre.y) / (1.0 + stretch_y(model));
     const double radius = std::hypot(dx, dy);
     const auto angle = field_angle_rad(model, radius);
     if (!angle) {

@@ -16,8 +16,9 @@ namespace lensproof {
 // Pixels: the centre of the top-left pixel is (0, 0). Angles are in radians and measured from the z axis.
 //
 // A model is a flat array of parameters, so that one template serves double and ceres::Jet. The first three are alike
-// in every model: focal length (the slope of r(θ) on the axis; square pixels) and principal point, px. A model whose
-// other parameters are 0 is the projection that its name says. Formulas stand at the models.
+// in every model: focal length (the slope of r(θ) on the axis) and principal point, px; the last is `stretch_y`
+// (radial_model.h), 0 for square pixels. A model whose other parameters are 0 is the projection that its name says.
+// Formulas stand at the models.
 
 /// In the order of ModelKind.
 using CameraModel = std::variant<BrownConrady, RationalBrownConrady, Division, Poly3, Poly5, PtLens, KannalaBrandt,
@@ -49,7 +50,7 @@ CameraModel empty_model(ModelKind kind);
 std::string kind_name(const CameraModel& model);
 std::vector<std::string> parameter_names(const CameraModel& model);
 std::vector<double> parameters(const CameraModel& model);
-/// The model with other parameters; `values` has as many as `parameters(model)`.
+/// The model with other parameters, the first of `parameters(model)` or all.
 CameraModel with_parameters(const CameraModel& model, const std::vector<double>& values);
 
 /// What the parameters behind the first three are, as indices into `parameters`. Those that are in neither list are
@@ -64,12 +65,14 @@ ModelTerms model_terms(const CameraModel& model);
 bool is_perspective(const CameraModel& model);
 
 double focal_length_px(const CameraModel& model);
+/// The vertical focal length over the horizontal one, less 1.
+double stretch_y(const CameraModel& model);
 Vec2d centre_px(const CameraModel& model);
 
 /// The pixel that shows `point` (camera frame, any unit), if the model images it.
 std::optional<Vec2d> project(const CameraModel& model, const Vec3d& point);
 
-/// The radial function r(θ), px, where the model images the angle.
+/// The radial function r(θ), px, before heights are stretched, where the model images the angle.
 double radius_px(const CameraModel& model, double angle_rad);
 
 /// Its inverse on the branch that starts on the axis: the angle imaged at `radius_px`, to machine precision. None

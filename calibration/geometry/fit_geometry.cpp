@@ -85,6 +85,7 @@ class Fit {
         for (int i = 0; i < std::clamp(options_.radial_terms.value_or(all), 0, all); ++i) {
             is_held[static_cast<std::size_t>(terms.radial[static_cast<std::size_t>(i)])] = false;
         }
+        is_held.back() = !options_.fit_stretch;
         for (const int i : terms.tangential) {
             is_held[static_cast<std::size_t>(i)] = !options_.fit_tangential;
         }
@@ -116,6 +117,7 @@ class Fit {
         const CameraModel model = empty_model(options_.model);
         std::vector<double> values = parameters(model);
         std::copy_n(parameters(start.model).begin(), 3, values.begin());
+        values.back() = stretch_y(start.model);
         const std::vector<std::string> names = parameter_names(model);
         for (std::size_t i = 3; i < names.size(); ++i) {
             if (names[i] == "normalisation_px") {
@@ -309,6 +311,9 @@ class Fit {
         fit.covariance.resize(own * own);
         for (std::size_t i = 0; i < own * own; ++i) {
             fit.covariance[i] = fit.shared_covariance[i / own * all + i % own];
+        }
+        for (std::size_t i = 0; i < own && !unit.view_covariance.empty(); ++i) {
+            fit.view_standard_error.push_back(std::sqrt(std::max(unit.view_covariance[i * (all + 1)], 0.0)));
         }
         if (options_.fit_board_shape) {
             fit.board = BoardShape{.frame = bundle_.frame, .height_mm = state.heights, .covariance = {}};

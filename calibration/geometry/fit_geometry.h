@@ -18,6 +18,8 @@ struct GeometryOptions {
     std::optional<int> radial_terms;
     /// p1 and p2 of the Brown-Conrady models. Off: a lens without decentring, e.g. a render.
     bool fit_tangential = true;
+    /// Fits `stretch_y` (radial_model.h): a vertical focal length that is not the horizontal one.
+    bool fit_stretch = false;
     /// Holds the principal point at the middle of the picture.
     bool fix_centre = false;
     /// Holds the focal length, which a single view that faces the camera cannot tell.
@@ -53,6 +55,10 @@ struct GeometryFit {
     CameraModel model;
     /// Row by row, in the order of `parameter_names(model)`; rows of parameters that were held are 0.
     std::vector<double> covariance;
+    /// Standard errors of the parameters by what repeats from view to view (BundleInformation::view_covariance), in the
+    /// same order; empty for fewer than five views. Larger than those of `covariance` where the residuals of a view are
+    /// alike: a chart that bent, a blur to one side, corners that a detector pulls all one way.
+    std::vector<double> view_standard_error;
     std::optional<BoardShape> board;  // if it was fitted
     /// The covariance of the intrinsics and the board's heights together, row by row.
     std::vector<double> shared_covariance;

@@ -53,6 +53,7 @@ std::vector<Trial> make_trials(const GeometryOptions& options) {
             trial.candidate.name += fmt::format(" with {} radial term{}", radial, radial == 1 ? "" : "s");
         }
         trial.candidate.parameters = (options.known_focal_px ? 0 : 1) + (options.fix_centre ? 0 : 2) + radial +
+                                     (options.fit_stretch ? 1 : 0) +
                                      (options.fit_tangential ? static_cast<int>(all.tangential.size()) : 0);
         trials.push_back(std::move(trial));
     }

@@ -8,21 +8,22 @@ namespace lensproof {
 
 /// Perspective projection with radial and tangential distortion (Brown 1971, "Close-range camera calibration"):
 ///     (x, y) = (X, Y) / Z,   ρ² = x² + y²,   L = 1 + k1 ρ² + k2 ρ⁴ + k3 ρ⁶,
-///     u = cx + f (x L + 2 p1 x y + p2 (ρ² + 2 x²)),   v = cy + f (y L + p1 (ρ² + 2 y²) + 2 p2 x y).
+///     u = cx + f (x L + 2 p1 x y + p2 (ρ² + 2 x²)),   v = cy + f (1 + stretch_y) (y L + p1 (ρ² + 2 y²) + 2 p2 x y).
 /// The rational kind divides L by 1 + k4 ρ² + k5 ρ⁴ + k6 ρ⁶ (Claus & Fitzgibbon 2005; OpenCV's 8 coefficients).
 /// Signs and order of the terms are OpenCV's. Images nothing at or beyond 90°.
 template <bool rational>
 struct BrownConradyModel {
-    static constexpr int count = rational ? 11 : 8;
+    static constexpr int count = rational ? 12 : 9;
     static constexpr std::string_view kind = rational ? "brown-conrady-rational" : "brown-conrady";
     static constexpr double largest_angle = kRightAngle;
     static constexpr auto names = [] {
         if constexpr (rational) {
             return std::array<std::string_view, count>{
-                "focal_length_px", "centre_x_px", "centre_y_px", "k1", "k2", "k3", "p1", "p2", "k4", "k5", "k6"};
+                "focal_length_px", "centre_x_px", "centre_y_px", "k1", "k2", "k3", "p1", "p2", "k4", "k5", "k6",
+                kStretchY};
         } else {
             return std::array<std::string_view, count>{
-                "focal_length_px", "centre_x_px", "centre_y_px", "k1", "k2", "k3", "p1", "p2"};
+                "focal_length_px", "centre_x_px", "centre_y_px", "k1", "k2", "k3", "p1", "p2", kStretchY};
         }
     }();
     static constexpr auto radial_terms = [] {
@@ -55,7 +56,8 @@ struct BrownConradyModel {
         const T rho2 = x * x + y * y;
         const T radial = radial_factor(p, rho2);
         pixel.x = p[1] + p[0] * (x * radial + T(2) * p[6] * x * y + p[7] * (rho2 + T(2) * x * x));
-        pixel.y = p[2] + p[0] * (y * radial + p[6] * (rho2 + T(2) * y * y) + T(2) * p[7] * x * y);
+        pixel.y =
+            p[2] + p[0] * (T(1) + p[count - 1]) * (y * radial + p[6] * (rho2 + T(2) * y * y) + T(2) * p[7] * x * y);
         return true;
     }
 

@@ -12,7 +12,11 @@ namespace lensproof {
 
 inline constexpr double kRightAngle = std::numbers::pi / 2 - 1e-6;  // where a perspective picture ends
 
-/// A camera that images a point along its azimuth at the distance r(θ) from the principal point.
+/// The last parameter of every model: what heights in the picture are stretched by, less 1. With it the vertical focal
+/// length is f (1 + stretch_y), f being the horizontal one: pixels that are not square, or a picture that was scaled.
+inline constexpr std::string_view kStretchY = "stretch_y";
+
+/// A camera that images a point along its azimuth at the distance r(θ) from the principal point (then stretched).
 ///
 /// `Radial` says r(θ). It has `kind`; `names` of its own parameters, which stand behind the first three; how many of
 /// them are coefficients of the distortion, lowest order first (`coefficients`; the rest are constants of the model,
@@ -20,7 +24,7 @@ inline constexpr double kRightAngle = std::numbers::pi / 2 - 1e-6;  // where a p
 /// inverse of the function without distortion, both in focal lengths.
 template <class Radial>
 struct RadialModel {
-    static constexpr int count = 3 + static_cast<int>(Radial::names.size());
+    static constexpr int count = 4 + static_cast<int>(Radial::names.size());
     static constexpr std::string_view kind = Radial::kind;
     static constexpr double largest_angle = Radial::largest_angle;
 
@@ -29,6 +33,7 @@ struct RadialModel {
         for (std::size_t i = 0; i < Radial::names.size(); ++i) {
             result[3 + i] = Radial::names[i];
         }
+        result[count - 1] = kStretchY;
         return result;
     }
     static constexpr std::array<std::string_view, count> names = make_names();
@@ -70,7 +75,7 @@ struct RadialModel {
             return false;
         }
         pixel.x = p[1] + scale * point.x;
-        pixel.y = p[2] + scale * point.y;
+        pixel.y = p[2] + (T(1) + p[count - 1]) * scale * point.y;
         return true;
     }
 

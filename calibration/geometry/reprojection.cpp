@@ -23,7 +23,15 @@ constexpr std::array<Project<T>, sizeof...(kind)> projections(std::index_sequenc
 template <class T>
 constexpr auto kProjections = projections<T>(std::make_index_sequence<std::variant_size_v<CameraModel>>());
 
-constexpr int kLargestModel = SplineRadial::coefficients + 4;
+template <std::size_t... kind>
+constexpr std::array<int, sizeof...(kind)> counts(std::index_sequence<kind...> /*kinds*/) {
+    return {std::variant_alternative_t<kind, CameraModel>::count...};
+}
+
+// How many parameters every model has.
+constexpr auto kCounts = counts(std::make_index_sequence<std::variant_size_v<CameraModel>>());
+
+constexpr int kLargestModel = Spline::count;
 
 class ReprojectionCost final : public ceres::CostFunction {
   public:
@@ -48,8 +56,8 @@ class ReprojectionCost final : public ceres::CostFunction {
         if (derivatives <= 6) {
             return evaluate<6>(blocks, residuals, wanted);
         }
-        if (derivatives <= 14) {
-            return evaluate<14>(blocks, residuals, wanted);
+        if (derivatives <= 15) {
+            return evaluate<15>(blocks, residuals, wanted);
         }
         return evaluate<kLargestModel + 6 + kBoardTerms>(blocks, residuals, wanted);
     }
@@ -146,8 +154,7 @@ std::optional<Vec2d> predict(const CameraModel& model, const Pose& pose, const V
 
 std::unique_ptr<ceres::CostFunction> reprojection_cost(ModelKind kind, const Feature& feature,
                                                        const BoardFrame& frame) {
-    const int count = static_cast<int>(parameters(empty_model(kind)).size());
-    return std::make_unique<ReprojectionCost>(kind, count, feature, frame);
+    return std::make_unique<ReprojectionCost>(kind, kCounts[static_cast<std::size_t>(kind)], feature, frame);
 }
 
 }  // namespace lensproof

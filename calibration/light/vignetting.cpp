@@ -2,12 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
+#include <iterator>
 #include <numbers>
 #include <optional>
 #include <string>
 
+#include "calibration/light/even_spline.h"
 #include "calibration/statistics/linear_fit.h"
+#include "calibration/statistics/smoothed_fit.h"
 #include "engine/io/input_error.h"
 
 namespace lensproof {
@@ -16,36 +18,12 @@ namespace {
 constexpr std::array<int, 9> kSpans = {1, 2, 3, 4, 6, 8, 12, 16, 24};
 constexpr double kOutlierSigmas = 5.0;
 constexpr std::size_t kFewestSamples = 12;
+constexpr std::size_t kPooled = 31;         // patches whose noise is taken to be the same
 constexpr std::size_t kFewestPerGroup = 5;  // a group's own terms are three
 constexpr int kSamplesPerParameter = 4;
 constexpr double kLeastRelativeError = 1e-3;  // dust, print and pixel response: no patch is evener than that
 constexpr double kLeastScale = 2.0;           // of that: within 1 % nothing is an outlier
 constexpr double kGradientUnit_mm = 100.0;
-
-double cardinal_cubic(double t) {  // the uniform cubic B-spline, support [-2, 2]
-    const double a = std::abs(t);
-    if (a >= 2.0) {
-        return 0.0;
-    }
-    return a >= 1.0 ? (2.0 - a) * (2.0 - a) * (2.0 - a) / 6.0 : 2.0 / 3.0 - a * a * (1.0 - 0.5 * a);
-}
-
-// s(r) = Σ c_i φ_i(r): an even spline with s(0) = 0.
-struct EvenSpline {
-    int spans = 1;
-    double reach = 1.0;  // the outermost knot
-
-    [[nodiscard]] int size() const { return spans + 1; }
-    [[nodiscard]] Eigen::RowVectorXd basis(double r) const {
-        const double t = r * spans / reach;
-        Eigen::RowVectorXd phi(size());
-        for (int i = 0; i < size(); ++i) {
-            phi(i) = cardinal_cubic(t - (i + 1));
-        }
-        phi(0) += cardinal_cubic(t + 1.0) - 1.0 / 3.0;  // the mirror image, and its value on the axis
-        return phi;
-    }
-};
 
 struct Row {
     Vec2d pixel_px;
@@ -58,28 +36,57 @@ struct Row {
     bool on_chart = false;
 };
 
+// A patch of 49 pixels tells its own noise to a tenth, and weights that scatter so cost 4 % of variance that no
+// covariance knows of. Patches as bright as each other have the same noise: the median over the nearest in brightness.
+void pool_errors(std::vector<LightSample>& samples) {
+    std::stable_sort(samples.begin(), samples.end(),
+                     [](const LightSample& a, const LightSample& b) { return a.value < b.value; });
+    const std::size_t window = std::min(kPooled, samples.size());
+    std::vector<double> pooled;
+    pooled.reserve(samples.size());
+    for (std::size_t i = 0; i < samples.size(); ++i) {
+        const std::size_t first = std::min(i > window / 2 ? i - window / 2 : 0, samples.size() - window);
+        std::vector<double> errors;
+        errors.reserve(window);
+        for (std::size_t k = first; k < first + window; ++k) {
+            errors.push_back(samples[k].relative_error);
+        }
+        const auto middle = errors.begin() + static_cast<std::ptrdiff_t>(window / 2);
+        std::nth_element(errors.begin(), middle, errors.end());
+        pooled.push_back(*middle);
+    }
+    for (std::size_t i = 0; i < samples.size(); ++i) {
+        samples[i].relative_error = pooled[i];
+    }
+}
+
 std::vector<Row> rows_of(const std::vector<LightGroup>& groups, const Vec2d& centre, double half_diagonal) {
     std::vector<Row> rows;
     int index = 0;
     for (const LightGroup& group : groups) {
+        std::vector<LightSample> lit;
+        std::copy_if(group.samples.begin(), group.samples.end(), std::back_inserter(lit), [](const LightSample& s) {
+            return std::isfinite(s.value) && s.value > 0.0 && std::isfinite(s.relative_error);
+        });
+        if (lit.size() < kFewestPerGroup) {
+            continue;
+        }
+        pool_errors(lit);
         std::vector<Row> own;
-        for (const LightSample& s : group.samples) {
-            if (std::isfinite(s.value) && s.value > 0.0 && std::isfinite(s.relative_error)) {
-                const Vec2d at{(s.pixel_px.x - centre.x) / half_diagonal, (s.pixel_px.y - centre.y) / half_diagonal};
-                own.push_back({.pixel_px = s.pixel_px,
-                               .at = at,
-                               .r = std::hypot(at.x, at.y),
-                               .log_value = std::log(s.value),
-                               .sigma = std::hypot(s.relative_error, kLeastRelativeError),
-                               .chart = {s.chart_mm.x / kGradientUnit_mm, s.chart_mm.y / kGradientUnit_mm},
-                               .group = index,
-                               .on_chart = group.on_chart});
-            }
+        own.reserve(lit.size());
+        for (const LightSample& s : lit) {
+            const Vec2d at{(s.pixel_px.x - centre.x) / half_diagonal, (s.pixel_px.y - centre.y) / half_diagonal};
+            own.push_back({.pixel_px = s.pixel_px,
+                           .at = at,
+                           .r = std::hypot(at.x, at.y),
+                           .log_value = std::log(s.value),
+                           .sigma = std::hypot(s.relative_error, kLeastRelativeError),
+                           .chart = {s.chart_mm.x / kGradientUnit_mm, s.chart_mm.y / kGradientUnit_mm},
+                           .group = index,
+                           .on_chart = group.on_chart});
         }
-        if (own.size() >= kFewestPerGroup) {
-            rows.insert(rows.end(), own.begin(), own.end());
-            ++index;
-        }
+        rows.insert(rows.end(), own.begin(), own.end());
+        ++index;
     }
     return rows;
 }
@@ -114,12 +121,13 @@ LinearProblem linear_problem(const std::vector<Row>& rows, const EvenSpline& spl
     return problem;
 }
 
-struct Chosen {
+// As many spans as the samples determine, by plain least squares: what outliers are judged by.
+struct Richest {
     EvenSpline spline;
     LinearFit fit;
 };
 
-std::optional<Chosen> richest(const std::vector<Row>& rows, double reach) {
+std::optional<Richest> richest(const std::vector<Row>& rows, double reach) {
     for (auto spans = kSpans.rbegin(); spans != kSpans.rend(); ++spans) {
         const EvenSpline spline{*spans, reach};
         const LinearProblem problem = linear_problem(rows, spline);
@@ -127,7 +135,7 @@ std::optional<Chosen> richest(const std::vector<Row>& rows, double reach) {
             continue;
         }
         if (auto fit = fit_linear(problem, kOutlierSigmas, kLeastScale)) {
-            return Chosen{spline, std::move(*fit)};
+            return Richest{spline, std::move(*fit)};
         }
     }
     return std::nullopt;
@@ -170,29 +178,30 @@ void renumber(std::vector<Row>& rows) {
     }
 }
 
-Vignetting sampled(const Chosen& chosen, const std::vector<Row>& rows, double covered) {
+Vignetting sampled(const EvenSpline& spline, const SmoothedFit& fit, const std::vector<Row>& rows, double covered) {
     Vignetting result;
-    result.spans = chosen.spline.spans;
-    result.samples_used = chosen.fit.rows_used;
-    result.chi_squared = chosen.fit.chi_squared;
-    result.gain_terms = static_cast<int>(chosen.fit.parameters.size()) - chosen.spline.size();
+    result.spans = spline.spans;
+    result.samples_used = static_cast<int>(rows.size());
+    result.chi_squared = fit.chi_squared;
+    result.gain_terms = static_cast<int>(fit.parameters.size()) - spline.size();
+    result.effective_terms = fit.effective_parameters - result.gain_terms;
     result.samples.reserve(rows.size());
     for (std::size_t i = 0; i < rows.size(); ++i) {  // the spline plus what it leaves: gains and gradients are out
-        const double on_curve = chosen.spline.basis(rows[i].r).dot(chosen.fit.parameters.head(chosen.spline.size()));
+        const double on_curve = spline.basis(rows[i].r).dot(fit.parameters.head(spline.size()));
         result.samples.push_back({.pixel_px = rows[i].pixel_px,
                                   .at = rows[i].at,
-                                  .log_ratio = on_curve + chosen.fit.residuals(static_cast<Eigen::Index>(i)),
+                                  .log_ratio = on_curve + fit.residuals(static_cast<Eigen::Index>(i)),
                                   .sigma = rows[i].sigma});
     }
     result.ratio.covered_image_height = result.ev.covered_image_height = covered;
-    const int size = chosen.spline.size();
+    const int size = spline.size();
     for (const double h : standard_image_heights()) {
         if (h > covered) {
             break;
         }
-        const Eigen::RowVectorXd phi = chosen.spline.basis(h);
-        const double log_v = h > 0.0 ? phi.dot(chosen.fit.parameters.head(size)) : 0.0;
-        const double variance = phi * chosen.fit.covariance.topLeftCorner(size, size) * phi.transpose();
+        const Eigen::RowVectorXd phi = spline.basis(h);
+        const double log_v = h > 0.0 ? phi.dot(fit.parameters.head(size)) : 0.0;
+        const double variance = phi * fit.covariance * phi.transpose();
         const double half_width = k95 * std::sqrt(std::max(variance, 0.0));
         const Banded log_band{log_v, log_v - half_width, log_v + half_width};
         append(result.ratio, h, {std::exp(log_band.value), std::exp(log_band.lower_95), std::exp(log_band.upper_95)});
@@ -201,17 +210,12 @@ Vignetting sampled(const Chosen& chosen, const std::vector<Row>& rows, double co
                 log_band.upper_95 * std::numbers::log2e});
     }
     for (int i = 0; i < size; ++i) {
-        result.coefficients.push_back(chosen.fit.parameters(i));
+        result.coefficients.push_back(fit.parameters(i));
         for (int k = 0; k < size; ++k) {
-            result.covariance.push_back(chosen.fit.covariance(i, k));
+            result.covariance.push_back(fit.covariance(i, k));
         }
     }
-    double squares = 0.0;
-    for (std::size_t i = 0; i < chosen.fit.used.size(); ++i) {
-        const double residual = chosen.fit.residuals(static_cast<Eigen::Index>(i));
-        squares += chosen.fit.used[i] ? residual * residual : 0.0;
-    }
-    result.relative_rms = std::sqrt(squares / chosen.fit.rows_used);
+    result.relative_rms = std::sqrt(fit.residuals.squaredNorm() / static_cast<double>(rows.size()));
     return result;
 }
 
@@ -243,30 +247,12 @@ Vignetting fit_vignetting(const std::vector<LightGroup>& groups, const Vec2d& ce
     rows = cleaned(rows, first->fit);
     renumber(rows);
     const double reach = reach_of(rows);
-    std::vector<Chosen> candidates;
-    std::size_t best = 0;
-    double best_criterion = std::numeric_limits<double>::infinity();
-    for (const int spans : kSpans) {
-        const EvenSpline spline{spans, reach};
-        const LinearProblem problem = linear_problem(rows, spline);
-        if (problem.a.cols() * kSamplesPerParameter > problem.a.rows() && spans != kSpans.front()) {
-            break;
-        }
-        auto fit = fit_linear(problem, 0.0);
-        if (!fit) {
-            continue;
-        }
-        if (const double criterion = aicc(fit->chi_squared, fit->rows_used, static_cast<double>(problem.a.cols()));
-            criterion < best_criterion) {
-            best_criterion = criterion;
-            best = candidates.size();
-        }
-        candidates.push_back({spline, std::move(*fit)});
-    }
-    if (candidates.empty()) {
+    const EvenSpline spline{first->spline.spans, reach};
+    const auto fit = fit_smoothed(linear_problem(rows, spline), spline.third_differences());
+    if (!fit) {
         throw fail();
     }
-    return sampled(candidates[std::min(best + 1, candidates.size() - 1)], rows, reach);
+    return sampled(spline, *fit, rows, reach);
 }
 
 PolynomialVignetting polynomial_vignetting(const Curve& ratio) {

@@ -22,6 +22,7 @@ struct Vignetting {
     Curve ratio;                       // V
     Curve ev;                          // log2 V
     int spans = 0;                     // of the spline
+    double effective_terms = 0.0;      // that the data left of them (statistics/smoothed_fit.h)
     std::vector<double> coefficients;  // of the spline of ln V, from the axis outwards
     std::vector<double> covariance;    // theirs, row by row
     int samples_used = 0;
@@ -34,14 +35,16 @@ struct Vignetting {
 /// Fits ln(value) = ln(gain of the group) + s(r) + (on charts) b_x X + b_y Y.
 ///
 /// s is a uniform cubic B-spline over r from the axis to the farthest sample, mirrored at r = 0 (V is even and smooth)
-/// and s(0) = 0. The number of spans, 1 to 24, is one size above the one with the least AICc (Hurvich & Tsai 1989):
-/// AICc balances bias and noise, and a band that knows only noise is honest when the bias is the smaller part. Few
-/// samples on charts leave a stiff curve; a flat field can follow vignetting that sets in suddenly, where a polynomial
-/// in r² of three terms is wrong by a percent. The gradient (b_x, b_y) allows for a lamp at one side of a chart.
+/// and s(0) = 0, of as many spans, 1 to 24, as the samples determine, so that a flat field can follow vignetting that
+/// sets in suddenly, where a polynomial in r² of three terms is wrong by a percent. The samples say how smooth it is
+/// (statistics/smoothed_fit.h, third differences): few samples on charts leave a stiff curve, a parabola at last. No
+/// number of spans is chosen by the residuals, because what such a choice scatters is in no band: chosen by the least
+/// AICc, curves scattered a fifth more than their bands said. The gradient (b_x, b_y) allows for a lamp at one side of
+/// a chart.
 ///
-/// In the logarithm all is linear, so the fit is exact least squares; samples beyond 5 robust standard deviations are
-/// left out, and the two kinds of groups are weighted by their own residuals. Bands cover the statistical error; they
-/// know nothing of flat fields that were not flat.
+/// In the logarithm all is linear; samples beyond 5 robust standard deviations are left out, and the two kinds of
+/// groups are weighted by their own residuals. Bands cover the statistical error; they know nothing of flat fields that
+/// were not flat, nor of how a kink is rounded off within a span or two of it.
 ///
 /// Throws InputError when there are too few samples (fewer than 12) or they all lie at one radius.
 Vignetting fit_vignetting(const std::vector<LightGroup>& groups, const Vec2d& centre_px, double half_diagonal_px);

@@ -19,7 +19,9 @@ Json to_json(const std::vector<VignettingModel>& models) {
         }
         json["covariance"] = model.covariance;
         json["relative_rms"] = model.relative_rms;
+        json["held_out_relative_rms"] = model.held_out_relative_rms;
         json["aicc"] = model.aicc;
+        json["verdict"] = model.verdict;
         list.push_back(std::move(json));
     }
     return list;
@@ -38,6 +40,10 @@ std::vector<VignettingModel> parse_vignetting_models(const JsonNode& node) {
         model.covariance = entry.at("covariance").numbers(model.values.size() * model.values.size());
         model.relative_rms = entry.at("relative_rms").number();
         model.aicc = entry.at("aicc").number();
+        if (entry.has("verdict")) {
+            model.held_out_relative_rms = entry.at("held_out_relative_rms").number();
+            model.verdict = entry.at("verdict").text();
+        }
         models.push_back(std::move(model));
     }
     return models;

@@ -9,7 +9,7 @@
 namespace lensproof {
 
 /// A list, the chosen formula first: `name`, `parameters` (each `value` and `standard_error`), `covariance` (row by
-/// row), `relative_rms`, `aicc`.
+/// row), `relative_rms`, `held_out_relative_rms`, `aicc`, `verdict` (why it was chosen, or why not, in words).
 nlohmann::ordered_json to_json(const std::vector<VignettingModel>& models);
 std::vector<VignettingModel> parse_vignetting_models(const JsonNode& node);
 

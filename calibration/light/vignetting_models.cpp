@@ -1,16 +1,24 @@
 #include "calibration/light/vignetting_models.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
+#include <functional>
+#include <numeric>
 #include <optional>
 
+#include "calibration/light/even_spline.h"
 #include "calibration/statistics/linear_fit.h"
+#include "calibration/statistics/smoothed_fit.h"
 
 namespace lensproof {
 namespace {
 
 constexpr int kIterations = 30;
 constexpr double kSettled = 1e-10;
+constexpr int kBlockSide = 11;
+constexpr int kFolds = 5;
 constexpr double kStep = 1e-6;  // of derivatives; parameters are of the order of one
 
 // A formula: its parameters' names, and V at a place.
@@ -56,6 +64,7 @@ std::optional<LinearProblem> linearised(const Formula& formula, const std::vecto
                           .y = Eigen::VectorXd(count),
                           .row_sigma = Eigen::VectorXd(count),
                           .group = {}};
+    problem.a.col(unknowns).setOnes();
     for (Eigen::Index i = 0; i < count; ++i) {
         const ShadingSample& sample = samples[static_cast<std::size_t>(i)];
         const auto here = log_ratio(formula, p, sample.at);
@@ -64,25 +73,34 @@ std::optional<LinearProblem> linearised(const Formula& formula, const std::vecto
         }
         problem.y(i) = sample.log_ratio - *here;
         problem.row_sigma(i) = sample.sigma;
-        problem.a(i, unknowns) = 1.0;
-        for (Eigen::Index k = 0; k < unknowns; ++k) {
-            std::vector<double> moved = p;
-            moved[static_cast<std::size_t>(k)] += kStep;
+    }
+    for (Eigen::Index k = 0; k < unknowns; ++k) {
+        std::vector<double> moved = p;
+        moved[static_cast<std::size_t>(k)] += kStep;
+        for (Eigen::Index i = 0; i < count; ++i) {
+            const ShadingSample& sample = samples[static_cast<std::size_t>(i)];
             const auto there = log_ratio(formula, moved, sample.at);
             if (!there) {
                 return std::nullopt;
             }
-            problem.a(i, k) = (*there - *here) / kStep;
+            problem.a(i, k) = (*there - (sample.log_ratio - problem.y(i))) / kStep;
         }
     }
     return problem;
 }
 
-std::optional<VignettingModel> fitted(const Formula& formula, const Vignetting& vignetting) {
+// A formula's parameters, and ln of the gain that the samples have against it.
+struct FittedFormula {
+    std::vector<double> parameters;
+    LinearFit fit;
+    double log_gain = 0.0;
+};
+
+std::optional<FittedFormula> fitted(const Formula& formula, const std::vector<ShadingSample>& samples) {
     std::vector<double> p(formula.parameters.size(), 0.0);
     std::optional<LinearFit> fit;
     for (int i = 0; i < kIterations; ++i) {
-        const auto problem = linearised(formula, p, vignetting.samples);
+        const auto problem = linearised(formula, p, samples);
         fit = problem ? fit_linear(*problem, 0.0) : std::nullopt;
         if (!fit) {
             return std::nullopt;
@@ -97,19 +115,184 @@ std::optional<VignettingModel> fitted(const Formula& formula, const Vignetting& 
             break;
         }
     }
+    const double log_gain = fit->parameters(static_cast<Eigen::Index>(p.size()));
+    return FittedFormula{std::move(p), std::move(*fit), log_gain};
+}
+
+VignettingModel model_of(const Formula& formula, const FittedFormula& found, const Vignetting& vignetting) {
+    const auto count = static_cast<Eigen::Index>(formula.parameters.size());
     VignettingModel model{
         .name = formula.name,
         .parameter_names = formula.parameters,
-        .values = p,
+        .values = found.parameters,
         .covariance = {},
-        .relative_rms = std::sqrt(fit->residuals.squaredNorm() / fit->rows_used),
-        .aicc = aicc(fit->chi_squared, fit->rows_used, static_cast<double>(p.size()) + vignetting.gain_terms)};
-    for (Eigen::Index i = 0; i < static_cast<Eigen::Index>(p.size()); ++i) {
-        for (Eigen::Index k = 0; k < static_cast<Eigen::Index>(p.size()); ++k) {
-            model.covariance.push_back(fit->covariance(i, k));
+        .relative_rms = std::sqrt(found.fit.residuals.squaredNorm() / found.fit.rows_used),
+        .aicc = aicc(found.fit.chi_squared, found.fit.rows_used, static_cast<double>(count) + vignetting.gain_terms)};
+    for (Eigen::Index i = 0; i < count; ++i) {
+        for (Eigen::Index k = 0; k < count; ++k) {
+            model.covariance.push_back(found.fit.covariance(i, k));
         }
     }
     return model;
+}
+
+// ln of the light that a model fitted to `samples` expects of a place.
+using Prediction = std::function<double(const Vec2d& at)>;
+
+std::optional<Prediction> formula_prediction(const Formula& formula, const std::vector<ShadingSample>& samples) {
+    const auto found = fitted(formula, samples);
+    if (!found) {
+        return std::nullopt;
+    }
+    return [&formula, p = found->parameters, gain = found->log_gain](const Vec2d& at) {
+        return gain + log_ratio(formula, p, at).value_or(-1.0);  // no light where there is some: far off
+    };
+}
+
+std::optional<Prediction> spline_prediction(const EvenSpline& spline, const std::vector<ShadingSample>& samples) {
+    const auto count = static_cast<Eigen::Index>(samples.size());
+    LinearProblem problem{.a = Eigen::MatrixXd::Ones(count, spline.size() + 1),
+                          .y = Eigen::VectorXd(count),
+                          .row_sigma = Eigen::VectorXd(count),
+                          .group = {}};
+    for (Eigen::Index i = 0; i < count; ++i) {
+        const ShadingSample& sample = samples[static_cast<std::size_t>(i)];
+        problem.a.row(i).head(spline.size()) = spline.basis(std::hypot(sample.at.x, sample.at.y));
+        problem.y(i) = sample.log_ratio;
+        problem.row_sigma(i) = sample.sigma;
+    }
+    const auto fit = fit_smoothed(problem, spline.third_differences());
+    if (!fit) {
+        return std::nullopt;
+    }
+    return [spline, p = fit->parameters](const Vec2d& at) {
+        return spline.basis(std::hypot(at.x, at.y)).dot(p.head(spline.size())) + p(spline.size());
+    };
+}
+
+// The picture in blocks, each in one of five folds; blocks that touch along a side are in different folds.
+struct Blocks {
+    std::vector<int> block;  // of each sample
+    std::vector<int> fold;   // of each block
+};
+
+Blocks blocks_of(const std::vector<ShadingSample>& samples) {
+    Vec2d low = samples.front().pixel_px;
+    Vec2d high = low;
+    for (const ShadingSample& sample : samples) {
+        low = {std::min(low.x, sample.pixel_px.x), std::min(low.y, sample.pixel_px.y)};
+        high = {std::max(high.x, sample.pixel_px.x), std::max(high.y, sample.pixel_px.y)};
+    }
+    const auto index = [](double value, double least, double most) {
+        const double share = most > least ? (value - least) / (most - least) : 0.0;
+        return std::min(static_cast<int>(share * kBlockSide), kBlockSide - 1);
+    };
+    Blocks blocks;
+    for (const ShadingSample& sample : samples) {
+        blocks.block.push_back(index(sample.pixel_px.y, low.y, high.y) * kBlockSide +
+                               index(sample.pixel_px.x, low.x, high.x));
+    }
+    for (int row = 0; row < kBlockSide; ++row) {
+        for (int column = 0; column < kBlockSide; ++column) {
+            blocks.fold.push_back((column + 2 * row) % kFolds);
+        }
+    }
+    return blocks;
+}
+
+// Squared errors of what was left out, in units of the samples' sigmas and summed by block; none where a model cannot
+// be fitted to the rest.
+using Fitter = std::function<std::optional<Prediction>(const std::vector<ShadingSample>& samples)>;
+
+std::optional<std::vector<double>> held_out_squares(const Fitter& fit, const std::vector<ShadingSample>& samples,
+                                                    const Blocks& blocks) {
+    std::vector<double> squares(blocks.fold.size(), 0.0);
+    for (int fold = 0; fold < kFolds; ++fold) {
+        const auto is_out = [&](std::size_t i) {
+            return blocks.fold[static_cast<std::size_t>(blocks.block[i])] == fold;
+        };
+        std::vector<ShadingSample> rest;
+        for (std::size_t i = 0; i < samples.size(); ++i) {
+            if (!is_out(i)) {
+                rest.push_back(samples[i]);
+            }
+        }
+        const auto expected = fit(rest);
+        if (!expected) {
+            return std::nullopt;
+        }
+        for (std::size_t i = 0; i < samples.size(); ++i) {
+            if (is_out(i)) {
+                const double error = (samples[i].log_ratio - (*expected)(samples[i].at)) / samples[i].sigma;
+                squares[static_cast<std::size_t>(blocks.block[i])] += error * error;
+            }
+        }
+    }
+    return squares;
+}
+
+struct Candidate {
+    VignettingModel model;
+    double terms = 0.0;
+    std::vector<double> squares;
+};
+
+// How much more than `best` a candidate is off, in the sum of squares, less one standard error of the difference.
+double excess(const Candidate& candidate, const Candidate& best, const Blocks& blocks) {
+    std::vector<bool> is_lit(blocks.fold.size(), false);
+    for (const int block : blocks.block) {
+        is_lit[static_cast<std::size_t>(block)] = true;
+    }
+    const auto n = static_cast<double>(std::count(is_lit.begin(), is_lit.end(), true));
+    double sum = 0.0;
+    for (std::size_t b = 0; b < is_lit.size(); ++b) {
+        sum += candidate.squares[b] - best.squares[b];
+    }
+    double squares = 0.0;
+    for (std::size_t b = 0; b < is_lit.size(); ++b) {
+        squares += is_lit[b] ? std::pow(candidate.squares[b] - best.squares[b] - sum / n, 2) : 0.0;
+    }
+    return sum - (n > 1.0 ? std::sqrt(squares * n / (n - 1.0)) : 0.0);
+}
+
+std::string percent(double ratio) {
+    return fmt::format("{:.3f} %", 100.0 * ratio);
+}
+
+// The simplest of those that predict as well as the best within chance comes first (Breiman et al. 1984, 3.4.3), then
+// by what they predict; and each is told why.
+void choose(std::vector<Candidate>& candidates, const Blocks& blocks) {
+    const auto held_out = [](const Candidate& c) { return c.model.held_out_relative_rms; };
+    std::stable_sort(candidates.begin(), candidates.end(),
+                     [&](const Candidate& a, const Candidate& b) { return held_out(a) < held_out(b); });
+    const Candidate best = candidates.front();
+    std::size_t chosen = 0;
+    for (std::size_t i = 1; i < candidates.size(); ++i) {
+        if (excess(candidates[i], best, blocks) <= 0.0 && candidates[i].terms < candidates[chosen].terms) {
+            chosen = i;
+        }
+    }
+    for (std::size_t i = 0; i < candidates.size(); ++i) {
+        VignettingModel& model = candidates[i].model;
+        const std::string own =
+            fmt::format("predicts blocks that it has not seen to {}", percent(held_out(candidates[i])));
+        const double much = held_out(candidates[i]) / held_out(best) - 1.0;
+        if (i == chosen) {
+            model.verdict =
+                "chosen: " + own +
+                (i == 0 ? ", better than any other"
+                        : fmt::format(", like {} ({}) within chance, with fewer terms ({:.0f} against {:.0f})",
+                                      best.model.name, percent(held_out(best)), candidates[i].terms, best.terms));
+        } else if (excess(candidates[i], best, blocks) > 0.0) {
+            model.verdict = own + fmt::format(", {:.1f} % worse than {}, beyond chance", 100.0 * much, best.model.name);
+        } else {
+            model.verdict =
+                own + fmt::format(", no better than {} beyond chance, with more terms ({:.0f} against {:.0f})",
+                                  candidates[chosen].model.name, candidates[i].terms, candidates[chosen].terms);
+        }
+    }
+    std::rotate(candidates.begin(), candidates.begin() + static_cast<std::ptrdiff_t>(chosen),
+                candidates.begin() + static_cast<std::ptrdiff_t>(chosen) + 1);
 }
 
 }  // namespace
@@ -121,21 +304,45 @@ double relative_illumination(const VignettingModel& model, const Vec2d& at) {
 }
 
 std::vector<VignettingModel> fit_vignetting_models(const Vignetting& vignetting) {
-    std::vector<VignettingModel> models;
+    const std::vector<ShadingSample>& samples = vignetting.samples;
+    const Blocks blocks = blocks_of(samples);
+    double weights = 0.0;
+    for (const ShadingSample& sample : samples) {
+        weights += 1.0 / (sample.sigma * sample.sigma);
+    }
+    std::vector<Candidate> candidates;
+    const auto add = [&](VignettingModel model, double terms, const Fitter& fit) {
+        auto squares = held_out_squares(fit, samples, blocks);
+        if (squares) {
+            const double sum = std::accumulate(squares->begin(), squares->end(), 0.0);
+            model.held_out_relative_rms = std::sqrt(sum / weights);
+            candidates.push_back({std::move(model), terms, std::move(*squares)});
+        }
+    };
     for (const Formula& formula : formulas()) {
-        if (auto model = fitted(formula, vignetting)) {
-            models.push_back(std::move(*model));
+        if (const auto found = fitted(formula, samples)) {
+            add(model_of(formula, *found, vignetting), static_cast<double>(formula.parameters.size()),
+                [&](const std::vector<ShadingSample>& rest) { return formula_prediction(formula, rest); });
         }
     }
-    models.push_back({.name = "spline",
-                      .parameter_names = {},
-                      .values = {},
-                      .covariance = {},
-                      .relative_rms = vignetting.relative_rms,
-                      .aicc = aicc(vignetting.chi_squared, vignetting.samples_used,
-                                   static_cast<double>(vignetting.coefficients.size()) + vignetting.gain_terms)});
-    std::stable_sort(models.begin(), models.end(),
-                     [](const VignettingModel& a, const VignettingModel& b) { return a.aicc < b.aicc; });
+    VignettingModel free_form{.name = "spline",
+                              .parameter_names = {},
+                              .values = {},
+                              .covariance = {},
+                              .relative_rms = vignetting.relative_rms,
+                              .aicc = aicc(vignetting.chi_squared, vignetting.samples_used,
+                                           vignetting.effective_terms + vignetting.gain_terms)};
+    const EvenSpline spline{vignetting.spans, vignetting.ratio.covered_image_height};
+    add(std::move(free_form), vignetting.effective_terms,
+        [&](const std::vector<ShadingSample>& rest) { return spline_prediction(spline, rest); });
+    if (!candidates.empty()) {
+        choose(candidates, blocks);
+    }
+    std::vector<VignettingModel> models;
+    models.reserve(candidates.size());
+    for (Candidate& candidate : candidates) {
+        models.push_back(std::move(candidate.model));
+    }
     return models;
 }
 

@@ -40,6 +40,9 @@ struct ProfileSource {
 struct ProfileGeometry {
     CameraModel model;
     std::vector<double> covariance;  // row by row, in the order of parameter_names(model)
+    /// Of the parameters in the same order, by what repeats from view to view (geometry/fit_geometry.h); empty for
+    /// fewer than five views and in profiles from before (JSON key "view_standard_error" beside "standard_error").
+    std::vector<double> view_standard_error = {};
     double reprojection_rms_px = 0.0;
     int views_used = 0;
     int points_used = 0;
@@ -113,7 +116,8 @@ struct Profile {
 /// Half the picture's diagonal, px: the unit of image heights.
 double half_diagonal_px(const Profile& profile);
 
-/// The profile as JSON, schema "lensproof-profile/1"; numbers are written so that reading returns the same bits.
+/// The profile as JSON (a stretch_y that was held at 0 is not written), schema "lensproof-profile/1"; numbers are
+/// written so that reading returns the same bits.
 nlohmann::ordered_json to_json(const Profile& profile);
 
 /// Reads what `to_json` wrote. Unknown keys are ignored. Throws InputError naming `file`, the key, what was found and

@@ -42,6 +42,10 @@ CameraModel parse_model(const Node& node) {
     const CameraModel model = empty_model(*found);
     std::vector<double> values;
     for (const std::string& name : parameter_names(model)) {
+        if (name == kStretchY && !node.at("parameters").has(name)) {
+            values.push_back(0.0);
+            continue;
+        }
         const Node value = node.at("parameters").at(name).at("value");
         values.push_back(value.number());
         const bool length = name == "focal_length_px" || name == "normalisation_px" || name == "spline_end_rad";
@@ -56,7 +60,11 @@ ProfileGeometry parse_geometry(const Node& root) {
     ProfileGeometry geometry;
     const Node model = root.at("model");
     geometry.model = parse_model(model);
-    const std::vector<std::string> names = parameter_names(geometry.model);
+    std::vector<std::string> names = parameter_names(geometry.model);
+    const std::size_t all = names.size();
+    if (!model.at("parameters").has(std::string(kStretchY))) {
+        names.pop_back();
+    }
     const Node order = model.at("covariance").at("parameter_order");
     if (order.texts() != names) {
         throw order.error("the parameters in the model's order");
@@ -66,13 +74,20 @@ ProfileGeometry parse_geometry(const Node& root) {
     if (rows.size() != names.size()) {
         throw matrix.error("a matrix of " + std::to_string(names.size()) + " rows");
     }
-    for (const Node& row : rows) {
-        const std::vector<double> values = row.numbers(names.size());
-        geometry.covariance.insert(geometry.covariance.end(), values.begin(), values.end());
-    }
-    for (std::size_t i = 0; i < names.size(); ++i) {
-        if (!(geometry.covariance[i * (names.size() + 1)] >= 0.0)) {
+    geometry.covariance.assign(all * all, 0.0);
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+        const std::vector<double> values = rows[i].numbers(names.size());
+        std::copy(values.begin(), values.end(), geometry.covariance.begin() + static_cast<std::ptrdiff_t>(i * all));
+        if (!(values[i] >= 0.0)) {
             throw matrix.error("variances that are not negative");
+        }
+    }
+    for (const std::string& name : names) {
+        const Node parameter = model.at("parameters").at(name);
+        if (parameter.has("view_standard_error")) {
+            geometry.view_standard_error.resize(all, 0.0);
+            geometry.view_standard_error[static_cast<std::size_t>(&name - names.data())] =
+                parameter.at("view_standard_error").number();
         }
     }
     geometry.reprojection_rms_px = root.at("reprojection_rms_px").number();

@@ -33,13 +33,20 @@ Json source_json(const ProfileSource& source) {
 }
 
 Json model_json(const ProfileGeometry& geometry) {
-    const std::vector<std::string> names = parameter_names(geometry.model);
+    std::vector<std::string> names = parameter_names(geometry.model);
     const std::vector<double> values = parameters(geometry.model);
+    const std::size_t all = names.size();
+    if (stretch_y(geometry.model) == 0.0 && geometry.standard_error(all - 1) == 0.0) {
+        names.pop_back();
+    }
     Json list = Json::object();
     Json matrix = Json::array();
     for (std::size_t i = 0; i < names.size(); ++i) {
         list[names[i]] = {{"value", values[i]}, {"standard_error", geometry.standard_error(i)}};
-        const auto row = geometry.covariance.begin() + static_cast<std::ptrdiff_t>(i * names.size());
+        if (!geometry.view_standard_error.empty()) {
+            list[names[i]]["view_standard_error"] = geometry.view_standard_error[i];
+        }
+        const auto row = geometry.covariance.begin() + static_cast<std::ptrdiff_t>(i * all);
         matrix.push_back(std::vector<double>(row, row + static_cast<std::ptrdiff_t>(names.size())));
     }
     return {{"kind", kind_name(geometry.model)},

@@ -10,6 +10,7 @@ namespace lensproof {
 namespace {
 
 constexpr int kReweightings = 20;
+constexpr double kSettled = 1e-4;        // of the scale
 constexpr double kCauchyWidth = 2.385;   // in sigmas: 95 % efficient for normal residuals (Holland & Welsch 1977)
 constexpr double kRankThreshold = 1e-9;  // of the largest pivot, columns scaled to unit length
 
@@ -68,11 +69,15 @@ std::optional<Eigen::VectorXd> inliers(const LinearProblem& problem, double outl
             return std::nullopt;
         }
         residuals = normalized_residuals(problem, solution->parameters);
+        const double last = scale;
         scale = std::max(robust_scale(residuals), smallest_scale);
         if (!(scale > 0.0)) {
             return Eigen::VectorXd(Eigen::VectorXd::Ones(rows));
         }
         weight = (1.0 + (residuals / (kCauchyWidth * scale)).array().square()).inverse().matrix();
+        if (std::abs(scale - last) < kSettled * scale) {
+            break;
+        }
     }
     std::map<int, bool> outlying;
     for (Eigen::Index i = 0; i < rows; ++i) {

@@ -134,6 +134,7 @@ int run_measure(const MeasureOptions& options) {
     input.model = model_kind(options.model);  // none for "auto"
     input.source = source;
     input.geometry.fit_board_shape = options.fit_board_shape;
+    input.geometry.fit_stretch = options.aspect == "free";
     if (options.pixel_pitch_um > 0.0) {
         input.pixel_pitch_um = options.pixel_pitch_um;
     }
@@ -194,6 +195,10 @@ void add_measure_command(CLI::App& app, int& status) {
         ->add_option("--model", options->model,
                      "The lens model; auto chooses by held-out error and uncertainty, and says why")
         ->check(CLI::IsMember(models))
+        ->capture_default_str();
+    command
+        ->add_option("--aspect", options->aspect, "Of the pixels: square, or free to fit a vertical focal length too")
+        ->check(CLI::IsMember({"square", "free"}))
         ->capture_default_str();
     command->add_flag("--board-shape", options->fit_board_shape, "Fit how far the chart is from flat, with the lens");
     command->add_option("--pixel-pitch", options->pixel_pitch_um, "Pixel pitch in µm, for lengths in mm")

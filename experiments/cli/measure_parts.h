@@ -28,6 +28,7 @@ struct MeasureOptions {
     std::vector<std::string> edges;
     std::vector<double> focus_positions_mm;
     bool fit_board_shape = false;
+    std::string aspect = "square";
     std::vector<std::string> bands;
     double reference_band_nm = 550.0;
     std::string mosaic;

@@ -81,7 +81,13 @@ void print_profile(const Profile& profile) {
         fmt::print("{}: {} points in {} views, rms {:.4f} px\n", kind_name(geometry.model), geometry.points_used,
                    geometry.views_used, geometry.reprojection_rms_px);
         for (std::size_t i = 0; i < names.size(); ++i) {
-            fmt::print("{:22} {:.6g} ± {:.2g}\n", names[i], values[i], geometry.standard_error(i));
+            if (names[i] == kStretchY && values[i] == 0.0) {
+                continue;  // square pixels
+            }
+            fmt::print("{:22} {:.6g} ± {:.2g}", names[i], values[i], geometry.standard_error(i));
+            fmt::print("{}\n", geometry.view_standard_error.empty()
+                                   ? ""
+                                   : fmt::format(" (from view to view ± {:.2g})", geometry.view_standard_error[i]));
         }
     }
     if (profile.geometry && profile.geometry->board) {
@@ -99,12 +105,8 @@ void print_profile(const Profile& profile) {
                     "EV");
     }
     for (const auto& [channel, models] : profile.vignetting_models) {
-        if (models.front().values.empty()) {
-            fmt::print("{:22} no formula, but a spline (rms {:.3f} %)\n", "vignetting " + channel,
-                       100.0 * models.front().relative_rms);
-        } else {
-            fmt::print("{:22} {} (rms {:.3f} %)\n", "vignetting " + channel, models.front().name,
-                       100.0 * models.front().relative_rms);
+        if (!models.empty()) {
+            fmt::print("{:22} {}: {}\n", "vignetting " + channel, models.front().name, models.front().verdict);
         }
     }
     for (const auto& [name, terms] : profile.terms) {

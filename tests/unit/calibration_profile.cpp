@@ -20,7 +20,7 @@ Profile example() {
     profile.pixel_pitch_um = 1.0 / 3.0;
     ProfileGeometry geometry;
     geometry.model = synthetic::perspective_camera();
-    geometry.covariance.assign(64, 1e-17 / 3.0);
+    geometry.covariance.assign(81, 1e-17 / 3.0);
     geometry.reprojection_rms_px = 0.1 + 0.2;  // not 0.3
     geometry.views_used = 1;
     geometry.points_used = 2;
@@ -65,6 +65,24 @@ TEST(CalibrationProfile, ReadingReturnsTheSameBits) {
     EXPECT_EQ(read.source.notes, written.source.notes);
     EXPECT_EQ(read.source.suspicions, written.source.suspicions);
     EXPECT_EQ(read.pictures, written.pictures);
+}
+
+// What a profile says of square pixels is what it said before there were others: no stretch_y. One that was fitted
+// comes back with its errors, by noise and by views.
+TEST(CalibrationProfile, AStretchIsWrittenWhereThereIsOne) {
+    Profile profile = example();
+    profile.geometry->covariance.assign(81, 0.0);
+    const auto square = to_json(profile);
+    EXPECT_FALSE(square["model"]["parameters"].contains("stretch_y"));
+    EXPECT_EQ(square["model"]["covariance"]["matrix"].size(), 8u);
+    EXPECT_EQ(parse_profile(square.dump(), "memory").geometry->covariance, profile.geometry->covariance);
+    std::vector<double> values = parameters(profile.geometry->model);
+    values.back() = 0.25;
+    profile.geometry->model = with_parameters(profile.geometry->model, values);
+    profile.geometry->view_standard_error.assign(9, 0.5);
+    const Profile read = parse_profile(to_json(profile).dump(), "memory");
+    EXPECT_EQ(stretch_y(read.geometry->model), 0.25);
+    EXPECT_EQ(read.geometry->view_standard_error, profile.geometry->view_standard_error);
 }
 
 TEST(CalibrationProfile, AFlatFieldProfileHasNoCamera) {

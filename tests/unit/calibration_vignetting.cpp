@@ -95,10 +95,13 @@ TEST(CalibrationVignetting, EveryFlatFieldHasItsOwnGain) {
     EXPECT_LT(largest_error(v.ratio, cos4), 1e-3);
 }
 
-// 500 flat fields with noise: 93 to 97 % of the bands hold the truth, give or take two binomial standard deviations.
+// 500 flat fields with noise: 93 to 97 % of the bands hold the truth, give or take two binomial standard deviations;
+// and errors are as large as stated, 1 ± 3 % in rms, of which 10 % are allowed. (A spline whose size the residuals
+// choose misses that: it scatters 1.1 to 1.3 times what its covariance says.)
 TEST(CalibrationVignetting, BandsCoverTheTruth) {
     constexpr int trials = 500;
     int covered[3] = {0, 0, 0};
+    double squares[3] = {0.0, 0.0, 0.0};
     const double heights[3] = {0.25, 0.5, 0.9};
     synthetic::Noise noise(7);
     for (int trial = 0; trial < trials; ++trial) {
@@ -114,11 +117,13 @@ TEST(CalibrationVignetting, BandsCoverTheTruth) {
             const Banded band = sample(v.ev, heights[k]).value();
             const double truth = std::log2(cos4(heights[k]));
             covered[k] += truth > band.lower_95 && truth < band.upper_95 ? 1 : 0;
+            squares[k] += std::pow((band.value - truth) / (0.5 * (band.upper_95 - band.lower_95) / k95), 2);
         }
     }
-    for (const int count : covered) {
-        EXPECT_GE(count, (0.93 - 0.02) * trials);
-        EXPECT_LE(count, (0.97 + 0.02) * trials);
+    for (int k = 0; k < 3; ++k) {
+        EXPECT_GE(covered[k], (0.93 - 0.02) * trials) << heights[k];
+        EXPECT_LE(covered[k], (0.97 + 0.02) * trials) << heights[k];
+        EXPECT_NEAR(std::sqrt(squares[k] / trials), 1.0, 0.1) << heights[k];
     }
 }
 
@@ -142,7 +147,7 @@ TEST(CalibrationVignetting, ChartsUnderUnevenLightGiveTheSameCurve) {
     }
     const Vignetting v = fit_vignetting(groups, kCentre, kHalfDiagonal);
     EXPECT_LT(largest_error(v.ratio, cos4), 0.003);
-    EXPECT_LE(v.spans, 4);
+    EXPECT_LT(v.effective_terms, 6.0);  // of 25: what a parabola leaves of cos⁴
 }
 
 TEST(CalibrationVignetting, ClippedAndUnusablePixelsAreLeftOut) {
@@ -210,16 +215,17 @@ VignettingModel named(const std::vector<VignettingModel>& models, const std::str
     return {};
 }
 
-// Light made by each formula: the formula is found again with its parameters, in 500 trials each. A sample has 0.3 % of
-// noise, which 1 % a pixel leaves in a mean of eleven. Stated 95 % intervals cover 93 to 97 %, give or take two
-// binomial standard deviations (1 %), V at the corner is within the target of 0.2 % in rms, and of four models the
-// right one has the least AICc more often than any other.
+// Light made by each formula: the formula is found again with its parameters, in 150 trials each. A sample has 0.3 % of
+// noise (a flat field of 1 % a pixel has 0.08 % in a cell of 13 × 13 pixels). Stated 95 % intervals cover 93 to 97 %,
+// give or take two binomial standard deviations (1.8 %), and of four models the right one is chosen in four of five
+// trials (the best is within one standard error of the simplest in 84 %). V at the corner is within the target of 0.2 %
+// in rms: over four seeds of 150 trials 0.06 % (cos4), 0.16 to 0.19 % (pa), 0.08 to 0.09 % (kang-weiss).
 TEST(CalibrationVignetting, FormulasComeBackWithHonestErrors) {
     const VignettingModel truths[] = {
         {.name = "cos4", .parameter_names = {}, .values = {0.2}, .covariance = {}},
         {.name = "pa", .parameter_names = {}, .values = {-0.3, 0.1, -0.15}, .covariance = {}},
         {.name = "kang-weiss", .parameter_names = {}, .values = {0.12, 0.08, 0.01, -0.02}, .covariance = {}}};
-    constexpr int trials = 500;
+    constexpr int trials = 150;
     synthetic::Noise noise(17);
     for (const VignettingModel& truth : truths) {
         std::vector<int> covered(truth.values.size(), 0);
@@ -240,11 +246,31 @@ TEST(CalibrationVignetting, FormulasComeBackWithHonestErrors) {
             squares += std::pow(relative_illumination(model, corner) / relative_illumination(truth, corner) - 1.0, 2);
         }
         for (const int count : covered) {
-            EXPECT_GE(count, (0.93 - 0.02) * trials) << truth.name;
-            EXPECT_LE(count, (0.97 + 0.02) * trials) << truth.name;
+            EXPECT_GE(count, (0.93 - 0.036) * trials) << truth.name;
+            EXPECT_LE(count, (0.97 + 0.036) * trials) << truth.name;
         }
         EXPECT_LT(std::sqrt(squares / trials), 0.002) << truth.name;
-        EXPECT_GT(chosen, trials / 2) << truth.name;
+        EXPECT_GT(chosen, 0.8 * trials) << truth.name;
+    }
+}
+
+// A lit surface that is tilted is beyond three of the four models: Kang and Weiss's is chosen, and the words say by how
+// much the others miss the blocks that they have not seen (3 · 2 % of tilt over the frame against 0.3 % of noise).
+TEST(CalibrationVignetting, TheChoiceSaysWhy) {
+    const VignettingModel truth{.name = "kang-weiss", .values = {0.12, 0.08, 0.01, -0.02}};
+    synthetic::Noise noise(5);
+    const auto models = fit_vignetting_models(
+        fit_vignetting({noisy_samples([&](const Vec2d& at) { return relative_illumination(truth, at); }, 0.003, noise)},
+                       kCentre, kHalfDiagonal));
+    ASSERT_EQ(models.size(), 4u);
+    EXPECT_EQ(models[0].name, "kang-weiss");
+    EXPECT_TRUE(models[0].verdict.starts_with("chosen: predicts blocks that it has not seen to 0.3"))
+        << models[0].verdict;
+    EXPECT_NEAR(models[0].held_out_relative_rms, 0.003, 0.0003);  // the noise; 384 samples tell it to 4 %
+    for (std::size_t i = 1; i < models.size(); ++i) {
+        EXPECT_GT(models[i].held_out_relative_rms, 0.02) << models[i].name;
+        EXPECT_NE(models[i].verdict.find("worse than kang-weiss, beyond chance"), std::string::npos)
+            << models[i].verdict;
     }
 }
 

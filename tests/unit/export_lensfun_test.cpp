@@ -111,7 +111,13 @@ TEST(ExportLensfun, AModelThatPoly5CanSayIsSaidExactly) {
 TEST(ExportLensfun, TheStatedDifferenceIsTheLibrarysOwn) {
     for (const Profile& profile :
          {profile_of(perspective_camera(), 640, 480), profile_of(fisheye_camera(), 640, 480),
-          profile_of(BrownConrady{{1100.0, 370.0, 560.0, 0.08, -0.02, 0.05, 0.001, 0.0}}, 750, 1100)}) {
+          profile_of(BrownConrady{{1100.0, 370.0, 560.0, 0.08, -0.02, 0.05, 0.001, 0.0}}, 750, 1100),
+          profile_of(Division{{820.0, 318.5, 243.0, -0.12, 0.0}}, 640, 480),
+          profile_of(Stereographic{{260.0, 322.0, 236.0, -0.02, 0.003, 0.0}}, 640, 480),
+          profile_of(Equisolid{{260.0, 322.0, 236.0, -0.02, 0.003, 0.004}}, 640, 480),
+          profile_of(Spline{{260.0, 322.0, 236.0, 0.001, 0.002, -0.003, -0.01, -0.015, -0.02, -0.03, -0.04, -0.05,
+                             -0.06, -0.07, 1.4, 0.0}},
+                     640, 480)}) {
         const LensfunExport result = lensfun_export(profile, options());
         SCOPED_TRACE(result.notes.front());
         EXPECT_LT(result.largest_difference_px, 3.0);  // the tangential terms alone move a corner by more than 1 px

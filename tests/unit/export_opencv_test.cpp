@@ -65,6 +65,40 @@ TEST(ExportOpencv, ModelsThatOpencvHasAreWrittenAsTheyAre) {
     }
 }
 
+// A model that OpenCV does not have is fitted by one that it has, and what it says of itself is what OpenCV's functions
+// show: on a lattice that is coarser than the exporter's no more than stated, and a third of it at least. Heights may
+// be stretched: OpenCV has a vertical focal length of its own.
+TEST(ExportOpencv, TheStatedDifferenceIsTheLibrarysOwn) {
+    struct Case {
+        CameraModel model;
+        double largest_px;  // that the fit may differ by, for a model of that smoothness
+    };
+    const std::vector<Case> cases = {
+        {Division{{820.0, 318.5, 243.0, -0.12, 0.0}}, 0.01},
+        {RationalBrownConrady{{820.0, 318.5, 243.0, 0.2, 0.02, 0.0, 0.0005, -0.001, 0.4, 0.05, 0.0, 0.0}}, 0.01},
+        {PtLens{{820.0, 318.5, 243.0, -0.03, 0.008, 0.01, 239.5, 0.0}}, 0.05},
+        {Poly3{{820.0, 318.5, 243.0, -0.02, 239.5, 0.006}}, 0.01},
+        {Equidistant{{260.0, 322.0, 236.0, -0.02, 0.003, 0.0}}, 0.01},
+        {Equisolid{{260.0, 322.0, 236.0, -0.02, 0.003, -0.004}}, 0.01},
+        {Stereographic{{260.0, 322.0, 236.0, -0.02, 0.003, 0.0}}, 0.01},
+        {Orthographic{{400.0, 322.0, 236.0, -0.02, 0.003, 0.0}}, 0.05},
+        {Spline{{260.0, 322.0, 236.0, 0.001, 0.002, -0.003, -0.01, -0.015, -0.02, -0.03, -0.04, -0.05, -0.06, -0.07,
+                 1.4, 0.003}},
+         0.2}};
+    for (const Case& c : cases) {
+        SCOPED_TRACE(kind_name(c.model));
+        const Profile profile = profile_of(c.model, 640, 480, 0.75);
+        const OpencvExport result = opencv_export(profile);
+        SCOPED_TRACE(result.notes.front());
+        const ReadCamera camera(result.yaml);
+        EXPECT_NEAR(camera.matrix.at<double>(1, 1) / camera.matrix.at<double>(0, 0), 1.0 + stretch_y(c.model), 1e-12);
+        EXPECT_LT(result.largest_difference_px, c.largest_px);
+        const double found = largest_difference(profile, camera);
+        EXPECT_LE(found, result.largest_difference_px + 1e-9);
+        EXPECT_GE(found, result.largest_difference_px / 3.0 - 1e-9);
+    }
+}
+
 // A fisheye that sees beyond 90° keeps its coefficients; what OpenCV's functions cannot project is said.
 TEST(ExportOpencv, AFieldBeyondARightAngleIsSaid) {
     KannalaBrandt wide = fisheye_camera();

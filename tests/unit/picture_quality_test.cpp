@@ -80,7 +80,7 @@ Profile with_curves(const BrownConrady& model) {
     Profile profile = profile_of(model, 640, 480);
     GeometryFit fit;
     fit.model = model;
-    fit.covariance.assign(64, 0.0);
+    fit.covariance.assign(81, 0.0);
     fit.covered_radius_px = 0.9 * 400.0;
     profile.curves["field_angle_deg"] = field_angle_curve(fit, 400.0);
     profile.curves["distortion_percent"] = rectilinear_distortion_curve(fit, 400.0);
