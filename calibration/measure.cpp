@@ -192,6 +192,18 @@ void observe_picture(Observations& seen, const Picture& picture, const MeasureIn
     seen.height = image.height;
     seen.channels = image.channels;
     seen.grey = seen.grey && all_channels_alike(image);
+    if (const auto* star = std::get_if<SiemensStar>(&input.chart.pattern);
+        star != nullptr && picture.role == PictureRole::chart) {
+        const bool grey = all_channels_alike(image);
+        for (int channel = 0; channel < image.channel_count(); ++channel) {
+            if (!grey || channel == reference_channel(image)) {
+                observe_stars(seen.sharpness, image, channel, picture.name, *star);
+            }
+        }
+        account.used = true;
+        account.reason = picture.remark;
+        return;
+    }
     if (picture.role == PictureRole::chart) {
         observe_chart(seen, image, picture, input.chart, account);
         return;
@@ -213,11 +225,15 @@ void observe_picture(Observations& seen, const Picture& picture, const MeasureIn
     account.reason = picture.remark;
 }
 
+bool shows_star(const MeasureInput& input) {
+    return std::holds_alternative<SiemensStar>(input.chart.pattern);
+}
+
 Observations observe(const MeasureInput& input) {
     Observations seen;
     seen.sharpness.focus_position_mm = input.focus_position_mm;
     for (const Picture& picture : input.pictures) {
-        const bool is_chart = picture.role == PictureRole::chart;
+        const bool is_chart = picture.role == PictureRole::chart && !shows_star(input);
         PictureAccount account{.image = picture.name,
                                .role = role_name(picture.role),
                                .used = false,
@@ -246,6 +262,7 @@ InputError none_usable(const MeasureInput& input, const Observations& seen) {
     constexpr std::size_t kMostNamed = 8;
     const std::size_t count = seen.pictures.size();
     const std::string what = !seen.views.empty()   ? "no " + describe(input.chart) + " found in any"
+                             : shows_star(input)   ? "no Siemens star measured in any"
                              : input.edges.empty() ? "no flat field"
                                                    : "no edge";
     std::string text =
@@ -378,7 +395,8 @@ Profile measure(const MeasureInput& input) {
         throw InputError("measuring " + input.name + ": no pictures given: expected at least one");
     }
     const Observations seen = observe(input);
-    const bool has_light_or_edges = !seen.flat_fields.empty() || !seen.sharpness.edges.empty();
+    const bool has_light_or_edges =
+        !seen.flat_fields.empty() || !seen.sharpness.edges.empty() || !seen.sharpness.stars.empty();
     if (seen.chart_views.empty() && (!seen.views.empty() || !has_light_or_edges)) {
         throw none_usable(input, seen);
     }
@@ -398,7 +416,9 @@ Profile measure(const MeasureInput& input) {
 
     Vec2d centre{(seen.width - 1) / 2.0, (seen.height - 1) / 2.0};
     if (seen.chart_views.empty()) {
-        profile.not_measured["geometry"] = input.edges.empty() ? "there are flat fields only" : "there is no chart";
+        profile.not_measured["geometry"] = shows_star(input)     ? "a Siemens star has but one point"
+                                           : input.edges.empty() ? "there are flat fields only"
+                                                                 : "there is no chart";
     } else {
         Geometry geometry = fit(input, seen);
         centre = centre_px(geometry.fit.model);

@@ -47,6 +47,8 @@ struct MeasureInput {
 
 /// Finds the chart, and fits camera model, chromatic shift, vignetting and sharpness.
 ///
+/// Siemens stars, of which a picture may show several, give sharpness alone.
+///
 /// A picture that cannot be loaded, is of another size or other channels than those before it, is the same as one
 /// before it, shows no chart, or shows it blurred, is left out; `pictures` in the profile says why. Vignetting comes
 /// from the flat fields where there are any, else from the charts' white. Throws InputError for no pictures, where none
