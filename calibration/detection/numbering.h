@@ -10,7 +10,7 @@ enum class Numbering {
     certain,        // markers, or the colours of the squares, say it
     half_turn,      // the chart looks the same after a half turn; rows are taken to run to the right
     quarter_turn,   // and after a quarter turn
-    whole_pitches,  // columns or rows are missing, and which cannot be seen: taken for the chart's outer ones
+    whole_pitches,  // columns or rows are missing, and which cannot be seen: taken for the middle ones
 };
 
 /// The key in files: "certain", "half-turn", "quarter-turn" or "whole-pitches".
