@@ -8,6 +8,7 @@
 #include "calibration/chromatic/chromatic_shift.h"
 #include "calibration/chromatic/measure_bands.h"
 #include "calibration/detection/detect.h"
+#include "calibration/detection/line_points.h"
 #include "calibration/detection/refine.h"
 #include "calibration/detection/working_copy.h"
 #include "calibration/geometry/geometry_curves.h"
@@ -35,7 +36,9 @@ struct Observations {
     std::vector<PictureAccount> pictures;
     std::map<std::string, std::string> names_by_pixels;  // the pictures in use, by their pixels' hash
     std::vector<ProfileView> views;
-    std::vector<ChartView> chart_views;                                  // of the views found
+    std::vector<ChartView> chart_views;                                  // of the views found,
+    std::vector<std::vector<std::optional<Vec2d>>> point_errors_px;      // their points' standard errors,
+    std::vector<std::vector<LinePoints>> lines;                          // and the points of lines
     std::map<std::string, std::vector<ChromaticPair>> chromatic_pairs;   // by channel
     std::map<std::string, std::vector<LightGroup>> flat_fields, whites;  // by channel
     /// By view: the channel that geometry is measured in, and where among its `whites` the view's stands.
@@ -109,24 +112,29 @@ void observe_chart(Observations& seen, const Image& image, const Picture& pictur
         const std::string fault = visible_fault(image, reference);
         view.reason += (fault.empty() ? "" : "; ") + fault;
     }
-    const ChartQuality quality = view.reason.empty() ? chart_quality(image, reference, points, chart) : ChartQuality{};
     if (view.reason.empty()) {
-        view.reason = too_blurred(quality);
+        view.traits = picture_traits(image, reference, points);
+        view.reason = view.traits ? too_blurred(*view.traits, points, chart) : "";
     }
     view.found = view.reason.empty();
     account.used = view.found;
     account.reason = view.found ? picture.remark : view.reason;
-    if (view.found && quality.clipped_white_share > 0.5) {
+    if (view.found && view.traits && is_white_clipped(*view.traits)) {
         account.reason += std::string(account.reason.empty() ? "" : "; ") +
                           "over-exposed: the chart's white is clipped, so it says nothing of vignetting";
     }
     if (view.found) {
-        view.traits = picture_traits(image, reference, points);
+        view.numbering = numbering_key(detection.numbering);
+        const std::string open = numbering_in_words(detection.numbering);
+        account.reason += (account.reason.empty() || open.empty() ? "" : "; ") + open;
+        std::vector<std::optional<Vec2d>>& errors = seen.point_errors_px.emplace_back();
+        seen.lines.push_back(line_points(image, reference, points, chart));
         ChartView own{.name = name, .chart_mm = {}, .image_px = {}};
         for (std::size_t i = 0; i < features.size(); ++i) {
             if (points.found[i]) {
                 own.chart_mm.push_back(features[i]);
                 own.image_px.push_back(points.image_px[i]);
+                errors.push_back(points.standard_error_px[i]);
             }
         }
         seen.chart_views.push_back(std::move(own));
@@ -309,11 +317,14 @@ void add_geometry(Profile& profile, const Observations& seen, const GeometryFit&
         }
         const ChartView& measured = seen.chart_views[next];
         const FittedView& fitted = geometry.views[next];
+        const std::vector<std::optional<Vec2d>>& errors = seen.point_errors_px[next];
+        view.lines = straightness(seen.lines[next], geometry.model);
         ++next;
         view.pose = fitted.pose;
         for (const PointResidual& r : fitted.residuals) {
             const auto i = static_cast<std::size_t>(r.index);
-            view.points.push_back({measured.chart_mm[i], measured.image_px[i], r.measured_minus_model_px, r.used});
+            view.points.push_back(
+                {measured.chart_mm[i], measured.image_px[i], r.measured_minus_model_px, r.used, errors[i]});
         }
     }
     profile.curves["field_angle_deg"] = field_angle_curve(geometry, half_diagonal);

@@ -21,6 +21,9 @@ constexpr double kMostGrowth = 1.9;  // of the area, from one spot to the next
 constexpr std::size_t kFewestSpots = 9;
 constexpr double kLeastFilled = 0.4;  // of the places between the first and last columns and rows
 constexpr std::size_t kMostSeeds = 40;
+constexpr double kWallDarkness = 0.92;  // grey level of a cell's walls at most, of its own
+constexpr double kWallMargin_px = 4.0;
+constexpr int kRays = 16;
 constexpr int kThresholdOffset = 8;  // grey levels that a spot differs from its surroundings
 
 using Place = std::pair<int, int>;  // column and row
@@ -69,6 +72,26 @@ std::vector<Blob> blobs_of(const cv::Mat& picture, bool dark, int block) {
         }
     }
     return blobs;
+}
+
+/// Whether something dark ends a bright cell on every side. Beside a chart's outermost lines stand half cells between
+/// the lines' ends, open to the paper, which would lead a lattice astray.
+bool is_walled(const cv::Mat& picture, const Blob& cell) {
+    const double side = std::sqrt(cell.area);
+    const double wall = kWallDarkness * picture.at<uchar>(cvRound(cell.middle.y), cvRound(cell.middle.x));
+    for (int i = 0; i < kRays; ++i) {
+        const double angle = 2.0 * std::numbers::pi * i / kRays;
+        bool is_ended = false;
+        for (double t = 0.3 * side; t < side + kWallMargin_px && !is_ended; t += 1.0) {
+            const int x = cvRound(cell.middle.x + t * std::cos(angle));
+            const int y = cvRound(cell.middle.y + t * std::sin(angle));
+            is_ended = x >= 0 && y >= 0 && x < picture.cols && y < picture.rows && picture.at<uchar>(y, x) < wall;
+        }
+        if (!is_ended) {
+            return false;
+        }
+    }
+    return true;
 }
 
 /// The blob nearest to `place` within `reach`, of about the size `area`.
@@ -222,7 +245,10 @@ std::vector<LatticeSpot> find_blob_lattice(const cv::Mat& picture, bool dark, bo
             break;
         }
         const int block = std::max(7, 2 * static_cast<int>(0.5 * share * std::max(picture.cols, picture.rows)) + 1);
-        const std::vector<Blob> blobs = blobs_of(smooth, dark, block);
+        std::vector<Blob> blobs = blobs_of(smooth, dark, block);
+        if (!is_fine) {
+            std::erase_if(blobs, [&](const Blob& blob) { return !is_walled(smooth, blob); });
+        }
         const auto lattice = largest_lattice(blobs);
         if (lattice.size() >= kFewestSpots && lattice.size() > best.size() && is_filled(lattice)) {
             best = upright(blobs, lattice);

@@ -20,7 +20,7 @@ struct LatticeSpot {
 /// gaps, strangers among the spots and a frame that cuts the lattice do no harm.
 ///
 /// `is_fine`: spots may be small against what lies between them, so that thresholds adapt to small surroundings too;
-/// those would break cells with thin walls into pieces.
+/// those would break cells with thin walls into pieces. Spots that are not fine are cells: with a wall on every side.
 std::vector<LatticeSpot> find_blob_lattice(const cv::Mat& picture, bool dark, bool is_fine);
 
 }  // namespace lensproof

@@ -4,6 +4,8 @@
 #include <string>
 #include <vector>
 
+#include "calibration/detection/numbering.h"
+
 namespace lensproof {
 
 /// The chart's points by number, to a pixel or two; or why there are none.
@@ -11,6 +13,7 @@ struct ChartSearch {
     std::vector<cv::Point2f> points;
     std::vector<bool> found;  // which of them the picture shows
     std::string reason;       // empty where the chart was found
+    Numbering numbering = Numbering::certain;
 };
 
 }  // namespace lensproof

@@ -3,7 +3,9 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
+#include <opencv2/imgproc.hpp>
 #include <vector>
 
 namespace lensproof {
@@ -15,9 +17,11 @@ constexpr double kLeastExplained =
     0.75;  // of the window's variance; noise as strong as a third of the step leaves that
 constexpr double kFirstGuard_px = 1.5;
 constexpr double kGuardBlurs = 2.0;  // standard deviations; 2 % of a marker's black reach farther
+constexpr double kMostGuard = 0.5;   // of the white between edge and marker
 constexpr double kSmallestBlur_px = 0.25;
 constexpr int kFewestPixels = 24;  // twice the unknowns
 constexpr int kMostSteps = 40;
+constexpr double kBlurReach = 4.0;  // standard deviations of the plane's blur
 
 enum Parameter {
     kX,
@@ -233,15 +237,63 @@ bool descend(const std::vector<Pixel>& pixels, const LineWidths& widths, int fre
     return false;
 }
 
+/// Standard errors of the corner's place, given the fit; see the header.
+Vec2d standard_errors(const std::vector<Pixel>& pixels, const LineWidths& widths, int free_count, const Parameters& p,
+                      double plane_blur_px) {
+    const int reach = static_cast<int>(std::ceil(kBlurReach * plane_blur_px));
+    int left = std::numeric_limits<int>::max();
+    int top = left;
+    int right = 0;
+    int bottom = 0;
+    for (const Pixel& pixel : pixels) {
+        left = std::min(left, static_cast<int>(pixel.x));
+        right = std::max(right, static_cast<int>(pixel.x));
+        top = std::min(top, static_cast<int>(pixel.y));
+        bottom = std::max(bottom, static_cast<int>(pixel.y));
+    }
+    const cv::Size size(right - left + 1 + 2 * reach, bottom - top + 1 + 2 * reach);
+    std::vector<cv::Mat> slopes(static_cast<std::size_t>(free_count));
+    for (cv::Mat& slope : slopes) {
+        slope = cv::Mat::zeros(size, CV_64F);
+    }
+    Eigen::MatrixXd normal = Eigen::MatrixXd::Zero(free_count, free_count);
+    Parameters gradient;
+    for (const Pixel& pixel : pixels) {
+        residual(pixel, p, widths, gradient);
+        const auto own = gradient.head(free_count);
+        normal += own * own.transpose();
+        for (int k = 0; k < free_count; ++k) {
+            slopes[static_cast<std::size_t>(k)].at<double>(static_cast<int>(pixel.y) - top + reach,
+                                                           static_cast<int>(pixel.x) - left + reach) = gradient[k];
+        }
+    }
+    Eigen::MatrixXd blurred(size.area(), free_count);
+    for (int k = 0; k < free_count; ++k) {
+        cv::Mat& slope = slopes[static_cast<std::size_t>(k)];
+        cv::GaussianBlur(slope, slope, {2 * reach + 1, 2 * reach + 1}, plane_blur_px, plane_blur_px,
+                         cv::BORDER_CONSTANT);
+        blurred.col(k) = Eigen::Map<const Eigen::VectorXd>(slope.ptr<double>(), size.area());
+    }
+    const Eigen::MatrixXd inverse = normal.ldlt().solve(Eigen::MatrixXd::Identity(free_count, free_count));
+    const Eigen::MatrixXd meat = blurred.transpose() * blurred;
+    const Eigen::MatrixXd covariance = inverse * meat * inverse;
+    return {std::sqrt(std::max(covariance(kX, kX), 0.0)), std::sqrt(std::max(covariance(kY, kY), 0.0))};
+}
+
 }  // namespace
 
-std::optional<Vec2d> fit_corner(const cv::Mat& plane, const CornerStart& start) {
+std::optional<CornerFit> fit_corner(const cv::Mat& plane, double plane_blur_px, const CornerStart& start) {
     const bool has_markers = std::isfinite(start.clear_squares);
     const int free_count =
         start.half_window < kCurvedFrom_px ? static_cast<int>(kCurvature1) : static_cast<int>(kCount);
     const double area = std::abs(cross(start.along_first, start.along_second));
     const LineWidths widths{start.line_squares * area / std::hypot(start.along_first.x, start.along_first.y),
                             start.line_squares * area / std::hypot(start.along_second.x, start.along_second.y)};
+    // The markers' rims are black and stand alike around a corner: what blur carries across evens out, so that a guard
+    // need not take all that is left of the white.
+    const double clear_px = start.clear_squares * area /
+                            std::max(std::hypot(start.along_first.x, start.along_first.y),
+                                     std::hypot(start.along_second.x, start.along_second.y));
     CornerStart window = start;
     MarkerMask mask{.guard_px = kFirstGuard_px};
     Parameters p = Parameters::Zero();
@@ -252,9 +304,10 @@ std::optional<Vec2d> fit_corner(const cv::Mat& plane, const CornerStart& start) 
     p[kBlur] = std::max(1.0, 0.15 * start.half_window);  // wide, so that a start a few pixels off still feels the edges
     bool settled = false;
     double unexplained = 1.0;
+    std::vector<Pixel> pixels;
     // Where markers stand, what is white and how far blur carries their black is known once the corner is.
     for (int round = 0; round < (has_markers ? 2 : 1); ++round) {
-        const std::vector<Pixel> pixels = pixels_of(plane, window, mask);
+        pixels = pixels_of(plane, window, mask);
         if (pixels.size() < kFewestPixels) {
             return std::nullopt;
         }
@@ -265,7 +318,7 @@ std::optional<Vec2d> fit_corner(const cv::Mat& plane, const CornerStart& start) 
         settled = descend(pixels, widths, free_count, start.half_window, p, squares);
         unexplained = squares / variance_of(pixels);
         window.corner_px = {p[kX], p[kY]};
-        mask = {.guard_px = kGuardBlurs * p[kBlur], .white = p[kContrast]};
+        mask = {.guard_px = std::min(kGuardBlurs * p[kBlur], kMostGuard * clear_px), .white = p[kContrast]};
     }
     const double moved = std::hypot(p[kX] - start.corner_px.x, p[kY] - start.corner_px.y);
     if (!settled || !(moved <= std::max(1.5, 0.5 * start.half_window)) ||
@@ -273,7 +326,8 @@ std::optional<Vec2d> fit_corner(const cv::Mat& plane, const CornerStart& start) 
         !(unexplained < 1.0 - kLeastExplained)) {
         return std::nullopt;
     }
-    return Vec2d{p[kX], p[kY]};
+    return CornerFit{.corner_px = {p[kX], p[kY]},
+                     .standard_error_px = standard_errors(pixels, widths, free_count, p, plane_blur_px)};
 }
 
 }  // namespace lensproof

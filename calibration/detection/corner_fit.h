@@ -19,6 +19,11 @@ struct CornerStart {
     double line_squares = 0.0;  // above 0: two dark lines of this width cross on a bright ground, not two edges
 };
 
+struct CornerFit {
+    Vec2d corner_px;
+    Vec2d standard_error_px;
+};
+
 /// The corner of a checkerboard, by least squares (Levenberg-Marquardt) of
 ///     I(x, y) = a + g·(x, y) + b erf(d₁ / √2σ) erf(d₂ / √2σ)
 /// over the (2 h + 1)² pixels around the start, where d₁, d₂ are the distances from the two edges: straight lines, or
@@ -31,6 +36,10 @@ struct CornerStart {
 /// `plane` is CV_32F in linear light; where the window reaches beyond it, the part inside has to do. None where the fit
 /// does not settle on an edge-like corner near the start (within half the window).
 /// Errors on synthetic pictures: tests/unit/calibration_corner_accuracy.cpp.
-std::optional<Vec2d> fit_corner(const cv::Mat& plane, const CornerStart& start);
+///
+/// `plane` is a picture that was blurred by a Gaussian of `plane_blur_px`. The standard errors are the least squares'
+/// own for noise in the picture, before that blur, of standard deviation 1, independent from pixel to pixel: with
+/// weights w of the blurred pixels in a coordinate, the root of Σ (G w)², G the blur.
+std::optional<CornerFit> fit_corner(const cv::Mat& plane, double plane_blur_px, const CornerStart& start);
 
 }  // namespace lensproof

@@ -113,7 +113,7 @@ bool find_board(const cv::Mat& picture, cv::Size grid, Points& points) {
 }
 
 // One of the eight ways to number a grid: where the first point is, and whether rows and columns are swapped.
-struct Numbering {
+struct Renumbering {
     bool flip_columns = false;
     bool flip_rows = false;
     bool transpose = false;
@@ -160,15 +160,17 @@ double darkness_of_black(const cv::Mat& picture, const Points& points, cv::Size 
 }
 
 // The numbering that the chart asks for; none when no numbering fits (a mirror image, or not this chart).
-std::optional<Points> numbered_as_chart(const cv::Mat& picture, const Points& points, cv::Size grid) {
+std::optional<Points> numbered_as_chart(const cv::Mat& picture, const Points& points, cv::Size grid,
+                                        Numbering& numbering) {
     std::optional<Points> best;
+    int fitting = 0;
     double best_uprightness = -2.0;
     for (const bool transpose : {false, true}) {
         if (transpose && grid.width != grid.height) {
             continue;
         }
         for (const int flips : {0, 1, 2, 3}) {
-            const Points candidate = Numbering{(flips & 1) != 0, (flips & 2) != 0, transpose}.apply(points, grid);
+            const Points candidate = Renumbering{(flips & 1) != 0, (flips & 2) != 0, transpose}.apply(points, grid);
             const cv::Point2f row = along_row(candidate, grid);
             if (row.cross(along_column(candidate, grid)) <= 0.0F) {
                 continue;  // mirrored
@@ -176,6 +178,7 @@ std::optional<Points> numbered_as_chart(const cv::Mat& picture, const Points& po
             if (darkness_of_black(picture, candidate, grid) <= 0.0) {
                 continue;
             }
+            ++fitting;
             const double uprightness = row.x / std::hypot(row.x, row.y);
             if (uprightness > best_uprightness) {
                 best_uprightness = uprightness;
@@ -183,6 +186,7 @@ std::optional<Points> numbered_as_chart(const cv::Mat& picture, const Points& po
             }
         }
     }
+    numbering = fitting > 2 ? Numbering::quarter_turn : fitting > 1 ? Numbering::half_turn : Numbering::certain;
     return best;
 }
 
@@ -193,12 +197,13 @@ ChartSearch find_checkerboard(const cv::Mat& picture, const Chart& chart) {
     if (!find_board(picture, grid, points) || points.size() != static_cast<std::size_t>(grid.area())) {
         return {.reason = "no checkerboard of " + size_in_words(grid) + " inner corners found"};
     }
-    const auto numbered = numbered_as_chart(picture, points, grid);
+    Numbering numbering = Numbering::certain;
+    const auto numbered = numbered_as_chart(picture, points, grid, numbering);
     if (!numbered) {
         return {.reason = "a checkerboard of " + size_in_words(grid) +
                           " inner corners found, but mirrored or with other colours than the chart"};
     }
-    return {.points = *numbered, .found = std::vector<bool>(points.size(), true)};
+    return {.points = *numbered, .found = std::vector<bool>(points.size(), true), .reason = {}, .numbering = numbering};
 }
 
 ChartSearch search(const cv::Mat& picture, const Chart& chart) {
@@ -262,6 +267,7 @@ Detection detect(const Image& image, const Chart& chart) {
         result.points.image_px.push_back({(point.x + 0.5) * scale_x - 0.5, (point.y + 0.5) * scale_y - 0.5});
     }
     result.points.found = std::move(found.found);
+    result.numbering = found.numbering;
     return result;
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 #include <string>
 
+#include "calibration/detection/numbering.h"
 #include "calibration/detection/refine.h"
 #include "engine/io/image.h"
 #include "engine/scene/chart.h"
@@ -19,6 +20,7 @@ std::string detectable_kinds();
 struct Detection {
     ChartPoints points;  // to about a pixel; none where the chart was not found
     std::string reason;  // why it was not found, in words ("the picture is too dark"); empty where it was
+    Numbering numbering = Numbering::certain;  // which point is which
 
     [[nodiscard]] bool found() const { return reason.empty(); }
 };

@@ -17,9 +17,8 @@ struct LooseDisc {
 /// connected components, those of about the most common size, then `locate_disc`. From the top, then the left.
 std::vector<LooseDisc> find_loose_discs(const Image& image, int channel);
 
-/// The same disc in another picture of the same scene: the centroid of 1 − I/W within 1.25 radii of where it is
-/// expected, W a plane through the white around it; the window follows the disc. None where there is no such disc
-/// within half a radius.
+/// The same disc in another picture of the same scene: its centroid (calibration/detection/spot_centroid.h) within 1.25
+/// radii and a pixel of where it is expected. None where there is no such disc within half a radius.
 std::optional<Vec2d> locate_disc(const Image& image, int channel, const LooseDisc& expected);
 
 }  // namespace lensproof

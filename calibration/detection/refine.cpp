@@ -1,6 +1,5 @@
 #include "calibration/detection/refine.h"
 
-#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -9,6 +8,8 @@
 #include <optional>
 
 #include "calibration/detection/corner_fit.h"
+#include "calibration/detection/pixel_noise.h"
+#include "calibration/detection/spot_centroid.h"
 #include "calibration/detection/working_copy.h"
 #include "engine/io/input_error.h"
 
@@ -143,8 +144,13 @@ double line_squares(const Chart& chart) {
     return lines ? lines->line_mm / lines->pitch_mm : 0.0;
 }
 
-std::optional<Vec2d> refine_corner(const Image& image, const cv::Mat& plane, int channel, const Vec2d& start,
-                                   const Lattice& lattice, const Chart& chart) {
+struct RefinedPoint {
+    Vec2d image_px;
+    std::optional<Vec2d> standard_error_px;
+};
+
+std::optional<RefinedPoint> refine_corner(const Image& image, const cv::Mat& plane, int channel, const Vec2d& start,
+                                          const Lattice& lattice, const Chart& chart) {
     const int half_window =
         std::clamp(static_cast<int>(kWindowShare * lattice.nearest), kSmallestWindow_px, kLargestWindow_px);
     if (!all_finite(image, channel, start, half_window) || is_near_frame(image, start)) {
@@ -157,85 +163,20 @@ std::optional<Vec2d> refine_corner(const Image& image, const cv::Mat& plane, int
                                    .clear_squares = clear_squares(chart),
                                    .line_squares = line_squares(chart)};
     const bool is_line = corner_start.line_squares > 0.0;
-    const auto corner =
-        half_window < kFitFrom_px ? search_corner(plane, start, half_window) : fit_corner(plane, corner_start);
-    if (!corner || is_near_frame(image, *corner) ||
-        (!is_line &&
-         corner_contrast(plane, *corner, lattice, std::min(0.25, 0.7 * corner_start.clear_squares)) < kLeastContrast)) {
+    std::optional<RefinedPoint> corner;
+    if (half_window < kFitFrom_px) {
+        if (const auto found = search_corner(plane, start, half_window)) {
+            corner = {*found, std::nullopt};
+        }
+    } else if (const auto fitted = fit_corner(plane, kBlur_px, corner_start)) {
+        corner = {fitted->corner_px, fitted->standard_error_px};
+    }
+    if (!corner || is_near_frame(image, corner->image_px) ||
+        (!is_line && corner_contrast(plane, corner->image_px, lattice,
+                                     std::min(0.25, 0.7 * corner_start.clear_squares)) < kLeastContrast)) {
         return std::nullopt;
     }
     return corner;
-}
-
-// In units of the pitch: spots end at `spot`, light that belongs to the ground alone is taken from `inner` to `outer`.
-struct SpotWindow {
-    double spot = 0.0;
-    double inner = 0.0;
-    double outer = 0.5;
-    bool is_bright = false;
-};
-
-std::optional<Vec2d> spot_centroid(const Image& image, int channel, const Vec2d& start, const Lattice& lattice,
-                                   const SpotWindow& window) {
-    const double determinant = lattice.column_step.x * lattice.row_step.y - lattice.column_step.y * lattice.row_step.x;
-    const double reach = window.outer * (norm(lattice.column_step) + norm(lattice.row_step));
-    if (!(std::abs(determinant) > 1.0) || !is_inside(image, start, reach + 1.0) ||
-        !all_finite(image, channel, start, reach)) {
-        return std::nullopt;
-    }
-    const auto distance = [&](double dx, double dy) {  // from the spot's centre, in pitches
-        const double u = (dx * lattice.row_step.y - dy * lattice.row_step.x) / determinant;
-        const double v = (dy * lattice.column_step.x - dx * lattice.column_step.y) / determinant;
-        return std::hypot(u, v);
-    };
-    const int x0 = static_cast<int>(std::ceil(start.x - reach));
-    const int x1 = static_cast<int>(std::floor(start.x + reach));
-    const int y0 = static_cast<int>(std::ceil(start.y - reach));
-    const int y1 = static_cast<int>(std::floor(start.y + reach));
-
-    Eigen::Matrix3d normal = Eigen::Matrix3d::Zero();
-    Eigen::Vector3d right = Eigen::Vector3d::Zero();
-    for (int y = y0; y <= y1; ++y) {
-        for (int x = x0; x <= x1; ++x) {
-            const double d = distance(x - start.x, y - start.y);
-            if (d > window.inner && d < window.outer) {
-                const Eigen::Vector3d row(1.0, x - start.x, y - start.y);
-                normal += row * row.transpose();
-                right += row * static_cast<double>(image.at(x, y, channel));
-            }
-        }
-    }
-    const Eigen::LDLT<Eigen::Matrix3d> ground(normal);
-    if (normal(0, 0) < 6.0 || ground.info() != Eigen::Success || ground.rcond() < 1e-9) {
-        return std::nullopt;
-    }
-    const Eigen::Vector3d plane = ground.solve(right);
-
-    double mass = 0.0;
-    Vec2d moment;
-    for (int y = y0; y <= y1; ++y) {
-        for (int x = x0; x <= x1; ++x) {
-            const double dx = x - start.x;
-            const double dy = y - start.y;
-            const double level = plane(0) + plane(1) * dx + plane(2) * dy;
-            if (!(level > 0.0) || distance(dx, dy) > window.inner) {
-                continue;
-            }
-            // Of a dark spot by the light that falls on it, which the ground shows; black ground shows it too noisily.
-            const double contrast = (level - image.at(x, y, channel)) / (window.is_bright ? plane(0) : level);
-            mass += contrast;
-            moment.x += contrast * dx;
-            moment.y += contrast * dy;
-        }
-    }
-    const double area_px = std::numbers::pi * window.spot * window.spot * std::abs(determinant);
-    // Dark spots are black at most; a bright one may outshine its ground by any factor.
-    const double share = (window.is_bright ? -mass : mass) / area_px;
-    if (share < kLeastContrast || (!window.is_bright && share > 1.5)) {
-        return std::nullopt;
-    }
-    const Vec2d centre{start.x + moment.x / mass, start.y + moment.y / mass};
-    return distance(centre.x - start.x, centre.y - start.y) < window.outer ? std::optional(centre) : std::nullopt;
 }
 
 // The radius that holds a chart's spot, in pitches; none where its points are no spots.
@@ -252,18 +193,20 @@ std::optional<double> spot_radius(const Chart& chart) {
     return std::nullopt;
 }
 
-std::optional<Vec2d> refine_spot(const Image& image, int channel, const Vec2d& start, const Lattice& lattice,
-                                 double radius, bool is_bright) {
+std::optional<RefinedPoint> refine_spot(const Image& image, int channel, const Vec2d& start, const Lattice& lattice,
+                                        double radius, bool is_bright) {
+    const double determinant = lattice.column_step.x * lattice.row_step.y - lattice.column_step.y * lattice.row_step.x;
     // Far enough out for blur, and no farther: ground adds nothing but noise.
     const double step_px = std::min(norm(lattice.column_step), norm(lattice.row_step));
-    const SpotWindow window{.spot = radius,
+    const SpotWindow window{.x_unit_px = lattice.column_step,
+                            .y_unit_px = lattice.row_step,
                             .inner = std::min(0.6 * radius + 0.4 * 0.5, radius + kSpotMargin_px / step_px),
+                            .outer = is_bright ? std::max(0.5 - kSpotMargin_px / step_px, 0.4) : 0.5,
+                            .area_px = std::numbers::pi * radius * radius * std::abs(determinant),
+                            .least_share = kLeastContrast,
                             .is_bright = is_bright};
-    std::optional<Vec2d> centre = start;
-    for (int iteration = 0; iteration < 5 && centre; ++iteration) {  // the window follows the spot
-        centre = spot_centroid(image, channel, *centre, lattice, window);
-    }
-    return centre;
+    const auto spot = std::abs(determinant) > 1.0 ? locate_spot(image, channel, start, window) : std::optional<Spot>();
+    return spot ? std::optional(RefinedPoint{spot->centre_px, spot->standard_error_px}) : std::nullopt;
 }
 
 }  // namespace
@@ -286,7 +229,9 @@ ChartPoints refine(const Image& image, int channel, const ChartPoints& approxima
         // Edges sharper than a pixel are aliased, which biases search and fit alike; the blur takes that away.
         cv::GaussianBlur(channel_plane(image, channel), plane, {}, kBlur_px);
     }
-    ChartPoints result{.image_px = approximate.image_px, .found = std::vector<bool>(expected, false)};
+    ChartPoints result{.image_px = approximate.image_px,
+                       .found = std::vector<bool>(expected, false),
+                       .standard_error_px = std::vector<std::optional<Vec2d>>(expected)};
     for (int row = 0; row < grid.rows; ++row) {
         for (int column = 0; column < grid.columns; ++column) {
             const std::size_t i = static_cast<std::size_t>(row) * grid.columns + column;
@@ -299,9 +244,16 @@ ChartPoints refine(const Image& image, int channel, const ChartPoints& approxima
             const auto refined = spot ? refine_spot(image, channel, start, *lattice, *spot, is_bright)
                                       : refine_corner(image, plane, channel, start, *lattice, chart);
             if (refined) {
-                result.image_px[i] = *refined;
+                result.image_px[i] = refined->image_px;
+                result.standard_error_px[i] = refined->standard_error_px;
                 result.found[i] = true;
             }
+        }
+    }
+    const double noise = pixel_noise(image, channel, result);
+    for (std::optional<Vec2d>& error : result.standard_error_px) {
+        if (error) {
+            error = Vec2d{noise * error->x, noise * error->y};
         }
     }
     return result;

@@ -1,5 +1,6 @@
 // calibration/detection/refine.h — the exact positions of a chart's points in one channel, in linear light.
 #pragma once
+#include <optional>
 #include <vector>
 
 #include "engine/io/image.h"
@@ -13,6 +14,11 @@ namespace lensproof {
 struct ChartPoints {
     std::vector<Vec2d> image_px;
     std::vector<bool> found;
+    /// Of those that `refine` found, along x and along y: what the picture's noise
+    /// (calibration/detection/pixel_noise.h) does to the point, through its fit. What the fit's model does not know is
+    /// not in it: of pictures without noise some thousandths of a pixel. None where the window was too small for a fit.
+    /// Empty of points not refined.
+    std::vector<std::optional<Vec2d>> standard_error_px = {};
 };
 
 /// Refines those of `approximate` (from `detect`, or another channel's points) that were found, in one channel.
@@ -21,7 +27,7 @@ struct ChartPoints {
 /// markers out. The window is a part of the distance to the nearest neighbour, so that neither a fisheye's squeezed rim
 /// nor a large picture's noise spoils it; one of less than 7 × 7 pixels is too small for the fit and gets
 /// cv::cornerSubPix from two starts that must agree. Crossings of lines: the same, with lines for edges. Discs, dots
-/// and squares: the centroid of 1 − I/W, where W is the ground's light, a plane fitted around each. That is the
+/// and squares: their centroids (calibration/detection/spot_centroid.h). That is the
 /// centroid of the disc's image, not the image of its centre; `fit_geometry` models the difference
 /// (`disc_diameter_mm`).
 ///

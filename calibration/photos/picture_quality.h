@@ -3,24 +3,19 @@
 #include <string>
 
 #include "calibration/detection/refine.h"
+#include "calibration/photos/picture_traits.h"
 #include "engine/io/image.h"
 #include "engine/scene/chart.h"
 
 namespace lensproof {
 
-/// Between the tones of neighbouring fields of a chart that was found.
-struct ChartQuality {
-    double edge_width_px = 0.0;        // from 10 % to 90 % of the step, the median over the chart
-    double edge_width_share = 0.0;     // of the distance between neighbouring points
-    double clipped_white_share = 0.0;  // edges whose bright side is at full scale
-};
+/// Why a chart that was found had better be left out: its edges (from 10 % to 90 %) are a quarter of its fields wide,
+/// so that neighbours' blurs meet in a corner's window. Empty where there is no such reason, and for charts other than
+/// checkerboards and discs.
+std::string too_blurred(const PictureTraits& traits, const ChartPoints& points, const Chart& chart);
 
-/// Checkerboards and disc grids in one channel; all 0 for other charts, and where no edge could be judged.
-ChartQuality chart_quality(const Image& image, int channel, const ChartPoints& points, const Chart& chart);
-
-/// Why a chart that was found had better be left out: its edges are a quarter of its fields wide, so that neighbours'
-/// blurs meet in a corner's window. Empty where there is no such reason.
-std::string too_blurred(const ChartQuality& quality);
+/// Whether the white around most of the chart's points is at full scale.
+bool is_white_clipped(const PictureTraits& traits);
 
 /// What is wrong with a picture that showed no chart: over-exposed, under-exposed or blurred all over; empty where
 /// nothing of that is seen.

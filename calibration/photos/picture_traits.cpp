@@ -3,17 +3,16 @@
 #include <algorithm>
 #include <boost/math/special_functions/erf.hpp>
 #include <cmath>
-#include <limits>
 #include <numbers>
 #include <vector>
+
+#include "calibration/detection/pixel_noise.h"
 
 namespace lensproof {
 namespace {
 
-constexpr double kSteepest = 0.98;       // of the pixels around a point are less steep than the edge's middle
-constexpr double kAboveNoise = 5.0;      // that an edge has to be for its blur to be told
-constexpr int kFarthest_px = 40;         // looked at around a point; more pixels tell no more
-constexpr double kMedianOfAbs = 0.6745;  // of a normal distribution, in standard deviations
+constexpr double kSteepest = 0.98;   // of the pixels around a point are less steep than the edge's middle
+constexpr double kAboveNoise = 5.0;  // that an edge has to be for its blur to be told
 
 double percentile(std::vector<double>& values, double share) {
     const auto place = values.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
@@ -21,23 +20,10 @@ double percentile(std::vector<double>& values, double share) {
     return *place;
 }
 
-// Half the way to the nearest other point that was found.
-int reach_px(const ChartPoints& points, std::size_t i) {
-    double nearest = std::numeric_limits<double>::infinity();
-    for (std::size_t j = 0; j < points.image_px.size(); ++j) {
-        if (j != i && points.found[j]) {
-            nearest = std::min(nearest, std::hypot(points.image_px[j].x - points.image_px[i].x,
-                                                   points.image_px[j].y - points.image_px[i].y));
-        }
-    }
-    return static_cast<int>(std::min<double>(kFarthest_px, 0.5 * nearest));
-}
-
 struct Window {
     double white;
     double black;
-    double laplacian;  // median of its absolute value
-    double steepest;   // change over 2 px
+    double steepest;  // change over 2 px
 };
 
 std::optional<Window> look_around(const Image& image, int channel, const Vec2d& point, int reach) {
@@ -46,17 +32,13 @@ std::optional<Window> look_around(const Image& image, int channel, const Vec2d& 
     const int y0 = std::max(1, static_cast<int>(std::lround(point.y)) - reach);
     const int y1 = std::min(image.height - 2, static_cast<int>(std::lround(point.y)) + reach);
     std::vector<double> tones;
-    std::vector<double> laplacians;
     std::vector<double> steps;
     for (int y = y0; y <= y1; ++y) {
         for (int x = x0; x <= x1; ++x) {
             const auto at = [&](int dx, int dy) { return static_cast<double>(image.at(x + dx, y + dy, channel)); };
-            const double laplacian = at(-1, -1) + at(1, -1) + at(-1, 1) + at(1, 1) -
-                                     2.0 * (at(0, -1) + at(-1, 0) + at(1, 0) + at(0, 1)) + 4.0 * at(0, 0);
             const double step = std::hypot(at(1, 0) - at(-1, 0), at(0, 1) - at(0, -1));
-            if (std::isfinite(laplacian) && std::isfinite(step)) {
+            if (std::isfinite(step) && std::isfinite(at(0, 0))) {
                 tones.push_back(at(0, 0));
-                laplacians.push_back(std::abs(laplacian));
                 steps.push_back(step);
             }
         }
@@ -64,8 +46,7 @@ std::optional<Window> look_around(const Image& image, int channel, const Vec2d& 
     if (tones.size() < 25) {
         return std::nullopt;
     }
-    return Window{percentile(tones, 0.95), percentile(tones, 0.05), percentile(laplacians, 0.5),
-                  percentile(steps, kSteepest)};
+    return Window{percentile(tones, 0.95), percentile(tones, 0.05), percentile(steps, kSteepest)};
 }
 
 double median_of(const std::vector<Window>& windows, double Window::*member) {
@@ -83,8 +64,9 @@ std::optional<PictureTraits> picture_traits(const Image& image, int channel, con
     std::vector<Window> windows;
     std::vector<double> blurs;
     for (std::size_t i = 0; i < points.image_px.size(); ++i) {
-        if (const auto window =
-                points.found[i] ? look_around(image, channel, points.image_px[i], reach_px(points, i)) : std::nullopt) {
+        if (const auto window = points.found[i]
+                                    ? look_around(image, channel, points.image_px[i], neighbourhood_px(points, i))
+                                    : std::nullopt) {
             windows.push_back(*window);
         }
     }
@@ -93,7 +75,7 @@ std::optional<PictureTraits> picture_traits(const Image& image, int channel, con
     }
     PictureTraits traits{.white = median_of(windows, &Window::white),
                          .black = median_of(windows, &Window::black),
-                         .noise = median_of(windows, &Window::laplacian) / (6.0 * kMedianOfAbs),
+                         .noise = pixel_noise(image, channel, points),
                          .blur_px = {}};
     for (const Window& window : windows) {
         const double contrast = window.white - window.black;

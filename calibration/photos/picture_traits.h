@@ -22,8 +22,7 @@ struct PictureTraits {
 };
 
 /// Tones are the 5th and the 95th percentile of the pixels nearer to a point than half the way to the next one. Noise
-/// is the median absolute response to Immerkaer's mask (1996, "Fast noise variance estimation"), which edges and light
-/// that changes evenly hardly touch; compression that smooths noise away is not seen through. Blur follows from the
+/// is `pixel_noise` (calibration/detection/pixel_noise.h). Blur follows from the
 /// steepest pixels there: across an edge of a Gaussian's blur σ between tones that are C apart, two pixels that are 2
 /// px apart differ by up to C erf(1 / √2 σ). Noise and blur
 /// are within a quarter for σ from 0.4 to 2.5 px and points 30 px apart (tests/unit/calibration_self_test.cpp).

@@ -16,6 +16,7 @@
 #include "calibration/light/vignetting_models.h"
 #include "calibration/photos/picture_account.h"
 #include "calibration/photos/picture_traits.h"
+#include "calibration/profile/profile_line.h"
 #include "calibration/self_test/self_test.h"
 #include "calibration/sharpness/profile_edge.h"
 #include "calibration/sharpness/profile_star.h"
@@ -60,6 +61,9 @@ struct ProfilePoint {
     Vec2d image_px;
     Vec2d residual_px;  // measured minus model
     bool used = true;   // false: an outlier that the fit left out
+    /// Of the measured place, along x and y, from the picture's noise (JSON key "standard_error_px",
+    /// calibration/detection/refine.h); none where it is not known.
+    std::optional<Vec2d> standard_error_px = std::nullopt;
 };
 
 /// A picture in which a chart was looked for.
@@ -70,6 +74,12 @@ struct ProfileView {
     std::optional<PictureTraits> traits;  // of the channel that geometry is measured in; where found
     Pose pose;
     std::vector<ProfilePoint> points;
+    /// How sure it is which point is which: "certain", "half-turn", "quarter-turn" or "whole-pitches" (JSON key
+    /// "numbering", calibration/detection/numbering.h); empty where it is not known.
+    std::string numbering = {};
+    /// Of charts of straight lines: how straight each is under the model (JSON key "lines",
+    /// calibration/profile/profile_line.h).
+    std::vector<ProfileLine> lines = {};
 };
 
 /// The terms of a fit, with their covariance (row by row, in the order of the names).

@@ -140,6 +140,17 @@ ProfileView parse_view(const Node& node) {
                                .image_px = point.at("image_px").pair(),
                                .residual_px = point.at("residual_px").pair(),
                                .used = point.at("used").truth()});
+        if (point.has("standard_error_px")) {
+            view.points.back().standard_error_px = point.at("standard_error_px").pair();
+        }
+    }
+    if (node.has("numbering")) {
+        view.numbering = node.at("numbering").text();
+    }
+    if (node.has("lines")) {
+        for (const Node& line : node.at("lines").elements()) {
+            view.lines.push_back(parse_line(line));
+        }
     }
     return view;
 }

@@ -65,16 +65,26 @@ Json view_json(const ProfileView& view) {
     if (view.traits) {
         json["traits"] = to_json(*view.traits);
     }
+    if (!view.numbering.empty()) {
+        json["numbering"] = view.numbering;
+    }
     json["rotation_vector_rad"] = triple(view.pose.rotation_rad);
     json["translation_mm"] = triple(view.pose.translation_mm);
     Json points = Json::array();
     for (const ProfilePoint& p : view.points) {
-        points.push_back({{"chart_mm", pair(p.chart_mm)},
-                          {"image_px", pair(p.image_px)},
-                          {"residual_px", pair(p.residual_px)},
-                          {"used", p.used}});
+        Json point = {{"chart_mm", pair(p.chart_mm)},
+                      {"image_px", pair(p.image_px)},
+                      {"residual_px", pair(p.residual_px)},
+                      {"used", p.used}};
+        if (p.standard_error_px) {
+            point["standard_error_px"] = pair(*p.standard_error_px);
+        }
+        points.push_back(std::move(point));
     }
     json["points"] = std::move(points);
+    for (const ProfileLine& line : view.lines) {
+        json["lines"].push_back(to_json(line));
+    }
     return json;
 }
 

@@ -58,6 +58,17 @@ TEST(CalibrationCornerAccuracy, CharucoCornersHaveNoBias) {
     }
 }
 
+// At a blur of 1.75 px a marker's cells of 5 px run into one another, and guards of two blurs' widths would leave
+// nothing of the white between edges and markers: a sharpened copy shows the markers, and half the white is enough.
+TEST(CalibrationCornerAccuracy, ABlurredCharucoBoardIsFoundAndHasNoBias) {
+    const Chart board = charuco_board();
+    const Errors e = errors(board, take(board, perspective_camera(),
+                                        {.tilt_deg = 20.0, .blur_px = 1.75, .noise = 0.01, .distance_mm = 560.0}));
+    EXPECT_GE(e.count, 44);
+    EXPECT_LT(std::hypot(e.bias_px.x, e.bias_px.y), 0.01);
+    EXPECT_LT(e.rms_px, 0.02);
+}
+
 // A board that half leaves the frame: the corners in view are found, under their own numbers.
 TEST(CalibrationCornerAccuracy, APartOfACharucoBoardCounts) {
     const Chart board = charuco_board();

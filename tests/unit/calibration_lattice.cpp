@@ -13,15 +13,14 @@ const Chart kSquares{.pattern = SlantedEdges{7, 5, 45.0, 27.0, 5.0}};
 const Chart kLines{.pattern = StraightLines{9, 7, 30.0, 2.0}};
 
 // The measurement's own target, 0.02 px at 1 % noise, for what a perspective camera sees at a slant. White dots of 8 px
-// hold a third of the discs' light against the same noise: 0.03 px. A crossing at the rim may be missed.
+// hold a third of the discs' light against the same noise: 0.03 px.
 TEST(CalibrationLattice, PointsOfEveryKindAreWithinTwoHundredthsOfAPixel) {
     for (const Chart& chart : {kDiscs, kDots, kSquares, kLines}) {
         const bool is_dots = std::holds_alternative<PointGrid>(chart.pattern);
-        const bool is_lines = std::holds_alternative<StraightLines>(chart.pattern);
         for (const Shot& shot :
              {Shot{.blur_px = 0.7, .noise = 0.01}, Shot{.tilt_deg = 35.0, .blur_px = 0.7, .noise = 0.01, .seed = 5}}) {
             const Errors e = errors(chart, take(chart, perspective_camera(), shot));
-            EXPECT_GE(e.count, static_cast<int>(feature_points(chart).size()) - (is_lines ? 6 : 0)) << kind_name(chart);
+            EXPECT_GE(e.count, static_cast<int>(feature_points(chart).size())) << kind_name(chart);
             EXPECT_LT(e.rms_px, is_dots ? 0.03 : 0.02) << kind_name(chart) << ", tilt " << shot.tilt_deg;
             EXPECT_LT(std::hypot(e.bias_px.x, e.bias_px.y), is_dots ? 0.012 : 0.008) << kind_name(chart);
         }

@@ -54,18 +54,20 @@ ChartPoints corners() {
     return points;
 }
 
-// A Gaussian edge rises from 10 % to 90 % within 2 · 1.2816 σ. The pixel's box adds 1/12 px² to σ², reading between
-// pixels 1/6; profiles are sampled every 0.4 px, so within 0.5 px.
+// The pixel's box adds 1/12 px² to σ². Edges rise from 10 % to 90 % within 2 · 1.2816 σ: those of 3.5 px are 9 px wide,
+// 33 % of the corners' distance.
 TEST(PictureQuality, EdgesAreAsWideAsTheirBlur) {
+    const auto traits = [](double white, double sigma) {
+        return picture_traits(board_picture(white, sigma), 0, corners()).value();
+    };
     for (const double sigma : {1.0, 2.0}) {
-        const ChartQuality quality = chart_quality(board_picture(0.7, sigma), 0, corners(), kBoard);
-        EXPECT_NEAR(quality.edge_width_px, 2.5631 * std::sqrt(sigma * sigma + 0.25), 0.5);
-        EXPECT_EQ(quality.clipped_white_share, 0.0);
-        EXPECT_EQ(too_blurred(quality), "");
+        const PictureTraits seen = traits(0.7, sigma);
+        EXPECT_NEAR(seen.blur_px.value() / std::sqrt(sigma * sigma + 1.0 / 12.0), 1.0, 0.15);
+        EXPECT_FALSE(is_white_clipped(seen));
+        EXPECT_EQ(too_blurred(seen, corners(), kBoard), "");
     }
-    // 3.5 px: edges of 9 px, 33 % of the corners' distance.
-    EXPECT_NE(too_blurred(chart_quality(board_picture(0.7, 3.5), 0, corners(), kBoard)), "");
-    EXPECT_EQ(chart_quality(board_picture(1.5, 1.0), 0, corners(), kBoard).clipped_white_share, 1.0);
+    EXPECT_NE(too_blurred(traits(0.7, 3.5), corners(), kBoard).find("blurred: edges are 9."), std::string::npos);
+    EXPECT_TRUE(is_white_clipped(traits(1.5, 1.0)));
 }
 
 TEST(PictureQuality, FaultsAreSeenWhereTheyAre) {

@@ -1,0 +1,77 @@
+#include "calibration/detection/pixel_noise.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+
+namespace lensproof {
+namespace {
+
+constexpr int kFarthest_px = 40;         // looked at around a point; more pixels tell no more
+constexpr double kMedianOfAbs = 0.6745;  // of a normal distribution, in standard deviations
+constexpr double kMaskNorm = 6.0;        // root of the sum of the mask's squares
+constexpr std::size_t kFewestPixels = 25;
+constexpr double kMostStep = 7.0;   // of the noise: five standard deviations of a difference; more is an edge
+constexpr double kFullScale = 1.0;  // integer formats end there
+
+double median(std::vector<double>& values) {
+    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+    std::nth_element(values.begin(), middle, values.end());
+    return *middle;
+}
+
+// The median absolute response around a point, of pixels whose neighbours differ by less than `most_step`; none where
+// there are too few.
+std::optional<double> response(const Image& image, int channel, const Vec2d& point, int reach, double most_step) {
+    const int x0 = std::max(1, static_cast<int>(std::lround(point.x)) - reach);
+    const int x1 = std::min(image.width - 2, static_cast<int>(std::lround(point.x)) + reach);
+    const int y0 = std::max(1, static_cast<int>(std::lround(point.y)) - reach);
+    const int y1 = std::min(image.height - 2, static_cast<int>(std::lround(point.y)) + reach);
+    std::vector<double> responses;
+    for (int y = y0; y <= y1; ++y) {
+        for (int x = x0; x <= x1; ++x) {
+            const auto at = [&](int dx, int dy) { return static_cast<double>(image.at(x + dx, y + dy, channel)); };
+            const double laplacian = at(-1, -1) + at(1, -1) + at(-1, 1) + at(1, 1) -
+                                     2.0 * (at(0, -1) + at(-1, 0) + at(1, 0) + at(0, 1)) + 4.0 * at(0, 0);
+            const double step = std::hypot(at(1, 0) - at(-1, 0), at(0, 1) - at(0, -1));
+            if (std::isfinite(laplacian) && at(0, 0) < kFullScale && step <= most_step) {
+                responses.push_back(std::abs(laplacian));
+            }
+        }
+    }
+    return responses.size() < kFewestPixels ? std::nullopt : std::optional(median(responses));
+}
+
+double noise_between(const Image& image, int channel, const ChartPoints& points, double most_step) {
+    std::vector<double> responses;
+    for (std::size_t i = 0; i < points.image_px.size(); ++i) {
+        const auto one = points.found[i]
+                             ? response(image, channel, points.image_px[i], neighbourhood_px(points, i), most_step)
+                             : std::nullopt;
+        if (one) {
+            responses.push_back(*one);
+        }
+    }
+    return responses.empty() ? 0.0 : median(responses) / (kMaskNorm * kMedianOfAbs);
+}
+
+}  // namespace
+
+int neighbourhood_px(const ChartPoints& points, std::size_t i) {
+    double nearest = std::numeric_limits<double>::infinity();
+    for (std::size_t j = 0; j < points.image_px.size(); ++j) {
+        if (j != i && points.found[j]) {
+            nearest = std::min(nearest, std::hypot(points.image_px[j].x - points.image_px[i].x,
+                                                   points.image_px[j].y - points.image_px[i].y));
+        }
+    }
+    return static_cast<int>(std::min<double>(kFarthest_px, 0.5 * nearest));
+}
+
+double pixel_noise(const Image& image, int channel, const ChartPoints& points) {
+    const double first = noise_between(image, channel, points, std::numeric_limits<double>::infinity());
+    return noise_between(image, channel, points, kMostStep * first);
+}
+
+}  // namespace lensproof
