@@ -7,6 +7,8 @@
 #include <numbers>
 #include <vector>
 
+#include "calibration/photos/flat_field_traits.h"
+
 namespace lensproof {
 namespace {
 
@@ -33,6 +35,18 @@ int reach_px(const ChartPoints& points, std::size_t i) {
     return static_cast<int>(std::min<double>(kFarthest_px, 0.5 * nearest));
 }
 
+/// Immerkaer's mask.
+double laplacian_at(const Image& image, int channel, int x, int y) {
+    const auto at = [&](int dx, int dy) { return static_cast<double>(image.at(x + dx, y + dy, channel)); };
+    return at(-1, -1) + at(1, -1) + at(-1, 1) + at(1, 1) - 2.0 * (at(0, -1) + at(-1, 0) + at(1, 0) + at(0, 1)) +
+           4.0 * at(0, 0);
+}
+
+/// From the median of its absolute value, were the noise normal: the mask's weights have squares that sum to 36.
+double noise_of(double median_laplacian) {
+    return median_laplacian / (6.0 * kMedianOfAbs);
+}
+
 struct Window {
     double white;
     double black;
@@ -51,8 +65,7 @@ std::optional<Window> look_around(const Image& image, int channel, const Vec2d& 
     for (int y = y0; y <= y1; ++y) {
         for (int x = x0; x <= x1; ++x) {
             const auto at = [&](int dx, int dy) { return static_cast<double>(image.at(x + dx, y + dy, channel)); };
-            const double laplacian = at(-1, -1) + at(1, -1) + at(-1, 1) + at(1, 1) -
-                                     2.0 * (at(0, -1) + at(-1, 0) + at(1, 0) + at(0, 1)) + 4.0 * at(0, 0);
+            const double laplacian = laplacian_at(image, channel, x, y);
             const double step = std::hypot(at(1, 0) - at(-1, 0), at(0, 1) - at(0, -1));
             if (std::isfinite(laplacian) && std::isfinite(step)) {
                 tones.push_back(at(0, 0));
@@ -93,7 +106,7 @@ std::optional<PictureTraits> picture_traits(const Image& image, int channel, con
     }
     PictureTraits traits{.white = median_of(windows, &Window::white),
                          .black = median_of(windows, &Window::black),
-                         .noise = median_of(windows, &Window::laplacian) / (6.0 * kMedianOfAbs),
+                         .noise = noise_of(median_of(windows, &Window::laplacian)),
                          .blur_px = {}};
     for (const Window& window : windows) {
         const double contrast = window.white - window.black;
@@ -106,6 +119,35 @@ std::optional<PictureTraits> picture_traits(const Image& image, int channel, con
         traits.blur_px = percentile(blurs, 0.5);
     }
     return traits;
+}
+
+FlatFieldTraits flat_field_traits(const Image& image, int channel) {
+    constexpr int kSmallest_px = 8;
+    constexpr int kParts = 40;  // of a side, of which the middle two are looked at
+    if (image.width < kSmallest_px || image.height < kSmallest_px) {
+        return {};
+    }
+    std::vector<double> laplacians;
+    laplacians.reserve(static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height));
+    double sum = 0.0;
+    int count = 0;
+    for (int y = 1; y + 1 < image.height; ++y) {
+        for (int x = 1; x + 1 < image.width; ++x) {
+            const double laplacian = laplacian_at(image, channel, x, y);
+            if (!std::isfinite(laplacian)) {
+                continue;
+            }
+            laplacians.push_back(std::abs(laplacian));
+            const bool in_middle = std::abs(2 * x - image.width) <= std::max(2, image.width / (kParts / 2)) &&
+                                   std::abs(2 * y - image.height) <= std::max(2, image.height / (kParts / 2));
+            sum += in_middle ? static_cast<double>(image.at(x, y, channel)) : 0.0;
+            count += in_middle ? 1 : 0;
+        }
+    }
+    if (count == 0) {
+        return {};
+    }
+    return {.white = sum / count, .noise = noise_of(percentile(laplacians, 0.5))};
 }
 
 }  // namespace lensproof

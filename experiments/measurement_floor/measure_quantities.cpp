@@ -279,6 +279,7 @@ MeasurementFloor measure_quantities(const FloorSettings& settings, std::uint64_t
                 std::size_t next = first;
                 for (const double value : what.values) {
                     std::vector<double> errors;
+                    errors.reserve(static_cast<std::size_t>(sets));
                     for (int set = 0; set < sets; ++set) {
                         errors.push_back(results[next++].*quantity.error);
                     }
