@@ -42,8 +42,4 @@ std::string failed_in_words(const FloorPoint& point) {
     return point.failed == 0 ? "" : fmt::format(" {} of {} failed.", point.failed, point.trials);
 }
 
-bool is_wanted(const std::vector<std::string>& wanted, const std::string& name) {
-    return wanted.empty() || std::ranges::find(wanted, name) != wanted.end();
-}
-
 }  // namespace lensproof

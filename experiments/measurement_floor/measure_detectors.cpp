@@ -181,6 +181,9 @@ MeasurementFloor measure_detectors(const FloorSettings& settings, std::uint64_t 
     std::erase_if(all, [&](const Detector& detector) { return !is_wanted(settings.detectors, detector.label); });
     std::vector<Varied> sweeps = varied();
     std::erase_if(sweeps, [&](const Varied& what) { return !is_wanted(settings.sweeps, what.of.id); });
+    for (Varied& what : sweeps) {
+        std::erase_if(what.of.values, [&](double value) { return !is_wanted(settings.values, value); });
+    }
     struct Job {
         std::size_t sweep, detector, value;
         int picture;

@@ -14,6 +14,7 @@ namespace lensproof {
 /// What an experiment file states, [measurement_floor].
 struct FloorSettings {
     std::vector<std::string> sweeps;     // ids of `detector_sweeps()`; empty: all
+    std::vector<double> values{};        // of the sweeps of pictures only these (not in files); empty: all
     std::vector<std::string> detectors;  // of `floor_detectors()`; empty: all
     int pictures = 6;                    // simulated for each value of a sweep
     int trials = 500;                    // of each interval

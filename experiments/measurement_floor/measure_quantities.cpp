@@ -234,6 +234,9 @@ MeasurementFloor measure_quantities(const FloorSettings& settings, std::uint64_t
                                     const FloorProgress& progress) {
     std::vector<PictureSweep> sweeps = picture_sweeps();
     std::erase_if(sweeps, [&](const PictureSweep& sweep) { return !is_wanted(settings.sweeps, sweep.id); });
+    for (PictureSweep& sweep : sweeps) {
+        std::erase_if(sweep.values, [&](double value) { return !is_wanted(settings.values, value); });
+    }
     const int sets = settings.pictures;
     struct Job {
         std::size_t sweep, value;

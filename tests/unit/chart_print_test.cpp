@@ -1,3 +1,4 @@
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -99,7 +100,7 @@ TEST(ChartPrint, ThePdfIsTheSameChartToAnotherProgram) {
         const std::string stem = (folder.path() / kind).string();
         print_chart(chart, layout, chart_caption(toml), stem + ".pdf");
         print_chart(chart, layout, chart_caption(toml), stem + ".png");
-        const auto seen = rasterised("pdftoppm -r 100 -gray -singlefile " + stem + ".pdf " + stem, stem + ".pgm");
+        const auto seen = rasterised(fmt::format("pdftoppm -r 100 -gray -singlefile {0}.pdf {0}", stem), stem + ".pgm");
         if (!seen) {
             GTEST_SKIP() << "needs pdftoppm (poppler-utils)";
         }
@@ -124,10 +125,9 @@ TEST(ChartPrint, TheSvgIsTheSameChartToABrowser) {
         print_chart(chart, layout, chart_caption(toml), stem + ".png");
         const Image own = read_image(stem + ".png");
         const auto seen = rasterised(
-            "chromium --headless=new --no-sandbox --disable-gpu --no-first-run --hide-scrollbars "
-            "--user-data-dir=" +
-                (folder.path() / "browser").string() + " --window-size=" + std::to_string(own.width) + "," +
-                std::to_string(own.height) + " --screenshot=" + stem + "-seen.png file://" + stem + ".svg",
+            fmt::format("chromium --headless=new --no-sandbox --disable-gpu --no-first-run --hide-scrollbars "
+                        "--user-data-dir={0}-browser --window-size={1},{2} --screenshot={0}-seen.png file://{0}.svg",
+                        stem, own.width, own.height),
             stem + "-seen.png");
         if (!seen) {
             GTEST_SKIP() << "needs chromium";
