@@ -37,7 +37,10 @@ double uncertainty_at(const UncertaintyMap& map, double column, double row) {
     const int i = std::clamp(static_cast<int>(column), 0, map.columns - 2);
     const int j = std::clamp(static_cast<int>(row), 0, map.rows - 2);
     const auto knot = [&](int di, int dj) {
-        return map.far_px[static_cast<std::size_t>((j + dj) * map.columns + i + di)].value_or(kNaN);
+        return map.far_px
+            .at(static_cast<std::size_t>(j + dj) * static_cast<std::size_t>(map.columns) +
+                static_cast<std::size_t>(i + di))
+            .value_or(kNaN);
     };
     const double u = column - i;
     const double v = row - j;

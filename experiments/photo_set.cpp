@@ -49,6 +49,9 @@ PhotoSet read_photo_set(const fs::path& manifest) {
     const std::vector<std::string> flat_fields =
         top.has("flat_fields") ? top.texts("flat_fields") : std::vector<std::string>{};
     const std::vector<std::string> folders = top.has("folders") ? top.texts("folders") : std::vector<std::string>{"."};
+    if (top.has("focus_positions_mm")) {
+        set.focus_positions_mm = top.numbers("focus_positions_mm", photos.size());
+    }
     top.finish();
     if (photos.empty()) {
         top.fail("photos", "names no photo");

@@ -19,6 +19,7 @@ struct PhotoSet {
     Chart chart;
     std::vector<std::filesystem::path> photos;
     std::vector<std::filesystem::path> flat_fields;
+    std::vector<double> focus_positions_mm;  // where the focus stood in each photo; empty: all at one place
 };
 
 /// Reads a manifest (described in reference_photos/README.md). Photos are looked for in the first of its folders that

@@ -47,7 +47,7 @@ Json subject_json(const Subject& subject) {
             const ProfileView& view = subject.profile.views.at(picture.view);
             entry["points"] = points_json(view);
             if (!view.found) {
-                entry["caption"] = picture.caption + " (no chart found)";
+                entry["caption"] = fmt::format("{} (left out: {})", picture.caption, view.reason);
             }
         }
         json["pictures"].push_back(std::move(entry));
@@ -121,6 +121,20 @@ std::string luminance_curve(const Subject& subject) {
         }
     }
     return "vignetting_G_ev";
+}
+
+/// Tangential and sagittal curves of every subject that has them, in green (grey photos: their one channel); a curve
+/// is named `prefix`, direction, channel, `suffix`.
+Plot both_ways(const ExperimentResult& result, const std::string& prefix, const std::string& suffix, Plot plot) {
+    for (const Subject& subject : result.subjects) {
+        for (const char* direction : {"tangential", "sagittal"}) {
+            for (const char* channel : {"G", "Y"}) {
+                add_measured(plot, subject, fmt::format("{}_{}_{}{}", prefix, direction, channel, suffix),
+                             fmt::format(", {}", direction));
+            }
+        }
+    }
+    return plot;
 }
 
 Plot measured_plot(const ExperimentResult& result, Plot plot, const std::function<bool(const Subject&)>& belongs,
@@ -240,6 +254,19 @@ Json plots_json(const Experiment& experiment, const ExperimentResult& result) {
                                [](const ClosedLoopLimits& l) { return l.chromatic_shift_px; },
                                [&](const Subject& s) { return rms_floor(s, curve); }));
     }
+
+    append_plot(plots, both_ways(result, "mtf50", "",
+                                 {.id = "sharpness",
+                                  .title = "Sharpness",
+                                  .subtitle = "MTF50 along the radius (tangential) and across (sagittal), green",
+                                  .y_label = "MTF50",
+                                  .y_unit = "cycles/px"}));
+    append_plot(plots, both_ways(result, "best_focus", "_mm",
+                                 {.id = "field-curvature",
+                                  .title = "Field curvature",
+                                  .subtitle = "where the focus has to stand for the sharpest picture, green",
+                                  .y_label = "focus",
+                                  .y_unit = "mm"}));
 
     Plot against{.id = "comparisons",
                  .title = "Lenses against each other",
@@ -367,7 +394,9 @@ std::map<std::string, std::string> report_pictures(const ExperimentResult& resul
     std::map<std::string, std::string> pictures;
     for (const Subject& subject : result.subjects) {
         for (const ShownPicture& picture : subject.pictures) {
-            pictures[picture.name] = picture.png;
+            if (!picture.png.empty()) {
+                pictures[picture.name] = picture.png;
+            }
         }
     }
     for (auto& [name, map] : certainty_maps(result)) {

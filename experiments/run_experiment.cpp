@@ -7,6 +7,7 @@
 #include <iterator>
 
 #include "calibration/measure.h"
+#include "calibration/photos/photo_survey.h"
 #include "engine/io/file.h"
 #include "engine/io/image.h"
 #include "engine/io/input_error.h"
@@ -190,6 +191,38 @@ class SimulationRun {
     std::uint64_t views_rendered_ = 0;
 };
 
+/// A picture that cannot be read is named and not shown.
+ShownPicture shown_photo(const Picture& picture, const std::string& name, int view) {
+    const std::string caption = std::filesystem::path(picture.name).filename().string();
+    try {
+        return shown(name, caption, picture.load(), view);
+    } catch (const InputError&) {
+        return {.name = name, .caption = caption, .view = view};
+    }
+}
+
+/// What was left out and why, what is to be known of the others, and signs of corrections.
+void add_account(Subject& subject) {
+    const Profile& profile = subject.profile;
+    const auto used = std::ranges::count_if(profile.pictures, [](const PictureAccount& p) { return p.used; });
+    subject.facts.push_back({"pictures used", fmt::format("{} of {}", used, profile.pictures.size())});
+    int turned = 0;
+    for (const PictureAccount& picture : profile.pictures) {
+        turned += picture.orientation != 1 ? 1 : 0;
+        if (!picture.used || !picture.reason.empty()) {
+            const std::string file = std::filesystem::path(picture.image).filename().string();
+            subject.facts.push_back({file + (picture.used ? "" : ", left out"), picture.reason});
+        }
+    }
+    if (turned > 0) {
+        subject.facts.push_back(
+            {"EXIF orientation", fmt::format("of {} pictures, not applied: the sensor's rows count", turned)});
+    }
+    for (const std::string& suspicion : profile.source.suspicions) {
+        subject.facts.push_back({"correction suspected", suspicion});
+    }
+}
+
 Subject run_photos(const PhotoSubject& photos, const PhotoSet& set, bool self_test, const RunProgress& progress) {
     Subject subject{.name = photos.name, .label = set.name, .simulated = false};
     MeasureInput input{.name = photos.name,
@@ -200,24 +233,24 @@ Subject run_photos(const PhotoSubject& photos, const PhotoSet& set, bool self_te
                        .source = {.kind = "photo", .images = {}, .camera = set.camera, .lens = set.lens},
                        .pixel_pitch_um = set.pixel_pitch_um,
                        .self_test = self_test};
-    const auto add = [&](const std::filesystem::path& file, PictureRole role, int view) {
-        progress(fmt::format("{}, {}", photos.name, file.filename().string()), 0.0);
-        const Image image = read_photo(file, std::nullopt);
-        subject.pictures.push_back(
-            shown(fmt::format("{}/{:02}-{}.png", photos.name, subject.pictures.size() + 1, file.stem().string()),
-                  file.filename().string(), image, view));
-        input.pictures.push_back(
-            {.name = file.string(), .role = role, .load = [file] { return read_photo(file, std::nullopt); }});
-    };
-    for (std::size_t i = 0; i < set.photos.size(); ++i) {
-        add(set.photos[i], PictureRole::chart, static_cast<int>(i));
+    take_survey(input, survey_photos(set.photos, set.flat_fields, std::nullopt));
+    for (std::size_t i = 0; i < set.focus_positions_mm.size(); ++i) {
+        input.focus_position_mm[set.photos[i].string()] = set.focus_positions_mm[i];
     }
-    for (const std::filesystem::path& flat_field : set.flat_fields) {
-        add(flat_field, PictureRole::flat_field, -1);
+    int view = 0;
+    for (const Picture& picture : input.pictures) {
+        const std::filesystem::path file = picture.name;
+        progress(fmt::format("{}, {}", photos.name, file.filename().string()), 0.0);
+        const int own_view = picture.role == PictureRole::chart ? view++ : -1;
+        subject.pictures.push_back(shown_photo(
+            picture, fmt::format("{}/{:02}-{}.png", photos.name, subject.pictures.size() + 1, file.stem().string()),
+            own_view));
     }
     progress(photos.name + ", measuring", 0.0);
-    subject.profile = measure(input);
-    subject.facts = {{"camera", set.camera}, {"lens", set.lens}, {"licence", set.licence}, {"from", set.source}};
+    subject.profile = measure_surveyed(input);
+    const ProfileSource& source = subject.profile.source;
+    subject.facts = {{"camera", source.camera}, {"lens", source.lens}, {"licence", set.licence}, {"from", set.source}};
+    add_account(subject);
     add_profile_facts(subject);
     return subject;
 }

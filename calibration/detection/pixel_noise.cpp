@@ -21,16 +21,25 @@ double median(std::vector<double>& values) {
     return *middle;
 }
 
-// The median absolute response around a point, of pixels whose neighbours differ by less than `most_step`; none where
+struct Region {
+    int x0;
+    int x1;
+    int y0;
+    int y1;
+};
+
+Region around(const Vec2d& point, int reach) {
+    const int x = static_cast<int>(std::lround(point.x));
+    const int y = static_cast<int>(std::lround(point.y));
+    return {.x0 = x - reach, .x1 = x + reach, .y0 = y - reach, .y1 = y + reach};
+}
+
+// The median absolute response in a region, of pixels whose neighbours differ by less than `most_step`; none where
 // there are too few.
-std::optional<double> response(const Image& image, int channel, const Vec2d& point, int reach, double most_step) {
-    const int x0 = std::max(1, static_cast<int>(std::lround(point.x)) - reach);
-    const int x1 = std::min(image.width - 2, static_cast<int>(std::lround(point.x)) + reach);
-    const int y0 = std::max(1, static_cast<int>(std::lround(point.y)) - reach);
-    const int y1 = std::min(image.height - 2, static_cast<int>(std::lround(point.y)) + reach);
+std::optional<double> response(const Image& image, int channel, const Region& region, double most_step) {
     std::vector<double> responses;
-    for (int y = y0; y <= y1; ++y) {
-        for (int x = x0; x <= x1; ++x) {
+    for (int y = std::max(1, region.y0); y <= std::min(image.height - 2, region.y1); ++y) {
+        for (int x = std::max(1, region.x0); x <= std::min(image.width - 2, region.x1); ++x) {
             const auto at = [&](int dx, int dy) { return static_cast<double>(image.at(x + dx, y + dy, channel)); };
             const double laplacian = at(-1, -1) + at(1, -1) + at(-1, 1) + at(1, 1) -
                                      2.0 * (at(0, -1) + at(-1, 0) + at(1, 0) + at(0, 1)) + 4.0 * at(0, 0);
@@ -43,17 +52,22 @@ std::optional<double> response(const Image& image, int channel, const Vec2d& poi
     return responses.size() < kFewestPixels ? std::nullopt : std::optional(median(responses));
 }
 
+// Were the noise normal.
+double noise_of(double median_response) {
+    return median_response / (kMaskNorm * kMedianOfAbs);
+}
+
 double noise_between(const Image& image, int channel, const ChartPoints& points, double most_step) {
     std::vector<double> responses;
     for (std::size_t i = 0; i < points.image_px.size(); ++i) {
-        const auto one = points.found[i]
-                             ? response(image, channel, points.image_px[i], neighbourhood_px(points, i), most_step)
-                             : std::nullopt;
+        const auto one = points.found[i] ? response(image, channel,
+                                                    around(points.image_px[i], neighbourhood_px(points, i)), most_step)
+                                         : std::nullopt;
         if (one) {
             responses.push_back(*one);
         }
     }
-    return responses.empty() ? 0.0 : median(responses) / (kMaskNorm * kMedianOfAbs);
+    return responses.empty() ? 0.0 : noise_of(median(responses));
 }
 
 }  // namespace
@@ -72,6 +86,15 @@ int neighbourhood_px(const ChartPoints& points, std::size_t i) {
 double pixel_noise(const Image& image, int channel, const ChartPoints& points) {
     const double first = noise_between(image, channel, points, std::numeric_limits<double>::infinity());
     return noise_between(image, channel, points, kMostStep * first);
+}
+
+double pixel_noise(const Image& image, int channel) {
+    const Region whole{.x0 = 0, .x1 = image.width, .y0 = 0, .y1 = image.height};
+    const auto among = [&](double most_step) {
+        const auto found = response(image, channel, whole, most_step);
+        return found ? noise_of(*found) : 0.0;
+    };
+    return among(kMostStep * among(std::numeric_limits<double>::infinity()));
 }
 
 }  // namespace lensproof

@@ -19,4 +19,7 @@ int neighbourhood_px(const ChartPoints& points, std::size_t i);
 /// none, do not count.
 double pixel_noise(const Image& image, int channel, const ChartPoints& points);
 
+/// The same over the whole of a picture that shows no chart.
+double pixel_noise(const Image& image, int channel);
+
 }  // namespace lensproof

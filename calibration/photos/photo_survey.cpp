@@ -213,6 +213,32 @@ PhotoSurvey survey_photos(const std::vector<fs::path>& charts, const std::vector
     return survey;
 }
 
+void take_survey(MeasureInput& input, const PhotoSurvey& survey) {
+    input.pictures = survey.pictures;
+    const CameraNotes& notes = survey.notes;
+    if (notes != CameraNotes{.transfer = notes.transfer}) {
+        input.source.notes = notes;
+    }
+    input.source.suspicions = survey.suspicions;
+    if (input.source.camera == kUnknown && !notes.model.empty()) {
+        input.source.camera = notes.make.empty() ? notes.model : notes.make + " " + notes.model;
+    }
+    if (input.source.lens == kUnknown && !notes.lens.empty()) {
+        input.source.lens = notes.lens;
+    }
+    if (!input.pixel_pitch_um) {
+        input.pixel_pitch_um = notes.pixel_pitch_um;
+    }
+}
+
+Profile measure_surveyed(const MeasureInput& input) {
+    Profile profile = measure(input);
+    for (const std::string& sign : suspicions_of(profile)) {
+        profile.source.suspicions.push_back(sign);
+    }
+    return profile;
+}
+
 std::vector<std::string> suspicions_of(const Profile& profile) {
     std::vector<std::string> signs;
     if (!profile.geometry) {

@@ -30,6 +30,16 @@ PhotoSurvey survey_photos(const std::vector<std::filesystem::path>& charts,
                           const std::vector<std::filesystem::path>& flat_fields,
                           const std::optional<TransferCurve>& assumed);
 
+/// A camera's or lens's name that nothing states.
+inline constexpr const char* kUnknown = "unknown";
+
+/// The survey's pictures, and what their cameras noted where `input` says nothing else: camera and lens of the name
+/// "unknown", and the pixel pitch.
+void take_survey(MeasureInput& input, const PhotoSurvey& survey);
+
+/// `measure`, and in the profile's source what the result shows of corrections.
+Profile measure_surveyed(const MeasureInput& input);
+
 /// What a finished measurement shows of corrections that the camera may have made: no distortion within its error where
 /// a lens so wide has some, or another focal length than the camera states.
 std::vector<std::string> suspicions_of(const Profile& profile);

@@ -7,7 +7,9 @@
 #include <optional>
 #include <string_view>
 
+#include "calibration/detection/working_copy.h"
 #include "calibration/measure.h"
+#include "calibration/photos/flat_field_traits.h"
 #include "calibration/profile/curve_difference.h"
 #include "calibration/self_test/simulated_chart.h"
 
@@ -61,12 +63,29 @@ SimulatedCamera camera_of(const Profile& profile, const PictureTraits& traits, s
     return camera;
 }
 
+// A flat field has its own exposure and noise, those of its own picture.
+SimulatedCamera flat_field_camera(const Profile& profile, const PictureTraits& charts, const Picture& picture) {
+    SimulatedCamera camera = camera_of(profile, charts, picture.jpeg_quality);
+    const Image image = picture.load();
+    const FlatFieldTraits own = flat_field_traits(image, reference_channel(image));
+    if (own.white > 0.0) {
+        camera.white = own.white;
+        camera.read_noise = own.noise;
+    }
+    return camera;
+}
+
 // The chart as it looks in the picture: white as white, black as dark as it was seen.
 Chart chart_of(const Chart& chart, const PictureTraits& traits) {
     Chart own = chart;
     own.white_reflectance = 1.0;
     own.black_reflectance = std::clamp(traits.black / traits.white, 0.0, 1.0);
     return own;
+}
+
+bool is_used(const Profile& profile, const Picture& picture) {
+    const auto account = std::ranges::find(profile.pictures, picture.name, &PictureAccount::image);
+    return account != profile.pictures.end() && account->used;
 }
 
 std::vector<Picture> simulated_pictures(const MeasureInput& input, const Profile& profile) {
@@ -84,11 +103,11 @@ std::vector<Picture> simulated_pictures(const MeasureInput& input, const Profile
         }
     }
     for (const Picture& picture : input.pictures) {
-        if (picture.role == PictureRole::flat_field && !pictures.empty()) {
-            pictures.push_back({picture.name, PictureRole::flat_field,
-                                [camera = camera_of(profile, last, picture.jpeg_quality), seed] {
-                                    return simulate_flat_field(camera, seed);
-                                }});
+        if (picture.role == PictureRole::flat_field && !pictures.empty() && is_used(profile, picture)) {
+            pictures.push_back(
+                {picture.name, PictureRole::flat_field, [camera = flat_field_camera(profile, last, picture), seed] {
+                     return simulate_flat_field(camera, seed);
+                 }});
             ++seed;
         }
     }

@@ -28,6 +28,8 @@ double narrowest_part_mm(const Chart& chart) {
         [](const DiscGrid& c) { return std::min(c.diameter_mm, c.pitch_mm - c.diameter_mm); },
         [](const CharucoBoard& c) { return std::min(c.marker_mm / (c.cells + 2), 0.5 * (c.square_mm - c.marker_mm)); },
         [](const PointGrid& c) { return std::min(c.dot_mm, c.pitch_mm - c.dot_mm); },
+        [](const SlantedEdges& c) { return std::min(c.square_mm, c.pitch_mm - std::numbers::sqrt2 * c.square_mm); },
+        [](const StraightLines& c) { return std::min(c.line_mm, c.pitch_mm - c.line_mm); },
         [](const auto& /*other*/) { return 0.0; },
     };
     return std::visit(narrowest, chart.pattern);

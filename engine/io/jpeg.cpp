@@ -56,16 +56,16 @@ std::optional<Table> luminance_table(std::string_view file) {
     constexpr int kScan = 0xDA;
     for (std::size_t at = 2; at + 4 <= file.size() && byte_at(file, at) == 0xFF;) {
         const int marker = byte_at(file, at + 1);
-        const auto length = static_cast<std::size_t>(256 * byte_at(file, at + 2) + byte_at(file, at + 3));
+        const int length = 256 * byte_at(file, at + 2) + byte_at(file, at + 3);
         if (marker == kScan || length < 2) {
             break;
         }
         if (marker == kDqt) {
-            if (const auto table = first_table(file.substr(at + 4, length - 2))) {
+            if (const auto table = first_table(file.substr(at + 4, static_cast<std::size_t>(length) - 2))) {
                 return table;
             }
         }
-        at += 2 + length;
+        at += 2 + static_cast<std::size_t>(length);
     }
     return std::nullopt;
 }

@@ -10,9 +10,12 @@
 #include <memory>
 #include <numbers>
 #include <stdexcept>
+#include <vector>
 
 #include "engine/io/file.h"
 #include "engine/io/input_error.h"
+#include "engine/io/page_png.h"
+#include "engine/render/parallel.h"
 #include "engine/scene/chart_outline.h"
 #include "engine/scene/overloaded.h"
 
@@ -104,13 +107,17 @@ void draw_caption(cairo_t* page, const PrintLayout& layout, const std::string& c
     cairo_fill(page);
 }
 
-/// `unit`: what a millimetre is in the surface's own units.
-void draw_page(cairo_t* page, const Chart& chart, const PrintLayout& layout, const std::string& caption, double unit) {
+/// White, and the caption. `unit`: what a millimetre is in the surface's own units.
+void start_page(cairo_t* page, const PrintLayout& layout, const std::string& caption, double unit) {
     cairo_scale(page, unit, unit);
     cairo_set_tolerance(page, 0.01);
     set_ink(page, false);
     cairo_paint(page);
     draw_caption(page, layout, caption);
+}
+
+void draw_page(cairo_t* page, const Chart& chart, const PrintLayout& layout, const std::string& caption, double unit) {
+    start_page(page, layout, caption, unit);
     const Vec2d centre = chart_centre_mm(layout);
     cairo_translate(page, centre.x, centre.y);
     draw_chart(page, chart);
@@ -136,6 +143,39 @@ void draw_vector(const Chart& chart, const PrintLayout& layout, const std::strin
     check(cairo_surface_status(surface.get()), file);
 }
 
+std::vector<unsigned char> greys_of(cairo_surface_t* surface) {
+    const int width = cairo_image_surface_get_width(surface);
+    const int height = cairo_image_surface_get_height(surface);
+    const auto stride = static_cast<std::ptrdiff_t>(cairo_image_surface_get_stride(surface));
+    const unsigned char* data = cairo_image_surface_get_data(surface);
+    std::vector<unsigned char> grey;
+    grey.reserve(static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
+    for (int y = 0; y < height; ++y) {
+        for (int x = 0; x < width; ++x) {
+            grey.push_back(data[y * stride + std::ptrdiff_t{4} * x]);  // any of the three: they are the same
+        }
+    }
+    return grey;
+}
+
+/// Black where `is_black` says so of a pixel's middle: the chart that is rendered and measured, to the pixel. (Cairo's
+/// own polygons are in 1/256 of a pixel, by which a slanting edge goes to the other side of a middle here and there.)
+void sample_chart(std::vector<unsigned char>& grey, int width, int height, const Chart& chart,
+                  const PrintLayout& layout) {
+    const Vec2d centre = chart_centre_mm(layout);
+    const Vec2d size = pattern_size_mm(chart);
+    const double pixel_mm = kMillimetresPerInch / layout.dpi;
+    parallel_for(height, 0, [&](int y) {
+        const double y_mm = (y + 0.5) * pixel_mm - centre.y;
+        for (int x = 0; x < width && std::abs(y_mm) <= 0.5 * size.y; ++x) {
+            const double x_mm = (x + 0.5) * pixel_mm - centre.x;
+            if (std::abs(x_mm) <= 0.5 * size.x && is_black(chart, x_mm, y_mm)) {
+                grey[static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x)] = 0;
+            }
+        }
+    });
+}
+
 void draw_png(const Chart& chart, const PrintLayout& layout, const std::string& caption,
               const std::filesystem::path& file) {
     const double unit = layout.dpi / kMillimetresPerInch;
@@ -152,11 +192,16 @@ void draw_png(const Chart& chart, const PrintLayout& layout, const std::string& 
         cairo_image_surface_create(CAIRO_FORMAT_RGB24, static_cast<int>(width), static_cast<int>(height)),
         cairo_surface_destroy);
     check(cairo_surface_status(surface.get()), file);
-    const Context page(cairo_create(surface.get()), cairo_destroy);
-    cairo_set_antialias(page.get(), CAIRO_ANTIALIAS_NONE);
-    draw_page(page.get(), chart, layout, caption, unit);
-    check(cairo_status(page.get()), file);
-    check(cairo_surface_write_to_png(surface.get(), file.c_str()), file);
+    {
+        const Context page(cairo_create(surface.get()), cairo_destroy);
+        cairo_set_antialias(page.get(), CAIRO_ANTIALIAS_NONE);
+        start_page(page.get(), layout, caption, unit);
+        check(cairo_status(page.get()), file);
+    }
+    cairo_surface_flush(surface.get());
+    std::vector<unsigned char> grey = greys_of(surface.get());
+    sample_chart(grey, static_cast<int>(width), static_cast<int>(height), chart, layout);
+    write_file(file, encode_page_png(static_cast<int>(width), static_cast<int>(height), grey, layout.dpi));
 }
 
 }  // namespace

@@ -91,24 +91,6 @@ std::vector<std::filesystem::path> expanded(const std::vector<std::string>& name
     return files;
 }
 
-/// What the camera noted, where the command line says nothing else.
-void take_notes(MeasureInput& input, const PhotoSurvey& survey) {
-    const CameraNotes& notes = survey.notes;
-    if (notes != CameraNotes{.transfer = notes.transfer}) {
-        input.source.notes = notes;
-    }
-    input.source.suspicions = survey.suspicions;
-    if (input.source.camera == kUnknown && !notes.model.empty()) {
-        input.source.camera = notes.make.empty() ? notes.model : notes.make + " " + notes.model;
-    }
-    if (input.source.lens == kUnknown && !notes.lens.empty()) {
-        input.source.lens = notes.lens;
-    }
-    if (!input.pixel_pitch_um) {
-        input.pixel_pitch_um = notes.pixel_pitch_um;
-    }
-}
-
 int run_measure(const MeasureOptions& options) {
     if (!options.output.empty()) {
         check_output_name(options.output);
@@ -140,13 +122,9 @@ int run_measure(const MeasureOptions& options) {
     }
     const PhotoSurvey survey =
         survey_photos(expanded(options.images), expanded(options.flat_fields), parse_transfer_curve(options.transfer));
-    input.pictures = survey.pictures;
+    take_survey(input, survey);
     add_sharpness_input(input, options);
-    take_notes(input, survey);
-    Profile profile = measure(input);
-    for (const std::string& sign : suspicions_of(profile)) {
-        profile.source.suspicions.push_back(sign);
-    }
+    const Profile profile = measure_surveyed(input);
     write_and_print(options, profile);
     return kDone;
 }

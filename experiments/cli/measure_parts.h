@@ -3,13 +3,12 @@
 #include <string>
 #include <vector>
 
+#include "calibration/photos/photo_survey.h"
 #include "calibration/profile/profile.h"
 #include "engine/scene/chart.h"
 #include "experiments/cli/command.h"
 
 namespace lensproof {
-
-inline constexpr const char* kUnknown = "unknown";
 
 /// The command line as it was given.
 struct MeasureOptions {

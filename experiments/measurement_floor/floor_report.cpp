@@ -24,6 +24,24 @@ void append(MeasurementFloor& floor, MeasurementFloor part) {
     std::ranges::move(part.checks, std::back_inserter(floor.checks));
 }
 
+/// What the curves do not show: pictures or sets of them that gave no number. Empty where all did.
+std::string failures_in_words(const FloorSweep& sweep) {
+    std::string words;
+    for (const FloorCurve& curve : sweep.curves) {
+        std::string places;
+        for (const FloorPoint& point : curve.points) {
+            if (point.failed > 0) {
+                places += fmt::format("{}{} of {} at {:g}{}{}", places.empty() ? "" : ", ", point.failed, point.trials,
+                                      point.value, sweep.unit.empty() ? "" : " ", sweep.unit);
+            }
+        }
+        if (!places.empty()) {
+            words += fmt::format("{}{}: {}", words.empty() ? "Failed: " : "; ", curve.label, places);
+        }
+    }
+    return words;
+}
+
 std::string sweep_chart(const FloorSweep& sweep) {
     PlotChart chart{.title = sweep.title,
                     .caption = sweep.setting,
@@ -42,6 +60,11 @@ std::string sweep_chart(const FloorSweep& sweep) {
         });
         chart.curves.push_back(std::move(curve));
     }
+    if (sweep.target) {
+        chart.references.push_back(
+            {.direction = ReferenceDirection::horizontal, .at = *sweep.target, .label = "asked"});
+    }
+    chart.note = failures_in_words(sweep);
     return chart_svg(chart, kChartSize);
 }
 
@@ -59,28 +82,33 @@ Json sweep_json(const FloorSweep& sweep) {
             points.push_back({{"value", point.value},
                               {"error", number(point.error)},
                               {"sigma", number(point.sigma)},
-                              {"found_percent", number(point.found_percent)}});
+                              {"found_percent", number(point.found_percent)},
+                              {"trials", point.trials},
+                              {"failed", point.failed}});
         }
         json["curves"].push_back({{"label", curve.label}, {"points", std::move(points)}});
     }
     return json;
 }
 
-/// A curve in words: "0.004 … 0.03 px; at 4 %, 87 % found".
+/// A curve in words: "0.004 … 0.03 px; fewest found: 87 % at 4 %".
 std::string in_words(const FloorSweep& sweep, const FloorCurve& curve) {
     double least = std::numeric_limits<double>::infinity();
     double most = 0.0;
-    std::string lost;
+    const FloorPoint* fewest = nullptr;
     for (const FloorPoint& point : curve.points) {
         if (std::isfinite(point.error)) {
             least = std::min(least, point.error);
             most = std::max(most, point.error);
         }
-        if (point.found_percent < 99.95) {
-            lost += fmt::format("; at {:g}{}{}, {:.0f} % found", point.value, sweep.unit.empty() ? "" : " ", sweep.unit,
-                                point.found_percent);
+        if (fewest == nullptr || point.found_percent < fewest->found_percent) {
+            fewest = &point;
         }
     }
+    const std::string lost = fewest == nullptr || fewest->found_percent > 99.95
+                                 ? ""
+                                 : fmt::format("; fewest found: {:.3g} % at {:g}{}{}", fewest->found_percent,
+                                               fewest->value, sweep.unit.empty() ? "" : " ", sweep.unit);
     return most > 0.0 ? fmt::format("{:.2g} … {:.2g} {}{}", least, most, sweep.error_unit, lost) : "nothing found";
 }
 
@@ -88,6 +116,9 @@ Json subject_json(const FloorSweep& sweep) {
     Json json{{"id", sweep.id}, {"kind", sweep.setting}, {"label", sweep.title}};
     for (const FloorCurve& curve : sweep.curves) {
         json["facts"].push_back({{"label", curve.label}, {"value", in_words(sweep, curve)}});
+    }
+    if (const std::string failures = failures_in_words(sweep); !failures.empty()) {
+        json["facts"].push_back({{"label", "not measured"}, {"value", failures}});
     }
     json["pictures"] = {{{"name", sweep.id + ".svg"},
                          {"caption", fmt::format("{} against {}", sweep.error, sweep.parameter)},
@@ -103,6 +134,7 @@ MeasurementFloor run_measurement_floor(const Experiment& experiment, const RunSe
     const FloorSettings& wanted = *experiment.measurement_floor;
     MeasurementFloor floor;
     append(floor, measure_detectors(wanted, settings.seed, settings.threads, progress));
+    append(floor, measure_quantities(wanted, settings.seed, settings.threads, progress));
     append(floor, measure_models(wanted, settings.seed, settings.threads, progress));
     append(floor, measure_intervals(wanted, settings.seed, settings.threads, progress));
     return floor;

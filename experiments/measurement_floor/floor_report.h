@@ -17,7 +17,7 @@ std::map<std::string, std::string> floor_charts(const MeasurementFloor& floor);
 
 /// In the schema of experiments/report/report.h, each sweep a subject, with "sweeps" besides:
 ///     [{"id", "title", "setting", "parameter", "unit", "error", "error_unit",
-///       "curves": [{"label", "points": [{"value", "error", "sigma", "found_percent"}]}]}]
+///       "curves": [{"label", "points": [{"value", "error", "sigma", "found_percent", "trials", "failed"}]}]}]
 nlohmann::ordered_json floor_report_json(const Experiment& experiment, const MeasurementFloor& floor,
                                          const RunSettings& settings);
 

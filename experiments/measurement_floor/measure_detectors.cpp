@@ -11,17 +11,16 @@
 #include "calibration/self_test/simulated_chart.h"
 #include "engine/render/parallel.h"
 #include "engine/scene/aruco.h"
+#include "experiments/measurement_floor/floor_point.h"
 #include "experiments/measurement_floor/measure_floor.h"
+#include "experiments/measurement_floor/picture_sweeps.h"
 #include "experiments/measurement_floor/random_poses.h"
 
 namespace lensproof {
 
 namespace {
 
-constexpr double kUsualNoise_percent = 1.0;  // of the white
-constexpr double kUsualBlur_px = 0.6;
 constexpr double kUsualTilt_deg = 20.0;
-constexpr double kWhite = 0.7;
 constexpr double kCorner_px = 0.02;  // what is asked of points, rms of one coordinate at 1 % noise
 constexpr double kBias_px = 0.02;
 
@@ -59,57 +58,46 @@ std::vector<Detector> detectors() {
     all.push_back(detector("charuco", charuco, 300.0));
     all.push_back(detector("disc grid", DiscGrid{9, 6, 33.0, 18.0}, 300.0));
     all.push_back(detector("point grid", PointGrid{9, 6, 33.0, 10.0}, 300.0));
+    all.push_back(detector("slanted edges", SlantedEdges{9, 6, 33.0, 18.0, 5.0}, 300.0));
+    all.push_back(detector("straight lines", StraightLines{9, 6, 33.0, 6.0}, 300.0));
     return all;
 }
 
 /// What is varied in a sweep, and how it enters the simulation.
 struct Varied {
-    std::string id;
-    std::string title;
-    std::string parameter;
-    std::string unit;
-    std::vector<double> values;
-    void (*apply)(double value, SimulatedCamera& camera, PoseWish& wish);
+    PictureSweep of;
+    double tilt_share = 0.0;  // 1: the value is the tilt
 };
 
+/// Those of pictures, and the chart's tilt.
 std::vector<Varied> varied() {
-    return {
-        {"noise",
-         "Points against noise",
-         "noise of the white",
-         "%",
-         {0.0, 0.25, 0.5, 1.0, 2.0, 4.0},
-         [](double value, SimulatedCamera& camera, PoseWish&) { camera.read_noise = value / 100.0 * kWhite; }},
-        {"blur",
-         "Points against blur",
-         "blur, σ",
-         "px",
-         {0.2, 0.4, 0.6, 1.0, 1.5, 2.5},
-         [](double value, SimulatedCamera& camera, PoseWish&) { camera.blur_px = value; }},
-        {"tilt",
-         "Points against tilt",
-         "tilt",
-         "°",
-         {0.0, 15.0, 30.0, 45.0, 55.0},
-         [](double value, SimulatedCamera&, PoseWish& wish) { wish.tilt_deg = value; }},
-        {"jpeg",
-         "Points against JPEG's quality",
-         "quality",
-         "",
-         {100.0, 95.0, 90.0, 80.0, 60.0, 40.0},
-         [](double value, SimulatedCamera& camera, PoseWish&) { camera.jpeg_quality = static_cast<int>(value); }},
-    };
+    std::vector<Varied> all;
+    for (const PictureSweep& sweep : picture_sweeps()) {
+        all.push_back({.of = sweep});
+    }
+    const PictureSweep tilt{.id = "tilt",
+                            .name = "tilt",
+                            .parameter = "tilt",
+                            .unit = "°",
+                            .values = {0.0, 15.0, 30.0, 45.0, 55.0},
+                            .apply = [](double, SimulatedCamera&) {}};
+    all.insert(all.begin() + 2, {.of = tilt, .tilt_share = 1.0});
+    return all;
 }
 
 struct Errors {
     int expected = 0;
     int found = 0;
+    int pictures = 0;
+    int empty = 0;         // pictures in which the chart was not found
     double squares = 0.0;  // of both coordinates
     Vec2d sum;
 
     void add(const Errors& other) {
         expected += other.expected;
         found += other.found;
+        pictures += other.pictures;
+        empty += other.empty;
         squares += other.squares;
         sum = {sum.x + other.sum.x, sum.y + other.sum.y};
     }
@@ -127,9 +115,10 @@ Errors look(const Detector& detector, const SimulatedCamera& camera, const PoseW
     const Pose pose = draw_pose(camera.model, camera.width_px, camera.height_px, detector.width_mm, wish, random);
     const Image image = simulate_chart(camera, pose, detector.chart, seed);
     const std::vector<Vec2d> features = feature_points(detector.chart);
-    Errors errors{.expected = static_cast<int>(features.size())};
+    Errors errors{.expected = static_cast<int>(features.size()), .pictures = 1};
     const Detection detection = detect(image, detector.chart);
     if (!detection.found()) {
+        errors.empty = 1;
         return errors;
     }
     const ChartPoints points = refine(image, 0, detection.points, detector.chart);
@@ -157,31 +146,26 @@ SimulatedCamera usual_camera() {
 }
 
 Check target_check(const std::string& id, const Detector& detector, const std::string& label, double value,
-                   double sigma, double limit) {
-    return {
-        .id = fmt::format("{}-{}", detector.label, id),
-        .group = "Points at 1 % noise",
-        .subject = "noise",
-        .label = fmt::format("{}: {}", detector.label, label),
-        .value = value,
-        .sigma = sigma,
-        .unit = "px",
-        .limit = limit,
-        .expectation = Expectation::at_most,
-        .target = 0.0,
-        .explanation = fmt::format("Blur of {} px, tilts of {}°, 640 × 480 pixels.", kUsualBlur_px, kUsualTilt_deg)};
-}
-
-/// Whether a list of names asks for this one; an empty list asks for all.
-bool is_wanted(const std::vector<std::string>& wanted, const std::string& name) {
-    return wanted.empty() || std::ranges::find(wanted, name) != wanted.end();
+                   double sigma, double limit, const Errors& errors) {
+    return {.id = fmt::format("{}-{}", detector.label, id),
+            .group = "Points at 1 % noise",
+            .subject = "noise",
+            .label = fmt::format("{}: {}", detector.label, label),
+            .value = value,
+            .sigma = sigma,
+            .unit = "px",
+            .limit = limit,
+            .expectation = Expectation::at_most,
+            .target = 0.0,
+            .explanation = fmt::format("Blur of {} px, tilts of {}°, 640 × 480 pixels; {} of {} points found.",
+                                       kUsualBlur_px, kUsualTilt_deg, errors.found, errors.expected)};
 }
 
 }  // namespace
 
 std::vector<std::string> detector_sweeps() {
     std::vector<std::string> ids;
-    std::ranges::transform(varied(), std::back_inserter(ids), &Varied::id);
+    std::ranges::transform(varied(), std::back_inserter(ids), [](const Varied& what) { return what.of.id; });
     return ids;
 }
 
@@ -196,7 +180,10 @@ MeasurementFloor measure_detectors(const FloorSettings& settings, std::uint64_t 
     std::vector<Detector> all = detectors();
     std::erase_if(all, [&](const Detector& detector) { return !is_wanted(settings.detectors, detector.label); });
     std::vector<Varied> sweeps = varied();
-    std::erase_if(sweeps, [&](const Varied& what) { return !is_wanted(settings.sweeps, what.id); });
+    std::erase_if(sweeps, [&](const Varied& what) { return !is_wanted(settings.sweeps, what.of.id); });
+    for (Varied& what : sweeps) {
+        std::erase_if(what.of.values, [&](double value) { return !is_wanted(settings.values, value); });
+    }
     struct Job {
         std::size_t sweep, detector, value;
         int picture;
@@ -204,7 +191,7 @@ MeasurementFloor measure_detectors(const FloorSettings& settings, std::uint64_t 
     std::vector<Job> jobs;
     for (std::size_t s = 0; s < sweeps.size(); ++s) {
         for (std::size_t d = 0; d < all.size(); ++d) {
-            for (std::size_t v = 0; v < sweeps[s].values.size(); ++v) {
+            for (std::size_t v = 0; v < sweeps[s].of.values.size(); ++v) {
                 for (int p = 0; p < settings.pictures; ++p) {
                     jobs.push_back({s, d, v, p});
                 }
@@ -218,8 +205,10 @@ MeasurementFloor measure_detectors(const FloorSettings& settings, std::uint64_t 
         [&](int i) {
             const Job& job = jobs[static_cast<std::size_t>(i)];
             SimulatedCamera camera = usual_camera();
-            PoseWish wish{.tilt_deg = kUsualTilt_deg};
-            sweeps[job.sweep].apply(sweeps[job.sweep].values[job.value], camera, wish);
+            const Varied& what = sweeps[job.sweep];
+            const double value = what.of.values[job.value];
+            what.of.apply(value, camera);
+            const PoseWish wish{.tilt_deg = std::lerp(kUsualTilt_deg, value, what.tilt_share)};
             // The same poses and noise at every value and for every chart, so that curves differ by these alone.
             const auto own = static_cast<std::uint32_t>(seed * 1000U + static_cast<std::uint64_t>(job.picture));
             results[static_cast<std::size_t>(i)] = look(all[job.detector], camera, wish, own);
@@ -229,18 +218,19 @@ MeasurementFloor measure_detectors(const FloorSettings& settings, std::uint64_t 
     MeasurementFloor floor;
     std::size_t next = 0;
     for (const Varied& what : sweeps) {
-        FloorSweep sweep{.id = what.id,
-                         .title = what.title,
+        FloorSweep sweep{.id = what.of.id,
+                         .title = "Points against " + what.of.name,
                          .setting = fmt::format("else {} % noise, a blur of {} px, tilts of {}°, no JPEG",
                                                 kUsualNoise_percent, kUsualBlur_px, kUsualTilt_deg),
-                         .parameter = what.parameter,
-                         .unit = what.unit,
+                         .parameter = what.of.parameter,
+                         .unit = what.of.unit,
                          .error = "rms of one coordinate",
                          .error_unit = "px",
-                         .curves = {}};
+                         .curves = {},
+                         .target = kCorner_px};
         for (const Detector& detector : all) {
             FloorCurve curve{.label = detector.label, .points = {}};
-            for (const double value : what.values) {
+            for (const double value : what.of.values) {
                 Errors errors;
                 for (int p = 0; p < settings.pictures; ++p) {
                     errors.add(results[next++]);
@@ -248,12 +238,15 @@ MeasurementFloor measure_detectors(const FloorSettings& settings, std::uint64_t 
                 curve.points.push_back({.value = value,
                                         .error = errors.rms(),
                                         .sigma = errors.sigma(),
-                                        .found_percent = 100.0 * errors.found / errors.expected});
-                if (what.id == "noise" && value == 1.0) {
+                                        .found_percent = 100.0 * errors.found / errors.expected,
+                                        .trials = errors.pictures,
+                                        .failed = errors.empty});
+                if (what.of.id == "noise" && value == 1.0) {
                     floor.checks.push_back(target_check("rms", detector, "rms of one coordinate", errors.rms(),
-                                                        errors.sigma(), kCorner_px));
+                                                        errors.sigma(), kCorner_px, errors));
                     floor.checks.push_back(target_check("bias", detector, "mean error", errors.bias(),
-                                                        errors.rms() / std::sqrt(std::max(1, errors.found)), kBias_px));
+                                                        errors.rms() / std::sqrt(std::max(1, errors.found)), kBias_px,
+                                                        errors));
                 }
             }
             sweep.curves.push_back(std::move(curve));

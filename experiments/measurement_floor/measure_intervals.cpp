@@ -118,6 +118,15 @@ Outcome chromatic_trial(std::uint32_t seed) {
     return held;
 }
 
+/// A trial whose fit is refused states no interval, and is counted as such.
+Outcome outcome_of(Outcome (*trial)(std::uint32_t seed), std::size_t quantities, std::uint32_t seed) {
+    try {
+        return trial(seed);
+    } catch (const InputError&) {
+        return Outcome(quantities, -1);
+    }
+}
+
 struct Study {
     std::vector<Quantity> quantities;
     Outcome (*trial)(std::uint32_t seed);
@@ -145,7 +154,8 @@ MeasurementFloor measure_intervals(const FloorSettings& settings, std::uint64_t 
             const auto study = static_cast<std::size_t>(i / settings.trials);
             const auto trial = static_cast<std::size_t>(i % settings.trials);
             outcomes[study][trial] =
-                all[study].trial(static_cast<std::uint32_t>(seed * 100003U + static_cast<std::uint64_t>(i)));
+                outcome_of(all[study].trial, all[study].quantities.size(),
+                           static_cast<std::uint32_t>(seed * 100003U + static_cast<std::uint64_t>(i)));
         },
         [&](int done) { progress("intervals", static_cast<double>(done) / count); });
 
@@ -169,8 +179,11 @@ MeasurementFloor measure_intervals(const FloorSettings& settings, std::uint64_t 
                  .limit = 2.0,
                  .expectation = Expectation::within,
                  .target = 95.0,
-                 .explanation = fmt::format("{} of {} trials. Right intervals would scatter by {:.1f} %.", held, stated,
-                                            100.0 * std::sqrt(0.95 * 0.05 / std::max(1, stated)))});
+                 .explanation = fmt::format(
+                     "{} of {} trials{}. Right intervals would scatter by {:.1f} %.", held, stated,
+                     stated < settings.trials ? fmt::format(" ({} more stated no interval)", settings.trials - stated)
+                                              : "",
+                     100.0 * std::sqrt(0.95 * 0.05 / std::max(1, stated)))});
         }
     }
     return floor;

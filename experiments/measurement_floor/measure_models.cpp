@@ -11,6 +11,7 @@
 #include "calibration/geometry/projection_uncertainty.h"
 #include "engine/io/input_error.h"
 #include "engine/render/parallel.h"
+#include "experiments/measurement_floor/floor_point.h"
 #include "experiments/measurement_floor/measure_floor.h"
 #include "experiments/measurement_floor/random_poses.h"
 
@@ -26,24 +27,70 @@ constexpr double kMapping_px = 0.03;     // what is asked of the mapping over th
 constexpr double kGridStep_px = 16.0;
 constexpr PoseWish kUsualWish{.tilt_deg = 30.0, .largest_roll_deg = 20.0, .fill = 0.7, .reach = 0.5};
 
-/// A lens, and the models that are tried on it.
+/// A model, and the lens that it is tried on.
+struct Trial {
+    ModelKind fitted;
+    CameraModel truth;
+};
+
+/// Models that stand in one chart.
 struct TrueLens {
     std::string id;
     std::string title;
-    CameraModel model;
-    std::vector<ModelKind> fitted;
+    std::vector<Trial> trials;
+    bool is_one_lens = true;  // for all the models; else each has its own, which it can express, and none is chosen
 };
 
+/// The views that a lens's nearest relative in another family is found by: no noise, all over the frame.
+constexpr int kViewsOfRelative = 16;
+
+CameraModel barrel_lens() {
+    return BrownConrady{{820.0, 318.5, 243.0, -0.24, 0.09, -0.01, 0.0008, -0.0005}};
+}
+
+/// To 79° in the corners: the sine projection, which ends at 90°, can image as much.
+CameraModel moderate_fisheye() {
+    return KannalaBrandt{{290.0, 322.0, 236.0, -0.02, 0.004, -0.001, 0.0001}};
+}
+
+/// Each model on the lens of its own family that is nearest to `lens`.
+std::vector<Trial> own_families(const CameraModel& lens, const std::vector<ModelKind>& kinds) {
+    std::mt19937 random(1);
+    const std::vector<ChartView> views =
+        draw_views({.model = lens, .width_px = kWidth, .height_px = kHeight, .noise_px = 0.0}, kViewsOfRelative,
+                   {.tilt_deg = 30.0, .largest_roll_deg = 20.0, .fill = 0.7, .reach = 0.8}, random);
+    std::vector<Trial> trials;
+    trials.reserve(kinds.size());
+    for (const ModelKind kind : kinds) {
+        trials.push_back({kind, fit_geometry(views, kWidth, kHeight, {.model = kind, .outlier_sigmas = 0.0}).model});
+    }
+    return trials;
+}
+
+std::vector<Trial> all_on(const CameraModel& lens, const std::vector<ModelKind>& kinds) {
+    std::vector<Trial> trials;
+    trials.reserve(kinds.size());
+    for (const ModelKind kind : kinds) {
+        trials.push_back({kind, lens});
+    }
+    return trials;
+}
+
 std::vector<TrueLens> true_lenses() {
-    return {{"perspective",
-             "barrel distortion",
-             BrownConrady{{820.0, 318.5, 243.0, -0.24, 0.09, -0.01, 0.0008, -0.0005}},
-             {ModelKind::brown_conrady, ModelKind::brown_conrady_rational, ModelKind::division, ModelKind::ptlens,
-              ModelKind::kannala_brandt, ModelKind::spline}},
-            {"fisheye",
-             "a fisheye to 105°",
-             KannalaBrandt{{220.0, 322.0, 236.0, -0.012, 0.004, -0.002, 0.0002}},
-             {ModelKind::kannala_brandt, ModelKind::equidistant, ModelKind::equisolid, ModelKind::spline}}};
+    const std::vector<ModelKind> perspective = {ModelKind::brown_conrady, ModelKind::brown_conrady_rational,
+                                                ModelKind::division,      ModelKind::poly3,
+                                                ModelKind::poly5,         ModelKind::ptlens};
+    const std::vector<ModelKind> fisheye = {ModelKind::kannala_brandt, ModelKind::equidistant,  ModelKind::equisolid,
+                                            ModelKind::stereographic,  ModelKind::orthographic, ModelKind::spline};
+    const CameraModel wide = KannalaBrandt{{220.0, 322.0, 236.0, -0.012, 0.004, -0.002, 0.0002}};
+    return {
+        {"perspective", "barrel distortion",
+         all_on(barrel_lens(), {ModelKind::brown_conrady, ModelKind::brown_conrady_rational, ModelKind::division,
+                                ModelKind::ptlens, ModelKind::kannala_brandt, ModelKind::spline})},
+        {"fisheye", "a fisheye to 105°",
+         all_on(wide, {ModelKind::kannala_brandt, ModelKind::equidistant, ModelKind::equisolid, ModelKind::spline})},
+        {"own-perspective", "each model on a lens of its own family", own_families(barrel_lens(), perspective), false},
+        {"own-fisheye", "each model on a fisheye of its own family", own_families(moderate_fisheye(), fisheye), false}};
 }
 
 std::vector<Vec2d> frame_grid() {
@@ -75,6 +122,7 @@ enum class Where { covered, frame };
 struct Varied {
     std::string id;
     std::string title;
+    std::string own_title;  // of lenses of the models' own families
     std::string parameter;
     std::string unit;
     std::vector<double> values;
@@ -85,6 +133,7 @@ struct Varied {
 std::vector<Varied> varied() {
     return {{"photos",
              "Mapping against the number of photos",
+             "Mapping against the number of photos",
              "photos",
              "",
              {3.0, 5.0, 8.0, 12.0, 20.0},
@@ -92,6 +141,7 @@ std::vector<Varied> varied() {
              [](double value, int& photos, PoseWish&) { photos = static_cast<int>(value); }},
             {"coverage",
              "Mapping of the whole frame against its coverage",
+             "Mapping of what is covered against how far that reaches",
              "reach of the board's middle",
              "%",
              {0.0, 20.0, 40.0, 60.0, 80.0},
@@ -99,54 +149,45 @@ std::vector<Varied> varied() {
              [](double value, int&, PoseWish& wish) { wish.reach = value / 100.0; }}};
 }
 
-std::vector<ChartView> views_of(const TrueLens& lens, int photos, const PoseWish& wish, std::uint32_t seed) {
+std::vector<ChartView> views_of(const CameraModel& lens, int photos, const PoseWish& wish, std::uint32_t seed) {
     std::mt19937 random(seed);
-    return draw_views({.model = lens.model, .width_px = kWidth, .height_px = kHeight, .noise_px = kPointNoise_px},
-                      photos, wish, random);
+    return draw_views({.model = lens, .width_px = kWidth, .height_px = kHeight, .noise_px = kPointNoise_px}, photos,
+                      wish, random);
 }
 
 /// Root mean square over the pixels compared; NaN where the fit is refused or images too little.
-double mapping_error(const TrueLens& lens, ModelKind kind, const std::vector<ChartView>& views, Where where) {
+double mapping_error(const Trial& trial, const std::vector<ChartView>& views, Where where) {
     try {
-        const GeometryFit fit = fit_geometry(views, kWidth, kHeight, {.model = kind});
+        const GeometryFit fit = fit_geometry(views, kWidth, kHeight, {.model = trial.fitted});
         const auto apart =
-            mapping_difference(fit.model, lens.model, where == Where::covered ? covered_grid(views) : frame_grid());
+            mapping_difference(fit.model, trial.truth, where == Where::covered ? covered_grid(views) : frame_grid());
         return apart ? apart->rms_px : std::numeric_limits<double>::quiet_NaN();
     } catch (const InputError&) {
         return std::numeric_limits<double>::quiet_NaN();
     }
 }
 
-/// Root of the mean square of those that are numbers.
-FloorPoint point_of(double value, const std::vector<double>& errors) {
-    std::vector<double> squares;
-    for (const double error : errors) {
-        if (std::isfinite(error)) {
-            squares.push_back(error * error);
-        }
+/// The same with the model chosen, and which it was.
+double choice_error(const CameraModel& lens, const std::vector<ChartView>& views, std::string& chosen) {
+    try {
+        const ChosenGeometry choice = choose_model(views, kWidth, kHeight, {});
+        chosen = kind_name(choice.fit.model);
+        const auto apart = mapping_difference(choice.fit.model, lens, covered_grid(views));
+        return apart ? apart->rms_px : std::numeric_limits<double>::quiet_NaN();
+    } catch (const InputError&) {
+        chosen = "none";
+        return std::numeric_limits<double>::quiet_NaN();
     }
-    FloorPoint point{.value = value, .error = std::numeric_limits<double>::quiet_NaN(), .sigma = 0.0};
-    point.found_percent = 100.0 * static_cast<double>(squares.size()) / static_cast<double>(errors.size());
-    if (squares.empty()) {
-        return point;
-    }
-    const auto n = static_cast<double>(squares.size());
-    double mean = 0.0;
-    for (const double square : squares) {
-        mean += square / n;
-    }
-    double variance = 0.0;
-    for (const double square : squares) {
-        variance += (square - mean) * (square - mean) / std::max(1.0, n - 1.0);
-    }
-    point.error = std::sqrt(mean);
-    point.sigma = point.error > 0.0 ? std::sqrt(variance / n) / (2.0 * point.error) : 0.0;
-    return point;
+}
+
+/// A model's own lens is compared where it was seen; what others make of what they did not see is its own question.
+Where where_compared(const TrueLens& lens, const Varied& sweep) {
+    return lens.is_one_lens ? sweep.where : Where::covered;
 }
 
 /// What the model that is chosen without being told makes of the usual set of photos.
 Check chosen_check(const TrueLens& lens, const std::vector<double>& errors, const std::vector<std::string>& chosen) {
-    const FloorPoint point = point_of(0.0, errors);
+    const FloorPoint point = rms_point(0.0, errors);
     return {.id = "mapping-" + lens.id,
             .group = "Mapping over the covered frame",
             .subject = "photos-" + lens.id,
@@ -157,8 +198,29 @@ Check chosen_check(const TrueLens& lens, const std::vector<double>& errors, cons
             .limit = kMapping_px,
             .expectation = Expectation::at_most,
             .target = 0.0,
-            .explanation = fmt::format("{} photos, points known to {} px. Chosen: {}.", kUsualPhotos, kPointNoise_px,
-                                       fmt::join(chosen, ", "))};
+            .explanation = fmt::format("{} photos, points known to {} px. Chosen: {}.{}", kUsualPhotos, kPointNoise_px,
+                                       fmt::join(chosen, ", "), failed_in_words(point))};
+}
+
+/// That a model whose lens it can express keeps the target with the usual number of photos, from the last sweeps.
+void own_checks(MeasurementFloor& floor) {
+    const auto sweep = std::ranges::find_if(floor.sweeps.rbegin(), floor.sweeps.rend(),
+                                            [](const FloorSweep& s) { return s.id.starts_with("photos-"); });
+    for (const FloorCurve& curve : sweep->curves) {
+        const auto point = std::ranges::find(curve.points, double{kUsualPhotos}, &FloorPoint::value);
+        floor.checks.push_back({.id = fmt::format("{}-{}", sweep->id, curve.label),
+                                .group = "Mapping over the covered frame, every model on a lens of its own family",
+                                .subject = sweep->id,
+                                .label = curve.label,
+                                .value = point->error,
+                                .sigma = point->sigma,
+                                .unit = "px rms",
+                                .limit = kMapping_px,
+                                .expectation = Expectation::at_most,
+                                .target = 0.0,
+                                .explanation = fmt::format("{} photos, points known to {} px.{}", kUsualPhotos,
+                                                           kPointNoise_px, failed_in_words(*point))});
+    }
 }
 
 }  // namespace
@@ -174,7 +236,7 @@ MeasurementFloor measure_models(const FloorSettings& settings, std::uint64_t see
     std::vector<Job> jobs;
     for (std::size_t l = 0; l < lenses.size(); ++l) {
         for (std::size_t s = 0; s < sweeps.size(); ++s) {
-            for (std::size_t m = 0; m < lenses[l].fitted.size(); ++m) {
+            for (std::size_t m = 0; m < lenses[l].trials.size(); ++m) {
                 for (std::size_t v = 0; v < sweeps[s].values.size(); ++v) {
                     for (int set = 0; set < settings.pictures; ++set) {
                         jobs.push_back({s, l, m, v, set});
@@ -182,7 +244,7 @@ MeasurementFloor measure_models(const FloorSettings& settings, std::uint64_t see
                 }
             }
         }
-        for (int set = 0; set < settings.pictures; ++set) {
+        for (int set = 0; lenses[l].is_one_lens && set < settings.pictures; ++set) {
             jobs.push_back({sweeps.size(), l, 0, 0, set});
         }
     }
@@ -199,16 +261,14 @@ MeasurementFloor measure_models(const FloorSettings& settings, std::uint64_t see
             PoseWish wish = kUsualWish;
             const auto own = static_cast<std::uint32_t>(seed * 1000U + static_cast<std::uint64_t>(job.set));
             if (job.sweep == sweeps.size()) {
-                const std::vector<ChartView> views = views_of(lens, photos, wish, own);
-                const ChosenGeometry choice = choose_model(views, kWidth, kHeight, {});
-                const auto apart = mapping_difference(choice.fit.model, lens.model, covered_grid(views));
-                errors[at] = apart ? apart->rms_px : std::numeric_limits<double>::quiet_NaN();
-                chosen[at] = kind_name(choice.fit.model);
+                errors[at] = choice_error(lens.trials.front().truth,
+                                          views_of(lens.trials.front().truth, photos, wish, own), chosen[at]);
             } else {
                 const Varied& sweep = sweeps[job.sweep];
                 sweep.apply(sweep.values[job.value], photos, wish);
+                const Trial& trial = lens.trials[job.model];
                 errors[at] =
-                    mapping_error(lens, lens.fitted[job.model], views_of(lens, photos, wish, own), sweep.where);
+                    mapping_error(trial, views_of(trial.truth, photos, wish, own), where_compared(lens, sweep));
             }
         },
         [&](int done) { progress("models", static_cast<double>(done) / count); });
@@ -224,27 +284,33 @@ MeasurementFloor measure_models(const FloorSettings& settings, std::uint64_t see
         for (const Varied& what : sweeps) {
             FloorSweep sweep{
                 .id = fmt::format("{}-{}", what.id, lens.id),
-                .title = fmt::format("{}: {}", what.title, lens.title),
+                .title = fmt::format("{}: {}", lens.is_one_lens ? what.title : what.own_title, lens.title),
                 .setting = fmt::format("points known to {} px; else {} photos, the board's middle up to {} % "
                                        "from the frame's",
                                        kPointNoise_px, kUsualPhotos, 100.0 * kUsualWish.reach),
                 .parameter = what.parameter,
                 .unit = what.unit,
-                .error = what.where == Where::covered ? "rms over the covered frame" : "rms over the whole frame",
+                .error = where_compared(lens, what) == Where::covered ? "rms over the covered frame"
+                                                                      : "rms over the whole frame",
                 .error_unit = "px",
-                .curves = {}};
-            for (const ModelKind kind : lens.fitted) {
-                FloorCurve curve{.label = kind_name(empty_model(kind)), .points = {}};
+                .curves = {},
+                .target = kMapping_px};
+            for (const Trial& trial : lens.trials) {
+                FloorCurve curve{.label = kind_name(empty_model(trial.fitted)), .points = {}};
                 for (const double value : what.values) {
-                    curve.points.push_back(point_of(value, take(settings.pictures)));
+                    curve.points.push_back(rms_point(value, take(settings.pictures)));
                 }
                 sweep.curves.push_back(std::move(curve));
             }
             floor.sweeps.push_back(std::move(sweep));
         }
-        const std::vector<std::string> names(chosen.begin() + static_cast<std::ptrdiff_t>(next),
-                                             chosen.begin() + static_cast<std::ptrdiff_t>(next) + settings.pictures);
-        floor.checks.push_back(chosen_check(lens, take(settings.pictures), names));
+        if (lens.is_one_lens) {
+            const auto first = chosen.begin() + static_cast<std::ptrdiff_t>(next);
+            const std::vector<std::string> names(first, first + settings.pictures);
+            floor.checks.push_back(chosen_check(lens, take(settings.pictures), names));
+        } else {
+            own_checks(floor);
+        }
     }
     return floor;
 }

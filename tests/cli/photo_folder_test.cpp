@@ -160,6 +160,36 @@ TEST(PhotoFolder, MeasuresWithAnAccountOfWhatWasLeftOut) {
     EXPECT_FALSE(profile["source"].contains("suspicions"));
 }
 
+// An experiment takes photographs as `measure` does, and its report says what was left out and why.
+TEST(PhotoFolder, AnExperimentsReportHasTheSameAccount) {
+    const Workplace place;
+    fill_with_photos(place);
+    std::string photos;
+    for (const char* number : {"1", "2", "3", "7", "9", "a"}) {
+        photos += "\"IMG_" + std::string(number) + ".jpg\", ";
+    }
+    const std::string manifest =
+        "name = \"My phone\"\nlicence = \"mine\"\nsource = \"a test\"\nphotos = [" + photos + "]\n";
+    place.file("photos/manifest.toml", manifest + kBoardFile);
+    const char* experiment =
+        "title = \"Photos\"\n[[photos]]\nname = \"phone\"\nmanifest = \"photos/manifest.toml\"\n"
+        "model = \"brown-conrady\"\n";
+    place.file("experiment.toml", experiment);
+    const Outcome outcome = place.run({"run", "experiment.toml", "-o", "report", "--quiet"});
+    ASSERT_EQ(outcome.status, 0) << outcome.err;
+    const Json report = Json::parse(place.content("report/report.json"));
+    const std::string facts = report["subjects"][0]["facts"].dump();
+    for (const char* part : {"3 of 6", "Phone maker Phone 7", "no checkerboard", "cut off", "8 mm, most of the others",
+                             "not applied: the sensor's rows count"}) {
+        EXPECT_NE(facts.find(part), std::string::npos) << part << ": " << facts;
+    }
+    EXPECT_EQ(report["subjects"][0]["pictures"].size(), 6u);
+    EXPECT_EQ(report["maps"].size(), 1u);
+
+    place.file("photos/manifest.toml", "focus_positions_mm = [0, 1]\n" + manifest + kBoardFile);
+    expect_refused(place, {"run", "experiment.toml", "-o", "other"}, {"manifest.toml", "focus_positions_mm"});
+}
+
 TEST(PhotoFolder, WhereNoPictureDoesEachReasonIsGiven) {
     const Workplace place;
     place.file("board.toml", kBoardFile);

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "calibration/geometry/fit_geometry.h"
+#include "experiments/measurement_floor/floor_point.h"
 #include "experiments/measurement_floor/floor_report.h"
 #include "experiments/measurement_floor/random_poses.h"
 
@@ -42,6 +43,43 @@ TEST(MeasurementFloor, PointsErrAsMuchAsTheirPictureIsNoisy) {
     ASSERT_EQ(floor.checks.size(), 2U);
     EXPECT_EQ(floor.checks[0].value, error_at(1.0));
     EXPECT_EQ(overall(floor.checks), Verdict::pass);
+}
+
+// One set of pictures at 1 % noise: shift, vignetting and MTF50 are all measured, keep what is asked, and are not
+// without error.
+TEST(MeasurementFloor, QuantitiesKeepTheirTargets) {
+    const MeasurementFloor floor =
+        measure_quantities({.sweeps = {"noise"}, .values = {1.0}, .pictures = 1}, 3, 2, kQuiet);
+    ASSERT_EQ(floor.sweeps.size(), 3U);
+    EXPECT_EQ(floor.checks.size(), 4U);
+    for (const FloorSweep& sweep : floor.sweeps) {
+        for (const FloorCurve& curve : sweep.curves) {
+            ASSERT_EQ(curve.points.size(), 1U);
+            EXPECT_EQ(curve.points[0].failed, 0) << sweep.id << ", " << curve.label;
+            EXPECT_LT(curve.points[0].error, *sweep.target) << sweep.id << ", " << curve.label;
+            EXPECT_GT(curve.points[0].error, 0.0) << sweep.id << ", " << curve.label;
+            RecordProperty(sweep.id + curve.label, std::to_string(curve.points[0].error));
+        }
+    }
+}
+
+// Errors of 3 and 4 have a mean square of 12.5; the two that failed are in no mean, and in every count.
+TEST(MeasurementFloor, WhatFailedIsCounted) {
+    const double nan = std::nan("");
+    const FloorPoint point = rms_point(2.0, {3.0, nan, 4.0, nan});
+    EXPECT_NEAR(point.error, std::sqrt(12.5), 1e-12);
+    EXPECT_EQ(point.trials, 4);
+    EXPECT_EQ(point.failed, 2);
+    EXPECT_EQ(point.found_percent, 50.0);
+    EXPECT_EQ(failed_in_words(point), " 2 of 4 failed.");
+    const FloorPoint none = rms_point(2.0, {nan});
+    EXPECT_TRUE(std::isnan(none.error));
+    EXPECT_EQ(none.failed, 1);
+    EXPECT_TRUE(std::isnan(rms_point(2.0, {3.0}).sigma));
+
+    MeasurementFloor floor;
+    floor.sweeps = {{.id = "photos", .unit = "px", .curves = {{"spline", {point}}}}};
+    EXPECT_NE(floor_charts(floor).at("photos.svg").find("Failed: spline: 2 of 4 at 2 px"), std::string::npos);
 }
 
 TEST(MeasurementFloor, ThreadsChangeNothing) {
