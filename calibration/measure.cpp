@@ -12,6 +12,7 @@
 #include "calibration/detection/working_copy.h"
 #include "calibration/geometry/geometry_curves.h"
 #include "calibration/geometry/model_choice.h"
+#include "calibration/light/light_gradient.h"
 #include "calibration/light/light_samples.h"
 #include "calibration/light/vignetting.h"
 #include "calibration/photos/picture_quality.h"
@@ -37,6 +38,8 @@ struct Observations {
     std::vector<ChartView> chart_views;                                  // of the views found
     std::map<std::string, std::vector<ChromaticPair>> chromatic_pairs;   // by channel
     std::map<std::string, std::vector<LightGroup>> flat_fields, whites;  // by channel
+    /// By view: the channel that geometry is measured in, and where among its `whites` the view's stands.
+    std::map<std::size_t, std::pair<std::string, std::size_t>> reference_whites;
     SharpnessObservations sharpness;
 };
 
@@ -131,6 +134,9 @@ void observe_chart(Observations& seen, const Image& image, const Picture& pictur
         for (int channel = 0; channel < image.channel_count(); ++channel) {
             const std::string& channel_name = image.channels[channel];
             if (picture.use_light) {
+                if (channel == reference) {
+                    seen.reference_whites[seen.views.size()] = {channel_name, seen.whites[channel_name].size()};
+                }
                 seen.whites[channel_name].push_back(chart_white_samples(image, channel, points, chart));
             }
             if (channel == reference || !grey) {
@@ -186,6 +192,18 @@ void observe_picture(Observations& seen, const Picture& picture, const MeasureIn
     seen.height = image.height;
     seen.channels = image.channels;
     seen.grey = seen.grey && all_channels_alike(image);
+    if (const auto* star = std::get_if<SiemensStar>(&input.chart.pattern);
+        star != nullptr && picture.role == PictureRole::chart) {
+        const bool grey = all_channels_alike(image);
+        for (int channel = 0; channel < image.channel_count(); ++channel) {
+            if (!grey || channel == reference_channel(image)) {
+                observe_stars(seen.sharpness, image, channel, picture.name, *star);
+            }
+        }
+        account.used = true;
+        account.reason = picture.remark;
+        return;
+    }
     if (picture.role == PictureRole::chart) {
         observe_chart(seen, image, picture, input.chart, account);
         return;
@@ -207,11 +225,15 @@ void observe_picture(Observations& seen, const Picture& picture, const MeasureIn
     account.reason = picture.remark;
 }
 
+bool shows_star(const MeasureInput& input) {
+    return std::holds_alternative<SiemensStar>(input.chart.pattern);
+}
+
 Observations observe(const MeasureInput& input) {
     Observations seen;
     seen.sharpness.focus_position_mm = input.focus_position_mm;
     for (const Picture& picture : input.pictures) {
-        const bool is_chart = picture.role == PictureRole::chart;
+        const bool is_chart = picture.role == PictureRole::chart && !shows_star(input);
         PictureAccount account{.image = picture.name,
                                .role = role_name(picture.role),
                                .used = false,
@@ -240,6 +262,7 @@ InputError none_usable(const MeasureInput& input, const Observations& seen) {
     constexpr std::size_t kMostNamed = 8;
     const std::size_t count = seen.pictures.size();
     const std::string what = !seen.views.empty()   ? "no " + describe(input.chart) + " found in any"
+                             : shows_star(input)   ? "no Siemens star measured in any"
                              : input.edges.empty() ? "no flat field"
                                                    : "no edge";
     std::string text =
@@ -319,6 +342,22 @@ void add_vignetting(Profile& profile, const Observations& seen, const Vec2d& cen
     }
 }
 
+// What the charts' white shows of the lamps, now that the vignetting is known.
+void add_light_gradients(Profile& profile, const Observations& seen, const Vec2d& centre) {
+    for (std::size_t v = 0; v < profile.views.size(); ++v) {
+        const auto white = seen.reference_whites.find(v);
+        if (white == seen.reference_whites.end()) {
+            continue;
+        }
+        const auto curve = profile.curves.find("vignetting_" + white->second.first);
+        if (curve != profile.curves.end()) {
+            const auto& [channel, index] = white->second;
+            profile.views[v].traits->light_gradient_per_mm =
+                light_gradient_per_mm(seen.whites.at(channel)[index], curve->second, centre, half_diagonal_px(profile));
+        }
+    }
+}
+
 void add_chromatic_shifts(Profile& profile, const Observations& seen, const Vec2d& centre) {
     if (seen.grey) {
         profile.not_measured["chromatic_shift"] = "the pictures are grey";
@@ -356,7 +395,8 @@ Profile measure(const MeasureInput& input) {
         throw InputError("measuring " + input.name + ": no pictures given: expected at least one");
     }
     const Observations seen = observe(input);
-    const bool has_light_or_edges = !seen.flat_fields.empty() || !seen.sharpness.edges.empty();
+    const bool has_light_or_edges =
+        !seen.flat_fields.empty() || !seen.sharpness.edges.empty() || !seen.sharpness.stars.empty();
     if (seen.chart_views.empty() && (!seen.views.empty() || !has_light_or_edges)) {
         throw none_usable(input, seen);
     }
@@ -376,7 +416,9 @@ Profile measure(const MeasureInput& input) {
 
     Vec2d centre{(seen.width - 1) / 2.0, (seen.height - 1) / 2.0};
     if (seen.chart_views.empty()) {
-        profile.not_measured["geometry"] = input.edges.empty() ? "there are flat fields only" : "there is no chart";
+        profile.not_measured["geometry"] = shows_star(input)     ? "a Siemens star has but one point"
+                                           : input.edges.empty() ? "there are flat fields only"
+                                                                 : "there is no chart";
     } else {
         Geometry geometry = fit(input, seen);
         centre = centre_px(geometry.fit.model);
@@ -385,6 +427,7 @@ Profile measure(const MeasureInput& input) {
     }
     add_sharpness(profile, seen.sharpness, centre);
     add_vignetting(profile, seen, centre);
+    add_light_gradients(profile, seen, centre);
     add_chromatic_shifts(profile, seen, centre);
     if (input.self_test) {
         add_self_test(profile, input);

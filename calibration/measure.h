@@ -20,11 +20,12 @@ enum class PictureRole { chart, flat_field, edges };
 struct Picture {
     std::string name;
     PictureRole role = PictureRole::chart;
-    std::function<Image()> load;  // linear light; may throw InputError
-    std::string left_out;         // why it is not to be used, known beforehand; empty: it is
-    std::string remark;           // what is to be known of it though it is used
-    bool use_light = true;        // whether it may say something of vignetting
-    int orientation = 1;          // EXIF's, for the account
+    std::function<Image()> load;                     // linear light; may throw InputError
+    std::string left_out;                            // why it is not to be used, known beforehand; empty: it is
+    std::string remark;                              // what is to be known of it though it is used
+    bool use_light = true;                           // whether it may say something of vignetting
+    int orientation = 1;                             // EXIF's, for the account
+    std::optional<int> jpeg_quality = std::nullopt;  // that it was compressed with, for the self-test
 };
 
 struct MeasureInput {
@@ -45,6 +46,8 @@ struct MeasureInput {
 };
 
 /// Finds the chart, and fits camera model, chromatic shift, vignetting and sharpness.
+///
+/// Siemens stars, of which a picture may show several, give sharpness alone.
 ///
 /// A picture that cannot be loaded, is of another size or other channels than those before it, is the same as one
 /// before it, shows no chart, or shows it blurred, is left out; `pictures` in the profile says why. Vignetting comes

@@ -11,6 +11,7 @@ namespace lensproof {
 namespace {
 
 struct Quantity {
+    const char* curve;  // by which the self-test knows it
     const char* id;
     const char* label;
     const char* unit;
@@ -18,8 +19,12 @@ struct Quantity {
     bool use_rms;
 };
 
-Check make_check(const Quantity& quantity, const std::optional<CurveDifference>& difference, double limit) {
+Check make_check(const Quantity& quantity, const Profile& measured, const std::optional<CurveDifference>& difference,
+                 double limit) {
     Check check{.id = quantity.id, .label = quantity.label, .unit = quantity.unit, .limit = limit};
+    if (const CurveFloor* floor = floor_of(measured.self_test, quantity.curve)) {
+        check.floor = quantity.scale * (quantity.use_rms ? floor->rms : floor->largest);
+    }
     if (!difference) {
         check.value = std::numeric_limits<double>::quiet_NaN();
         check.explanation = "The curve was not measured.";
@@ -45,22 +50,25 @@ std::vector<Check> closed_loop_checks(const std::string& subject, const std::str
     std::vector<Check> checks;
     const auto radial = radial_difference_px(measured, traced);
     if (limits.distortion_rms_px) {
-        checks.push_back(
-            make_check({"distortion-rms", "image position, rms", "px", 1.0, true}, radial, *limits.distortion_rms_px));
+        checks.push_back(make_check({"radial_px", "distortion-rms", "image position, rms", "px", 1.0, true}, measured,
+                                    radial, *limits.distortion_rms_px));
     }
     if (limits.distortion_largest_px) {
-        checks.push_back(make_check({"distortion-largest", "image position, largest", "px", 1.0, false}, radial,
-                                    *limits.distortion_largest_px));
+        checks.push_back(make_check({"radial_px", "distortion-largest", "image position, largest", "px", 1.0, false},
+                                    measured, radial, *limits.distortion_largest_px));
     }
     if (limits.vignetting_percent) {
-        checks.push_back(make_check({"vignetting", "relative illumination, largest", "%", 100.0, false},
-                                    difference(measured, traced, "vignetting_G"), *limits.vignetting_percent));
+        checks.push_back(make_check({"vignetting_G", "vignetting", "relative illumination, largest", "%", 100.0, false},
+                                    measured, difference(measured, traced, "vignetting_G"),
+                                    *limits.vignetting_percent));
     }
     if (limits.chromatic_shift_px) {
-        checks.push_back(make_check({"chromatic-shift-R", "chromatic shift of red, largest", "px", 1.0, false},
-                                    difference(measured, traced, "chromatic_shift_R_px"), *limits.chromatic_shift_px));
-        checks.push_back(make_check({"chromatic-shift-B", "chromatic shift of blue, largest", "px", 1.0, false},
-                                    difference(measured, traced, "chromatic_shift_B_px"), *limits.chromatic_shift_px));
+        checks.push_back(make_check(
+            {"chromatic_shift_R_px", "chromatic-shift-R", "chromatic shift of red, largest", "px", 1.0, false},
+            measured, difference(measured, traced, "chromatic_shift_R_px"), *limits.chromatic_shift_px));
+        checks.push_back(make_check(
+            {"chromatic_shift_B_px", "chromatic-shift-B", "chromatic shift of blue, largest", "px", 1.0, false},
+            measured, difference(measured, traced, "chromatic_shift_B_px"), *limits.chromatic_shift_px));
     }
     for (Check& check : checks) {
         check.id = subject + "-" + check.id;

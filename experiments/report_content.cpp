@@ -3,9 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <functional>
 
+#include "experiments/certainty_map.h"
 #include "experiments/provenance.h"
 
 namespace lensproof {
@@ -13,6 +15,9 @@ namespace lensproof {
 namespace {
 
 using Json = nlohmann::ordered_json;
+
+/// .s0 … .s6 of the report's page, on white.
+constexpr std::array kSubjectColours = {"#0072b2", "#c77b00", "#b5548a", "#3d9fd8", "#8a8200", "#009e73", "#d55e00"};
 
 Json number(double value) {
     return std::isfinite(value) ? Json(value) : Json(nullptr);
@@ -50,11 +55,22 @@ Json subject_json(const Subject& subject) {
     return json;
 }
 
-Json series_json(const std::string& label, const std::string& subject, const char* style, const Curve& curve) {
-    return {{"label", label},          {"subject", subject},
-            {"style", style},          {"x", curve.image_height},
-            {"y", curve.value},        {"lower", curve.lower_95},
-            {"upper", curve.upper_95}, {"covered_to", curve.covered_image_height}};
+/// `floor`: the method's own error in it.
+Json series_json(const std::string& label, const std::string& subject, const char* style, const Curve& curve,
+                 std::optional<double> floor = std::nullopt) {
+    Json json{{"label", label},          {"subject", subject},
+              {"style", style},          {"x", curve.image_height},
+              {"y", curve.value},        {"lower", curve.lower_95},
+              {"upper", curve.upper_95}, {"covered_to", curve.covered_image_height}};
+    if (floor) {
+        json["floor"] = *floor;
+    }
+    return json;
+}
+
+std::optional<double> rms_floor(const Subject& subject, const std::string& curve) {
+    const CurveFloor* floor = floor_of(subject.profile.self_test, curve);
+    return floor != nullptr ? std::optional(floor->rms) : std::nullopt;
 }
 
 struct Plot {
@@ -88,7 +104,8 @@ void append_plot(Json& plots, const Plot& plot) {
 void add_measured(Plot& plot, const Subject& subject, const std::string& curve, const std::string& suffix = "") {
     const auto found = subject.profile.curves.find(curve);
     if (found != subject.profile.curves.end()) {
-        plot.series.push_back(series_json(subject.name + suffix, subject.name, "measured", found->second));
+        plot.series.push_back(
+            series_json(subject.name + suffix, subject.name, "measured", found->second, rms_floor(subject, curve)));
     }
     if (subject.traced && subject.traced->curves.contains(curve)) {
         plot.series.push_back(series_json(subject.name + suffix + ", traced", subject.name, "reference",
@@ -119,13 +136,15 @@ Plot measured_plot(const ExperimentResult& result, Plot plot, const std::functio
 /// Measured minus traced, for every simulation, with the tightest limit of its check.
 Plot closed_loop_plot(const ExperimentResult& result, const std::vector<Simulation>& simulations, Plot plot,
                       const std::function<std::optional<CurveDifference>(const Subject&)>& compare,
-                      const std::function<std::optional<double>(const ClosedLoopLimits&)>& limit) {
+                      const std::function<std::optional<double>(const ClosedLoopLimits&)>& limit,
+                      const std::function<std::optional<double>(const Subject&)>& floor) {
     for (const Subject& subject : result.subjects) {
         if (!subject.traced) {
             continue;
         }
         if (const std::optional<CurveDifference> difference = compare(subject)) {
-            plot.series.push_back(series_json(subject.name, subject.name, "difference", difference->curve));
+            plot.series.push_back(
+                series_json(subject.name, subject.name, "difference", difference->curve, floor(subject)));
         }
         const std::optional<double> own =
             limit(std::ranges::find(simulations, subject.name, &Simulation::name)->limits);
@@ -166,7 +185,8 @@ Json plots_json(const Experiment& experiment, const ExperimentResult& result) {
                             .y_label = "difference",
                             .y_unit = "px"},
                            [](const Subject& s) { return radial_difference_px(s.profile, *s.traced); },
-                           [](const ClosedLoopLimits& l) { return l.distortion_largest_px; }));
+                           [](const ClosedLoopLimits& l) { return l.distortion_largest_px; },
+                           [](const Subject& s) { return rms_floor(s, "radial_px"); }));
 
     Plot vignetting{.id = "vignetting",
                     .title = "Vignetting",
@@ -193,7 +213,11 @@ Json plots_json(const Experiment& experiment, const ExperimentResult& result) {
                         }
                         return d;
                     },
-                    [](const ClosedLoopLimits& l) { return l.vignetting_percent; }));
+                    [](const ClosedLoopLimits& l) { return l.vignetting_percent; },
+                    [](const Subject& s) {
+                        const auto floor = rms_floor(s, "vignetting_G");
+                        return floor ? std::optional(100.0 * *floor) : std::nullopt;
+                    }));
 
     for (const auto& [channel, colour] : {std::pair{"R", "red"}, std::pair{"B", "blue"}}) {
         const std::string curve = fmt::format("chromatic_shift_{}_px", channel);
@@ -213,7 +237,8 @@ Json plots_json(const Experiment& experiment, const ExperimentResult& result) {
                                 .y_label = "difference",
                                 .y_unit = "px"},
                                [&](const Subject& s) { return difference(s.profile, *s.traced, curve); },
-                               [](const ClosedLoopLimits& l) { return l.chromatic_shift_px; }));
+                               [](const ClosedLoopLimits& l) { return l.chromatic_shift_px; },
+                               [&](const Subject& s) { return rms_floor(s, curve); }));
     }
 
     Plot against{.id = "comparisons",
@@ -224,12 +249,53 @@ Json plots_json(const Experiment& experiment, const ExperimentResult& result) {
     for (const ComparisonResult& compared : result.comparisons) {
         if (compared.difference && compared.comparison.curve.ends_with("_percent")) {
             against.series.push_back(series_json(compared.comparison.of + " − " + compared.comparison.with,
-                                                 compared.comparison.of, "difference", compared.difference->curve));
+                                                 compared.comparison.of, "difference", compared.difference->curve,
+                                                 compared.floor));
             against.limit = compared.comparison.limit;
         }
     }
     append_plot(plots, against);
     return plots;
+}
+
+bool has_certainty(const Subject& subject) {
+    return subject.profile.geometry && subject.profile.geometry->uncertainty;
+}
+
+std::string certainty_name(const Subject& subject) {
+    return subject.name + "/certainty.svg";
+}
+
+/// The subjects' certainty over their frames, in one range of colours; with the subject's place in the report.
+std::map<std::string, CertaintyMap> certainty_maps(const ExperimentResult& result) {
+    std::vector<const Profile*> profiles;
+    profiles.reserve(result.subjects.size());
+    for (const Subject& subject : result.subjects) {
+        profiles.push_back(&subject.profile);
+    }
+    const AxisRange range = certainty_range(profiles);
+    std::map<std::string, CertaintyMap> maps;
+    for (std::size_t i = 0; i < result.subjects.size(); ++i) {
+        const Subject& subject = result.subjects[i];
+        if (has_certainty(subject)) {
+            maps[certainty_name(subject)] =
+                certainty_map(subject.profile, fmt::format("{}, {}", subject.name, subject.label),
+                              kSubjectColours.at(i % kSubjectColours.size()), range);
+        }
+    }
+    return maps;
+}
+
+Json maps_json(const ExperimentResult& result) {
+    const std::map<std::string, CertaintyMap> maps = certainty_maps(result);
+    Json json = Json::array();
+    for (const Subject& subject : result.subjects) {
+        if (has_certainty(subject)) {
+            const std::string name = certainty_name(subject);
+            json.push_back({{"name", name}, {"subject", subject.name}, {"caption", maps.at(name).caption}});
+        }
+    }
+    return json;
 }
 
 std::string summary_of(const Experiment& experiment, const ExperimentResult& result) {
@@ -243,6 +309,13 @@ std::string summary_of(const Experiment& experiment, const ExperimentResult& res
 }  // namespace
 
 nlohmann::ordered_json check_json(const Check& check) {
+    std::string explanation = check.explanation;
+    if (check.is_below_floor()) {
+        explanation += fmt::format(
+            "{}The difference is not larger than the method's own error, {:.2g}{}{}: it may be "
+            "the method's alone.",
+            explanation.empty() ? "" : " ", *check.floor, check.unit.empty() ? "" : " ", check.unit);
+    }
     return {{"id", check.id},
             {"group", check.group},
             {"subject", check.subject},
@@ -254,7 +327,8 @@ nlohmann::ordered_json check_json(const Check& check) {
             {"expect", expectation_name(check.expectation)},
             {"target", check.expectation == Expectation::within ? Json(check.target) : Json(nullptr)},
             {"verdict", verdict_name(check.verdict())},
-            {"explanation", check.explanation}};
+            {"floor", check.floor ? number(*check.floor) : Json(nullptr)},
+            {"explanation", explanation}};
 }
 
 nlohmann::ordered_json provenance_json(std::vector<std::filesystem::path> inputs, const RunSettings& settings) {
@@ -283,6 +357,7 @@ nlohmann::ordered_json report_json(const Experiment& experiment, const Experimen
         report["subjects"].push_back(subject_json(subject));
     }
     report["plots"] = plots_json(experiment, result);
+    report["maps"] = maps_json(result);
     report["provenance"] = provenance_json(result.inputs, settings);
     report["reproduce"] = fmt::format("./lensproof run {} --seed {}", portable_path(experiment.file), settings.seed);
     return report;
@@ -294,6 +369,9 @@ std::map<std::string, std::string> report_pictures(const ExperimentResult& resul
         for (const ShownPicture& picture : subject.pictures) {
             pictures[picture.name] = picture.png;
         }
+    }
+    for (auto& [name, map] : certainty_maps(result)) {
+        pictures[name] = std::move(map.svg);
     }
     return pictures;
 }

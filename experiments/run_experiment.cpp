@@ -228,6 +228,7 @@ std::vector<Check> photo_checks(const Subject& subject, const PhotoExpectations&
         return checks;
     }
     const ProfileGeometry& geometry = *subject.profile.geometry;
+    const std::optional<SelfTest>& test = subject.profile.self_test;
     const std::string group = subject.label + ": against independent calibrations";
     if (expected.focal_length_px) {
         checks.push_back({.id = subject.name + "-focal-length",
@@ -241,7 +242,8 @@ std::vector<Check> photo_checks(const Subject& subject, const PhotoExpectations&
                           .expectation = Expectation::within,
                           .target = *expected.focal_length_px,
                           .explanation = fmt::format("Within {} % of {} px: {}.", expected.focal_length_within_percent,
-                                                     *expected.focal_length_px, expected.focal_length_source)});
+                                                     *expected.focal_length_px, expected.focal_length_source),
+                          .floor = test ? test->focal_length_px : std::nullopt});
     }
     if (expected.reprojection_rms_px) {
         checks.push_back(
@@ -254,9 +256,17 @@ std::vector<Check> photo_checks(const Subject& subject, const PhotoExpectations&
              .sigma = geometry.reprojection_rms_px / std::sqrt(4.0 * geometry.points_used),
              .unit = "px",
              .limit = *expected.reprojection_rms_px,
-             .explanation = fmt::format("Over {} corners in {} photos.", geometry.points_used, geometry.views_used)});
+             .explanation = fmt::format("Over {} corners in {} photos.", geometry.points_used, geometry.views_used),
+             .floor = test ? test->reprojection_rms_px : std::nullopt});
     }
     return checks;
+}
+
+/// Of a difference of two measurements: both have their own error, and neither knows of the other's.
+std::optional<double> floor_of_difference(const Subject& of, const Subject& with, const std::string& curve) {
+    const CurveFloor* one = floor_of(of.profile.self_test, curve);
+    const CurveFloor* other = floor_of(with.profile.self_test, curve);
+    return one != nullptr && other != nullptr ? std::optional(std::hypot(one->rms, other->rms)) : std::nullopt;
 }
 
 const Subject& find_subject(const std::vector<Subject>& subjects, const std::string& name) {
@@ -280,7 +290,8 @@ ComparisonResult compare_subjects(const Comparison& comparison, const std::vecto
     ComparisonResult result{.comparison = comparison,
                             .difference = comparison.curve == "radial_px"
                                               ? radial_difference_px(of.profile, with.profile)
-                                              : difference(of.profile, with.profile, comparison.curve)};
+                                              : difference(of.profile, with.profile, comparison.curve),
+                            .floor = floor_of_difference(of, with, comparison.curve)};
     if (!comparison.limit) {
         return result;
     }
@@ -295,7 +306,8 @@ ComparisonResult compare_subjects(const Comparison& comparison, const std::vecto
                                                        : "px",
         .limit = *comparison.limit,
         .expectation = comparison.expectation,
-        .explanation = "The curve was not measured in both."};
+        .explanation = "The curve was not measured in both.",
+        .floor = result.floor};
     if (result.difference) {
         check.value = result.difference->rms;
         check.sigma = result.difference->rms_sigma;

@@ -43,6 +43,7 @@ struct Subject {
 struct ComparisonResult {
     Comparison comparison;
     std::optional<CurveDifference> difference;
+    std::optional<double> floor;  // rms of both methods' own errors; none where one's is not known
 };
 
 struct ExperimentResult {

@@ -45,6 +45,11 @@ Verdict Check::verdict() const {
     return surely_below == wanted_below ? Verdict::pass : Verdict::fail;
 }
 
+bool Check::is_below_floor() const {
+    const double deviation = expectation == Expectation::within ? value - target : value;
+    return floor && std::abs(deviation) <= *floor;
+}
+
 Verdict overall(const std::vector<Check>& checks) {
     Verdict worst = Verdict::pass;
     for (const Check& check : checks) {

@@ -1,5 +1,6 @@
 // experiments/verdict.h — whether a number that is known with an uncertainty keeps its limit.
 #pragma once
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -31,10 +32,15 @@ struct Check {
     Expectation expectation = Expectation::at_most;
     double target = 0.0;
     std::string explanation;
+    /// The method's own error in this number, from the self-tests of what it was measured in; none: not known.
+    std::optional<double> floor = std::nullopt;
 
     /// PASS where the 95 % interval value ± 1.96 σ keeps the limit as a whole, FAIL where it breaks it as a whole,
     /// INCONCLUSIVE where the limit lies inside it, or a number is not finite.
     [[nodiscard]] Verdict verdict() const;
+
+    /// Whether the difference that is judged (the value, or its distance from the target) is no larger than `floor`.
+    [[nodiscard]] bool is_below_floor() const;
 };
 
 /// FAIL where any check fails, else INCONCLUSIVE where any is, else PASS. Without checks: PASS.

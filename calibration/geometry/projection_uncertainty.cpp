@@ -102,6 +102,17 @@ Vec3d chart_centre(const ChartView& view, const Pose& pose) {
     return to_camera(pose, middle);
 }
 
+std::vector<cv::Point2f> hull_of(const std::vector<Vec2d>& points) {
+    std::vector<cv::Point2f> single;
+    single.reserve(points.size());
+    for (const Vec2d& p : points) {
+        single.emplace_back(static_cast<float>(p.x), static_cast<float>(p.y));
+    }
+    std::vector<cv::Point2f> hull;
+    cv::convexHull(single, hull);
+    return hull;
+}
+
 }  // namespace
 
 std::optional<double> projection_uncertainty_px(const GeometryFit& fit, const Vec2d& pixel,
@@ -143,15 +154,20 @@ std::vector<ChartView> used_points(const std::vector<ChartView>& views, const Ge
     return result;
 }
 
-std::vector<bool> covered_pixels(const std::vector<ChartView>& views, const std::vector<Vec2d>& pixels) {
-    std::vector<cv::Point2f> points;
-    for (const ChartView& view : views) {
-        for (const Vec2d& p : view.image_px) {
-            points.emplace_back(static_cast<float>(p.x), static_cast<float>(p.y));
-        }
+std::vector<Vec2d> convex_hull(const std::vector<Vec2d>& points) {
+    std::vector<Vec2d> corners;
+    for (const cv::Point2f& p : hull_of(points)) {
+        corners.push_back({p.x, p.y});
     }
-    std::vector<cv::Point2f> hull;
-    cv::convexHull(points, hull);
+    return corners;
+}
+
+std::vector<bool> covered_pixels(const std::vector<ChartView>& views, const std::vector<Vec2d>& pixels) {
+    std::vector<Vec2d> points;
+    for (const ChartView& view : views) {
+        points.insert(points.end(), view.image_px.begin(), view.image_px.end());
+    }
+    const std::vector<cv::Point2f> hull = hull_of(points);
     std::vector<bool> inside;
     for (const Vec2d& p : pixels) {
         const cv::Point2f at(static_cast<float>(p.x), static_cast<float>(p.y));

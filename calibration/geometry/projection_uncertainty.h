@@ -37,6 +37,9 @@ UncertaintyMap uncertainty_map(const GeometryFit& fit, const std::vector<ChartVi
 std::optional<double> projection_uncertainty_px(const GeometryFit& fit, const Vec2d& pixel,
                                                 std::optional<double> distance_mm = std::nullopt);
 
+/// Corners of the convex hull, in turn (to single precision); of no point, none.
+std::vector<Vec2d> convex_hull(const std::vector<Vec2d>& points);
+
 /// Whether pixels lie inside the convex hull of the views' points.
 std::vector<bool> covered_pixels(const std::vector<ChartView>& views, const std::vector<Vec2d>& pixels);
 

@@ -192,10 +192,13 @@ Pose to_pose(const PoseParameters& p) {
     return {{p[0], p[1], p[2]}, {p[3], p[4], p[5]}};
 }
 
-std::optional<Vec2d> predict(const CameraModel& model, const Pose& pose, const Vec2d& chart_mm,
-                             double disc_diameter_mm) {
+std::optional<Vec2d> predict(const CameraModel& model, const Pose& pose, const Vec2d& chart_mm, double disc_diameter_mm,
+                             const std::optional<BoardShape>& board) {
+    const Vec3d origin = to_camera(pose, {0.0, 0.0});
+    const Vec3d normal = cross(to_camera(pose, {1.0, 0.0}) - origin, to_camera(pose, {0.0, 1.0}) - origin);
     const auto map = [&](double x, double y, Vec2d& pixel) {
-        const auto imaged = project(model, to_camera(pose, {x, y}));
+        const double height_mm = board ? board_height(board->frame, board->height_mm.data(), x, y) : 0.0;
+        const auto imaged = project(model, to_camera(pose, {x, y}) + height_mm * normal);
         pixel = imaged.value_or(Vec2d{});
         return imaged.has_value();
     };

@@ -29,8 +29,9 @@ PoseParameters pose_parameters(const Pose& pose);
 Pose to_pose(const PoseParameters& parameters);
 
 /// Where a view's feature is expected: the image of a point, or the centroid of the image of a disc.
-std::optional<Vec2d> predict(const CameraModel& model, const Pose& pose, const Vec2d& chart_mm,
-                             double disc_diameter_mm);
+/// `board`: how far the chart is from flat; none: it is flat.
+std::optional<Vec2d> predict(const CameraModel& model, const Pose& pose, const Vec2d& chart_mm, double disc_diameter_mm,
+                             const std::optional<BoardShape>& board = std::nullopt);
 
 /// Measured minus predicted, px: two residuals of three blocks of parameters, the model's (as many as `kind` has), a
 /// pose's (6) and the board's heights (5). Fails where the model images nothing. One type serves every model.

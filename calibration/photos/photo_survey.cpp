@@ -10,6 +10,7 @@
 #include "engine/io/file.h"
 #include "engine/io/hash.h"
 #include "engine/io/input_error.h"
+#include "engine/io/jpeg.h"
 
 namespace lensproof {
 namespace {
@@ -49,6 +50,7 @@ Surveyed look_at(const fs::path& file, PictureRole role, const std::optional<Tra
         photo.header = read_photo_header(file, assumed);
         photo.picture.orientation = photo.header.orientation;
         const std::string bytes = read_file(file);
+        photo.picture.jpeg_quality = jpeg_quality(bytes);
         const auto [first, is_new] = seen_bytes.emplace(hash_text(bytes), file.string());
         if (!is_new) {
             photo.picture.left_out = "a copy of " + first->second;

@@ -15,6 +15,10 @@ struct PictureTraits {
     /// Standard deviation of the edges' blur, the pixel's own box in it, px. None where no point has an edge that is
     /// well above the noise (a chart of dots that are smaller than the blur).
     std::optional<double> blur_px;
+    /// How the light changes over the chart: the gradient of ln(white) on it, per mm, vignetting taken out. Filled in
+    /// by `measure` once that is known (calibration/light/light_gradient.h); none where the chart shows too little
+    /// white.
+    std::optional<Vec2d> light_gradient_per_mm = std::nullopt;
 };
 
 /// Tones are the 5th and the 95th percentile of the pixels nearer to a point than half the way to the next one. Noise

@@ -18,6 +18,7 @@
 #include "calibration/photos/picture_traits.h"
 #include "calibration/self_test/self_test.h"
 #include "calibration/sharpness/profile_edge.h"
+#include "calibration/sharpness/profile_star.h"
 #include "calibration/statistics/curve.h"
 
 namespace lensproof {
@@ -105,6 +106,8 @@ struct Profile {
     std::map<std::string, FittedTerms> terms;
     /// The edges measured, by channel (JSON key "sharpness", calibration/sharpness/profile_edge.h).
     std::map<std::string, std::vector<ProfileEdge>> sharpness;
+    /// The Siemens stars measured, by channel (JSON key "siemens_stars", calibration/sharpness/profile_star.h).
+    std::map<std::string, std::vector<ProfileStar>> siemens_stars;
     /// Formulas for the vignetting of each channel, the one to choose first, and what they are held against (JSON keys
     /// "vignetting_models" and "shading", calibration/light/vignetting_json.h).
     std::map<std::string, std::vector<VignettingModel>> vignetting_models;

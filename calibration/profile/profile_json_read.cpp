@@ -226,6 +226,14 @@ Profile parse_profile(std::string_view text, const std::string& file) {
             }
         }
     }
+    if (root.has("siemens_stars")) {
+        const Node channels = root.at("siemens_stars");
+        for (const std::string& channel : channels.keys()) {
+            for (const Node& star : channels.at(channel).elements()) {
+                profile.siemens_stars[channel].push_back(parse_star(star));
+            }
+        }
+    }
     if (root.has("vignetting_models")) {
         const Node models = root.at("vignetting_models");
         for (const std::string& channel : models.keys()) {

@@ -155,6 +155,13 @@ Json to_json(const Profile& profile) {
         }
         json["sharpness"][channel] = std::move(list);
     }
+    for (const auto& [channel, stars] : profile.siemens_stars) {
+        Json list = Json::array();
+        for (const ProfileStar& star : stars) {
+            list.push_back(to_json(star, profile.pixel_pitch_um));
+        }
+        json["siemens_stars"][channel] = std::move(list);
+    }
     for (const auto& [channel, models] : profile.vignetting_models) {
         json["vignetting_models"][channel] = to_json(models);
     }

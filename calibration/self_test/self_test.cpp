@@ -28,7 +28,13 @@ std::function<double(double)> function_of(const Profile& profile, const std::str
     };
 }
 
-SimulatedCamera camera_of(const Profile& profile, const PictureTraits& traits) {
+// That of the picture by this name.
+std::optional<int> quality_of(const MeasureInput& input, const std::string& name) {
+    const auto picture = std::ranges::find(input.pictures, name, &Picture::name);
+    return picture == input.pictures.end() ? std::nullopt : picture->jpeg_quality;
+}
+
+SimulatedCamera camera_of(const Profile& profile, const PictureTraits& traits, std::optional<int> jpeg_quality) {
     SimulatedCamera camera{.model = profile.geometry->model,
                            .width_px = profile.width_px,
                            .height_px = profile.height_px,
@@ -38,7 +44,12 @@ SimulatedCamera camera_of(const Profile& profile, const PictureTraits& traits) {
                            .read_noise = traits.noise,
                            .shot_noise = 0.0,
                            .jpeg_quality = {},
-                           .threads = 0};
+                           .threads = 0,
+                           .board = profile.geometry->board,
+                           .light_gradient_per_mm = traits.light_gradient_per_mm.value_or(Vec2d{})};
+    if (profile.channels.size() == 1 || profile.channels.size() == 3) {  // what a JPEG holds
+        camera.jpeg_quality = jpeg_quality;
+    }
     for (const std::string& name : profile.channels) {
         camera.channels.push_back({.name = name,
                                    .radial_shift_px = function_of(profile, "chromatic_shift_" + name + "_px", 0.0),
@@ -67,15 +78,15 @@ std::vector<Picture> simulated_pictures(const MeasureInput& input, const Profile
             last = *view.traits;
             pictures.push_back(
                 {view.image, PictureRole::chart,
-                 [camera = camera_of(profile, last), pose = view.pose, chart = chart_of(input.chart, last), seed] {
-                     return simulate_chart(camera, pose, chart, seed);
-                 }});
+                 [camera = camera_of(profile, last, quality_of(input, view.image)), pose = view.pose,
+                  chart = chart_of(input.chart, last), seed] { return simulate_chart(camera, pose, chart, seed); }});
             ++seed;
         }
     }
     for (const Picture& picture : input.pictures) {
         if (picture.role == PictureRole::flat_field && !pictures.empty()) {
-            pictures.push_back({picture.name, PictureRole::flat_field, [camera = camera_of(profile, last), seed] {
+            pictures.push_back({picture.name, PictureRole::flat_field,
+                                [camera = camera_of(profile, last, picture.jpeg_quality), seed] {
                                     return simulate_flat_field(camera, seed);
                                 }});
             ++seed;
@@ -97,8 +108,8 @@ void add_points(SelfTest& result, const MeasureInput& input, const Profile& trut
     Vec2d sum;
     for (const ProfileView& view : again.views) {
         for (const ProfilePoint& point : view.points) {
-            const auto expected =
-                predict(truth.geometry->model, poses.at(view.image), point.chart_mm, disc_diameter_mm(input.chart));
+            const auto expected = predict(truth.geometry->model, poses.at(view.image), point.chart_mm,
+                                          disc_diameter_mm(input.chart), truth.geometry->board);
             if (!expected) {
                 continue;
             }
@@ -128,6 +139,9 @@ SelfTest self_test(const MeasureInput& input, const Profile& profile) {
     SelfTest result;
     result.pictures = static_cast<int>(simulated.pictures.size());
     add_points(result, input, profile, again);
+    result.reprojection_rms_px = again.geometry->reprojection_rms_px;
+    result.focal_length_px =
+        std::abs(focal_length_px(again.geometry->model) - focal_length_px(profile.geometry->model));
     if (const auto radial = radial_difference_px(again, profile)) {
         result.curves["radial_px"] = floor_of(*radial);
     }
@@ -137,6 +151,14 @@ SelfTest self_test(const MeasureInput& input, const Profile& profile) {
         }
     }
     return result;
+}
+
+const CurveFloor* floor_of(const std::optional<SelfTest>& test, const std::string& curve) {
+    if (!test) {
+        return nullptr;
+    }
+    const auto found = test->curves.find(curve);
+    return found == test->curves.end() ? nullptr : &found->second;
 }
 
 std::string describe_floor(const SelfTest& test) {

@@ -1,6 +1,7 @@
 // calibration/self_test/self_test.h — what a measurement would get wrong by itself: its floor.
 #pragma once
 #include <map>
+#include <optional>
 #include <string>
 
 namespace lensproof {
@@ -17,13 +18,17 @@ struct CurveFloor {
 
 /// The profile's own camera, its views, its blur and its noise, made into pictures and measured again by the same
 /// method. A difference between a profile and something else that is not larger than this may be the method's. It holds
-/// what detector, refinement and fits do, and a draw of the noise; not what the model cannot say, nor a board that is
-/// not flat, light that is not even, or a picture's compression.
+/// what detector, refinement and fits do, and a draw of the noise; JPEG's compression where the files tell its quality
+/// (engine/io/jpeg.h); the board's shape where one was fitted; and light that changes evenly over the chart, as much as
+/// it was measured to. It does not hold what the model cannot say, a board whose shape was not asked for, or shadows.
 struct SelfTest {
     double point_rms_px = 0.0;   // of one coordinate of a found point
     double point_bias_px = 0.0;  // length of the mean error
     int points = 0;
     int pictures = 0;
+    /// The simulated measurement's own reprojection error (as ProfileGeometry's), and how far its focal length is off.
+    std::optional<double> reprojection_rms_px = std::nullopt;
+    std::optional<double> focal_length_px = std::nullopt;
     /// By the curve's name as in Profile::curves; beside them "radial_px", how far apart the two fits image a
     /// direction.
     std::map<std::string, CurveFloor> curves;
@@ -32,6 +37,9 @@ struct SelfTest {
 /// Simulates and measures as many pictures as `profile`, measured from `input`, used. Its views have to know their
 /// traits (calibration/photos/picture_traits.h). Throws InputError where the simulated pictures cannot be measured.
 SelfTest self_test(const MeasureInput& input, const Profile& profile);
+
+/// The floor of that curve; null where there is none.
+const CurveFloor* floor_of(const std::optional<SelfTest>& test, const std::string& curve);
 
 /// One line for people: "points 0.012 px, image position 0.004 px rms, vignetting 0.05 %, chromatic shift 0.006 px",
 /// the last two the largest of any channel.

@@ -9,6 +9,9 @@ Json to_json(const PictureTraits& traits) {
     if (traits.blur_px) {
         json["blur_px"] = *traits.blur_px;
     }
+    if (traits.light_gradient_per_mm) {
+        json["light_gradient_per_mm"] = {traits.light_gradient_per_mm->x, traits.light_gradient_per_mm->y};
+    }
     return json;
 }
 
@@ -18,6 +21,12 @@ Json to_json(const SelfTest& test) {
               {"point_rms_px", test.point_rms_px},
               {"point_bias_px", test.point_bias_px},
               {"curves", Json::object()}};
+    if (test.reprojection_rms_px) {
+        json["reprojection_rms_px"] = *test.reprojection_rms_px;
+    }
+    if (test.focal_length_px) {
+        json["focal_length_px"] = *test.focal_length_px;
+    }
     for (const auto& [name, floor] : test.curves) {
         json["curves"][name] = {
             {"rms", floor.rms}, {"largest", floor.largest}, {"largest_at_image_height", floor.largest_at}};
@@ -33,6 +42,9 @@ PictureTraits parse_traits(const JsonNode& node) {
     if (node.has("blur_px")) {
         traits.blur_px = node.at("blur_px").number();
     }
+    if (node.has("light_gradient_per_mm")) {
+        traits.light_gradient_per_mm = node.at("light_gradient_per_mm").pair();
+    }
     return traits;
 }
 
@@ -42,6 +54,12 @@ SelfTest parse_self_test(const JsonNode& node) {
                   .points = node.at("points").count(),
                   .pictures = node.at("pictures").count(),
                   .curves = {}};
+    for (const auto& [name, value] : {std::pair("reprojection_rms_px", &test.reprojection_rms_px),
+                                      std::pair("focal_length_px", &test.focal_length_px)}) {
+        if (node.has(name)) {
+            *value = node.at(name).number();
+        }
+    }
     const JsonNode curves = node.at("curves");
     for (const std::string& name : curves.keys()) {
         const JsonNode floor = curves.at(name);

@@ -19,6 +19,7 @@ constexpr int kPlaces = 4;          // looked at in each
 constexpr int kKnot_px = 2;         // between exact points of the map to the chart
 constexpr int kBandRows = 64;       // of pixels, made at a time
 constexpr double kBlurReach = 4.0;  // standard deviations
+constexpr int kBoardRounds = 6;     // each gains what slope and obliquity leave of the height: 0.1 and less
 
 // The width that every white or black part of a chart has at least, mm; 0 where none is stated.
 double narrowest_part_mm(const Chart& chart) {
@@ -35,16 +36,17 @@ double narrowest_part_mm(const Chart& chart) {
 // Directions are mapped knot by knot; in a cell of four knots bilinearly.
 class ChartMap {
   public:
-    ChartMap(const CameraModel& model, const SimulatedChannel& channel, const Pose& pose, double half_diagonal,
+    ChartMap(const SimulatedCamera& camera, const SimulatedChannel& channel, const Pose& pose, double half_diagonal,
              int first_x, int first_y, int columns, int rows)
         : first_x_(first_x), first_y_(first_y), columns_(columns / kKnot_px + 2), rows_(rows / kKnot_px + 2) {
         knots_.reserve(static_cast<std::size_t>(columns_) * rows_);
-        const Vec2d centre = centre_px(model);
+        const Vec2d centre = centre_px(camera.model);
         for (int j = 0; j < rows_; ++j) {
             for (int i = 0; i < columns_; ++i) {
                 const Vec2d pixel{first_x + kKnot_px * i - 0.5, first_y + kKnot_px * j - 0.5};
-                knots_.push_back(
-                    chart_point(model, pose, without_shift(pixel, centre, channel.radial_shift_px, half_diagonal)));
+                knots_.push_back(chart_point(camera.model, pose,
+                                             without_shift(pixel, centre, channel.radial_shift_px, half_diagonal),
+                                             camera.board));
             }
         }
     }
@@ -171,6 +173,16 @@ void look(cv::Mat& plane, int i, int j, const ChartMap& map, int x, int y, const
     }
 }
 
+// The light in the middle of a pixel's cell, which over its 2 px is as good as even.
+void shade(cv::Mat& plane, int i, int j, const ChartMap::Cell& cell, const Vec2d& gradient_per_mm) {
+    if (!cell.is_complete()) {
+        return;
+    }
+    const Vec2d place = cell.at(0.5, 0.5);
+    const auto light = static_cast<float>(std::exp(gradient_per_mm.x * place.x + gradient_per_mm.y * place.y));
+    plane(cv::Rect(i, j, kSubpixels, kSubpixels)) *= light;
+}
+
 struct Frame {
     const SimulatedCamera& camera;
     double half_diagonal;
@@ -193,13 +205,17 @@ void paint_band(Image& image, int channel, int first, int last, const Frame& fra
     const int margin = kKnot_px * (1 + static_cast<int>(std::ceil(kBlurReach * camera.blur_px / kKnot_px)));
     const int columns = camera.width_px + 2 * margin;
     const int rows = last - first + 2 * margin;
-    ChartMap map(camera.model, camera.channels[channel], pose, frame.half_diagonal, -margin, first - margin, columns,
-                 rows);
+    ChartMap map(camera, camera.channels[channel], pose, frame.half_diagonal, -margin, first - margin, columns, rows);
     map.find_even_cells(chart);
     cv::Mat fine(rows * kSubpixels, columns * kSubpixels, CV_32F);
+    const bool is_uneven = camera.light_gradient_per_mm.x != 0.0 || camera.light_gradient_per_mm.y != 0.0;
     for (int y = 0; y < rows; ++y) {
         for (int x = 0; x < columns; ++x) {
             look(fine, x * kSubpixels, y * kSubpixels, map, x - margin, y + first - margin, chart);
+            if (is_uneven) {
+                shade(fine, x * kSubpixels, y * kSubpixels, map.cell(x - margin, y + first - margin),
+                      camera.light_gradient_per_mm);
+            }
         }
     }
     if (camera.blur_px > 0.0) {
@@ -233,6 +249,28 @@ void add_noise(Image& image, int row, const SimulatedCamera& camera, std::uint32
     }
 }
 
+// A polynomial says nothing beyond the points that it was fitted to: there the surface goes straight on.
+double height_mm(const BoardShape& board, const Vec2d& chart_mm) {
+    const auto held = [](double value, double middle, double half) {
+        return std::clamp(value, middle - half, middle + half);
+    };
+    const auto at = [&](double x, double y) { return board_height(board.frame, board.height_mm.data(), x, y); };
+    const BoardFrame& frame = board.frame;
+    const double x = held(chart_mm.x, frame.centre_mm.x, frame.half_size_mm.x);
+    const double y = held(chart_mm.y, frame.centre_mm.y, frame.half_size_mm.y);
+    double height = at(x, y);
+    constexpr double kStep = 1e-4;  // of half the frame: the slope to a relative 1e-4
+    if (x != chart_mm.x) {
+        const double step = kStep * frame.half_size_mm.x;
+        height += (at(x + step, y) - at(x - step, y)) / (2.0 * step) * (chart_mm.x - x);
+    }
+    if (y != chart_mm.y) {
+        const double step = kStep * frame.half_size_mm.y;
+        height += (at(x, y + step) - at(x, y - step)) / (2.0 * step) * (chart_mm.y - y);
+    }
+    return height;
+}
+
 Image empty_picture(const SimulatedCamera& camera) {
     std::vector<std::string> names;
     names.reserve(camera.channels.size());
@@ -251,7 +289,8 @@ Image with_noise_and_compression(Image image, const SimulatedCamera& camera, std
 
 }  // namespace
 
-std::optional<Vec2d> chart_point(const CameraModel& model, const Pose& pose, const Vec2d& pixel) {
+std::optional<Vec2d> chart_point(const CameraModel& model, const Pose& pose, const Vec2d& pixel,
+                                 const std::optional<BoardShape>& board) {
     const auto direction = unproject(model, pixel);
     if (!direction) {
         return std::nullopt;
@@ -261,12 +300,19 @@ std::optional<Vec2d> chart_point(const CameraModel& model, const Pose& pose, con
     const Vec3d y_axis = to_camera(pose, {0.0, 1.0}) - origin;
     const Vec3d normal = cross(x_axis, y_axis);
     const double towards = dot(*direction, normal);
-    const double distance = towards != 0.0 ? dot(origin, normal) / towards : -1.0;
-    if (!(distance > 0.0)) {
-        return std::nullopt;
+    const auto meets = [&](double height_mm) -> std::optional<Vec2d> {
+        const double distance = towards != 0.0 ? (dot(origin, normal) + height_mm) / towards : -1.0;
+        if (!(distance > 0.0)) {
+            return std::nullopt;
+        }
+        const Vec3d offset = distance * *direction - origin;
+        return Vec2d{dot(offset, x_axis), dot(offset, y_axis)};
+    };
+    std::optional<Vec2d> place = meets(0.0);
+    for (int i = 0; board && place && i < kBoardRounds; ++i) {
+        place = meets(height_mm(*board, *place));
     }
-    const Vec3d offset = distance * *direction - origin;
-    return Vec2d{dot(offset, x_axis), dot(offset, y_axis)};
+    return place;
 }
 
 Image simulate_chart(const SimulatedCamera& camera, const Pose& pose, const Chart& chart, std::uint32_t seed) {

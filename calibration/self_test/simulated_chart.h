@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "calibration/geometry/board_shape.h"
 #include "calibration/geometry/camera_model.h"
 #include "calibration/geometry/planar_pose.h"
 #include "engine/io/image.h"
@@ -24,7 +25,7 @@ struct SimulatedChannel {
     std::function<double(double)> vignetting = [](double) { return 1.0; };
 };
 
-/// A camera whose every property is stated.
+/// A camera whose every property is stated, and how far the chart before it is from flat and evenly lit.
 struct SimulatedCamera {
     CameraModel model;
     int width_px = 0;
@@ -37,6 +38,9 @@ struct SimulatedCamera {
     double shot_noise = 0.0;
     std::optional<int> jpeg_quality;  // 1 to 100, 8-bit sRGB with halved colour resolution; none: floats as they are
     int threads = 0;                  // 0: one a core; they change nothing but the time
+    std::optional<BoardShape> board = std::nullopt;  // none: the chart is flat
+    /// Of ln(light) over the chart, per mm; its origin has the light that `white` says. Flat fields do not know it.
+    Vec2d light_gradient_per_mm = {};
 };
 
 /// What the camera shows of `chart` at `pose`. Directions that the model does not image, and those behind the chart's
@@ -51,7 +55,9 @@ Image simulate_chart(const SimulatedCamera& camera, const Pose& pose, const Char
 /// An even white through the same camera.
 Image simulate_flat_field(const SimulatedCamera& camera, std::uint32_t seed);
 
-/// Where the direction that `pixel` shows meets the plane of a chart at `pose`, in front of the camera, mm.
-std::optional<Vec2d> chart_point(const CameraModel& model, const Pose& pose, const Vec2d& pixel);
+/// Where the direction that `pixel` shows meets a chart at `pose`, in front of the camera, mm. One that is not flat has
+/// the heights of `board` over its plane; beyond its frame it goes straight on.
+std::optional<Vec2d> chart_point(const CameraModel& model, const Pose& pose, const Vec2d& pixel,
+                                 const std::optional<BoardShape>& board = std::nullopt);
 
 }  // namespace lensproof

@@ -149,7 +149,35 @@ void observe_edges(SharpnessObservations& seen, const Image& image, int channel,
     }
 }
 
+void observe_stars(SharpnessObservations& seen, const Image& image, int channel, const std::string& name,
+                   const SiemensStar& star) {
+    const auto found = find_stars(image, channel, star);
+    if (const auto* refusal = std::get_if<StarRefusal>(&found)) {
+        throw InputError(name + ": " + refusal->reason);
+    }
+    std::string reason;
+    std::vector<ProfileStar>& own = seen.stars[image.channels[static_cast<std::size_t>(channel)]];
+    const std::size_t before = own.size();
+    for (const StarMap& map : std::get<std::vector<StarMap>>(found)) {
+        auto result = measure_star(image, channel, map, star);
+        if (const auto* refusal = std::get_if<StarRefusal>(&result)) {
+            reason = refusal->reason;
+            continue;
+        }
+        own.push_back({name, std::move(std::get<StarMtf>(result))});
+        for (StarSegment& segment : own.back().star.segments) {
+            for (std::vector<double>* curve : {&segment.cycles_per_px, &segment.mtf, &segment.mtf_standard_error}) {
+                round_curve(*curve);
+            }
+        }
+    }
+    if (own.size() == before) {
+        throw InputError(name + ": " + reason);
+    }
+}
+
 void add_sharpness(Profile& profile, const SharpnessObservations& seen, const Vec2d& centre_px) {
+    profile.siemens_stars = seen.stars;
     for (const auto& [channel, listed_edges] : seen.edges) {
         std::vector<FocusedEdges> series = by_position(seen, listed_edges);
         std::vector<EdgeMtf> edges;

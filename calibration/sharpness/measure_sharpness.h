@@ -7,6 +7,7 @@
 #include "calibration/detection/refine.h"
 #include "calibration/profile/profile.h"
 #include "calibration/sharpness/profile_edge.h"
+#include "calibration/sharpness/profile_star.h"
 #include "engine/io/image.h"
 #include "engine/scene/chart.h"
 
@@ -15,6 +16,7 @@ namespace lensproof {
 /// The edges seen so far.
 struct SharpnessObservations {
     std::map<std::string, std::vector<ProfileEdge>> edges;  // by channel
+    std::map<std::string, std::vector<ProfileStar>> stars;  // by channel
     std::map<std::string, int> refusals;                    // how many edges were refused for which reason
     /// Where the focus stood, mm, by picture; empty when that is not known.
     std::map<std::string, double> focus_position_mm;
@@ -29,7 +31,11 @@ void observe_chart_edges(SharpnessObservations& seen, const Image& image, int ch
 void observe_edges(SharpnessObservations& seen, const Image& image, int channel, const std::string& name,
                    const std::vector<PixelRectangle>& rectangles);
 
-/// Adds to the profile: the edges; of each channel C with enough edges the curves "mtf50_tangential_C" and
+/// Measures the Siemens stars in one channel. Throws InputError saying why there is none that can be measured.
+void observe_stars(SharpnessObservations& seen, const Image& image, int channel, const std::string& name,
+                   const SiemensStar& star);
+
+/// Adds to the profile: the stars; the edges; of each channel C with enough edges the curves "mtf50_tangential_C" and
 /// "mtf50_sagittal_C" in cycles per pixel (and "…_cycles_per_mm" where the pixel pitch is known) and
 /// "mtf50_tangential_over_sagittal_C"; with focus positions also "best_focus_tangential_C_mm" and
 /// "best_focus_sagittal_C_mm". The field is that of the pictures in `seen` together; of a focus series, that of the

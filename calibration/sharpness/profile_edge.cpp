@@ -3,12 +3,11 @@
 #include <string>
 
 namespace lensproof {
-namespace {
 
 using Json = nlohmann::ordered_json;
 
-void add(Json& json, const std::string& name, const std::optional<MtfFrequency>& frequency,
-         std::optional<double> pixel_pitch_um) {
+void add_mtf_frequency(Json& json, const std::string& name, const std::optional<MtfFrequency>& frequency,
+                       std::optional<double> pixel_pitch_um) {
     if (!frequency) {
         return;
     }
@@ -21,7 +20,7 @@ void add(Json& json, const std::string& name, const std::optional<MtfFrequency>&
     }
 }
 
-std::optional<MtfFrequency> parse_frequency(const JsonNode& node, const std::string& name) {
+std::optional<MtfFrequency> parse_mtf_frequency(const JsonNode& node, const std::string& name) {
     if (!node.has(name + "_cycles_per_px")) {
         return std::nullopt;
     }
@@ -31,8 +30,6 @@ std::optional<MtfFrequency> parse_frequency(const JsonNode& node, const std::str
                         .upper_95 = node.at(name + "_upper_95").number()};
 }
 
-}  // namespace
-
 Json to_json(const ProfileEdge& edge, std::optional<double> pixel_pitch_um) {
     const EdgeMtf& e = edge.edge;
     Json json = {{"image", edge.image},
@@ -40,8 +37,8 @@ Json to_json(const ProfileEdge& edge, std::optional<double> pixel_pitch_um) {
                  {"normal_deg", e.normal_deg},
                  {"rise_px", e.rise_px},
                  {"bend_px", e.bend_px}};
-    add(json, "mtf50", e.mtf50, pixel_pitch_um);
-    add(json, "mtf10", e.mtf10, pixel_pitch_um);
+    add_mtf_frequency(json, "mtf50", e.mtf50, pixel_pitch_um);
+    add_mtf_frequency(json, "mtf10", e.mtf10, pixel_pitch_um);
     if (!e.mtf.empty()) {
         json["curve"] = {{"step_cycles_per_px", kMtfStep}, {"mtf", e.mtf}, {"standard_error", e.mtf_standard_error}};
     }
@@ -55,8 +52,8 @@ ProfileEdge parse_edge(const JsonNode& node) {
     edge.normal_deg = node.at("normal_deg").number();
     edge.rise_px = node.at("rise_px").number();
     edge.bend_px = node.at("bend_px").number();
-    edge.mtf50 = parse_frequency(node, "mtf50");
-    edge.mtf10 = parse_frequency(node, "mtf10");
+    edge.mtf50 = parse_mtf_frequency(node, "mtf50");
+    edge.mtf10 = parse_mtf_frequency(node, "mtf10");
     if (node.has("curve")) {
         const JsonNode curve = node.at("curve");
         if (curve.at("step_cycles_per_px").number() != kMtfStep) {

@@ -19,6 +19,11 @@ struct ProfileEdge {
 /// and `mtf50_cycles_per_mm` where the pixel pitch is known; `curve`: `step_cycles_per_px`, `mtf`, `standard_error`.
 nlohmann::ordered_json to_json(const ProfileEdge& edge, std::optional<double> pixel_pitch_um);
 
+/// A frequency's keys as above, `name` in front of each; nothing where there is none.
+void add_mtf_frequency(nlohmann::ordered_json& json, const std::string& name,
+                       const std::optional<MtfFrequency>& frequency, std::optional<double> pixel_pitch_um);
+std::optional<MtfFrequency> parse_mtf_frequency(const JsonNode& node, const std::string& name);
+
 /// Throws InputError as JsonNode says.
 ProfileEdge parse_edge(const JsonNode& node);
 

@@ -161,9 +161,10 @@ Chart chart_to_find(const std::string& file) {
                         "are given with --flat-field",
                         file, detectable_kinds()));
     }
-    if (!can_detect(chart)) {
-        throw InputError(fmt::format("{}: the chart is of kind {}, which is not measured: expected one of {}", file,
-                                     kind_name(chart), detectable_kinds()));
+    if (!can_detect(chart) && !std::holds_alternative<SiemensStar>(chart.pattern)) {
+        throw InputError(
+            fmt::format("{}: the chart is of kind {}, which is not measured: expected one of {}, siemens-star", file,
+                        kind_name(chart), detectable_kinds()));
     }
     return chart;
 }

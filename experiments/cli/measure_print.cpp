@@ -33,7 +33,28 @@ void print_edge(const std::string& channel, const ProfileEdge& listed) {
     }
 }
 
+void print_star(const std::string& channel, const ProfileStar& listed) {
+    const StarMtf& star = listed.star;
+    fmt::print("{:22} at ({:.1f}, {:.1f}), {:.0f} x {:.0f} px\n", "star " + channel, star.centre_px.x, star.centre_px.y,
+               2.0 * star.outline.long_half_axis_px, 2.0 * star.outline.short_half_axis_px);
+    for (const StarSegment& segment : star.segments) {
+        const std::string label = fmt::format("  along {:.0f}° (at {:.0f}°)", segment.frequency_deg, segment.side_deg);
+        if (segment.mtf50) {
+            fmt::print("{:22} MTF50 {:.4f} ± {:.4f} cycles/px\n", label, segment.mtf50->cycles_per_px,
+                       segment.mtf50->standard_error);
+        } else {
+            fmt::print("{:22} no MTF50 among the star's frequencies, {:.3f} to {:.3f} cycles/px\n", label,
+                       segment.cycles_per_px.front(), segment.cycles_per_px.back());
+        }
+    }
+}
+
 void print_sharpness(const Profile& profile) {
+    for (const auto& [channel, stars] : profile.siemens_stars) {
+        for (const ProfileStar& star : stars) {
+            print_star(channel, star);
+        }
+    }
     constexpr std::size_t few = 6;  // edges that are listed one by one; more make a curve
     for (const auto& [channel, edges] : profile.sharpness) {
         for (std::size_t i = 0; i < edges.size() && edges.size() < few; ++i) {

@@ -211,9 +211,20 @@ void draw_curve(Svg& svg, const ChartCurve& curve, const ChartFrame& frame) {
     draw_markers(svg, visible, curve.marker, curve.marker_size, curve.colour);
 }
 
+/// The map as an axis that runs downwards has it: its lowest row at the top.
+HeatMap upside_down(HeatMap map) {
+    for (std::size_t row = 0; row < map.rows / 2; ++row) {
+        const auto first = map.values.begin() + static_cast<std::ptrdiff_t>(row * map.columns);
+        const auto last = map.values.begin() + static_cast<std::ptrdiff_t>((map.rows - 1 - row) * map.columns);
+        std::swap_ranges(first, first + static_cast<std::ptrdiff_t>(map.columns), last);
+    }
+    std::swap(map.y.low, map.y.high);
+    return map;
+}
+
 void draw_data(Svg& svg, const PlotChart& chart, const ChartFrame& frame) {
     if (chart.map) {
-        const HeatMap& map = *chart.map;
+        const HeatMap map = frame.y.low > frame.y.high ? upside_down(*chart.map) : *chart.map;
         const SvgPoint corner = frame.to_page({map.x.low, map.y.high});
         const SvgPoint opposite = frame.to_page({map.x.high, map.y.low});
         svg.rectangle({frame.box.x, frame.box.y}, frame.box.width, frame.box.height, {.fill = kMaskColour});

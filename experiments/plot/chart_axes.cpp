@@ -271,8 +271,12 @@ ResolvedAxes resolve_axes(const PlotChart& chart, double width, double height) {
     if (chart.map) {
         x = {.low = std::min(chart.map->x.low, x.low.value_or(kInfinity)),
              .high = std::max(chart.map->x.high, x.high.value_or(-kInfinity))};
+        const bool runs_down = y.low && y.high && *y.low > *y.high;
         y = {.low = std::min(chart.map->y.low, y.low.value_or(kInfinity)),
              .high = std::max(chart.map->y.high, y.high.value_or(-kInfinity))};
+        if (runs_down) {
+            y = {.low = std::max(chart.map->y.high, *chart.y.low), .high = std::min(chart.map->y.low, *chart.y.high)};
+        }
     }
     ResolvedAxes axes{resolve(x, extent_along(chart, true), width, true),
                       resolve(y, extent_along(chart, false), height, false)};

@@ -48,6 +48,10 @@ std::string number_text(double value) {
     return with_true_minus(decimal(value == 0 ? 0.0 : value, std::chars_format::general, 6));
 }
 
+std::string floor_text(double value) {
+    return std::isfinite(value) ? decimal(value, std::chars_format::general, 2) : "—";
+}
+
 std::string measurement_text(double value, std::optional<double> sigma) {
     if (!std::isfinite(value) || !sigma || !std::isfinite(*sigma) || *sigma <= 0) return number_text(value);
     // The second significant digit of sigma as it will be printed: 0.0996 rounds to 0.10, not to 0.100.

@@ -14,6 +14,9 @@ std::string json_for_script(const nlohmann::ordered_json& json);
 /// A number for a reader: up to six significant digits, no trailing zeros, a real minus sign; "—" for NaN and ±inf.
 std::string number_text(double value);
 
+/// An error for a reader: two significant digits.
+std::string floor_text(double value);
+
 /// "0.0421 ± 0.0031": the uncertainty with two significant digits and the value to the same place. Without a usable
 /// `sigma` (none, zero, NaN) the value alone.
 std::string measurement_text(double value, std::optional<double> sigma);

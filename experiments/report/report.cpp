@@ -1,5 +1,6 @@
 #include "experiments/report/report.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
@@ -133,7 +134,13 @@ std::vector<Group> groups_of(const Json& checks) {
     return groups;
 }
 
-std::string check_row(const Json& check, std::size_t place) {
+std::string floor_cell(const Json& check) {
+    const auto floor = as_number(member(check, "floor"));
+    return "<td class=\"floor\">" + (floor ? with_unit(floor_text(*floor), text(check, "unit")) : "—") + "</td>";
+}
+
+/// `has_floors`: the table has the column.
+std::string check_row(const Json& check, std::size_t place, bool has_floors) {
     constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
     const double value = as_number(member(check, "value")).value_or(kNaN);
     const std::string measured = measurement_text(value, as_number(member(check, "sigma")));
@@ -143,26 +150,32 @@ std::string check_row(const Json& check, std::size_t place) {
     return "<tr class=\"check " + kind + (hides_why ? "\" tabindex=\"0" : "") +
            "\"><th scope=\"row\"><span class=\"name\">" + text(check, "label") + "</span>" +
            (why.empty() ? "" : "<span class=\"why\">" + why + "</span>") + "</th><td class=\"value\">" +
-           with_unit(measured, std::isfinite(value) ? text(check, "unit") : "") +
-           "</td><td class=\"scale\" data-check=\"" + std::to_string(place) + "\"></td><td class=\"limit\">" +
-           limit_html(check) + "</td><td class=\"result\">" + verdict_html(check) + "</td></tr>\n";
+           with_unit(measured, std::isfinite(value) ? text(check, "unit") : "") + "</td>" +
+           (has_floors ? floor_cell(check) : "") + "<td class=\"scale\" data-check=\"" + std::to_string(place) +
+           "\"></td><td class=\"limit\">" + limit_html(check) + "</td><td class=\"result\">" + verdict_html(check) +
+           "</td></tr>\n";
 }
 
 std::string checks_html(const Json& report) {
     const Json& checks = list(report, "checks");
     if (checks.empty()) return "<p class=\"empty\">This report holds no checks.</p>\n";
+    const bool has_floors = std::any_of(
+        checks.begin(), checks.end(), [](const Json& check) { return as_number(member(check, "floor")).has_value(); });
     std::string out =
         "<table class=\"checks\"><caption class=\"unseen\">Every check, its result and its limit</caption>\n"
-        "<thead><tr><th scope=\"col\">Check</th><th scope=\"col\">Measured, ± 1 σ</th>"
+        "<thead><tr><th scope=\"col\">Check</th><th scope=\"col\">Measured, ± 1 σ</th>" +
+        std::string(has_floors ? "<th scope=\"col\">Method’s own error</th>" : "") +
         "<th scope=\"col\" class=\"scale\">Against its limit</th>"
         "<th scope=\"col\">Limit</th><th scope=\"col\">Verdict</th></tr></thead>\n";
     for (const Group& group : groups_of(checks)) {
         const std::string colour = subject_colour(report, member(*group.checks.front(), "subject"));
-        out += "<tbody><tr class=\"group\"><th scope=\"rowgroup\" colspan=\"5\">";
+        out += "<tbody><tr class=\"group\"><th scope=\"rowgroup\" colspan=\"" + std::string(has_floors ? "6" : "5") +
+               "\">";
         if (!colour.empty()) out += "<i class=\"swatch " + colour + "\" aria-hidden=\"true\"></i>";
         out += escape_markup(group.name.empty() ? "Checks" : group.name) + " <small>" + tally(group.checks) +
                "</small></th></tr>\n";
-        for (std::size_t i = 0; i < group.checks.size(); ++i) out += check_row(*group.checks[i], group.places[i]);
+        for (std::size_t i = 0; i < group.checks.size(); ++i)
+            out += check_row(*group.checks[i], group.places[i], has_floors);
         out += "</tbody>\n";
     }
     return out + "</table>\n";
@@ -203,6 +216,18 @@ std::string picture_html(const Json& picture, const std::string& id, const std::
                ";base64," + base64(png->second) + "\">";
     }
     return out + "</div><figcaption><span class=\"caption\">" + caption + "</span></figcaption></figure>\n";
+}
+
+/// Where the measurements are sure, beside the curves that say how sure they are along the radius.
+std::string maps_html(const Json& report, const std::map<std::string, std::string>& pngs) {
+    std::string out;
+    const Json& maps = list(report, "maps");
+    for (std::size_t i = 0; i < maps.size(); ++i) {
+        out += picture_html(maps[i], "map-" + std::to_string(i), pngs);
+    }
+    return out.empty() ? ""
+                       : "<h3 class=\"maps-title\">Certainty and coverage over the frame</h3>\n<div class=\"maps\">\n" +
+                             out + "</div>\n";
 }
 
 std::string subjects_html(const Json& report, const std::map<std::string, std::string>& pngs) {
@@ -317,6 +342,7 @@ std::string report_html(const Json& report, const std::map<std::string, std::str
                                                 {"verdict", verdict_html(report)},
                                                 {"tally", tally_html(report)},
                                                 {"checks", checks_html(report)},
+                                                {"maps", maps_html(report, png_bytes_by_name)},
                                                 {"subjects", subjects_html(report, png_bytes_by_name)},
                                                 {"provenance", provenance_html(report)},
                                                 {"reproduce", reproduce_html(report)},

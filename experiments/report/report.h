@@ -10,7 +10,7 @@ namespace lensproof {
 /// checks, the facts, the pictures and the provenance; the script adds the scales, the curves and the overlays.
 ///
 /// `png_bytes_by_name` holds the files' bytes under the `name` that a picture in `report` has. A name that is missing
-/// leaves a labelled gap; a picture that no subject names is left out.
+/// leaves a labelled gap; a picture that neither a subject nor a map names is left out. Names in .svg are SVG.
 ///
 /// Whatever `report` holds is shown as text: no string in it can become markup or script. Any key may be absent or
 /// null, and a number that is not finite counts as null; nothing throws but std::bad_alloc. The same arguments give the
@@ -25,7 +25,8 @@ namespace lensproof {
 ///                                   | "within"                     |value − target| ≤ limit
 ///                                   | "differs",                   |value − target| > limit, a negative control
 ///                  "target"?: 0 where absent, "verdict", "explanation"?,
-///                  "subject"?: an id below, for the group's colour}],
+///                  "subject"?: an id below, for the group's colour,
+///                  "floor"?: the method's own error, in the same unit}],
 ///      "subjects_title"?: over the subjects; "Renders and photos" where absent,
 ///      "subjects": [{"id", "kind": "simulation" | "photos", "label",
 ///                    "facts"?: [{"label", "value": string or number}], "focal_length_px"?: {"value", "sigma"?},
@@ -37,7 +38,10 @@ namespace lensproof {
 ///                 "series": [{"label", "subject"?: an id above, which gives the colour,
 ///                             "style": "measured" (solid) | "reference" (dashed) | "difference" (solid),
 ///                             "x": [rising], "y": [null leaves a gap], "lower"?, "upper"?: the 95 % band,
+///                             "floor"?: the method's own error, drawn as dotted lines about the curve, or about 0
+///                                       for a difference,
 ///                             "covered_to"?: beyond this x the data ended, and the curve is drawn faded}]}],
+///      "maps"?: [{"name", "subject"?, "caption"?}],         drawings over the frame, after the plots
 ///      "provenance"?: {"program", "version", "commit", "inputs": [{"file", "sha256"}], "settings": {…}, …},
 ///      "reproduce"?: "lensproof run …"}
 ///

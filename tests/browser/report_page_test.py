@@ -142,7 +142,7 @@ def reports():
              "upper": [0.002 * v * v + 0.02 for v in x]}
     plot = {"id": "distortion", "title": "Distortion", "x_label": "field angle", "y_label": "distortion", "x_unit": "°",
             "y_unit": "%", "limit": 0.5, "series": [
-                {"label": "measured", "subject": "a", "style": "measured", "covered_to": 24, **curve},
+                {"label": "measured", "subject": "a", "style": "measured", "covered_to": 24, "floor": 0.03, **curve},
                 {"label": "traced " + ATTACK, "subject": "a", "style": "reference", "x": x, "y": curve["y"]},
                 {"label": "second", "subject": "a", "style": "measured", "x": [0, 10, 20, 30], "y": [0, None, 1, 2]}]}
     points = [[20 + 10 * i % 600, 20 + 10 * (i // 58), 0.1 * math.sin(i), 0.1 * math.cos(i)] for i in range(2000)]
@@ -152,10 +152,11 @@ def reports():
                              "points": [[9, 9, None, 1]]},
                             {"name": "a/1.png", "caption": "no size"}]}
     usual = {"schema": "lensproof-report/1", "title": "Title " + ATTACK, "summary": ATTACK, "verdict": "FAIL",
-             "checks": [check(0), check(1, expect="at least", verdict="FAIL"), check(2, expect="within", target=0.2),
+             "checks": [check(0, floor=0.02), check(1, expect="at least", verdict="FAIL"), check(2, expect="within", target=0.2),
                         check(3, expect="differs", value=9), check(4, value=None, verdict="INCONCLUSIVE"),
                         check(5, limit=0), check(6, limit=None), check(7, expect=ATTACK, value=-1, sigma=1e9)],
              "subjects": [subject], "plots": [plot, {**plot, "id": "again"}],
+             "maps": [{"name": "a/1.png", "subject": "a", "caption": "map " + ATTACK}, None],
              "provenance": {"program": ATTACK, "inputs": [{"file": ATTACK, "sha256": "0" * 64}],
                             "settings": {"a": {"b": 1}}},
              "reproduce": "./lensproof run x.toml"}
@@ -199,10 +200,15 @@ def ticks(browser):
 
 def test_curves(browser):
     expect(browser.js("document.querySelectorAll('[data-plot=distortion] path.line').length") >= 4, "curves are drawn")
+    expect(browser.js("document.querySelector('#curves .maps img').naturalWidth") == 320, "a map stands beside them")
     expect(browser.js("document.querySelector('[data-plot=distortion] path.line.measured').getTotalLength()") > 200,
            "a curve has length")
     expect(browser.js("document.querySelectorAll('[data-plot=distortion] path.band').length") == 1,
            "the 95 % band is drawn")
+    expect(browser.js("document.querySelectorAll('[data-plot=distortion] path.own-error').length") == 2,
+           "the method's own error is drawn on either side of its curve")
+    expect("own error ±0.03" in browser.js("document.querySelector('[data-plot=distortion] .legend').textContent"),
+           "and said")
     expect(browser.js("document.querySelectorAll('[data-plot=distortion] .beyond').length") == 1,
            "the extrapolated part stands apart")
     left, top, width, height = box(browser, "[data-plot=distortion] .canvas")
@@ -252,6 +258,7 @@ def test_curves(browser):
 
 def test_checks(browser):
     expect(browser.js("document.querySelectorAll('td.scale > svg').length") == 7, "each limit has its scale")
+    expect(browser.js("document.querySelectorAll('td.scale rect.own').length") == 1, "with the method's own error")
     left, top, width, height = box(browser, ".check.pass")
     browser.js("document.querySelector('.check.pass').focus()")
     browser.js("new Promise((done) => setTimeout(done, 300))")

@@ -82,6 +82,22 @@ TEST(HeatMap, EveryPixelHasTheColourOfItsValueAndHighYIsAtTheTop) {
     EXPECT_NEAR(image.at(0, 0, 0), image.at(0, 0, 1), 0.02);  // masked: as grey as paper
 }
 
+// As pictures have it: the lowest y, and the map's first row, at the top.
+TEST(HeatMap, OnAnAxisThatRunsDownwardsTheFirstRowIsAtTheTop) {
+    PlotChart chart = map_chart(small_map());
+    chart.y.low = 2.0;
+    chart.y.high = -2.0;
+    const ChartFrame frame = chart_frame(chart, {10.0, 20.0, 300.0, 200.0});
+    EXPECT_EQ(frame.to_page({-3.0, -2.0}).y, 20.0);
+    EXPECT_EQ(frame.to_page({-3.0, 2.0}).y, 220.0);
+    const std::string svg = chart_svg(chart);
+    EXPECT_TRUE(is_sound(svg));
+    const Image image = first_picture(svg, "downwards");
+    expect_pixel(image, 0, 0, map_colour(ColourMap::sequential, 0.0));
+    expect_pixel(image, 2, 1, map_colour(ColourMap::sequential, 1.0));
+    expect_pixel(image, 1, 1, map_colour(ColourMap::sequential, 64.0 / 255.0));
+}
+
 TEST(HeatMap, LogarithmicColoursAreEvenInDecades) {
     HeatMap map = small_map();
     map.scale = AxisScale::logarithmic;

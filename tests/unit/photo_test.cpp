@@ -9,7 +9,9 @@
 #include <cmath>
 #include <fstream>
 
+#include "engine/io/file.h"
 #include "engine/io/input_error.h"
+#include "engine/io/jpeg.h"
 #include "tests/test_folder.h"
 
 namespace lensproof {
@@ -256,6 +258,24 @@ TEST(Photo, RawIsLinearAndAsTheSensorSawIt) {
     EXPECT_NEAR(image.at(64, 48, 2), 0.25, 2e-5);
     EXPECT_EQ(read_photo_header(file, std::nullopt).notes.transfer, "linear (stated by the file)");
     EXPECT_EQ(read_photo_header(file, std::nullopt).notes.model, "Synthetic");
+}
+
+// The tables are libjpeg's own, which writes the file; those of low qualities are cut off at 255.
+TEST(Photo, SaysTheQualityThatAJpegWasWrittenWith) {
+    const TestFolder folder;
+    for (const int quality : {5, 25, 50, 75, 90, 95, 99, 100}) {
+        OIIO::ImageSpec attributes;
+        attributes.attribute("compression", "jpeg:" + std::to_string(quality));
+        for (const int channels : {1, 3}) {
+            const auto file = write_bytes(folder.path() / (std::to_string(quality) + ".jpg"), 16, 8, channels,
+                                          std::vector<unsigned char>(16 * 8 * 3, 90), attributes);
+            const std::string bytes = read_file(file);
+            EXPECT_EQ(jpeg_quality(bytes), quality);
+            EXPECT_FALSE(jpeg_quality(bytes.substr(0, 30)));  // cut off before the table
+        }
+    }
+    EXPECT_FALSE(jpeg_quality(""));
+    EXPECT_FALSE(jpeg_quality("\x89PNG"));
 }
 
 }  // namespace

@@ -142,6 +142,19 @@ TEST(Report, TheTableOfChecksNeedsNoScript) {
     EXPECT_TRUE(has(page, "1 of 1 pass"));
 }
 
+TEST(Report, TheMethodsOwnErrorStandsBesideTheValueWhereItIsKnown) {
+    const std::string page = report_html(one_check({{"floor", 0.00561}}), {});
+    EXPECT_TRUE(has(page, "<td class=\"floor\">0.0056\u00a0px</td>"));
+    EXPECT_TRUE(has(page, "Method’s own error</th>"));
+    EXPECT_TRUE(has(page, "colspan=\"6\""));
+    const std::string without = report_html(one_check({{"floor", nullptr}}), {});
+    EXPECT_FALSE(has(without, "<td class=\"floor\">"));
+    EXPECT_FALSE(has(without, "own error</th>"));
+    Json two = one_check({{"floor", 0.01}});
+    two["checks"].push_back(one_check(Json::object())["checks"][0]);
+    EXPECT_TRUE(has(report_html(two, {}), "<td class=\"floor\">—</td>"));
+}
+
 TEST(Report, EachExpectationIsSaidInWords) {
     const auto limit_of = [](const Json& extra) {
         const std::string page = report_html(one_check(extra), {});

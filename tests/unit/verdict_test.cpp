@@ -33,6 +33,21 @@ TEST(Verdict, WithinIsAboutTheTarget) {
     EXPECT_EQ(check(530.0, 0.4, 2.1, Expectation::within, 533.3).verdict(), Verdict::fail);
 }
 
+// A difference is judged: the value, or how far it is from its target. What is not known is no floor.
+TEST(Verdict, ADifferenceMayBeBelowTheMethodsOwnError) {
+    Check difference = check(0.004, 0.001, 0.05, Expectation::at_most);
+    EXPECT_FALSE(difference.is_below_floor());
+    difference.floor = 0.005;
+    EXPECT_TRUE(difference.is_below_floor());
+    difference.floor = 0.003;
+    EXPECT_FALSE(difference.is_below_floor());
+    Check focal = check(533.0, 0.4, 2.1, Expectation::within, 533.3);
+    focal.floor = 0.2;
+    EXPECT_FALSE(focal.is_below_floor());
+    focal.floor = 0.4;
+    EXPECT_TRUE(focal.is_below_floor());
+}
+
 TEST(Verdict, NegativeControlsWantADifference) {
     EXPECT_EQ(check(5.0, 0.1, 1.0, Expectation::differs).verdict(), Verdict::pass);
     EXPECT_EQ(check(0.5, 0.1, 1.0, Expectation::differs).verdict(), Verdict::fail);

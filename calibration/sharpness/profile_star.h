@@ -1,0 +1,27 @@
+// calibration/sharpness/profile_star.h — a Siemens star as a profile lists it.
+#pragma once
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+
+#include "calibration/profile/json_node.h"
+#include "calibration/sharpness/siemens_star.h"
+
+namespace lensproof {
+
+struct ProfileStar {
+    std::string image;
+    StarMtf star;
+};
+
+/// `image`, `centre_px`, `outline` (`centre_px`, `half_axes_px`: the longer first, `angle_deg` of the longer) and
+/// `segments`, each with `frequency_deg` (the direction along which black and white alternate there, from +x towards
+/// +y), `side_deg` (where it lies, seen from the centre), `contrast` and `contrast_standard_error` ((white − black) /
+/// (white + black) of the sectors), MTF50 and MTF10 as edges have them (calibration/sharpness/profile_edge.h), and
+/// `curve`: `cycles_per_px`, `mtf`, `standard_error`.
+nlohmann::ordered_json to_json(const ProfileStar& star, std::optional<double> pixel_pitch_um);
+
+/// Throws InputError as JsonNode says.
+ProfileStar parse_star(const JsonNode& node);
+
+}  // namespace lensproof
