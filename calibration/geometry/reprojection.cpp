@@ -4,6 +4,7 @@
 #include <ceres/jet.h>
 #include <ceres/rotation.h>
 
+#include <algorithm>
 #include <utility>
 
 #include "calibration/detection/disc_centroid.h"
@@ -32,6 +33,7 @@ constexpr std::array<int, sizeof...(kind)> counts(std::index_sequence<kind...> /
 constexpr auto kCounts = counts(std::make_index_sequence<std::variant_size_v<CameraModel>>());
 
 constexpr int kLargestModel = Spline::count;
+constexpr int kSmallModel = BrownConrady::count;  // most are no larger
 
 class ReprojectionCost final : public ceres::CostFunction {
   public:
@@ -52,14 +54,16 @@ class ReprojectionCost final : public ceres::CostFunction {
         if (derivatives == 0) {
             return evaluate_plain(blocks, residuals);
         }
-        // The fewer derivatives are carried, the faster: a pose alone, a small model with a pose, everything.
-        if (derivatives <= 6) {
-            return evaluate<6>(blocks, residuals, wanted);
+        // The fewer derivatives are carried, the faster: a pose alone, a small model, the largest.
+        if (feature_.disc_diameter_mm > 0.0) {
+            return derivatives <= 6 ? evaluate<6>(blocks, residuals, wanted)
+                                    : evaluate<kLargestModel + 6 + kBoardTerms>(blocks, residuals, wanted);
         }
-        if (derivatives <= 15) {
-            return evaluate<15>(blocks, residuals, wanted);
+        if (wanted[0] == nullptr) {
+            return evaluate_point<3>(blocks, residuals, wanted);
         }
-        return evaluate<kLargestModel + 6 + kBoardTerms>(blocks, residuals, wanted);
+        return parameter_block_sizes()[0] <= kSmallModel ? evaluate_point<3 + kSmallModel>(blocks, residuals, wanted)
+                                                         : evaluate_point<3 + kLargestModel>(blocks, residuals, wanted);
     }
 
   private:
@@ -84,6 +88,58 @@ class ReprojectionCost final : public ceres::CostFunction {
         }
         residuals[0] = feature_.image_px.x - predicted.x;
         residuals[1] = feature_.image_px.y - predicted.y;
+        return true;
+    }
+
+    // By the chain rule: a point of the chart moves in the camera's frame with the pose and its height, and its image
+    // with that point and the model. (Derivatives by all parameters at once are up to four times as long.)
+    template <int stride>
+    bool evaluate_point(const double* const* blocks, double* residuals, const std::array<double*, 3>& jacobians) const {
+        using PointJet = ceres::Jet<double, 7>;  // by the pose, and by the height
+        const Vec2d& at = feature_.chart_mm;
+        std::array<PointJet, 6> pose;
+        for (int i = 0; i < 6; ++i) {
+            pose[i] = PointJet(blocks[1][i], i);
+        }
+        const PointJet point[3] = {PointJet(at.x), PointJet(at.y),
+                                   PointJet(board_height(frame_, blocks[2], at.x, at.y), 6)};
+        PointJet turned[3];
+        ceres::AngleAxisRotatePoint(pose.data(), point, turned);
+        using Jet = ceres::Jet<double, stride>;  // by the point, and by the model
+        std::array<Jet, 3> seen;
+        for (int k = 0; k < 3; ++k) {
+            turned[k] += pose[3 + k];
+            seen[k] = Jet(turned[k].a, k);
+        }
+        const int count = parameter_block_sizes()[0];
+        std::array<Jet, kLargestModel> intrinsics;
+        for (int i = 0; i < count; ++i) {
+            intrinsics[i] = jacobians[0] != nullptr && i < stride - 3 ? Jet(blocks[0][i], 3 + i) : Jet(blocks[0][i]);
+        }
+        Vec2<Jet> image;
+        if (!kProjections<Jet>[static_cast<std::size_t>(kind_)](intrinsics.data(), Vec3<Jet>{seen[0], seen[1], seen[2]},
+                                                                image)) {
+            return false;
+        }
+        residuals[0] = feature_.image_px.x - image.x.a;
+        residuals[1] = feature_.image_px.y - image.y.a;
+        for (int row = 0; row < 2; ++row) {
+            const Jet& own = row == 0 ? image.x : image.y;
+            const auto chained = [&](int i) {
+                return own.v[0] * turned[0].v[i] + own.v[1] * turned[1].v[i] + own.v[2] * turned[2].v[i];
+            };
+            for (int i = 0; jacobians[0] != nullptr && i < std::min(count, stride - 3); ++i) {
+                jacobians[0][row * count + i] = -own.v[3 + i];
+            }
+            for (int i = 0; jacobians[1] != nullptr && i < 6; ++i) {
+                jacobians[1][row * 6 + i] = -chained(i);
+            }
+            for (int i = 0; jacobians[2] != nullptr && i < kBoardTerms; ++i) {
+                BoardHeights unit{};
+                unit[i] = 1.0;
+                jacobians[2][row * kBoardTerms + i] = -chained(6) * board_height(frame_, unit.data(), at.x, at.y);
+            }
+        }
         return true;
     }
 

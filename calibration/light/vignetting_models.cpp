@@ -281,13 +281,13 @@ void choose(std::vector<Candidate>& candidates, const Blocks& blocks) {
             model.verdict =
                 "chosen: " + own +
                 (i == 0 ? ", better than any other"
-                        : fmt::format(", like {} ({}) within chance, with fewer terms ({:.0f} against {:.0f})",
+                        : fmt::format(", like {} ({}) within chance, with fewer terms ({:.2g} against {:.2g})",
                                       best.model.name, percent(held_out(best)), candidates[i].terms, best.terms));
         } else if (excess(candidates[i], best, blocks) > 0.0) {
             model.verdict = own + fmt::format(", {:.1f} % worse than {}, beyond chance", 100.0 * much, best.model.name);
         } else {
             model.verdict =
-                own + fmt::format(", no better than {} beyond chance, with more terms ({:.0f} against {:.0f})",
+                own + fmt::format(", no better than {} beyond chance, with more terms ({:.2g} against {:.2g})",
                                   candidates[chosen].model.name, candidates[i].terms, candidates[chosen].terms);
         }
     }

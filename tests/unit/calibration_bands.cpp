@@ -24,7 +24,7 @@ double shift_at(double wavelength_nm, double h) {
     return (wavelength_nm - 550.0) / 100.0 * (1.6 * h - 0.4 * h * h * h);
 }
 
-Image band(double wavelength_nm) {
+Image band(double wavelength_nm, const Chart& chart = kDiscs) {
     SimulatedCamera camera{
         .model = BrownConrady{{820.0, 319.5, 239.5, -0.1, 0.0, 0.0, 0.0, 0.0}},
         .width_px = 640,
@@ -32,7 +32,7 @@ Image band(double wavelength_nm) {
         .channels = {{.name = "Y", .radial_shift_px = [=](double h) { return shift_at(wavelength_nm, h); }}}};
     camera.blur_px = 0.7;
     camera.read_noise = 0.006;  // 1 % of white
-    return simulate_chart(camera, {{0.05, -0.08, 0.02}, {0.0, 0.0, 480.0}}, kDiscs,
+    return simulate_chart(camera, {{0.05, -0.08, 0.02}, {0.0, 0.0, 480.0}}, chart,
                           static_cast<std::uint32_t>(wavelength_nm));
 }
 
@@ -84,6 +84,23 @@ TEST(CalibrationBands, TheShiftBetweenBandsIsTheSimulatedOne) {
         EXPECT_EQ(profile.terms.at("chromatic_shift_450nm").names.size(), 7u);
         EXPECT_FALSE(profile.curves.contains("chromatic_shift_550nm_px"));
     }
+}
+
+// What the corner needs is points near it: a chart that is larger than the frame, with discs so small that whole ones
+// come close. Then the points reach an image height of 0.9, and the curve and its terms carried on to the corner itself
+// are within 0.02 px at 1 % noise.
+TEST(CalibrationBands, AChartThatFillsTheFrameTellsTheShiftInTheCorner) {
+    const Chart overfilling{.pattern = DiscGrid{32, 24, 15.0, 8.0}};
+    const Image blue = band(450.0, overfilling);
+    const Image green = band(550.0, overfilling);
+    const Profile profile = measure_bands(two_bands([&](double nm) { return nm < 500.0 ? blue : green; }));
+    const Curve& radial = profile.curves.at("chromatic_shift_450nm_px");
+    EXPECT_GT(radial.covered_image_height, 0.9);
+    for (std::size_t i = 0; i < radial.value.size(); ++i) {
+        EXPECT_NEAR(radial.value[i], shift_at(450.0, radial.image_height[i]), 0.02) << radial.image_height[i];
+    }
+    const std::vector<double>& terms = profile.terms.at("chromatic_shift_450nm").values;
+    EXPECT_NEAR(terms[0] + terms[1] + terms[2], shift_at(450.0, 1.0), 0.02);
 }
 
 // Mosaics of even light become even planes, whatever the colours' sensitivity; a ramp stays a ramp where the strong

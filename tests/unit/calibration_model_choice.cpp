@@ -63,11 +63,12 @@ TEST(CalibrationModelChoice, AFisheyeIsNotTakenForAPerspectiveCamera) {
 }
 
 // Few views in the middle of the frame: eight coefficients leave the same residuals as four, and no idea of the
-// corners. The known trap: a rational function with k1 = 9 ± 44 and an error of 1.4 px there.
+// corners. The known trap: a rational function with k1 = 9 ± 44 and an error of 1.4 px there, or (in half of all
+// draws of the noise) one whose focal length a fifth of the views less does not tell to 5 %, which is refused.
 TEST(CalibrationModelChoice, AModelThatDoesNotKnowItsCornersLoses) {
     BrownConrady truth = perspective_camera();
     truth.parameters[5] = 0.0;
-    const auto views = noisy_views(truth, tilted_poses(1100.0, 0.5, 80.0), 0.1, 2);
+    const auto views = noisy_views(truth, tilted_poses(1100.0, 0.5, 80.0), 0.1, 1);
     const ChosenGeometry chosen = choose_model(views, kWidth, kHeight, {});
     const ModelCandidate& taken = chosen.choice.candidates[static_cast<std::size_t>(chosen.choice.chosen)];
     const ModelCandidate& rational = candidate(chosen.choice, "brown-conrady-rational");
