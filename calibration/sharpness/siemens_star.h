@@ -59,11 +59,10 @@ struct StarMtf {
 /// 2. In each bin least squares of a + Σ_k (b_k cos kψ + c_k sin kψ), k up to 5 where the pixels allow it: the star is
 ///    black and white, its square wave's other harmonics are fitted beside the fundamental and not taken for it. The
 ///    modulation is √(b₁² + c₁²) / a.
-/// 3. A square wave's fundamental is 4/π of its contrast, (white − black) / (white + black), which is stated and
-/// divided
-///    out. Its white is that of the paper around the star; its mean is the pattern's own, which no blur changes,
-///    followed outwards to the paper. So the contrast is the ink's and the veiling glare's. This takes sectors of equal
-///    width: ink that spreads by 1 % of the widest one makes every MTF 1 % too large.
+/// 3. A square wave's fundamental is 4/π of its contrast, (white − black) / (white + black), which is stated, and
+///    divided out. Its white is that of the paper around the star; its mean is the pattern's own, which no blur
+///    changes, followed outwards to the paper. So the contrast is the ink's and the veiling glare's. This takes
+///    sectors of equal width: ink that spreads by 1 % of the widest one makes every MTF 1 % too large.
 /// 4. Noise raises a modulus by its part in quadrature, whose variance is taken off.
 ///
 /// Errors: the influence of each pixel times its residual, summed over 12 wedges of the segment (as in `measure_edge`),

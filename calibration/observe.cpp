@@ -1,0 +1,257 @@
+#include "calibration/observe.h"
+
+#include <algorithm>
+#include <numeric>
+
+#include "calibration/detection/detect.h"
+#include "calibration/detection/refine.h"
+#include "calibration/detection/working_copy.h"
+#include "calibration/photos/picture_quality.h"
+#include "engine/io/hash.h"
+
+namespace lensproof {
+namespace {
+
+constexpr double kLeastFoundShare = 0.6;  // of the points detected; with fewer the detection itself is doubtful
+
+std::string describe(const Chart& chart) {
+    const GridSize grid = feature_grid(chart);
+    return std::to_string(grid.columns) + " × " + std::to_string(grid.rows) + " " + kind_name(chart);
+}
+
+std::string joined(const std::vector<std::string>& words) {
+    std::string text;
+    for (const std::string& word : words) {
+        text += (text.empty() ? "" : ", ") + word;
+    }
+    return text;
+}
+
+void check_alike(const Observations& seen, const Image& image, const std::string& name) {
+    const auto size = [](int width, int height) { return std::to_string(width) + " × " + std::to_string(height); };
+    if (image.width < 1 || image.height < 1 || image.channels.empty() ||
+        image.pixels.size() != static_cast<std::size_t>(image.width) * image.height * image.channels.size()) {
+        throw InputError(name + ": the picture is " + size(image.width, image.height) + " with " +
+                         std::to_string(image.channels.size()) + " channels: expected pixels");
+    }
+    if (seen.width != 0 && (image.width != seen.width || image.height != seen.height)) {
+        throw InputError(name + ": the picture is " + size(image.width, image.height) + " pixels: expected " +
+                         size(seen.width, seen.height) + " like the pictures before it");
+    }
+    if (!seen.channels.empty() && image.channels != seen.channels) {
+        throw InputError(name + ": the picture has the channels " + joined(image.channels) + ": expected " +
+                         joined(seen.channels) + " like the pictures before it");
+    }
+}
+
+bool all_channels_alike(const Image& image) {
+    const auto count = static_cast<std::size_t>(image.channel_count());
+    for (std::size_t i = 0; i < image.pixels.size(); i += count) {
+        for (std::size_t c = 1; c < count; ++c) {
+            if (image.pixels[i + c] != image.pixels[i]) {
+                return false;
+            }
+        }
+    }
+    return true;
+}
+
+// Why what was refined does not do; empty where it does.
+std::string too_few(const ChartPoints& refined, const ChartPoints& detected) {
+    const int count = count_found(refined);
+    const int seen = count_found(detected);
+    return count >= kLeastFoundShare * seen
+               ? ""
+               : "only " + std::to_string(count) + " of " + std::to_string(seen) +
+                     " points seen could be measured: too little contrast, clipped, or not this chart";
+}
+
+// What the profile keeps of a picture in which a chart was looked for; adds to `account`.
+void observe_chart(Observations& seen, const Image& image, const Picture& picture, const Chart& chart,
+                   PictureAccount& account) {
+    const std::string& name = picture.name;
+    ProfileView view{.image = name, .found = false, .reason = {}, .traits = {}, .pose = {}, .points = {}};
+    const std::vector<Vec2d> features = feature_points(chart);
+    const Detection detection = detect(image, chart);
+    const int reference = reference_channel(image);
+    const ChartPoints points = detection.found() ? refine(image, reference, detection.points, chart) : ChartPoints{};
+    view.reason = detection.found() ? too_few(points, detection.points) : detection.reason;
+    if (!detection.found()) {
+        const std::string fault = visible_fault(image, reference);
+        view.reason += (fault.empty() ? "" : "; ") + fault;
+    }
+    if (view.reason.empty()) {
+        view.traits = picture_traits(image, reference, points);
+        view.reason = view.traits ? too_blurred(*view.traits, points, chart) : "";
+    }
+    view.found = view.reason.empty();
+    account.used = view.found;
+    account.reason = view.found ? picture.remark : view.reason;
+    if (view.found && view.traits && is_white_clipped(*view.traits)) {
+        account.reason += std::string(account.reason.empty() ? "" : "; ") +
+                          "over-exposed: the chart's white is clipped, so it says nothing of vignetting";
+    }
+    if (view.found) {
+        view.numbering = numbering_key(detection.numbering);
+        const std::string open = numbering_in_words(detection.numbering);
+        account.reason += (account.reason.empty() || open.empty() ? "" : "; ") + open;
+        std::vector<std::optional<Vec2d>>& errors = seen.point_errors_px.emplace_back();
+        seen.lines.push_back(line_points(image, reference, points, chart));
+        ChartView own{.name = name, .chart_mm = {}, .image_px = {}};
+        for (std::size_t i = 0; i < features.size(); ++i) {
+            if (points.found[i]) {
+                own.chart_mm.push_back(features[i]);
+                own.image_px.push_back(points.image_px[i]);
+                errors.push_back(points.standard_error_px[i]);
+            }
+        }
+        seen.chart_views.push_back(std::move(own));
+        const bool grey = all_channels_alike(image);
+        for (int channel = 0; channel < image.channel_count(); ++channel) {
+            const std::string& channel_name = image.channels[channel];
+            if (picture.use_light) {
+                if (channel == reference) {
+                    seen.reference_whites[seen.views.size()] = {channel_name, seen.whites[channel_name].size()};
+                }
+                seen.whites[channel_name].push_back(chart_white_samples(image, channel, points, chart));
+            }
+            if (channel == reference || !grey) {
+                observe_chart_edges(seen.sharpness, image, channel, picture.name, points, chart);
+            }
+            if (channel == reference || grey) {
+                continue;
+            }
+            const ChartPoints other = refine(image, channel, points, chart);
+            for (std::size_t i = 0; i < features.size(); ++i) {
+                if (points.found[i] && other.found[i]) {
+                    seen.chromatic_pairs[channel_name].push_back({points.image_px[i], other.image_px[i]});
+                }
+            }
+        }
+    }
+    seen.views.push_back(std::move(view));
+}
+
+// The picture, checked against those before it. Throws InputError for one that is not to be used.
+Image load(const Observations& seen, const Picture& picture) {
+    if (!picture.left_out.empty()) {
+        throw InputError(picture.left_out);
+    }
+    if (!picture.load) {
+        throw InputError("the picture cannot be loaded");
+    }
+    Image image = picture.load();
+    check_alike(seen, image, picture.name);
+    return image;
+}
+
+std::string hash_of_pixels(const Image& image) {
+    return hash_text({reinterpret_cast<const char*>(image.pixels.data()), image.pixels.size() * sizeof(float)});
+}
+
+std::string role_name(PictureRole role) {
+    return role == PictureRole::chart ? "chart" : role == PictureRole::edges ? "edges" : "flat field";
+}
+
+// A message without the picture's name, which stands beside it.
+std::string without_name(const std::string& message, const std::string& name) {
+    return message.rfind(name + ": ", 0) == 0 ? message.substr(name.size() + 2) : message;
+}
+
+// All channels; of a picture whose channels are alike, one.
+std::vector<int> channels_that_differ(const Image& image) {
+    if (all_channels_alike(image)) {
+        return {reference_channel(image)};
+    }
+    std::vector<int> channels(static_cast<std::size_t>(image.channel_count()));
+    std::iota(channels.begin(), channels.end(), 0);
+    return channels;
+}
+
+void observe_picture(Observations& seen, const Picture& picture, const MeasureInput& input, PictureAccount& account) {
+    const Image image = load(seen, picture);
+    const auto [same, is_new] = seen.names_by_pixels.emplace(hash_of_pixels(image), picture.name);
+    if (!is_new) {
+        throw InputError("the same picture as " + same->second);
+    }
+    seen.width = image.width;
+    seen.height = image.height;
+    seen.channels = image.channels;
+    seen.grey = seen.grey && all_channels_alike(image);
+    if (const auto* star = std::get_if<SiemensStar>(&input.chart.pattern);
+        star != nullptr && picture.role == PictureRole::chart) {
+        for (const int channel : channels_that_differ(image)) {
+            observe_stars(seen.sharpness, image, channel, picture.name, *star);
+        }
+        account.used = true;
+        account.reason = picture.remark;
+        return;
+    }
+    if (picture.role == PictureRole::chart) {
+        observe_chart(seen, image, picture, input.chart, account);
+        return;
+    }
+    if (picture.role == PictureRole::edges) {
+        for (const int channel : channels_that_differ(image)) {
+            observe_edges(seen.sharpness, image, channel, picture.name, input.edges);
+        }
+        account.used = true;
+        return;
+    }
+    for (int channel = 0; channel < image.channel_count() && picture.use_light; ++channel) {
+        seen.flat_fields[image.channels[channel]].push_back(flat_field_samples(image, channel));
+    }
+    account.used = picture.use_light;
+    account.reason = picture.remark;
+}
+
+}  // namespace
+
+bool shows_star(const MeasureInput& input) {
+    return std::holds_alternative<SiemensStar>(input.chart.pattern);
+}
+
+Observations observe(const MeasureInput& input) {
+    Observations seen;
+    seen.sharpness.focus_position_mm = input.focus_position_mm;
+    for (const Picture& picture : input.pictures) {
+        const bool is_chart = picture.role == PictureRole::chart && !shows_star(input);
+        PictureAccount account{.image = picture.name,
+                               .role = role_name(picture.role),
+                               .used = false,
+                               .reason = {},
+                               .orientation = picture.orientation};
+        try {
+            observe_picture(seen, picture, input, account);
+        } catch (const InputError& e) {
+            account.reason = without_name(e.what(), picture.name);
+            if (is_chart) {
+                seen.views.push_back({.image = picture.name,
+                                      .found = false,
+                                      .reason = account.reason,
+                                      .traits = {},
+                                      .pose = {},
+                                      .points = {}});
+            }
+        }
+        seen.pictures.push_back(std::move(account));
+    }
+    return seen;
+}
+
+InputError none_usable(const MeasureInput& input, const Observations& seen) {
+    constexpr std::size_t kMostNamed = 8;
+    const std::size_t count = seen.pictures.size();
+    const std::string what = !seen.views.empty()   ? "no " + describe(input.chart) + " found in any"
+                             : shows_star(input)   ? "no Siemens star measured in any"
+                             : input.edges.empty() ? "no flat field"
+                                                   : "no edge";
+    std::string text =
+        input.name + ": " + what + " of " + std::to_string(count) + (count == 1 ? " picture" : " pictures");
+    for (std::size_t i = 0; i < std::min(count, kMostNamed); ++i) {
+        text += (i == 0 ? ": " : "; ") + seen.pictures[i].image + ": " + seen.pictures[i].reason;
+    }
+    return InputError(text + (count > kMostNamed ? "; …" : ""));
+}
+
+}  // namespace lensproof
