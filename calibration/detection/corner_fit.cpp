@@ -305,8 +305,9 @@ std::optional<CornerFit> fit_corner(const cv::Mat& plane, double plane_blur_px, 
     bool settled = false;
     double unexplained = 1.0;
     std::vector<Pixel> pixels;
-    // Where markers stand, what is white and how far blur carries their black is known once the corner is.
-    for (int round = 0; round < (has_markers ? 2 : 1); ++round) {
+    // Where markers stand, what is white and how far blur carries their black is known once the corner is. Around
+    // lines, whose widths are the lattice's and not exact, a window that is not even about the crossing would move it.
+    for (int round = 0; round < (has_markers || start.line_squares > 0.0 ? 2 : 1); ++round) {
         pixels = pixels_of(plane, window, mask);
         if (pixels.size() < kFewestPixels) {
             return std::nullopt;
