@@ -30,7 +30,7 @@ struct SelfTest {
     std::optional<double> reprojection_rms_px = std::nullopt;
     std::optional<double> focal_length_px = std::nullopt;
     /// By the curve's name as in Profile::curves; beside them "radial_px", how far apart the two fits image a
-    /// direction.
+    /// direction. None of sharpness: the simulated blur is one Gaussian and not the lens's.
     std::map<std::string, CurveFloor> curves;
 };
 

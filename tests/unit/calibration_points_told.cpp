@@ -107,7 +107,7 @@ TEST(CalibrationPointsTold, AllCrossingsOfLinesAreFound) {
 TEST(CalibrationPointsTold, LinesAreStraightUnderTheTrueModelAlone) {
     SimulatedCamera camera{.model = perspective_camera(), .width_px = 640, .height_px = 480, .channels = {{"Y"}}};
     camera.white = 0.9;
-    camera.read_noise = 0.01;
+    camera.read_noise = 0.005;
     const Pose pose{{0.18, -0.16, 0.07}, {0.0, 0.0, 640.0}};
     const Image image = simulate_chart(camera, pose, kLines, 3);
     const ChartPoints crossings{.image_px = view_of(camera.model, pose, kLines).image_px,
@@ -126,10 +126,11 @@ TEST(CalibrationPointsTold, LinesAreStraightUnderTheTrueModelAlone) {
         }
         return sum;
     };
-    // 16 lines of 18 to 24 points: chi² of 1 ± 0.07, and the noise's own error.
+    // 16 lines of 18 to 24 points: chi² of 1 ± 0.07, and the noise's own error. What a model leaves out adds its
+    // square: a tenth of k1 a hundredth of all of it, so that 4.2 and 332 were found; chance reaches 1.3.
     EXPECT_NEAR(chi(1.0), 1.0, 0.3);
-    EXPECT_GT(chi(0.9), 1.5);
-    EXPECT_GT(chi(0.0), 50.0);
+    EXPECT_GT(chi(0.9), 3.0);
+    EXPECT_GT(chi(0.0), 200.0);
 }
 
 }  // namespace

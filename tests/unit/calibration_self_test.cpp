@@ -140,6 +140,24 @@ TEST(SelfTest, SaysTheErrorThatTheMeasurementHas) {
     }
 }
 
+// The light falls steeply into the corners, where the measured curve ends: what the self-test makes of it beyond must
+// not have a kink there that the lens has not. So the second curve is off by its own error, four of the standard errors
+// that the first states, as the field angle above.
+TEST(SelfTest, FallsOffIntoTheCornersAsTheLensDoes) {
+    SimulatedCamera camera = small_camera_with(0.7, 0.002);
+    camera.channels.front().vignetting = [](double height) { return 1.0 - 0.5 * std::pow(height, 4.0); };
+    MeasureInput input = input_of(camera, kBoard);
+    input.pictures.resize(3);
+    input.pictures.push_back({"flat", PictureRole::flat_field, [camera] { return simulate_flat_field(camera, 7); }});
+    const Profile profile = measure(input);
+    const Curve& light = profile.curves.at("vignetting_Y");
+    double widest = 0.0;
+    for (std::size_t i = 0; i < light.value.size(); ++i) {
+        widest = std::max(widest, (light.upper_95[i] - light.lower_95[i]) / (2.0 * k95));
+    }
+    EXPECT_LT(profile.self_test->curves.at("vignetting_Y").largest, 4.0 * widest);
+}
+
 // Five times the noise is a floor that is higher. (Not five times: sharp edges leave an error without noise.)
 TEST(SelfTest, MoreNoiseIsAHigherFloor) {
     MeasureInput quiet = input_of(small_camera_with(0.7, 0.001), kBoard);
