@@ -12,7 +12,7 @@
 #include "calibration/observe.h"
 #include "calibration/self_test/self_test.h"
 #include "calibration/sharpness/measure_sharpness.h"
-#include "engine/io/input_error.h"
+#include "engine/base/input_error.h"
 
 namespace lensproof {
 namespace {

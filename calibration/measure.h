@@ -8,7 +8,7 @@
 
 #include "calibration/geometry/fit_geometry.h"
 #include "calibration/profile/profile.h"
-#include "engine/io/image.h"
+#include "engine/formats/image/image.h"
 #include "engine/scene/chart.h"
 
 namespace lensproof {

@@ -7,7 +7,7 @@
 #include "calibration/detection/refine.h"
 #include "calibration/detection/working_copy.h"
 #include "calibration/photos/picture_quality.h"
-#include "engine/io/hash.h"
+#include "engine/base/hash.h"
 
 namespace lensproof {
 namespace {

@@ -11,7 +11,7 @@
 #include "calibration/light/light_samples.h"
 #include "calibration/measure.h"
 #include "calibration/sharpness/measure_sharpness.h"
-#include "engine/io/input_error.h"
+#include "engine/base/input_error.h"
 
 namespace lensproof {
 

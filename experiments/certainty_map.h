@@ -25,7 +25,7 @@ std::vector<std::vector<Vec2d>> hatching_outside(const std::vector<Vec2d>& polyg
 AxisRange certainty_range(const std::vector<const Profile*>& profiles);
 
 /// Left the projection uncertainty as colours, right the points used; in both the points' convex hull as an outline,
-/// and what lies outside it, where the model extrapolates, hatched. Pixels as in engine/io/image.h, y down.
+/// and what lies outside it, where the model extrapolates, hatched. Pixels as in engine/formats/image/image.h, y down.
 /// `colour` (CSS) is the points'. The profile has to have a geometry with an uncertainty map.
 CertaintyMap certainty_map(const Profile& profile, const std::string& title, const std::string& colour,
                            const AxisRange& range);

@@ -7,7 +7,7 @@
 #include <set>
 
 #include "calibration/detection/detect.h"
-#include "engine/io/input_error.h"
+#include "engine/base/input_error.h"
 #include "experiments/stability/extremes.h"
 
 namespace lensproof {

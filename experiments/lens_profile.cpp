@@ -5,9 +5,9 @@
 #include <numbers>
 #include <string>
 
+#include "engine/base/parallel.h"
 #include "engine/optics/chief_ray.h"
 #include "engine/optics/illumination.h"
-#include "engine/render/parallel.h"
 
 namespace lensproof {
 

@@ -5,7 +5,7 @@
 
 #include <algorithm>
 
-#include "engine/io/input_error.h"
+#include "engine/base/input_error.h"
 #include "engine/scene/chart_file.h"
 
 namespace lensproof {

@@ -11,7 +11,7 @@ extern "C" {
 #include <sha2.h>
 }
 
-#include "engine/io/file.h"
+#include "engine/base/file.h"
 
 namespace lensproof {
 

@@ -8,7 +8,7 @@
 
 #include "calibration/profile/curve_difference.h"
 #include "calibration/profile/profile.h"
-#include "engine/io/cache.h"
+#include "engine/base/cache.h"
 #include "experiments/experiment.h"
 #include "experiments/photo_set.h"
 

@@ -5,7 +5,7 @@
 #include <string>
 
 #include "calibration/statistics/linear_fit.h"
-#include "engine/io/input_error.h"
+#include "engine/base/input_error.h"
 
 namespace lensproof {
 namespace {

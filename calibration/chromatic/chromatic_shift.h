@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "calibration/statistics/curve.h"
-#include "engine/optics/vec.h"
+#include "engine/base/vec.h"
 
 namespace lensproof {
 

@@ -8,7 +8,7 @@
 #include "calibration/detection/loose_discs.h"
 #include "calibration/detection/refine.h"
 #include "calibration/detection/working_copy.h"
-#include "engine/io/input_error.h"
+#include "engine/base/input_error.h"
 #include "engine/spectral/spectral_exr.h"
 
 namespace lensproof {

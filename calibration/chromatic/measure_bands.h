@@ -7,7 +7,7 @@
 
 #include "calibration/chromatic/chromatic_shift.h"
 #include "calibration/profile/profile.h"
-#include "engine/io/image.h"
+#include "engine/formats/image/image.h"
 #include "engine/scene/chart.h"
 
 namespace lensproof {

@@ -4,7 +4,7 @@
 #include <array>
 #include <string>
 
-#include "engine/io/input_error.h"
+#include "engine/base/input_error.h"
 
 namespace lensproof {
 namespace {

@@ -3,7 +3,7 @@
 #include <optional>
 #include <string_view>
 
-#include "engine/io/image.h"
+#include "engine/formats/image/image.h"
 
 namespace lensproof {
 

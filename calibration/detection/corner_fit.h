@@ -4,7 +4,7 @@
 #include <opencv2/core.hpp>
 #include <optional>
 
-#include "engine/optics/vec.h"
+#include "engine/base/vec.h"
 
 namespace lensproof {
 
@@ -35,7 +35,7 @@ struct CornerFit {
 ///
 /// `plane` is CV_32F in linear light; where the window reaches beyond it, the part inside has to do. None where the fit
 /// does not settle on an edge-like corner near the start (within half the window).
-/// Errors on synthetic pictures: tests/unit/calibration_corner_accuracy.cpp.
+/// Errors on synthetic pictures: tests/calibration/detection/corner_accuracy_test.cpp.
 ///
 /// `plane` is a picture that was blurred by a Gaussian of `plane_blur_px`. The standard errors are the least squares'
 /// own for noise in the picture, before that blur, of standard deviation 1, independent from pixel to pixel: with

@@ -15,7 +15,7 @@
 #include "calibration/detection/detect_charuco.h"
 #include "calibration/detection/detect_lattice.h"
 #include "calibration/detection/working_copy.h"
-#include "engine/io/input_error.h"
+#include "engine/base/input_error.h"
 
 namespace lensproof {
 namespace {

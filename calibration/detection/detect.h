@@ -4,7 +4,7 @@
 
 #include "calibration/detection/numbering.h"
 #include "calibration/detection/refine.h"
-#include "engine/io/image.h"
+#include "engine/formats/image/image.h"
 #include "engine/scene/chart.h"
 
 namespace lensproof {

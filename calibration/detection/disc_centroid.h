@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "engine/optics/vec.h"
+#include "engine/base/vec.h"
 
 namespace lensproof {
 

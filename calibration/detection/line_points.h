@@ -3,8 +3,8 @@
 #include <vector>
 
 #include "calibration/detection/refine.h"
-#include "engine/io/image.h"
-#include "engine/optics/vec.h"
+#include "engine/base/vec.h"
+#include "engine/formats/image/image.h"
 #include "engine/scene/chart.h"
 
 namespace lensproof {

@@ -3,8 +3,8 @@
 #include <optional>
 #include <vector>
 
-#include "engine/io/image.h"
-#include "engine/optics/vec.h"
+#include "engine/base/vec.h"
+#include "engine/formats/image/image.h"
 
 namespace lensproof {
 

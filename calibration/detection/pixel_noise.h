@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "calibration/detection/refine.h"
-#include "engine/io/image.h"
+#include "engine/formats/image/image.h"
 
 namespace lensproof {
 

@@ -11,7 +11,7 @@
 #include "calibration/detection/pixel_noise.h"
 #include "calibration/detection/spot_centroid.h"
 #include "calibration/detection/working_copy.h"
-#include "engine/io/input_error.h"
+#include "engine/base/input_error.h"
 
 namespace lensproof {
 namespace {

@@ -3,8 +3,8 @@
 #include <optional>
 #include <vector>
 
-#include "engine/io/image.h"
-#include "engine/optics/vec.h"
+#include "engine/base/vec.h"
+#include "engine/formats/image/image.h"
 #include "engine/scene/chart.h"
 
 namespace lensproof {
@@ -31,8 +31,9 @@ struct ChartPoints {
 /// centroid of the disc's image, not the image of its centre; `fit_geometry` models the difference
 /// (`disc_diameter_mm`).
 ///
-/// Tests hold points of synthetic pictures with 1 % noise to 0.02 px rms (tests/unit/calibration_corner_accuracy.cpp
-/// and calibration_lattice.cpp). `approximate` must have one point per feature.
+/// Tests hold points of synthetic pictures with 1 % noise to 0.02 px rms
+/// (tests/calibration/detection/corner_accuracy_test.cpp and calibration_lattice.cpp). `approximate` must have one
+/// point per feature.
 ChartPoints refine(const Image& image, int channel, const ChartPoints& approximate, const Chart& chart);
 
 /// The diameter of the discs whose images' centroids `refine` measures, mm; of squares, the discs with their second

@@ -2,8 +2,8 @@
 #pragma once
 #include <optional>
 
-#include "engine/io/image.h"
-#include "engine/optics/vec.h"
+#include "engine/base/vec.h"
+#include "engine/formats/image/image.h"
 
 namespace lensproof {
 

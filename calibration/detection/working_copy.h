@@ -2,7 +2,7 @@
 #pragma once
 #include <opencv2/core.hpp>
 
-#include "engine/io/image.h"
+#include "engine/formats/image/image.h"
 
 namespace lensproof {
 

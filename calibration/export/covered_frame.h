@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "calibration/profile/profile.h"
-#include "engine/optics/vec.h"
+#include "engine/base/vec.h"
 
 namespace lensproof {
 

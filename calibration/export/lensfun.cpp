@@ -10,8 +10,8 @@
 #include "calibration/export/covered_frame.h"
 #include "calibration/light/vignetting.h"
 #include "calibration/statistics/linear_fit.h"
-#include "engine/io/input_error.h"
-#include "engine/io/markup.h"
+#include "engine/base/input_error.h"
+#include "engine/base/markup.h"
 
 namespace lensproof {
 namespace {

@@ -9,7 +9,7 @@
 
 #include "calibration/export/covered_frame.h"
 #include "calibration/statistics/linear_fit.h"
-#include "engine/io/input_error.h"
+#include "engine/base/input_error.h"
 
 namespace lensproof {
 namespace {

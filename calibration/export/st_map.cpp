@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "calibration/export/covered_frame.h"
-#include "engine/render/parallel.h"
+#include "engine/base/parallel.h"
 
 namespace lensproof {
 namespace {

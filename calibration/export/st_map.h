@@ -5,8 +5,8 @@
 
 #include "calibration/export/ideal_projection.h"
 #include "calibration/profile/profile.h"
-#include "engine/io/frame_placement.h"
-#include "engine/io/image.h"
+#include "engine/formats/image/frame_placement.h"
+#include "engine/formats/image/image.h"
 
 namespace lensproof {
 

@@ -5,7 +5,7 @@
 #include <limits>
 #include <numbers>
 
-#include "engine/io/input_error.h"
+#include "engine/base/input_error.h"
 
 namespace lensproof {
 namespace {

@@ -8,7 +8,7 @@
 
 #include "calibration/geometry/fisheye_models.h"
 #include "calibration/geometry/perspective_models.h"
-#include "engine/optics/vec.h"
+#include "engine/base/vec.h"
 
 namespace lensproof {
 

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "calibration/geometry/projection_uncertainty.h"
-#include "engine/io/input_error.h"
+#include "engine/base/input_error.h"
 
 namespace lensproof {
 namespace {

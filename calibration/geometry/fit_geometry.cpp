@@ -7,7 +7,7 @@
 #include <numbers>
 
 #include "calibration/geometry/bundle_start.h"
-#include "engine/io/input_error.h"
+#include "engine/base/input_error.h"
 
 namespace lensproof {
 namespace {

@@ -8,7 +8,7 @@
 #include "calibration/geometry/bundle.h"
 #include "calibration/geometry/camera_model.h"
 #include "calibration/geometry/planar_pose.h"
-#include "engine/optics/vec.h"
+#include "engine/base/vec.h"
 
 namespace lensproof {
 

@@ -7,7 +7,7 @@
 #include <limits>
 
 #include "calibration/geometry/projection_uncertainty.h"
-#include "engine/io/input_error.h"
+#include "engine/base/input_error.h"
 
 namespace lensproof {
 namespace {

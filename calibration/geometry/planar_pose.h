@@ -3,7 +3,7 @@
 #include <optional>
 #include <vector>
 
-#include "engine/optics/vec.h"
+#include "engine/base/vec.h"
 
 namespace lensproof {
 

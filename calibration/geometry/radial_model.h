@@ -6,7 +6,7 @@
 #include <numbers>
 #include <string_view>
 
-#include "engine/optics/vec.h"
+#include "engine/base/vec.h"
 
 namespace lensproof {
 

@@ -7,7 +7,7 @@
 #include "calibration/geometry/board_shape.h"
 #include "calibration/geometry/camera_model.h"
 #include "calibration/geometry/planar_pose.h"
-#include "engine/optics/vec.h"
+#include "engine/base/vec.h"
 
 namespace ceres {
 class CostFunction;

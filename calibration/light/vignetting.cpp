@@ -10,7 +10,7 @@
 #include "calibration/light/even_spline.h"
 #include "calibration/statistics/linear_fit.h"
 #include "calibration/statistics/smoothed_fit.h"
-#include "engine/io/input_error.h"
+#include "engine/base/input_error.h"
 
 namespace lensproof {
 namespace {

@@ -1,6 +1,6 @@
 // calibration/photos/flat_field_traits.h — what a picture of an even surface is like.
 #pragma once
-#include "engine/io/image.h"
+#include "engine/formats/image/image.h"
 
 namespace lensproof {
 

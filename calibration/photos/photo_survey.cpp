@@ -7,10 +7,10 @@
 #include <functional>
 #include <map>
 
-#include "engine/io/file.h"
-#include "engine/io/hash.h"
-#include "engine/io/input_error.h"
-#include "engine/io/jpeg.h"
+#include "engine/base/file.h"
+#include "engine/base/hash.h"
+#include "engine/base/input_error.h"
+#include "engine/formats/image/jpeg.h"
 
 namespace lensproof {
 namespace {

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "calibration/measure.h"
-#include "engine/io/transfer_curve.h"
+#include "engine/formats/image/transfer_curve.h"
 
 namespace lensproof {
 

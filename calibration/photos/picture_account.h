@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "calibration/profile/json_node.h"
-#include "engine/io/photo.h"
+#include "engine/formats/image/photo.h"
 
 namespace lensproof {
 

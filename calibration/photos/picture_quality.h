@@ -4,7 +4,7 @@
 
 #include "calibration/detection/refine.h"
 #include "calibration/photos/picture_traits.h"
-#include "engine/io/image.h"
+#include "engine/formats/image/image.h"
 #include "engine/scene/chart.h"
 
 namespace lensproof {

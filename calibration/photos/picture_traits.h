@@ -3,7 +3,7 @@
 #include <optional>
 
 #include "calibration/detection/refine.h"
-#include "engine/io/image.h"
+#include "engine/formats/image/image.h"
 
 namespace lensproof {
 
@@ -25,7 +25,8 @@ struct PictureTraits {
 /// is `pixel_noise` (calibration/detection/pixel_noise.h). Blur follows from the
 /// steepest pixels there: across an edge of a Gaussian's blur σ between tones that are C apart, two pixels that are 2
 /// px apart differ by up to C erf(1 / √2 σ). Noise and blur
-/// are within a quarter for σ from 0.4 to 2.5 px and points 30 px apart (tests/unit/calibration_self_test.cpp).
+/// are within a quarter for σ from 0.4 to 2.5 px and points 30 px apart
+/// (tests/calibration/self_test/self_test_test.cpp).
 ///
 /// None when no point was found.
 std::optional<PictureTraits> picture_traits(const Image& image, int channel, const ChartPoints& points);

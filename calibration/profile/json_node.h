@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "engine/io/input_error.h"
-#include "engine/optics/vec.h"
+#include "engine/base/input_error.h"
+#include "engine/base/vec.h"
 
 namespace lensproof {
 

@@ -5,8 +5,8 @@
 #include "calibration/profile/json_node.h"
 #include "calibration/profile/profile.h"
 #include "calibration/self_test/self_test_json.h"
-#include "engine/io/file.h"
-#include "engine/io/input_error.h"
+#include "engine/base/file.h"
+#include "engine/base/input_error.h"
 
 namespace lensproof {
 namespace {

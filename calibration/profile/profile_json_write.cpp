@@ -5,7 +5,7 @@
 #include "calibration/light/vignetting_json.h"
 #include "calibration/profile/profile.h"
 #include "calibration/self_test/self_test_json.h"
-#include "engine/io/file.h"
+#include "engine/base/file.h"
 
 namespace lensproof {
 namespace {

@@ -19,8 +19,9 @@ struct CurveFloor {
 /// The profile's own camera, its views, its blur and its noise, made into pictures and measured again by the same
 /// method. A difference between a profile and something else that is not larger than this may be the method's. It holds
 /// what detector, refinement and fits do, and a draw of the noise; JPEG's compression where the files tell its quality
-/// (engine/io/jpeg.h); the board's shape where one was fitted; and light that changes evenly over the chart, as much as
-/// it was measured to. It does not hold what the model cannot say, a board whose shape was not asked for, or shadows.
+/// (engine/formats/image/jpeg.h); the board's shape where one was fitted; and light that changes evenly over the chart,
+/// as much as it was measured to. It does not hold what the model cannot say, a board whose shape was not asked for, or
+/// shadows.
 struct SelfTest {
     double point_rms_px = 0.0;   // of one coordinate of a found point
     double point_bias_px = 0.0;  // length of the mean error

@@ -7,9 +7,9 @@
 #include <opencv2/imgproc.hpp>
 #include <random>
 
-#include "engine/io/jpeg.h"
-#include "engine/render/parallel.h"
-#include "engine/scene/overloaded.h"
+#include "engine/base/overloaded.h"
+#include "engine/base/parallel.h"
+#include "engine/formats/image/jpeg.h"
 
 namespace lensproof {
 namespace {

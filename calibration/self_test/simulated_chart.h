@@ -10,7 +10,7 @@
 #include "calibration/geometry/board_shape.h"
 #include "calibration/geometry/camera_model.h"
 #include "calibration/geometry/planar_pose.h"
-#include "engine/io/image.h"
+#include "engine/formats/image/image.h"
 #include "engine/scene/chart.h"
 
 namespace lensproof {

@@ -5,7 +5,7 @@
 
 #include "calibration/sharpness/chart_edges.h"
 #include "calibration/sharpness/sharpness_field.h"
-#include "engine/io/input_error.h"
+#include "engine/base/input_error.h"
 
 namespace lensproof {
 namespace {

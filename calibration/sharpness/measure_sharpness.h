@@ -8,7 +8,7 @@
 #include "calibration/profile/profile.h"
 #include "calibration/sharpness/profile_edge.h"
 #include "calibration/sharpness/profile_star.h"
-#include "engine/io/image.h"
+#include "engine/formats/image/image.h"
 #include "engine/scene/chart.h"
 
 namespace lensproof {

@@ -8,7 +8,7 @@
 #include <numbers>
 
 #include "calibration/statistics/linear_fit.h"
-#include "engine/io/input_error.h"
+#include "engine/base/input_error.h"
 
 namespace lensproof {
 namespace {

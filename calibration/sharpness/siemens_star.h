@@ -7,7 +7,7 @@
 
 #include "calibration/sharpness/slanted_edge.h"
 #include "calibration/sharpness/star_map.h"
-#include "engine/io/image.h"
+#include "engine/formats/image/image.h"
 #include "engine/scene/chart.h"
 
 namespace lensproof {

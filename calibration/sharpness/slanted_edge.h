@@ -5,8 +5,8 @@
 #include <variant>
 #include <vector>
 
-#include "engine/io/image.h"
-#include "engine/optics/vec.h"
+#include "engine/base/vec.h"
+#include "engine/formats/image/image.h"
 
 namespace lensproof {
 

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <optional>
 
-#include "engine/optics/vec.h"
+#include "engine/base/vec.h"
 
 namespace lensproof {
 namespace {

@@ -13,7 +13,7 @@
 #include <numbers>
 
 #include "engine/analysis/mtf.h"
-#include "engine/io/input_error.h"
+#include "engine/base/input_error.h"
 #include "engine/optics/paraxial.h"
 
 namespace lensproof {

@@ -8,7 +8,7 @@
 #include <map>
 #include <numbers>
 
-#include "engine/io/input_error.h"
+#include "engine/base/input_error.h"
 
 namespace lensproof {
 

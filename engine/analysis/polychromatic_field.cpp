@@ -6,7 +6,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "engine/io/input_error.h"
+#include "engine/base/input_error.h"
 #include "engine/optics/rim_margin.h"
 
 namespace lensproof {

@@ -10,7 +10,7 @@
 #include <numbers>
 #include <opencv2/core.hpp>
 
-#include "engine/io/input_error.h"
+#include "engine/base/input_error.h"
 
 namespace lensproof {
 

@@ -7,7 +7,7 @@
 #include <limits>
 #include <optional>
 
-#include "engine/io/input_error.h"
+#include "engine/base/input_error.h"
 #include "engine/optics/paraxial.h"
 #include "engine/spectral/wavelengths.h"
 

@@ -3,8 +3,8 @@
 #include <array>
 #include <vector>
 
+#include "engine/base/vec.h"
 #include "engine/optics/prescription.h"
-#include "engine/optics/vec.h"
 
 namespace lensproof {
 

@@ -3,28 +3,16 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <numeric>
 
-#include "engine/io/csv.h"
-#include "engine/io/file.h"
-#include "engine/io/glass/glass_file.h"
-#include "engine/io/input_error.h"
-#include "engine/io/text.h"
+#include "engine/base/text.h"
 #include "engine/optics/glass_name.h"
 #include "engine/spectral/wavelengths.h"
 
 namespace lensproof {
 
 namespace {
-
-// In the order in which names are looked up.
-constexpr std::array kTables = {"schott", "schott-obsolete", "ohara", "hoya", "hikari", "cdgm", "materials"};
-
-std::filesystem::path glass_folder() {
-    return data_root() / "lenses" / "glass";
-}
 
 /// A name as it was asked for: the glass, and the maker where one is named.
 struct AskedName {
@@ -160,14 +148,6 @@ std::vector<GlassSuggestion> suggestions_for(const AskedName& asked, std::span<c
 
 }  // namespace
 
-GlassCatalogue GlassCatalogue::shipped() {
-    GlassCatalogue catalogue;
-    for (const std::filesystem::path& file : shipped_glass_files()) {
-        std::ranges::move(parse_glass_table(read_file(file), file).glasses, std::back_inserter(catalogue.glasses_));
-    }
-    return catalogue;
-}
-
 void GlassCatalogue::add(std::vector<Glass> glasses) {
     std::ranges::move(glasses_, std::back_inserter(glasses));
     glasses_ = std::move(glasses);
@@ -236,44 +216,6 @@ std::string suggestion_text(const std::vector<GlassSuggestion>& suggestions) {
                             suggestion.catalogue, suggestion.reason);
     }
     return text;
-}
-
-std::vector<std::filesystem::path> shipped_glass_files() {
-    std::vector<std::filesystem::path> files;
-    files.reserve(kTables.size());
-    for (const char* table : kTables) {
-        files.push_back(glass_folder() / fmt::format("{}.csv", table));
-    }
-    return files;
-}
-
-std::vector<TransmittancePoint> shipped_transmittance(const Glass& glass) {
-    if (!glass.internal_transmittance.empty()) {
-        return glass.internal_transmittance;
-    }
-    std::vector<TransmittancePoint> points;
-    for (const char* name : kTables) {
-        const std::filesystem::path file = glass_folder() / "transmittance" / fmt::format("{}.csv", name);
-        const std::string maker = std::string(name).substr(0, std::string_view(name).find('-'));
-        if (!same_letters(maker, glass.catalogue) || !std::filesystem::exists(file)) {
-            continue;
-        }
-        CsvTable table = CsvTable::read(file);
-        while (const std::optional<CsvRow> row = table.next()) {
-            if (row->text("glass") != glass.name || row->text("catalogue") != glass.catalogue) {
-                continue;
-            }
-            const double thickness_mm = row->number("thickness_mm", kPositive);
-            for (const std::string& column : table.header()) {
-                const std::optional<double> wavelength_nm = parse_number(column);
-                if (wavelength_nm && !row->is_empty(column)) {
-                    points.push_back({*wavelength_nm, row->number(column, {.min = 0.0, .max = 1.0}), thickness_mm});
-                }
-            }
-            return points;
-        }
-    }
-    return points;
 }
 
 }  // namespace lensproof

@@ -1,6 +1,5 @@
 // engine/optics/glass_catalogue.h — the glasses that are known, and what a name in a prescription means among them.
 #pragma once
-#include <filesystem>
 #include <optional>
 #include <span>
 #include <string>
@@ -36,9 +35,6 @@ class GlassCatalogue {
   public:
     GlassCatalogue() = default;
 
-    /// The glasses of lenses/glass. Throws InputError naming file and line of an entry that is unusable.
-    static GlassCatalogue shipped();
-
     /// Puts glasses in front of those that are there; their order is kept.
     void add(std::vector<Glass> glasses);
 
@@ -61,11 +57,5 @@ class GlassCatalogue {
 
 /// Suggestions in a sentence for a message: "perhaps N-LAK33A (SCHOTT): …"; or that there is none.
 std::string suggestion_text(const std::vector<GlassSuggestion>& suggestions);
-
-/// The files that `GlassCatalogue::shipped` reads: among the inputs of whatever is computed with them.
-std::vector<std::filesystem::path> shipped_glass_files();
-
-/// The internal transmittance of a glass that ships, which is not read with the rest; the glass's own where it has one.
-std::vector<TransmittancePoint> shipped_transmittance(const Glass& glass);
 
 }  // namespace lensproof

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <vector>
 
-#include "engine/io/text.h"
+#include "engine/base/text.h"
 
 namespace lensproof {
 

@@ -2,8 +2,8 @@
 #pragma once
 #include <cmath>
 
-#include "engine/optics/ray.h"
-#include "engine/optics/select.h"
+#include "engine/base/ray.h"
+#include "engine/base/select.h"
 
 namespace lensproof {
 

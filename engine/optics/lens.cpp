@@ -9,11 +9,8 @@
 #include <numbers>
 #include <set>
 
-#include "engine/io/file.h"
-#include "engine/io/glass/glass_file.h"
-#include "engine/io/input_error.h"
-#include "engine/io/prescription/prescription_file.h"
-#include "engine/io/text.h"
+#include "engine/base/input_error.h"
+#include "engine/base/text.h"
 #include "engine/optics/air.h"
 #include "engine/optics/convert_lens.h"
 #include "engine/optics/frame.h"
@@ -227,7 +224,7 @@ Lens make_lens(const Prescription& prescription, const GlassCatalogue& glasses, 
     lens.source = prescription.source;
     lens.projection = prescription.projection;
     lens.stated = prescription.stated;
-    lens.stop_mask = StopMask(prescription.stop_shape, prescription.file.parent_path());
+    lens.stop_mask = StopMask(prescription.stop_shape);
     lens.focus_groups = prescription.focus_groups;
     lens.surroundings = prescription.surroundings;
     lens.is_rotationally_symmetric = prescription.is_rotationally_symmetric();
@@ -266,22 +263,6 @@ Lens make_lens(const Prescription& prescription, const GlassCatalogue& glasses, 
     }
     estimate_semi_diameters(lens);
     return lens;
-}
-
-GlassCatalogue with_own_catalogues(GlassCatalogue glasses, const Prescription& prescription) {
-    for (const std::filesystem::path& file : prescription.catalogues) {
-        glasses.add(read_glass_file(file).glasses);
-    }
-    return glasses;
-}
-
-Lens load_lens(const std::string& lens, const LensSettings& settings) {
-    Prescription prescription = read_prescription(find_lens_file(lens));
-    const std::size_t position = settings.zoom.empty() ? 0 : find_zoom_position(prescription, settings.zoom);
-    prescription = at_zoom_position(std::move(prescription), position);
-    const GlassCatalogue glasses =
-        with_own_catalogues(settings.glasses ? *settings.glasses : GlassCatalogue::shipped(), prescription);
-    return make_lens(prescription, glasses, settings.indices);
 }
 
 WavelengthRange wavelength_range(const Lens& lens) {

@@ -60,21 +60,8 @@ Glass resolved_medium(const PrescribedSurface& surface, const GlassCatalogue& gl
                       const std::vector<std::string>& preferred_makers);
 
 /// Looks the prescription's glasses up. Throws InputError naming the file, the line and the name of an unknown glass,
-/// and for an override of a glass that the lens does not have.
+/// for an override of a glass that the lens does not have, and for a stop's picture that was not read.
 Lens make_lens(const Prescription& prescription, const GlassCatalogue& glasses, const IndexOverrides& overrides = {});
-
-/// What a lens is loaded with, beyond its file.
-struct LensSettings {
-    IndexOverrides indices;
-    std::string zoom;                       // the position's name or number; empty: the first
-    std::optional<GlassCatalogue> glasses;  // nothing: those that ship
-};
-
-/// `glasses` behind the prescription's own catalogues. Throws InputError for one that cannot be read.
-GlassCatalogue with_own_catalogues(GlassCatalogue glasses, const Prescription& prescription);
-
-/// find_lens_file, read_prescription, the zoom position, and make_lens.
-Lens load_lens(const std::string& lens, const LensSettings& settings = {});
 
 /// The range of wavelengths that every glass's formula covers, nm.
 struct WavelengthRange {

@@ -1,6 +1,6 @@
 #include "engine/optics/lens_bytes.h"
 
-#include "engine/io/bytes.h"
+#include "engine/base/bytes.h"
 
 namespace lensproof {
 

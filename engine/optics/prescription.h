@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <limits>
 #include <map>
+#include <memory>
 #include <optional>
 #include <string>
 #include <variant>
@@ -101,9 +102,17 @@ struct PolygonStop {
     double rotation_deg = 0.0;  // of a corner from +x towards +y
 };
 
-/// A stop with a picture's linear brightness as its transmittance, over the square around the stop's circle.
+/// Transmittances over the square around a stop's circle, 0 to 1; rows from +y downwards, each from −x.
+struct StopTexture {
+    int size_x = 0;
+    int size_y = 0;
+    std::vector<float> values;
+};
+
+/// A stop with a picture's linear brightness as its transmittance.
 struct TexturedStop {
-    std::string image;  // relative to the prescription's file
+    std::string image;                           // relative to the prescription's file
+    std::shared_ptr<const StopTexture> texture;  // what it shows, once it is read (with_stop_picture)
 };
 
 using StopShape = std::variant<std::monostate, PolygonStop, TexturedStop>;  // monostate: the full circle

@@ -2,8 +2,8 @@
 #pragma once
 #include <cmath>
 
-#include "engine/optics/select.h"
-#include "engine/optics/vec.h"
+#include "engine/base/select.h"
+#include "engine/base/vec.h"
 
 namespace lensproof {
 

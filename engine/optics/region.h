@@ -3,7 +3,7 @@
 #include <functional>
 #include <optional>
 
-#include "engine/optics/vec.h"
+#include "engine/base/vec.h"
 
 namespace lensproof {
 

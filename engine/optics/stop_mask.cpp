@@ -1,16 +1,18 @@
 #include "engine/optics/stop_mask.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numbers>
 
-#include "engine/io/bytes.h"
-#include "engine/io/image.h"
+#include "engine/base/bytes.h"
+#include "engine/base/input_error.h"
 
 namespace lensproof {
 
-StopMask::StopMask(const StopShape& shape, const std::filesystem::path& folder) {
+StopMask::StopMask(const StopShape& shape) {
     if (const auto* polygon = std::get_if<PolygonStop>(&shape)) {
         const double half = std::numbers::pi / polygon->blades;
         const double rotation = polygon->rotation_deg * std::numbers::pi / 180.0;
@@ -26,18 +28,10 @@ StopMask::StopMask(const StopShape& shape, const std::filesystem::path& folder) 
             arcs_.push_back(arc);
         }
     } else if (const auto* textured = std::get_if<TexturedStop>(&shape)) {
-        const Image image = read_image(folder / textured->image);
-        auto texture = std::make_shared<Texture>(Texture{.size_x = image.width, .size_y = image.height, .values = {}});
-        for (int y = 0; y < image.height; ++y) {
-            for (int x = 0; x < image.width; ++x) {
-                float sum = 0.0F;
-                for (int channel = 0; channel < image.channel_count(); ++channel) {
-                    sum += image.at(x, y, channel);
-                }
-                texture->values.push_back(std::clamp(sum / static_cast<float>(image.channel_count()), 0.0F, 1.0F));
-            }
+        if (!textured->texture) {
+            throw InputError(fmt::format("{}: the stop's picture was not read", textured->image));
         }
-        texture_ = std::move(texture);
+        texture_ = textured->texture;
     }
 }
 

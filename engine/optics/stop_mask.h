@@ -1,6 +1,5 @@
 // engine/optics/stop_mask.h — what a stop that is no full circle lets through.
 #pragma once
-#include <filesystem>
 #include <memory>
 #include <string>
 #include <vector>
@@ -15,8 +14,8 @@ class StopMask {
     /// The full circle.
     StopMask() = default;
 
-    /// Reads a texture's picture, relative to `folder`. Throws InputError naming a picture that cannot be read.
-    StopMask(const StopShape& shape, const std::filesystem::path& folder);
+    /// Throws InputError naming a texture's picture that was not read.
+    explicit StopMask(const StopShape& shape);
 
     [[nodiscard]] bool is_full_circle() const { return arcs_.empty() && !texture_; }
 
@@ -36,11 +35,6 @@ class StopMask {
     void append_to(std::string& bytes) const;
 
   private:
-    struct Texture {
-        int size_x = 0;
-        int size_y = 0;
-        std::vector<float> values;  // rows from +y downwards
-    };
     /// An edge of the polygon: the disc (curved blade) or half plane (straight) that it bounds.
     struct Arc {
         double x = 0.0;  // towards the middle of the edge, a unit vector
@@ -52,7 +46,7 @@ class StopMask {
     };
 
     std::vector<Arc> arcs_;
-    std::shared_ptr<const Texture> texture_;
+    std::shared_ptr<const StopTexture> texture_;
 };
 
 }  // namespace lensproof

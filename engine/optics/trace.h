@@ -1,11 +1,15 @@
 // engine/optics/trace.h — a ray through a lens, surface by surface: the one tracer that everything else uses.
+//
+// Lens space: +z runs from the scene to the sensor along the optical axis, the origin is the vertex of the first
+// surface, light from the scene travels towards +z; mm.
 #pragma once
 #include <tuple>
 #include <vector>
 
+#include "engine/base/ray.h"
 #include "engine/optics/coating.h"
 #include "engine/optics/intersect.h"
-#include "engine/optics/ray.h"
+#include "engine/optics/ray_status.h"
 #include "engine/optics/refract.h"
 #include "engine/optics/stop_mask.h"
 #include "engine/optics/surface_shape.h"

@@ -2,7 +2,7 @@
 #pragma once
 #include <numbers>
 
-#include "engine/optics/vec.h"
+#include "engine/base/vec.h"
 
 namespace lensproof {
 

@@ -6,7 +6,7 @@
 #include <numbers>
 #include <utility>
 
-#include "engine/io/bytes.h"
+#include "engine/base/bytes.h"
 #include "engine/pupil/pupil_nodes.h"
 
 namespace lensproof {

@@ -4,7 +4,7 @@
 #include <string>
 #include <string_view>
 
-#include "engine/io/bytes.h"
+#include "engine/base/bytes.h"
 #include "engine/optics/lens_bytes.h"
 #include "source_digest.h"
 

@@ -3,7 +3,7 @@
 #include <limits>
 #include <vector>
 
-#include "engine/io/cache.h"
+#include "engine/base/cache.h"
 #include "engine/pupil/entrance_map.h"
 #include "engine/pupil/pupil_map.h"
 

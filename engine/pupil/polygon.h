@@ -3,7 +3,7 @@
 #include <optional>
 #include <span>
 
-#include "engine/optics/vec.h"
+#include "engine/base/vec.h"
 
 namespace lensproof {
 

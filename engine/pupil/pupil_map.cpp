@@ -3,7 +3,7 @@
 #include <cmath>
 #include <utility>
 
-#include "engine/io/bytes.h"
+#include "engine/base/bytes.h"
 #include "engine/pupil/pupil_stations.h"
 
 namespace lensproof {

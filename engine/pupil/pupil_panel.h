@@ -1,7 +1,7 @@
 // engine/pupil/pupil_panel.h — an even draw from one panel of a pupil region.
 #pragma once
-#include "engine/optics/select.h"
-#include "engine/optics/vec.h"
+#include "engine/base/select.h"
+#include "engine/base/vec.h"
 
 namespace lensproof {
 

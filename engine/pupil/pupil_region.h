@@ -6,7 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "engine/optics/vec.h"
+#include "engine/base/vec.h"
 #include "engine/pupil/pupil_panel.h"
 
 namespace lensproof {

@@ -5,8 +5,8 @@
 #include <array>
 #include <cstdint>
 
-#include "engine/optics/look_up.h"
-#include "engine/optics/select.h"
+#include "engine/base/look_up.h"
+#include "engine/base/select.h"
 #include "engine/pupil/pupil_panel.h"
 
 namespace lensproof {

@@ -8,8 +8,9 @@
 #include <limits>
 #include <utility>
 
-#include "engine/io/hash.h"
-#include "engine/io/input_error.h"
+#include "engine/base/hash.h"
+#include "engine/base/input_error.h"
+#include "engine/formats/prescription/load_lens.h"
 #include "engine/optics/focus.h"
 #include "engine/optics/lens_bytes.h"
 #include "engine/optics/packet/spectral_lens.h"
@@ -205,7 +206,7 @@ ChartScene read_chart_scene(const std::filesystem::path& file) {
 Lens camera_lens(const Camera& camera) {
     Lens lens = load_lens(camera.lens, {.zoom = camera.zoom});
     if (camera.blades) {
-        lens.stop_mask = StopMask(*camera.blades, {});
+        lens.stop_mask = StopMask(*camera.blades);
     }
     return focused_at(with_f_number(std::move(lens), camera.f_number), camera.focus_distance_mm);
 }

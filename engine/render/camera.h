@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "engine/io/cache.h"
-#include "engine/io/toml.h"
+#include "engine/base/cache.h"
+#include "engine/base/toml.h"
 #include "engine/optics/lens.h"
 #include "engine/render/chart_render.h"
 #include "engine/render/raw_sensor.h"

@@ -5,7 +5,7 @@
 #include <limits>
 #include <numbers>
 
-#include "engine/scene/overloaded.h"
+#include "engine/base/overloaded.h"
 
 namespace lensproof {
 

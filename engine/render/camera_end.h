@@ -9,7 +9,7 @@
 #include "engine/pupil/entrance_map.h"
 #include "engine/render/ideal_camera.h"
 #include "engine/render/path_weight.h"
-#include "engine/render/sensor.h"
+#include "engine/render/sampling/sensor.h"
 #include "engine/render/shared_rays.h"
 #include "engine/scene/pose.h"
 #include "engine/spectral/spectral_sample.h"

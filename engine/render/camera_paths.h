@@ -7,8 +7,8 @@
 #include "engine/optics/packet/trace_batch.h"
 #include "engine/pupil/pupil_slices.h"
 #include "engine/render/packet/path_kernels.h"
-#include "engine/render/pixel_filter.h"
-#include "engine/render/sensor.h"
+#include "engine/render/sampling/pixel_filter.h"
+#include "engine/render/sampling/sensor.h"
 
 namespace lensproof {
 

@@ -4,14 +4,14 @@
 #include <functional>
 #include <vector>
 
-#include "engine/io/image.h"
+#include "engine/formats/image/image.h"
 #include "engine/optics/packet/spectral_lens.h"
 #include "engine/optics/trace.h"
 #include "engine/pupil/pupil_map.h"
 #include "engine/pupil/pupil_slices.h"
 #include "engine/render/film.h"
 #include "engine/render/progressive.h"
-#include "engine/render/sensor.h"
+#include "engine/render/sampling/sensor.h"
 #include "engine/scene/chart.h"
 #include "engine/scene/pose.h"
 

@@ -10,10 +10,10 @@
 #include <system_error>
 #include <utility>
 
-#include "engine/io/bytes.h"
-#include "engine/io/file.h"
-#include "engine/io/hash.h"
-#include "engine/io/input_error.h"
+#include "engine/base/bytes.h"
+#include "engine/base/file.h"
+#include "engine/base/hash.h"
+#include "engine/base/input_error.h"
 
 namespace lensproof {
 

@@ -7,8 +7,8 @@
 #include <span>
 #include <vector>
 
-#include "engine/optics/vec.h"
-#include "engine/render/pixel_filter.h"
+#include "engine/base/vec.h"
+#include "engine/render/sampling/pixel_filter.h"
 
 namespace lensproof {
 

@@ -11,8 +11,8 @@
 #include <stdexcept>
 #include <utility>
 
-#include "engine/io/file.h"
-#include "engine/io/input_error.h"
+#include "engine/base/file.h"
+#include "engine/base/input_error.h"
 #include "engine/spectral/spectral_exr.h"
 
 namespace lensproof {

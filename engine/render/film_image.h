@@ -1,6 +1,6 @@
 // engine/render/film_image.h — the picture that a film's sums make.
 #pragma once
-#include "engine/io/image.h"
+#include "engine/formats/image/image.h"
 #include "engine/render/film.h"
 
 namespace lensproof {

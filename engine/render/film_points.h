@@ -1,7 +1,7 @@
 // engine/render/film_points.h — film points moved from even over their pixel to where its filter draws them.
 #pragma once
 #include "engine/render/packet/path_chunk.h"
-#include "engine/render/pixel_filter.h"
+#include "engine/render/sampling/pixel_filter.h"
 
 namespace lensproof {
 

@@ -9,7 +9,7 @@
 #include <numbers>
 #include <utility>
 
-#include "engine/io/input_error.h"
+#include "engine/base/input_error.h"
 #include "engine/optics/paraxial.h"
 #include "engine/render/film_points.h"
 #include "engine/spectral/wavelengths.h"

@@ -7,8 +7,8 @@
 #include "engine/optics/lens.h"
 #include "engine/render/camera_paths.h"
 #include "engine/render/packet/path_kernels.h"
-#include "engine/render/pixel_filter.h"
-#include "engine/render/sensor.h"
+#include "engine/render/sampling/pixel_filter.h"
+#include "engine/render/sampling/sensor.h"
 #include "engine/scene/lens_model.h"
 
 namespace lensproof {

@@ -4,8 +4,8 @@
 
 #include "engine/render/camera_end.h"
 #include "engine/render/film.h"
-#include "engine/render/path_sampler.h"
 #include "engine/render/path_vertex.h"
+#include "engine/render/sampling/path_sampler.h"
 #include "engine/scene/scene.h"
 
 namespace lensproof {

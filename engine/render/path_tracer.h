@@ -3,10 +3,10 @@
 #include <cstdint>
 #include <optional>
 
-#include "engine/optics/ray.h"
+#include "engine/base/ray.h"
 #include "engine/render/camera_end.h"
-#include "engine/render/path_sampler.h"
 #include "engine/render/path_vertex.h"
+#include "engine/render/sampling/path_sampler.h"
 #include "engine/scene/scene.h"
 
 namespace lensproof {

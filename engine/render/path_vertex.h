@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "engine/scene/basis.h"
+#include "engine/base/basis.h"
 #include "engine/scene/scene.h"
 
 namespace lensproof {

@@ -6,9 +6,9 @@
 #include <cmath>
 #include <limits>
 
-#include "engine/io/bytes.h"
-#include "engine/io/hash.h"
-#include "engine/io/input_error.h"
+#include "engine/base/bytes.h"
+#include "engine/base/hash.h"
+#include "engine/base/input_error.h"
 #include "engine/optics/lens_bytes.h"
 #include "engine/pupil/kept_maps.h"
 #include "engine/render/film.h"

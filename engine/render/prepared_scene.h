@@ -7,10 +7,10 @@
 #include <string>
 #include <vector>
 
-#include "engine/io/cache.h"
+#include "engine/base/cache.h"
 #include "engine/optics/lens.h"
 #include "engine/pupil/pupil_map.h"
-#include "engine/render/pixel_filter.h"
+#include "engine/render/sampling/pixel_filter.h"
 #include "engine/render/scene_render.h"
 #include "engine/render/scene_setup.h"
 #include "engine/scene/scene_build.h"

@@ -11,7 +11,7 @@
 #include <optional>
 #include <utility>
 
-#include "engine/render/parallel.h"
+#include "engine/base/parallel.h"
 
 namespace lensproof {
 

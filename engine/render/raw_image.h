@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "engine/io/image.h"
-#include "engine/optics/vec.h"
+#include "engine/base/vec.h"
+#include "engine/formats/image/image.h"
 
 namespace lensproof {
 

@@ -11,9 +11,9 @@
 #include <limits>
 #include <utility>
 
-#include "engine/io/input_error.h"
-#include "engine/render/parallel.h"
-#include "engine/render/sampler.h"
+#include "engine/base/input_error.h"
+#include "engine/base/parallel.h"
+#include "engine/render/sampling/sampler.h"
 #include "engine/spectral/illuminant.h"
 
 namespace lensproof {

@@ -4,10 +4,10 @@
 #include <filesystem>
 #include <string>
 
-#include "engine/io/image.h"
-#include "engine/io/toml.h"
-#include "engine/render/pixel_filter.h"
+#include "engine/base/toml.h"
+#include "engine/formats/image/image.h"
 #include "engine/render/raw_image.h"
+#include "engine/render/sampling/pixel_filter.h"
 #include "engine/spectral/sensor_response.h"
 
 namespace lensproof {

@@ -11,7 +11,7 @@
 #include "engine/render/ideal_camera.h"
 #include "engine/render/path_tracer.h"
 #include "engine/render/progressive.h"
-#include "engine/render/sensor.h"
+#include "engine/render/sampling/sensor.h"
 #include "engine/scene/pose.h"
 #include "engine/scene/scene.h"
 

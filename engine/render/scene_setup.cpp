@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "engine/io/file.h"
+#include "engine/base/file.h"
 #include "engine/scene/illuminant_key.h"
 #include "engine/scene/scene_file.h"
 

@@ -7,7 +7,7 @@
 #include "engine/optics/packet/trace_batch.h"
 #include "engine/pupil/pupil_slices.h"
 #include "engine/render/camera_paths.h"
-#include "engine/render/sensor.h"
+#include "engine/render/sampling/sensor.h"
 #include "engine/spectral/spectral_sample.h"
 
 namespace lensproof {

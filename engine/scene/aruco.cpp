@@ -5,9 +5,9 @@
 
 #include <charconv>
 
-#include "engine/io/csv.h"
-#include "engine/io/file.h"
-#include "engine/io/input_error.h"
+#include "engine/base/csv.h"
+#include "engine/base/file.h"
+#include "engine/base/input_error.h"
 
 namespace lensproof {
 

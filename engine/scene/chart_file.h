@@ -2,7 +2,7 @@
 #pragma once
 #include <filesystem>
 
-#include "engine/io/toml.h"
+#include "engine/base/toml.h"
 #include "engine/scene/chart.h"
 #include "engine/scene/pose.h"
 

@@ -3,8 +3,8 @@
 #include <optional>
 #include <vector>
 
-#include "engine/optics/vec.h"
-#include "engine/scene/basis.h"
+#include "engine/base/basis.h"
+#include "engine/base/vec.h"
 #include "engine/scene/texture.h"
 
 namespace lensproof {

@@ -13,7 +13,7 @@
 #include <string>
 #include <vector>
 
-#include "engine/scene/affine.h"
+#include "engine/base/affine.h"
 #include "engine/scene/shapes.h"
 
 namespace lensproof {

@@ -6,7 +6,7 @@
 #include <stdexcept>
 #include <utility>
 
-#include "engine/io/input_error.h"
+#include "engine/base/input_error.h"
 #include "engine/scene/geometry_data.h"
 
 namespace lensproof {

@@ -1,6 +1,6 @@
 #include "engine/scene/illuminant_key.h"
 
-#include "engine/io/input_error.h"
+#include "engine/base/input_error.h"
 #include "engine/spectral/illuminant.h"
 
 namespace lensproof {

@@ -2,7 +2,7 @@
 #pragma once
 #include <string>
 
-#include "engine/io/toml.h"
+#include "engine/base/toml.h"
 
 namespace lensproof {
 

@@ -5,9 +5,9 @@
 #include <numbers>
 #include <numeric>
 
-#include "engine/scene/basis.h"
+#include "engine/base/basis.h"
+#include "engine/base/overloaded.h"
 #include "engine/scene/bsdf/directions.h"
-#include "engine/scene/overloaded.h"
 
 namespace lensproof {
 

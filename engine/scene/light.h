@@ -10,7 +10,7 @@
 #include <variant>
 #include <vector>
 
-#include "engine/optics/ray.h"
+#include "engine/base/ray.h"
 #include "engine/scene/environment.h"
 #include "engine/scene/geometry.h"
 #include "engine/scene/surface_sampler.h"

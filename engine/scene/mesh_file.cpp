@@ -12,10 +12,10 @@
 #include <exception>
 #include <set>
 
-#include "engine/io/file.h"
-#include "engine/io/input_error.h"
-#include "engine/io/text.h"
-#include "engine/scene/affine.h"
+#include "engine/base/affine.h"
+#include "engine/base/file.h"
+#include "engine/base/input_error.h"
+#include "engine/base/text.h"
 #include "engine/scene/mesh_normals.h"
 #include "engine/scene/ply_check.h"
 

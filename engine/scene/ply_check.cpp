@@ -9,8 +9,8 @@
 #include <string>
 #include <vector>
 
-#include "engine/io/input_error.h"
-#include "engine/io/text.h"
+#include "engine/base/input_error.h"
+#include "engine/base/text.h"
 
 namespace lensproof {
 

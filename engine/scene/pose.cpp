@@ -1,6 +1,6 @@
 #include "engine/scene/pose.h"
 
-#include "engine/scene/affine.h"
+#include "engine/base/affine.h"
 
 namespace lensproof {
 

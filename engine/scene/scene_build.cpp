@@ -8,8 +8,8 @@
 #include <set>
 #include <utility>
 
-#include "engine/io/input_error.h"
-#include "engine/scene/overloaded.h"
+#include "engine/base/input_error.h"
+#include "engine/base/overloaded.h"
 #include "engine/scene/scene_shapes.h"
 #include "engine/scene/scene_spectra.h"
 #include "engine/spectral/illuminant.h"

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "engine/io/cache.h"
+#include "engine/base/cache.h"
 #include "engine/scene/scene.h"
 #include "engine/scene/scene_description.h"
 

@@ -7,7 +7,7 @@
 #include <variant>
 #include <vector>
 
-#include "engine/scene/affine.h"
+#include "engine/base/affine.h"
 #include "engine/scene/chart.h"
 #include "engine/scene/lens_model.h"
 #include "engine/scene/mesh_file.h"

@@ -2,10 +2,10 @@
 
 #include <fmt/format.h>
 
-#include "engine/io/file.h"
-#include "engine/io/input_error.h"
-#include "engine/io/nearest_name.h"
-#include "engine/io/text.h"
+#include "engine/base/file.h"
+#include "engine/base/input_error.h"
+#include "engine/base/nearest_name.h"
+#include "engine/base/text.h"
 #include "engine/scene/scene_file_parts.h"
 
 namespace lensproof {

@@ -1,6 +1,6 @@
 // engine/scene/scene_file.h — the objects, materials and lights of a scene file, and where its camera stands.
 #pragma once
-#include "engine/io/toml.h"
+#include "engine/base/toml.h"
 #include "engine/scene/scene_description.h"
 
 namespace lensproof {

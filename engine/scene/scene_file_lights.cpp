@@ -1,6 +1,6 @@
 #include <fmt/format.h>
 
-#include "engine/io/input_error.h"
+#include "engine/base/input_error.h"
 #include "engine/scene/illuminant_key.h"
 #include "engine/scene/scene_file_parts.h"
 

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "engine/io/toml.h"
+#include "engine/base/toml.h"
 #include "engine/scene/scene_description.h"
 
 namespace lensproof {

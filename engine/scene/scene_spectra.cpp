@@ -7,10 +7,11 @@
 #include <map>
 #include <utility>
 
-#include "engine/io/input_error.h"
+#include "engine/base/input_error.h"
+#include "engine/base/overloaded.h"
+#include "engine/formats/glass/shipped_glasses.h"
 #include "engine/optics/dispersion.h"
 #include "engine/optics/glass_catalogue.h"
-#include "engine/scene/overloaded.h"
 #include "engine/spectral/colour_checker.h"
 #include "engine/spectral/colour_matching.h"
 #include "engine/spectral/illuminant.h"
@@ -51,7 +52,7 @@ ComplexIndex named_metal(std::string name) {
 }
 
 const GlassCatalogue& catalogue() {
-    static const GlassCatalogue shipped = GlassCatalogue::shipped();
+    static const GlassCatalogue shipped = shipped_glasses();
     return shipped;
 }
 

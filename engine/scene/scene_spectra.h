@@ -3,7 +3,7 @@
 #include <optional>
 #include <string>
 
-#include "engine/io/cache.h"
+#include "engine/base/cache.h"
 #include "engine/scene/scene_description.h"
 #include "engine/scene/texture.h"
 #include "engine/spectral/metal.h"

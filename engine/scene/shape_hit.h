@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <optional>
 
-#include "engine/scene/affine.h"
+#include "engine/base/affine.h"
 #include "engine/scene/geometry.h"
 #include "engine/scene/shapes.h"
 

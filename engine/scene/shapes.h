@@ -6,7 +6,7 @@
 #include <variant>
 #include <vector>
 
-#include "engine/optics/vec.h"
+#include "engine/base/vec.h"
 
 namespace lensproof {
 

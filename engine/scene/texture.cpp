@@ -6,7 +6,7 @@
 #include <cmath>
 #include <utility>
 
-#include "engine/io/input_error.h"
+#include "engine/base/input_error.h"
 #include "engine/spectral/colour_checker.h"
 
 namespace lensproof {

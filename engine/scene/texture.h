@@ -8,8 +8,8 @@
 #include <variant>
 #include <vector>
 
-#include "engine/io/image.h"
-#include "engine/optics/vec.h"
+#include "engine/base/vec.h"
+#include "engine/formats/image/image.h"
 #include "engine/scene/chart.h"
 #include "engine/spectral/rgb_uplift.h"
 #include "engine/spectral/spectral_sample.h"

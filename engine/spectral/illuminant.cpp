@@ -5,7 +5,7 @@
 #include <charconv>
 #include <string_view>
 
-#include "engine/io/input_error.h"
+#include "engine/base/input_error.h"
 #include "engine/spectral/colour_matching.h"
 #include "engine/spectral/planck.h"
 

@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <limits>
 
-#include "engine/io/bytes.h"
+#include "engine/base/bytes.h"
 
 namespace lensproof {
 

@@ -6,8 +6,8 @@
 #include <string_view>
 #include <vector>
 
-#include "engine/io/cache.h"
-#include "engine/optics/vec.h"
+#include "engine/base/cache.h"
+#include "engine/base/vec.h"
 #include "engine/spectral/rgb_fit.h"
 #include "engine/spectral/sigmoid_spectrum.h"
 

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "engine/optics/vec.h"
+#include "engine/base/vec.h"
 #include "engine/spectral/illuminant.h"
 #include "engine/spectral/spectrum.h"
 #include "engine/spectral/wavelengths.h"

@@ -3,10 +3,10 @@
 
 #include <optional>
 
-#include "engine/io/csv.h"
-#include "engine/io/file.h"
-#include "engine/io/input_error.h"
-#include "engine/io/text.h"
+#include "engine/base/csv.h"
+#include "engine/base/file.h"
+#include "engine/base/input_error.h"
+#include "engine/base/text.h"
 #include "engine/spectral/spectrum.h"
 
 namespace lensproof {

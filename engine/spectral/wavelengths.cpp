@@ -7,7 +7,7 @@
 #include <cmath>
 #include <string>
 
-#include "engine/io/input_error.h"
+#include "engine/base/input_error.h"
 
 namespace lensproof {
 

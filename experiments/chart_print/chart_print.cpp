@@ -12,12 +12,12 @@
 #include <stdexcept>
 #include <vector>
 
-#include "engine/io/file.h"
-#include "engine/io/input_error.h"
-#include "engine/io/page_png.h"
-#include "engine/render/parallel.h"
+#include "engine/base/file.h"
+#include "engine/base/input_error.h"
+#include "engine/base/overloaded.h"
+#include "engine/base/parallel.h"
+#include "engine/formats/image/page_png.h"
 #include "engine/scene/chart_outline.h"
-#include "engine/scene/overloaded.h"
 
 namespace lensproof {
 

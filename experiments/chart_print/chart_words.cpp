@@ -7,7 +7,7 @@
 #include <charconv>
 #include <cmath>
 
-#include "engine/io/input_error.h"
+#include "engine/base/input_error.h"
 
 namespace lensproof {
 

@@ -12,10 +12,11 @@
 #include "engine/analysis/best_focus.h"
 #include "engine/analysis/field_curves.h"
 #include "engine/analysis/lens_analysis.h"
-#include "engine/io/file.h"
-#include "engine/io/input_error.h"
-#include "engine/io/prescription/prescription_file.h"
-#include "engine/io/text.h"
+#include "engine/base/file.h"
+#include "engine/base/input_error.h"
+#include "engine/base/text.h"
+#include "engine/formats/prescription/load_lens.h"
+#include "engine/formats/prescription/prescription_file.h"
 #include "engine/optics/chief_ray.h"
 #include "engine/optics/focus.h"
 #include "engine/spectral/wavelengths.h"
@@ -68,7 +69,7 @@ double object_distance(const std::string& option, const Prescription& prescripti
 Lens prepared_lens(const AnalyzeOptions& options, const Prescription& prescription, double distance,
                    double reference_wavelength_nm) {
     const GlassCatalogue glasses = with_own_catalogues(read_glass_catalogues(options.glass_catalogues), prescription);
-    Lens lens = make_lens(prescription, glasses, parse_indices(options.indices));
+    Lens lens = make_lens(with_stop_picture(prescription), glasses, parse_indices(options.indices));
     if (options.f_number) {
         lens = with_f_number(std::move(lens), *options.f_number);
     }

@@ -5,8 +5,8 @@
 #include <memory>
 #include <utility>
 
-#include "engine/io/file.h"
-#include "engine/io/input_error.h"
+#include "engine/base/file.h"
+#include "engine/base/input_error.h"
 #include "engine/scene/chart_file.h"
 #include "experiments/chart_print/chart_words.h"
 #include "experiments/cli/command.h"

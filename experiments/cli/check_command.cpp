@@ -7,11 +7,12 @@
 #include <memory>
 #include <sstream>
 
+#include "engine/base/file.h"
+#include "engine/base/input_error.h"
+#include "engine/base/text.h"
 #include "engine/check/checker.h"
-#include "engine/io/file.h"
-#include "engine/io/input_error.h"
-#include "engine/io/prescription/prescription_file.h"
-#include "engine/io/text.h"
+#include "engine/formats/prescription/load_lens.h"
+#include "engine/formats/prescription/prescription_file.h"
 #include "experiments/cli/command.h"
 #include "experiments/plot/lens_section.h"
 
@@ -143,7 +144,7 @@ void write_plot(const std::string& file, const Prescription& prescription, const
     const Prescription drawn = at_zoom_position(prescription, *settings.zoom_position);
     std::optional<Lens> lens;
     try {
-        lens = make_lens(drawn, glasses, settings.indices);
+        lens = make_lens(with_stop_picture(drawn), glasses, settings.indices);
     } catch (const InputError&) {
         lens.reset();  // the findings say why; what the table gives is drawn all the same
     }

@@ -7,10 +7,11 @@
 #include <cmath>
 #include <cstdlib>
 
-#include "engine/io/file.h"
-#include "engine/io/glass/glass_file.h"
-#include "engine/io/input_error.h"
-#include "engine/io/text.h"
+#include "engine/base/file.h"
+#include "engine/base/input_error.h"
+#include "engine/base/text.h"
+#include "engine/formats/glass/glass_file.h"
+#include "engine/formats/glass/shipped_glasses.h"
 
 namespace lensproof {
 
@@ -64,7 +65,7 @@ void add_glass_catalogue_option(CLI::App& command, std::vector<std::string>& fil
 }
 
 GlassCatalogue read_glass_catalogues(const std::vector<std::string>& files) {
-    GlassCatalogue catalogue = GlassCatalogue::shipped();
+    GlassCatalogue catalogue = shipped_glasses();
     for (const std::string& file : files) {
         GlassFile read = read_glass_file(file);
         constexpr std::size_t kShownNotes = 5;

@@ -8,9 +8,9 @@
 
 #include "calibration/profile/curve_difference.h"
 #include "calibration/profile/profile.h"
-#include "engine/io/cache.h"
-#include "engine/io/image.h"
-#include "engine/io/input_error.h"
+#include "engine/base/cache.h"
+#include "engine/base/input_error.h"
+#include "engine/formats/image/image.h"
 #include "experiments/cli/command.h"
 #include "experiments/lens_profile.h"
 #include "experiments/verdict.h"

@@ -3,7 +3,7 @@
 
 #include <memory>
 
-#include "engine/io/prescription/prescription_file.h"
+#include "engine/formats/prescription/prescription_file.h"
 #include "experiments/cli/command.h"
 
 namespace lensproof {

@@ -5,8 +5,9 @@
 #include <limits>
 #include <memory>
 
-#include "engine/io/input_error.h"
-#include "engine/io/text.h"
+#include "engine/base/input_error.h"
+#include "engine/base/text.h"
+#include "engine/formats/glass/shipped_glasses.h"
 #include "engine/optics/air.h"
 #include "engine/optics/glass_catalogue.h"
 #include "engine/spectral/wavelengths.h"

@@ -12,7 +12,7 @@
 #include <filesystem>
 #include <iostream>
 
-#include "engine/io/input_error.h"
+#include "engine/base/input_error.h"
 #include "experiments/cli/command.h"
 
 namespace lensproof {

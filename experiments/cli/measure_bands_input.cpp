@@ -6,8 +6,8 @@
 
 #include "calibration/chromatic/measure_bands.h"
 #include "calibration/chromatic/mosaic.h"
-#include "engine/io/input_error.h"
-#include "engine/io/photo.h"
+#include "engine/base/input_error.h"
+#include "engine/formats/image/photo.h"
 #include "experiments/cli/measure_parts.h"
 
 namespace lensproof {

@@ -8,8 +8,8 @@
 #include "calibration/detection/detect.h"
 #include "calibration/measure.h"
 #include "calibration/photos/photo_survey.h"
-#include "engine/io/file.h"
-#include "engine/io/input_error.h"
+#include "engine/base/file.h"
+#include "engine/base/input_error.h"
 #include "engine/scene/chart_file.h"
 #include "experiments/cli/measure_parts.h"
 

@@ -6,9 +6,9 @@
 #include <optional>
 #include <utility>
 
-#include "engine/io/file.h"
-#include "engine/io/image.h"
-#include "engine/io/input_error.h"
+#include "engine/base/file.h"
+#include "engine/base/input_error.h"
+#include "engine/formats/image/image.h"
 #include "engine/render/film_exr.h"
 #include "engine/render/film_image.h"
 #include "experiments/cli/command.h"

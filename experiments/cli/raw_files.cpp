@@ -8,7 +8,7 @@
 #include <cstdint>
 #include <string>
 
-#include "engine/io/file.h"
+#include "engine/base/file.h"
 #include "engine/render/film_image.h"
 #include "engine/render/raw_sensor.h"
 

@@ -4,10 +4,10 @@
 #include <memory>
 #include <utility>
 
-#include "engine/io/cache.h"
-#include "engine/io/file.h"
-#include "engine/io/hash.h"
-#include "engine/io/input_error.h"
+#include "engine/base/cache.h"
+#include "engine/base/file.h"
+#include "engine/base/hash.h"
+#include "engine/base/input_error.h"
 #include "engine/render/camera.h"
 #include "engine/render/prepared_scene.h"
 #include "experiments/cli/raw_files.h"

@@ -6,11 +6,11 @@
 #include <chrono>
 #include <cmath>
 
-#include "engine/io/file.h"
-#include "engine/io/input_error.h"
+#include "engine/base/file.h"
+#include "engine/base/input_error.h"
 #include "engine/render/checkpoint.h"
+#include "engine/render/engine_version.h"
 #include "engine/render/film_image.h"
-#include "engine/version.h"
 #include "experiments/cli/interruption.h"
 #include "experiments/cli/progress.h"
 #include "experiments/cli/raw_files.h"

@@ -3,8 +3,8 @@
 
 #include <memory>
 
-#include "engine/io/cache.h"
-#include "engine/io/file.h"
+#include "engine/base/cache.h"
+#include "engine/base/file.h"
 #include "experiments/cli/command.h"
 #include "experiments/cli/progress.h"
 #include "experiments/measurement_floor/floor_report.h"

@@ -7,9 +7,10 @@
 #include <memory>
 #include <optional>
 
-#include "engine/io/csv.h"
-#include "engine/io/file.h"
-#include "engine/io/input_error.h"
+#include "engine/base/csv.h"
+#include "engine/base/file.h"
+#include "engine/base/input_error.h"
+#include "engine/formats/prescription/load_lens.h"
 #include "engine/optics/float_error.h"
 #include "engine/optics/lens.h"
 #include "experiments/cli/command.h"

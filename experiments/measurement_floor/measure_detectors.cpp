@@ -9,7 +9,7 @@
 #include "calibration/detection/refine.h"
 #include "calibration/geometry/fit_geometry.h"
 #include "calibration/self_test/simulated_chart.h"
-#include "engine/render/parallel.h"
+#include "engine/base/parallel.h"
 #include "engine/scene/aruco.h"
 #include "experiments/measurement_floor/floor_point.h"
 #include "experiments/measurement_floor/measure_floor.h"

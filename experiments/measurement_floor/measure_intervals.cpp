@@ -11,8 +11,8 @@
 #include "calibration/light/light_samples.h"
 #include "calibration/light/vignetting.h"
 #include "calibration/self_test/simulated_chart.h"
-#include "engine/io/input_error.h"
-#include "engine/render/parallel.h"
+#include "engine/base/input_error.h"
+#include "engine/base/parallel.h"
 #include "experiments/measurement_floor/measure_floor.h"
 #include "experiments/measurement_floor/random_poses.h"
 

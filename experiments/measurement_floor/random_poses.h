@@ -6,7 +6,7 @@
 #include "calibration/geometry/camera_model.h"
 #include "calibration/geometry/fit_geometry.h"
 #include "calibration/geometry/planar_pose.h"
-#include "engine/optics/vec.h"
+#include "engine/base/vec.h"
 
 namespace lensproof {
 

@@ -4,7 +4,7 @@
 #include <optional>
 #include <string>
 
-#include "engine/io/image.h"
+#include "engine/formats/image/image.h"
 #include "engine/optics/prescription.h"
 #include "experiments/plot/analysis_curves.h"
 #include "experiments/plot/wave_curves.h"

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "engine/optics/vec.h"
+#include "engine/base/vec.h"
 
 namespace lensproof {
 

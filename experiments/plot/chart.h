@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-#include "engine/optics/vec.h"
+#include "engine/base/vec.h"
 #include "experiments/plot/heat_map.h"
 #include "experiments/plot/svg.h"
 #include "experiments/plot/ticks.h"

@@ -2,7 +2,7 @@
 #pragma once
 #include <string>
 
-#include "engine/optics/vec.h"
+#include "engine/base/vec.h"
 
 namespace lensproof {
 

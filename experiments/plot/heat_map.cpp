@@ -6,7 +6,7 @@
 #include <cmath>
 #include <vector>
 
-#include "engine/io/image.h"
+#include "engine/formats/image/image.h"
 #include "experiments/plot/palette.h"
 
 namespace lensproof {

@@ -5,7 +5,7 @@
 #include <charconv>
 #include <cmath>
 
-#include "engine/io/markup.h"
+#include "engine/base/markup.h"
 
 namespace lensproof {
 

@@ -9,7 +9,7 @@
 #include "engine/analysis/psf.h"
 #include "engine/analysis/wavefront_map.h"
 #include "engine/analysis/zernike.h"
-#include "engine/render/parallel.h"
+#include "engine/base/parallel.h"
 
 namespace lensproof {
 

@@ -1,7 +1,7 @@
 #include <fmt/format.h>
 
-#include "engine/io/file.h"
-#include "engine/io/input_error.h"
+#include "engine/base/file.h"
+#include "engine/base/input_error.h"
 #include "experiments/plot/analysis_plots.h"
 
 namespace lensproof {

@@ -5,10 +5,11 @@
 #include <limits>
 #include <numbers>
 
+#include "engine/formats/prescription/load_lens.h"
 #include "engine/optics/focus.h"
 #include "engine/optics/illumination.h"
 #include "engine/pupil/pupil_map.h"
-#include "engine/render/sampler.h"
+#include "engine/render/sampling/sampler.h"
 
 namespace lensproof {
 

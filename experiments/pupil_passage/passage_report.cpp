@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <iterator>
 
-#include "engine/io/prescription/prescription_file.h"
+#include "engine/formats/prescription/prescription_file.h"
 #include "experiments/plot/section_drawing.h"
 #include "experiments/provenance.h"
 #include "experiments/report_content.h"

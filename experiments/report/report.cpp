@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-#include "engine/io/markup.h"
+#include "engine/base/markup.h"
 #include "experiments/report/html_text.h"
 
 namespace lensproof {

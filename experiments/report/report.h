@@ -45,8 +45,8 @@ namespace lensproof {
 ///      "provenance"?: {"program", "version", "commit", "inputs": [{"file", "sha256"}], "settings": {…}, …},
 ///      "reproduce"?: "lensproof run …"}
 ///
-/// Pixel coordinates are those of engine/io/image.h: the centre of the top-left pixel is (0, 0), y runs down.
-/// `provenance` may hold further keys; a list of objects becomes a table, an object a list of its settings.
+/// Pixel coordinates are those of engine/formats/image/image.h: the centre of the top-left pixel is (0, 0), y runs
+/// down. `provenance` may hold further keys; a list of objects becomes a table, an object a list of its settings.
 std::string report_html(const nlohmann::ordered_json& report,
                         const std::map<std::string, std::string>& png_bytes_by_name);
 

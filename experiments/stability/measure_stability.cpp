@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "engine/io/input_error.h"
+#include "engine/base/input_error.h"
 #include "engine/optics/convert_lens.h"
 #include "engine/optics/multiprecision.h"
 #include "engine/optics/packet/trace_batch.h"

@@ -2,6 +2,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "engine/formats/glass/shipped_glasses.h"
 #include "experiments/stability/extreme_parts.h"
 #include "experiments/stability/extremes.h"
 
@@ -114,7 +115,7 @@ StabilityCase wavelength_case(double wavelength_nm, std::mt19937_64& random) {
                                                  {.radius = -130.0, .thickness = 95.0}});
     prescription.surfaces[1].medium.glass = "N-BK7";
     prescription.surfaces[2].medium.glass = "F2";
-    static const GlassCatalogue kGlasses = GlassCatalogue::shipped();
+    static const GlassCatalogue kGlasses = shipped_glasses();
     return {at_wavelength<double>(make_lens(prescription, kGlasses), wavelength_nm), random_rays(10.0, 0.1, random)};
 }
 

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "engine/render/parallel.h"
+#include "engine/base/parallel.h"
 #include "experiments/provenance.h"
 #include "experiments/report_content.h"
 #include "experiments/stability/stability_words.h"

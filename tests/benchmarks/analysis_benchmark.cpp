@@ -4,6 +4,7 @@
 
 #include "engine/analysis/field_curves.h"
 #include "engine/analysis/lens_analysis.h"
+#include "engine/formats/prescription/load_lens.h"
 #include "engine/spectral/wavelengths.h"
 #include "experiments/plot/analysis_curves.h"
 #include "tests/benchmarks/benchmarks.h"

@@ -6,7 +6,7 @@
 
 #include "engine/scene/texture.h"
 #include "tests/benchmarks/benchmarks.h"
-#include "tests/bsdf_cases.h"
+#include "tests/engine/scene/bsdf/bsdf_cases.h"
 
 namespace lensproof {
 

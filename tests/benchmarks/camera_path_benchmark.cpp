@@ -3,10 +3,11 @@
 
 #include <memory>
 
+#include "engine/formats/prescription/load_lens.h"
 #include "engine/optics/focus.h"
 #include "engine/render/camera_paths.h"
 #include "engine/render/chart_render.h"
-#include "engine/render/sampler.h"
+#include "engine/render/sampling/sampler.h"
 #include "engine/scene/pose.h"
 #include "engine/spectral/wavelengths.h"
 #include "tests/benchmarks/benchmarks.h"

@@ -1,6 +1,7 @@
 #include <benchmark/benchmark.h>
 
 #include "calibration/detection/refine.h"
+#include "engine/formats/prescription/load_lens.h"
 #include "engine/optics/chief_ray.h"
 #include "engine/scene/chart.h"
 #include "tests/benchmarks/benchmarks.h"

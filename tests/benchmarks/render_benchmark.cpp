@@ -5,7 +5,7 @@
 
 #include "engine/pupil/pupil_map.h"
 #include "engine/render/camera.h"
-#include "engine/render/sampler.h"
+#include "engine/render/sampling/sampler.h"
 #include "tests/benchmarks/benchmarks.h"
 
 namespace lensproof {

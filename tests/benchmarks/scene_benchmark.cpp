@@ -2,6 +2,7 @@
 
 #include <memory>
 
+#include "engine/formats/prescription/load_lens.h"
 #include "engine/optics/focus.h"
 #include "engine/render/light_tracer.h"
 #include "engine/render/scene_render.h"

@@ -5,6 +5,7 @@
 #include <random>
 #include <type_traits>
 
+#include "engine/formats/prescription/load_lens.h"
 #include "engine/optics/chief_ray.h"
 #include "engine/optics/convert_lens.h"
 #include "engine/optics/packet/trace_batch.h"

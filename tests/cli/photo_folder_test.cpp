@@ -7,8 +7,8 @@
 #include <nlohmann/json.hpp>
 #include <numbers>
 
+#include "tests/calibration/synthetic.h"
 #include "tests/cli/program.h"
-#include "tests/unit/calibration_synthetic.h"
 
 namespace lensproof {
 

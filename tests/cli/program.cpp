@@ -12,6 +12,8 @@
 #include <iterator>
 #include <stdexcept>
 
+#include "tests/places.h"
+
 namespace lensproof {
 
 namespace fs = std::filesystem;
@@ -37,7 +39,7 @@ void redirect(int descriptor, Stream stream, const char* capture) {
 
 /// In the child: becomes the program.
 [[noreturn]] void become_program(const std::vector<std::string>& arguments, const fs::path& where) {
-    std::vector<std::string> words = {LENSPROOF_PROGRAM};
+    std::vector<std::string> words = {program_file()};
     words.insert(words.end(), arguments.begin(), arguments.end());
     std::vector<char*> argv;
     std::ranges::transform(words, std::back_inserter(argv), [](std::string& word) { return word.data(); });

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "tests/cli/trace_table.h"
+#include "tests/places.h"
 
 namespace lensproof {
 
@@ -14,13 +15,13 @@ inline constexpr const char* kNumberedLenses[] = {
     "tessar", "petzval", "double-gauss-lowenthal", "triplet-cooke", "fisheye-220", "muller-fisheye", "conic-aspheres"};
 
 inline nlohmann::json reference_numbers(const std::string& lens) {
-    std::ifstream stream(std::string(LENSPROOF_NUMBERS_DIR) + "/" + lens + ".json");
+    std::ifstream stream(reference_numbers_folder() / (lens + ".json"));
     return nlohmann::json::parse(stream);
 }
 
 /// As the command line takes it: a lens of lenses/, or one that lies beside the numbers.
 inline std::string numbered_lens(const std::string& lens) {
-    const std::string own = std::string(LENSPROOF_NUMBERS_DIR) + "/" + lens + ".toml";
+    const std::string own = (reference_numbers_folder() / (lens + ".toml")).string();
     return std::filesystem::exists(own) ? own : lens;
 }
 

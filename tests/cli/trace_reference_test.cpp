@@ -12,6 +12,7 @@
 
 #include "tests/cli/program.h"
 #include "tests/cli/trace_table.h"
+#include "tests/places.h"
 
 namespace lensproof {
 
@@ -46,7 +47,7 @@ std::array<double, 2> at_plane(const TraceRow& image, double z) {
 class TracedReference {
   public:
     explicit TracedReference(const std::string& name) {
-        std::ifstream stream(std::string(LENSPROOF_REFERENCE_DIR) + "/" + name);
+        std::ifstream stream(shared_data() / "optics_reference" / name);
         reference_ = Json::parse(stream);
         std::string csv = kRayHeader;
         for (const Json& ray : reference_["rays"]["rays"]) {
@@ -111,9 +112,9 @@ class TracedReference {
 class TraceReference : public testing::TestWithParam<const char*> {
   protected:
     void SetUp() override {
-        if (!std::filesystem::exists(std::string(LENSPROOF_REFERENCE_DIR) + "/" + GetParam())) {
-            GTEST_SKIP() << "the reference numbers are not beside the repository: " << LENSPROOF_REFERENCE_DIR << "/"
-                         << GetParam();
+        if (!std::filesystem::exists(shared_data() / "optics_reference" / GetParam())) {
+            GTEST_SKIP() << "the reference numbers are not beside the repository: "
+                         << shared_data() / "optics_reference" << GetParam();
         }
     }
 };

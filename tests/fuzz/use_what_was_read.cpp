@@ -2,8 +2,9 @@
 
 #include <utility>
 
+#include "engine/base/input_error.h"
 #include "engine/check/checker.h"
-#include "engine/io/input_error.h"
+#include "engine/formats/glass/shipped_glasses.h"
 #include "engine/optics/lens.h"
 #include "engine/scene/geometry.h"
 #include "engine/scene/scene_shapes.h"
@@ -11,7 +12,7 @@
 namespace lensproof {
 
 void use(const Prescription& prescription) {
-    static const GlassCatalogue glasses = GlassCatalogue::shipped();
+    static const GlassCatalogue glasses = shipped_glasses();
     check_prescription(prescription, {}, glasses, {});
     try {
         const Lens lens = make_lens(prescription, glasses);

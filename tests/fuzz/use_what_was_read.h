@@ -1,6 +1,6 @@
 // tests/fuzz/use_what_was_read.h — what a reader took must survive being used.
 #pragma once
-#include "engine/io/glass/glass_file.h"
+#include "engine/formats/glass/glass_file.h"
 #include "engine/optics/prescription.h"
 #include "engine/render/scene_setup.h"
 

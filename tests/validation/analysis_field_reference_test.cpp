@@ -12,7 +12,8 @@
 #include "engine/analysis/field_curves.h"
 #include "engine/analysis/ray_fan.h"
 #include "engine/analysis/spot.h"
-#include "engine/io/file.h"
+#include "engine/base/file.h"
+#include "engine/formats/prescription/load_lens.h"
 #include "engine/optics/chief_ray.h"
 #include "engine/optics/lens.h"
 

@@ -5,7 +5,7 @@
 #include <boost/math/distributions/chi_squared.hpp>
 #include <boost/math/quadrature/gauss.hpp>
 
-#include "tests/bsdf_cases.h"
+#include "tests/engine/scene/bsdf/bsdf_cases.h"
 
 namespace lensproof {
 namespace {

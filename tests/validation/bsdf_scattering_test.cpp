@@ -5,7 +5,7 @@
 #include <boost/math/quadrature/gauss.hpp>
 
 #include "engine/scene/bsdf/fresnel.h"
-#include "tests/bsdf_cases.h"
+#include "tests/engine/scene/bsdf/bsdf_cases.h"
 
 namespace lensproof {
 namespace {

@@ -6,7 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "calibration/profile/curve_difference.h"
-#include "engine/io/file.h"
+#include "engine/base/file.h"
 #include "experiments/run_experiment.h"
 
 namespace lensproof {

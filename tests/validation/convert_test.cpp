@@ -11,8 +11,9 @@
 #include <filesystem>
 #include <set>
 
-#include "engine/io/file.h"
-#include "engine/io/prescription/prescription_file.h"
+#include "engine/base/file.h"
+#include "engine/formats/glass/shipped_glasses.h"
+#include "engine/formats/prescription/prescription_file.h"
 #include "engine/optics/lens.h"
 #include "engine/spectral/wavelengths.h"
 #include "tests/test_folder.h"
@@ -113,8 +114,8 @@ class Conversion : public testing::Test {
         }
         int points = 0;
         for (std::size_t position = 0; position < std::max<std::size_t>(1, back.zoom.size()); ++position) {
-            const Lens here = make_lens(at_zoom_position(lens, position), GlassCatalogue::shipped());
-            const Lens there = make_lens(at_zoom_position(back, position), GlassCatalogue::shipped());
+            const Lens here = make_lens(at_zoom_position(lens, position), shipped_glasses());
+            const Lens there = make_lens(at_zoom_position(back, position), shipped_glasses());
             for (const double wavelength_nm : {kLineD, kLineF, kLineC}) {
                 if (!one_colour || wavelength_nm == kLineD) {
                     EXPECT_LE(furthest_apart(here, there, wavelength_nm, points), kTolerance_mm)
@@ -268,8 +269,8 @@ TEST_F(Conversion, WarnsOfAPlaneThatPbrtTakesForTheStop) {
     expect_form_keeps(lens, ".dat", {"lost-flat"});
     // What is written in its place departs from the plane by h² / 2R, 0.4 µm at the rim of 9 mm and R = 10⁵ mm.
     std::set<std::string> warnings;
-    const Lens back = make_lens(there_and_back(lens, ".dat", warnings), GlassCatalogue::shipped());
-    const Lens here = make_lens(lens, GlassCatalogue::shipped());
+    const Lens back = make_lens(there_and_back(lens, ".dat", warnings), shipped_glasses());
+    const Lens here = make_lens(lens, shipped_glasses());
     int points = 0;
     const double apart = furthest_apart(here, back, kLineD, points);
     EXPECT_GT(apart, kTolerance_mm);

@@ -15,12 +15,13 @@
 #include <vector>
 
 #include "engine/analysis/beam_outline.h"
-#include "engine/io/file.h"
-#include "engine/io/prescription/prescription_file.h"
+#include "engine/base/file.h"
+#include "engine/formats/prescription/load_lens.h"
+#include "engine/formats/prescription/prescription_file.h"
 #include "engine/optics/focus.h"
 #include "engine/optics/rim_margin.h"
 #include "engine/pupil/pupil_map.h"
-#include "engine/render/sampler.h"
+#include "engine/render/sampling/sampler.h"
 #include "tests/test_folder.h"
 
 namespace lensproof {

@@ -9,6 +9,7 @@
 #include <numbers>
 #include <random>
 
+#include "engine/formats/prescription/load_lens.h"
 #include "engine/optics/chief_ray.h"
 #include "engine/optics/field_bundle.h"
 #include "engine/optics/float_error.h"

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "engine/formats/prescription/load_lens.h"
 #include "engine/optics/focus.h"
 #include "engine/optics/illumination.h"
 #include "engine/optics/paraxial.h"

@@ -9,7 +9,8 @@
 #include <numbers>
 
 #include "engine/analysis/lens_analysis.h"
-#include "engine/io/input_error.h"
+#include "engine/base/input_error.h"
+#include "engine/formats/prescription/load_lens.h"
 #include "engine/optics/chief_ray.h"
 #include "engine/optics/focus.h"
 #include "engine/optics/illumination.h"

@@ -7,7 +7,8 @@
 #include <numbers>
 #include <set>
 
-#include "engine/io/prescription/prescription_file.h"
+#include "engine/formats/prescription/load_lens.h"
+#include "engine/formats/prescription/prescription_file.h"
 #include "engine/optics/chief_ray.h"
 #include "engine/optics/lens.h"
 #include "engine/optics/paraxial.h"

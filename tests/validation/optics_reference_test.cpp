@@ -11,7 +11,8 @@
 
 #include "engine/analysis/seidel.h"
 #include "engine/analysis/working_f_number.h"
-#include "engine/io/file.h"
+#include "engine/base/file.h"
+#include "engine/formats/prescription/load_lens.h"
 #include "engine/optics/chief_ray.h"
 #include "engine/optics/illumination.h"
 #include "engine/optics/lens.h"

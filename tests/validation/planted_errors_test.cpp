@@ -11,7 +11,8 @@
 
 #include "engine/check/checked_lens.h"
 #include "engine/check/sag.h"
-#include "engine/io/prescription/prescription_file.h"
+#include "engine/formats/glass/shipped_glasses.h"
+#include "engine/formats/prescription/prescription_file.h"
 
 namespace lensproof {
 namespace {
@@ -337,7 +338,7 @@ struct Tally {
 };
 
 TEST(PlantedErrors, AreFoundAndTheUntouchedLibraryIsClean) {
-    const GlassCatalogue glasses = GlassCatalogue::shipped();
+    const GlassCatalogue glasses = shipped_glasses();
     std::map<std::string, Tally> tallies;
     Tally total;
     int lenses = 0;

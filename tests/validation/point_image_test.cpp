@@ -9,6 +9,7 @@
 
 #include "engine/analysis/lens_analysis.h"
 #include "engine/analysis/spot.h"
+#include "engine/formats/prescription/load_lens.h"
 #include "engine/optics/focus.h"
 #include "tests/validation/rendered_scene.h"
 

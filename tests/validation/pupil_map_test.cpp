@@ -10,13 +10,14 @@
 #include <limits>
 #include <numbers>
 
-#include "engine/io/file.h"
-#include "engine/io/prescription/prescription_file.h"
+#include "engine/base/file.h"
+#include "engine/formats/prescription/load_lens.h"
+#include "engine/formats/prescription/prescription_file.h"
 #include "engine/optics/focus.h"
 #include "engine/optics/illumination.h"
 #include "engine/optics/lens.h"
 #include "engine/optics/packet/trace_batch.h"
-#include "engine/render/sampler.h"
+#include "engine/render/sampling/sampler.h"
 #include "tests/test_folder.h"
 
 namespace lensproof {

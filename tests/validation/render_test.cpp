@@ -4,8 +4,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "engine/io/file.h"
-#include "engine/io/prescription/prescription_file.h"
+#include "engine/base/file.h"
+#include "engine/formats/prescription/prescription_file.h"
 #include "engine/optics/illumination.h"
 #include "engine/render/camera.h"
 #include "engine/spectral/illuminant.h"

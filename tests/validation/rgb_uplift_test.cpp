@@ -7,7 +7,7 @@
 #include <limits>
 #include <random>
 
-#include "engine/io/file.h"
+#include "engine/base/file.h"
 #include "engine/spectral/colour_matching.h"
 #include "engine/spectral/illuminant.h"
 #include "engine/spectral/sensor_response.h"

@@ -9,6 +9,7 @@
 #include <tuple>
 #include <vector>
 
+#include "engine/formats/prescription/load_lens.h"
 #include "engine/optics/focus.h"
 #include "engine/optics/illumination.h"
 #include "engine/render/camera_paths.h"

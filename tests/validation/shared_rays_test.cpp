@@ -7,6 +7,7 @@
 #include <cmath>
 #include <vector>
 
+#include "engine/formats/prescription/load_lens.h"
 #include "engine/optics/focus.h"
 #include "engine/optics/lens.h"
 

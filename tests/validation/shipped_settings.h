@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "engine/io/prescription/prescription_file.h"
+#include "engine/formats/prescription/prescription_file.h"
 
 namespace lensproof {
 

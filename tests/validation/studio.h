@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "engine/formats/prescription/load_lens.h"
 #include "engine/optics/focus.h"
 #include "engine/optics/lens.h"
 #include "engine/render/light_tracer.h"

@@ -4,7 +4,7 @@
 #include <array>
 #include <numeric>
 
-#include "engine/io/input_error.h"
+#include "engine/base/input_error.h"
 #include "engine/scene/texture.h"
 #include "engine/spectral/illuminant.h"
 #include "engine/spectral/sensor_response.h"

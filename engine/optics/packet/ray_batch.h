@@ -4,7 +4,8 @@
 #include <new>
 #include <vector>
 
-#include "engine/optics/ray.h"
+#include "engine/base/ray.h"
+#include "engine/optics/ray_status.h"
 
 namespace lensproof {
 

@@ -6,8 +6,8 @@
 #include <array>
 #include <tuple>
 
+#include "engine/base/pack.h"
 #include "engine/optics/intersect.h"
-#include "engine/optics/pack.h"
 #include "engine/optics/packet/trace_kernels.h"
 #include "engine/optics/refract.h"
 #include "engine/optics/surface_shape.h"

@@ -4,7 +4,7 @@
 #include <cstdint>
 
 #include "engine/optics/packet/ray_batch.h"
-#include "engine/render/sensor.h"
+#include "engine/render/sampling/sensor.h"
 
 namespace lensproof {
 

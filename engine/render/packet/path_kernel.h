@@ -6,9 +6,9 @@
 #include <algorithm>
 #include <numeric>
 
-#include "engine/optics/pack.h"
+#include "engine/base/pack.h"
 #include "engine/render/packet/path_kernels.h"
-#include "engine/render/sampler.h"
+#include "engine/render/sampling/sampler.h"
 
 namespace lensproof {
 

@@ -1,6 +1,6 @@
 // engine/scene/bsdf/bsdf_sample.h — a direction drawn from a surface's scattering, and what it carries.
 #pragma once
-#include "engine/optics/vec.h"
+#include "engine/base/vec.h"
 #include "engine/spectral/spectral_sample.h"
 
 namespace lensproof {

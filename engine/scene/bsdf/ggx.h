@@ -4,7 +4,7 @@
 // Surfaces", EGSR 2007 (GGX), stretched along x and y, with Smith's masking; the notation is E. Heitz, "Understanding
 // the Masking-Shadowing Function in Microfacet-Based BRDFs", JCGT 3(2), 2014. Directions w have w.z > 0.
 #pragma once
-#include "engine/optics/vec.h"
+#include "engine/base/vec.h"
 
 namespace lensproof {
 

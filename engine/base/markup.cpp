@@ -1,0 +1,104 @@
+#include "engine/base/markup.h"
+
+#include <algorithm>
+#include <cstdint>
+
+namespace lensproof {
+
+namespace {
+
+constexpr std::string_view kReplacement = "\uFFFD";
+
+/// The length of the UTF-8 sequence at the start of `text` (not empty), or 0 where it is not one (RFC 3629) or XML
+/// forbids its character.
+std::size_t character_length(std::string_view text) {
+    const auto byte = [&](std::size_t i) {
+        return i < text.size() ? static_cast<unsigned char>(text[i]) : static_cast<unsigned char>(0);
+    };
+    const unsigned first = byte(0);
+    if (first < 0x80) {
+        const bool is_control = first < 0x20 || first == 0x7F;
+        return !is_control || first == '\n' || first == '\t' ? 1 : 0;
+    }
+    const std::size_t length = first >= 0xF0 ? 4 : (first >= 0xE0 ? 3 : 2);
+    if (first < 0xC2 || first > 0xF4) {
+        return 0;
+    }
+    unsigned code = first & (0x7Fu >> length);
+    for (std::size_t i = 1; i < length; ++i) {
+        if ((byte(i) & 0xC0u) != 0x80u) {
+            return 0;
+        }
+        code = code << 6u | (byte(i) & 0x3Fu);
+    }
+    const bool overlong = (length == 3 && code < 0x800) || (length == 4 && code < 0x10000);
+    const bool control = code < 0xA0;
+    const bool surrogate = code >= 0xD800 && code < 0xE000;
+    const bool reorders = (code >= 0x202A && code <= 0x202E) || (code >= 0x2066 && code <= 0x2069);
+    const bool noncharacter = (code & 0xFFFEu) == 0xFFFEu;
+    return overlong || control || surrogate || reorders || noncharacter || code > 0x10FFFF ? 0 : length;
+}
+
+/// Calls `visit` with every character of `text`; what is none comes byte by byte, as U+FFFD.
+template <class Visitor>
+void for_each_character(std::string_view text, Visitor&& visit) {
+    while (!text.empty()) {
+        const std::size_t length = character_length(text);
+        visit(length > 0 ? text.substr(0, length) : kReplacement);
+        text.remove_prefix(std::max<std::size_t>(length, 1));
+    }
+}
+
+}  // namespace
+
+std::vector<std::string_view> markup_characters(std::string_view text) {
+    std::vector<std::string_view> found;
+    for_each_character(text, [&](std::string_view character) { found.push_back(character); });
+    return found;
+}
+
+std::string escape_markup(std::string_view text) {
+    std::string out;
+    out.reserve(text.size());
+    for_each_character(text, [&](std::string_view character) {
+        switch (character.front()) {
+            case '&':
+                out += "&amp;";
+                break;
+            case '<':
+                out += "&lt;";
+                break;
+            case '>':
+                out += "&gt;";
+                break;
+            case '"':
+                out += "&quot;";
+                break;
+            case '\'':
+                out += "&#39;";
+                break;
+            default:
+                out += character;
+        }
+    });
+    return out;
+}
+
+std::string base64(std::string_view bytes) {
+    static constexpr std::string_view kAlphabet = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+    const auto byte = [&](std::size_t i) -> std::uint32_t {
+        return i < bytes.size() ? static_cast<unsigned char>(bytes[i]) : 0u;
+    };
+    std::string out;
+    out.reserve((bytes.size() + 2) / 3 * 4);
+    for (std::size_t i = 0; i < bytes.size(); i += 3) {
+        const std::uint32_t group = byte(i) << 16 | byte(i + 1) << 8 | byte(i + 2);
+        const std::size_t sextets = std::min<std::size_t>(bytes.size() - i, 3) + 1;
+        for (std::size_t k = 0; k < 4; ++k) {
+            out += k < sextets ? kAlphabet[group >> (18 - 6 * k) & 63u] : '=';
+        }
+    }
+    return out;
+}
+
+}  // namespace lensproof

@@ -1,0 +1,66 @@
+#include "engine/base/text.h"
+
+#include <algorithm>
+#include <charconv>
+#include <system_error>
+
+namespace lensproof {
+
+std::vector<std::string_view> lines_of(std::string_view text) {
+    std::vector<std::string_view> lines;
+    while (!text.empty()) {
+        const std::size_t end = std::min(text.find_first_of("\r\n"), text.size());
+        lines.push_back(text.substr(0, end));
+        const bool both = text.substr(end).starts_with("\r\n");
+        text.remove_prefix(std::min(end + (both ? 2 : 1), text.size()));
+    }
+    return lines;
+}
+
+std::vector<std::string_view> words_of(std::string_view line) {
+    constexpr std::string_view kBlanks = " \t\r\n";
+    std::vector<std::string_view> words;
+    for (std::size_t begin = line.find_first_not_of(kBlanks); begin != std::string_view::npos;) {
+        const std::size_t end = std::min(line.find_first_of(kBlanks, begin), line.size());
+        words.push_back(line.substr(begin, end - begin));
+        begin = line.find_first_not_of(kBlanks, end);
+    }
+    return words;
+}
+
+std::string_view trimmed(std::string_view text) {
+    constexpr std::string_view kBlanks = " \t\r\n";
+    const std::size_t first = text.find_first_not_of(kBlanks);
+    if (first == std::string_view::npos) {
+        return {};
+    }
+    return text.substr(first, text.find_last_not_of(kBlanks) - first + 1);
+}
+
+std::string_view without_byte_order_mark(std::string_view text) {
+    constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
+    return text.starts_with(kByteOrderMark) ? text.substr(kByteOrderMark.size()) : text;
+}
+
+std::optional<double> parse_number(std::string_view text) {
+    if (text.size() > 1 && text[0] == '+' && text[1] != '-') {  // from_chars knows no plus
+        text.remove_prefix(1);
+    }
+    double number = 0.0;
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+    return error == std::errc() && end == text.data() + text.size() ? std::optional(number) : std::nullopt;
+}
+
+int whole_number_within(double value, int low, int high) {
+    return value > low ? static_cast<int>(std::min(value, static_cast<double>(high))) : low;
+}
+
+std::string printable(std::string_view text) {
+    constexpr std::size_t kShown = 100;
+    std::string shown(text.substr(0, kShown));
+    std::ranges::replace_if(
+        shown, [](unsigned char letter) { return letter < 0x20 || letter >= 0x7f; }, '?');
+    return text.size() > kShown ? shown + "…" : shown;
+}
+
+}  // namespace lensproof

@@ -1,0 +1,281 @@
+#include "engine/base/toml.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <toml++/toml.h>
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+
+#include "engine/base/file.h"
+#include "engine/base/input_error.h"
+
+namespace lensproof {
+
+namespace {
+
+std::string shown(const toml::node& node) {
+    if (const std::optional<double> number = node.value_exact<double>()) {
+        return fmt::format("{}", *number);  // the shortest that reads back, not seventeen digits
+    }
+    std::ostringstream stream;
+    node.visit([&](const auto& value) { stream << value; });
+    return stream.str();
+}
+
+}  // namespace
+
+TomlTable::TomlTable(std::shared_ptr<const toml::table> root, const toml::table* table, std::filesystem::path file,
+                     std::string path)
+    : root_(std::move(root)), table_(table), file_(std::move(file)), path_(std::move(path)) {}
+
+TomlTable TomlTable::read(const std::filesystem::path& file) {
+    return parse(read_file(file), file);
+}
+
+TomlTable TomlTable::parse(const std::string& text, const std::filesystem::path& name) {
+    try {
+        auto root = std::make_shared<const toml::table>(toml::parse(text));
+        const toml::table* top = root.get();
+        return {std::move(root), top, name, ""};
+    } catch (const toml::parse_error& error) {
+        throw InputError(fmt::format("{}:{}: not TOML: {}", name.string(), error.source().begin.line,
+                                     std::string(error.description())));
+    }
+}
+
+bool TomlTable::has(const std::string& key) const {
+    return table_->contains(key);
+}
+
+std::vector<std::string> TomlTable::keys() const {
+    std::vector<std::string> names;
+    for (const auto& [key, node] : *table_) {
+        names.emplace_back(key.str());
+    }
+    return names;
+}
+
+bool TomlTable::is_number(const std::string& key) const {
+    const toml::node* node = table_->get(key);
+    return node != nullptr && node->is_number();
+}
+
+bool TomlTable::is_text(const std::string& key) const {
+    const toml::node* node = table_->get(key);
+    return node != nullptr && node->is_string();
+}
+
+bool TomlTable::is_table(const std::string& key) const {
+    const toml::node* node = table_->get(key);
+    return node != nullptr && node->is_table();
+}
+
+std::string TomlTable::qualified(const std::string& key) const {
+    if (path_.empty() || key.empty()) {
+        return path_ + key;
+    }
+    return path_ + "." + key;
+}
+
+std::string TomlTable::where(const std::string& key) const {
+    const toml::node* node = table_->get(key);
+    const auto line = (node != nullptr ? node->source() : table_->source()).begin.line;
+    const std::string name = qualified(key);
+    return fmt::format("{}:{}:{}{}", file_.string(), std::max(1U, line), name.empty() ? "" : " ", name);
+}
+
+void TomlTable::fail(const std::string& key, const std::string& message) const {
+    throw InputError(fmt::format("{}: {}", where(key), message));
+}
+
+const toml::node* TomlTable::find(const std::string& key) {
+    taken_.insert(key);
+    return table_->get(key);
+}
+
+const toml::node& TomlTable::require(const std::string& key) {
+    const toml::node* node = find(key);
+    if (node == nullptr) {
+        fail(key, "is missing");
+    }
+    return *node;
+}
+
+double TomlTable::checked_number(const toml::node& node, const std::string& key, const Bounds& bounds) const {
+    const std::optional<double> value = node.value<double>();
+    if (!value || !node.is_number() || !bounds.hold(*value)) {
+        fail(key, fmt::format("is {}, expected {}", shown(node), bounds.expectation()));
+    }
+    return *value;
+}
+
+double TomlTable::number(const std::string& key, const Bounds& bounds) {
+    return checked_number(require(key), key, bounds);
+}
+
+double TomlTable::number_or(const std::string& key, double fallback, const Bounds& bounds) {
+    return optional_number(key, bounds).value_or(fallback);
+}
+
+std::optional<double> TomlTable::optional_number(const std::string& key, const Bounds& bounds) {
+    const toml::node* node = find(key);
+    return node == nullptr ? std::nullopt : std::optional(checked_number(*node, key, bounds));
+}
+
+double TomlTable::any_number(const std::string& key) {
+    const toml::node& node = require(key);
+    const std::optional<double> value = node.value<double>();
+    if (!value || !node.is_number()) {
+        fail(key, fmt::format("is {}, expected a number", shown(node)));
+    }
+    return *value;
+}
+
+int TomlTable::infinity(const std::string& key) {
+    const double value = require(key).value<double>().value_or(0.0);
+    return std::isinf(value) ? (value > 0.0 ? 1 : -1) : 0;
+}
+
+int TomlTable::integer(const std::string& key, int min, int max) {
+    const toml::node& node = require(key);
+    const std::optional<std::int64_t> value = node.value_exact<std::int64_t>();
+    if (!value || *value < min || *value > max) {
+        fail(key, fmt::format("is {}, expected a whole number from {} to {}", shown(node), min, max));
+    }
+    return static_cast<int>(*value);
+}
+
+int TomlTable::integer_or(const std::string& key, int fallback, int min, int max) {
+    return has(key) ? integer(key, min, max) : fallback;
+}
+
+bool TomlTable::boolean_or(const std::string& key, bool fallback) {
+    const toml::node* node = find(key);
+    if (node == nullptr) {
+        return fallback;
+    }
+    const std::optional<bool> value = node->value_exact<bool>();
+    if (!value) {
+        fail(key, fmt::format("is {}, expected true or false", shown(*node)));
+    }
+    return *value;
+}
+
+std::string TomlTable::text(const std::string& key) {
+    const toml::node& node = require(key);
+    const std::optional<std::string> value = node.value_exact<std::string>();
+    if (!value) {
+        fail(key, fmt::format("is {}, expected a text in quotes", shown(node)));
+    }
+    return *value;
+}
+
+std::string TomlTable::text_or(const std::string& key, const std::string& fallback) {
+    taken_.insert(key);
+    return has(key) ? text(key) : fallback;
+}
+
+std::string TomlTable::choice(const std::string& key, const std::vector<std::string>& choices) {
+    std::string value = text(key);
+    if (std::find(choices.begin(), choices.end(), value) == choices.end()) {
+        fail(key, fmt::format("is \"{}\", expected one of: {}", value, fmt::join(choices, ", ")));
+    }
+    return value;
+}
+
+std::vector<double> TomlTable::numbers(const std::string& key, std::size_t count, const Bounds& bounds) {
+    const toml::node& node = require(key);
+    const toml::array* array = node.as_array();
+    if (array == nullptr || (count != 0 && array->size() != count)) {
+        fail(key, fmt::format("is {}, expected {} numbers in brackets", shown(node),
+                              count == 0 ? std::string("some") : std::to_string(count)));
+    }
+    std::vector<double> values;
+    for (const toml::node& element : *array) {
+        values.push_back(checked_number(element, key, bounds));
+    }
+    return values;
+}
+
+std::vector<std::vector<double>> TomlTable::number_lists(const std::string& key) {
+    const toml::node& node = require(key);
+    const toml::array* array = node.as_array();
+    if (array == nullptr) {
+        fail(key, fmt::format("is {}, expected lists of numbers in brackets", shown(node)));
+    }
+    std::vector<std::vector<double>> lists;
+    for (const toml::node& inner : *array) {
+        const toml::array* list = inner.as_array();
+        if (list == nullptr) {
+            fail(key, fmt::format("holds {}, expected a list of numbers", shown(inner)));
+        }
+        lists.emplace_back();
+        for (const toml::node& element : *list) {
+            lists.back().push_back(checked_number(element, key, kAnyNumber));
+        }
+    }
+    return lists;
+}
+
+std::vector<std::string> TomlTable::texts(const std::string& key) {
+    const toml::node& node = require(key);
+    const toml::array* array = node.as_array();
+    std::vector<std::string> values;
+    if (array != nullptr) {
+        for (const toml::node& element : *array) {
+            if (const auto value = element.value_exact<std::string>()) {
+                values.push_back(*value);
+            }
+        }
+    }
+    if (array == nullptr || values.size() != array->size()) {
+        fail(key, fmt::format("is {}, expected texts in brackets", shown(node)));
+    }
+    return values;
+}
+
+TomlTable TomlTable::table(const std::string& key) {
+    const toml::node& node = require(key);
+    if (!node.is_table()) {
+        fail(key, fmt::format("is {}, expected a table", shown(node)));
+    }
+    return {root_, node.as_table(), file_, qualified(key)};
+}
+
+std::optional<TomlTable> TomlTable::optional_table(const std::string& key) {
+    taken_.insert(key);
+    return has(key) ? std::optional(table(key)) : std::nullopt;
+}
+
+std::vector<TomlTable> TomlTable::tables(const std::string& key) {
+    std::vector<TomlTable> found;
+    const toml::node* node = find(key);
+    if (node == nullptr) {
+        return found;
+    }
+    const toml::array* array = node->as_array();
+    if (array == nullptr) {
+        fail(key, "expected an array of tables");
+    }
+    for (std::size_t i = 0; i < array->size(); ++i) {
+        const toml::table* element = array->get(i)->as_table();
+        if (element == nullptr) {
+            fail(key, fmt::format("its entry {} is {}, expected a table", i + 1, shown(*array->get(i))));
+        }
+        found.push_back(TomlTable(root_, element, file_, fmt::format("{}[{}]", qualified(key), i + 1)));
+    }
+    return found;
+}
+
+void TomlTable::finish() const {
+    for (const auto& [key, node] : *table_) {
+        const std::string name(key.str());
+        if (!taken_.contains(name)) {
+            fail(name, fmt::format("is not a key that is known here; known are: {}", fmt::join(taken_, ", ")));
+        }
+    }
+}
+
+}  // namespace lensproof

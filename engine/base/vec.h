@@ -1,0 +1,61 @@
+// engine/base/vec.h — vectors of two and three components over any number type.
+#pragma once
+#include <cmath>
+
+namespace lensproof {
+
+template <class T>
+struct Vec2 {
+    T x{};
+    T y{};
+    friend bool operator==(const Vec2&, const Vec2&) = default;
+};
+
+template <class T>
+struct Vec3 {
+    T x{};
+    T y{};
+    T z{};
+    friend bool operator==(const Vec3&, const Vec3&) = default;
+};
+
+using Vec2d = Vec2<double>;
+using Vec3d = Vec3<double>;
+
+template <class T>
+Vec3<T> operator+(const Vec3<T>& a, const Vec3<T>& b) {
+    return {a.x + b.x, a.y + b.y, a.z + b.z};
+}
+
+template <class T>
+Vec3<T> operator-(const Vec3<T>& a, const Vec3<T>& b) {
+    return {a.x - b.x, a.y - b.y, a.z - b.z};
+}
+
+template <class T>
+Vec3<T> operator*(const T& s, const Vec3<T>& v) {
+    return {s * v.x, s * v.y, s * v.z};
+}
+
+template <class T>
+T dot(const Vec3<T>& a, const Vec3<T>& b) {
+    return a.x * b.x + a.y * b.y + a.z * b.z;
+}
+
+template <class T>
+Vec3<T> cross(const Vec3<T>& a, const Vec3<T>& b) {
+    return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+}
+
+template <class T>
+T length(const Vec3<T>& v) {
+    using std::sqrt;
+    return sqrt(dot(v, v));
+}
+
+template <class T>
+Vec3<T> normalized(const Vec3<T>& v) {
+    return (T(1) / length(v)) * v;
+}
+
+}  // namespace lensproof

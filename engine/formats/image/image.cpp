@@ -1,0 +1,163 @@
+#include "engine/formats/image/image.h"
+
+#include <OpenImageIO/filesystem.h>
+#include <OpenImageIO/imageio.h>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+
+#include "engine/base/file.h"
+#include "engine/base/input_error.h"
+#include "engine/formats/image/frame_placement.h"
+#include "engine/formats/image/srgb.h"
+#include "engine/formats/image/stored_picture.h"
+
+namespace lensproof {
+
+namespace {
+
+void linearise(Image& image, const std::string& colour_space) {
+    // PNG's gAMA of 1/2.2 stands for sRGB in practice.
+    const float gamma = stated_gamma(colour_space);
+    const bool linear = colour_space == "linear" || colour_space == "Linear";
+    for (float& value : image.pixels) {
+        if (gamma > 0.0F && std::abs(gamma - 2.2F) > 0.05F) {
+            value = std::pow(std::max(value, 0.0F), gamma);
+        } else if (!linear) {
+            value = srgb_to_linear(value);
+        }
+    }
+}
+
+void write_with_oiio(const OIIO::ImageSpec& spec, OIIO::TypeDesc type, const void* pixels,
+                     const std::filesystem::path& file) {
+    write_whole(file, [&](const std::filesystem::path& temporary) {
+        const auto output = OIIO::ImageOutput::create(temporary.string());
+        if (!output || !output->open(temporary.string(), spec) || !output->write_image(type, pixels) ||
+            !output->close()) {
+            throw std::runtime_error(fmt::format("{}: cannot be written: {}", file.string(),
+                                                 output ? output->geterror() : OIIO::geterror()));
+        }
+    });
+}
+
+/// Channel by channel, which of the image's go into a PNG.
+std::vector<int> shown_channels(const Image& image) {
+    std::vector<int> sources;
+    for (const char* name : {"R", "G", "B"}) {
+        sources.push_back(find_channel(image, name));
+    }
+    if (std::find(sources.begin(), sources.end(), -1) != sources.end()) {
+        sources = {std::max(0, find_channel(image, "Y"))};
+    }
+    return sources;
+}
+
+template <class Integer>
+std::vector<Integer> encode_srgb(const Image& image, const std::vector<int>& sources) {
+    std::vector<Integer> encoded;
+    encoded.reserve(static_cast<std::size_t>(image.width) * image.height * sources.size());
+    constexpr auto kFullScale = static_cast<float>(std::numeric_limits<Integer>::max());
+    for (int y = 0; y < image.height; ++y) {
+        for (int x = 0; x < image.width; ++x) {
+            for (const int source : sources) {
+                encoded.push_back(
+                    static_cast<Integer>(std::lround(kFullScale * linear_to_srgb(image.at(x, y, source)))));
+            }
+        }
+    }
+    return encoded;
+}
+
+/// The bytes of a PNG whose pixels are of the type that `spec` says.
+std::string png_bytes(const OIIO::ImageSpec& spec, const void* pixels) {
+    std::vector<unsigned char> bytes;
+    OIIO::Filesystem::IOVecOutput sink(bytes);
+    const auto output = OIIO::ImageOutput::create("png", &sink);
+    if (!output || !output->open("picture.png", spec) || !output->write_image(spec.format, pixels) ||
+        !output->close()) {
+        throw std::runtime_error(
+            fmt::format("a PNG cannot be made: {}", output ? output->geterror() : OIIO::geterror()));
+    }
+    return {bytes.begin(), bytes.end()};
+}
+
+template <class Integer>
+std::string encode_srgb_png(const Image& image, OIIO::TypeDesc type) {
+    const std::vector<int> sources = shown_channels(image);
+    OIIO::ImageSpec spec(image.width, image.height, static_cast<int>(sources.size()), type);
+    spec.attribute("oiio:ColorSpace", "sRGB");
+    return png_bytes(spec, encode_srgb<Integer>(image, sources).data());
+}
+
+}  // namespace
+
+Image make_image(int width, int height, std::vector<std::string> channels) {
+    Image image{.width = width, .height = height, .channels = std::move(channels), .pixels = {}, .metadata = {}};
+    image.pixels.assign(static_cast<std::size_t>(width) * height * image.channels.size(), 0.0F);
+    return image;
+}
+
+int find_channel(const Image& image, const std::string& name) {
+    const auto found = std::find(image.channels.begin(), image.channels.end(), name);
+    return found == image.channels.end() ? -1 : static_cast<int>(found - image.channels.begin());
+}
+
+Image read_image(const std::filesystem::path& file) {
+    StoredPicture stored = read_stored(file, {});
+    Image image = turned(std::move(stored.image), stored.spec.get_int_attribute("Orientation", 1));
+    if (!stored.spec.format.is_floating_point()) {
+        linearise(image, stored.spec.get_string_attribute("oiio:ColorSpace", "sRGB"));
+    }
+    for (const auto& attribute : stored.spec.extra_attribs) {
+        image.metadata[attribute.name().string()] = attribute.get_string();
+    }
+    return image;
+}
+
+void write_exr(const Image& image, const std::filesystem::path& file) {
+    write_exr(image, file, {.x = 0, .y = 0, .frame_width = image.width, .frame_height = image.height});
+}
+
+void write_exr(const Image& image, const std::filesystem::path& file, const FramePlacement& placement) {
+    OIIO::ImageSpec spec(image.width, image.height, image.channel_count(), OIIO::TypeDesc::FLOAT);
+    spec.channelnames = image.channels;
+    spec.x = placement.x;
+    spec.y = placement.y;
+    spec.full_width = placement.frame_width;
+    spec.full_height = placement.frame_height;
+    spec.attribute("compression", "zip");
+    spec.attribute("oiio:ColorSpace", "linear");
+    spec.attribute("DateTime",
+                   "1970:01:01 00:00:00");  // else the library writes the clock's: the same render, other bytes
+    for (const auto& [name, value] : image.metadata) {
+        spec.attribute(name, value);
+    }
+    write_with_oiio(spec, OIIO::TypeDesc::FLOAT, image.pixels.data(), file);
+}
+
+void write_png(const Image& image, const std::filesystem::path& file) {
+    write_file(file, encode_png(image));
+}
+
+void write_png_16(const Image& image, const std::filesystem::path& file) {
+    write_file(file, encode_srgb_png<std::uint16_t>(image, OIIO::TypeDesc::UINT16));
+}
+
+void write_png(const IntegerImage& image, const std::filesystem::path& file) {
+    OIIO::ImageSpec spec(image.width, image.height, image.channels, OIIO::TypeDesc::UINT16);
+    spec.attribute("oiio:ColorSpace", "linear");
+    for (const auto& [name, value] : image.metadata) {
+        spec.attribute(name, value);
+    }
+    write_file(file, png_bytes(spec, image.values.data()));
+}
+
+std::string encode_png(const Image& image) {
+    return encode_srgb_png<unsigned char>(image, OIIO::TypeDesc::UINT8);
+}
+
+}  // namespace lensproof

@@ -1,0 +1,29 @@
+// engine/formats/image/stored_picture.h — a picture's file as OpenImageIO gives it, for the readers of engine/io.
+#pragma once
+#include <OpenImageIO/imageio.h>
+
+#include <filesystem>
+
+#include "engine/formats/image/image.h"
+
+namespace lensproof {
+
+/// The file's values as they are stored, full scale 1 where they are integers: neither turned nor linearised.
+struct StoredPicture {
+    Image image;           // without metadata; an alpha channel is dropped
+    OIIO::ImageSpec spec;  // the file's
+};
+
+/// Throws InputError as read_image says. `hints` are the library's for the file's format (raw:…).
+StoredPicture read_stored(const std::filesystem::path& file, const OIIO::ImageSpec& hints);
+
+/// What the file says beside its pixels, checked for a size that can be read; no pixel is.
+OIIO::ImageSpec read_header(const std::filesystem::path& file, const OIIO::ImageSpec& hints);
+
+/// Turns a picture as its EXIF orientation (1 to 8) says it is to be seen.
+Image turned(Image image, int orientation);
+
+/// What every curve needs of the colour space that OpenImageIO names: its gamma where it is a bare one ("Gamma1.8").
+float stated_gamma(const std::string& colour_space);
+
+}  // namespace lensproof

@@ -1,0 +1,26 @@
+// engine/formats/prescription/load_lens.h — a lens from its file and from the files that this one names.
+#pragma once
+#include <optional>
+#include <string>
+
+#include "engine/optics/lens.h"
+
+namespace lensproof {
+
+/// What a lens is loaded with, beyond its file.
+struct LensSettings {
+    IndexOverrides indices;
+    std::string zoom;                       // the position's name or number; empty: the first
+    std::optional<GlassCatalogue> glasses;  // nothing: those that ship
+};
+
+/// `glasses` behind the prescription's own catalogues. Throws InputError for one that cannot be read.
+GlassCatalogue with_own_catalogues(GlassCatalogue glasses, const Prescription& prescription);
+
+/// The prescription with the picture that its stop's shape names. Throws InputError where that cannot be read.
+Prescription with_stop_picture(Prescription prescription);
+
+/// find_lens_file, read_prescription, the zoom position, and make_lens.
+Lens load_lens(const std::string& lens, const LensSettings& settings = {});
+
+}  // namespace lensproof

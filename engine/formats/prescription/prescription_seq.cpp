@@ -1,0 +1,315 @@
+// CODE V's .seq: what its surfaces, decentres, glass names and zoom positions mean.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "engine/base/input_error.h"
+#include "engine/base/text.h"
+#include "engine/base/text_encoding.h"
+#include "engine/formats/prescription/prescription_forms.h"
+#include "engine/formats/prescription/seq_file.h"
+#include "engine/formats/prescription/surface_chain.h"
+#include "engine/optics/glass_name.h"
+
+namespace lensproof {
+
+namespace {
+
+constexpr double kDegree = std::numbers::pi / 180.0;
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+/// "NBK7_SCHOTT" is SCHOTT's N-BK7: CODE V leaves out the hyphen behind a maker's letter for glasses of its present
+/// line.
+std::string catalogue_name(const std::string& stated) {
+    const std::size_t underscore = stated.find('_');
+    if (underscore == std::string::npos) {
+        return stated;
+    }
+    std::string name = stated.substr(0, underscore);
+    const std::string maker = stated.substr(underscore + 1);
+    struct Prefix {
+        std::string_view maker;
+        std::string_view letters;
+    };
+    constexpr Prefix kPrefixes[] = {{"SCHOTT", "N"}, {"OHARA", "S"}, {"CDGM", "HD"}, {"HIKARI", "JE"}};
+    const auto* prefix = std::ranges::find(kPrefixes, maker, &Prefix::maker);
+    if (prefix != std::end(kPrefixes) && name.size() > 2 && prefix->letters.find(name[0]) != std::string_view::npos &&
+        std::isalpha(static_cast<unsigned char>(name[1]))) {
+        name.insert(1, "-");
+    }
+    return maker + " " + name;
+}
+
+/// n_d and V_d from CODE V's codes. It writes no density: behind six digits and a point stands V_d, and a zero more
+/// says so where there are three digits of it.
+std::optional<GlassCode> glass_code(const std::string& glass) {
+    constexpr std::size_t kDigits = 6;
+    const bool looks_dense = glass.find('.') == kDigits && glass.size() == kDigits + 4;
+    return parse_glass_code(looks_dense ? glass + "0" : glass);
+}
+
+/// The medium behind a surface; `where` is its place in the file.
+StatedMedium read_medium(const SeqFile& file, const std::string& glass, const std::string& where) {
+    StatedMedium medium;
+    if (glass.empty() || glass == "AIR") {
+        return medium;
+    }
+    const std::size_t colon = glass.find(':');
+    const std::optional<double> n_d = parse_number(glass.substr(0, colon));
+    if (const auto own = file.private_glasses.find(glass); own != file.private_glasses.end()) {
+        medium.indices = own->second;
+    } else if (const std::optional<GlassCode> code = glass_code(glass)) {
+        medium.n_d = code->n_d;
+        medium.V_d = code->V_d;
+    } else if (n_d) {
+        medium.n_d = n_d;
+        medium.V_d = colon == std::string::npos ? std::nullopt : parse_number(glass.substr(colon + 1));
+        if (colon != std::string::npos && !medium.V_d) {
+            throw InputError(fmt::format("{}: its glass is \"{}\", expected n_d:V_d", where, printable(glass)));
+        }
+    } else {
+        medium.glass = catalogue_name(glass);
+    }
+    return medium;
+}
+
+PrescribedSurface read_row(const SeqFile& file, int number, const std::filesystem::path& path, Remarks& remarks) {
+    const SeqSurface& surface = file.surfaces[number];
+    const double unit = file.unit_mm;
+    const auto radius = [unit](double curvature) { return curvature == 0.0 ? kInfinity : unit / curvature; };
+    const auto length = [unit](std::optional<double> value) {
+        return value ? std::optional(*value * unit) : std::nullopt;
+    };
+    PrescribedSurface row;
+    row.where = fmt::format("{}:{}: S{}", path.string(), surface.line, number);
+    row.is_stop = surface.is_stop;
+    row.radius_mm = radius(surface.curvature);
+    if (surface.type == "CYL" || surface.type == "YTO") {
+        row.radius_x_mm = radius(surface.curvature_x);
+    } else if (surface.type == "XTO") {  // the frame is turned by 90° about z for it
+        row.radius_mm = radius(surface.curvature_x);
+        row.radius_x_mm = radius(surface.curvature);
+    }
+    row.conic = surface.conic;
+    for (int term = 0; term < kAsphereTerms; ++term) {
+        row.asphere[term] = surface.asphere[term] * std::pow(unit, 1 - 2 * (term + 1));
+    }
+    row.thickness_mm = surface.thickness * unit;
+    row.semi_diameter_mm = length(surface.semi_diameter);
+    if (surface.edge && surface.edge > surface.semi_diameter.value_or(0.0)) {
+        row.rim_mm = length(surface.edge);
+    }
+    row.medium = read_medium(file, surface.glass, row.where);
+    if (surface.is_mirror) {
+        remarks.add(
+            "mirror", Severity::error, number,
+            fmt::format("line {}, surface {} of the file: a mirror, which is not traced", surface.line, number));
+    }
+    return row;
+}
+
+/// The frames of all surfaces but the object. Decentres come before tilts; ADE and BDE count by the left-hand rule, CDE
+/// by the right-hand rule (CODE V Reference Manual, "Tilts and decenters").
+std::vector<ChainLink> chain_of(const SeqFile& file, const std::filesystem::path& path) {
+    const auto is_displaced = [](const SeqSurface& surface) {
+        return surface.decentre != std::array<double, 3>{} || surface.tilt_deg != std::array<double, 3>{};
+    };
+    const bool has_displaced = std::ranges::any_of(file.surfaces, is_displaced);
+    std::vector<ChainLink> links;
+    Frame frame;
+    for (std::size_t number = 1; number < file.surfaces.size(); ++number) {
+        const SeqSurface& surface = file.surfaces[number];
+        const double thickness = surface.thickness * file.unit_mm;
+        const double unit = file.unit_mm;
+        const Vec3d decentre{surface.decentre[0] * unit, surface.decentre[1] * unit, surface.decentre[2] * unit};
+        const std::array<double, 3> tilt = {-surface.tilt_deg[0], -surface.tilt_deg[1], surface.tilt_deg[2]};
+        Frame own = frame;
+        if (is_displaced(surface)) {
+            if (!links.empty()) {
+                links.back().straight = false;
+            }
+            if (surface.decentre_kind == SeqDecentre::reverse) {
+                frame = frame.turned(2, -tilt[2]).turned(1, -tilt[1]).turned(0, -tilt[0]).shifted(-1.0 * decentre);
+            } else {
+                own = frame.shifted(decentre).tilted(tilt);
+                if (surface.decentre_kind != SeqDecentre::restore) {
+                    frame = surface.decentre_kind == SeqDecentre::bend ? own.tilted(tilt) : own;
+                }
+            }
+        }
+        if (surface.type == "XTO") {
+            own = own.turned(2, 90.0);
+        }
+        links.push_back({.frame = own, .thickness_mm = thickness, .straight = !is_displaced(surface)});
+        if (has_displaced && number + 1 < file.surfaces.size()) {
+            if (!std::isfinite(thickness + decentre.x + decentre.y + decentre.z + tilt[0] + tilt[1] + tilt[2])) {
+                throw InputError(
+                    fmt::format("{}:{}: S{}: decentres cannot be followed over a length that is not "
+                                "finite",
+                                path.string(), surface.line, number));
+            }
+            frame = frame.shifted({0.0, 0.0, thickness});
+        }
+    }
+    if (!file.has_image) {  // the sensor lies behind the last surface
+        links.push_back({.frame = frame.shifted({0.0, 0.0, links.back().thickness_mm})});
+    }
+    return links;
+}
+
+void read_aperture(const std::string& type, double value, double unit_mm, StatedData& stated, Remarks& remarks) {
+    if (type == "EPD" && value > 0.0) {
+        stated.entrance_pupil_diameter_mm = value * unit_mm;
+    } else if (type == "FNO" && value > 0.0) {
+        stated.f_number = value;
+    } else if (type == "NA" && value > 0.0) {
+        stated.f_number = 0.5 / value;
+    } else if (!type.empty()) {
+        remarks.add_once(
+            type, "aperture", Severity::info, 0,
+            fmt::format("{} = {} does not say the aperture; the stop's semi-diameter is taken", type, value));
+    }
+}
+
+void read_fields(const SeqFile& file, StatedData& stated, Remarks& remarks) {
+    const auto largest = [&](const char* in_x, const char* in_y, bool is_angle) {
+        const auto x = file.fields.find(in_x);
+        const auto y = file.fields.find(in_y);
+        double most = 0.0;
+        const std::size_t count =
+            std::max(x == file.fields.end() ? 0 : x->second.size(), y == file.fields.end() ? 0 : y->second.size());
+        for (std::size_t i = 0; i < count; ++i) {
+            const double here_x = x != file.fields.end() && i < x->second.size() ? std::abs(x->second[i]) : 0.0;
+            const double here_y = y != file.fields.end() && i < y->second.size() ? std::abs(y->second[i]) : 0.0;
+            const bool is_oblique = is_angle && here_x != 0.0 && here_y != 0.0 && std::max(here_x, here_y) < 90.0;
+            const double angle =
+                is_oblique ? std::atan(std::hypot(std::tan(here_x * kDegree), std::tan(here_y * kDegree))) / kDegree
+                           : std::hypot(here_x, here_y);
+            most = std::max(most, angle);
+        }
+        return most;
+    };
+    if (const double angle = largest("XAN", "YAN", true); angle > 0.0) {
+        stated.half_field_deg = angle;
+    }
+    if (const double height = std::max(largest("XIM", "YIM", false), largest("XRI", "YRI", false)); height > 0.0) {
+        stated.image_circle_mm = 2.0 * height * file.unit_mm;
+    }
+    if (const double height = largest("XOB", "YOB", false); height > 0.0) {
+        remarks.add(
+            "fields", Severity::info, 0,
+            fmt::format("fields are stated as object heights, up to {} mm, and left out", height * file.unit_mm));
+    }
+}
+
+/// The object, the image and its defocus.
+void read_ends(const SeqFile& file, const std::vector<ChainLink>& links, Prescription& prescription, Remarks& remarks) {
+    constexpr double kFarthest = 1e10;  // the program's infinity
+    const SeqSurface& object = file.surfaces.front();
+    prescription.object_distance_mm = object.thickness >= kFarthest ? kInfinity : object.thickness * file.unit_mm;
+    if (object.curvature != 0.0) {
+        remarks.add("object-shape", Severity::warning, 0,
+                    fmt::format("line {}: the object is curved, and taken as flat", object.line));
+    }
+    if (!is_upright(links.back().frame)) {
+        remarks.add("image-tilt", Severity::warning, 0,
+                    "the image is tilted against the first surface's axis; the sensor is taken as perpendicular to it");
+    }
+    if (!file.has_image) {
+        remarks.add("image", Severity::info, 0, "no SI line; the sensor is taken behind the last surface's thickness");
+        return;
+    }
+    const SeqSurface& image = file.surfaces.back();
+    if (image.curvature != 0.0 || image.type != "SPH") {
+        remarks.add("image-shape", Severity::warning, 0,
+                    fmt::format("line {}: the image is not flat; the sensor is taken as flat", image.line));
+    }
+}
+
+/// The rows in their places; the sensor stands off the image by its defocus, SI's thickness.
+std::vector<PrescribedSurface> placed(std::vector<PrescribedSurface> rows, const SeqFile& file,
+                                      const std::filesystem::path& path) {
+    place_rows(rows, chain_of(file, path));
+    if (file.has_image && file.surfaces.back().thickness != 0.0) {
+        rows.back().thickness_mm += file.surfaces.back().thickness * file.unit_mm;
+    }
+    return rows;
+}
+
+void read_zoom(const SeqFile& file, Prescription& prescription, Remarks& remarks) {
+    if (file.zoom_positions == 1) {
+        return;
+    }
+    SeqFile varied = file;
+    std::vector<std::vector<PrescribedSurface>> tables;
+    for (int i = 0; i < file.zoom_positions; ++i) {
+        const auto at = static_cast<std::size_t>(i);
+        for (const auto& [surface, values] : file.zoomed_thicknesses) {
+            varied.surfaces[surface].thickness = values[std::min(at, values.size() - 1)];
+        }
+        tables.push_back(placed(prescription.surfaces, varied, prescription.file));
+        ZoomPosition position{.name = at < file.zoom_titles.size() ? file.zoom_titles[at]
+                                                                   : fmt::format("position {}", i + 1)};
+        for (const auto& [type, values] : file.zoomed_apertures) {
+            read_aperture(type, values[std::min(at, values.size() - 1)], file.unit_mm, position.stated, remarks);
+        }
+        prescription.zoom.push_back(std::move(position));
+    }
+    for (std::size_t row = 0; row < prescription.surfaces.size(); ++row) {
+        const auto differs = [&](const auto& table) {
+            return table[row].thickness_mm != prescription.surfaces[row].thickness_mm;
+        };
+        const auto is_misplaced = [&](const auto& table) {
+            return table[row].misalignment != prescription.surfaces[row].misalignment;
+        };
+        for (std::size_t i = 0; std::ranges::any_of(tables, differs) && i < tables.size(); ++i) {
+            prescription.zoom[i].gaps_mm[static_cast<int>(row) + 1] = tables[i][row].thickness_mm;
+        }
+        if (std::ranges::any_of(tables, is_misplaced)) {
+            remarks.add("multi-configuration", Severity::warning, static_cast<int>(row) + 1,
+                        fmt::format("the decentre of surface {} differs between the zoom positions, which is left out",
+                                    row + 1));
+        }
+    }
+}
+
+}  // namespace
+
+Prescription parse_seq(const std::string& text, const std::filesystem::path& file) {
+    Remarks remarks;
+    const SeqFile seq = read_seq_file(to_utf8(text), file, remarks);
+    Prescription prescription;
+    prescription.file = file;
+    prescription.name = seq.title.empty() ? file.stem().string() : seq.title;
+    prescription.source = "the file " + file.filename().string();
+    const int rows = static_cast<int>(seq.surfaces.size()) - (seq.has_image ? 1 : 0);
+    std::vector<int> row_of = {0};
+    for (int number = 1; number < rows; ++number) {
+        prescription.surfaces.push_back(read_row(seq, number, file, remarks));
+        row_of.push_back(number);
+        if (seq.surfaces[number].is_mirror && number > 1) {
+            prescription.surfaces.back().medium = prescription.surfaces.end()[-2].medium;
+        }
+    }
+    if (prescription.surfaces.empty()) {
+        throw InputError(fmt::format("{}: holds no surface between object and image", file.string()));
+    }
+    const std::vector<ChainLink> links = chain_of(seq, file);
+    prescription.surfaces = placed(std::move(prescription.surfaces), seq, file);
+    read_aperture(seq.aperture_type, seq.aperture_value, seq.unit_mm, prescription.stated, remarks);
+    read_fields(seq, prescription.stated, remarks);
+    read_ends(seq, links, prescription, remarks);
+    read_zoom(seq, prescription, remarks);
+    prescription.wavelengths_nm = seq.wavelengths_nm;
+    const auto reference = static_cast<std::size_t>(seq.reference_wavelength);
+    if (reference <= prescription.wavelengths_nm.size()) {
+        const auto first = prescription.wavelengths_nm.begin();
+        std::rotate(first, first + seq.reference_wavelength - 1, first + seq.reference_wavelength);
+    }
+    prescription.remarks = remarks.renumbered(row_of);
+    return prescription;
+}
+
+}  // namespace lensproof

@@ -1,0 +1,290 @@
+// The project's own form: read here key by key, written so that the surfaces stand as a table. lenses/README.md
+// describes it for those who write one.
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+
+#include "engine/base/toml.h"
+#include "engine/formats/prescription/prescription_forms.h"
+
+namespace lensproof {
+
+namespace {
+
+constexpr int kMostSurfaces = 1000;
+constexpr double kUnlimited = std::numeric_limits<double>::infinity();
+
+/// A number as it stands, NaN and infinities included: whether it makes sense is for the checker to say.
+double stated_number(TomlTable& table, const std::string& key) {
+    return table.any_number(key);
+}
+
+std::optional<double> optional_stated_number(TomlTable& table, const std::string& key) {
+    return table.has(key) ? std::optional(stated_number(table, key)) : std::nullopt;
+}
+
+template <std::size_t count>
+std::array<double, count> numbers_or_zero(TomlTable& table, const std::string& key) {
+    std::array<double, count> values{};
+    if (table.has(key)) {
+        std::ranges::copy(table.numbers(key, count), values.begin());
+    }
+    return values;
+}
+
+Misalignment read_misalignment(TomlTable& table) {
+    return {.decentre_mm = numbers_or_zero<2>(table, "decentre_mm"), .tilt_deg = numbers_or_zero<3>(table, "tilt_deg")};
+}
+
+/// Pairs [wavelength in nm, value], by rising wavelength.
+std::vector<WavelengthValue> read_wavelength_values(TomlTable& table, const std::string& key, const Bounds& values) {
+    std::vector<WavelengthValue> read;
+    for (const std::vector<double>& pair : table.number_lists(key)) {
+        const bool good = pair.size() == 2 && pair[0] > 0.0 && pair[1] >= values.min && pair[1] <= values.max &&
+                          (read.empty() || pair[0] > read.back().wavelength_nm);
+        if (!good) {
+            table.fail(key, fmt::format("holds [{}], expected pairs [wavelength in nm, value from {} to {}] by rising "
+                                        "wavelength",
+                                        fmt::join(pair, ", "), values.min, values.max));
+        }
+        read.push_back({pair[0], pair[1]});
+    }
+    if (read.empty()) {
+        table.fail(key, "is empty, expected pairs [wavelength in nm, value]");
+    }
+    return read;
+}
+
+StatedMedium read_medium(TomlTable& row) {
+    StatedMedium medium;
+    medium.glass = row.text_or("glass", "");
+    medium.n_d = optional_stated_number(row, "n_d");
+    medium.V_d = optional_stated_number(row, "V_d");
+    if (row.has("indices")) {
+        medium.indices = read_wavelength_values(row, "indices", {.min = 1.0, .max = 5.0});
+    }
+    if (medium.V_d && !medium.n_d) {
+        row.fail("V_d", "stands without n_d");
+    }
+    if (!medium.indices.empty() && !medium.glass.empty()) {
+        row.fail("indices", "stand beside a glass name: expected one of the two");
+    }
+    return medium;
+}
+
+std::string asphere_key(int term) {
+    return fmt::format("A{}", 2 * (term + 1));
+}
+
+PrescribedSurface read_surface(TomlTable& row) {
+    PrescribedSurface surface;
+    surface.where = row.where();
+    surface.is_stop = row.boolean_or("stop", false);
+    if (row.has("radius_mm")) {
+        surface.radius_mm = stated_number(row, "radius_mm");
+    }
+    surface.conic = optional_stated_number(row, "conic").value_or(0.0);
+    for (int term = 0; term < kAsphereTerms; ++term) {
+        surface.asphere[term] = optional_stated_number(row, asphere_key(term)).value_or(0.0);
+    }
+    surface.radius_x_mm = optional_stated_number(row, "radius_x_mm");
+    surface.thickness_mm = stated_number(row, "thickness_mm");
+    surface.semi_diameter_mm = optional_stated_number(row, "semi_diameter_mm");
+    surface.rim_mm = optional_stated_number(row, "rim_mm");
+    surface.barrel_mm = optional_stated_number(row, "barrel_mm");
+    surface.medium = read_medium(row);
+    surface.coating = row.text_or("coating", "");
+    surface.misalignment = read_misalignment(row);
+    row.finish();
+    return surface;
+}
+
+StatedData read_stated(TomlTable& table) {
+    StatedData stated{.efl_mm = table.optional_number("efl_mm"),
+                      .bfl_mm = table.optional_number("bfl_mm"),
+                      .f_number = table.optional_number("f_number", kPositive),
+                      .half_field_deg = table.optional_number("half_field_deg", kPositive),
+                      .image_circle_mm = table.optional_number("image_circle_mm", kPositive),
+                      .total_track_mm = table.optional_number("total_track_mm", kPositive),
+                      .entrance_pupil_diameter_mm = table.optional_number("entrance_pupil_diameter_mm", kPositive),
+                      .source = table.text_or("source", "")};
+    table.finish();
+    return stated;
+}
+
+StopShape read_stop_shape(TomlTable& table) {
+    StopShape shape;
+    if (table.has("texture")) {
+        shape = TexturedStop{.image = table.text("texture")};
+    } else {
+        shape = PolygonStop{.blades = table.integer("blades", 3, 64),
+                            .curvature = table.number_or("curvature", 0.0, {.min = 0.0, .max = 1.0}),
+                            .rotation_deg = table.number_or("rotation_deg", 0.0)};
+    }
+    table.finish();
+    return shape;
+}
+
+CoatingLayer read_layer(TomlTable& table) {
+    const double index = table.number("n", {.min = 1.0, .max = 5.0});
+    const bool quarter = table.has("quarter_wave_nm");
+    const double thickness_nm =
+        quarter ? table.number("quarter_wave_nm", kPositive) / (4.0 * index) : table.number("thickness_nm", kPositive);
+    table.finish();
+    return {.index = index, .thickness_nm = thickness_nm};
+}
+
+Coating read_coating(TomlTable& table) {
+    Coating coating;
+    if (table.has("reflectance")) {
+        coating = table.is_number("reflectance")
+                      ? std::vector<WavelengthValue>{{550.0, table.number("reflectance", {.min = 0.0, .max = 1.0})}}
+                      : read_wavelength_values(table, "reflectance", {.min = 0.0, .max = 1.0});
+    } else {
+        std::vector<CoatingLayer> layers;
+        for (TomlTable& layer : table.tables("layers")) {
+            layers.push_back(read_layer(layer));
+        }
+        if (layers.empty()) {
+            table.fail("", "expected layers = [{ n = …, thickness_nm = … or quarter_wave_nm = … }], or reflectance");
+        }
+        coating = std::move(layers);
+    }
+    table.finish();
+    return coating;
+}
+
+/// Surfaces from `first` to `last`, both counted from 1.
+void read_surface_range(TomlTable& table, int surfaces, int& first, int& last) {
+    const std::vector<double> range = table.numbers("surfaces", 2, {.min = 1.0, .max = static_cast<double>(surfaces)});
+    first = static_cast<int>(range[0]);
+    last = static_cast<int>(range[1]);
+    if (first != range[0] || last != range[1] || first > last) {
+        table.fail("surfaces", fmt::format("is [{}, {}], expected the first and the last surface of a group, from 1",
+                                           range[0], range[1]));
+    }
+}
+
+MisalignedGroup read_group(TomlTable& table, int surfaces) {
+    MisalignedGroup group;
+    read_surface_range(table, surfaces, group.first, group.last);
+    group.misalignment = read_misalignment(table);
+    group.pivot_mm = table.number_or("pivot_mm", 0.0);
+    table.finish();
+    return group;
+}
+
+FocusGroup read_focus_group(TomlTable& table, int surfaces) {
+    FocusGroup group;
+    read_surface_range(table, surfaces, group.first, group.last);
+    group.travel = table.number_or("travel", 1.0);
+    table.finish();
+    return group;
+}
+
+ZoomPosition read_zoom_position(TomlTable& table, int surfaces) {
+    ZoomPosition position;
+    position.name = table.text("name");
+    TomlTable gaps = table.table("gaps_mm");
+    for (const std::string& key : gaps.keys()) {
+        int surface = 0;
+        const auto [end, error] = std::from_chars(key.data(), key.data() + key.size(), surface);
+        if (error != std::errc() || end != key.data() + key.size() || surface < 1 || surface > surfaces) {
+            gaps.fail(key, fmt::format("expected a surface from 1 to {}, whose gap it is", surfaces));
+        }
+        position.gaps_mm[surface] = stated_number(gaps, key);
+    }
+    position.stop_semi_diameter_mm = table.optional_number("stop_semi_diameter_mm", kPositive);
+    if (auto stated = table.optional_table("stated")) {
+        position.stated = read_stated(*stated);
+    }
+    table.finish();
+    return position;
+}
+
+void read_moving_parts(TomlTable& top, Prescription& prescription) {
+    const int count = static_cast<int>(prescription.surfaces.size());
+    for (TomlTable& table : top.tables("groups")) {
+        prescription.groups.push_back(read_group(table, count));
+    }
+    for (TomlTable& table : top.tables("zoom")) {
+        prescription.zoom.push_back(read_zoom_position(table, count));
+    }
+    for (TomlTable& table : top.tables("focus")) {
+        prescription.focus_groups.push_back(read_focus_group(table, count));
+    }
+}
+
+void read_coatings(TomlTable& top, Prescription& prescription) {
+    if (auto coatings = top.optional_table("coatings")) {
+        for (const std::string& name : coatings->keys()) {
+            TomlTable coating = coatings->table(name);
+            prescription.coatings[name] = read_coating(coating);
+        }
+    }
+    for (const PrescribedSurface& surface : prescription.surfaces) {
+        if (!surface.coating.empty() && !prescription.coatings.contains(surface.coating)) {
+            top.fail("surfaces", fmt::format("name the coating \"{}\", but there is no table [coatings.{}]",
+                                             surface.coating, surface.coating));
+        }
+    }
+}
+
+}  // namespace
+
+Prescription parse_toml_prescription(const std::string& text, const std::filesystem::path& file) {
+    TomlTable top = TomlTable::parse(text, file);
+    Prescription prescription;
+    prescription.file = file;
+    prescription.name = top.text("name");
+    prescription.source = top.text("source");
+    prescription.notes = top.text_or("notes", "");
+    prescription.design = top.text_or("design", "");
+    if (top.has("projection")) {
+        std::vector<std::string> names;
+        std::ranges::transform(kProjections, std::back_inserter(names), projection_name);
+        const std::string name = top.choice("projection", names);
+        prescription.projection = kProjections[std::ranges::find(names, name) - names.begin()];
+    }
+    if (auto stated = top.optional_table("stated")) {
+        prescription.stated = read_stated(*stated);
+    }
+    for (TomlTable& row : top.tables("surfaces")) {
+        prescription.surfaces.push_back(read_surface(row));
+    }
+    if (prescription.surfaces.empty() || prescription.surfaces.size() > kMostSurfaces) {
+        top.fail("surfaces",
+                 fmt::format("holds {} surfaces, expected 1 to {}", prescription.surfaces.size(), kMostSurfaces));
+    }
+    if (auto stop = top.optional_table("stop")) {
+        prescription.stop_shape = read_stop_shape(*stop);
+    }
+    read_coatings(top, prescription);
+    read_moving_parts(top, prescription);
+    if (top.has("surroundings")) {
+        prescription.surroundings =
+            top.choice("surroundings", {"air", "vacuum"}) == "air" ? Surroundings::air : Surroundings::vacuum;
+    }
+    if (top.has("object_distance_mm")) {
+        prescription.object_distance_mm =
+            top.infinity("object_distance_mm") > 0 ? kUnlimited : top.number("object_distance_mm", kPositive);
+    }
+    if (top.has("wavelengths_nm")) {
+        prescription.wavelengths_nm = top.numbers("wavelengths_nm", 0, kPositive);
+    }
+    if (top.has("catalogues")) {
+        for (const std::string& name : top.texts("catalogues")) {
+            prescription.catalogues.push_back(file.parent_path() / name);
+        }
+    }
+    if (top.has("makers")) {
+        prescription.preferred_makers = top.texts("makers");
+    }
+    top.finish();
+    return prescription;
+}
+
+}  // namespace lensproof

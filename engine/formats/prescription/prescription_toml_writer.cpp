@@ -1,0 +1,395 @@
+// The project's own form, written so that the surfaces stand as a table: numbers of a column below one another, columns
+// that no surface needs left out. prescription_toml.cpp reads it back to the same prescription.
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "engine/formats/prescription/prescription_forms.h"
+
+namespace lensproof {
+
+namespace {
+
+/// The shortest digits that read back to the same number, as a TOML float.
+std::string number(double value) {
+    std::string text = fmt::format("{}", value);
+    return text.find_first_of(".en") == std::string::npos ? text + ".0" : text;
+}
+
+template <class Numbers>
+std::string number_list(const Numbers& values) {
+    std::vector<std::string> texts;
+    std::ranges::transform(values, std::back_inserter(texts), number);
+    return fmt::format("[{}]", fmt::join(texts, ", "));
+}
+
+std::string pairs(const std::vector<WavelengthValue>& values) {
+    std::vector<std::string> texts;
+    std::ranges::transform(values, std::back_inserter(texts), [](const WavelengthValue& pair) {
+        return number_list(std::array{pair.wavelength_nm, pair.value});
+    });
+    return fmt::format("[{}]", fmt::join(texts, ", "));
+}
+
+/// `bytes` with whatever is not UTF-8 replaced by U+FFFD, since a TOML file may hold nothing else.
+std::string valid_utf8(std::string_view bytes) {
+    using Json = nlohmann::json;
+    return Json::parse(Json(bytes).dump(-1, ' ', false, Json::error_handler_t::replace)).get<std::string>();
+}
+
+/// `letter` where it may not stand as it is between quotes.
+std::string escaped(char letter) {
+    switch (letter) {
+        case '\\':
+            return "\\\\";
+        case '"':
+            return "\\\"";
+        case '\n':
+            return "\\n";
+        case '\r':
+            return "\\r";
+        case '\t':
+            return "\\t";
+        default:
+            break;
+    }
+    const auto code = static_cast<unsigned char>(letter);
+    return code < 0x20 || code == 0x7f ? fmt::format("\\u{:04X}", code) : std::string(1, letter);
+}
+
+std::string toml_string(std::string_view bytes) {
+    std::string text = "\"";
+    for (const char letter : valid_utf8(bytes)) {
+        text += escaped(letter);
+    }
+    return text + '"';
+}
+
+/// Lines as they are, between triple quotes; a single line in single ones.
+std::string paragraph(std::string_view bytes) {
+    if (bytes.find('\n') == std::string_view::npos) {
+        return toml_string(bytes);
+    }
+    std::string text = "\"\"\"\n";
+    char last = '\0';
+    for (const char letter : valid_utf8(bytes)) {
+        const bool plain = letter == '\n' || letter == '\t' || (letter == '"' && last != '"');
+        text += plain ? std::string(1, letter) : escaped(letter);
+        last = letter;
+    }
+    if (last == '"' && !text.ends_with("\\\"")) {
+        text.insert(text.size() - 1, "\\");
+    }
+    return text + "\"\"\"";
+}
+
+std::string toml_strings(const std::vector<std::string>& texts) {
+    std::vector<std::string> each;
+    std::ranges::transform(texts, std::back_inserter(each), toml_string);
+    return fmt::format("[{}]", fmt::join(each, ", "));
+}
+
+std::string key_name(const std::string& name) {
+    const bool bare = !name.empty() && std::ranges::all_of(name, [](char letter) {
+        return (letter >= 'a' && letter <= 'z') || (letter >= 'A' && letter <= 'Z') ||
+               (letter >= '0' && letter <= '9') || letter == '-' || letter == '_';
+    });
+    return bare ? name : toml_string(name);
+}
+
+bool is_plain(const std::string& cell) {
+    return cell.find_first_of("en") == std::string::npos;
+}
+
+/// `key = value` for each number that there is, with their points below one another.
+std::vector<std::string> aligned(const std::string& key, const std::vector<std::optional<double>>& values) {
+    constexpr std::size_t kMostPlacesFilled = 6;  // with zeros; columns of many more digits are left ragged
+    std::vector<std::string> cells;
+    std::ranges::transform(values, std::back_inserter(cells),
+                           [](const auto& value) { return value ? number(*value) : std::string(); });
+    const auto point = [](const std::string& cell) { return std::min(cell.find_first_of(".e"), cell.size()); };
+    std::size_t whole = 0;
+    std::size_t places = 0;
+    for (const std::string& cell : cells) {
+        whole = std::max(whole, point(cell));
+        places = std::max(places, is_plain(cell) && !cell.empty() ? cell.size() - point(cell) - 1 : 0);
+    }
+    for (std::string& cell : cells) {
+        if (!cell.empty()) {
+            const std::size_t before = whole - point(cell);
+            if (is_plain(cell) && places <= kMostPlacesFilled) {
+                cell.append(places + 1 - (cell.size() - point(cell)), '0');
+            }
+            cell = fmt::format("{} = {}{}", key, std::string(before, ' '), cell);
+        }
+    }
+    return cells;
+}
+
+/// The table of surfaces, a column at a time.
+class Rows {
+  public:
+    explicit Rows(std::size_t count) : rows_(count, "  { ") {}
+
+    /// Adds a column; a cell holds `key = value`, or nothing.
+    void add(const std::vector<std::string>& cells) {
+        const std::size_t width = std::ranges::max(cells, {}, &std::string::size).size();
+        for (std::size_t row = 0; width > 0 && row < rows_.size(); ++row) {
+            rows_[row] += cells[row] + (cells[row].empty() ? "  " : ", ") + std::string(width - cells[row].size(), ' ');
+        }
+    }
+
+    [[nodiscard]] std::string text() const {
+        std::string all;
+        for (const std::string& row : rows_) {
+            all += row.substr(0, row.find_last_not_of(", ") + 1) + " },\n";
+        }
+        return all;
+    }
+
+  private:
+    std::vector<std::string> rows_;
+};
+
+/// What the form cannot hold is noted here on the way.
+class Writer {
+  public:
+    explicit Writer(const Prescription& prescription) : prescription_(prescription) {}
+
+    WrittenPrescription write() {
+        write_head();
+        write_surfaces();
+        write_claims("stated", prescription_.stated);
+        write_stop();
+        for (const auto& [name, coating] : prescription_.coatings) {
+            write_coating(name, coating);
+        }
+        write_groups();
+        write_zoom();
+        return {.text = std::move(text_), .lost = std::move(lost_)};
+    }
+
+  private:
+    void line(const std::string& key, const std::string& value) { text_ += fmt::format("{} = {}\n", key, value); }
+
+    void lose(const std::string& code, int surface, const std::string& message) {
+        lost_.push_back({.code = code, .severity = Severity::warning, .surface = surface, .message = message});
+    }
+
+    void write_head() {
+        const Prescription& lens = prescription_;
+        line("name", toml_string(lens.name));
+        line("source", toml_string(lens.source));
+        line("projection", toml_string(projection_name(lens.projection)));
+        if (lens.surroundings == Surroundings::vacuum) {
+            line("surroundings", toml_string("vacuum"));
+        }
+        if (lens.object_distance_mm != std::numeric_limits<double>::infinity()) {
+            if (std::isfinite(lens.object_distance_mm) && lens.object_distance_mm > 0.0) {
+                line("object_distance_mm", number(lens.object_distance_mm));
+            } else {
+                lose("lost-object-distance", 0, fmt::format("an object at {} mm", lens.object_distance_mm));
+            }
+        }
+        if (!lens.wavelengths_nm.empty()) {
+            line("wavelengths_nm", number_list(lens.wavelengths_nm));
+        }
+        if (!lens.catalogues.empty()) {
+            std::vector<std::string> names;
+            std::ranges::transform(lens.catalogues, std::back_inserter(names), [&](const std::filesystem::path& file) {
+                return file.lexically_proximate(lens.file.parent_path()).generic_string();
+            });
+            line("catalogues", toml_strings(names));
+        }
+        if (!lens.preferred_makers.empty()) {
+            line("makers", toml_strings(lens.preferred_makers));
+        }
+        if (!lens.notes.empty()) {
+            line("notes", paragraph(lens.notes));
+        }
+    }
+
+    template <class Value>
+    void add_numbers(Rows& table, const std::string& key, const Value& value) const {
+        std::vector<std::optional<double>> values;
+        std::ranges::transform(prescription_.surfaces, std::back_inserter(values), value);
+        table.add(aligned(key, values));
+    }
+
+    template <class Cell>
+    void add_texts(Rows& table, const Cell& cell) {
+        std::vector<std::string> cells;
+        std::ranges::transform(prescription_.surfaces, std::back_inserter(cells), cell);
+        table.add(cells);
+    }
+
+    void write_surfaces() {
+        using Row = PrescribedSurface;
+        using Stated = std::optional<double>;
+        const auto unless_zero = [](double value) { return value == 0.0 ? std::nullopt : Stated(value); };
+        Rows table(prescription_.surfaces.size());
+        table.add(radius_cells());
+        add_numbers(table, "conic", [&](const Row& row) { return unless_zero(row.conic); });
+        for (int term = 0; term < kAsphereTerms; ++term) {
+            add_numbers(table, fmt::format("A{}", 2 * (term + 1)),
+                        [&](const Row& row) { return unless_zero(row.asphere[term]); });
+        }
+        add_numbers(table, "radius_x_mm", [](const Row& row) { return row.radius_x_mm; });
+        add_numbers(table, "thickness_mm", [](const Row& row) { return Stated(row.thickness_mm); });
+        add_texts(table, [](const Row& row) {
+            return row.medium.glass.empty() ? std::string() : "glass = " + toml_string(row.medium.glass);
+        });
+        add_numbers(table, "n_d", [](const Row& row) { return row.medium.n_d; });
+        add_numbers(table, "V_d", [](const Row& row) { return row.medium.n_d ? row.medium.V_d : std::nullopt; });
+        add_texts(table, [&](const Row& row) { return indices_cell(row); });
+        add_numbers(table, "semi_diameter_mm", [](const Row& row) { return row.semi_diameter_mm; });
+        add_numbers(table, "rim_mm", [](const Row& row) { return row.rim_mm; });
+        add_numbers(table, "barrel_mm", [](const Row& row) { return row.barrel_mm; });
+        add_texts(table, [](const Row& row) {
+            return row.coating.empty() ? std::string() : "coating = " + toml_string(row.coating);
+        });
+        add_texts(table, [&](const Row& row) { return shift_cell("decentre_mm", row.misalignment.decentre_mm, row); });
+        add_texts(table, [&](const Row& row) { return shift_cell("tilt_deg", row.misalignment.tilt_deg, row); });
+        text_ += "\nsurfaces = [\n" + table.text() + "]\n";
+    }
+
+    /// `stop = true` stands in the place of a radius, since most stops have none.
+    [[nodiscard]] std::vector<std::string> radius_cells() const {
+        const std::vector<PrescribedSurface>& rows = prescription_.surfaces;
+        std::vector<std::optional<double>> radii;
+        for (const PrescribedSurface& row : rows) {
+            const bool is_plain_stop = row.is_stop && row.radius_mm == std::numeric_limits<double>::infinity();
+            radii.push_back(is_plain_stop ? std::nullopt : std::optional(row.radius_mm));
+        }
+        std::vector<std::string> cells = aligned("radius_mm", radii);
+        for (std::size_t i = 0; i < rows.size(); ++i) {
+            if (rows[i].is_stop) {
+                cells[i] = cells[i].empty() ? "stop = true" : "stop = true, " + cells[i];
+            }
+        }
+        return cells;
+    }
+
+    /// A decentre or a tilt; nothing where it is zero.
+    template <std::size_t count>
+    std::string shift_cell(const std::string& key, const std::array<double, count>& values,
+                           const PrescribedSurface& row) {
+        if (values == std::array<double, count>{}) {
+            return {};
+        }
+        if (!std::ranges::all_of(values, [](double value) { return std::isfinite(value); })) {
+            lose("lost-misalignment", surface_number(row),
+                 fmt::format("{} = {} is left out", key, number_list(values)));
+            return {};
+        }
+        return key + " = " + number_list(values);
+    }
+
+    std::string indices_cell(const PrescribedSurface& row) {
+        if (row.medium.indices.empty()) {
+            return {};
+        }
+        const bool readable = std::ranges::all_of(row.medium.indices, [](const WavelengthValue& at) {
+            return at.wavelength_nm > 0.0 && at.value >= 1.0 && at.value <= 5.0;
+        });
+        if (!row.medium.glass.empty() || !readable) {
+            lose("lost-indices", surface_number(row),
+                 "its indices are left out: they stand beside a glass name, or are not between 1 and 5");
+            return {};
+        }
+        return "indices = " + pairs(row.medium.indices);
+    }
+
+    [[nodiscard]] int surface_number(const PrescribedSurface& row) const {
+        return static_cast<int>(&row - prescription_.surfaces.data()) + 1;
+    }
+
+    void write_claims(const std::string& table, const StatedData& stated) {
+        std::string claims;
+        const auto claim = [&](const char* key, const std::optional<double>& value, bool positive) {
+            if (value && std::isfinite(*value) && (*value > 0.0 || !positive)) {
+                claims += fmt::format("{} = {}\n", key, number(*value));
+            } else if (value) {
+                lose("lost-stated", 0, fmt::format("{} = {} is left out of [{}]", key, *value, table));
+            }
+        };
+        claim("efl_mm", stated.efl_mm, false);
+        claim("bfl_mm", stated.bfl_mm, false);
+        claim("f_number", stated.f_number, true);
+        claim("half_field_deg", stated.half_field_deg, true);
+        claim("image_circle_mm", stated.image_circle_mm, true);
+        claim("total_track_mm", stated.total_track_mm, true);
+        claim("entrance_pupil_diameter_mm", stated.entrance_pupil_diameter_mm, true);
+        if (!stated.source.empty()) {
+            claims += fmt::format("source = {}\n", toml_string(stated.source));
+        }
+        if (!claims.empty()) {
+            text_ += fmt::format("\n[{}]\n{}", table, claims);
+        }
+    }
+
+    void write_stop() {
+        if (const auto* polygon = std::get_if<PolygonStop>(&prescription_.stop_shape)) {
+            text_ += fmt::format("\n[stop]\nblades = {}\ncurvature = {}\nrotation_deg = {}\n", polygon->blades,
+                                 number(polygon->curvature), number(polygon->rotation_deg));
+        } else if (const auto* texture = std::get_if<TexturedStop>(&prescription_.stop_shape)) {
+            text_ += fmt::format("\n[stop]\ntexture = {}\n", toml_string(texture->image));
+        }
+    }
+
+    void write_coating(const std::string& name, const Coating& coating) {
+        text_ += fmt::format("\n[coatings.{}]\n", key_name(name));
+        if (const auto* layers = std::get_if<std::vector<CoatingLayer>>(&coating)) {
+            std::vector<std::string> each;
+            std::ranges::transform(*layers, std::back_inserter(each), [](const CoatingLayer& layer) {
+                return fmt::format("{{ n = {}, thickness_nm = {} }}", number(layer.index), number(layer.thickness_nm));
+            });
+            line("layers", fmt::format("[{}]", fmt::join(each, ", ")));
+            return;
+        }
+        const auto& reflectance = std::get<std::vector<WavelengthValue>>(coating);
+        line("reflectance", reflectance.size() == 1 ? number(reflectance.front().value) : pairs(reflectance));
+    }
+
+    void write_groups() {
+        for (const MisalignedGroup& group : prescription_.groups) {
+            text_ += fmt::format("\n[[groups]]\nsurfaces = [{}, {}]\ndecentre_mm = {}\ntilt_deg = {}\npivot_mm = {}\n",
+                                 group.first, group.last, number_list(group.misalignment.decentre_mm),
+                                 number_list(group.misalignment.tilt_deg), number(group.pivot_mm));
+        }
+        for (const FocusGroup& group : prescription_.focus_groups) {
+            text_ += fmt::format("\n[[focus]]\nsurfaces = [{}, {}]\ntravel = {}\n", group.first, group.last,
+                                 number(group.travel));
+        }
+    }
+
+    void write_zoom() {
+        for (const ZoomPosition& position : prescription_.zoom) {
+            std::vector<std::string> gaps;
+            for (const auto& [surface, gap] : position.gaps_mm) {
+                gaps.push_back(fmt::format("{} = {}", surface, number(gap)));
+            }
+            text_ += fmt::format("\n[[zoom]]\nname = {}\ngaps_mm = {{ {} }}\n", toml_string(position.name),
+                                 fmt::join(gaps, ", "));
+            if (position.stop_semi_diameter_mm) {
+                line("stop_semi_diameter_mm", number(*position.stop_semi_diameter_mm));
+            }
+            write_claims("zoom.stated", position.stated);
+        }
+    }
+
+    const Prescription& prescription_;
+    std::string text_;
+    std::vector<Finding> lost_;
+};
+
+}  // namespace
+
+WrittenPrescription to_toml(const Prescription& prescription) {
+    return Writer(prescription).write();
+}
+
+}  // namespace lensproof

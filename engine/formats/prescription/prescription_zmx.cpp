@@ -1,0 +1,376 @@
+// Zemax's .zmx, sequential: what its surfaces, breaks and configurations mean.
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <set>
+
+#include "engine/base/input_error.h"
+#include "engine/base/text_encoding.h"
+#include "engine/formats/prescription/prescription_forms.h"
+#include "engine/formats/prescription/surface_chain.h"
+#include "engine/formats/prescription/zmx_file.h"
+
+namespace lensproof {
+
+namespace {
+
+constexpr double kDegree = std::numbers::pi / 180.0;
+
+/// A coefficient of r^power, mm.
+double in_mm(double coefficient, int power, double unit_mm) {
+    return coefficient * std::pow(unit_mm, 1 - power);
+}
+
+void surface_type_error(Remarks& remarks, const ZmxSurface& surface, int number, const std::string& what) {
+    remarks.add_once(fmt::format("{}", number), "surface-type", Severity::error, number,
+                     fmt::format("line {}, surface {} of the file: {}", surface.line, number, what));
+}
+
+/// Sets the coefficient of r^power, for which there is a place where the power is even and at most 20.
+void set_term(PrescribedSurface& row, int power, double coefficient, double unit_mm, const ZmxSurface& surface,
+              int number, Remarks& remarks) {
+    if (coefficient == 0.0) {
+        return;
+    }
+    if (power % 2 != 0 || power > 2 * kAsphereTerms) {
+        surface_type_error(remarks, surface, number,
+                           fmt::format("the {} has a term {} r^{}, which is left out: even powers to r^{} are known",
+                                       surface.type, coefficient, power, 2 * kAsphereTerms));
+        return;
+    }
+    row.asphere[power / 2 - 1] = in_mm(coefficient, power, unit_mm);
+}
+
+/// The shape beyond the conic. OpticStudio's help, "Even Asphere", "Odd Asphere", "Extended Asphere", "Extended Odd
+/// Asphere", "Toroidal".
+void read_shape(PrescribedSurface& row, const ZmxSurface& surface, int number, double unit_mm, Remarks& remarks) {
+    constexpr int kParameterTerms = 8;
+    const auto set = [&](int power, double coefficient) {
+        set_term(row, power, coefficient, unit_mm, surface, number, remarks);
+    };
+    const auto normalized_terms = [&](int step) {
+        const double radius = surface.extra_value(2);
+        for (const auto& [index, value] : surface.extra) {
+            if (index >= 3 && value != 0.0) {
+                const int power = step * (index - 2);
+                set(power, radius == 0.0 ? value : value / std::pow(radius, power));
+            }
+        }
+    };
+    if (surface.type == "STANDARD") {
+        return;
+    }
+    if (surface.type == "EVENASPH" || surface.type == "ODDASPHE") {
+        const int step = surface.type == "EVENASPH" ? 2 : 1;
+        for (int i = 1; i <= kParameterTerms; ++i) {
+            set(step * i, surface.parameter(i));
+        }
+        std::vector<std::string> beyond;
+        for (const auto& [index, value] : surface.parameters) {
+            if (index > kParameterTerms && value != 0.0) {
+                beyond.push_back(fmt::format("PARM {} = {}", index, value));
+            }
+        }
+        if (!beyond.empty()) {
+            surface_type_error(remarks, surface, number,
+                               fmt::format("{} of the {}, which has {} terms, is left out", fmt::join(beyond, ", "),
+                                           surface.type, kParameterTerms));
+        }
+    } else if (surface.type == "XASPHERE") {
+        normalized_terms(2);
+    } else if (surface.type == "XOSPHERE") {
+        normalized_terms(1);
+    } else if (surface.type == "TOROIDAL") {
+        const double radius_of_rotation = surface.parameter(1);
+        row.radius_x_mm =
+            radius_of_rotation == 0.0 ? std::numeric_limits<double>::infinity() : radius_of_rotation * unit_mm;
+        for (int i = 2; i <= kParameterTerms; ++i) {
+            set(2 * (i - 1), surface.parameter(i));
+        }
+        if (surface.parameter(13) != 0.0 || surface.extra_value(1) != 0.0) {
+            surface_type_error(remarks, surface, number, "the toroid's Zernike terms are left out");
+        }
+    } else {
+        surface_type_error(remarks, surface, number,
+                           fmt::format("the type {} is not known; the surface is taken as a conic", surface.type));
+    }
+}
+
+PrescribedSurface read_row(const ZmxFile& file, int number, const std::filesystem::path& path, Remarks& remarks) {
+    const ZmxSurface& surface = file.surfaces[number];
+    const double unit = file.unit_mm;
+    const auto length = [unit](std::optional<double> value) {
+        return value ? std::optional(*value * unit) : std::nullopt;
+    };
+    PrescribedSurface row;
+    row.where = fmt::format("{}:{}: SURF {}", path.string(), surface.line, number);
+    row.is_stop = surface.is_stop;
+    if (surface.curvature != 0.0) {
+        row.radius_mm = unit / surface.curvature;
+    }
+    row.conic = surface.conic;
+    read_shape(row, surface, number, unit, remarks);
+    row.thickness_mm = surface.thickness * unit;
+    row.semi_diameter_mm = length(surface.aperture ? surface.aperture : surface.semi_diameter);
+    if (surface.mechanical && surface.mechanical > surface.semi_diameter.value_or(0.0)) {
+        row.rim_mm = length(surface.mechanical);
+    }
+    row.medium = surface.medium;
+    if (surface.is_mirror) {
+        remarks.add(
+            "mirror", Severity::error, number,
+            fmt::format("line {}, surface {} of the file: GLAS MIRROR, which is not traced", surface.line, number));
+    }
+    return row;
+}
+
+/// A coordinate break (OpticStudio's help, "Coordinate Break", "Tilt/Decenter"): decentres x and y, then tilts about x,
+/// the turned y and the twice turned z, each by the right-hand rule; with the order flag set, the tilts in reverse
+/// order, then the decentres in the turned coordinates.
+Frame broken(const Frame& frame, const ZmxSurface& surface, double unit_mm) {
+    const Vec3d decentre{surface.parameter(1) * unit_mm, surface.parameter(2) * unit_mm, 0.0};
+    const std::array<double, 3> tilt = {surface.parameter(3), surface.parameter(4), surface.parameter(5)};
+    if (surface.parameter(6) == 0.0) {
+        return frame.shifted(decentre).tilted(tilt);
+    }
+    return frame.turned(2, tilt[2]).turned(1, tilt[1]).turned(0, tilt[0]).shifted(decentre);
+}
+
+/// The frames of all surfaces but the object and the breaks.
+std::vector<ChainLink> chain_of(const ZmxFile& file, const std::filesystem::path& path) {
+    const bool has_breaks = std::ranges::any_of(file.surfaces, &ZmxSurface::is_break);
+    std::vector<ChainLink> links;
+    Frame frame;
+    for (std::size_t number = 1; number < file.surfaces.size(); ++number) {
+        const ZmxSurface& surface = file.surfaces[number];
+        const double thickness = surface.thickness * file.unit_mm;
+        if (surface.is_break()) {
+            frame = broken(frame, surface, file.unit_mm);
+            if (!links.empty()) {
+                links.back().straight = false;
+            }
+        } else {
+            links.push_back({.frame = frame, .thickness_mm = thickness});
+        }
+        if (has_breaks && number + 1 < file.surfaces.size()) {
+            const Vec3d& origin = frame.origin;
+            if (!std::isfinite(thickness) || !std::isfinite(origin.x + origin.y + origin.z)) {
+                throw InputError(
+                    fmt::format("{}:{}: SURF {}: coordinate breaks cannot be followed over a length that "
+                                "is not finite",
+                                path.string(), surface.line, number));
+            }
+            frame = frame.shifted({0.0, 0.0, thickness});
+        }
+    }
+    return links;
+}
+
+/// Of every surface of the file the row it became, from 1; 0 for the object and the image. A break counts as the
+/// surface behind it.
+std::vector<int> rows_of_surfaces(const ZmxFile& file) {
+    std::vector<int> rows = {0};
+    int row = 1;
+    for (std::size_t number = 1; number + 1 < file.surfaces.size(); ++number) {
+        rows.push_back(row);
+        row += file.surfaces[number].is_break() ? 0 : 1;
+    }
+    rows.push_back(0);
+    return rows;
+}
+
+void read_aperture(const ZmxFile& file, double value, StatedData& stated, Remarks& remarks) {
+    const bool at_infinity = std::isinf(file.surfaces.front().thickness);
+    if (file.aperture_type == "ENPD" && value > 0.0) {
+        stated.entrance_pupil_diameter_mm = value * file.unit_mm;
+    } else if (file.aperture_type == "FNUM" && value > 0.0 && (!file.is_working_f_number || at_infinity)) {
+        stated.f_number = value;
+    } else if (file.aperture_type == "OBNA" || file.aperture_type == "FNUM") {
+        remarks.add_once("", "aperture", Severity::info, 0,
+                         fmt::format("{} = {} says the aperture on the object's side or at a finite distance; the "
+                                     "stop's semi-diameter is taken instead",
+                                     file.aperture_type, value));
+    }
+}
+
+/// Fields as half field angle (angles in x and y add as their tangents) or as image circle.
+void read_fields(const ZmxFile& file, StatedData& stated, Remarks& remarks) {
+    const auto stated_count = static_cast<std::size_t>(file.fields);
+    std::size_t count = std::max(file.field_x.size(), file.field_y.size());
+    count = file.fields > 0 ? std::min(count, stated_count) : count;
+    double largest = 0.0;
+    for (std::size_t i = 0; i < count; ++i) {
+        const double x = i < file.field_x.size() ? std::abs(file.field_x[i]) : 0.0;
+        const double y = i < file.field_y.size() ? std::abs(file.field_y[i]) : 0.0;
+        const bool is_oblique = file.field_type == 0 && x != 0.0 && y != 0.0 && std::max(x, y) < 90.0;
+        const double here = is_oblique ? std::atan(std::hypot(std::tan(x * kDegree), std::tan(y * kDegree))) / kDegree
+                                       : std::hypot(x, y);
+        largest = std::max(largest, here);
+    }
+    if (largest == 0.0) {
+        return;
+    }
+    if (file.field_type == 0) {
+        stated.half_field_deg = largest;
+    } else if (file.field_type == 2 || file.field_type == 3) {
+        stated.image_circle_mm = 2.0 * largest * file.unit_mm;
+    } else if (file.field_type == 4) {
+        remarks.add("fields", Severity::info, 0, "fields are stated as theodolite angles (FTYP 4), and left out");
+    } else {
+        remarks.add("fields", Severity::info, 0,
+                    fmt::format("fields are stated as object heights (FTYP {}), up to {} mm, and left out",
+                                file.field_type, largest * file.unit_mm));
+    }
+}
+
+std::vector<double> wavelengths_nm(const ZmxFile& file) {
+    constexpr double kDigits = 1e6;  // of a nanometre
+    std::vector<double> wavelengths;
+    for (const auto& [index, um] : file.wavelengths_um) {
+        if (file.wavelengths != 0 && index > file.wavelengths) {
+            break;  // beyond those in use Zemax writes place-holders
+        }
+        const double nm = std::round(um * 1e3 * kDigits) / kDigits;
+        if (index == file.reference_wavelength) {
+            wavelengths.insert(wavelengths.begin(), nm);
+        } else {
+            wavelengths.push_back(nm);
+        }
+    }
+    return wavelengths;
+}
+
+void read_names(const ZmxFile& file, Prescription& prescription) {
+    constexpr std::string_view kSource = "Source: ";
+    const std::filesystem::path& path = prescription.file;
+    prescription.name = file.name.empty() ? path.stem().string() : file.name;
+    prescription.source = "the file " + path.filename().string();
+    for (const std::string& note : file.notes) {
+        if (note.starts_with(kSource)) {
+            prescription.source = note.substr(kSource.size());
+        } else {
+            prescription.notes += (prescription.notes.empty() ? "" : "\n") + note;
+        }
+    }
+}
+
+/// What the object and the image say that a table has no row for.
+void read_ends(const ZmxFile& file, const std::vector<ChainLink>& links, Prescription& prescription, Remarks& remarks) {
+    const ZmxSurface& object = file.surfaces.front();
+    const ZmxSurface& image = file.surfaces.back();
+    const int image_number = static_cast<int>(file.surfaces.size()) - 1;
+    prescription.object_distance_mm = object.thickness * file.unit_mm;
+    if (object.curvature != 0.0) {
+        remarks.add("object-shape", Severity::warning, 0,
+                    fmt::format("line {}: the object is curved, and taken as flat", object.line));
+    }
+    if (image.curvature != 0.0 || image.type != "STANDARD") {
+        remarks.add("image-shape", Severity::warning, 0,
+                    fmt::format("line {}: the image surface {} is not flat; the sensor is taken as flat", image.line,
+                                image_number));
+    }
+    if (!is_upright(links.back().frame)) {
+        remarks.add("image-tilt", Severity::warning, 0,
+                    fmt::format("line {}: the image surface {} is tilted against the first surface's axis; the sensor "
+                                "is taken as perpendicular to it",
+                                image.line, image_number));
+    }
+    if (image.semi_diameter_is_fixed && !prescription.stated.image_circle_mm) {
+        prescription.stated.image_circle_mm = 2.0 * *image.semi_diameter * file.unit_mm;
+    }
+}
+
+/// The gaps of each configuration: the file's with its thicknesses, placed anew.
+void read_configurations(const ZmxFile& file, Prescription& prescription, Remarks& remarks) {
+    if (file.configurations == 1) {
+        return;
+    }
+    const int last = static_cast<int>(file.surfaces.size()) - 1;
+    std::set<std::string> left_out;
+    std::vector<std::vector<PrescribedSurface>> tables;
+    for (int configuration = 1; configuration <= file.configurations; ++configuration) {
+        ZmxFile varied = file;
+        ZoomPosition position{.name = fmt::format("configuration {}", configuration)};
+        for (const auto& [operand, values] : file.operands) {
+            const auto& [keyword, of] = operand;
+            const auto value = values.find(configuration);
+            if (keyword == "THIC" && of >= 1 && of < last) {
+                varied.surfaces[of].thickness = value == values.end() ? varied.surfaces[of].thickness : value->second;
+            } else if (keyword == "APER" && value != values.end()) {
+                read_aperture(file, value->second, position.stated, remarks);
+            } else {
+                left_out.insert(fmt::format("{} {}", keyword, of));
+            }
+        }
+        tables.push_back(prescription.surfaces);
+        place_rows(tables.back(), chain_of(varied, prescription.file));
+        prescription.zoom.push_back(std::move(position));
+    }
+    for (std::size_t row = 0; row < prescription.surfaces.size(); ++row) {
+        const auto differs = [&](const std::vector<PrescribedSurface>& table) {
+            return table[row].thickness_mm != prescription.surfaces[row].thickness_mm;
+        };
+        const auto is_misplaced = [&](const std::vector<PrescribedSurface>& table) {
+            return table[row].misalignment != prescription.surfaces[row].misalignment;
+        };
+        for (std::size_t i = 0; std::ranges::any_of(tables, differs) && i < tables.size(); ++i) {
+            prescription.zoom[i].gaps_mm[static_cast<int>(row) + 1] = tables[i][row].thickness_mm;
+        }
+        if (std::ranges::any_of(tables, is_misplaced)) {
+            left_out.insert(fmt::format("the decentre of row {}", row + 1));
+        }
+    }
+    if (!left_out.empty()) {
+        remarks.add("multi-configuration", Severity::warning, 0,
+                    fmt::format("of what differs between the {} configurations, this is left out: {}",
+                                file.configurations, fmt::join(left_out, ", ")));
+    }
+}
+
+}  // namespace
+
+Prescription parse_zmx(const std::string& text, const std::filesystem::path& file) {
+    Remarks remarks;
+    const ZmxFile zmx = read_zmx_file(to_utf8(text), file, remarks);
+    Prescription prescription;
+    prescription.file = file;
+    read_names(zmx, prescription);
+    const int image = static_cast<int>(zmx.surfaces.size()) - 1;
+    for (int number = 1; number < image; ++number) {
+        if (!zmx.surfaces[number].is_break()) {
+            prescription.surfaces.push_back(read_row(zmx, number, file, remarks));
+            if (zmx.surfaces[number].is_mirror && prescription.surfaces.size() > 1) {
+                prescription.surfaces.back().medium = prescription.surfaces.end()[-2].medium;
+            }
+        } else if (zmx.surfaces[number].is_stop) {
+            remarks.not_understood("STOP", number, zmx.surfaces[number].line, "the stop on a coordinate break");
+        }
+    }
+    if (prescription.surfaces.empty() || zmx.surfaces.back().is_break()) {
+        throw InputError(
+            fmt::format("{}: holds {} surfaces, expected an object, a lens and an image that is no "
+                        "coordinate break",
+                        file.string(), zmx.surfaces.size()));
+    }
+    const std::vector<ChainLink> links = chain_of(zmx, file);
+    place_rows(prescription.surfaces, links);
+    for (std::size_t i = 0; i < prescription.surfaces.size(); ++i) {
+        if (prescription.surfaces[i].is_stop && !is_upright(links[i].frame)) {
+            remarks.add_once("", "stop-tilt", Severity::info, 0,
+                             fmt::format("{}: the stop is tilted against the axis", prescription.surfaces[i].where));
+        }
+    }
+    read_aperture(zmx, zmx.aperture_value, prescription.stated, remarks);
+    read_fields(zmx, prescription.stated, remarks);
+    read_ends(zmx, links, prescription, remarks);
+    read_configurations(zmx, prescription, remarks);
+    prescription.wavelengths_nm = wavelengths_nm(zmx);
+    prescription.preferred_makers = zmx.catalogues;
+    prescription.remarks = remarks.renumbered(rows_of_surfaces(zmx));
+    return prescription;
+}
+
+}  // namespace lensproof

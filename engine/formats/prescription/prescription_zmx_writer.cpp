@@ -1,0 +1,359 @@
+// A prescription as OpticStudio would save it: sequential, in mm, each tilted surface between a pair of coordinate
+// breaks.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <tuple>
+
+#include "engine/base/text_encoding.h"
+#include "engine/formats/prescription/prescription_forms.h"
+#include "engine/formats/prescription/prescription_losses.h"
+#include "engine/formats/prescription/surface_chain.h"
+#include "engine/spectral/wavelengths.h"
+
+namespace lensproof {
+
+namespace {
+
+std::string one_line(std::string text) {
+    std::ranges::replace_if(
+        text, [](unsigned char letter) { return letter < 0x20; }, ' ');
+    return text;
+}
+
+/// A name as one word, which is all that the form has room for.
+std::string one_word(std::string text) {
+    std::ranges::replace_if(
+        text, [](unsigned char letter) { return letter <= 0x20; }, '_');
+    return text;
+}
+
+std::string zmx_number(double value) {
+    return std::isinf(value) ? (value > 0.0 ? "INFINITY" : "-INFINITY") : fmt::format("{}", value);
+}
+
+/// The surfaces with the groups' tilts written into each, so that each stands on its own.
+Prescription without_groups(Prescription prescription) {
+    if (!prescription.groups.empty()) {
+        std::vector<ChainLink> links;
+        for (const Frame& frame : surface_frames(prescription)) {
+            links.push_back({.frame = frame, .straight = false});
+        }
+        double image_z = 0.0;
+        for (const PrescribedSurface& row : prescription.surfaces) {
+            image_z += row.thickness_mm;
+        }
+        links.push_back({.frame = {.origin = {0.0, 0.0, image_z}}});
+        // What a shift of the first vertex along the axis takes from the object's distance.
+        prescription.object_distance_mm += links.front().frame.origin.z;
+        place_rows(prescription.surfaces, links);
+        prescription.groups.clear();
+    }
+    return prescription;
+}
+
+class ZmxWriter {
+  public:
+    explicit ZmxWriter(const Prescription& prescription)
+        : original_(prescription), prescription_(without_groups(prescription)) {}
+
+    WrittenPrescription write() {
+        write_head();
+        write_surfaces();
+        write_configurations();
+        report_lost();
+        return {.text = to_utf16(text_), .lost = std::move(lost_)};
+    }
+
+  private:
+    template <class... Values>
+    void line(fmt::format_string<Values...> format, Values&&... values) {
+        fmt::format_to(std::back_inserter(text_), format, std::forward<Values>(values)...);
+        text_ += "\r\n";
+    }
+
+    void lose(const std::string& code, int surface, const std::string& what, Severity severity = Severity::warning) {
+        lost_.push_back(lost(code, severity, surface, "a .zmx file cannot say " + what));
+    }
+
+    void write_head() {
+        const StatedData& stated = prescription_.stated;
+        line("VERS 140124 0 0");
+        line("MODE SEQ");
+        line("NAME {}", one_line(prescription_.name));
+        line("NOTE 0 Source: {}", one_line(prescription_.source));
+        for (std::string_view notes = prescription_.notes; !notes.empty();) {
+            const std::size_t end = std::min(notes.find('\n'), notes.size());
+            line("NOTE 0 {}", one_line(std::string(notes.substr(0, end))));
+            notes.remove_prefix(std::min(notes.size(), end + 1));
+        }
+        line("UNIT MM X W X CM MR CPMM");
+        if (stated.entrance_pupil_diameter_mm) {
+            line("ENPD {}", *stated.entrance_pupil_diameter_mm);
+        } else if (stated.f_number) {
+            line("FNUM {} 0", *stated.f_number);
+        } else {
+            line("FLOA");
+        }
+        line("ENVD 20 1 0");
+        line("GFAC 0 0");
+        write_catalogues();
+        const auto wavelengths = std::max<std::size_t>(1, prescription_.wavelengths_nm.size());
+        const bool has_field = stated.half_field_deg || stated.image_circle_mm;
+        const double field = stated.half_field_deg.value_or(0.5 * stated.image_circle_mm.value_or(0.0));
+        line("FTYP {} 0 {} {} 0 0 0", stated.half_field_deg || !has_field ? 0 : 3, has_field ? 3 : 1, wavelengths);
+        line("XFLN 0 0 0 0 0 0 0 0 0 0 0 0");
+        line("YFLN 0 {} {} 0 0 0 0 0 0 0 0 0", std::numbers::sqrt2 / 2.0 * field, field);
+        line("FWGN 1 1 1 1 1 1 1 1 1 1 1 1");
+        for (std::size_t i = 0; i < wavelengths; ++i) {
+            const double nm = prescription_.wavelengths_nm.empty() ? kLineD : prescription_.wavelengths_nm[i];
+            line("WAVM {} {} 1", i + 1, nm * 1e-3);
+        }
+        line("PWAV 1");
+    }
+
+    /// The makers that names of glasses carry, before those that the lens prefers.
+    void write_catalogues() {
+        std::vector<std::string> makers;
+        const auto add = [&](const std::string& maker) {
+            if (!maker.empty() && std::ranges::find(makers, maker) == makers.end()) {
+                makers.push_back(maker);
+            }
+        };
+        for (const PrescribedSurface& row : prescription_.surfaces) {
+            add(split_glass(row.medium.glass).first);
+        }
+        for (const std::string& maker : prescription_.preferred_makers) {
+            add(one_word(maker));
+        }
+        std::string words;
+        for (const std::string& maker : makers) {
+            words += " " + maker;
+        }
+        if (!words.empty()) {
+            line("GCAT{}", words);
+        }
+    }
+
+    /// "SCHOTT LAK9": the maker and the name. What stands before the blank is a maker where it is letters only.
+    static std::pair<std::string, std::string> split_glass(const std::string& glass) {
+        const std::size_t space = glass.find(' ');
+        const bool has_maker =
+            space != std::string::npos &&
+            std::ranges::all_of(glass.substr(0, space), [](unsigned char letter) { return std::isalpha(letter); });
+        return has_maker ? std::pair(glass.substr(0, space), one_word(glass.substr(space + 1)))
+                         : std::pair(std::string(), one_word(glass));
+    }
+
+    void begin_surface(const std::string& type) {
+        line("SURF {}", surfaces_);
+        line("  TYPE {}", type);
+        ++surfaces_;
+    }
+
+    void write_break(const Misalignment& break_by, double sign, double thickness) {
+        begin_surface("COORDBRK");
+        line("  CURV 0.0 0 0 0 0 \"\"");
+        line("  PARM 1 {}", sign * break_by.decentre_mm[0]);
+        line("  PARM 2 {}", sign * break_by.decentre_mm[1]);
+        for (int axis = 0; axis < 3; ++axis) {
+            line("  PARM {} {}", 3 + axis, sign * break_by.tilt_deg[axis]);
+        }
+        line("  PARM 6 {}", sign < 0.0 ? 1 : 0);
+        line("  DISZ {}", zmx_number(thickness));
+    }
+
+    void write_surfaces() {
+        begin_surface("STANDARD");
+        line("  CURV 0.0 0 0 0 0 \"\"");
+        line("  DISZ {}", zmx_number(prescription_.object_distance_mm));
+        for (std::size_t i = 0; i < prescription_.surfaces.size(); ++i) {
+            const PrescribedSurface& row = prescription_.surfaces[i];
+            const bool is_aligned = row.misalignment == Misalignment{};
+            if (!is_aligned) {
+                write_break(row.misalignment, 1.0, 0.0);
+            }
+            write_surface(row, static_cast<int>(i) + 1, is_aligned ? row.thickness_mm : 0.0);
+            if (!is_aligned) {
+                write_break(row.misalignment, -1.0, row.thickness_mm);
+            }
+            gap_at_.push_back(surfaces_ - 1);
+        }
+        begin_surface("STANDARD");
+        line("  CURV 0.0 0 0 0 0 \"\"");
+        line("  DISZ 0");
+        if (prescription_.stated.image_circle_mm) {
+            line("  DIAM {} 1 0 0 1 \"\"", 0.5 * *prescription_.stated.image_circle_mm);
+        }
+    }
+
+    void write_surface(const PrescribedSurface& row, int number, double thickness) {
+        constexpr int kEvenAsphereTerms = 8;  // to r^16; beyond, the extended asphere, to r^480
+        constexpr int kToroidTerms = 7;
+        int terms = 0;
+        for (int i = 0; i < kAsphereTerms; ++i) {
+            terms = row.asphere[i] != 0.0 ? i + 1 : terms;
+        }
+        const bool is_extended = !row.radius_x_mm && terms > kEvenAsphereTerms;
+        begin_surface(row.radius_x_mm ? "TOROIDAL"
+                                      : (is_extended ? "XASPHERE" : (terms > 0 ? "EVENASPH" : "STANDARD")));
+        if (row.is_stop) {
+            line("  STOP");
+        }
+        line("  CURV {} 0 0 0 0 \"\"", row.curvature());
+        if (row.radius_x_mm) {
+            line("  PARM 1 {}", std::isinf(*row.radius_x_mm) ? 0.0 : *row.radius_x_mm);
+            for (int i = 0; i < std::min(terms, kToroidTerms); ++i) {
+                line("  PARM {} {}", i + 2, row.asphere[i]);
+            }
+            if (terms > kToroidTerms) {
+                lose("lost-asphere", number, fmt::format("a toroid's terms beyond y^{}", 2 * kToroidTerms));
+            }
+        } else if (is_extended) {
+            line("  XDAT 1 {} 0 0 1.0 0.0 0 \"\"", terms);
+            line("  XDAT 2 1.0 0 0 1.0 0.0 0 \"\"");
+            for (int i = 0; i < terms; ++i) {
+                line("  XDAT {} {} 0 0 1.0 0.0 0 \"\"", i + 3, row.asphere[i]);
+            }
+        } else {
+            for (int i = 0; i < terms; ++i) {
+                line("  PARM {} {}", i + 1, row.asphere[i]);
+            }
+        }
+        line("  DISZ {}", zmx_number(thickness));
+        write_medium(row.medium, number);
+        if (row.conic != 0.0) {
+            line("  CONI {}", row.conic);
+        }
+        const std::optional<double> clear = plain_semi_diameter(prescription_, number - 1);
+        if (clear) {
+            line("  DIAM {} 1 0 0 1 \"\"", *clear);
+        }
+        if (row.rim_mm) {
+            line("  MEMA {} 1 0 0 1 \"\"", *row.rim_mm);
+        }
+        if (clear) {
+            line("  FLAP 0 {} 0", *clear);
+        }
+        if (row.barrel_mm) {
+            lose("lost-barrel", number, "the radius of a barrel; the clear apertures at its ends are narrowed to it",
+                 Severity::info);
+        }
+        if (!row.coating.empty()) {
+            lose("lost-coating", number, fmt::format("what the coating {} is", row.coating));
+        }
+    }
+
+    void write_medium(const StatedMedium& medium, int number) {
+        if (medium.is_air()) {
+            return;
+        }
+        double n_d = medium.n_d.value_or(0.0);
+        double V_d = medium.V_d.value_or(0.0);
+        if (!medium.indices.empty()) {
+            std::tie(n_d, V_d) = figures_of_table(medium);
+            lose("lost-indices", number,
+                 fmt::format("a table of indices; n_d = {:.6f}, V_d = {:.2f} stand for it", n_d, V_d));
+        }
+        if (!medium.glass.empty()) {
+            const auto [maker, name] = split_glass(medium.glass);
+            if (medium.n_d) {
+                line("  GLAS {} 0 0 {} {} 0 0 0 0 0 0", name, n_d, V_d);
+            } else {
+                line("  GLAS {} 0 0 1.5 40 0 0 0 0 0 0", name);  // as Zemax writes what only the catalogue knows
+            }
+            const auto [known, is_new] = makers_.try_emplace(name, maker);
+            if (!is_new && known->second != maker) {
+                lose("lost-makers", number, fmt::format("which maker's {} each surface has", name));
+            }
+        } else {
+            line("  GLAS ___BLANK 1 0 {} {} 0 0 0 0 0 0", n_d, V_d);
+        }
+    }
+
+    /// The surfaces at a zoom position, groups written in.
+    [[nodiscard]] std::vector<PrescribedSurface> surfaces_at(std::size_t position) const {
+        return without_groups(at_zoom_position(original_, position)).surfaces;
+    }
+
+    void write_configurations() {
+        const std::size_t count = original_.zoom.size();
+        line("MNUM {} 1", std::max<std::size_t>(1, count));
+        std::vector<std::vector<PrescribedSurface>> tables;
+        for (std::size_t position = 0; position < count; ++position) {
+            tables.push_back(surfaces_at(position));
+            const ZoomPosition& zoom = original_.zoom[position];
+            if (zoom.stop_semi_diameter_mm) {
+                lose("lost-stop-size", 0, fmt::format("the stop's size at the zoom position {}", zoom.name));
+            }
+        }
+        if (count > 0) {
+            lose("lost-zoom-names", 0, "the names and the stated data of zoom positions; they are numbered",
+                 Severity::info);
+        }
+        for (std::size_t row = 0; row < prescription_.surfaces.size(); ++row) {
+            const auto differs = [&](const auto& table) {
+                return table[row].thickness_mm != prescription_.surfaces[row].thickness_mm;
+            };
+            const auto is_misplaced = [&](const auto& table) {
+                return table[row].misalignment != prescription_.surfaces[row].misalignment;
+            };
+            for (std::size_t i = 0; std::ranges::any_of(tables, differs) && i < tables.size(); ++i) {
+                line("THIC {} {} {} 0 0 0 1 1 1 0 0 \"\" 0", gap_at_[row], i + 1,
+                     zmx_number(tables[i][row].thickness_mm));
+            }
+            if (std::ranges::any_of(tables, is_misplaced)) {
+                lose("lost-misalignment", static_cast<int>(row) + 1, "a decentre that differs between zoom positions");
+            }
+        }
+    }
+
+    void report_lost() {
+        const StatedData& stated = original_.stated;
+        if (!std::holds_alternative<std::monostate>(original_.stop_shape)) {
+            lose("lost-stop-shape", 0, "a stop that is no circle");
+        }
+        if (original_.projection != Projection::rectilinear) {
+            lose("lost-projection", 0, fmt::format("the projection, {}", projection_name(original_.projection)),
+                 Severity::info);
+        }
+        if (!original_.focus_groups.empty()) {
+            lose("lost-focus-groups", 0, "which groups move to focus");
+        }
+        if (original_.surroundings == Surroundings::vacuum) {
+            lose("lost-surroundings", 0, "that the lens stands in vacuum");
+        }
+        if (!original_.catalogues.empty()) {
+            lose("lost-catalogues", 0, "where the lens's own glass files lie");
+        }
+        if (stated.efl_mm || stated.bfl_mm || stated.total_track_mm ||
+            (stated.f_number && stated.entrance_pupil_diameter_mm)) {
+            lose("lost-stated", 0, "all of the stated data; the aperture and the field are written", Severity::info);
+        }
+        if (!original_.groups.empty() && surface_frames(original_).front().origin.z != 0.0) {
+            lose("lost-origin", 1, "that the first vertex lies off its untilted place; lens space begins at it");
+        }
+        if (!original_.groups.empty()) {
+            lose("lost-groups", 0, "which surfaces are tilted as a group; each is tilted on its own, to the same place",
+                 Severity::info);
+        }
+    }
+
+    const Prescription& original_;
+    Prescription prescription_;  // without groups
+    std::string text_;
+    int surfaces_ = 0;
+    std::vector<int> gap_at_;  // of each row, the surface of the file that carries its gap
+    std::map<std::string, std::string> makers_;
+    std::vector<Finding> lost_;
+};
+
+}  // namespace
+
+WrittenPrescription to_zmx(const Prescription& prescription) {
+    return ZmxWriter(prescription).write();
+}
+
+}  // namespace lensproof

@@ -1,0 +1,28 @@
+// engine/formats/prescription/surface_chain.h — from local coordinates, surface after surface, to a table along one
+// axis.
+#pragma once
+#include <vector>
+
+#include "engine/optics/frame.h"
+#include "engine/optics/prescription.h"
+
+namespace lensproof {
+
+/// A surface as design programs place it: in a frame that has come about by thicknesses, shifts and tilts along the
+/// way.
+struct ChainLink {
+    Frame frame;
+    double thickness_mm = 0.0;  // as stated behind it
+    bool straight = true;       // nothing but that thickness lies between it and the next link
+};
+
+/// Writes the links' places into `rows`: thickness as the distance of vertices along the axis, decentre and tilt. The
+/// last link is the image's, which has no row. Where there is nothing but a thickness between two aligned surfaces, it
+/// is taken as stated, digit for digit; shifts and tilts below 1e-12 mm and 1e-12° are what rounding leaves of breaks
+/// that undo each other, and dropped.
+void place_rows(std::vector<PrescribedSurface>& rows, const std::vector<ChainLink>& links);
+
+/// Of a frame that stands at rest, but for rounding: no tilt, whatever its decentre.
+bool is_upright(const Frame& frame);
+
+}  // namespace lensproof

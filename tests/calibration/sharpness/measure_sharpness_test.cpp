@@ -1,0 +1,102 @@
+#include "calibration/sharpness/measure_sharpness.h"
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+
+#include "calibration/measure.h"
+#include "calibration/self_test/simulated_chart.h"
+#include "engine/base/input_error.h"
+#include "tests/calibration/sharpness/sharpness_edge.h"
+#include "tests/places.h"
+
+namespace lensproof {
+namespace {
+
+using namespace synthetic;
+namespace fs = std::filesystem;
+
+// A chart of slanted squares through a lens whose blur is the same everywhere: both curves are level, at the MTF50 of
+// that Gaussian and the pixel's box, within the target of 2 % (each of 140 edges is known to about 2 %).
+TEST(CalibrationMeasureSharpness, AnEvenBlurGivesLevelCurves) {
+    const Chart chart{.pattern = SlantedEdges{7, 5, 60.0, 34.0, 6.0}};
+    const Pose pose{{0.02, -0.03, 0.0}, {0.0, 0.0, 600.0}};
+    SimulatedCamera camera{
+        .model = perspective_camera(), .width_px = 640, .height_px = 480, .channels = {{.name = "G"}}};
+    camera.blur_px = 0.8;
+    camera.read_noise = 0.005;
+    const Image image = simulate_chart(camera, pose, chart, 7);
+    SharpnessObservations seen;
+    const ChartPoints points{.image_px = view_of(camera.model, pose, chart).image_px,
+                             .found = std::vector<bool>(35, true)};
+    observe_chart_edges(seen, image, 0, "chart", points, chart);
+    Profile profile;
+    profile.width_px = 640;
+    profile.height_px = 480;
+    profile.pixel_pitch_um = 5.0;
+    add_sharpness(profile, seen, centre_px(camera.model));
+    EXPECT_GT(profile.sharpness.at("G").size(), 100u);
+    const double truth = true_frequency(gaussian_blur(0.8), 6.0, 0.5);
+    for (const char* name : {"mtf50_tangential_G", "mtf50_sagittal_G"}) {
+        for (const double height : {0.0, 0.3, 0.6}) {
+            EXPECT_NEAR(sample(profile.curves.at(name), height)->value / truth, 1.0, 0.02) << name << height;
+            EXPECT_NEAR(sample(profile.curves.at(std::string(name) + "_cycles_per_mm"), height)->value,
+                        sample(profile.curves.at(name), height)->value * 200.0, 1e-9);
+        }
+    }
+    const std::string text = to_json(profile).dump();
+    EXPECT_EQ(to_json(parse_profile(text, "memory")).dump(), text);
+}
+
+MeasureInput only_edges(std::vector<Picture> pictures, std::vector<PixelRectangle> edges) {
+    MeasureInput input;
+    input.name = "edge";
+    input.pictures = std::move(pictures);
+    input.edges = std::move(edges);
+    return input;
+}
+
+TEST(CalibrationMeasureSharpness, APictureThatIsOnlyAnEdgeIsEnough) {
+    const Blur blur = gaussian_blur(1.0);
+    const EdgePicture edge{.normal_deg = 5.0};
+    const auto load = [=] { return paint_edge(edge, blur); };
+    const Profile profile = measure(only_edges({{"edge", PictureRole::edges, load}}, {PixelRectangle{}}));
+    ASSERT_EQ(profile.sharpness.at("Y").size(), 1u);
+    EXPECT_NEAR(profile.sharpness.at("Y")[0].edge.mtf50->cycles_per_px / true_frequency(blur, 5.0, 0.5), 1.0, 2e-3);
+    EXPECT_TRUE(profile.not_measured.contains("sharpness_over_the_field"));
+    try {
+        measure(only_edges({{"edge", PictureRole::edges, load}}, {{0, 0, 20, 20}}));
+        FAIL();
+    } catch (const InputError& e) {
+        EXPECT_NE(std::string(e.what()).find("edge: the rectangle 0,0,20,20 in channel Y has no edge"),
+                  std::string::npos);
+    }
+}
+
+// Sample edges of the sfrmat5 program, which come without its output. What can be held: the same pixels as TIFF and as
+// BMP give the same answer, the channels agree to a few percent, and the edge's errors are below 2 %.
+TEST(CalibrationMeasureSharpness, SampleEdgesOfAnotherProgramAgreeAmongThemselves) {
+    const fs::path folder = shared_data() / "photos" / "slanted_edges" / "Example_Images";
+    if (!fs::exists(folder)) {
+        GTEST_SKIP() << folder << " is not there";
+    }
+    const auto profile_of = [&](const char* file) {
+        const fs::path path = folder / file;
+        return measure(
+            only_edges({{file, PictureRole::edges, [path] { return read_image(path); }}}, {PixelRectangle{}}));
+    };
+    const Profile tiff = profile_of("Test_edge1.tif");
+    const Profile bitmap = profile_of("Test_edge1.bmp");
+    const double green = tiff.sharpness.at("G")[0].edge.mtf50->cycles_per_px;
+    for (const char* channel : {"R", "G", "B"}) {
+        const MtfFrequency& mtf50 = *tiff.sharpness.at(channel)[0].edge.mtf50;
+        EXPECT_EQ(mtf50.cycles_per_px, bitmap.sharpness.at(channel)[0].edge.mtf50->cycles_per_px);
+        EXPECT_NEAR(mtf50.cycles_per_px / green, 1.0, 0.05);
+        EXPECT_LT(mtf50.standard_error, 0.02 * mtf50.cycles_per_px);
+    }
+    const Profile grey = profile_of("Test_edge1_mono.tif");
+    EXPECT_NEAR(grey.sharpness.at("Y")[0].edge.mtf50->cycles_per_px / green, 1.0, 0.08);
+}
+
+}  // namespace
+}  // namespace lensproof

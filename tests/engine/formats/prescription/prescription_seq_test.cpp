@@ -1,0 +1,258 @@
+// CODE V files: what they mean, against the same lens in the project's form and against rayoptics.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "engine/base/input_error.h"
+#include "engine/base/text_encoding.h"
+#include "engine/formats/prescription/prescription_file.h"
+#include "engine/formats/prescription/prescription_forms.h"
+#include "engine/optics/lens.h"
+#include "tests/engine/formats/prescription/same_rays.h"
+
+namespace lensproof {
+namespace {
+
+Prescription parse(const std::string& text) {
+    return parse_seq(text, "test.seq");
+}
+
+bool has_finding(const Prescription& prescription, const std::string& code, const std::string& words) {
+    return std::ranges::any_of(prescription.remarks, [&](const Finding& finding) {
+        return finding.code == code && finding.message.find(words) != std::string::npos;
+    });
+}
+
+std::string complaint(const std::string& text) {
+    try {
+        parse(text);
+    } catch (const InputError& error) {
+        return error.what();
+    }
+    return "";
+}
+
+const std::string kTessar = R"(RDM;LEN      "VERSION: 10.7       LENS VERSION: 80"
+TITLE 'Tessar; 100 mm!'
+FNO   2.8     ! a comment; with more
+DIM   M
+WL    656.2725 587.5618 &
+      486.1327
+REF   2
+YAN   0.0 16.0 24.0
+SO    0.0 0.1e14
+S     42.97 9.8 LAK9
+  CIR 19.2
+S     -115.33 2.1 LLF7; CIR CLR 19.2; CIR EDG 20
+S     306.84 4.16
+  CIR 19.2
+S     0 4
+  STO; CIR 15.0
+s     -59.06 1.87 sf7
+  cir 17.3
+S     40.93 10
+  CIR 17.3
+S     183.92 7.05 LAK9
+S     -48.91 79.8
+  CIR 16.5
+SI    0.0 0.031
+CIR S7 16.5; THI S6 10.64
+GO
+)";
+
+TEST(Seq, TessarIsTheTomlLens) {
+    const Prescription lens = parse(kTessar);
+    const Prescription expected = read_prescription(find_lens_file("tessar"));
+    expect_same_rays(expected, lens);
+    EXPECT_TRUE(lens.remarks.empty());
+    EXPECT_EQ(lens.name, "Tessar; 100 mm!");
+    EXPECT_EQ(lens.stated.f_number, 2.8);
+    EXPECT_EQ(lens.stated.half_field_deg, 24.0);
+    EXPECT_EQ(lens.wavelengths_nm, (std::vector<double>{587.5618, 656.2725, 486.1327}));
+    EXPECT_EQ(lens.surfaces[1].rim_mm, 20.0);
+    EXPECT_TRUE(std::isinf(lens.object_distance_mm));
+    expect_same_rays(expected, parse(to_utf16(kTessar)));
+}
+
+// The ray from (0.5, 1, −20) along (0.03, −0.02, 1) through basic, DAR and REV decentres, as rayoptics 0.9.8 traces it
+// in global coordinates at the d line, where its model glasses are 1.5 and 1.6 too. Decimals as printed.
+TEST(Seq, DecentresAddUpAsInRayoptics) {
+    const Prescription lens = parse(
+        "RDM;LEN\nDIM M\nEPD 4\nWL 587.5618\nYAN 0\nSO 0 20\nS 0 10\n STO\nS 50 5 500.600\n"
+        " XDE 0.5; YDE -0.3; ADE 7; BDE 4; CDE 11\nS -33 1\nS 100 3 600.600\n"
+        " DAR; XDE -0.4; YDE 0.2; ADE -3; BDE 2; CDE 5\nS 0 6\n ADE 2\nS 80 4 600.600\n"
+        "S 0 40\n REV\n YDE 0.4; ADE 1.5; BDE 3\nSI 0 0\n");
+    const double norm = std::sqrt(0.03 * 0.03 + 0.02 * 0.02 + 1.0);
+    const std::array<Vec3d, 7> expected = {{{1.1, 0.5999999999999999, 0.0},
+                                            {1.3997162714027287, 0.4001891523981809, 9.990542380090966},
+                                            {1.3519327714387486, 0.5146243711828953, 14.987110810198843},
+                                            {1.3546480152199378, 0.4817910472125567, 16.075966845608257},
+                                            {1.2341442267463514, 0.4979289517882002, 19.063498093966288},
+                                            {1.1234145451725253, -0.04099434388271894, 25.271694048934773},
+                                            {0.9287083978575511, 0.015667018778847464, 29.26936073077089}}};
+    std::vector<Vec3d> points;
+    trace<Direction::forward, Rims::follow>(
+        at_wavelength<double>(make_lens(lens, {}), 587.5618),
+        Ray<double>{{0.5, 1.0, -20.0}, {0.03 / norm, -0.02 / norm, 1.0 / norm}},
+        [&](const SurfaceEvent<double>& event) { points.push_back(event.ray.origin); });
+    ASSERT_EQ(points.size(), expected.size());
+    for (std::size_t i = 0; i < expected.size(); ++i) {
+        EXPECT_NEAR(length(points[i] - expected[i]), 0.0, 1e-12) << i;
+    }
+    // The vertex that the image has there, 68.41347837209321, off the last row's.
+    EXPECT_NEAR(lens.surfaces.back().thickness_mm, 68.41347837209321 - 28.760046314408832, 1e-12);
+    EXPECT_TRUE(has_finding(lens, "image-tilt", ""));
+}
+
+TEST(Seq, ReadsShapesAndUnits) {
+    const Prescription lens = parse(
+        "RDM N;LEN\nDIM I\nYIM 0 0.5\nSO 0 1e11\nS 0.5 0.1 NBK7_SCHOTT\n STO\n ASP\n K -1; A 2; J 3\n"
+        "S 0.2 1\n CYL\nS 0.25 1\n YTO; RDX 8; B 1e-3\nS 0.25 1\n XTO; CUX 0.5; A 1e-3\nSI 0 0\n");
+    EXPECT_DOUBLE_EQ(lens.stated.image_circle_mm.value(), 25.4);
+    EXPECT_TRUE(has_finding(lens, "units", "inches"));
+    const auto& rows = lens.surfaces;
+    ASSERT_EQ(rows.size(), 4U);
+    EXPECT_DOUBLE_EQ(rows[0].radius_mm, 2 * 25.4);
+    EXPECT_EQ(rows[0].medium.glass, "SCHOTT N-BK7");
+    EXPECT_EQ(rows[0].conic, -1.0);
+    EXPECT_DOUBLE_EQ(rows[0].asphere[1], 2 / std::pow(25.4, 3));
+    EXPECT_DOUBLE_EQ(rows[0].asphere[9], 3 / std::pow(25.4, 19));
+    EXPECT_TRUE(std::isinf(rows[1].radius_x_mm.value()));
+    EXPECT_DOUBLE_EQ(rows[2].radius_x_mm.value(), 8 * 25.4);
+    EXPECT_DOUBLE_EQ(rows[2].asphere[2], 1e-3 / std::pow(25.4, 5));
+    EXPECT_DOUBLE_EQ(rows[3].radius_mm, 2 * 25.4);
+    EXPECT_DOUBLE_EQ(rows[3].radius_x_mm.value(), 4 * 25.4);
+    EXPECT_NEAR(rows[3].misalignment.tilt_deg[2], 90.0, 1e-13);
+}
+
+TEST(Seq, ReadsEveryWayToStateAGlass) {
+    const Prescription lens = parse(
+        "RDM;LEN\nPRV\n PWL 650.0 587.6 &\n 486.1\n 'E48' 1.5286 1.53116&\n  1.5378\nEND\nSO 0 1e13\n"
+        "S 10 1 'E48'\n STO\nS 10 1 517642\nS 10 1 620410.3637\nS 10 1 1.5168:64.17\nS 10 1 1.6\nS 10 1 SLAH66_OHARA\n"
+        "S 10 1 AIR\nS 10 1\nGLA S8 SF7_HIKARI\nS 10 1 003283\nS 10 1 620410.364\nSI 0 0\n");
+    const auto& rows = lens.surfaces;
+    ASSERT_EQ(rows.size(), 10U);
+    ASSERT_EQ(rows[0].medium.indices.size(), 3U);
+    EXPECT_EQ(rows[0].medium.indices[0].wavelength_nm, 486.1);
+    EXPECT_EQ(rows[0].medium.indices[0].value, 1.5378);
+    EXPECT_EQ(rows[1].medium.n_d, 1.517);
+    EXPECT_EQ(rows[1].medium.V_d, 64.2);
+    EXPECT_EQ(rows[2].medium.n_d, 1.620410);
+    EXPECT_EQ(rows[2].medium.V_d, 36.37);
+    EXPECT_EQ(rows[3].medium.n_d, 1.5168);
+    EXPECT_EQ(rows[3].medium.V_d, 64.17);
+    EXPECT_EQ(rows[4].medium.n_d, 1.6);
+    EXPECT_FALSE(rows[4].medium.V_d);
+    EXPECT_EQ(rows[5].medium.glass, "OHARA S-LAH66");
+    EXPECT_TRUE(rows[6].medium.is_air());
+    EXPECT_EQ(rows[7].medium.glass, "HIKARI SF7");
+    EXPECT_EQ(rows[8].medium.n_d, 2.003) << "the index has lost its 2";
+    EXPECT_EQ(rows[8].medium.V_d, 28.3);
+    EXPECT_EQ(rows[9].medium.n_d, 1.620410);
+    EXPECT_EQ(rows[9].medium.V_d, 36.4) << "no density";
+    EXPECT_TRUE(lens.remarks.empty());
+}
+
+TEST(Seq, ReadsZoomPositions) {
+    const Prescription lens = parse(
+        "RDM;LEN\nEPD 2\nSO 0 1e13\nS 10 1 517642\n STO\nS 20 5\nSI 0 0\n"
+        "ZOO 3\nZOO THI S2 5 6 7\nZOO TIT 'wide' 'middle' 'tele'\nZOO EPD 2 3 4\nZOO YAN F2 1 2 3\nTHI S1 Z3 "
+        "1.5\nGO\n");
+    ASSERT_EQ(lens.zoom.size(), 3U);
+    EXPECT_EQ(lens.zoom[2].name, "tele");
+    EXPECT_EQ(lens.zoom[1].gaps_mm, (std::map<int, double>{{1, 1.0}, {2, 6.0}}));
+    EXPECT_EQ(lens.zoom[2].gaps_mm, (std::map<int, double>{{1, 1.5}, {2, 7.0}}));
+    EXPECT_EQ(lens.zoom[1].stated.entrance_pupil_diameter_mm, 3.0);
+    EXPECT_TRUE(has_finding(lens, "multi-configuration", "YAN"));
+}
+
+TEST(Seq, WhatHoldsForOnePositionAloneIsNamedAndLeftOut) {
+    const Prescription lens = parse(
+        "RDM;LEN\nEPD 2\nSO 0 1e13\nS 10 1 517642\n STO\n CIR 4\nS 20 5\nSI 0 0\nZOO 2\nCIR S1 Z2 3\nRDY S1 Z2 77\n"
+        "GLA S1 Z2 620364\nEPD Z2 5\nYAN F2 Z1 3\nCCY S1 Z2 0\nGO\n");
+    ASSERT_EQ(lens.surfaces.size(), 2U);
+    EXPECT_EQ(lens.surfaces[0].radius_mm, 10.0);
+    EXPECT_EQ(lens.surfaces[0].semi_diameter_mm, 4.0);
+    EXPECT_EQ(lens.surfaces[0].medium.n_d, 1.517);
+    EXPECT_EQ(lens.stated.entrance_pupil_diameter_mm, 2.0);
+    for (const char* command : {"line 10: CIR", "line 11: RDY", "line 12: GLA", "line 13: EPD", "line 14: YAN"}) {
+        EXPECT_TRUE(has_finding(lens, "multi-configuration", command)) << command;
+    }
+    EXPECT_EQ(lens.remarks.size(), 5U);
+    EXPECT_EQ(lens.remarks[0].surface, 1);
+    EXPECT_EQ(lens.remarks[0].severity, Severity::warning);
+}
+
+TEST(Seq, DeletedSurfacesMakeAnotherLens) {
+    const std::string lens = "RDM;LEN\nSO 0 1e13\nS 10 1 517642\n STO\nS 20 5\nS 20 5\nSI 0 0\n";
+    const Prescription cut = parse(lens + "DEL S2..3\nDEL PIK THI S1\nDEL SOL S1\nDEL APE S1\n");
+    ASSERT_EQ(cut.remarks.size(), 2U);
+    EXPECT_TRUE(has_finding(cut, "deleted-surfaces", "line 8: DEL"));
+    EXPECT_EQ(cut.remarks[0].severity, Severity::error);
+    EXPECT_TRUE(has_finding(cut, "not-understood", "DEL"));
+    EXPECT_THROW(make_lens(cut, {}), InputError);
+}
+
+TEST(Seq, EveryLineEndIsOne) {
+    std::string old = kTessar;
+    std::ranges::replace(old, '\n', '\r');
+    expect_same_rays(parse(kTessar), parse(old));
+}
+
+TEST(Seq, NamesWhatItDoesNotUnderstand) {
+    const Prescription lens = parse(
+        "LEN\nQQQ 1\nVUY 0 0.2\nNAO 0.1\nSO 0.1 100\nS 50 2 517642\n STO; ZZZ 1; REX 3; CCY 0\n DIF DOE; HOR 1\n"
+        "S -0.01 3 REFL\n PIM; RET S1\nSI -0.01 0\n");
+    EXPECT_TRUE(has_finding(lens, "not-understood", "line 2: QQQ"));
+    EXPECT_TRUE(has_finding(lens, "not-understood", "line 7, surface 1 of the file: ZZZ"));
+    EXPECT_TRUE(has_finding(lens, "not-understood", "RET"));
+    EXPECT_TRUE(has_finding(lens, "vignetting-factors", "VUY"));
+    EXPECT_TRUE(has_finding(lens, "aperture", "NAO"));
+    EXPECT_TRUE(has_finding(lens, "aperture-shape", "REX"));
+    EXPECT_TRUE(has_finding(lens, "surface-type", "DIF"));
+    EXPECT_TRUE(has_finding(lens, "mirror", "surface 2"));
+    EXPECT_TRUE(has_finding(lens, "solve", "PIM"));
+    EXPECT_TRUE(has_finding(lens, "object-shape", ""));
+    EXPECT_TRUE(has_finding(lens, "image-shape", ""));
+    EXPECT_TRUE(has_finding(lens, "radius-mode", "taken as radii"));
+    EXPECT_TRUE(has_finding(lens, "surface-type", "HOR"));
+    EXPECT_EQ(lens.remarks.size(), 13U) << "each once";
+    EXPECT_EQ(lens.surfaces[0].radius_mm, 50.0);
+}
+
+TEST(Seq, HostileFilesAreRefusedByLine) {
+    const std::string head = "RDM;LEN\nSO 0 1e13\n";
+    EXPECT_NE(complaint("").find("test.seq"), std::string::npos);
+    EXPECT_NE(complaint(std::string(1000, '\0')), "");
+    EXPECT_NE(complaint("SO 0 1e13\nSI 0 0\n"), "") << "no lens";
+    EXPECT_NE(complaint("S 1 2\n").find("test.seq:1: S, expected SO"), std::string::npos);
+    EXPECT_NE(complaint(head + "S x 2\n").find("test.seq:3: S is \"X\", expected a radius"), std::string::npos);
+    EXPECT_NE(complaint(head + "S 1\n").find("expected a thickness"), std::string::npos);
+    EXPECT_NE(complaint(head + "S10000000000 1 1\n").find("test.seq:3"), std::string::npos);
+    EXPECT_NE(complaint(head + "S 1 1\nTHI S99 1\n").find("expected a surface up to S1"), std::string::npos);
+    EXPECT_NE(complaint(head + "S 1 1\nZOO 10000000000\n").find("ZOO"), std::string::npos);
+    EXPECT_NE(complaint(head + "S 1 1\nZOO 3\nZOO THI S1 1 2\n").find("2 values"), std::string::npos);
+    EXPECT_NE(complaint(head + "PRV\nPWL 500 600\n'A' 1.5\nEND\n").find("1 indices"), std::string::npos);
+    EXPECT_NE(complaint(head + "PRV\nPWL 500 600 500\n").find(":4: PWL is \"500\", expected wavelengths"),
+              std::string::npos);
+    EXPECT_NE(complaint(head + "PRV\nPWL 500 nan\n").find("PWL is \"NAN\""), std::string::npos);
+    EXPECT_NE(complaint(head + "PRV\nPWL 500 600\n'A' 1.5 15\n").find(":5: A is \"15\", expected a refractive index"),
+              std::string::npos);
+    EXPECT_NE(complaint(head + "S 1 1 1.5:6O\nSI 0 0\n").find(":3: S1: its glass is \"1.5:6O\", expected n_d:V_d"),
+              std::string::npos);
+    EXPECT_NE(complaint("DIM FURLONG\n").find("expected M, C or I"), std::string::npos);
+    EXPECT_NE(complaint(head + "S 1 inf\n ADE 1\nS 1 1\nSI 0 0\n"), "");
+    EXPECT_EQ(complaint(head + "S nan -inf\nSI 0 0\n"), "") << "for the checker to say";
+    EXPECT_EQ(complaint(head + "S 1 1\nTHI Z1 2\nZOO 5\nEPD &"),
+              "test.seq:6: EPD is \"\", expected the aperture's value");
+    EXPECT_EQ(complaint(head + "S 1 1\nTHI Z1 2\nZOO 5\n'unclosed"), "");
+    std::string many = head;
+    for (int i = 0; i < 2000; ++i) {
+        many += "S 1 1;";
+    }
+    EXPECT_NE(complaint(many).find("S1000"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace lensproof

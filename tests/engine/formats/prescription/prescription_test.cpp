@@ -1,0 +1,105 @@
+// What is wrong with a prescription is said with file, line and key.
+#include <gtest/gtest.h>
+
+#include <filesystem>
+
+#include "engine/base/file.h"
+#include "engine/base/input_error.h"
+#include "engine/formats/prescription/load_lens.h"
+#include "engine/formats/prescription/prescription_file.h"
+#include "engine/optics/lens.h"
+#include "tests/test_folder.h"
+
+namespace lensproof {
+namespace {
+
+class PrescriptionFile : public testing::Test {
+  protected:
+    std::filesystem::path write(const std::string& name, const std::string& content) {
+        std::filesystem::path file = folder_.path() / name;
+        write_file(file, content);
+        return file;
+    }
+
+    /// The complaint about a lens file, or "" when there is none.
+    static std::string complaint(const std::filesystem::path& file) {
+        try {
+            load_lens(file.string());
+        } catch (const InputError& error) {
+            return error.what();
+        }
+        return "";
+    }
+
+    TestFolder folder_;
+};
+
+constexpr const char* kHead = "name = \"x\"\nsource = \"y\"\n";
+constexpr const char* kStop = "[[surfaces]]\nstop = true\nthickness_mm = 1\nsemi_diameter_mm = 2\n";
+
+TEST_F(PrescriptionFile, NegativeSemiDiameterIsNamedWithItsLine) {
+    const auto file =
+        write("negative.toml",
+              std::string(kHead) + kStop + "[[surfaces]]\nradius_mm = 10\nthickness_mm = 1\nsemi_diameter_mm = -15\n");
+    const std::string said = complaint(file);
+    EXPECT_NE(said.find("negative.toml:7: surfaces[2].semi_diameter_mm is -15"), std::string::npos) << said;
+    EXPECT_NE(said.find("expected"), std::string::npos);
+}
+
+TEST_F(PrescriptionFile, UnknownGlassIsNamedWithItsLine) {
+    const auto file =
+        write("glass.toml", std::string(kHead) + kStop +
+                                "[[surfaces]]\nthickness_mm = 1\nglass = \"NOSUCH\"\nsemi_diameter_mm = 1\n");
+    const std::string said = complaint(file);
+    EXPECT_NE(said.find("glass.toml:7: surfaces[2].glass is \"NOSUCH\""), std::string::npos) << said;
+    EXPECT_NE(said.find("lensproof glasses"), std::string::npos) << "where the glasses are listed: " << said;
+}
+
+TEST_F(PrescriptionFile, EveryOtherDefectIsAnInputError) {
+    const std::string row = "[[surfaces]]\nthickness_mm = 1\nsemi_diameter_mm = 1\n";
+    for (const std::string& text :
+         {std::string(""), std::string("name = "), std::string(kHead), std::string(kHead) + row,
+          std::string(kHead) + kStop + kStop, std::string(kHead) + kStop + row + "radius_mm = nan\n",
+          std::string(kHead) + kStop + row + "radius_mm = 1e-9\n",
+          std::string(kHead) + kStop + row + "semi_diamter_mm = 3\n", std::string(kHead) + kStop + row + "glass = 3\n",
+          std::string(kHead) + "surfaces = 3\n",
+          std::string(kHead) + kStop + "[[surfaces]]\nn_d = 1.5\nthickness_mm = -1\nsemi_diameter_mm = 1\n" + row,
+          std::string(kHead) + kStop + "[[surfaces]]\nthickness_mm = \"1\"\nsemi_diameter_mm = 1\n",
+          std::string(kHead) + "projection = \"square\"\n" + kStop,
+          std::string(kHead) + kStop + row + "glass = \"BK7\"\n"}) {
+        const std::string said = complaint(write("defect.toml", text));
+        EXPECT_NE(said.find("defect.toml"), std::string::npos) << text << "\nsaid: " << said;
+    }
+    EXPECT_NE(complaint("no-such-lens").find("tessar"), std::string::npos);
+    EXPECT_NE(complaint(folder_.path()), "");
+}
+
+TEST_F(PrescriptionFile, CsvCarriesTheSameLens) {
+    const auto file = write("plate.csv",
+                            "# a comment\nsurface,radius_mm,thickness_mm,n_d,V_d,semi_aperture_mm,kind\n"
+                            "1,50,4,1.5168,64.17,10,glass\n2,inf,1,1.0,,10,air\n3,0,40,1,,5,stop\n");
+    const Lens lens = load_lens(file.string());
+    ASSERT_EQ(lens.surfaces.size(), 3U);
+    EXPECT_DOUBLE_EQ(lens.surfaces[0].curvature, 0.02);
+    EXPECT_EQ(lens.surfaces[1].curvature, 0.0);
+    EXPECT_TRUE(lens.surfaces[2].is_stop);
+    EXPECT_DOUBLE_EQ(lens.image_z, 45.0);
+    EXPECT_NEAR(refractive_index(lens.surfaces[0].medium.formula, 587.5618), 1.5168, 1e-12);
+
+    const std::string said = complaint(write("bad.csv",
+                                             "surface,radius_mm,thickness_mm,n_d,V_d,semi_aperture_mm,kind\n"
+                                             "1,5O,4,1.5,60,10,glass\n"));
+    EXPECT_NE(said.find("bad.csv:2: radius_mm is \"5O\""), std::string::npos) << said;
+}
+
+TEST(Projections, AgreeNearTheAxisAndHoldBeyondNinetyDegrees) {
+    for (const Projection projection : {Projection::rectilinear, Projection::equidistant, Projection::equisolid,
+                                        Projection::stereographic, Projection::orthographic}) {
+        EXPECT_NEAR(projected_radius(projection, 1e-4), 1e-4, 1e-12) << projection_name(projection);
+    }
+    EXPECT_DOUBLE_EQ(projected_radius(Projection::equidistant, 2.0), 2.0);
+    EXPECT_DOUBLE_EQ(projected_radius(Projection::equisolid, 2.0), 2.0 * std::sin(1.0));
+}
+
+}  // namespace
+}  // namespace lensproof

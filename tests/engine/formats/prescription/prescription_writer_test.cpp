@@ -1,0 +1,276 @@
+// What is written says the same when it is read back, or says that it does not.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <filesystem>
+
+#include "engine/base/file.h"
+#include "engine/base/input_error.h"
+#include "engine/formats/prescription/prescription_file.h"
+#include "engine/formats/prescription/prescription_forms.h"
+#include "tests/test_folder.h"
+
+namespace lensproof {
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+bool same_values(const std::vector<WavelengthValue>& a, const std::vector<WavelengthValue>& b) {
+    return std::ranges::equal(a, b, [](const WavelengthValue& x, const WavelengthValue& y) {
+        return x.wavelength_nm == y.wavelength_nm && x.value == y.value;
+    });
+}
+
+void expect_same(const StatedData& a, const StatedData& b) {
+    EXPECT_EQ(a.efl_mm, b.efl_mm);
+    EXPECT_EQ(a.bfl_mm, b.bfl_mm);
+    EXPECT_EQ(a.f_number, b.f_number);
+    EXPECT_EQ(a.half_field_deg, b.half_field_deg);
+    EXPECT_EQ(a.image_circle_mm, b.image_circle_mm);
+    EXPECT_EQ(a.total_track_mm, b.total_track_mm);
+    EXPECT_EQ(a.entrance_pupil_diameter_mm, b.entrance_pupil_diameter_mm);
+    EXPECT_EQ(a.source, b.source);
+}
+
+void expect_same(const PrescribedSurface& a, const PrescribedSurface& b) {
+    EXPECT_EQ(a.radius_mm, b.radius_mm);
+    EXPECT_EQ(a.conic, b.conic);
+    EXPECT_EQ(a.asphere, b.asphere);
+    EXPECT_EQ(a.radius_x_mm, b.radius_x_mm);
+    EXPECT_EQ(a.thickness_mm, b.thickness_mm);
+    EXPECT_EQ(a.semi_diameter_mm, b.semi_diameter_mm);
+    EXPECT_EQ(a.rim_mm, b.rim_mm);
+    EXPECT_EQ(a.barrel_mm, b.barrel_mm);
+    EXPECT_EQ(a.medium.glass, b.medium.glass);
+    EXPECT_EQ(a.medium.n_d, b.medium.n_d);
+    EXPECT_EQ(a.medium.V_d, b.medium.V_d);
+    EXPECT_TRUE(same_values(a.medium.indices, b.medium.indices));
+    EXPECT_EQ(a.is_stop, b.is_stop);
+    EXPECT_EQ(a.coating, b.coating);
+    EXPECT_EQ(a.misalignment, b.misalignment);
+}
+
+void expect_same(const Coating& a, const Coating& b) {
+    ASSERT_EQ(a.index(), b.index());
+    if (const auto* layers = std::get_if<std::vector<CoatingLayer>>(&a)) {
+        EXPECT_TRUE(std::ranges::equal(*layers, std::get<std::vector<CoatingLayer>>(b),
+                                       [](const CoatingLayer& x, const CoatingLayer& y) {
+                                           return x.index == y.index && x.thickness_nm == y.thickness_nm;
+                                       }));
+    } else {
+        EXPECT_TRUE(same_values(std::get<std::vector<WavelengthValue>>(a), std::get<std::vector<WavelengthValue>>(b)));
+    }
+}
+
+/// A prescription that uses everything there is.
+Prescription everything() {
+    Prescription lens;
+    lens.file = "folder/a.toml";
+    lens.name = "Quotes \" and \\ and a tab\t, µ and \x01\x7f";
+    lens.source = "line\nbreak";
+    lens.notes = "Two lines,\nthe second with \"\"\"three quotes\"\"\" \\ and \"one at the end\"";
+    lens.projection = Projection::equisolid;
+    lens.surroundings = Surroundings::vacuum;
+    lens.object_distance_mm = 1234.5;
+    lens.wavelengths_nm = {587.5618, 486.1327};
+    lens.catalogues = {"folder/mine.agf", "folder/deep/other.yml", "beside.agf"};
+    lens.preferred_makers = {"SCHOTT", "OHARA"};
+    lens.stated = {.efl_mm = 100.0,
+                   .bfl_mm = -3.0,
+                   .f_number = 2.8,
+                   .half_field_deg = 20.0,
+                   .image_circle_mm = 43.3,
+                   .total_track_mm = 1e-7,
+                   .entrance_pupil_diameter_mm = 1.0 / 3.0,
+                   .source = "claims"};
+    lens.stop_shape = PolygonStop{.blades = 7, .curvature = 0.25, .rotation_deg = -12.5};
+    lens.coatings["single layer"] = std::vector<CoatingLayer>{{1.38, 99.6}, {2.1, 0.1}};
+    lens.coatings["stated"] = std::vector<WavelengthValue>{{400.0, 0.01}, {700.0, 0.02}};
+    lens.coatings["same"] = std::vector<WavelengthValue>{{550.0, 0.005}};
+
+    PrescribedSurface front;
+    front.radius_mm = 0.1 + 0.2;
+    front.conic = -1.5;
+    front.asphere = {1e-300, -2.5e-6, 0.0, 1.0 / 7.0, 0.0, 0.0, 0.0, 0.0, 0.0, 3e-21};
+    front.radius_x_mm = -44.0;
+    front.thickness_mm = 5e-5;
+    front.semi_diameter_mm = 12.0;
+    front.rim_mm = 13.0;
+    front.barrel_mm = 14.0;
+    front.medium = {.glass = "SCHOTT N-BK7", .n_d = 1.5168, .V_d = 64.17, .indices = {}};
+    front.coating = "single layer";
+    front.misalignment = {{0.1, -0.2}, {1.0, 2.0, -3.0}};
+    PrescribedSurface table = {};
+    table.radius_mm = std::nan("");
+    table.thickness_mm = -2.0;
+    table.medium.indices = {{435.8343, 1.53}, {587.5618, 1.52}, {656.2725, 1.51}};
+    table.coating = "stated";
+    PrescribedSurface stop;
+    stop.is_stop = true;
+    stop.thickness_mm = kInfinity;
+    PrescribedSurface curved_stop;
+    curved_stop.is_stop = true;
+    curved_stop.radius_mm = -1e20;
+    curved_stop.radius_x_mm = kInfinity;
+    curved_stop.coating = "same";
+    lens.surfaces = {front, table, stop, curved_stop, PrescribedSurface{.radius_mm = -kInfinity}};
+
+    lens.groups = {{.first = 1, .last = 2, .misalignment = {{0.5, 0.0}, {0.0, -1e-3, 0.0}}, .pivot_mm = 3.5}};
+    lens.focus_groups = {{.first = 1, .last = 1, .travel = 1.0}, {.first = 2, .last = 4, .travel = -0.75}};
+    lens.zoom = {{.name = "wide \"end\"",
+                  .gaps_mm = {{1, 2.5}, {4, kInfinity}},
+                  .stop_semi_diameter_mm = 7.5,
+                  .stated = {.efl_mm = 24.0}},
+                 {.name = "tele", .gaps_mm = {{1, 20.0}, {4, 1.0}}, .stop_semi_diameter_mm = {}, .stated = {}}};
+    return lens;
+}
+
+TEST(TomlWriter, ReadsBackToTheSamePrescription) {
+    const Prescription lens = everything();
+    const WrittenPrescription written = to_toml(lens);
+    EXPECT_TRUE(written.lost.empty());
+    const Prescription back = parse_toml_prescription(written.text, lens.file);
+    EXPECT_EQ(back.name, lens.name);
+    EXPECT_EQ(back.source, lens.source);
+    EXPECT_EQ(back.notes, lens.notes);
+    EXPECT_EQ(back.projection, lens.projection);
+    expect_same(back.stated, lens.stated);
+    ASSERT_EQ(back.surfaces.size(), lens.surfaces.size());
+    for (std::size_t i = 0; i < lens.surfaces.size(); ++i) {
+        SCOPED_TRACE(i + 1);
+        if (std::isnan(lens.surfaces[i].radius_mm)) {
+            EXPECT_TRUE(std::isnan(back.surfaces[i].radius_mm));
+            PrescribedSurface same = back.surfaces[i];
+            same.radius_mm = 1.0;
+            PrescribedSurface as_said = lens.surfaces[i];
+            as_said.radius_mm = 1.0;
+            expect_same(same, as_said);
+        } else {
+            expect_same(back.surfaces[i], lens.surfaces[i]);
+        }
+    }
+    const auto& polygon = std::get<PolygonStop>(back.stop_shape);
+    EXPECT_EQ(polygon.blades, 7);
+    EXPECT_EQ(polygon.curvature, 0.25);
+    EXPECT_EQ(polygon.rotation_deg, -12.5);
+    ASSERT_EQ(back.coatings.size(), lens.coatings.size());
+    for (const auto& [name, coating] : lens.coatings) {
+        SCOPED_TRACE(name);
+        expect_same(back.coatings.at(name), coating);
+    }
+    ASSERT_EQ(back.groups.size(), 1U);
+    EXPECT_EQ(back.groups[0].last, 2);
+    EXPECT_EQ(back.groups[0].misalignment, lens.groups[0].misalignment);
+    EXPECT_EQ(back.groups[0].pivot_mm, 3.5);
+    ASSERT_EQ(back.focus_groups.size(), 2U);
+    EXPECT_EQ(back.focus_groups[1].first, 2);
+    EXPECT_EQ(back.focus_groups[1].travel, -0.75);
+    ASSERT_EQ(back.zoom.size(), 2U);
+    for (std::size_t i = 0; i < 2; ++i) {
+        EXPECT_EQ(back.zoom[i].name, lens.zoom[i].name);
+        EXPECT_EQ(back.zoom[i].gaps_mm, lens.zoom[i].gaps_mm);
+        EXPECT_EQ(back.zoom[i].stop_semi_diameter_mm, lens.zoom[i].stop_semi_diameter_mm);
+        expect_same(back.zoom[i].stated, lens.zoom[i].stated);
+    }
+    EXPECT_EQ(back.surroundings, lens.surroundings);
+    EXPECT_EQ(back.object_distance_mm, lens.object_distance_mm);
+    EXPECT_EQ(back.wavelengths_nm, lens.wavelengths_nm);
+    ASSERT_EQ(back.catalogues.size(), lens.catalogues.size());
+    for (std::size_t i = 0; i < lens.catalogues.size(); ++i) {
+        EXPECT_EQ(back.catalogues[i].lexically_normal(), lens.catalogues[i]);
+    }
+    EXPECT_EQ(back.preferred_makers, lens.preferred_makers);
+}
+
+TEST(TomlWriter, KeepsATexturedStopAndReplacesWhatIsNotUtf8) {
+    Prescription lens = everything();
+    lens.stop_shape = TexturedStop{.image = "sto\\p.png"};
+    lens.name = "M\xFCller";
+    const Prescription back = parse_toml_prescription(to_toml(lens).text, lens.file);
+    EXPECT_EQ(std::get<TexturedStop>(back.stop_shape).image, "sto\\p.png");
+    EXPECT_EQ(back.name, "M\xEF\xBF\xBDller");
+}
+
+TEST(TomlWriter, LeavesOutWhatItsReaderRefusesAndSaysSo) {
+    Prescription lens = everything();
+    lens.stated.f_number = 0.0;
+    lens.stated.efl_mm = std::nan("");
+    lens.surfaces[0].misalignment.tilt_deg[0] = kInfinity;
+    lens.surfaces[0].medium.indices = {{587.5618, 1.5}};
+    lens.surfaces[1].medium.indices[0].value = 0.0;
+    lens.object_distance_mm = -1.0;
+    const WrittenPrescription written = to_toml(lens);
+    EXPECT_EQ(written.lost.size(), 6U);
+    EXPECT_NO_THROW(parse_toml_prescription(written.text, lens.file));
+}
+
+TEST(TomlWriter, AlignsTheTable) {
+    Prescription lens;
+    lens.name = "x";
+    PrescribedSurface front;
+    front.radius_mm = 42.97;
+    front.thickness_mm = 9.8;
+    front.medium.glass = "LAK9";
+    front.semi_diameter_mm = 19.2;
+    PrescribedSurface stop;
+    stop.is_stop = true;
+    stop.thickness_mm = 79.831;
+    stop.semi_diameter_mm = 5.0;
+    lens.surfaces = {front, stop};
+    EXPECT_NE(to_toml(lens).text.find(
+                  "surfaces = [\n"
+                  "  { radius_mm = 42.97, thickness_mm =  9.800, glass = \"LAK9\", semi_diameter_mm = 19.2 },\n"
+                  "  { stop = true,       thickness_mm = 79.831,                 semi_diameter_mm =  5.0 },\n]\n"),
+              std::string::npos)
+        << to_toml(lens).text;
+}
+
+TEST(CsvWriter, CarriesWhatItsColumnsHoldAndNamesTheRest) {
+    const Prescription lens = everything();
+    const WrittenPrescription written = to_csv(lens);
+    const Prescription back = parse_csv_prescription(written.text, "a.csv");
+    ASSERT_EQ(back.surfaces.size(), lens.surfaces.size());
+    EXPECT_EQ(back.surfaces[0].radius_mm, lens.surfaces[0].radius_mm);
+    EXPECT_EQ(back.surfaces[0].asphere, lens.surfaces[0].asphere);
+    EXPECT_EQ(back.surfaces[0].conic, lens.surfaces[0].conic);
+    EXPECT_EQ(back.surfaces[0].thickness_mm, 2.5) << "the first zoom position's";
+    EXPECT_EQ(back.surfaces[0].medium.glass, "SCHOTT N-BK7");
+    EXPECT_EQ(back.surfaces[0].medium.V_d, 64.17);
+    EXPECT_TRUE(std::isnan(back.surfaces[1].radius_mm));
+    EXPECT_TRUE(same_values(back.surfaces[1].medium.indices, lens.surfaces[1].medium.indices));
+    EXPECT_TRUE(back.surfaces[2].is_stop);
+    EXPECT_EQ(back.surfaces[1].semi_diameter_mm, 14.0) << "the barrel before it";
+    for (const char* code :
+         {"lost-zoom", "lost-toroid", "lost-misalignment", "lost-coating", "lost-stop-shape", "lost-focus-groups",
+          "lost-surroundings", "lost-catalogues", "lost-projection", "lost-stated", "lost-object-distance"}) {
+        EXPECT_NE(std::ranges::find(written.lost, code, &Finding::code), written.lost.end()) << code;
+    }
+}
+
+TEST(WritePrescription, NamesFilesFromTheNewPlace) {
+    const TestFolder place;
+    const std::filesystem::path& folder = place.path();
+    std::filesystem::create_directories(folder / "deep");
+    Prescription lens = everything();
+    lens.file = folder / "a.toml";
+    lens.catalogues = {folder / "mine.agf"};
+    lens.stop_shape = TexturedStop{.image = "stop.png"};
+    EXPECT_TRUE(write_prescription(lens, folder / "deep" / "b.toml").empty());
+    const Prescription back = read_prescription(folder / "deep" / "b.toml");
+    EXPECT_EQ(std::get<TexturedStop>(back.stop_shape).image, "../stop.png");
+    EXPECT_EQ(back.catalogues.front().lexically_normal(), (folder / "mine.agf").lexically_normal());
+}
+
+TEST(WritePrescription, NamesTheFormsThatItCanWrite) {
+    for (const char* name : {"a.json", "a.fx", "a", "a.doc"}) {
+        try {
+            write_prescription(everything(), name);
+            FAIL() << name;
+        } catch (const InputError& error) {
+            EXPECT_NE(std::string(error.what()).find(".toml, .csv, .zmx, .dat"), std::string::npos) << error.what();
+        }
+    }
+}
+
+}  // namespace
+}  // namespace lensproof

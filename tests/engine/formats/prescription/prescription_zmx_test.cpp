@@ -1,0 +1,348 @@
+// Zemax files: what they mean, against closed forms and other programs; what they do not say, by name; and back again.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "engine/base/input_error.h"
+#include "engine/base/text_encoding.h"
+#include "engine/formats/prescription/prescription_file.h"
+#include "engine/formats/prescription/prescription_forms.h"
+#include "engine/optics/lens.h"
+#include "tests/engine/formats/prescription/same_rays.h"
+
+namespace lensproof {
+namespace {
+
+constexpr double kUlp = std::numeric_limits<double>::epsilon();
+
+const std::string kHead = "VERS 140124 258 36214\r\nMODE SEQ\r\nNAME plate\r\nUNIT MM X W X CM MR CPMM\r\nENPD 4\r\n";
+
+std::string surf(int number, const std::string& lines) {
+    return "SURF " + std::to_string(number) + "\r\n" + lines;
+}
+
+std::string coordinate_break(const std::array<double, 6>& values, double thickness) {
+    std::string lines = "  TYPE COORDBRK\r\n";
+    for (std::size_t i = 0; i < values.size(); ++i) {
+        lines += "  PARM " + std::to_string(i + 1) + " " + std::to_string(values[i]) + "\r\n";
+    }
+    return lines + "  DISZ " + std::to_string(thickness) + "\r\n";
+}
+
+const std::string kObject = surf(0, "  TYPE STANDARD\r\n  DISZ INFINITY\r\n");
+const std::string kStop = surf(1, "  STOP\r\n  DISZ 10\r\n  DIAM 5 1 0 0 1 \"\"\r\n");
+
+Prescription parse(const std::string& text) {
+    return parse_zmx(text, "test.zmx");
+}
+
+bool has_finding(const Prescription& prescription, const std::string& code, const std::string& words) {
+    return std::ranges::any_of(prescription.remarks, [&](const Finding& finding) {
+        return finding.code == code && finding.message.find(words) != std::string::npos;
+    });
+}
+
+std::string complaint(const std::string& text) {
+    try {
+        parse(text);
+    } catch (const InputError& error) {
+        return error.what();
+    }
+    return "";
+}
+
+/// The events of a ray at 587.5618 nm, the rims not clipping.
+std::vector<SurfaceEvent<double>> events_of(const Prescription& prescription, const Ray<double>& ray) {
+    std::vector<SurfaceEvent<double>> events;
+    const TraceLens<double> lens = at_wavelength<double>(make_lens(prescription, {}), 587.5618);
+    trace<Direction::forward, Rims::follow>(lens, ray,
+                                            [&](const SurfaceEvent<double>& event) { events.push_back(event); });
+    return events;
+}
+
+// A plate whose front normal is turned by +20° about x, by the right-hand rule, leans towards −y; a ray along the axis
+// is shifted there by t sin(i − i') / cos i' (Born & Wolf 4.4) and goes on parallel. About fifteen roundings of numbers
+// of size 20 mm.
+TEST(Zmx, TiltedPlateShiftsTheAxialRay) {
+    constexpr double kThickness = 6.0;
+    constexpr double kIndex = 1.6;
+    const std::string text = kHead + kObject + kStop + surf(2, coordinate_break({0, 0, 20, 0, 0, 0}, 0)) +
+                             surf(3, "  CURV 0\r\n  DISZ 6\r\n  GLAS ___BLANK 1 0 1.6 0 0\r\n  DIAM 9 1\r\n") +
+                             surf(4, "  CURV 0\r\n  DISZ 0\r\n  DIAM 9 1\r\n") +
+                             surf(5, coordinate_break({0, 0, -20, 0, 0, 1}, 8)) + surf(6, "  DISZ 0\r\n");
+    const auto events = events_of(parse(text), {{0, 0, -3}, {0, 0, 1}});
+    ASSERT_EQ(events.size(), 3U);
+    const double outside = 20.0 * std::numbers::pi / 180.0;
+    const double inside = std::asin(std::sin(outside) / kIndex);
+    const double shift = kThickness * std::sin(outside - inside) / std::cos(inside);
+    EXPECT_NEAR(events[2].ray.origin.y, -shift, 300 * kUlp);
+    EXPECT_NEAR(events[2].ray.origin.x, 0.0, 300 * kUlp);
+    EXPECT_NEAR(events[2].ray.direction.z, 1.0, 8 * kUlp);
+}
+
+const std::string kLensOne = "  CURV 0.02\r\n  DISZ 5\r\n  GLAS ___BLANK 1 0 1.5 0 0\r\n  DIAM 15 1\r\n";
+const std::string kLensTwo = "  CURV 0.01\r\n  DISZ 3\r\n  GLAS ___BLANK 1 0 1.6 0 0\r\n  DIAM 15 1\r\n";
+
+std::string twice_broken(const std::array<double, 6>& first, const std::array<double, 6>& second) {
+    return kHead + kObject + kStop + surf(2, coordinate_break(first, 2)) + surf(3, kLensOne) +
+           surf(4, "  CURV -0.03\r\n  DISZ 1\r\n  DIAM 15 1\r\n") + surf(5, coordinate_break(second, 6)) +
+           surf(6, kLensTwo) + surf(7, "  CURV 0\r\n  DISZ 40\r\n  DIAM 15 1\r\n") + surf(8, "  DISZ 0\r\n");
+}
+
+// The ray from (1, 2, −20) along (0.1, −0.05, 1) through two lenses behind two breaks, as rayoptics 0.9.8 traces it in
+// global coordinates. Its reader takes tilts about x and y by the left-hand rule, against OpticStudio's help ("in a
+// right hand direction"), so it was given these two with their signs turned. Decimals as printed, 16 digits of 60 mm.
+TEST(Zmx, BreaksAddUpAsInRayoptics) {
+    const Prescription lens = parse(twice_broken({0.5, -0.3, 7, 4, 11, 0}, {-0.4, 0.2, -3, 2, 5, 0}));
+    const double norm = std::sqrt(0.1 * 0.1 + 0.05 * 0.05 + 1.0);
+    const auto events = events_of(lens, {{1.0, 2.0, -20.0}, {0.1 / norm, -0.05 / norm, 1.0 / norm}});
+    const std::array<Vec3d, 5> expected = {{{3.0, 1.0, 0.0},
+                                            {4.198235820891371, 0.4008820895543145, 11.982358208913709},
+                                            {4.504811215734998, 0.026935120238308574, 16.617944178415396},
+                                            {4.577836372828337, -0.5215534058643445, 23.73513018161006},
+                                            {4.662912089043725, -0.7443628775239016, 26.669193728059515}}};
+    ASSERT_EQ(events.size(), expected.size());
+    for (std::size_t i = 0; i < expected.size(); ++i) {
+        EXPECT_NEAR(length(events[i].ray.origin - expected[i]), 0.0, 1e-12) << i;
+    }
+}
+
+// The same with tilts about x only, which Optiland 0.6.3 takes by the right-hand rule too (its order of several tilts
+// is another). It keeps the models' n_d as 1.5 and 1.6 at the d line.
+TEST(Zmx, TiltsAboutOneAxisAsInOptiland) {
+    const Prescription lens = parse(twice_broken({0.5, -0.3, 7, 0, 0, 0}, {-0.4, 0.2, -3, 0, 0, 0}));
+    const double norm = std::sqrt(0.1 * 0.1 + 0.05 * 0.05 + 1.0);
+    const auto events = events_of(lens, {{1.0, 2.0, -20.0}, {0.1 / norm, -0.05 / norm, 1.0 / norm}});
+    const std::array<Vec3d, 5> expected = {{{3.0, 1.0, 0.0},
+                                            {4.224866887551243, 0.3875665562243784, 12.248668875512429},
+                                            {4.414301865587335, 0.01621719694166268, 16.839001010028138},
+                                            {4.43380568141283, -0.5476351568850525, 24.115145966758934},
+                                            {4.3914607940108885, -0.7740374976876677, 27.007866593232723}}};
+    ASSERT_EQ(events.size(), expected.size());
+    for (std::size_t i = 0; i < expected.size(); ++i) {
+        EXPECT_NEAR(length(events[i].ray.origin - expected[i]), 0.0, 1e-12) << i;
+    }
+}
+
+// A break with the order flag and every sign turned undoes the break without (OpticStudio's help, "Coordinate Break").
+TEST(Zmx, ReversedBreakUndoesABreak) {
+    const Prescription lens = parse(kHead + kObject + kStop + surf(2, coordinate_break({0.5, -0.3, 7, 4, 11, 0}, 0)) +
+                                    surf(3, coordinate_break({-0.5, 0.3, -7, -4, -11, 1}, 0)) + surf(4, kLensOne) +
+                                    surf(5, "  DISZ 40\r\n  DIAM 15 1\r\n") + surf(6, "  DISZ 0\r\n"));
+    ASSERT_EQ(lens.surfaces.size(), 3U);
+    for (const PrescribedSurface& row : lens.surfaces) {
+        EXPECT_EQ(row.misalignment, Misalignment{});
+    }
+    EXPECT_TRUE(lens.remarks.empty());
+    EXPECT_NEAR(lens.surfaces[0].thickness_mm, 10.0, 8 * 10.0 * kUlp);
+}
+
+TEST(Zmx, SaysWhatTheHeadMeans) {
+    const std::string text =
+        "VERS 1\nMODE SEQ\nNAME A lens\nNOTE 0 Source: a book\nNOTE 0 a note\nUNIT IN X W X CM MR CPMM\n"
+        "FNUM 2.8 0\nGCAT SCHOTT OHARA\nFTYP 0 0 2 2 0 0 0\nXFLN 0 0 77\nYFLN 0 14 77\n"
+        "WAVM 1 0.4861327 1\nWAVM 2 0.58756180000000004 1\nWAVM 3 0.55 1\nPWAV 2\n" +
+        kObject +
+        surf(1,
+             "  STOP\n  TYPE EVENASPH\n  CURV 0.5\n  PARM 1 0.25\n  PARM 2 2\n  CONI -1\n  DISZ 0.1\n"
+             "  GLAS N-BK7 0 0 1.5 40\n  DIAM 0.3 1\n  MEMA 0.4 0\n") +
+        surf(2, "  DISZ 1\n  GLAS LAK9 0 0 1.691 54.7\n") + surf(3, "  DISZ 0\n  DIAM 0.5 1\n");
+    const Prescription lens = parse(text);
+    EXPECT_EQ(lens.name, "A lens");
+    EXPECT_EQ(lens.source, "a book");
+    EXPECT_EQ(lens.notes, "a note");
+    EXPECT_EQ(lens.stated.f_number, 2.8);
+    EXPECT_DOUBLE_EQ(lens.stated.half_field_deg.value(), 14.0);
+    EXPECT_DOUBLE_EQ(lens.stated.image_circle_mm.value(), 25.4);
+    EXPECT_EQ(lens.preferred_makers, (std::vector<std::string>{"SCHOTT", "OHARA"}));
+    EXPECT_EQ(lens.wavelengths_nm, (std::vector<double>{587.5618, 486.1327}));
+    EXPECT_TRUE(std::isinf(lens.object_distance_mm));
+    EXPECT_TRUE(has_finding(lens, "units", "in IN"));
+    const PrescribedSurface& asphere = lens.surfaces.at(0);
+    EXPECT_DOUBLE_EQ(asphere.radius_mm, 2 * 25.4);
+    EXPECT_DOUBLE_EQ(asphere.thickness_mm, 2.54);
+    EXPECT_DOUBLE_EQ(asphere.asphere[0], 0.25 / 25.4);
+    EXPECT_DOUBLE_EQ(asphere.asphere[1], 2.0 / std::pow(25.4, 3));
+    EXPECT_DOUBLE_EQ(asphere.semi_diameter_mm.value(), 0.3 * 25.4);
+    EXPECT_DOUBLE_EQ(asphere.rim_mm.value(), 0.4 * 25.4);
+    EXPECT_EQ(asphere.medium.glass, "N-BK7");
+    EXPECT_FALSE(asphere.medium.n_d) << "1.5 and 40 are what Zemax writes where it says nothing";
+    EXPECT_EQ(lens.surfaces.at(1).medium.n_d, 1.691);
+    EXPECT_EQ(lens.surfaces.at(1).medium.V_d, 54.7);
+    EXPECT_FALSE(lens.surfaces.at(1).semi_diameter_mm);
+}
+
+TEST(Zmx, NamesWhatItDoesNotUnderstand) {
+    const Prescription lens =
+        parse(kHead + "WHAT 3\r\n" + kObject +
+              surf(1, "  STOP\r\n  TYPE BICONICX\r\n  DISZ 2\r\n  ZZZZ 1\r\n  ZZZZ 2\r\n  SQAP 1 1\r\n  COAT AR\r\n") +
+              surf(2, "  CURV 0.1 4 1 1 0\r\n  DISZ 3\r\n  GLAS MIRROR 0 0\r\n  PZUP 1 1 0 0\r\n") +
+              surf(3, coordinate_break({0, 0, 5, 0, 0, 0}, 1)) + surf(4, "  CURV 0.1\r\n  DISZ 0\r\n") +
+              "EFFL 0 1\r\nTOL TOFF 0\r\nMNUM 2 1\r\nTHIC 1 1 2 0\r\nTHIC 1 2 4 0\r\nWAVE 1 1 0.5\r\nWAVE 1 2 0.6\r\n");
+    EXPECT_TRUE(has_finding(lens, "not-understood", "line 6: WHAT"));
+    EXPECT_TRUE(has_finding(lens, "not-understood", "surface 1 of the file: ZZZZ"));
+    EXPECT_TRUE(has_finding(lens, "surface-type", "BICONICX"));
+    EXPECT_TRUE(has_finding(lens, "aperture-shape", "SQAP"));
+    EXPECT_TRUE(has_finding(lens, "coating", "AR"));
+    EXPECT_TRUE(has_finding(lens, "mirror", "surface 2"));
+    EXPECT_TRUE(has_finding(lens, "solve", "CURV"));
+    EXPECT_TRUE(has_finding(lens, "image-shape", "surface 4"));
+    EXPECT_TRUE(has_finding(lens, "image-tilt", "surface 4"));
+    EXPECT_TRUE(has_finding(lens, "not-read", "EFFL"));
+    EXPECT_TRUE(has_finding(lens, "multi-configuration", "WAVE 1"));
+    EXPECT_EQ(lens.remarks.size(), 11U) << "each once";
+    ASSERT_EQ(lens.zoom.size(), 2U);
+    EXPECT_EQ(lens.zoom[1].gaps_mm.at(1), 4.0);
+    EXPECT_TRUE(std::ranges::any_of(lens.remarks, [](const Finding& finding) {
+        return finding.code == "mirror" && finding.surface == 2 && finding.severity == Severity::error;
+    }));
+}
+
+TEST(Zmx, NamesTermsThatAnEvenAsphereHasNot) {
+    const Prescription lens = parse(kHead + "FTYP 4 0 1 1\r\nYFLN 20\r\n" + kObject +
+                                    surf(1,
+                                         "  STOP\r\n  TYPE EVENASPH\r\n  PARM 8 0\r\n  PARM 9 1e-9\r\n  PARM 10 0\r\n"
+                                         "  PARM 11 2\r\n  DISZ 2\r\n") +
+                                    surf(2, "  DISZ 0\r\n"));
+    EXPECT_TRUE(has_finding(lens, "surface-type", "PARM 9 = 1e-09, PARM 11 = 2 of the EVENASPH"));
+    EXPECT_TRUE(has_finding(lens, "fields", "theodolite"));
+    EXPECT_FALSE(has_finding(lens, "fields", "mm"));
+    EXPECT_THROW(make_lens(lens, {}), InputError);
+}
+
+TEST(Zmx, HostileFilesAreRefusedByLine) {
+    const auto lens = [](const std::string& lines) {
+        return kHead + kObject + surf(1, lines) + surf(2, "  DISZ 0\r\n");
+    };
+    EXPECT_NE(complaint("").find("test.zmx"), std::string::npos);
+    EXPECT_NE(complaint(std::string(1000, '\0')), "");
+    EXPECT_NE(complaint("\x7f"
+                        "ELF\x02\x01\x01"),
+              "");
+    EXPECT_NE(complaint(kHead + kObject), "") << "no lens";
+    EXPECT_NE(complaint("MODE NSC\n").find("test.zmx:1: MODE is \"NSC\""), std::string::npos);
+    EXPECT_NE(complaint("UNIT FURLONG\n").find(":1: UNIT"), std::string::npos);
+    EXPECT_NE(complaint(kHead + "SURF 10000000000\r\n").find("test.zmx:6: SURF 10000000000"), std::string::npos);
+    EXPECT_NE(complaint(lens("  CURV x\r\n")).find("test.zmx:10: SURF 1: CURV is \"x\""), std::string::npos);
+    EXPECT_NE(complaint(lens("  DISZ\r\n")).find("DISZ is \"\""), std::string::npos);
+    EXPECT_NE(complaint(lens("  GLAS ___BLANK 1 0 1.5 6O\r\n")).find("test.zmx:10: SURF 1: GLAS is \"6O\", expected"),
+              std::string::npos);
+    EXPECT_NE(complaint(lens("  GLAS N-BK7 0 0 1,6 60\r\n")).find("GLAS is \"1,6\""), std::string::npos);
+    EXPECT_EQ(complaint(lens("  DIAM 5 1 0 0 1 \"\"\r\n  GLAS N-BK7\r\n")), "");
+    EXPECT_NE(complaint(lens("  PARM 1e9 1\r\n")).find("PARM"), std::string::npos);
+    EXPECT_NE(complaint(lens("") + "MNUM 10000000000 1\r\n").find("MNUM"), std::string::npos);
+    EXPECT_NE(complaint(kHead + kObject + surf(1, coordinate_break({}, INFINITY)) + surf(2, "  DISZ 1\r\n") +
+                        surf(3, "  DISZ 0\r\n")),
+              "");
+    EXPECT_EQ(complaint(lens("  CURV nan\r\n  DISZ -inf\r\n")), "") << "for the checker to say";
+    std::string many = kHead;
+    for (int i = 0; i <= 2000; ++i) {
+        many += surf(i, "  DISZ 1\r\n");
+    }
+    EXPECT_NE(complaint(many).find("SURF 1000"), std::string::npos);
+    std::string unknown = kHead + kObject;
+    for (int i = 0; i < 5000; ++i) {
+        unknown += "  K" + std::to_string(i) + " 1\r\n";
+    }
+    EXPECT_EQ(parse(unknown + surf(1, "") + surf(2, "")).remarks.size(), 101U);
+}
+
+TEST(Zmx, EveryEncodingIsTheSameLens) {
+    const std::string text = kHead + "NOTE 0 5 \xC2\xB5m\r\n" + kObject + kStop + surf(2, "  DISZ 0\r\n");
+    EXPECT_EQ(parse(text).notes, "5 \xC2\xB5m");
+    EXPECT_EQ(parse(to_utf16(text)).notes, "5 \xC2\xB5m");
+    EXPECT_EQ(parse(to_utf16(text).substr(2)).surfaces.size(), 1U);
+    EXPECT_TRUE(to_zmx(parse(text)).text.starts_with("\xFF\xFE"));
+}
+
+/// Written and read again.
+Prescription again(const Prescription& prescription) {
+    return parse_zmx(to_zmx(prescription).text, prescription.file);
+}
+
+Prescription tessar() {
+    return read_prescription(find_lens_file("tessar"));
+}
+
+TEST(Zmx, TessarComesBack) {
+    const Prescription lens = tessar();
+    const Prescription back = again(lens);
+    expect_same_rays(lens, back);
+    EXPECT_TRUE(back.remarks.empty());
+    EXPECT_EQ(back.name, lens.name);
+    EXPECT_EQ(back.source, lens.source);
+    EXPECT_EQ(back.notes, lens.notes);
+    EXPECT_EQ(back.stated.f_number, lens.stated.f_number);
+    EXPECT_EQ(back.stated.half_field_deg, lens.stated.half_field_deg);
+    const std::vector<Finding> lost = to_zmx(lens).lost;
+    ASSERT_EQ(lost.size(), 1U);
+    EXPECT_EQ(lost[0].severity, Severity::info);
+}
+
+TEST(Zmx, EveryShapeComesBack) {
+    Prescription lens = tessar();
+    lens.surfaces[0].conic = -0.3;
+    lens.surfaces[0].asphere = {1e-5, 2e-7, -3e-10, 1e-13};
+    lens.surfaces[2].asphere[9] = 1e-26;
+    lens.surfaces[4].radius_x_mm = -70.0;
+    lens.surfaces[4].asphere[1] = 1e-7;
+    lens.surfaces[5].radius_x_mm = std::numeric_limits<double>::infinity();
+    lens.surfaces[6].medium = {.n_d = 1.7, .V_d = 50.0};
+    lens.surfaces[7].rim_mm = 18.0;
+    lens.object_distance_mm = 2000.0;
+    lens.wavelengths_nm = {546.074, 480.0};
+    const Prescription back = again(lens);
+    expect_same_rays(lens, back);
+    EXPECT_TRUE(back.remarks.empty());
+    EXPECT_EQ(back.surfaces[7].rim_mm, 18.0);
+    EXPECT_EQ(back.object_distance_mm, 2000.0);
+    EXPECT_EQ(back.wavelengths_nm, lens.wavelengths_nm);
+}
+
+TEST(Zmx, TiltedSurfacesAndGroupsComeBack) {
+    Prescription lens = tessar();
+    lens.surfaces[7].misalignment = {.decentre_mm = {0.2, -0.1}, .tilt_deg = {1.0, -0.5, 30.0}};
+    lens.groups.push_back({.first = 5, .last = 6, .misalignment = {{0.3, 0.4}, {-2.0, 1.0, 10.0}}, .pivot_mm = 5.0});
+    const Prescription back = again(lens);
+    expect_same_rays(lens, back);
+    EXPECT_TRUE(back.remarks.empty());
+}
+
+TEST(Zmx, ZoomPositionsComeBack) {
+    Prescription lens = tessar();
+    lens.surfaces[2].misalignment.tilt_deg = {1.0, 0.0, 0.0};
+    lens.zoom = {{.name = "near", .gaps_mm = {{3, 5.0}, {8, 79.0}}}, {.name = "far", .gaps_mm = {{8, 82.0}}}};
+    const Prescription back = again(lens);
+    ASSERT_EQ(back.zoom.size(), 2U);
+    for (std::size_t position = 0; position < 2; ++position) {
+        expect_same_rays(at_zoom_position(lens, position), at_zoom_position(back, position));
+    }
+}
+
+TEST(Zmx, SaysWhatItCannotWrite) {
+    Prescription lens = tessar();
+    lens.projection = Projection::equidistant;
+    lens.stop_shape = PolygonStop{};
+    lens.coatings["AR"] = std::vector<WavelengthValue>{{550.0, 0.01}};
+    lens.surfaces[1].coating = "AR";
+    lens.surfaces[2].barrel_mm = 20.0;
+    lens.surfaces[4].medium = {.indices = {{400.0, 1.66}, {700.0, 1.63}}};
+    lens.surfaces[4].radius_x_mm = 50.0;
+    lens.surfaces[4].asphere[8] = 1e-26;
+    lens.focus_groups.push_back({.first = 1, .last = 8});
+    std::string said;
+    for (const Finding& finding : to_zmx(lens).lost) {
+        EXPECT_TRUE(finding.code.starts_with("lost-")) << finding.code;
+        said += std::to_string(finding.surface) + " " + finding.message + "\n";
+    }
+    for (const char* words : {"0 a .zmx file cannot say the projection", "stop that is no circle",
+                              "2 a .zmx file cannot say what the coating AR", "barrel",
+                              "5 a .zmx file cannot say a table of indices", "beyond y^14", "focus"}) {
+        EXPECT_NE(said.find(words), std::string::npos) << words << "\n" << said;
+    }
+}
+
+}  // namespace
+}  // namespace lensproof

@@ -1,0 +1,199 @@
+// Packets of rays against the same rays one by one: the same fate, and the same bits.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <iterator>
+#include <random>
+#include <stdexcept>
+
+#include "engine/base/file.h"
+#include "engine/formats/prescription/load_lens.h"
+#include "engine/formats/prescription/prescription_file.h"
+#include "engine/optics/convert_lens.h"
+#include "engine/optics/lens.h"
+#include "engine/optics/packet/trace_batch.h"
+#include "tests/test_folder.h"
+
+namespace lensproof {
+namespace {
+
+/// Rays towards the front of `lens` from all sides, so that some pass, some are clipped, miss or are reflected.
+std::vector<Ray<double>> rays_at(const Lens& lens, int count, double steepest) {
+    std::mt19937_64 random(11);
+    std::uniform_real_distribution<double> unit(-1.0, 1.0);
+    std::vector<Ray<double>> rays;
+    const double reach = 1.2 * lens.surfaces.front().semi_diameter;
+    for (int i = 0; i < count; ++i) {
+        const double angle = steepest * unit(random);
+        const Vec3d direction = normalized(Vec3d{0.2 * unit(random), std::sin(angle), std::cos(angle)});
+        const Vec3d at{reach * unit(random), reach * unit(random), 0.0};
+        rays.push_back({at - 40.0 * direction, direction});
+    }
+    return rays;
+}
+
+/// Which fates the rays had, so that a test can say that it saw them all.
+using Fates = std::array<int, 5>;
+
+Fates operator+(const Fates& a, const Fates& b) {
+    Fates sum{};
+    std::ranges::transform(a, b, sum.begin(), std::plus<>());
+    return sum;
+}
+
+/// A batch at every level against the scalar `trace`, ray i at wavelength i modulo their number.
+template <Direction direction, class T>
+Fates compare_batch(const SpectralLens<T>& lens, const std::vector<Ray<double>>& rays, Rims rims) {
+    Fates fates{};
+    for (const SimdLevel level : available_simd_levels()) {
+        RayBatch<T> batch(static_cast<int>(rays.size()));
+        batch.size = batch.capacity;
+        for (int i = 0; i < batch.size; ++i) {
+            batch.set(i, convert_ray<T>(rays[static_cast<std::size_t>(i)]));
+            batch.wavelength[static_cast<std::size_t>(i)] = static_cast<std::uint16_t>(i % lens.wavelengths());
+        }
+        trace_batch<direction>(lens, batch, {.carry = Carry::all, .rims = rims, .level = level});
+        fates = {};
+        for (std::size_t i = 0; i < rays.size(); ++i) {
+            const TraceLens<T>& at = lens.at(batch.wavelength[i]);
+            const Ray<T> ray = convert_ray<T>(rays[i]);
+            const TracedRay<T> alone =
+                rims == Rims::clip ? trace<direction, Rims::clip>(at, ray) : trace<direction, Rims::follow>(at, ray);
+            const Ray<T> together = batch.ray(static_cast<int>(i));
+            EXPECT_EQ(batch.status[i], alone.status) << simd_name(level) << ", ray " << i;
+            EXPECT_EQ(batch.surface[i], alone.surface) << simd_name(level) << ", ray " << i;
+            EXPECT_EQ(together.origin, alone.ray.origin) << simd_name(level) << ", ray " << i;
+            EXPECT_EQ(together.direction, alone.ray.direction) << simd_name(level) << ", ray " << i;
+            EXPECT_EQ(batch.optical_path[i], alone.optical_path) << simd_name(level) << ", ray " << i;
+            EXPECT_EQ(batch.transmittance[i], alone.transmittance) << simd_name(level) << ", ray " << i;
+            ++fates[static_cast<std::size_t>(alone.status)];
+        }
+    }
+    return fates;
+}
+
+/// In both precisions and with both treatments of rims.
+template <Direction direction>
+Fates compare(const std::vector<TraceLens<double>>& lenses, const std::vector<Ray<double>>& rays) {
+    std::vector<TraceLens<float>> in_float;
+    std::ranges::transform(lenses, std::back_inserter(in_float), convert_lens<float, double>);
+    const SpectralLens<double> of_double(lenses);
+    const SpectralLens<float> of_float(in_float);
+    Fates fates{};
+    for (const Rims rims : {Rims::clip, Rims::follow}) {
+        fates =
+            fates + compare_batch<direction>(of_double, rays, rims) + compare_batch<direction>(of_float, rays, rims);
+    }
+    return fates;
+}
+
+std::vector<TraceLens<double>> at_three(const Lens& lens) {
+    return {at_wavelength<double>(lens, 450.0), at_wavelength<double>(lens, 550.0), at_wavelength<double>(lens, 650.0)};
+}
+
+TEST(TracePacket, EveryLaneHasTheBitsOfTheScalar) {
+    Fates seen{};
+    for (const char* name : {"tessar", "petzval", "muller-fisheye"}) {
+        const Lens lens = load_lens(name);
+        const std::vector<Ray<double>> rays = rays_at(lens, 801, name[0] == 'm' ? 1.8 : 0.6);
+        seen = seen + compare<Direction::forward>(at_three(lens), rays);
+        seen = seen + compare<Direction::forward>({at_wavelength<double>(lens, 550.0)}, rays);
+    }
+    for (const RayStatus status : {RayStatus::ok, RayStatus::missed, RayStatus::clipped,
+                                   RayStatus::total_internal_reflection, RayStatus::stopped}) {
+        EXPECT_GT(seen[static_cast<std::size_t>(status)], 20) << status_name(status);
+    }
+}
+
+TEST(TracePacket, GoesBackwardsToo) {
+    const Lens lens = load_lens("tessar");
+    std::vector<Ray<double>> rays = rays_at(lens, 400, 0.6);
+    for (Ray<double>& ray : rays) {
+        ray = {{ray.origin.x, ray.origin.y, lens.image_z}, -1.0 * ray.direction};
+    }
+    const Fates fates = compare<Direction::reverse>(at_three(lens), rays);
+    EXPECT_GT(fates[static_cast<std::size_t>(RayStatus::ok)], 20);
+}
+
+// What is not asked for stays as it was, and rays beyond the batch's size are not touched.
+TEST(TracePacket, LeavesAloneWhatIsNotAskedFor) {
+    const Lens lens = load_lens("tessar");
+    const SpectralLens<double> at = at_wavelengths<double>(lens, {550.0});
+    const std::vector<Ray<double>> rays = rays_at(lens, 40, 0.1);
+    for (const SimdLevel level : available_simd_levels()) {
+        RayBatch<double> batch(40);
+        for (int i = 0; i < 40; ++i) {
+            batch.set(i, rays[static_cast<std::size_t>(i)]);
+        }
+        std::ranges::fill(batch.optical_path, -1.0);
+        std::ranges::fill(batch.transmittance, -2.0);
+        std::ranges::fill(batch.status, RayStatus::missed);
+        batch.size = 21;
+        trace_batch(at, batch, {.carry = Carry::geometry, .level = level});
+        EXPECT_TRUE(std::ranges::all_of(batch.optical_path, [](double path) { return path == -1.0; }));
+        EXPECT_TRUE(std::ranges::all_of(batch.transmittance, [](double share) { return share == -2.0; }));
+        for (int i = 21; i < 40; ++i) {
+            EXPECT_EQ(batch.ray(i).origin, rays[static_cast<std::size_t>(i)].origin);
+            EXPECT_EQ(batch.status[static_cast<std::size_t>(i)], RayStatus::missed);
+        }
+    }
+}
+
+TEST(TracePacket, RefusesLensesThatAreNotOne) {
+    const TraceLens<double> tessar = at_wavelength<double>(load_lens("tessar"), 550.0);
+    const TraceLens<double> petzval = at_wavelength<double>(load_lens("petzval"), 550.0);
+    EXPECT_THROW(SpectralLens<double>({tessar, petzval}), std::invalid_argument);
+    EXPECT_THROW(SpectralLens<double>({}), std::invalid_argument);
+}
+
+// A closed stop stops every lane, the one on the axis too.
+TEST(TracePacket, AClosedStopStopsEveryLane) {
+    const Lens lens = load_lens("tessar");
+    TraceLens<double> at = at_wavelength<double>(lens, 550.0);
+    at.surfaces[static_cast<std::size_t>(lens.stop_index())].semi_diameter_squared = 0.0;
+    std::vector<Ray<double>> rays = rays_at(lens, 7, 0.1);
+    rays.push_back({{0.0, 0.0, -10.0}, {0.0, 0.0, 1.0}});
+    const Fates fates = compare<Direction::forward>({at}, rays);
+    EXPECT_EQ(fates[static_cast<std::size_t>(RayStatus::ok)], 0);
+    EXPECT_GT(fates[static_cast<std::size_t>(RayStatus::stopped)], 0);
+}
+
+/// A file with the Tessar and more in it.
+Lens tessar_with(const std::string& more) {
+    const TestFolder folder;
+    const std::filesystem::path file = folder.path() / "tessar_with.toml";
+    write_file(file, read_file(find_lens_file("tessar")) + more);
+    return load_lens(file.string());
+}
+
+// Blades, coatings and turned, displaced groups, each at three wavelengths, where a coating's share differs.
+TEST(TracePacket, TracesBladesCoatingsAndTurnedGroups) {
+    for (const Lens& lens :
+         {tessar_with("[stop]\nblades = 6\nrotation_deg = 10\n"),
+          tessar_with("[[groups]]\nsurfaces = [3, 6]\ntilt_deg = [1, -2, 0]\ndecentre_mm = [0.3, 0.2]\n"),
+          load_lens("heliar-tronnier")}) {
+        ASSERT_FALSE(at_wavelength<double>(lens, 550.0).specials.empty());
+        const Fates fates = compare<Direction::forward>(at_three(lens), rays_at(lens, 400, 0.4));
+        EXPECT_GT(fates[static_cast<std::size_t>(RayStatus::ok)], 20);
+        EXPECT_GT(fates[static_cast<std::size_t>(RayStatus::clipped)], 20);
+    }
+}
+
+// A shaped, displaced surface.
+TEST(TracePacket, TracesWhatIsNoSphere) {
+    const Lens lens = load_lens("tessar");
+    TraceLens<double> at = at_wavelength<double>(lens, 550.0);
+    SpecialSurface<double> special;
+    special.has_shape = true;
+    special.shape = {.curvature = at.surfaces[2].curvature, .conic = -0.5, .asphere = {0.0, 1e-6}, .terms = 2};
+    special.vertex = {0.0, 0.3};
+    at.specials.push_back(special);
+    at.surfaces[2].special = 0;
+    const Fates fates = compare<Direction::forward>({at}, rays_at(lens, 400, 0.6));
+    EXPECT_GT(fates[static_cast<std::size_t>(RayStatus::ok)], 20);
+}
+
+}  // namespace
+}  // namespace lensproof

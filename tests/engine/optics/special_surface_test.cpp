@@ -1,0 +1,497 @@
+// Surfaces that are more than a centred sphere, against closed forms and against other ways of saying the same surface.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+#include <random>
+
+#include "engine/formats/glass/shipped_glasses.h"
+#include "engine/optics/focus.h"
+#include "engine/optics/lens.h"
+#include "engine/optics/paraxial.h"
+#include "engine/spectral/wavelengths.h"
+
+namespace lensproof {
+namespace {
+
+constexpr double kUlp = std::numeric_limits<double>::epsilon();
+constexpr double kWavelength = 587.5618;
+constexpr double kFlat = std::numeric_limits<double>::infinity();
+
+PrescribedSurface row(double radius_mm, double thickness_mm, double n_d = 1.0, double semi_diameter_mm = 50.0) {
+    PrescribedSurface surface;
+    surface.radius_mm = radius_mm;
+    surface.thickness_mm = thickness_mm;
+    surface.semi_diameter_mm = semi_diameter_mm;
+    if (n_d != 1.0) {
+        surface.medium.n_d = n_d;
+    }
+    return surface;
+}
+
+PrescribedSurface stop_row(double thickness_mm, double semi_diameter_mm = 50.0) {
+    PrescribedSurface surface = row(kFlat, thickness_mm, 1.0, semi_diameter_mm);
+    surface.is_stop = true;
+    return surface;
+}
+
+Prescription prescription_of(std::vector<PrescribedSurface> surfaces) {
+    Prescription prescription;
+    prescription.name = "test";
+    prescription.surfaces = std::move(surfaces);
+    return prescription;
+}
+
+TraceLens<double> traceable(const Prescription& prescription) {
+    return at_wavelength<double>(make_lens(prescription, GlassCatalogue{}), kWavelength);
+}
+
+/// Rays from all around: heights up to `height`, slopes up to `slope`, from z = −20.
+std::vector<Ray<double>> rays(double height, double slope, int count = 200) {
+    std::mt19937 random(7);
+    std::uniform_real_distribution<double> unit(-1.0, 1.0);
+    std::vector<Ray<double>> made;
+    for (int i = 0; i < count; ++i) {
+        const Vec3d direction = normalized(Vec3d{slope * unit(random), slope * unit(random), 1.0});
+        const Vec3d at_vertex{height * unit(random), height * unit(random), 0.0};
+        made.push_back({at_vertex + (-20.0 / direction.z) * direction, direction});
+    }
+    return made;
+}
+
+void expect_same_rays(const TraceLens<double>& a, const TraceLens<double>& b, const std::vector<Ray<double>>& bundle,
+                      double tolerance) {
+    int passed = 0;
+    for (const Ray<double>& ray : bundle) {
+        const TracedRay<double> through_a = trace(a, ray);
+        const TracedRay<double> through_b = trace(b, ray);
+        ASSERT_EQ(through_a.status, through_b.status);
+        if (through_a.status == RayStatus::ok) {
+            ++passed;
+            EXPECT_LT(length(through_a.ray.origin - through_b.ray.origin), tolerance);
+            EXPECT_LT(length(through_a.ray.direction - through_b.ray.direction), tolerance);
+            EXPECT_NEAR(through_a.optical_path, through_b.optical_path, tolerance);
+            EXPECT_NEAR(through_a.transmittance, through_b.transmittance, tolerance);
+        }
+    }
+    EXPECT_GT(passed, static_cast<int>(bundle.size()) / 2);
+}
+
+// An ellipsoid of eccentricity 1/n, k = −1/n², images infinity from air into glass without aberration, a distance
+// n R / (n − 1) behind its vertex (Born & Wolf, §4.2). Ten operations on numbers of that size.
+TEST(Conic, EllipsoidHasAPerfectFocus) {
+    constexpr double n = 1.6;
+    constexpr double R = 30.0;
+    constexpr double kFocus = n * R / (n - 1.0);
+    PrescribedSurface front = row(R, kFocus, n, 20.0);
+    front.conic = -1.0 / (n * n);
+    const TraceLens<double> lens = traceable(prescription_of({stop_row(5.0), front, row(kFlat, 1.0)}));
+    for (const double height : {0.0, 0.001, 5.0, 12.0, 19.9}) {
+        const TracedRay<double> traced =
+            trace<Direction::forward>(lens, Ray<double>{{0.6 * height, 0.8 * height, -9.0}, {0.0, 0.0, 1.0}});
+        ASSERT_EQ(traced.status, RayStatus::ok) << height;
+        EXPECT_NEAR(traced.ray.origin.x, 0.0, 20 * kUlp * kFocus) << height;
+        EXPECT_NEAR(traced.ray.origin.y, 0.0, 20 * kUlp * kFocus) << height;
+        // Malus and Dupin: all paths to the focus are optically as long.
+        EXPECT_NEAR(traced.optical_path, 9.0 + 5.0 + n * kFocus, 40 * kUlp * kFocus * n) << height;
+    }
+}
+
+// A hyperboloid, k = −n², does the same from glass into air, R / (n − 1) behind its vertex for a flat front.
+TEST(Conic, HyperboloidHasAPerfectFocus) {
+    constexpr double n = 1.5;
+    constexpr double R = 25.0;
+    PrescribedSurface rear = row(-R, R / (n - 1.0));
+    rear.conic = -n * n;
+    const TraceLens<double> lens = traceable(prescription_of({stop_row(1.0), row(kFlat, 12.0, n), rear}));
+    for (const double height : {0.0, 0.1, 3.0, 10.0, 20.0}) {
+        const TracedRay<double> traced = trace(lens, Ray<double>{{height, 0.0, -9.0}, {0.0, 0.0, 1.0}});
+        ASSERT_EQ(traced.status, RayStatus::ok);
+        EXPECT_NEAR(meet_plane(traced.ray, lens.image_z).point.x, 0.0, 100 * kUlp * 50.0) << height;
+    }
+}
+
+// A paraboloid z = r² / 2R is a conic of k = −1, and an even asphere without curvature whose r² term is 1 / 2R: the
+// quadratic and Newton's method have to find the same points. Newton stops within 16 ulp of the path.
+TEST(Asphere, NewtonFindsWhatTheQuadraticFinds) {
+    constexpr double R = 30.0;
+    PrescribedSurface conic = row(R, 6.0, 1.7);
+    conic.conic = -1.0;
+    PrescribedSurface polynomial = row(kFlat, 6.0, 1.7);
+    polynomial.asphere[0] = 0.5 / R;
+    const auto lens = [](const PrescribedSurface& front) {
+        return traceable(prescription_of({front, row(-80.0, 2.0), stop_row(50.0)}));
+    };
+    expect_same_rays(lens(conic), lens(polynomial), rays(15.0, 0.8), 1e-12);
+    EXPECT_NEAR(paraxial_data(lens(conic)).efl, paraxial_data(lens(polynomial)).efl, 1e-12);
+}
+
+// The sphere's own series, r² / 2R + r⁴ / 8R³ + …, to r²⁰: what is left out is below (r/2R)²² R.
+TEST(Asphere, SeriesOfASphereIsTheSphere) {
+    constexpr double R = 40.0;
+    PrescribedSurface series = row(kFlat, 6.0, 1.6);
+    double coefficient = 0.5 / R;
+    for (int i = 0; i < kAsphereTerms; ++i) {
+        series.asphere[i] = coefficient;
+        coefficient *= (2.0 * i + 1.0) / (2.0 * i + 4.0) / (R * R);
+    }
+    const auto lens = [](const PrescribedSurface& front) {
+        return traceable(prescription_of({front, row(-80.0, 2.0), stop_row(50.0)}));
+    };
+    expect_same_rays(lens(row(R, 6.0, 1.6)), lens(series), rays(8.0, 0.3), 1e-11);
+}
+
+// Terms that cancel: their sum is known to an ulp of the largest, 200 mm here, while the surface departs from its base
+// by little. Every ray that meets the base meets it.
+TEST(Asphere, TermsThatCancelAreMetAllTheSame) {
+    PrescribedSurface front = row(60.0, 8.0, 1.7, 14.0);
+    const double r2 = 12.0 * 12.0;
+    // 200 mm (r/12)⁴ (1 − (r/12)²)… up to r²⁰ in signs that alternate: (1 − u)⁸ u² has a maximum of 0.007 at u = 1/5.
+    constexpr std::array kBinomials = {1.0, -8.0, 28.0, -56.0, 70.0, -56.0, 28.0, -8.0, 1.0};
+    for (int i = 0; i < 9; ++i) {
+        front.asphere[i + 1] = 2.8 * kBinomials[i] / std::pow(r2, i + 2);
+    }
+    const TraceLens<double> lens = traceable(prescription_of({front, row(kFlat, 2.0), stop_row(50.0)}));
+    int missed = 0;
+    for (const Ray<double>& ray : rays(7.0, 0.4, 2000)) {
+        missed += trace<Direction::forward, Rims::follow>(lens, ray).status == RayStatus::missed ? 1 : 0;
+    }
+    EXPECT_EQ(missed, 0);
+}
+
+TEST(Asphere, PointsLieOnTheSurfaceAndBackTheRayReturns) {
+    PrescribedSurface front = row(28.0, 8.0, 1.7, 14.0);
+    front.conic = -0.7;
+    front.asphere = {0.0, 2e-5, -3e-8, 4e-11, -1e-13};
+    const Prescription prescription = prescription_of({front, row(-60.0, 2.0), stop_row(50.0)});
+    const TraceLens<double> lens = traceable(prescription);
+    const SurfaceShape<double>& shape = lens.specials.front().shape;
+    for (const Ray<double>& ray : rays(9.0, 0.5)) {
+        Vec3d met{};
+        const TracedRay<double> out = trace(lens, ray, [&](const SurfaceEvent<double>& event) {
+            if (event.surface == 0) {
+                met = event.ray.origin;
+            }
+        });
+        EXPECT_NEAR(met.z, sag(shape, met.x, met.y), 1e-13);
+        if (out.status == RayStatus::ok) {
+            const TracedRay<double> back =
+                trace<Direction::reverse>(lens, Ray<double>{out.ray.origin, -1.0 * out.ray.direction});
+            ASSERT_EQ(back.status, RayStatus::ok);
+            EXPECT_LT(length(cross(back.ray.origin - ray.origin, ray.direction)), 1e-11);
+            EXPECT_LT(length(back.ray.direction + ray.direction), 1e-12);
+        }
+    }
+}
+
+// A ray past the equator of the conic, or towards a part that turns away, has a status and finite numbers.
+TEST(Asphere, MissesAreStatuses) {
+    PrescribedSurface front = row(10.0, 8.0, 1.7, 14.0);
+    front.asphere[1] = 1e-6;
+    const TraceLens<double> lens = traceable(prescription_of({front, row(kFlat, 2.0), stop_row(50.0)}));
+    for (const Ray<double>& ray : rays(30.0, 5.0, 2000)) {
+        const TracedRay<double> out = trace<Direction::forward, Rims::follow>(lens, ray);
+        EXPECT_TRUE(std::isfinite(out.ray.origin.x + out.ray.origin.y + out.ray.origin.z + out.optical_path));
+    }
+}
+
+// Equal radii in both sections make the toroid a sphere; an infinite one makes it a cylinder, which is a sphere to rays
+// in y–z and a plate to rays in x–z.
+TEST(Toroid, IsASphereOrACylinderAtItsEnds) {
+    const auto lens = [](const PrescribedSurface& front) {
+        return traceable(prescription_of({front, row(kFlat, 2.0), stop_row(50.0)}));
+    };
+    PrescribedSurface toroid = row(35.0, 6.0, 1.6);
+    toroid.radius_x_mm = 35.0;
+    expect_same_rays(lens(row(35.0, 6.0, 1.6)), lens(toroid), rays(15.0, 0.5), 1e-12);
+
+    PrescribedSurface cylinder = row(35.0, 6.0, 1.6);
+    cylinder.radius_x_mm = kFlat;
+    std::vector<Ray<double>> meridional = rays(15.0, 0.5);
+    std::vector<Ray<double>> sagittal = meridional;
+    for (std::size_t i = 0; i < meridional.size(); ++i) {
+        const auto in_plane = [](const Ray<double>& ray, double x, double y) {
+            return Ray<double>{{x * ray.origin.x, y * ray.origin.y, ray.origin.z},
+                               normalized(Vec3d{x * ray.direction.x, y * ray.direction.y, ray.direction.z})};
+        };
+        sagittal[i] = in_plane(meridional[i], 1.0, 0.0);
+        meridional[i] = in_plane(meridional[i], 0.0, 1.0);
+    }
+    expect_same_rays(lens(row(35.0, 6.0, 1.6)), lens(cylinder), meridional, 1e-12);
+    expect_same_rays(lens(row(kFlat, 6.0, 1.6)), lens(cylinder), sagittal, 1e-12);
+}
+
+// Turning a whole lens about a point is turning the ray the other way.
+TEST(Misalignment, TurningTheLensIsTurningTheRay) {
+    Prescription straight = prescription_of({row(40.0, 6.0, 1.6), row(-60.0, 3.0), stop_row(50.0, 20.0)});
+    Prescription turned = straight;
+    constexpr double kTilt = 7.0;
+    constexpr double kPivot = 4.0;
+    turned.groups = {{.first = 1,
+                      .last = 3,
+                      .misalignment = {.decentre_mm = {0.3, -0.2}, .tilt_deg = {kTilt, 0.0, 0.0}},
+                      .pivot_mm = kPivot}};
+    const TraceLens<double> lens = traceable(straight);
+    const TraceLens<double> turned_lens = traceable(turned);
+    const double sine = std::sin(kTilt * std::numbers::pi / 180.0);
+    const double cosine = std::cos(kTilt * std::numbers::pi / 180.0);
+    // Right-handed about x: y turns towards z.
+    const auto rotate = [&](const Vec3d& v) {
+        return Vec3d{v.x, cosine * v.y - sine * v.z, sine * v.y + cosine * v.z};
+    };
+    const auto place = [&](const Vec3d& v) { return rotate(v - Vec3d{0.0, 0.0, kPivot}) + Vec3d{0.3, -0.2, kPivot}; };
+    for (const Ray<double>& ray : rays(10.0, 0.3)) {
+        const TracedRay<double> before = trace(lens, ray);
+        const TracedRay<double> after = trace(turned_lens, Ray<double>{place(ray.origin), rotate(ray.direction)});
+        ASSERT_EQ(before.status, after.status);
+        if (before.status == RayStatus::ok) {
+            EXPECT_LT(length(place(before.ray.origin) - after.ray.origin), 1e-12);
+            EXPECT_LT(length(rotate(before.ray.direction) - after.ray.direction), 1e-13);
+        }
+    }
+}
+
+// A surface's own tilt about its vertex is that of a group of one.
+TEST(Misalignment, OfOneSurfaceIsThatOfItsGroup) {
+    const Misalignment misalignment{.decentre_mm = {0.5, 1.0}, .tilt_deg = {3.0, -4.0, 20.0}};
+    Prescription own = prescription_of({row(40.0, 6.0, 1.6), row(-60.0, 3.0), stop_row(50.0, 20.0)});
+    Prescription grouped = own;
+    own.surfaces[1].misalignment = misalignment;
+    grouped.groups = {{.first = 2, .last = 2, .misalignment = misalignment}};
+    expect_same_rays(traceable(own), traceable(grouped), rays(10.0, 0.3), 1e-13);
+}
+
+constexpr double kAngles[] = {0.0, 0.3, 0.8, 1.2, 1.5};
+
+/// (n, cos) on both sides of an interface for light that comes from n1 at `angle`.
+struct Interface {
+    double n1, n2, cos1, cos2;
+};
+
+Interface interface_at(double n1, double n2, double angle) {
+    const double sine = n1 * std::sin(angle) / n2;
+    return {n1, n2, std::cos(angle), std::sqrt(1.0 - sine * sine)};
+}
+
+double coated(const TraceCoating<double>& coating, const Interface& at) {
+    return coating_transmittance(coating, at.n1, at.n2, at.cos1, at.cos2);
+}
+
+// A layer of either medium's own index is not there, nor is one of half a wave at normal incidence.
+TEST(Coating, LayersThatDoNothing) {
+    for (const double angle : kAngles) {
+        const Interface at = interface_at(1.0, 1.6, angle);
+        const double bare = fresnel_transmittance(at.n1, at.n2, at.cos1, at.cos2);
+        EXPECT_NEAR(coated({.layers = {{1.6, 0.37}}}, at), bare, 1e-14);
+        EXPECT_NEAR(coated({.layers = {{1.0, 0.37}}}, at), bare, 1e-14);
+        EXPECT_NEAR(coated({.layers = {{1.6, 0.2}, {1.6, 1.9}}}, at), bare, 1e-14);
+    }
+    EXPECT_NEAR(coated({.layers = {{2.3, 0.5 / 2.3}}}, interface_at(1.0, 1.6, 0.0)),
+                fresnel_transmittance(1.0, 1.6, 1.0, 1.0), 1e-14);
+}
+
+// A quarter-wave layer reflects ((n₁ n₃ − n²) / (n₁ n₃ + n²))² at normal incidence (Macleod, §2.6): nothing where
+// n² = n₁ n₃.
+TEST(Coating, QuarterWaveLayer) {
+    for (const double n : {1.2, 1.38, std::sqrt(1.6), 2.1}) {
+        const double amplitude = (1.6 - n * n) / (1.6 + n * n);
+        EXPECT_NEAR(coated({.layers = {{n, 0.25 / n}}}, interface_at(1.0, 1.6, 0.0)), 1.0 - amplitude * amplitude,
+                    1e-14);
+    }
+}
+
+// Airy's sum over the multiple reflections within one layer (Born & Wolf, §7.6.1), s and p apart, is a second way to
+// the same number.
+TEST(Coating, AgreesWithAirysSum) {
+    constexpr double kLayer = 1.9;
+    constexpr double kThickness = 0.31;  // wavelengths
+    for (const double angle : kAngles) {
+        const Interface at = interface_at(1.0, 1.6, angle);
+        const double sine = std::sin(angle) / kLayer;
+        const double cosine = std::sqrt(1.0 - sine * sine);
+        double expected = 0.0;
+        for (const bool s : {true, false}) {
+            const auto reflection = [&](double n1, double c1, double n2, double c2) {
+                return s ? (n1 * c1 - n2 * c2) / (n1 * c1 + n2 * c2) : (n2 * c1 - n1 * c2) / (n2 * c1 + n1 * c2);
+            };
+            const double r12 = reflection(1.0, at.cos1, kLayer, cosine);
+            const double r23 = reflection(kLayer, cosine, 1.6, at.cos2);
+            const double phase = std::cos(4.0 * std::numbers::pi * kLayer * kThickness * cosine);
+            const double product = r12 * r23;
+            expected += 0.5 * (1.0 - (r12 * r12 + r23 * r23 + 2.0 * product * phase) /
+                                         (1.0 + product * product + 2.0 * product * phase));
+        }
+        EXPECT_NEAR(coated({.layers = {{kLayer, kThickness}}}, at), expected, 1e-14) << angle;
+    }
+}
+
+// What passes a stack is the same both ways (reciprocity), within the critical angle of every layer and beyond it.
+TEST(Coating, PassesTheSameBothWays) {
+    const TraceCoating<double> stack{.layers = {{1.38, 0.2}, {2.1, 0.11}, {1.05, 0.3}}};
+    const TraceCoating<double> reversed{.layers = {{1.05, 0.3}, {2.1, 0.11}, {1.38, 0.2}}};
+    for (const double angle : {0.0, 0.3, 0.6, 0.75, 0.78}) {  // from 1.5 into 1.05: critical at 0.775
+        const Interface at = interface_at(1.5, 1.5, angle);
+        const double forwards = coated(stack, at);
+        EXPECT_NEAR(forwards, coated(reversed, at), 1e-13);
+        EXPECT_GT(forwards, 0.0);
+        EXPECT_LE(forwards, 1.0 + 1e-14);
+    }
+}
+
+TEST(Coating, IsTracedFromThePrescriptionBothWays) {
+    Prescription prescription = prescription_of({row(40.0, 6.0, 1.6), row(-60.0, 3.0), stop_row(50.0, 20.0)});
+    prescription.coatings["v"] = std::vector<CoatingLayer>{{std::sqrt(1.6), kWavelength / 4.0 / std::sqrt(1.6)}};
+    prescription.coatings["stated"] = std::vector<WavelengthValue>{{500.0, 0.01}, {700.0, 0.03}};
+    prescription.surfaces[0].coating = "v";
+    prescription.surfaces[1].coating = "stated";
+    const TraceLens<double> lens = traceable(prescription);
+    const TracedRay<double> forwards = trace(lens, Ray<double>{{0.0, 0.0, -5.0}, {0.0, 0.0, 1.0}});
+    const double stated = 1.0 - interpolated({{500.0, 0.01}, {700.0, 0.03}}, kWavelength);
+    EXPECT_NEAR(forwards.transmittance, stated, 1e-14);
+    EXPECT_NEAR(stated, 1.0 - (0.01 + 0.02 * 87.5618 / 200.0), 1e-15);
+    const TracedRay<double> back = trace<Direction::reverse>(lens, Ray<double>{{0.0, 0.0, 60.0}, {0.0, 0.0, -1.0}});
+    EXPECT_NEAR(back.transmittance, stated, 1e-14);
+}
+
+/// The share of the stop's circle that a mask lets through, on a grid: its error is that of the cells at the edge,
+/// perimeter / cell = 2π·400 of 4·10⁵, random in sign.
+double open_share(const StopMask& mask) {
+    constexpr int kCells = 800;
+    double open = 0.0;
+    int inside = 0;
+    for (int i = 0; i < kCells; ++i) {
+        for (int k = 0; k < kCells; ++k) {
+            const double x = 2.0 * (i + 0.5) / kCells - 1.0;
+            const double y = 2.0 * (k + 0.5) / kCells - 1.0;
+            if (x * x + y * y <= 1.0) {
+                ++inside;
+                open += mask.transmittance(x, y);
+            }
+        }
+    }
+    return open / inside;
+}
+
+// A regular polygon fills N sin(2π/N) / 2π of its circle; blades as curved as the circle fill all of it.
+TEST(StopMask, PolygonsFillTheirShareOfTheCircle) {
+    for (const int blades : {3, 5, 6, 9}) {
+        const double expected = blades * std::sin(2.0 * std::numbers::pi / blades) / (2.0 * std::numbers::pi);
+        EXPECT_NEAR(open_share(StopMask(PolygonStop{.blades = blades, .rotation_deg = 11.0})), expected, 1e-3);
+        EXPECT_NEAR(open_share(StopMask(PolygonStop{.blades = blades, .curvature = 1.0})), 1.0, 1e-3);
+        const double half_curved = open_share(StopMask(PolygonStop{.blades = blades, .curvature = 0.5}));
+        EXPECT_GT(half_curved, expected);
+        EXPECT_LT(half_curved, 1.0);
+    }
+    // A corner points along the stated rotation.
+    const StopMask triangle(PolygonStop{.blades = 3, .rotation_deg = 90.0});
+    EXPECT_EQ(triangle.transmittance(0.0, 0.99), 1.0);
+    EXPECT_EQ(triangle.transmittance(0.0, -0.6), 0.0);
+}
+
+TEST(StopMask, EndsRaysInTheTracerAsStopped) {
+    Prescription prescription = prescription_of({row(40.0, 6.0, 1.6), row(-60.0, 3.0), stop_row(50.0, 5.0)});
+    prescription.stop_shape = PolygonStop{.blades = 4, .rotation_deg = 0.0};  // |x| + |y| ≤ 5
+    const TraceLens<double> lens = traceable(prescription);
+    // From the stop outwards and back: along x the corner lies at 5 mm, along the diagonal the edge at 5/√2.
+    const auto status = [&](double x, double y) {
+        const TraceLens<double> stop_alone{{lens.surfaces[2]}, lens.image_z, lens.specials};
+        return trace(stop_alone, Ray<double>{{x, y, 0.0}, {0.0, 0.0, 1.0}}).status;
+    };
+    EXPECT_EQ(status(4.99, 0.0), RayStatus::ok);
+    EXPECT_EQ(status(2.49, 2.49), RayStatus::ok);
+    EXPECT_EQ(status(2.51, 2.51), RayStatus::stopped);
+    EXPECT_EQ(status(0.0, -5.01), RayStatus::stopped);
+}
+
+TEST(Barrel, CutsAtBothEndsOfItsSpace) {
+    Prescription prescription = prescription_of({row(40.0, 6.0, 1.6), row(-60.0, 3.0), stop_row(50.0, 20.0)});
+    prescription.surfaces[1].barrel_mm = 7.0;
+    const Lens lens = make_lens(prescription, GlassCatalogue{});
+    EXPECT_EQ(lens.surfaces[0].semi_diameter, 50.0);
+    EXPECT_EQ(lens.surfaces[1].semi_diameter, 7.0);
+    EXPECT_EQ(lens.surfaces[2].semi_diameter, 7.0);
+}
+
+// Two thin lenses of 100 and −150 mm, of index 1.5, so that each radius is the focal length. Moving the front one
+// forward by s images an object 1/(1/100 − 1/i) away where the front lens alone images it i = s + its focal length
+// behind itself, since then the rear lens sees the same.
+TEST(FocusGroup, MovesUntilTheImageIsSharp) {
+    const auto thin = [](double focal_length) { return row(focal_length, 0.0, 1.5); };
+    Prescription prescription =
+        prescription_of({thin(100.0), row(-100.0, 30.0), stop_row(10.0, 5.0), thin(-150.0), row(150.0, 0.0)});
+    // Behind the rear lens: 1/i = 1/60 − 1/150.
+    prescription.surfaces.back().thickness_mm = 1.0 / (1.0 / 60.0 - 1.0 / 150.0);
+    prescription.focus_groups = {{.first = 1, .last = 2, .travel = 1.0}};
+    const Lens lens = make_lens(prescription, GlassCatalogue{});
+    constexpr double kDrive = 5.0;
+    const double object_from_group = 1.0 / (1.0 / 100.0 - 1.0 / (100.0 + kDrive));
+    const Lens focused = focused_at(lens, object_from_group + kDrive);
+    EXPECT_NEAR(focused.surfaces[0].vertex_z, -kDrive, 1e-6);
+    EXPECT_NEAR(focused.surfaces[1].vertex_z, -kDrive, 1e-6);
+    EXPECT_EQ(focused.surfaces[3].vertex_z, lens.surfaces[3].vertex_z);
+    EXPECT_EQ(focused.image_z, lens.image_z);
+}
+
+TEST(ZoomPosition, ReplacesGapsStopAndClaims) {
+    Prescription prescription = prescription_of({row(40.0, 6.0, 1.6), row(-60.0, 3.0), stop_row(50.0, 20.0)});
+    prescription.stated.efl_mm = 50.0;
+    prescription.stated.f_number = 4.0;
+    prescription.zoom = {{.name = "wide"}, {.name = "long", .gaps_mm = {{2, 9.0}}, .stop_semi_diameter_mm = 8.0}};
+    prescription.zoom[1].stated.efl_mm = 80.0;
+    const Prescription chosen = at_zoom_position(prescription, find_zoom_position(prescription, "long"));
+    EXPECT_EQ(chosen.surfaces[1].thickness_mm, 9.0);
+    EXPECT_EQ(*chosen.surfaces[2].semi_diameter_mm, 8.0);
+    EXPECT_EQ(*chosen.stated.efl_mm, 80.0);
+    EXPECT_EQ(*chosen.stated.f_number, 4.0);
+    EXPECT_EQ(find_zoom_position(prescription, "1"), 0U);
+    EXPECT_FALSE(at_zoom_position(prescription, 0).stated.efl_mm.has_value());
+    prescription.stated.half_field_deg = 20.0;
+    EXPECT_EQ(*at_zoom_position(prescription, 1).stated.half_field_deg, 20.0);
+    EXPECT_ANY_THROW(find_zoom_position(prescription, "middle"));
+}
+
+// Air at 20 °C and 101 325 Pa has n − 1 = 2.724e-4 at the d line (2.718e-4 at 633 nm by NIST's calculator): a
+// catalogue's index, relative to it, is that much higher against vacuum. And the wavelength in air is 0.163 nm shorter,
+// which by N-BK7's dn/dλ of −4.18e-5 / nm adds 4.5e-6 of 1.5168. Both are known to 1e-7.
+TEST(Medium, InVacuumIsTheCataloguesTimesThatOfAir) {
+    Prescription prescription = prescription_of({row(40.0, 6.0), row(-60.0, 3.0), stop_row(50.0, 20.0)});
+    prescription.surfaces[0].medium.glass = "N-BK7";
+    const auto index = [&] { return at_wavelength<double>(make_lens(prescription, shipped_glasses()), kWavelength); };
+    const double in_air = index().surfaces[0].index_after;
+    EXPECT_NEAR(in_air, 1.5168, 1e-6);
+    prescription.surroundings = Surroundings::vacuum;
+    const TraceLens<double> in_vacuum = index();
+    EXPECT_NEAR(in_vacuum.surfaces[0].index_after / in_air, 1.0002724 + 4.5e-6, 5e-7);
+    EXPECT_EQ(in_vacuum.surfaces[1].index_after, 1.0);
+}
+
+// A table of indices counts before the name and the figures beside it, and ends where it ends.
+TEST(Medium, TableOfIndicesIsMetAtItsWavelengths) {
+    Prescription prescription = prescription_of({row(40.0, 6.0), row(-60.0, 3.0), stop_row(50.0, 20.0)});
+    prescription.surfaces[0].medium = {.n_d = 1.9, .indices = {{486.1, 1.63}, {587.6, 1.62}, {656.3, 1.616}}};
+    const Lens lens = make_lens(prescription, GlassCatalogue{});
+    EXPECT_DOUBLE_EQ(at_wavelength<double>(lens, 587.6).surfaces[0].index_after, 1.62);
+    EXPECT_DOUBLE_EQ(at_wavelength<double>(lens, 656.3).surfaces[0].index_after, 1.616);
+    EXPECT_ANY_THROW(at_wavelength<double>(lens, 700.0));
+}
+
+// Where no semi-diameter is stated, it is the marginal ray's height and the chief ray's, added: a thin lens at the stop
+// needs the pupil alone, one 20 mm behind it tan(field) · 20 mm more.
+TEST(SemiDiameter, IsEstimatedFromApertureAndField) {
+    PrescribedSurface front = row(50.0, 0.0, 1.5);
+    PrescribedSurface rear = row(-50.0, 50.0);
+    front.semi_diameter_mm.reset();
+    rear.semi_diameter_mm.reset();
+    PrescribedSurface stop = stop_row(20.0);
+    stop.semi_diameter_mm.reset();
+    Prescription prescription = prescription_of({stop, front, rear});
+    EXPECT_ANY_THROW(make_lens(prescription, GlassCatalogue{}));
+    prescription.stated.f_number = 5.0;
+    prescription.stated.half_field_deg = 10.0;
+    const Lens lens = make_lens(prescription, GlassCatalogue{});
+    EXPECT_NEAR(lens.surfaces[0].semi_diameter, 5.0, 1e-12);
+    EXPECT_NEAR(lens.surfaces[1].semi_diameter, 5.0 + 20.0 * std::tan(10.0 * std::numbers::pi / 180.0), 1e-12);
+}
+
+}  // namespace
+}  // namespace lensproof

@@ -1,0 +1,131 @@
+#include "engine/render/checkpoint.h"
+
+#include <gtest/gtest.h>
+
+#include <atomic>
+
+#include "engine/base/file.h"
+#include "engine/base/input_error.h"
+#include "tests/engine/render/film_sample.h"
+#include "tests/test_folder.h"
+
+namespace lensproof {
+namespace {
+
+const RenderIdentity kIdentity = {{"scene", "abc"}, {"lens", "def"}};
+
+/// A render of 40 × 20 pixels with everything that a film may have, and how it goes on.
+class SmallRender {
+  public:
+    [[nodiscard]] RenderState begin(std::uint32_t samples) const { return {layout_, {.first = 0, .end = samples}}; }
+
+    void go_on(RenderState& state, int most_tiles) const {
+        std::atomic<int> tiles = 0;
+        render_progressively(state, [this] { return exponential_renderer(layout_, 1); }, {},
+                             {.threads = 1, .is_interrupted = [&] { return ++tiles > most_tiles; }});
+    }
+
+  private:
+    static FilmLayout make_layout() {
+        FilmLayout layout = plain_film(40, 20, 3);
+        layout.has_splats = true;
+        layout.has_features = true;
+        return layout;
+    }
+    FilmLayout layout_ = make_layout();
+};
+
+std::string file_of(const RenderState& state) {
+    const TestFolder folder;
+    write_checkpoint(folder.path() / "c", kIdentity, state);
+    return read_file(folder.path() / "c");
+}
+
+/// What the refusal says; fails the test where there is none.
+std::string refusal(const std::filesystem::path& file, const RenderIdentity& identity, RenderState& state) {
+    try {
+        read_checkpoint(file, identity, state);
+    } catch (const InputError& error) {
+        return error.what();
+    }
+    ADD_FAILURE() << "was accepted";
+    return "";
+}
+
+TEST(Checkpoint, HoldsEveryBitOfARender) {
+    const TestFolder folder;
+    const SmallRender render;
+    RenderState whole = render.begin(100);
+    render.go_on(whole, 1000);
+    RenderState state = render.begin(100);
+    render.go_on(state, 8);  // in the midst of the second pass
+    write_checkpoint(folder.path() / "c", kIdentity, state);
+    RenderState read = render.begin(100);
+    read_checkpoint(folder.path() / "c", kIdentity, read);
+    EXPECT_EQ(file_of(read), file_of(state));
+    render.go_on(read, 1000);
+    EXPECT_EQ(file_of(read), file_of(whole));
+}
+
+// Cut anywhere, or with any bit turned, it is refused, and the state that wanted it stands as it was.
+TEST(Checkpoint, IsRefusedWhereDamaged) {
+    const TestFolder folder;
+    const std::filesystem::path file = folder.path() / "c";
+    const SmallRender render;
+    RenderState state = render.begin(16);
+    render.go_on(state, 1000);
+    const std::string good = file_of(state);
+    RenderState fresh = render.begin(16);
+    const std::string before = file_of(fresh);
+    std::vector<std::string> bad = {"", "lensproof", "lensproof checkpoint\n", good + "x", good.substr(1)};
+    for (const double share : {0.0001, 0.001, 0.01, 0.1, 0.5, 0.9, 0.99999}) {
+        const auto at = static_cast<std::size_t>(share * static_cast<double>(good.size()));
+        bad.push_back(good.substr(0, at));
+        bad.push_back(good);
+        bad.back()[at] = static_cast<char>(bad.back()[at] ^ 4);
+    }
+    for (const std::string& content : bad) {
+        write_file(file, content);
+        EXPECT_NE(refusal(file, kIdentity, fresh).find(file.string()), std::string::npos);
+        EXPECT_EQ(file_of(fresh), before);
+    }
+}
+
+TEST(Checkpoint, OfAnotherRenderIsRefusedWithTheDifferenceNamed) {
+    const TestFolder folder;
+    const std::filesystem::path file = folder.path() / "c";
+    const SmallRender render;
+    RenderState state = render.begin(100);
+    render.go_on(state, 1000);
+    write_checkpoint(file, kIdentity, state);
+    RenderState fresh = render.begin(100);
+    EXPECT_NE(refusal(file, {{"scene", "abc"}, {"lens", "xyz"}}, fresh).find("its lens is def, expected xyz"),
+              std::string::npos);
+    EXPECT_NE(refusal(file, {{"scene", "abc"}, {"seed", "1"}}, fresh).find("no seed"), std::string::npos);
+    RenderState other_film(plain_film(40, 21, 3), {.first = 0, .end = 100});
+    EXPECT_NE(refusal(file, kIdentity, other_film).find("another size"), std::string::npos);
+    RenderState other_part(render.begin(100).film.layout(), {.first = 50, .end = 100});
+    EXPECT_NE(refusal(file, kIdentity, other_part).find("begin at 0, expected 50"), std::string::npos);
+    RenderState shorter = render.begin(99);
+    EXPECT_NE(refusal(file, kIdentity, shorter).find("100 samples a pixel already"), std::string::npos);
+    RenderState longer = render.begin(200);
+    read_checkpoint(file, kIdentity, longer);
+    EXPECT_EQ(longer.tiles[0], (TileProgress{.done = 100, .target = 100}));
+    EXPECT_EQ(longer.range.end, 200U);
+}
+
+// What a killed process left beside its file goes; what belongs to a live one, or to another file, stays.
+TEST(WriteWhole, LeftoversOfDeadProcessesGo) {
+    const TestFolder folder;
+    for (const char* name : {".c.999999999.part", ".c.1.part", ".c.x.part", ".cc.999999999.part", "c"}) {
+        write_file(folder.path() / name, "x");
+    }
+    remove_leftovers(folder.path() / "c");
+    EXPECT_FALSE(std::filesystem::exists(folder.path() / ".c.999999999.part"));
+    for (const char* name : {".c.1.part", ".c.x.part", ".cc.999999999.part", "c"}) {
+        EXPECT_TRUE(std::filesystem::exists(folder.path() / name)) << name;
+    }
+}
+
+}  // namespace
+}  // namespace lensproof
