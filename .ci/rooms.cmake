@@ -39,11 +39,13 @@ function(lensproof_room folder)
         WORKING_DIRECTORY "${PROJECT_SOURCE_DIR}"
         COMMENT ""
         VERBATIM)
+    add_custom_target(${room}_includes DEPENDS "${stamp}")  # by itself: no file of a room waits for another room's library
     list(FILTER sources INCLUDE REGEX "\\.cpp$")
     if(NOT CMAKE_SYSTEM_PROCESSOR MATCHES "^(x86_64|AMD64)$")
         list(FILTER sources EXCLUDE REGEX "_avx[0-9]+\\.cpp$")
     endif()
-    add_library(${room} STATIC ${sources} "${stamp}")
+    add_library(${room} STATIC ${sources})
+    add_dependencies(${room} ${room}_includes)
     string(REPLACE "/" "_" uses "${ARG_USES}")
     foreach(used IN LISTS uses)
         if(NOT TARGET ${used})

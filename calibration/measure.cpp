@@ -14,7 +14,7 @@
 #include "calibration/sharpness/measure_sharpness.h"
 #include "engine/base/input_error.h"
 
-namespace lensproof {
+namespace lensproof::calibration {
 namespace {
 
 struct Geometry {
@@ -182,4 +182,4 @@ Profile measure(const MeasureInput& input) {
     return profile;
 }
 
-}  // namespace lensproof
+}  // namespace lensproof::calibration

@@ -11,7 +11,7 @@
 #include "engine/formats/image/image.h"
 #include "engine/scene/chart.h"
 
-namespace lensproof {
+namespace lensproof::calibration {
 
 /// `edges`: what is to be measured is the edges in `MeasureInput::edges`; no chart is looked for.
 enum class PictureRole { chart, flat_field, edges };
@@ -20,7 +20,7 @@ enum class PictureRole { chart, flat_field, edges };
 struct Picture {
     std::string name;
     PictureRole role = PictureRole::chart;
-    std::function<Image()> load;                     // linear light; may throw InputError
+    std::function<formats::Image()> load;            // linear light; may throw InputError
     std::string left_out;                            // why it is not to be used, known beforehand; empty: it is
     std::string remark;                              // what is to be known of it though it is used
     bool use_light = true;                           // whether it may say something of vignetting
@@ -31,7 +31,7 @@ struct Picture {
 struct MeasureInput {
     std::string name;  // of the profile
     std::vector<Picture> pictures;
-    Chart chart;  // a FlatField when every picture is a flat field
+    scene::Chart chart;  // a FlatField when every picture is a flat field
     /// Not set: several models are fitted, and one is chosen (calibration/geometry/model_choice.h).
     std::optional<ModelKind> model;
     GeometryOptions geometry;  // `model` and `disc_diameter_mm` are filled in by `measure`
@@ -56,4 +56,4 @@ struct MeasureInput {
 /// that fail are not errors; the profile says why.
 Profile measure(const MeasureInput& input);
 
-}  // namespace lensproof
+}  // namespace lensproof::calibration

@@ -9,14 +9,14 @@
 #include "calibration/photos/picture_quality.h"
 #include "engine/base/hash.h"
 
-namespace lensproof {
+namespace lensproof::calibration {
 namespace {
 
 constexpr double kLeastFoundShare = 0.6;  // of the points detected; with fewer the detection itself is doubtful
 
-std::string describe(const Chart& chart) {
-    const GridSize grid = feature_grid(chart);
-    return std::to_string(grid.columns) + " × " + std::to_string(grid.rows) + " " + kind_name(chart);
+std::string describe(const scene::Chart& chart) {
+    const scene::GridSize grid = scene::feature_grid(chart);
+    return std::to_string(grid.columns) + " × " + std::to_string(grid.rows) + " " + scene::kind_name(chart);
 }
 
 std::string joined(const std::vector<std::string>& words) {
@@ -27,7 +27,7 @@ std::string joined(const std::vector<std::string>& words) {
     return text;
 }
 
-void check_alike(const Observations& seen, const Image& image, const std::string& name) {
+void check_alike(const Observations& seen, const formats::Image& image, const std::string& name) {
     const auto size = [](int width, int height) { return std::to_string(width) + " × " + std::to_string(height); };
     if (image.width < 1 || image.height < 1 || image.channels.empty() ||
         image.pixels.size() != static_cast<std::size_t>(image.width) * image.height * image.channels.size()) {
@@ -44,7 +44,7 @@ void check_alike(const Observations& seen, const Image& image, const std::string
     }
 }
 
-bool all_channels_alike(const Image& image) {
+bool all_channels_alike(const formats::Image& image) {
     const auto count = static_cast<std::size_t>(image.channel_count());
     for (std::size_t i = 0; i < image.pixels.size(); i += count) {
         for (std::size_t c = 1; c < count; ++c) {
@@ -67,11 +67,11 @@ std::string too_few(const ChartPoints& refined, const ChartPoints& detected) {
 }
 
 // What the profile keeps of a picture in which a chart was looked for; adds to `account`.
-void observe_chart(Observations& seen, const Image& image, const Picture& picture, const Chart& chart,
+void observe_chart(Observations& seen, const formats::Image& image, const Picture& picture, const scene::Chart& chart,
                    PictureAccount& account) {
     const std::string& name = picture.name;
     ProfileView view{.image = name, .found = false, .reason = {}, .traits = {}, .pose = {}, .points = {}};
-    const std::vector<Vec2d> features = feature_points(chart);
+    const std::vector<Vec2d> features = scene::feature_points(chart);
     const Detection detection = detect(image, chart);
     const int reference = reference_channel(image);
     const ChartPoints points = detection.found() ? refine(image, reference, detection.points, chart) : ChartPoints{};
@@ -133,19 +133,19 @@ void observe_chart(Observations& seen, const Image& image, const Picture& pictur
 }
 
 // The picture, checked against those before it. Throws InputError for one that is not to be used.
-Image load(const Observations& seen, const Picture& picture) {
+formats::Image load(const Observations& seen, const Picture& picture) {
     if (!picture.left_out.empty()) {
         throw InputError(picture.left_out);
     }
     if (!picture.load) {
         throw InputError("the picture cannot be loaded");
     }
-    Image image = picture.load();
+    formats::Image image = picture.load();
     check_alike(seen, image, picture.name);
     return image;
 }
 
-std::string hash_of_pixels(const Image& image) {
+std::string hash_of_pixels(const formats::Image& image) {
     return hash_text({reinterpret_cast<const char*>(image.pixels.data()), image.pixels.size() * sizeof(float)});
 }
 
@@ -159,7 +159,7 @@ std::string without_name(const std::string& message, const std::string& name) {
 }
 
 // All channels; of a picture whose channels are alike, one.
-std::vector<int> channels_that_differ(const Image& image) {
+std::vector<int> channels_that_differ(const formats::Image& image) {
     if (all_channels_alike(image)) {
         return {reference_channel(image)};
     }
@@ -169,7 +169,7 @@ std::vector<int> channels_that_differ(const Image& image) {
 }
 
 void observe_picture(Observations& seen, const Picture& picture, const MeasureInput& input, PictureAccount& account) {
-    const Image image = load(seen, picture);
+    const formats::Image image = load(seen, picture);
     const auto [same, is_new] = seen.names_by_pixels.emplace(hash_of_pixels(image), picture.name);
     if (!is_new) {
         throw InputError("the same picture as " + same->second);
@@ -178,7 +178,7 @@ void observe_picture(Observations& seen, const Picture& picture, const MeasureIn
     seen.height = image.height;
     seen.channels = image.channels;
     seen.grey = seen.grey && all_channels_alike(image);
-    if (const auto* star = std::get_if<SiemensStar>(&input.chart.pattern);
+    if (const auto* star = std::get_if<scene::SiemensStar>(&input.chart.pattern);
         star != nullptr && picture.role == PictureRole::chart) {
         for (const int channel : channels_that_differ(image)) {
             observe_stars(seen.sharpness, image, channel, picture.name, *star);
@@ -208,7 +208,7 @@ void observe_picture(Observations& seen, const Picture& picture, const MeasureIn
 }  // namespace
 
 bool shows_star(const MeasureInput& input) {
-    return std::holds_alternative<SiemensStar>(input.chart.pattern);
+    return std::holds_alternative<scene::SiemensStar>(input.chart.pattern);
 }
 
 Observations observe(const MeasureInput& input) {
@@ -254,4 +254,4 @@ InputError none_usable(const MeasureInput& input, const Observations& seen) {
     return InputError(text + (count > kMostNamed ? "; …" : ""));
 }
 
-}  // namespace lensproof
+}  // namespace lensproof::calibration

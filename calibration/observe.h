@@ -13,7 +13,7 @@
 #include "calibration/sharpness/measure_sharpness.h"
 #include "engine/base/input_error.h"
 
-namespace lensproof {
+namespace lensproof::calibration {
 
 /// What is kept of the pictures once they are gone.
 struct Observations {
@@ -44,4 +44,4 @@ InputError none_usable(const MeasureInput& input, const Observations& seen);
 /// Whether the chart is a Siemens star, which has no points to measure a camera by.
 bool shows_star(const MeasureInput& input);
 
-}  // namespace lensproof
+}  // namespace lensproof::calibration

@@ -7,7 +7,7 @@
 #include "calibration/statistics/linear_fit.h"
 #include "engine/base/input_error.h"
 
-namespace lensproof {
+namespace lensproof::calibration {
 namespace {
 
 constexpr double kOutlierSigmas = 4.5;
@@ -90,4 +90,4 @@ ChromaticShift fit_chromatic_shift(const std::vector<ChromaticPair>& pairs, cons
     return shift;
 }
 
-}  // namespace lensproof
+}  // namespace lensproof::calibration

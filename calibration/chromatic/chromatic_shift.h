@@ -6,7 +6,7 @@
 #include "calibration/statistics/curve.h"
 #include "engine/base/vec.h"
 
-namespace lensproof {
+namespace lensproof::calibration {
 
 /// The same chart point in green and in another channel, px.
 struct ChromaticPair {
@@ -37,4 +37,4 @@ struct ChromaticShift {
 ChromaticShift fit_chromatic_shift(const std::vector<ChromaticPair>& pairs, const Vec2d& centre_px,
                                    double half_diagonal_px);
 
-}  // namespace lensproof
+}  // namespace lensproof::calibration

@@ -11,7 +11,7 @@
 #include "engine/base/input_error.h"
 #include "engine/spectral/spectral_exr.h"
 
-namespace lensproof {
+namespace lensproof::calibration {
 namespace {
 
 // "450" or "450.5": as few digits as tell a hundredth of a nanometre.
@@ -22,21 +22,21 @@ std::string in_nm(double wavelength_nm) {
 }
 
 // A way to find the points of the reference picture again in another one: none where a point is not there.
-using Locator = std::function<std::vector<std::optional<Vec2d>>(const Image&)>;
+using Locator = std::function<std::vector<std::optional<Vec2d>>(const formats::Image&)>;
 
 struct ReferencePoints {
     std::vector<Vec2d> image_px;
     Locator locate;
 };
 
-ReferencePoints chart_points(const Image& image, const std::string& name, const Chart& chart) {
+ReferencePoints chart_points(const formats::Image& image, const std::string& name, const scene::Chart& chart) {
     const Detection detection = detect(image, chart);
     if (!detection.found()) {
-        throw InputError(name + ": no " + kind_name(chart) + " found: " + detection.reason);
+        throw InputError(name + ": no " + scene::kind_name(chart) + " found: " + detection.reason);
     }
     const ChartPoints points = refine(image, reference_channel(image), detection.points, chart);
     return {
-        points.image_px, [points, chart](const Image& other) {
+        points.image_px, [points, chart](const formats::Image& other) {
             const ChartPoints found = refine(other, reference_channel(other), points, chart);
             std::vector<std::optional<Vec2d>> places;
             for (std::size_t i = 0; i < found.found.size(); ++i) {
@@ -46,9 +46,9 @@ ReferencePoints chart_points(const Image& image, const std::string& name, const 
         }};
 }
 
-ReferencePoints disc_points(const Image& image) {
+ReferencePoints disc_points(const formats::Image& image) {
     const std::vector<LooseDisc> discs = find_loose_discs(image, reference_channel(image));
-    ReferencePoints points{.image_px = {}, .locate = [discs](const Image& other) {
+    ReferencePoints points{.image_px = {}, .locate = [discs](const formats::Image& other) {
                                std::vector<std::optional<Vec2d>> places;
                                places.reserve(discs.size());
                                for (const LooseDisc& disc : discs) {
@@ -114,7 +114,7 @@ const BandPicture& reference_of(const BandInput& input) {
 }  // namespace
 
 std::string channel_label(const std::string& channel) {
-    const auto spectral = parse_spectral_channel(channel);
+    const auto spectral = spectral::parse_spectral_channel(channel);
     return spectral ? in_nm(spectral->wavelength_nm) : channel;
 }
 
@@ -133,7 +133,7 @@ void add_chromatic_shift(Profile& profile, const std::string& label, const std::
 
 Profile measure_bands(const BandInput& input) {
     const BandPicture& reference = reference_of(input);
-    const Image image = reference.load();
+    const formats::Image image = reference.load();
     Profile profile;
     profile.name = input.name;
     profile.source = input.source;
@@ -149,7 +149,7 @@ Profile measure_bands(const BandInput& input) {
         if (&band == &reference) {
             continue;
         }
-        const Image other = band.load();
+        const formats::Image other = band.load();
         if (other.width != image.width || other.height != image.height) {
             throw InputError(band.name + ": the picture is " + std::to_string(other.width) + " × " +
                              std::to_string(other.height) + " pixels: expected " + std::to_string(image.width) + " × " +
@@ -172,4 +172,4 @@ Profile measure_bands(const BandInput& input) {
     return profile;
 }
 
-}  // namespace lensproof
+}  // namespace lensproof::calibration

@@ -10,13 +10,14 @@
 #include "engine/formats/image/image.h"
 #include "engine/scene/chart.h"
 
-namespace lensproof {
+namespace lensproof::calibration {
 
 /// A picture taken in a narrow band.
 struct BandPicture {
     double wavelength_nm = 0.0;
     std::string name;
-    std::function<Image()> load;  // linear light, of one channel or of several that are alike; may throw InputError
+    std::function<formats::Image()>
+        load;  // linear light, of one channel or of several that are alike; may throw InputError
 };
 
 /// Camera, chart and focus are the same in every picture.
@@ -25,7 +26,7 @@ struct BandInput {
     std::vector<BandPicture> bands;
     double reference_wavelength_nm = 0.0;  // one of the bands'
     /// Not set: dark discs are found without knowing their chart, and matched by their place.
-    std::optional<Chart> chart;
+    std::optional<scene::Chart> chart;
     /// The optical centre, px; it may lie outside a cropped picture. Not set: the picture's middle.
     std::optional<Vec2d> centre_px;
     ProfileSource source;  // `images` is filled in
@@ -52,4 +53,4 @@ void add_chromatic_shift(Profile& profile, const std::string& label, const std::
 /// What a channel is called in names of curves: "450nm" of a spectral layer "S0.450nm", else its own name.
 std::string channel_label(const std::string& channel);
 
-}  // namespace lensproof
+}  // namespace lensproof::calibration

@@ -6,7 +6,7 @@
 
 #include "engine/base/input_error.h"
 
-namespace lensproof {
+namespace lensproof::calibration {
 namespace {
 
 constexpr double kWeak = 0.25;  // of the strongest colour
@@ -24,7 +24,7 @@ struct Gains {
     [[nodiscard]] double of(char c) const { return c == 'r' ? red : c == 'g' ? green : blue; }
 };
 
-Gains gains_of(const Image& raw, MosaicPattern pattern) {
+Gains gains_of(const formats::Image& raw, MosaicPattern pattern) {
     std::array<double, 3> sum{};
     std::array<double, 3> count{};
     for (int y = 0; y < raw.height; ++y) {
@@ -51,7 +51,7 @@ std::optional<MosaicPattern> mosaic_pattern(std::string_view name) {
     return found != kNames.end() ? std::optional(static_cast<MosaicPattern>(found - kNames.begin())) : std::nullopt;
 }
 
-Image mosaic_plane(const Image& raw, MosaicPattern pattern) {
+formats::Image mosaic_plane(const formats::Image& raw, MosaicPattern pattern) {
     if (raw.channel_count() != 1 || raw.width < 4 || raw.height < 4) {
         throw InputError("a mosaic of " + std::to_string(raw.width) + " × " + std::to_string(raw.height) + " with " +
                          std::to_string(raw.channel_count()) +
@@ -61,7 +61,7 @@ Image mosaic_plane(const Image& raw, MosaicPattern pattern) {
     if (!(gains.red + gains.green + gains.blue > 0.0)) {
         throw InputError("a mosaic without light: expected a picture");
     }
-    Image plane = make_image(raw.width, raw.height, {"Y"});
+    formats::Image plane = formats::make_image(raw.width, raw.height, {"Y"});
     for (int y = 0; y < raw.height; ++y) {
         for (int x = 0; x < raw.width; ++x) {
             double sum = 0.0;
@@ -85,4 +85,4 @@ Image mosaic_plane(const Image& raw, MosaicPattern pattern) {
     return plane;
 }
 
-}  // namespace lensproof
+}  // namespace lensproof::calibration

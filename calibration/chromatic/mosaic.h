@@ -5,7 +5,7 @@
 
 #include "engine/formats/image/image.h"
 
-namespace lensproof {
+namespace lensproof::calibration {
 
 /// The colours of the top left 2 × 2 sites, row by row.
 enum class MosaicPattern { rggb, bggr, grbg, gbrg };
@@ -20,6 +20,6 @@ std::optional<MosaicPattern> mosaic_pattern(std::string_view name);
 /// ratio of the means; weaker ones are mostly noise, and their sites take the mean of the taken sites around them,
 /// weighted by the inverse of the squared distance. That mean is symmetric about the site, so no edge or centroid
 /// moves. Throws InputError for a picture of more than one channel or below 4 × 4 pixels, or without light.
-Image mosaic_plane(const Image& raw, MosaicPattern pattern);
+formats::Image mosaic_plane(const formats::Image& raw, MosaicPattern pattern);
 
-}  // namespace lensproof
+}  // namespace lensproof::calibration

@@ -10,7 +10,7 @@
 #include <queue>
 #include <utility>
 
-namespace lensproof {
+namespace lensproof::calibration {
 namespace {
 
 constexpr int kSmallestArea_px = 5;
@@ -257,4 +257,4 @@ std::vector<LatticeSpot> find_blob_lattice(const cv::Mat& picture, bool dark, bo
     return best;
 }
 
-}  // namespace lensproof
+}  // namespace lensproof::calibration

@@ -3,7 +3,7 @@
 #include <opencv2/core.hpp>
 #include <vector>
 
-namespace lensproof {
+namespace lensproof::calibration {
 
 /// A spot of a lattice: in which column and row it stands, from 0, and its middle, px.
 struct LatticeSpot {
@@ -23,4 +23,4 @@ struct LatticeSpot {
 /// those would break cells with thin walls into pieces. Spots that are not fine are cells: with a wall on every side.
 std::vector<LatticeSpot> find_blob_lattice(const cv::Mat& picture, bool dark, bool is_fine);
 
-}  // namespace lensproof
+}  // namespace lensproof::calibration

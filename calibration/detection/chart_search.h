@@ -6,7 +6,7 @@
 
 #include "calibration/detection/numbering.h"
 
-namespace lensproof {
+namespace lensproof::calibration {
 
 /// The chart's points by number, to a pixel or two; or why there are none.
 struct ChartSearch {
@@ -16,4 +16,4 @@ struct ChartSearch {
     Numbering numbering = Numbering::certain;
 };
 
-}  // namespace lensproof
+}  // namespace lensproof::calibration

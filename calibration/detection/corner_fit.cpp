@@ -8,7 +8,7 @@
 #include <opencv2/imgproc.hpp>
 #include <vector>
 
-namespace lensproof {
+namespace lensproof::calibration {
 namespace {
 
 constexpr int kCurvedFrom_px = 6;        // half window
@@ -331,4 +331,4 @@ std::optional<CornerFit> fit_corner(const cv::Mat& plane, double plane_blur_px, 
                      .standard_error_px = standard_errors(pixels, widths, free_count, p, plane_blur_px)};
 }
 
-}  // namespace lensproof
+}  // namespace lensproof::calibration

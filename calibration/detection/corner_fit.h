@@ -6,7 +6,7 @@
 
 #include "engine/base/vec.h"
 
-namespace lensproof {
+namespace lensproof::calibration {
 
 /// What a corner fit starts from.
 struct CornerStart {
@@ -42,4 +42,4 @@ struct CornerFit {
 /// weights w of the blurred pixels in a coordinate, the root of Σ (G w)², G the blur.
 std::optional<CornerFit> fit_corner(const cv::Mat& plane, double plane_blur_px, const CornerStart& start);
 
-}  // namespace lensproof
+}  // namespace lensproof::calibration

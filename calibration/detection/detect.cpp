@@ -17,7 +17,7 @@
 #include "calibration/detection/working_copy.h"
 #include "engine/base/input_error.h"
 
-namespace lensproof {
+namespace lensproof::calibration {
 namespace {
 
 using Points = std::vector<cv::Point2f>;
@@ -26,8 +26,8 @@ using Finder = std::function<bool(const cv::Mat&, Points&)>;
 constexpr int kSmallestSide_px = 16;
 constexpr double kSearchSide_px = 1600.0;  // larger pictures are searched at this size: corners lie well within a pixel
 
-cv::Size grid_size(const Chart& chart) {
-    const GridSize grid = feature_grid(chart);
+cv::Size grid_size(const scene::Chart& chart) {
+    const scene::GridSize grid = scene::feature_grid(chart);
     return {grid.columns, grid.rows};
 }
 
@@ -191,7 +191,7 @@ std::optional<Points> numbered_as_chart(const cv::Mat& picture, const Points& po
 }
 
 // A checkerboard, which is seen as a whole or not at all.
-ChartSearch find_checkerboard(const cv::Mat& picture, const Chart& chart) {
+ChartSearch find_checkerboard(const cv::Mat& picture, const scene::Chart& chart) {
     const cv::Size grid = grid_size(chart);
     Points points;
     if (!find_board(picture, grid, points) || points.size() != static_cast<std::size_t>(grid.area())) {
@@ -206,15 +206,15 @@ ChartSearch find_checkerboard(const cv::Mat& picture, const Chart& chart) {
     return {.points = *numbered, .found = std::vector<bool>(points.size(), true), .reason = {}, .numbering = numbering};
 }
 
-ChartSearch search(const cv::Mat& picture, const Chart& chart) {
+ChartSearch search(const cv::Mat& picture, const scene::Chart& chart) {
     try {
-        if (const auto* board = std::get_if<CharucoBoard>(&chart.pattern)) {
+        if (const auto* board = std::get_if<scene::CharucoBoard>(&chart.pattern)) {
             return find_charuco(picture, *board);
         }
         return is_lattice(chart) ? find_lattice(picture, chart) : find_checkerboard(picture, chart);
     } catch (const cv::Exception&) {
         // OpenCV's detectors assert on some pictures that merely do not show the chart.
-        return {.reason = "no " + kind_name(chart) + " found"};
+        return {.reason = "no " + scene::kind_name(chart) + " found"};
     }
 }
 
@@ -224,23 +224,23 @@ Detection not_found(std::string reason) {
 
 }  // namespace
 
-bool can_detect(const Chart& chart) {
-    return std::holds_alternative<Checkerboard>(chart.pattern) || std::holds_alternative<CharucoBoard>(chart.pattern) ||
-           is_lattice(chart);
+bool can_detect(const scene::Chart& chart) {
+    return std::holds_alternative<scene::Checkerboard>(chart.pattern) ||
+           std::holds_alternative<scene::CharucoBoard>(chart.pattern) || is_lattice(chart);
 }
 
 std::string detectable_kinds() {
     return "checkerboard, charuco, disc-grid, point-grid, slanted-edges, straight-lines";
 }
 
-Detection detect(const Image& image, const Chart& chart) {
+Detection detect(const formats::Image& image, const scene::Chart& chart) {
     if (!can_detect(chart)) {
-        throw InputError("a chart of kind " + kind_name(chart) + " cannot be searched for: expected one of " +
+        throw InputError("a chart of kind " + scene::kind_name(chart) + " cannot be searched for: expected one of " +
                          detectable_kinds());
     }
     const cv::Size grid = grid_size(chart);
     if (grid.width < 3 || grid.height < 3) {
-        throw InputError("a " + kind_name(chart) + " with " + size_in_words(grid) +
+        throw InputError("a " + scene::kind_name(chart) + " with " + size_in_words(grid) +
                          " points cannot be searched for: expected at least 3 × 3");
     }
     if (image.width < kSmallestSide_px || image.height < kSmallestSide_px || image.channel_count() == 0) {
@@ -271,4 +271,4 @@ Detection detect(const Image& image, const Chart& chart) {
     return result;
 }
 
-}  // namespace lensproof
+}  // namespace lensproof::calibration

@@ -7,11 +7,11 @@
 #include "engine/formats/image/image.h"
 #include "engine/scene/chart.h"
 
-namespace lensproof {
+namespace lensproof::calibration {
 
 /// Whether `detect` knows charts of this kind: all but flat fields, astigmatism crosses and colour checkers, and
 /// Siemens stars, which have but one point.
-bool can_detect(const Chart& chart);
+bool can_detect(const scene::Chart& chart);
 
 /// The names of those kinds, for messages.
 std::string detectable_kinds();
@@ -37,6 +37,6 @@ struct Detection {
 /// and on all other charts, the rows run to the right as far as possible. Mirror images are never taken, where they can
 /// be told. A chart needs at least 3 × 3 points. Throws InputError for a chart that cannot be detected, or has too few
 /// points.
-Detection detect(const Image& image, const Chart& chart);
+Detection detect(const formats::Image& image, const scene::Chart& chart);
 
-}  // namespace lensproof
+}  // namespace lensproof::calibration

@@ -10,7 +10,7 @@
 #include <optional>
 #include <utility>
 
-namespace lensproof {
+namespace lensproof::calibration {
 namespace {
 
 constexpr std::size_t kNeighbours = 4;  // markers that place a corner
@@ -66,7 +66,7 @@ int least_distance(const std::vector<std::uint64_t>& markers, int cells) {
 }
 
 /// The board's white squares in the order of their markers: middles, in squares.
-std::vector<cv::Point2d> marker_centres(const CharucoBoard& board) {
+std::vector<cv::Point2d> marker_centres(const scene::CharucoBoard& board) {
     std::vector<cv::Point2d> centres;
     for (int row = 0; row < board.rows; ++row) {
         for (int column = 0; column < board.columns; ++column) {
@@ -78,7 +78,7 @@ std::vector<cv::Point2d> marker_centres(const CharucoBoard& board) {
     return centres;
 }
 
-cv::Ptr<cv::aruco::Dictionary> dictionary_of(const CharucoBoard& board, std::size_t count) {
+cv::Ptr<cv::aruco::Dictionary> dictionary_of(const scene::CharucoBoard& board, std::size_t count) {
     const std::vector<std::uint64_t> markers(board.markers.begin(),
                                              board.markers.begin() + static_cast<std::ptrdiff_t>(count));
     cv::Mat bytes;
@@ -199,7 +199,7 @@ std::vector<Marker> best_markers(const cv::Mat& picture, const cv::Ptr<cv::aruco
 
 }  // namespace
 
-ChartSearch find_charuco(const cv::Mat& picture, const CharucoBoard& board) {
+ChartSearch find_charuco(const cv::Mat& picture, const scene::CharucoBoard& board) {
     const std::vector<cv::Point2d> centres = marker_centres(board);
     const double side_squares = board.marker_mm / board.square_mm;
     const auto dictionary = dictionary_of(board, centres.size());
@@ -233,4 +233,4 @@ ChartSearch find_charuco(const cv::Mat& picture, const CharucoBoard& board) {
     return result;
 }
 
-}  // namespace lensproof
+}  // namespace lensproof::calibration

@@ -5,7 +5,7 @@
 #include "calibration/detection/chart_search.h"
 #include "engine/scene/chart.h"
 
-namespace lensproof {
+namespace lensproof::calibration {
 
 /// `picture` is CV_8U. Markers are OpenCV's find, from the board's own markers. A corner lies where the markers nearest
 /// to it put it, by a homography of their own (so the lens may bend the board), and counts as found when a marker that
@@ -14,6 +14,6 @@ namespace lensproof {
 ///
 /// OpenCV's `interpolateCornersCharuco` is not used: in version 4.6 its corners come back about 0.53 px off, and its
 /// boards are laid out otherwise than those of 4.7 and later.
-ChartSearch find_charuco(const cv::Mat& picture, const CharucoBoard& board);
+ChartSearch find_charuco(const cv::Mat& picture, const scene::CharucoBoard& board);
 
-}  // namespace lensproof
+}  // namespace lensproof::calibration

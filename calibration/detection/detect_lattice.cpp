@@ -13,7 +13,7 @@
 
 #include "calibration/detection/blob_lattice.h"
 
-namespace lensproof {
+namespace lensproof::calibration {
 namespace {
 
 constexpr double kLeastShare = 0.25;   // of the chart's points that have to be seen
@@ -23,15 +23,15 @@ constexpr std::size_t kFewestSpots = 9;
 constexpr double kCrossingBlur_px = 1.5;
 constexpr double kCrossingReach = 0.15;  // of a step, around where the cells put a crossing
 
-GridSize size_of(const std::vector<LatticeSpot>& spots) {
-    GridSize size;
+scene::GridSize size_of(const std::vector<LatticeSpot>& spots) {
+    scene::GridSize size;
     for (const LatticeSpot& spot : spots) {
         size = {std::max(size.columns, spot.column + 1), std::max(size.rows, spot.row + 1)};
     }
     return size;
 }
 
-std::string in_words(GridSize size) {
+std::string in_words(scene::GridSize size) {
     return std::to_string(size.columns) + " × " + std::to_string(size.rows);
 }
 
@@ -55,14 +55,14 @@ struct Placing {
     int row = 0;
 };
 
-bool is_within(const LatticeSpot& spot, const Placing& placing, GridSize grid) {
+bool is_within(const LatticeSpot& spot, const Placing& placing, scene::GridSize grid) {
     return spot.column >= placing.column && spot.column < placing.column + grid.columns && spot.row >= placing.row &&
            spot.row < placing.row + grid.rows;
 }
 
 /// The chart's place in the lattice that holds most of the spots.
-Placing best_placing(const std::vector<LatticeSpot>& spots, GridSize grid) {
-    const GridSize seen = size_of(spots);
+Placing best_placing(const std::vector<LatticeSpot>& spots, scene::GridSize grid) {
+    const scene::GridSize seen = size_of(spots);
     const auto [first_column, last_column] = offsets(grid.columns, seen.columns);
     const auto [first_row, last_row] = offsets(grid.rows, seen.rows);
     Placing best;
@@ -200,27 +200,29 @@ std::vector<LatticeSpot> crossings_of(const cv::Mat& picture, const std::vector<
     return as_lattice(crossings);
 }
 
-const char* name_of_points(const Chart& chart) {
-    if (std::holds_alternative<DiscGrid>(chart.pattern)) {
+const char* name_of_points(const scene::Chart& chart) {
+    if (std::holds_alternative<scene::DiscGrid>(chart.pattern)) {
         return "discs";
     }
-    if (std::holds_alternative<PointGrid>(chart.pattern)) {
+    if (std::holds_alternative<scene::PointGrid>(chart.pattern)) {
         return "dots";
     }
-    return std::holds_alternative<SlantedEdges>(chart.pattern) ? "squares" : "crossings of lines";
+    return std::holds_alternative<scene::SlantedEdges>(chart.pattern) ? "squares" : "crossings of lines";
 }
 
 }  // namespace
 
-bool is_lattice(const Chart& chart) {
-    return std::holds_alternative<DiscGrid>(chart.pattern) || std::holds_alternative<PointGrid>(chart.pattern) ||
-           std::holds_alternative<SlantedEdges>(chart.pattern) || std::holds_alternative<StraightLines>(chart.pattern);
+bool is_lattice(const scene::Chart& chart) {
+    return std::holds_alternative<scene::DiscGrid>(chart.pattern) ||
+           std::holds_alternative<scene::PointGrid>(chart.pattern) ||
+           std::holds_alternative<scene::SlantedEdges>(chart.pattern) ||
+           std::holds_alternative<scene::StraightLines>(chart.pattern);
 }
 
-ChartSearch find_lattice(const cv::Mat& picture, const Chart& chart) {
-    const GridSize grid = feature_grid(chart);
-    const bool is_lines = std::holds_alternative<StraightLines>(chart.pattern);
-    const bool is_dark = !is_lines && !std::holds_alternative<PointGrid>(chart.pattern);
+ChartSearch find_lattice(const cv::Mat& picture, const scene::Chart& chart) {
+    const scene::GridSize grid = scene::feature_grid(chart);
+    const bool is_lines = std::holds_alternative<scene::StraightLines>(chart.pattern);
+    const bool is_dark = !is_lines && !std::holds_alternative<scene::PointGrid>(chart.pattern);
     std::vector<LatticeSpot> spots = find_blob_lattice(picture, is_dark, !is_lines);
     if (is_lines) {
         spots = crossings_of(picture, spots);
@@ -244,7 +246,7 @@ ChartSearch find_lattice(const cv::Mat& picture, const Chart& chart) {
     if (static_cast<double>(placing.inside) < kLeastShare * static_cast<double>(total)) {
         return {.reason = "only " + std::to_string(placing.inside) + " of " + wanted + " found in rows and columns"};
     }
-    const GridSize seen = size_of(spots);
+    const scene::GridSize seen = size_of(spots);
     const bool is_whole = seen.columns >= grid.columns && seen.rows >= grid.rows;
     ChartSearch result{.points = std::vector<cv::Point2f>(total),
                        .found = std::vector<bool>(total, false),
@@ -263,4 +265,4 @@ ChartSearch find_lattice(const cv::Mat& picture, const Chart& chart) {
     return result;
 }
 
-}  // namespace lensproof
+}  // namespace lensproof::calibration

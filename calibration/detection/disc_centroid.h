@@ -6,7 +6,7 @@
 
 #include "engine/base/vec.h"
 
-namespace lensproof {
+namespace lensproof::calibration {
 
 /// Centroid of the image of a disc, given any smooth map from the chart to the picture.
 ///
@@ -49,4 +49,4 @@ bool disc_centroid(const Map& map, double x, double y, double diameter, Vec2<T>&
     return true;
 }
 
-}  // namespace lensproof
+}  // namespace lensproof::calibration

@@ -8,7 +8,7 @@
 
 #include "calibration/detection/pixel_noise.h"
 
-namespace lensproof {
+namespace lensproof::calibration {
 namespace {
 
 constexpr double kRamp_px = 2.0;        // over which a piece's ends fade, on either side
@@ -36,7 +36,7 @@ struct Piece {
 
 // Calls `visit(t, s, light)` for each pixel, t along and s across; false where one is missing or at full scale.
 template <class Visit>
-bool each(const Image& image, int channel, const Piece& piece, const Visit& visit) {
+bool each(const formats::Image& image, int channel, const Piece& piece, const Visit& visit) {
     const Vec2d across = piece.across();
     const double reach_x = std::abs(piece.along.x) * (piece.half_length + kRamp_px) + std::abs(across.x) * piece.outer;
     const double reach_y = std::abs(piece.along.y) * (piece.half_length + kRamp_px) + std::abs(across.y) * piece.outer;
@@ -72,7 +72,7 @@ struct Across {
     double standard_error = 0.0;  // for noise of standard deviation 1
 };
 
-std::optional<Across> centroid_across(const Image& image, int channel, const Piece& piece) {
+std::optional<Across> centroid_across(const formats::Image& image, int channel, const Piece& piece) {
     using Row = Eigen::Vector3d;
     Eigen::Matrix3d normal = Eigen::Matrix3d::Zero();
     Row right = Row::Zero();
@@ -116,7 +116,7 @@ std::optional<Across> centroid_across(const Image& image, int channel, const Pie
 }
 
 // The line in the middle of a piece: the window follows it.
-std::optional<LinePoint> point_on(const Image& image, int channel, Piece piece) {
+std::optional<LinePoint> point_on(const formats::Image& image, int channel, Piece piece) {
     std::optional<Across> found;
     double moved = 0.0;
     for (int round = 0; round < kRounds; ++round) {
@@ -135,8 +135,9 @@ std::optional<LinePoint> point_on(const Image& image, int channel, Piece piece) 
 
 }  // namespace
 
-std::vector<LinePoints> line_points(const Image& image, int channel, const ChartPoints& points, const Chart& chart) {
-    const auto* lines = std::get_if<StraightLines>(&chart.pattern);
+std::vector<LinePoints> line_points(const formats::Image& image, int channel, const ChartPoints& points,
+                                    const scene::Chart& chart) {
+    const auto* lines = std::get_if<scene::StraightLines>(&chart.pattern);
     if (lines == nullptr) {
         return {};
     }
@@ -182,4 +183,4 @@ std::vector<LinePoints> line_points(const Image& image, int channel, const Chart
     return result;
 }
 
-}  // namespace lensproof
+}  // namespace lensproof::calibration

@@ -7,7 +7,7 @@
 #include "engine/formats/image/image.h"
 #include "engine/scene/chart.h"
 
-namespace lensproof {
+namespace lensproof::calibration {
 
 struct LinePoint {
     Vec2d image_px;
@@ -25,6 +25,7 @@ struct LinePoints {
 /// centroid across the line of the light that is missing from the paper's, in linear light, of all pixels of the piece
 /// (a straight line through both sides' paper is the ground). Pieces without contrast or with clipped or missing pixels
 /// are left out. Empty for other charts than straight lines.
-std::vector<LinePoints> line_points(const Image& image, int channel, const ChartPoints& points, const Chart& chart);
+std::vector<LinePoints> line_points(const formats::Image& image, int channel, const ChartPoints& points,
+                                    const scene::Chart& chart);
 
-}  // namespace lensproof
+}  // namespace lensproof::calibration

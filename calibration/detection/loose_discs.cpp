@@ -8,7 +8,7 @@
 #include "calibration/detection/spot_centroid.h"
 #include "calibration/detection/working_copy.h"
 
-namespace lensproof {
+namespace lensproof::calibration {
 namespace {
 
 constexpr double kInner = 1.25;      // radii that hold the disc and its blur
@@ -21,7 +21,7 @@ constexpr double kFillShare = 0.65;  // of its box; π/4 of a circle or an ellip
 
 }  // namespace
 
-std::optional<Vec2d> locate_disc(const Image& image, int channel, const LooseDisc& expected) {
+std::optional<Vec2d> locate_disc(const formats::Image& image, int channel, const LooseDisc& expected) {
     const double radius = expected.radius_px;
     const auto spot = locate_spot(image, channel, expected.centre_px,
                                   {.inner = kInner * radius + kBlur_px,
@@ -33,8 +33,8 @@ std::optional<Vec2d> locate_disc(const Image& image, int channel, const LooseDis
     return is_near ? std::optional(spot->centre_px) : std::nullopt;
 }
 
-std::vector<LooseDisc> find_loose_discs(const Image& image, int channel) {
-    Image plane = make_image(image.width, image.height, {"Y"});
+std::vector<LooseDisc> find_loose_discs(const formats::Image& image, int channel) {
+    formats::Image plane = formats::make_image(image.width, image.height, {"Y"});
     for (int y = 0; y < image.height; ++y) {
         for (int x = 0; x < image.width; ++x) {
             plane.at(x, y, 0) = image.at(x, y, channel);
@@ -86,4 +86,4 @@ std::vector<LooseDisc> find_loose_discs(const Image& image, int channel) {
     return discs;
 }
 
-}  // namespace lensproof
+}  // namespace lensproof::calibration

@@ -1,6 +1,6 @@
 #include "calibration/detection/numbering.h"
 
-namespace lensproof {
+namespace lensproof::calibration {
 
 std::string numbering_key(Numbering numbering) {
     switch (numbering) {
@@ -31,4 +31,4 @@ std::string numbering_in_words(Numbering numbering) {
     return "";
 }
 
-}  // namespace lensproof
+}  // namespace lensproof::calibration

@@ -2,7 +2,7 @@
 #pragma once
 #include <string>
 
-namespace lensproof {
+namespace lensproof::calibration {
 
 /// What a picture leaves open. Points keep their places relative to one another; a camera model does not mind, the
 /// chart's pose is the turned, or moved, chart's.
@@ -19,4 +19,4 @@ std::string numbering_key(Numbering numbering);
 /// In words, for the account of a picture; empty where it is certain.
 std::string numbering_in_words(Numbering numbering);
 
-}  // namespace lensproof
+}  // namespace lensproof::calibration

@@ -5,7 +5,7 @@
 #include <limits>
 #include <optional>
 
-namespace lensproof {
+namespace lensproof::calibration {
 namespace {
 
 constexpr int kFarthest_px = 40;         // looked at around a point; more pixels tell no more
@@ -36,7 +36,7 @@ Region around(const Vec2d& point, int reach) {
 
 // The median absolute response in a region, of pixels whose neighbours differ by less than `most_step`; none where
 // there are too few.
-std::optional<double> response(const Image& image, int channel, const Region& region, double most_step) {
+std::optional<double> response(const formats::Image& image, int channel, const Region& region, double most_step) {
     std::vector<double> responses;
     for (int y = std::max(1, region.y0); y <= std::min(image.height - 2, region.y1); ++y) {
         for (int x = std::max(1, region.x0); x <= std::min(image.width - 2, region.x1); ++x) {
@@ -57,7 +57,7 @@ double noise_of(double median_response) {
     return median_response / (kMaskNorm * kMedianOfAbs);
 }
 
-double noise_between(const Image& image, int channel, const ChartPoints& points, double most_step) {
+double noise_between(const formats::Image& image, int channel, const ChartPoints& points, double most_step) {
     std::vector<double> responses;
     for (std::size_t i = 0; i < points.image_px.size(); ++i) {
         const auto one = points.found[i] ? response(image, channel,
@@ -83,12 +83,12 @@ int neighbourhood_px(const ChartPoints& points, std::size_t i) {
     return static_cast<int>(std::min<double>(kFarthest_px, 0.5 * nearest));
 }
 
-double pixel_noise(const Image& image, int channel, const ChartPoints& points) {
+double pixel_noise(const formats::Image& image, int channel, const ChartPoints& points) {
     const double first = noise_between(image, channel, points, std::numeric_limits<double>::infinity());
     return noise_between(image, channel, points, kMostStep * first);
 }
 
-double pixel_noise(const Image& image, int channel) {
+double pixel_noise(const formats::Image& image, int channel) {
     const Region whole{.x0 = 0, .x1 = image.width, .y0 = 0, .y1 = image.height};
     const auto among = [&](double most_step) {
         const auto found = response(image, channel, whole, most_step);
@@ -97,4 +97,4 @@ double pixel_noise(const Image& image, int channel) {
     return among(kMostStep * among(std::numeric_limits<double>::infinity()));
 }
 
-}  // namespace lensproof
+}  // namespace lensproof::calibration

@@ -5,7 +5,7 @@
 #include "calibration/detection/refine.h"
 #include "engine/formats/image/image.h"
 
-namespace lensproof {
+namespace lensproof::calibration {
 
 /// How far around a point its neighbourhood reaches: half the way to the nearest other point that was found, and no
 /// more than tells anything more, px.
@@ -17,9 +17,9 @@ int neighbourhood_px(const ChartPoints& points, std::size_t i);
 /// which light that changes evenly does not touch; a second time without the pixels whose neighbours differ by more
 /// than noise, which are edges. Compression that smooths noise away is not seen through, and clipped pixels, which have
 /// none, do not count.
-double pixel_noise(const Image& image, int channel, const ChartPoints& points);
+double pixel_noise(const formats::Image& image, int channel, const ChartPoints& points);
 
 /// The same over the whole of a picture that shows no chart.
-double pixel_noise(const Image& image, int channel);
+double pixel_noise(const formats::Image& image, int channel);
 
-}  // namespace lensproof
+}  // namespace lensproof::calibration

@@ -13,7 +13,7 @@
 #include "calibration/detection/working_copy.h"
 #include "engine/base/input_error.h"
 
-namespace lensproof {
+namespace lensproof::calibration {
 namespace {
 
 constexpr double kWindowShare = 0.4;   // half window of the distance to the nearest corner
@@ -29,7 +29,7 @@ constexpr double kAgreement_px = 0.05;  // of two searches from different starts
 constexpr double kLeastContrast = 0.1;  // (white − black) / (white + black) around a corner
 
 /// Whether every pixel within `reach` that the picture has is a number.
-bool all_finite(const Image& image, int channel, const Vec2d& at, double reach) {
+bool all_finite(const formats::Image& image, int channel, const Vec2d& at, double reach) {
     const int x0 = std::max(static_cast<int>(std::floor(at.x - reach)), 0);
     const int x1 = std::min(static_cast<int>(std::ceil(at.x + reach)), image.width - 1);
     const int y0 = std::max(static_cast<int>(std::floor(at.y - reach)), 0);
@@ -44,11 +44,11 @@ bool all_finite(const Image& image, int channel, const Vec2d& at, double reach) 
     return true;
 }
 
-bool is_inside(const Image& image, const Vec2d& at, double margin) {
+bool is_inside(const formats::Image& image, const Vec2d& at, double margin) {
     return at.x >= margin && at.y >= margin && at.x <= image.width - 1 - margin && at.y <= image.height - 1 - margin;
 }
 
-bool is_near_frame(const Image& image, const Vec2d& at) {
+bool is_near_frame(const formats::Image& image, const Vec2d& at) {
     return !is_inside(image, at, kFrame_px);
 }
 
@@ -67,7 +67,7 @@ struct Lattice {
 };
 
 // None where no neighbour in the row, or none in the column, was found.
-std::optional<Lattice> lattice_at(const ChartPoints& points, GridSize grid, int column, int row) {
+std::optional<Lattice> lattice_at(const ChartPoints& points, scene::GridSize grid, int column, int row) {
     const auto index = [&](int c, int r) { return static_cast<std::size_t>(r) * grid.columns + c; };
     const auto is_found = [&](int c, int r) {
         return c >= 0 && r >= 0 && c < grid.columns && r < grid.rows && points.found[index(c, r)];
@@ -133,14 +133,14 @@ std::optional<Vec2d> search_corner(const cv::Mat& plane, const Vec2d& start, int
 }
 
 // How far from the edges of its square a marker stands, in squares.
-double clear_squares(const Chart& chart) {
-    const auto* board = std::get_if<CharucoBoard>(&chart.pattern);
+double clear_squares(const scene::Chart& chart) {
+    const auto* board = std::get_if<scene::CharucoBoard>(&chart.pattern);
     return board ? 0.5 * (1.0 - board->marker_mm / board->square_mm) : std::numeric_limits<double>::infinity();
 }
 
 // Width of the lines that cross, in pitches; 0 where squares meet.
-double line_squares(const Chart& chart) {
-    const auto* lines = std::get_if<StraightLines>(&chart.pattern);
+double line_squares(const scene::Chart& chart) {
+    const auto* lines = std::get_if<scene::StraightLines>(&chart.pattern);
     return lines ? lines->line_mm / lines->pitch_mm : 0.0;
 }
 
@@ -149,8 +149,8 @@ struct RefinedPoint {
     std::optional<Vec2d> standard_error_px;
 };
 
-std::optional<RefinedPoint> refine_corner(const Image& image, const cv::Mat& plane, int channel, const Vec2d& start,
-                                          const Lattice& lattice, const Chart& chart) {
+std::optional<RefinedPoint> refine_corner(const formats::Image& image, const cv::Mat& plane, int channel,
+                                          const Vec2d& start, const Lattice& lattice, const scene::Chart& chart) {
     const int half_window =
         std::clamp(static_cast<int>(kWindowShare * lattice.nearest), kSmallestWindow_px, kLargestWindow_px);
     if (!all_finite(image, channel, start, half_window) || is_near_frame(image, start)) {
@@ -180,21 +180,21 @@ std::optional<RefinedPoint> refine_corner(const Image& image, const cv::Mat& pla
 }
 
 // The radius that holds a chart's spot, in pitches; none where its points are no spots.
-std::optional<double> spot_radius(const Chart& chart) {
-    if (const auto* discs = std::get_if<DiscGrid>(&chart.pattern)) {
+std::optional<double> spot_radius(const scene::Chart& chart) {
+    if (const auto* discs = std::get_if<scene::DiscGrid>(&chart.pattern)) {
         return 0.5 * discs->diameter_mm / discs->pitch_mm;
     }
-    if (const auto* points = std::get_if<PointGrid>(&chart.pattern)) {
+    if (const auto* points = std::get_if<scene::PointGrid>(&chart.pattern)) {
         return 0.5 * points->dot_mm / points->pitch_mm;
     }
-    if (const auto* edges = std::get_if<SlantedEdges>(&chart.pattern)) {
+    if (const auto* edges = std::get_if<scene::SlantedEdges>(&chart.pattern)) {
         return edges->square_mm / (std::numbers::sqrt2 * edges->pitch_mm);
     }
     return std::nullopt;
 }
 
-std::optional<RefinedPoint> refine_spot(const Image& image, int channel, const Vec2d& start, const Lattice& lattice,
-                                        double radius, bool is_bright) {
+std::optional<RefinedPoint> refine_spot(const formats::Image& image, int channel, const Vec2d& start,
+                                        const Lattice& lattice, double radius, bool is_bright) {
     const double determinant = lattice.column_step.x * lattice.row_step.y - lattice.column_step.y * lattice.row_step.x;
     // Far enough out for blur, and no farther: ground adds nothing but noise.
     const double step_px = std::min(norm(lattice.column_step), norm(lattice.row_step));
@@ -211,19 +211,21 @@ std::optional<RefinedPoint> refine_spot(const Image& image, int channel, const V
 
 }  // namespace
 
-ChartPoints refine(const Image& image, int channel, const ChartPoints& approximate, const Chart& chart) {
-    const GridSize grid = feature_grid(chart);
+ChartPoints refine(const formats::Image& image, int channel, const ChartPoints& approximate,
+                   const scene::Chart& chart) {
+    const scene::GridSize grid = scene::feature_grid(chart);
     const auto expected = static_cast<std::size_t>(grid.columns) * grid.rows;
     if (approximate.image_px.size() != expected || approximate.found.size() != expected || grid.columns < 2 ||
         grid.rows < 2) {
-        throw InputError("refining a " + kind_name(chart) + ": " + std::to_string(approximate.image_px.size()) +
+        throw InputError("refining a " + scene::kind_name(chart) + ": " + std::to_string(approximate.image_px.size()) +
                          " points given, expected " + std::to_string(expected));
     }
     if (channel < 0 || channel >= image.channel_count()) {
-        throw InputError("refining a " + kind_name(chart) + ": the picture has no channel " + std::to_string(channel));
+        throw InputError("refining a " + scene::kind_name(chart) + ": the picture has no channel " +
+                         std::to_string(channel));
     }
     const std::optional<double> spot = spot_radius(chart);
-    const bool is_bright = std::holds_alternative<PointGrid>(chart.pattern);
+    const bool is_bright = std::holds_alternative<scene::PointGrid>(chart.pattern);
     cv::Mat plane;
     if (!spot) {
         // Edges sharper than a pixel are aliased, which biases search and fit alike; the blur takes that away.
@@ -259,14 +261,14 @@ ChartPoints refine(const Image& image, int channel, const ChartPoints& approxima
     return result;
 }
 
-double disc_diameter_mm(const Chart& chart) {
-    if (const auto* discs = std::get_if<DiscGrid>(&chart.pattern)) {
+double disc_diameter_mm(const scene::Chart& chart) {
+    if (const auto* discs = std::get_if<scene::DiscGrid>(&chart.pattern)) {
         return discs->diameter_mm;
     }
-    if (const auto* points = std::get_if<PointGrid>(&chart.pattern)) {
+    if (const auto* points = std::get_if<scene::PointGrid>(&chart.pattern)) {
         return points->dot_mm;
     }
-    const auto* edges = std::get_if<SlantedEdges>(&chart.pattern);
+    const auto* edges = std::get_if<scene::SlantedEdges>(&chart.pattern);
     return edges ? 2.0 / std::numbers::sqrt3 * edges->square_mm : 0.0;
 }
 
@@ -274,4 +276,4 @@ int count_found(const ChartPoints& points) {
     return static_cast<int>(std::count(points.found.begin(), points.found.end(), true));
 }
 
-}  // namespace lensproof
+}  // namespace lensproof::calibration

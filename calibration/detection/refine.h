@@ -7,7 +7,7 @@
 #include "engine/formats/image/image.h"
 #include "engine/scene/chart.h"
 
-namespace lensproof {
+namespace lensproof::calibration {
 
 /// Where a picture shows `feature_points(chart)`, in that order. Where `found[i]` is false the point could not be
 /// measured (too near the frame, no contrast, the search ran away) and `image_px[i]` is only the starting value.
@@ -34,13 +34,13 @@ struct ChartPoints {
 /// Tests hold points of synthetic pictures with 1 % noise to 0.02 px rms
 /// (tests/calibration/detection/corner_accuracy_test.cpp and calibration_lattice.cpp). `approximate` must have one
 /// point per feature.
-ChartPoints refine(const Image& image, int channel, const ChartPoints& approximate, const Chart& chart);
+ChartPoints refine(const formats::Image& image, int channel, const ChartPoints& approximate, const scene::Chart& chart);
 
 /// The diameter of the discs whose images' centroids `refine` measures, mm; of squares, the discs with their second
 /// moments; 0 for points.
-double disc_diameter_mm(const Chart& chart);
+double disc_diameter_mm(const scene::Chart& chart);
 
 /// How many points were found.
 int count_found(const ChartPoints& points);
 
-}  // namespace lensproof
+}  // namespace lensproof::calibration

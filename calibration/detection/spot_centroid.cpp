@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace lensproof {
+namespace lensproof::calibration {
 namespace {
 
 constexpr int kRounds = 6;
@@ -16,7 +16,7 @@ using Row = Eigen::Vector3d;
 // The pixels around a place, by their distance from it in the window's units.
 class Around {
   public:
-    Around(const Image& image, int channel, const Vec2d& at, const SpotWindow& window)
+    Around(const formats::Image& image, int channel, const Vec2d& at, const SpotWindow& window)
         : image_(image), channel_(channel), at_(at), window_(window) {
         const Vec2d& a = window.x_unit_px;
         const Vec2d& b = window.y_unit_px;
@@ -50,7 +50,7 @@ class Around {
     }
 
   private:
-    const Image& image_;
+    const formats::Image& image_;
     int channel_;
     Vec2d at_;
     const SpotWindow& window_;
@@ -81,7 +81,7 @@ std::optional<Ground> ground_of(const Around& around, const SpotWindow& window) 
     return Ground{.plane = solver.solve(right), .inverse = solver.solve(Eigen::Matrix3d::Identity())};
 }
 
-std::optional<Spot> centroid(const Image& image, int channel, const Vec2d& start, const SpotWindow& window) {
+std::optional<Spot> centroid(const formats::Image& image, int channel, const Vec2d& start, const SpotWindow& window) {
     const Around around(image, channel, start, window);
     const auto ground = around.is_in_picture() ? ground_of(around, window) : std::optional<Ground>();
     if (!ground) {
@@ -134,7 +134,8 @@ std::optional<Spot> centroid(const Image& image, int channel, const Vec2d& start
 
 }  // namespace
 
-std::optional<Spot> locate_spot(const Image& image, int channel, const Vec2d& start, const SpotWindow& window) {
+std::optional<Spot> locate_spot(const formats::Image& image, int channel, const Vec2d& start,
+                                const SpotWindow& window) {
     std::optional<Spot> spot = Spot{.centre_px = start, .standard_error_px = {}};
     for (int round = 0; round < kRounds && spot; ++round) {
         spot = centroid(image, channel, spot->centre_px, window);
@@ -147,4 +148,4 @@ std::optional<Spot> locate_spot(const Image& image, int channel, const Vec2d& st
     return spot;
 }
 
-}  // namespace lensproof
+}  // namespace lensproof::calibration

@@ -5,7 +5,7 @@
 #include "engine/base/vec.h"
 #include "engine/formats/image/image.h"
 
-namespace lensproof {
+namespace lensproof::calibration {
 
 /// Where a spot's light is gathered. Lengths count in units of their own: a pixel at an offset d from the centre is
 /// |u| away, where d = u_x x_unit_px + u_y y_unit_px; so a circle there is the ellipse that perspective makes of it.
@@ -27,6 +27,6 @@ struct Spot {
 /// The centroid of 1 − I/W, W a plane through the ground's light; of a bright spot that of I − W. The window follows
 /// the spot in a few rounds, as far as its outer half. None where the window leaves the picture, holds what is no
 /// number, or shows no such spot.
-std::optional<Spot> locate_spot(const Image& image, int channel, const Vec2d& start, const SpotWindow& window);
+std::optional<Spot> locate_spot(const formats::Image& image, int channel, const Vec2d& start, const SpotWindow& window);
 
-}  // namespace lensproof
+}  // namespace lensproof::calibration

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <vector>
 
-namespace lensproof {
+namespace lensproof::calibration {
 namespace {
 
 constexpr double kWhitePercentile = 0.995;
@@ -23,7 +23,7 @@ float percentile(std::vector<float>& values, double fraction) {
 
 }  // namespace
 
-cv::Mat channel_plane(const Image& image, int channel) {
+cv::Mat channel_plane(const formats::Image& image, int channel) {
     cv::Mat plane(image.height, image.width, CV_32F);
     for (int y = 0; y < image.height; ++y) {
         auto* row = plane.ptr<float>(y);
@@ -35,7 +35,7 @@ cv::Mat channel_plane(const Image& image, int channel) {
     return plane;
 }
 
-cv::Mat detector_copy(const Image& image) {
+cv::Mat detector_copy(const formats::Image& image) {
     cv::Mat mean = cv::Mat::zeros(image.height, image.width, CV_32F);
     for (int channel = 0; channel < image.channel_count(); ++channel) {
         mean += channel_plane(image, channel) / static_cast<double>(image.channel_count());
@@ -56,9 +56,9 @@ cv::Mat detector_copy(const Image& image) {
     return encoded;
 }
 
-int reference_channel(const Image& image) {
-    const int green = find_channel(image, "G");
+int reference_channel(const formats::Image& image) {
+    const int green = formats::find_channel(image, "G");
     return green >= 0 ? green : image.channel_count() / 2;
 }
 
-}  // namespace lensproof
+}  // namespace lensproof::calibration

@@ -4,16 +4,16 @@
 
 #include "engine/formats/image/image.h"
 
-namespace lensproof {
+namespace lensproof::calibration {
 
 /// One channel in linear light as CV_32F. What is not finite becomes 0.
-cv::Mat channel_plane(const Image& image, int channel);
+cv::Mat channel_plane(const formats::Image& image, int channel);
 
 /// The picture as CV_8U for a detector: the channels' mean, scaled so that its 99.5th percentile is white (dark
 /// pictures become usable), sRGB-encoded. Empty when the picture holds no light or no contrast at all.
-cv::Mat detector_copy(const Image& image);
+cv::Mat detector_copy(const formats::Image& image);
 
 /// The channel that geometry is measured in: green where there is one, else the only or middle channel.
-int reference_channel(const Image& image);
+int reference_channel(const formats::Image& image);
 
-}  // namespace lensproof
+}  // namespace lensproof::calibration

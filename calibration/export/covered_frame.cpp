@@ -5,7 +5,7 @@
 
 #include "engine/base/input_error.h"
 
-namespace lensproof {
+namespace lensproof::calibration {
 namespace {
 
 double covered_radius_px(const Profile& profile) {
@@ -76,4 +76,4 @@ std::vector<RadialPoint> radial_points(const Profile& profile, int count) {
     return points;
 }
 
-}  // namespace lensproof
+}  // namespace lensproof::calibration

@@ -7,7 +7,7 @@
 #include "calibration/profile/profile.h"
 #include "engine/base/vec.h"
 
-namespace lensproof {
+namespace lensproof::calibration {
 
 /// A pixel and the unit direction that the profile's model says it shows.
 struct FramePoint {
@@ -42,4 +42,4 @@ constexpr double kUncoveredSigma = 100.0;
 /// The profile's geometry. Throws InputError, naming the profile, where it has none or one that covers nothing.
 const ProfileGeometry& exported_geometry(const Profile& profile);
 
-}  // namespace lensproof
+}  // namespace lensproof::calibration

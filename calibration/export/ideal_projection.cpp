@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace lensproof {
+namespace lensproof::calibration {
 namespace {
 
 constexpr double kBelowRightAngle = std::numbers::pi / 2 - 1e-4;
@@ -75,4 +75,4 @@ std::optional<double> ideal_angle(IdealProjection projection, double radius) {
     return radius;
 }
 
-}  // namespace lensproof
+}  // namespace lensproof::calibration

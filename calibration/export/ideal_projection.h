@@ -4,7 +4,7 @@
 #include <optional>
 #include <string>
 
-namespace lensproof {
+namespace lensproof::calibration {
 
 /// r = f tan θ, f θ, 2 f sin(θ/2), 2 f tan(θ/2), f sin θ. The names are lensfun's, where "fisheye" is equidistant.
 enum class IdealProjection { rectilinear, fisheye, equisolid, stereographic, orthographic };
@@ -22,4 +22,4 @@ std::optional<double> ideal_radius(IdealProjection projection, double angle_rad)
 /// The angle imaged at r/f; none where there is none.
 std::optional<double> ideal_angle(IdealProjection projection, double radius);
 
-}  // namespace lensproof
+}  // namespace lensproof::calibration

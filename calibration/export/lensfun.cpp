@@ -13,7 +13,7 @@
 #include "engine/base/input_error.h"
 #include "engine/base/markup.h"
 
-namespace lensproof {
+namespace lensproof::calibration {
 namespace {
 
 constexpr int kRadii = 200;
@@ -364,4 +364,4 @@ LensfunExport lensfun_export(const Profile& profile, const LensfunOptions& optio
     return result;
 }
 
-}  // namespace lensproof
+}  // namespace lensproof::calibration

@@ -7,7 +7,7 @@
 #include "calibration/export/ideal_projection.h"
 #include "calibration/profile/profile.h"
 
-namespace lensproof {
+namespace lensproof::calibration {
 
 struct LensfunOptions {
     double crop_factor = 1.0;          // diagonal of 36 × 24 mm over the sensor's
@@ -46,4 +46,4 @@ struct LensfunExport {
 /// Throws InputError for a profile without geometry, and where no polynomial follows the mapping without folding back.
 LensfunExport lensfun_export(const Profile& profile, const LensfunOptions& options);
 
-}  // namespace lensproof
+}  // namespace lensproof::calibration

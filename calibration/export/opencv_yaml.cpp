@@ -11,7 +11,7 @@
 #include "calibration/statistics/linear_fit.h"
 #include "engine/base/input_error.h"
 
-namespace lensproof {
+namespace lensproof::calibration {
 namespace {
 
 constexpr int kFrameColumns = 49;
@@ -289,4 +289,4 @@ OpencvExport opencv_export(const Profile& profile) {
     return result;
 }
 
-}  // namespace lensproof
+}  // namespace lensproof::calibration

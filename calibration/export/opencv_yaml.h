@@ -5,7 +5,7 @@
 
 #include "calibration/profile/profile.h"
 
-namespace lensproof {
+namespace lensproof::calibration {
 
 struct OpencvExport {
     std::string yaml;
@@ -26,4 +26,4 @@ struct OpencvExport {
 /// 1963), and the closest is written. Throws InputError for a profile without geometry, and where none follows it.
 OpencvExport opencv_export(const Profile& profile);
 
-}  // namespace lensproof
+}  // namespace lensproof::calibration

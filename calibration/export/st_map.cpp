@@ -8,7 +8,7 @@
 #include "calibration/export/covered_frame.h"
 #include "engine/base/parallel.h"
 
-namespace lensproof {
+namespace lensproof::calibration {
 namespace {
 
 /// The photo, and the undistorted picture beside it, which share frame, focal length and principal point.
@@ -65,7 +65,7 @@ std::optional<Vec2d> distorted(const Pair& pair, const Vec2d& ideal_px) {
 }
 
 /// The part of the undistorted plane that the photo fills, whole pixels, the frame at least.
-FramePlacement reach(const Pair& pair, double most_overscan, int& width, int& height) {
+formats::FramePlacement reach(const Pair& pair, double most_overscan, int& width, int& height) {
     const int w = pair.profile->width_px;
     const int h = pair.profile->height_px;
     const Vec2d most{most_overscan * w, most_overscan * h};
@@ -98,7 +98,7 @@ FramePlacement reach(const Pair& pair, double most_overscan, int& width, int& he
 
 /// Sets R, G, B and A of one pixel of a map to a point of its source, px of the frame.
 void set_pixel(StMap& map, int x, int y, const std::optional<Vec2d>& source_px, bool covered) {
-    const FramePlacement& frame = map.placement;
+    const formats::FramePlacement& frame = map.placement;
     const Vec2d source = source_px.value_or(Vec2d{});
     map.image.at(x, y, 0) = source_px ? static_cast<float>((source.x + 0.5) / frame.frame_width) : -1.0F;
     map.image.at(x, y, 1) = source_px ? static_cast<float>(1.0 - (source.y + 0.5) / frame.frame_height) : -1.0F;
@@ -113,8 +113,8 @@ bool is_covered(const Pair& pair, const Vec2d& photo_px) {
 StMap undistort_map(const Pair& pair, const StMapOptions& options) {
     int width = 0;
     int height = 0;
-    const FramePlacement placement = reach(pair, options.most_overscan, width, height);
-    StMap map{.image = make_image(width, height, {"R", "G", "B", "A"}), .placement = placement};
+    const formats::FramePlacement placement = reach(pair, options.most_overscan, width, height);
+    StMap map{.image = formats::make_image(width, height, {"R", "G", "B", "A"}), .placement = placement};
     const auto row = [&](int y) {
         for (int x = 0; x < width; ++x) {
             const auto photo = distorted(pair, {x + placement.x + 0.0, y + placement.y + 0.0});
@@ -128,7 +128,7 @@ StMap undistort_map(const Pair& pair, const StMapOptions& options) {
 StMap distort_map(const Pair& pair, const StMapOptions& options) {
     const int width = pair.profile->width_px;
     const int height = pair.profile->height_px;
-    StMap map{.image = make_image(width, height, {"R", "G", "B", "A"}),
+    StMap map{.image = formats::make_image(width, height, {"R", "G", "B", "A"}),
               .placement = {.x = 0, .y = 0, .frame_width = width, .frame_height = height}};
     const auto row = [&](int y) {
         for (int x = 0; x < width; ++x) {
@@ -167,7 +167,7 @@ StMaps st_maps(const Profile& profile, const StMapOptions& options) {
     describe(maps.undistort, pair, "undistort");
     describe(maps.distort, pair, "distort");
 
-    const FramePlacement& placement = maps.undistort.placement;
+    const formats::FramePlacement& placement = maps.undistort.placement;
     maps.notes.push_back(fmt::format("undistorted: {}, focal length {:.6g} px", name_of(pair.ideal), pair.focal_px));
     maps.notes.push_back(fmt::format(
         "overscan of the undistorted picture: {} px left, {} px right, {} px above, {} px below its {} x {} frame",
@@ -191,4 +191,4 @@ StMaps st_maps(const Profile& profile, const StMapOptions& options) {
     return maps;
 }
 
-}  // namespace lensproof
+}  // namespace lensproof::calibration

@@ -8,7 +8,7 @@
 #include "engine/formats/image/frame_placement.h"
 #include "engine/formats/image/image.h"
 
-namespace lensproof {
+namespace lensproof::calibration {
 
 struct StMapOptions {
     /// What the undistorted picture is: this projection at the profile's own focal length (on the axis) and principal
@@ -27,8 +27,8 @@ struct StMapOptions {
 /// extrapolates. A is 1; where the lens images nothing that belongs here, A is 0 and u = v = −1, outside every picture.
 /// u and v outside 0…1 lie in the source's overscan.
 struct StMap {
-    Image image;  // metadata: the convention and the profile
-    FramePlacement placement;
+    formats::Image image;  // metadata: the convention and the profile
+    formats::FramePlacement placement;
 };
 
 struct StMaps {
@@ -40,4 +40,4 @@ struct StMaps {
 /// Exact but for rounding to 32-bit floats. Throws InputError for a profile without geometry.
 StMaps st_maps(const Profile& profile, const StMapOptions& options);
 
-}  // namespace lensproof
+}  // namespace lensproof::calibration

@@ -8,7 +8,7 @@
 
 #include "engine/base/vec.h"
 
-namespace lensproof {
+namespace lensproof::calibration {
 
 /// The rectangle of the chart that its features span: the unit of the deformation.
 struct BoardFrame {
@@ -45,4 +45,4 @@ inline double standard_error_mm(const BoardShape& board, std::size_t term) {
     return std::sqrt(std::max(board.covariance[term * (kBoardTerms + 1)], 0.0));
 }
 
-}  // namespace lensproof
+}  // namespace lensproof::calibration

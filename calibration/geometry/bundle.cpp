@@ -10,7 +10,7 @@
 #include <cmath>
 #include <limits>
 
-namespace lensproof {
+namespace lensproof::calibration {
 namespace {
 
 Feature feature(const PointBundle& bundle, std::size_t view, std::size_t point) {
@@ -123,4 +123,4 @@ std::optional<Vec2d> residual(const PointBundle& bundle, const BundleState& stat
     return Vec2d{values[0], values[1]};
 }
 
-}  // namespace lensproof
+}  // namespace lensproof::calibration

@@ -7,7 +7,7 @@
 #include "calibration/geometry/camera_model.h"
 #include "calibration/geometry/reprojection.h"
 
-namespace lensproof {
+namespace lensproof::calibration {
 
 /// The points of one picture: where they are on the chart and in the picture.
 struct ChartView {
@@ -70,4 +70,4 @@ struct BundleInformation {
 /// What the points do not determine has a huge variance. None for numbers that are not finite.
 std::optional<BundleInformation> information(const PointBundle& bundle, const BundleState& state, const Held& held);
 
-}  // namespace lensproof
+}  // namespace lensproof::calibration

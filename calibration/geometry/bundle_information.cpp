@@ -5,7 +5,7 @@
 
 #include "calibration/geometry/bundle.h"
 
-namespace lensproof {
+namespace lensproof::calibration {
 namespace {
 
 using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
@@ -152,4 +152,4 @@ std::optional<BundleInformation> information(const PointBundle& bundle, const Bu
     return result;
 }
 
-}  // namespace lensproof
+}  // namespace lensproof::calibration

@@ -7,7 +7,7 @@
 
 #include "engine/base/input_error.h"
 
-namespace lensproof {
+namespace lensproof::calibration {
 namespace {
 
 // Poses under an undistorted model of the given focal length, and the rms misfit of the rays in px.
@@ -80,4 +80,4 @@ std::vector<BundleStart> bundle_starts(const PointBundle& bundle, ModelKind mode
     return starts;
 }
 
-}  // namespace lensproof
+}  // namespace lensproof::calibration

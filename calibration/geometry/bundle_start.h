@@ -5,7 +5,7 @@
 
 #include "calibration/geometry/bundle.h"
 
-namespace lensproof {
+namespace lensproof::calibration {
 
 struct BundleStart {
     double misfit_px = 0.0;  // rms distance between the points seen and those of the posed chart
@@ -17,4 +17,4 @@ struct BundleStart {
 std::vector<BundleStart> bundle_starts(const PointBundle& bundle, ModelKind model, int width, int height,
                                        std::optional<double> known_focal_px);
 
-}  // namespace lensproof
+}  // namespace lensproof::calibration

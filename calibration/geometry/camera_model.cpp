@@ -7,7 +7,7 @@
 #include <numbers>
 #include <utility>
 
-namespace lensproof {
+namespace lensproof::calibration {
 namespace {
 
 constexpr double kScanStep = std::numbers::pi / 180.0;  // no 4-term polynomial folds and unfolds within a degree
@@ -239,4 +239,4 @@ std::optional<Vec3d> unproject(const CameraModel& model, const Vec2d& pixel) {
         model);
 }
 
-}  // namespace lensproof
+}  // namespace lensproof::calibration

@@ -10,7 +10,7 @@
 #include "calibration/geometry/perspective_models.h"
 #include "engine/base/vec.h"
 
-namespace lensproof {
+namespace lensproof::calibration {
 
 // Frames. Camera: x to the right, y down, z into the scene, origin at the centre of projection (OpenCV's frame).
 // Pixels: the centre of the top-left pixel is (0, 0). Angles are in radians and measured from the z axis.
@@ -85,4 +85,4 @@ std::optional<Vec3d> unproject(const CameraModel& model, const Vec2d& pixel);
 /// The angle that the model's undistorted projection with this focal length images at `radius_px`; above π for none.
 double undistorted_angle_rad(ModelKind kind, double focal_px, double radius_px);
 
-}  // namespace lensproof
+}  // namespace lensproof::calibration

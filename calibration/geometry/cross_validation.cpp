@@ -7,7 +7,7 @@
 #include "calibration/geometry/projection_uncertainty.h"
 #include "engine/base/input_error.h"
 
-namespace lensproof {
+namespace lensproof::calibration {
 namespace {
 
 constexpr std::size_t kManyViews = 20;  // half of them still make a good fit
@@ -250,4 +250,4 @@ CrossValidation cross_validate(const std::vector<ChartView>& views, int width_px
     return Validation(views, width_px, height_px, options, fit).run();
 }
 
-}  // namespace lensproof
+}  // namespace lensproof::calibration

@@ -5,7 +5,7 @@
 
 #include "calibration/geometry/fit_geometry.h"
 
-namespace lensproof {
+namespace lensproof::calibration {
 
 /// What a fit to the first half of the views and one to the second disagree about. (Every other view, so that both
 /// halves have seen the whole series.) Neither knows where the charts stood, so a rotation between the two cameras
@@ -33,4 +33,4 @@ CrossValidation cross_validate(const std::vector<ChartView>& views, int width_px
 std::optional<HalvesDifference> mapping_difference(const CameraModel& a, const CameraModel& b,
                                                    const std::vector<Vec2d>& pixels);
 
-}  // namespace lensproof
+}  // namespace lensproof::calibration

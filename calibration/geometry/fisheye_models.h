@@ -2,7 +2,7 @@
 #pragma once
 #include "calibration/geometry/radial_model.h"
 
-namespace lensproof {
+namespace lensproof::calibration {
 
 /// Fisheye projection (Kannala & Brandt 2006, "A generic camera model", eq. 6, radially symmetric part):
 ///     r(θ) = f (θ + k1 θ³ + k2 θ⁵ + k3 θ⁷ + k4 θ⁹).
@@ -134,4 +134,4 @@ struct SplineRadial {
 };
 using Spline = RadialModel<SplineRadial>;
 
-}  // namespace lensproof
+}  // namespace lensproof::calibration

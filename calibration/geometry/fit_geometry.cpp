@@ -9,7 +9,7 @@
 #include "calibration/geometry/bundle_start.h"
 #include "engine/base/input_error.h"
 
-namespace lensproof {
+namespace lensproof::calibration {
 namespace {
 
 constexpr double kSmallestOutlier_px = 0.1;  // no point this close is ever an outlier
@@ -390,4 +390,4 @@ BundleState state_of(const GeometryFit& fit) {
     return state;
 }
 
-}  // namespace lensproof
+}  // namespace lensproof::calibration

@@ -10,7 +10,7 @@
 #include "calibration/geometry/planar_pose.h"
 #include "engine/base/vec.h"
 
-namespace lensproof {
+namespace lensproof::calibration {
 
 struct GeometryOptions {
     ModelKind model = ModelKind::brown_conrady;
@@ -87,4 +87,4 @@ GeometryFit refit_geometry(const std::vector<ChartView>& views, int width_px, in
 /// A fit as a start for another.
 BundleState state_of(const GeometryFit& fit);
 
-}  // namespace lensproof
+}  // namespace lensproof::calibration

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace lensproof {
+namespace lensproof::calibration {
 namespace {
 
 constexpr double kDegree = std::numbers::pi / 180.0;
@@ -97,4 +97,4 @@ Curve equidistant_distortion_curve(const GeometryFit& fit, double half_diagonal_
     return curve_of(fit, half_diagonal_px, equidistant_percent);
 }
 
-}  // namespace lensproof
+}  // namespace lensproof::calibration

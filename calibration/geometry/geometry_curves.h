@@ -3,7 +3,7 @@
 #include "calibration/geometry/fit_geometry.h"
 #include "calibration/statistics/curve.h"
 
-namespace lensproof {
+namespace lensproof::calibration {
 
 /// θ(r), degrees.
 Curve field_angle_curve(const GeometryFit& fit, double half_diagonal_px);
@@ -17,4 +17,4 @@ Curve equidistant_distortion_curve(const GeometryFit& fit, double half_diagonal_
 // Each is sampled at the standard image heights as far as the model reaches. Bands carry the intrinsics' whole
 // covariance to first order; the tangential terms, which have no part in r(θ), are left out.
 
-}  // namespace lensproof
+}  // namespace lensproof::calibration

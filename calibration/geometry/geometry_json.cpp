@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace lensproof {
+namespace lensproof::calibration {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -162,4 +162,4 @@ ModelChoice parse_model_choice(const JsonNode& node) {
     return choice;
 }
 
-}  // namespace lensproof
+}  // namespace lensproof::calibration

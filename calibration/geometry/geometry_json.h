@@ -7,7 +7,7 @@
 #include "calibration/geometry/projection_uncertainty.h"
 #include "calibration/profile/json_node.h"
 
-namespace lensproof {
+namespace lensproof::calibration {
 
 nlohmann::ordered_json to_json(const BoardShape& board);
 nlohmann::ordered_json to_json(const UncertaintyMap& map);
@@ -18,4 +18,4 @@ BoardShape parse_board_shape(const JsonNode& node);
 UncertaintyMap parse_uncertainty_map(const JsonNode& node);
 ModelChoice parse_model_choice(const JsonNode& node);
 
-}  // namespace lensproof
+}  // namespace lensproof::calibration

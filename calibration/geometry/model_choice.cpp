@@ -9,7 +9,7 @@
 #include "calibration/geometry/projection_uncertainty.h"
 #include "engine/base/input_error.h"
 
-namespace lensproof {
+namespace lensproof::calibration {
 namespace {
 
 constexpr double kHopeless = 2.0;    // residuals against the best's: no cross-validation will make up for that
@@ -300,4 +300,4 @@ ChosenGeometry choose_model(const std::vector<ChartView>& views, int width_px, i
     return Choice(views, width_px, height_px, options).run();
 }
 
-}  // namespace lensproof
+}  // namespace lensproof::calibration

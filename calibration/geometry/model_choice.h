@@ -7,7 +7,7 @@
 #include "calibration/geometry/cross_validation.h"
 #include "calibration/geometry/fit_geometry.h"
 
-namespace lensproof {
+namespace lensproof::calibration {
 
 /// A model that was tried.
 struct ModelCandidate {
@@ -59,4 +59,4 @@ struct ChosenGeometry {
 ChosenGeometry choose_model(const std::vector<ChartView>& views, int width_px, int height_px,
                             const GeometryOptions& options);
 
-}  // namespace lensproof
+}  // namespace lensproof::calibration

@@ -4,7 +4,7 @@
 
 #include "calibration/geometry/radial_model.h"
 
-namespace lensproof {
+namespace lensproof::calibration {
 
 /// Perspective projection with radial and tangential distortion (Brown 1971, "Close-range camera calibration"):
 ///     (x, y) = (X, Y) / Z,   ρ² = x² + y²,   L = 1 + k1 ρ² + k2 ρ⁴ + k3 ρ⁶,
@@ -167,4 +167,4 @@ struct PtLensRadial {
 };
 using PtLens = RadialModel<PtLensRadial>;
 
-}  // namespace lensproof
+}  // namespace lensproof::calibration

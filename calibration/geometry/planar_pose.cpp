@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace lensproof {
+namespace lensproof::calibration {
 
 Vec3d to_camera(const Pose& pose, const Vec2d& chart_mm) {
     const double rotation[3] = {pose.rotation_rad.x, pose.rotation_rad.y, pose.rotation_rad.z};
@@ -62,4 +62,4 @@ std::optional<Pose> planar_pose(const std::vector<Vec2d>& chart_mm, const std::v
     return finite && rotation.determinant() > 0.0 ? std::optional(pose) : std::nullopt;
 }
 
-}  // namespace lensproof
+}  // namespace lensproof::calibration

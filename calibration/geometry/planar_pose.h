@@ -5,7 +5,7 @@
 
 #include "engine/base/vec.h"
 
-namespace lensproof {
+namespace lensproof::calibration {
 
 /// Maps chart to camera: X_c = R(rotation) X + t, with X = (x, y, 0) mm on the chart.
 struct Pose {
@@ -22,4 +22,4 @@ Vec3d to_camera(const Pose& pose, const Vec2d& chart_mm);
 /// estimate. None for fewer than four points or degenerate ones (all on a line).
 std::optional<Pose> planar_pose(const std::vector<Vec2d>& chart_mm, const std::vector<Vec3d>& rays);
 
-}  // namespace lensproof
+}  // namespace lensproof::calibration

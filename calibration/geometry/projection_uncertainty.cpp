@@ -5,7 +5,7 @@
 #include <cmath>
 #include <opencv2/imgproc.hpp>
 
-namespace lensproof {
+namespace lensproof::calibration {
 namespace {
 
 using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
@@ -202,4 +202,4 @@ UncertaintyMap uncertainty_map(const GeometryFit& fit, const std::vector<ChartVi
     return map;
 }
 
-}  // namespace lensproof
+}  // namespace lensproof::calibration

@@ -5,7 +5,7 @@
 
 #include "calibration/geometry/fit_geometry.h"
 
-namespace lensproof {
+namespace lensproof::calibration {
 
 /// Standard deviation of a projection in its worst direction, px.
 ///
@@ -46,4 +46,4 @@ std::vector<bool> covered_pixels(const std::vector<ChartView>& views, const std:
 /// The points that `fit` used.
 std::vector<ChartView> used_points(const std::vector<ChartView>& views, const GeometryFit& fit);
 
-}  // namespace lensproof
+}  // namespace lensproof::calibration

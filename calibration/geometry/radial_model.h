@@ -8,7 +8,7 @@
 
 #include "engine/base/vec.h"
 
-namespace lensproof {
+namespace lensproof::calibration {
 
 inline constexpr double kRightAngle = std::numbers::pi / 2 - 1e-6;  // where a perspective picture ends
 
@@ -89,4 +89,4 @@ struct RadialModel {
     }
 };
 
-}  // namespace lensproof
+}  // namespace lensproof::calibration

@@ -9,7 +9,7 @@
 
 #include "calibration/detection/disc_centroid.h"
 
-namespace lensproof {
+namespace lensproof::calibration {
 namespace {
 
 template <class T>
@@ -213,4 +213,4 @@ std::unique_ptr<ceres::CostFunction> reprojection_cost(ModelKind kind, const Fea
     return std::make_unique<ReprojectionCost>(kind, kCounts[static_cast<std::size_t>(kind)], feature, frame);
 }
 
-}  // namespace lensproof
+}  // namespace lensproof::calibration

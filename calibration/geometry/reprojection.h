@@ -13,7 +13,7 @@ namespace ceres {
 class CostFunction;
 }
 
-namespace lensproof {
+namespace lensproof::calibration {
 
 /// A feature as measured.
 struct Feature {
@@ -37,4 +37,4 @@ std::optional<Vec2d> predict(const CameraModel& model, const Pose& pose, const V
 /// pose's (6) and the board's heights (5). Fails where the model images nothing. One type serves every model.
 std::unique_ptr<ceres::CostFunction> reprojection_cost(ModelKind kind, const Feature& feature, const BoardFrame& frame);
 
-}  // namespace lensproof
+}  // namespace lensproof::calibration

@@ -3,7 +3,7 @@
 #include <Eigen/Core>
 #include <cmath>
 
-namespace lensproof {
+namespace lensproof::calibration {
 
 /// s(r) = Σ c_i φ_i(r), a uniform cubic B-spline from r = 0 to `reach`, mirrored at 0; s(0) = 0.
 struct EvenSpline {
@@ -46,4 +46,4 @@ struct EvenSpline {
     }
 };
 
-}  // namespace lensproof
+}  // namespace lensproof::calibration

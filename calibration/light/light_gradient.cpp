@@ -4,7 +4,7 @@
 
 #include "calibration/statistics/linear_fit.h"
 
-namespace lensproof {
+namespace lensproof::calibration {
 
 std::optional<Vec2d> light_gradient_per_mm(const LightGroup& white, const Curve& vignetting, const Vec2d& centre_px,
                                            double half_diagonal_px) {
@@ -37,4 +37,4 @@ std::optional<Vec2d> light_gradient_per_mm(const LightGroup& white, const Curve&
     return fit ? std::optional(Vec2d{fit->parameters[1], fit->parameters[2]}) : std::nullopt;
 }
 
-}  // namespace lensproof
+}  // namespace lensproof::calibration

@@ -5,7 +5,7 @@
 #include <numbers>
 #include <optional>
 
-namespace lensproof {
+namespace lensproof::calibration {
 namespace {
 
 constexpr int kCellsAlongFrame = 48;
@@ -16,7 +16,7 @@ constexpr float kFullScale = 1.0F;
 constexpr double kWhiteShare = 0.6;  // of a square's side, so that blur and the corners' errors stay outside
 constexpr int kFewestPixels = 4;
 
-bool is_clipped(const Image& image, int channel) {
+bool is_clipped(const formats::Image& image, int channel) {
     std::size_t count = 0;
     for (std::size_t i = static_cast<std::size_t>(channel); i < image.pixels.size(); i += image.channels.size()) {
         count += image.pixels[i] == kFullScale ? 1 : 0;
@@ -47,7 +47,7 @@ enum class Cell { dark, unusable, lit };
 
 }  // namespace
 
-LightGroup flat_field_samples(const Image& image, int channel) {
+LightGroup flat_field_samples(const formats::Image& image, int channel) {
     LightGroup group;
     if (image.width < 1 || image.height < 1 || channel < 0 || channel >= image.channel_count()) {
         return group;
@@ -121,7 +121,8 @@ LightGroup flat_field_samples(const Image& image, int channel) {
 namespace {
 
 // Mean over a patch given by the images of its four corners (in order around it).
-std::optional<LightSample> patch_sample(const Image& image, int channel, const Vec2d (&corner)[4], bool clipped) {
+std::optional<LightSample> patch_sample(const formats::Image& image, int channel, const Vec2d (&corner)[4],
+                                        bool clipped) {
     const auto at = [&](double u, double v) {  // bilinear; the patch is small
         return Vec2d{(1 - u) * (1 - v) * corner[0].x + u * (1 - v) * corner[1].x + u * v * corner[2].x +
                          (1 - u) * v * corner[3].x,
@@ -157,28 +158,29 @@ std::optional<LightSample> patch_sample(const Image& image, int channel, const V
 }
 
 // The part of the cell between four points that is surely white, as a share of its side; 0: none.
-double white_share(const Chart& chart) {
-    if (const auto* discs = std::get_if<DiscGrid>(&chart.pattern)) {
+double white_share(const scene::Chart& chart) {
+    if (const auto* discs = std::get_if<scene::DiscGrid>(&chart.pattern)) {
         // A centred square whose corners stay clear of the discs by 15 % of their radius.
         const double radius = 0.5 * discs->diameter_mm / discs->pitch_mm;
         const double share = 1.0 - 1.15 * radius * std::numbers::sqrt2;
         return share > 0.15 ? share : 0.0;
     }
-    return std::holds_alternative<Checkerboard>(chart.pattern) ? kWhiteShare : 0.0;
+    return std::holds_alternative<scene::Checkerboard>(chart.pattern) ? kWhiteShare : 0.0;
 }
 
 }  // namespace
 
-LightGroup chart_white_samples(const Image& image, int channel, const ChartPoints& points, const Chart& chart) {
+LightGroup chart_white_samples(const formats::Image& image, int channel, const ChartPoints& points,
+                               const scene::Chart& chart) {
     LightGroup group{.on_chart = true, .samples = {}};
-    const GridSize grid = feature_grid(chart);
-    const std::vector<Vec2d> chart_points = feature_points(chart);
+    const scene::GridSize grid = scene::feature_grid(chart);
+    const std::vector<Vec2d> chart_points = scene::feature_points(chart);
     if (chart_points.empty() || points.found.size() != chart_points.size() ||
         points.image_px.size() != chart_points.size() || channel < 0 || channel >= image.channel_count()) {
         return group;
     }
     const double share = white_share(chart);
-    const bool board = std::holds_alternative<Checkerboard>(chart.pattern);
+    const bool board = std::holds_alternative<scene::Checkerboard>(chart.pattern);
     const bool clipped = is_clipped(image, channel);
     for (int row = 0; row + 1 < grid.rows && share > 0.0; ++row) {
         for (int column = 0; column + 1 < grid.columns; ++column) {
@@ -210,4 +212,4 @@ LightGroup chart_white_samples(const Image& image, int channel, const ChartPoint
     return group;
 }
 
-}  // namespace lensproof
+}  // namespace lensproof::calibration

@@ -6,7 +6,7 @@
 #include "engine/formats/image/image.h"
 #include "engine/scene/chart.h"
 
-namespace lensproof {
+namespace lensproof::calibration {
 
 /// The mean of a patch of pixels.
 struct LightSample {
@@ -27,10 +27,11 @@ struct LightGroup {
 /// Left out: cells below 2 % of the bright ones (the 95th percentile), which lie outside the image circle, and those
 /// within two cells of them, which may straddle its edge; cells that touch clipped pixels (exactly full scale, 1, where
 /// more than 1 % of the picture is); cells where fewer than half the pixels are finite. May be empty.
-LightGroup flat_field_samples(const Image& image, int channel);
+LightGroup flat_field_samples(const formats::Image& image, int channel);
 
 /// The white between a chart's found points: the inner 60 % of white squares, or patches between four discs.
 /// Same rule for clipped pixels. May be empty (a disc grid without room between the discs, other kinds of chart).
-LightGroup chart_white_samples(const Image& image, int channel, const ChartPoints& points, const Chart& chart);
+LightGroup chart_white_samples(const formats::Image& image, int channel, const ChartPoints& points,
+                               const scene::Chart& chart);
 
-}  // namespace lensproof
+}  // namespace lensproof::calibration

@@ -12,7 +12,7 @@
 #include "calibration/statistics/smoothed_fit.h"
 #include "engine/base/input_error.h"
 
-namespace lensproof {
+namespace lensproof::calibration {
 namespace {
 
 constexpr std::array<int, 9> kSpans = {1, 2, 3, 4, 6, 8, 12, 16, 24};
@@ -277,4 +277,4 @@ PolynomialVignetting polynomial_vignetting(const Curve& ratio) {
     return result;
 }
 
-}  // namespace lensproof
+}  // namespace lensproof::calibration

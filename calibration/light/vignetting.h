@@ -6,7 +6,7 @@
 #include "calibration/light/light_samples.h"
 #include "calibration/statistics/curve.h"
 
-namespace lensproof {
+namespace lensproof::calibration {
 
 /// A sample as the fit used it: the light relative to the axis, its group's gain and gradient taken out.
 struct ShadingSample {
@@ -56,4 +56,4 @@ struct PolynomialVignetting {
 };
 PolynomialVignetting polynomial_vignetting(const Curve& ratio);
 
-}  // namespace lensproof
+}  // namespace lensproof::calibration

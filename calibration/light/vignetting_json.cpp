@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace lensproof {
+namespace lensproof::calibration {
 
 using Json = nlohmann::ordered_json;
 
@@ -78,4 +78,4 @@ ShadingGrid parse_shading_grid(const JsonNode& node) {
     return grid;
 }
 
-}  // namespace lensproof
+}  // namespace lensproof::calibration

@@ -6,7 +6,7 @@
 #include "calibration/light/vignetting_models.h"
 #include "calibration/profile/json_node.h"
 
-namespace lensproof {
+namespace lensproof::calibration {
 
 /// A list, the chosen formula first: `name`, `parameters` (each `value` and `standard_error`), `covariance` (row by
 /// row), `relative_rms`, `held_out_relative_rms`, `aicc`, `verdict` (why it was chosen, or why not, in words).
@@ -20,4 +20,4 @@ ShadingGrid parse_shading_grid(const JsonNode& node);
 
 // Reading throws InputError as JsonNode says.
 
-}  // namespace lensproof
+}  // namespace lensproof::calibration

@@ -12,7 +12,7 @@
 #include "calibration/statistics/linear_fit.h"
 #include "calibration/statistics/smoothed_fit.h"
 
-namespace lensproof {
+namespace lensproof::calibration {
 namespace {
 
 constexpr int kIterations = 30;
@@ -373,4 +373,4 @@ ShadingGrid shading_grid(const Vignetting& vignetting, int width_px, int height_
     return grid;
 }
 
-}  // namespace lensproof
+}  // namespace lensproof::calibration

@@ -7,7 +7,7 @@
 #include "calibration/light/light_samples.h"
 #include "calibration/light/vignetting.h"
 
-namespace lensproof {
+namespace lensproof::calibration {
 
 /// One formula fitted to the light of a picture; r is the image height (the corner at 1).
 struct VignettingModel {
@@ -53,4 +53,4 @@ struct ShadingGrid {
 
 ShadingGrid shading_grid(const Vignetting& vignetting, int width_px, int height_px);
 
-}  // namespace lensproof
+}  // namespace lensproof::calibration

@@ -6,9 +6,9 @@
 
 #include "calibration/detection/pixel_noise.h"
 
-namespace lensproof {
+namespace lensproof::calibration {
 
-FlatFieldTraits flat_field_traits(const Image& image, int channel) {
+FlatFieldTraits flat_field_traits(const formats::Image& image, int channel) {
     constexpr int kSmallest_px = 8;
     constexpr int kParts = 40;  // of a side, of which the middle two are looked at
     if (image.width < kSmallest_px || image.height < kSmallest_px) {
@@ -31,4 +31,4 @@ FlatFieldTraits flat_field_traits(const Image& image, int channel) {
     return {.white = sum / count, .noise = pixel_noise(image, channel)};
 }
 
-}  // namespace lensproof
+}  // namespace lensproof::calibration

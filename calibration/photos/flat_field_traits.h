@@ -2,7 +2,7 @@
 #pragma once
 #include "engine/formats/image/image.h"
 
-namespace lensproof {
+namespace lensproof::calibration {
 
 /// Of one channel in linear light, full scale 1.
 struct FlatFieldTraits {
@@ -11,6 +11,6 @@ struct FlatFieldTraits {
 };
 
 /// Of a picture of 8 pixels and more a side; of a smaller one, all 0.
-FlatFieldTraits flat_field_traits(const Image& image, int channel);
+FlatFieldTraits flat_field_traits(const formats::Image& image, int channel);
 
-}  // namespace lensproof
+}  // namespace lensproof::calibration

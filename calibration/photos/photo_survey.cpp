@@ -12,7 +12,7 @@
 #include "engine/base/input_error.h"
 #include "engine/formats/image/jpeg.h"
 
-namespace lensproof {
+namespace lensproof::calibration {
 namespace {
 
 namespace fs = std::filesystem;
@@ -24,7 +24,7 @@ constexpr double kFocalLengthMargin = 0.06;    // of cameras' own figures: round
 
 struct Surveyed {
     Picture picture;
-    PhotoHeader header;
+    formats::PhotoHeader header;
 };
 
 bool in_use(const Surveyed& photo) {
@@ -41,16 +41,17 @@ bool is_cut_off(const std::string& bytes) {
     return end == std::string::npos || end < bytes.size() / 2;
 }
 
-Surveyed look_at(const fs::path& file, PictureRole role, const std::optional<TransferCurve>& assumed,
+Surveyed look_at(const fs::path& file, PictureRole role, const std::optional<formats::TransferCurve>& assumed,
                  std::map<std::string, std::string>& seen_bytes) {
-    Surveyed photo{
-        .picture = {.name = file.string(), .role = role, .load = [file, assumed] { return read_photo(file, assumed); }},
-        .header = {}};
+    Surveyed photo{.picture = {.name = file.string(),
+                               .role = role,
+                               .load = [file, assumed] { return formats::read_photo(file, assumed); }},
+                   .header = {}};
     try {
-        photo.header = read_photo_header(file, assumed);
+        photo.header = formats::read_photo_header(file, assumed);
         photo.picture.orientation = photo.header.orientation;
         const std::string bytes = read_file(file);
-        photo.picture.jpeg_quality = jpeg_quality(bytes);
+        photo.picture.jpeg_quality = formats::jpeg_quality(bytes);
         const auto [first, is_new] = seen_bytes.emplace(hash_text(bytes), file.string());
         if (!is_new) {
             photo.picture.left_out = "a copy of " + first->second;
@@ -86,7 +87,7 @@ std::string size_in_words(const Surveyed& photo) {
 }
 
 std::string camera_in_words(const Surveyed& photo) {
-    const CameraNotes& notes = photo.header.notes;
+    const formats::CameraNotes& notes = photo.header.notes;
     return notes.model.empty() ? "" : fmt::format("camera {} {}", notes.make, notes.model);
 }
 
@@ -139,12 +140,12 @@ void mark_other_apertures(std::vector<Surveyed>& photos) {
 }
 
 /// The first picture in use stands for all, but for what differs.
-CameraNotes common_notes(const std::vector<Surveyed>& photos) {
+formats::CameraNotes common_notes(const std::vector<Surveyed>& photos) {
     const std::string aperture = most_common(photos, f_number_in_words);
-    CameraNotes notes;
+    formats::CameraNotes notes;
     bool first = true;
     for (const Surveyed& photo : photos) {
-        const CameraNotes& own = photo.header.notes;
+        const formats::CameraNotes& own = photo.header.notes;
         if (!in_use(photo) || f_number_in_words(photo) != aperture) {
             continue;
         }
@@ -168,7 +169,7 @@ std::vector<fs::path> picture_files(const fs::path& file_or_folder) {
     }
     std::vector<fs::path> files;
     for (const auto& entry : fs::directory_iterator(file_or_folder)) {
-        if (entry.is_regular_file() && has_picture_name(entry.path()) &&
+        if (entry.is_regular_file() && formats::has_picture_name(entry.path()) &&
             entry.path().filename().string().front() != '.') {
             files.push_back(entry.path());
         }
@@ -181,7 +182,7 @@ std::vector<fs::path> picture_files(const fs::path& file_or_folder) {
 }
 
 PhotoSurvey survey_photos(const std::vector<fs::path>& charts, const std::vector<fs::path>& flat_fields,
-                          const std::optional<TransferCurve>& assumed) {
+                          const std::optional<formats::TransferCurve>& assumed) {
     std::vector<Surveyed> photos;
     std::map<std::string, std::string> seen_bytes;
     for (const auto& [files, role] :
@@ -215,8 +216,8 @@ PhotoSurvey survey_photos(const std::vector<fs::path>& charts, const std::vector
 
 void take_survey(MeasureInput& input, const PhotoSurvey& survey) {
     input.pictures = survey.pictures;
-    const CameraNotes& notes = survey.notes;
-    if (notes != CameraNotes{.transfer = notes.transfer}) {
+    const formats::CameraNotes& notes = survey.notes;
+    if (notes != formats::CameraNotes{.transfer = notes.transfer}) {
         input.source.notes = notes;
     }
     input.source.suspicions = survey.suspicions;
@@ -273,4 +274,4 @@ std::vector<std::string> suspicions_of(const Profile& profile) {
     return signs;
 }
 
-}  // namespace lensproof
+}  // namespace lensproof::calibration

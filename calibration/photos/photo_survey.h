@@ -8,7 +8,7 @@
 #include "calibration/measure.h"
 #include "engine/formats/image/transfer_curve.h"
 
-namespace lensproof {
+namespace lensproof::calibration {
 
 /// A folder's pictures by name, or the file itself. Throws InputError for a folder without a picture.
 std::vector<std::filesystem::path> picture_files(const std::filesystem::path& file_or_folder);
@@ -16,7 +16,7 @@ std::vector<std::filesystem::path> picture_files(const std::filesystem::path& fi
 /// What the files' headers say.
 struct PhotoSurvey {
     std::vector<Picture> pictures;  // all of them, those to be left out with the reason
-    CameraNotes notes;              // what those in use agree on; focal length and f-number of most
+    formats::CameraNotes notes;     // what those in use agree on; focal length and f-number of most
     std::vector<std::string> suspicions;
 };
 
@@ -28,7 +28,7 @@ struct PhotoSurvey {
 /// not say is no reason. Pictures of another f-number than most give no light samples: vignetting differs.
 PhotoSurvey survey_photos(const std::vector<std::filesystem::path>& charts,
                           const std::vector<std::filesystem::path>& flat_fields,
-                          const std::optional<TransferCurve>& assumed);
+                          const std::optional<formats::TransferCurve>& assumed);
 
 /// A camera's or lens's name that nothing states.
 inline constexpr const char* kUnknown = "unknown";
@@ -44,4 +44,4 @@ Profile measure_surveyed(const MeasureInput& input);
 /// a lens so wide has some, or another focal length than the camera states.
 std::vector<std::string> suspicions_of(const Profile& profile);
 
-}  // namespace lensproof
+}  // namespace lensproof::calibration

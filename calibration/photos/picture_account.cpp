@@ -3,29 +3,29 @@
 #include <array>
 #include <utility>
 
-namespace lensproof {
+namespace lensproof::calibration {
 namespace {
 
 using Json = nlohmann::ordered_json;
 
 // The keys of the notes that are numbers, and where they belong.
 constexpr std::array kNumbers = {
-    std::pair{"focal_length_mm", &CameraNotes::focal_length_mm},
-    std::pair{"equivalent_focal_length_mm", &CameraNotes::equivalent_focal_length_mm},
-    std::pair{"f_number", &CameraNotes::f_number},
-    std::pair{"exposure_time_s", &CameraNotes::exposure_time_s},
-    std::pair{"iso", &CameraNotes::iso},
-    std::pair{"pixel_pitch_um", &CameraNotes::pixel_pitch_um},
+    std::pair{"focal_length_mm", &formats::CameraNotes::focal_length_mm},
+    std::pair{"equivalent_focal_length_mm", &formats::CameraNotes::equivalent_focal_length_mm},
+    std::pair{"f_number", &formats::CameraNotes::f_number},
+    std::pair{"exposure_time_s", &formats::CameraNotes::exposure_time_s},
+    std::pair{"iso", &formats::CameraNotes::iso},
+    std::pair{"pixel_pitch_um", &formats::CameraNotes::pixel_pitch_um},
 };
 constexpr std::array kTexts = {
-    std::pair{"make", &CameraNotes::make},         std::pair{"model", &CameraNotes::model},
-    std::pair{"lens", &CameraNotes::lens},         std::pair{"software", &CameraNotes::software},
-    std::pair{"transfer", &CameraNotes::transfer},
+    std::pair{"make", &formats::CameraNotes::make},         std::pair{"model", &formats::CameraNotes::model},
+    std::pair{"lens", &formats::CameraNotes::lens},         std::pair{"software", &formats::CameraNotes::software},
+    std::pair{"transfer", &formats::CameraNotes::transfer},
 };
 
 }  // namespace
 
-Json to_json(const CameraNotes& notes) {
+Json to_json(const formats::CameraNotes& notes) {
     Json json = Json::object();
     for (const auto& [key, member] : kTexts) {
         if (!(notes.*member).empty()) {
@@ -43,8 +43,8 @@ Json to_json(const CameraNotes& notes) {
     return json;
 }
 
-CameraNotes parse_camera_notes(const JsonNode& node) {
-    CameraNotes notes;
+formats::CameraNotes parse_camera_notes(const JsonNode& node) {
+    formats::CameraNotes notes;
     for (const auto& [key, member] : kTexts) {
         if (node.has(key)) {
             notes.*member = node.at(key).text();
@@ -81,4 +81,4 @@ PictureAccount parse_picture_account(const JsonNode& node) {
             .orientation = node.has("exif_orientation") ? node.at("exif_orientation").count() : 1};
 }
 
-}  // namespace lensproof
+}  // namespace lensproof::calibration

@@ -7,7 +7,7 @@
 #include "calibration/profile/json_node.h"
 #include "engine/formats/image/photo.h"
 
-namespace lensproof {
+namespace lensproof::calibration {
 
 /// Used or left out, and why.
 struct PictureAccount {
@@ -20,10 +20,10 @@ struct PictureAccount {
     friend bool operator==(const PictureAccount&, const PictureAccount&) = default;
 };
 
-nlohmann::ordered_json to_json(const CameraNotes& notes);
-CameraNotes parse_camera_notes(const JsonNode& node);
+nlohmann::ordered_json to_json(const formats::CameraNotes& notes);
+formats::CameraNotes parse_camera_notes(const JsonNode& node);
 
 nlohmann::ordered_json to_json(const PictureAccount& account);
 PictureAccount parse_picture_account(const JsonNode& node);
 
-}  // namespace lensproof
+}  // namespace lensproof::calibration

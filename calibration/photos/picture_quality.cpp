@@ -6,7 +6,7 @@
 #include <cmath>
 #include <vector>
 
-namespace lensproof {
+namespace lensproof::calibration {
 namespace {
 
 constexpr double kEdgeWidth = 2.563;  // from 10 % to 90 % of a Gaussian's edge, in its standard deviations
@@ -25,13 +25,13 @@ double median(std::vector<double> values) {
 
 }  // namespace
 
-std::string too_blurred(const PictureTraits& traits, const ChartPoints& points, const Chart& chart) {
-    const bool has_large_fields =
-        std::holds_alternative<Checkerboard>(chart.pattern) || std::holds_alternative<DiscGrid>(chart.pattern);
+std::string too_blurred(const PictureTraits& traits, const ChartPoints& points, const scene::Chart& chart) {
+    const bool has_large_fields = std::holds_alternative<scene::Checkerboard>(chart.pattern) ||
+                                  std::holds_alternative<scene::DiscGrid>(chart.pattern);
     if (!has_large_fields || !traits.blur_px) {
         return "";
     }
-    const auto columns = static_cast<std::size_t>(feature_grid(chart).columns);
+    const auto columns = static_cast<std::size_t>(scene::feature_grid(chart).columns);
     std::vector<double> steps;
     for (std::size_t i = 1; i < points.image_px.size(); ++i) {
         if (i % columns != 0 && points.found[i - 1] && points.found[i]) {
@@ -52,7 +52,7 @@ bool is_white_clipped(const PictureTraits& traits) {
     return traits.white >= kFullScale;
 }
 
-std::string visible_fault(const Image& image, int channel) {
+std::string visible_fault(const formats::Image& image, int channel) {
     std::vector<float> tones;
     std::vector<float> slopes;
     for (int y = 0; y + 2 < image.height; ++y) {
@@ -91,4 +91,4 @@ std::string visible_fault(const Image& image, int channel) {
     return "";
 }
 
-}  // namespace lensproof
+}  // namespace lensproof::calibration

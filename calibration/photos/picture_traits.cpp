@@ -8,7 +8,7 @@
 
 #include "calibration/detection/pixel_noise.h"
 
-namespace lensproof {
+namespace lensproof::calibration {
 namespace {
 
 constexpr double kSteepest = 0.98;   // of the pixels around a point are less steep than the edge's middle
@@ -26,7 +26,7 @@ struct Window {
     double steepest;  // change over 2 px
 };
 
-std::optional<Window> look_around(const Image& image, int channel, const Vec2d& point, int reach) {
+std::optional<Window> look_around(const formats::Image& image, int channel, const Vec2d& point, int reach) {
     const int x0 = std::max(1, static_cast<int>(std::lround(point.x)) - reach);
     const int x1 = std::min(image.width - 2, static_cast<int>(std::lround(point.x)) + reach);
     const int y0 = std::max(1, static_cast<int>(std::lround(point.y)) - reach);
@@ -60,7 +60,7 @@ double median_of(const std::vector<Window>& windows, double Window::*member) {
 
 }  // namespace
 
-std::optional<PictureTraits> picture_traits(const Image& image, int channel, const ChartPoints& points) {
+std::optional<PictureTraits> picture_traits(const formats::Image& image, int channel, const ChartPoints& points) {
     std::vector<Window> windows;
     std::vector<double> blurs;
     for (std::size_t i = 0; i < points.image_px.size(); ++i) {
@@ -90,4 +90,4 @@ std::optional<PictureTraits> picture_traits(const Image& image, int channel, con
     return traits;
 }
 
-}  // namespace lensproof
+}  // namespace lensproof::calibration

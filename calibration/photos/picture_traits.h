@@ -5,7 +5,7 @@
 #include "calibration/detection/refine.h"
 #include "engine/formats/image/image.h"
 
-namespace lensproof {
+namespace lensproof::calibration {
 
 /// Of one channel in linear light, full scale 1, near the chart's points.
 struct PictureTraits {
@@ -29,6 +29,6 @@ struct PictureTraits {
 /// (tests/calibration/self_test/self_test_test.cpp).
 ///
 /// None when no point was found.
-std::optional<PictureTraits> picture_traits(const Image& image, int channel, const ChartPoints& points);
+std::optional<PictureTraits> picture_traits(const formats::Image& image, int channel, const ChartPoints& points);
 
-}  // namespace lensproof
+}  // namespace lensproof::calibration

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace lensproof {
+namespace lensproof::calibration {
 
 namespace {
 
@@ -88,4 +88,4 @@ std::optional<CurveDifference> radial_difference_px(const Profile& a, const Prof
     return radii;
 }
 
-}  // namespace lensproof
+}  // namespace lensproof::calibration

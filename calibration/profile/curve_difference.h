@@ -5,7 +5,7 @@
 
 #include "calibration/profile/profile.h"
 
-namespace lensproof {
+namespace lensproof::calibration {
 
 /// a − b over the image heights that both cover.
 struct CurveDifference {
@@ -29,4 +29,4 @@ std::optional<CurveDifference> difference(const Profile& a, const Profile& b, co
 /// From the field angles at equal height, Δr = −(θ_a − θ_b) / (dθ/dr), which is exact to first order in the difference.
 std::optional<CurveDifference> radial_difference_px(const Profile& a, const Profile& b);
 
-}  // namespace lensproof
+}  // namespace lensproof::calibration

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-namespace lensproof {
+namespace lensproof::calibration {
 
 InputError JsonNode::error(const std::string& expected) const {
     std::string found = value_->dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
@@ -109,4 +109,4 @@ std::vector<std::string> JsonNode::keys() const {
     return result;
 }
 
-}  // namespace lensproof
+}  // namespace lensproof::calibration

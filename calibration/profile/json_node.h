@@ -8,7 +8,7 @@
 #include "engine/base/input_error.h"
 #include "engine/base/vec.h"
 
-namespace lensproof {
+namespace lensproof::calibration {
 
 /// A value of a JSON document, the file's name and the way from the document's root to the value ("curves.x.value[3]").
 /// What is asked for and not there is an InputError with all three, what was found and what is expected.
@@ -40,4 +40,4 @@ class JsonNode {
     std::string key_;
 };
 
-}  // namespace lensproof
+}  // namespace lensproof::calibration

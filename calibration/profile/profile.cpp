@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-namespace lensproof {
+namespace lensproof::calibration {
 
 double ProfileGeometry::standard_error(std::size_t parameter) const {
     return std::sqrt(covariance[parameter * (parameters(model).size() + 1)]);
@@ -12,4 +12,4 @@ double half_diagonal_px(const Profile& profile) {
     return 0.5 * std::hypot(profile.width_px, profile.height_px);
 }
 
-}  // namespace lensproof
+}  // namespace lensproof::calibration

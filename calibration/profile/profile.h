@@ -22,7 +22,7 @@
 #include "calibration/sharpness/profile_star.h"
 #include "calibration/statistics/curve.h"
 
-namespace lensproof {
+namespace lensproof::calibration {
 
 inline constexpr std::string_view kProfileSchema = "lensproof-profile/1";
 
@@ -33,7 +33,7 @@ struct ProfileSource {
     std::string camera;
     std::string lens;
     /// What the camera noted in the pictures used (JSON key "settings").
-    std::optional<CameraNotes> notes = std::nullopt;
+    std::optional<formats::CameraNotes> notes = std::nullopt;
     /// Signs of corrections in the camera, or by a program since, in words (JSON key "suspicions").
     std::vector<std::string> suspicions = {};
 };
@@ -142,4 +142,4 @@ Profile read_profile(const std::filesystem::path& file);
 /// Whole or not at all.
 void write_profile(const Profile& profile, const std::filesystem::path& file);
 
-}  // namespace lensproof
+}  // namespace lensproof::calibration

@@ -8,7 +8,7 @@
 #include "engine/base/file.h"
 #include "engine/base/input_error.h"
 
-namespace lensproof {
+namespace lensproof::calibration {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -271,4 +271,4 @@ Profile read_profile(const std::filesystem::path& file) {
     return parse_profile(read_file(file), file.string());
 }
 
-}  // namespace lensproof
+}  // namespace lensproof::calibration

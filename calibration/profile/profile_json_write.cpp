@@ -7,7 +7,7 @@
 #include "calibration/self_test/self_test_json.h"
 #include "engine/base/file.h"
 
-namespace lensproof {
+namespace lensproof::calibration {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -192,4 +192,4 @@ void write_profile(const Profile& profile, const std::filesystem::path& file) {
     write_file(file, to_json(profile).dump(1, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n");
 }
 
-}  // namespace lensproof
+}  // namespace lensproof::calibration

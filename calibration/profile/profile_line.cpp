@@ -4,7 +4,7 @@
 #include <cmath>
 #include <optional>
 
-namespace lensproof {
+namespace lensproof::calibration {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -82,4 +82,4 @@ ProfileLine parse_line(const JsonNode& node) {
             .noise_px = node.at("noise_px").number()};
 }
 
-}  // namespace lensproof
+}  // namespace lensproof::calibration

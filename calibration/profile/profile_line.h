@@ -7,7 +7,7 @@
 #include "calibration/geometry/camera_model.h"
 #include "calibration/profile/json_node.h"
 
-namespace lensproof {
+namespace lensproof::calibration {
 
 /// One line in one picture. A straight line in the scene and the camera lie in a plane, whatever the projection; what
 /// the directions of the line's points are off the plane that fits them best, the model does not explain (Devernay &
@@ -31,4 +31,4 @@ nlohmann::ordered_json to_json(const ProfileLine& line);
 /// Throws InputError as JsonNode says.
 ProfileLine parse_line(const JsonNode& node);
 
-}  // namespace lensproof
+}  // namespace lensproof::calibration

@@ -13,7 +13,7 @@
 #include "calibration/profile/curve_difference.h"
 #include "calibration/self_test/simulated_chart.h"
 
-namespace lensproof {
+namespace lensproof::calibration {
 namespace {
 
 constexpr double kPixelBox_px2 = 1.0 / 12.0;  // variance of a pixel's own box, which the simulation adds by itself
@@ -72,7 +72,7 @@ SimulatedCamera camera_of(const Profile& profile, const PictureTraits& traits, s
 // A flat field has its own exposure and noise, those of its own picture.
 SimulatedCamera flat_field_camera(const Profile& profile, const PictureTraits& charts, const Picture& picture) {
     SimulatedCamera camera = camera_of(profile, charts, picture.jpeg_quality);
-    const Image image = picture.load();
+    const formats::Image image = picture.load();
     const FlatFieldTraits own = flat_field_traits(image, reference_channel(image));
     if (own.white > 0.0) {
         camera.white = own.white;
@@ -82,8 +82,8 @@ SimulatedCamera flat_field_camera(const Profile& profile, const PictureTraits& c
 }
 
 // The chart as it looks in the picture: white as white, black as dark as it was seen.
-Chart chart_of(const Chart& chart, const PictureTraits& traits) {
-    Chart own = chart;
+scene::Chart chart_of(const scene::Chart& chart, const PictureTraits& traits) {
+    scene::Chart own = chart;
     own.white_reflectance = 1.0;
     own.black_reflectance = std::clamp(traits.black / traits.white, 0.0, 1.0);
     return own;
@@ -216,4 +216,4 @@ std::string describe_floor(const SelfTest& test) {
     return text;
 }
 
-}  // namespace lensproof
+}  // namespace lensproof::calibration

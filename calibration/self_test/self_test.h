@@ -4,7 +4,7 @@
 #include <optional>
 #include <string>
 
-namespace lensproof {
+namespace lensproof::calibration {
 
 struct MeasureInput;
 struct Profile;
@@ -46,4 +46,4 @@ const CurveFloor* floor_of(const std::optional<SelfTest>& test, const std::strin
 /// the last two the largest of any channel.
 std::string describe_floor(const SelfTest& test);
 
-}  // namespace lensproof
+}  // namespace lensproof::calibration

@@ -1,6 +1,6 @@
 #include "calibration/self_test/self_test_json.h"
 
-namespace lensproof {
+namespace lensproof::calibration {
 
 using Json = nlohmann::ordered_json;
 
@@ -70,4 +70,4 @@ SelfTest parse_self_test(const JsonNode& node) {
     return test;
 }
 
-}  // namespace lensproof
+}  // namespace lensproof::calibration

@@ -6,7 +6,7 @@
 #include "calibration/profile/json_node.h"
 #include "calibration/self_test/self_test.h"
 
-namespace lensproof {
+namespace lensproof::calibration {
 
 nlohmann::ordered_json to_json(const PictureTraits& traits);
 nlohmann::ordered_json to_json(const SelfTest& test);
@@ -15,4 +15,4 @@ nlohmann::ordered_json to_json(const SelfTest& test);
 PictureTraits parse_traits(const JsonNode& node);
 SelfTest parse_self_test(const JsonNode& node);
 
-}  // namespace lensproof
+}  // namespace lensproof::calibration

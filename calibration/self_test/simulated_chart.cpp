@@ -11,7 +11,7 @@
 #include "engine/base/parallel.h"
 #include "engine/formats/image/jpeg.h"
 
-namespace lensproof {
+namespace lensproof::calibration {
 namespace {
 
 constexpr int kSubpixels = 4;       // along a pixel's side: the grid that the blur acts on
@@ -22,14 +22,18 @@ constexpr double kBlurReach = 4.0;  // standard deviations
 constexpr int kBoardRounds = 6;     // each gains what slope and obliquity leave of the height: 0.1 and less
 
 // The width that every white or black part of a chart has at least, mm; 0 where none is stated.
-double narrowest_part_mm(const Chart& chart) {
+double narrowest_part_mm(const scene::Chart& chart) {
     const Overloaded narrowest{
-        [](const Checkerboard& c) { return c.square_mm; },
-        [](const DiscGrid& c) { return std::min(c.diameter_mm, c.pitch_mm - c.diameter_mm); },
-        [](const CharucoBoard& c) { return std::min(c.marker_mm / (c.cells + 2), 0.5 * (c.square_mm - c.marker_mm)); },
-        [](const PointGrid& c) { return std::min(c.dot_mm, c.pitch_mm - c.dot_mm); },
-        [](const SlantedEdges& c) { return std::min(c.square_mm, c.pitch_mm - std::numbers::sqrt2 * c.square_mm); },
-        [](const StraightLines& c) { return std::min(c.line_mm, c.pitch_mm - c.line_mm); },
+        [](const scene::Checkerboard& c) { return c.square_mm; },
+        [](const scene::DiscGrid& c) { return std::min(c.diameter_mm, c.pitch_mm - c.diameter_mm); },
+        [](const scene::CharucoBoard& c) {
+            return std::min(c.marker_mm / (c.cells + 2), 0.5 * (c.square_mm - c.marker_mm));
+        },
+        [](const scene::PointGrid& c) { return std::min(c.dot_mm, c.pitch_mm - c.dot_mm); },
+        [](const scene::SlantedEdges& c) {
+            return std::min(c.square_mm, c.pitch_mm - std::numbers::sqrt2 * c.square_mm);
+        },
+        [](const scene::StraightLines& c) { return std::min(c.line_mm, c.pitch_mm - c.line_mm); },
         [](const auto& /*other*/) { return 0.0; },
     };
     return std::visit(narrowest, chart.pattern);
@@ -74,7 +78,7 @@ class ChartMap {
 
     /// Marks the cells that no edge is near: five by five cells around are of one tone at all knots and middles, which
     /// no part of the chart that is four pixels wide slips through.
-    void find_even_cells(const Chart& chart) {
+    void find_even_cells(const scene::Chart& chart) {
         const double narrowest = narrowest_part_mm(chart);
         for (int j = 0; j + 1 < rows_; ++j) {
             for (int i = 0; i + 1 < columns_; ++i) {
@@ -91,7 +95,7 @@ class ChartMap {
                 even_.at<unsigned char>(j, i) != 0};
     }
 
-    static bool is_one_tone(const Cell& cell, const Chart& chart, double narrowest_mm) {
+    static bool is_one_tone(const Cell& cell, const scene::Chart& chart, double narrowest_mm) {
         if (!cell.is_complete()) {
             return false;
         }
@@ -100,12 +104,12 @@ class ChartMap {
         if (!(diagonal_mm <= narrowest_mm)) {  // both diagonals: over five pixels
             return false;
         }
-        const double tone = reflectance(chart, cell.top[0]->x, cell.top[0]->y);
+        const double tone = scene::reflectance(chart, cell.top[0]->x, cell.top[0]->y);
         const Vec2d middle = cell.at(0.5, 0.5);
-        return reflectance(chart, cell.top[1]->x, cell.top[1]->y) == tone &&
-               reflectance(chart, cell.bottom[0]->x, cell.bottom[0]->y) == tone &&
-               reflectance(chart, cell.bottom[1]->x, cell.bottom[1]->y) == tone &&
-               reflectance(chart, middle.x, middle.y) == tone;
+        return scene::reflectance(chart, cell.top[1]->x, cell.top[1]->y) == tone &&
+               scene::reflectance(chart, cell.bottom[0]->x, cell.bottom[0]->y) == tone &&
+               scene::reflectance(chart, cell.bottom[1]->x, cell.bottom[1]->y) == tone &&
+               scene::reflectance(chart, middle.x, middle.y) == tone;
     }
 
     // The pixel of the camera model whose light a shift by `shift_px` brings to `pixel`.
@@ -145,14 +149,14 @@ void fill(cv::Mat& plane, int i, int j, float value) {
 }
 
 // The chart's reflectance in each sub-pixel of pixel (x, y), by kSubpixels² values written into `plane` from (i, j).
-void look(cv::Mat& plane, int i, int j, const ChartMap& map, int x, int y, const Chart& chart) {
+void look(cv::Mat& plane, int i, int j, const ChartMap& map, int x, int y, const scene::Chart& chart) {
     const ChartMap::Cell cell = map.cell(x, y);
     if (!cell.is_complete()) {
         fill(plane, i, j, 0.0F);
         return;
     }
     if (cell.is_even) {
-        fill(plane, i, j, static_cast<float>(reflectance(chart, cell.top[0]->x, cell.top[0]->y)));
+        fill(plane, i, j, static_cast<float>(scene::reflectance(chart, cell.top[0]->x, cell.top[0]->y)));
         return;
     }
     constexpr std::array<int, kPlaces> kOrder = {2, 0, 3, 1};
@@ -168,7 +172,7 @@ void look(cv::Mat& plane, int i, int j, const ChartMap& map, int x, int y, const
                 const double u = (a + (k * kSubpixels + b + jitter_x) / kStrata) / kSubpixels;
                 const double v = (b + (kOrder[k] * kSubpixels + a + jitter_y) / kStrata) / kSubpixels;
                 const Vec2d place = cell.at((in_cell_x + u) / kKnot_px, (in_cell_y + v) / kKnot_px);
-                sum += reflectance(chart, place.x, place.y);
+                sum += scene::reflectance(chart, place.x, place.y);
             }
             plane.at<float>(j + b, i + a) = static_cast<float>(sum / kPlaces);
         }
@@ -200,8 +204,8 @@ Frame frame_of(const SimulatedCamera& camera) {
 }
 
 // Rows [first, last) of one channel.
-void paint_band(Image& image, int channel, int first, int last, const Frame& frame, const Pose& pose,
-                const Chart& chart) {
+void paint_band(formats::Image& image, int channel, int first, int last, const Frame& frame, const Pose& pose,
+                const scene::Chart& chart) {
     const SimulatedCamera& camera = frame.camera;
     // Whole cells of knots, so that every pixel's cell begins at an even place.
     const int margin = kKnot_px * (1 + static_cast<int>(std::ceil(kBlurReach * camera.blur_px / kKnot_px)));
@@ -235,7 +239,7 @@ void paint_band(Image& image, int channel, int first, int last, const Frame& fra
     }
 }
 
-void add_noise(Image& image, int row, const SimulatedCamera& camera, std::uint32_t seed) {
+void add_noise(formats::Image& image, int row, const SimulatedCamera& camera, std::uint32_t seed) {
     std::seed_seq sequence{seed, static_cast<std::uint32_t>(row)};
     std::mt19937 engine(sequence);
     const auto uniform = [&] { return (static_cast<double>(engine()) + 0.5) / 4294967296.0; };
@@ -273,20 +277,20 @@ double height_mm(const BoardShape& board, const Vec2d& chart_mm) {
     return height;
 }
 
-Image empty_picture(const SimulatedCamera& camera) {
+formats::Image empty_picture(const SimulatedCamera& camera) {
     std::vector<std::string> names;
     names.reserve(camera.channels.size());
     for (const SimulatedChannel& channel : camera.channels) {
         names.push_back(channel.name);
     }
-    return make_image(camera.width_px, camera.height_px, std::move(names));
+    return formats::make_image(camera.width_px, camera.height_px, std::move(names));
 }
 
-Image with_noise_and_compression(Image image, const SimulatedCamera& camera, std::uint32_t seed) {
+formats::Image with_noise_and_compression(formats::Image image, const SimulatedCamera& camera, std::uint32_t seed) {
     if (camera.read_noise > 0.0 || camera.shot_noise > 0.0) {
         parallel_for(image.height, camera.threads, [&](int row) { add_noise(image, row, camera, seed); });
     }
-    return camera.jpeg_quality ? after_jpeg(image, *camera.jpeg_quality) : image;
+    return camera.jpeg_quality ? formats::after_jpeg(image, *camera.jpeg_quality) : image;
 }
 
 }  // namespace
@@ -317,8 +321,9 @@ std::optional<Vec2d> chart_point(const CameraModel& model, const Pose& pose, con
     return place;
 }
 
-Image simulate_chart(const SimulatedCamera& camera, const Pose& pose, const Chart& chart, std::uint32_t seed) {
-    Image image = empty_picture(camera);
+formats::Image simulate_chart(const SimulatedCamera& camera, const Pose& pose, const scene::Chart& chart,
+                              std::uint32_t seed) {
+    formats::Image image = empty_picture(camera);
     const Frame frame = frame_of(camera);
     const int bands = (camera.height_px + kBandRows - 1) / kBandRows;
     parallel_for(bands * image.channel_count(), camera.threads, [&](int i) {
@@ -329,8 +334,8 @@ Image simulate_chart(const SimulatedCamera& camera, const Pose& pose, const Char
     return with_noise_and_compression(std::move(image), camera, seed);
 }
 
-Image simulate_flat_field(const SimulatedCamera& camera, std::uint32_t seed) {
-    Image image = empty_picture(camera);
+formats::Image simulate_flat_field(const SimulatedCamera& camera, std::uint32_t seed) {
+    formats::Image image = empty_picture(camera);
     const Frame frame = frame_of(camera);
     parallel_for(camera.height_px, camera.threads, [&](int y) {
         for (int x = 0; x < camera.width_px; ++x) {
@@ -342,4 +347,4 @@ Image simulate_flat_field(const SimulatedCamera& camera, std::uint32_t seed) {
     return with_noise_and_compression(std::move(image), camera, seed);
 }
 
-}  // namespace lensproof
+}  // namespace lensproof::calibration

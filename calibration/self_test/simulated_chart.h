@@ -13,7 +13,7 @@
 #include "engine/formats/image/image.h"
 #include "engine/scene/chart.h"
 
-namespace lensproof {
+namespace lensproof::calibration {
 
 /// What one channel does to the light. Functions are of the image height ρ: the distance from the principal point over
 /// the picture's half-diagonal.
@@ -50,14 +50,15 @@ struct SimulatedCamera {
 /// and moved together by a number that differs from pixel to pixel; so a straight edge of n pixels lies within some
 /// 0.003 / √n px of where it should. The map to the chart is exact every 2 px and bilinear between (below 1e-3 px). The
 /// same `seed` gives the same bytes.
-Image simulate_chart(const SimulatedCamera& camera, const Pose& pose, const Chart& chart, std::uint32_t seed);
+formats::Image simulate_chart(const SimulatedCamera& camera, const Pose& pose, const scene::Chart& chart,
+                              std::uint32_t seed);
 
 /// An even white through the same camera.
-Image simulate_flat_field(const SimulatedCamera& camera, std::uint32_t seed);
+formats::Image simulate_flat_field(const SimulatedCamera& camera, std::uint32_t seed);
 
 /// Where the direction that `pixel` shows meets a chart at `pose`, in front of the camera, mm. One that is not flat has
 /// the heights of `board` over its plane; beyond its frame it goes straight on.
 std::optional<Vec2d> chart_point(const CameraModel& model, const Pose& pose, const Vec2d& pixel,
                                  const std::optional<BoardShape>& board = std::nullopt);
 
-}  // namespace lensproof
+}  // namespace lensproof::calibration

@@ -6,7 +6,7 @@
 #include <optional>
 #include <variant>
 
-namespace lensproof {
+namespace lensproof::calibration {
 namespace {
 
 constexpr double kLengthShare = 0.7;  // of a side: corners stay outside, also where perspective shears the square
@@ -50,10 +50,10 @@ std::optional<EdgeRegion> region(const LocalMap& map, const Vec2d& middle, const
 // A point of the chart's grid, with what its neighbours say about the map there.
 class Grid {
   public:
-    Grid(const ChartPoints& points, const Chart& chart, double pitch_mm)
-        : points_(points), size_(feature_grid(chart)), pitch_mm_(pitch_mm) {}
+    Grid(const ChartPoints& points, const scene::Chart& chart, double pitch_mm)
+        : points_(points), size_(scene::feature_grid(chart)), pitch_mm_(pitch_mm) {}
 
-    [[nodiscard]] GridSize size() const { return size_; }
+    [[nodiscard]] scene::GridSize size() const { return size_; }
     [[nodiscard]] const Vec2d* at(int column, int row) const {
         if (column < 0 || row < 0 || column >= size_.columns || row >= size_.rows) {
             return nullptr;
@@ -84,11 +84,12 @@ class Grid {
     }
 
     const ChartPoints& points_;
-    GridSize size_;
+    scene::GridSize size_;
     double pitch_mm_;
 };
 
-std::vector<EdgeRegion> edges_of_squares(const ChartPoints& points, const Chart& chart, const SlantedEdges& squares) {
+std::vector<EdgeRegion> edges_of_squares(const ChartPoints& points, const scene::Chart& chart,
+                                         const scene::SlantedEdges& squares) {
     const double angle = squares.angle_deg * std::numbers::pi / 180.0;
     const double half = 0.5 * squares.square_mm;
     const double gap = squares.pitch_mm - squares.square_mm * (std::abs(std::cos(angle)) + std::abs(std::sin(angle)));
@@ -111,7 +112,8 @@ std::vector<EdgeRegion> edges_of_squares(const ChartPoints& points, const Chart&
     return regions;
 }
 
-std::vector<EdgeRegion> edges_of_board(const ChartPoints& points, const Chart& chart, double square, double depth) {
+std::vector<EdgeRegion> edges_of_board(const ChartPoints& points, const scene::Chart& chart, double square,
+                                       double depth) {
     const Grid grid(points, chart, square);
     std::vector<EdgeRegion> regions;
     for (int row = 0; row < grid.size().rows; ++row) {
@@ -139,14 +141,14 @@ std::vector<EdgeRegion> edges_of_board(const ChartPoints& points, const Chart& c
 
 }  // namespace
 
-std::vector<EdgeRegion> chart_edges(const ChartPoints& points, const Chart& chart) {
-    if (const auto* squares = std::get_if<SlantedEdges>(&chart.pattern)) {
+std::vector<EdgeRegion> chart_edges(const ChartPoints& points, const scene::Chart& chart) {
+    if (const auto* squares = std::get_if<scene::SlantedEdges>(&chart.pattern)) {
         return edges_of_squares(points, chart, *squares);
     }
-    if (const auto* board = std::get_if<Checkerboard>(&chart.pattern)) {
+    if (const auto* board = std::get_if<scene::Checkerboard>(&chart.pattern)) {
         return edges_of_board(points, chart, board->square_mm, kDepthShare * board->square_mm);
     }
-    if (const auto* board = std::get_if<CharucoBoard>(&chart.pattern)) {
+    if (const auto* board = std::get_if<scene::CharucoBoard>(&chart.pattern)) {
         const double margin = 0.5 * (board->square_mm - board->marker_mm);
         return edges_of_board(points, chart, board->square_mm,
                               std::min(kDepthShare * board->square_mm, kGapShare * margin));
@@ -154,4 +156,4 @@ std::vector<EdgeRegion> chart_edges(const ChartPoints& points, const Chart& char
     return {};
 }
 
-}  // namespace lensproof
+}  // namespace lensproof::calibration

@@ -7,7 +7,7 @@
 #include <optional>
 #include <utility>
 
-namespace lensproof {
+namespace lensproof::calibration {
 namespace {
 
 constexpr double kLeastHalfLength_px = 8.0;
@@ -39,7 +39,7 @@ double mean_of(const std::vector<EdgePixel>& pixels, double from, double to) {
     return count > 0 ? sum / count : 0.0;
 }
 
-std::vector<EdgePixel> gather(const Image& image, int channel, const EdgeRegion& region, const Vec2d& normal) {
+std::vector<EdgePixel> gather(const formats::Image& image, int channel, const EdgeRegion& region, const Vec2d& normal) {
     const double reach_x = std::abs(region.along.x) * region.half_length_px + std::abs(normal.x) * region.half_width_px;
     const double reach_y = std::abs(region.along.y) * region.half_length_px + std::abs(normal.y) * region.half_width_px;
     const auto first = [](double at) { return std::max(0, static_cast<int>(std::ceil(at))); };
@@ -204,7 +204,7 @@ EdgeProfile edge_profile(const std::vector<EdgePixel>& pixels, double half_width
     return profile;
 }
 
-std::variant<AlignedEdge, EdgeRefusal> align_edge(const Image& image, int channel, const EdgeRegion& region) {
+std::variant<AlignedEdge, EdgeRefusal> align_edge(const formats::Image& image, int channel, const EdgeRegion& region) {
     if (!(region.half_length_px >= kLeastHalfLength_px) || !(region.half_width_px >= kLeastHalfWidth_px)) {
         return EdgeRefusal{"is too small"};
     }
@@ -262,4 +262,4 @@ std::variant<AlignedEdge, EdgeRefusal> align_edge(const Image& image, int channe
                        .bend_px = bend(edge)};
 }
 
-}  // namespace lensproof
+}  // namespace lensproof::calibration

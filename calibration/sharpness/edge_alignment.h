@@ -5,7 +5,7 @@
 
 #include "calibration/sharpness/slanted_edge.h"
 
-namespace lensproof {
+namespace lensproof::calibration {
 
 struct EdgePixel {
     double along = 0.0;   // px, from the region's middle
@@ -25,7 +25,7 @@ struct AlignedEdge {
 };
 
 /// Fits the edge's place in the region: distance = across − Σ θ_j P_j(along / half length) with Legendre's P_0 … P_3.
-std::variant<AlignedEdge, EdgeRefusal> align_edge(const Image& image, int channel, const EdgeRegion& region);
+std::variant<AlignedEdge, EdgeRefusal> align_edge(const formats::Image& image, int channel, const EdgeRegion& region);
 
 /// Means over bins of equal width in distance, from `-0.5 * bins * width` on.
 struct EdgeProfile {
@@ -46,4 +46,4 @@ struct EdgeProfile {
 /// Means are moved from where their pixels lie to the middle of their bin; empty bins take their neighbours' line.
 EdgeProfile edge_profile(const std::vector<EdgePixel>& pixels, double half_width, double bin_width);
 
-}  // namespace lensproof
+}  // namespace lensproof::calibration

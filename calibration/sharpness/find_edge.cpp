@@ -4,7 +4,7 @@
 
 #include "calibration/sharpness/slanted_edge.h"
 
-namespace lensproof {
+namespace lensproof::calibration {
 namespace {
 
 constexpr double kLeastGradient = 0.3;  // of the steepest; noise is flatter
@@ -15,7 +15,7 @@ struct GradientPixel {
     double gx = 0.0, gy = 0.0;  // differences over three rows or columns (Prewitt), which quieten noise
 };
 
-std::vector<GradientPixel> gradients(const Image& image, int channel, const PixelRectangle& r) {
+std::vector<GradientPixel> gradients(const formats::Image& image, int channel, const PixelRectangle& r) {
     std::vector<GradientPixel> list;
     for (int y = r.y + 1; y < r.y + r.height - 1; ++y) {
         for (int x = r.x + 1; x < r.x + r.width - 1; ++x) {
@@ -43,7 +43,8 @@ double reach(const PixelRectangle& r, const Vec2d& at, const Vec2d& direction) {
 
 }  // namespace
 
-std::variant<EdgeRegion, EdgeRefusal> find_edge(const Image& image, int channel, const PixelRectangle& rectangle) {
+std::variant<EdgeRegion, EdgeRefusal> find_edge(const formats::Image& image, int channel,
+                                                const PixelRectangle& rectangle) {
     if (rectangle.x < 0 || rectangle.y < 0 || rectangle.width < 3 || rectangle.height < 3 ||
         rectangle.width > image.width - rectangle.x || rectangle.height > image.height - rectangle.y) {
         return EdgeRefusal{"reaches beyond the picture, or is too small"};
@@ -102,4 +103,4 @@ std::variant<EdgeRegion, EdgeRefusal> find_edge(const Image& image, int channel,
     return best;
 }
 
-}  // namespace lensproof
+}  // namespace lensproof::calibration

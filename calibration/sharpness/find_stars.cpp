@@ -11,7 +11,7 @@
 #include "calibration/sharpness/star_outline.h"
 #include "calibration/sharpness/star_phase.h"
 
-namespace lensproof {
+namespace lensproof::calibration {
 namespace {
 
 constexpr double kSearchSide_px = 800.0;  // larger pictures vote in a copy of this size
@@ -195,7 +195,7 @@ cv::Mat votes(const cv::Mat& plane) {
 }
 
 // The star around a place, in full; or why it is none.
-std::variant<StarMap, StarRefusal> star_around(const cv::Mat& plane, Vec2d place, const SiemensStar& star) {
+std::variant<StarMap, StarRefusal> star_around(const cv::Mat& plane, Vec2d place, const scene::SiemensStar& star) {
     std::optional<StarMap> map;
     for (int round = 0; round < 3; ++round) {  // circles around a better centre reach farther in and out
         std::vector<Circle> circles = sector_circles(plane, place, star.sectors);
@@ -222,7 +222,8 @@ std::variant<StarMap, StarRefusal> star_around(const cv::Mat& plane, Vec2d place
 
 }  // namespace
 
-std::variant<std::vector<StarMap>, StarRefusal> find_stars(const Image& image, int channel, const SiemensStar& star) {
+std::variant<std::vector<StarMap>, StarRefusal> find_stars(const formats::Image& image, int channel,
+                                                           const scene::SiemensStar& star) {
     const cv::Mat plane = channel_plane(image, channel);
     const double shrink = std::min(1.0, kSearchSide_px / std::max(image.width, image.height));
     cv::Mat copy;
@@ -261,4 +262,4 @@ std::variant<std::vector<StarMap>, StarRefusal> find_stars(const Image& image, i
     return stars;
 }
 
-}  // namespace lensproof
+}  // namespace lensproof::calibration

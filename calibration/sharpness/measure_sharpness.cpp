@@ -7,7 +7,7 @@
 #include "calibration/sharpness/sharpness_field.h"
 #include "engine/base/input_error.h"
 
-namespace lensproof {
+namespace lensproof::calibration {
 namespace {
 
 constexpr std::size_t kMostCurves = 200;
@@ -114,8 +114,8 @@ InputError refused(const std::string& name, const std::string& channel, const Pi
 
 }  // namespace
 
-void observe_chart_edges(SharpnessObservations& seen, const Image& image, int channel, const std::string& name,
-                         const ChartPoints& points, const Chart& chart) {
+void observe_chart_edges(SharpnessObservations& seen, const formats::Image& image, int channel, const std::string& name,
+                         const ChartPoints& points, const scene::Chart& chart) {
     std::vector<ProfileEdge>& own = seen.edges[image.channels[static_cast<std::size_t>(channel)]];
     for (const EdgeRegion& region : chart_edges(points, chart)) {
         const auto result = measure_edge(image, channel, region);
@@ -129,7 +129,7 @@ void observe_chart_edges(SharpnessObservations& seen, const Image& image, int ch
     }
 }
 
-void observe_edges(SharpnessObservations& seen, const Image& image, int channel, const std::string& name,
+void observe_edges(SharpnessObservations& seen, const formats::Image& image, int channel, const std::string& name,
                    const std::vector<PixelRectangle>& rectangles) {
     const std::string& own = image.channels[static_cast<std::size_t>(channel)];
     for (PixelRectangle r : rectangles) {
@@ -149,8 +149,8 @@ void observe_edges(SharpnessObservations& seen, const Image& image, int channel,
     }
 }
 
-void observe_stars(SharpnessObservations& seen, const Image& image, int channel, const std::string& name,
-                   const SiemensStar& star) {
+void observe_stars(SharpnessObservations& seen, const formats::Image& image, int channel, const std::string& name,
+                   const scene::SiemensStar& star) {
     const auto found = find_stars(image, channel, star);
     if (const auto* refusal = std::get_if<StarRefusal>(&found)) {
         throw InputError(name + ": " + refusal->reason);
@@ -215,4 +215,4 @@ void add_sharpness(Profile& profile, const SharpnessObservations& seen, const Ve
     }
 }
 
-}  // namespace lensproof
+}  // namespace lensproof::calibration

@@ -11,7 +11,7 @@
 #include "engine/formats/image/image.h"
 #include "engine/scene/chart.h"
 
-namespace lensproof {
+namespace lensproof::calibration {
 
 /// The edges seen so far.
 struct SharpnessObservations {
@@ -23,17 +23,17 @@ struct SharpnessObservations {
 };
 
 /// Measures the chart's edges (`chart_edges`) in one channel of a picture.
-void observe_chart_edges(SharpnessObservations& seen, const Image& image, int channel, const std::string& name,
-                         const ChartPoints& points, const Chart& chart);
+void observe_chart_edges(SharpnessObservations& seen, const formats::Image& image, int channel, const std::string& name,
+                         const ChartPoints& points, const scene::Chart& chart);
 
 /// Measures the one edge in each rectangle in one channel; one without width and height is the whole picture.
 /// Throws InputError naming the picture, the rectangle and why its edge cannot be measured.
-void observe_edges(SharpnessObservations& seen, const Image& image, int channel, const std::string& name,
+void observe_edges(SharpnessObservations& seen, const formats::Image& image, int channel, const std::string& name,
                    const std::vector<PixelRectangle>& rectangles);
 
 /// Measures the Siemens stars in one channel. Throws InputError saying why there is none that can be measured.
-void observe_stars(SharpnessObservations& seen, const Image& image, int channel, const std::string& name,
-                   const SiemensStar& star);
+void observe_stars(SharpnessObservations& seen, const formats::Image& image, int channel, const std::string& name,
+                   const scene::SiemensStar& star);
 
 /// Adds to the profile: the stars; the edges; of each channel C with enough edges the curves "mtf50_tangential_C" and
 /// "mtf50_sagittal_C" in cycles per pixel (and "…_cycles_per_mm" where the pixel pitch is known) and
@@ -42,4 +42,4 @@ void observe_stars(SharpnessObservations& seen, const Image& image, int channel,
 /// position at which the edges are sharpest. Whole MTF curves are kept of channels with at most 200 edges.
 void add_sharpness(Profile& profile, const SharpnessObservations& seen, const Vec2d& centre_px);
 
-}  // namespace lensproof
+}  // namespace lensproof::calibration

@@ -2,7 +2,7 @@
 
 #include <string>
 
-namespace lensproof {
+namespace lensproof::calibration {
 
 using Json = nlohmann::ordered_json;
 
@@ -65,4 +65,4 @@ ProfileEdge parse_edge(const JsonNode& node) {
     return result;
 }
 
-}  // namespace lensproof
+}  // namespace lensproof::calibration

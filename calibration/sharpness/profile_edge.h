@@ -7,7 +7,7 @@
 #include "calibration/profile/json_node.h"
 #include "calibration/sharpness/slanted_edge.h"
 
-namespace lensproof {
+namespace lensproof::calibration {
 
 struct ProfileEdge {
     std::string image;
@@ -27,4 +27,4 @@ std::optional<MtfFrequency> parse_mtf_frequency(const JsonNode& node, const std:
 /// Throws InputError as JsonNode says.
 ProfileEdge parse_edge(const JsonNode& node);
 
-}  // namespace lensproof
+}  // namespace lensproof::calibration

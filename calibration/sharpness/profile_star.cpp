@@ -2,7 +2,7 @@
 
 #include "calibration/sharpness/profile_edge.h"
 
-namespace lensproof {
+namespace lensproof::calibration {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -65,4 +65,4 @@ ProfileStar parse_star(const JsonNode& node) {
     return result;
 }
 
-}  // namespace lensproof
+}  // namespace lensproof::calibration

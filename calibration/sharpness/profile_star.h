@@ -7,7 +7,7 @@
 #include "calibration/profile/json_node.h"
 #include "calibration/sharpness/siemens_star.h"
 
-namespace lensproof {
+namespace lensproof::calibration {
 
 struct ProfileStar {
     std::string image;
@@ -24,4 +24,4 @@ nlohmann::ordered_json to_json(const ProfileStar& star, std::optional<double> pi
 /// Throws InputError as JsonNode says.
 ProfileStar parse_star(const JsonNode& node);
 
-}  // namespace lensproof
+}  // namespace lensproof::calibration

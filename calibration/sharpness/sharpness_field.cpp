@@ -10,7 +10,7 @@
 #include "calibration/statistics/linear_fit.h"
 #include "engine/base/input_error.h"
 
-namespace lensproof {
+namespace lensproof::calibration {
 namespace {
 
 constexpr std::size_t kFewestEdges = 6;
@@ -299,4 +299,4 @@ BestFocus fit_best_focus(const std::vector<FocusedEdges>& series, const Vec2d& c
     return result;
 }
 
-}  // namespace lensproof
+}  // namespace lensproof::calibration

@@ -7,7 +7,7 @@
 #include "calibration/sharpness/slanted_edge.h"
 #include "calibration/statistics/curve.h"
 
-namespace lensproof {
+namespace lensproof::calibration {
 
 // An edge shows the blur along its normal only. With φ the angle between normal and radius, the variance of a blur
 // along the normal is that along the radius times cos² φ plus that at right angles to it times sin² φ, whatever the
@@ -56,4 +56,4 @@ struct BestFocus {
 /// Throws InputError for fewer than three positions, too few edges, or no focus among the positions.
 BestFocus fit_best_focus(const std::vector<FocusedEdges>& series, const Vec2d& centre_px, double half_diagonal_px);
 
-}  // namespace lensproof
+}  // namespace lensproof::calibration

@@ -10,7 +10,7 @@
 #include "calibration/sharpness/star_phase.h"
 #include "calibration/statistics/student.h"
 
-namespace lensproof {
+namespace lensproof::calibration {
 namespace {
 
 constexpr int kSegments = 8;
@@ -216,8 +216,9 @@ std::variant<StarSegment, StarRefusal> segment_of(SegmentPixels pixels, int segm
 }
 
 /// Every pixel's place in the star; or why it cannot be measured.
-std::variant<std::array<SegmentPixels, kSegments>, StarRefusal> gather(const Image& image, int channel,
-                                                                       const StarMap& map, const SiemensStar& star) {
+std::variant<std::array<SegmentPixels, kSegments>, StarRefusal> gather(const formats::Image& image, int channel,
+                                                                       const StarMap& map,
+                                                                       const scene::SiemensStar& star) {
     const EllipseOutline rim = outline(map, star.radius_mm);
     const int reach = static_cast<int>(std::ceil(kPaperTo * rim.long_half_axis_px + kPaperTo_px));
     const int x0 = std::max(0, static_cast<int>(rim.centre_px.x) - reach);
@@ -266,8 +267,8 @@ std::variant<std::array<SegmentPixels, kSegments>, StarRefusal> gather(const Ima
 
 }  // namespace
 
-std::variant<StarMtf, StarRefusal> measure_star(const Image& image, int channel, const StarMap& map,
-                                                const SiemensStar& star) {
+std::variant<StarMtf, StarRefusal> measure_star(const formats::Image& image, int channel, const StarMap& map,
+                                                const scene::SiemensStar& star) {
     auto gathered = gather(image, channel, map, star);
     if (const auto* refusal = std::get_if<StarRefusal>(&gathered)) {
         return *refusal;
@@ -289,4 +290,4 @@ std::variant<StarMtf, StarRefusal> measure_star(const Image& image, int channel,
     return result;
 }
 
-}  // namespace lensproof
+}  // namespace lensproof::calibration

@@ -10,7 +10,7 @@
 #include "engine/formats/image/image.h"
 #include "engine/scene/chart.h"
 
-namespace lensproof {
+namespace lensproof::calibration {
 
 /// Why no star was found, or measured, in words.
 struct StarRefusal {
@@ -27,7 +27,8 @@ struct StarRefusal {
 ///    to some thousandths of a pixel.
 ///
 /// At least one circle of the pattern has to lie in the picture; tilts up to 50°, as far as the sectors are resolved.
-std::variant<std::vector<StarMap>, StarRefusal> find_stars(const Image& image, int channel, const SiemensStar& star);
+std::variant<std::vector<StarMap>, StarRefusal> find_stars(const formats::Image& image, int channel,
+                                                           const scene::SiemensStar& star);
 
 /// The MTF along one direction.
 struct StarSegment {
@@ -68,7 +69,7 @@ struct StarMtf {
 /// Errors: the influence of each pixel times its residual, summed over 12 wedges of the segment (as in `measure_edge`),
 /// which also holds where noise is correlated over a few pixels. That of the contrast is in it. 95 % bounds are
 /// Student's t with 11 degrees of freedom. The pixel's own box is a part of the MTF.
-std::variant<StarMtf, StarRefusal> measure_star(const Image& image, int channel, const StarMap& map,
-                                                const SiemensStar& star);
+std::variant<StarMtf, StarRefusal> measure_star(const formats::Image& image, int channel, const StarMap& map,
+                                                const scene::SiemensStar& star);
 
-}  // namespace lensproof
+}  // namespace lensproof::calibration

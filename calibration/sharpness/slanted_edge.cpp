@@ -10,7 +10,7 @@
 #include "calibration/sharpness/edge_alignment.h"
 #include "calibration/statistics/student.h"
 
-namespace lensproof {
+namespace lensproof::calibration {
 namespace {
 
 constexpr std::array<double, 3> kBins_px = {0.25, 1.0 / 3.0, 0.5};
@@ -270,7 +270,7 @@ std::optional<EdgeProfile> finest_profile(const std::vector<EdgePixel>& pixels, 
 
 }  // namespace
 
-std::variant<EdgeMtf, EdgeRefusal> measure_edge(const Image& image, int channel, const EdgeRegion& region) {
+std::variant<EdgeMtf, EdgeRefusal> measure_edge(const formats::Image& image, int channel, const EdgeRegion& region) {
     const auto aligned = align_edge(image, channel, region);
     if (const auto* refusal = std::get_if<EdgeRefusal>(&aligned)) {
         return *refusal;
@@ -313,4 +313,4 @@ std::variant<EdgeMtf, EdgeRefusal> measure_edge(const Image& image, int channel,
     return result;
 }
 
-}  // namespace lensproof
+}  // namespace lensproof::calibration

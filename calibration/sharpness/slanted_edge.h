@@ -8,7 +8,7 @@
 #include "engine/base/vec.h"
 #include "engine/formats/image/image.h"
 
-namespace lensproof {
+namespace lensproof::calibration {
 
 /// The part of a picture on both sides of one straight, or gently bent, edge: a rectangle that lies along it.
 struct EdgeRegion {
@@ -66,7 +66,7 @@ struct EdgeRefusal {
 ///
 /// Refused: regions with clipped pixels (exactly 1 on the bright side or cut noise at 0 on the dark one), without
 /// contrast, too short, too narrow for their blur, or along pixel rows, columns or diagonals.
-std::variant<EdgeMtf, EdgeRefusal> measure_edge(const Image& image, int channel, const EdgeRegion& region);
+std::variant<EdgeMtf, EdgeRefusal> measure_edge(const formats::Image& image, int channel, const EdgeRegion& region);
 
 /// A rectangle of pixels, from its top left one.
 struct PixelRectangle {
@@ -77,6 +77,7 @@ struct PixelRectangle {
 };
 
 /// The region along the one edge in a rectangle, from the principal axis of its brightness gradients.
-std::variant<EdgeRegion, EdgeRefusal> find_edge(const Image& image, int channel, const PixelRectangle& rectangle);
+std::variant<EdgeRegion, EdgeRefusal> find_edge(const formats::Image& image, int channel,
+                                                const PixelRectangle& rectangle);
 
-}  // namespace lensproof
+}  // namespace lensproof::calibration

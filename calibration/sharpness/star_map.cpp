@@ -4,7 +4,7 @@
 #include <Eigen/LU>
 #include <numbers>
 
-namespace lensproof {
+namespace lensproof::calibration {
 namespace {
 
 double determinant_of(const StarMap& map) {
@@ -97,4 +97,4 @@ EllipseOutline outline(const StarMap& map, double radius_mm) {
             .angle_deg = angle};
 }
 
-}  // namespace lensproof
+}  // namespace lensproof::calibration

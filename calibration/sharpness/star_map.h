@@ -5,7 +5,7 @@
 
 #include "engine/base/vec.h"
 
-namespace lensproof {
+namespace lensproof::calibration {
 
 /// From a picture to a star's own polar coordinates. A pixel at p belongs to the chart's angle
 ///     θ(p) = ∠ A⁻¹(p − c) + P(p − c) / (det A · |A⁻¹(p − c)|²),
@@ -48,4 +48,4 @@ struct EllipseOutline {
 /// What the chart's circle looks like.
 EllipseOutline outline(const StarMap& map, double radius_mm);
 
-}  // namespace lensproof
+}  // namespace lensproof::calibration

@@ -6,7 +6,7 @@
 
 #include "engine/base/vec.h"
 
-namespace lensproof {
+namespace lensproof::calibration {
 namespace {
 
 constexpr double kBinRatio = 1.06;    // of frequencies
@@ -130,4 +130,4 @@ std::vector<StarModulation> star_modulations(std::vector<StarPixel>& pixels) {
     return result;
 }
 
-}  // namespace lensproof
+}  // namespace lensproof::calibration

@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <vector>
 
-namespace lensproof {
+namespace lensproof::calibration {
 
 inline constexpr int kStarWedges = 12;       // of a segment, for errors
 inline constexpr double kStarHighest = 1.0;  // cycles per pixel
@@ -47,4 +47,4 @@ void add(StarWedges& sum, double weight, const StarWedges& other);
 /// Bins of frequencies, ascending, by the steps 1, 2 and 4 of `measure_star`. Sorts the pixels.
 std::vector<StarModulation> star_modulations(std::vector<StarPixel>& pixels);
 
-}  // namespace lensproof
+}  // namespace lensproof::calibration

@@ -6,7 +6,7 @@
 #include <numbers>
 #include <vector>
 
-namespace lensproof {
+namespace lensproof::calibration {
 namespace {
 
 constexpr int kMostEnds = 64;
@@ -57,7 +57,7 @@ double light_at(const cv::Mat& plane, const Vec2d& p) {
     return std::lerp(std::lerp(at(0, 0), at(1, 0), p.x - fx), std::lerp(at(0, 1), at(1, 1), p.x - fx), p.y - fy);
 }
 
-bool fit_rim(const cv::Mat& plane, const SiemensStar& star, std::optional<double> pattern_px, StarMap& map) {
+bool fit_rim(const cv::Mat& plane, const scene::SiemensStar& star, std::optional<double> pattern_px, StarMap& map) {
     const double sector = 2.0 * std::numbers::pi / star.sectors;
     const int pairs = star.sectors / 2;
     const int stride = std::max(1, pairs / kMostEnds);
@@ -116,4 +116,4 @@ bool fit_rim(const cv::Mat& plane, const SiemensStar& star, std::optional<double
     return true;
 }
 
-}  // namespace lensproof
+}  // namespace lensproof::calibration

@@ -6,7 +6,7 @@
 #include "calibration/sharpness/star_map.h"
 #include "engine/scene/chart.h"
 
-namespace lensproof {
+namespace lensproof::calibration {
 
 /// Bilinear; 0 outside the picture. `plane` is CV_32F.
 double light_at(const cv::Mat& plane, const Vec2d& p);
@@ -14,6 +14,6 @@ double light_at(const cv::Mat& plane, const Vec2d& p);
 /// Scales A and sets the perspective from the ends of the black sectors, by least squares without outliers. They are
 /// looked for from a circle of the pattern outwards, `pattern_px` its radius; without it, from within the present rim.
 /// False where fewer than a third of the ends are seen.
-bool fit_rim(const cv::Mat& plane, const SiemensStar& star, std::optional<double> pattern_px, StarMap& map);
+bool fit_rim(const cv::Mat& plane, const scene::SiemensStar& star, std::optional<double> pattern_px, StarMap& map);
 
-}  // namespace lensproof
+}  // namespace lensproof::calibration

@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-namespace lensproof {
+namespace lensproof::calibration {
 namespace {
 
 constexpr double kRingStep = 1.12;  // from one ring of cells to the next
@@ -35,7 +35,7 @@ struct Cell {
 
 }  // namespace
 
-void fit_phase(const cv::Mat& plane, const SiemensStar& star, StarMap& map) {
+void fit_phase(const cv::Mat& plane, const scene::SiemensStar& star, StarMap& map) {
     using Terms = Eigen::Matrix<double, StarMap::kBendTerms, 1>;
     const double pairs = 0.5 * star.sectors;
     const EllipseOutline rim = outline(map, star.radius_mm);
@@ -93,4 +93,4 @@ void fit_phase(const cv::Mat& plane, const SiemensStar& star, StarMap& map) {
     }
 }
 
-}  // namespace lensproof
+}  // namespace lensproof::calibration

@@ -5,13 +5,13 @@
 #include "calibration/sharpness/star_map.h"
 #include "engine/scene/chart.h"
 
-namespace lensproof {
+namespace lensproof::calibration {
 
 /// The part of the rim's radius that is measured: the rim itself is an edge.
 inline constexpr double kWithinRim = 0.96;
 
 /// Moves the bend until the pattern's phase agrees, in cells of the picture: from the rim, where a sector is many
 /// pixels wide and cannot be mistaken for the next, inwards to half a cycle per pixel.
-void fit_phase(const cv::Mat& plane, const SiemensStar& star, StarMap& map);
+void fit_phase(const cv::Mat& plane, const scene::SiemensStar& star, StarMap& map);
 
-}  // namespace lensproof
+}  // namespace lensproof::calibration

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace lensproof {
+namespace lensproof::calibration {
 
 std::vector<double> standard_image_heights() {
     constexpr int steps = 40;
@@ -34,4 +34,4 @@ std::optional<Banded> sample(const Curve& curve, double image_height) {
     return Banded{between(curve.value), between(curve.lower_95), between(curve.upper_95)};
 }
 
-}  // namespace lensproof
+}  // namespace lensproof::calibration

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-namespace lensproof {
+namespace lensproof::calibration {
 
 /// Samples at image heights (distance from the principal point over the picture's half-diagonal, no unit).
 struct Curve {
@@ -36,4 +36,4 @@ void append(Curve& curve, double image_height, const Banded& sample);
 /// The curve at `image_height`, linear between samples; none outside them.
 std::optional<Banded> sample(const Curve& curve, double image_height);
 
-}  // namespace lensproof
+}  // namespace lensproof::calibration

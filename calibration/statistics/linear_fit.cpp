@@ -6,7 +6,7 @@
 #include <limits>
 #include <map>
 
-namespace lensproof {
+namespace lensproof::calibration {
 namespace {
 
 constexpr int kReweightings = 20;
@@ -134,4 +134,4 @@ double aicc(double chi_squared, double rows, double parameters) {
     return rows * std::log(std::max(chi_squared / rows, 1e-20)) + 2.0 * k * rows / (rows - k - 1.0);
 }
 
-}  // namespace lensproof
+}  // namespace lensproof::calibration

@@ -5,7 +5,7 @@
 #include <optional>
 #include <vector>
 
-namespace lensproof {
+namespace lensproof::calibration {
 
 /// y ≈ A p. Each row's residual has standard deviation `row_sigma` up to a common factor, which the residuals tell.
 struct LinearProblem {
@@ -38,4 +38,4 @@ std::optional<LinearFit> fit_linear(const LinearProblem& problem, double outlier
 /// rows to say, finite for a perfect fit.
 double aicc(double chi_squared, double rows, double parameters);
 
-}  // namespace lensproof
+}  // namespace lensproof::calibration

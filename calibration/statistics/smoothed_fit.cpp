@@ -5,7 +5,7 @@
 #include <cmath>
 #include <vector>
 
-namespace lensproof {
+namespace lensproof::calibration {
 namespace {
 
 // λ in units that make D'D as large as A'A: from no smoothing that matters to nothing but D's null space.
@@ -121,4 +121,4 @@ std::optional<SmoothedFit> fit_smoothed(const LinearProblem& problem, const Eige
     return fit;
 }
 
-}  // namespace lensproof
+}  // namespace lensproof::calibration

@@ -6,7 +6,7 @@
 
 #include "calibration/statistics/linear_fit.h"
 
-namespace lensproof {
+namespace lensproof::calibration {
 
 struct SmoothedFit {
     Eigen::VectorXd parameters;
@@ -27,4 +27,4 @@ struct SmoothedFit {
 /// None when the rows are fewer than the parameters or do not determine those that are not smoothed.
 std::optional<SmoothedFit> fit_smoothed(const LinearProblem& problem, const Eigen::MatrixXd& differences);
 
-}  // namespace lensproof
+}  // namespace lensproof::calibration

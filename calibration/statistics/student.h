@@ -2,7 +2,7 @@
 #pragma once
 #include "calibration/statistics/curve.h"
 
-namespace lensproof {
+namespace lensproof::calibration {
 
 /// Half the width of a 95 % interval in standard errors that rest on `freedom` degrees of freedom: Student's t, by its
 /// expansion around the normal distribution (Abramowitz & Stegun 26.7.5), 2e-4 from the tables for 6 and more.
@@ -16,4 +16,4 @@ inline double student_95(double freedom) {
     return z + v * (g1 + v * (g2 + v * g3));
 }
 
-}  // namespace lensproof
+}  // namespace lensproof::calibration

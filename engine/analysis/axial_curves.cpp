@@ -4,29 +4,33 @@
 #include "engine/optics/paraxial.h"
 #include "engine/optics/rim_margin.h"
 
-namespace lensproof {
+namespace lensproof::analysis {
 
-double axial_semi_diameter(const TraceLens<double>& lens, const FieldBundle& axis) {
-    const Region region = [&](Vec2d offset) { return rim_margin(lens, axis.ray(offset), Direction::forward); };
+double axial_semi_diameter(const optics::TraceLens<double>& lens, const optics::FieldBundle& axis) {
+    const optics::Region region = [&](Vec2d offset) {
+        return optics::rim_margin(lens, axis.ray(offset), optics::Direction::forward);
+    };
     if (!(region({}).margin < 0.0)) {
         return 0.0;
     }
-    const double hint = 0.5 * paraxial_data(lens).entrance_pupil_diameter;
-    return region_edge(region, {}, {0.0, 1.0}, hint).distance;
+    const double hint = 0.5 * optics::paraxial_data(lens).entrance_pupil_diameter;
+    return optics::region_edge(region, {}, {0.0, 1.0}, hint).distance;
 }
 
-std::vector<AxialPoint> longitudinal_aberration(const TraceLens<double>& lens, const FieldBundle& axis,
+std::vector<AxialPoint> longitudinal_aberration(const optics::TraceLens<double>& lens, const optics::FieldBundle& axis,
                                                 double semi_diameter, int count) {
     std::vector<AxialPoint> points;
-    const double efl = paraxial_data(lens).efl;
+    const double efl = optics::paraxial_data(lens).efl;
     if (const std::optional<RayPencil> pencil = ray_pencil(lens, axis)) {
         points.push_back({0.0, 0.0, astigmatic_foci(*pencil, lens.image_z).tangential});
     }
     for (int i = 1; i < count && semi_diameter > 0.0; ++i) {
         const double zone = static_cast<double>(i) / (count - 1);
         const double height = zone * semi_diameter;
-        const auto traced = trace<Direction::forward, Rims::follow>(lens, axis.ray({0.0, height}));
-        if (traced.status == RayStatus::missed || traced.status == RayStatus::total_internal_reflection) {
+        const auto traced =
+            optics::trace<optics::Direction::forward, optics::Rims::follow>(lens, axis.ray({0.0, height}));
+        if (traced.status == optics::RayStatus::missed ||
+            traced.status == optics::RayStatus::total_internal_reflection) {
             continue;
         }
         const Ray<double>& ray = traced.ray;
@@ -38,4 +42,4 @@ std::vector<AxialPoint> longitudinal_aberration(const TraceLens<double>& lens, c
     return points;
 }
 
-}  // namespace lensproof
+}  // namespace lensproof::analysis

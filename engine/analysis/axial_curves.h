@@ -4,7 +4,7 @@
 
 #include "engine/optics/field_bundle.h"
 
-namespace lensproof {
+namespace lensproof::analysis {
 
 struct AxialPoint {
     double zone;                // share of the beam's semi-diameter, 0 … 1
@@ -14,12 +14,12 @@ struct AxialPoint {
 };
 
 /// The axial beam's semi-diameter, mm: the offset of the last ray that passes every rim, along +y.
-double axial_semi_diameter(const TraceLens<double>& lens, const FieldBundle& axis);
+double axial_semi_diameter(const optics::TraceLens<double>& lens, const optics::FieldBundle& axis);
 
 /// The longitudinal aberration by zone, of a rotationally symmetric lens at one wavelength; over several wavelengths,
 /// with `semi_diameter` that of the reference, it shows axial colour and spherochromatism. Zones of `count` ≥ 2 even
 /// steps from 0, where the limit is the paraxial focus. A zone whose ray does not arrive is left out.
-std::vector<AxialPoint> longitudinal_aberration(const TraceLens<double>& lens, const FieldBundle& axis,
+std::vector<AxialPoint> longitudinal_aberration(const optics::TraceLens<double>& lens, const optics::FieldBundle& axis,
                                                 double semi_diameter, int count);
 
-}  // namespace lensproof
+}  // namespace lensproof::analysis

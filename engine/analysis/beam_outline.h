@@ -5,7 +5,7 @@
 #include "engine/optics/field_bundle.h"
 #include "engine/optics/region_outline.h"
 
-namespace lensproof {
+namespace lensproof::analysis {
 
 /// A node of a sum over the beam.
 struct BeamNode {
@@ -19,9 +19,9 @@ struct BeamNode {
 ///
 /// Where the chief ray itself is clipped, a passing ray is looked for over the first element. The beam is taken to be
 /// star-shaped, see RegionOutline: the far side of a central obstruction is not seen.
-RegionOutline beam_outline(const TraceLens<double>& lens, const FieldBundle& bundle);
+optics::RegionOutline beam_outline(const optics::TraceLens<double>& lens, const optics::FieldBundle& bundle);
 
 /// Nodes over the beam: `rings` of them along each azimuth of its outline. The weights add up to its area, mm².
-std::vector<BeamNode> beam_quadrature(const RegionOutline& outline, int rings);
+std::vector<BeamNode> beam_quadrature(const optics::RegionOutline& outline, int rings);
 
-}  // namespace lensproof
+}  // namespace lensproof::analysis

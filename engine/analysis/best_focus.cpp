@@ -16,7 +16,7 @@
 #include "engine/base/input_error.h"
 #include "engine/optics/paraxial.h"
 
-namespace lensproof {
+namespace lensproof::analysis {
 
 namespace {
 
@@ -140,8 +140,9 @@ class FieldModulation {
 
 }  // namespace
 
-double paraxial_focus_shift(const Lens& lens, double reference_nm, double object_distance) {
-    const double distance = paraxial_image_distance(at_wavelength<double>(lens, reference_nm), object_distance);
+double paraxial_focus_shift(const optics::Lens& lens, double reference_nm, double object_distance) {
+    const double distance =
+        optics::paraxial_image_distance(optics::at_wavelength<double>(lens, reference_nm), object_distance);
     if (!std::isfinite(distance)) {
         throw InputError(fmt::format("{} has no paraxial image of an object at {} mm", lens.name, object_distance));
     }
@@ -253,7 +254,7 @@ double mtf_focus_shift(std::span<const WeightedField> fields, double frequency) 
     return boost::math::tools::brent_find_minima(loss, best - step, best + step, kBits, steps).first;
 }
 
-Lens with_image_shift(Lens lens, double shift) {
+optics::Lens with_image_shift(optics::Lens lens, double shift) {
     if (!(lens.image_z + shift > lens.last_vertex_z()) || !std::isfinite(shift)) {
         throw InputError(
             fmt::format("the image plane of {} cannot be moved by {} mm: it stands {} mm behind the last vertex",
@@ -263,4 +264,4 @@ Lens with_image_shift(Lens lens, double shift) {
     return lens;
 }
 
-}  // namespace lensproof
+}  // namespace lensproof::analysis

@@ -5,7 +5,7 @@
 #include "engine/analysis/polychromatic_field.h"
 #include "engine/optics/lens.h"
 
-namespace lensproof {
+namespace lensproof::analysis {
 
 /// What is best at best focus.
 enum class FocusCriterion {
@@ -25,7 +25,7 @@ struct WeightedField {
 
 /// The paraxial image of an object `object_distance` mm in front of the first vertex. Throws InputError for an afocal
 /// one.
-double paraxial_focus_shift(const Lens& lens, double reference_nm, double object_distance);
+double paraxial_focus_shift(const optics::Lens& lens, double reference_nm, double object_distance);
 
 /// In closed form, since the mean square is a parabola in the shift: −Σ cov(position, slope) / Σ var(slope), in x and
 /// y, over all fields; the centroid is that of all wavelengths. Throws InputError where no field has light.
@@ -42,6 +42,6 @@ double wavefront_focus_shift(std::span<const WeightedField> fields);
 double mtf_focus_shift(std::span<const WeightedField> fields, double frequency);
 
 /// The lens with its image plane moved by `shift`. Throws InputError where that is in front of its last vertex.
-Lens with_image_shift(Lens lens, double shift);
+optics::Lens with_image_shift(optics::Lens lens, double shift);
 
-}  // namespace lensproof
+}  // namespace lensproof::analysis

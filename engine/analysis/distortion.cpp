@@ -5,39 +5,41 @@
 
 #include "engine/optics/paraxial.h"
 
-namespace lensproof {
+namespace lensproof::analysis {
 
 namespace {
 
 /// Of the plane `object_distance` in front of z = 0.
-double paraxial_magnification(const TraceLens<double>& lens, double object_distance) {
+double paraxial_magnification(const optics::TraceLens<double>& lens, double object_distance) {
     // From z = 0 to the first vertex, which a moved group may have left it for.
     const double distance = object_distance + lens.surfaces.front().vertex_z;
     const int last = static_cast<int>(lens.surfaces.size()) - 1;
-    return 1.0 / (distance * trace_paraxial(lens, {1.0, 1.0 / distance}, 0, last).slope);
+    return 1.0 / (distance * optics::trace_paraxial(lens, {1.0, 1.0 / distance}, 0, last).slope);
 }
 
 }  // namespace
 
-std::optional<double> ideal_height(const TraceLens<double>& lens, Projection projection, const FieldBundle& bundle) {
+std::optional<double> ideal_height(const optics::TraceLens<double>& lens, optics::Projection projection,
+                                   const optics::FieldBundle& bundle) {
     const double field = bundle.chief.field_angle;
-    const bool is_rectilinear = projection == Projection::rectilinear;
+    const bool is_rectilinear = projection == optics::Projection::rectilinear;
     if (is_rectilinear && !(std::abs(field) < 0.5 * std::numbers::pi)) {
         return std::nullopt;
     }
-    const ParaxialData first_order = paraxial_data(lens);
-    double height = first_order.efl * projected_radius(projection, field);
+    const optics::ParaxialData first_order = optics::paraxial_data(lens);
+    double height = first_order.efl * optics::projected_radius(projection, field);
     if (bundle.is_near()) {
         const double magnification = paraxial_magnification(lens, bundle.object_distance);
         const double focal =
             -magnification * (bundle.object_distance + lens.surfaces.front().vertex_z + first_order.entrance_pupil_z);
-        height = is_rectilinear ? magnification * bundle.object_point().y : focal * projected_radius(projection, field);
+        height = is_rectilinear ? magnification * bundle.object_point().y
+                                : focal * optics::projected_radius(projection, field);
     }
     return std::isfinite(height) ? std::optional(height) : std::nullopt;
 }
 
-std::optional<double> distortion_percent(const TraceLens<double>& lens, Projection projection,
-                                         const FieldBundle& bundle) {
+std::optional<double> distortion_percent(const optics::TraceLens<double>& lens, optics::Projection projection,
+                                         const optics::FieldBundle& bundle) {
     const std::optional<double> ideal = ideal_height(lens, projection, bundle);
     if (!ideal) {
         return std::nullopt;
@@ -49,4 +51,4 @@ std::optional<double> distortion_percent(const TraceLens<double>& lens, Projecti
     return std::isfinite(percent) ? std::optional(percent) : std::nullopt;
 }
 
-}  // namespace lensproof
+}  // namespace lensproof::analysis

@@ -5,7 +5,7 @@
 #include "engine/optics/field_bundle.h"
 #include "engine/optics/prescription.h"
 
-namespace lensproof {
+namespace lensproof::analysis {
 
 /// The image height (mm, positive for a positive field angle) of the bundle's object in a lens without distortion, from
 /// first-order data at the lens's wavelength:
@@ -15,10 +15,11 @@ namespace lensproof {
 ///     object's plane imaged. With the object drawn away this becomes f, and for tan θ it is the former but for the
 ///     pupil's aberration.
 /// Nothing for a rectilinear lens from 90° on, and where the paraxial image is at infinity.
-std::optional<double> ideal_height(const TraceLens<double>& lens, Projection projection, const FieldBundle& bundle);
+std::optional<double> ideal_height(const optics::TraceLens<double>& lens, optics::Projection projection,
+                                   const optics::FieldBundle& bundle);
 
 /// 100 (h / h_ideal − 1) of the bundle's chief ray at the sensor's plane; 0 at field 0.
-std::optional<double> distortion_percent(const TraceLens<double>& lens, Projection projection,
-                                         const FieldBundle& bundle);
+std::optional<double> distortion_percent(const optics::TraceLens<double>& lens, optics::Projection projection,
+                                         const optics::FieldBundle& bundle);
 
-}  // namespace lensproof
+}  // namespace lensproof::analysis

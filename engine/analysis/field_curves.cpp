@@ -1,6 +1,6 @@
 #include "engine/analysis/field_curves.h"
 
-namespace lensproof {
+namespace lensproof::analysis {
 
 std::vector<double> even_fields(double largest, int count) {
     std::vector<double> fields(static_cast<std::size_t>(count));
@@ -10,11 +10,11 @@ std::vector<double> even_fields(double largest, int count) {
     return fields;
 }
 
-std::vector<FieldCurvePoint> field_curves(const ColourOfLens& colour, Projection projection,
+std::vector<FieldCurvePoint> field_curves(const ColourOfLens& colour, optics::Projection projection,
                                           std::span<const double> fields, double object_distance) {
     std::vector<FieldCurvePoint> curve;
     for (const double field : fields) {
-        const auto bundle = field_bundle(colour.chief_rays, colour.chief_rays, field, object_distance);
+        const auto bundle = optics::field_bundle(colour.chief_rays, colour.chief_rays, field, object_distance);
         const auto pencil = bundle ? ray_pencil(colour.lens, *bundle) : std::nullopt;
         if (pencil) {
             curve.push_back({.field_angle = field,
@@ -30,13 +30,13 @@ std::vector<LateralColourPoint> lateral_colour(std::span<const ColourOfLens> col
                                                std::span<const double> fields, double object_distance) {
     std::vector<LateralColourPoint> curve;
     for (const double field : fields) {
-        const auto aimed = field_bundle(reference.chief_rays, reference.chief_rays, field, object_distance);
+        const auto aimed = optics::field_bundle(reference.chief_rays, reference.chief_rays, field, object_distance);
         if (!aimed) {
             continue;
         }
         LateralColourPoint point{.field_angle = field, .image_height = aimed->chief.image_height, .shift = {}};
         for (const ColourOfLens& colour : colours) {
-            if (const auto own = same_object(*aimed, colour.chief_rays)) {
+            if (const auto own = optics::same_object(*aimed, colour.chief_rays)) {
                 point.shift.push_back(own->chief.image_height - point.image_height);
             }
         }
@@ -50,8 +50,8 @@ std::vector<LateralColourPoint> lateral_colour(std::span<const ColourOfLens> col
 std::vector<IlluminationPoint> illumination_curve(const ColourOfLens& colour, const ColourOfLens& reference,
                                                   std::span<const double> fields, double object_distance) {
     const auto light_at = [&](double field) -> std::optional<std::pair<FieldLight, double>> {
-        const auto aimed = field_bundle(reference.chief_rays, reference.chief_rays, field, object_distance);
-        const auto own = aimed ? same_object(*aimed, colour.chief_rays) : std::nullopt;
+        const auto aimed = optics::field_bundle(reference.chief_rays, reference.chief_rays, field, object_distance);
+        const auto own = aimed ? optics::same_object(*aimed, colour.chief_rays) : std::nullopt;
         if (!own) {
             return std::nullopt;
         }
@@ -69,4 +69,4 @@ std::vector<IlluminationPoint> illumination_curve(const ColourOfLens& colour, co
     return curve;
 }
 
-}  // namespace lensproof
+}  // namespace lensproof::analysis

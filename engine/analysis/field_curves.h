@@ -8,18 +8,18 @@
 #include "engine/analysis/ray_pencil.h"
 #include "engine/optics/lens.h"
 
-namespace lensproof {
+namespace lensproof::analysis {
 
 /// A lens at one wavelength with its chief rays.
 struct ColourOfLens {
     double wavelength_nm;
-    TraceLens<double> lens;
-    ChiefRays chief_rays;
+    optics::TraceLens<double> lens;
+    optics::ChiefRays chief_rays;
 
     /// With Rims::follow the curves go on where the chief ray is clipped.
-    ColourOfLens(const Lens& whole, double wavelength, Rims rims = Rims::follow)
+    ColourOfLens(const optics::Lens& whole, double wavelength, optics::Rims rims = optics::Rims::follow)
         : wavelength_nm(wavelength),
-          lens(at_wavelength<double>(whole, wavelength)),
+          lens(optics::at_wavelength<double>(whole, wavelength)),
           chief_rays(whole, wavelength, rims) {}
 };
 
@@ -34,7 +34,7 @@ struct FieldCurvePoint {
 };
 
 /// Astigmatism, field curvature and distortion. Fields without a chief ray are left out.
-std::vector<FieldCurvePoint> field_curves(const ColourOfLens& colour, Projection projection,
+std::vector<FieldCurvePoint> field_curves(const ColourOfLens& colour, optics::Projection projection,
                                           std::span<const double> fields,
                                           double object_distance = std::numeric_limits<double>::infinity());
 
@@ -60,4 +60,4 @@ std::vector<IlluminationPoint> illumination_curve(const ColourOfLens& colour, co
                                                   std::span<const double> fields,
                                                   double object_distance = std::numeric_limits<double>::infinity());
 
-}  // namespace lensproof
+}  // namespace lensproof::analysis

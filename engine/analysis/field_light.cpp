@@ -2,17 +2,17 @@
 
 #include "engine/optics/illumination.h"
 
-namespace lensproof {
+namespace lensproof::analysis {
 
-FieldLight field_light(const TraceLens<double>& lens, const FieldBundle& bundle, Vec2d image_point) {
+FieldLight field_light(const optics::TraceLens<double>& lens, const optics::FieldBundle& bundle, Vec2d image_point) {
     FieldLight light{.beam = beam_outline(lens, bundle), .image = {}};
     if (light.beam.is_empty()) {
         return light;
     }
     // Backwards along the ray in the beam's middle: towards light, whatever became of the chief ray.
-    const TracedRay<double> middle = trace(lens, bundle.ray(light.beam.centre));
+    const optics::TracedRay<double> middle = optics::trace(lens, bundle.ray(light.beam.centre));
     const Vec2d towards{-middle.ray.direction.x, -middle.ray.direction.y};
-    light.image = image_outline(lens, image_point, towards);
+    light.image = optics::image_outline(lens, image_point, towards);
     return light;
 }
 
@@ -22,4 +22,4 @@ FieldLightRatio light_ratio(const FieldLight& field, const FieldLight& axis) {
             .relative_illumination = ratio(field.image.area, axis.image.area)};
 }
 
-}  // namespace lensproof
+}  // namespace lensproof::analysis

@@ -2,12 +2,12 @@
 #pragma once
 #include "engine/analysis/beam_outline.h"
 
-namespace lensproof {
+namespace lensproof::analysis {
 
 /// What the rims leave of a field's light, seen from both ends.
 struct FieldLight {
-    RegionOutline beam;   // offsets across the chief ray, mm: its area is the incoming beam's cross-section
-    RegionOutline image;  // direction cosines at the image point: its area is the projected solid angle, sr
+    optics::RegionOutline beam;   // offsets across the chief ray, mm: its area is the incoming beam's cross-section
+    optics::RegionOutline image;  // direction cosines at the image point: its area is the projected solid angle, sr
 };
 
 /// For the bundle of one wavelength and the image point that it is judged at, that of the reference wavelength's chief
@@ -15,7 +15,7 @@ struct FieldLight {
 ///
 /// `vignetting` is beam.area over that on the axis, and may exceed 1, since pupils grow; relative illumination is
 /// image.area over that on the axis. Both are exact to about 1e-11 where the outlines are star-shaped.
-FieldLight field_light(const TraceLens<double>& lens, const FieldBundle& bundle, Vec2d image_point);
+FieldLight field_light(const optics::TraceLens<double>& lens, const optics::FieldBundle& bundle, Vec2d image_point);
 
 /// Both ratios at one field. Of what the axis sees nothing, the ratios are 0.
 struct FieldLightRatio {
@@ -24,4 +24,4 @@ struct FieldLightRatio {
 };
 FieldLightRatio light_ratio(const FieldLight& field, const FieldLight& axis);
 
-}  // namespace lensproof
+}  // namespace lensproof::analysis

@@ -8,7 +8,7 @@
 #include "engine/analysis/spot.h"
 #include "engine/analysis/wavefront.h"
 
-namespace lensproof {
+namespace lensproof::analysis {
 
 namespace {
 
@@ -19,17 +19,18 @@ struct AnalysedColour {
     ColourOfLens colour;
     FieldLight axis{};
 
-    AnalysedColour(const Lens& lens, double wavelength_nm, const AnalysisSettings& settings)
+    AnalysedColour(const optics::Lens& lens, double wavelength_nm, const AnalysisSettings& settings)
         : colour(lens, wavelength_nm) {
-        if (const auto axial = field_bundle(colour.chief_rays, colour.chief_rays, 0.0, settings.object_distance)) {
+        if (const auto axial =
+                optics::field_bundle(colour.chief_rays, colour.chief_rays, 0.0, settings.object_distance)) {
             axis = field_light(colour.lens, *axial, axial->chief.image_point);
         }
     }
 };
 
 /// What the passing beam makes at the image.
-void add_image(FieldAnalysis& row, const ColourOfLens& colour, const FieldBundle& bundle, const RegionOutline& beam,
-               int rings) {
+void add_image(FieldAnalysis& row, const ColourOfLens& colour, const optics::FieldBundle& bundle,
+               const optics::RegionOutline& beam, int rings) {
     const SpotSize spot = spot_size(spot_rays(colour.lens, bundle, beam, rings));
     row.spot_rms = spot.rms;
     row.spot_centroid = spot.centroid;
@@ -42,12 +43,13 @@ void add_image(FieldAnalysis& row, const ColourOfLens& colour, const FieldBundle
 
 /// `reference`: the field's bundle at the reference wavelength, which says where the object is.
 FieldAnalysis analyze_field(double field_deg, const AnalysedColour& analysed,
-                            const std::optional<FieldBundle>& reference, Projection projection, int rings) {
+                            const std::optional<optics::FieldBundle>& reference, optics::Projection projection,
+                            int rings) {
     const ColourOfLens& colour = analysed.colour;
     FieldAnalysis row{.field_deg = field_deg, .wavelength_nm = colour.wavelength_nm};
-    const auto bundle = reference ? same_object(*reference, colour.chief_rays) : std::nullopt;
+    const auto bundle = reference ? optics::same_object(*reference, colour.chief_rays) : std::nullopt;
     if (!bundle) {
-        row.status = RayStatus::missed;
+        row.status = optics::RayStatus::missed;
         return row;
     }
     row.status = bundle->chief.status;
@@ -78,11 +80,11 @@ double largest_field_deg(const AnalysisSettings& settings) {
     return std::abs(std::ranges::max(settings.fields_deg, {}, [](double field) { return std::abs(field); }));
 }
 
-double distance_from_front(const Lens& lens, double object_distance) {
+double distance_from_front(const optics::Lens& lens, double object_distance) {
     return object_distance + lens.surfaces.front().vertex_z;
 }
 
-LensAnalysis analyze_lens(const Lens& lens, const AnalysisSettings& settings) {
+LensAnalysis analyze_lens(const optics::Lens& lens, const AnalysisSettings& settings) {
     const ColourOfLens reference(lens, settings.reference_wavelength_nm);
     const double from_front = distance_from_front(lens, settings.object_distance);
     std::vector<AnalysedColour> colours;
@@ -90,20 +92,20 @@ LensAnalysis analyze_lens(const Lens& lens, const AnalysisSettings& settings) {
     LensAnalysis analysis;
     for (const double wavelength_nm : settings.wavelengths_nm) {
         colours.emplace_back(lens, wavelength_nm, settings);
-        analysis.paraxial.push_back(paraxial_data(colours.back().colour.lens));
+        analysis.paraxial.push_back(optics::paraxial_data(colours.back().colour.lens));
     }
-    analysis.reference_paraxial = paraxial_data(reference.lens);
-    analysis.conjugates = paraxial_conjugates(reference.lens, from_front);
+    analysis.reference_paraxial = optics::paraxial_data(reference.lens);
+    analysis.conjugates = optics::paraxial_conjugates(reference.lens, from_front);
     analysis.real_working_f_number = real_working_f_number(reference.lens, from_front);
 
     const double largest_field = largest_field_deg(settings) * kDegree;
     const auto [shortest, longest] = std::ranges::minmax_element(settings.wavelengths_nm);
-    analysis.seidel = seidel_sums(reference.lens, at_wavelength<double>(lens, *shortest),
-                                  at_wavelength<double>(lens, *longest), largest_field, from_front);
-    analysis.lagrange_invariant = lagrange_invariant(reference.lens, largest_field);
+    analysis.seidel = seidel_sums(reference.lens, optics::at_wavelength<double>(lens, *shortest),
+                                  optics::at_wavelength<double>(lens, *longest), largest_field, from_front);
+    analysis.lagrange_invariant = optics::lagrange_invariant(reference.lens, largest_field);
     for (const double field : settings.fields_deg) {
         const auto bundle =
-            field_bundle(reference.chief_rays, reference.chief_rays, field * kDegree, settings.object_distance);
+            optics::field_bundle(reference.chief_rays, reference.chief_rays, field * kDegree, settings.object_distance);
         for (const AnalysedColour& colour : colours) {
             analysis.fields.push_back(analyze_field(field, colour, bundle, lens.projection, settings.rings));
         }
@@ -111,18 +113,18 @@ LensAnalysis analyze_lens(const Lens& lens, const AnalysisSettings& settings) {
     return analysis;
 }
 
-std::vector<std::optional<PolychromaticField>> polychromatic_fields(const Lens& lens,
+std::vector<std::optional<PolychromaticField>> polychromatic_fields(const optics::Lens& lens,
                                                                     const AnalysisSettings& settings) {
     std::vector<WeightedWavelength> wavelengths;
     wavelengths.reserve(settings.wavelengths_nm.size());
     for (const double wavelength_nm : settings.wavelengths_nm) {
         wavelengths.push_back({.wavelength_nm = wavelength_nm});
     }
-    const ChiefRays chief_rays(lens, settings.reference_wavelength_nm, Rims::follow);
+    const optics::ChiefRays chief_rays(lens, settings.reference_wavelength_nm, optics::Rims::follow);
     std::vector<std::optional<PolychromaticField>> fields;
     fields.reserve(settings.fields_deg.size());
     for (const double field : settings.fields_deg) {
-        const auto bundle = field_bundle(chief_rays, chief_rays, field * kDegree, settings.object_distance);
+        const auto bundle = optics::field_bundle(chief_rays, chief_rays, field * kDegree, settings.object_distance);
         fields.push_back(
             bundle ? std::optional(polychromatic_field(lens, *bundle, settings.reference_wavelength_nm, wavelengths))
                    : std::nullopt);
@@ -133,4 +135,4 @@ std::vector<std::optional<PolychromaticField>> polychromatic_fields(const Lens& 
     return fields;
 }
 
-}  // namespace lensproof
+}  // namespace lensproof::analysis

@@ -10,7 +10,7 @@
 #include "engine/optics/lens.h"
 #include "engine/optics/paraxial.h"
 
-namespace lensproof {
+namespace lensproof::analysis {
 
 /// What a lens is analysed for.
 struct AnalysisSettings {
@@ -26,9 +26,9 @@ struct AnalysisSettings {
 struct FieldAnalysis {
     double field_deg = 0.0;
     double wavelength_nm = 0.0;
-    RayStatus status = RayStatus::ok;      // of the chief ray, past the rims where one clips it
-    int surface = -1;                      // where the status befell it, from 0
-    std::optional<Vec2d> chief_ray_point;  // in the image plane; y is the chief ray's height
+    optics::RayStatus status = optics::RayStatus::ok;  // of the chief ray, past the rims where one clips it
+    int surface = -1;                                  // where the status befell it, from 0
+    std::optional<Vec2d> chief_ray_point;              // in the image plane; y is the chief ray's height
     std::optional<double> distortion_percent;
     std::optional<double> tangential_focus;  // from the image plane, positive beyond it
     std::optional<double> sagittal_focus;
@@ -44,23 +44,24 @@ struct FieldAnalysis {
 double largest_field_deg(const AnalysisSettings& settings);
 
 /// The object's distance from the first vertex where that stands now: focusing groups may have moved it.
-double distance_from_front(const Lens& lens, double object_distance);
+double distance_from_front(const optics::Lens& lens, double object_distance);
 
 struct LensAnalysis {
-    std::vector<ParaxialData> paraxial;        // by wavelength, as in the settings
-    ParaxialData reference_paraxial;           // at the reference wavelength, as all that follows
-    Conjugates conjugates;                     // of the settings' object
-    double real_working_f_number = 0.0;        // infinite where no axial light passes
-    std::optional<double> lagrange_invariant;  // for the largest field, as the sums; nothing at and beyond 90°
-    std::optional<SeidelSums<double>> seidel;  // colour from the longest to the shortest wavelength
-    std::vector<FieldAnalysis> fields;         // by field, and for each by wavelength
+    std::vector<optics::ParaxialData> paraxial;  // by wavelength, as in the settings
+    optics::ParaxialData reference_paraxial;     // at the reference wavelength, as all that follows
+    optics::Conjugates conjugates;               // of the settings' object
+    double real_working_f_number = 0.0;          // infinite where no axial light passes
+    std::optional<double> lagrange_invariant;    // for the largest field, as the sums; nothing at and beyond 90°
+    std::optional<SeidelSums<double>> seidel;    // colour from the longest to the shortest wavelength
+    std::vector<FieldAnalysis> fields;           // by field, and for each by wavelength
 };
 
 /// Throws InputError for a wavelength that a glass's formula does not cover, as does what follows.
-LensAnalysis analyze_lens(const Lens& lens, const AnalysisSettings& settings);
+LensAnalysis analyze_lens(const optics::Lens& lens, const AnalysisSettings& settings);
 
 /// The settings' fields with all of their wavelengths, of equal weight each: what focus, PSF and MTF are judged by.
 /// Nothing for a field whose object has no chief ray, or no light that passes.
-std::vector<std::optional<PolychromaticField>> polychromatic_fields(const Lens& lens, const AnalysisSettings& settings);
+std::vector<std::optional<PolychromaticField>> polychromatic_fields(const optics::Lens& lens,
+                                                                    const AnalysisSettings& settings);
 
-}  // namespace lensproof
+}  // namespace lensproof::analysis

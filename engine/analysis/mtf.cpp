@@ -10,7 +10,7 @@
 
 #include "engine/base/input_error.h"
 
-namespace lensproof {
+namespace lensproof::analysis {
 
 namespace {
 
@@ -225,4 +225,4 @@ double cutoff_frequency(const PolychromaticField& field) {
     return highest;
 }
 
-}  // namespace lensproof
+}  // namespace lensproof::analysis

@@ -6,7 +6,7 @@
 
 #include "engine/analysis/sampled_pupil.h"
 
-namespace lensproof {
+namespace lensproof::analysis {
 
 /// Modulation against frequency. `tangential`: of lines across the meridional plane, so modulated along y; `sagittal`:
 /// along x. In the image plane, cycles per mm.
@@ -53,4 +53,4 @@ MtfCurve geometric_mtf(const PolychromaticField& field, std::span<const double> 
 /// that is largest; cycles per mm.
 double cutoff_frequency(const PolychromaticField& field);
 
-}  // namespace lensproof
+}  // namespace lensproof::analysis

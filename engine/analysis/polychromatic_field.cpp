@@ -9,14 +9,14 @@
 #include "engine/base/input_error.h"
 #include "engine/optics/rim_margin.h"
 
-namespace lensproof {
+namespace lensproof::analysis {
 
 namespace {
 
 constexpr double kTurn = 2.0 * std::numbers::pi;
 
 /// From the plane in which the outline's radii are straight to offsets (RegionOutline::bend).
-Vec2d bent(const RegionOutline& outline, Vec2d straight) {
+Vec2d bent(const optics::RegionOutline& outline, Vec2d straight) {
     const double x = straight.x - outline.centre.x;
     return {straight.x, straight.y + outline.bend * x * x};
 }
@@ -25,12 +25,13 @@ Vec2d bent(const RegionOutline& outline, Vec2d straight) {
 /// evenly.
 class Outline {
   public:
-    Outline(const PolychromaticField::Part& part, const FieldBundle& bundle)
+    Outline(const PolychromaticField::Part& part, const optics::FieldBundle& bundle)
         : region_([&](Vec2d straight) {
-              return rim_margin(part.lens, bundle.ray(bent(part.outline, straight)), Direction::forward);
+              return optics::rim_margin(part.lens, bundle.ray(bent(part.outline, straight)),
+                                        optics::Direction::forward);
           }),
           centre_(part.outline.centre) {
-        for (const OutlinePoint& point : part.outline.points) {
+        for (const optics::OutlinePoint& point : part.outline.points) {
             stretch_ = {std::max(stretch_.x, std::abs(point.edge.x)), std::max(stretch_.y, std::abs(point.edge.y))};
         }
     }
@@ -38,7 +39,7 @@ class Outline {
     /// From the centre to the rim.
     [[nodiscard]] Vec2d edge_at(double azimuth) const {
         const Vec2d along = along_at(azimuth);
-        const double distance = region_edge(region_, centre_, along).distance;
+        const double distance = optics::region_edge(region_, centre_, along).distance;
         return {distance * along.x, distance * along.y};
     }
 
@@ -75,33 +76,36 @@ class Outline {
     [[nodiscard]] Vec2d along_at(double azimuth) const {
         return {stretch_.x * std::cos(azimuth), stretch_.y * std::sin(azimuth)};
     }
-    [[nodiscard]] int limit_at(double azimuth) const { return region_edge(region_, centre_, along_at(azimuth)).limit; }
+    [[nodiscard]] int limit_at(double azimuth) const {
+        return optics::region_edge(region_, centre_, along_at(azimuth)).limit;
+    }
 
-    Region region_;
+    optics::Region region_;
     Vec2d centre_;
     Vec2d stretch_;
 };
 
 }  // namespace
 
-PolychromaticField polychromatic_field(const Lens& lens, const FieldBundle& bundle, double reference_nm,
+PolychromaticField polychromatic_field(const optics::Lens& lens, const optics::FieldBundle& bundle, double reference_nm,
                                        std::span<const WeightedWavelength> wavelengths) {
     PolychromaticField field{.bundle = bundle};
-    const TraceLens<double> reference = at_wavelength<double>(lens, reference_nm);
+    const optics::TraceLens<double> reference = optics::at_wavelength<double>(lens, reference_nm);
     const std::optional<ReferenceSphere> sphere = reference_sphere(reference, bundle);
     if (!sphere) {
         return field;
     }
     field.sphere = *sphere;
-    field.chief_direction = trace<Direction::forward, Rims::follow>(reference, bundle.ray({})).ray.direction;
+    field.chief_direction =
+        optics::trace<optics::Direction::forward, optics::Rims::follow>(reference, bundle.ray({})).ray.direction;
     double total = 0.0;
     for (const WeightedWavelength& share : wavelengths) {
         if (!(share.weight >= 0.0) || !std::isfinite(share.weight)) {
             throw InputError(fmt::format("the weight of {} nm is {}: expected 0 or a positive number",
                                          share.wavelength_nm, share.weight));
         }
-        TraceLens<double> traced = at_wavelength<double>(lens, share.wavelength_nm);
-        RegionOutline outline = beam_outline(traced, bundle);
+        optics::TraceLens<double> traced = optics::at_wavelength<double>(lens, share.wavelength_nm);
+        optics::RegionOutline outline = beam_outline(traced, bundle);
         if (share.weight > 0.0 && outline.area > 0.0) {
             const double weight = share.weight * outline.area;
             total += weight;
@@ -114,14 +118,14 @@ PolychromaticField polychromatic_field(const Lens& lens, const FieldBundle& bund
     return field;
 }
 
-std::vector<BeamNode> polar_nodes(const PolychromaticField::Part& part, const FieldBundle& bundle, int azimuths,
+std::vector<BeamNode> polar_nodes(const PolychromaticField::Part& part, const optics::FieldBundle& bundle, int azimuths,
                                   int rings) {
     if (part.outline.is_empty()) {
         return {};
     }
     const Outline outline(part, bundle);
     std::vector<BeamNode> nodes;
-    const GaussRule radial = gauss_legendre(rings);
+    const optics::GaussRule radial = optics::gauss_legendre(rings);
     const auto add = [&](double azimuth, double width) {
         const Vec2d edge = outline.edge_at(azimuth);
         const double wedge = width * outline.area_factor(azimuth, edge);
@@ -141,7 +145,7 @@ std::vector<BeamNode> polar_nodes(const PolychromaticField::Part& part, const Fi
     for (std::size_t i = 0; i < corners.size(); ++i) {
         const double from = corners[i];
         const double arc = (i + 1 < corners.size() ? corners[i + 1] : corners.front() + kTurn) - from;
-        const GaussRule along = gauss_legendre(static_cast<int>(std::ceil(azimuths * arc / kTurn)) + 2);
+        const optics::GaussRule along = optics::gauss_legendre(static_cast<int>(std::ceil(azimuths * arc / kTurn)) + 2);
         for (std::size_t k = 0; k < along.nodes.size(); ++k) {
             add(from + arc * along.nodes[k], arc * along.weights[k]);
         }
@@ -150,17 +154,18 @@ std::vector<BeamNode> polar_nodes(const PolychromaticField::Part& part, const Fi
 }
 
 std::optional<ImageRay> image_ray(const PolychromaticField::Part& part, const PolychromaticField& field, Vec2d offset) {
-    const TracedRay<double> traced = trace<Direction::forward, Rims::follow>(part.lens, field.bundle.ray(offset));
+    const optics::TracedRay<double> traced =
+        optics::trace<optics::Direction::forward, optics::Rims::follow>(part.lens, field.bundle.ray(offset));
     const ReferenceSphere plane{.centre = field.sphere.centre, .curvature = 0.0};
     const std::optional<SphereMeeting> meeting = meet_sphere(part.lens, plane, traced);
     if (!meeting || !(traced.ray.direction.z > 0.0)) {
         return std::nullopt;
     }
-    const Vec3d at = meet_plane(traced.ray, plane.centre.z).point - plane.centre;
+    const Vec3d at = optics::meet_plane(traced.ray, plane.centre.z).point - plane.centre;
     return ImageRay{.direction = traced.ray.direction,
                     .aberration = {at.x, at.y},
                     .path = meeting->optical_path,
-                    .passes = traced.status == RayStatus::ok};
+                    .passes = traced.status == optics::RayStatus::ok};
 }
 
-}  // namespace lensproof
+}  // namespace lensproof::analysis

@@ -7,7 +7,7 @@
 #include "engine/analysis/beam_outline.h"
 #include "engine/analysis/wavefront.h"
 
-namespace lensproof {
+namespace lensproof::analysis {
 
 /// A wavelength and its share of the light; shares need not add up to 1.
 struct WeightedWavelength {
@@ -22,10 +22,10 @@ struct PolychromaticField {
     struct Part {
         double wavelength_nm = 0.0;
         double weight = 0.0;  // of its share in the sensor's light: the given weight times the beam's cross-section
-        TraceLens<double> lens;
-        RegionOutline outline;  // of the beam
+        optics::TraceLens<double> lens;
+        optics::RegionOutline outline;  // of the beam
     };
-    FieldBundle bundle;
+    optics::FieldBundle bundle;
     ReferenceSphere sphere;
     Vec3d chief_direction;    // of the chief ray at the image point
     std::vector<Part> parts;  // whose light passes; their weights add up to 1. Empty: no light arrives
@@ -33,13 +33,13 @@ struct PolychromaticField {
 
 /// The field of `bundle` (its chief ray at `reference_nm`, best with Rims::follow) at the sensor of `lens`. Throws
 /// InputError for a wavelength that a glass's formula does not cover, or a weight that is negative or not finite.
-PolychromaticField polychromatic_field(const Lens& lens, const FieldBundle& bundle, double reference_nm,
+PolychromaticField polychromatic_field(const optics::Lens& lens, const optics::FieldBundle& bundle, double reference_nm,
                                        std::span<const WeightedWavelength> wavelengths);
 
 /// Sums over the beam for integrands that oscillate: `rings` Gauss-Legendre nodes along each of about `azimuths` radii
 /// from the outline's centre to its rim; the radii are even around an outline without corners, else Gauss-Legendre from
 /// corner to corner. Weights in mm². (For smooth integrands `beam_quadrature` needs fewer rays.)
-std::vector<BeamNode> polar_nodes(const PolychromaticField::Part& part, const FieldBundle& bundle, int azimuths,
+std::vector<BeamNode> polar_nodes(const PolychromaticField::Part& part, const optics::FieldBundle& bundle, int azimuths,
                                   int rings);
 
 /// A ray of the beam at the image.
@@ -54,4 +54,4 @@ struct ImageRay {
 /// away from the image.
 std::optional<ImageRay> image_ray(const PolychromaticField::Part& part, const PolychromaticField& field, Vec2d offset);
 
-}  // namespace lensproof
+}  // namespace lensproof::analysis

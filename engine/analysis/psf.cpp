@@ -12,7 +12,7 @@
 
 #include "engine/base/input_error.h"
 
-namespace lensproof {
+namespace lensproof::analysis {
 
 namespace {
 
@@ -136,8 +136,9 @@ WaveletPart wavelets_of(const PolychromaticField& field, const PolychromaticFiel
                         const HuygensPsfSettings& settings) {
     WaveletPart found{.wavelength_nm = part.wavelength_nm, .weight = part.weight};
     const auto meet = [&](Vec2d offset) {
-        return meet_sphere(part.lens, field.sphere,
-                           trace<Direction::forward, Rims::follow>(part.lens, field.bundle.ray(offset)));
+        return meet_sphere(
+            part.lens, field.sphere,
+            optics::trace<optics::Direction::forward, optics::Rims::follow>(part.lens, field.bundle.ray(offset)));
     };
     const double step = 1e-4 * std::sqrt(part.outline.area);
     const double mean_path = meet(part.outline.centre).value_or(SphereMeeting{}).optical_path;
@@ -257,7 +258,7 @@ Psf huygens_psf(const PolychromaticField& field, const HuygensPsfSettings& setti
             amplitude += wavelet.amplitude;
         }
         double aberration = 0.0;
-        for (const OutlinePoint& point : part.outline.points) {
+        for (const optics::OutlinePoint& point : part.outline.points) {
             const Vec2d lands = image_ray(part, field, part.outline.at(point, 1.0)).value_or(ImageRay{}).aberration;
             aberration = std::max(aberration, std::hypot(lands.x, lands.y));
         }
@@ -309,4 +310,4 @@ double encircled_energy(const Psf& psf, Vec2d centre_um, double radius_um) {
     return sum * psf.pixel_um * psf.pixel_um / (kParts * kParts);
 }
 
-}  // namespace lensproof
+}  // namespace lensproof::analysis

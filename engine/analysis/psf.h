@@ -4,7 +4,7 @@
 
 #include "engine/analysis/sampled_pupil.h"
 
-namespace lensproof {
+namespace lensproof::analysis {
 
 /// The image of a point: irradiance on an even grid in the image plane, for light of total power 1.
 struct Psf {
@@ -63,4 +63,4 @@ Psf huygens_psf(const PolychromaticField& field, const HuygensPsfSettings& setti
 /// the picture counts as outside.
 double encircled_energy(const Psf& psf, Vec2d centre_um, double radius_um);
 
-}  // namespace lensproof
+}  // namespace lensproof::analysis

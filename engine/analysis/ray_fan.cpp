@@ -5,7 +5,7 @@
 
 #include "engine/optics/rim_margin.h"
 
-namespace lensproof {
+namespace lensproof::analysis {
 
 namespace {
 
@@ -15,9 +15,11 @@ struct Extent {
     double upper;
 };
 
-std::optional<Extent> fan_extent(const TraceLens<double>& lens, const FieldBundle& bundle, const RegionOutline& outline,
-                                 FanPlane plane) {
-    const Region region = [&](Vec2d offset) { return rim_margin(lens, bundle.ray(offset), Direction::forward); };
+std::optional<Extent> fan_extent(const optics::TraceLens<double>& lens, const optics::FieldBundle& bundle,
+                                 const optics::RegionOutline& outline, FanPlane plane) {
+    const optics::Region region = [&](Vec2d offset) {
+        return optics::rim_margin(lens, bundle.ray(offset), optics::Direction::forward);
+    };
     const bool is_tangential = plane == FanPlane::tangential;
     double inside = 0.0;
     if (!(region({}).margin < 0.0)) {
@@ -31,26 +33,26 @@ std::optional<Extent> fan_extent(const TraceLens<double>& lens, const FieldBundl
     const auto reach = [&](double sign) {
         const Vec2d from = is_tangential ? Vec2d{0.0, inside} : Vec2d{inside, 0.0};
         const Vec2d along = is_tangential ? Vec2d{0.0, sign} : Vec2d{sign, 0.0};
-        return inside + sign * region_edge(region, from, along, hint).distance;
+        return inside + sign * optics::region_edge(region, from, along, hint).distance;
     };
     return Extent{reach(-1.0), reach(1.0)};
 }
 
 }  // namespace
 
-std::optional<Vec2d> transverse_error(const TraceLens<double>& lens, const FieldBundle& bundle, Vec2d offset,
-                                      Vec2d reference) {
-    const auto traced = trace<Direction::forward, Rims::follow>(lens, bundle.ray(offset));
-    if (traced.status == RayStatus::missed || traced.status == RayStatus::total_internal_reflection ||
+std::optional<Vec2d> transverse_error(const optics::TraceLens<double>& lens, const optics::FieldBundle& bundle,
+                                      Vec2d offset, Vec2d reference) {
+    const auto traced = optics::trace<optics::Direction::forward, optics::Rims::follow>(lens, bundle.ray(offset));
+    if (traced.status == optics::RayStatus::missed || traced.status == optics::RayStatus::total_internal_reflection ||
         !(traced.ray.direction.z > 0.0)) {
         return std::nullopt;
     }
-    const Vec3d point = meet_plane(traced.ray, lens.image_z).point;
+    const Vec3d point = optics::meet_plane(traced.ray, lens.image_z).point;
     return Vec2d{point.x - reference.x, point.y - reference.y};
 }
 
-std::vector<FanPoint> ray_fan(const TraceLens<double>& lens, const FieldBundle& bundle, const RegionOutline& outline,
-                              FanPlane plane, Vec2d reference, int count) {
+std::vector<FanPoint> ray_fan(const optics::TraceLens<double>& lens, const optics::FieldBundle& bundle,
+                              const optics::RegionOutline& outline, FanPlane plane, Vec2d reference, int count) {
     const std::optional<Extent> extent = fan_extent(lens, bundle, outline, plane);
     if (!extent) {
         return {};
@@ -68,4 +70,4 @@ std::vector<FanPoint> ray_fan(const TraceLens<double>& lens, const FieldBundle& 
     return fan;
 }
 
-}  // namespace lensproof
+}  // namespace lensproof::analysis

@@ -6,16 +6,16 @@
 
 #include "engine/optics/surface_curvature.h"
 
-namespace lensproof {
+namespace lensproof::analysis {
 
 namespace {
 
 /// The unit normal of surface `index` at a point on it, towards the sensor, and how it turns over a tangential shift.
 class LocalSurface {
   public:
-    LocalSurface(const TraceLens<double>& lens, int index, const Vec3d& at) {
-        const TraceSurface<double>& surface = lens.surfaces[index];
-        SurfaceShape<double> shape{.curvature = surface.curvature};
+    LocalSurface(const optics::TraceLens<double>& lens, int index, const Vec3d& at) {
+        const optics::TraceSurface<double>& surface = lens.surfaces[index];
+        optics::SurfaceShape<double> shape{.curvature = surface.curvature};
         Vec3d own{at.x, at.y, at.z - surface.vertex_z};
         if (surface.special >= 0) {
             frame_ = &lens.specials[surface.special];
@@ -24,7 +24,7 @@ class LocalSurface {
                 shape = frame_->shape;
             }
         }
-        const SurfaceDerivatives<double> derivatives = surface_derivatives(shape, own);
+        const optics::SurfaceDerivatives<double> derivatives = optics::surface_derivatives(shape, own);
         hessian_ = derivatives.hessian;
         steepness_ = length(derivatives.gradient);
         normal_ = from_own((1.0 / steepness_) * derivatives.gradient);
@@ -42,7 +42,7 @@ class LocalSurface {
   private:
     [[nodiscard]] Vec3d from_own(const Vec3d& v) const { return frame_ != nullptr ? frame_->from_own(v) : v; }
 
-    const SpecialSurface<double>* frame_ = nullptr;
+    const optics::SpecialSurface<double>* frame_ = nullptr;
     std::array<Vec3d, 3> hessian_{};
     double steepness_ = 1.0;
     Vec3d normal_;
@@ -90,18 +90,18 @@ std::pair<double, double> focal_distances(const Columns& shift, const Columns& t
 
 }  // namespace
 
-std::optional<RayPencil> ray_pencil(const TraceLens<double>& lens, const FieldBundle& bundle) {
+std::optional<RayPencil> ray_pencil(const optics::TraceLens<double>& lens, const optics::FieldBundle& bundle) {
     const std::array<Vec3d, 2> across = bundle.across();
     RayPencil pencil{.chief = bundle.chief.front, .shift = across};
     if (bundle.is_near()) {
         const double divergence = 1.0 / bundle.distance();
         pencil.turn = {divergence * across[0], divergence * across[1]};
     }
-    const auto step = [&](const SurfaceEvent<double>& event) {
-        if (event.status == RayStatus::missed || event.status == RayStatus::total_internal_reflection) {
+    const auto step = [&](const optics::SurfaceEvent<double>& event) {
+        if (event.status == optics::RayStatus::missed || event.status == optics::RayStatus::total_internal_reflection) {
             return;
         }
-        const TraceSurface<double>& surface = lens.surfaces[event.surface];
+        const optics::TraceSurface<double>& surface = lens.surfaces[event.surface];
         const Vec3d before = pencil.chief.direction;
         const Vec3d& after = event.ray.direction;
         const LocalSurface local(lens, event.surface, event.ray.origin);
@@ -120,15 +120,16 @@ std::optional<RayPencil> ray_pencil(const TraceLens<double>& lens, const FieldBu
         }
         pencil.chief = event.ray;
     };
-    pencil.status = trace<Direction::forward, Rims::follow>(lens, bundle.chief.front, step).status;
-    if (pencil.status == RayStatus::missed || pencil.status == RayStatus::total_internal_reflection) {
+    pencil.status =
+        optics::trace<optics::Direction::forward, optics::Rims::follow>(lens, bundle.chief.front, step).status;
+    if (pencil.status == optics::RayStatus::missed || pencil.status == optics::RayStatus::total_internal_reflection) {
         return std::nullopt;
     }
     return pencil;
 }
 
 AstigmaticFoci astigmatic_foci(const RayPencil& pencil, double image_z) {
-    const std::array<Vec3d, 2> frame = across_axes(pencil.chief.direction);
+    const std::array<Vec3d, 2> frame = optics::across_axes(pencil.chief.direction);
     const auto columns = [&](const std::array<Vec3d, 2>& vectors) {
         return Columns{Vec2d{dot(frame[0], vectors[0]), dot(frame[1], vectors[0])},
                        Vec2d{dot(frame[0], vectors[1]), dot(frame[1], vectors[1])}};
@@ -138,4 +139,4 @@ AstigmaticFoci astigmatic_foci(const RayPencil& pencil, double image_z) {
     return {last_z + tangential * pencil.chief.direction.z, last_z + sagittal * pencil.chief.direction.z};
 }
 
-}  // namespace lensproof
+}  // namespace lensproof::analysis

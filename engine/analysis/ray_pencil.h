@@ -5,15 +5,15 @@
 
 #include "engine/optics/field_bundle.h"
 
-namespace lensproof {
+namespace lensproof::analysis {
 
 /// The rays of a bundle next to its chief ray, to first order in their offset: the chief ray behind the last surface,
 /// and by how much its point (across the ray) and its direction change with an offset of 1 mm along x and along y.
 struct RayPencil {
-    Ray<double> chief;                 // origin on the last surface
-    std::array<Vec3d, 2> shift{};      // mm / mm, perpendicular to the chief ray
-    std::array<Vec3d, 2> turn{};       // rad / mm, perpendicular to the chief ray
-    RayStatus status = RayStatus::ok;  // of the chief ray, followed past rims
+    Ray<double> chief;                                 // origin on the last surface
+    std::array<Vec3d, 2> shift{};                      // mm / mm, perpendicular to the chief ray
+    std::array<Vec3d, 2> turn{};                       // rad / mm, perpendicular to the chief ray
+    optics::RayStatus status = optics::RayStatus::ok;  // of the chief ray, followed past rims
 };
 
 /// Differentiates the laws of transfer and refraction along the chief ray: a shift P and a turn Q of the ray become
@@ -23,7 +23,7 @@ struct RayPencil {
 /// centred lens this is Coddington's pair of equations (Welford, Aberrations of Optical Systems, §9.4; Igehy, "Tracing
 /// ray differentials", 1999, for the general form), written with heights and angles in place of focal distances: a
 /// focus at infinity or on a surface is no special case. Nothing where the chief ray misses or is totally reflected.
-std::optional<RayPencil> ray_pencil(const TraceLens<double>& lens, const FieldBundle& bundle);
+std::optional<RayPencil> ray_pencil(const optics::TraceLens<double>& lens, const optics::FieldBundle& bundle);
 
 /// Where the pencil's rays focus, z in mm from the image plane, positive beyond it; infinite where they leave parallel.
 struct AstigmaticFoci {
@@ -35,4 +35,4 @@ struct AstigmaticFoci {
 /// det (shift + t turn) = 0, and the tangential one is that whose converging rays are offset rather along y.
 AstigmaticFoci astigmatic_foci(const RayPencil& pencil, double image_z);
 
-}  // namespace lensproof
+}  // namespace lensproof::analysis

@@ -7,7 +7,7 @@
 #include <numbers>
 #include <queue>
 
-namespace lensproof {
+namespace lensproof::analysis {
 
 namespace {
 
@@ -98,7 +98,7 @@ class Aim {
                                    spacing * ((i + 0.5) / kEdgeSamples - 0.5)};
                 const Vec2d move = slope.solve(within);
                 const Vec2d offset{aimed.offset.x + move.x, aimed.offset.y + move.y};
-                open += trace(part_.lens, field_.bundle.ray(offset)).status == RayStatus::ok ? 1 : 0;
+                open += optics::trace(part_.lens, field_.bundle.ray(offset)).status == optics::RayStatus::ok ? 1 : 0;
             }
         }
         return static_cast<double>(open) / (kEdgeSamples * kEdgeSamples);
@@ -220,7 +220,7 @@ const char* pupil_status_name(PupilStatus status) {
 CosineBox cosine_box(const PolychromaticField& field, const PolychromaticField::Part& part) {
     constexpr double kFar = std::numeric_limits<double>::infinity();
     CosineBox box{{kFar, kFar}, {-kFar, -kFar}};
-    for (const OutlinePoint& point : part.outline.points) {
+    for (const optics::OutlinePoint& point : part.outline.points) {
         for (const double side : {1.0, -1.0}) {
             if (side < 0.0 && !part.outline.is_half) {
                 continue;
@@ -333,4 +333,4 @@ std::vector<std::complex<double>> pupil_function(const SampledPupil& pupil, bool
     return function;
 }
 
-}  // namespace lensproof
+}  // namespace lensproof::analysis

@@ -6,7 +6,7 @@
 
 #include "engine/analysis/polychromatic_field.h"
 
-namespace lensproof {
+namespace lensproof::analysis {
 
 /// Whether a pupil function, and what is computed from it, can be trusted.
 enum class PupilStatus {
@@ -77,4 +77,4 @@ SampledPupil refocused(SampledPupil pupil, const PolychromaticField& field, doub
 /// A exp(i k V) of every cell; `is_perfect`: without aberration, V = 0.
 std::vector<std::complex<double>> pupil_function(const SampledPupil& pupil, bool is_perfect = false);
 
-}  // namespace lensproof
+}  // namespace lensproof::analysis

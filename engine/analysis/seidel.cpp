@@ -1,8 +1,9 @@
 #include "engine/analysis/seidel.h"
 
-namespace lensproof {
+namespace lensproof::analysis {
 
-template std::optional<SeidelSums<double>> seidel_sums(const TraceLens<double>&, const TraceLens<double>&,
-                                                       const TraceLens<double>&, const double&, const double&);
+template std::optional<SeidelSums<double>> seidel_sums(const optics::TraceLens<double>&,
+                                                       const optics::TraceLens<double>&,
+                                                       const optics::TraceLens<double>&, const double&, const double&);
 
-}  // namespace lensproof
+}  // namespace lensproof::analysis

@@ -6,7 +6,7 @@
 
 #include "engine/optics/paraxial.h"
 
-namespace lensproof {
+namespace lensproof::analysis {
 
 /// One surface's share of the sums, or their total; mm. Welford, Aberrations of Optical Systems (1986), ch. 8 and
 /// 10; signs as in rayoptics, so that S1 > 0 is undercorrected spherical aberration.
@@ -57,8 +57,8 @@ struct SeidelSums {
 /// pupil at infinity, with the object's image in the stop, and for a stop without a semi-diameter.
 template <class T>
 std::optional<SeidelSums<T>> seidel_sums(
-    const TraceLens<T>& reference, const TraceLens<T>& short_wavelength, const TraceLens<T>& long_wavelength,
-    const std::type_identity_t<T>& field_angle,
+    const optics::TraceLens<T>& reference, const optics::TraceLens<T>& short_wavelength,
+    const optics::TraceLens<T>& long_wavelength, const std::type_identity_t<T>& field_angle,
     const std::type_identity_t<T>& object_distance = std::numeric_limits<T>::infinity());
 
 /// The wavefront's aberrations at the edge of pupil and field, mm of optical path, positive where the wavefront runs
@@ -106,11 +106,11 @@ namespace seidel_detail {
 /// 8 G, where the sag departs from the sphere of the vertex's curvature by G r⁴. With the curvature c that the shape
 /// states and its r² term a, the vertex has c + 2 a, and 8 G = (1 + k) c³ − (c + 2 a)³ + 8 A4.
 template <class T>
-T departure_from_sphere(const TraceLens<T>& lens, const TraceSurface<T>& surface) {
+T departure_from_sphere(const optics::TraceLens<T>& lens, const optics::TraceSurface<T>& surface) {
     if (surface.special < 0 || !lens.specials[surface.special].has_shape) {
         return T(0);
     }
-    const SurfaceShape<T>& shape = lens.specials[surface.special].shape;
+    const optics::SurfaceShape<T>& shape = lens.specials[surface.special].shape;
     const T& c = shape.curvature;
     const T& c_vertex = surface.curvature;
     const T r2_term = 2 * shape.asphere[0];
@@ -124,8 +124,8 @@ T dispersion(const T& index, const T& short_index, const T& long_index) {
 }
 
 template <class T>
-SeidelTerms<T> surface_terms(const TraceSurface<T>& surface, const T& departure, const BasicParaxialRay<T>& marginal,
-                             const BasicParaxialRay<T>& chief) {
+SeidelTerms<T> surface_terms(const optics::TraceSurface<T>& surface, const T& departure,
+                             const optics::BasicParaxialRay<T>& marginal, const optics::BasicParaxialRay<T>& chief) {
     const T& n = surface.index_before;
     const T& n_after = surface.index_after;
     const T& c = surface.curvature;
@@ -152,18 +152,19 @@ SeidelTerms<T> surface_terms(const TraceSurface<T>& surface, const T& departure,
 }  // namespace seidel_detail
 
 template <class T>
-std::optional<SeidelSums<T>> seidel_sums(const TraceLens<T>& reference, const TraceLens<T>& short_wavelength,
-                                         const TraceLens<T>& long_wavelength,
+std::optional<SeidelSums<T>> seidel_sums(const optics::TraceLens<T>& reference,
+                                         const optics::TraceLens<T>& short_wavelength,
+                                         const optics::TraceLens<T>& long_wavelength,
                                          const std::type_identity_t<T>& field_angle,
                                          const std::type_identity_t<T>& object_distance) {
-    auto marginal = paraxial_marginal_ray(reference, object_distance);
-    auto chief = paraxial_chief_ray(reference, field_angle);
+    auto marginal = optics::paraxial_marginal_ray(reference, object_distance);
+    auto chief = optics::paraxial_chief_ray(reference, field_angle);
     if (!marginal || !chief) {
         return std::nullopt;
     }
     SeidelSums<T> sums;
     for (int i = 0; i < static_cast<int>(reference.surfaces.size()); ++i) {
-        const TraceSurface<T>& surface = reference.surfaces[i];
+        const optics::TraceSurface<T>& surface = reference.surfaces[i];
         if (i > 0) {
             const T gap = surface.vertex_z - reference.surfaces[i - 1].vertex_z;
             marginal->height += gap * marginal->slope;
@@ -171,22 +172,24 @@ std::optional<SeidelSums<T>> seidel_sums(const TraceLens<T>& reference, const Tr
         }
         SeidelTerms<T> terms = seidel_detail::surface_terms(
             surface, seidel_detail::departure_from_sphere(reference, surface), *marginal, *chief);
-        const TraceSurface<T>& at_short = short_wavelength.surfaces[i];
-        const TraceSurface<T>& at_long = long_wavelength.surfaces[i];
+        const optics::TraceSurface<T>& at_short = short_wavelength.surfaces[i];
+        const optics::TraceSurface<T>& at_long = long_wavelength.surfaces[i];
         const T change = seidel_detail::dispersion(surface.index_after, at_short.index_after, at_long.index_after) -
                          seidel_detail::dispersion(surface.index_before, at_short.index_before, at_long.index_before);
         terms.c1 *= change;
         terms.c2 *= change;
         sums.total += terms;
         sums.surfaces.push_back(terms);
-        marginal = trace_paraxial(reference, *marginal, i, i);
-        chief = trace_paraxial(reference, *chief, i, i);
+        marginal = optics::trace_paraxial(reference, *marginal, i, i);
+        chief = optics::trace_paraxial(reference, *chief, i, i);
     }
     sums.image_slope = reference.surfaces.back().index_after * marginal->slope;
     return sums;
 }
 
-extern template std::optional<SeidelSums<double>> seidel_sums(const TraceLens<double>&, const TraceLens<double>&,
-                                                              const TraceLens<double>&, const double&, const double&);
+extern template std::optional<SeidelSums<double>> seidel_sums(const optics::TraceLens<double>&,
+                                                              const optics::TraceLens<double>&,
+                                                              const optics::TraceLens<double>&, const double&,
+                                                              const double&);
 
-}  // namespace lensproof
+}  // namespace lensproof::analysis

@@ -4,17 +4,18 @@
 #include <cmath>
 #include <optional>
 
-namespace lensproof {
+namespace lensproof::analysis {
 
 namespace {
 
 /// Nothing for a ray that leaves the lens away from the sensor.
-std::optional<SpotRay> at_image(const TraceLens<double>& lens, const TracedRay<double>& traced, double weight) {
+std::optional<SpotRay> at_image(const optics::TraceLens<double>& lens, const optics::TracedRay<double>& traced,
+                                double weight) {
     const Vec3d& way = traced.ray.direction;
     if (!(way.z > 0.0)) {
         return std::nullopt;
     }
-    const Vec3d point = meet_plane(traced.ray, lens.image_z).point;
+    const Vec3d point = optics::meet_plane(traced.ray, lens.image_z).point;
     return SpotRay{{point.x, point.y}, {way.x / way.z, way.y / way.z}, weight};
 }
 
@@ -40,17 +41,17 @@ Means means(std::span<const SpotRay> rays) {
 
 }  // namespace
 
-std::vector<SpotRay> spot_rays(const TraceLens<double>& lens, const FieldBundle& bundle, const RegionOutline& outline,
-                               int rings) {
+std::vector<SpotRay> spot_rays(const optics::TraceLens<double>& lens, const optics::FieldBundle& bundle,
+                               const optics::RegionOutline& outline, int rings) {
     std::vector<SpotRay> rays;
     const auto add = [&](Vec2d offset, double weight, bool is_mirrored) {
         // A ray on the outline is inside to a rounding; it is followed all the same.
-        const TracedRay<double> traced = weight > 0.0
-                                             ? trace(lens, bundle.ray(offset))
-                                             : trace<Direction::forward, Rims::follow>(lens, bundle.ray(offset));
+        const optics::TracedRay<double> traced =
+            weight > 0.0 ? optics::trace(lens, bundle.ray(offset))
+                         : optics::trace<optics::Direction::forward, optics::Rims::follow>(lens, bundle.ray(offset));
         const bool arrives =
-            traced.status == RayStatus::ok ||
-            (weight == 0.0 && (traced.status == RayStatus::clipped || traced.status == RayStatus::stopped));
+            traced.status == optics::RayStatus::ok || (weight == 0.0 && (traced.status == optics::RayStatus::clipped ||
+                                                                         traced.status == optics::RayStatus::stopped));
         const std::optional<SpotRay> ray = arrives ? at_image(lens, traced, weight) : std::nullopt;
         if (!ray) {
             return;
@@ -60,8 +61,8 @@ std::vector<SpotRay> spot_rays(const TraceLens<double>& lens, const FieldBundle&
             rays.push_back({{-ray->point.x, ray->point.y}, {-ray->slope.x, ray->slope.y}, ray->weight});
         }
     };
-    const GaussRule rule = gauss_legendre(rings);
-    for (const OutlinePoint& point : outline.points) {
+    const optics::GaussRule rule = optics::gauss_legendre(rings);
+    for (const optics::OutlinePoint& point : outline.points) {
         for (std::size_t i = 0; i < rule.nodes.size(); ++i) {
             add(outline.at(point, rule.nodes[i]), 2.0 * rule.nodes[i] * rule.weights[i] * point.wedge_area,
                 outline.is_half);
@@ -71,14 +72,15 @@ std::vector<SpotRay> spot_rays(const TraceLens<double>& lens, const FieldBundle&
     return rays;
 }
 
-std::vector<SpotRay> spot_grid(const TraceLens<double>& lens, const FieldBundle& bundle, double half_width, int cells) {
+std::vector<SpotRay> spot_grid(const optics::TraceLens<double>& lens, const optics::FieldBundle& bundle,
+                               double half_width, int cells) {
     std::vector<SpotRay> rays;
     const double cell = 2.0 * half_width / cells;
     for (int i = 0; i < cells; ++i) {
         for (int k = 0; k < cells; ++k) {
             const Vec2d offset{half_width * (2 * i + 1 - cells) / cells, half_width * (2 * k + 1 - cells) / cells};
-            const TracedRay<double> traced = trace(lens, bundle.ray(offset));
-            if (traced.status != RayStatus::ok) {
+            const optics::TracedRay<double> traced = optics::trace(lens, bundle.ray(offset));
+            if (traced.status != optics::RayStatus::ok) {
                 continue;
             }
             if (const std::optional<SpotRay> ray = at_image(lens, traced, cell * cell)) {
@@ -161,4 +163,4 @@ std::vector<double> encircled_energy(std::span<const SpotRay> rays, std::span<co
     return shares;
 }
 
-}  // namespace lensproof
+}  // namespace lensproof::analysis

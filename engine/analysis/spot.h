@@ -5,7 +5,7 @@
 
 #include "engine/analysis/beam_outline.h"
 
-namespace lensproof {
+namespace lensproof::analysis {
 
 /// A ray at the image.
 struct SpotRay {
@@ -24,12 +24,13 @@ inline constexpr int kSpotRings = 12;
 
 /// The bundle's rays at the nodes of `beam_quadrature`, for sums, and those along its outline, with weight 0. Sums over
 /// them converge with the number of rings as those of smooth functions do.
-std::vector<SpotRay> spot_rays(const TraceLens<double>& lens, const FieldBundle& bundle, const RegionOutline& outline,
-                               int rings = kSpotRings);
+std::vector<SpotRay> spot_rays(const optics::TraceLens<double>& lens, const optics::FieldBundle& bundle,
+                               const optics::RegionOutline& outline, int rings = kSpotRings);
 
 /// The rays at the centres of a grid of `cells`² squares, ±`half_width` mm about the chief ray, that pass every rim: of
 /// equal weight, for spot diagrams as they are usually drawn. Sums over them are good to about 1 / cells.
-std::vector<SpotRay> spot_grid(const TraceLens<double>& lens, const FieldBundle& bundle, double half_width, int cells);
+std::vector<SpotRay> spot_grid(const optics::TraceLens<double>& lens, const optics::FieldBundle& bundle,
+                               double half_width, int cells);
 
 /// Several wavelengths' spots as one: each ray's weight times that of its wavelength.
 std::vector<SpotRay> pooled(std::span<const std::vector<SpotRay>> spots, std::span<const double> spectral_weights);
@@ -59,4 +60,4 @@ double best_spot_defocus(std::span<const SpotRay> rays);
 std::vector<double> encircled_energy(std::span<const SpotRay> rays, std::span<const double> radii,
                                      double defocus_mm = 0.0);
 
-}  // namespace lensproof
+}  // namespace lensproof::analysis

@@ -6,15 +6,15 @@
 
 #include "engine/optics/paraxial.h"
 
-namespace lensproof {
+namespace lensproof::analysis {
 
 namespace {
 
 constexpr double kNanometre = 1e-6;  // mm
 
 /// Whether every surface is centred on the axis.
-bool is_centred(const TraceLens<double>& lens) {
-    return std::ranges::all_of(lens.specials, [](const SpecialSurface<double>& special) {
+bool is_centred(const optics::TraceLens<double>& lens) {
+    return std::ranges::all_of(lens.specials, [](const optics::SpecialSurface<double>& special) {
         return special.vertex == Vec2d{} && special.axes[2] == Vec3d{0.0, 0.0, 1.0};
     });
 }
@@ -35,21 +35,23 @@ Fit fit(const Eigen::MatrixXd& columns, const Eigen::VectorXd& opd, const Eigen:
 
 }  // namespace
 
-std::optional<ReferenceSphere> reference_sphere(const TraceLens<double>& lens, const FieldBundle& bundle) {
-    const TracedRay<double> chief = trace<Direction::forward, Rims::follow>(lens, bundle.ray({}));
-    const bool arrives =
-        chief.status == RayStatus::ok || chief.status == RayStatus::clipped || chief.status == RayStatus::stopped;
+std::optional<ReferenceSphere> reference_sphere(const optics::TraceLens<double>& lens,
+                                                const optics::FieldBundle& bundle) {
+    const optics::TracedRay<double> chief =
+        optics::trace<optics::Direction::forward, optics::Rims::follow>(lens, bundle.ray({}));
+    const bool arrives = chief.status == optics::RayStatus::ok || chief.status == optics::RayStatus::clipped ||
+                         chief.status == optics::RayStatus::stopped;
     const Vec3d& direction = chief.ray.direction;
     if (!arrives || !(direction.z > 0.0)) {
         return std::nullopt;
     }
     ReferenceSphere sphere;
-    sphere.centre = meet_plane(chief.ray, lens.image_z).point;
+    sphere.centre = optics::meet_plane(chief.ray, lens.image_z).point;
     if (sphere.centre.y != 0.0 && bundle.chief.field_angle != 0.0 && is_centred(lens)) {
         sphere.curvature = direction.y / sphere.centre.y;
         return sphere;
     }
-    const ParaxialData paraxial = paraxial_data(lens);
+    const optics::ParaxialData paraxial = optics::paraxial_data(lens);
     if (std::isfinite(paraxial.exit_pupil_z)) {
         const double pupil_z = lens.surfaces.back().vertex_z + paraxial.exit_pupil_z;
         sphere.curvature = direction.z / (lens.image_z - pupil_z);
@@ -57,10 +59,10 @@ std::optional<ReferenceSphere> reference_sphere(const TraceLens<double>& lens, c
     return sphere;
 }
 
-std::optional<SphereMeeting> meet_sphere(const TraceLens<double>& lens, const ReferenceSphere& sphere,
-                                         const TracedRay<double>& ray) {
-    const bool arrives =
-        ray.status == RayStatus::ok || ray.status == RayStatus::clipped || ray.status == RayStatus::stopped;
+std::optional<SphereMeeting> meet_sphere(const optics::TraceLens<double>& lens, const ReferenceSphere& sphere,
+                                         const optics::TracedRay<double>& ray) {
+    const bool arrives = ray.status == optics::RayStatus::ok || ray.status == optics::RayStatus::clipped ||
+                         ray.status == optics::RayStatus::stopped;
     const double c = sphere.curvature;
     const Vec3d& direction = ray.ray.direction;
     const double to_foot = dot(sphere.centre - ray.ray.origin, direction);
@@ -75,10 +77,11 @@ std::optional<SphereMeeting> meet_sphere(const TraceLens<double>& lens, const Re
                          .towards = (1.0 - c * sag) * direction - c * q};
 }
 
-Wavefront wavefront(const TraceLens<double>& lens, double wavelength_nm, const FieldBundle& bundle,
+Wavefront wavefront(const optics::TraceLens<double>& lens, double wavelength_nm, const optics::FieldBundle& bundle,
                     const ReferenceSphere& sphere, std::span<const BeamNode> nodes) {
     const auto meeting_at = [&](Vec2d offset) {
-        return meet_sphere(lens, sphere, trace<Direction::forward, Rims::follow>(lens, bundle.ray(offset)));
+        return meet_sphere(lens, sphere,
+                           optics::trace<optics::Direction::forward, optics::Rims::follow>(lens, bundle.ray(offset)));
     };
     Wavefront front{.wavelength_nm = wavelength_nm, .sphere = sphere};
     const std::optional<SphereMeeting> chief = meeting_at({});
@@ -128,4 +131,4 @@ WavefrontErrors wavefront_errors(const Wavefront& wavefront) {
             .best_centre = {free.factors(1), free.factors(2), free.factors(3)}};
 }
 
-}  // namespace lensproof
+}  // namespace lensproof::analysis

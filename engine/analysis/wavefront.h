@@ -7,7 +7,7 @@
 #include "engine/analysis/beam_outline.h"
 #include "engine/optics/field_bundle.h"
 
-namespace lensproof {
+namespace lensproof::analysis {
 
 /// The sphere on which a field's optical paths are compared: around an image point, through the exit pupil. Lens space.
 struct ReferenceSphere {
@@ -20,7 +20,8 @@ struct ReferenceSphere {
 /// The sphere of `bundle` around the point where its chief ray, followed beyond rims, meets the image plane. Its radius
 /// reaches to the exit pupil, which is where that ray crosses the axis in image space; on the axis, and for a lens with
 /// tilted or decentred surfaces, the paraxial exit pupil. Nothing where the chief ray does not reach the image plane.
-std::optional<ReferenceSphere> reference_sphere(const TraceLens<double>& lens, const FieldBundle& bundle);
+std::optional<ReferenceSphere> reference_sphere(const optics::TraceLens<double>& lens,
+                                                const optics::FieldBundle& bundle);
 
 /// Where a ray stands to the reference sphere.
 struct SphereMeeting {
@@ -32,8 +33,8 @@ struct SphereMeeting {
 ///     R − s,   s = c q² / (1 + √(1 − c² q²))
 /// in front of the foot, so that the radius R itself, which is the same for all rays, never enters, and a telecentric
 /// pupil (c = 0) loses no digits. Nothing where the ray passes the sphere by, or did not get through the lens.
-std::optional<SphereMeeting> meet_sphere(const TraceLens<double>& lens, const ReferenceSphere& sphere,
-                                         const TracedRay<double>& ray);
+std::optional<SphereMeeting> meet_sphere(const optics::TraceLens<double>& lens, const ReferenceSphere& sphere,
+                                         const optics::TracedRay<double>& ray);
 
 /// A ray of the beam on the reference sphere.
 struct WavefrontRay {
@@ -60,7 +61,7 @@ struct Wavefront {
 /// rims, so that those on a rim are not lost to rounding. All path differences are sums over the lens alone, whatever
 /// the object's distance (FieldBundle). `lens` may be at another wavelength than `sphere` was made for. Where the chief
 /// ray does not get through at this wavelength, the mean stands for its path.
-Wavefront wavefront(const TraceLens<double>& lens, double wavelength_nm, const FieldBundle& bundle,
+Wavefront wavefront(const optics::TraceLens<double>& lens, double wavelength_nm, const optics::FieldBundle& bundle,
                     const ReferenceSphere& sphere, std::span<const BeamNode> nodes);
 
 /// Root mean squares over the beam's cross-section, in waves; the mean (piston) is always taken out.
@@ -76,4 +77,4 @@ struct WavefrontErrors {
 /// centre; so the best centres are linear least squares, exact to first order in δ.
 WavefrontErrors wavefront_errors(const Wavefront& wavefront);
 
-}  // namespace lensproof
+}  // namespace lensproof::analysis

@@ -2,7 +2,7 @@
 
 #include <array>
 
-namespace lensproof {
+namespace lensproof::analysis {
 
 WavefrontMap wavefront_map(const PolychromaticField& field, const PolychromaticField::Part& part, int samples) {
     const SampledPupil pupil = sample_pupil(field, part, cosine_box(field, part).width() / samples);
@@ -27,4 +27,4 @@ WavefrontMap wavefront_map(const PolychromaticField& field, const PolychromaticF
     return map;
 }
 
-}  // namespace lensproof
+}  // namespace lensproof::analysis

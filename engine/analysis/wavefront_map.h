@@ -5,7 +5,7 @@
 
 #include "engine/analysis/sampled_pupil.h"
 
-namespace lensproof {
+namespace lensproof::analysis {
 
 /// Path differences against the reference sphere (signs: Wavefront), on an even grid of direction cosines of the rays
 /// that arrive, less those of the chief ray.
@@ -32,4 +32,4 @@ struct WavefrontMap {
 /// The map with `samples` cells across the wider side of the beam. Empty where no light passes.
 WavefrontMap wavefront_map(const PolychromaticField& field, const PolychromaticField::Part& part, int samples = 64);
 
-}  // namespace lensproof
+}  // namespace lensproof::analysis

@@ -9,7 +9,7 @@
 
 #include "engine/base/input_error.h"
 
-namespace lensproof {
+namespace lensproof::analysis {
 
 namespace {
 
@@ -123,10 +123,10 @@ ZernikeFit fit_zernike(std::span<const ZernikeSample> samples, int degree) {
             .residual_rms = (target - design * solution).norm() / std::sqrt(weight)};
 }
 
-double pupil_radius(const TraceLens<double>& lens, const FieldBundle& bundle, const ReferenceSphere& sphere,
-                    const RegionOutline& outline) {
+double pupil_radius(const optics::TraceLens<double>& lens, const optics::FieldBundle& bundle,
+                    const ReferenceSphere& sphere, const optics::RegionOutline& outline) {
     std::vector<BeamNode> rim;
-    for (const OutlinePoint& point : outline.points) {
+    for (const optics::OutlinePoint& point : outline.points) {
         rim.push_back({outline.at(point, 1.0), 1.0});
     }
     double radius = 0.0;
@@ -146,4 +146,4 @@ ZernikeFit wavefront_zernike(const Wavefront& wavefront, double radius, int degr
     return fit_zernike(samples, degree);
 }
 
-}  // namespace lensproof
+}  // namespace lensproof::analysis

@@ -5,7 +5,7 @@
 
 #include "engine/analysis/wavefront.h"
 
-namespace lensproof {
+namespace lensproof::analysis {
 
 /// A circle polynomial: radial degree n ≥ 0, and azimuthal frequency m with |m| ≤ n and n − |m| even; m > 0 goes with
 /// cos mθ, m < 0 with sin |m|θ, and θ counts from +x towards +y.
@@ -60,11 +60,11 @@ ZernikeFit fit_zernike(std::span<const ZernikeSample> samples, int degree);
 
 /// The radius, in direction cosines, of the smallest circle about the chief ray that holds the whole beam on its
 /// reference sphere: the unit disc for `wavefront_zernike`. 0 where no light passes.
-double pupil_radius(const TraceLens<double>& lens, const FieldBundle& bundle, const ReferenceSphere& sphere,
-                    const RegionOutline& outline);
+double pupil_radius(const optics::TraceLens<double>& lens, const optics::FieldBundle& bundle,
+                    const ReferenceSphere& sphere, const optics::RegionOutline& outline);
 
 /// The wavefront in waves over the exit pupil as seen from the image point: x, y are the direction cosines on the
 /// reference sphere less the chief ray's, over `radius`.
 ZernikeFit wavefront_zernike(const Wavefront& wavefront, double radius, int degree);
 
-}  // namespace lensproof
+}  // namespace lensproof::analysis

@@ -8,7 +8,7 @@
 #include "engine/check/checks.h"
 #include "engine/check/rays.h"
 
-namespace lensproof {
+namespace lensproof::check {
 
 namespace {
 
@@ -27,7 +27,7 @@ void check_beam(const CheckedLens& checked, const AxialBeam& beam, Findings& fin
     const double paraxial = paraxial_beam(checked).height;
     if (beam.height <= 0.0) {
         findings.push_back({.code = "marginal-ray",
-                            .severity = Severity::error,
+                            .severity = optics::Severity::error,
                             .surface = beam.limit.surface + 1,
                             .message = fmt::format("not even a ray near the axis passes: {}", words(beam.limit)),
                             .value = 0.0,
@@ -35,21 +35,22 @@ void check_beam(const CheckedLens& checked, const AxialBeam& beam, Findings& fin
                             .unit = "mm"});
         return;
     }
-    const bool is_broken = beam.limit.status == RayStatus::missed ||
-                           beam.limit.status == RayStatus::total_internal_reflection || beam.limit.is_backwards;
+    const bool is_broken = beam.limit.status == optics::RayStatus::missed ||
+                           beam.limit.status == optics::RayStatus::total_internal_reflection || beam.limit.is_backwards;
     if (is_broken) {
-        findings.push_back({.code = "marginal-ray",
-                            .severity = beam.height < kShortBeam * paraxial ? Severity::error : Severity::warning,
-                            .surface = beam.limit.surface + 1,
-                            .message = fmt::format("the axial beam ends {:.4g} mm from the axis, where the stop would "
-                                                   "let {:.4g} mm pass: {}",
-                                                   beam.height, paraxial, words(beam.limit)),
-                            .value = beam.height,
-                            .limit = paraxial,
-                            .unit = "mm"});
+        findings.push_back(
+            {.code = "marginal-ray",
+             .severity = beam.height < kShortBeam * paraxial ? optics::Severity::error : optics::Severity::warning,
+             .surface = beam.limit.surface + 1,
+             .message = fmt::format("the axial beam ends {:.4g} mm from the axis, where the stop would "
+                                    "let {:.4g} mm pass: {}",
+                                    beam.height, paraxial, words(beam.limit)),
+             .value = beam.height,
+             .limit = paraxial,
+             .unit = "mm"});
         return;
     }
-    if (beam.limit.status != RayStatus::clipped) {
+    if (beam.limit.status != optics::RayStatus::clipped) {
         return;
     }
     const double of_stop = stop_limited_beam(checked).height;
@@ -57,7 +58,7 @@ void check_beam(const CheckedLens& checked, const AxialBeam& beam, Findings& fin
     if (beam.height < kRimLimits * of_stop) {
         findings.push_back(
             {.code = "stop-not-limiting",
-             .severity = Severity::warning,
+             .severity = optics::Severity::warning,
              .surface = beam.limit.surface + 1,
              .message = fmt::format("its rim cuts the axial beam to {:.4g} mm, where the stop lets "
                                     "{:.4g} mm pass: f/{:.2f} by real rays, f/{:.2f} by the stop",
@@ -76,7 +77,7 @@ void report_real_f_number(const CheckedLens& checked, const AxialBeam& beam, Fin
     constexpr double kWorthSaying = 0.02;
     if (beam.height > 0.0 && std::isfinite(real) && std::abs(real / paraxial - 1.0) > kWorthSaying) {
         findings.push_back({.code = "real-f-number",
-                            .severity = Severity::info,
+                            .severity = optics::Severity::info,
                             .message = fmt::format("the axial beam's real f-number is {:.3f}, the paraxial one {:.3f}",
                                                    real, paraxial),
                             .value = real,
@@ -92,7 +93,7 @@ void check_blur(const CheckedLens& checked, const AxialBeam& beam, Findings& fin
     const double blur = axial_blur(checked, beam.height) / std::abs(checked.focus->efl);
     if (blur > kBlur) {
         findings.push_back({.code = "blur",
-                            .severity = Severity::warning,
+                            .severity = optics::Severity::warning,
                             .message = fmt::format("the axial beam does not come to a focus: at its best its rays lie "
                                                    "{:.2g} % of the focal length apart (rms)",
                                                    100.0 * blur),
@@ -103,11 +104,11 @@ void check_blur(const CheckedLens& checked, const AxialBeam& beam, Findings& fin
 }
 
 void check_axial_colour(const CheckedLens& checked, Findings& findings) {
-    const bool is_chromatic = std::ranges::all_of(checked.media, [](const std::optional<Glass>& glass) {
-        return glass && covers(*glass, kLineF) && covers(*glass, kLineC);
+    const bool is_chromatic = std::ranges::all_of(checked.media, [](const std::optional<optics::Glass>& glass) {
+        return glass && optics::covers(*glass, spectral::kLineF) && optics::covers(*glass, spectral::kLineC);
     });
-    const bool has_constant = std::ranges::any_of(checked.media, [](const std::optional<Glass>& glass) {
-        return glass && glass->name != "air" && std::holds_alternative<ConstantIndex>(glass->formula);
+    const bool has_constant = std::ranges::any_of(checked.media, [](const std::optional<optics::Glass>& glass) {
+        return glass && glass->name != "air" && std::holds_alternative<optics::ConstantIndex>(glass->formula);
     });
     if (!is_chromatic || has_constant || !checked.settings.indices.empty()) {
         return;
@@ -115,14 +116,14 @@ void check_axial_colour(const CheckedLens& checked, Findings& findings) {
     const auto focus_at = [&](double wavelength) {
         ParaxialTable table = checked.table;
         for (int i = 0; i < checked.size(); ++i) {
-            table.index[i] = refractive_index(checked.media[i]->formula, wavelength);
+            table.index[i] = optics::refractive_index(checked.media[i]->formula, wavelength);
         }
         return paraxial_focus(table, std::numeric_limits<double>::infinity()).bfl;
     };
-    const double apart = (focus_at(kLineF) - focus_at(kLineC)) / checked.focus->efl;
+    const double apart = (focus_at(spectral::kLineF) - focus_at(spectral::kLineC)) / checked.focus->efl;
     if (std::abs(apart) > kAxialColour) {
         findings.push_back({.code = "axial-colour",
-                            .severity = Severity::warning,
+                            .severity = optics::Severity::warning,
                             .message = fmt::format("blue (F) and red (C) focus {:.2g} % of the focal length apart: not "
                                                    "a colour-corrected lens, or a glass is wrong",
                                                    100.0 * apart),
@@ -145,4 +146,4 @@ void check_axial_rays(const CheckedLens& checked, Findings& findings) {
     check_axial_colour(checked, findings);
 }
 
-}  // namespace lensproof
+}  // namespace lensproof::check

@@ -7,24 +7,25 @@
 
 #include "engine/base/input_error.h"
 
-namespace lensproof {
+namespace lensproof::check {
 
 namespace {
 
 constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 constexpr double kUnlimited = std::numeric_limits<double>::infinity();
 
-double index_behind(const PrescribedSurface& row, const std::optional<Glass>& medium, const CheckSettings& settings) {
+double index_behind(const optics::PrescribedSurface& row, const std::optional<optics::Glass>& medium,
+                    const CheckSettings& settings) {
     const auto override_index = settings.indices.find(row.medium.glass);
     if (!row.medium.glass.empty() && override_index != settings.indices.end()) {
         return override_index->second;
     }
-    const bool is_known = medium && covers(*medium, settings.wavelength_nm);
-    return is_known ? refractive_index(medium->formula, settings.wavelength_nm) : kUnknown;
+    const bool is_known = medium && optics::covers(*medium, settings.wavelength_nm);
+    return is_known ? optics::refractive_index(medium->formula, settings.wavelength_nm) : kUnknown;
 }
 
 /// What is claimed from outside goes before what the file says.
-StatedData joined(const StatedData& from_outside, StatedData claims) {
+optics::StatedData joined(const optics::StatedData& from_outside, optics::StatedData claims) {
     const auto take = [](std::optional<double>& claim, const std::optional<double>& given) {
         claim = given ? given : claim;
     };
@@ -40,16 +41,16 @@ StatedData joined(const StatedData& from_outside, StatedData claims) {
 
 /// Where a stop is missing or doubled, rays are judged as though the narrowest of the surfaces that may be meant were
 /// it.
-std::optional<int> assume_stop(Prescription& prescription) {
-    const auto stops = std::ranges::count_if(prescription.surfaces, &PrescribedSurface::is_stop);
+std::optional<int> assume_stop(optics::Prescription& prescription) {
+    const auto stops = std::ranges::count_if(prescription.surfaces, &optics::PrescribedSurface::is_stop);
     if (stops == 1) {
         return std::nullopt;
     }
-    const auto narrowness = [&](const PrescribedSurface& row) {
+    const auto narrowness = [&](const optics::PrescribedSurface& row) {
         return stops > 1 && !row.is_stop ? kUnlimited : row.semi_diameter_mm.value_or(kUnlimited);
     };
     const auto narrowest = std::ranges::min_element(prescription.surfaces, {}, narrowness);
-    for (PrescribedSurface& row : prescription.surfaces) {
+    for (optics::PrescribedSurface& row : prescription.surfaces) {
         row.is_stop = false;
     }
     narrowest->is_stop = true;
@@ -57,20 +58,20 @@ std::optional<int> assume_stop(Prescription& prescription) {
 }
 
 void trace_if_possible(CheckedLens& checked) {
-    Prescription traceable = checked.prescription;
+    optics::Prescription traceable = checked.prescription;
     traceable.stop_shape = {};
     traceable.stated = checked.claims;
     checked.assumed_stop = assume_stop(traceable);
     try {
-        checked.lens = make_lens(traceable, *checked.known_glasses, checked.settings.indices);
-        for (const LensSurface& surface : checked.lens->surfaces) {
-            if (!covers(surface.medium, checked.settings.wavelength_nm)) {
+        checked.lens = optics::make_lens(traceable, *checked.known_glasses, checked.settings.indices);
+        for (const optics::LensSurface& surface : checked.lens->surfaces) {
+            if (!optics::covers(surface.medium, checked.settings.wavelength_nm)) {
                 throw InputError(fmt::format("the index of {} is not known at {} nm", surface.medium.name,
                                              checked.settings.wavelength_nm));
             }
         }
-        checked.traced = at_wavelength<double>(*checked.lens, checked.settings.wavelength_nm);
-        checked.paraxial = paraxial_data(*checked.traced);
+        checked.traced = optics::at_wavelength<double>(*checked.lens, checked.settings.wavelength_nm);
+        checked.paraxial = optics::paraxial_data(*checked.traced);
     } catch (const InputError& error) {
         checked.why_not_traced = error.what();
         checked.lens.reset();
@@ -80,27 +81,27 @@ void trace_if_possible(CheckedLens& checked) {
 
 }  // namespace
 
-std::optional<Glass> stated_glass(const PrescribedSurface& row, const GlassCatalogue& glasses,
-                                  const std::vector<std::string>& preferred_makers) {
-    PrescribedSurface sound = row;
+std::optional<optics::Glass> stated_glass(const optics::PrescribedSurface& row, const optics::GlassCatalogue& glasses,
+                                          const std::vector<std::string>& preferred_makers) {
+    optics::PrescribedSurface sound = row;
     if (!(row.medium.V_d.value_or(1.0) > 0.0)) {
         sound.medium.V_d.reset();  // no dispersion can be made of it, but the index stands
     }
     try {
-        return resolved_medium(sound, glasses, preferred_makers);
+        return optics::resolved_medium(sound, glasses, preferred_makers);
     } catch (const InputError&) {
         return std::nullopt;
     }
 }
 
-TraceLens<double> paraxial_lens(const ParaxialTable& table) {
-    TraceLens<double> lens{.surfaces = {}, .image_z = 0.0};
+optics::TraceLens<double> paraxial_lens(const ParaxialTable& table) {
+    optics::TraceLens<double> lens{.surfaces = {}, .image_z = 0.0};
     lens.surfaces.reserve(table.curvature.size());
     double index_before = 1.0;
     double z = 0.0;
     for (std::size_t i = 0; i < table.curvature.size(); ++i) {
         lens.surfaces.push_back(
-            make_trace_surface(table.curvature[i], z, kUnlimited, index_before, table.index[i], false));
+            optics::make_trace_surface(table.curvature[i], z, kUnlimited, index_before, table.index[i], false));
         index_before = table.index[i];
         z += table.gap[i];
     }
@@ -109,19 +110,20 @@ TraceLens<double> paraxial_lens(const ParaxialTable& table) {
 }
 
 Focus paraxial_focus(const ParaxialTable& table, double object_distance_mm) {
-    const TraceLens<double> lens = paraxial_lens(table);
-    const ParaxialRay rear = trace_paraxial(lens, {1.0, 0.0}, 0, static_cast<int>(lens.surfaces.size()) - 1);
+    const optics::TraceLens<double> lens = paraxial_lens(table);
+    const optics::ParaxialRay rear =
+        optics::trace_paraxial(lens, {1.0, 0.0}, 0, static_cast<int>(lens.surfaces.size()) - 1);
     return {.efl = -1.0 / rear.slope,
             .bfl = -rear.height / rear.slope,
-            .image_distance = paraxial_image_distance(lens, object_distance_mm)};
+            .image_distance = optics::paraxial_image_distance(lens, object_distance_mm)};
 }
 
 bool CheckedLens::is_dummy(int i) const {
     return table.index[i] == index_before(i);
 }
 
-CheckedLens make_checked_lens(const Prescription& at_one_position, const StatedData& claims,
-                              const GlassCatalogue& glasses, const CheckSettings& settings) {
+CheckedLens make_checked_lens(const optics::Prescription& at_one_position, const optics::StatedData& claims,
+                              const optics::GlassCatalogue& glasses, const CheckSettings& settings) {
     CheckedLens checked;
     checked.prescription = at_one_position;
     checked.claims = joined(claims, at_one_position.stated);
@@ -130,7 +132,7 @@ CheckedLens make_checked_lens(const Prescription& at_one_position, const StatedD
     trace_if_possible(checked);
     bool is_known = true;
     for (int i = 0; i < checked.size(); ++i) {
-        const PrescribedSurface& row = checked.row(i);
+        const optics::PrescribedSurface& row = checked.row(i);
         checked.media.push_back(stated_glass(row, glasses, at_one_position.preferred_makers));
         checked.table.curvature.push_back(row.curvature() + 2.0 * row.asphere[0]);
         checked.table.gap.push_back(row.thickness_mm);
@@ -146,7 +148,7 @@ CheckedLens make_checked_lens(const Prescription& at_one_position, const StatedD
         checked.focus = paraxial_focus(checked.table, at_one_position.object_distance_mm);
     }
     for (int i = 0; i < checked.size(); ++i) {
-        const PrescribedSurface& row = checked.row(i);
+        const optics::PrescribedSurface& row = checked.row(i);
         const bool is_stated = row.semi_diameter_mm || row.rim_mm;
         const double estimate = checked.lens ? checked.lens->surfaces[i].semi_diameter : kUnknown;
         checked.semi_diameters.push_back(row.semi_diameter_mm.value_or(row.rim_mm.value_or(estimate)));
@@ -155,4 +157,4 @@ CheckedLens make_checked_lens(const Prescription& at_one_position, const StatedD
     return checked;
 }
 
-}  // namespace lensproof
+}  // namespace lensproof::check

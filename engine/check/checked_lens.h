@@ -7,9 +7,9 @@
 
 #include "engine/check/checker.h"
 
-namespace lensproof {
+namespace lensproof::check {
 
-using Findings = std::vector<Finding>;
+using Findings = std::vector<optics::Finding>;
 
 /// The numbers that first-order data come from, a surface each. No stop is needed, and no aperture.
 struct ParaxialTable {
@@ -28,29 +28,29 @@ struct Focus {
 Focus paraxial_focus(const ParaxialTable& table, double object_distance_mm);
 
 /// The tracer's surfaces for it, whose rims are infinite.
-TraceLens<double> paraxial_lens(const ParaxialTable& table);
+optics::TraceLens<double> paraxial_lens(const ParaxialTable& table);
 
 struct CheckedLens {
-    Prescription prescription;  // at one zoom position
-    StatedData claims;
+    optics::Prescription prescription;  // at one zoom position
+    optics::StatedData claims;
     CheckSettings settings;
-    const GlassCatalogue* known_glasses = nullptr;
+    const optics::GlassCatalogue* known_glasses = nullptr;
 
-    std::vector<std::optional<Glass>> media;  // behind each surface; nothing where it is not known
-    ParaxialTable table;                      // NaN where a number is missing, or a glass has none at the wavelength
-    std::optional<Focus> focus;               // nothing where a number is missing
-    std::vector<double> semi_diameters;       // stated ones, else the rim, else estimated, else NaN
-    std::vector<bool> is_estimated;           // whether that semi-diameter is not the table's
+    std::vector<std::optional<optics::Glass>> media;  // behind each surface; nothing where it is not known
+    ParaxialTable table;                 // NaN where a number is missing, or a glass has none at the wavelength
+    std::optional<Focus> focus;          // nothing where a number is missing
+    std::vector<double> semi_diameters;  // stated ones, else the rim, else estimated, else NaN
+    std::vector<bool> is_estimated;      // whether that semi-diameter is not the table's
 
     // Of a lens with a full circle for a stop. Nothing where the table cannot be traced.
-    std::optional<Lens> lens;
-    std::optional<TraceLens<double>> traced;
-    std::optional<ParaxialData> paraxial;
+    std::optional<optics::Lens> lens;
+    std::optional<optics::TraceLens<double>> traced;
+    std::optional<optics::ParaxialData> paraxial;
     std::string why_not_traced;       // in make_lens's words
     std::optional<int> assumed_stop;  // the surface (from 0) that stands in for a stop that is missing or doubled
 
     [[nodiscard]] int size() const { return static_cast<int>(prescription.surfaces.size()); }
-    [[nodiscard]] const PrescribedSurface& row(int i) const { return prescription.surfaces[i]; }
+    [[nodiscard]] const optics::PrescribedSurface& row(int i) const { return prescription.surfaces[i]; }
     [[nodiscard]] bool is_glass_behind(int i) const { return !row(i).medium.is_air() && table.index[i] != 1.0; }
     /// Whether light passes the surface unchanged: a stop's plane, or a dummy.
     [[nodiscard]] bool is_dummy(int i) const;
@@ -58,12 +58,12 @@ struct CheckedLens {
     [[nodiscard]] double index_before(int i) const { return i == 0 ? 1.0 : table.index[i - 1]; }
 };
 
-CheckedLens make_checked_lens(const Prescription& at_one_position, const StatedData& claims,
-                              const GlassCatalogue& glasses, const CheckSettings& settings);
+CheckedLens make_checked_lens(const optics::Prescription& at_one_position, const optics::StatedData& claims,
+                              const optics::GlassCatalogue& glasses, const CheckSettings& settings);
 
 /// The glass behind a surface as the table names or describes it; nothing where the name is unknown and no index is
 /// stated.
-std::optional<Glass> stated_glass(const PrescribedSurface& row, const GlassCatalogue& glasses,
-                                  const std::vector<std::string>& preferred_makers);
+std::optional<optics::Glass> stated_glass(const optics::PrescribedSurface& row, const optics::GlassCatalogue& glasses,
+                                          const std::vector<std::string>& preferred_makers);
 
-}  // namespace lensproof
+}  // namespace lensproof::check

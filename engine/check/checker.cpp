@@ -7,12 +7,12 @@
 
 #include "engine/check/checks.h"
 
-namespace lensproof {
+namespace lensproof::check {
 
 namespace {
 
-bool is_error(const Finding& finding) {
-    return finding.severity == Severity::error;
+bool is_error(const optics::Finding& finding) {
+    return finding.severity == optics::Severity::error;
 }
 
 /// What could not be judged for want of a lens that rays can be traced through.
@@ -22,7 +22,7 @@ void report_untraced(const CheckedLens& checked, Findings& findings) {
     }
     const bool is_explained = std::ranges::any_of(findings, is_error);
     findings.push_back({.code = is_explained ? "not-judged" : "not-traceable",
-                        .severity = is_explained ? Severity::info : Severity::error,
+                        .severity = is_explained ? optics::Severity::info : optics::Severity::error,
                         .message = (is_explained ? "no ray was traced, so nothing is said about rays: "
                                                  : "the lens cannot be traced: ") +
                                    checked.why_not_traced});
@@ -38,13 +38,13 @@ void report_rays_not_asked(const CheckedLens& checked, Findings& findings) {
     const bool claims_field = checked.claims.half_field_deg || checked.claims.image_circle_mm;
     if (!checked.prescription.is_rotationally_symmetric()) {
         findings.push_back({.code = "not-judged",
-                            .severity = Severity::info,
+                            .severity = optics::Severity::info,
                             .message = "a surface is tilted, shifted or toroidal, so no ray was traced: nothing is "
                                        "said about the axial beam, its focus and colour, nor about the field"});
     } else if (std::isfinite(object) && claims_field) {
         findings.push_back(
             {.code = "not-judged",
-             .severity = Severity::info,
+             .severity = optics::Severity::info,
              .message = fmt::format("the table is set to an object {} mm away, and the field is judged from infinity "
                                     "only: nothing is said about the stated field and image circle",
                                     object)});
@@ -63,30 +63,31 @@ Findings check_position(const CheckedLens& checked) {
     suggest_changes(checked, findings);
     report_untraced(checked, findings);
     report_rays_not_asked(checked, findings);
-    std::ranges::stable_sort(findings, [](const Finding& a, const Finding& b) { return a.severity > b.severity; });
+    std::ranges::stable_sort(
+        findings, [](const optics::Finding& a, const optics::Finding& b) { return a.severity > b.severity; });
     return findings;
 }
 
-bool is_same(const Finding& a, const Finding& b) {
+bool is_same(const optics::Finding& a, const optics::Finding& b) {
     return a.code == b.code && a.severity == b.severity && a.surface == b.surface && a.message == b.message;
 }
 
-bool holds(const Findings& findings, const Finding& wanted) {
-    return std::ranges::any_of(findings, [&](const Finding& finding) { return is_same(finding, wanted); });
+bool holds(const Findings& findings, const optics::Finding& wanted) {
+    return std::ranges::any_of(findings, [&](const optics::Finding& finding) { return is_same(finding, wanted); });
 }
 
 std::optional<ComputedData> computed_data(const CheckedLens& checked, std::string position) {
     if (!checked.focus) {
         return std::nullopt;
     }
-    ParaxialData paraxial = checked.paraxial.value_or(ParaxialData{});
+    optics::ParaxialData paraxial = checked.paraxial.value_or(optics::ParaxialData{});
     if (!checked.paraxial || checked.assumed_stop) {
         // What a stop is needed for is not known.
-        paraxial.entrance_pupil_z = paraxial.entrance_pupil_diameter = Finding::kNothing;
-        paraxial.exit_pupil_z = paraxial.exit_pupil_diameter = paraxial.f_number = Finding::kNothing;
+        paraxial.entrance_pupil_z = paraxial.entrance_pupil_diameter = optics::Finding::kNothing;
+        paraxial.exit_pupil_z = paraxial.exit_pupil_diameter = paraxial.f_number = optics::Finding::kNothing;
     }
     if (!checked.paraxial) {
-        paraxial.ffl = Finding::kNothing;
+        paraxial.ffl = optics::Finding::kNothing;
     }
     paraxial.efl = checked.focus->efl;
     paraxial.bfl = checked.focus->bfl;
@@ -100,18 +101,19 @@ bool CheckReport::ok() const {
     return std::ranges::none_of(findings, is_error);
 }
 
-CheckReport check_prescription(const Prescription& prescription, const StatedData& claims,
-                               const GlassCatalogue& glasses, const CheckSettings& settings) {
+CheckReport check_prescription(const optics::Prescription& prescription, const optics::StatedData& claims,
+                               const optics::GlassCatalogue& glasses, const CheckSettings& settings) {
     CheckReport report{.findings = prescription.remarks, .computed = {}};
     if (prescription.surfaces.empty()) {
-        report.findings.push_back(
-            {.code = "no-surface", .severity = Severity::error, .message = "the prescription holds no surface"});
+        report.findings.push_back({.code = "no-surface",
+                                   .severity = optics::Severity::error,
+                                   .message = "the prescription holds no surface"});
         return report;
     }
     if (std::ranges::any_of(report.findings, is_error)) {
         // Numbers of another lens than the file's would only mislead.
         report.findings.push_back({.code = "not-judged",
-                                   .severity = Severity::info,
+                                   .severity = optics::Severity::info,
                                    .message = "the file holds surfaces that are not traced here, so the rest is not "
                                               "judged"});
         return report;
@@ -123,7 +125,7 @@ CheckReport check_prescription(const Prescription& prescription, const StatedDat
             continue;
         }
         const CheckedLens checked =
-            make_checked_lens(at_zoom_position(prescription, position), claims, glasses, settings);
+            make_checked_lens(optics::at_zoom_position(prescription, position), claims, glasses, settings);
         const std::string name = prescription.zoom.empty() ? "" : prescription.zoom[position].name;
         positions.emplace_back(name, check_position(checked));
         if (std::optional<ComputedData> computed = computed_data(checked, name)) {
@@ -131,7 +133,7 @@ CheckReport check_prescription(const Prescription& prescription, const StatedDat
         }
     }
     for (const auto& [name, findings] : positions) {
-        for (const Finding& finding : findings) {
+        for (const optics::Finding& finding : findings) {
             // What holds at every position is said once.
             const bool everywhere =
                 std::ranges::all_of(positions, [&](const auto& other) { return holds(other.second, finding); });
@@ -147,4 +149,4 @@ CheckReport check_prescription(const Prescription& prescription, const StatedDat
     return report;
 }
 
-}  // namespace lensproof
+}  // namespace lensproof::check

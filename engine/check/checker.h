@@ -8,24 +8,24 @@
 #include "engine/optics/paraxial.h"
 #include "engine/spectral/wavelengths.h"
 
-namespace lensproof {
+namespace lensproof::check {
 
 struct CheckSettings {
-    double wavelength_nm = kLineD;             // of the first-order data and of the rays
-    IndexOverrides indices;                    // constant indices in place of glasses
+    double wavelength_nm = spectral::kLineD;   // of the first-order data and of the rays
+    optics::IndexOverrides indices;            // constant indices in place of glasses
     std::optional<std::size_t> zoom_position;  // counted from 0; without one, every position is checked
 };
 
 /// The lens's first-order data at one zoom position, which has no name where the lens does not zoom.
 struct ComputedData {
     std::string zoom_position;
-    ParaxialData paraxial;
-    double wavelength_nm = kLineD;
+    optics::ParaxialData paraxial;
+    double wavelength_nm = spectral::kLineD;
 };
 
 struct CheckReport {
-    std::vector<Finding> findings;       // the reader's remarks first, then errors, warnings and infos
-    std::vector<ComputedData> computed;  // a position of the zoom each; empty where nothing could be computed
+    std::vector<optics::Finding> findings;  // the reader's remarks first, then errors, warnings and infos
+    std::vector<ComputedData> computed;     // a position of the zoom each; empty where nothing could be computed
 
     /// Whether no finding is an error.
     [[nodiscard]] bool ok() const;
@@ -37,7 +37,7 @@ struct CheckReport {
 /// "suggestion".
 ///
 /// Each rule stands with its source beside the check. Never throws for what a prescription may hold.
-CheckReport check_prescription(const Prescription& prescription, const StatedData& claims,
-                               const GlassCatalogue& glasses, const CheckSettings& settings = {});
+CheckReport check_prescription(const optics::Prescription& prescription, const optics::StatedData& claims,
+                               const optics::GlassCatalogue& glasses, const CheckSettings& settings = {});
 
-}  // namespace lensproof
+}  // namespace lensproof::check

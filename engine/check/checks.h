@@ -3,7 +3,7 @@
 #pragma once
 #include "engine/check/checked_lens.h"
 
-namespace lensproof {
+namespace lensproof::check {
 
 /// Row by row: numbers, stop, thicknesses, semi-diameters.
 void check_table(const CheckedLens& checked, Findings& findings);
@@ -29,4 +29,4 @@ void check_field_rays(const CheckedLens& checked, Findings& findings);
 /// Which change of one number would restore the claims.
 void suggest_changes(const CheckedLens& checked, Findings& findings);
 
-}  // namespace lensproof
+}  // namespace lensproof::check

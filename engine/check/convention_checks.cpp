@@ -10,7 +10,7 @@
 #include "engine/check/restoration.h"
 #include "engine/check/sag.h"
 
-namespace lensproof {
+namespace lensproof::check {
 
 namespace {
 
@@ -33,7 +33,7 @@ constexpr double kFastest = 0.5;  // f-number: n sin u' cannot exceed 1 in air
 
 void warn(Findings& findings, const char* code, int surface, std::string message, double value, double limit) {
     findings.push_back({.code = code,
-                        .severity = Severity::warning,
+                        .severity = optics::Severity::warning,
                         .surface = surface,
                         .message = std::move(message),
                         .value = value,
@@ -248,4 +248,4 @@ void check_conventions(const CheckedLens& checked, Findings& findings) {
     }
 }
 
-}  // namespace lensproof
+}  // namespace lensproof::check

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <string_view>
 
-namespace lensproof {
+namespace lensproof::check {
 
 namespace {
 
@@ -141,4 +141,4 @@ std::vector<NumberChange> plausible_changes(double value) {
     return changes.take();
 }
 
-}  // namespace lensproof
+}  // namespace lensproof::check

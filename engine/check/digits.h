@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-namespace lensproof {
+namespace lensproof::check {
 
 struct NumberChange {
     double value = 0.0;
@@ -16,4 +16,4 @@ struct NumberChange {
 /// and without `value` itself; none for a number that is not finite.
 std::vector<NumberChange> plausible_changes(double value);
 
-}  // namespace lensproof
+}  // namespace lensproof::check

@@ -10,7 +10,7 @@
 #include "engine/check/sag.h"
 #include "engine/optics/chief_ray.h"
 
-namespace lensproof {
+namespace lensproof::check {
 
 namespace {
 
@@ -26,10 +26,10 @@ constexpr double kGrazingIncidence = 75.0;
 constexpr double kBackwardsShare = 0.01;  // of the beam that passes, below which a rim's edge explains it
 
 /// The lens as the field is judged by: its sensor in the paraxial image, its rims as they are or out of the way.
-Lens lens_in_focus(const CheckedLens& checked, bool with_rims) {
-    Lens lens = *checked.lens;
+optics::Lens lens_in_focus(const CheckedLens& checked, bool with_rims) {
+    optics::Lens lens = *checked.lens;
     lens.image_z = lens.last_vertex_z() + checked.focus->image_distance;
-    for (LensSurface& surface : lens.surfaces) {
+    for (optics::LensSurface& surface : lens.surfaces) {
         if (!with_rims) {
             surface.semi_diameter = std::numeric_limits<double>::infinity();
         }
@@ -39,10 +39,12 @@ Lens lens_in_focus(const CheckedLens& checked, bool with_rims) {
 
 /// Where rays from the stop's centre, tilted more and more, first fail although no rim cuts them.
 RayFate first_failure(const CheckedLens& checked) {
-    const TraceLens<double> lens = without_rims(checked, false);
+    const optics::TraceLens<double> lens = without_rims(checked, false);
     const int stop = checked.lens->stop_index();
-    const TraceLens<double> front{{lens.surfaces.begin(), lens.surfaces.begin() + stop}, lens.image_z, lens.specials};
-    const TraceLens<double> rear{{lens.surfaces.begin() + stop + 1, lens.surfaces.end()}, lens.image_z, lens.specials};
+    const optics::TraceLens<double> front{
+        {lens.surfaces.begin(), lens.surfaces.begin() + stop}, lens.image_z, lens.specials};
+    const optics::TraceLens<double> rear{
+        {lens.surfaces.begin() + stop + 1, lens.surfaces.end()}, lens.image_z, lens.specials};
     const double z = lens.surfaces[stop].vertex_z;
     constexpr int kAngles = 900;
     for (int k = 1; k < kAngles; ++k) {
@@ -51,15 +53,17 @@ RayFate first_failure(const CheckedLens& checked) {
         // Where the stop is a glass surface, the ray bends at its vertex.
         const double sine = lens.surfaces[stop].reverse_ratio * way.y;
         if (!(sine < 1.0)) {
-            return {.status = RayStatus::total_internal_reflection, .surface = stop};
+            return {.status = optics::RayStatus::total_internal_reflection, .surface = stop};
         }
         const Vec3d back{0.0, -sine, -std::sqrt(1.0 - sine * sine)};
-        const TracedRay<double> outwards = trace<Direction::reverse>(front, Ray<double>{{0.0, 0.0, z}, back});
-        const TracedRay<double> inwards = trace<Direction::forward>(rear, Ray<double>{{0.0, 0.0, z}, way});
-        if (stop > 0 && outwards.status != RayStatus::ok) {
+        const optics::TracedRay<double> outwards =
+            optics::trace<optics::Direction::reverse>(front, Ray<double>{{0.0, 0.0, z}, back});
+        const optics::TracedRay<double> inwards =
+            optics::trace<optics::Direction::forward>(rear, Ray<double>{{0.0, 0.0, z}, way});
+        if (stop > 0 && outwards.status != optics::RayStatus::ok) {
             return {.status = outwards.status, .surface = outwards.surface};
         }
-        if (inwards.status != RayStatus::ok) {
+        if (inwards.status != optics::RayStatus::ok) {
             return {.status = inwards.status, .surface = stop + 1 + inwards.surface};
         }
     }
@@ -67,19 +71,19 @@ RayFate first_failure(const CheckedLens& checked) {
 }
 
 /// Rule 26. Returns the chief ray, past the rims where need be.
-std::optional<ChiefRay> check_chief_ray(const CheckedLens& checked, double field, Findings& findings) {
+std::optional<optics::ChiefRay> check_chief_ray(const CheckedLens& checked, double field, Findings& findings) {
     const double wavelength = checked.settings.wavelength_nm;
-    const ChiefRays rays(lens_in_focus(checked, true), wavelength);
-    if (std::optional<ChiefRay> chief = rays.at_field(field)) {
+    const optics::ChiefRays rays(lens_in_focus(checked, true), wavelength);
+    if (std::optional<optics::ChiefRay> chief = rays.at_field(field)) {
         return chief;
     }
-    const ChiefRays rays_past_rims(lens_in_focus(checked, false), wavelength);
-    const std::optional<ChiefRay> past_rims = rays_past_rims.at_field(field);
+    const optics::ChiefRays rays_past_rims(lens_in_focus(checked, false), wavelength);
+    const std::optional<optics::ChiefRay> past_rims = rays_past_rims.at_field(field);
     if (past_rims) {
         const RayFate fate = follow(*checked.traced, past_rims->front);
         const double reached = rays.largest_field() / kDegree;
         findings.push_back({.code = "chief-ray",
-                            .severity = Severity::warning,
+                            .severity = optics::Severity::warning,
                             .surface = fate.surface + 1,
                             .message = fmt::format("the chief ray of the stated field of {:.2f}° does not pass: {}; it "
                                                    "does up to {:.2f}°",
@@ -93,7 +97,7 @@ std::optional<ChiefRay> check_chief_ray(const CheckedLens& checked, double field
     const double reached = std::max(0.0, rays_past_rims.largest_field()) / kDegree;
     findings.push_back(
         {.code = "chief-ray",
-         .severity = Severity::error,
+         .severity = optics::Severity::error,
          .surface = fate.passes() ? 0 : fate.surface + 1,
          .message = fmt::format("no chief ray reaches the stated field of {:.2f}°, even past the rims: "
                                 "beyond {:.2f}°, {}",
@@ -124,7 +128,7 @@ SampledBeam sample_beam(const CheckedLens& checked, double field, double centre,
             const double a = (i + 0.5) * cell;
             const double b = centre - half_width + (k + 0.5) * cell;
             const RayFate fate = follow(*checked.traced, {Vec3d{a, 0.0, 0.0} + b * across, way});
-            if (fate.status == RayStatus::ok && fate.is_backwards) {
+            if (fate.status == optics::RayStatus::ok && fate.is_backwards) {
                 beam.backwards += 2.0 * cell * cell;
                 beam.backwards_surface = fate.surface;
             }
@@ -150,7 +154,7 @@ double window(const CheckedLens& checked, double axial_semi_diameter) {
 }
 
 /// The beam of the field that the rims let pass.
-SampledBeam field_beam(const CheckedLens& checked, double field, const ChiefRay& chief, double axial) {
+SampledBeam field_beam(const CheckedLens& checked, double field, const optics::ChiefRay& chief, double axial) {
     const double centre = chief.front.origin.y * std::cos(field) - chief.front.origin.z * std::sin(field);
     return sample_beam(checked, field, centre, window(checked, axial));
 }
@@ -161,13 +165,13 @@ void check_vignetting(const CheckedLens& checked, double field, double axial, do
     if (transmitted >= kLeastTransmitted) {
         return;
     }
-    Severity severity = Severity::warning;
+    optics::Severity severity = optics::Severity::warning;
     if (!(transmitted > 0.0)) {
         const double within = kRoundedField * field;
-        const std::optional<ChiefRay> chief =
-            ChiefRays(lens_in_focus(checked, false), checked.settings.wavelength_nm).at_field(within);
+        const std::optional<optics::ChiefRay> chief =
+            optics::ChiefRays(lens_in_focus(checked, false), checked.settings.wavelength_nm).at_field(within);
         const bool is_dark = !chief || !(field_beam(checked, within, *chief, axial).area > 0.0);
-        severity = is_dark ? Severity::error : Severity::warning;
+        severity = is_dark ? optics::Severity::error : optics::Severity::warning;
     }
     findings.push_back(
         {.code = "vignetting",
@@ -181,7 +185,8 @@ void check_vignetting(const CheckedLens& checked, double field, double axial, do
 }
 
 /// Rule 33, and the order of surfaces.
-void check_beam(const CheckedLens& checked, double field, const std::optional<ChiefRay>& chief, Findings& findings) {
+void check_beam(const CheckedLens& checked, double field, const std::optional<optics::ChiefRay>& chief,
+                Findings& findings) {
     const double axial = axial_beam(checked).height;
     if (!(axial > 0.0) || !chief) {
         return;
@@ -193,7 +198,7 @@ void check_beam(const CheckedLens& checked, double field, const std::optional<Ch
         const int there = beam.backwards_surface;
         const bool is_estimated = checked.is_estimated[there] || (there > 0 && checked.is_estimated[there - 1]);
         findings.push_back({.code = "order-of-surfaces",
-                            .severity = is_estimated ? Severity::warning : Severity::error,
+                            .severity = is_estimated ? optics::Severity::warning : optics::Severity::error,
                             .surface = there + 1,
                             .message = fmt::format("rays of the stated field of {:.2f}° pass every rim, but would "
                                                    "have to run backwards to meet surface {}",
@@ -206,7 +211,7 @@ void check_beam(const CheckedLens& checked, double field, const std::optional<Ch
     if (incidence > kSteepIncidence) {
         const bool grazing = incidence > kGrazingIncidence;
         findings.push_back({.code = "incidence-angle",
-                            .severity = grazing ? Severity::warning : Severity::info,
+                            .severity = grazing ? optics::Severity::warning : optics::Severity::info,
                             .surface = beam.steepest_surface + 1,
                             .message = fmt::format("rays of the stated field meet it at up to {:.1f}°", incidence),
                             .value = incidence,
@@ -217,11 +222,11 @@ void check_beam(const CheckedLens& checked, double field, const std::optional<Ch
 
 /// Rule 31.
 void check_distortion(const CheckedLens& checked, double field, double image_height, Findings& findings) {
-    const Projection projection = checked.prescription.projection;
-    const bool is_rectilinear = projection == Projection::rectilinear;
+    const optics::Projection projection = checked.prescription.projection;
+    const bool is_rectilinear = projection == optics::Projection::rectilinear;
     if (is_rectilinear && field > kWidestRectilinear * kDegree) {
         findings.push_back({.code = "distortion",
-                            .severity = Severity::warning,
+                            .severity = optics::Severity::warning,
                             .message = fmt::format("a half field of {:.2f}° is none of a rectilinear lens: is it a "
                                                    "fisheye, or is the full field stated?",
                                                    field / kDegree),
@@ -230,16 +235,16 @@ void check_distortion(const CheckedLens& checked, double field, double image_hei
                             .unit = "deg"});
         return;
     }
-    const double ideal = checked.focus->efl * projected_radius(projection, field);
+    const double ideal = checked.focus->efl * optics::projected_radius(projection, field);
     const double off = image_height / ideal - 1.0;
     const double limit = is_rectilinear ? kDistortion : kFisheyeDistortion;
     if (std::abs(off) > limit) {
         findings.push_back(
             {.code = "distortion",
-             .severity = Severity::warning,
+             .severity = optics::Severity::warning,
              .message = fmt::format("the chief ray of {:.2f}° lands {:.4g} mm from the axis, {:+.1f} % "
                                     "off the {} projection",
-                                    field / kDegree, image_height, 100.0 * off, projection_name(projection)),
+                                    field / kDegree, image_height, 100.0 * off, optics::projection_name(projection)),
              .value = 100.0 * off,
              .limit = 100.0 * limit,
              .unit = "%"});
@@ -257,15 +262,15 @@ void check_image_circle(const CheckedLens& checked, std::optional<double> image_
     if (image_height) {
         is_off = std::abs(2.0 * *image_height / circle - 1.0) > kImageCircle;
     } else {
-        const ChiefRays rays(lens_in_focus(checked, true), checked.settings.wavelength_nm);
-        const std::optional<ChiefRay> last = rays.at_field(rays.largest_field() * (1.0 - 1e-9));
+        const optics::ChiefRays rays(lens_in_focus(checked, true), checked.settings.wavelength_nm);
+        const std::optional<optics::ChiefRay> last = rays.at_field(rays.largest_field() * (1.0 - 1e-9));
         image_height = last ? last->image_height : 0.0;
         is_off = 2.0 * *image_height < (1.0 - kImageCircle) * circle;
         what = "all that the rims let pass";
     }
     if (is_off) {
         findings.push_back({.code = "image-circle",
-                            .severity = Severity::warning,
+                            .severity = optics::Severity::warning,
                             .message = fmt::format("{} fills an image circle of {:.4g} mm, {:.4g} mm is stated", what,
                                                    2.0 * *image_height, circle),
                             .value = 2.0 * *image_height,
@@ -286,7 +291,7 @@ void check_field_rays(const CheckedLens& checked, Findings& findings) {
     std::optional<double> image_height;
     if (checked.claims.half_field_deg && *checked.claims.half_field_deg > 0.0) {
         const double field = *checked.claims.half_field_deg * kDegree;
-        const std::optional<ChiefRay> chief = check_chief_ray(checked, field, findings);
+        const std::optional<optics::ChiefRay> chief = check_chief_ray(checked, field, findings);
         check_beam(checked, field, chief, findings);
         if (chief) {
             image_height = chief->image_height;
@@ -296,4 +301,4 @@ void check_field_rays(const CheckedLens& checked, Findings& findings) {
     check_image_circle(checked, image_height, findings);
 }
 
-}  // namespace lensproof
+}  // namespace lensproof::check

@@ -8,7 +8,7 @@
 #include "engine/check/checks.h"
 #include "engine/check/sag.h"
 
-namespace lensproof {
+namespace lensproof::check {
 
 namespace {
 
@@ -37,7 +37,7 @@ void check_power(const CheckedLens& checked, Findings& findings) {
     const Focus& focus = *checked.focus;
     if (!std::isfinite(focus.efl) || std::abs(focus.efl) > kNoPower * std::max(1.0, lens_length(checked))) {
         findings.push_back({.code = "no-power",
-                            .severity = Severity::error,
+                            .severity = optics::Severity::error,
                             .message = "the lens has no power: it images nothing",
                             .value = focus.efl,
                             .limit = 0.0,
@@ -46,7 +46,7 @@ void check_power(const CheckedLens& checked, Findings& findings) {
     }
     if (focus.efl < 0.0) {
         findings.push_back({.code = "negative-power",
-                            .severity = Severity::error,
+                            .severity = optics::Severity::error,
                             .message = fmt::format("the focal length is {:.4f} mm: a diverging lens, which images "
                                                    "nothing on a sensor",
                                                    focus.efl),
@@ -55,7 +55,7 @@ void check_power(const CheckedLens& checked, Findings& findings) {
                             .unit = "mm"});
     } else if (focus.image_distance <= 0.0) {
         findings.push_back({.code = "image-in-front",
-                            .severity = Severity::warning,
+                            .severity = optics::Severity::warning,
                             .surface = checked.size(),
                             .message = fmt::format("the image lies {:.3f} mm in front of the last surface, where no "
                                                    "sensor can stand",
@@ -84,7 +84,7 @@ void compare(const Comparison& c, Findings& findings) {
         return;
     }
     findings.push_back({.code = c.code,
-                        .severity = off > c.error ? Severity::error : Severity::warning,
+                        .severity = off > c.error ? optics::Severity::error : optics::Severity::warning,
                         .surface = c.surface,
                         .message = fmt::format("{} is {:.6g} by the table, {:.6g} as stated: off by {:.3g} %", c.what,
                                                c.computed, c.stated, 100.0 * off),
@@ -96,7 +96,7 @@ void compare(const Comparison& c, Findings& findings) {
 /// Rules 19 and 20. The last thickness is a claim too: where the sensor stands.
 void check_focal_lengths(const CheckedLens& checked, Findings& findings) {
     const Focus& focus = *checked.focus;
-    const StatedData& claims = checked.claims;
+    const optics::StatedData& claims = checked.claims;
     if (claims.efl_mm) {
         compare({.code = "focal-length",
                  .what = "the focal length (mm)",
@@ -160,7 +160,7 @@ void check_petzval(const CheckedLens& checked, Findings& findings) {
     const double shares = std::abs(radius / checked.focus->efl);
     if (shares < kPetzvalWarning) {
         findings.push_back({.code = "petzval-radius",
-                            .severity = Severity::warning,
+                            .severity = optics::Severity::warning,
                             .message = fmt::format("the Petzval radius is {:.4g} mm, {:.2f} focal lengths: the field "
                                                    "is curved more strongly than a single element's",
                                                    radius, shares),
@@ -172,7 +172,7 @@ void check_petzval(const CheckedLens& checked, Findings& findings) {
 
 /// Rule 22, and the entrance pupil where a design program states that.
 void check_aperture(const CheckedLens& checked, Findings& findings) {
-    const ParaxialData& data = *checked.paraxial;
+    const optics::ParaxialData& data = *checked.paraxial;
     if (!std::isfinite(data.f_number) || checked.assumed_stop) {
         return;
     }
@@ -203,13 +203,13 @@ void check_aperture(const CheckedLens& checked, Findings& findings) {
 
 /// Rule 32: n (u ȳ − ū y) of two paraxial rays is the same in every space. A test of the checker's own arithmetic.
 void check_invariant(const CheckedLens& checked, Findings& findings) {
-    const TraceLens<double> lens = paraxial_lens(checked.table);
-    ParaxialRay one{1.0, 0.0};
-    ParaxialRay other{0.0, 0.1};
-    double expected = Finding::kNothing;
+    const optics::TraceLens<double> lens = paraxial_lens(checked.table);
+    optics::ParaxialRay one{1.0, 0.0};
+    optics::ParaxialRay other{0.0, 0.1};
+    double expected = optics::Finding::kNothing;
     for (int i = 0; i < checked.size(); ++i) {
-        one = trace_paraxial(lens, one, i, i);
-        other = trace_paraxial(lens, other, i, i);
+        one = optics::trace_paraxial(lens, one, i, i);
+        other = optics::trace_paraxial(lens, other, i, i);
         const double n = checked.table.index[i];
         const double first = n * one.height * other.slope;
         const double second = n * other.height * one.slope;
@@ -220,7 +220,7 @@ void check_invariant(const CheckedLens& checked, Findings& findings) {
         const double scale = std::abs(first) + std::abs(second) + std::abs(expected);
         if (!(std::abs(invariant - expected) <= kInvariantError * scale)) {
             findings.push_back({.code = "lagrange-invariant",
-                                .severity = Severity::error,
+                                .severity = optics::Severity::error,
                                 .surface = i + 1,
                                 .message = "the Lagrange invariant changes here: the table's numbers are too extreme "
                                            "to compute with",
@@ -240,15 +240,16 @@ void check_sensor_place(const CheckedLens& checked, Findings& findings) {
     const double distance = checked.row(last).thickness_mm;
     const double rim = sag_at(checked.row(last), checked.semi_diameters[last]);
     if (distance > 0.0 && rim > distance) {
-        findings.push_back({.code = "sensor-inside-lens",
-                            .severity = checked.is_estimated[last] ? Severity::warning : Severity::error,
-                            .surface = last + 1,
-                            .message = fmt::format("the last surface's rim reaches {:.3f} mm behind its vertex, the "
-                                                   "sensor stands at {:.3f} mm",
-                                                   rim, distance),
-                            .value = distance - rim,
-                            .limit = 0.0,
-                            .unit = "mm"});
+        findings.push_back(
+            {.code = "sensor-inside-lens",
+             .severity = checked.is_estimated[last] ? optics::Severity::warning : optics::Severity::error,
+             .surface = last + 1,
+             .message = fmt::format("the last surface's rim reaches {:.3f} mm behind its vertex, the "
+                                    "sensor stands at {:.3f} mm",
+                                    rim, distance),
+             .value = distance - rim,
+             .limit = 0.0,
+             .unit = "mm"});
     }
 }
 
@@ -269,4 +270,4 @@ void check_first_order(const CheckedLens& checked, Findings& findings) {
     }
 }
 
-}  // namespace lensproof
+}  // namespace lensproof::check

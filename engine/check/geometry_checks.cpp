@@ -7,7 +7,7 @@
 #include "engine/check/checks.h"
 #include "engine/check/sag.h"
 
-namespace lensproof {
+namespace lensproof::check {
 
 namespace {
 
@@ -37,15 +37,15 @@ bool is_known(double value) {
 struct Space {
     const CheckedLens& checked;
     int i;  // the first surface, from 0
-    const PrescribedSurface& front = checked.row(i);
-    const PrescribedSurface& rear = checked.row(i + 1);
+    const optics::PrescribedSurface& front = checked.row(i);
+    const optics::PrescribedSurface& rear = checked.row(i + 1);
     double front_reach = checked.semi_diameters[i];
     double rear_reach = checked.semi_diameters[i + 1];
 
     [[nodiscard]] bool is_estimated() const { return checked.is_estimated[i] || checked.is_estimated[i + 1]; }
     /// What an unstated semi-diameter implies is no more than worth a look.
-    [[nodiscard]] Severity at_most(Severity severity) const {
-        return is_estimated() ? std::min(severity, Severity::warning) : severity;
+    [[nodiscard]] optics::Severity at_most(optics::Severity severity) const {
+        return is_estimated() ? std::min(severity, optics::Severity::warning) : severity;
     }
     [[nodiscard]] int surface() const { return i + 1; }
 };
@@ -93,12 +93,12 @@ bool cuts_no_glass(const Space& space) {
 
 /// Rules 6 to 8 for a surface by itself.
 void check_steepness(const CheckedLens& checked, int i, Findings& findings) {
-    const PrescribedSurface& row = checked.row(i);
+    const optics::PrescribedSurface& row = checked.row(i);
     const double share = std::abs(checked.semi_diameters[i] * row.curvature());
     if (share > kSteepest && share < 1.0) {
         findings.push_back(
             {.code = "steep-surface",
-             .severity = Severity::warning,
+             .severity = optics::Severity::warning,
              .surface = i + 1,
              .message = fmt::format("its radius is only {:.2f} of its diameter: hard to make", 0.5 / share),
              .value = share,
@@ -107,7 +107,7 @@ void check_steepness(const CheckedLens& checked, int i, Findings& findings) {
     const double depth = std::abs(sag_at(row, checked.semi_diameters[i]));
     if (!row.is_flat() && !row.is_asphere() && depth < kFlattestSag) {
         findings.push_back({.code = "nearly-flat",
-                            .severity = Severity::info,
+                            .severity = optics::Severity::info,
                             .surface = i + 1,
                             .message = fmt::format("it is only {:.3f} mm deep at its rim: would a flat do?", depth),
                             .value = depth,
@@ -127,7 +127,7 @@ void check_edge(const Space& space, Findings& findings) {
     const double blank_edge = edge_with(kBlankMargin);
     const double reach = std::max(space.front_reach, space.rear_reach);
     const double least = std::max(kThinnestEdge, kThinnestEdgeShare * 2.0 * reach);
-    const auto report = [&](Severity severity, double value, double limit, std::string message) {
+    const auto report = [&](optics::Severity severity, double value, double limit, std::string message) {
         findings.push_back({.code = "edge-thickness",
                             .severity = severity,
                             .surface = space.surface(),
@@ -138,19 +138,19 @@ void check_edge(const Space& space, Findings& findings) {
     };
     if (edge < 0.0) {
         const bool is_possible = cuts_no_glass(space);
-        report(is_possible ? Severity::warning : space.at_most(Severity::error), edge, 0.0,
+        report(is_possible ? optics::Severity::warning : space.at_most(optics::Severity::error), edge, 0.0,
                fmt::format("its glass would be {:.3f} mm thick at the edge, each surface taken to its own "
                            "semi-diameter: {}",
                            edge,
                            is_possible ? "are these semi-diameters of light, not of glass?"
                                        : "the two surfaces meet inside their apertures"));
     } else if (blank_edge < kThinnestBlankEdge) {
-        report(Severity::warning, blank_edge, kThinnestBlankEdge,
+        report(optics::Severity::warning, blank_edge, kThinnestBlankEdge,
                fmt::format("its glass is {:.3f} mm thick at the edge of a blank 1 mm wider than the clear aperture: it "
                            "chips",
                            blank_edge));
     } else if (edge < least) {
-        report(Severity::info, edge, least, fmt::format("its glass is only {:.3f} mm thick at the edge", edge));
+        report(optics::Severity::info, edge, least, fmt::format("its glass is only {:.3f} mm thick at the edge", edge));
     }
 }
 
@@ -163,7 +163,7 @@ void check_centre(const Space& space, Findings& findings) {
     if (thickness > 0.0 && thickness < least) {
         const bool is_thin = thickness < std::max(kThinnestCentre, kThinCentreShare * diameter);
         findings.push_back({.code = "centre-thickness",
-                            .severity = is_thin ? Severity::warning : Severity::info,
+                            .severity = is_thin ? optics::Severity::warning : optics::Severity::info,
                             .surface = space.surface(),
                             .message = fmt::format("its glass is only {} mm thick in the middle for a diameter of "
                                                    "{:.3g} mm",
@@ -185,7 +185,7 @@ void check_crossing(const Space& space, Findings& findings) {
     if (touches && space.front.thickness_mm > 0.0) {
         findings.push_back(
             {.code = "surfaces-cross",
-             .severity = is_explained ? Severity::warning : space.at_most(Severity::error),
+             .severity = is_explained ? optics::Severity::warning : space.at_most(optics::Severity::error),
              .surface = space.surface(),
              .message = fmt::format("it runs {:.3f} mm into surface {}, {:.3g} mm from the axis{}", -narrowest,
                                     space.surface() + 1, where, is_plane ? " (a plane without glass)" : ""),
@@ -194,7 +194,7 @@ void check_crossing(const Space& space, Findings& findings) {
              .unit = "mm"});
     } else if (!is_glass && !is_plane && narrowest > 0.0 && narrowest < kNarrowestGap) {
         findings.push_back({.code = "air-gap",
-                            .severity = Severity::warning,
+                            .severity = optics::Severity::warning,
                             .surface = space.surface(),
                             .message = fmt::format("only {:.3f} mm of air to surface {}, {:.3g} mm from the axis",
                                                    narrowest, space.surface() + 1, where),
@@ -215,7 +215,7 @@ void check_rims(const Space& space, Findings& findings) {
         separation < 0.0 && *space.front.rim_mm > space.rear_reach && *space.rear.rim_mm > space.front_reach;
     if (overlap) {
         findings.push_back({.code = "rims-overlap",
-                            .severity = Severity::warning,
+                            .severity = optics::Severity::warning,
                             .surface = space.surface(),
                             .message = fmt::format("its rim and that of surface {} overlap by {:.3f} mm",
                                                    space.surface() + 1, -separation),
@@ -237,11 +237,11 @@ void check_cement(const Space& space, Findings& findings) {
         const bool is_glass_before = i > 0 && checked.is_glass_behind(i - 1);
         const bool same_dispersion =
             is_glass_before && checked.media[i] && checked.media[i - 1] &&
-            abbe_number(checked.media[i]->formula) == abbe_number(checked.media[i - 1]->formula);
+            optics::abbe_number(checked.media[i]->formula) == optics::abbe_number(checked.media[i - 1]->formula);
         if (is_glass_before && checked.is_dummy(i) && same_dispersion && !space.front.is_stop &&
             !space.front.is_flat()) {
             findings.push_back({.code = "no-index-step",
-                                .severity = Severity::warning,
+                                .severity = optics::Severity::warning,
                                 .surface = i + 1,
                                 .message = "the glasses on both sides of it are the same: it does nothing"});
         }
@@ -259,7 +259,7 @@ void check_cement(const Space& space, Findings& findings) {
     const bool other_height = std::abs(space.front_reach - space.rear_reach) > kCementHeights * space.front_reach;
     if (other_radius || other_height) {
         findings.push_back({.code = "cemented-surfaces",
-                            .severity = Severity::warning,
+                            .severity = optics::Severity::warning,
                             .surface = i + 1,
                             .message = fmt::format("it looks cemented to surface {}, but their {} differ", i + 2,
                                                    other_radius ? "radii" : "semi-diameters"),
@@ -271,13 +271,15 @@ void check_cement(const Space& space, Findings& findings) {
 
 /// Rule 36: the tangent of the angle between the two surfaces' normals where bell chucks hold them.
 void check_centring(const Space& space, Findings& findings) {
-    const auto slope = [](const PrescribedSurface& row, double reach) { return std::asin(reach * row.curvature()); };
+    const auto slope = [](const optics::PrescribedSurface& row, double reach) {
+        return std::asin(reach * row.curvature());
+    };
     const bool is_single =
         (space.i == 0 || !space.checked.is_glass_behind(space.i - 1)) && !space.checked.is_glass_behind(space.i + 1);
     const double angle = std::abs(slope(space.front, space.front_reach) - slope(space.rear, space.rear_reach));
     if (is_single && std::tan(angle) < kSelfCentring && angle < 1.0) {
         findings.push_back({.code = "centring",
-                            .severity = Severity::info,
+                            .severity = optics::Severity::info,
                             .surface = space.surface(),
                             .message = fmt::format("the element does not centre itself between bell chucks (Karow's Z "
                                                    "is {:.2f})",
@@ -289,24 +291,24 @@ void check_centring(const Space& space, Findings& findings) {
 
 /// Rule 35: the sag is real over the aperture, and its slope keeps its direction.
 void check_asphere(const CheckedLens& checked, int i, Findings& findings) {
-    const PrescribedSurface& row = checked.row(i);
+    const optics::PrescribedSurface& row = checked.row(i);
     if (!row.is_asphere() && row.conic == 0.0) {
         return;
     }
-    const SurfaceShape<double> shape = prescribed_shape(row);
+    const optics::SurfaceShape<double> shape = optics::prescribed_shape(row);
     const double reach = checked.semi_diameters[i];
-    const auto slope_at = [&](double r) { return 2.0 * r * sag_profile(shape, r * r).slope; };
+    const auto slope_at = [&](double r) { return 2.0 * r * optics::sag_profile(shape, r * r).slope; };
     double steepest = 0.0;   // dz/dr, of the first direction
     double rising_to = 0.0;  // r, where the slope last had that direction
     for (int k = 1; k <= kSamples; ++k) {
         const double r = reach * k / kSamples;
-        const SagProfile<double> here = sag_profile(shape, r * r);
+        const optics::SagProfile<double> here = optics::sag_profile(shape, r * r);
         if (!here.defined || !is_known(here.sag)) {
             // Of a conic: z is real up to (1 + k) c² r² = 1.
             const double end =
                 std::min(r, 1.0 / (std::abs(row.curvature()) * std::sqrt(std::max(0.0, 1.0 + row.conic))));
             findings.push_back({.code = "asphere-ends",
-                                .severity = row.is_asphere() ? Severity::error : Severity::warning,
+                                .severity = row.is_asphere() ? optics::Severity::error : optics::Severity::warning,
                                 .surface = i + 1,
                                 .message = fmt::format("its conic ends {:.4g} mm from the axis, inside its "
                                                        "semi-diameter of {:.4g} mm",
@@ -329,7 +331,7 @@ void check_asphere(const CheckedLens& checked, int i, Findings& findings) {
                 (slope_at(middle) * steepest > 0.0 ? rising_to : turned_at) = middle;
             }
             findings.push_back({.code = "asphere-turns-over",
-                                .severity = Severity::warning,
+                                .severity = optics::Severity::warning,
                                 .surface = i + 1,
                                 .message = fmt::format("it turns over inside its aperture: its slope changes sign "
                                                        "{:.4g} mm from the axis, of {:.4g} mm",
@@ -368,4 +370,4 @@ void check_geometry(const CheckedLens& checked, Findings& findings) {
     }
 }
 
-}  // namespace lensproof
+}  // namespace lensproof::check

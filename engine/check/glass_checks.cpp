@@ -7,7 +7,7 @@
 
 #include "engine/check/checks.h"
 
-namespace lensproof {
+namespace lensproof::check {
 
 namespace {
 
@@ -26,12 +26,13 @@ constexpr double kAbbeWarning = 0.01;
 constexpr double kRenderFrom = 400.0;
 constexpr double kRenderTo = 700.0;
 
-GlassMatch resolve(const CheckedLens& checked, const std::string& name) {
+optics::GlassMatch resolve(const CheckedLens& checked, const std::string& name) {
     return checked.known_glasses->resolve(name, checked.prescription.preferred_makers);
 }
 
-std::string medium_in_words(const StatedMedium& medium) {
-    return medium.glass.empty() ? fmt::format("n_d = {}", medium.n_d.value_or(Finding::kNothing)) : medium.glass;
+std::string medium_in_words(const optics::StatedMedium& medium) {
+    return medium.glass.empty() ? fmt::format("n_d = {}", medium.n_d.value_or(optics::Finding::kNothing))
+                                : medium.glass;
 }
 
 /// Rule 13.
@@ -40,37 +41,37 @@ void check_index_range(const CheckedLens& checked, int i, Findings& findings) {
     const std::string is = fmt::format("the index behind it is {:.6g}", index);
     if (index < 1.0) {
         findings.push_back({.code = "index-range",
-                            .severity = Severity::error,
+                            .severity = optics::Severity::error,
                             .surface = i + 1,
                             .message = is + ": below that of air",
                             .value = index,
                             .limit = 1.0});
     } else if (index < kLowestIndex || index > kHighestIndex) {
         findings.push_back({.code = "index-range",
-                            .severity = Severity::warning,
+                            .severity = optics::Severity::warning,
                             .surface = i + 1,
                             .message = is + ": no glass has it",
                             .value = index,
                             .limit = index < kLowestIndex ? kLowestIndex : kHighestIndex});
     }
-    const StatedMedium& medium = checked.row(i).medium;
+    const optics::StatedMedium& medium = checked.row(i).medium;
     const double V_d = medium.V_d.value_or(60.0);
     if (V_d <= 0.0 || V_d < kLowestAbbe || V_d > kHighestAbbe) {
         findings.push_back({.code = "abbe-range",
-                            .severity = V_d <= 0.0 ? Severity::error : Severity::warning,
+                            .severity = V_d <= 0.0 ? optics::Severity::error : optics::Severity::warning,
                             .surface = i + 1,
                             .message = fmt::format("an Abbe number of {} behind it: no glass has it", V_d),
                             .value = V_d,
                             .limit = V_d < kLowestAbbe ? kLowestAbbe : kHighestAbbe});
     }
-    const DispersionFormula& formula = checked.media[i]->formula;
-    const double n_F = refractive_index(formula, kLineF);
-    const double n_d = refractive_index(formula, kLineD);
-    const double n_C = refractive_index(formula, kLineC);
+    const optics::DispersionFormula& formula = checked.media[i]->formula;
+    const double n_F = optics::refractive_index(formula, spectral::kLineF);
+    const double n_d = optics::refractive_index(formula, spectral::kLineD);
+    const double n_C = optics::refractive_index(formula, spectral::kLineC);
     const bool has_dispersion = n_F != n_C;
     if (has_dispersion && !(n_F > n_d && n_d > n_C)) {
         findings.push_back({.code = "dispersion-order",
-                            .severity = Severity::warning,
+                            .severity = optics::Severity::warning,
                             .surface = i + 1,
                             .message = fmt::format("its index does not fall from blue to red: {:.5f} at F, {:.5f} at "
                                                    "d, {:.5f} at C",
@@ -81,19 +82,19 @@ void check_index_range(const CheckedLens& checked, int i, Findings& findings) {
 }
 
 /// Rule 15, of a name beside figures.
-void check_figures(const CheckedLens& checked, int i, const Glass& glass, Findings& findings) {
-    const StatedMedium& medium = checked.row(i).medium;
+void check_figures(const CheckedLens& checked, int i, const optics::Glass& glass, Findings& findings) {
+    const optics::StatedMedium& medium = checked.row(i).medium;
     if (medium.n_d) {
-        const double n_d = refractive_index(glass.formula, kLineD);
+        const double n_d = optics::refractive_index(glass.formula, spectral::kLineD);
         const double off = std::abs(*medium.n_d - n_d);
         // Three decimals are a listing's habit, more are a claim.
         const bool has_three_decimals = std::abs(*medium.n_d * 1e3 - std::round(*medium.n_d * 1e3)) < 1e-6;
         if (off > kIndexWarning) {
             const bool rounded = has_three_decimals && off <= kIndexRounding;
             findings.push_back({.code = "glass-index",
-                                .severity = off > kIndexError ? Severity::error
-                                            : rounded         ? Severity::info
-                                                              : Severity::warning,
+                                .severity = off > kIndexError ? optics::Severity::error
+                                            : rounded         ? optics::Severity::info
+                                                              : optics::Severity::warning,
                                 .surface = i + 1,
                                 .message = fmt::format("n_d = {} is stated beside {}, which has {:.5f}{}", *medium.n_d,
                                                        medium.glass, n_d, rounded ? ": rounded" : ""),
@@ -102,11 +103,11 @@ void check_figures(const CheckedLens& checked, int i, const Glass& glass, Findin
         }
     }
     if (medium.V_d && std::isfinite(*medium.V_d)) {
-        const double V_d = abbe_number(glass.formula);
+        const double V_d = optics::abbe_number(glass.formula);
         const double off = std::abs(*medium.V_d / V_d - 1.0);
         if (off > kAbbeWarning) {
             findings.push_back({.code = "glass-abbe",
-                                .severity = off > kAbbeError ? Severity::error : Severity::warning,
+                                .severity = off > kAbbeError ? optics::Severity::error : optics::Severity::warning,
                                 .surface = i + 1,
                                 .message = fmt::format("V_d = {} is stated beside {}, which has {:.2f}", *medium.V_d,
                                                        medium.glass, V_d),
@@ -119,15 +120,15 @@ void check_figures(const CheckedLens& checked, int i, const Glass& glass, Findin
 
 /// Rule 14.
 void check_name(const CheckedLens& checked, int i, Findings& findings) {
-    const StatedMedium& medium = checked.row(i).medium;
+    const optics::StatedMedium& medium = checked.row(i).medium;
     if (medium.glass.empty() || medium.is_air() || checked.settings.indices.contains(medium.glass)) {
         return;
     }
-    const GlassMatch match = resolve(checked, medium.glass);
+    const optics::GlassMatch match = resolve(checked, medium.glass);
     if (match.glass) {
-        if (match.how == GlassMatch::How::spelled_differently) {
+        if (match.how == optics::GlassMatch::How::spelled_differently) {
             findings.push_back({.code = "glass-spelling",
-                                .severity = Severity::info,
+                                .severity = optics::Severity::info,
                                 .surface = i + 1,
                                 .message = fmt::format("the glass {} is taken for {} {}", medium.glass,
                                                        match.glass->catalogue, match.glass->name)});
@@ -135,7 +136,7 @@ void check_name(const CheckedLens& checked, int i, Findings& findings) {
         if (!match.also_in.empty()) {
             findings.push_back(
                 {.code = "glass-ambiguous",
-                 .severity = Severity::info,
+                 .severity = optics::Severity::info,
                  .surface = i + 1,
                  .message = fmt::format("the glass {} is taken for that of {}; a glass of this name, with another "
                                         "formula, is in {}, too",
@@ -144,7 +145,7 @@ void check_name(const CheckedLens& checked, int i, Findings& findings) {
         if (match.glass->status == "obsolete") {
             findings.push_back(
                 {.code = "glass-obsolete",
-                 .severity = Severity::info,
+                 .severity = optics::Severity::info,
                  .surface = i + 1,
                  .message = fmt::format("{} {} is no longer made", match.glass->catalogue, match.glass->name)});
         }
@@ -152,19 +153,19 @@ void check_name(const CheckedLens& checked, int i, Findings& findings) {
         return;
     }
     std::string message =
-        fmt::format("no catalogue has the glass {}; {}", medium.glass, suggestion_text(match.suggestions));
+        fmt::format("no catalogue has the glass {}; {}", medium.glass, optics::suggestion_text(match.suggestions));
     if (medium.n_d) {
         message += fmt::format("; traced with the n_d = {} beside it", *medium.n_d);
     }
     findings.push_back({.code = "glass-unknown",
-                        .severity = medium.n_d ? Severity::warning : Severity::error,
+                        .severity = medium.n_d ? optics::Severity::warning : optics::Severity::error,
                         .surface = i + 1,
                         .message = message});
 }
 
 /// Whether the table gives the glass behind a surface by figures alone.
 bool is_given_by_figures(const CheckedLens& checked, int i) {
-    const StatedMedium& medium = checked.row(i).medium;
+    const optics::StatedMedium& medium = checked.row(i).medium;
     const bool is_named = !medium.glass.empty() && resolve(checked, medium.glass).glass;
     return checked.is_glass_behind(i) && !is_named && medium.n_d && medium.indices.empty();
 }
@@ -179,7 +180,7 @@ void check_achromatic(const CheckedLens& checked, Findings& findings) {
     }
     if (!surfaces.empty()) {
         findings.push_back({.code = "no-dispersion",
-                            .severity = Severity::warning,
+                            .severity = optics::Severity::warning,
                             .surface = surfaces.front(),
                             .message = fmt::format("no Abbe number and no known name for the glass behind surface{} "
                                                    "{}: a spectral render sees one colour there",
@@ -193,11 +194,12 @@ void report_normal_line(const CheckedLens& checked, Findings& findings) {
     int worst = 0;
     double worst_error = 0.0;
     const auto error_at = [&](int i, double wavelength) {
-        const StatedMedium& medium = checked.row(i).medium;
-        return normal_line_error(checked.known_glasses->glasses(), *medium.n_d, *medium.V_d, wavelength).percentile_95;
+        const optics::StatedMedium& medium = checked.row(i).medium;
+        return optics::normal_line_error(checked.known_glasses->glasses(), *medium.n_d, *medium.V_d, wavelength)
+            .percentile_95;
     };
     for (int i = 0; i < checked.size(); ++i) {
-        const StatedMedium& medium = checked.row(i).medium;
+        const optics::StatedMedium& medium = checked.row(i).medium;
         if (!is_given_by_figures(checked, i) || !(medium.V_d.value_or(0.0) > 0.0) || !(*medium.n_d > 1.0)) {
             continue;
         }
@@ -217,11 +219,11 @@ void report_normal_line(const CheckedLens& checked, Findings& findings) {
                                                  surfaces.size(), fmt::join(surfaces, ", "))
                                    : "";
     std::vector<std::string> errors;
-    for (const double wavelength : {kNormalLineMinNm, kRenderFrom, kRenderTo, kNormalLineMaxNm}) {
+    for (const double wavelength : {optics::kNormalLineMinNm, kRenderFrom, kRenderTo, optics::kNormalLineMaxNm}) {
         errors.push_back(fmt::format("{:.1e} at {} nm", error_at(worst, wavelength), wavelength));
     }
     findings.push_back({.code = "normal-line",
-                        .severity = Severity::info,
+                        .severity = optics::Severity::info,
                         .surface = worst + 1,
                         .message = fmt::format("given by n_d and V_d alone{}: its dispersion is modelled, with an "
                                                "error in n of up to {} (95 % of the real glasses nearby)",
@@ -235,20 +237,20 @@ void check_wavelengths(const CheckedLens& checked, int i, Findings& findings) {
     if (checked.settings.indices.contains(checked.row(i).medium.glass)) {
         return;  // an index in place of a glass holds at every wavelength
     }
-    const Glass& glass = *checked.media[i];
+    const optics::Glass& glass = *checked.media[i];
     const double asked = checked.settings.wavelength_nm;
     std::vector<double> wavelengths{asked};
     wavelengths.insert(wavelengths.end(), checked.prescription.wavelengths_nm.begin(),
                        checked.prescription.wavelengths_nm.end());
     wavelengths.insert(wavelengths.end(), {kRenderFrom, kRenderTo});
     const auto outside =
-        std::ranges::find_if(wavelengths, [&](double wavelength) { return !covers(glass, wavelength); });
+        std::ranges::find_if(wavelengths, [&](double wavelength) { return !optics::covers(glass, wavelength); });
     if (outside == wavelengths.end()) {
         return;
     }
     const bool nothing_computed = *outside == asked;
     findings.push_back({.code = "wavelength-range",
-                        .severity = nothing_computed ? Severity::error : Severity::warning,
+                        .severity = nothing_computed ? optics::Severity::error : optics::Severity::warning,
                         .surface = i + 1,
                         .message = fmt::format("{} nm is outside the range of {}, {} to {} nm{}", *outside, glass.name,
                                                glass.min_wavelength_nm, glass.max_wavelength_nm,
@@ -263,7 +265,7 @@ void check_last_medium(const CheckedLens& checked, Findings& findings) {
     const int last = checked.size() - 1;
     if (!checked.row(last).medium.is_air() && checked.table.index[last] != 1.0) {
         findings.push_back({.code = "last-medium",
-                            .severity = Severity::warning,
+                            .severity = optics::Severity::warning,
                             .surface = last + 1,
                             .message = fmt::format("the last surface is followed by {}, not by air: is a row missing?",
                                                    medium_in_words(checked.row(last).medium)),
@@ -290,4 +292,4 @@ void check_glasses(const CheckedLens& checked, Findings& findings) {
     check_last_medium(checked, findings);
 }
 
-}  // namespace lensproof
+}  // namespace lensproof::check

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace lensproof {
+namespace lensproof::check {
 
 namespace {
 
@@ -22,7 +22,7 @@ Ray<double> axial_ray(const CheckedLens& checked, double h) {
     return {{0.0, 0.0, -distance}, normalized(Vec3d{0.0, h, distance})};
 }
 
-AxialBeam beam_through(const CheckedLens& checked, const TraceLens<double>& lens) {
+AxialBeam beam_through(const CheckedLens& checked, const optics::TraceLens<double>& lens) {
     AxialBeam beam;
     const double widest = 1.5 * std::max(checked.semi_diameters.front(), paraxial_beam(checked).height);
     if (!std::isfinite(widest)) {
@@ -52,15 +52,15 @@ AxialBeam beam_through(const CheckedLens& checked, const TraceLens<double>& lens
 
 }  // namespace
 
-RayFate follow(const TraceLens<double>& lens, const Ray<double>& ray, Rims rims) {
+RayFate follow(const optics::TraceLens<double>& lens, const Ray<double>& ray, optics::Rims rims) {
     RayFate fate;
     Ray<double> before = ray;
     bool is_first = true;
-    const auto visit = [&](const SurfaceEvent<double>& event) {
-        if (event.status == RayStatus::missed) {
+    const auto visit = [&](const optics::SurfaceEvent<double>& event) {
+        if (event.status == optics::RayStatus::missed) {
             return;
         }
-        const TraceSurface<double>& surface = lens.surfaces[event.surface];
+        const optics::TraceSurface<double>& surface = lens.surfaces[event.surface];
         if (surface.index_before == surface.index_after) {
             return;  // it bends no ray, so it does not matter on which side of a neighbour the ray meets it
         }
@@ -70,7 +70,7 @@ RayFate follow(const TraceLens<double>& lens, const Ray<double>& ray, Rims rims)
             fate.surface = event.surface;
         }
         is_first = false;
-        if (event.status == RayStatus::ok) {
+        if (event.status == optics::RayStatus::ok) {
             // From the bend: n' d' − n d = Γ N, with Γ = n' cos i' − n cos i.
             const Vec3d bend = surface.index_after * event.ray.direction - surface.index_before * before.direction;
             const double bent = length(bend);
@@ -86,10 +86,11 @@ RayFate follow(const TraceLens<double>& lens, const Ray<double>& ray, Rims rims)
         }
         before = event.ray;
     };
-    const TracedRay<double> traced = rims == Rims::clip ? trace<Direction::forward, Rims::clip>(lens, ray, visit)
-                                                        : trace<Direction::forward, Rims::follow>(lens, ray, visit);
+    const optics::TracedRay<double> traced =
+        rims == optics::Rims::clip ? optics::trace<optics::Direction::forward, optics::Rims::clip>(lens, ray, visit)
+                                   : optics::trace<optics::Direction::forward, optics::Rims::follow>(lens, ray, visit);
     fate.status = traced.status;
-    if (traced.status != RayStatus::ok) {
+    if (traced.status != optics::RayStatus::ok) {
         fate.surface = fate.is_backwards ? fate.surface : traced.surface;
     } else if (!fate.is_backwards && !(traced.ray.direction.z > 0.0)) {
         fate.is_backwards = true;
@@ -105,23 +106,23 @@ std::string words(const RayFate& fate) {
         return fmt::format("it would have to run backwards to meet surface {}", surface);
     }
     switch (fate.status) {
-        case RayStatus::missed:
+        case optics::RayStatus::missed:
             return fmt::format("it misses surface {}", surface);
-        case RayStatus::total_internal_reflection:
+        case optics::RayStatus::total_internal_reflection:
             return fmt::format("surface {} reflects it totally", surface);
-        case RayStatus::clipped:
+        case optics::RayStatus::clipped:
             return fmt::format("the rim of surface {} cuts it off", surface);
-        case RayStatus::stopped:
+        case optics::RayStatus::stopped:
             return fmt::format("the stop, surface {}, holds it back", surface);
-        case RayStatus::ok:
+        case optics::RayStatus::ok:
             break;
     }
     return "it passes";
 }
 
-TraceLens<double> without_rims(const CheckedLens& checked, bool keep_stop) {
-    TraceLens<double> lens = *checked.traced;
-    for (TraceSurface<double>& surface : lens.surfaces) {
+optics::TraceLens<double> without_rims(const CheckedLens& checked, bool keep_stop) {
+    optics::TraceLens<double> lens = *checked.traced;
+    for (optics::TraceSurface<double>& surface : lens.surfaces) {
         if (!(keep_stop && surface.is_stop)) {
             surface.semi_diameter_squared = std::numeric_limits<double>::infinity();
         }
@@ -130,12 +131,12 @@ TraceLens<double> without_rims(const CheckedLens& checked, bool keep_stop) {
 }
 
 ParaxialBeam paraxial_beam(const CheckedLens& checked) {
-    const TraceLens<double>& lens = *checked.traced;
+    const optics::TraceLens<double>& lens = *checked.traced;
     const int stop = checked.lens->stop_index();
     const double distance = checked.prescription.object_distance_mm;
-    const ParaxialRay any{1.0, std::isinf(distance) ? 0.0 : 1.0 / distance};
-    const double at_stop = trace_paraxial(lens, any, 0, stop).height;
-    const double behind = trace_paraxial(lens, any, 0, checked.size() - 1).slope;
+    const optics::ParaxialRay any{1.0, std::isinf(distance) ? 0.0 : 1.0 / distance};
+    const double at_stop = optics::trace_paraxial(lens, any, 0, stop).height;
+    const double behind = optics::trace_paraxial(lens, any, 0, checked.size() - 1).slope;
     const double height = std::abs(std::sqrt(lens.surfaces[stop].semi_diameter_squared) / at_stop);
     return {.height = height, .f_number = 0.5 / std::abs(height * behind)};
 }
@@ -177,4 +178,4 @@ double axial_blur(const CheckedLens& checked, double beam_height) {
     return weights > 0.0 ? std::sqrt(sum / weights) : 0.0;
 }
 
-}  // namespace lensproof
+}  // namespace lensproof::check

@@ -5,27 +5,27 @@
 
 #include "engine/check/checked_lens.h"
 
-namespace lensproof {
+namespace lensproof::check {
 
 /// What became of a ray on its way to the image plane.
 struct RayFate {
-    RayStatus status = RayStatus::ok;
+    optics::RayStatus status = optics::RayStatus::ok;
     int surface = 0;                 // from 0: where it failed, or was cut first
     bool is_backwards = false;       // it met `surface` before the one that bent it last: no physical order
     double largest_incidence = 0.0;  // rad
     int steepest_surface = 0;
     Ray<double> ray;  // behind the last surface that it reached
 
-    [[nodiscard]] bool passes() const { return status == RayStatus::ok && !is_backwards; }
+    [[nodiscard]] bool passes() const { return status == optics::RayStatus::ok && !is_backwards; }
 };
 
-RayFate follow(const TraceLens<double>& lens, const Ray<double>& ray, Rims rims = Rims::clip);
+RayFate follow(const optics::TraceLens<double>& lens, const Ray<double>& ray, optics::Rims rims = optics::Rims::clip);
 
 /// A failed ray's fate in words: "it misses surface 3".
 std::string words(const RayFate& fate);
 
 /// The lens with rims so wide that none cuts; with `keep_stop`, the stop still does.
-TraceLens<double> without_rims(const CheckedLens& checked, bool keep_stop);
+optics::TraceLens<double> without_rims(const CheckedLens& checked, bool keep_stop);
 
 /// The real rays from the axial object point. They are told apart by their height in the plane of the first vertex,
 /// which is the beam's semi-diameter in front of the lens where the object is far, and less where it is near.
@@ -52,4 +52,4 @@ AxialBeam stop_limited_beam(const CheckedLens& checked);
 /// `beam_height` in the first vertex's plane.
 double axial_blur(const CheckedLens& checked, double beam_height);
 
-}  // namespace lensproof
+}  // namespace lensproof::check

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace lensproof {
+namespace lensproof::check {
 
 Restoration::Restoration(const CheckedLens& checked)
     : efl_(checked.claims.efl_mm),
@@ -27,4 +27,4 @@ double Restoration::residual(const ParaxialTable& table) const {
     return std::isfinite(worst) ? worst : std::numeric_limits<double>::infinity();
 }
 
-}  // namespace lensproof
+}  // namespace lensproof::check

@@ -2,7 +2,7 @@
 #pragma once
 #include "engine/check/checked_lens.h"
 
-namespace lensproof {
+namespace lensproof::check {
 
 /// What changes of a table are judged by: the focal length and the image's distance that are claimed of it.
 class Restoration {
@@ -34,4 +34,4 @@ class Restoration {
     double as_given_ = 0.0;
 };
 
-}  // namespace lensproof
+}  // namespace lensproof::check

@@ -10,7 +10,7 @@
 #include "engine/check/restoration.h"
 #include "engine/check/sag.h"
 
-namespace lensproof {
+namespace lensproof::check {
 
 namespace {
 
@@ -66,7 +66,7 @@ class Trials {
     }
 
     void try_radius(int i) {
-        const PrescribedSurface& row = lens_.row(i);
+        const optics::PrescribedSurface& row = lens_.row(i);
         if (row.is_flat()) {
             return;
         }
@@ -100,7 +100,7 @@ class Trials {
         if (!lens_.is_glass_behind(i)) {
             return;
         }
-        const StatedMedium& medium = lens_.row(i).medium;
+        const optics::StatedMedium& medium = lens_.row(i).medium;
         if (medium.n_d && medium.glass.empty()) {
             for (const NumberChange& change : plausible_changes(*medium.n_d)) {
                 if (change.value > 1.3 && change.value < 2.3) {
@@ -115,13 +115,14 @@ class Trials {
         if (!lens_.media[i]) {
             return;
         }
-        const DispersionFormula& formula = lens_.media[i]->formula;
-        const double n_d = refractive_index(formula, kLineD);
-        for (const Glass& glass : lens_.known_glasses->nearest(n_d, abbe_number(formula), kNeighbours)) {
+        const optics::DispersionFormula& formula = lens_.media[i]->formula;
+        const double n_d = optics::refractive_index(formula, spectral::kLineD);
+        for (const optics::Glass& glass :
+             lens_.known_glasses->nearest(n_d, optics::abbe_number(formula), kNeighbours)) {
             constexpr double kFarFetched = 3.0;
             ParaxialTable table = lens_.table;
-            table.index[i] = refractive_index(glass.formula, lens_.settings.wavelength_nm);
-            if (glass.name != medium.glass && covers(glass, lens_.settings.wavelength_nm)) {
+            table.index[i] = optics::refractive_index(glass.formula, lens_.settings.wavelength_nm);
+            if (glass.name != medium.glass && optics::covers(glass, lens_.settings.wavelength_nm)) {
                 judge(i, std::move(table), kFarFetched,
                       fmt::format("glass {} {} in place of {} behind it", glass.catalogue, glass.name, medium.glass));
             }
@@ -137,7 +138,7 @@ class Trials {
 /// apertures.
 bool is_possible(const CheckedLens& checked, const Trial& trial) {
     const auto row = [&](int i) {
-        PrescribedSurface changed = checked.row(i);
+        optics::PrescribedSurface changed = checked.row(i);
         if (!changed.is_asphere()) {
             changed.radius_mm = trial.table.curvature[i] == 0.0 ? 0.0 : 1.0 / trial.table.curvature[i];
         }
@@ -181,7 +182,7 @@ bool suggest_last_thickness(const CheckedLens& checked, Findings& findings) {
     if (best) {
         findings.push_back(
             {.code = "suggestion",
-             .severity = Severity::info,
+             .severity = optics::Severity::info,
              .surface = checked.size(),
              .message = fmt::format("thickness {} in place of {} behind it ({}) would put the sensor into "
                                     "the image, within {:.2g} % of the focal length",
@@ -210,7 +211,7 @@ void suggest_changes(const CheckedLens& checked, Findings& findings) {
             ++reported;
             findings.push_back(
                 {.code = "suggestion",
-                 .severity = Severity::info,
+                 .severity = optics::Severity::info,
                  .surface = trial.surface + 1,
                  .message = fmt::format("{} would bring the stated focal length and back focus back, within {:.2g} %",
                                         trial.message, 100.0 * trial.residual),
@@ -221,4 +222,4 @@ void suggest_changes(const CheckedLens& checked, Findings& findings) {
     }
 }
 
-}  // namespace lensproof
+}  // namespace lensproof::check

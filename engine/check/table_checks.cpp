@@ -6,7 +6,7 @@
 
 #include "engine/check/checks.h"
 
-namespace lensproof {
+namespace lensproof::check {
 
 namespace {
 
@@ -19,8 +19,8 @@ constexpr double kLargestLength = 1e7;    // mm
 constexpr double kLargestConic = 1e4;
 constexpr double kUsualLength = 1e4;  // mm: beyond 10 m, glass or aperture is a slip of the decimal point
 
-void add(Findings& findings, const char* code, Severity severity, int surface, std::string message,
-         double value = Finding::kNothing, double limit = Finding::kNothing, const char* unit = "") {
+void add(Findings& findings, const char* code, optics::Severity severity, int surface, std::string message,
+         double value = optics::Finding::kNothing, double limit = optics::Finding::kNothing, const char* unit = "") {
     findings.push_back({.code = code,
                         .severity = severity,
                         .surface = surface,
@@ -31,10 +31,10 @@ void add(Findings& findings, const char* code, Severity severity, int surface, s
 }
 
 /// Rule 2: no NaN anywhere, no infinite thickness, aperture or index; an infinite radius is a flat.
-void check_finite(const PrescribedSurface& row, int surface, Findings& findings) {
+void check_finite(const optics::PrescribedSurface& row, int surface, Findings& findings) {
     const auto complain = [&](const char* what, double value) {
-        add(findings, "not-finite", Severity::error, surface, fmt::format("the {} is {}, no number", what, value),
-            value);
+        add(findings, "not-finite", optics::Severity::error, surface,
+            fmt::format("the {} is {}, no number", what, value), value);
     };
     if (std::isnan(row.radius_mm)) {
         complain("radius", row.radius_mm);
@@ -70,36 +70,37 @@ void check_finite(const PrescribedSurface& row, int surface, Findings& findings)
 
 /// Rule 3: spellings of a flat other than "inf" and nothing at all.
 void check_flat_spelling(const CheckedLens& checked, int i, Findings& findings) {
-    const PrescribedSurface& row = checked.row(i);
+    const optics::PrescribedSurface& row = checked.row(i);
     const double flat_from = checked.focus && std::isfinite(checked.focus->efl)
                                  ? std::min(kFlatRadiusInFocalLengths * std::abs(checked.focus->efl), kFlatRadius)
                                  : kFlatRadius;
     if (row.radius_mm == 0.0 && !row.is_stop) {
-        add(findings, "flat-radius", Severity::info, i + 1, "a radius of 0 is taken for flat", 0.0);
+        add(findings, "flat-radius", optics::Severity::info, i + 1, "a radius of 0 is taken for flat", 0.0);
     } else if (std::isfinite(row.radius_mm) && std::abs(row.radius_mm) >= flat_from) {
-        add(findings, "flat-radius", Severity::info, i + 1,
+        add(findings, "flat-radius", optics::Severity::info, i + 1,
             fmt::format("a radius of {} mm is as good as flat; written so to mean it?", row.radius_mm), row.radius_mm,
             flat_from, "mm");
     }
 }
 
 /// Numbers that are finite and yet no lens's.
-void check_extremes(const PrescribedSurface& row, int surface, Findings& findings) {
+void check_extremes(const optics::PrescribedSurface& row, int surface, Findings& findings) {
     const auto judge = [&](const char* what, double length) {
         if (std::isfinite(length) && length > kUsualLength) {
-            add(findings, "extreme-value", length > kLargestLength ? Severity::error : Severity::warning, surface,
+            add(findings, "extreme-value",
+                length > kLargestLength ? optics::Severity::error : optics::Severity::warning, surface,
                 fmt::format("the {} is {} mm: more than 10 m", what, length), length, kUsualLength, "mm");
         }
     };
     if (!row.is_flat() && std::isfinite(row.radius_mm) && std::abs(row.radius_mm) < kSmallestRadius) {
-        add(findings, "extreme-value", Severity::error, surface,
+        add(findings, "extreme-value", optics::Severity::error, surface,
             fmt::format("a radius of {} mm is smaller than a micrometre", row.radius_mm), row.radius_mm,
             kSmallestRadius, "mm");
     }
     judge("thickness behind it", row.thickness_mm);
     judge("semi-diameter", row.semi_diameter_mm.value_or(0.0));
     if (std::isfinite(row.conic) && std::abs(row.conic) > kLargestConic) {
-        add(findings, "extreme-value", Severity::warning, surface,
+        add(findings, "extreme-value", optics::Severity::warning, surface,
             fmt::format("a conic constant of {} is beyond any that is ground", row.conic), row.conic, kLargestConic);
     }
 }
@@ -109,7 +110,7 @@ void check_thickness_sign(const CheckedLens& checked, int i, Findings& findings)
     const double thickness = checked.row(i).thickness_mm;
     const bool is_last = i + 1 == checked.size();
     if (thickness < 0.0) {
-        add(findings, "negative-thickness", Severity::error, i + 1,
+        add(findings, "negative-thickness", optics::Severity::error, i + 1,
             is_last ? fmt::format("the sensor stands {} mm in front of the last surface", -thickness)
                     : fmt::format("the next surface stands {} mm in front of this one", -thickness),
             thickness, 0.0, "mm");
@@ -119,36 +120,37 @@ void check_thickness_sign(const CheckedLens& checked, int i, Findings& findings)
         return;
     }
     if (is_last) {
-        add(findings, "no-image-distance", Severity::info, i + 1,
+        add(findings, "no-image-distance", optics::Severity::info, i + 1,
             "the last thickness is 0: the table does not say where the sensor stands", 0.0, 0.0, "mm");
     } else if (checked.is_dummy(i) || checked.is_dummy(i + 1)) {
         return;  // a plane that says a place within a medium takes no room
     } else if (checked.is_glass_behind(i)) {
-        add(findings, "zero-thickness", Severity::error, i + 1, "the glass behind it has no thickness", 0.0, 0.0, "mm");
+        add(findings, "zero-thickness", optics::Severity::error, i + 1, "the glass behind it has no thickness", 0.0,
+            0.0, "mm");
     } else if (checked.row(i).curvature() != checked.row(i + 1).curvature()) {
-        add(findings, "zero-thickness", Severity::warning, i + 1,
+        add(findings, "zero-thickness", optics::Severity::warning, i + 1,
             "it touches the next surface, though neither is a dummy and they are not curved alike", 0.0, 0.0, "mm");
     }
 }
 
 /// Rule 6: a sphere ends at its equator. A semi-diameter must be a length at all.
 void check_semi_diameter(const CheckedLens& checked, int i, Findings& findings) {
-    const PrescribedSurface& row = checked.row(i);
+    const optics::PrescribedSurface& row = checked.row(i);
     if (!row.semi_diameter_mm && !row.rim_mm) {
-        add(findings, "semi-diameter-missing", Severity::info, i + 1,
+        add(findings, "semi-diameter-missing", optics::Severity::info, i + 1,
             "no semi-diameter is stated: marginal and chief ray set it");
         return;
     }
     const double semi_diameter = checked.semi_diameters[i];
     if (semi_diameter <= 0.0) {
-        add(findings, "semi-diameter-not-positive", Severity::error, i + 1,
+        add(findings, "semi-diameter-not-positive", optics::Severity::error, i + 1,
             fmt::format("a semi-diameter of {} mm lets no light pass", semi_diameter), semi_diameter, 0.0, "mm");
         return;
     }
     // Of a conic: z is real up to (1 + k) c² r² = 1.
     const double equator = 1.0 / (std::abs(row.curvature()) * std::sqrt(std::max(0.0, 1.0 + row.conic)));
     if (semi_diameter >= equator) {
-        add(findings, "semi-diameter-beyond-sphere", Severity::error, i + 1,
+        add(findings, "semi-diameter-beyond-sphere", optics::Severity::error, i + 1,
             fmt::format("its semi-diameter of {} mm is not below its radius of {:.6g} mm: such a surface does not "
                         "exist. A diameter in place of a semi-diameter?",
                         semi_diameter, equator),
@@ -169,29 +171,32 @@ void check_stop(const CheckedLens& checked, Findings& findings) {
             ? fmt::format("; rays are judged as though surface {} were it, the narrowest", *checked.assumed_stop + 1)
             : "";
     if (stops.empty()) {
-        add(findings, "stop-missing", Severity::error, 0, "no surface is marked as the aperture stop" + assumed, 0, 1);
+        add(findings, "stop-missing", optics::Severity::error, 0, "no surface is marked as the aperture stop" + assumed,
+            0, 1);
     } else if (stops.size() > 1) {
-        add(findings, "stop-doubled", Severity::error, stops[1],
+        add(findings, "stop-doubled", optics::Severity::error, stops[1],
             fmt::format("surface {} is marked as the aperture stop already{}", stops[0], assumed),
             static_cast<double>(stops.size()), 1);
     } else if (checked.size() > 1 && stops[0] == checked.size()) {
-        add(findings, "stop-position", Severity::warning, stops[0],
+        add(findings, "stop-position", optics::Severity::warning, stops[0],
             "the aperture stop is the last surface: a lens with its stop behind it, or the image plane listed?");
     } else if (checked.size() > 1 && stops[0] == 1) {
-        add(findings, "stop-position", checked.row(0).thickness_mm > 0.0 ? Severity::info : Severity::warning, 1,
+        add(findings, "stop-position",
+            checked.row(0).thickness_mm > 0.0 ? optics::Severity::info : optics::Severity::warning, 1,
             "the aperture stop is the first surface: a lens with its stop in front, or the object plane listed?");
     }
 }
 
 /// Rule 34: a row that was typed twice.
 void check_duplicate(const CheckedLens& checked, int i, Findings& findings) {
-    const PrescribedSurface& row = checked.row(i);
-    const PrescribedSurface& next = checked.row(i + 1);
+    const optics::PrescribedSurface& row = checked.row(i);
+    const optics::PrescribedSurface& next = checked.row(i + 1);
     const bool same = !row.is_flat() && row.radius_mm == next.radius_mm && row.thickness_mm == next.thickness_mm &&
                       row.semi_diameter_mm == next.semi_diameter_mm && row.asphere == next.asphere &&
                       row.medium.glass == next.medium.glass && row.medium.n_d == next.medium.n_d;
     if (same) {
-        add(findings, "duplicate-surface", Severity::warning, i + 2, "it repeats the surface before it to the digit");
+        add(findings, "duplicate-surface", optics::Severity::warning, i + 2,
+            "it repeats the surface before it to the digit");
     }
 }
 
@@ -211,4 +216,4 @@ void check_table(const CheckedLens& checked, Findings& findings) {
     }
 }
 
-}  // namespace lensproof
+}  // namespace lensproof::check

@@ -1,6 +1,6 @@
 #include "engine/optics/air.h"
 
-namespace lensproof {
+namespace lensproof::optics {
 
 namespace {
 
@@ -35,4 +35,4 @@ double absolute_index(double index_relative_to_air, double air_wavelength_nm, do
     return index_relative_to_air * air_index(vacuum_wavelength_nm(air_wavelength_nm), temperature_C);
 }
 
-}  // namespace lensproof
+}  // namespace lensproof::optics

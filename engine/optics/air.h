@@ -1,7 +1,7 @@
 // engine/optics/air.h — standard air, and the step between indices relative to it and to vacuum.
 #pragma once
 
-namespace lensproof {
+namespace lensproof::optics {
 
 /// The phase index of standard air (dry, 15 °C, 101 325 Pa, 450 ppm CO2) at a wavelength in vacuum, nm:
 ///     10⁸ (n − 1) = 5 792 105 / (238.0185 − σ²) + 167 917 / (57.362 − σ²),  σ = 1/λ in µm⁻¹
@@ -20,4 +20,4 @@ double air_wavelength_nm(double vacuum_wavelength_nm);
 /// air is at `temperature_C`, its reference temperature.
 double absolute_index(double index_relative_to_air, double air_wavelength_nm, double temperature_C = 20.0);
 
-}  // namespace lensproof
+}  // namespace lensproof::optics

@@ -7,7 +7,7 @@
 #include <limits>
 #include <numbers>
 
-namespace lensproof {
+namespace lensproof::optics {
 
 namespace {
 
@@ -242,4 +242,4 @@ std::optional<ChiefRay> ChiefRays::from_point(const Vec3d& object) const {
     });
 }
 
-}  // namespace lensproof
+}  // namespace lensproof::optics

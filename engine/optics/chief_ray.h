@@ -5,7 +5,7 @@
 
 #include "engine/optics/lens.h"
 
-namespace lensproof {
+namespace lensproof::optics {
 
 /// A real ray through the stop's centre. Of a rotationally symmetric lens it lies in the meridional plane x = 0. Lens
 /// space, mm, radians.
@@ -71,4 +71,4 @@ class ChiefRays {
     double largest_field_ = 0.0;
 };
 
-}  // namespace lensproof
+}  // namespace lensproof::optics

@@ -5,7 +5,7 @@
 #include <optional>
 #include <vector>
 
-namespace lensproof {
+namespace lensproof::optics {
 
 /// A coating at one wavelength: layers without absorption from the scene's side to the sensor's, or a stated
 /// reflectance in their place, which then holds at every angle.
@@ -61,4 +61,4 @@ T coating_transmittance(const TraceCoating<T>& coating, const T& n1, const T& n2
     return sum / T(2);
 }
 
-}  // namespace lensproof
+}  // namespace lensproof::optics

@@ -6,7 +6,7 @@
 
 #include "engine/optics/trace.h"
 
-namespace lensproof {
+namespace lensproof::optics {
 
 template <class To, class From>
 Vec3<To> convert_vector(const Vec3<From>& v) {
@@ -62,4 +62,4 @@ TraceLens<To> convert_lens(const TraceLens<From>& lens) {
     return converted;
 }
 
-}  // namespace lensproof
+}  // namespace lensproof::optics

@@ -6,7 +6,7 @@
 #include "engine/optics/normal_line.h"
 #include "engine/spectral/wavelengths.h"
 
-namespace lensproof {
+namespace lensproof::optics {
 
 namespace {
 
@@ -136,18 +136,18 @@ double refractive_index(const DispersionFormula& formula, double wavelength_nm) 
 }
 
 double abbe_number(const DispersionFormula& formula) {
-    return (refractive_index(formula, kLineD) - 1.0) /
-           (refractive_index(formula, kLineF) - refractive_index(formula, kLineC));
+    return (refractive_index(formula, spectral::kLineD) - 1.0) /
+           (refractive_index(formula, spectral::kLineF) - refractive_index(formula, spectral::kLineC));
 }
 
 double abbe_number_e(const DispersionFormula& formula) {
-    return (refractive_index(formula, kLineE) - 1.0) /
-           (refractive_index(formula, kLineFPrime) - refractive_index(formula, kLineCPrime));
+    return (refractive_index(formula, spectral::kLineE) - 1.0) /
+           (refractive_index(formula, spectral::kLineFPrime) - refractive_index(formula, spectral::kLineCPrime));
 }
 
 double partial_dispersion(const DispersionFormula& formula, double x_nm, double y_nm) {
     return (refractive_index(formula, x_nm) - refractive_index(formula, y_nm)) /
-           (refractive_index(formula, kLineF) - refractive_index(formula, kLineC));
+           (refractive_index(formula, spectral::kLineF) - refractive_index(formula, spectral::kLineC));
 }
 
-}  // namespace lensproof
+}  // namespace lensproof::optics

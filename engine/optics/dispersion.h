@@ -8,7 +8,7 @@
 #include <variant>
 #include <vector>
 
-namespace lensproof {
+namespace lensproof::optics {
 
 /// The same index at every wavelength.
 struct ConstantIndex {
@@ -126,4 +126,4 @@ double abbe_number_e(const DispersionFormula& formula);
 /// P_xy = (n_x − n_y) / (n_F − n_C) between two wavelengths in nm; P_gF is that of the g and F lines.
 double partial_dispersion(const DispersionFormula& formula, double x_nm, double y_nm);
 
-}  // namespace lensproof
+}  // namespace lensproof::optics

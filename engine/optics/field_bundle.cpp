@@ -3,7 +3,7 @@
 #include <cmath>
 #include <utility>
 
-namespace lensproof {
+namespace lensproof::optics {
 
 std::array<Vec3d, 2> across_axes(const Vec3d& along) {
     const double from_x = std::hypot(along.y, along.z);
@@ -105,4 +105,4 @@ std::optional<FieldBundle> field_bundle(const ChiefRays& of_wavelength, const Ch
     return &of_wavelength == &reference ? std::optional(bundle) : same_object(bundle, of_wavelength);
 }
 
-}  // namespace lensproof
+}  // namespace lensproof::optics

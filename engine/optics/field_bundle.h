@@ -5,7 +5,7 @@
 
 #include "engine/optics/chief_ray.h"
 
-namespace lensproof {
+namespace lensproof::optics {
 
 /// Two unit vectors across the direction `along` and each other: the first as near to +x as can be, the second as near
 /// to +y (in the plane x = 0: (1, 0, 0) and (0, z, −y)). Not for a direction along x.
@@ -51,4 +51,4 @@ std::optional<FieldBundle> same_object(const FieldBundle& bundle, const ChiefRay
 std::optional<FieldBundle> field_bundle(const ChiefRays& of_wavelength, const ChiefRays& reference, double field_angle,
                                         double object_distance = std::numeric_limits<double>::infinity());
 
-}  // namespace lensproof
+}  // namespace lensproof::optics

@@ -4,7 +4,7 @@
 #include <string_view>
 #include <vector>
 
-namespace lensproof {
+namespace lensproof::optics {
 
 enum class Severity { info, warning, error };
 
@@ -33,4 +33,4 @@ struct Finding {
     static constexpr double kNothing = __builtin_nan("");
 };
 
-}  // namespace lensproof
+}  // namespace lensproof::optics

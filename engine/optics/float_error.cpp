@@ -5,7 +5,7 @@
 
 #include "engine/optics/convert_lens.h"
 
-namespace lensproof {
+namespace lensproof::optics {
 
 namespace {
 
@@ -87,4 +87,4 @@ double float_error_bound_um(double system_length_mm) {
     return 1e-3 * system_length_mm;
 }
 
-}  // namespace lensproof
+}  // namespace lensproof::optics

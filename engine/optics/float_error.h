@@ -5,7 +5,7 @@
 
 #include "engine/optics/trace.h"
 
-namespace lensproof {
+namespace lensproof::optics {
 
 /// What becomes of a ray: its status, and the surface that gave it, counted from 0.
 struct RayFate {
@@ -50,4 +50,4 @@ struct FloatError {
 /// which is 8 ulps of a float of that length.
 double float_error_bound_um(double system_length_mm);
 
-}  // namespace lensproof
+}  // namespace lensproof::optics

@@ -11,7 +11,7 @@
 #include "engine/optics/paraxial.h"
 #include "engine/spectral/wavelengths.h"
 
-namespace lensproof {
+namespace lensproof::optics {
 
 namespace {
 
@@ -35,7 +35,8 @@ std::optional<Lens> driven(const Lens& lens, double drive) {
 /// How far behind the sensor the paraxial image at the d line of an object in front of the table's first vertex lies.
 double defocus(const Lens& lens, double object_distance_mm) {
     const double distance = object_distance_mm + lens.surfaces.front().vertex_z;
-    return lens.last_vertex_z() + paraxial_image_distance(at_wavelength<double>(lens, kLineD), distance) - lens.image_z;
+    return lens.last_vertex_z() + paraxial_image_distance(at_wavelength<double>(lens, spectral::kLineD), distance) -
+           lens.image_z;
 }
 
 /// The lens with its focusing groups where the image of the object is as far from the sensor as infinity's is in the
@@ -74,7 +75,7 @@ Lens focused_by_groups(const Lens& lens, double object_distance_mm) {
 }  // namespace
 
 Lens with_f_number(Lens lens, double f_number) {
-    const double widest = paraxial_data(at_wavelength<double>(lens, kLineD)).f_number;
+    const double widest = paraxial_data(at_wavelength<double>(lens, spectral::kLineD)).f_number;
     LensSurface& stop = lens.surfaces[lens.stop_index()];
     // Published f-numbers are rounded: f/2.8 is asked of a lens that opens to f/2.83.
     constexpr double kRounding = 0.02;
@@ -86,7 +87,7 @@ Lens with_f_number(Lens lens, double f_number) {
 }
 
 Lens focused_at(Lens lens, double object_distance_mm) {
-    const TraceLens<double> at_d = at_wavelength<double>(lens, kLineD);
+    const TraceLens<double> at_d = at_wavelength<double>(lens, spectral::kLineD);
     const double image_distance = paraxial_image_distance(at_d, object_distance_mm);
     const double front_focus = -paraxial_data(at_d).ffl;
     if (!lens.focus_groups.empty() && object_distance_mm > 0.0) {
@@ -107,4 +108,4 @@ Lens focused_at(Lens lens, double object_distance_mm) {
     return lens;
 }
 
-}  // namespace lensproof
+}  // namespace lensproof::optics

@@ -2,7 +2,7 @@
 #pragma once
 #include "engine/optics/lens.h"
 
-namespace lensproof {
+namespace lensproof::optics {
 
 /// The lens with its stop opened or closed to f-number `f_number` (paraxial: EFL over entrance pupil diameter, at the d
 /// line, object at infinity). Throws InputError where that is wider than the prescription's stop.
@@ -14,4 +14,4 @@ Lens with_f_number(Lens lens, double f_number);
 /// reach, or at or inside the front focal point, which has no real image.
 Lens focused_at(Lens lens, double object_distance_mm);
 
-}  // namespace lensproof
+}  // namespace lensproof::optics

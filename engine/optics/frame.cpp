@@ -3,7 +3,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace lensproof {
+namespace lensproof::optics {
 
 namespace {
 
@@ -68,4 +68,4 @@ std::vector<Frame> surface_frames(const Prescription& prescription) {
     return frames;
 }
 
-}  // namespace lensproof
+}  // namespace lensproof::optics

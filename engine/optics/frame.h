@@ -6,7 +6,7 @@
 #include "engine/base/vec.h"
 #include "engine/optics/prescription.h"
 
-namespace lensproof {
+namespace lensproof::optics {
 
 /// A right-handed system of coordinates: its origin (mm) and its axes of unit length, in lens space.
 struct Frame {
@@ -31,4 +31,4 @@ std::array<double, 3> tilt_angles(const Frame& frame);
 /// vertex of an aligned lens is the origin.
 std::vector<Frame> surface_frames(const Prescription& prescription);
 
-}  // namespace lensproof
+}  // namespace lensproof::optics

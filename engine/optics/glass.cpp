@@ -8,7 +8,7 @@
 
 #include "engine/optics/air.h"
 
-namespace lensproof {
+namespace lensproof::optics {
 
 bool covers(const Glass& glass, double wavelength_nm) {
     return wavelength_nm >= glass.min_wavelength_nm && wavelength_nm <= glass.max_wavelength_nm;
@@ -73,4 +73,4 @@ std::string complaint_about(const Glass& glass) {
     return {};
 }
 
-}  // namespace lensproof
+}  // namespace lensproof::optics

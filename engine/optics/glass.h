@@ -7,7 +7,7 @@
 #include "engine/optics/dispersion.h"
 #include "engine/optics/normal_line.h"
 
-namespace lensproof {
+namespace lensproof::optics {
 
 /// How the index of a glass changes with temperature, from `reference_C`:
 ///     Δn_abs = (n² − 1) / (2 n) (D0 Δt + D1 Δt² + D2 Δt³ + (E0 Δt + E1 Δt²) / (λ² − λ_tk²)),  λ in µm
@@ -63,4 +63,4 @@ std::optional<double> internal_transmittance(const Glass& glass, double waveleng
 /// index real, above 0 and below 20 at 65 wavelengths across it.
 std::string complaint_about(const Glass& glass);
 
-}  // namespace lensproof
+}  // namespace lensproof::optics

@@ -10,7 +10,7 @@
 #include "engine/optics/glass_name.h"
 #include "engine/spectral/wavelengths.h"
 
-namespace lensproof {
+namespace lensproof::optics {
 
 namespace {
 
@@ -67,7 +67,8 @@ const Glass* preferred(const Found& found, std::span<const std::string> catalogu
 }
 
 std::string figures(const Glass& glass) {
-    return fmt::format("n_d {:.5f}, V_d {:.2f}", refractive_index(glass.formula, kLineD), abbe_number(glass.formula));
+    return fmt::format("n_d {:.5f}, V_d {:.2f}", refractive_index(glass.formula, spectral::kLineD),
+                       abbe_number(glass.formula));
 }
 
 /// Collects suggestions, each glass once, the best first.
@@ -96,7 +97,8 @@ bool is_prefixed(std::string_view longer, std::string_view shorter) {
 }
 
 double distance(const Glass& glass, double n_d, double V_d) {
-    return std::hypot(refractive_index(glass.formula, kLineD) - n_d, std::log(abbe_number(glass.formula) / V_d));
+    return std::hypot(refractive_index(glass.formula, spectral::kLineD) - n_d,
+                      std::log(abbe_number(glass.formula) / V_d));
 }
 
 std::vector<GlassSuggestion> suggestions_for(const AskedName& asked, std::span<const Glass> glasses,
@@ -106,7 +108,7 @@ std::vector<GlassSuggestion> suggestions_for(const AskedName& asked, std::span<c
         constexpr double kRoundedIndex = 0.00051;
         constexpr double kRoundedAbbe = 0.051;
         for (const Glass& glass : glasses) {
-            if (std::abs(refractive_index(glass.formula, kLineD) - code->n_d) < kRoundedIndex &&
+            if (std::abs(refractive_index(glass.formula, spectral::kLineD) - code->n_d) < kRoundedIndex &&
                 std::abs(abbe_number(glass.formula) - code->V_d) < kRoundedAbbe) {
                 suggestions.add(glass, "has that code");
             }
@@ -218,4 +220,4 @@ std::string suggestion_text(const std::vector<GlassSuggestion>& suggestions) {
     return text;
 }
 
-}  // namespace lensproof
+}  // namespace lensproof::optics

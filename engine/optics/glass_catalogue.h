@@ -8,7 +8,7 @@
 
 #include "engine/optics/glass.h"
 
-namespace lensproof {
+namespace lensproof::optics {
 
 /// A glass that a name which is not known may have meant, and why it is thought so.
 struct GlassSuggestion {
@@ -58,4 +58,4 @@ class GlassCatalogue {
 /// Suggestions in a sentence for a message: "perhaps N-LAK33A (SCHOTT): …"; or that there is none.
 std::string suggestion_text(const std::vector<GlassSuggestion>& suggestions);
 
-}  // namespace lensproof
+}  // namespace lensproof::optics

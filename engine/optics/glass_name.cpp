@@ -9,7 +9,7 @@
 
 #include "engine/base/text.h"
 
-namespace lensproof {
+namespace lensproof::optics {
 
 namespace {
 
@@ -126,4 +126,4 @@ std::optional<GlassCode> parse_glass_code(std::string_view text) {
     return std::nullopt;
 }
 
-}  // namespace lensproof
+}  // namespace lensproof::optics

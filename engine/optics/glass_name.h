@@ -4,7 +4,7 @@
 #include <string>
 #include <string_view>
 
-namespace lensproof {
+namespace lensproof::optics {
 
 /// Whether two names have the same characters, letter case aside.
 bool same_letters(std::string_view a, std::string_view b);
@@ -27,4 +27,4 @@ struct GlassCode {
 };
 std::optional<GlassCode> parse_glass_code(std::string_view text);
 
-}  // namespace lensproof
+}  // namespace lensproof::optics

@@ -6,7 +6,7 @@
 
 #include "engine/optics/rim_margin.h"
 
-namespace lensproof {
+namespace lensproof::optics {
 
 namespace {
 
@@ -62,4 +62,4 @@ Bundle image_bundle(const TraceLens<double>& lens, double image_height) {
     return bundle;
 }
 
-}  // namespace lensproof
+}  // namespace lensproof::optics

@@ -5,7 +5,7 @@
 #include "engine/optics/lens.h"
 #include "engine/optics/region_outline.h"
 
-namespace lensproof {
+namespace lensproof::optics {
 
 /// The bundle that reaches a sensor point through every rim.
 struct Bundle {
@@ -26,4 +26,4 @@ RegionOutline image_outline(const TraceLens<double>& lens, Vec2d sensor_point,
 /// along each azimuth of the outline. Zero where no light arrives.
 Bundle image_bundle(const TraceLens<double>& lens, double image_height);
 
-}  // namespace lensproof
+}  // namespace lensproof::optics

@@ -5,7 +5,7 @@
 #include "engine/base/ray.h"
 #include "engine/base/select.h"
 
-namespace lensproof {
+namespace lensproof::optics {
 
 /// The outcome of `intersect`. Where `hit` is false the numbers are meaningless.
 template <class T>
@@ -84,4 +84,4 @@ Intersection<T> intersect(const Ray<T>& ray, const T& c, const T& heading) {
     return intersect(ray.origin, ray.direction, c, heading);
 }
 
-}  // namespace lensproof
+}  // namespace lensproof::optics

@@ -17,7 +17,7 @@
 #include "engine/optics/paraxial.h"
 #include "engine/spectral/wavelengths.h"
 
-namespace lensproof {
+namespace lensproof::optics {
 
 namespace {
 
@@ -129,7 +129,7 @@ void estimate_semi_diameters(Lens& lens) {
     if (std::ranges::none_of(lens.surfaces, [](const LensSurface& s) { return std::isinf(s.semi_diameter); })) {
         return;
     }
-    const TraceLens<double> at_d = at_wavelength<double>(lens, kLineD);
+    const TraceLens<double> at_d = at_wavelength<double>(lens, spectral::kLineD);
     const ParaxialData data = paraxial_data(at_d);
     double pupil = lens.stated.entrance_pupil_diameter_mm.value_or(data.entrance_pupil_diameter);
     if (!std::isfinite(pupil) && lens.stated.f_number) {
@@ -257,7 +257,7 @@ Lens make_lens(const Prescription& prescription, const GlassCatalogue& glasses, 
         }
     }
     const LensSurface& last = lens.surfaces.back();
-    if (refractive_index(last.medium.formula, kLineD) != 1.0) {
+    if (refractive_index(last.medium.formula, spectral::kLineD) != 1.0) {
         throw InputError(fmt::format("{}: the last surface is followed by {}, expected air", prescription.file.string(),
                                      last.medium.name));
     }
@@ -341,4 +341,4 @@ template TraceLens<float> at_wavelength(const Lens&, double);
 template TraceLens<double> at_wavelength(const Lens&, double);
 template TraceLens<long double> at_wavelength(const Lens&, double);
 
-}  // namespace lensproof
+}  // namespace lensproof::optics

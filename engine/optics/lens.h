@@ -9,7 +9,7 @@
 #include "engine/optics/prescription.h"
 #include "engine/optics/trace.h"
 
-namespace lensproof {
+namespace lensproof::optics {
 
 /// A surface of a `Lens`. Lens space, mm.
 struct LensSurface {
@@ -79,4 +79,4 @@ extern template TraceLens<float> at_wavelength(const Lens&, double);
 extern template TraceLens<double> at_wavelength(const Lens&, double);
 extern template TraceLens<long double> at_wavelength(const Lens&, double);
 
-}  // namespace lensproof
+}  // namespace lensproof::optics

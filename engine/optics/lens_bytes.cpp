@@ -2,7 +2,7 @@
 
 #include "engine/base/bytes.h"
 
-namespace lensproof {
+namespace lensproof::optics {
 
 namespace {
 
@@ -53,4 +53,4 @@ void append_lens_bytes(std::string& bytes, const TraceLens<double>& lens) {
     }
 }
 
-}  // namespace lensproof
+}  // namespace lensproof::optics

@@ -4,10 +4,10 @@
 
 #include "engine/optics/trace.h"
 
-namespace lensproof {
+namespace lensproof::optics {
 
 /// Appends every number of the lens, coatings, masks and textures included. Two lenses leave the same bytes only where
 /// they are the same to the last bit.
 void append_lens_bytes(std::string& bytes, const TraceLens<double>& lens);
 
-}  // namespace lensproof
+}  // namespace lensproof::optics

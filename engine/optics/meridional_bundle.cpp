@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-namespace lensproof {
+namespace lensproof::optics {
 
 MeridionalBundle meridional_bundle(const TraceLens<double>& lens, const ChiefRay& chief, double object_distance) {
     MeridionalBundle bundle{{.chief = chief, .object_distance = object_distance}};
@@ -23,4 +23,4 @@ MeridionalBundle meridional_bundle(const TraceLens<double>& lens, const ChiefRay
     return bundle;
 }
 
-}  // namespace lensproof
+}  // namespace lensproof::optics

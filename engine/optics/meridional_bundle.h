@@ -2,7 +2,7 @@
 #pragma once
 #include "engine/optics/field_bundle.h"
 
-namespace lensproof {
+namespace lensproof::optics {
 
 /// The rays of one object point in the plane of its chief ray, told apart by their offset (mm) across it, positive
 /// towards +y.
@@ -16,4 +16,4 @@ struct MeridionalBundle : FieldBundle {
 MeridionalBundle meridional_bundle(const TraceLens<double>& lens, const ChiefRay& chief,
                                    double object_distance = std::numeric_limits<double>::infinity());
 
-}  // namespace lensproof
+}  // namespace lensproof::optics

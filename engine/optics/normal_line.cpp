@@ -7,7 +7,7 @@
 #include "engine/optics/glass.h"
 #include "engine/spectral/wavelengths.h"
 
-namespace lensproof {
+namespace lensproof::optics {
 
 namespace {
 
@@ -22,11 +22,11 @@ constexpr std::array<std::array<double, 4>, 3> kShape = {{
 
 /// λ^exponent − λ_d^exponent.
 double from_d(double um, double exponent) {
-    return std::pow(um, exponent) - std::pow(1e-3 * kLineD, exponent);
+    return std::pow(um, exponent) - std::pow(1e-3 * spectral::kLineD, exponent);
 }
 
 double between_F_and_C(double exponent) {
-    return std::pow(1e-3 * kLineF, exponent) - std::pow(1e-3 * kLineC, exponent);
+    return std::pow(1e-3 * spectral::kLineF, exponent) - std::pow(1e-3 * spectral::kLineC, exponent);
 }
 
 }  // namespace
@@ -58,10 +58,10 @@ ModelError normal_line_error(std::span<const Glass> glasses, double n_d, double 
     };
     std::vector<Neighbour> neighbours;
     for (const Glass& glass : glasses) {
-        if (!covers(glass, wavelength_nm) || !covers(glass, kLineF) || !covers(glass, kLineC)) {
+        if (!covers(glass, wavelength_nm) || !covers(glass, spectral::kLineF) || !covers(glass, spectral::kLineC)) {
             continue;
         }
-        const double n = refractive_index(glass.formula, kLineD);
+        const double n = refractive_index(glass.formula, spectral::kLineD);
         const double V = abbe_number(glass.formula);
         if (!(n > 1.0 && V > 0.0)) {
             continue;
@@ -89,4 +89,4 @@ ModelError normal_line_error(std::span<const Glass> glasses, double n_d, double 
             .glasses = static_cast<int>(count)};
 }
 
-}  // namespace lensproof
+}  // namespace lensproof::optics

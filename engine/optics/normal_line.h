@@ -5,7 +5,7 @@
 
 #include "engine/optics/dispersion.h"
 
-namespace lensproof {
+namespace lensproof::optics {
 
 struct Glass;
 
@@ -41,4 +41,4 @@ struct ModelError {
 /// around d, where the model is exact. Zero glasses, and zero errors, where no formula covers the wavelength.
 ModelError normal_line_error(std::span<const Glass> glasses, double n_d, double V_d, double wavelength_nm);
 
-}  // namespace lensproof
+}  // namespace lensproof::optics

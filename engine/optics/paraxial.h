@@ -9,7 +9,7 @@
 
 #include "engine/optics/trace.h"
 
-namespace lensproof {
+namespace lensproof::optics {
 
 // T: double, long double or a multiprecision number, as the lens has it. Only the curvature at each vertex counts (that
 // of a toroid in y–z, an r² term included); tilts and decentres are left out. The lens has one stop.
@@ -353,4 +353,4 @@ extern template BasicParaxialData<double> paraxial_data(const TraceLens<double>&
 extern template double paraxial_image_distance(const TraceLens<double>&, const double&);
 extern template BasicConjugates<double> paraxial_conjugates(const TraceLens<double>&, const double&);
 
-}  // namespace lensproof
+}  // namespace lensproof::optics

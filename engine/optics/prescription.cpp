@@ -8,7 +8,7 @@
 
 #include "engine/base/input_error.h"
 
-namespace lensproof {
+namespace lensproof::optics {
 
 std::string projection_name(Projection projection) {
     switch (projection) {
@@ -124,4 +124,4 @@ std::size_t find_zoom_position(const Prescription& prescription, const std::stri
                                        prescription.file.string(), name, count, fmt::join(names, ", ")));
 }
 
-}  // namespace lensproof
+}  // namespace lensproof::optics

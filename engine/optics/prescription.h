@@ -13,7 +13,7 @@
 
 #include "engine/optics/finding.h"
 
-namespace lensproof {
+namespace lensproof::optics {
 
 /// The mapping from field angle θ to image height that a lens is designed for.
 enum class Projection { rectilinear, equidistant, equisolid, stereographic, orthographic };
@@ -190,4 +190,4 @@ Prescription at_zoom_position(Prescription prescription, std::size_t position);
 /// The position called `name`, or with that number (from 1). Throws InputError naming those that there are.
 std::size_t find_zoom_position(const Prescription& prescription, const std::string& name);
 
-}  // namespace lensproof
+}  // namespace lensproof::optics

@@ -2,7 +2,7 @@
 #pragma once
 #include <cstdint>
 
-namespace lensproof {
+namespace lensproof::optics {
 
 /// Why a ray ended, or `ok`.
 enum class RayStatus : std::uint8_t {
@@ -30,4 +30,4 @@ constexpr const char* status_name(RayStatus status) {
     return "unknown";
 }
 
-}  // namespace lensproof
+}  // namespace lensproof::optics

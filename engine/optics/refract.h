@@ -5,7 +5,7 @@
 #include "engine/base/select.h"
 #include "engine/base/vec.h"
 
-namespace lensproof {
+namespace lensproof::optics {
 
 /// The outcome of `refract`. Where `transmitted` is false (total internal reflection) the numbers are finite and
 /// meaningless.
@@ -83,4 +83,4 @@ T fresnel_transmittance(const T& index_before, const T& index_after, const T& co
                    passing(index_after * cos_incidence, index_before * cos_refraction));
 }
 
-}  // namespace lensproof
+}  // namespace lensproof::optics

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <cstdint>
 
-namespace lensproof {
+namespace lensproof::optics {
 
 std::optional<Vec2d> find_inside(const Region& region, const RegionSearch& search) {
     Vec2d best = search.start;
@@ -85,4 +85,4 @@ RegionEdge region_edge(const Region& region, Vec2d inside, Vec2d along, double h
     return {root.first, root.first == root.second ? sample(root.first).limit : far.limit};
 }
 
-}  // namespace lensproof
+}  // namespace lensproof::optics

@@ -5,7 +5,7 @@
 
 #include "engine/base/vec.h"
 
-namespace lensproof {
+namespace lensproof::optics {
 
 /// How a point stands to a region.
 struct RegionSample {
@@ -36,4 +36,4 @@ struct RegionEdge {
 /// points inside and outside by TOMS 748 (Alefeld, Potra, Shi 1995), or by halving where the margin is infinite.
 RegionEdge region_edge(const Region& region, Vec2d inside, Vec2d along, double hint = 1.0);
 
-}  // namespace lensproof
+}  // namespace lensproof::optics

@@ -9,7 +9,7 @@
 #include <limits>
 #include <numbers>
 
-namespace lensproof {
+namespace lensproof::optics {
 
 namespace {
 
@@ -387,4 +387,4 @@ std::vector<RegionNode> region_quadrature(const RegionOutline& outline, int ring
     return nodes;
 }
 
-}  // namespace lensproof
+}  // namespace lensproof::optics

@@ -4,7 +4,7 @@
 
 #include "engine/optics/region.h"
 
-namespace lensproof {
+namespace lensproof::optics {
 
 /// A point of the outline, and the wedge that it stands for.
 struct OutlinePoint {
@@ -62,4 +62,4 @@ struct GaussRule {
 };
 GaussRule gauss_legendre(int count);
 
-}  // namespace lensproof
+}  // namespace lensproof::optics

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-namespace lensproof {
+namespace lensproof::optics {
 
 namespace {
 
@@ -66,4 +66,4 @@ bool is_mirror_symmetric(const TraceLens<double>& lens) {
     });
 }
 
-}  // namespace lensproof
+}  // namespace lensproof::optics

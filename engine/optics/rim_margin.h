@@ -3,7 +3,7 @@
 #include "engine/optics/region.h"
 #include "engine/optics/trace.h"
 
-namespace lensproof {
+namespace lensproof::optics {
 
 /// The ray against every rim: margin max (r² / semi-diameter² − 1) over the surfaces, limit the surface (from 0) where
 /// that is; limit % surface count is the surface in every case. The stop's blades count as rims of their own. A ray
@@ -15,4 +15,4 @@ RegionSample rim_margin(const TraceLens<double>& lens, const Ray<double>& ray, D
 /// Whether lens and rims are their own mirror image in the plane x = 0.
 bool is_mirror_symmetric(const TraceLens<double>& lens);
 
-}  // namespace lensproof
+}  // namespace lensproof::optics

@@ -10,7 +10,7 @@
 #include "engine/base/bytes.h"
 #include "engine/base/input_error.h"
 
-namespace lensproof {
+namespace lensproof::optics {
 
 StopMask::StopMask(const StopShape& shape) {
     if (const auto* polygon = std::get_if<PolygonStop>(&shape)) {
@@ -85,4 +85,4 @@ void StopMask::append_to(std::string& bytes) const {
     }
 }
 
-}  // namespace lensproof
+}  // namespace lensproof::optics

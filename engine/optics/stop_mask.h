@@ -6,7 +6,7 @@
 
 #include "engine/optics/prescription.h"
 
-namespace lensproof {
+namespace lensproof::optics {
 
 /// The part of a stop's circle that is open, at a given semi-diameter.
 class StopMask {
@@ -49,4 +49,4 @@ class StopMask {
     std::shared_ptr<const StopTexture> texture_;
 };
 
-}  // namespace lensproof
+}  // namespace lensproof::optics

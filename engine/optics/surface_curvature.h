@@ -5,7 +5,7 @@
 
 #include "engine/optics/surface_shape.h"
 
-namespace lensproof {
+namespace lensproof::optics {
 
 /// First and second derivatives of the function F whose zero the surface is (`implicit_surface`; of a conic
 /// F = z − c (x² + y² + (1 + k) z²) / 2) at a point on it, in the surface's own axes. ∇F rises towards +z.
@@ -57,4 +57,4 @@ SurfaceDerivatives<T> surface_derivatives(const SurfaceShape<T>& shape, const Ve
     return {gradient, {{{-cx, T(0), T(0)}, {T(0), cx * g1 * g1 - g2 * (T(1) - cx * g.sag), T(0)}, {T(0), T(0), -cx}}}};
 }
 
-}  // namespace lensproof
+}  // namespace lensproof::optics

@@ -7,7 +7,7 @@
 
 #include "engine/optics/intersect.h"
 
-namespace lensproof {
+namespace lensproof::optics {
 
 /// A surface that is no sphere. In y–z it is the even asphere
 ///     g(y) = c y² / (1 + √(1 − (1 + k) c² y²)) + Σ A_2i y^2i,   i = 1 … 10
@@ -174,6 +174,7 @@ struct ShapeCrossing {
     MaskOf<T> found;
 };
 
+using lensproof::assign_where;
 template <Packet T>
 void assign_where(const MaskOf<T>& mask, ShapeCrossing<T>& to, const ShapeCrossing<T>& value) {
     to = {select(mask, value.point, to.point), select(mask, value.distance, to.distance),
@@ -277,4 +278,4 @@ std::pair<Intersection<T>, Vec3<T>> intersect(const SurfaceShape<Scalar>& shape,
     return meeting(met.point, met.distance, cos_incidence, gradient, met.found);
 }
 
-}  // namespace lensproof
+}  // namespace lensproof::optics

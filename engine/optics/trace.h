@@ -14,7 +14,7 @@
 #include "engine/optics/stop_mask.h"
 #include "engine/optics/surface_shape.h"
 
-namespace lensproof {
+namespace lensproof::optics {
 
 /// One surface as the tracer sees it, at one wavelength. Flat, immutable, no look-up behind it.
 template <class T>
@@ -311,4 +311,4 @@ PlanePoint<T> meet_plane(const Ray<T>& ray, const T& z) {
     return {point, distance};
 }
 
-}  // namespace lensproof
+}  // namespace lensproof::optics

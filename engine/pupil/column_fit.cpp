@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <limits>
 
-namespace lensproof {
+namespace lensproof::pupil {
 
 namespace {
 
@@ -109,4 +109,4 @@ PupilRegion region_around(std::span<const PupilOutline> outlines, const Extent& 
     return region;
 }
 
-}  // namespace lensproof
+}  // namespace lensproof::pupil

@@ -7,7 +7,7 @@
 #include "engine/pupil/pupil_outline.h"
 #include "engine/pupil/pupil_region.h"
 
-namespace lensproof {
+namespace lensproof::pupil {
 
 /// The smallest and the largest x of outlines.
 struct Extent {
@@ -41,4 +41,4 @@ void grow(PupilRegion& region, const ColumnGrowth& growth, double scale, PupilSy
 /// A region over `extent`, which holds the outlines' own, that holds them. At least one outline is not empty.
 PupilRegion region_around(std::span<const PupilOutline> outlines, const Extent& extent, PupilSymmetry symmetry);
 
-}  // namespace lensproof
+}  // namespace lensproof::pupil

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-namespace lensproof {
+namespace lensproof::pupil {
 
 Vec2d Disc::warped(double u, double v) const {
     const double a = 2.0 * u - 1.0;
@@ -17,4 +17,4 @@ Vec2d Disc::warped(double u, double v) const {
     return {distance * std::cos(angle), distance * std::sin(angle)};
 }
 
-}  // namespace lensproof
+}  // namespace lensproof::pupil

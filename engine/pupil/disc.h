@@ -4,7 +4,7 @@
 
 #include "engine/base/vec.h"
 
-namespace lensproof {
+namespace lensproof::pupil {
 
 /// A disc around the origin of its plane, mm.
 struct Disc {
@@ -18,4 +18,4 @@ struct Disc {
     [[nodiscard]] Vec2d warped(double u, double v) const;
 };
 
-}  // namespace lensproof
+}  // namespace lensproof::pupil

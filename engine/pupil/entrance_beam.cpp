@@ -7,14 +7,14 @@
 #include "engine/optics/field_bundle.h"
 #include "engine/pupil/surface_cap.h"
 
-namespace lensproof {
+namespace lensproof::pupil {
 
 namespace {
 
 /// About the rim's centre, in the surface's own axes.
 BoundingSphere own_sphere(const SurfaceCap& cap) {
     const auto& [shape, rim] = cap;
-    BoundingSphere sphere{.centre = {0.0, 0.0, sag(shape, rim, 0.0)}, .radius = rim};
+    BoundingSphere sphere{.centre = {0.0, 0.0, optics::sag(shape, rim, 0.0)}, .radius = rim};
     if (shape.is_conic() && shape.conic == 0.0) {
         return sphere;
     }
@@ -25,7 +25,7 @@ BoundingSphere own_sphere(const SurfaceCap& cap) {
         const double radius = rim * std::sin(0.5 * std::numbers::pi * i / kCells);
         for (int k = 0; k <= kCells; ++k) {
             const double azimuth = 0.5 * std::numbers::pi * k / kCells;
-            const double z = sag(shape, radius * std::cos(azimuth), radius * std::sin(azimuth));
+            const double z = optics::sag(shape, radius * std::cos(azimuth), radius * std::sin(azimuth));
             farthest = std::max(farthest, std::hypot(radius, std::isfinite(z) ? z - sphere.centre.z : 0.0));
         }
     }
@@ -35,9 +35,9 @@ BoundingSphere own_sphere(const SurfaceCap& cap) {
 
 }  // namespace
 
-BoundingSphere front_sphere(const TraceLens<double>& lens) {
-    const TraceSurface<double>& front = lens.surfaces.front();
-    const SpecialSurface<double>* special = front.special >= 0 ? &lens.specials[front.special] : nullptr;
+BoundingSphere front_sphere(const optics::TraceLens<double>& lens) {
+    const optics::TraceSurface<double>& front = lens.surfaces.front();
+    const optics::SpecialSurface<double>* special = front.special >= 0 ? &lens.specials[front.special] : nullptr;
     BoundingSphere sphere = own_sphere(surface_cap(lens, front));
     if (special != nullptr) {
         sphere.centre = special->from_own(sphere.centre) + Vec3d{special->vertex.x, special->vertex.y, 0.0};
@@ -47,7 +47,7 @@ BoundingSphere front_sphere(const TraceLens<double>& lens) {
 }
 
 Ray<double> EntranceBeam::ray(Vec2d offset) const {
-    return ray_beside(axis, across, distance, offset);
+    return optics::ray_beside(axis, across, distance, offset);
 }
 
 double EntranceBeam::solid_angle_per_mm2(Vec2d offset) const {
@@ -76,4 +76,4 @@ std::optional<EntranceBeam> beam_from(const BoundingSphere& front, const Vec3d& 
     return distance > front.radius ? std::optional(beam_along(front, (1.0 / distance) * way, distance)) : std::nullopt;
 }
 
-}  // namespace lensproof
+}  // namespace lensproof::pupil

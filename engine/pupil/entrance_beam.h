@@ -6,7 +6,7 @@
 
 #include "engine/optics/trace.h"
 
-namespace lensproof {
+namespace lensproof::pupil {
 
 /// A sphere in lens space, mm.
 struct BoundingSphere {
@@ -18,7 +18,7 @@ struct BoundingSphere {
 /// is the one with the rim for its great circle: a cap's point r beside the axis and h above the rim's plane has
 /// r² + h² = a² − 2 h (R − s), with the rim's radius a and the cap's depth s ≤ R. Of others the farthest of their
 /// points on a grid, and 0.1 % more.
-BoundingSphere front_sphere(const TraceLens<double>& lens);
+BoundingSphere front_sphere(const optics::TraceLens<double>& lens);
 
 /// All rays of one scene point, or from one direction, that may meet the first surface inside its rim. They are told
 /// apart by their offset (mm) in the plane through the front sphere's centre across the way there from the point, along
@@ -48,4 +48,4 @@ EntranceBeam beam_along(const BoundingSphere& front, const Vec3d& direction,
 /// semi-diameter to the centre of its rim.
 std::optional<EntranceBeam> beam_from(const BoundingSphere& front, const Vec3d& point);
 
-}  // namespace lensproof
+}  // namespace lensproof::pupil

@@ -9,7 +9,7 @@
 #include "engine/base/bytes.h"
 #include "engine/pupil/pupil_nodes.h"
 
-namespace lensproof {
+namespace lensproof::pupil {
 
 namespace {
 
@@ -29,7 +29,7 @@ Vec3d direction_of(Vec2d place) {
 }
 
 RayFamily rays_of_directions(const BoundingSphere& front, double distance_mm) {
-    return {.direction = Direction::forward, .ray = [front, distance_mm](Vec2d place, Vec2d offset) {
+    return {.direction = optics::Direction::forward, .ray = [front, distance_mm](Vec2d place, Vec2d offset) {
                 return beam_along(front, direction_of(place), distance_mm).ray(offset);
             }};
 }
@@ -38,16 +38,16 @@ NodeSearch node_search(const EntranceBeam& beam, bool by_angle, const PupilMapSe
     return {.disc = {beam.radius}, .by_radius = by_angle, .end = kWidestAngle, .most_excess = settings.most_excess};
 }
 
-RegionMap direction_map(const std::vector<TraceLens<double>>& band, const BoundingSphere& front, bool by_angle,
+RegionMap direction_map(const std::vector<optics::TraceLens<double>>& band, const BoundingSphere& front, bool by_angle,
                         double distance_mm, const PupilMapSettings& settings) {
     const NodeSearch search = node_search(beam_along(front, {0.0, 0.0, 1.0}, distance_mm), by_angle, settings);
     return {search.disc, settings.defensive_share,
             find_pupil_nodes(band, rays_of_directions(front, distance_mm), search)};
 }
 
-RegionMap beam_region(const std::vector<TraceLens<double>>& band, const EntranceBeam& beam, bool by_angle,
+RegionMap beam_region(const std::vector<optics::TraceLens<double>>& band, const EntranceBeam& beam, bool by_angle,
                       const PupilMapSettings& settings) {
-    const RayFamily rays{.direction = Direction::forward,
+    const RayFamily rays{.direction = optics::Direction::forward,
                          .ray = [&beam](Vec2d, Vec2d offset) { return beam.ray(offset); }};
     const NodeSearch search = node_search(beam, by_angle, settings);
     return {search.disc, settings.defensive_share,
@@ -63,13 +63,13 @@ EntranceSample sample_of(const EntranceBeam& beam, const PupilSample& drawn) {
 EntranceMap::EntranceMap(const BoundingSphere& front, double distance_mm, RegionMap regions)
     : front_(front), distance_mm_(distance_mm), regions_(std::move(regions)) {}
 
-EntranceMap::EntranceMap(const std::vector<TraceLens<double>>& band, bool by_angle, double distance_mm,
+EntranceMap::EntranceMap(const std::vector<optics::TraceLens<double>>& band, bool by_angle, double distance_mm,
                          const PupilMapSettings& settings)
     : front_(front_sphere(band.front())),
       distance_mm_(distance_mm),
       regions_(direction_map(band, front_, by_angle, distance_mm, settings)) {}
 
-EntranceMap EntranceMap::whole_element(const TraceLens<double>& lens, double distance_mm) {
+EntranceMap EntranceMap::whole_element(const optics::TraceLens<double>& lens, double distance_mm) {
     const BoundingSphere front = front_sphere(lens);
     const EntranceBeam beam = beam_along(front, {0.0, 0.0, 1.0}, distance_mm);
     return {front, distance_mm, RegionMap({beam.radius}, 1.0, {})};
@@ -118,8 +118,8 @@ std::optional<EntranceMap> EntranceMap::deserialized(std::string_view bytes) {
     return regions ? std::optional(EntranceMap({{x, y, z}, radius}, distance_mm, *std::move(regions))) : std::nullopt;
 }
 
-EntranceRegion::EntranceRegion(const std::vector<TraceLens<double>>& band, bool by_angle, const EntranceBeam& beam,
-                               const PupilMapSettings& settings)
+EntranceRegion::EntranceRegion(const std::vector<optics::TraceLens<double>>& band, bool by_angle,
+                               const EntranceBeam& beam, const PupilMapSettings& settings)
     : beam_(beam), region_(beam_region(band, beam, by_angle, settings)) {}
 
 EntranceSample EntranceRegion::sample(double u, double v) const {
@@ -130,4 +130,4 @@ double EntranceRegion::area() const {
     return region_.area(place_of(beam_.axis.direction), 0.0);
 }
 
-}  // namespace lensproof
+}  // namespace lensproof::pupil

@@ -10,7 +10,7 @@
 #include "engine/pupil/pupil_map.h"
 #include "engine/pupil/region_map.h"
 
-namespace lensproof {
+namespace lensproof::pupil {
 
 /// A ray into the lens, its offset in its beam, mm, and the density that it was drawn with, 1/mm² of the plane across
 /// the beam. A density of 0: no path is to be started, its estimate is 0.
@@ -32,11 +32,11 @@ class EntranceMap {
   public:
     /// `band` and `settings` as PupilMap has them. `by_angle`: the lens is rotationally symmetric, its stop's blades
     /// aside. `distance_mm`: of the sources from the centre of the front sphere (EntranceBeam), beyond its radius.
-    EntranceMap(const std::vector<TraceLens<double>>& band, bool by_angle,
+    EntranceMap(const std::vector<optics::TraceLens<double>>& band, bool by_angle,
                 double distance_mm = std::numeric_limits<double>::infinity(), const PupilMapSettings& settings = {});
 
     /// The whole front element for every direction: the baseline that maps are judged against.
-    static EntranceMap whole_element(const TraceLens<double>& lens,
+    static EntranceMap whole_element(const optics::TraceLens<double>& lens,
                                      double distance_mm = std::numeric_limits<double>::infinity());
 
     /// The light of a source at the map's distance that travels along `direction` (of unit length) to the centre of the
@@ -71,7 +71,7 @@ class EntranceMap {
 /// thousands of rays for each lens of the band.
 class EntranceRegion {
   public:
-    EntranceRegion(const std::vector<TraceLens<double>>& band, bool by_angle, const EntranceBeam& beam,
+    EntranceRegion(const std::vector<optics::TraceLens<double>>& band, bool by_angle, const EntranceBeam& beam,
                    const PupilMapSettings& settings = {});
 
     [[nodiscard]] const EntranceBeam& beam() const { return beam_; }
@@ -87,4 +87,4 @@ class EntranceRegion {
     RegionMap region_;
 };
 
-}  // namespace lensproof
+}  // namespace lensproof::pupil

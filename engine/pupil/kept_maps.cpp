@@ -8,21 +8,21 @@
 #include "engine/optics/lens_bytes.h"
 #include "source_digest.h"
 
-namespace lensproof {
+namespace lensproof::pupil {
 
 namespace {
 
 /// Everything that a map follows from. `extent`: the sensor's radius, or the sources' distance.
-std::string key_of(const std::vector<TraceLens<double>>& band, bool is_symmetric, double extent,
+std::string key_of(const std::vector<optics::TraceLens<double>>& band, bool is_symmetric, double extent,
                    const PupilMapSettings& settings) {
     std::string key(kSourceDigest);
     const auto& [defensive_share, most_excess] = settings;
     append_bytes(key, is_symmetric, extent, defensive_share, most_excess, band.size());
-    for (TraceLens<double> lens : band) {
-        for (SpecialSurface<double>& special : lens.specials) {
+    for (optics::TraceLens<double> lens : band) {
+        for (optics::SpecialSurface<double>& special : lens.specials) {
             special.mask = {};
         }
-        append_lens_bytes(key, lens);
+        optics::append_lens_bytes(key, lens);
     }
     return key;
 }
@@ -41,16 +41,16 @@ Map kept(const Cache& cache, std::string_view kind, const std::string& key, cons
 
 }  // namespace
 
-PupilMap kept_pupil_map(const Cache& cache, const std::vector<TraceLens<double>>& band, bool by_radius,
+PupilMap kept_pupil_map(const Cache& cache, const std::vector<optics::TraceLens<double>>& band, bool by_radius,
                         double sensor_radius_mm, const PupilMapSettings& settings) {
     return kept<PupilMap>(cache, "pupil", key_of(band, by_radius, sensor_radius_mm, settings),
                           [&] { return PupilMap(band, by_radius, sensor_radius_mm, settings); });
 }
 
-EntranceMap kept_entrance_map(const Cache& cache, const std::vector<TraceLens<double>>& band, bool by_angle,
+EntranceMap kept_entrance_map(const Cache& cache, const std::vector<optics::TraceLens<double>>& band, bool by_angle,
                               double distance_mm, const PupilMapSettings& settings) {
     return kept<EntranceMap>(cache, "entrance", key_of(band, by_angle, distance_mm, settings),
                              [&] { return EntranceMap(band, by_angle, distance_mm, settings); });
 }
 
-}  // namespace lensproof
+}  // namespace lensproof::pupil

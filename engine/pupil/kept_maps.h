@@ -7,17 +7,17 @@
 #include "engine/pupil/entrance_map.h"
 #include "engine/pupil/pupil_map.h"
 
-namespace lensproof {
+namespace lensproof::pupil {
 
 /// The map that PupilMap's constructor makes, to the last bit: from the cache where it holds one of these very numbers,
 /// made by a program of these very sources (of engine/optics and engine/pupil); else it is made, and kept. Masks of the
 /// stop do not count, as they do not for the map.
-PupilMap kept_pupil_map(const Cache& cache, const std::vector<TraceLens<double>>& band, bool by_radius,
+PupilMap kept_pupil_map(const Cache& cache, const std::vector<optics::TraceLens<double>>& band, bool by_radius,
                         double sensor_radius_mm, const PupilMapSettings& settings = {});
 
 /// The same for EntranceMap.
-EntranceMap kept_entrance_map(const Cache& cache, const std::vector<TraceLens<double>>& band, bool by_angle,
+EntranceMap kept_entrance_map(const Cache& cache, const std::vector<optics::TraceLens<double>>& band, bool by_angle,
                               double distance_mm = std::numeric_limits<double>::infinity(),
                               const PupilMapSettings& settings = {});
 
-}  // namespace lensproof
+}  // namespace lensproof::pupil

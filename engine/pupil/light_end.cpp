@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace lensproof {
+namespace lensproof::pupil {
 
 namespace {
 
@@ -73,4 +73,4 @@ std::vector<double> light_ends(PupilStations& stations, const std::vector<std::s
     return ends;
 }
 
-}  // namespace lensproof
+}  // namespace lensproof::pupil

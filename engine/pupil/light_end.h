@@ -4,7 +4,7 @@
 
 #include "engine/pupil/pupil_stations.h"
 
-namespace lensproof {
+namespace lensproof::pupil {
 
 /// Where it is looked for.
 struct LightEndSearch {
@@ -18,4 +18,4 @@ struct LightEndSearch {
 std::vector<double> light_ends(PupilStations& stations, const std::vector<std::size_t>& lenses,
                                const LightEndSearch& search);
 
-}  // namespace lensproof
+}  // namespace lensproof::pupil

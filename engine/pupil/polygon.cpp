@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-namespace lensproof {
+namespace lensproof::pupil {
 
 std::optional<Span> span_at(std::span<const Vec2d> polygon, double x) {
     std::optional<Span> span;
@@ -38,4 +38,4 @@ Apex apex_over(Vec2d before, Vec2d p, Vec2d q, Vec2d after) {
     return {.point = apex, .area = 0.5 * std::abs(cross(side, from_to(p, apex))), .exists = true};
 }
 
-}  // namespace lensproof
+}  // namespace lensproof::pupil

@@ -5,7 +5,7 @@
 
 #include "engine/base/vec.h"
 
-namespace lensproof {
+namespace lensproof::pupil {
 
 /// Twice the signed area that two vectors span, positive where b lies to the left of a.
 inline double cross(Vec2d a, Vec2d b) {
@@ -33,4 +33,4 @@ struct Apex {
 };
 Apex apex_over(Vec2d before, Vec2d p, Vec2d q, Vec2d after);
 
-}  // namespace lensproof
+}  // namespace lensproof::pupil

@@ -3,7 +3,7 @@
 #include <iterator>
 #include <numbers>
 
-namespace lensproof {
+namespace lensproof::pupil {
 
 namespace {
 
@@ -37,4 +37,4 @@ BetweenNodes PupilGuides::on_turn(std::size_t azimuths, Vec2d at) {
     return {.below = below, .above = (below + 1) % azimuths, .t = turned - whole};
 }
 
-}  // namespace lensproof
+}  // namespace lensproof::pupil

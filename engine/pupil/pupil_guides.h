@@ -7,7 +7,7 @@
 
 #include "engine/pupil/pupil_nodes.h"
 
-namespace lensproof {
+namespace lensproof::pupil {
 
 /// Where something lies among nodes: between two, after the share t of the way.
 struct BetweenNodes {
@@ -95,4 +95,4 @@ class PupilGuides {
     std::vector<PanelGuide> panels_;
 };
 
-}  // namespace lensproof
+}  // namespace lensproof::pupil

@@ -6,19 +6,19 @@
 #include "engine/base/bytes.h"
 #include "engine/pupil/pupil_stations.h"
 
-namespace lensproof {
+namespace lensproof::pupil {
 
 namespace {
 
 /// From points of the sensor outwards, through points of the disc's plane.
 RayFamily rays_from_sensor(double image_z, double plane_z) {
-    return {.direction = Direction::reverse, .ray = [image_z, plane_z](Vec2d sensor_point, Vec2d pupil_point) {
+    return {.direction = optics::Direction::reverse, .ray = [image_z, plane_z](Vec2d sensor_point, Vec2d pupil_point) {
                 const Vec3d from{sensor_point.x, sensor_point.y, image_z};
                 return Ray<double>{from, normalized(Vec3d{pupil_point.x, pupil_point.y, plane_z} - from)};
             }};
 }
 
-RegionMap sensor_map(const std::vector<TraceLens<double>>& band, const RearDisc& disc, bool by_radius,
+RegionMap sensor_map(const std::vector<optics::TraceLens<double>>& band, const RearDisc& disc, bool by_radius,
                      double sensor_radius_mm, const PupilMapSettings& settings) {
     return {disc, settings.defensive_share,
             find_pupil_nodes(
@@ -30,12 +30,12 @@ RegionMap sensor_map(const std::vector<TraceLens<double>>& band, const RearDisc&
 
 PupilMap::PupilMap(const RearDisc& disc, RegionMap regions) : disc_(disc), regions_(std::move(regions)) {}
 
-PupilMap::PupilMap(const std::vector<TraceLens<double>>& band, bool by_radius, double sensor_radius_mm,
+PupilMap::PupilMap(const std::vector<optics::TraceLens<double>>& band, bool by_radius, double sensor_radius_mm,
                    const PupilMapSettings& settings)
     : disc_(rear_disc(band.front(), sensor_radius_mm)),
       regions_(sensor_map(band, disc_, by_radius, sensor_radius_mm, settings)) {}
 
-PupilMap PupilMap::whole_element(const TraceLens<double>& lens, double sensor_radius_mm) {
+PupilMap PupilMap::whole_element(const optics::TraceLens<double>& lens, double sensor_radius_mm) {
     const RearDisc disc = rear_disc(lens, sensor_radius_mm);
     return {disc, RegionMap(disc, 1.0, {})};
 }
@@ -58,4 +58,4 @@ std::optional<PupilMap> PupilMap::deserialized(std::string_view bytes) {
     return PupilMap(disc, std::move(*regions));
 }
 
-}  // namespace lensproof
+}  // namespace lensproof::pupil

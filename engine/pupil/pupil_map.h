@@ -9,7 +9,7 @@
 #include "engine/pupil/rear_disc.h"
 #include "engine/pupil/region_map.h"
 
-namespace lensproof {
+namespace lensproof::pupil {
 
 struct PupilMapSettings {
     /// The share of samples drawn over the whole rear element, whatever the map says: what the map missed costs noise
@@ -33,11 +33,11 @@ class PupilMap {
   public:
     /// `band`: the lens at wavelengths that are spread evenly over the band. Sensor points lie within
     /// `sensor_radius_mm` of the axis. `by_radius`: the lens is rotationally symmetric, its stop's blades aside.
-    PupilMap(const std::vector<TraceLens<double>>& band, bool by_radius, double sensor_radius_mm,
+    PupilMap(const std::vector<optics::TraceLens<double>>& band, bool by_radius, double sensor_radius_mm,
              const PupilMapSettings& settings = {});
 
     /// The whole rear element for every sensor point: the baseline that maps are judged against.
-    static PupilMap whole_element(const TraceLens<double>& lens, double sensor_radius_mm);
+    static PupilMap whole_element(const optics::TraceLens<double>& lens, double sensor_radius_mm);
 
     /// The point that (u, v) in the unit square maps to, x and y in lens space in the plane z = plane_z, and its
     /// density.
@@ -78,4 +78,4 @@ class PupilMap {
     RegionMap regions_;
 };
 
-}  // namespace lensproof
+}  // namespace lensproof::pupil

@@ -9,7 +9,7 @@
 #include "engine/pupil/light_end.h"
 #include "engine/pupil/pupil_stations.h"
 
-namespace lensproof {
+namespace lensproof::pupil {
 
 namespace {
 
@@ -55,9 +55,9 @@ PupilSymmetry symmetry_of(const NodeSearch& search) {
     return search.by_radius ? PupilSymmetry::mirror : PupilSymmetry::none;
 }
 
-void open_stops(std::vector<TraceLens<double>>& band) {
-    for (TraceLens<double>& lens : band) {
-        for (SpecialSurface<double>& special : lens.specials) {
+void open_stops(std::vector<optics::TraceLens<double>>& band) {
+    for (optics::TraceLens<double>& lens : band) {
+        for (optics::SpecialSurface<double>& special : lens.specials) {
             special.mask = {};
         }
     }
@@ -73,7 +73,7 @@ void add_margin(PupilRegion& region, PupilSymmetry symmetry) {
 
 class NodeFinder {
   public:
-    NodeFinder(const std::vector<TraceLens<double>>& band, const RayFamily& rays, const NodeSearch& search)
+    NodeFinder(const std::vector<optics::TraceLens<double>>& band, const RayFamily& rays, const NodeSearch& search)
         : search_(search),
           most_excess_((search.by_radius ? 1.0 : kExcessOverAzimuth) * search.most_excess),
           last_lens_(band.size() - 1),
@@ -399,12 +399,13 @@ class NodeFinder {
 
 }  // namespace
 
-PupilNodes find_pupil_nodes(std::vector<TraceLens<double>> band, const RayFamily& rays, const NodeSearch& search) {
+PupilNodes find_pupil_nodes(std::vector<optics::TraceLens<double>> band, const RayFamily& rays,
+                            const NodeSearch& search) {
     open_stops(band);
     return NodeFinder(band, rays, search).find();
 }
 
-PupilNodes find_pupil_region(std::vector<TraceLens<double>> band, const RayFamily& rays, Vec2d place,
+PupilNodes find_pupil_region(std::vector<optics::TraceLens<double>> band, const RayFamily& rays, Vec2d place,
                              const NodeSearch& search) {
     open_stops(band);
     PupilStations stations(band, rays, search.disc, symmetry_of(search));
@@ -431,4 +432,4 @@ PupilNodes find_pupil_region(std::vector<TraceLens<double>> band, const RayFamil
             .regions = {region, region}};
 }
 
-}  // namespace lensproof
+}  // namespace lensproof::pupil

@@ -6,7 +6,7 @@
 #include "engine/pupil/pupil_region.h"
 #include "engine/pupil/pupil_stations.h"
 
-namespace lensproof {
+namespace lensproof::pupil {
 
 /// Regions of a plane, each in the frame in which its place (RayFamily) lies at (0, r), at nodes in position in the
 /// band, azimuth, and radius as a share of where the light ends. Between nodes they are linear in all
@@ -35,11 +35,12 @@ struct NodeSearch {
 
 /// Traces regions of lenses across a band, one a wavelength, and sets nodes where they are needed. Stops are opened to
 /// the full circle, which holds what any blades leave.
-PupilNodes find_pupil_nodes(std::vector<TraceLens<double>> band, const RayFamily& rays, const NodeSearch& search);
+PupilNodes find_pupil_nodes(std::vector<optics::TraceLens<double>> band, const RayFamily& rays,
+                            const NodeSearch& search);
 
 /// The region of a single place, for all wavelengths of the band at once and in the form of nodes around it; none where
 /// no light was found.
-PupilNodes find_pupil_region(std::vector<TraceLens<double>> band, const RayFamily& rays, Vec2d place,
+PupilNodes find_pupil_region(std::vector<optics::TraceLens<double>> band, const RayFamily& rays, Vec2d place,
                              const NodeSearch& search);
 
-}  // namespace lensproof
+}  // namespace lensproof::pupil

@@ -6,7 +6,7 @@
 
 #include "engine/pupil/polygon.h"
 
-namespace lensproof {
+namespace lensproof::pupil {
 
 namespace {
 
@@ -399,4 +399,4 @@ std::vector<PupilOutline> pupil_outlines(const PassTest& passes, std::span<const
     return OutlineFinder(passes, search).find(expected);
 }
 
-}  // namespace lensproof
+}  // namespace lensproof::pupil

@@ -8,7 +8,7 @@
 
 #include "engine/pupil/pupil_region.h"
 
-namespace lensproof {
+namespace lensproof::pupil {
 
 /// A point, and the region (by its number) that it is asked about.
 struct RegionPoint {
@@ -58,4 +58,4 @@ struct OutlineSearch {
 std::vector<PupilOutline> pupil_outlines(const PassTest& passes, std::span<const std::optional<PupilFrame>> expected,
                                          const OutlineSearch& search);
 
-}  // namespace lensproof
+}  // namespace lensproof::pupil

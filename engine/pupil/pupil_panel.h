@@ -3,7 +3,7 @@
 #include "engine/base/select.h"
 #include "engine/base/vec.h"
 
-namespace lensproof {
+namespace lensproof::pupil {
 
 /// A trapezoid between two lines parallel to y, which stand at shares of a region's width; mm.
 ///
@@ -39,4 +39,4 @@ struct PupilPanel {
     }
 };
 
-}  // namespace lensproof
+}  // namespace lensproof::pupil

@@ -2,7 +2,7 @@
 
 #include <numbers>
 
-namespace lensproof {
+namespace lensproof::pupil {
 
 PupilShares::PupilShares(PupilSymmetry symmetry) {
     for (int i = 0; i <= kPupilPanels; ++i) {
@@ -37,4 +37,4 @@ PanelGuide panel_guide(const PupilRegion& region) {
     return guide;
 }
 
-}  // namespace lensproof
+}  // namespace lensproof::pupil

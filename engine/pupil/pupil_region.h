@@ -9,7 +9,7 @@
 #include "engine/base/vec.h"
 #include "engine/pupil/pupil_panel.h"
 
-namespace lensproof {
+namespace lensproof::pupil {
 
 /// Whether a region is its own mirror image in x = 0; then its half at x ≥ 0 is stored alone.
 enum class PupilSymmetry { none, mirror };
@@ -137,4 +137,4 @@ class BlendedRegion {
     double width_;
 };
 
-}  // namespace lensproof
+}  // namespace lensproof::pupil

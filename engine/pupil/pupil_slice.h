@@ -9,7 +9,7 @@
 #include "engine/base/select.h"
 #include "engine/pupil/pupil_panel.h"
 
-namespace lensproof {
+namespace lensproof::pupil {
 
 /// The regions of a PupilSlices as plain arrays. All are their own mirror image in x = 0.
 struct PupilSliceTables {
@@ -172,4 +172,4 @@ class PupilSlice {
     T sine_;
 };
 
-}  // namespace lensproof
+}  // namespace lensproof::pupil

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <iterator>
 
-namespace lensproof {
+namespace lensproof::pupil {
 
 namespace {
 
@@ -112,4 +112,4 @@ PupilDraw<double> PupilSlices::sample(Vec2d sensor_point, int slice, double u, d
     return region.sample(u, v);
 }
 
-}  // namespace lensproof
+}  // namespace lensproof::pupil

@@ -6,7 +6,7 @@
 #include "engine/pupil/pupil_map.h"
 #include "engine/pupil/pupil_slice.h"
 
-namespace lensproof {
+namespace lensproof::pupil {
 
 /// A PupilMap at the positions i / (n − 1) of its band: what it interpolates over the band is interpolated here once,
 /// and laid out for packets. The map is held by reference.
@@ -38,4 +38,4 @@ class PupilSlices {
     PupilSliceTables tables_;
 };
 
-}  // namespace lensproof
+}  // namespace lensproof::pupil

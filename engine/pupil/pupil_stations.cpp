@@ -8,7 +8,7 @@
 
 #include "engine/optics/rim_margin.h"
 
-namespace lensproof {
+namespace lensproof::pupil {
 
 namespace {
 
@@ -55,7 +55,7 @@ Ray<double> PupilStations::ray(const StationPlace& place, Vec2d own_point) const
 void PupilStations::ask(const std::vector<Request>& requests, std::span<const RegionPoint> points,
                         std::span<std::uint8_t> answers) const {
     constexpr std::size_t kMost = 1024;
-    RayBatch<double> batch(static_cast<int>(std::min(kMost, points.size())));
+    optics::RayBatch<double> batch(static_cast<int>(std::min(kMost, points.size())));
     for (std::size_t first = 0; first < points.size(); first += kMost) {
         const std::size_t count = std::min(kMost, points.size() - first);
         batch.size = static_cast<int>(count);
@@ -65,20 +65,22 @@ void PupilStations::ask(const std::vector<Request>& requests, std::span<const Re
             batch.set(static_cast<int>(i), ray(place, point.point));
             batch.wavelength[i] = static_cast<std::uint16_t>(place.lens);
         }
-        const auto trace_all = rays_.direction == Direction::forward ? trace_batch<Direction::forward, double>
-                                                                     : trace_batch<Direction::reverse, double>;
-        trace_all(lens_, batch, {.carry = Carry::geometry});
+        const auto trace_all = rays_.direction == optics::Direction::forward
+                                   ? optics::trace_batch<optics::Direction::forward, double>
+                                   : optics::trace_batch<optics::Direction::reverse, double>;
+        trace_all(lens_, batch, {.carry = optics::Carry::geometry});
         std::ranges::transform(batch.status.begin(), batch.status.begin() + batch.size,
-                               answers.begin() + static_cast<std::ptrdiff_t>(first), [](RayStatus status) {
-                                   return status == RayStatus::ok ? std::uint8_t{1} : std::uint8_t{0};
+                               answers.begin() + static_cast<std::ptrdiff_t>(first), [](optics::RayStatus status) {
+                                   return status == optics::RayStatus::ok ? std::uint8_t{1} : std::uint8_t{0};
                                });
     }
 }
 
 /// A point of a region that is thinner than a grid, by how far rays stand from the rims.
 std::optional<Vec2d> PupilStations::point_by_margin(const StationPlace& place) const {
-    return find_inside([&](Vec2d at) { return rim_margin(band_[place.lens], ray(place, at), rays_.direction); },
-                       {.start = {}, .reach = disc_.radius, .is_mirror = symmetry_ == PupilSymmetry::mirror});
+    return optics::find_inside(
+        [&](Vec2d at) { return optics::rim_margin(band_[place.lens], ray(place, at), rays_.direction); },
+        {.start = {}, .reach = disc_.radius, .is_mirror = symmetry_ == PupilSymmetry::mirror});
 }
 
 /// Between the neighbours' frames along the radius, or else the mean of those alike; nothing where there are none.
@@ -118,4 +120,4 @@ std::optional<PupilFrame> PupilStations::expected_frame(const Request& request) 
     return frames.empty() ? std::nullopt : std::optional(mean_frame(frames, weights));
 }
 
-}  // namespace lensproof
+}  // namespace lensproof::pupil

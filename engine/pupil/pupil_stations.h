@@ -9,13 +9,13 @@
 #include "engine/pupil/disc.h"
 #include "engine/pupil/pupil_outline.h"
 
-namespace lensproof {
+namespace lensproof::pupil {
 
 /// The rays whose passage makes the regions: one for each place and each point of the plane that the regions lie in. A
 /// place is a point of the sensor (mm), or a direction of the scene (the field angle, rad, along its azimuth). Turned
 /// about the axis together, place and point have the turned ray.
 struct RayFamily {
-    Direction direction = Direction::forward;
+    optics::Direction direction = optics::Direction::forward;
     std::function<Ray<double>(Vec2d place, Vec2d point)> ray;
 };
 
@@ -34,7 +34,7 @@ struct StationPlace {
 /// lies at (0, r), and inside the disc.
 class PupilStations {
   public:
-    PupilStations(const std::vector<TraceLens<double>>& band, const RayFamily& rays, const Disc& disc,
+    PupilStations(const std::vector<optics::TraceLens<double>>& band, const RayFamily& rays, const Disc& disc,
                   PupilSymmetry symmetry)
         : band_(band), lens_(band), rays_(rays), disc_(disc), symmetry_(symmetry) {}
 
@@ -61,12 +61,12 @@ class PupilStations {
     [[nodiscard]] std::optional<Vec2d> point_by_margin(const StationPlace& place) const;
     [[nodiscard]] std::optional<PupilFrame> expected_frame(const Request& request) const;
 
-    const std::vector<TraceLens<double>>& band_;
-    SpectralLens<double> lens_;  // the same
+    const std::vector<optics::TraceLens<double>>& band_;
+    optics::SpectralLens<double> lens_;  // the same
     const RayFamily& rays_;
     const Disc& disc_;
     PupilSymmetry symmetry_;
     std::map<StationPlace, PupilOutline> outlines_;
 };
 
-}  // namespace lensproof
+}  // namespace lensproof::pupil

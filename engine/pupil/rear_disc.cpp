@@ -7,7 +7,7 @@
 
 #include "engine/pupil/surface_cap.h"
 
-namespace lensproof {
+namespace lensproof::pupil {
 
 namespace {
 
@@ -23,9 +23,9 @@ struct CapPoint {
 };
 
 /// The points of a polar grid on the surface, ring by ring from its vertex to its rim.
-std::vector<CapPoint> rear_cap(const TraceLens<double>& lens) {
-    const TraceSurface<double>& rear = lens.surfaces.back();
-    const SpecialSurface<double>* special = rear.special >= 0 ? &lens.specials[rear.special] : nullptr;
+std::vector<CapPoint> rear_cap(const optics::TraceLens<double>& lens) {
+    const optics::TraceSurface<double>& rear = lens.surfaces.back();
+    const optics::SpecialSurface<double>* special = rear.special >= 0 ? &lens.specials[rear.special] : nullptr;
     const auto [shape, rim] = surface_cap(lens, rear);
     std::vector<CapPoint> cap;
     for (int ring = 0; ring <= kRings; ++ring) {
@@ -33,7 +33,7 @@ std::vector<CapPoint> rear_cap(const TraceLens<double>& lens) {
             const double radius = rim * ring / kRings;
             const double azimuth = 2.0 * std::numbers::pi * i / kAzimuths;
             Vec3d at{radius * std::cos(azimuth), radius * std::sin(azimuth), 0.0};
-            const double height = sag(shape, at.x, at.y);
+            const double height = optics::sag(shape, at.x, at.y);
             at.z = std::isfinite(height) ? height : 0.0;
             if (special != nullptr) {
                 at = special->from_own(at) + Vec3d{special->vertex.x, special->vertex.y, 0.0};
@@ -46,7 +46,7 @@ std::vector<CapPoint> rear_cap(const TraceLens<double>& lens) {
 
 }  // namespace
 
-RearDisc rear_disc(const TraceLens<double>& lens, double sensor_radius_mm) {
+RearDisc rear_disc(const optics::TraceLens<double>& lens, double sensor_radius_mm) {
     const std::vector<CapPoint> cap = rear_cap(lens);
     RearDisc disc;
     disc.plane_z = -std::numeric_limits<double>::infinity();
@@ -83,4 +83,4 @@ RearDisc rear_disc(const TraceLens<double>& lens, double sensor_radius_mm) {
     return disc;
 }
 
-}  // namespace lensproof
+}  // namespace lensproof::pupil

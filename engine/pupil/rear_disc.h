@@ -3,7 +3,7 @@
 #include "engine/optics/trace.h"
 #include "engine/pupil/disc.h"
 
-namespace lensproof {
+namespace lensproof::pupil {
 
 /// A disc around the axis in the plane z = plane_z, mm.
 struct RearDisc : Disc {
@@ -17,6 +17,6 @@ struct RearDisc : Disc {
 /// the surface's Q crosses it at (1 − τ) Q + τ S, τ = (plane_z − Q_z) / (S_z − Q_z), at most (1 − τ)|Q| + τ|S| from
 /// the axis; the radius is the largest such number, bounded over the cells of a polar grid on the surface by those of
 /// their corners. The sensor has to lie behind the surface.
-RearDisc rear_disc(const TraceLens<double>& lens, double sensor_radius_mm);
+RearDisc rear_disc(const optics::TraceLens<double>& lens, double sensor_radius_mm);
 
-}  // namespace lensproof
+}  // namespace lensproof::pupil

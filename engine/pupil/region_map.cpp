@@ -4,7 +4,7 @@
 #include <array>
 #include <utility>
 
-namespace lensproof {
+namespace lensproof::pupil {
 
 namespace {
 
@@ -88,4 +88,4 @@ double RegionMap::area(Vec2d at, double band_position) const {
                         : 0.0;
 }
 
-}  // namespace lensproof
+}  // namespace lensproof::pupil

@@ -7,7 +7,7 @@
 #include "engine/pupil/disc.h"
 #include "engine/pupil/pupil_guides.h"
 
-namespace lensproof {
+namespace lensproof::pupil {
 
 /// A point that was drawn, mm, and the density that it was drawn with, 1/mm². A density of 0: no path is to be started,
 /// its estimate is 0.
@@ -54,4 +54,4 @@ class RegionMap {
     PupilGuides guides_;  // made from the nodes
 };
 
-}  // namespace lensproof
+}  // namespace lensproof::pupil

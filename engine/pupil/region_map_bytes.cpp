@@ -6,7 +6,7 @@
 
 #include "engine/pupil/region_map.h"
 
-namespace lensproof {
+namespace lensproof::pupil {
 
 namespace {
 
@@ -123,4 +123,4 @@ std::optional<RegionMap> RegionMap::deserialized(std::string_view bytes) {
     return is_sound(nodes) ? std::optional(RegionMap(disc, defensive_share, std::move(nodes))) : std::nullopt;
 }
 
-}  // namespace lensproof
+}  // namespace lensproof::pupil

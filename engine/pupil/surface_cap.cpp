@@ -3,16 +3,16 @@
 #include <algorithm>
 #include <cmath>
 
-namespace lensproof {
+namespace lensproof::pupil {
 
-SurfaceCap surface_cap(const TraceLens<double>& lens, const TraceSurface<double>& surface) {
-    const SpecialSurface<double>* special = surface.special >= 0 ? &lens.specials[surface.special] : nullptr;
-    const SurfaceShape<double> shape = special != nullptr && special->has_shape
-                                           ? special->shape
-                                           : SurfaceShape<double>{.curvature = surface.curvature};
+SurfaceCap surface_cap(const optics::TraceLens<double>& lens, const optics::TraceSurface<double>& surface) {
+    const optics::SpecialSurface<double>* special = surface.special >= 0 ? &lens.specials[surface.special] : nullptr;
+    const optics::SurfaceShape<double> shape = special != nullptr && special->has_shape
+                                                   ? special->shape
+                                                   : optics::SurfaceShape<double>{.curvature = surface.curvature};
     const double rim = std::sqrt(surface.semi_diameter_squared);
     const double bulge = (1.0 + shape.conic) * shape.curvature * shape.curvature;
     return {.shape = shape, .radius = bulge > 0.0 ? std::min(rim, (1.0 - 1e-12) * (1.0 / std::sqrt(bulge))) : rim};
 }
 
-}  // namespace lensproof
+}  // namespace lensproof::pupil

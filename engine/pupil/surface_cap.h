@@ -2,13 +2,13 @@
 #pragma once
 #include "engine/optics/trace.h"
 
-namespace lensproof {
+namespace lensproof::pupil {
 
 /// A surface inside its rim, in its own axes, mm.
 struct SurfaceCap {
-    SurfaceShape<double> shape;
+    optics::SurfaceShape<double> shape;
     double radius = 0.0;  // of its rim; or of its equator, less 1e-12, where an ellipsoid ends before that
 };
-SurfaceCap surface_cap(const TraceLens<double>& lens, const TraceSurface<double>& surface);
+SurfaceCap surface_cap(const optics::TraceLens<double>& lens, const optics::TraceSurface<double>& surface);
 
-}  // namespace lensproof
+}  // namespace lensproof::pupil

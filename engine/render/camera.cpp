@@ -20,7 +20,7 @@
 #include "engine/spectral/spectral_exr.h"
 #include "engine/spectral/wavelengths.h"
 
-namespace lensproof {
+namespace lensproof::render {
 
 namespace {
 
@@ -45,11 +45,11 @@ Sensor read_sensor(TomlTable& table) {
     return sensor;
 }
 
-std::optional<PolygonStop> read_blades(TomlTable& table) {
+std::optional<optics::PolygonStop> read_blades(TomlTable& table) {
     if (table.has("blades")) {
-        return PolygonStop{.blades = table.integer("blades", 3, 64),
-                           .curvature = table.number_or("blade_curvature", 0.0, {.min = 0.0, .max = 1.0}),
-                           .rotation_deg = table.number_or("blade_rotation_deg", 0.0)};
+        return optics::PolygonStop{.blades = table.integer("blades", 3, 64),
+                                   .curvature = table.number_or("blade_curvature", 0.0, {.min = 0.0, .max = 1.0}),
+                                   .rotation_deg = table.number_or("blade_rotation_deg", 0.0)};
     }
     for (const char* key : {"blade_curvature", "blade_rotation_deg"}) {
         if (table.has(key)) {
@@ -59,44 +59,44 @@ std::optional<PolygonStop> read_blades(TomlTable& table) {
     return std::nullopt;
 }
 
-std::vector<TraceLens<double>> lenses_of(const std::vector<WavelengthStratum>& strata) {
-    std::vector<TraceLens<double>> lenses;
+std::vector<optics::TraceLens<double>> lenses_of(const std::vector<WavelengthStratum>& strata) {
+    std::vector<optics::TraceLens<double>> lenses;
     std::ranges::transform(strata, std::back_inserter(lenses), &WavelengthStratum::lens);
     return lenses;
 }
 
-SpectralStrata make_strata(const Camera& camera, const Lens& lens, const Light& light,
+SpectralStrata make_strata(const Camera& camera, const optics::Lens& lens, const Light& light,
                            const SpectralSampling& spectral) {
     const auto [min_nm, max_nm, clamp_note] = sampled_band(spectral, lens);
     const int count = spectral.layers * spectral.strata_per_layer;
-    if (count > SpectralLens<double>::kMostWavelengths) {
+    if (count > optics::SpectralLens<double>::kMostWavelengths) {
         throw InputError(fmt::format("{} layers of {} strata are {} wavelengths, expected {} at most", spectral.layers,
-                                     spectral.strata_per_layer, count, SpectralLens<double>::kMostWavelengths));
+                                     spectral.strata_per_layer, count, optics::SpectralLens<double>::kMostWavelengths));
     }
     SpectralStrata made{.strata = {}, .layer_nm = {}, .clamp_note = clamp_note};
-    const WavelengthStrata bands = wavelength_strata(min_nm, max_nm, count);
-    const Illuminant source = illuminant(light.illuminant);
-    const Spectrum radiance = radiance_of(source, light.luminance_cd_m2);
-    const SensorResponse response = sensor_response(camera.response, camera.exposure, source);
-    const std::vector<Vec3d> all_weights = stratum_weights(response, bands, source);
+    const spectral::WavelengthStrata bands = spectral::wavelength_strata(min_nm, max_nm, count);
+    const spectral::Illuminant source = spectral::illuminant(light.illuminant);
+    const spectral::Spectrum radiance = spectral::radiance_of(source, light.luminance_cd_m2);
+    const spectral::SensorResponse response = spectral::sensor_response(camera.response, camera.exposure, source);
+    const std::vector<Vec3d> all_weights = spectral::stratum_weights(response, bands, source);
     for (int i = 0; i < bands.count; ++i) {
         const double nm = bands.midpoint(i);
         const Vec3d& weights = all_weights[i];
         made.strata.push_back(
             {.wavelength_nm = nm,
-             .lens = at_wavelength<double>(lens, nm),
+             .lens = optics::at_wavelength<double>(lens, nm),
              .white_radiance = radiance(nm),
              .rgb_weights = response.channels.size() == 1 ? Vec3d{weights.x, weights.x, weights.x} : weights});
     }
     made.width_nm = bands.width_nm();
-    made.layer_nm = WavelengthStrata{min_nm, max_nm, spectral.layers}.midpoints();
+    made.layer_nm = spectral::WavelengthStrata{min_nm, max_nm, spectral.layers}.midpoints();
     return made;
 }
 
 }  // namespace
 
-SampledBand sampled_band(const SpectralSampling& sampling, const Lens& lens) {
-    const WavelengthRange range = wavelength_range(lens);
+SampledBand sampled_band(const SpectralSampling& sampling, const optics::Lens& lens) {
+    const optics::WavelengthRange range = optics::wavelength_range(lens);
     SampledBand band{.min_nm = std::max(sampling.min_nm, range.min_nm),
                      .max_nm = std::min(sampling.max_nm, range.max_nm),
                      .clamp_note = {}};
@@ -138,7 +138,7 @@ Camera read_camera_keys(TomlTable& table, bool may_lack_lens) {
     camera.sensor = read_sensor(table);
     camera.exposure.time_s = table.number("shutter_s", kPositive);
     camera.exposure.iso = table.number("iso", kPositive);
-    camera.response = table.choice("response", known_sensors());
+    camera.response = table.choice("response", spectral::known_sensors());
     return camera;
 }
 
@@ -150,7 +150,7 @@ Camera read_camera(TomlTable& table) {
 
 Light read_light(TomlTable& table) {
     Light light;
-    light.illuminant = read_illuminant(table, "illuminant");
+    light.illuminant = scene::read_illuminant(table, "illuminant");
     light.luminance_cd_m2 = table.number_or("luminance_cd_m2", light.luminance_cd_m2, kPositive);
     table.finish();
     return light;
@@ -181,10 +181,10 @@ ChartScene read_chart_scene(const std::filesystem::path& file) {
     TomlTable camera = top.table("camera");
     scene.camera = read_camera(camera);
     TomlTable chart = top.table("chart");
-    scene.chart = read_chart(chart);
-    if (!std::holds_alternative<FlatField>(scene.chart.pattern)) {
+    scene.chart = scene::read_chart(chart);
+    if (!std::holds_alternative<scene::FlatField>(scene.chart.pattern)) {
         TomlTable pose = top.table("pose");
-        scene.placement = read_placement(pose);
+        scene.placement = scene::read_placement(pose);
     }
     if (auto light = top.optional_table("light")) {
         scene.light = read_light(*light);
@@ -203,12 +203,12 @@ ChartScene read_chart_scene(const std::filesystem::path& file) {
     return scene;
 }
 
-Lens camera_lens(const Camera& camera) {
-    Lens lens = load_lens(camera.lens, {.zoom = camera.zoom});
+optics::Lens camera_lens(const Camera& camera) {
+    optics::Lens lens = formats::load_lens(camera.lens, {.zoom = camera.zoom});
     if (camera.blades) {
-        lens.stop_mask = StopMask(*camera.blades);
+        lens.stop_mask = optics::StopMask(*camera.blades);
     }
-    return focused_at(with_f_number(std::move(lens), camera.f_number), camera.focus_distance_mm);
+    return optics::focused_at(optics::with_f_number(std::move(lens), camera.f_number), camera.focus_distance_mm);
 }
 
 ChartCamera::ChartCamera(const Camera& camera, const Light& light, const SpectralSampling& spectral, const Cache& cache,
@@ -218,9 +218,9 @@ ChartCamera::ChartCamera(const Camera& camera, const Light& light, const Spectra
       spectral_(make_strata(camera, lens_, light, spectral)),
       filter_(filter),
       // Pixels are areas: the corner of what the corner pixel's filter reaches is the farthest point sampled.
-      pupil_(kept_pupil_map(cache, lenses_of(spectral_.strata), lens_.is_rotationally_symmetric,
-                            camera.sensor.half_diagonal_mm(filter.radius_px() - 0.5))),
-      colours_(rgb_space(camera.response, illuminant(light.illuminant))) {
+      pupil_(pupil::kept_pupil_map(cache, lenses_of(spectral_.strata), lens_.is_rotationally_symmetric,
+                                   camera.sensor.half_diagonal_mm(filter.radius_px() - 0.5))),
+      colours_(spectral::rgb_space(camera.response, spectral::illuminant(light.illuminant))) {
     const double values =
         static_cast<double>(camera.sensor.width) * camera.sensor.height * (6.0 + static_cast<double>(spectral.layers));
     if (values > kMostValues) {
@@ -232,9 +232,9 @@ ChartCamera::ChartCamera(const Camera& camera, const Light& light, const Spectra
     metadata_ = camera_metadata(camera, lens_.name, light.illuminant, filter, colours_.has_value());
 }
 
-SeenChart ChartCamera::view(const Chart& chart, const Placement& placement) const {
+SeenChart ChartCamera::view(const scene::Chart& chart, const scene::Placement& placement) const {
     return {.chart = chart,
-            .pose = place(placement),
+            .pose = scene::place(placement),
             .sensor = camera_.sensor,
             .strata = spectral_.strata,
             .stratum_width_nm = spectral_.width_nm,
@@ -245,17 +245,17 @@ SeenChart ChartCamera::view(const Chart& chart, const Placement& placement) cons
 std::string ChartCamera::lens_hash() const {
     std::string bytes;
     for (const WavelengthStratum& stratum : spectral_.strata) {
-        append_lens_bytes(bytes, stratum.lens);
+        optics::append_lens_bytes(bytes, stratum.lens);
     }
     return hash_text(bytes);
 }
 
-Image ChartCamera::render(const Chart& chart, const Placement& placement, const RenderSettings& settings,
-                          const std::function<void(double)>& progress) const {
-    Image image = render_chart(view(chart, placement), pupil_, settings, progress);
+formats::Image ChartCamera::render(const scene::Chart& chart, const scene::Placement& placement,
+                                   const RenderSettings& settings, const std::function<void(double)>& progress) const {
+    formats::Image image = render_chart(view(chart, placement), pupil_, settings, progress);
     image.metadata = metadata_;
-    image.metadata.merge(spectral_attributes(kFilmIrradianceUnits));
+    image.metadata.merge(spectral::spectral_attributes(spectral::kFilmIrradianceUnits));
     return image;
 }
 
-}  // namespace lensproof
+}  // namespace lensproof::render

@@ -16,17 +16,17 @@
 #include "engine/scene/chart_file.h"
 #include "engine/spectral/sensor_response.h"
 
-namespace lensproof {
+namespace lensproof::render {
 
 struct Camera {
     std::string lens;  // a file, or the name of a lens that ships
     std::string zoom;  // the position's name or number; empty: the first
     /// Blades in place of what shape the lens's stop has, in the circle that the f-number says.
-    std::optional<PolygonStop> blades;
+    std::optional<optics::PolygonStop> blades;
     double f_number = 0.0;
     double focus_distance_mm = 0.0;  // from the first vertex; may be infinite
     Sensor sensor;
-    Exposure exposure;
+    spectral::Exposure exposure;
     std::string response;
 };
 
@@ -64,7 +64,7 @@ struct SampledBand {
 };
 
 /// Throws InputError where they are known nowhere in it.
-SampledBand sampled_band(const SpectralSampling& sampling, const Lens& lens);
+SampledBand sampled_band(const SpectralSampling& sampling, const optics::Lens& lens);
 
 /// What a picture's file says of its camera: the balance's illuminant, what the pixels see, and whether R, G, B are in
 /// a space of their own or in the sensor's.
@@ -79,8 +79,8 @@ struct ChartScene {
     Light light;
     SpectralSampling spectral;
     int samples_per_pixel = 64;
-    Chart chart;
-    Placement placement;
+    scene::Chart chart;
+    scene::Placement placement;
 };
 
 /// Reads the optional table [render]: samples_per_pixel, wavelengths_nm = [from, to], layers, strata_per_layer.
@@ -91,7 +91,7 @@ void read_render_table(TomlTable& table, ChartScene& scene);
 ChartScene read_chart_scene(const std::filesystem::path& file);
 
 /// The camera's lens: loaded, given its blades, stopped down and focused.
-Lens camera_lens(const Camera& camera);
+optics::Lens camera_lens(const Camera& camera);
 
 /// A lens at the wavelengths that a render samples.
 struct SpectralStrata {
@@ -108,32 +108,33 @@ class ChartCamera {
     ChartCamera(const Camera& camera, const Light& light, const SpectralSampling& spectral, const Cache& cache = {},
                 const PixelFilter& filter = {});
 
-    [[nodiscard]] Image render(const Chart& chart, const Placement& placement, const RenderSettings& settings,
-                               const std::function<void(double)>& progress = {}) const;
+    [[nodiscard]] formats::Image render(const scene::Chart& chart, const scene::Placement& placement,
+                                        const RenderSettings& settings,
+                                        const std::function<void(double)>& progress = {}) const;
 
     /// What this camera sees of a chart, and the map of its pupil to render it with.
-    [[nodiscard]] SeenChart view(const Chart& chart, const Placement& placement) const;
-    [[nodiscard]] const PupilMap& pupil() const { return pupil_; }
+    [[nodiscard]] SeenChart view(const scene::Chart& chart, const scene::Placement& placement) const;
+    [[nodiscard]] const pupil::PupilMap& pupil() const { return pupil_; }
 
     /// What a picture's file says of the camera, and the space of its R, G, B where they are not the camera's own.
     [[nodiscard]] const std::map<std::string, std::string>& metadata() const { return metadata_; }
-    [[nodiscard]] const std::optional<RgbSpace>& colours() const { return colours_; }
+    [[nodiscard]] const std::optional<spectral::RgbSpace>& colours() const { return colours_; }
 
     /// A hash of all that rays meet in the lens, at every wavelength.
     [[nodiscard]] std::string lens_hash() const;
 
-    [[nodiscard]] const Lens& lens() const { return lens_; }
+    [[nodiscard]] const optics::Lens& lens() const { return lens_; }
     [[nodiscard]] const Sensor& sensor() const { return camera_.sensor; }
     [[nodiscard]] const SpectralStrata& spectral() const { return spectral_; }
 
   private:
     Camera camera_;
-    Lens lens_;
+    optics::Lens lens_;
     SpectralStrata spectral_;
     PixelFilter filter_;
-    PupilMap pupil_;  // over the band of the strata
+    pupil::PupilMap pupil_;  // over the band of the strata
     std::map<std::string, std::string> metadata_;
-    std::optional<RgbSpace> colours_;
+    std::optional<spectral::RgbSpace> colours_;
 };
 
-}  // namespace lensproof
+}  // namespace lensproof::render

@@ -7,7 +7,7 @@
 
 #include "engine/base/overloaded.h"
 
-namespace lensproof {
+namespace lensproof::render {
 
 namespace {
 
@@ -15,8 +15,8 @@ namespace {
 template <class DensityOf>
 PathDensity over_heroes(const DensityOf& density_of) {
     PathDensity density{.shared = 0.0, .hero = density_of(std::size_t{0})};
-    for (std::size_t i = 0; i < kWavelengthsPerPath; ++i) {
-        density.shared += (i == 0 ? density.hero : density_of(i)) / kWavelengthsPerPath;
+    for (std::size_t i = 0; i < spectral::kWavelengthsPerPath; ++i) {
+        density.shared += (i == 0 ? density.hero : density_of(i)) / spectral::kWavelengthsPerPath;
     }
     return density;
 }
@@ -30,8 +30,9 @@ struct Origin {
 // --- A lens ---
 
 /// The beam of an origin; from straight behind the lens beams have no frame.
-std::optional<EntranceBeam> beam_of(const LensEntrance& lens, const Origin& from) {
-    const auto beam = from.is_far ? std::optional(beam_along(lens.front, from.at)) : beam_from(lens.front, from.at);
+std::optional<pupil::EntranceBeam> beam_of(const LensEntrance& lens, const Origin& from) {
+    const auto beam =
+        from.is_far ? std::optional(pupil::beam_along(lens.front, from.at)) : pupil::beam_from(lens.front, from.at);
     return beam && beam->axis.direction.z > -1.0 ? beam : std::nullopt;
 }
 
@@ -39,21 +40,21 @@ double band_position(const LensEntrance& lens, std::uint16_t wavelength) {
     return static_cast<double>(wavelength) / (lens.lens->wavelengths() - 1);
 }
 
-PathDensity beam_density(const LensEntrance& lens, const EntranceBeam& beam, Vec2d offset,
-                         const PathWavelengths& path) {
-    const EntranceBeam far_beam = lens.map->beam(beam.axis.direction);
+PathDensity beam_density(const LensEntrance& lens, const pupil::EntranceBeam& beam, Vec2d offset,
+                         const spectral::PathWavelengths& path) {
+    const pupil::EntranceBeam far_beam = lens.map->beam(beam.axis.direction);
     const double mm2 = std::isfinite(beam.distance) ? 1.0 / beam.solid_angle_per_mm2(offset) : 1.0;
     return over_heroes(
         [&](std::size_t i) { return mm2 * lens.map->density(far_beam, band_position(lens, path.index[i]), offset); });
 }
 
-std::optional<RayIn> draw_in(const LensEntrance& lens, const Origin& from, const PathWavelengths& path, double u,
-                             double v) {
+std::optional<RayIn> draw_in(const LensEntrance& lens, const Origin& from, const spectral::PathWavelengths& path,
+                             double u, double v) {
     const auto beam = beam_of(lens, from);
     if (!beam) {
         return {};
     }
-    const EntranceSample drawn =
+    const pupil::EntranceSample drawn =
         lens.map->sample(lens.map->beam(beam->axis.direction), band_position(lens, path.index[0]), u, v);
     if (!(drawn.density > 0.0)) {
         return {};
@@ -69,7 +70,7 @@ std::optional<RayIn> draw_in(const LensEntrance& lens, const Origin& from, const
 }
 
 PathDensity density_in(const LensEntrance& lens, const Origin& from, const Ray<double>& outwards,
-                       const PathWavelengths& path) {
+                       const spectral::PathWavelengths& path) {
     const auto beam = beam_of(lens, from);
     if (!beam) {
         return {};
@@ -82,12 +83,12 @@ PathDensity density_in(const LensEntrance& lens, const Origin& from, const Ray<d
 }
 
 FilmArrival arrive_at(const LensEntrance& lens, const Sensor& sensor, const Ray<double>& ray,
-                      const PathWavelengths& path) {
+                      const spectral::PathWavelengths& path) {
     FilmArrival arrival;
-    for (std::size_t i = 0; i < kWavelengthsPerPath; ++i) {
-        const TraceLens<double>& at = lens.lens->at(path.index[i]);
-        const TracedRay<double> traced = trace<Direction::forward>(at, ray);
-        if (traced.status == RayStatus::ok) {
+    for (std::size_t i = 0; i < spectral::kWavelengthsPerPath; ++i) {
+        const optics::TraceLens<double>& at = lens.lens->at(path.index[i]);
+        const optics::TracedRay<double> traced = optics::trace<optics::Direction::forward>(at, ray);
+        if (traced.status == optics::RayStatus::ok) {
             const FilmMeeting film = meet_film(*lens.pupil, at.image_z, band_position(lens, path.index[i]), traced.ray);
             arrival.at_px[i] = sensor.pixel(film.point);
             arrival.share[i] = traced.transmittance;
@@ -161,7 +162,7 @@ bool passes_pupil(const GaussianCamera& camera, const FrontRay& at_pupil, bool i
 }
 
 PathDensity pupil_density(const IdealEntrance& ideal, const Origin& from, const FrontRay& ray,
-                          const PathWavelengths& path) {
+                          const spectral::PathWavelengths& path) {
     return over_heroes([&](std::size_t i) {
         const GaussianCamera& camera = (*ideal.at)[path.index[i]];
         if (!passes_pupil(camera, pupil_ray(camera, ray), i == 0)) {
@@ -174,8 +175,8 @@ PathDensity pupil_density(const IdealEntrance& ideal, const Origin& from, const 
     });
 }
 
-std::optional<RayIn> draw_in(const IdealEntrance& ideal, const Origin& from, const PathWavelengths& path, double u,
-                             double v) {
+std::optional<RayIn> draw_in(const IdealEntrance& ideal, const Origin& from, const spectral::PathWavelengths& path,
+                             double u, double v) {
     const GaussianCamera& camera = (*ideal.at)[path.index[0]];
     if (!is_before(camera, from)) {
         return {};
@@ -195,15 +196,15 @@ std::optional<RayIn> draw_in(const IdealEntrance& ideal, const Origin& from, con
 }
 
 PathDensity density_in(const IdealEntrance& ideal, const Origin& from, const Ray<double>& outwards,
-                       const PathWavelengths& path) {
+                       const spectral::PathWavelengths& path) {
     const GaussianCamera& camera = (*ideal.at)[path.index[0]];
     return is_before(camera, from) ? pupil_density(ideal, from, front_ray(camera, outwards), path) : PathDensity{};
 }
 
 FilmArrival arrive_at(const IdealEntrance& ideal, const Sensor& sensor, const Ray<double>& ray,
-                      const PathWavelengths& path) {
+                      const spectral::PathWavelengths& path) {
     FilmArrival arrival;
-    for (std::size_t i = 0; i < kWavelengthsPerPath; ++i) {
+    for (std::size_t i = 0; i < spectral::kWavelengthsPerPath; ++i) {
         const GaussianCamera& camera = (*ideal.at)[path.index[i]];
         const FrontRay front = front_ray(camera, ray);
         const FrontRay inside = pupil_ray(camera, front);
@@ -230,35 +231,36 @@ bool FilmArrival::is_dark() const {
 double FilmArrival::shared_density(std::size_t wavelength) const {
     const auto pixel = [&](std::size_t i) { return Vec2d{std::floor(at_px[i].x + 0.5), std::floor(at_px[i].y + 0.5)}; };
     double sum = 0.0;
-    for (std::size_t i = 0; i < kWavelengthsPerPath; ++i) {
+    for (std::size_t i = 0; i < spectral::kWavelengthsPerPath; ++i) {
         if (share[i] > 0.0 && (i == wavelength || pixel(i) == pixel(wavelength))) {
-            sum += drawn[i] / kWavelengthsPerPath;
+            sum += drawn[i] / spectral::kWavelengthsPerPath;
         }
     }
     return sum;
 }
 
-std::optional<RayIn> CameraEnd::draw(const LightOrigin& from, const PathWavelengths& path, double u, double v) const {
-    const Origin origin{
-        camera_to_lens(from.is_far ? rotate_back(camera_to_world, from.at) : moved_back(camera_to_world, from.at)),
-        from.is_far};
+std::optional<RayIn> CameraEnd::draw(const LightOrigin& from, const spectral::PathWavelengths& path, double u,
+                                     double v) const {
+    const Origin origin{scene::camera_to_lens(from.is_far ? scene::rotate_back(camera_to_world, from.at)
+                                                          : scene::moved_back(camera_to_world, from.at)),
+                        from.is_far};
     auto in = std::visit([&](const auto& camera) { return draw_in(camera, origin, path, u, v); }, entrance);
     if (in) {
-        in->direction = rotate(camera_to_world, camera_to_lens(in->direction));
-        in->end = moved(camera_to_world, camera_to_lens(in->end));
+        in->direction = scene::rotate(camera_to_world, scene::camera_to_lens(in->direction));
+        in->end = scene::moved(camera_to_world, scene::camera_to_lens(in->end));
     }
     return in;
 }
 
 PathDensity CameraEnd::density(const LightOrigin& from, const Ray<double>& outwards,
-                               const PathWavelengths& path) const {
-    const Origin origin{
-        camera_to_lens(from.is_far ? rotate_back(camera_to_world, from.at) : moved_back(camera_to_world, from.at)),
-        from.is_far};
+                               const spectral::PathWavelengths& path) const {
+    const Origin origin{scene::camera_to_lens(from.is_far ? scene::rotate_back(camera_to_world, from.at)
+                                                          : scene::moved_back(camera_to_world, from.at)),
+                        from.is_far};
     return std::visit([&](const auto& camera) { return density_in(camera, origin, outwards, path); }, entrance);
 }
 
-FilmArrival CameraEnd::arrive(const Ray<double>& ray, const PathWavelengths& path) const {
+FilmArrival CameraEnd::arrive(const Ray<double>& ray, const spectral::PathWavelengths& path) const {
     return std::visit([&](const auto& camera) { return arrive_at(camera, sensor, ray, path); }, entrance);
 }
 
@@ -271,4 +273,4 @@ EntranceRatio CameraEnd::ratio(const PathDensity& entering, const PathDensity& d
     return {.shared = of(entering.shared, drawn.shared), .hero = of(entering.hero, drawn.hero)};
 }
 
-}  // namespace lensproof
+}  // namespace lensproof::render

@@ -14,15 +14,15 @@
 #include "engine/scene/pose.h"
 #include "engine/spectral/spectral_sample.h"
 
-namespace lensproof {
+namespace lensproof::render {
 
 /// A lens, at the strata of the scene's grid. All that it refers to outlives it.
 struct LensEntrance {
-    const SpectralLens<double>* lens = nullptr;
-    const PupilMap* pupil = nullptr;   // of the same band, as camera paths draw from it
-    const EntranceMap* map = nullptr;  // for far light, with a large defensive share: where near points' light enters
-                                       // lies a little beside its regions
-    BoundingSphere front;
+    const optics::SpectralLens<double>* lens = nullptr;
+    const pupil::PupilMap* pupil = nullptr;   // of the same band, as camera paths draw from it
+    const pupil::EntranceMap* map = nullptr;  // for far light, with a large defensive share: where near points' light
+                                              // enters lies a little beside its regions
+    pupil::BoundingSphere front;
 };
 /// An ideal camera, a stratum each.
 struct IdealEntrance {
@@ -46,13 +46,13 @@ struct RayIn {
 
 /// What becomes of a ray into the camera at each of a path's wavelengths.
 struct FilmArrival {
-    std::array<Vec2d, kWavelengthsPerPath> at_px;
+    std::array<Vec2d, spectral::kWavelengthsPerPath> at_px;
     /// The power that arrives on the film over that of the ray's etendue outside: the transmittance of a lens. 0: the
     /// ray does not arrive.
-    std::array<double, kWavelengthsPerPath> share{};
+    std::array<double, spectral::kWavelengthsPerPath> share{};
     /// The density with which a camera path with this wavelength for its hero draws the ray: per etendue outside, times
     /// a pixel's area.
-    std::array<double, kWavelengthsPerPath> drawn{};
+    std::array<double, spectral::kWavelengthsPerPath> drawn{};
 
     [[nodiscard]] bool is_dark() const;
     /// That of camera paths which carry `wavelength` and end in its pixel, whichever of their wavelengths is the hero.
@@ -70,24 +70,24 @@ struct FilmArrival {
 /// (cos θ' / cos θ)⁴ / D² of it. A pinhole is entered through its centre and counts for all of its pupil.
 struct CameraEnd {
     std::variant<LensEntrance, IdealEntrance> entrance;
-    RigidMotion camera_to_world;  // of the frame of pose.h
+    scene::RigidMotion camera_to_world;  // of the frame of pose.h
     Sensor sensor;
 
     /// Draws a ray for a path's light. Nothing where none may arrive, or from where rays cannot be drawn: points inside
     /// the sphere about a lens's front, or behind an ideal camera's front.
-    [[nodiscard]] std::optional<RayIn> draw(const LightOrigin& from, const PathWavelengths& path, double u,
+    [[nodiscard]] std::optional<RayIn> draw(const LightOrigin& from, const spectral::PathWavelengths& path, double u,
                                             double v) const;
 
     /// The density with which `draw` does so for the ray that leaves the camera as `outwards` (lens space).
     [[nodiscard]] PathDensity density(const LightOrigin& from, const Ray<double>& outwards,
-                                      const PathWavelengths& path) const;
+                                      const spectral::PathWavelengths& path) const;
 
     /// Brings a ray (lens space, towards the camera) to the film.
-    [[nodiscard]] FilmArrival arrive(const Ray<double>& ray, const PathWavelengths& path) const;
+    [[nodiscard]] FilmArrival arrive(const Ray<double>& ray, const spectral::PathWavelengths& path) const;
 
     /// For one light path to each camera path of each pixel: `drawn` is the camera's density times a pixel's area.
     [[nodiscard]] EntranceRatio ratio(const PathDensity& entrance, const PathDensity& drawn) const;
     [[nodiscard]] double film_area_mm2() const;
 };
 
-}  // namespace lensproof
+}  // namespace lensproof::render

@@ -6,12 +6,12 @@
 
 #include "engine/render/film_points.h"
 
-namespace lensproof {
+namespace lensproof::render {
 
 namespace {
 
-void draw_one_pupil_point(const PupilSlices& pupil, PathStarts& starts, std::size_t i) {
-    const PupilDraw<double> draw =
+void draw_one_pupil_point(const pupil::PupilSlices& pupil, PathStarts& starts, std::size_t i) {
+    const pupil::PupilDraw<double> draw =
         pupil.sample({starts.film_x[i], starts.film_y[i]}, starts.wavelength[i], starts.pupil_u[i], starts.pupil_v[i]);
     starts.pupil_x[i] = draw.point.x;
     starts.pupil_y[i] = draw.point.y;
@@ -33,11 +33,11 @@ struct Survivors {
 };
 
 template <class T>
-Survivors find_survivors(const PathStarts& starts, const RayBatch<T>& rays) {
+Survivors find_survivors(const PathStarts& starts, const optics::RayBatch<T>& rays) {
     Survivors survivors;
     for (std::size_t i = 0; i < static_cast<std::size_t>(rays.size); ++i) {
         survivors.path[static_cast<std::size_t>(survivors.count)] = static_cast<std::uint16_t>(i);
-        survivors.count += rays.status[i] == RayStatus::ok && starts.pupil_area[i] > 0.0 ? 1 : 0;
+        survivors.count += rays.status[i] == optics::RayStatus::ok && starts.pupil_area[i] > 0.0 ? 1 : 0;
     }
     return survivors;
 }
@@ -55,9 +55,9 @@ CameraPathBuffer<T>::CameraPathBuffer(int most) : capacity(most) {
 }
 
 template <class T>
-CameraPathProducer<T>::CameraPathProducer(const CameraPathSource<T>& source, std::optional<SimdLevel> level)
+CameraPathProducer<T>::CameraPathProducer(const CameraPathSource<T>& source, std::optional<optics::SimdLevel> level)
     : source_(source),
-      tracing_{.carry = Carry::transmittance, .level = level},
+      tracing_{.carry = optics::Carry::transmittance, .level = level},
       kernels_(&path_kernels<T>(level)),
       starts_(std::make_unique<PathStarts>()),
       rays_(kPathChunk) {}
@@ -74,10 +74,10 @@ bool CameraPathProducer<T>::fill(CameraPathBuffer<T>& buffer) {
     while (cursor_.pixel < end_pixel_) {
         // As many as surely fit, in whole packets while there are such.
         const int room = buffer.capacity - buffer.size;
-        if (room < kMostLanes && buffer.size > 0) {
+        if (room < optics::kMostLanes && buffer.size > 0) {
             break;
         }
-        const int whole = room < kMostLanes ? room : room / kMostLanes * kMostLanes;
+        const int whole = room < optics::kMostLanes ? room : room / optics::kMostLanes * optics::kMostLanes;
         const std::uint64_t left = std::uint64_t{end_pixel_ - cursor_.pixel} * cursor_.samples - cursor_.sample;
         if (draw_and_trace(static_cast<int>(std::min<std::uint64_t>(left, std::min(whole, kPathChunk))))) {
             move_survivors(buffer);
@@ -96,7 +96,7 @@ bool CameraPathProducer<T>::draw_and_trace(int count) {
     }
     kernels_->aim_rays(source_.lens->at(0).image_z, source_.pupil->map().plane_z(), *starts_, rays_);
     weigh_by_filter();
-    trace_batch<Direction::reverse>(*source_.lens, rays_, tracing_);
+    optics::trace_batch<optics::Direction::reverse>(*source_.lens, rays_, tracing_);
     return true;
 }
 
@@ -110,7 +110,7 @@ void CameraPathProducer<T>::weigh_by_filter() {
 
 template <class T>
 int CameraPathProducer<T>::draw_pupil_points() {
-    const PupilSliceTables* tables = source_.pupil->tables();
+    const pupil::PupilSliceTables* tables = source_.pupil->tables();
     if (tables != nullptr) {
         kernels_->draw_pupil_points(*tables, *starts_);
     }
@@ -152,4 +152,4 @@ template struct CameraPathBuffer<double>;
 template class CameraPathProducer<float>;
 template class CameraPathProducer<double>;
 
-}  // namespace lensproof
+}  // namespace lensproof::render

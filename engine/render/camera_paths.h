@@ -10,7 +10,7 @@
 #include "engine/render/sampling/pixel_filter.h"
 #include "engine/render/sampling/sensor.h"
 
-namespace lensproof {
+namespace lensproof::render {
 
 /// Camera paths that left the lens, a column a quantity: what a pass goes through instead of calling the lens for each
 /// of its paths. Those that the lens stopped are not among them; they add nothing to any sum.
@@ -24,14 +24,14 @@ struct CameraPathBuffer {
 
     explicit CameraPathBuffer(int capacity = kUsualCapacity);
 
-    PacketColumn<std::uint32_t> pixel;       // row by row from the top left
-    PacketColumn<std::uint32_t> sample;      // of the pixel
-    PacketColumn<std::uint16_t> wavelength;  // which of the lens's
-    PacketColumn<double> film_x;             // mm, in lens space
-    PacketColumn<double> film_y;
-    PacketColumn<T> weight;                   // τ cos⁴θ / Z² / the density of the pupil point · the filter's, sr
-    typename RayBatch<T>::Vectors origin;     // on the first surface, mm, in lens space
-    typename RayBatch<T>::Vectors direction;  // away from the lens, of unit length
+    optics::PacketColumn<std::uint32_t> pixel;       // row by row from the top left
+    optics::PacketColumn<std::uint32_t> sample;      // of the pixel
+    optics::PacketColumn<std::uint16_t> wavelength;  // which of the lens's
+    optics::PacketColumn<double> film_x;             // mm, in lens space
+    optics::PacketColumn<double> film_y;
+    optics::PacketColumn<T> weight;  // τ cos⁴θ / Z² / the density of the pupil point · the filter's, sr
+    typename optics::RayBatch<T>::Vectors origin;     // on the first surface, mm, in lens space
+    typename optics::RayBatch<T>::Vectors direction;  // away from the lens, of unit length
     int capacity = 0;
     int size = 0;  // paths in use
 
@@ -45,8 +45,8 @@ struct CameraPathBuffer {
 template <class T>
 struct CameraPathSource {
     Sensor sensor;
-    const SpectralLens<T>* lens = nullptr;  // at the wavelengths that samples spread evenly over
-    const PupilSlices* pupil = nullptr;     // at those wavelengths
+    const optics::SpectralLens<T>* lens = nullptr;  // at the wavelengths that samples spread evenly over
+    const pupil::PupilSlices* pupil = nullptr;      // at those wavelengths
     std::uint64_t seed = 0;
     PixelFilter filter;  // that film points are drawn from, around their pixel
 };
@@ -65,7 +65,7 @@ template <class T>
 class CameraPathProducer {
   public:
     /// `level`: that of `trace_batch`.
-    explicit CameraPathProducer(const CameraPathSource<T>& source, std::optional<SimdLevel> level = {});
+    explicit CameraPathProducer(const CameraPathSource<T>& source, std::optional<optics::SimdLevel> level = {});
 
     /// Begins a range. What was left of the one before is dropped.
     void start(const CameraPathRange& range);
@@ -87,13 +87,13 @@ class CameraPathProducer {
     void move_survivors(CameraPathBuffer<T>& buffer);
 
     CameraPathSource<T> source_;
-    BatchSettings tracing_;
+    optics::BatchSettings tracing_;
     const PathKernels<T>* kernels_;
     PathCursor cursor_;
     std::uint32_t end_pixel_ = 0;
     std::unique_ptr<PathStarts> starts_;
     PathColumn<double> filter_weight_{};  // unused for the box
-    RayBatch<T> rays_;
+    optics::RayBatch<T> rays_;
     std::int64_t started_ = 0;
 };
 
@@ -102,4 +102,4 @@ extern template struct CameraPathBuffer<double>;
 extern template class CameraPathProducer<float>;
 extern template class CameraPathProducer<double>;
 
-}  // namespace lensproof
+}  // namespace lensproof::render

@@ -10,7 +10,7 @@
 #include "engine/render/film_image.h"
 #include "engine/render/tile_paths.h"
 
-namespace lensproof {
+namespace lensproof::render {
 
 namespace {
 
@@ -22,9 +22,9 @@ struct SeenPoint {
     bool exists = false;
 };
 
-SeenPoint seen_point(const RigidMotion& pose, const Ray<double>& outwards) {
-    const Vec3d origin = rotate_back(pose, camera_to_lens(outwards.origin) - pose.translation);
-    const Vec3d direction = rotate_back(pose, camera_to_lens(outwards.direction));
+SeenPoint seen_point(const scene::RigidMotion& pose, const Ray<double>& outwards) {
+    const Vec3d origin = scene::rotate_back(pose, scene::camera_to_lens(outwards.origin) - pose.translation);
+    const Vec3d direction = scene::rotate_back(pose, scene::camera_to_lens(outwards.direction));
     const double distance = -origin.z / direction.z;
     return {.x_mm = origin.x + distance * direction.x,
             .y_mm = origin.y + distance * direction.y,
@@ -32,16 +32,16 @@ SeenPoint seen_point(const RigidMotion& pose, const Ray<double>& outwards) {
             .exists = distance > 0.0 && std::isfinite(distance)};
 }
 
-double reflectance_at(const Chart& chart, const SeenPoint& point) {
-    return point.exists ? reflectance(chart, point.x_mm, point.y_mm) : chart.white_reflectance;
+double reflectance_at(const scene::Chart& chart, const SeenPoint& point) {
+    return point.exists ? scene::reflectance(chart, point.x_mm, point.y_mm) : chart.white_reflectance;
 }
 
 /// The chart's normal is the one towards the ray.
 PixelFeatures features_of(const SeenChart& view, const SeenPoint& point, double reflectance) {
-    const Vec3d at = rotate(view.pose, {point.x_mm, point.y_mm, 0.0}) + view.pose.translation;
+    const Vec3d at = scene::rotate(view.pose, {point.x_mm, point.y_mm, 0.0}) + view.pose.translation;
     return {.depth_mm = at.z,
             .albedo_rgb = {reflectance, reflectance, reflectance},
-            .normal = rotate(view.pose, {0.0, 0.0, point.origin.z > 0.0 ? 1.0 : -1.0})};
+            .normal = scene::rotate(view.pose, {0.0, 0.0, point.origin.z > 0.0 ? 1.0 : -1.0})};
 }
 
 /// Renders a tile row by row, each from its camera paths, a buffer after the other.
@@ -74,19 +74,19 @@ class ChartTileRenderer {
     CameraPathBuffer<double> paths_;
 };
 
-SpectralLens<double> spectral_lens(const std::vector<WavelengthStratum>& strata) {
-    std::vector<TraceLens<double>> at;
+optics::SpectralLens<double> spectral_lens(const std::vector<WavelengthStratum>& strata) {
+    std::vector<optics::TraceLens<double>> at;
     std::ranges::transform(strata, std::back_inserter(at), &WavelengthStratum::lens);
-    return SpectralLens<double>(std::move(at));
+    return optics::SpectralLens<double>(std::move(at));
 }
 
 }  // namespace
 
-double seen_reflectance(const Chart& chart, const RigidMotion& pose, const Ray<double>& outwards) {
+double seen_reflectance(const scene::Chart& chart, const scene::RigidMotion& pose, const Ray<double>& outwards) {
     return reflectance_at(chart, seen_point(pose, outwards));
 }
 
-ChartRender::ChartRender(SeenChart view, const PupilMap& pupil, std::uint64_t seed)
+ChartRender::ChartRender(SeenChart view, const pupil::PupilMap& pupil, std::uint64_t seed)
     : view_(std::move(view)), lens_(spectral_lens(view_.strata)), pupil_(pupil, lens_.wavelengths()), seed_(seed) {}
 
 FilmLayout ChartRender::film() const {
@@ -110,8 +110,8 @@ TileRenderer ChartRender::make_renderer() const {
     };
 }
 
-Image render_chart(const SeenChart& view, const PupilMap& pupil, const RenderSettings& settings,
-                   const std::function<void(double)>& progress) {
+formats::Image render_chart(const SeenChart& view, const pupil::PupilMap& pupil, const RenderSettings& settings,
+                            const std::function<void(double)>& progress) {
     const ChartRender render(view, pupil, settings.seed);
     RenderState state(render.film(), {.first = 0, .end = static_cast<std::uint32_t>(settings.samples_per_pixel)});
     render_progressively(state, [&] { return render.make_renderer(); }, {},
@@ -126,4 +126,4 @@ Image render_chart(const SeenChart& view, const PupilMap& pupil, const RenderSet
     return film_image(state.film);
 }
 
-}  // namespace lensproof
+}  // namespace lensproof::render

@@ -15,24 +15,24 @@
 #include "engine/scene/chart.h"
 #include "engine/scene/pose.h"
 
-namespace lensproof {
+namespace lensproof::render {
 
 /// One of the wavelength strata that a render samples evenly.
 struct WavelengthStratum {
     double wavelength_nm = 0.0;
-    TraceLens<double> lens;
+    optics::TraceLens<double> lens;
     double white_radiance = 0.0;  // of a perfect white diffuser in the scene's light, W·m⁻²·sr⁻¹·nm⁻¹
     Vec3d rgb_weights;  // linear RGB a film irradiance of 1 W·m⁻²·nm⁻¹ yields per nm, exposure included
 };
 
 /// Reflectance of the world where a ray that left the lens arrives; a world as white as the chart's white, in which the
 /// chart stands.
-double seen_reflectance(const Chart& chart, const RigidMotion& pose, const Ray<double>& outwards);
+double seen_reflectance(const scene::Chart& chart, const scene::RigidMotion& pose, const Ray<double>& outwards);
 
 /// What is seen. The world around the chart is as white as its white, in every direction.
 struct SeenChart {
-    Chart chart;
-    RigidMotion pose;  // of the chart
+    scene::Chart chart;
+    scene::RigidMotion pose;  // of the chart
     Sensor sensor;
     std::vector<WavelengthStratum> strata;  // of equal width
     double stratum_width_nm = 0.0;
@@ -49,7 +49,7 @@ struct SeenChart {
 class ChartRender {
   public:
     /// `pupil` outlives it.
-    ChartRender(SeenChart view, const PupilMap& pupil, std::uint64_t seed);
+    ChartRender(SeenChart view, const pupil::PupilMap& pupil, std::uint64_t seed);
     ChartRender(const ChartRender&) = delete;
     ChartRender& operator=(const ChartRender&) = delete;
 
@@ -60,8 +60,8 @@ class ChartRender {
 
   private:
     SeenChart view_;
-    SpectralLens<double> lens_;
-    PupilSlices pupil_;
+    optics::SpectralLens<double> lens_;
+    pupil::PupilSlices pupil_;
     std::uint64_t seed_;
 };
 
@@ -72,7 +72,7 @@ struct RenderSettings {
 };
 
 /// Renders the view with that many samples everywhere. Channels: as `film_image` has them.
-Image render_chart(const SeenChart& view, const PupilMap& pupil, const RenderSettings& settings,
-                   const std::function<void(double done)>& progress = {});
+formats::Image render_chart(const SeenChart& view, const pupil::PupilMap& pupil, const RenderSettings& settings,
+                            const std::function<void(double done)>& progress = {});
 
-}  // namespace lensproof
+}  // namespace lensproof::render

@@ -15,7 +15,7 @@
 #include "engine/base/hash.h"
 #include "engine/base/input_error.h"
 
-namespace lensproof {
+namespace lensproof::render {
 
 namespace fs = std::filesystem;
 
@@ -276,4 +276,4 @@ void read_checkpoint(const fs::path& file, const RenderIdentity& identity, Rende
     });
 }
 
-}  // namespace lensproof
+}  // namespace lensproof::render

@@ -5,7 +5,7 @@
 #include "engine/render/progressive.h"
 #include "engine/render/render_identity.h"
 
-namespace lensproof {
+namespace lensproof::render {
 
 /// Writes all that a render needs to go on to the same bits: every sum in double, and which samples are in them. The
 /// file appears whole or not at all, also where the power fails.
@@ -16,4 +16,4 @@ void write_checkpoint(const std::filesystem::path& file, const RenderIdentity& i
 /// another identity, layout, or first sample. The end of the range may be another one.
 void read_checkpoint(const std::filesystem::path& file, const RenderIdentity& identity, RenderState& state);
 
-}  // namespace lensproof
+}  // namespace lensproof::render

@@ -3,10 +3,10 @@
 #include "engine/base/hash.h"
 #include "engine_digest.h"
 
-namespace lensproof {
+namespace lensproof::render {
 
 std::string engine_version() {
     return LENSPROOF_VERSION "+" + hash_text(kEngineDigest);
 }
 
-}  // namespace lensproof
+}  // namespace lensproof::render

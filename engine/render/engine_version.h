@@ -2,10 +2,10 @@
 #pragma once
 #include <string>
 
-namespace lensproof {
+namespace lensproof::render {
 
 /// The project's version and a digest of the engine's sources, "0.1.0+4f1d2c3b5a697887": what a picture was made by.
 /// Checkpoints and shards of one render are of one version.
 std::string engine_version();
 
-}  // namespace lensproof
+}  // namespace lensproof::render

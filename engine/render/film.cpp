@@ -6,7 +6,7 @@
 #include <stdexcept>
 #include <utility>
 
-namespace lensproof {
+namespace lensproof::render {
 
 namespace {
 
@@ -371,4 +371,4 @@ void Film::set_pixel(int x, int y, const PixelContent& content) {
     }
 }
 
-}  // namespace lensproof
+}  // namespace lensproof::render

@@ -10,7 +10,7 @@
 #include "engine/base/vec.h"
 #include "engine/render/sampling/pixel_filter.h"
 
-namespace lensproof {
+namespace lensproof::render {
 
 /// Pixels [x, x + width) × [y, y + height).
 struct PixelRect {
@@ -276,4 +276,4 @@ class Film {
     std::uint64_t left_out_ = 0;
 };
 
-}  // namespace lensproof
+}  // namespace lensproof::render

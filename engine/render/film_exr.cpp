@@ -15,7 +15,7 @@
 #include "engine/base/input_error.h"
 #include "engine/spectral/spectral_exr.h"
 
-namespace lensproof {
+namespace lensproof::render {
 
 namespace {
 
@@ -38,7 +38,7 @@ std::vector<std::string> joined(std::vector<std::string> names, const std::vecto
 
 std::vector<std::string> spectral_names(const std::vector<double>& layer_nm) {
     std::vector<std::string> names;
-    std::ranges::transform(layer_nm, std::back_inserter(names), spectral_channel_name);
+    std::ranges::transform(layer_nm, std::back_inserter(names), spectral::spectral_channel_name);
     return names;
 }
 
@@ -105,7 +105,7 @@ OIIO::ImageSpec spec_of(const Part& part, const Film& film, const FilmNotes& not
     spec.attribute("DateTime",
                    "1970:01:01 00:00:00");  // else the library writes the clock's: the same render, other bytes
     if (notes.colours) {                    // of the first part, but what parts may share they have to
-        const RgbSpace& space = *notes.colours;
+        const spectral::RgbSpace& space = *notes.colours;
         std::vector<float> chromaticities;
         for (const Vec2d& point : {space.red, space.green, space.blue, space.white}) {
             chromaticities.push_back(static_cast<float>(point.x));
@@ -114,7 +114,7 @@ OIIO::ImageSpec spec_of(const Part& part, const Film& film, const FilmNotes& not
         spec.attribute("chromaticities", OIIO::TypeDesc(OIIO::TypeDesc::FLOAT, 8), chromaticities.data());
     }
     if (part.name == "spectral" || part.name == "light") {
-        for (const auto& [name, value] : spectral_attributes(kFilmIrradianceUnits)) {
+        for (const auto& [name, value] : spectral::spectral_attributes(spectral::kFilmIrradianceUnits)) {
             spec.attribute(name, value);
         }
     }
@@ -267,7 +267,7 @@ class FilmReader {
     [[nodiscard]] std::vector<double> layers_of(const OIIO::ImageSpec& spec) const {
         std::vector<double> layer_nm;
         for (const std::string& name : spec.channelnames) {
-            const std::optional<SpectralChannel> channel = parse_spectral_channel(name);
+            const std::optional<spectral::SpectralChannel> channel = spectral::parse_spectral_channel(name);
             if (!channel || channel->layer != "S0") {
                 fail(fmt::format("has a spectral layer \"{}\"", name));
             }
@@ -386,4 +386,4 @@ FilmNotes read_film_notes(const std::filesystem::path& file) {
     return FilmReader(file).read_notes();
 }
 
-}  // namespace lensproof
+}  // namespace lensproof::render

@@ -9,13 +9,13 @@
 #include "engine/render/render_identity.h"
 #include "engine/spectral/sensor_response.h"
 
-namespace lensproof {
+namespace lensproof::render {
 
 /// What a file says besides its pixels.
 struct FilmNotes {
     RenderIdentity identity;                      // attributes "lensproof:identity:NAME"
     std::map<std::string, std::string> metadata;  // further attributes of the first part
-    std::optional<RgbSpace> colours;  // of R, G, B: the attribute "chromaticities"; nothing: the sensor's own
+    std::optional<spectral::RgbSpace> colours;  // of R, G, B: the attribute "chromaticities"; nothing: the sensor's own
 };
 
 /// Writes the film; whole or not at all, the same bytes for the same film and notes. Parts, each of 32-bit floats:
@@ -42,4 +42,4 @@ FilmFile read_film_exr(const std::filesystem::path& file);
 /// Only what such a file says besides its pixels.
 FilmNotes read_film_notes(const std::filesystem::path& file);
 
-}  // namespace lensproof
+}  // namespace lensproof::render

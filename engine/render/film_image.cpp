@@ -6,7 +6,7 @@
 
 #include "engine/spectral/spectral_exr.h"
 
-namespace lensproof {
+namespace lensproof::render {
 
 namespace {
 
@@ -18,12 +18,12 @@ void put_rgb(const Vec3d& rgb, float* to) {
 
 }  // namespace
 
-Image film_image(const Film& film) {
+formats::Image film_image(const Film& film) {
     std::vector<std::string> channels = {"R", "G", "B", "error.R", "error.G", "error.B"};
     for (const double nm : film.layout().layer_nm) {
-        channels.push_back(spectral_channel_name(nm));
+        channels.push_back(spectral::spectral_channel_name(nm));
     }
-    Image image = make_image(film.width(), film.height(), std::move(channels));
+    formats::Image image = formats::make_image(film.width(), film.height(), std::move(channels));
     std::vector<double> layers(film.layout().layer_nm.size());
     for (int y = 0; y < film.height(); ++y) {
         for (int x = 0; x < film.width(); ++x) {
@@ -38,8 +38,8 @@ Image film_image(const Film& film) {
     return image;
 }
 
-Image film_rgb(const Film& film) {
-    Image image = make_image(film.width(), film.height(), {"R", "G", "B"});
+formats::Image film_rgb(const Film& film) {
+    formats::Image image = formats::make_image(film.width(), film.height(), {"R", "G", "B"});
     for (int y = 0; y < film.height(); ++y) {
         for (int x = 0; x < film.width(); ++x) {
             put_rgb(film.estimate(x, y).rgb, &image.at(x, y, 0));
@@ -48,4 +48,4 @@ Image film_rgb(const Film& film) {
     return image;
 }
 
-}  // namespace lensproof
+}  // namespace lensproof::render

@@ -3,13 +3,13 @@
 #include "engine/formats/image/image.h"
 #include "engine/render/film.h"
 
-namespace lensproof {
+namespace lensproof::render {
 
 /// Channels: R, G, B (linear, 1 = saturation), their standard errors error.R, error.G, error.B (`PixelEstimate`), then
 /// one spectral layer a wavelength: mean film irradiance over its band, W·m⁻²·nm⁻¹. A pixel without samples is black.
-Image film_image(const Film& film);
+formats::Image film_image(const Film& film);
 
 /// R, G and B alone: for a preview.
-Image film_rgb(const Film& film);
+formats::Image film_rgb(const Film& film);
 
-}  // namespace lensproof
+}  // namespace lensproof::render

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace lensproof {
+namespace lensproof::render {
 
 void draw_from_filter(const PixelFilter& filter, const Sensor& sensor, PathStarts& starts,
                       PathColumn<double>& weights) {
@@ -24,4 +24,4 @@ void draw_from_filter(const PixelFilter& filter, const Sensor& sensor, PathStart
     }
 }
 
-}  // namespace lensproof
+}  // namespace lensproof::render

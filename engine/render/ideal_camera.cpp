@@ -14,17 +14,18 @@
 #include "engine/render/film_points.h"
 #include "engine/spectral/wavelengths.h"
 
-namespace lensproof {
+namespace lensproof::render {
 
 namespace {
 
 /// Of a ray along the axis; 1 where it does not come through (a stop with a central obstruction).
-double axial_transmittance(const TraceLens<double>& lens) {
-    const TracedRay<double> axis = trace<Direction::reverse>(lens, {{0.0, 0.0, lens.image_z}, {0.0, 0.0, -1.0}});
-    return axis.status == RayStatus::ok ? axis.transmittance : 1.0;
+double axial_transmittance(const optics::TraceLens<double>& lens) {
+    const optics::TracedRay<double> axis =
+        optics::trace<optics::Direction::reverse>(lens, {{0.0, 0.0, lens.image_z}, {0.0, 0.0, -1.0}});
+    return axis.status == optics::RayStatus::ok ? axis.transmittance : 1.0;
 }
 
-GaussianCamera thin_lens(const TraceLens<double>& lens, const ParaxialData& data) {
+GaussianCamera thin_lens(const optics::TraceLens<double>& lens, const optics::ParaxialData& data) {
     return {.film_z = lens.image_z - lens.surfaces.back().vertex_z - data.rear_principal_z,
             .pupil_z = 0.0,
             .pupil_radius_mm = 0.5 * data.entrance_pupil_diameter,
@@ -32,7 +33,8 @@ GaussianCamera thin_lens(const TraceLens<double>& lens, const ParaxialData& data
             .s_h = 1.0 / data.efl};
 }
 
-GaussianCamera paraxial_lens(const Lens& lens, const TraceLens<double>& traced, const ParaxialData& data) {
+GaussianCamera paraxial_lens(const optics::Lens& lens, const optics::TraceLens<double>& traced,
+                             const optics::ParaxialData& data) {
     const double exit_pupil_z = data.exit_pupil_z;  // from the last vertex
     if (!std::isfinite(exit_pupil_z) || !std::isfinite(data.exit_pupil_diameter)) {
         throw InputError(fmt::format(
@@ -41,10 +43,10 @@ GaussianCamera paraxial_lens(const Lens& lens, const TraceLens<double>& traced, 
     }
     const int last = static_cast<int>(traced.surfaces.size()) - 1;
     const auto backwards = [&](double height, double slope) {
-        return trace_paraxial(traced, ParaxialRay{height - exit_pupil_z * slope, slope}, last, 0);
+        return optics::trace_paraxial(traced, optics::ParaxialRay{height - exit_pupil_z * slope, slope}, last, 0);
     };
-    const ParaxialRay of_height = backwards(1.0, 0.0);
-    const ParaxialRay of_slope = backwards(0.0, 1.0);
+    const optics::ParaxialRay of_height = backwards(1.0, 0.0);
+    const optics::ParaxialRay of_slope = backwards(0.0, 1.0);
     return {.film_z = traced.image_z,
             .pupil_z = traced.surfaces.back().vertex_z + exit_pupil_z,
             .pupil_radius_mm = 0.5 * std::abs(data.exit_pupil_diameter),
@@ -57,25 +59,27 @@ GaussianCamera paraxial_lens(const Lens& lens, const TraceLens<double>& traced, 
 
 }  // namespace
 
-GaussianCamera gaussian_camera(const Lens& lens, LensModel model, double wavelength_nm) {
-    const TraceLens<double> traced = at_wavelength<double>(lens, wavelength_nm);
+GaussianCamera gaussian_camera(const optics::Lens& lens, scene::LensModel model, double wavelength_nm) {
+    const optics::TraceLens<double> traced = optics::at_wavelength<double>(lens, wavelength_nm);
     // What has one focal length has that of the line by which lenses are focused and stopped down.
-    const TraceLens<double> reference = model == LensModel::paraxial ? traced : at_wavelength<double>(lens, kLineD);
-    const ParaxialData data = paraxial_data(reference);
+    const optics::TraceLens<double> reference =
+        model == scene::LensModel::paraxial ? traced : optics::at_wavelength<double>(lens, spectral::kLineD);
+    const optics::ParaxialData data = optics::paraxial_data(reference);
     if (!std::isfinite(data.efl) || !std::isfinite(data.entrance_pupil_diameter)) {
         throw InputError(fmt::format("{} has no focal length or no entrance pupil, which the {} model needs", lens.name,
-                                     name_of(model)));
+                                     scene::name_of(model)));
     }
     GaussianCamera camera =
-        model == LensModel::paraxial ? paraxial_lens(lens, reference, data) : thin_lens(reference, data);
-    camera.is_pinhole = model == LensModel::pinhole;
+        model == scene::LensModel::paraxial ? paraxial_lens(lens, reference, data) : thin_lens(reference, data);
+    camera.is_pinhole = model == scene::LensModel::pinhole;
     camera.transmittance = axial_transmittance(traced);
     return camera;
 }
 
-GaussianCamera gaussian_camera(double focal_length_mm, double f_number, double focus_distance_mm, LensModel model) {
-    if (model != LensModel::thin_lens && model != LensModel::pinhole) {
-        throw InputError(fmt::format("the {} model needs a lens", name_of(model)));
+GaussianCamera gaussian_camera(double focal_length_mm, double f_number, double focus_distance_mm,
+                               scene::LensModel model) {
+    if (model != scene::LensModel::thin_lens && model != scene::LensModel::pinhole) {
+        throw InputError(fmt::format("the {} model needs a lens", scene::name_of(model)));
     }
     if (!(focus_distance_mm > focal_length_mm)) {
         throw InputError(
@@ -84,7 +88,7 @@ GaussianCamera gaussian_camera(double focal_length_mm, double f_number, double f
     }
     return {.film_z = 1.0 / (1.0 / focal_length_mm - 1.0 / focus_distance_mm),
             .pupil_radius_mm = 0.5 * focal_length_mm / f_number,
-            .is_pinhole = model == LensModel::pinhole,
+            .is_pinhole = model == scene::LensModel::pinhole,
             .s_h = 1.0 / focal_length_mm};
 }
 
@@ -142,4 +146,4 @@ void IdealPathProducer::append(std::size_t sample, CameraPathBuffer<double>& buf
     buffer.direction.z[at] = direction.z;
 }
 
-}  // namespace lensproof
+}  // namespace lensproof::render

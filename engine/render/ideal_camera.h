@@ -11,7 +11,7 @@
 #include "engine/render/sampling/sensor.h"
 #include "engine/scene/lens_model.h"
 
-namespace lensproof {
+namespace lensproof::render {
 
 /// First-order optics between film and scene at one wavelength; lens space, mm. A film ray crosses the pupil's plane
 /// (z = `pupil_z`, behind the lens) at height h with slope s = dh/dz; in front of the lens it is the line that crosses
@@ -33,12 +33,13 @@ struct GaussianCamera {
 
 /// `lens`, stopped down and focused, as one of the ideal models at a wavelength. Throws InputError for a lens that has
 /// no focal length, and for a paraxial one whose exit pupil lies at infinity.
-GaussianCamera gaussian_camera(const Lens& lens, LensModel model, double wavelength_nm);
+GaussianCamera gaussian_camera(const optics::Lens& lens, scene::LensModel model, double wavelength_nm);
 
 /// A pinhole or a thin lens that stands for no lens: of focal length and f-number, focused `focus_distance_mm` before
 /// it, at the frame's origin; it loses no light. Throws InputError for another model and for a focus within the focal
 /// length.
-GaussianCamera gaussian_camera(double focal_length_mm, double f_number, double focus_distance_mm, LensModel model);
+GaussianCamera gaussian_camera(double focal_length_mm, double f_number, double focus_distance_mm,
+                               scene::LensModel model);
 
 /// What ideal camera paths are made of. `at`: the camera at the wavelengths that samples spread evenly over.
 struct IdealPathSource {
@@ -69,4 +70,4 @@ class IdealPathProducer {
     std::int64_t started_ = 0;
 };
 
-}  // namespace lensproof
+}  // namespace lensproof::render

@@ -5,7 +5,7 @@
 
 #include "engine/render/path_weight.h"
 
-namespace lensproof {
+namespace lensproof::render {
 
 namespace {
 
@@ -14,8 +14,8 @@ constexpr double kSquareMetresPerSquareMm = 1e-6;
 
 class LightWalk {
   public:
-    LightWalk(const Scene& scene, const CameraEnd& camera, const PathWavelengths& path, const PathSettings& settings,
-              PathSampler& numbers, FilmTile& tile, LightPaths paths)
+    LightWalk(const scene::Scene& scene, const CameraEnd& camera, const spectral::PathWavelengths& path,
+              const PathSettings& settings, PathSampler& numbers, FilmTile& tile, LightPaths paths)
         : scene_(scene),
           camera_(camera),
           path_(path),
@@ -26,7 +26,7 @@ class LightWalk {
 
     std::uint32_t walk() {
         const auto begin = numbers_.next();
-        const LightStart start = scene_.lights.start(path_, begin[0], begin[1], begin[2]);
+        const scene::LightStart start = scene_.lights.start(path_, begin[0], begin[1], begin[2]);
         if (!start.is_point()) {
             join_from_light(start);
         }
@@ -39,11 +39,11 @@ class LightWalk {
 
   private:
     /// Carries on from surface to surface, and joins the camera from each.
-    void scatter(const LightStart& start, const EmittedRay& light) {
+    void scatter(const scene::LightStart& start, const scene::EmittedRay& light) {
         Ray<double> ray = light.ray;
-        SpectralSample throughput(1.0F);
-        for (int bounce = 1; max_value(light.power) > 0.0F; ++bounce) {
-            const auto hit = intersect(*scene_.geometry, ray.origin, ray.direction, 0.0, kInfinity);
+        spectral::SpectralSample throughput(1.0F);
+        for (int bounce = 1; spectral::max_value(light.power) > 0.0F; ++bounce) {
+            const auto hit = scene::intersect(*scene_.geometry, ray.origin, ray.direction, 0.0, kInfinity);
             ++rays_;
             if (!hit) {
                 return;
@@ -56,7 +56,7 @@ class LightWalk {
             if (bounce == 1 && is_weighed_) {
                 weight_.leave(scene_.lights.way(start, hit->point));
             }
-            if (!is_delta(vertex.bsdf)) {
+            if (!scene::is_delta(vertex.bsdf)) {
                 join_from_surface(vertex, light.power * throughput);
             }
             if (bounce == settings_.max_bounces) {
@@ -64,7 +64,7 @@ class LightWalk {
             }
             const auto numbers = numbers_.next();
             const auto scattered =
-                sample(vertex.bsdf, vertex.wo, numbers[0], numbers[1], numbers[2], Transport::importance);
+                scene::sample(vertex.bsdf, vertex.wo, numbers[0], numbers[1], numbers[2], scene::Transport::importance);
             if (!scattered) {
                 return;
             }
@@ -72,9 +72,10 @@ class LightWalk {
             if (!vertex.is_consistent(onwards, scattered->wi)) {
                 return;
             }
-            throughput *= scattered->weight * SpectralSample(shading_correction(vertex, onwards, scattered->wi));
+            throughput *=
+                scattered->weight * spectral::SpectralSample(shading_correction(vertex, onwards, scattered->wi));
             if (scattered->is_dispersed && !is_hero_alone_) {
-                throughput = static_cast<float>(kWavelengthsPerPath) * hero_alone(throughput);
+                throughput = static_cast<float>(spectral::kWavelengthsPerPath) * spectral::hero_alone(throughput);
                 is_hero_alone_ = true;
             }
             if (is_weighed_) {
@@ -84,7 +85,7 @@ class LightWalk {
             if (!survives_roulette(settings_, bounce, numbers[3], throughput)) {
                 return;
             }
-            ray = {ray_origin(*hit, onwards), onwards};
+            ray = {scene::ray_origin(*hit, onwards), onwards};
         }
     }
 
@@ -97,33 +98,36 @@ class LightWalk {
         return static_cast<float>(before * after);
     }
 
-    void join_from_light(const LightStart& start) {
+    void join_from_light(const scene::LightStart& start) {
         const LightOrigin from{start.is_at_infinity ? start.direction : start.point, start.is_at_infinity};
         join(from, [&](const RayIn& in) {
             if (start.is_at_infinity) {
                 return Carried{.light = is_blocked(in.end - scene_.lights.beyond_mm(in.end) * start.direction, in.end)
-                                            ? SpectralSample()
+                                            ? spectral::SpectralSample()
                                             : start.value,
                                .others = LightPathWeight::others(start, 1.0)};
             }
-            const SpectralSample intensity = scene_.lights.intensity(start, in.direction);
-            const Vec3d origin = ray_origin(start.point, start.normal, start.error_mm, in.direction);
-            return Carried{.light = is_black(intensity) || is_blocked(origin, in.end) ? SpectralSample() : intensity,
+            const spectral::SpectralSample intensity = scene_.lights.intensity(start, in.direction);
+            const Vec3d origin = scene::ray_origin(start.point, start.normal, start.error_mm, in.direction);
+            return Carried{.light = spectral::is_black(intensity) || is_blocked(origin, in.end)
+                                        ? spectral::SpectralSample()
+                                        : intensity,
                            .others = LightPathWeight::others(start, std::abs(dot(start.normal, in.direction)))};
         });
     }
 
-    void join_from_surface(const PathVertex& vertex, const SpectralSample& power) {
+    void join_from_surface(const PathVertex& vertex, const spectral::SpectralSample& power) {
         join({vertex.hit.point, false}, [&](const RayIn& in) -> Carried {
             const Vec3d wi = vertex.frame.to_local(in.direction);
             if (!vertex.is_consistent(in.direction, wi)) {
                 return {};
             }
-            const SpectralSample scattered = evaluate(vertex.bsdf, vertex.wo, wi, Transport::importance);
-            if (is_black(scattered) || is_blocked(ray_origin(vertex.hit, in.direction), in.end)) {
+            const spectral::SpectralSample scattered =
+                scene::evaluate(vertex.bsdf, vertex.wo, wi, scene::Transport::importance);
+            if (spectral::is_black(scattered) || is_blocked(scene::ray_origin(vertex.hit, in.direction), in.end)) {
                 return {};
             }
-            return {.light = power * scattered * SpectralSample(shading_correction(vertex, in.direction, wi)),
+            return {.light = power * scattered * spectral::SpectralSample(shading_correction(vertex, in.direction, wi)),
                     .others = is_weighed_ ? weight_.others(light_turn(vertex, in.direction, wi, 0.0)) : 0.0};
         });
     }
@@ -131,7 +135,7 @@ class LightWalk {
     /// What goes along a ray into the camera: an intensity from a point, from far off an irradiance; and what other
     /// ways to make the path weigh (LightPathWeight).
     struct Carried {
-        SpectralSample light;
+        spectral::SpectralSample light;
         double others = 0.0;
     };
 
@@ -144,18 +148,18 @@ class LightWalk {
             return;
         }
         const FilmArrival film = camera_.arrive(in->ray, path_);
-        rays_ += kWavelengthsPerPath;
+        rays_ += spectral::kWavelengthsPerPath;
         if (film.is_dark()) {
             return;
         }
         const Carried carried = carried_by(*in);
-        if (is_black(carried.light)) {
+        if (spectral::is_black(carried.light)) {
             return;
         }
         const double entrance = is_hero_alone_ ? in->density.hero : in->density.shared;
         const double pitch_m = 1e-3 * camera_.sensor.pixel_pitch_mm;
         const double to_irradiance = (from.is_far ? kSquareMetresPerSquareMm : 1.0) / (entrance * pitch_m * pitch_m);
-        std::array<float, kWavelengthsPerPath> irradiance{};
+        std::array<float, spectral::kWavelengthsPerPath> irradiance{};
         for (std::size_t i = 0; i < irradiance.size(); ++i) {
             if (film.share[i] > 0.0) {
                 irradiance[i] = static_cast<float>(to_irradiance * film.share[i] * carried.light[i] *
@@ -177,12 +181,12 @@ class LightWalk {
 
     bool is_blocked(const Vec3d& from, const Vec3d& to) {
         ++rays_;
-        return is_occluded(*scene_.geometry, from, to);
+        return scene::is_occluded(*scene_.geometry, from, to);
     }
 
-    const Scene& scene_;
+    const scene::Scene& scene_;
     const CameraEnd& camera_;
-    const PathWavelengths& path_;
+    const spectral::PathWavelengths& path_;
     const PathSettings& settings_;
     PathSampler& numbers_;
     FilmTile& tile_;
@@ -194,9 +198,10 @@ class LightWalk {
 
 }  // namespace
 
-std::uint32_t trace_light_path(const Scene& scene, const CameraEnd& camera, const PathWavelengths& path,
-                               const PathSettings& settings, PathSampler& numbers, FilmTile& tile, LightPaths paths) {
+std::uint32_t trace_light_path(const scene::Scene& scene, const CameraEnd& camera,
+                               const spectral::PathWavelengths& path, const PathSettings& settings,
+                               PathSampler& numbers, FilmTile& tile, LightPaths paths) {
     return LightWalk(scene, camera, path, settings, numbers, tile, paths).walk();
 }
 
-}  // namespace lensproof
+}  // namespace lensproof::render

@@ -8,7 +8,7 @@
 #include "engine/render/sampling/path_sampler.h"
 #include "engine/scene/scene.h"
 
-namespace lensproof {
+namespace lensproof::render {
 
 /// Whether light paths make the image by themselves, or with camera paths (path_weight.h), one to each of these of each
 /// pixel.
@@ -25,8 +25,8 @@ enum class LightPaths { alone, with_camera_paths };
 /// front is likewise theirs. Sources without an extent (points, spots) light the scene and are not seen themselves, as
 /// they are not by camera paths nor in mirrors: their radiance is no number; small spheres are seen.
 /// Returns how many rays were traced, in the scene and into the camera.
-std::uint32_t trace_light_path(const Scene& scene, const CameraEnd& camera, const PathWavelengths& path,
-                               const PathSettings& settings, PathSampler& numbers, FilmTile& tile,
-                               LightPaths paths = LightPaths::alone);
+std::uint32_t trace_light_path(const scene::Scene& scene, const CameraEnd& camera,
+                               const spectral::PathWavelengths& path, const PathSettings& settings,
+                               PathSampler& numbers, FilmTile& tile, LightPaths paths = LightPaths::alone);
 
-}  // namespace lensproof
+}  // namespace lensproof::render

@@ -5,7 +5,7 @@
 
 #include "engine/render/path_weight.h"
 
-namespace lensproof {
+namespace lensproof::render {
 
 namespace {
 
@@ -13,21 +13,22 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 class PathWalk {
   public:
-    PathWalk(const Scene& scene, const PathWavelengths& path, const PathSettings& settings, PathSampler& numbers,
-             const DrawnByCamera* drawn)
+    PathWalk(const scene::Scene& scene, const spectral::PathWavelengths& path, const PathSettings& settings,
+             PathSampler& numbers, const DrawnByCamera* drawn)
         : scene_(scene), path_(path), settings_(settings), numbers_(numbers), drawn_(drawn) {}
 
     PathRadiance walk(Ray<double> ray) {
-        SpectralSample throughput(1.0F);
+        spectral::SpectralSample throughput(1.0F);
         for (int bounce = 0;; ++bounce) {
-            const auto hit = intersect(*scene_.geometry, ray.origin, ray.direction, 0.0, kInfinity);
+            const auto hit = scene::intersect(*scene_.geometry, ray.origin, ray.direction, 0.0, kInfinity);
             ++result_.rays;
             if (bounce == 0 && drawn_ != nullptr) {
                 enter(hit ? LightOrigin{hit->point, false} : LightOrigin{-1.0 * ray.direction, true});
             }
             if (!hit) {
-                scene_.lights.visit_infinity(ray.direction, path_,
-                                             [&](const Lights::Emission& light) { add_found(throughput, light, 1.0); });
+                scene_.lights.visit_infinity(ray.direction, path_, [&](const scene::Lights::Emission& light) {
+                    add_found(throughput, light, 1.0);
+                });
                 break;
             }
             throughput *= passes_body(scene_, *hit, ray.direction, path_);
@@ -44,11 +45,11 @@ class PathWalk {
                 break;
             }
             const auto numbers = numbers_.next();
-            if (!is_delta(vertex.bsdf)) {
+            if (!scene::is_delta(vertex.bsdf)) {
                 add_from_lights(vertex, throughput);
             }
             const auto scattered =
-                sample(vertex.bsdf, vertex.wo, numbers[0], numbers[1], numbers[2], Transport::radiance);
+                scene::sample(vertex.bsdf, vertex.wo, numbers[0], numbers[1], numbers[2], scene::Transport::radiance);
             if (!scattered) {
                 break;
             }
@@ -66,13 +67,13 @@ class PathWalk {
             }
             weight_.turn(turn_of(vertex, onwards, *scattered));
             from_ = hit->point;
-            ray = {ray_origin(*hit, onwards), onwards};
+            ray = {scene::ray_origin(*hit, onwards), onwards};
         }
         return result_;
     }
 
   private:
-    void add(const SpectralSample& light) {
+    void add(const spectral::SpectralSample& light) {
         if (is_hero_alone_) {
             result_.hero_radiance += light[0];
         } else {
@@ -85,7 +86,8 @@ class PathWalk {
     }
 
     /// Only as much of a turn as weights need.
-    [[nodiscard]] PathTurn turn_of(const PathVertex& vertex, const Vec3d& onwards, const BsdfSample& scattered) const {
+    [[nodiscard]] PathTurn turn_of(const PathVertex& vertex, const Vec3d& onwards,
+                                   const scene::BsdfSample& scattered) const {
         if (scattered.is_delta) {
             return {.is_delta = true};
         }
@@ -94,13 +96,13 @@ class PathWalk {
     }
 
     /// Light that the path ran into, at `cosine` from its normal.
-    void add_found(const SpectralSample& throughput, const Lights::Emission& light, double cosine) {
-        if (!is_black(light.radiance)) {
+    void add_found(const spectral::SpectralSample& throughput, const scene::Lights::Emission& light, double cosine) {
+        if (!spectral::is_black(light.radiance)) {
             add(static_cast<float>(weight_.of_hit(light, cosine)) * (throughput * light.radiance));
         }
     }
 
-    void add_from_lights(const PathVertex& vertex, const SpectralSample& throughput) {
+    void add_from_lights(const PathVertex& vertex, const spectral::SpectralSample& throughput) {
         const auto numbers = numbers_.next();
         const auto light = scene_.lights.sample(vertex.hit.point, path_, numbers[0], numbers[1], numbers[2]);
         if (!light) {
@@ -110,15 +112,17 @@ class PathWalk {
         if (!vertex.is_consistent(light->direction, wi)) {
             return;
         }
-        const SpectralSample scattering = evaluate(vertex.bsdf, vertex.wo, wi, Transport::radiance);
-        if (is_black(scattering)) {
+        const spectral::SpectralSample scattering =
+            scene::evaluate(vertex.bsdf, vertex.wo, wi, scene::Transport::radiance);
+        if (spectral::is_black(scattering)) {
             return;
         }
         ++result_.rays;
-        if (is_occluded(*scene_.geometry, ray_origin(vertex.hit, light->direction), light->end)) {
+        if (scene::is_occluded(*scene_.geometry, scene::ray_origin(vertex.hit, light->direction), light->end)) {
             return;
         }
-        const double to_light = light->density > 0.0 ? density(vertex.bsdf, vertex.wo, wi, Transport::radiance) : 0.0;
+        const double to_light =
+            light->density > 0.0 ? scene::density(vertex.bsdf, vertex.wo, wi, scene::Transport::radiance) : 0.0;
         const PathTurn turn =
             drawn_ != nullptr ? camera_turn(vertex, light->direction, wi, to_light) : PathTurn{.to_light = to_light};
         add(static_cast<float>(weight_.of_sample(*light, turn)) * (throughput * scattering * light->value));
@@ -128,11 +132,11 @@ class PathWalk {
         const bool is_behind = vertex.wo.z < 0.0;
         result_.first = FirstSurface{.point = vertex.hit.point,
                                      .normal = (is_behind ? -1.0 : 1.0) * vertex.frame.z,
-                                     .albedo = normal_albedo(vertex.bsdf)};
+                                     .albedo = scene::normal_albedo(vertex.bsdf)};
     }
 
-    const Scene& scene_;
-    const PathWavelengths& path_;
+    const scene::Scene& scene_;
+    const spectral::PathWavelengths& path_;
     const PathSettings& settings_;
     PathSampler& numbers_;
     PathRadiance result_;
@@ -144,9 +148,9 @@ class PathWalk {
 
 }  // namespace
 
-PathRadiance trace_path(const Scene& scene, const Ray<double>& ray, const PathWavelengths& path,
+PathRadiance trace_path(const scene::Scene& scene, const Ray<double>& ray, const spectral::PathWavelengths& path,
                         const PathSettings& settings, PathSampler& numbers, const DrawnByCamera* drawn) {
     return PathWalk(scene, path, settings, numbers, drawn).walk(ray);
 }
 
-}  // namespace lensproof
+}  // namespace lensproof::render

@@ -9,18 +9,18 @@
 #include "engine/render/sampling/path_sampler.h"
 #include "engine/scene/scene.h"
 
-namespace lensproof {
+namespace lensproof::render {
 
 /// The first surface on a path.
 struct FirstSurface {
     Vec3d point;
-    Vec3d normal;           // its shading normal, towards the ray's origin
-    SpectralSample albedo;  // from above
+    Vec3d normal;                     // its shading normal, towards the ray's origin
+    spectral::SpectralSample albedo;  // from above
 };
 
 /// What a path brought.
 struct PathRadiance {
-    SpectralSample radiance;  // W·m⁻²·sr⁻¹·nm⁻¹ along the ray, against its direction
+    spectral::SpectralSample radiance;  // W·m⁻²·sr⁻¹·nm⁻¹ along the ray, against its direction
     /// What the hero brought besides, after its direction had become its own alone: the other wavelengths, as heroes,
     /// could not have drawn these paths.
     float hero_radiance = 0.0F;
@@ -45,7 +45,7 @@ struct DrawnByCamera {
 ///
 /// `drawn`: what light paths bring to the camera, one for each path of each pixel, is added to this: each path counts
 /// as much as path_weight.h gives it, and this is a part of the radiance. Nothing: it is all of it.
-PathRadiance trace_path(const Scene& scene, const Ray<double>& ray, const PathWavelengths& path,
+PathRadiance trace_path(const scene::Scene& scene, const Ray<double>& ray, const spectral::PathWavelengths& path,
                         const PathSettings& settings, PathSampler& numbers, const DrawnByCamera* drawn = nullptr);
 
-}  // namespace lensproof
+}  // namespace lensproof::render

@@ -6,7 +6,7 @@
 #include "engine/base/basis.h"
 #include "engine/scene/scene.h"
 
-namespace lensproof {
+namespace lensproof::render {
 
 struct PathSettings {
     int max_bounces = 8;  // scatterings on a path; 0 shows lights alone
@@ -17,19 +17,20 @@ struct PathSettings {
 
 /// A surface point on a path, with its scattering at the path's wavelengths.
 struct PathVertex {
-    SurfaceHit hit;
+    scene::SurfaceHit hit;
     Basis frame;           // z: the shading normal
     Vec3d wo;              // local, towards where the path comes from
     double cos_backwards;  // |cos| of that about the geometric normal
-    Bsdf bsdf;
+    scene::Bsdf bsdf;
 
     /// `backwards`: world, unit length, towards where the path comes from. The scene outlives the vertex.
-    PathVertex(const SurfaceHit& at, const Vec3d& backwards, const Scene& scene, const PathWavelengths& path)
+    PathVertex(const scene::SurfaceHit& at, const Vec3d& backwards, const scene::Scene& scene,
+               const spectral::PathWavelengths& path)
         : hit(at),
           frame(at.shading_normal, at.tangent),
           wo(frame.to_local(backwards)),
           cos_backwards(std::abs(dot(backwards, at.geometric_normal))),
-          bsdf(bsdf_at(scene.materials[at.material], at.uv, path)) {}
+          bsdf(scene::bsdf_at(scene.materials[at.material], at.uv, path)) {}
 
     /// Whether a direction lies on the same side of the surface by its shading normal as by its geometry: where they
     /// differ light would leak through.
@@ -39,19 +40,20 @@ struct PathVertex {
 };
 
 /// What passes of light that has come through a body to its surface from inside; 1 through the open.
-inline SpectralSample passes_body(const Scene& scene, const SurfaceHit& hit, const Vec3d& direction,
-                                  const PathWavelengths& path) {
+inline spectral::SpectralSample passes_body(const scene::Scene& scene, const scene::SurfaceHit& hit,
+                                            const Vec3d& direction, const spectral::PathWavelengths& path) {
     if (scene.absorption.empty() || dot(hit.geometric_normal, direction) <= 0.0 || !scene.absorption[hit.material]) {
-        return SpectralSample(1.0F);
+        return spectral::SpectralSample(1.0F);
     }
     const auto distance_mm = static_cast<float>(hit.distance_mm);
-    return for_each_wavelength([&](float per_mm) { return std::exp(-per_mm * distance_mm); },
-                               (*scene.absorption[hit.material])(path));
+    return spectral::for_each_wavelength([&](float per_mm) { return std::exp(-per_mm * distance_mm); },
+                                         (*scene.absorption[hit.material])(path));
 }
 
 /// Whether a path that carries `carries`, having started with 1, goes on after a bounce; scales what does.
-inline bool survives_roulette(const PathSettings& settings, int bounce, double number, SpectralSample& carries) {
-    const float share = max_value(carries);
+inline bool survives_roulette(const PathSettings& settings, int bounce, double number,
+                              spectral::SpectralSample& carries) {
+    const float share = spectral::max_value(carries);
     if (!(share > 0.0F)) {
         return false;
     }
@@ -63,4 +65,4 @@ inline bool survives_roulette(const PathSettings& settings, int bounce, double n
     return number < survival;
 }
 
-}  // namespace lensproof
+}  // namespace lensproof::render

@@ -32,7 +32,7 @@
 #include "engine/render/path_vertex.h"
 #include "engine/scene/light.h"
 
-namespace lensproof {
+namespace lensproof::render {
 
 /// A path's turn at a surface point.
 struct PathTurn {
@@ -47,14 +47,14 @@ struct PathTurn {
 /// `to_light`.
 inline PathTurn camera_turn(const PathVertex& vertex, const Vec3d& onwards, const Vec3d& wi, double to_light) {
     return {.to_light = to_light,
-            .to_camera = density(vertex.bsdf, wi, vertex.wo, Transport::importance),
+            .to_camera = scene::density(vertex.bsdf, wi, vertex.wo, scene::Transport::importance),
             .cos_light = std::abs(dot(onwards, vertex.hit.geometric_normal)),
             .cos_camera = vertex.cos_backwards};
 }
 
 /// The same of a light path, whose own density is `to_camera`.
 inline PathTurn light_turn(const PathVertex& vertex, const Vec3d& onwards, const Vec3d& wi, double to_camera) {
-    return {.to_light = density(vertex.bsdf, wi, vertex.wo, Transport::radiance),
+    return {.to_light = scene::density(vertex.bsdf, wi, vertex.wo, scene::Transport::radiance),
             .to_camera = to_camera,
             .cos_light = vertex.cos_backwards,
             .cos_camera = std::abs(dot(onwards, vertex.hit.geometric_normal))};
@@ -95,13 +95,13 @@ class CameraPathWeight {
     }
 
     /// Of light that the path ran into, at `cosine` from its normal (1 of light from far off).
-    [[nodiscard]] double of_hit(const Lights::Emission& light, double cosine) const {
+    [[nodiscard]] double of_hit(const scene::Lights::Emission& light, double cosine) const {
         const double joined = entrance() * (is_first_ ? light.start_density / cosine : light.leaving_density);
         return power_share(light.density * sampled_, by_light_ * joined);
     }
 
     /// Of light that was sampled, by way of the turn `at`.
-    [[nodiscard]] double of_sample(const LightSample& light, const PathTurn& at) const {
+    [[nodiscard]] double of_sample(const scene::LightSample& light, const PathTurn& at) const {
         const double hit = light.density > 0.0 ? at.to_light / light.density : 0.0;
         const double joined = by_light_ * entrance() * arrives(at) * at.cos_light * light.leaving_per_sample;
         return power_share(hit, joined);
@@ -123,7 +123,7 @@ class CameraPathWeight {
 class LightPathWeight {
   public:
     /// Of the light, when the first surface is found.
-    void leave(const LightWay& way) {
+    void leave(const scene::LightWay& way) {
         hit_ = way.hit_per_leaving;
         sampled_ = way.sample_per_leaving;
     }
@@ -145,7 +145,7 @@ class LightPathWeight {
     }
 
     /// The same for light that goes straight from its source to the camera, at `cosine` from its normal (1 from far).
-    [[nodiscard]] static double others(const LightStart& start, double cosine) { return cosine / start.density; }
+    [[nodiscard]] static double others(const scene::LightStart& start, double cosine) { return cosine / start.density; }
 
     [[nodiscard]] static double share(double others, double drawn_per_entrance) {
         return power_share(others * drawn_per_entrance, 0.0);
@@ -160,4 +160,4 @@ class LightPathWeight {
     bool is_first_ = true;
 };
 
-}  // namespace lensproof
+}  // namespace lensproof::render

@@ -14,21 +14,21 @@
 #include "engine/render/film.h"
 #include "engine/spectral/illuminant.h"
 
-namespace lensproof {
+namespace lensproof::render {
 
 namespace {
 
 constexpr double kMostBytes = 16e9;  // of sums in memory
 
 /// Channels of one number make a grey picture.
-Vec3d in_three_channels(const SensorResponse& response, const Vec3d& weights) {
+Vec3d in_three_channels(const spectral::SensorResponse& response, const Vec3d& weights) {
     return response.channels.size() == 1 ? Vec3d{weights.x, weights.x, weights.x} : weights;
 }
 
 /// RGB of a reflectance of 1 in one stratum, such that a white in the balanced light gives 1 in all of them together
 /// and each stratum's samples count alike.
-std::vector<Vec3d> albedo_weights(const std::vector<Vec3d>& rgb_weights, const SpectralGrid& grid,
-                                  const Illuminant& white) {
+std::vector<Vec3d> albedo_weights(const std::vector<Vec3d>& rgb_weights, const spectral::SpectralGrid& grid,
+                                  const spectral::Illuminant& white) {
     std::vector<Vec3d> weights;
     Vec3d sum;
     for (int i = 0; i < grid.size(); ++i) {
@@ -50,18 +50,19 @@ PreparedScene::PreparedScene(const SceneSetup& setup, const PixelFilter& filter,
       lens_(setup.camera.lens.empty() ? std::nullopt : std::optional(camera_lens(setup.camera))),
       lens_id_(lens_ ? lens_->id : ""),
       grid_(make_grid()),
-      built_(build_scene(setup.scene, grid_, cache)) {
+      built_(scene::build_scene(setup.scene, grid_, cache)) {
     if (!clamp_note_.empty()) {
         built_.remarks.push_back(clamp_note_);
     }
-    const Illuminant white = illuminant(setup.white_balance);
-    const SensorResponse response = sensor_response(setup.camera.response, setup.camera.exposure, white);
-    const std::vector<Vec3d> weights = stratum_weights(response, grid_.strata, white);
+    const spectral::Illuminant white = spectral::illuminant(setup.white_balance);
+    const spectral::SensorResponse response =
+        spectral::sensor_response(setup.camera.response, setup.camera.exposure, white);
+    const std::vector<Vec3d> weights = spectral::stratum_weights(response, grid_.strata, white);
     std::ranges::transform(weights, std::back_inserter(rgb_weights_),
                            [&](const Vec3d& weight) { return in_three_channels(response, weight); });
     albedo_weights_ = albedo_weights(rgb_weights_, grid_, white);
-    colours_ = rgb_space(setup.camera.response, white);
-    if (setup.view.model == LensModel::exact) {
+    colours_ = spectral::rgb_space(setup.camera.response, white);
+    if (setup.view.model == scene::LensModel::exact) {
         make_exact_camera(cache);
     } else {
         make_ideal_camera();
@@ -76,25 +77,26 @@ PreparedScene::PreparedScene(const SceneSetup& setup, const PixelFilter& filter,
     }
 }
 
-SpectralGrid PreparedScene::make_grid() {
+spectral::SpectralGrid PreparedScene::make_grid() {
     const SpectralSampling& sampling = setup_.spectral;
     const SampledBand band = lens_
                                  ? sampled_band(sampling, *lens_)
                                  : SampledBand{.min_nm = sampling.min_nm, .max_nm = sampling.max_nm, .clamp_note = {}};
     clamp_note_ = band.clamp_note;
-    return spectral_grid(band.min_nm, band.max_nm, sampling.layers * sampling.strata_per_layer);
+    return spectral::spectral_grid(band.min_nm, band.max_nm, sampling.layers * sampling.strata_per_layer);
 }
 
 void PreparedScene::make_exact_camera(const Cache& cache) {
     if (!lens_) {
         throw InputError("the exact camera model needs a lens");
     }
-    traced_ = std::make_unique<SpectralLens<double>>(at_wavelengths<double>(*lens_, grid_.strata.midpoints()));
+    traced_ = std::make_unique<optics::SpectralLens<double>>(
+        optics::at_wavelengths<double>(*lens_, grid_.strata.midpoints()));
     // Pixels are areas: the corner of what the corner pixel's filter reaches is the farthest point sampled.
-    pupil_ =
-        std::make_unique<PupilMap>(kept_pupil_map(cache, traced_->at(), lens_->is_rotationally_symmetric,
-                                                  setup_.camera.sensor.half_diagonal_mm(filter_.radius_px() - 0.5)));
-    slices_ = std::make_unique<PupilSlices>(*pupil_, grid_.size());
+    pupil_ = std::make_unique<pupil::PupilMap>(
+        pupil::kept_pupil_map(cache, traced_->at(), lens_->is_rotationally_symmetric,
+                              setup_.camera.sensor.half_diagonal_mm(filter_.radius_px() - 0.5)));
+    slices_ = std::make_unique<pupil::PupilSlices>(*pupil_, grid_.size());
     camera_ = ExactCamera{traced_.get(), slices_.get()};
 }
 
@@ -109,14 +111,15 @@ void PreparedScene::make_ideal_camera() {
 }
 
 SceneView PreparedScene::view(std::uint64_t seed, bool has_features) const {
-    const WavelengthStrata& strata = grid_.strata;
+    const spectral::WavelengthStrata& strata = grid_.strata;
     return {.scene = &built_.scene,
             .camera = &camera_,
-            .camera_to_world = camera_to_world(setup_.view),
+            .camera_to_world = scene::camera_to_world(setup_.view),
             .sensor = setup_.camera.sensor,
             .film = {.width = setup_.camera.sensor.width,
                      .height = setup_.camera.sensor.height,
-                     .layer_nm = WavelengthStrata{strata.min_nm, strata.max_nm, setup_.spectral.layers}.midpoints(),
+                     .layer_nm =
+                         spectral::WavelengthStrata{strata.min_nm, strata.max_nm, setup_.spectral.layers}.midpoints(),
                      .rgb_weights = rgb_weights_,
                      .band_nm = strata.max_nm - strata.min_nm,
                      .filter = filter_,
@@ -128,17 +131,17 @@ SceneView PreparedScene::view(std::uint64_t seed, bool has_features) const {
 
 const CameraEnd& PreparedScene::camera_end(const Cache& cache) {
     if (!end_) {
-        end_ =
-            CameraEnd{.entrance = {}, .camera_to_world = camera_to_world(setup_.view), .sensor = setup_.camera.sensor};
+        end_ = CameraEnd{
+            .entrance = {}, .camera_to_world = scene::camera_to_world(setup_.view), .sensor = setup_.camera.sensor};
         if (traced_) {
             // Drawn over the whole front in a fifth of all cases, since the map is that of far light.
-            entrance_map_ = std::make_unique<EntranceMap>(
-                kept_entrance_map(cache, traced_->at(), lens_->is_rotationally_symmetric,
-                                  std::numeric_limits<double>::infinity(), {.defensive_share = 0.2}));
+            entrance_map_ = std::make_unique<pupil::EntranceMap>(
+                pupil::kept_entrance_map(cache, traced_->at(), lens_->is_rotationally_symmetric,
+                                         std::numeric_limits<double>::infinity(), {.defensive_share = 0.2}));
             end_->entrance = LensEntrance{.lens = traced_.get(),
                                           .pupil = pupil_.get(),
                                           .map = entrance_map_.get(),
-                                          .front = front_sphere(traced_->at().front())};
+                                          .front = pupil::front_sphere(traced_->at().front())};
         } else {
             end_->entrance = IdealEntrance{&std::get<std::vector<GaussianCamera>>(camera_)};
         }
@@ -149,8 +152,8 @@ const CameraEnd& PreparedScene::camera_end(const Cache& cache) {
 std::string PreparedScene::camera_hash() const {
     std::string bytes;
     if (traced_) {
-        for (const TraceLens<double>& lens : traced_->at()) {
-            append_lens_bytes(bytes, lens);
+        for (const optics::TraceLens<double>& lens : traced_->at()) {
+            optics::append_lens_bytes(bytes, lens);
         }
     } else {
         for (const GaussianCamera& camera : std::get<std::vector<GaussianCamera>>(camera_)) {
@@ -166,9 +169,9 @@ std::map<std::string, std::string> PreparedScene::metadata() const {
     std::map<std::string, std::string> metadata = camera_metadata(
         setup_.camera, lens_ ? lens_->name : fmt::format("{} mm", setup_.view.focal_length_mm.value_or(0.0)),
         setup_.white_balance, filter_, colours_.has_value());
-    metadata["lensproof:lensModel"] = name_of(setup_.view.model);
+    metadata["lensproof:lensModel"] = scene::name_of(setup_.view.model);
     metadata["lensproof:maxBounces"] = fmt::format("{}", setup_.max_bounces);
     return metadata;
 }
 
-}  // namespace lensproof
+}  // namespace lensproof::render

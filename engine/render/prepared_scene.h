@@ -16,7 +16,7 @@
 #include "engine/scene/scene_build.h"
 #include "engine/spectral/sensor_response.h"
 
-namespace lensproof {
+namespace lensproof::render {
 
 /// Camera, lens and scene, ready for any number of renders. It stays where it was made: views refer to it.
 class PreparedScene {
@@ -34,7 +34,7 @@ class PreparedScene {
     /// The camera as the end of light paths; where their light enters a lens is found on the first call.
     [[nodiscard]] const CameraEnd& camera_end(const Cache& cache);
 
-    [[nodiscard]] const Scene& scene() const { return built_.scene; }
+    [[nodiscard]] const scene::Scene& scene() const { return built_.scene; }
 
     /// What was repaired or left out, and that wavelengths were clamped to the glasses' range: a sentence each.
     [[nodiscard]] const std::vector<std::string>& remarks() const { return built_.remarks; }
@@ -47,29 +47,29 @@ class PreparedScene {
 
     /// What a picture's file says of the camera, and the space of its R, G, B where they are not the camera's own.
     [[nodiscard]] std::map<std::string, std::string> metadata() const;
-    [[nodiscard]] const std::optional<RgbSpace>& colours() const { return colours_; }
+    [[nodiscard]] const std::optional<spectral::RgbSpace>& colours() const { return colours_; }
 
   private:
-    [[nodiscard]] SpectralGrid make_grid();
+    [[nodiscard]] spectral::SpectralGrid make_grid();
     void make_exact_camera(const Cache& cache);
     void make_ideal_camera();
 
     SceneSetup setup_;
     PixelFilter filter_;
-    std::optional<Lens> lens_;
+    std::optional<optics::Lens> lens_;
     std::string lens_id_;
     std::string clamp_note_;
-    SpectralGrid grid_;
-    BuiltScene built_;
-    std::unique_ptr<SpectralLens<double>> traced_;
-    std::unique_ptr<PupilMap> pupil_;
-    std::unique_ptr<PupilSlices> slices_;
-    std::unique_ptr<EntranceMap> entrance_map_;
+    spectral::SpectralGrid grid_;
+    scene::BuiltScene built_;
+    std::unique_ptr<optics::SpectralLens<double>> traced_;
+    std::unique_ptr<pupil::PupilMap> pupil_;
+    std::unique_ptr<pupil::PupilSlices> slices_;
+    std::unique_ptr<pupil::EntranceMap> entrance_map_;
     std::optional<CameraEnd> end_;
     SceneCamera camera_;
     std::vector<Vec3d> rgb_weights_;
     std::vector<Vec3d> albedo_weights_;
-    std::optional<RgbSpace> colours_;
+    std::optional<spectral::RgbSpace> colours_;
 };
 
-}  // namespace lensproof
+}  // namespace lensproof::render

@@ -13,7 +13,7 @@
 
 #include "engine/base/parallel.h"
 
-namespace lensproof {
+namespace lensproof::render {
 
 namespace {
 
@@ -295,4 +295,4 @@ RenderEnd render_progressively(RenderState& state, const MakeTileRenderer& make_
     return ProgressiveRender(state, make_renderer, goal, control).run();
 }
 
-}  // namespace lensproof
+}  // namespace lensproof::render

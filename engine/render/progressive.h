@@ -8,7 +8,7 @@
 
 #include "engine/render/film.h"
 
-namespace lensproof {
+namespace lensproof::render {
 
 /// Renders these samples into the tile, which has been loaded for them. What a sample gives depends on the
 /// seed, its pixel and its index alone. A renderer belongs to one thread, and may own what it needs for every tile.
@@ -101,4 +101,4 @@ double tile_error(const Film& film, const PixelRect& rect, double dark);
 /// Mean over the film of the pixels' means of R, G and B.
 double mean_brightness(const Film& film);
 
-}  // namespace lensproof
+}  // namespace lensproof::render

@@ -6,7 +6,7 @@
 #include <stdexcept>
 #include <utility>
 
-namespace lensproof {
+namespace lensproof::render {
 
 namespace {
 
@@ -69,11 +69,12 @@ int mosaic_channel(const std::string& pattern, int x, int y) {
     return colour == 'R' ? 0 : colour == 'G' ? 1 : 2;
 }
 
-Image develop(const RawImage& raw) {
-    const IntegerImage& mosaic = raw.mosaic;
-    Image image = make_image(mosaic.width, mosaic.height,
-                             mosaic.channels == 1 && raw.pattern.empty() ? std::vector<std::string>{"Y"}
-                                                                         : std::vector<std::string>{"R", "G", "B"});
+formats::Image develop(const RawImage& raw) {
+    const formats::IntegerImage& mosaic = raw.mosaic;
+    formats::Image image =
+        formats::make_image(mosaic.width, mosaic.height,
+                            mosaic.channels == 1 && raw.pattern.empty() ? std::vector<std::string>{"Y"}
+                                                                        : std::vector<std::string>{"R", "G", "B"});
     image.metadata = mosaic.metadata;
     if (raw.pattern.empty()) {
         const Levels levels(raw, 1.0);
@@ -102,7 +103,7 @@ Image develop(const RawImage& raw) {
 }
 
 void write_raw(const RawImage& raw, const std::filesystem::path& file) {
-    write_png(raw.mosaic, file);
+    formats::write_png(raw.mosaic, file);
 }
 
-}  // namespace lensproof
+}  // namespace lensproof::render

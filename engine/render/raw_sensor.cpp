@@ -16,7 +16,7 @@
 #include "engine/render/sampling/sampler.h"
 #include "engine/spectral/illuminant.h"
 
-namespace lensproof {
+namespace lensproof::render {
 
 namespace {
 
@@ -94,7 +94,7 @@ void read_pattern(TomlTable& table, const RawCamera& camera, RawSensor& sensor) 
 
 Vec3d read_neutral(TomlTable& table, const RawCamera& camera, int channels) {
     if (!table.has("neutral")) {
-        return sensor_neutral(camera.response, illuminant(camera.white));
+        return spectral::sensor_neutral(camera.response, spectral::illuminant(camera.white));
     }
     if (channels != 3) {
         table.fail("neutral",
@@ -127,7 +127,7 @@ std::map<std::string, std::string> metadata_of(const RawSensor& sensor,
 RawSensor read_raw_sensor(TomlTable& table, const RawCamera& camera) {
     RawSensor sensor;
     sensor.camera = camera;
-    sensor.channels = static_cast<int>(sensor_channels(camera.response).size());
+    sensor.channels = static_cast<int>(spectral::sensor_channels(camera.response).size());
     read_pattern(table, camera, sensor);
     sensor.full_well_electrons = table.number("full_well_electrons", {.min = 1.0, .max = 1e9});
     sensor.read_noise_electrons = table.number("read_noise_electrons", {.min = 0.0, .max = 1e6});
@@ -176,7 +176,7 @@ std::string raw_sensor_text(const RawSensor& sensor) {
 RawSensor parse_raw_sensor(const std::string& text, const std::filesystem::path& name) {
     TomlTable top = TomlTable::parse(text, name);
     RawCamera camera;
-    camera.response = top.choice("response", known_sensors());
+    camera.response = top.choice("response", spectral::known_sensors());
     camera.exposure = {.time_s = top.number("shutter_s", kPositive), .iso = top.number("iso", kPositive)};
     camera.white = top.text("illuminant");
     const std::vector<double> pixels = top.numbers("pixels", 2, {.min = 1.0, .max = 1e5});
@@ -208,7 +208,7 @@ ReadElectrons read_electrons(const RawSensor& sensor, double value, int channel)
     return {.mean = mean, .variance = mean + sensor.read_noise_electrons * sensor.read_noise_electrons};
 }
 
-RawImage expose(const RawSensor& sensor, const Image& film, std::uint64_t seed, int threads) {
+RawImage expose(const RawSensor& sensor, const formats::Image& film, std::uint64_t seed, int threads) {
     const bool is_mosaic = !sensor.pattern.empty();
     const int channels = is_mosaic ? 1 : sensor.channels;
     RawImage raw{.mosaic = {.width = film.width,
@@ -237,4 +237,4 @@ RawImage expose(const RawSensor& sensor, const Image& film, std::uint64_t seed, 
     return raw;
 }
 
-}  // namespace lensproof
+}  // namespace lensproof::render

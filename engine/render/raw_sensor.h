@@ -10,12 +10,12 @@
 #include "engine/render/sampling/pixel_filter.h"
 #include "engine/spectral/sensor_response.h"
 
-namespace lensproof {
+namespace lensproof::render {
 
 /// What the camera says that the sensor is in.
 struct RawCamera {
     std::string response;
-    Exposure exposure;
+    spectral::Exposure exposure;
     std::string white;  // the illuminant that the film is balanced to
     int width = 0;      // px
     int height = 0;
@@ -92,6 +92,6 @@ ReadElectrons read_electrons(const RawSensor& sensor, double value, int channel)
 
 /// The raw of a film's R, G, B (of a sensor with one channel, the first). Each value's noise depends on (seed, pixel,
 /// channel) alone. `film`'s metadata go along; sensor, levels and gain are added to them.
-RawImage expose(const RawSensor& sensor, const Image& film, std::uint64_t seed, int threads = 0);
+RawImage expose(const RawSensor& sensor, const formats::Image& film, std::uint64_t seed, int threads = 0);
 
-}  // namespace lensproof
+}  // namespace lensproof::render

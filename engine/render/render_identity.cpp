@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-namespace lensproof {
+namespace lensproof::render {
 
 std::optional<std::string> first_difference(const RenderIdentity& found, const RenderIdentity& expected) {
     for (const IdentityPart& part : expected) {
@@ -19,4 +19,4 @@ std::optional<std::string> first_difference(const RenderIdentity& found, const R
     return std::nullopt;
 }
 
-}  // namespace lensproof
+}  // namespace lensproof::render

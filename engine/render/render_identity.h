@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-namespace lensproof {
+namespace lensproof::render {
 
 /// Everything that a sample follows from but its pixel and its index, in parts that a person knows: "scene", "lens",
 /// "settings", "seed", "version". A value is a hash, or short enough to be shown.
@@ -19,4 +19,4 @@ using RenderIdentity = std::vector<IdentityPart>;
 /// same.
 std::optional<std::string> first_difference(const RenderIdentity& found, const RenderIdentity& expected);
 
-}  // namespace lensproof
+}  // namespace lensproof::render

@@ -9,15 +9,15 @@
 #include "engine/render/shared_rays.h"
 #include "engine/render/tile_paths.h"
 
-namespace lensproof {
+namespace lensproof::render {
 
 namespace {
 
 /// What a path counts at each of its wavelengths, sr, the mean over them being the sample.
-using PathWeights = std::array<float, kWavelengthsPerPath>;
+using PathWeights = std::array<float, spectral::kWavelengthsPerPath>;
 
 PathWeights hero_alone(double weight) {
-    return {static_cast<float>(kWavelengthsPerPath * weight)};
+    return {static_cast<float>(spectral::kWavelengthsPerPath * weight)};
 }
 
 /// Through the lens itself.
@@ -40,11 +40,11 @@ class ExactPaths {
         }
     }
     [[nodiscard]] PathDensity density(std::size_t path, const CameraEnd& /*end*/, const Ray<double>& /*out*/,
-                                      const PathWavelengths& /*strata*/) const {
+                                      const spectral::PathWavelengths& /*strata*/) const {
         return shared_.densities()[path];
     }
     [[nodiscard]] PathWeights weights(const CameraPathBuffer<double>& paths, std::size_t path,
-                                      const PathWavelengths& /*strata*/) const {
+                                      const spectral::PathWavelengths& /*strata*/) const {
         return weights_ != nullptr ? (*weights_)[path] : hero_alone(paths.weight[path]);
     }
 
@@ -69,13 +69,13 @@ class IdealPaths {
     IdealPathProducer& producer() { return producer_; }
     void weigh(const CameraPathBuffer<double>& /*paths*/, bool /*needs_densities*/) {}
     [[nodiscard]] static PathDensity density(std::size_t /*path*/, const CameraEnd& end, const Ray<double>& out,
-                                             const PathWavelengths& strata) {
+                                             const spectral::PathWavelengths& strata) {
         const FilmArrival film = end.arrive({out.origin, -1.0 * out.direction}, strata);
         return {.shared = film.shared_density(0), .hero = film.drawn[0]};
     }
     /// A path's weight is its hero's; the others pass the camera by their own transmittance.
     [[nodiscard]] PathWeights weights(const CameraPathBuffer<double>& paths, std::size_t path,
-                                      const PathWavelengths& strata) const {
+                                      const spectral::PathWavelengths& strata) const {
         if (!is_achromatic_) {
             return hero_alone(paths.weight[path]);
         }
@@ -110,9 +110,9 @@ class SceneTileRenderer {
   private:
     void add_path(std::size_t path, std::size_t pixel, FilmTile& tile) {
         const Ray<double> in_lens = buffer_.ray(static_cast<int>(path));
-        const Ray<double> ray{moved(view_.camera_to_world, camera_to_lens(in_lens.origin)),
-                              rotate(view_.camera_to_world, camera_to_lens(in_lens.direction))};
-        const PathWavelengths strata = view_.scene->grid.path(buffer_.wavelength[path]);
+        const Ray<double> ray{scene::moved(view_.camera_to_world, scene::camera_to_lens(in_lens.origin)),
+                              scene::rotate(view_.camera_to_world, scene::camera_to_lens(in_lens.direction))};
+        const spectral::PathWavelengths strata = view_.scene->grid.path(buffer_.wavelength[path]);
         PathSampler numbers(view_.seed, buffer_.pixel[path], buffer_.sample[path]);
         DrawnByCamera drawn{.end = end_, .ray = in_lens, .density = {}};
         if (end_ != nullptr) {
@@ -132,15 +132,16 @@ class SceneTileRenderer {
         }
     }
 
-    void add_features(std::size_t pixel, const PathWavelengths& strata, const FirstSurface& first,
+    void add_features(std::size_t pixel, const spectral::PathWavelengths& strata, const FirstSurface& first,
                       FilmTile& tile) const {
         Vec3d albedo;
-        for (std::size_t i = 0; i < kWavelengthsPerPath; ++i) {
-            albedo = albedo + (first.albedo[i] / double{kWavelengthsPerPath}) * view_.albedo_weights[strata.index[i]];
+        for (std::size_t i = 0; i < spectral::kWavelengthsPerPath; ++i) {
+            albedo = albedo +
+                     (first.albedo[i] / double{spectral::kWavelengthsPerPath}) * view_.albedo_weights[strata.index[i]];
         }
-        tile.add_features(pixel, {.depth_mm = moved_back(view_.camera_to_world, first.point).z,
+        tile.add_features(pixel, {.depth_mm = scene::moved_back(view_.camera_to_world, first.point).z,
                                   .albedo_rgb = albedo,
-                                  .normal = rotate_back(view_.camera_to_world, first.normal)});
+                                  .normal = scene::rotate_back(view_.camera_to_world, first.normal)});
     }
 
     SceneView view_;
@@ -175,7 +176,7 @@ TileRenderer light_renderer(const SceneView& view, const CameraEnd& end, LightPa
                 const auto pixel = static_cast<std::uint32_t>(y * view.sensor.width + x);
                 for (std::uint32_t sample = samples.first; sample < samples.end; ++sample) {
                     PathSampler numbers(seed, pixel, sample);
-                    const PathWavelengths strata =
+                    const spectral::PathWavelengths strata =
                         view.scene->grid.path(static_cast<int>(numbers.next()[0] * wavelengths));
                     tile.begin_light_path();
                     tile.count_rays(trace_light_path(*view.scene, end, strata, view.paths, numbers, tile, paths));
@@ -204,4 +205,4 @@ TileRenderer both_paths_renderer(const SceneView& view, const CameraEnd& end) {
         };
 }
 
-}  // namespace lensproof
+}  // namespace lensproof::render

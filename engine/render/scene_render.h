@@ -15,21 +15,21 @@
 #include "engine/scene/pose.h"
 #include "engine/scene/scene.h"
 
-namespace lensproof {
+namespace lensproof::render {
 
 /// The lens of a camera, ready for paths, at the strata of the scene's grid.
 struct ExactCamera {
-    const SpectralLens<double>* lens = nullptr;
-    const PupilSlices* pupil = nullptr;
+    const optics::SpectralLens<double>* lens = nullptr;
+    const pupil::PupilSlices* pupil = nullptr;
 };
 /// Ideal ones need a GaussianCamera a stratum.
 using SceneCamera = std::variant<ExactCamera, std::vector<GaussianCamera>>;
 
 /// What is seen, by what, and what the film makes of it. Held by pointer: both outlive the render.
 struct SceneView {
-    const Scene* scene = nullptr;
+    const scene::Scene* scene = nullptr;
     const SceneCamera* camera = nullptr;
-    RigidMotion camera_to_world;  // of the frame of pose.h
+    scene::RigidMotion camera_to_world;  // of the frame of pose.h
     Sensor sensor;
     FilmLayout film;
     std::vector<Vec3d> albedo_weights;  // a stratum each: RGB of a reflectance of 1 there; their mean is 1
@@ -54,4 +54,4 @@ TileRenderer light_path_renderer(const SceneView& view, const CameraEnd& end);
 /// by both. With --noise some pixels have fewer of either; weights stay those of one for one, and shares sum to one.
 TileRenderer both_paths_renderer(const SceneView& view, const CameraEnd& end);
 
-}  // namespace lensproof
+}  // namespace lensproof::render

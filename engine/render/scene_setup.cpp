@@ -6,7 +6,7 @@
 #include "engine/scene/illuminant_key.h"
 #include "engine/scene/scene_file.h"
 
-namespace lensproof {
+namespace lensproof::render {
 
 namespace {
 
@@ -31,19 +31,19 @@ SceneSetup parse_scene_setup(const std::string& text, const std::filesystem::pat
     TomlTable top = TomlTable::parse(text, name);
     SceneSetup setup;
     TomlTable camera = top.table("camera");
-    setup.view = read_camera_view(camera);
+    setup.view = scene::read_camera_view(camera);
     setup.camera = read_camera_keys(camera, setup.view.focal_length_mm.has_value());
-    setup.white_balance = read_illuminant(camera, "white_balance");
+    setup.white_balance = scene::read_illuminant(camera, "white_balance");
     if (setup.view.focal_length_mm && !setup.camera.lens.empty()) {
         camera.fail("focal_length_mm", "stands beside lens, expected one or the other");
     }
-    if (setup.camera.blades && setup.view.model != LensModel::exact) {
+    if (setup.camera.blades && setup.view.model != scene::LensModel::exact) {
         camera.fail("blades",
                     fmt::format("stands beside model = \"{}\", whose pupil is round; expected the exact model",
-                                name_of(setup.view.model)));
+                                scene::name_of(setup.view.model)));
     }
     camera.finish();
-    setup.scene = read_scene(top);
+    setup.scene = scene::read_scene(top);
     if (setup.scene.lights.empty()) {
         top.fail("lights", "there is no light, expected [[lights]]");
     }
@@ -65,4 +65,4 @@ SceneSetup read_scene_setup(const std::filesystem::path& file) {
     return parse_scene_setup(read_file(file), file);
 }
 
-}  // namespace lensproof
+}  // namespace lensproof::render

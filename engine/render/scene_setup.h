@@ -7,13 +7,13 @@
 #include "engine/render/raw_sensor.h"
 #include "engine/scene/scene_description.h"
 
-namespace lensproof {
+namespace lensproof::render {
 
 struct SceneSetup {
     Camera camera;  // without a lens where the view says a focal length
-    CameraView view;
+    scene::CameraView view;
     std::string white_balance = "D65";  // the illuminant in which a white surface is R = G = B
-    SceneDescription scene;
+    scene::SceneDescription scene;
     SpectralSampling spectral;
     int samples_per_pixel = 64;
     std::optional<RawSensor> sensor;  // the electronics behind the film, where a raw file is wanted
@@ -30,4 +30,4 @@ SceneSetup read_scene_setup(const std::filesystem::path& file);
 /// The same from a text; `name` stands for the file in messages, and its folder is where files are looked for.
 SceneSetup parse_scene_setup(const std::string& text, const std::filesystem::path& name);
 
-}  // namespace lensproof
+}  // namespace lensproof::render

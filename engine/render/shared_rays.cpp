@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
-namespace lensproof {
+namespace lensproof::render {
 
-FilmMeeting meet_film(const PupilMap& pupil, double film_z, double band_position, const Ray<double>& behind) {
+FilmMeeting meet_film(const pupil::PupilMap& pupil, double film_z, double band_position, const Ray<double>& behind) {
     const auto crossing = [&](double z) {
         const double along = (z - behind.origin.z) / behind.direction.z;
         return Vec2d{behind.origin.x + along * behind.direction.x, behind.origin.y + along * behind.direction.y};
@@ -16,7 +16,8 @@ FilmMeeting meet_film(const PupilMap& pupil, double film_z, double band_position
     return {.point = film, .density = density * way * way / (behind.direction.z * behind.direction.z)};
 }
 
-const std::vector<std::array<float, kWavelengthsPerPath>>& SharedRays::weigh(const CameraPathBuffer<double>& paths) {
+const std::vector<std::array<float, spectral::kWavelengthsPerPath>>& SharedRays::weigh(
+    const CameraPathBuffer<double>& paths) {
     weights_.resize(static_cast<std::size_t>(paths.size));
     densities_.resize(weights_.size());
     for (int first = 0; first < paths.size; first += kBlock) {
@@ -24,13 +25,13 @@ const std::vector<std::array<float, kWavelengthsPerPath>>& SharedRays::weigh(con
         trace(paths, first, count);
         for (int i = 0; i < count; ++i) {
             const auto path = static_cast<std::size_t>(first) + static_cast<std::size_t>(i);
-            const PathWavelengths strata = grid_.path(paths.wavelength[path]);
+            const spectral::PathWavelengths strata = grid_.path(paths.wavelength[path]);
             const Vec2d centre = pixel_of(paths, path);
-            std::array<double, kWavelengthsPerPath> transmittance{};
+            std::array<double, spectral::kWavelengthsPerPath> transmittance{};
             PathDensity& density = densities_[path] = {};
-            for (std::size_t m = 0; m < kWavelengthsPerPath; ++m) {
-                const std::size_t ray = static_cast<std::size_t>(i) * kWavelengthsPerPath + m;
-                if (rays_.status[ray] != RayStatus::ok) {
+            for (std::size_t m = 0; m < spectral::kWavelengthsPerPath; ++m) {
+                const std::size_t ray = static_cast<std::size_t>(i) * spectral::kWavelengthsPerPath + m;
+                if (rays_.status[ray] != optics::RayStatus::ok) {
                     continue;
                 }
                 const double band = static_cast<double>(strata.index[m]) / (lens_->wavelengths() - 1);
@@ -42,11 +43,11 @@ const std::vector<std::array<float, kWavelengthsPerPath>>& SharedRays::weigh(con
                 // The hero's point lies in the pixel, wherever rounding may see it.
                 if (m == 0 || (across >= -0.5 && across < 0.5 && down >= -0.5 && down < 0.5)) {
                     transmittance[m] = rays_.transmittance[ray];
-                    density.shared += film.density / kWavelengthsPerPath;
+                    density.shared += film.density / spectral::kWavelengthsPerPath;
                     density.hero = m == 0 ? film.density : density.hero;
                 }
             }
-            for (std::size_t m = 0; m < kWavelengthsPerPath; ++m) {
+            for (std::size_t m = 0; m < spectral::kWavelengthsPerPath; ++m) {
                 weights_[path][m] = density.shared > 0.0 ? static_cast<float>(transmittance[m] / density.shared) : 0.0F;
             }
         }
@@ -67,19 +68,19 @@ Vec2d SharedRays::pixel_of(const CameraPathBuffer<double>& paths, std::size_t pa
 
 /// From the ray outside forward through the lens, at each wavelength.
 void SharedRays::trace(const CameraPathBuffer<double>& paths, int first, int count) {
-    rays_.size = count * kWavelengthsPerPath;
+    rays_.size = count * spectral::kWavelengthsPerPath;
     for (int i = 0; i < count; ++i) {
         const Ray<double> out = paths.ray(first + i);
         const Ray<double> in{out.origin, -1.0 * out.direction};
         const auto path = static_cast<std::size_t>(first) + static_cast<std::size_t>(i);
-        const PathWavelengths strata = grid_.path(paths.wavelength[path]);
-        for (int m = 0; m < kWavelengthsPerPath; ++m) {
-            const int ray = i * kWavelengthsPerPath + m;
+        const spectral::PathWavelengths strata = grid_.path(paths.wavelength[path]);
+        for (int m = 0; m < spectral::kWavelengthsPerPath; ++m) {
+            const int ray = i * spectral::kWavelengthsPerPath + m;
             rays_.set(ray, in);
             rays_.wavelength[static_cast<std::size_t>(ray)] = strata.index[static_cast<std::size_t>(m)];
         }
     }
-    trace_batch<Direction::forward>(*lens_, rays_, {.carry = Carry::transmittance});
+    optics::trace_batch<optics::Direction::forward>(*lens_, rays_, {.carry = optics::Carry::transmittance});
 }
 
-}  // namespace lensproof
+}  // namespace lensproof::render

@@ -10,7 +10,7 @@
 #include "engine/render/sampling/sensor.h"
 #include "engine/spectral/spectral_sample.h"
 
-namespace lensproof {
+namespace lensproof::render {
 
 /// With which density a ray is drawn by paths that carry all of their wavelengths, and by those of the hero alone.
 struct PathDensity {
@@ -24,7 +24,7 @@ struct FilmMeeting {
     Vec2d point;
     double density = 0.0;
 };
-FilmMeeting meet_film(const PupilMap& pupil, double film_z, double band_position, const Ray<double>& behind);
+FilmMeeting meet_film(const pupil::PupilMap& pupil, double film_z, double band_position, const Ray<double>& behind);
 
 /// Camera paths are drawn for their hero; outside the lens the ray serves the other wavelengths too, each of which
 /// reaches it by its own way through the glass, from its own point on the film. Of the four strategies "draw the ray as
@@ -41,17 +41,17 @@ class SharedRays {
   public:
     /// All outlive it. `lens` at the strata of `grid`. `is_box`: pixels are the filter, as w needs it; else the pixel
     /// of a path is the one that its film point lies in, and w is for its densities alone.
-    SharedRays(const SpectralGrid& grid, const SpectralLens<double>& lens, const PupilSlices& pupil,
-               const Sensor& sensor, bool is_box = true)
+    SharedRays(const spectral::SpectralGrid& grid, const optics::SpectralLens<double>& lens,
+               const pupil::PupilSlices& pupil, const Sensor& sensor, bool is_box = true)
         : grid_(grid),
           lens_(&lens),
           pupil_(&pupil),
           sensor_(sensor),
           is_box_(is_box),
-          rays_(kBlock * kWavelengthsPerPath) {}
+          rays_(kBlock * spectral::kWavelengthsPerPath) {}
 
     /// For every path of the buffer, w of its four wavelengths, sr.
-    const std::vector<std::array<float, kWavelengthsPerPath>>& weigh(const CameraPathBuffer<double>& paths);
+    const std::vector<std::array<float, spectral::kWavelengthsPerPath>>& weigh(const CameraPathBuffer<double>& paths);
 
     /// Of the paths that were weighed last, the densities that they were drawn with: ¼ Σ_m p_m, and p of the hero.
     [[nodiscard]] const std::vector<PathDensity>& densities() const { return densities_; }
@@ -62,14 +62,14 @@ class SharedRays {
     void trace(const CameraPathBuffer<double>& paths, int first, int count);
     [[nodiscard]] Vec2d pixel_of(const CameraPathBuffer<double>& paths, std::size_t path) const;
 
-    const SpectralGrid& grid_;
-    const SpectralLens<double>* lens_;
-    const PupilSlices* pupil_;
+    const spectral::SpectralGrid& grid_;
+    const optics::SpectralLens<double>* lens_;
+    const pupil::PupilSlices* pupil_;
     Sensor sensor_;
     bool is_box_;
-    RayBatch<double> rays_;
-    std::vector<std::array<float, kWavelengthsPerPath>> weights_;
+    optics::RayBatch<double> rays_;
+    std::vector<std::array<float, spectral::kWavelengthsPerPath>> weights_;
     std::vector<PathDensity> densities_;
 };
 
-}  // namespace lensproof
+}  // namespace lensproof::render

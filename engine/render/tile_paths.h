@@ -6,7 +6,7 @@
 #include "engine/render/camera_paths.h"
 #include "engine/render/progressive.h"
 
-namespace lensproof {
+namespace lensproof::render {
 
 /// Calls filled() for each buffer of these samples' paths, and add(path, pixel) for each path in it, `path` being its
 /// place in `buffer` and `pixel` its pixel's in the tile; counts rays in the tile. `producer` draws for a sensor of
@@ -34,4 +34,4 @@ void for_each_path(const TileSamples& samples, int width, Producer& producer, Ca
     tile.count_rays(static_cast<std::uint64_t>(producer.started() - started_before));
 }
 
-}  // namespace lensproof
+}  // namespace lensproof::render

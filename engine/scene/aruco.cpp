@@ -9,7 +9,7 @@
 #include "engine/base/file.h"
 #include "engine/base/input_error.h"
 
-namespace lensproof {
+namespace lensproof::scene {
 
 namespace {
 
@@ -63,4 +63,4 @@ ArucoDictionary aruco_dictionary(const std::string& name) {
                                  fmt::join(known_aruco_dictionaries(), ", ")));
 }
 
-}  // namespace lensproof
+}  // namespace lensproof::scene

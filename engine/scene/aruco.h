@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-namespace lensproof {
+namespace lensproof::scene {
 
 /// A set of markers by OpenCV's name for it.
 struct ArucoDictionary {
@@ -19,4 +19,4 @@ std::vector<std::string> known_aruco_dictionaries();
 /// One of the known dictionaries, from engine/scene/data/aruco.csv. Throws InputError listing them for another name.
 ArucoDictionary aruco_dictionary(const std::string& name);
 
-}  // namespace lensproof
+}  // namespace lensproof::scene

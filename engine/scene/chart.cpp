@@ -3,7 +3,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace lensproof {
+namespace lensproof::scene {
 
 namespace {
 
@@ -233,4 +233,4 @@ std::string kind_name(const Chart& chart) {
     return kind_of(chart).name;
 }
 
-}  // namespace lensproof
+}  // namespace lensproof::scene

@@ -8,7 +8,7 @@
 
 #include "engine/base/vec.h"
 
-namespace lensproof {
+namespace lensproof::scene {
 
 /// `columns` × `rows` squares of side `square_mm`; the square at the top left is black.
 struct Checkerboard {
@@ -132,4 +132,4 @@ Vec2d pattern_size_mm(const Chart& chart);
 /// "point-grid", "astigmatism-crosses", "colour-checker" or "straight-lines".
 std::string kind_name(const Chart& chart);
 
-}  // namespace lensproof
+}  // namespace lensproof::scene

@@ -8,7 +8,7 @@
 
 #include "engine/scene/aruco.h"
 
-namespace lensproof {
+namespace lensproof::scene {
 
 namespace {
 
@@ -163,4 +163,4 @@ Placement read_placement(TomlTable& table) {
     return placement;
 }
 
-}  // namespace lensproof
+}  // namespace lensproof::scene

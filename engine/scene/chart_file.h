@@ -6,7 +6,7 @@
 #include "engine/scene/chart.h"
 #include "engine/scene/pose.h"
 
-namespace lensproof {
+namespace lensproof::scene {
 
 /// Reads a chart's table:
 ///     kind = "checkerboard"   squares = [10, 7]   square_mm = 30.0
@@ -31,4 +31,4 @@ Chart read_chart_file(const std::filesystem::path& file);
 ///     distance_mm = 5000.0   towards_deg = [right, down]   tilt_deg = [about x, about y, about z]
 Placement read_placement(TomlTable& table);
 
-}  // namespace lensproof
+}  // namespace lensproof::scene

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace lensproof {
+namespace lensproof::scene {
 
 namespace {
 
@@ -143,4 +143,4 @@ std::vector<OutlineShape> chart_outline(const Chart& chart) {
     return shapes;
 }
 
-}  // namespace lensproof
+}  // namespace lensproof::scene

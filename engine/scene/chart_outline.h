@@ -5,7 +5,7 @@
 
 #include "engine/scene/chart.h"
 
-namespace lensproof {
+namespace lensproof::scene {
 
 /// A polygon, closed; mm on the chart.
 struct OutlinePolygon {
@@ -31,7 +31,7 @@ struct OutlineShape {
 };
 
 /// The shapes that make up a chart, in the order in which to fill them on white. `is_black` (chart.h) is what they
-/// have to look like; tests/experiments/chart_print/chart_print_test.cpp holds the two together. None for a flat field.
+/// have to look like; tests/experiments/draw/print/chart_print_test.cpp holds the two together. None for a flat field.
 std::vector<OutlineShape> chart_outline(const Chart& chart);
 
-}  // namespace lensproof
+}  // namespace lensproof::scene

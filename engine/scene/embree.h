@@ -9,7 +9,7 @@
 #include <memory>
 #include <type_traits>
 
-namespace lensproof::embree {
+namespace lensproof::scene::embree {
 
 struct Release {
     void operator()(RTCDevice device) const { rtcReleaseDevice(device); }
@@ -53,4 +53,4 @@ inline void occluded(RTCScene scene, Context& context, RTCRay& ray) {
 }
 #endif
 
-}  // namespace lensproof::embree
+}  // namespace lensproof::scene::embree

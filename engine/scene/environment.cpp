@@ -8,7 +8,7 @@
 
 #include "engine/base/input_error.h"
 
-namespace lensproof {
+namespace lensproof::scene {
 
 namespace {
 
@@ -109,7 +109,7 @@ Vec2d Environment::uv_of(const Vec3d& direction) const {
     return {u - std::floor(u), 1.0 - std::acos(std::clamp(local.z, -1.0, 1.0)) / kPi};
 }
 
-SpectralSample Environment::radiance(const Vec3d& direction, const PathWavelengths& path) const {
+spectral::SpectralSample Environment::radiance(const Vec3d& direction, const spectral::PathWavelengths& path) const {
     return value_at(picture_, uv_of(direction), path);
 }
 
@@ -143,4 +143,4 @@ double Environment::density(const Vec3d& direction) const {
     return sine > 0.0 ? density_in_picture(index_of(uv.x, picture_.grid.width), row) / (2.0 * kPi * kPi * sine) : 0.0;
 }
 
-}  // namespace lensproof
+}  // namespace lensproof::scene

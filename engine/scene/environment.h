@@ -7,7 +7,7 @@
 #include "engine/base/vec.h"
 #include "engine/scene/texture.h"
 
-namespace lensproof {
+namespace lensproof::scene {
 
 /// An equirectangular picture around the scene: its rows go from `up` to the opposite, its middle row is the horizon.
 /// The middle column shows the direction +x (or what stands at right angles to `up` in its stead) turned about `up` by
@@ -18,7 +18,8 @@ class Environment {
     Environment(ImageTexture picture, const Vec3d& up, double rotate_deg);
 
     /// Radiance from a direction (of unit length, towards the sky).
-    [[nodiscard]] SpectralSample radiance(const Vec3d& direction, const PathWavelengths& path) const;
+    [[nodiscard]] spectral::SpectralSample radiance(const Vec3d& direction,
+                                                    const spectral::PathWavelengths& path) const;
 
     /// A direction drawn about as often as light comes from there: a pixel by its brightness and solid angle, evenly
     /// within it (Pharr, Jakob & Humphreys, Physically Based Rendering, 4th ed., §12.5).
@@ -45,4 +46,4 @@ class Environment {
     double mean_power_ = 0.0;
 };
 
-}  // namespace lensproof
+}  // namespace lensproof::scene

@@ -7,7 +7,7 @@
 
 #include "engine/scene/geometry_data.h"
 
-namespace lensproof {
+namespace lensproof::scene {
 
 namespace {
 
@@ -227,4 +227,4 @@ bool is_occluded(const SceneGeometry& scene, const Vec3d& from, const Vec3d& to)
     return ray.tfar < 0.0F;
 }
 
-}  // namespace lensproof
+}  // namespace lensproof::scene

@@ -16,7 +16,7 @@
 #include "engine/base/affine.h"
 #include "engine/scene/shapes.h"
 
-namespace lensproof {
+namespace lensproof::scene {
 
 /// A shape, placed in the scene.
 struct SceneObject {
@@ -92,4 +92,4 @@ inline Vec3d ray_origin(const SurfaceHit& hit, const Vec3d& direction) {
     return ray_origin(hit.point, hit.geometric_normal, hit.error_mm, direction);
 }
 
-}  // namespace lensproof
+}  // namespace lensproof::scene

@@ -9,7 +9,7 @@
 #include "engine/base/input_error.h"
 #include "engine/scene/geometry_data.h"
 
-namespace lensproof {
+namespace lensproof::scene {
 
 namespace {
 
@@ -246,4 +246,4 @@ SceneGeometry::SceneGeometry(std::vector<Shape> shapes, std::vector<SceneObject>
     data_ = std::move(data);
 }
 
-}  // namespace lensproof
+}  // namespace lensproof::scene

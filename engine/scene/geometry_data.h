@@ -7,7 +7,7 @@
 #include "engine/scene/geometry.h"
 #include "engine/scene/shape_hit.h"
 
-namespace lensproof {
+namespace lensproof::scene {
 
 /// What float's rounding does to a coordinate on its way through Embree, generously: it only costs a few candidates
 /// more.
@@ -52,4 +52,4 @@ void occlude_analytic(const RTCOccludedFunctionNArguments* arguments);
 /// reach; from farther away an object's rim frays by a few floats.
 void bound_analytic(const RTCBoundsFunctionArguments* arguments);
 
-}  // namespace lensproof
+}  // namespace lensproof::scene

@@ -3,16 +3,16 @@
 #include "engine/base/input_error.h"
 #include "engine/spectral/illuminant.h"
 
-namespace lensproof {
+namespace lensproof::scene {
 
 std::string read_illuminant(TomlTable& table, const std::string& key) {
     std::string name = table.text_or(key, "D65");
     try {
-        illuminant(name);
+        spectral::illuminant(name);
     } catch (const InputError& error) {
         table.fail(key, error.what());
     }
     return name;
 }
 
-}  // namespace lensproof
+}  // namespace lensproof::scene

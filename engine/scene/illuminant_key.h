@@ -4,9 +4,9 @@
 
 #include "engine/base/toml.h"
 
-namespace lensproof {
+namespace lensproof::scene {
 
 /// The name of an illuminant that is known; D65 where the key is absent. Throws InputError naming file, line and key.
 std::string read_illuminant(TomlTable& table, const std::string& key);
 
-}  // namespace lensproof
+}  // namespace lensproof::scene

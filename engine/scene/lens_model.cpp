@@ -7,7 +7,7 @@
 
 #include "engine/base/input_error.h"
 
-namespace lensproof {
+namespace lensproof::scene {
 
 std::vector<std::string> lens_model_names() {
     return {"exact", "paraxial", "thin-lens", "pinhole"};  // in the order of the enumeration
@@ -26,4 +26,4 @@ std::string name_of(LensModel model) {
     return lens_model_names()[static_cast<std::size_t>(model)];
 }
 
-}  // namespace lensproof
+}  // namespace lensproof::scene

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-namespace lensproof {
+namespace lensproof::scene {
 
 /// All are made from a lens and its settings, expose alike, and so can be compared:
 ///
@@ -22,4 +22,4 @@ std::vector<std::string> lens_model_names();
 LensModel lens_model_named(const std::string& name);
 std::string name_of(LensModel model);
 
-}  // namespace lensproof
+}  // namespace lensproof::scene

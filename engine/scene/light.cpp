@@ -9,14 +9,14 @@
 #include "engine/base/overloaded.h"
 #include "engine/scene/bsdf/directions.h"
 
-namespace lensproof {
+namespace lensproof::scene {
 
 namespace {
 
 constexpr double kPi = std::numbers::pi;
 constexpr double kSquareMetresPerSquareMm = 1e-6;
 
-double mean_of(const GridSpectrum& spectrum) {
+double mean_of(const spectral::GridSpectrum& spectrum) {
     return std::accumulate(spectrum.value.begin(), spectrum.value.end(), 0.0) /
            static_cast<double>(spectrum.value.size());
 }
@@ -57,7 +57,7 @@ bool is_at_infinity(const LightSource& light) {
            std::holds_alternative<EnvironmentLight>(light);
 }
 
-SpectralSample scaled(const SpectralSample& sample, double scale) {
+spectral::SpectralSample scaled(const spectral::SpectralSample& sample, double scale) {
     return static_cast<float>(scale) * sample;
 }
 
@@ -67,8 +67,8 @@ double leaving_surface(const AreaLight& area, double per_mm2) {
 }
 
 /// `cone`: the solid angle that light paths leave the point in.
-std::optional<LightSample> from_point(const Vec3d& position, const SpectralSample& intensity, const Vec3d& seen_from,
-                                      double cone) {
+std::optional<LightSample> from_point(const Vec3d& position, const spectral::SpectralSample& intensity,
+                                      const Vec3d& seen_from, double cone) {
     const Vec3d way = position - seen_from;
     const double distance2 = dot(way, way);
     if (!(distance2 > 0.0)) {
@@ -154,8 +154,8 @@ std::optional<Lights::Ball> Lights::ball_of(const SceneGeometry& scene, std::uin
 }
 
 std::optional<LightSample> Lights::sample_area(const Entry& entry, const AreaLight& area, const Vec3d& point,
-                                               const PathWavelengths& path, double u1, double u2) {
-    const SpectralSample radiance = area.radiance(path);
+                                               const spectral::PathWavelengths& path, double u1, double u2) {
+    const spectral::SpectralSample radiance = area.radiance(path);
     if (const auto& ball = entry.ball; ball && is_outside(*ball, point)) {
         const Vec3d way = ball->centre - point;
         const double down = one_minus_cosine(ball->radius_mm, dot(way, way));
@@ -205,13 +205,14 @@ bool Lights::is_outside(const Ball& ball, const Vec3d& point) {
     return dot(way, way) > ball.radius_mm * ball.radius_mm * (1.0 + 1e-6);
 }
 
-std::optional<LightSample> Lights::sample(const Vec3d& point, const PathWavelengths& path, double u_light, double u1,
-                                          double u2) const {
+std::optional<LightSample> Lights::sample(const Vec3d& point, const spectral::PathWavelengths& path, double u_light,
+                                          double u1, double u2) const {
     if (is_empty()) {
         return {};
     }
     const Entry& entry = *choose(u_light).entry;
-    const auto towards_infinity = [&](const Vec3d& direction, const SpectralSample& radiance, double density) {
+    const auto towards_infinity = [&](const Vec3d& direction, const spectral::SpectralSample& radiance,
+                                      double density) {
         return LightSample{.direction = direction,
                            .end = point + beyond_mm(point) * direction,
                            .value = scaled(radiance, 1.0 / density),
@@ -256,7 +257,7 @@ std::optional<LightSample> Lights::sample(const Vec3d& point, const PathWaveleng
 }
 
 Lights::Emission Lights::emitted(const SurfaceHit& hit, const Vec3d& from, const Vec3d& direction,
-                                 const PathWavelengths& path) const {
+                                 const spectral::PathWavelengths& path) const {
     const std::int32_t index = of_object_[hit.object];
     if (index < 0) {
         return {};
@@ -274,8 +275,9 @@ Lights::Emission Lights::emitted(const SurfaceHit& hit, const Vec3d& from, const
             .leaving_density = entry.probability * leaving_surface(area, per_mm2)};
 }
 
-Lights::Emission Lights::at_infinity(const Entry& entry, const Vec3d& direction, const PathWavelengths& path) const {
-    const auto emission = [&](const SpectralSample& radiance, double density) {
+Lights::Emission Lights::at_infinity(const Entry& entry, const Vec3d& direction,
+                                     const spectral::PathWavelengths& path) const {
+    const auto emission = [&](const spectral::SpectralSample& radiance, double density) {
         const double chosen = entry.probability * density;
         return Emission{.radiance = radiance,
                         .density = chosen,
@@ -297,11 +299,11 @@ Lights::Emission Lights::at_infinity(const Entry& entry, const Vec3d& direction,
     return emission(sun.radiance(path), 1.0 / cone(sun.cos_radius));
 }
 
-LightStart Lights::start(const PathWavelengths& path, double u_light, double u1, double u2) const {
+LightStart Lights::start(const spectral::PathWavelengths& path, double u_light, double u1, double u2) const {
     const auto [chosen, rest] = choose(u_light);
     LightStart start;
     start.light = static_cast<std::uint32_t>(chosen - lights_.data());
-    const auto from_infinity = [&](const Vec3d& towards, const SpectralSample& radiance, double density) {
+    const auto from_infinity = [&](const Vec3d& towards, const spectral::SpectralSample& radiance, double density) {
         start.is_at_infinity = true;
         start.direction = -1.0 * towards;
         start.value = scaled(radiance, density > 0.0 ? 1.0 / density : 0.0);
@@ -363,7 +365,7 @@ LightWay Lights::way(const LightStart& start, const Vec3d& to) const {
     return {.sample_per_leaving = cone(spot != nullptr ? spot->cos_outer : -1.0) * dot(way, way)};
 }
 
-SpectralSample Lights::intensity(const LightStart& start, const Vec3d& direction) const {
+spectral::SpectralSample Lights::intensity(const LightStart& start, const Vec3d& direction) const {
     const LightSource& light = lights_[start.light].light;
     if (const auto* spot = std::get_if<SpotLight>(&light)) {
         return scaled(start.value, spot_falloff(*spot, dot(direction, spot->axis)));
@@ -394,4 +396,4 @@ EmittedRay Lights::leave(const LightStart& start, double u1, double u2) const {
     return {{start.point, direction}, scaled(intensity(start, direction), cone(cos_half_angle))};
 }
 
-}  // namespace lensproof
+}  // namespace lensproof::scene

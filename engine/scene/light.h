@@ -16,18 +16,18 @@
 #include "engine/scene/surface_sampler.h"
 #include "engine/spectral/spectral_sample.h"
 
-namespace lensproof {
+namespace lensproof::scene {
 
 /// A surface that shines evenly: every point of it, in every direction on its outward side, or on both.
 struct AreaLight {
     std::uint32_t object = 0;
-    GridSpectrum radiance;
+    spectral::GridSpectrum radiance;
     bool is_two_sided = false;
 };
 
 struct PointLight {
     Vec3d position;
-    GridSpectrum intensity;
+    spectral::GridSpectrum intensity;
 };
 
 /// A cone of light: full within `cos_inner` of its axis, none beyond `cos_outer`, a smoothstep of the cosine between.
@@ -36,19 +36,19 @@ struct SpotLight {
     Vec3d axis;  // unit length, the way the light goes
     double cos_inner = 1.0;
     double cos_outer = 0.0;
-    GridSpectrum intensity;  // on the axis
+    spectral::GridSpectrum intensity;  // on the axis
 };
 
 /// A disc at infinity, evenly bright: the sun.
 struct SunLight {
     Vec3d towards;  // unit length, to the disc's centre
     double cos_radius = 1.0;
-    GridSpectrum radiance;
+    spectral::GridSpectrum radiance;
 };
 
 /// The same radiance from every direction.
 struct ConstantLight {
-    GridSpectrum radiance;
+    spectral::GridSpectrum radiance;
 };
 
 /// A picture of all directions at infinity.
@@ -60,10 +60,10 @@ using LightSource = std::variant<AreaLight, PointLight, SpotLight, SunLight, Con
 
 /// Light that reaches a point: what next-event estimation adds, if nothing stands in the way.
 struct LightSample {
-    Vec3d direction;       // from the point to the light, unit length
-    Vec3d end;             // the way is free if nothing stands between the point and this
-    SpectralSample value;  // radiance over density, or irradiance on a surface that faces a delta light
-    double density = 0.0;  // per solid angle at the point, choice of the light included; 0 for a delta
+    Vec3d direction;                 // from the point to the light, unit length
+    Vec3d end;                       // the way is free if nothing stands between the point and this
+    spectral::SpectralSample value;  // radiance over density, or irradiance on a surface that faces a delta light
+    double density = 0.0;            // per solid angle at the point, choice of the light included; 0 for a delta
     /// The density per etendue with which a light path would leave along this way, over that of this sample, 1/mm².
     double leaving_per_sample = 0.0;
 };
@@ -78,7 +78,7 @@ struct LightStart {
     double error_mm = 0.0;  // for `ray_origin`
     /// Over the density of having drawn the start. Of a surface radiance · m², of a point intensity, W·sr⁻¹·nm⁻¹; of
     /// light from infinity radiance · sr, the irradiance across it.
-    SpectralSample value;
+    spectral::SpectralSample value;
     /// With which it was drawn, choice of the light included: per mm² of a surface, per solid angle of directions from
     /// infinity; 0 of a point.
     double density = 0.0;
@@ -97,7 +97,8 @@ struct LightWay {
 /// A ray of light as it leaves a source.
 struct EmittedRay {
     Ray<double> ray;
-    SpectralSample power;  // W·nm⁻¹: what the source sends out, over the density of having drawn this ray of it
+    spectral::SpectralSample
+        power;  // W·nm⁻¹: what the source sends out, over the density of having drawn this ray of it
 };
 
 /// All lights of a scene, each drawn as often as its share of the power that they send into the scene.
@@ -111,35 +112,36 @@ class Lights {
     [[nodiscard]] std::size_t size() const { return lights_.size(); }
 
     /// Draws a light and a point of it as `point` sees them. Nothing where that light does not reach the point.
-    [[nodiscard]] std::optional<LightSample> sample(const Vec3d& point, const PathWavelengths& path, double u_light,
-                                                    double u1, double u2) const;
+    [[nodiscard]] std::optional<LightSample> sample(const Vec3d& point, const spectral::PathWavelengths& path,
+                                                    double u_light, double u1, double u2) const;
 
     /// What a surface that a ray has met radiates towards where the ray comes from, and the density with which
     /// `sample` would have drawn that direction from `from`.
     struct Emission {
-        SpectralSample radiance;
+        spectral::SpectralSample radiance;
         double density = 0.0;          // per solid angle, choice of the light included
         double start_density = 0.0;    // with which `start` draws this point or direction (LightStart)
         double leaving_density = 0.0;  // per etendue, 1/(mm² sr): of `start` and `leave` together
     };
     [[nodiscard]] Emission emitted(const SurfaceHit& hit, const Vec3d& from, const Vec3d& direction,
-                                   const PathWavelengths& path) const;
+                                   const spectral::PathWavelengths& path) const;
 
     /// The same for a ray that leaves the scene: visits what each of the lights at infinity has in that direction.
     template <class Visit>
-    void visit_infinity(const Vec3d& direction, const PathWavelengths& path, const Visit& visit) const {
+    void visit_infinity(const Vec3d& direction, const spectral::PathWavelengths& path, const Visit& visit) const {
         for (const std::uint32_t index : at_infinity_) {
-            if (const Emission found = at_infinity(lights_[index], direction, path); !is_black(found.radiance)) {
+            if (const Emission found = at_infinity(lights_[index], direction, path);
+                !spectral::is_black(found.radiance)) {
                 visit(found);
             }
         }
     }
 
     /// Draws where a light path begins. There has to be a light.
-    [[nodiscard]] LightStart start(const PathWavelengths& path, double u_light, double u1, double u2) const;
+    [[nodiscard]] LightStart start(const spectral::PathWavelengths& path, double u_light, double u1, double u2) const;
 
     /// What a start that is not at infinity sends in a direction: W·sr⁻¹·nm⁻¹.
-    [[nodiscard]] SpectralSample intensity(const LightStart& start, const Vec3d& direction) const;
+    [[nodiscard]] spectral::SpectralSample intensity(const LightStart& start, const Vec3d& direction) const;
 
     /// Draws the direction that a path goes on in; of light from infinity, where it crosses the scene.
     [[nodiscard]] EmittedRay leave(const LightStart& start, double u1, double u2) const;
@@ -177,8 +179,9 @@ class Lights {
     /// way from `from` there.
     static double area_density(const Entry& entry, const Vec3d& at, double per_mm2, const Vec3d& from, double cosine);
     static std::optional<LightSample> sample_area(const Entry& entry, const AreaLight& area, const Vec3d& point,
-                                                  const PathWavelengths& path, double u1, double u2);
-    [[nodiscard]] Emission at_infinity(const Entry& entry, const Vec3d& direction, const PathWavelengths& path) const;
+                                                  const spectral::PathWavelengths& path, double u1, double u2);
+    [[nodiscard]] Emission at_infinity(const Entry& entry, const Vec3d& direction,
+                                       const spectral::PathWavelengths& path) const;
 
     std::vector<Entry> lights_;
     std::vector<double> cumulative_;          // of the probabilities
@@ -190,4 +193,4 @@ class Lights {
     double power_ = 0.0;
 };
 
-}  // namespace lensproof
+}  // namespace lensproof::scene

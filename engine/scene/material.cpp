@@ -7,15 +7,15 @@
 
 #include "engine/base/input_error.h"
 
-namespace lensproof {
+namespace lensproof::scene {
 
 namespace {
 
-DiffuseBsdf at_point(const DiffuseMaterial& material, const Vec2d& uv, const PathWavelengths& path) {
+DiffuseBsdf at_point(const DiffuseMaterial& material, const Vec2d& uv, const spectral::PathWavelengths& path) {
     return {.albedo = value_at(material.albedo, uv, path)};
 }
 
-ConductorBsdf at_point(const ConductorMaterial& material, const Vec2d&, const PathWavelengths& path) {
+ConductorBsdf at_point(const ConductorMaterial& material, const Vec2d&, const spectral::PathWavelengths& path) {
     if (material.roughness.is_smooth()) {
         return {.n = material.n(path), .k = material.k(path)};
     }
@@ -26,11 +26,11 @@ ConductorBsdf at_point(const ConductorMaterial& material, const Vec2d&, const Pa
             .given_back = material.given_back(path)};
 }
 
-DielectricBsdf at_point(const DielectricMaterial& material, const Vec2d&, const PathWavelengths& path) {
+DielectricBsdf at_point(const DielectricMaterial& material, const Vec2d&, const spectral::PathWavelengths& path) {
     return {.eta = material.eta(path), .roughness = material.roughness, .losses = material.losses.get()};
 }
 
-PlasticBsdf at_point(const PlasticMaterial& material, const Vec2d& uv, const PathWavelengths& path) {
+PlasticBsdf at_point(const PlasticMaterial& material, const Vec2d& uv, const spectral::PathWavelengths& path) {
     return plastic_bsdf(value_at(material.albedo, uv, path), *material.coat);
 }
 
@@ -43,7 +43,7 @@ double share_at(const MixMaterial::Part& part, const Vec2d& uv) {
     return share;
 }
 
-MixBsdf at_point(const MixMaterial& material, const Vec2d& uv, const PathWavelengths& path) {
+MixBsdf at_point(const MixMaterial& material, const Vec2d& uv, const spectral::PathWavelengths& path) {
     MixBsdf mix;
     for (const MixMaterial::Part& part : material.parts) {
         const double share = share_at(part, uv);
@@ -74,21 +74,21 @@ std::vector<MixMaterial::Part> parts_of(const Material& material) {
 
 }  // namespace
 
-ConductorMaterial conductor_material(GridSpectrum n, GridSpectrum k, const Roughness& roughness) {
+ConductorMaterial conductor_material(spectral::GridSpectrum n, spectral::GridSpectrum k, const Roughness& roughness) {
     ConductorMaterial material{.n = std::move(n), .k = std::move(k), .roughness = resolvable(roughness)};
     if (material.roughness.is_smooth()) {
         return material;
     }
     material.losses = std::make_shared<FacetLosses>(FacetLosses::of_mirrors(material.roughness));
     for (std::size_t i = 0; i < material.n.value.size(); ++i) {
-        const SpectralSample mean =
-            mean_conductor_reflectance(SpectralSample(material.n.value[i]), SpectralSample(material.k.value[i]));
+        const spectral::SpectralSample mean = mean_conductor_reflectance(spectral::SpectralSample(material.n.value[i]),
+                                                                         spectral::SpectralSample(material.k.value[i]));
         material.given_back.value.push_back(static_cast<float>(given_back(mean[0], material.losses->mean())));
     }
     return material;
 }
 
-DielectricMaterial dielectric_material(GridSpectrum eta, const Roughness& roughness) {
+DielectricMaterial dielectric_material(spectral::GridSpectrum eta, const Roughness& roughness) {
     DielectricMaterial material{.eta = std::move(eta), .roughness = resolvable(roughness)};
     if (!material.roughness.is_smooth()) {
         const auto [least, most] = std::minmax_element(material.eta.value.begin(), material.eta.value.end());
@@ -115,12 +115,12 @@ MixMaterial mixed(const Material& first, const Material& second, const ScalarTex
     return mix;
 }
 
-Bsdf bsdf_at(const Material& material, const Vec2d& uv, const PathWavelengths& path) {
+Bsdf bsdf_at(const Material& material, const Vec2d& uv, const spectral::PathWavelengths& path) {
     return std::visit([&](const auto& surface) -> Bsdf { return at_point(surface, uv, path); }, material.surface);
 }
 
-SpectralSample radiance_at(const Material& material, const Vec2d& uv, const PathWavelengths& path) {
-    return material.radiance ? value_at(*material.radiance, uv, path) : SpectralSample();
+spectral::SpectralSample radiance_at(const Material& material, const Vec2d& uv, const spectral::PathWavelengths& path) {
+    return material.radiance ? value_at(*material.radiance, uv, path) : spectral::SpectralSample();
 }
 
-}  // namespace lensproof
+}  // namespace lensproof::scene

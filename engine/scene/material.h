@@ -8,7 +8,7 @@
 #include "engine/scene/bsdf/bsdf.h"
 #include "engine/scene/texture.h"
 
-namespace lensproof {
+namespace lensproof::scene {
 
 struct DiffuseMaterial {
     Texture albedo;  // in [0, 1]
@@ -16,17 +16,17 @@ struct DiffuseMaterial {
 
 /// Made by `conductor_material`.
 struct ConductorMaterial {
-    GridSpectrum n;
-    GridSpectrum k;
+    spectral::GridSpectrum n;
+    spectral::GridSpectrum k;
     Roughness roughness;  // `resolvable`
     std::shared_ptr<const FacetLosses> losses;
-    GridSpectrum given_back;
+    spectral::GridSpectrum given_back;
 };
 
 /// Made by `dielectric_material`.
 struct DielectricMaterial {
-    GridSpectrum eta;     // within over without
-    Roughness roughness;  // `resolvable`
+    spectral::GridSpectrum eta;  // within over without
+    Roughness roughness;         // `resolvable`
     std::shared_ptr<const BoundaryLosses> losses;
 };
 
@@ -58,10 +58,10 @@ struct Material {
 };
 
 /// A metal of index n + ik (at_midpoints of ComplexIndex, say) on the grid, polished where `roughness` is {}.
-ConductorMaterial conductor_material(GridSpectrum n, GridSpectrum k, const Roughness& roughness);
+ConductorMaterial conductor_material(spectral::GridSpectrum n, spectral::GridSpectrum k, const Roughness& roughness);
 
 /// Glass of positive indices `eta` on the grid, polished where `roughness` is {}.
-DielectricMaterial dielectric_material(GridSpectrum eta, const Roughness& roughness);
+DielectricMaterial dielectric_material(spectral::GridSpectrum eta, const Roughness& roughness);
 
 /// A base of `albedo` under a clear coat of index `eta` > 1, whose facets have the slope `alpha`, 0 for smooth.
 PlasticMaterial plastic_material(Texture albedo, double eta, double alpha);
@@ -71,9 +71,9 @@ PlasticMaterial plastic_material(Texture albedo, double eta, double alpha);
 MixMaterial mixed(const Material& first, const Material& second, const ScalarTexture& share);
 
 /// How the material scatters at texture coordinates `uv`, at a path's wavelengths. The material must outlive it.
-Bsdf bsdf_at(const Material& material, const Vec2d& uv, const PathWavelengths& path);
+Bsdf bsdf_at(const Material& material, const Vec2d& uv, const spectral::PathWavelengths& path);
 
 /// Its `radiance` there; black where it does not emit.
-SpectralSample radiance_at(const Material& material, const Vec2d& uv, const PathWavelengths& path);
+spectral::SpectralSample radiance_at(const Material& material, const Vec2d& uv, const spectral::PathWavelengths& path);
 
-}  // namespace lensproof
+}  // namespace lensproof::scene

@@ -19,7 +19,7 @@
 #include "engine/scene/mesh_normals.h"
 #include "engine/scene/ply_check.h"
 
-namespace lensproof {
+namespace lensproof::scene {
 
 namespace {
 
@@ -218,4 +218,4 @@ MeshFile read_mesh(const std::filesystem::path& file, const MeshOptions& options
     return read;
 }
 
-}  // namespace lensproof
+}  // namespace lensproof::scene

@@ -7,7 +7,7 @@
 
 #include "engine/scene/shapes.h"
 
-namespace lensproof {
+namespace lensproof::scene {
 
 enum class MeshNormals {
     file,    // as the file gives them; flat where it gives none
@@ -41,4 +41,4 @@ struct MeshFile {
 /// `SceneGeometry` does.
 MeshFile read_mesh(const std::filesystem::path& file, const MeshOptions& options = {});
 
-}  // namespace lensproof
+}  // namespace lensproof::scene

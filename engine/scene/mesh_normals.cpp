@@ -9,7 +9,7 @@
 #include <tuple>
 #include <utility>
 
-namespace lensproof {
+namespace lensproof::scene {
 
 namespace {
 
@@ -113,4 +113,4 @@ TriangleMesh with_smooth_normals(const TriangleMesh& mesh, double crease_deg) {
     return result;
 }
 
-}  // namespace lensproof
+}  // namespace lensproof::scene

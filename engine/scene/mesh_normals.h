@@ -2,7 +2,7 @@
 #pragma once
 #include "engine/scene/shapes.h"
 
-namespace lensproof {
+namespace lensproof::scene {
 
 /// The mesh with normals at its vertices: each corner of a triangle has the mean over those triangles at its place
 /// whose own normals lie within `crease_deg` of that triangle's, weighted by the angle that they have there (Thürmer
@@ -12,4 +12,4 @@ namespace lensproof {
 /// of length 0. Indices have to be sound.
 TriangleMesh with_smooth_normals(const TriangleMesh& mesh, double crease_deg);
 
-}  // namespace lensproof
+}  // namespace lensproof::scene

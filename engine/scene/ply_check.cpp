@@ -12,7 +12,7 @@
 #include "engine/base/input_error.h"
 #include "engine/base/text.h"
 
-namespace lensproof {
+namespace lensproof::scene {
 
 namespace {
 
@@ -200,4 +200,4 @@ void check_ply(std::string_view content, const std::filesystem::path& file) {
     PlyCheck(content, file).run();
 }
 
-}  // namespace lensproof
+}  // namespace lensproof::scene

@@ -3,10 +3,10 @@
 #include <filesystem>
 #include <string_view>
 
-namespace lensproof {
+namespace lensproof::scene {
 
 /// Throws InputError naming `file` unless the header is sound and every element that it promises is there, with all its
 /// properties: Assimp's own reader goes round for ever where a file ends early, and takes any count for true.
 void check_ply(std::string_view content, const std::filesystem::path& file);
 
-}  // namespace lensproof
+}  // namespace lensproof::scene

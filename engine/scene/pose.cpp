@@ -2,7 +2,7 @@
 
 #include "engine/base/affine.h"
 
-namespace lensproof {
+namespace lensproof::scene {
 
 RigidMotion place(const Placement& placement) {
     // Turning about y by a positive angle carries the z axis to the right; about x by a negative one, downwards.
@@ -13,4 +13,4 @@ RigidMotion place(const Placement& placement) {
     return {.rotation_rows = product(facing, tilt), .translation = placement.distance_mm * direction};
 }
 
-}  // namespace lensproof
+}  // namespace lensproof::scene

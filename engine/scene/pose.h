@@ -4,7 +4,7 @@
 
 #include "engine/base/vec.h"
 
-namespace lensproof {
+namespace lensproof::scene {
 
 /// A rigid motion from chart coordinates to camera coordinates: X_camera = R · X_chart + t; mm.
 ///
@@ -48,4 +48,4 @@ inline Vec3d moved_back(const RigidMotion& motion, const Vec3d& point) {
     return rotate_back(motion, point - motion.translation);
 }
 
-}  // namespace lensproof
+}  // namespace lensproof::scene

@@ -10,16 +10,16 @@
 #include "engine/scene/material.h"
 #include "engine/spectral/spectral_sample.h"
 
-namespace lensproof {
+namespace lensproof::scene {
 
 /// A scene as renderers take it. World frame, mm; everything spectral is tabulated on `grid`.
 struct Scene {
-    SpectralGrid grid;
+    spectral::SpectralGrid grid;
     std::unique_ptr<const SceneGeometry> geometry;  // at a fixed place: `lights` refers to it
     std::vector<Material> materials;                // as the geometry's objects name them
     /// What light loses inside bodies of a material, 1/mm; a material each, or none at all.
-    std::vector<std::optional<GridSpectrum>> absorption;
+    std::vector<std::optional<spectral::GridSpectrum>> absorption;
     Lights lights;
 };
 
-}  // namespace lensproof
+}  // namespace lensproof::scene

@@ -14,7 +14,7 @@
 #include "engine/scene/scene_spectra.h"
 #include "engine/spectral/illuminant.h"
 
-namespace lensproof {
+namespace lensproof::scene {
 
 namespace {
 
@@ -36,7 +36,7 @@ auto said_of(const std::string& where, const Make& make) {
 
 class SceneBuilder {
   public:
-    SceneBuilder(const SceneDescription& description, const SpectralGrid& grid, const Cache& cache)
+    SceneBuilder(const SceneDescription& description, const spectral::SpectralGrid& grid, const Cache& cache)
         : description_(description), spectra_(grid, cache) {}
 
     BuiltScene build() {
@@ -65,7 +65,7 @@ class SceneBuilder {
     }
 
     void add_material(const MaterialDescription& description) {
-        std::optional<GridSpectrum> absorption;
+        std::optional<spectral::GridSpectrum> absorption;
         materials_.push_back(std::visit(
             Overloaded{[&](const DiffuseDescription& diffuse) {
                            return Material{.surface = DiffuseMaterial{spectra_.texture(diffuse.reflectance)},
@@ -126,7 +126,7 @@ class SceneBuilder {
     }
 
     /// A light's spectrum on the grid, which has to send something there.
-    static GridSpectrum shining(GridSpectrum spectrum) {
+    static spectral::GridSpectrum shining(spectral::GridSpectrum spectrum) {
         for (const float value : spectrum.value) {
             if (value > 0.0F) {
                 return spectrum;
@@ -150,7 +150,7 @@ class SceneBuilder {
 
     /// A black ball that shines.
     void add(const SphereLightDescription& light) {
-        const std::uint32_t black = add_own(DiffuseMaterial{constant_spectrum(0.0, spectra_.grid())});
+        const std::uint32_t black = add_own(DiffuseMaterial{spectral::constant_spectrum(0.0, spectra_.grid())});
         shapes_.emplace_back(Sphere{light.radius_mm});
         objects_.push_back({.shape = static_cast<std::uint32_t>(shapes_.size() - 1),
                             .to_world = {.linear = kIdentity3, .translation = light.position_mm},
@@ -160,8 +160,9 @@ class SceneBuilder {
     }
 
     /// W·sr⁻¹·nm⁻¹ of so many candela: as radiance follows from cd/m².
-    GridSpectrum intensity(const std::string& name, double intensity_cd) {
-        return shining(stratum_means(radiance_of(illuminant(name), intensity_cd), spectra_.grid()));
+    spectral::GridSpectrum intensity(const std::string& name, double intensity_cd) {
+        return shining(
+            spectral::stratum_means(spectral::radiance_of(spectral::illuminant(name), intensity_cd), spectra_.grid()));
     }
 
     void add(const PointLightDescription& light) {
@@ -180,10 +181,12 @@ class SceneBuilder {
     void add(const SunLightDescription& light) {
         const double radius = radians(0.5 * light.angular_diameter_deg);
         const double per_projected = 1.0 / (kPi * std::sin(radius) * std::sin(radius));
-        const Spectrum irradiance = irradiance_of(illuminant(light.illuminant), light.illuminance_lx);
-        lights_.emplace_back(SunLight{.towards = light.direction,
-                                      .cos_radius = std::cos(radius),
-                                      .radiance = shining(stratum_means(per_projected * irradiance, spectra_.grid()))});
+        const spectral::Spectrum irradiance =
+            spectral::irradiance_of(spectral::illuminant(light.illuminant), light.illuminance_lx);
+        lights_.emplace_back(
+            SunLight{.towards = light.direction,
+                     .cos_radius = std::cos(radius),
+                     .radiance = shining(spectral::stratum_means(per_projected * irradiance, spectra_.grid()))});
     }
 
     void add(const EnvironmentLightDescription& light) {
@@ -191,9 +194,9 @@ class SceneBuilder {
             lights_.emplace_back(ConstantLight{shining(spectra_.radiance(light.emission))});
             return;
         }
-        const Spectrum white = SceneSpectra::radiance_spectrum(light.emission);
-        shining(stratum_means(white, spectra_.grid()));
-        const Image image = read_image(*light.image);
+        const spectral::Spectrum white = SceneSpectra::radiance_spectrum(light.emission);
+        shining(spectral::stratum_means(white, spectra_.grid()));
+        const formats::Image image = formats::read_image(*light.image);
         lights_.emplace_back(EnvironmentLight{std::make_shared<const Environment>(
             emission_texture(image, *light.image, Wrap::repeat, Wrap::clamp, white, spectra_.grid(), spectra_.uplift()),
             light.up, light.rotate_deg)});
@@ -204,7 +207,7 @@ class SceneBuilder {
     std::vector<Shape> shapes_;
     std::vector<SceneObject> objects_;
     std::vector<Material> materials_;
-    std::vector<std::optional<GridSpectrum>> absorption_;  // a material each
+    std::vector<std::optional<spectral::GridSpectrum>> absorption_;  // a material each
     std::vector<LightSource> lights_;
     std::set<std::size_t> shining_objects_;
     std::vector<std::string> remarks_;
@@ -212,7 +215,7 @@ class SceneBuilder {
 
 }  // namespace
 
-BuiltScene build_scene(const SceneDescription& description, const SpectralGrid& grid, const Cache& cache) {
+BuiltScene build_scene(const SceneDescription& description, const spectral::SpectralGrid& grid, const Cache& cache) {
     return SceneBuilder(description, grid, cache).build();
 }
 
@@ -259,4 +262,4 @@ std::vector<std::filesystem::path> named_files(const SceneDescription& descripti
     return {files.begin(), files.end()};
 }
 
-}  // namespace lensproof
+}  // namespace lensproof::scene

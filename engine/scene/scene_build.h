@@ -8,7 +8,7 @@
 #include "engine/scene/scene.h"
 #include "engine/scene/scene_description.h"
 
-namespace lensproof {
+namespace lensproof::scene {
 
 /// A scene, and what was repaired or left out on the way to it, a sentence each.
 struct BuiltScene {
@@ -20,9 +20,9 @@ struct BuiltScene {
 /// tabulates all on `grid`. `cache`: for the uplift of RGB. Throws InputError naming the place in the scene file and
 /// what is wrong with what it names: a file that cannot be used, a name that is not known, an index of 0, a glass that
 /// does not cover the grid, a light that sends nothing within it.
-BuiltScene build_scene(const SceneDescription& description, const SpectralGrid& grid, const Cache& cache);
+BuiltScene build_scene(const SceneDescription& description, const spectral::SpectralGrid& grid, const Cache& cache);
 
 /// The files that it reads, each once: what a scene's identity depends on besides its own text.
 std::vector<std::filesystem::path> named_files(const SceneDescription& description);
 
-}  // namespace lensproof
+}  // namespace lensproof::scene

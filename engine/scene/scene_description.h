@@ -14,7 +14,7 @@
 #include "engine/scene/pose.h"
 #include "engine/scene/shapes.h"
 
-namespace lensproof {
+namespace lensproof::scene {
 
 // --- Spectra -------------------------------------------------------------------------------------------------------
 
@@ -219,4 +219,4 @@ struct SceneDescription {
     std::vector<LightDescription> lights;
 };
 
-}  // namespace lensproof
+}  // namespace lensproof::scene

@@ -8,7 +8,7 @@
 #include "engine/base/text.h"
 #include "engine/scene/scene_file_parts.h"
 
-namespace lensproof {
+namespace lensproof::scene {
 
 namespace {
 
@@ -167,4 +167,4 @@ RigidMotion camera_to_world(const CameraView& view) {
             .translation = view.position_mm};
 }
 
-}  // namespace lensproof
+}  // namespace lensproof::scene

@@ -3,7 +3,7 @@
 #include "engine/base/toml.h"
 #include "engine/scene/scene_description.h"
 
-namespace lensproof {
+namespace lensproof::scene {
 
 /// Reads [[materials]], [[objects]] and [[lights]], as README.md documents them. Files that they name are taken from
 /// the scene file's folder, and have to be there; they are not read. Throws InputError naming file, line and key: a key
@@ -14,4 +14,4 @@ SceneDescription read_scene(TomlTable& top);
 /// Reads position_mm, look_at_mm, up, model and focal_length_mm of a camera's table, and leaves its other keys.
 CameraView read_camera_view(TomlTable& camera);
 
-}  // namespace lensproof
+}  // namespace lensproof::scene

@@ -4,7 +4,7 @@
 #include "engine/scene/illuminant_key.h"
 #include "engine/scene/scene_file_parts.h"
 
-namespace lensproof {
+namespace lensproof::scene {
 
 namespace {
 
@@ -125,4 +125,4 @@ std::vector<LightDescription> read_lights(TomlTable& top, const NameIndex& objec
     return lights;
 }
 
-}  // namespace lensproof
+}  // namespace lensproof::scene

@@ -2,7 +2,7 @@
 
 #include "engine/scene/scene_file_parts.h"
 
-namespace lensproof {
+namespace lensproof::scene {
 
 namespace {
 
@@ -99,4 +99,4 @@ std::vector<MaterialDescription> read_materials(TomlTable& top, NameIndex& names
     return materials;
 }
 
-}  // namespace lensproof
+}  // namespace lensproof::scene

@@ -5,7 +5,7 @@
 #include "engine/scene/chart_file.h"
 #include "engine/scene/scene_file_parts.h"
 
-namespace lensproof {
+namespace lensproof::scene {
 
 namespace {
 
@@ -173,4 +173,4 @@ std::vector<ObjectDescription> read_objects(TomlTable& top, const NameIndex& mat
     return objects;
 }
 
-}  // namespace lensproof
+}  // namespace lensproof::scene

@@ -8,7 +8,7 @@
 #include "engine/base/toml.h"
 #include "engine/scene/scene_description.h"
 
-namespace lensproof {
+namespace lensproof::scene {
 
 /// Names of one sort and their indices.
 class NameIndex {
@@ -49,4 +49,4 @@ AffineMap read_transform(TomlTable& table);
 std::vector<ObjectDescription> read_objects(TomlTable& top, const NameIndex& materials, NameIndex& names);
 std::vector<LightDescription> read_lights(TomlTable& top, const NameIndex& objects);
 
-}  // namespace lensproof
+}  // namespace lensproof::scene

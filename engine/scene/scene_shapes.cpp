@@ -6,7 +6,7 @@
 #include <tuple>
 #include <utility>
 
-namespace lensproof {
+namespace lensproof::scene {
 
 namespace {
 
@@ -62,4 +62,4 @@ SceneShapes load_shapes(const SceneDescription& scene) {
     return Loader(scene).load();
 }
 
-}  // namespace lensproof
+}  // namespace lensproof::scene

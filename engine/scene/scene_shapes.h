@@ -6,7 +6,7 @@
 #include "engine/scene/geometry.h"
 #include "engine/scene/scene_description.h"
 
-namespace lensproof {
+namespace lensproof::scene {
 
 /// What `SceneGeometry` is made of.
 struct SceneShapes {
@@ -22,4 +22,4 @@ struct SceneShapes {
 /// instances. Throws InputError for what `read_mesh` refuses.
 SceneShapes load_shapes(const SceneDescription& scene);
 
-}  // namespace lensproof
+}  // namespace lensproof::scene

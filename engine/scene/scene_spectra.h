@@ -9,7 +9,7 @@
 #include "engine/spectral/metal.h"
 #include "engine/spectral/rgb_uplift.h"
 
-namespace lensproof {
+namespace lensproof::scene {
 
 /// Looks up what descriptions of spectra mean. All throw InputError for an unknown name, listing the names that are
 /// known, and for a file that cannot be used.
@@ -18,37 +18,37 @@ namespace lensproof {
 /// "metal:silver"; of glasses their names in the catalogues.
 class SceneSpectra {
   public:
-    SceneSpectra(const SpectralGrid& grid, const Cache& cache) : grid_(grid), cache_(cache) {}
+    SceneSpectra(const spectral::SpectralGrid& grid, const Cache& cache) : grid_(grid), cache_(cache) {}
 
-    [[nodiscard]] const SpectralGrid& grid() const { return grid_; }
+    [[nodiscard]] const spectral::SpectralGrid& grid() const { return grid_; }
 
     /// Values at the midpoints of strata; beyond a table's ends its last values.
-    GridSpectrum at_midpoints(const SpectrumDescription& spectrum);
+    spectral::GridSpectrum at_midpoints(const SpectrumDescription& spectrum);
     Texture texture(const TextureDescription& texture);
 
     /// n and k.
     struct Metal {
-        GridSpectrum n;
-        GridSpectrum k;
+        spectral::GridSpectrum n;
+        spectral::GridSpectrum k;
     };
     Metal metal(const ConductorIndex& index);
 
     /// An index relative to air. One that is asked for at a single wavelength is that of the d line.
-    GridSpectrum index(const DielectricIndex& index);
+    spectral::GridSpectrum index(const DielectricIndex& index);
     static double index_at_d(const DielectricIndex& index);
 
     /// Radiance, the mean over each stratum.
-    GridSpectrum radiance(const EmissionDescription& emission);
+    spectral::GridSpectrum radiance(const EmissionDescription& emission);
     /// The same before it is tabulated.
-    static Spectrum radiance_spectrum(const EmissionDescription& emission);
+    static spectral::Spectrum radiance_spectrum(const EmissionDescription& emission);
 
     /// The table of the uplift, made or fetched when it is first asked for.
-    const RgbUplift& uplift();
+    const spectral::RgbUplift& uplift();
 
   private:
-    SpectralGrid grid_;
+    spectral::SpectralGrid grid_;
     const Cache& cache_;
-    std::optional<RgbUplift> uplift_;
+    std::optional<spectral::RgbUplift> uplift_;
 };
 
-}  // namespace lensproof
+}  // namespace lensproof::scene

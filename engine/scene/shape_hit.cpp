@@ -5,7 +5,7 @@
 #include <limits>
 #include <numbers>
 
-namespace lensproof {
+namespace lensproof::scene {
 
 namespace {
 
@@ -170,4 +170,4 @@ SurfaceHit world_hit(const ObjectPlace& place, const ShapePoint& at) {
     return hit;
 }
 
-}  // namespace lensproof
+}  // namespace lensproof::scene

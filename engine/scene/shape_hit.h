@@ -7,7 +7,7 @@
 #include "engine/scene/geometry.h"
 #include "engine/scene/shapes.h"
 
-namespace lensproof {
+namespace lensproof::scene {
 
 /// A ray in some frame and the open stretch of it that is asked for, in units of `direction`'s length, which an affine
 /// map changes while the parameter stays.
@@ -74,4 +74,4 @@ struct ObjectPlace {
 /// The point in the world, a hit without a distance, material, object and primitive.
 SurfaceHit world_hit(const ObjectPlace& place, const ShapePoint& at);
 
-}  // namespace lensproof
+}  // namespace lensproof::scene

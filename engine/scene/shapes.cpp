@@ -7,7 +7,7 @@
 
 #include "engine/base/input_error.h"
 
-namespace lensproof {
+namespace lensproof::scene {
 
 namespace {
 
@@ -112,4 +112,4 @@ std::vector<std::string> repair(TriangleMesh& mesh) {
     return remarks;
 }
 
-}  // namespace lensproof
+}  // namespace lensproof::scene

@@ -8,7 +8,7 @@
 
 #include "engine/base/vec.h"
 
-namespace lensproof {
+namespace lensproof::scene {
 
 /// Triangles with shared vertices. Their outward side is the one from which their vertices run counter-clockwise.
 /// Coordinates are floats, and those floats are the surface: what is found on it is computed from them in double.
@@ -53,4 +53,4 @@ Vec3<To> converted(const Vec3<From>& v) {
 /// index without a vertex, as many normals or uvs as there are no positions; and a mesh without any triangle.
 std::vector<std::string> repair(TriangleMesh& mesh);
 
-}  // namespace lensproof
+}  // namespace lensproof::scene

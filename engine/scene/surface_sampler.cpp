@@ -7,7 +7,7 @@
 
 #include "engine/scene/geometry_data.h"
 
-namespace lensproof {
+namespace lensproof::scene {
 
 namespace {
 
@@ -90,4 +90,4 @@ double SurfaceSampler::density_per_mm2(const SurfaceHit& hit) const {
     return 1.0 / area_mm2_;
 }
 
-}  // namespace lensproof
+}  // namespace lensproof::scene

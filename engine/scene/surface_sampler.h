@@ -5,7 +5,7 @@
 
 #include "engine/scene/geometry.h"
 
-namespace lensproof {
+namespace lensproof::scene {
 
 /// A point on an object, in the world.
 struct SurfaceSample {
@@ -38,4 +38,4 @@ class SurfaceSampler {
     double area_mm2_ = 0.0;
 };
 
-}  // namespace lensproof
+}  // namespace lensproof::scene

@@ -9,7 +9,7 @@
 #include "engine/base/input_error.h"
 #include "engine/spectral/colour_checker.h"
 
-namespace lensproof {
+namespace lensproof::scene {
 
 namespace {
 
@@ -48,21 +48,22 @@ auto bilinear(const TexelGrid& grid, const Vec2d& uv, const Value& value) {
     return (1.0F - y.fraction) * row(y.first) + y.fraction * row(y.second);
 }
 
-SpectralSample look_up(const GridSpectrum& spectrum, const Vec2d&, const PathWavelengths& path) {
+spectral::SpectralSample look_up(const spectral::GridSpectrum& spectrum, const Vec2d&,
+                                 const spectral::PathWavelengths& path) {
     return spectrum(path);
 }
 
-SpectralSample look_up(const ImageTexture& image, const Vec2d& uv, const PathWavelengths& path) {
-    const SpectralSample abscissa = image.abscissa(path);
+spectral::SpectralSample look_up(const ImageTexture& image, const Vec2d& uv, const spectral::PathWavelengths& path) {
+    const spectral::SpectralSample abscissa = image.abscissa(path);
     const Vec2d at{image.repeats.x * uv.x, image.repeats.y * uv.y};
-    const SpectralSample value = bilinear(image.grid, at, [&](std::size_t index) {
+    const spectral::SpectralSample value = bilinear(image.grid, at, [&](std::size_t index) {
         const ImageTexture::Texel& texel = image.texel[index];
-        return texel.scale * for_each_wavelength([&](float t) { return texel.shape.at(t); }, abscissa);
+        return texel.scale * spectral::for_each_wavelength([&](float t) { return texel.shape.at(t); }, abscissa);
     });
     return value * image.white(path);
 }
 
-SpectralSample look_up(const ChartTexture& chart, const Vec2d& uv, const PathWavelengths& path) {
+spectral::SpectralSample look_up(const ChartTexture& chart, const Vec2d& uv, const spectral::PathWavelengths& path) {
     const Vec2d at{(uv.x - 0.5) * chart.width_mm, (0.5 - uv.y) * chart.height_mm};
     if (!chart.patches.empty()) {
         const std::optional<int> patch = patch_index(chart.share, at.x, at.y);
@@ -81,9 +82,10 @@ double look_up(const ScalarImage& image, const Vec2d& uv) {
 }
 
 /// The channels that give red, green and blue.
-std::array<int, 3> rgb_channels(const Image& image, const std::filesystem::path& file) {
-    const std::array<int, 3> rgb{find_channel(image, "R"), find_channel(image, "G"), find_channel(image, "B")};
-    const int grey = find_channel(image, "Y");
+std::array<int, 3> rgb_channels(const formats::Image& image, const std::filesystem::path& file) {
+    const std::array<int, 3> rgb{formats::find_channel(image, "R"), formats::find_channel(image, "G"),
+                                 formats::find_channel(image, "B")};
+    const int grey = formats::find_channel(image, "Y");
     const bool has_rgb = std::all_of(rgb.begin(), rgb.end(), [](int channel) { return channel >= 0; });
     if (image.width < 1 || image.height < 1 || (!has_rgb && grey < 0)) {
         throw InputError(fmt::format("{}: a picture of {} × {} pixels with channels {}, expected R, G and B, or Y",
@@ -94,13 +96,13 @@ std::array<int, 3> rgb_channels(const Image& image, const std::filesystem::path&
 
 /// The texture whose texels are `texel_of(rgb)`.
 template <class TexelOf>
-ImageTexture image_texture(const Image& image, const std::filesystem::path& file, const TexelGrid& texels,
-                           const SpectralGrid& grid, const TexelOf& texel_of) {
+ImageTexture image_texture(const formats::Image& image, const std::filesystem::path& file, const TexelGrid& texels,
+                           const spectral::SpectralGrid& grid, const TexelOf& texel_of) {
     const auto [r, g, b] = rgb_channels(image, file);
     ImageTexture texture{.grid = texels,
                          .texel = {},
-                         .abscissa = tabulated(grid, sigmoid_abscissa),
-                         .white = constant_spectrum(1.0, grid)};
+                         .abscissa = spectral::tabulated(grid, spectral::sigmoid_abscissa),
+                         .white = spectral::constant_spectrum(1.0, grid)};
     texture.texel.reserve(static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height));
     for (int y = 0; y < image.height; ++y) {
         for (int x = 0; x < image.width; ++x) {
@@ -112,7 +114,7 @@ ImageTexture image_texture(const Image& image, const std::filesystem::path& file
 
 }  // namespace
 
-SpectralSample value_at(const Texture& texture, const Vec2d& uv, const PathWavelengths& path) {
+spectral::SpectralSample value_at(const Texture& texture, const Vec2d& uv, const spectral::PathWavelengths& path) {
     return std::visit([&](const auto& kind) { return look_up(kind, uv, path); }, texture);
 }
 
@@ -120,52 +122,55 @@ double value_at(const ScalarTexture& texture, const Vec2d& uv) {
     return std::visit([&](const auto& kind) { return look_up(kind, uv); }, texture);
 }
 
-ImageTexture reflectance_texture(const Image& image, const std::filesystem::path& file, Wrap wrap,
-                                 const SpectralGrid& grid, const RgbUplift& uplift) {
+ImageTexture reflectance_texture(const formats::Image& image, const std::filesystem::path& file, Wrap wrap,
+                                 const spectral::SpectralGrid& grid, const spectral::RgbUplift& uplift) {
     return image_texture(image, file, {image.width, image.height, wrap, wrap}, grid,
                          [&](const Vec3d& rgb) { return ImageTexture::Texel{.shape = uplift.reflectance(rgb)}; });
 }
 
-ImageTexture reflectance_texture(const std::filesystem::path& file, Wrap wrap, const SpectralGrid& grid,
-                                 const RgbUplift& uplift) {
-    return reflectance_texture(read_image(file), file, wrap, grid, uplift);
+ImageTexture reflectance_texture(const std::filesystem::path& file, Wrap wrap, const spectral::SpectralGrid& grid,
+                                 const spectral::RgbUplift& uplift) {
+    return reflectance_texture(formats::read_image(file), file, wrap, grid, uplift);
 }
 
-ImageTexture emission_texture(const Image& image, const std::filesystem::path& file, Wrap wrap_u, Wrap wrap_v,
-                              const Spectrum& white, const SpectralGrid& grid, const RgbUplift& uplift) {
+ImageTexture emission_texture(const formats::Image& image, const std::filesystem::path& file, Wrap wrap_u, Wrap wrap_v,
+                              const spectral::Spectrum& white, const spectral::SpectralGrid& grid,
+                              const spectral::RgbUplift& uplift) {
     ImageTexture texture =
         image_texture(image, file, {image.width, image.height, wrap_u, wrap_v}, grid, [&](const Vec3d& rgb) {
-            const UpliftedLight light = uplifted_light(uplift, rgb);
+            const spectral::UpliftedLight light = spectral::uplifted_light(uplift, rgb);
             return ImageTexture::Texel{.shape = light.shape, .scale = static_cast<float>(light.scale)};
         });
-    texture.white = stratum_means(white, grid);
+    texture.white = spectral::stratum_means(white, grid);
     return texture;
 }
 
-GridSpectrum rgb_reflectance(const Vec3d& rgb, const SpectralGrid& grid, const RgbUplift& uplift) {
-    return tabulated(grid, fitted_reflectance(uplift, rgb_of_reflectance(), rgb));
+spectral::GridSpectrum rgb_reflectance(const Vec3d& rgb, const spectral::SpectralGrid& grid,
+                                       const spectral::RgbUplift& uplift) {
+    return spectral::tabulated(grid, spectral::fitted_reflectance(uplift, spectral::rgb_of_reflectance(), rgb));
 }
 
-GridSpectrum rgb_emission(const Vec3d& rgb, const Spectrum& white, const SpectralGrid& grid, const RgbUplift& uplift) {
-    const UpliftedLight light = uplifted_light(uplift, rgb);
-    const GridSpectrum shape = tabulated(grid, light.shape);
-    GridSpectrum emission = stratum_means(white, grid);
+spectral::GridSpectrum rgb_emission(const Vec3d& rgb, const spectral::Spectrum& white,
+                                    const spectral::SpectralGrid& grid, const spectral::RgbUplift& uplift) {
+    const spectral::UpliftedLight light = spectral::uplifted_light(uplift, rgb);
+    const spectral::GridSpectrum shape = spectral::tabulated(grid, light.shape);
+    spectral::GridSpectrum emission = spectral::stratum_means(white, grid);
     for (std::size_t i = 0; i < emission.value.size(); ++i) {
         emission.value[i] *= static_cast<float>(light.scale * shape.value[i]);
     }
     return emission;
 }
 
-ChartTexture chart_texture(const Chart& chart, double width_mm, double height_mm, const SpectralGrid& grid) {
+ChartTexture chart_texture(const Chart& chart, double width_mm, double height_mm, const spectral::SpectralGrid& grid) {
     ChartTexture texture{.share = chart,
                          .width_mm = width_mm,
                          .height_mm = height_mm,
-                         .white = constant_spectrum(chart.white_reflectance, grid),
-                         .black = constant_spectrum(chart.black_reflectance, grid),
+                         .white = spectral::constant_spectrum(chart.white_reflectance, grid),
+                         .black = spectral::constant_spectrum(chart.black_reflectance, grid),
                          .patches = {}};
     if (std::holds_alternative<ColourChecker>(chart.pattern)) {
-        for (const ColourPatch& patch : colour_checker()) {
-            texture.patches.push_back(at_midpoints(patch.reflectance, grid));
+        for (const spectral::ColourPatch& patch : spectral::colour_checker()) {
+            texture.patches.push_back(spectral::at_midpoints(patch.reflectance, grid));
         }
     }
     texture.share.white_reflectance = 1.0;
@@ -174,7 +179,7 @@ ChartTexture chart_texture(const Chart& chart, double width_mm, double height_mm
 }
 
 ScalarImage scalar_texture(const std::filesystem::path& file, Wrap wrap) {
-    const Image image = read_image(file);
+    const formats::Image image = formats::read_image(file);
     const int channel = rgb_channels(image, file)[0];
     ScalarImage texture{.grid = {image.width, image.height, wrap, wrap}, .texel = {}};
     for (int y = 0; y < image.height; ++y) {
@@ -186,4 +191,4 @@ ScalarImage scalar_texture(const std::filesystem::path& file, Wrap wrap) {
     return texture;
 }
 
-}  // namespace lensproof
+}  // namespace lensproof::scene

@@ -2,7 +2,7 @@
 
 #include <utility>
 
-namespace lensproof {
+namespace lensproof::spectral {
 
 std::vector<ColourPatch> colour_checker() {
     const std::vector<std::string> names = {
@@ -18,4 +18,4 @@ std::vector<ColourPatch> colour_checker() {
     return patches;
 }
 
-}  // namespace lensproof
+}  // namespace lensproof::spectral

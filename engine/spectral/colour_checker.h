@@ -5,7 +5,7 @@
 
 #include "engine/spectral/spectrum.h"
 
-namespace lensproof {
+namespace lensproof::spectral {
 
 inline constexpr int kColourCheckerRows = 4;
 inline constexpr int kColourCheckerColumns = 6;
@@ -19,4 +19,4 @@ struct ColourPatch {
 /// measured them (1997; ISO 17321-1:2012). Throws InputError where the project's own data is damaged.
 std::vector<ColourPatch> colour_checker();
 
-}  // namespace lensproof
+}  // namespace lensproof::spectral

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <utility>
 
-namespace lensproof {
+namespace lensproof::spectral {
 
 namespace {
 
@@ -51,4 +51,4 @@ Vec3d cielab(const Vec3d& xyz, const Vec3d& white) {
     return {116.0 * y - 16.0, 500.0 * (x - y), 200.0 * (y - z)};
 }
 
-}  // namespace lensproof
+}  // namespace lensproof::spectral

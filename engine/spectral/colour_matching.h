@@ -5,7 +5,7 @@
 #include "engine/base/vec.h"
 #include "engine/spectral/spectrum.h"
 
-namespace lensproof {
+namespace lensproof::spectral {
 
 /// K_m, lm/W: the luminous efficacy of radiation at 555 nm, where V(λ) peaks. The SI fixes 683 lm/W at 540 THz, which
 /// is 555.016 nm in standard air, so K_m = 683 V(555 nm) / V(555.016 nm) (CIE International Lighting Vocabulary,
@@ -44,4 +44,4 @@ Vec2d chromaticity(const Vec3d& xyz);
 /// CIE 1976 L*, a*, b* of X, Y, Z as seen against `white` (ISO/CIE 11664-4:2019).
 Vec3d cielab(const Vec3d& xyz, const Vec3d& white);
 
-}  // namespace lensproof
+}  // namespace lensproof::spectral

@@ -9,7 +9,7 @@
 #include "engine/spectral/colour_matching.h"
 #include "engine/spectral/planck.h"
 
-namespace lensproof {
+namespace lensproof::spectral {
 
 namespace {
 
@@ -100,4 +100,4 @@ Spectrum irradiance_of(const Illuminant& light, double illuminance_lx) {
     return at_luminous(light, illuminance_lx);
 }
 
-}  // namespace lensproof
+}  // namespace lensproof::spectral

@@ -5,7 +5,7 @@
 
 #include "engine/spectral/spectrum.h"
 
-namespace lensproof {
+namespace lensproof::spectral {
 
 struct Illuminant {
     std::string name;
@@ -26,4 +26,4 @@ Spectrum radiance_of(const Illuminant& light, double luminance_cd_m2);
 /// The spectral irradiance in W·m⁻²·nm⁻¹ of that light at an illuminance (≥ 0) of K_m ∫ E V dλ = `illuminance_lx`.
 Spectrum irradiance_of(const Illuminant& light, double illuminance_lx);
 
-}  // namespace lensproof
+}  // namespace lensproof::spectral

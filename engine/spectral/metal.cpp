@@ -7,7 +7,7 @@
 
 #include "engine/base/input_error.h"
 
-namespace lensproof {
+namespace lensproof::spectral {
 
 std::vector<std::string> known_metals() {
     return {"aluminium", "chromium", "copper", "gold", "iron", "silver"};
@@ -34,4 +34,4 @@ ComplexIndex read_complex_index(const std::filesystem::path& file) {
     return {.n = std::move(columns[0]), .k = std::move(columns[1])};
 }
 
-}  // namespace lensproof
+}  // namespace lensproof::spectral

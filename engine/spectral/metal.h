@@ -6,7 +6,7 @@
 
 #include "engine/spectral/spectrum.h"
 
-namespace lensproof {
+namespace lensproof::spectral {
 
 /// n + ik, relative to air, at room temperature.
 struct ComplexIndex {
@@ -25,4 +25,4 @@ ComplexIndex metal(const std::string& name);
 /// is negative or both are 0.
 ComplexIndex read_complex_index(const std::filesystem::path& file);
 
-}  // namespace lensproof
+}  // namespace lensproof::spectral

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-namespace lensproof {
+namespace lensproof::spectral {
 
 double planck_radiance(double wavelength_nm, double temperature_k) {
     const double wavelength_m = 1e-9 * wavelength_nm;
@@ -12,4 +12,4 @@ double planck_radiance(double wavelength_nm, double temperature_k) {
     return 1e-9 * per_metre;
 }
 
-}  // namespace lensproof
+}  // namespace lensproof::spectral

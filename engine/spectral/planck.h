@@ -1,7 +1,7 @@
 // engine/spectral/planck.h — the radiance of a black body.
 #pragma once
 
-namespace lensproof {
+namespace lensproof::spectral {
 
 // The 2018 SI (BIPM, SI Brochure, 9th edition, 2019); all three are exact.
 inline constexpr double kPlanckConstant = 6.62607015e-34;   // J·s
@@ -13,4 +13,4 @@ inline constexpr double kBoltzmannConstant = 1.380649e-23;  // J/K
 /// colorimetry neglects: CIE 15:2004 defines illuminant A without it too.)
 double planck_radiance(double wavelength_nm, double temperature_k);
 
-}  // namespace lensproof
+}  // namespace lensproof::spectral

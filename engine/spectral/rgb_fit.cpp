@@ -9,7 +9,7 @@
 #include "engine/spectral/sigmoid_spectrum.h"
 #include "engine/spectral/wavelengths.h"
 
-namespace lensproof {
+namespace lensproof::spectral {
 
 namespace {
 
@@ -139,4 +139,4 @@ Parabola fitted_parabola(const RgbOfReflectance& colour, const Vec3d& rgb, const
     return best;
 }
 
-}  // namespace lensproof
+}  // namespace lensproof::spectral

@@ -5,7 +5,7 @@
 
 #include "engine/base/vec.h"
 
-namespace lensproof {
+namespace lensproof::spectral {
 
 /// Linear sRGB (the Rec. 709 primaries under D65, by the CIE 1931 observer) of reflectances lit by D65, as sums over
 /// wavelengths 5 nm apart, from 360 to 830 nm; white is (1, 1, 1).
@@ -35,4 +35,4 @@ double missed_by(const RgbOfReflectance& colour, const Vec3d& rgb, const Parabol
 /// in CIELAB, damped (Levenberg and Marquardt), until it comes within 1e-6 of ΔE*ab or has stepped 30 times.
 Parabola fitted_parabola(const RgbOfReflectance& colour, const Vec3d& rgb, const Parabola& guess);
 
-}  // namespace lensproof
+}  // namespace lensproof::spectral

@@ -7,7 +7,7 @@
 
 #include "engine/base/bytes.h"
 
-namespace lensproof {
+namespace lensproof::spectral {
 
 namespace {
 
@@ -239,4 +239,4 @@ UpliftedLight uplifted_light(const RgbUplift& uplift, const Vec3d& rgb) {
     return {.shape = uplift.reflectance(1.0 / scale * bounded), .scale = scale};
 }
 
-}  // namespace lensproof
+}  // namespace lensproof::spectral

@@ -11,7 +11,7 @@
 #include "engine/spectral/rgb_fit.h"
 #include "engine/spectral/sigmoid_spectrum.h"
 
-namespace lensproof {
+namespace lensproof::spectral {
 
 /// A table of SigmoidSpectrum over the cube of linear sRGB, in which to look up the smooth reflectance that has a
 /// colour under D65 (Jakob and Hanika 2019, §5). Half of all colours come back within 0.05 of ΔE*ab, 99 in 100 within
@@ -51,4 +51,4 @@ struct UpliftedLight {
 /// The light whose colour against its white is `rgb`; negative and NaN count as 0, infinite as the largest float.
 UpliftedLight uplifted_light(const RgbUplift& uplift, const Vec3d& rgb);
 
-}  // namespace lensproof
+}  // namespace lensproof::spectral

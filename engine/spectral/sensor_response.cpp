@@ -9,7 +9,7 @@
 #include "engine/base/input_error.h"
 #include "engine/spectral/colour_matching.h"
 
-namespace lensproof {
+namespace lensproof::spectral {
 
 namespace {
 
@@ -176,4 +176,4 @@ std::vector<Vec3d> stratum_weights(const SensorResponse& sensor, const Wavelengt
     return weights;
 }
 
-}  // namespace lensproof
+}  // namespace lensproof::spectral

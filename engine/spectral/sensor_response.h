@@ -10,7 +10,7 @@
 #include "engine/spectral/spectrum.h"
 #include "engine/spectral/wavelengths.h"
 
-namespace lensproof {
+namespace lensproof::spectral {
 
 struct Exposure {
     double time_s = 0.01;
@@ -85,4 +85,4 @@ std::optional<RgbSpace> rgb_space(const std::string& name, const Illuminant& whi
 std::vector<Vec3d> stratum_weights(const SensorResponse& sensor, const WavelengthStrata& strata,
                                    const Illuminant& light);
 
-}  // namespace lensproof
+}  // namespace lensproof::spectral

@@ -6,7 +6,7 @@
 #include <array>
 #include <cmath>
 
-namespace lensproof {
+namespace lensproof::spectral {
 
 /// The wavelength on the parabola's own scale, on which the visible runs from about −1 to 1.
 inline double sigmoid_abscissa(double wavelength_nm) {
@@ -31,4 +31,4 @@ struct SigmoidSpectrum {
     }
 };
 
-}  // namespace lensproof
+}  // namespace lensproof::spectral

@@ -10,7 +10,7 @@
 
 #include "engine/spectral/planck.h"
 
-namespace lensproof {
+namespace lensproof::spectral {
 
 namespace {
 
@@ -101,4 +101,4 @@ std::map<std::string, std::string> spectral_attributes(const std::string& units)
     return {{"spectralLayoutVersion", "1.0"}, {"emissiveUnits", units}};
 }
 
-}  // namespace lensproof
+}  // namespace lensproof::spectral

@@ -9,7 +9,7 @@
 #include <string>
 #include <string_view>
 
-namespace lensproof {
+namespace lensproof::spectral {
 
 /// What our layers hold. The unit that the layout foresees, "W.m^-2.sr^-1", is radiance; a film holds irradiance, and
 /// our values are per nm, so the text says what they are. The authors' own library does not interpret it.
@@ -32,4 +32,4 @@ std::optional<SpectralChannel> parse_spectral_channel(std::string_view name);
 /// The attributes of a spectral EXR whose S layers are in `units`.
 std::map<std::string, std::string> spectral_attributes(const std::string& units);
 
-}  // namespace lensproof
+}  // namespace lensproof::spectral

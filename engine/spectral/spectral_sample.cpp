@@ -6,7 +6,7 @@
 
 #include "engine/base/input_error.h"
 
-namespace lensproof {
+namespace lensproof::spectral {
 
 namespace {
 
@@ -62,4 +62,4 @@ GridSpectrum constant_spectrum(double value, const SpectralGrid& grid) {
     return tabulated(grid, [&](double) { return value; });
 }
 
-}  // namespace lensproof
+}  // namespace lensproof::spectral

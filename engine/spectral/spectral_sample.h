@@ -13,7 +13,7 @@
 #include "engine/spectral/spectrum.h"
 #include "engine/spectral/wavelengths.h"
 
-namespace lensproof {
+namespace lensproof::spectral {
 
 inline constexpr int kWavelengthsPerPath = 4;
 
@@ -146,4 +146,4 @@ GridSpectrum tabulated(const SpectralGrid& grid, const Function& function) {
 /// The same number in each stratum.
 GridSpectrum constant_spectrum(double value, const SpectralGrid& grid);
 
-}  // namespace lensproof
+}  // namespace lensproof::spectral

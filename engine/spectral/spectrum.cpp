@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <iterator>
 
-namespace lensproof {
+namespace lensproof::spectral {
 
 double Spectrum::operator()(double at_nm) const {
     const auto after = std::upper_bound(wavelength_nm.begin(), wavelength_nm.end(), at_nm);
@@ -78,4 +78,4 @@ double integral_of_product(const Spectrum& a, const Spectrum& b) {
     return sum;
 }
 
-}  // namespace lensproof
+}  // namespace lensproof::spectral

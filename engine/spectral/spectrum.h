@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-namespace lensproof {
+namespace lensproof::spectral {
 
 /// Samples at strictly ascending wavelengths, joined by straight lines, and zero outside the first and last sample.
 /// The unit is the owner's: relative, or W·m⁻²·sr⁻¹·nm⁻¹, or any other. Without samples it is zero everywhere.
@@ -39,4 +39,4 @@ std::vector<Spectrum> parse_spectra(const std::string& text, const std::filesyst
 /// The path of one of the project's own tables, engine/spectral/data/`name`.
 std::filesystem::path spectral_data(const std::string& name);
 
-}  // namespace lensproof
+}  // namespace lensproof::spectral

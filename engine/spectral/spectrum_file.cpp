@@ -9,7 +9,7 @@
 #include "engine/base/text.h"
 #include "engine/spectral/spectrum.h"
 
-namespace lensproof {
+namespace lensproof::spectral {
 
 namespace {
 
@@ -53,4 +53,4 @@ std::filesystem::path spectral_data(const std::string& name) {
     return data_root() / "engine/spectral/data" / name;
 }
 
-}  // namespace lensproof
+}  // namespace lensproof::spectral

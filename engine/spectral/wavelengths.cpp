@@ -9,7 +9,7 @@
 
 #include "engine/base/input_error.h"
 
-namespace lensproof {
+namespace lensproof::spectral {
 
 std::span<const SpectralLine> spectral_lines() {
     static constexpr std::array<SpectralLine, 13> kLines{{
@@ -62,4 +62,4 @@ WavelengthStrata wavelength_strata(double min_nm, double max_nm, int count) {
     return {.min_nm = min_nm, .max_nm = max_nm, .count = count};
 }
 
-}  // namespace lensproof
+}  // namespace lensproof::spectral

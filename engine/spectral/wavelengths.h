@@ -4,7 +4,7 @@
 #include <string_view>
 #include <vector>
 
-namespace lensproof {
+namespace lensproof::spectral {
 
 // Wavelengths in nm, in standard air: catalogue indices, colour-matching functions and illuminants are tabulated so.
 // The lines are ISO 7944:1998 (Optics and optical instruments — Reference wavelengths) and the further ones that glass
@@ -53,4 +53,4 @@ struct WavelengthStrata {
 /// The strata, checked: throws InputError unless 0 < min_nm < max_nm are finite and count is at least 1.
 WavelengthStrata wavelength_strata(double min_nm, double max_nm, int count);
 
-}  // namespace lensproof
+}  // namespace lensproof::spectral

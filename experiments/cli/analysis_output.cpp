@@ -7,7 +7,7 @@
 
 #include "experiments/cli/command.h"
 
-namespace lensproof {
+namespace lensproof::cli {
 
 namespace {
 
@@ -19,7 +19,7 @@ Json optional_json(const std::optional<double>& value, double unit = 1.0) {
     return value ? number_or_null(*value / unit + 0.0) : Json(nullptr);
 }
 
-Json paraxial_json(const ParaxialData& data) {
+Json paraxial_json(const optics::ParaxialData& data) {
     return {{"efl_mm", number_or_null(data.efl)},
             {"bfl_mm", number_or_null(data.bfl)},
             {"ffl_mm", number_or_null(data.ffl)},
@@ -35,7 +35,7 @@ Json paraxial_json(const ParaxialData& data) {
             {"petzval_radius_mm", number_or_null(data.petzval_radius)}};
 }
 
-Json reference_json(const Lens& lens, const LensAnalysis& analysis) {
+Json reference_json(const optics::Lens& lens, const analysis::LensAnalysis& analysis) {
     Json json = paraxial_json(analysis.reference_paraxial);
     json["total_track_mm"] = number_or_null(lens.image_z - lens.surfaces.front().vertex_z);
     json["lagrange_invariant_mm"] = optional_json(analysis.lagrange_invariant);
@@ -47,13 +47,13 @@ Json reference_json(const Lens& lens, const LensAnalysis& analysis) {
     return json;
 }
 
-Json terms_json(const SeidelTerms<double>& terms) {
+Json terms_json(const analysis::SeidelTerms<double>& terms) {
     return {{"s1", number_or_null(terms.s1)}, {"s2", number_or_null(terms.s2)}, {"s3", number_or_null(terms.s3)},
             {"s4", number_or_null(terms.s4)}, {"s5", number_or_null(terms.s5)}, {"c1", number_or_null(terms.c1)},
             {"c2", number_or_null(terms.c2)}};
 }
 
-Json seidel_json(const std::optional<SeidelSums<double>>& sums) {
+Json seidel_json(const std::optional<analysis::SeidelSums<double>>& sums) {
     if (!sums) {
         return nullptr;
     }
@@ -66,22 +66,23 @@ Json seidel_json(const std::optional<SeidelSums<double>>& sums) {
     return {{"surfaces", std::move(surfaces)}, {"total", terms_json(sums->total)}};
 }
 
-Json field_json(const FieldAnalysis& row) {
-    return {{"field_deg", row.field_deg},
-            {"wavelength_nm", row.wavelength_nm},
-            {"status", status_name(row.status)},
-            {"surface", row.surface >= 0 && row.status != RayStatus::ok ? Json(row.surface + 1) : Json(nullptr)},
-            {"chief_ray_height_mm", row.chief_ray_point ? number_or_null(row.chief_ray_point->y + 0.0) : Json(nullptr)},
-            {"chief_ray_x_mm", row.chief_ray_point ? number_or_null(row.chief_ray_point->x + 0.0) : Json(nullptr)},
-            {"distortion_percent", optional_json(row.distortion_percent)},
-            {"tangential_focus_mm", optional_json(row.tangential_focus)},
-            {"sagittal_focus_mm", optional_json(row.sagittal_focus)},
-            {"relative_illumination", optional_json(row.relative_illumination)},
-            {"vignetting", optional_json(row.vignetting)},
-            {"spot_rms_um", optional_json(row.spot_rms, kMicrometre)},
-            {"spot_centroid_mm", row.spot_centroid ? Json{row.spot_centroid->x, row.spot_centroid->y} : Json(nullptr)},
-            {"wavefront_rms_waves", optional_json(row.wavefront_rms_waves)},
-            {"lateral_colour_um", optional_json(row.lateral_colour, kMicrometre)}};
+Json field_json(const analysis::FieldAnalysis& row) {
+    return {
+        {"field_deg", row.field_deg},
+        {"wavelength_nm", row.wavelength_nm},
+        {"status", optics::status_name(row.status)},
+        {"surface", row.surface >= 0 && row.status != optics::RayStatus::ok ? Json(row.surface + 1) : Json(nullptr)},
+        {"chief_ray_height_mm", row.chief_ray_point ? number_or_null(row.chief_ray_point->y + 0.0) : Json(nullptr)},
+        {"chief_ray_x_mm", row.chief_ray_point ? number_or_null(row.chief_ray_point->x + 0.0) : Json(nullptr)},
+        {"distortion_percent", optional_json(row.distortion_percent)},
+        {"tangential_focus_mm", optional_json(row.tangential_focus)},
+        {"sagittal_focus_mm", optional_json(row.sagittal_focus)},
+        {"relative_illumination", optional_json(row.relative_illumination)},
+        {"vignetting", optional_json(row.vignetting)},
+        {"spot_rms_um", optional_json(row.spot_rms, kMicrometre)},
+        {"spot_centroid_mm", row.spot_centroid ? Json{row.spot_centroid->x, row.spot_centroid->y} : Json(nullptr)},
+        {"wavefront_rms_waves", optional_json(row.wavefront_rms_waves)},
+        {"lateral_colour_um", optional_json(row.lateral_colour, kMicrometre)}};
 }
 
 /// A cell of a table, a dash where there is nothing.
@@ -94,8 +95,8 @@ std::string cell(const std::optional<double>& value, int width, int digits) {
     return fmt::format("{:>{}}", static_cast<int>(text.size()) > width ? fmt::format(" {:.3g}", *value) : text, width);
 }
 
-std::string paraxial_text(const Lens& lens, const LensAnalysis& analysis) {
-    const ParaxialData& data = analysis.reference_paraxial;
+std::string paraxial_text(const optics::Lens& lens, const analysis::LensAnalysis& analysis) {
+    const optics::ParaxialData& data = analysis.reference_paraxial;
     std::string text;
     const auto line = [&](const char* name, const std::optional<double>& value, const char* unit) {
         text += fmt::format("  {:<26}{} {}\n", name, cell(value, 14, 5), unit);
@@ -121,10 +122,10 @@ std::string paraxial_text(const Lens& lens, const LensAnalysis& analysis) {
     return text;
 }
 
-std::string seidel_text(const SeidelSums<double>& sums) {
+std::string seidel_text(const analysis::SeidelSums<double>& sums) {
     std::string text = fmt::format("  {:>7}{:>12}{:>12}{:>12}{:>12}{:>12}{:>12}{:>12}\n", "surface", "S1", "S2", "S3",
                                    "S4", "S5", "C1", "C2");
-    const auto row = [&](const std::string& name, const SeidelTerms<double>& t) {
+    const auto row = [&](const std::string& name, const analysis::SeidelTerms<double>& t) {
         text += fmt::format("  {:>7}{}{}{}{}{}{}{}\n", name, cell(t.s1, 12, 6), cell(t.s2, 12, 6), cell(t.s3, 12, 6),
                             cell(t.s4, 12, 6), cell(t.s5, 12, 6), cell(t.c1, 12, 6), cell(t.c2, 12, 6));
     };
@@ -135,13 +136,13 @@ std::string seidel_text(const SeidelSums<double>& sums) {
     return text;
 }
 
-std::string fields_text(const std::vector<FieldAnalysis>& fields) {
+std::string fields_text(const std::vector<analysis::FieldAnalysis>& fields) {
     std::string text = fmt::format("  {:>8}{:>10}{:>11}{:>10}{:>10}{:>10}{:>8}{:>8}{:>10}{:>10}{:>10}  {}\n", "field",
                                    "nm", "height", "distort.", "T focus", "S focus", "illum.", "vign.", "spot rms",
                                    "wave rms", "lat. col.", "chief ray");
     text += fmt::format("  {:>8}{:>10}{:>11}{:>10}{:>10}{:>10}{:>8}{:>8}{:>10}{:>10}{:>10}\n", "deg", "", "mm", "%",
                         "mm", "mm", "", "", "um", "waves", "um");
-    for (const FieldAnalysis& row : fields) {
+    for (const analysis::FieldAnalysis& row : fields) {
         const auto in_um = [](const std::optional<double>& mm) {
             return mm ? std::optional(*mm / kMicrometre) : std::nullopt;
         };
@@ -151,26 +152,28 @@ std::string fields_text(const std::vector<FieldAnalysis>& fields) {
                 cell(row.sagittal_focus, 10, 4) + cell(row.relative_illumination, 8, 4) + cell(row.vignetting, 8, 4) +
                 cell(in_um(row.spot_rms), 10, 3) + cell(row.wavefront_rms_waves, 10, 4) +
                 cell(in_um(row.lateral_colour), 10, 3);
-        text += row.status == RayStatus::ok ? "  ok\n"
-                : row.surface >= 0 ? fmt::format("  {} at surface {}\n", status_name(row.status), row.surface + 1)
-                                   : fmt::format("  {}\n", status_name(row.status));
+        text += row.status == optics::RayStatus::ok ? "  ok\n"
+                : row.surface >= 0
+                    ? fmt::format("  {} at surface {}\n", optics::status_name(row.status), row.surface + 1)
+                    : fmt::format("  {}\n", optics::status_name(row.status));
     }
     return text;
 }
 
 }  // namespace
 
-Json analysis_json(const Lens& lens, const AnalysisSettings& settings, const LensAnalysis& analysis) {
+Json analysis_json(const optics::Lens& lens, const analysis::AnalysisSettings& settings,
+                   const analysis::LensAnalysis& analysis) {
     Json json{{"lens", lens.id},
               {"name", lens.name},
               {"reference_wavelength_nm", settings.reference_wavelength_nm},
               {"object_distance_mm", number_or_null(settings.object_distance)},
-              {"projection", projection_name(lens.projection)},
+              {"projection", optics::projection_name(lens.projection)},
               {"paraxial", reference_json(lens, analysis)},
               {"seidel", seidel_json(analysis.seidel)},
               {"fields", Json::array()},
               {"wavelengths", Json::array()}};
-    for (const FieldAnalysis& row : analysis.fields) {
+    for (const analysis::FieldAnalysis& row : analysis.fields) {
         json["fields"].push_back(field_json(row));
     }
     for (std::size_t i = 0; i < settings.wavelengths_nm.size(); ++i) {
@@ -180,12 +183,13 @@ Json analysis_json(const Lens& lens, const AnalysisSettings& settings, const Len
     return json;
 }
 
-std::string analysis_text(const Lens& lens, const AnalysisSettings& settings, const LensAnalysis& analysis) {
+std::string analysis_text(const optics::Lens& lens, const analysis::AnalysisSettings& settings,
+                          const analysis::LensAnalysis& analysis) {
     std::string text =
         fmt::format("{}\nAt {} nm, object at {}:\n", lens.name, settings.reference_wavelength_nm,
                     std::isinf(settings.object_distance) ? "infinity" : fmt::format("{} mm", settings.object_distance));
     text += paraxial_text(lens, analysis);
-    const double largest = largest_field_deg(settings);
+    const double largest = analysis::largest_field_deg(settings);
     if (analysis.seidel) {
         text += fmt::format("Seidel sums for {:.4g} deg, mm:\n", largest) + seidel_text(*analysis.seidel);
     } else {
@@ -195,4 +199,4 @@ std::string analysis_text(const Lens& lens, const AnalysisSettings& settings, co
     return text;
 }
 
-}  // namespace lensproof
+}  // namespace lensproof::cli

@@ -5,12 +5,14 @@
 
 #include "engine/analysis/lens_analysis.h"
 
-namespace lensproof {
+namespace lensproof::cli {
 
 /// The contract's JSON: what does not exist is null.
-nlohmann::ordered_json analysis_json(const Lens& lens, const AnalysisSettings& settings, const LensAnalysis& analysis);
+nlohmann::ordered_json analysis_json(const optics::Lens& lens, const analysis::AnalysisSettings& settings,
+                                     const analysis::LensAnalysis& analysis);
 
 /// The same as tables to read.
-std::string analysis_text(const Lens& lens, const AnalysisSettings& settings, const LensAnalysis& analysis);
+std::string analysis_text(const optics::Lens& lens, const analysis::AnalysisSettings& settings,
+                          const analysis::LensAnalysis& analysis);
 
-}  // namespace lensproof
+}  // namespace lensproof::cli

@@ -22,11 +22,11 @@
 #include "engine/spectral/wavelengths.h"
 #include "experiments/cli/analysis_output.h"
 #include "experiments/cli/command.h"
-#include "experiments/plot/analysis_drawings.h"
-#include "experiments/plot/curves_json.h"
-#include "experiments/plot/lens_section.h"
+#include "experiments/draw/analysis_drawings.h"
+#include "experiments/draw/curves_json.h"
+#include "experiments/draw/lens_section.h"
 
-namespace lensproof {
+namespace lensproof::cli {
 
 namespace {
 
@@ -53,7 +53,7 @@ constexpr double kFarthestImage = 1e15;  // mm
 constexpr const char* kCriteria[] = {"paraxial", "spot", "wavefront", "mtf"};
 
 /// The object's distance: the option's, or that which the table is set to.
-double object_distance(const std::string& option, const Prescription& prescription) {
+double object_distance(const std::string& option, const optics::Prescription& prescription) {
     if (option.empty()) {
         return prescription.object_distance_mm;
     }
@@ -66,15 +66,17 @@ double object_distance(const std::string& option, const Prescription& prescripti
 }
 
 /// The lens as it is analysed: zoomed, stopped down, focused, its sensor in place.
-Lens prepared_lens(const AnalyzeOptions& options, const Prescription& prescription, double distance,
-                   double reference_wavelength_nm) {
-    const GlassCatalogue glasses = with_own_catalogues(read_glass_catalogues(options.glass_catalogues), prescription);
-    Lens lens = make_lens(with_stop_picture(prescription), glasses, parse_indices(options.indices));
+optics::Lens prepared_lens(const AnalyzeOptions& options, const optics::Prescription& prescription, double distance,
+                           double reference_wavelength_nm) {
+    const optics::GlassCatalogue glasses =
+        formats::with_own_catalogues(read_glass_catalogues(options.glass_catalogues), prescription);
+    optics::Lens lens =
+        optics::make_lens(formats::with_stop_picture(prescription), glasses, parse_indices(options.indices));
     if (options.f_number) {
-        lens = with_f_number(std::move(lens), *options.f_number);
+        lens = optics::with_f_number(std::move(lens), *options.f_number);
     }
     if (!lens.focus_groups.empty() && !options.focus.empty()) {
-        lens = focused_at(std::move(lens), distance);
+        lens = optics::focused_at(std::move(lens), distance);
     }
     if (options.image_distance_mm) {
         if (!(std::abs(*options.image_distance_mm) <= kFarthestImage)) {
@@ -83,8 +85,8 @@ Lens prepared_lens(const AnalyzeOptions& options, const Prescription& prescripti
         }
         lens.image_z = lens.last_vertex_z() + *options.image_distance_mm;
     } else if (lens.image_z == lens.last_vertex_z()) {  // the source does not say
-        const TraceLens<double> traced = at_wavelength<double>(lens, reference_wavelength_nm);
-        const double image = paraxial_image_distance(traced, distance_from_front(lens, distance));
+        const optics::TraceLens<double> traced = optics::at_wavelength<double>(lens, reference_wavelength_nm);
+        const double image = optics::paraxial_image_distance(traced, analysis::distance_from_front(lens, distance));
         if (std::isfinite(image)) {
             lens.image_z += image;
         }
@@ -94,15 +96,15 @@ Lens prepared_lens(const AnalyzeOptions& options, const Prescription& prescripti
 
 /// The fields to look at where none are given: the axis and four parts of what the source states, or of what the chief
 /// ray reaches.
-std::vector<double> usual_fields(const Lens& lens, double wavelength_nm) {
+std::vector<double> usual_fields(const optics::Lens& lens, double wavelength_nm) {
     constexpr double kThousandths = 1000.0;  // a hair inside the last ray that passes, where rounding does not decide
-    const double reached = ChiefRays(lens, wavelength_nm).largest_field() * 180.0 / std::numbers::pi;
+    const double reached = optics::ChiefRays(lens, wavelength_nm).largest_field() * 180.0 / std::numbers::pi;
     const double largest = std::floor(kThousandths * reached) / kThousandths;
     const double stated = lens.stated.half_field_deg.value_or(largest);
-    return even_fields(stated > 0.0 && stated < 180.0 ? stated : largest, 5);
+    return analysis::even_fields(stated > 0.0 && stated < 180.0 ? stated : largest, 5);
 }
 
-std::vector<double> fields_of(const AnalyzeOptions& options, const Lens& lens, double wavelength_nm) {
+std::vector<double> fields_of(const AnalyzeOptions& options, const optics::Lens& lens, double wavelength_nm) {
     for (const double field : options.fields_deg) {
         if (!(field > -180.0 && field < 180.0)) {
             throw InputError(fmt::format("--fields holds {}, expected degrees between -180 and 180", field));
@@ -111,57 +113,61 @@ std::vector<double> fields_of(const AnalyzeOptions& options, const Lens& lens, d
     return options.fields_deg.empty() ? usual_fields(lens, wavelength_nm) : options.fields_deg;
 }
 
-std::vector<double> wavelengths_of(const AnalyzeOptions& options, const Prescription& prescription) {
+std::vector<double> wavelengths_of(const AnalyzeOptions& options, const optics::Prescription& prescription) {
     if (options.wavelengths_nm.empty()) {
-        return prescription.wavelengths_nm.empty() ? std::vector{kLineD, kLineF, kLineC} : prescription.wavelengths_nm;
+        return prescription.wavelengths_nm.empty() ? std::vector{spectral::kLineD, spectral::kLineF, spectral::kLineC}
+                                                   : prescription.wavelengths_nm;
     }
     return options.wavelengths_nm;
 }
 
 /// Where the image is best, from where the image plane stands.
-double best_focus_shift(const AnalyzeOptions& options, const Lens& lens, const AnalysisSettings& settings) {
+double best_focus_shift(const AnalyzeOptions& options, const optics::Lens& lens,
+                        const analysis::AnalysisSettings& settings) {
     if (options.best_focus == "paraxial") {
-        return paraxial_focus_shift(lens, settings.reference_wavelength_nm,
-                                    distance_from_front(lens, settings.object_distance));
+        return analysis::paraxial_focus_shift(lens, settings.reference_wavelength_nm,
+                                              analysis::distance_from_front(lens, settings.object_distance));
     }
-    std::vector<WeightedField> fields;
-    for (std::optional<PolychromaticField>& field : polychromatic_fields(lens, settings)) {
+    std::vector<analysis::WeightedField> fields;
+    for (std::optional<analysis::PolychromaticField>& field : analysis::polychromatic_fields(lens, settings)) {
         if (field) {
             fields.push_back({.field = std::move(*field)});
         }
     }
     if (options.best_focus == "spot") {
-        return spot_focus_shift(fields);
+        return analysis::spot_focus_shift(fields);
     }
     if (options.best_focus == "wavefront") {
-        return wavefront_focus_shift(fields);
+        return analysis::wavefront_focus_shift(fields);
     }
-    return mtf_focus_shift(fields, *options.focus_frequency);
+    return analysis::mtf_focus_shift(fields, *options.focus_frequency);
 }
 
 /// "f/2.73, object at infinity, image plane 79.83 mm behind the last surface"
-std::string conditions(const Lens& lens, const AnalysisSettings& settings, const LensAnalysis& analysis) {
+std::string conditions(const optics::Lens& lens, const analysis::AnalysisSettings& settings,
+                       const analysis::LensAnalysis& analysis) {
     return fmt::format(
         "f/{:.3g}, object at {}, image plane {:.6g} mm behind the last surface", analysis.reference_paraxial.f_number,
         std::isinf(settings.object_distance) ? "infinity" : fmt::format("{:g} mm", settings.object_distance),
         lens.image_z - lens.last_vertex_z());
 }
 
-void write_analysis_plots(const AnalyzeOptions& options, const Prescription& prescription, const Lens& lens,
-                          const AnalysisSettings& settings, const LensAnalysis& analysis) {
-    const AnalysisCurves curves = analysis_curves(lens, settings);
-    const WaveCurves waves = wave_curves(lens, settings, options.common.threads);
-    const PlotHeading heading{.lens = lens.name, .conditions = conditions(lens, settings, analysis)};
-    std::map<std::string, std::string> files = analysis_drawings(heading, lens.projection, curves, waves);
-    Prescription shown = prescription;  // as it is analysed
+void write_analysis_plots(const AnalyzeOptions& options, const optics::Prescription& prescription,
+                          const optics::Lens& lens, const analysis::AnalysisSettings& settings,
+                          const analysis::LensAnalysis& analysis) {
+    const draw::AnalysisCurves curves = draw::analysis_curves(lens, settings);
+    const draw::WaveCurves waves = draw::wave_curves(lens, settings, options.common.threads);
+    const draw::PlotHeading heading{.lens = lens.name, .conditions = conditions(lens, settings, analysis)};
+    std::map<std::string, std::string> files = draw::analysis_drawings(heading, lens.projection, curves, waves);
+    optics::Prescription shown = prescription;  // as it is analysed
     shown.object_distance_mm = settings.object_distance;
     shown.wavelengths_nm = {settings.reference_wavelength_nm};
-    files["section.svg"] = lens_section_svg(shown, &lens, {}, {.fields_deg = settings.fields_deg});
-    files["curves.json"] = curves_json(curves, waves).dump() + "\n";
-    write_plots(options.plots_folder, files);
-    for (const PsfMap& psf : waves.psfs) {
-        if (const std::optional<Image> image = psf_image(psf)) {
-            write_exr(*image, std::filesystem::path(options.plots_folder) / psf_file_name(psf));
+    files["section.svg"] = draw::lens_section_svg(shown, &lens, {}, {.fields_deg = settings.fields_deg});
+    files["curves.json"] = draw::curves_json(curves, waves).dump() + "\n";
+    draw::write_plots(options.plots_folder, files);
+    for (const draw::PsfMap& psf : waves.psfs) {
+        if (const std::optional<formats::Image> image = draw::psf_image(psf)) {
+            formats::write_exr(*image, std::filesystem::path(options.plots_folder) / draw::psf_file_name(psf));
         }
     }
 }
@@ -174,24 +180,25 @@ int run_analyze(const AnalyzeOptions& options) {
     if (options.best_focus == "mtf" && !options.focus_frequency) {
         throw InputError("--best-focus mtf needs --focus-frequency, in cycles/mm");
     }
-    Prescription prescription = read_prescription(find_lens_file(options.lens));
-    const std::size_t position = options.zoom.empty() ? 0 : find_zoom_position(prescription, options.zoom);
+    optics::Prescription prescription = formats::read_prescription(formats::find_lens_file(options.lens));
+    const std::size_t position = options.zoom.empty() ? 0 : optics::find_zoom_position(prescription, options.zoom);
     if (!prescription.zoom.empty()) {
         prescription.name += ", at " + prescription.zoom[position].name;
     }
-    prescription = at_zoom_position(std::move(prescription), position);
-    AnalysisSettings settings;
+    prescription = optics::at_zoom_position(std::move(prescription), position);
+    analysis::AnalysisSettings settings;
     settings.wavelengths_nm = wavelengths_of(options, prescription);
     settings.reference_wavelength_nm = options.reference_wavelength_nm.value_or(settings.wavelengths_nm.front());
     settings.object_distance = object_distance(options.focus, prescription);
     settings.rings = options.rings;
-    Lens lens = prepared_lens(options, prescription, settings.object_distance, settings.reference_wavelength_nm);
+    optics::Lens lens =
+        prepared_lens(options, prescription, settings.object_distance, settings.reference_wavelength_nm);
     settings.fields_deg = fields_of(options, lens, settings.reference_wavelength_nm);
     if (!options.best_focus.empty()) {
         const double shift = best_focus_shift(options, lens, settings);
-        lens = with_image_shift(std::move(lens), shift);
+        lens = analysis::with_image_shift(std::move(lens), shift);
     }
-    const LensAnalysis analysis = analyze_lens(lens, settings);
+    const analysis::LensAnalysis analysis = analysis::analyze_lens(lens, settings);
     if (!options.plots_folder.empty()) {
         write_analysis_plots(options, prescription, lens, settings, analysis);
     }
@@ -206,7 +213,7 @@ int run_analyze(const AnalyzeOptions& options) {
 
 void add_analyze_command(CLI::App& app, int& status) {
     const auto options = std::make_shared<AnalyzeOptions>();
-    options->rings = AnalysisSettings{}.rings;
+    options->rings = analysis::AnalysisSettings{}.rings;
     CLI::App* command =
         app.add_subcommand("analyze", "First-order data, Seidel sums, real-ray curves, spots, wavefront");
     command->footer(
@@ -272,4 +279,4 @@ void add_analyze_command(CLI::App& app, int& status) {
     command->callback([options, &status] { status = run_analyze(*options); });
 }
 
-}  // namespace lensproof
+}  // namespace lensproof::cli

@@ -8,16 +8,16 @@
 #include "engine/base/file.h"
 #include "engine/base/input_error.h"
 #include "engine/scene/chart_file.h"
-#include "experiments/chart_print/chart_words.h"
 #include "experiments/cli/command.h"
+#include "experiments/draw/print/chart_words.h"
 
-namespace lensproof {
+namespace lensproof::cli {
 
 namespace {
 
 struct ChartOptions {
     CommonOptions common;
-    ChartWish wish;
+    draw::ChartWish wish;
     std::map<std::string, std::string> counts;
     std::string paper = "A4";
     bool portrait = false;
@@ -31,13 +31,14 @@ std::string option_of(std::string key) {
     return "--" + key;
 }
 
-PrintLayout layout_of(const ChartOptions& options) {
-    PrintLayout layout{.paper = parse_paper(options.paper), .margin_mm = options.margin_mm, .dpi = options.dpi};
+draw::PrintLayout layout_of(const ChartOptions& options) {
+    draw::PrintLayout layout{
+        .paper = draw::parse_paper(options.paper), .margin_mm = options.margin_mm, .dpi = options.dpi};
     if (options.portrait) {
         std::swap(layout.paper.width_mm, layout.paper.height_mm);
     }
     if (2.0 * layout.margin_mm >= layout.paper.width_mm ||
-        2.0 * layout.margin_mm + kCaptionHeight_mm >= layout.paper.height_mm) {
+        2.0 * layout.margin_mm + draw::kCaptionHeight_mm >= layout.paper.height_mm) {
         throw InputError(fmt::format("--margin {:g}: leaves nothing of a paper of {:g} × {:g} mm", layout.margin_mm,
                                      layout.paper.width_mm, layout.paper.height_mm));
     }
@@ -46,14 +47,14 @@ PrintLayout layout_of(const ChartOptions& options) {
 
 int print(const ChartOptions& options) {
     check_json_name(options.common);
-    const PrintLayout layout = layout_of(options);
-    ChartWish wish = options.wish;
+    const draw::PrintLayout layout = layout_of(options);
+    draw::ChartWish wish = options.wish;
     for (const auto& [key, text] : options.counts) {
         if (!text.empty()) {
-            wish.counts[key] = parse_grid_size(option_of(key), text);
+            wish.counts[key] = draw::parse_grid_size(option_of(key), text);
         }
     }
-    const std::string toml = chart_toml(wish, layout);
+    const std::string toml = draw::chart_toml(wish, layout);
     const std::filesystem::path file = options.output.empty() ? wish.kind + ".pdf" : options.output;
     std::filesystem::path description = file;
     description.replace_extension(".toml");
@@ -62,14 +63,14 @@ int print(const ChartOptions& options) {
     // What is drawn is what the file says: read back from it.
     TomlTable top = TomlTable::parse(toml, description.string());
     TomlTable table = top.table("chart");
-    const Chart chart = read_chart(table);
-    print_chart(chart, layout, chart_caption(toml), file);
+    const scene::Chart chart = scene::read_chart(table);
+    draw::print_chart(chart, layout, draw::chart_caption(toml), file);
     write_file(description,
                "# " + file.filename().string() +
                    ", for `lensproof measure … --chart`. Lengths are those of a print at 100 %: measure its "
                    "scale.\n" +
                    toml);
-    const Vec2d size = pattern_size_mm(chart);
+    const Vec2d size = scene::pattern_size_mm(chart);
     write_json_result(options.common, {{"kind", wish.kind},
                                        {"file", file.string()},
                                        {"description", description.string()},
@@ -90,7 +91,8 @@ void add_chart_command(CLI::App& app, int& status) {
     command->footer(
         "Example: lensproof chart charuco --squares 12x8 --square-mm 30 --paper A3 -o board.pdf\n"
         "writes board.pdf and, for `lensproof measure`, board.toml. What is not said is chosen to fill the page.");
-    command->add_option("KIND", options->wish.kind, fmt::format("{}", fmt::join(printable_kinds(), ", ")))->required();
+    command->add_option("KIND", options->wish.kind, fmt::format("{}", fmt::join(draw::printable_kinds(), ", ")))
+        ->required();
     command->add_option("-o,--output", options->output, "PDF, SVG or PNG to write (default: KIND.pdf)")
         ->type_name("FILE");
     command->add_option("--paper", options->paper, "A0 to A5, letter, tabloid, or WIDTHxHEIGHT in mm")
@@ -103,10 +105,10 @@ void add_chart_command(CLI::App& app, int& status) {
     command->add_option("--dpi", options->dpi, "Pixels per inch of a PNG")
         ->check(kPositiveOption)
         ->capture_default_str();
-    for (const std::string& key : count_keys()) {
+    for (const std::string& key : draw::count_keys()) {
         command->add_option(option_of(key), options->counts[key], "Columns and rows, as in 10x7")->type_name("CxR");
     }
-    for (const std::string& key : number_keys()) {
+    for (const std::string& key : draw::number_keys()) {
         const CLI::Validator& check = key == "angle_deg" ? kNumberOption : kPositiveOption;
         command
             ->add_option_function<double>(
@@ -119,4 +121,4 @@ void add_chart_command(CLI::App& app, int& status) {
     command->callback([options, &status] { status = print(*options); });
 }
 
-}  // namespace lensproof
+}  // namespace lensproof::cli

@@ -14,9 +14,9 @@
 #include "engine/formats/prescription/load_lens.h"
 #include "engine/formats/prescription/prescription_file.h"
 #include "experiments/cli/command.h"
-#include "experiments/plot/lens_section.h"
+#include "experiments/draw/lens_section.h"
 
-namespace lensproof {
+namespace lensproof::cli {
 
 namespace {
 
@@ -25,7 +25,7 @@ struct CheckOptions {
     std::vector<std::string> lenses;
     std::string stated;
     std::vector<std::string> indices;
-    double wavelength_nm = kLineD;
+    double wavelength_nm = spectral::kLineD;
     std::string zoom;
     std::string plot_file;
     std::vector<std::string> glass_catalogues;
@@ -41,19 +41,19 @@ double parse_finite(const std::string& text, const std::string& where) {
 
 struct Claim {
     const char* key;
-    std::optional<double> StatedData::*member;
+    std::optional<double> optics::StatedData::*member;
 };
 
-constexpr Claim kClaims[] = {{"efl_mm", &StatedData::efl_mm},
-                             {"bfl_mm", &StatedData::bfl_mm},
-                             {"f_number", &StatedData::f_number},
-                             {"half_field_deg", &StatedData::half_field_deg},
-                             {"image_circle_mm", &StatedData::image_circle_mm},
-                             {"total_track_mm", &StatedData::total_track_mm}};
+constexpr Claim kClaims[] = {{"efl_mm", &optics::StatedData::efl_mm},
+                             {"bfl_mm", &optics::StatedData::bfl_mm},
+                             {"f_number", &optics::StatedData::f_number},
+                             {"half_field_deg", &optics::StatedData::half_field_deg},
+                             {"image_circle_mm", &optics::StatedData::image_circle_mm},
+                             {"total_track_mm", &optics::StatedData::total_track_mm}};
 
 /// `efl_mm=100,f_number=2.8`
-StatedData parse_claims(const std::string& text) {
-    StatedData claims;
+optics::StatedData parse_claims(const std::string& text) {
+    optics::StatedData claims;
     std::istringstream items(text);
     for (std::string item; std::getline(items, item, ',');) {
         const std::size_t equals = item.find('=');
@@ -76,12 +76,12 @@ StatedData parse_claims(const std::string& text) {
     return claims;
 }
 
-nlohmann::ordered_json computed_json(const ComputedData& computed) {
+nlohmann::ordered_json computed_json(const check::ComputedData& computed) {
     nlohmann::ordered_json json;
     if (!computed.zoom_position.empty()) {
         json["zoom_position"] = computed.zoom_position;
     }
-    const ParaxialData& data = computed.paraxial;
+    const optics::ParaxialData& data = computed.paraxial;
     json["wavelength_nm"] = computed.wavelength_nm;
     json["efl_mm"] = number_or_null(data.efl);
     json["bfl_mm"] = number_or_null(data.bfl);
@@ -94,61 +94,62 @@ nlohmann::ordered_json computed_json(const ComputedData& computed) {
     return json;
 }
 
-nlohmann::ordered_json report_json(const std::string& lens, const Prescription& prescription,
-                                   const CheckReport& report) {
+nlohmann::ordered_json report_json(const std::string& lens, const optics::Prescription& prescription,
+                                   const check::CheckReport& report) {
     nlohmann::ordered_json json{{"lens", lens},
                                 {"file", prescription.file.string()},
                                 {"ok", report.ok()},
                                 {"findings", nlohmann::json::array()}};
-    for (const Finding& finding : report.findings) {
+    for (const optics::Finding& finding : report.findings) {
         json["findings"].push_back(finding_json(finding));
     }
     if (!report.computed.empty()) {
         json["computed"] = computed_json(report.computed.front());
     }
     if (report.computed.size() > 1) {
-        for (const ComputedData& computed : report.computed) {
+        for (const check::ComputedData& computed : report.computed) {
             json["zoom"].push_back(computed_json(computed));
         }
     }
     return json;
 }
 
-void print_report(const std::string& lens, const CheckReport& report) {
-    const auto count = [&](Severity severity) {
-        return std::ranges::count(report.findings, severity, &Finding::severity);
+void print_report(const std::string& lens, const check::CheckReport& report) {
+    const auto count = [&](optics::Severity severity) {
+        return std::ranges::count(report.findings, severity, &optics::Finding::severity);
     };
-    const auto errors = count(Severity::error);
-    const auto warnings = count(Severity::warning);
+    const auto errors = count(optics::Severity::error);
+    const auto warnings = count(optics::Severity::warning);
     fmt::print("{}: {} ({} error{}, {} warning{})", lens, report.ok() ? "ok" : "not ok", errors, errors == 1 ? "" : "s",
                warnings, warnings == 1 ? "" : "s");
     if (!report.computed.empty()) {
-        const ParaxialData& data = report.computed.front().paraxial;
+        const optics::ParaxialData& data = report.computed.front().paraxial;
         fmt::print(", focal length {:.4f} mm, back focus {:.4f} mm", data.efl, data.bfl);
         if (std::isfinite(data.f_number)) {
             fmt::print(", f/{:.3f}", data.f_number);
         }
     }
     fmt::print("\n");
-    for (const Finding& finding : report.findings) {
+    for (const optics::Finding& finding : report.findings) {
         const std::string where = finding.surface > 0 ? fmt::format("surface {}", finding.surface) : "lens";
-        fmt::print("  {:7} {:10} {}: {}\n", severity_name(finding.severity), where, finding.code, finding.message);
+        fmt::print("  {:7} {:10} {}: {}\n", optics::severity_name(finding.severity), where, finding.code,
+                   finding.message);
     }
 }
 
 /// The section at the position that is checked, or at the first, with what was found there.
-void write_plot(const std::string& file, const Prescription& prescription, const StatedData& claims,
-                const GlassCatalogue& glasses, CheckSettings settings) {
+void write_plot(const std::string& file, const optics::Prescription& prescription, const optics::StatedData& claims,
+                const optics::GlassCatalogue& glasses, check::CheckSettings settings) {
     settings.zoom_position = settings.zoom_position.value_or(0);
-    const CheckReport report = check_prescription(prescription, claims, glasses, settings);
-    const Prescription drawn = at_zoom_position(prescription, *settings.zoom_position);
-    std::optional<Lens> lens;
+    const check::CheckReport report = check::check_prescription(prescription, claims, glasses, settings);
+    const optics::Prescription drawn = optics::at_zoom_position(prescription, *settings.zoom_position);
+    std::optional<optics::Lens> lens;
     try {
-        lens = make_lens(with_stop_picture(drawn), glasses, settings.indices);
+        lens = optics::make_lens(formats::with_stop_picture(drawn), glasses, settings.indices);
     } catch (const InputError&) {
         lens.reset();  // the findings say why; what the table gives is drawn all the same
     }
-    write_file(file, lens_section_svg(drawn, lens ? &*lens : nullptr, report.findings));
+    write_file(file, draw::lens_section_svg(drawn, lens ? &*lens : nullptr, report.findings));
 }
 
 int run_check(const CheckOptions& options) {
@@ -159,24 +160,24 @@ int run_check(const CheckOptions& options) {
             throw InputError(fmt::format("--plot draws one lens, found {}", options.lenses.size()));
         }
     }
-    const StatedData claims = parse_claims(options.stated);
-    const IndexOverrides indices = parse_indices(options.indices);
-    const GlassCatalogue glasses = read_glass_catalogues(options.glass_catalogues);
+    const optics::StatedData claims = parse_claims(options.stated);
+    const optics::IndexOverrides indices = parse_indices(options.indices);
+    const optics::GlassCatalogue glasses = read_glass_catalogues(options.glass_catalogues);
     // All are read before any is judged: a file that cannot be read ends the command before it has said anything.
-    std::vector<Prescription> prescriptions;
-    std::vector<CheckSettings> settings;
+    std::vector<optics::Prescription> prescriptions;
+    std::vector<check::CheckSettings> settings;
     for (const std::string& lens : options.lenses) {
-        prescriptions.push_back(read_prescription(find_lens_file(lens)));
+        prescriptions.push_back(formats::read_prescription(formats::find_lens_file(lens)));
         settings.push_back({.wavelength_nm = options.wavelength_nm, .indices = indices, .zoom_position = {}});
         if (!options.zoom.empty()) {
-            settings.back().zoom_position = find_zoom_position(prescriptions.back(), options.zoom);
+            settings.back().zoom_position = optics::find_zoom_position(prescriptions.back(), options.zoom);
         }
     }
     nlohmann::ordered_json lenses = nlohmann::ordered_json::array();
     bool all_ok = true;
     for (std::size_t i = 0; i < prescriptions.size(); ++i) {
-        const GlassCatalogue own = with_own_catalogues(glasses, prescriptions[i]);
-        const CheckReport report = check_prescription(prescriptions[i], claims, own, settings[i]);
+        const optics::GlassCatalogue own = formats::with_own_catalogues(glasses, prescriptions[i]);
+        const check::CheckReport report = check::check_prescription(prescriptions[i], claims, own, settings[i]);
         all_ok = all_ok && report.ok();
         lenses.push_back(report_json(options.lenses[i], prescriptions[i], report));
         if (prints_text(options.common)) {
@@ -217,4 +218,4 @@ void add_check_command(CLI::App& app, int& status) {
     command->callback([options, &status] { status = run_check(*options); });
 }
 
-}  // namespace lensproof
+}  // namespace lensproof::cli

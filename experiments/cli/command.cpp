@@ -13,7 +13,7 @@
 #include "engine/formats/glass/glass_file.h"
 #include "engine/formats/glass/shipped_glasses.h"
 
-namespace lensproof {
+namespace lensproof::cli {
 
 namespace {
 
@@ -64,10 +64,10 @@ void add_glass_catalogue_option(CLI::App& command, std::vector<std::string>& fil
         ->allow_extra_args(false);
 }
 
-GlassCatalogue read_glass_catalogues(const std::vector<std::string>& files) {
-    GlassCatalogue catalogue = shipped_glasses();
+optics::GlassCatalogue read_glass_catalogues(const std::vector<std::string>& files) {
+    optics::GlassCatalogue catalogue = formats::shipped_glasses();
     for (const std::string& file : files) {
-        GlassFile read = read_glass_file(file);
+        formats::GlassFile read = formats::read_glass_file(file);
         constexpr std::size_t kShownNotes = 5;
         for (std::size_t i = 0; i < std::min(kShownNotes, read.notes.size()); ++i) {
             fmt::print(stderr, "lensproof: {}\n", read.notes[i]);
@@ -86,8 +86,8 @@ void add_index_option(CLI::App& command, std::vector<std::string>& texts) {
         ->allow_extra_args(false);  // what follows is a lens
 }
 
-IndexOverrides parse_indices(const std::vector<std::string>& texts) {
-    IndexOverrides overrides;
+optics::IndexOverrides parse_indices(const std::vector<std::string>& texts) {
+    optics::IndexOverrides overrides;
     for (const std::string& text : texts) {
         const std::size_t equals = text.find('=');
         if (equals == 0 || equals == std::string::npos) {
@@ -120,10 +120,10 @@ void write_json_result(const CommonOptions& options, const nlohmann::ordered_jso
     }
 }
 
-nlohmann::ordered_json finding_json(const Finding& finding) {
+nlohmann::ordered_json finding_json(const optics::Finding& finding) {
     return {
         {"code", finding.code},
-        {"severity", severity_name(finding.severity)},
+        {"severity", optics::severity_name(finding.severity)},
         {"surface", finding.surface > 0 ? nlohmann::ordered_json(finding.surface) : nlohmann::ordered_json(nullptr)},
         {"message", finding.message},
         {"value", number_or_null(finding.value)},
@@ -135,4 +135,4 @@ bool prints_text(const CommonOptions& options) {
     return options.json_file != "-";
 }
 
-}  // namespace lensproof
+}  // namespace lensproof::cli

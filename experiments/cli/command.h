@@ -8,12 +8,12 @@
 #include <string>
 #include <vector>
 
+#include "engine/base/json_number.h"
 #include "engine/optics/finding.h"
 #include "engine/optics/glass_catalogue.h"
 #include "engine/optics/lens.h"
-#include "experiments/json_number.h"
 
-namespace lensproof {
+namespace lensproof::cli {
 
 /// Exit statuses, as the command line's contract has them.
 enum ExitStatus { kDone = 0, kCheckFailed = 1, kUnusableInput = 2, kInternalFailure = 3 };
@@ -40,13 +40,13 @@ void add_glass_catalogue_option(CLI::App& command, std::vector<std::string>& fil
 
 /// The glasses that ship, behind those of the user's files, of which the last comes first. What a file has that is left
 /// out goes to standard error.
-GlassCatalogue read_glass_catalogues(const std::vector<std::string>& files);
+optics::GlassCatalogue read_glass_catalogues(const std::vector<std::string>& files);
 
 /// Adds --index NAME=VALUE, which may be repeated and takes no more than that one argument.
 void add_index_option(CLI::App& command, std::vector<std::string>& texts);
 
 /// What --index was given. Throws InputError unless each is a name and an index from 1 to 10.
-IndexOverrides parse_indices(const std::vector<std::string>& texts);
+optics::IndexOverrides parse_indices(const std::vector<std::string>& texts);
 
 /// Throws InputError where --json cannot be written, before long work begins.
 void check_json_name(const CommonOptions& options);
@@ -56,7 +56,7 @@ void check_json_name(const CommonOptions& options);
 void write_json_result(const CommonOptions& options, const nlohmann::ordered_json& result);
 
 /// Every key is there; what does not apply is null: the surface of a finding about the lens as a whole, say.
-nlohmann::ordered_json finding_json(const Finding& finding);
+nlohmann::ordered_json finding_json(const optics::Finding& finding);
 
 /// Whether a person-readable result may go to standard output (not when the JSON goes there).
 bool prints_text(const CommonOptions& options);
@@ -76,4 +76,4 @@ void add_run_command(CLI::App& app, int& status);
 void add_lenses_command(CLI::App& app, int& status);
 void add_glasses_command(CLI::App& app, int& status);
 
-}  // namespace lensproof
+}  // namespace lensproof::cli

@@ -12,10 +12,10 @@
 #include "engine/base/input_error.h"
 #include "engine/formats/image/image.h"
 #include "experiments/cli/command.h"
-#include "experiments/lens_profile.h"
-#include "experiments/verdict.h"
+#include "experiments/runner/verdict.h"
+#include "experiments/studies/lens_profile.h"
 
-namespace lensproof {
+namespace lensproof::cli {
 
 namespace {
 
@@ -42,29 +42,31 @@ bool is_lens(const std::string& name) {
 }
 
 /// The lens seen by the camera that `like` was taken with.
-Profile profile_of_lens(const std::string& lens, const Profile& like, const CompareOptions& options) {
+calibration::Profile profile_of_lens(const std::string& lens, const calibration::Profile& like,
+                                     const CompareOptions& options) {
     if (!like.pixel_pitch_um) {
         throw InputError(
             fmt::format("{} has no pixel_pitch_um, which {} needs to be compared with it: measure with "
                         "--pixel-pitch",
                         like.name, lens));
     }
-    const Camera camera{.lens = lens,
-                        .f_number = options.f_number,
-                        .focus_distance_mm = options.focus_mm,
-                        .sensor = {like.width_px, like.height_px, *like.pixel_pitch_um / 1e3},
-                        .exposure = {},
-                        .response = options.response};
-    return lens_profile(ChartCamera(camera, Light{}, SpectralSampling{}, Cache::standard()));
+    const render::Camera camera{.lens = lens,
+                                .f_number = options.f_number,
+                                .focus_distance_mm = options.focus_mm,
+                                .sensor = {like.width_px, like.height_px, *like.pixel_pitch_um / 1e3},
+                                .exposure = {},
+                                .response = options.response};
+    return studies::lens_profile(
+        render::ChartCamera(camera, render::Light{}, render::SpectralSampling{}, Cache::standard()));
 }
 
 struct Row {
-    Check check;
+    runner::Check check;
     bool limited = false;
 };
 
-Row make_row(const std::string& label, const std::string& unit, const std::optional<CurveDifference>& difference,
-             double limit) {
+Row make_row(const std::string& label, const std::string& unit,
+             const std::optional<calibration::CurveDifference>& difference, double limit) {
     Row row;
     row.limited = limit > 0.0;
     row.check.id = label;
@@ -85,7 +87,7 @@ int report(const std::vector<Row>& rows, const nlohmann::ordered_json& curves, c
     nlohmann::ordered_json json{{"a", options.a}, {"b", options.b}, {"differences", nlohmann::ordered_json::array()}};
     int status = kDone;
     for (const Row& row : rows) {
-        const Check& check = row.check;
+        const runner::Check& check = row.check;
         if (!std::isfinite(check.value)) {
             if (row.limited) {
                 throw InputError(
@@ -95,20 +97,20 @@ int report(const std::vector<Row>& rows, const nlohmann::ordered_json& curves, c
             }
             continue;
         }
-        const Verdict verdict = check.verdict();
+        const runner::Verdict verdict = check.verdict();
         nlohmann::ordered_json entry{{"quantity", check.label},
                                      {"rms" + unit_key(check.unit), check.value},
                                      {"standard_error" + unit_key(check.unit), check.sigma}};
         if (row.limited) {
             entry["limit" + unit_key(check.unit)] = check.limit;
-            entry["verdict"] = verdict_name(verdict);
-            status = verdict == Verdict::pass ? status : kCheckFailed;
+            entry["verdict"] = runner::verdict_name(verdict);
+            status = verdict == runner::Verdict::pass ? status : kCheckFailed;
         }
         json["differences"].push_back(entry);
         if (prints_text(options.common)) {
-            fmt::print(
-                "{:32} rms {:.5g} ± {:.2g} {}{}\n", check.label, check.value, check.sigma, check.unit,
-                row.limited ? fmt::format("  limit {:g}: {}", check.limit, verdict_name(verdict)) : std::string());
+            fmt::print("{:32} rms {:.5g} ± {:.2g} {}{}\n", check.label, check.value, check.sigma, check.unit,
+                       row.limited ? fmt::format("  limit {:g}: {}", check.limit, runner::verdict_name(verdict))
+                                   : std::string());
         }
     }
     if (!curves.is_null()) {
@@ -118,11 +120,11 @@ int report(const std::vector<Row>& rows, const nlohmann::ordered_json& curves, c
     return status;
 }
 
-int compare_profiles(const Profile& a, const Profile& b, const CompareOptions& options) {
+int compare_profiles(const calibration::Profile& a, const calibration::Profile& b, const CompareOptions& options) {
     std::vector<Row> rows;
     nlohmann::ordered_json curves;
-    const auto add = [&](const std::string& name, const std::string& unit, const std::optional<CurveDifference>& found,
-                         double limit) {
+    const auto add = [&](const std::string& name, const std::string& unit,
+                         const std::optional<calibration::CurveDifference>& found, double limit) {
         rows.push_back(make_row(name, unit, found, limit));
         if (found) {
             curves[name] = {{"image_height", found->curve.image_height},
@@ -137,15 +139,17 @@ int compare_profiles(const Profile& a, const Profile& b, const CompareOptions& o
     };
     const bool same_camera =
         a.width_px == b.width_px && a.height_px == b.height_px && a.pixel_pitch_um == b.pixel_pitch_um;
-    add("image position", "px", same_camera ? radial_difference_px(a, b) : std::nullopt, options.position_limit_px);
-    add("distortion_percent", "%", difference(a, b, "distortion_percent"), options.distortion_limit_percent);
+    add("image position", "px", same_camera ? calibration::radial_difference_px(a, b) : std::nullopt,
+        options.position_limit_px);
+    add("distortion_percent", "%", calibration::difference(a, b, "distortion_percent"),
+        options.distortion_limit_percent);
     // A channel that one of the two lacks is no failure, as long as another can be held against the limit.
     const auto add_channels = [&](const std::string& before, const std::vector<std::string>& channels,
                                   const std::string& after, const std::string& unit, double limit) {
         bool any_found = false;
         for (const std::string& channel : channels) {
             const std::string name = fmt::format("{}{}{}", before, channel, after);
-            const auto found = difference(a, b, name);
+            const auto found = calibration::difference(a, b, name);
             add(name, unit, found, found ? limit : 0.0);
             any_found = any_found || found;
         }
@@ -165,7 +169,7 @@ int compare_profiles(const Profile& a, const Profile& b, const CompareOptions& o
     return report(rows, curves, options);
 }
 
-void check_finite(const Image& image, const std::string& file) {
+void check_finite(const formats::Image& image, const std::string& file) {
     const auto found = std::ranges::find_if_not(image.pixels, [](float value) { return std::isfinite(value); });
     if (found != image.pixels.end()) {
         const auto index = static_cast<std::size_t>(found - image.pixels.begin());
@@ -177,8 +181,8 @@ void check_finite(const Image& image, const std::string& file) {
 }
 
 int compare_images(const CompareOptions& options) {
-    const Image a = read_image(options.a);
-    const Image b = read_image(options.b);
+    const formats::Image a = formats::read_image(options.a);
+    const formats::Image b = formats::read_image(options.b);
     if (a.width != b.width || a.height != b.height || a.channels != b.channels) {
         throw InputError(
             fmt::format("{} is {} × {} with {} channels and {} is {} × {} with {}: expected pictures alike", options.a,
@@ -243,14 +247,14 @@ int run_compare(const CompareOptions& options) {
         }
     }
     if (a_is_profile && b_is_profile) {
-        return compare_profiles(read_profile(options.a), read_profile(options.b), options);
+        return compare_profiles(calibration::read_profile(options.a), calibration::read_profile(options.b), options);
     }
     if (a_is_profile && is_lens(options.b)) {
-        const Profile a = read_profile(options.a);
+        const calibration::Profile a = calibration::read_profile(options.a);
         return compare_profiles(a, profile_of_lens(options.b, a, options), options);
     }
     if (b_is_profile && is_lens(options.a)) {
-        const Profile b = read_profile(options.b);
+        const calibration::Profile b = calibration::read_profile(options.b);
         return compare_profiles(profile_of_lens(options.a, b, options), b, options);
     }
     return compare_images(options);
@@ -285,4 +289,4 @@ void add_compare_command(CLI::App& app, int& status) {
     command->callback([options, &status] { status = run_compare(*options); });
 }
 
-}  // namespace lensproof
+}  // namespace lensproof::cli

@@ -6,7 +6,7 @@
 #include "engine/formats/prescription/prescription_file.h"
 #include "experiments/cli/command.h"
 
-namespace lensproof {
+namespace lensproof::cli {
 
 namespace {
 
@@ -17,32 +17,32 @@ struct ConvertOptions {
     std::string zoom;
 };
 
-nlohmann::ordered_json to_json(const std::vector<Finding>& findings) {
+nlohmann::ordered_json to_json(const std::vector<optics::Finding>& findings) {
     nlohmann::ordered_json list = nlohmann::ordered_json::array();
-    for (const Finding& finding : findings) {
+    for (const optics::Finding& finding : findings) {
         list.push_back(finding_json(finding));
     }
     return list;
 }
 
-void say(const std::vector<Finding>& findings, const std::filesystem::path& file) {
-    for (const Finding& finding : findings) {
+void say(const std::vector<optics::Finding>& findings, const std::filesystem::path& file) {
+    for (const optics::Finding& finding : findings) {
         const std::string surface = finding.surface > 0 ? fmt::format("surface {}: ", finding.surface) : "";
-        fmt::print(stderr, "{}: {}{} ({})\n", severity_name(finding.severity), surface, finding.message,
+        fmt::print(stderr, "{}: {}{} ({})\n", optics::severity_name(finding.severity), surface, finding.message,
                    file.filename().string());
     }
 }
 
 int convert(const ConvertOptions& options) {
     check_json_name(options.common);
-    check_prescription_name(options.out);
-    const std::filesystem::path in = find_lens_file(options.in);
-    Prescription prescription = read_prescription(in);
+    formats::check_prescription_name(options.out);
+    const std::filesystem::path in = formats::find_lens_file(options.in);
+    optics::Prescription prescription = formats::read_prescription(in);
     if (!options.zoom.empty()) {
-        const std::size_t position = find_zoom_position(prescription, options.zoom);
-        prescription = at_zoom_position(std::move(prescription), position);
+        const std::size_t position = optics::find_zoom_position(prescription, options.zoom);
+        prescription = optics::at_zoom_position(std::move(prescription), position);
     }
-    const std::vector<Finding> lost = write_prescription(prescription, options.out);
+    const std::vector<optics::Finding> lost = formats::write_prescription(prescription, options.out);
     say(prescription.remarks, in);
     say(lost, options.out);
     write_json_result(options.common, {{"in", in.string()},
@@ -75,4 +75,4 @@ void add_convert_command(CLI::App& app, int& status) {
     command->callback([options, &status] { status = convert(*options); });
 }
 
-}  // namespace lensproof
+}  // namespace lensproof::cli

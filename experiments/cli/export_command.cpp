@@ -12,7 +12,7 @@
 #include "engine/base/input_error.h"
 #include "experiments/cli/command.h"
 
-namespace lensproof {
+namespace lensproof::cli {
 
 namespace {
 
@@ -44,7 +44,7 @@ struct Written {
     double largest_difference_px = 0.0;
 };
 
-double crop_factor(const ExportOptions& options, const Profile& profile) {
+double crop_factor(const ExportOptions& options, const calibration::Profile& profile) {
     if (options.crop_factor > 0.0) {
         return options.crop_factor;
     }
@@ -53,14 +53,14 @@ double crop_factor(const ExportOptions& options, const Profile& profile) {
         return *notes->crop_factor();
     }
     if (profile.pixel_pitch_um) {
-        return kFullFrameDiagonal_mm / (2.0 * half_diagonal_px(profile) * *profile.pixel_pitch_um * 1e-3);
+        return kFullFrameDiagonal_mm / (2.0 * calibration::half_diagonal_px(profile) * *profile.pixel_pitch_um * 1e-3);
     }
     throw InputError(fmt::format(
         "{}: the profile knows no pixel pitch, so the camera's crop factor is unknown: expected --crop-factor",
         options.profile));
 }
 
-double focal_length_mm(const ExportOptions& options, const Profile& profile) {
+double focal_length_mm(const ExportOptions& options, const calibration::Profile& profile) {
     if (options.focal_length_mm > 0.0) {
         return options.focal_length_mm;
     }
@@ -68,15 +68,15 @@ double focal_length_mm(const ExportOptions& options, const Profile& profile) {
         return *profile.source.notes->focal_length_mm;
     }
     if (profile.pixel_pitch_um && profile.geometry) {
-        return focal_length_px(profile.geometry->model) * *profile.pixel_pitch_um * 1e-3;
+        return calibration::focal_length_px(profile.geometry->model) * *profile.pixel_pitch_um * 1e-3;
     }
     throw InputError(fmt::format(
         "{}: the profile knows no pixel pitch, so the focal length in mm is unknown: expected --focal-length-mm",
         options.profile));
 }
 
-Written write_lensfun(const ExportOptions& options, const Profile& profile) {
-    LensfunOptions lens;
+Written write_lensfun(const ExportOptions& options, const calibration::Profile& profile) {
+    calibration::LensfunOptions lens;
     lens.crop_factor = crop_factor(options, profile);
     lens.focal_length_mm = focal_length_mm(options, profile);
     if (options.f_number > 0.0) {
@@ -90,15 +90,15 @@ Written write_lensfun(const ExportOptions& options, const Profile& profile) {
     lens.maker = !options.maker.empty() ? options.maker : camera_maker.empty() ? "unknown" : camera_maker;
     lens.model = !options.lens.empty() ? options.lens : profile.source.lens.empty() ? "unknown" : profile.source.lens;
     if (!options.lens_type.empty()) {
-        lens.type = ideal_projection(options.lens_type);
+        lens.type = calibration::ideal_projection(options.lens_type);
     }
-    const LensfunExport result = lensfun_export(profile, lens);
+    const calibration::LensfunExport result = calibration::lensfun_export(profile, lens);
     write_file(options.output, result.xml);
     return {.files = {options.output}, .notes = result.notes, .largest_difference_px = result.largest_difference_px};
 }
 
-Written write_opencv(const ExportOptions& options, const Profile& profile) {
-    const OpencvExport result = opencv_export(profile);
+Written write_opencv(const ExportOptions& options, const calibration::Profile& profile) {
+    const calibration::OpencvExport result = calibration::opencv_export(profile);
     write_file(options.output, result.yaml);
     return {.files = {options.output}, .notes = result.notes, .largest_difference_px = result.largest_difference_px};
 }
@@ -108,24 +108,25 @@ fs::path with_suffix(const fs::path& file, const std::string& suffix) {
     return file.parent_path() / (file.stem().string() + suffix + file.extension().string());
 }
 
-Written write_st_maps(const ExportOptions& options, const Profile& profile) {
+Written write_st_maps(const ExportOptions& options, const calibration::Profile& profile) {
     if (fs::path(options.output).extension() != ".exr") {
         throw InputError(
             fmt::format("-o {}: ST-maps are EXR files, expected a name that ends in .exr", options.output));
     }
-    const StMaps maps = st_maps(profile, {.undistorted = *ideal_projection(options.undistorted),
-                                          .most_overscan = options.most_overscan_percent / 100.0,
-                                          .threads = options.common.threads});
+    const calibration::StMaps maps =
+        calibration::st_maps(profile, {.undistorted = *calibration::ideal_projection(options.undistorted),
+                                       .most_overscan = options.most_overscan_percent / 100.0,
+                                       .threads = options.common.threads});
     Written written{.files = {}, .notes = maps.notes};
     for (const auto& [suffix, map] : {std::pair("_undistort", &maps.undistort), std::pair("_distort", &maps.distort)}) {
         const fs::path file = with_suffix(options.output, suffix);
-        write_exr(map->image, file, map->placement);
+        formats::write_exr(map->image, file, map->placement);
         written.files.push_back(file.string());
     }
     return written;
 }
 
-Written write_as(const ExportOptions& options, const Profile& profile) {
+Written write_as(const ExportOptions& options, const calibration::Profile& profile) {
     if (options.format == "lensfun") {
         return write_lensfun(options, profile);
     }
@@ -135,7 +136,7 @@ Written write_as(const ExportOptions& options, const Profile& profile) {
 int run_export(const ExportOptions& options) {
     check_output_name(options.output);
     check_json_name(options.common);
-    const Profile profile = read_profile(options.profile);
+    const calibration::Profile profile = calibration::read_profile(options.profile);
     const Written written = write_as(options, profile);
     write_json_result(options.common, {{"profile", options.profile},
                                        {"to", options.format},
@@ -198,4 +199,4 @@ void add_export_command(CLI::App& app, int& status) {
     command->callback([options, &status] { status = run_export(*options); });
 }
 
-}  // namespace lensproof
+}  // namespace lensproof::cli

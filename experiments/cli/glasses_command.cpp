@@ -13,7 +13,7 @@
 #include "engine/spectral/wavelengths.h"
 #include "experiments/cli/command.h"
 
-namespace lensproof {
+namespace lensproof::cli {
 
 namespace {
 
@@ -23,21 +23,22 @@ struct GlassesOptions {
     std::vector<std::string> catalogues;
 };
 
-double index_where_covered(const Glass& glass, double wavelength_nm) {
-    return covers(glass, wavelength_nm) ? refractive_index(glass.formula, wavelength_nm)
-                                        : std::numeric_limits<double>::quiet_NaN();
+double index_where_covered(const optics::Glass& glass, double wavelength_nm) {
+    return optics::covers(glass, wavelength_nm) ? optics::refractive_index(glass.formula, wavelength_nm)
+                                                : std::numeric_limits<double>::quiet_NaN();
 }
 
 /// V_d where the formula reaches from F to C.
-double abbe_where_covered(const Glass& glass) {
-    return covers(glass, kLineF) && covers(glass, kLineC) ? abbe_number(glass.formula)
-                                                          : std::numeric_limits<double>::quiet_NaN();
+double abbe_where_covered(const optics::Glass& glass) {
+    return optics::covers(glass, spectral::kLineF) && optics::covers(glass, spectral::kLineC)
+               ? optics::abbe_number(glass.formula)
+               : std::numeric_limits<double>::quiet_NaN();
 }
 
-nlohmann::ordered_json summary(const Glass& glass) {
+nlohmann::ordered_json summary(const optics::Glass& glass) {
     return {{"glass", glass.name},
             {"catalogue", glass.catalogue},
-            {"n_d", number_or_null(index_where_covered(glass, kLineD))},
+            {"n_d", number_or_null(index_where_covered(glass, spectral::kLineD))},
             {"V_d", number_or_null(abbe_where_covered(glass))},
             {"min_wavelength_nm", glass.min_wavelength_nm},
             {"max_wavelength_nm", glass.max_wavelength_nm},
@@ -46,13 +47,13 @@ nlohmann::ordered_json summary(const Glass& glass) {
             {"note", glass.note}};
 }
 
-int list_glasses(const GlassesOptions& options, const GlassCatalogue& catalogue) {
+int list_glasses(const GlassesOptions& options, const optics::GlassCatalogue& catalogue) {
     nlohmann::ordered_json glasses = nlohmann::ordered_json::array();
-    for (const Glass& glass : catalogue.glasses()) {
+    for (const optics::Glass& glass : catalogue.glasses()) {
         glasses.push_back(summary(glass));
         if (prints_text(options.common)) {
             fmt::print("{:12} {:8} n_d {:.5f}  V_d {:5.2f}  {:4.0f} to {:4.0f} nm  {:8}  {}\n", glass.name,
-                       glass.catalogue, index_where_covered(glass, kLineD), abbe_where_covered(glass),
+                       glass.catalogue, index_where_covered(glass, spectral::kLineD), abbe_where_covered(glass),
                        glass.min_wavelength_nm, glass.max_wavelength_nm, glass.status, glass.source);
         }
     }
@@ -61,32 +62,34 @@ int list_glasses(const GlassesOptions& options, const GlassCatalogue& catalogue)
 }
 
 /// The lines of a maker's sheet, from i to t.
-nlohmann::ordered_json index_rows(const Glass& glass) {
+nlohmann::ordered_json index_rows(const optics::Glass& glass) {
     nlohmann::ordered_json rows = nlohmann::ordered_json::array();
-    for (const SpectralLine& line : spectral_lines()) {
+    for (const spectral::SpectralLine& line : spectral::spectral_lines()) {
         const double n = index_where_covered(glass, line.wavelength_nm);
         const double reference_C = glass.thermal ? glass.thermal->reference_C : 20.0;
         rows.push_back({{"line", line.name},
                         {"wavelength_nm", line.wavelength_nm},
                         {"n", number_or_null(n)},
-                        {"n_in_vacuum", number_or_null(absolute_index(n, line.wavelength_nm, reference_C))},
-                        {"dn_dT_relative_per_K", number_or_null(dn_dT_relative(glass, line.wavelength_nm))},
-                        {"dn_dT_absolute_per_K", number_or_null(dn_dT_absolute(glass, line.wavelength_nm))}});
+                        {"n_in_vacuum", number_or_null(optics::absolute_index(n, line.wavelength_nm, reference_C))},
+                        {"dn_dT_relative_per_K", number_or_null(optics::dn_dT_relative(glass, line.wavelength_nm))},
+                        {"dn_dT_absolute_per_K", number_or_null(optics::dn_dT_absolute(glass, line.wavelength_nm))}});
     }
     return rows;
 }
 
-nlohmann::ordered_json sheet(const Glass& glass, const std::vector<std::string>& also_in) {
+nlohmann::ordered_json sheet(const optics::Glass& glass, const std::vector<std::string>& also_in) {
     nlohmann::ordered_json json = summary(glass);
-    const bool visible = covers(glass, kLineG) && covers(glass, kLineC);
+    const bool visible = optics::covers(glass, spectral::kLineG) && optics::covers(glass, spectral::kLineC);
     json["also_in"] = also_in;
     json["stated_n_d"] = glass.stated_n_d ? nlohmann::ordered_json(*glass.stated_n_d) : nullptr;
     json["stated_V_d"] = glass.stated_V_d ? nlohmann::ordered_json(*glass.stated_V_d) : nullptr;
-    json["V_e"] = visible ? number_or_null(abbe_number_e(glass.formula)) : nullptr;
-    json["P_gF"] = visible ? number_or_null(partial_dispersion(glass.formula, kLineG, kLineF)) : nullptr;
+    json["V_e"] = visible ? number_or_null(optics::abbe_number_e(glass.formula)) : nullptr;
+    json["P_gF"] = visible
+                       ? number_or_null(optics::partial_dispersion(glass.formula, spectral::kLineG, spectral::kLineF))
+                       : nullptr;
     json["lines"] = index_rows(glass);
     nlohmann::ordered_json transmittance = nlohmann::ordered_json::array();
-    for (const TransmittancePoint& point : shipped_transmittance(glass)) {
+    for (const optics::TransmittancePoint& point : formats::shipped_transmittance(glass)) {
         transmittance.push_back({{"wavelength_nm", point.wavelength_nm},
                                  {"internal_transmittance", point.transmittance},
                                  {"thickness_mm", point.thickness_mm}});
@@ -131,13 +134,13 @@ void print_sheet(const nlohmann::ordered_json& json) {
     }
 }
 
-int show_glasses(const GlassesOptions& options, const GlassCatalogue& catalogue) {
+int show_glasses(const GlassesOptions& options, const optics::GlassCatalogue& catalogue) {
     nlohmann::ordered_json sheets = nlohmann::ordered_json::array();
     for (const std::string& name : options.names) {
-        const GlassMatch match = catalogue.resolve(name);
+        const optics::GlassMatch match = catalogue.resolve(name);
         if (!match.glass) {
             throw InputError(fmt::format("glass \"{}\" is in no catalogue; {}", printable(name),
-                                         suggestion_text(match.suggestions)));
+                                         optics::suggestion_text(match.suggestions)));
         }
         sheets.push_back(sheet(*match.glass, match.also_in));
     }
@@ -162,9 +165,9 @@ void add_glasses_command(CLI::App& app, int& status) {
     add_common_options(*command, options->common);
     command->callback([options, &status] {
         check_json_name(options->common);
-        const GlassCatalogue catalogue = read_glass_catalogues(options->catalogues);
+        const optics::GlassCatalogue catalogue = read_glass_catalogues(options->catalogues);
         status = options->names.empty() ? list_glasses(*options, catalogue) : show_glasses(*options, catalogue);
     });
 }
 
-}  // namespace lensproof
+}  // namespace lensproof::cli

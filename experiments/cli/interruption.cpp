@@ -2,7 +2,7 @@
 
 #include <atomic>
 
-namespace lensproof {
+namespace lensproof::cli {
 
 namespace {
 
@@ -35,4 +35,4 @@ bool Interruption::has_come() {
     return came;
 }
 
-}  // namespace lensproof
+}  // namespace lensproof::cli

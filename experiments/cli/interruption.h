@@ -3,7 +3,7 @@
 #include <array>
 #include <csignal>
 
-namespace lensproof {
+namespace lensproof::cli {
 
 /// While it lives, SIGINT, SIGTERM and SIGHUP are noted rather than obeyed: the first of them, a second one ends the
 /// program at once. Those that the program was started to ignore, as `nohup` does, stay ignored. One at a time.
@@ -22,4 +22,4 @@ class Interruption {
     std::array<struct sigaction, kSignals.size()> before_{};
 };
 
-}  // namespace lensproof
+}  // namespace lensproof::cli

@@ -14,7 +14,7 @@
 #include "engine/spectral/wavelengths.h"
 #include "experiments/cli/command.h"
 
-namespace lensproof {
+namespace lensproof::cli {
 
 namespace {
 
@@ -26,12 +26,12 @@ struct Figures {
     double half_field_deg;  // of the last chief ray that passes every rim
 };
 
-Figures figures_of(const Lens& lens) {
-    const ParaxialData data = paraxial_data(at_wavelength<double>(lens, kLineD));
+Figures figures_of(const optics::Lens& lens) {
+    const optics::ParaxialData data = optics::paraxial_data(optics::at_wavelength<double>(lens, spectral::kLineD));
     return {.efl_mm = data.efl,
             .bfl_mm = data.bfl,
             .f_number = data.f_number,
-            .half_field_deg = ChiefRays(lens, kLineD).largest_field() * 180.0 / std::numbers::pi};
+            .half_field_deg = optics::ChiefRays(lens, spectral::kLineD).largest_field() * 180.0 / std::numbers::pi};
 }
 
 void add_figures(nlohmann::ordered_json& json, const Figures& figures) {
@@ -41,10 +41,10 @@ void add_figures(nlohmann::ordered_json& json, const Figures& figures) {
     json["half_field_deg"] = figures.half_field_deg;
 }
 
-nlohmann::ordered_json lens_json(const std::string& id, const Prescription& prescription) {
+nlohmann::ordered_json lens_json(const std::string& id, const optics::Prescription& prescription) {
     nlohmann::ordered_json json{{"lens", id}, {"name", prescription.name}};
-    add_figures(json, figures_of(load_lens(id)));
-    json["projection"] = projection_name(prescription.projection);
+    add_figures(json, figures_of(formats::load_lens(id)));
+    json["projection"] = optics::projection_name(prescription.projection);
     json["source"] = prescription.source;
     json["design"] = prescription.design;
     json["elements"] =
@@ -53,9 +53,9 @@ nlohmann::ordered_json lens_json(const std::string& id, const Prescription& pres
     if (prescription.stated.half_field_deg) {
         json["stated_half_field_deg"] = *prescription.stated.half_field_deg;
     }
-    for (const ZoomPosition& zoom : prescription.zoom) {
+    for (const optics::ZoomPosition& zoom : prescription.zoom) {
         nlohmann::ordered_json position{{"name", zoom.name}};
-        add_figures(position, figures_of(load_lens(id, {.zoom = zoom.name})));
+        add_figures(position, figures_of(formats::load_lens(id, {.zoom = zoom.name})));
         json["zoom"].push_back(position);
     }
     return json;
@@ -108,8 +108,8 @@ int list_lenses(const CommonOptions& options) {
         fmt::print("{:25} {:>8} {:>8} {:>7} {:>8}  {:>6} {:>5}  {:12} {}\n", "lens", "efl mm", "bfl mm", "f/", "field",
                    "stated", "elem.", "design", "projection");
     }
-    for (const std::string& name : shipped_lens_names()) {
-        lenses.push_back(lens_json(name, read_prescription(find_lens_file(name))));
+    for (const std::string& name : formats::shipped_lens_names()) {
+        lenses.push_back(lens_json(name, formats::read_prescription(formats::find_lens_file(name))));
         if (prints_text(options)) {
             print_lens(lenses.back());
         }
@@ -137,4 +137,4 @@ void add_lenses_command(CLI::App& app, int& status) {
     });
 }
 
-}  // namespace lensproof
+}  // namespace lensproof::cli

@@ -15,7 +15,7 @@
 #include "engine/base/input_error.h"
 #include "experiments/cli/command.h"
 
-namespace lensproof {
+namespace lensproof::cli {
 namespace {
 
 /// Says why the program ends. Where standard error is closed too, the exit status has to do.
@@ -84,25 +84,26 @@ int run(int argc, char** argv) {
 }
 
 }  // namespace
-}  // namespace lensproof
+}  // namespace lensproof::cli
 
 int main(int argc, char** argv) {
     // A reader that closes the pipe early (`| head`) is no reason to die by a signal in the middle of a file.
     std::signal(SIGPIPE, SIG_IGN);
-    lensproof::occupy_standard_streams();
+    lensproof::cli::occupy_standard_streams();
     FLAGS_minloglevel = google::GLOG_FATAL;  // Ceres warns of steps that it then takes otherwise
     try {
-        return lensproof::flushed(lensproof::run(argc, argv));
+        return lensproof::cli::flushed(lensproof::cli::run(argc, argv));
     } catch (const lensproof::InputError& error) {
-        lensproof::say(error.what());
-        return lensproof::kUnusableInput;
+        lensproof::cli::say(error.what());
+        return lensproof::cli::kUnusableInput;
     } catch (const std::filesystem::filesystem_error& error) {
-        lensproof::say(error.what());
-        return lensproof::is_unusable_path(error.code()) ? lensproof::kUnusableInput : lensproof::kInternalFailure;
+        lensproof::cli::say(error.what());
+        return lensproof::cli::is_unusable_path(error.code()) ? lensproof::cli::kUnusableInput
+                                                              : lensproof::cli::kInternalFailure;
     } catch (const std::bad_alloc&) {
-        lensproof::say("out of memory");
+        lensproof::cli::say("out of memory");
     } catch (const std::exception& error) {
-        lensproof::say(error.what());
+        lensproof::cli::say(error.what());
     }
-    return lensproof::kInternalFailure;
+    return lensproof::cli::kInternalFailure;
 }

@@ -10,7 +10,7 @@
 #include "engine/formats/image/photo.h"
 #include "experiments/cli/measure_parts.h"
 
-namespace lensproof {
+namespace lensproof::cli {
 
 namespace {
 
@@ -24,10 +24,12 @@ double parse_wavelength(const std::string& text) {
 }
 
 // A raw mosaic holds the sensor's own, linear values, unless it is said otherwise.
-Image read_mosaic(const std::string& file, MosaicPattern pattern, const std::optional<TransferCurve>& curve) {
-    const Image image = read_photo(file, curve.value_or(TransferCurve{.kind = TransferKind::linear}));
+formats::Image read_mosaic(const std::string& file, calibration::MosaicPattern pattern,
+                           const std::optional<formats::TransferCurve>& curve) {
+    const formats::Image image =
+        formats::read_photo(file, curve.value_or(formats::TransferCurve{.kind = formats::TransferKind::linear}));
     try {
-        return mosaic_plane(image, pattern);
+        return calibration::mosaic_plane(image, pattern);
     } catch (const InputError& e) {
         throw InputError(fmt::format("{}: {}", file, e.what()));
     }
@@ -35,24 +37,25 @@ Image read_mosaic(const std::string& file, MosaicPattern pattern, const std::opt
 
 }  // namespace
 
-Profile run_bands(const MeasureOptions& options, const ProfileSource& source) {
-    BandInput input{.name = "bands",
-                    .bands = {},
-                    .reference_wavelength_nm = options.reference_band_nm,
-                    .chart = {},
-                    .centre_px = {},
-                    .source = source,
-                    .pixel_pitch_um = {}};
-    const std::optional<TransferCurve> curve = parse_transfer_curve(options.transfer);
+calibration::Profile run_bands(const MeasureOptions& options, const calibration::ProfileSource& source) {
+    calibration::BandInput input{.name = "bands",
+                                 .bands = {},
+                                 .reference_wavelength_nm = options.reference_band_nm,
+                                 .chart = {},
+                                 .centre_px = {},
+                                 .source = source,
+                                 .pixel_pitch_um = {}};
+    const std::optional<formats::TransferCurve> curve = formats::parse_transfer_curve(options.transfer);
     for (const std::string& band : options.bands) {
         const std::size_t sign = band.find('=');
         if (sign == std::string::npos || sign + 1 == band.size()) {
             throw InputError(fmt::format("--bands: found \"{}\", expected NM=FILE", band));
         }
         const std::string file = band.substr(sign + 1);
-        const auto pattern = mosaic_pattern(options.mosaic);
+        const auto pattern = calibration::mosaic_pattern(options.mosaic);
         input.bands.push_back({.wavelength_nm = parse_wavelength(band.substr(0, sign)), .name = file, .load = [=] {
-                                   return pattern ? read_mosaic(file, *pattern, curve) : read_photo(file, curve);
+                                   return pattern ? read_mosaic(file, *pattern, curve)
+                                                  : formats::read_photo(file, curve);
                                }});
     }
     if (!options.chart.empty()) {
@@ -64,7 +67,7 @@ Profile run_bands(const MeasureOptions& options, const ProfileSource& source) {
     if (options.pixel_pitch_um > 0.0) {
         input.pixel_pitch_um = options.pixel_pitch_um;
     }
-    return measure_bands(input);
+    return calibration::measure_bands(input);
 }
 
-}  // namespace lensproof
+}  // namespace lensproof::cli

@@ -13,12 +13,12 @@
 #include "engine/scene/chart_file.h"
 #include "experiments/cli/measure_parts.h"
 
-namespace lensproof {
+namespace lensproof::cli {
 
 namespace {
 
 // "x,y,width,height" or "whole".
-PixelRectangle parse_rectangle(const std::string& text) {
+calibration::PixelRectangle parse_rectangle(const std::string& text) {
     if (text == "whole") {
         return {};
     }
@@ -39,14 +39,14 @@ PixelRectangle parse_rectangle(const std::string& text) {
     return {numbers[0], numbers[1], numbers[2], numbers[3]};
 }
 
-void add_sharpness_input(MeasureInput& input, const MeasureOptions& options) {
+void add_sharpness_input(calibration::MeasureInput& input, const MeasureOptions& options) {
     for (const std::string& edge : options.edges) {
         input.edges.push_back(parse_rectangle(edge));
     }
     std::vector<std::string> names;
-    for (Picture& picture : input.pictures) {
-        if (picture.role == PictureRole::chart) {
-            picture.role = options.edges.empty() ? PictureRole::chart : PictureRole::edges;
+    for (calibration::Picture& picture : input.pictures) {
+        if (picture.role == calibration::PictureRole::chart) {
+            picture.role = options.edges.empty() ? calibration::PictureRole::chart : calibration::PictureRole::edges;
             names.push_back(picture.name);
         }
     }
@@ -60,11 +60,11 @@ void add_sharpness_input(MeasureInput& input, const MeasureOptions& options) {
     }
 }
 
-void write_and_print(const MeasureOptions& options, const Profile& profile) {
+void write_and_print(const MeasureOptions& options, const calibration::Profile& profile) {
     if (!options.output.empty()) {
-        write_profile(profile, options.output);
+        calibration::write_profile(profile, options.output);
     }
-    write_json_result(options.common, to_json(profile));
+    write_json_result(options.common, calibration::to_json(profile));
     if (prints_text(options.common)) {
         print_profile(profile);
     }
@@ -72,7 +72,7 @@ void write_and_print(const MeasureOptions& options, const Profile& profile) {
 
 const CLI::Validator kTransferOption(
     [](const std::string& text) {
-        return parse_transfer_curve(text)
+        return formats::parse_transfer_curve(text)
                    ? std::string()
                    : fmt::format("'{}' is no curve: expected srgb, rec709, linear or gamma:2.2", text);
     },
@@ -85,7 +85,7 @@ std::vector<std::filesystem::path> expanded(const std::vector<std::string>& name
         if (!std::filesystem::is_directory(name)) {
             check_readable(name);
         }
-        const std::vector<std::filesystem::path> found = picture_files(name);
+        const std::vector<std::filesystem::path> found = calibration::picture_files(name);
         files.insert(files.end(), found.begin(), found.end());
     }
     return files;
@@ -96,7 +96,8 @@ int run_measure(const MeasureOptions& options) {
         check_output_name(options.output);
     }
     check_json_name(options.common);
-    const ProfileSource source{.kind = options.kind, .images = {}, .camera = options.camera, .lens = options.lens};
+    const calibration::ProfileSource source{
+        .kind = options.kind, .images = {}, .camera = options.camera, .lens = options.lens};
     if (options.bands.empty() == options.images.empty()) {
         throw InputError("measure: expected pictures, or --bands NM=FILE,… instead of them");
     }
@@ -104,7 +105,7 @@ int run_measure(const MeasureOptions& options) {
         write_and_print(options, run_bands(options, source));
         return kDone;
     }
-    MeasureInput input;
+    calibration::MeasureInput input;
     input.name = options.images.front();
     if (options.chart.empty() == options.edges.empty()) {
         throw InputError("measure: expected --chart FILE, or --edge for pictures of edges without a chart");
@@ -113,36 +114,36 @@ int run_measure(const MeasureOptions& options) {
         input.chart = chart_to_find(options.chart);
     }
     input.self_test = !options.no_self_test;
-    input.model = model_kind(options.model);  // none for "auto"
+    input.model = calibration::model_kind(options.model);  // none for "auto"
     input.source = source;
     input.geometry.fit_board_shape = options.fit_board_shape;
     input.geometry.fit_stretch = options.aspect == "free";
     if (options.pixel_pitch_um > 0.0) {
         input.pixel_pitch_um = options.pixel_pitch_um;
     }
-    const PhotoSurvey survey =
-        survey_photos(expanded(options.images), expanded(options.flat_fields), parse_transfer_curve(options.transfer));
-    take_survey(input, survey);
+    const calibration::PhotoSurvey survey = calibration::survey_photos(
+        expanded(options.images), expanded(options.flat_fields), formats::parse_transfer_curve(options.transfer));
+    calibration::take_survey(input, survey);
     add_sharpness_input(input, options);
-    const Profile profile = measure_surveyed(input);
+    const calibration::Profile profile = calibration::measure_surveyed(input);
     write_and_print(options, profile);
     return kDone;
 }
 
 }  // namespace
 
-Chart chart_to_find(const std::string& file) {
-    Chart chart = read_chart_file(file);
-    if (std::holds_alternative<FlatField>(chart.pattern)) {
+scene::Chart chart_to_find(const std::string& file) {
+    scene::Chart chart = scene::read_chart_file(file);
+    if (std::holds_alternative<scene::FlatField>(chart.pattern)) {
         throw InputError(
             fmt::format("{}: the chart is a flat field, expected one of {}; pictures of an even surface "
                         "are given with --flat-field",
-                        file, detectable_kinds()));
+                        file, calibration::detectable_kinds()));
     }
-    if (!can_detect(chart) && !std::holds_alternative<SiemensStar>(chart.pattern)) {
+    if (!calibration::can_detect(chart) && !std::holds_alternative<scene::SiemensStar>(chart.pattern)) {
         throw InputError(
             fmt::format("{}: the chart is of kind {}, which is not measured: expected one of {}, siemens-star", file,
-                        kind_name(chart), detectable_kinds()));
+                        scene::kind_name(chart), calibration::detectable_kinds()));
     }
     return chart;
 }
@@ -168,7 +169,7 @@ void add_measure_command(CLI::App& app, int& status) {
         ->delimiter(',');
     command->add_option("--flat-field", options->flat_fields, "Pictures of an even surface, for vignetting")
         ->type_name("FILE");
-    std::vector<std::string> models = model_kind_names();
+    std::vector<std::string> models = calibration::model_kind_names();
     models.emplace_back("auto");
     command
         ->add_option("--model", options->model,
@@ -212,4 +213,4 @@ void add_measure_command(CLI::App& app, int& status) {
     command->callback([options, &status] { status = run_measure(*options); });
 }
 
-}  // namespace lensproof
+}  // namespace lensproof::cli

@@ -8,7 +8,7 @@
 #include "engine/scene/chart.h"
 #include "experiments/cli/command.h"
 
-namespace lensproof {
+namespace lensproof::cli {
 
 /// The command line as it was given.
 struct MeasureOptions {
@@ -18,8 +18,8 @@ struct MeasureOptions {
     std::string chart;
     std::string model = "auto";
     std::string output;
-    std::string lens = kUnknown;
-    std::string camera = kUnknown;
+    std::string lens = calibration::kUnknown;
+    std::string camera = calibration::kUnknown;
     std::string kind = "photo";
     std::string transfer;
     double pixel_pitch_um = 0.0;
@@ -35,12 +35,12 @@ struct MeasureOptions {
 };
 
 /// The chart of a file that has one. Throws InputError for a kind that is not measured.
-Chart chart_to_find(const std::string& file);
+scene::Chart chart_to_find(const std::string& file);
 
 /// `--bands`: one scene in narrow bands.
-Profile run_bands(const MeasureOptions& options, const ProfileSource& source);
+calibration::Profile run_bands(const MeasureOptions& options, const calibration::ProfileSource& source);
 
 /// The profile as text on standard output.
-void print_profile(const Profile& profile);
+void print_profile(const calibration::Profile& profile);
 
-}  // namespace lensproof
+}  // namespace lensproof::cli

@@ -6,26 +6,26 @@
 
 #include "experiments/cli/measure_parts.h"
 
-namespace lensproof {
+namespace lensproof::cli {
 
 namespace {
 
-void print_curve(const Profile& profile, const std::string& name, const char* label, const char* unit) {
+void print_curve(const calibration::Profile& profile, const std::string& name, const char* label, const char* unit) {
     const auto found = profile.curves.find(name);
     if (found == profile.curves.end()) {
         return;
     }
-    const Curve& curve = found->second;
+    const calibration::Curve& curve = found->second;
     const double height =  // some curves are extrapolated beyond what was covered, some end before it
         curve.image_height.empty() ? 0.0 : std::min(curve.covered_image_height, curve.image_height.back());
-    if (const std::optional<Banded> end = sample(curve, height)) {
+    if (const std::optional<calibration::Banded> end = calibration::sample(curve, height)) {
         fmt::print("{:22} {:9.4f} ± {:.4f} {} at image height {:.2f}\n", label, end->value,
-                   (end->upper_95 - end->lower_95) / (2.0 * k95), unit, height);
+                   (end->upper_95 - end->lower_95) / (2.0 * calibration::k95), unit, height);
     }
 }
 
-void print_edge(const std::string& channel, const ProfileEdge& listed) {
-    const EdgeMtf& edge = listed.edge;
+void print_edge(const std::string& channel, const calibration::ProfileEdge& listed) {
+    const calibration::EdgeMtf& edge = listed.edge;
     if (edge.mtf50) {
         fmt::print("{:22} {:9.4f} ± {:.4f} cycles/px at ({:.1f}, {:.1f}) px, edge normal {:.1f}°\n",
                    fmt::format("MTF50 {}", channel), edge.mtf50->cycles_per_px, edge.mtf50->standard_error,
@@ -33,11 +33,11 @@ void print_edge(const std::string& channel, const ProfileEdge& listed) {
     }
 }
 
-void print_star(const std::string& channel, const ProfileStar& listed) {
-    const StarMtf& star = listed.star;
+void print_star(const std::string& channel, const calibration::ProfileStar& listed) {
+    const calibration::StarMtf& star = listed.star;
     fmt::print("{:22} at ({:.1f}, {:.1f}), {:.0f} x {:.0f} px\n", "star " + channel, star.centre_px.x, star.centre_px.y,
                2.0 * star.outline.long_half_axis_px, 2.0 * star.outline.short_half_axis_px);
-    for (const StarSegment& segment : star.segments) {
+    for (const calibration::StarSegment& segment : star.segments) {
         const std::string label = fmt::format("  along {:.0f}° (at {:.0f}°)", segment.frequency_deg, segment.side_deg);
         if (segment.mtf50) {
             fmt::print("{:22} MTF50 {:.4f} ± {:.4f} cycles/px\n", label, segment.mtf50->cycles_per_px,
@@ -49,9 +49,9 @@ void print_star(const std::string& channel, const ProfileStar& listed) {
     }
 }
 
-void print_sharpness(const Profile& profile) {
+void print_sharpness(const calibration::Profile& profile) {
     for (const auto& [channel, stars] : profile.siemens_stars) {
-        for (const ProfileStar& star : stars) {
+        for (const calibration::ProfileStar& star : stars) {
             print_star(channel, star);
         }
     }
@@ -70,14 +70,15 @@ void print_sharpness(const Profile& profile) {
 }
 
 /// A line for each picture: used or left out, and why.
-void print_account(const Profile& profile) {
-    const auto used = std::ranges::count_if(profile.pictures, [](const PictureAccount& p) { return p.used; });
+void print_account(const calibration::Profile& profile) {
+    const auto used =
+        std::ranges::count_if(profile.pictures, [](const calibration::PictureAccount& p) { return p.used; });
     fmt::print("{} of {} pictures used\n", used, profile.pictures.size());
     std::size_t widest = 0;
-    for (const PictureAccount& picture : profile.pictures) {
+    for (const calibration::PictureAccount& picture : profile.pictures) {
         widest = std::max(widest, picture.image.size());
     }
-    for (const PictureAccount& picture : profile.pictures) {
+    for (const calibration::PictureAccount& picture : profile.pictures) {
         const std::string held = picture.orientation == 1
                                      ? ""
                                      : fmt::format("EXIF orientation {} not applied: the sensor's rows count{}",
@@ -93,16 +94,16 @@ void print_account(const Profile& profile) {
 
 }  // namespace
 
-void print_profile(const Profile& profile) {
+void print_profile(const calibration::Profile& profile) {
     print_account(profile);
     if (profile.geometry) {
-        const ProfileGeometry& geometry = *profile.geometry;
-        const std::vector<std::string> names = parameter_names(geometry.model);
-        const std::vector<double> values = parameters(geometry.model);
-        fmt::print("{}: {} points in {} views, rms {:.4f} px\n", kind_name(geometry.model), geometry.points_used,
-                   geometry.views_used, geometry.reprojection_rms_px);
+        const calibration::ProfileGeometry& geometry = *profile.geometry;
+        const std::vector<std::string> names = calibration::parameter_names(geometry.model);
+        const std::vector<double> values = calibration::parameters(geometry.model);
+        fmt::print("{}: {} points in {} views, rms {:.4f} px\n", calibration::kind_name(geometry.model),
+                   geometry.points_used, geometry.views_used, geometry.reprojection_rms_px);
         for (std::size_t i = 0; i < names.size(); ++i) {
-            if (names[i] == kStretchY && values[i] == 0.0) {
+            if (names[i] == calibration::kStretchY && values[i] == 0.0) {
                 continue;  // square pixels
             }
             fmt::print("{:22} {:.6g} ± {:.2g}", names[i], values[i], geometry.standard_error(i));
@@ -112,9 +113,10 @@ void print_profile(const Profile& profile) {
         }
     }
     if (profile.geometry && profile.geometry->board) {
-        for (std::size_t i = 0; i < kBoardTerms; ++i) {
-            fmt::print("{:22} {:.4f} ± {:.2g}\n", kBoardTermNames[i], profile.geometry->board->height_mm[i],
-                       standard_error_mm(*profile.geometry->board, i));
+        for (std::size_t i = 0; i < calibration::kBoardTerms; ++i) {
+            fmt::print("{:22} {:.4f} ± {:.2g}\n", calibration::kBoardTermNames[i],
+                       profile.geometry->board->height_mm[i],
+                       calibration::standard_error_mm(*profile.geometry->board, i));
         }
     }
     if (profile.geometry && profile.geometry->choice) {
@@ -145,7 +147,7 @@ void print_profile(const Profile& profile) {
         }
     }
     if (profile.self_test) {
-        fmt::print("{:22} {}\n", "floor of the method", describe_floor(*profile.self_test));
+        fmt::print("{:22} {}\n", "floor of the method", calibration::describe_floor(*profile.self_test));
     }
     print_sharpness(profile);
     for (const auto& [what, why] : profile.not_measured) {
@@ -153,4 +155,4 @@ void print_profile(const Profile& profile) {
     }
 }
 
-}  // namespace lensproof
+}  // namespace lensproof::cli

@@ -16,7 +16,7 @@
 #include "experiments/cli/render_job.h"
 #include "experiments/cli/shard.h"
 
-namespace lensproof {
+namespace lensproof::cli {
 
 namespace {
 
@@ -30,12 +30,12 @@ struct MergeOptions {
 /// A file and what its first look says.
 struct Part {
     std::string file;
-    FilmNotes notes;
+    render::FilmNotes notes;
     ShardSet shards;
 };
 
 Part look_at(const std::string& file) {
-    FilmNotes notes = read_film_notes(file);
+    render::FilmNotes notes = render::read_film_notes(file);
     const auto text = notes.metadata.find(kShardNote);
     if (text == notes.metadata.end()) {
         throw InputError(fmt::format("{}: is not a shard, expected a picture that `render --shard` made", file));
@@ -48,8 +48,8 @@ Part look_at(const std::string& file) {
 }
 
 /// Everything that has to be the same in shards of one render.
-RenderIdentity common_to_shards(const Part& part) {
-    RenderIdentity identity = part.notes.identity;
+render::RenderIdentity common_to_shards(const Part& part) {
+    render::RenderIdentity identity = part.notes.identity;
     for (const auto& [name, value] : part.notes.metadata) {
         if (name != kShardNote) {
             identity.push_back({name, value});
@@ -64,7 +64,7 @@ ShardSet united(const std::vector<Part>& parts) {
     ShardSet all{.indices = {}, .count = first.shards.count};
     std::map<int, std::string> holder;
     for (const Part& part : parts) {
-        if (const auto difference = first_difference(common_to_shards(part), common_to_shards(first))) {
+        if (const auto difference = render::first_difference(common_to_shards(part), common_to_shards(first))) {
             throw InputError(fmt::format("{}: is of another render than {}: {}", part.file, first.file, *difference));
         }
         if (part.shards.count != all.count) {
@@ -86,11 +86,11 @@ ShardSet united(const std::vector<Part>& parts) {
 }
 
 /// Adds the films up in the order of the shards, so that the order of the files makes no difference to any bit.
-FilmFile sum_of(std::vector<Part> parts) {
+render::FilmFile sum_of(std::vector<Part> parts) {
     std::ranges::sort(parts, {}, [](const Part& part) { return part.shards.indices.front(); });
-    FilmFile sum = read_film_exr(parts.front().file);
+    render::FilmFile sum = render::read_film_exr(parts.front().file);
     for (std::size_t i = 1; i < parts.size(); ++i) {
-        const FilmFile more = read_film_exr(parts[i].file);
+        const render::FilmFile more = render::read_film_exr(parts[i].file);
         if (!sum.film.can_merge(more.film)) {
             throw InputError(
                 fmt::format("{}: has another size or other layers than {}", parts[i].file, parts.front().file));
@@ -117,14 +117,14 @@ int run_merge(const MergeOptions& options) {
         throw InputError(fmt::format("{} of {} shards are missing: {}; expected all of them, or --partial",
                                      missing.size(), shards.count, shard_list(missing, ", ")));
     }
-    FilmFile sum = sum_of(std::move(parts));
+    render::FilmFile sum = sum_of(std::move(parts));
     if (missing.empty()) {
         sum.notes.metadata.erase(kShardNote);
     } else {
         sum.notes.metadata[kShardNote] = shard_set_text(shards);
     }
-    write_film_exr(sum.film, sum.notes, exr);
-    write_png(film_rgb(sum.film), png);
+    render::write_film_exr(sum.film, sum.notes, exr);
+    formats::write_png(render::film_rgb(sum.film), png);
     const std::optional<RawFiles> raw = write_raw_files(sum.film, sum.notes, exr, options.common.threads);
     nlohmann::ordered_json json = {
         {"shards", shards.indices}, {"missing", missing}, {"exr", exr.string()}, {"png", png.string()}};
@@ -155,4 +155,4 @@ void add_merge_command(CLI::App& app, int& status) {
     command->callback([options, &status] { status = run_merge(*options); });
 }
 
-}  // namespace lensproof
+}  // namespace lensproof::cli

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cstdio>
 
-namespace lensproof {
+namespace lensproof::cli {
 
 namespace {
 
@@ -55,4 +55,4 @@ void ProgressBar::update(double done, double seconds_left, const std::string& no
     std::fflush(stderr);
 }
 
-}  // namespace lensproof
+}  // namespace lensproof::cli

@@ -4,7 +4,7 @@
 #include <functional>
 #include <string>
 
-namespace lensproof {
+namespace lensproof::cli {
 
 /// Draws "label [####....] 42 %, 12 s left" while work goes on; clears the line at the end of its life.
 class ProgressBar {
@@ -31,4 +31,4 @@ class ProgressBar {
     std::chrono::steady_clock::time_point drawn_;
 };
 
-}  // namespace lensproof
+}  // namespace lensproof::cli

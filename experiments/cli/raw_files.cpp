@@ -12,14 +12,14 @@
 #include "engine/render/film_image.h"
 #include "engine/render/raw_sensor.h"
 
-namespace lensproof {
+namespace lensproof::cli {
 
 namespace {
 
 constexpr double kNoticeable = 0.3;  // adds 5 % to the noise
 
 /// The render's seed; 0 where the film does not say.
-std::uint64_t seed_of(const FilmNotes& notes) {
+std::uint64_t seed_of(const render::FilmNotes& notes) {
     std::uint64_t seed = 0;
     for (const auto& [name, value] : notes.identity) {
         if (name == "seed") {
@@ -31,8 +31,8 @@ std::uint64_t seed_of(const FilmNotes& notes) {
 
 /// What the film is wrong by, in electrons, over what the sensor adds: their variances' ratio, the mean over all
 /// values.
-double noise_ratio(const Film& film, const RawSensor& sensor) {
-    const double electrons = electrons_at_saturation(sensor);
+double noise_ratio(const render::Film& film, const render::RawSensor& sensor) {
+    const double electrons = render::electrons_at_saturation(sensor);
     double sum = 0.0;
     for (int y = 0; y < film.height(); ++y) {
         for (int x = 0; x < film.width(); ++x) {
@@ -40,7 +40,7 @@ double noise_ratio(const Film& film, const RawSensor& sensor) {
             const auto add = [&](int channel, double value, double of_film, double neutral) {
                 const double scale = neutral * electrons;
                 // A pixel without light, dark or read noise has nothing to compare with.
-                sum += scale * scale * of_film / std::max(1.0, read_electrons(sensor, value, channel).variance);
+                sum += scale * scale * of_film / std::max(1.0, render::read_electrons(sensor, value, channel).variance);
             };
             add(0, rgb.x, variance.x, sensor.neutral.x);
             add(1, rgb.y, variance.y, sensor.neutral.y);
@@ -60,19 +60,19 @@ RawFiles raw_files(const std::filesystem::path& exr) {
     return files;
 }
 
-std::optional<RawFiles> write_raw_files(const Film& film, const FilmNotes& notes, const std::filesystem::path& exr,
-                                        int threads) {
+std::optional<RawFiles> write_raw_files(const render::Film& film, const render::FilmNotes& notes,
+                                        const std::filesystem::path& exr, int threads) {
     const auto sensor = notes.metadata.find(kSensorNote);
     if (sensor == notes.metadata.end() || notes.metadata.contains(kShardNote)) {
         return std::nullopt;
     }
-    Image picture = film_rgb(film);
+    formats::Image picture = render::film_rgb(film);
     picture.metadata = notes.metadata;
-    const RawSensor behind = parse_raw_sensor(sensor->second, exr);
-    const RawImage raw = expose(behind, picture, seed_of(notes), threads);
+    const render::RawSensor behind = render::parse_raw_sensor(sensor->second, exr);
+    const render::RawImage raw = render::expose(behind, picture, seed_of(notes), threads);
     RawFiles files = raw_files(exr);
-    write_raw(raw, files.raw);
-    write_png_16(develop(raw), files.demosaiced);
+    render::write_raw(raw, files.raw);
+    formats::write_png_16(render::develop(raw), files.demosaiced);
     files.noise_ratio = noise_ratio(film, behind);
     return files;
 }
@@ -91,4 +91,4 @@ void report_raw_files(const RawFiles& files, nlohmann::ordered_json& json, const
     }
 }
 
-}  // namespace lensproof
+}  // namespace lensproof::cli

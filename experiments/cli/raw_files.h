@@ -6,7 +6,7 @@
 #include "engine/render/film_exr.h"
 #include "experiments/cli/command.h"
 
-namespace lensproof {
+namespace lensproof::cli {
 
 /// The note of a film that says what sensor is behind it (`raw_sensor_text`), and that of one that is a part of a
 /// render.
@@ -24,10 +24,10 @@ RawFiles raw_files(const std::filesystem::path& exr);
 
 /// Writes both for the film whose file is `exr`, with noise by the render's seed, and says where; nothing where its
 /// notes name no sensor, or where it is a shard, whose noise says nothing of the whole's.
-std::optional<RawFiles> write_raw_files(const Film& film, const FilmNotes& notes, const std::filesystem::path& exr,
-                                        int threads);
+std::optional<RawFiles> write_raw_files(const render::Film& film, const render::FilmNotes& notes,
+                                        const std::filesystem::path& exr, int threads);
 
 /// Says what was written: keys of a machine-readable result, and where a person reads it.
 void report_raw_files(const RawFiles& files, nlohmann::ordered_json& json, const CommonOptions& common);
 
-}  // namespace lensproof
+}  // namespace lensproof::cli

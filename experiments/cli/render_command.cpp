@@ -13,14 +13,14 @@
 #include "experiments/cli/raw_files.h"
 #include "experiments/cli/render_job.h"
 
-namespace lensproof {
+namespace lensproof::cli {
 
 namespace {
 
 /// What a pixel sees: the filter asked for, or what the scene's sensor says.
-PixelFilter filter_of(const std::optional<RawSensor>& sensor, const RenderJobOptions& options) {
+render::PixelFilter filter_of(const std::optional<render::RawSensor>& sensor, const RenderJobOptions& options) {
     if (!sensor) {
-        return PixelFilter::named(options.filter);
+        return render::PixelFilter::named(options.filter);
     }
     if (options.filter != "box") {
         throw InputError(
@@ -28,7 +28,7 @@ PixelFilter filter_of(const std::optional<RawSensor>& sensor, const RenderJobOpt
                         "expected no filter",
                         options.filter, options.scene));
     }
-    return pixel_aperture(*sensor);
+    return render::pixel_aperture(*sensor);
 }
 
 /// What is wrong with the scene names its place in the file; what the camera's lens refuses is said of the camera.
@@ -43,26 +43,27 @@ auto said_of_scene(const RenderJobOptions& options, const Make& make) {
     }
 }
 
-std::string settings_of(const RenderJobOptions& options, const PixelFilter& filter) {
+std::string settings_of(const RenderJobOptions& options, const render::PixelFilter& filter) {
     return fmt::format("{} filter, {} features", filter.name(), options.has_features ? "with" : "no");
 }
 
 int render_chart_scene(const RenderJobOptions& options) {
-    const ChartScene scene = read_chart_scene(options.scene);
+    const render::ChartScene scene = render::read_chart_scene(options.scene);
     if (scene.sensor) {
         raw_files(render_files(options).exr);
     }
-    const PixelFilter filter = filter_of(scene.sensor, options);
+    const render::PixelFilter filter = filter_of(scene.sensor, options);
     const auto prepared = said_of_scene(options, [&] {
-        return std::make_unique<ChartCamera>(scene.camera, scene.light, scene.spectral, Cache::standard(), filter);
+        return std::make_unique<render::ChartCamera>(scene.camera, scene.light, scene.spectral, Cache::standard(),
+                                                     filter);
     });
-    const ChartCamera& camera = *prepared;
+    const render::ChartCamera& camera = *prepared;
     if (!camera.spectral().clamp_note.empty()) {
         fmt::print(stderr, "lensproof: {}\n", camera.spectral().clamp_note);
     }
-    SeenChart view = camera.view(scene.chart, scene.placement);
+    render::SeenChart view = camera.view(scene.chart, scene.placement);
     view.has_features = options.has_features;
-    const ChartRender render(std::move(view), camera.pupil(), options.common.seed);
+    const render::ChartRender render(std::move(view), camera.pupil(), options.common.seed);
     RenderJob job;
     job.film = render.film();
     job.make_renderer = [&render] { return render.make_renderer(); };
@@ -79,9 +80,9 @@ int render_chart_scene(const RenderJobOptions& options) {
 }
 
 /// Of the file and all files that it names.
-std::string scene_hash(const SceneSetup& setup, const std::string& file) {
+std::string scene_hash(const render::SceneSetup& setup, const std::string& file) {
     std::string hashes = hash_text(read_file(file));
-    for (const std::filesystem::path& named : named_files(setup.scene)) {
+    for (const std::filesystem::path& named : scene::named_files(setup.scene)) {
         hashes += hash_text(read_file(named));
     }
     return hash_text(hashes);
@@ -99,29 +100,29 @@ std::string kept_apart(PathsFrom from) {
     return from == PathsFrom::camera ? "" : from == PathsFrom::light ? ", light paths" : ", camera and light paths";
 }
 
-TileRenderer renderer_of(const SceneView& view, const CameraEnd* end, PathsFrom from) {
+render::TileRenderer renderer_of(const render::SceneView& view, const render::CameraEnd* end, PathsFrom from) {
     if (from == PathsFrom::camera) {
-        return scene_renderer(view);
+        return render::scene_renderer(view);
     }
-    return from == PathsFrom::light ? light_path_renderer(view, *end) : both_paths_renderer(view, *end);
+    return from == PathsFrom::light ? render::light_path_renderer(view, *end) : render::both_paths_renderer(view, *end);
 }
 
 int render_scene(const RenderJobOptions& options, PathsFrom from) {
-    const SceneSetup setup = read_scene_setup(options.scene);
+    const render::SceneSetup setup = render::read_scene_setup(options.scene);
     if (setup.sensor) {
         raw_files(render_files(options).exr);
     }
-    const PixelFilter filter = filter_of(setup.sensor, options);
-    const auto scene =
-        said_of_scene(options, [&] { return std::make_unique<PreparedScene>(setup, filter, Cache::standard()); });
+    const render::PixelFilter filter = filter_of(setup.sensor, options);
+    const auto scene = said_of_scene(
+        options, [&] { return std::make_unique<render::PreparedScene>(setup, filter, Cache::standard()); });
     for (const std::string& remark : scene->remarks()) {
         fmt::print(stderr, "lensproof: {}\n", remark);
     }
-    SceneView view = scene->view(options.common.seed, options.has_features);
+    render::SceneView view = scene->view(options.common.seed, options.has_features);
     view.film.has_splats = from != PathsFrom::camera;
     RenderJob job;
     job.film = view.film;
-    const CameraEnd* end = from != PathsFrom::camera ? &scene->camera_end(Cache::standard()) : nullptr;
+    const render::CameraEnd* end = from != PathsFrom::camera ? &scene->camera_end(Cache::standard()) : nullptr;
     job.make_renderer = [&view, end, from] { return renderer_of(view, end, from); };
     job.identity = {{"scene", scene_hash(setup, options.scene)},
                     {"lens", scene->camera_hash()},
@@ -169,4 +170,4 @@ void add_render_command(CLI::App& app, int& status) {
     command->callback([options, paths, &status] { status = run_render(*options, paths_from(*paths)); });
 }
 
-}  // namespace lensproof
+}  // namespace lensproof::cli

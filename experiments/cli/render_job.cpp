@@ -15,7 +15,7 @@
 #include "experiments/cli/progress.h"
 #include "experiments/cli/raw_files.h"
 
-namespace lensproof {
+namespace lensproof::cli {
 
 namespace {
 
@@ -45,13 +45,13 @@ std::uint32_t whole_samples(const RenderJob& job, const RenderJobOptions& option
     if (options.samples > 0) {
         return options.samples;
     }
-    return options.time_s > 0.0 || options.noise > 0.0 ? kMostSamples : job.samples;
+    return options.time_s > 0.0 || options.noise > 0.0 ? render::kMostSamples : job.samples;
 }
 
-SampleRange range_of(const RenderJob& job, const RenderJobOptions& options) {
+render::SampleRange range_of(const RenderJob& job, const RenderJobOptions& options) {
     const Shard shard = shard_of(options);
     const std::uint32_t samples = whole_samples(job, options);
-    const SampleRange range = shard.part_of(samples);
+    const render::SampleRange range = shard.part_of(samples);
     if (range.first == range.end) {
         throw InputError(fmt::format("--shard is \"{}\": {} samples a pixel leave it none, expected {} shards at most",
                                      options.shard, samples, samples));
@@ -59,8 +59,8 @@ SampleRange range_of(const RenderJob& job, const RenderJobOptions& options) {
     return range;
 }
 
-RenderGoal goal_of(const RenderJobOptions& options) {
-    RenderGoal goal;
+render::RenderGoal goal_of(const RenderJobOptions& options) {
+    render::RenderGoal goal;
     if (options.time_s > 0.0) {
         goal.seconds = options.time_s;
     }
@@ -72,26 +72,26 @@ RenderGoal goal_of(const RenderJobOptions& options) {
 /// What is done from time to time while a render runs: the bar, the preview, the checkpoint.
 class RenderWatch {
   public:
-    RenderWatch(const RenderJobOptions& options, const RenderIdentity& identity)
+    RenderWatch(const RenderJobOptions& options, const render::RenderIdentity& identity)
         : options_(options), identity_(identity), bar_("rendering", options.common.quiet) {}
 
-    void look(const RenderState& state, const RenderReport& report) {
+    void look(const render::RenderState& state, const render::RenderReport& report) {
         bar_.update(report.done, report.seconds_left, speed(report));
         // Drawing takes a twentieth of the time at most.
         if (!options_.preview.empty() && seconds_since(preview_) > std::max(1.0, 20.0 * preview_cost_s_)) {
             const Clock::time_point start = Clock::now();
-            write_png(film_rgb(state.film), options_.preview);
+            formats::write_png(render::film_rgb(state.film), options_.preview);
             preview_cost_s_ = seconds_since(start);
             preview_ = Clock::now();
         }
         if (!options_.checkpoint.empty() && seconds_since(checkpoint_) > options_.checkpoint_interval_s) {
-            write_checkpoint(options_.checkpoint, identity_, state);
+            render::write_checkpoint(options_.checkpoint, identity_, state);
             checkpoint_ = Clock::now();
         }
     }
 
   private:
-    static std::string speed(const RenderReport& report) {
+    static std::string speed(const render::RenderReport& report) {
         const bool has_rays = report.rays > 0;
         const auto count = static_cast<double>(has_rays ? report.rays : report.samples);
         return fmt::format("{:.2f} M {}/s", 1e-6 * count / std::max(1e-9, report.seconds),
@@ -99,7 +99,7 @@ class RenderWatch {
     }
 
     const RenderJobOptions& options_;
-    const RenderIdentity& identity_;
+    const render::RenderIdentity& identity_;
     ProgressBar bar_;
     Clock::time_point preview_ = Clock::now() - std::chrono::hours(1);  // the first at once
     double preview_cost_s_ = 0.0;
@@ -107,7 +107,7 @@ class RenderWatch {
 };
 
 /// Samples a pixel, the mean over the film.
-double mean_samples(const RenderState& state) {
+double mean_samples(const render::RenderState& state) {
     double sum = 0.0;
     for (int y = 0; y < state.film.height(); ++y) {
         for (int x = 0; x < state.film.width(); ++x) {
@@ -118,10 +118,10 @@ double mean_samples(const RenderState& state) {
 }
 
 /// Saves what there is, and says how to go on.
-int end_early(const RenderState& state, const RenderIdentity& identity, const RenderJobOptions& options,
+int end_early(const render::RenderState& state, const render::RenderIdentity& identity, const RenderJobOptions& options,
               const RenderFiles& files) {
     const std::string checkpoint = options.checkpoint.empty() ? files.exr.string() + ".checkpoint" : options.checkpoint;
-    write_checkpoint(checkpoint, identity, state);
+    render::write_checkpoint(checkpoint, identity, state);
     fmt::print(stderr,
                "lensproof: interrupted after {:.1f} samples a pixel of {}; the same command with --checkpoint {} goes "
                "on from there\n",
@@ -129,11 +129,12 @@ int end_early(const RenderState& state, const RenderIdentity& identity, const Re
     return kInternalFailure;
 }
 
-FilmNotes notes_of(const RenderJob& job, const RenderJobOptions& options, const RenderIdentity& identity) {
-    FilmNotes notes = job.notes;
+render::FilmNotes notes_of(const RenderJob& job, const RenderJobOptions& options,
+                           const render::RenderIdentity& identity) {
+    render::FilmNotes notes = job.notes;
     notes.identity = identity;
     if (job.sensor) {
-        notes.metadata[kSensorNote] = raw_sensor_text(*job.sensor);
+        notes.metadata[kSensorNote] = render::raw_sensor_text(*job.sensor);
     }
     notes.metadata["lensproof:samplesPerPixel"] = fmt::format("{}", whole_samples(job, options));
     if (options.time_s > 0.0) {
@@ -149,16 +150,16 @@ FilmNotes notes_of(const RenderJob& job, const RenderJobOptions& options, const 
     return notes;
 }
 
-void report(const RenderJob& job, const RenderState& state, const RenderJobOptions& options, const RenderFiles& files,
-            const std::optional<RawFiles>& raw) {
+void report(const RenderJob& job, const render::RenderState& state, const RenderJobOptions& options,
+            const RenderFiles& files, const std::optional<RawFiles>& raw) {
     nlohmann::ordered_json json = job.json;
     json["samples_per_pixel"] = mean_samples(state);
     json["seed"] = options.common.seed;
     if (!options.shard.empty()) {
         json["shard"] = options.shard;
     }
-    const PixelRect all{.x = 0, .y = 0, .width = state.film.width(), .height = state.film.height()};
-    json["relative_error"] = tile_error(state.film, all, 0.01 * mean_brightness(state.film));
+    const render::PixelRect all{.x = 0, .y = 0, .width = state.film.width(), .height = state.film.height()};
+    json["relative_error"] = render::tile_error(state.film, all, 0.01 * render::mean_brightness(state.film));
     report_left_out(state.film, json);
     json["exr"] = files.exr.string();
     json["png"] = files.png.string();
@@ -203,45 +204,46 @@ RenderFiles render_files(const RenderJobOptions& options) {
 
 int run_render_job(const RenderJob& job, const RenderJobOptions& options) {
     const RenderFiles files = render_files(options);
-    RenderIdentity identity = job.identity;
+    render::RenderIdentity identity = job.identity;
     identity.push_back({"seed", fmt::format("{}", options.common.seed)});
-    identity.push_back({"version", engine_version()});
+    identity.push_back({"version", render::engine_version()});
 
-    RenderState state(job.film, range_of(job, options));
+    render::RenderState state(job.film, range_of(job, options));
     if (!options.checkpoint.empty()) {
         remove_leftovers(options.checkpoint);
         if (fs::exists(options.checkpoint)) {
-            read_checkpoint(options.checkpoint, identity, state);
+            render::read_checkpoint(options.checkpoint, identity, state);
         }
     }
     const Interruption interruption;
-    RenderEnd end{};
+    render::RenderEnd end{};
     {
         RenderWatch watch(options, identity);
-        const RenderControl control{
+        const render::RenderControl control{
             .threads = options.common.threads,
             .in_passes = job.film.has_splats || !options.preview.empty() || options.time_s > 0.0,
             .is_interrupted = [] { return Interruption::has_come(); },
-            .on_progress = [&](const RenderState& now, const RenderReport& report) { watch.look(now, report); }};
-        end = render_progressively(state, job.make_renderer, goal_of(options), control);
+            .on_progress = [&](const render::RenderState& now,
+                               const render::RenderReport& report) { watch.look(now, report); }};
+        end = render::render_progressively(state, job.make_renderer, goal_of(options), control);
     }
-    if (end == RenderEnd::interrupted) {
+    if (end == render::RenderEnd::interrupted) {
         return end_early(state, identity, options, files);
     }
     if (!options.checkpoint.empty()) {
-        write_checkpoint(options.checkpoint, identity, state);
+        render::write_checkpoint(options.checkpoint, identity, state);
     }
     if (!options.preview.empty()) {
-        write_png(film_rgb(state.film), options.preview);
+        formats::write_png(render::film_rgb(state.film), options.preview);
     }
-    const FilmNotes notes = notes_of(job, options, identity);
-    write_film_exr(state.film, notes, files.exr);
-    write_png(film_rgb(state.film), files.png);
+    const render::FilmNotes notes = notes_of(job, options, identity);
+    render::write_film_exr(state.film, notes, files.exr);
+    formats::write_png(render::film_rgb(state.film), files.png);
     report(job, state, options, files, write_raw_files(state.film, notes, files.exr, options.common.threads));
     return kDone;
 }
 
-void report_left_out(const Film& film, nlohmann::ordered_json& json) {
+void report_left_out(const render::Film& film, nlohmann::ordered_json& json) {
     if (film.left_out() > 0) {
         fmt::print(stderr,
                    "lensproof: {} samples were no finite numbers; they were left out, as if they had met no light\n",
@@ -251,7 +253,7 @@ void report_left_out(const Film& film, nlohmann::ordered_json& json) {
 }
 
 void add_render_job_options(CLI::App& command, RenderJobOptions& options) {
-    const CLI::Range samples(1, static_cast<int>(kMostSamples));
+    const CLI::Range samples(1, static_cast<int>(render::kMostSamples));
     command.add_option("-o,--output", options.output, "EXR to write; a PNG appears beside it")->type_name("FILE");
     command
         .add_option("--samples,--spp", options.samples,
@@ -273,10 +275,10 @@ void add_render_job_options(CLI::App& command, RenderJobOptions& options) {
     command.add_option("--shard", options.shard, "Render the i-th of n parts of the samples; `merge` adds them up")
         ->type_name("i/n");
     command.add_option("--filter", options.filter, "Pixel filter")
-        ->check(CLI::IsMember(PixelFilter::known_names()))
+        ->check(CLI::IsMember(render::PixelFilter::known_names()))
         ->capture_default_str();
     command.add_flag("--features", options.has_features, "Also write depth, albedo and normals");
     add_common_options(command, options.common);
 }
 
-}  // namespace lensproof
+}  // namespace lensproof::cli

@@ -12,7 +12,7 @@
 #include "experiments/cli/command.h"
 #include "experiments/cli/shard.h"
 
-namespace lensproof {
+namespace lensproof::cli {
 
 struct RenderJobOptions {
     CommonOptions common;
@@ -42,20 +42,20 @@ RenderFiles render_files(const RenderJobOptions& options);
 
 /// What is rendered.
 struct RenderJob {
-    FilmLayout film;
-    MakeTileRenderer make_renderer;
-    RenderIdentity identity;          // "scene", "lens", "settings"; seed and version are added
-    FilmNotes notes;                  // metadata and colours
-    std::uint32_t samples = 0;        // a pixel, the scene's own
-    std::optional<RawSensor> sensor;  // for a raw file beside the film's, of a whole render
-    nlohmann::ordered_json json;      // what the machine-readable result begins with
+    render::FilmLayout film;
+    render::MakeTileRenderer make_renderer;
+    render::RenderIdentity identity;          // "scene", "lens", "settings"; seed and version are added
+    render::FilmNotes notes;                  // metadata and colours
+    std::uint32_t samples = 0;                // a pixel, the scene's own
+    std::optional<render::RawSensor> sensor;  // for a raw file beside the film's, of a whole render
+    nlohmann::ordered_json json;              // what the machine-readable result begins with
 };
 
 /// Says on standard error, and in `json`, how many samples were left out of the film, where any were.
-void report_left_out(const Film& film, nlohmann::ordered_json& json);
+void report_left_out(const render::Film& film, nlohmann::ordered_json& json);
 
 /// Renders, writes the pictures and says where they are. Returns the exit status: kInternalFailure where a signal ended
 /// it before its goal, with a checkpoint written.
 int run_render_job(const RenderJob& job, const RenderJobOptions& options);
 
-}  // namespace lensproof
+}  // namespace lensproof::cli

@@ -7,13 +7,13 @@
 #include "engine/base/file.h"
 #include "experiments/cli/command.h"
 #include "experiments/cli/progress.h"
-#include "experiments/measurement_floor/floor_report.h"
-#include "experiments/pupil_passage/passage_report.h"
-#include "experiments/report/report.h"
-#include "experiments/report_content.h"
-#include "experiments/stability/stability_report.h"
+#include "experiments/draw/report/report.h"
+#include "experiments/runner/report_content.h"
+#include "experiments/studies/measurement_floor/floor_report.h"
+#include "experiments/studies/pupil_passage/passage_report.h"
+#include "experiments/studies/stability/stability_report.h"
 
-namespace lensproof {
+namespace lensproof::cli {
 
 namespace {
 
@@ -43,42 +43,43 @@ class StepProgress {
     std::unique_ptr<ProgressBar> bar_;
 };
 
-void print_checks(const std::vector<Check>& checks) {
+void print_checks(const std::vector<runner::Check>& checks) {
     std::string group;
-    for (const Check& check : checks) {
+    for (const runner::Check& check : checks) {
         if (check.group != group) {
             group = check.group;
             fmt::print("{}\n", group);
         }
-        const std::string bound = check.expectation == Expectation::within
-                                      ? fmt::format("{:g} ± {:g}", check.target, check.limit)
-                                  : check.expectation == Expectation::differs ? fmt::format("> {:g}", check.limit)
-                                                                              : fmt::format("≤ {:g}", check.limit);
-        fmt::print("  {:13} {:44} {:.4g} ± {:.2g} {} (wanted {})\n", verdict_name(check.verdict()), check.label,
+        const std::string bound =
+            check.expectation == runner::Expectation::within    ? fmt::format("{:g} ± {:g}", check.target, check.limit)
+            : check.expectation == runner::Expectation::differs ? fmt::format("> {:g}", check.limit)
+                                                                : fmt::format("≤ {:g}", check.limit);
+        fmt::print("  {:13} {:44} {:.4g} ± {:.2g} {} (wanted {})\n", runner::verdict_name(check.verdict()), check.label,
                    check.value, check.sigma, check.unit, bound);
     }
 }
 
 /// Writes report.json and report.html, prints the checks, and says how it went.
-int finish_report(const RunOptions& options, const std::filesystem::path& folder, const std::vector<Check>& checks,
-                  const nlohmann::ordered_json& report, const std::map<std::string, std::string>& pictures) {
+int finish_report(const RunOptions& options, const std::filesystem::path& folder,
+                  const std::vector<runner::Check>& checks, const nlohmann::ordered_json& report,
+                  const std::map<std::string, std::string>& pictures) {
     for (const auto& [name, bytes] : pictures) {
         write_file(folder / "images" / name, bytes);
     }
     write_file(folder / "report.json",
                report.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n");
-    write_file(folder / "report.html", report_html(report, pictures));
+    write_file(folder / "report.html", draw::report_html(report, pictures));
 
     write_json_result(options.common, report);
     if (prints_text(options.common)) {
         print_checks(checks);
-        fmt::print("{}: {}\n", verdict_name(overall(checks)), (folder / "report.html").string());
+        fmt::print("{}: {}\n", runner::verdict_name(runner::overall(checks)), (folder / "report.html").string());
     }
-    return overall(checks) == Verdict::pass ? kDone : kCheckFailed;
+    return runner::overall(checks) == runner::Verdict::pass ? kDone : kCheckFailed;
 }
 
 int run(const RunOptions& options) {
-    const Experiment experiment = read_experiment(options.experiment);
+    const runner::Experiment experiment = runner::read_experiment(options.experiment);
     const std::filesystem::path folder =
         options.output.empty() ? std::filesystem::path("output") / std::filesystem::path(options.experiment).stem()
                                : std::filesystem::path(options.output);
@@ -86,31 +87,37 @@ int run(const RunOptions& options) {
     check_output_name(folder / "report.html");
     check_output_name(folder / "report.json");
     check_json_name(options.common);
-    const RunSettings settings{
+    const runner::RunSettings settings{
         .seed = options.common.seed, .threads = options.common.threads, .cache = Cache::standard()};
     const auto progress = std::make_shared<StepProgress>(options.common.quiet);
-    const RunProgress report_progress = [progress](const std::string& step, double done) { (*progress)(step, done); };
+    const runner::RunProgress report_progress = [progress](const std::string& step, double done) {
+        (*progress)(step, done);
+    };
     if (experiment.stability) {
-        const std::vector<StabilitySweep> sweeps = run_stability(experiment, settings, report_progress);
-        return finish_report(options, folder, stability_checks(sweeps),
-                             stability_report_json(experiment, sweeps, settings), stability_charts(sweeps));
+        const std::vector<studies::StabilitySweep> sweeps =
+            studies::run_stability(experiment, settings, report_progress);
+        return finish_report(options, folder, studies::stability_checks(sweeps),
+                             studies::stability_report_json(experiment, sweeps, settings),
+                             studies::stability_charts(sweeps));
     }
     if (!experiment.pupil_passage.empty()) {
-        const std::vector<Passage> passages = run_pupil_passage(experiment, settings, report_progress);
-        return finish_report(options, folder, passage_checks(passages),
-                             passage_report_json(experiment, passages, settings), passage_drawings(passages));
+        const std::vector<studies::Passage> passages =
+            studies::run_pupil_passage(experiment, settings, report_progress);
+        return finish_report(options, folder, studies::passage_checks(passages),
+                             studies::passage_report_json(experiment, passages, settings),
+                             studies::passage_drawings(passages));
     }
     if (experiment.measurement_floor) {
-        const MeasurementFloor floor = run_measurement_floor(experiment, settings, report_progress);
-        return finish_report(options, folder, floor.checks, floor_report_json(experiment, floor, settings),
-                             floor_charts(floor));
+        const studies::MeasurementFloor floor = studies::run_measurement_floor(experiment, settings, report_progress);
+        return finish_report(options, folder, floor.checks, studies::floor_report_json(experiment, floor, settings),
+                             studies::floor_charts(floor));
     }
-    const ExperimentResult result = run_experiment(experiment, settings, report_progress);
-    for (const Subject& subject : result.subjects) {
-        write_profile(subject.profile, folder / "profiles" / (subject.name + ".json"));
+    const runner::ExperimentResult result = runner::run_experiment(experiment, settings, report_progress);
+    for (const runner::Subject& subject : result.subjects) {
+        calibration::write_profile(subject.profile, folder / "profiles" / (subject.name + ".json"));
     }
-    return finish_report(options, folder, result.checks, report_json(experiment, result, settings),
-                         report_pictures(result));
+    return finish_report(options, folder, result.checks, runner::report_json(experiment, result, settings),
+                         runner::report_pictures(result));
 }
 
 }  // namespace
@@ -126,4 +133,4 @@ void add_run_command(CLI::App& app, int& status) {
     command->callback([options, &status] { status = run(*options); });
 }
 
-}  // namespace lensproof
+}  // namespace lensproof::cli

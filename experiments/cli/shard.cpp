@@ -7,7 +7,7 @@
 #include <numeric>
 #include <string_view>
 
-namespace lensproof {
+namespace lensproof::cli {
 
 namespace {
 
@@ -30,9 +30,9 @@ bool take(std::string_view& text, char wanted) {
 
 }  // namespace
 
-SampleRange Shard::part_of(std::uint32_t samples) const {
-    const std::uint32_t blocks = (samples + kSamplesPerBlock - 1) / kSamplesPerBlock;
-    const std::uint32_t unit = blocks >= static_cast<unsigned>(count) ? kSamplesPerBlock : 1;
+render::SampleRange Shard::part_of(std::uint32_t samples) const {
+    const std::uint32_t blocks = (samples + render::kSamplesPerBlock - 1) / render::kSamplesPerBlock;
+    const std::uint32_t unit = blocks >= static_cast<unsigned>(count) ? render::kSamplesPerBlock : 1;
     const std::uint64_t units = unit > 1 ? blocks : samples;
     const auto end_of = [&](int shards) {
         const std::uint64_t whole_units = units * static_cast<unsigned>(shards) / static_cast<unsigned>(count);
@@ -94,4 +94,4 @@ std::string shard_set_text(const ShardSet& set) {
     return fmt::format("{}/{}", shard_list(set.indices, ","), set.count);
 }
 
-}  // namespace lensproof
+}  // namespace lensproof::cli

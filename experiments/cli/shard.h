@@ -6,7 +6,7 @@
 
 #include "engine/render/progressive.h"
 
-namespace lensproof {
+namespace lensproof::cli {
 
 /// Shard `index` of `count`, counted from 1.
 struct Shard {
@@ -16,7 +16,7 @@ struct Shard {
     /// Its part of `samples` a pixel: together the shards have each sample once, next to each other, so that each
     /// shard's points are as well spread as a render's of its own; whole blocks of them where there are enough, so that
     /// the variances add up to the whole's too.
-    [[nodiscard]] SampleRange part_of(std::uint32_t samples) const;
+    [[nodiscard]] render::SampleRange part_of(std::uint32_t samples) const;
 };
 
 inline constexpr int kMostShards = 10000;
@@ -38,4 +38,4 @@ std::string shard_set_text(const ShardSet& set);
 /// "1-3, 5" for messages.
 std::string shard_list(const std::vector<int>& indices, const char* separator);
 
-}  // namespace lensproof
+}  // namespace lensproof::cli

@@ -15,7 +15,7 @@
 #include "engine/optics/lens.h"
 #include "experiments/cli/command.h"
 
-namespace lensproof {
+namespace lensproof::cli {
 
 namespace {
 
@@ -79,17 +79,17 @@ class TraceTable {
   public:
     template <class T>
     void add(const std::string& id, const std::string& surface, const Ray<T>& ray, T optical_path, T transmittance,
-             RayStatus status) {
+             optics::RayStatus status) {
         fmt::format_to(std::back_inserter(csv_), "{},{},{},{},{},{},{},{},{},{},{}\n", id, surface, ray.origin.x,
                        ray.origin.y, ray.origin.z, ray.direction.x, ray.direction.y, ray.direction.z, optical_path,
-                       transmittance, status_name(status));
+                       transmittance, optics::status_name(status));
         json_.push_back({{"id", id},
                          {"surface", surface},
                          {"point_mm", {ray.origin.x, ray.origin.y, ray.origin.z}},
                          {"direction", {ray.direction.x, ray.direction.y, ray.direction.z}},
                          {"optical_path_mm", optical_path},
                          {"transmittance", transmittance},
-                         {"status", status_name(status)}});
+                         {"status", optics::status_name(status)}});
     }
 
     [[nodiscard]] std::string csv() const { return std::string(kResultHeader) + "\n" + csv_; }
@@ -100,78 +100,82 @@ class TraceTable {
     nlohmann::ordered_json json_ = nlohmann::ordered_json::array();
 };
 
-template <class T, Direction direction, Rims rims>
-void trace_one(const TraceLens<T>& lens, const GivenRay& given, TraceTable& table) {
+template <class T, optics::Direction direction, optics::Rims rims>
+void trace_one(const optics::TraceLens<T>& lens, const GivenRay& given, TraceTable& table) {
     const auto cast = [](const Vec3d& v) {
         return Vec3<T>{static_cast<T>(v.x), static_cast<T>(v.y), static_cast<T>(v.z)};
     };
     // Normalised in the working precision: a double's unit vector is not one to long double's last digits.
     const Ray<T> ray{cast(given.ray.origin), normalized(cast(given.ray.direction))};
-    const TracedRay<T> traced = trace<direction, rims>(lens, ray, [&](const SurfaceEvent<T>& event) {
-        table.add(given.id, std::to_string(event.surface + 1), event.ray, event.optical_path, event.transmittance,
-                  event.status);
-    });
-    const bool ended = traced.status == RayStatus::missed || traced.status == RayStatus::total_internal_reflection ||
-                       (rims == Rims::clip && traced.status != RayStatus::ok);
-    if (ended || direction == Direction::reverse) {
+    const optics::TracedRay<T> traced =
+        optics::trace<direction, rims>(lens, ray, [&](const optics::SurfaceEvent<T>& event) {
+            table.add(given.id, std::to_string(event.surface + 1), event.ray, event.optical_path, event.transmittance,
+                      event.status);
+        });
+    const bool ended = traced.status == optics::RayStatus::missed ||
+                       traced.status == optics::RayStatus::total_internal_reflection ||
+                       (rims == optics::Rims::clip && traced.status != optics::RayStatus::ok);
+    if (ended || direction == optics::Direction::reverse) {
         return;
     }
     if (traced.ray.direction.z > T(0)) {
-        const PlanePoint<T> image = meet_plane(traced.ray, lens.image_z);
+        const optics::PlanePoint<T> image = optics::meet_plane(traced.ray, lens.image_z);
         table.add(given.id, "image", Ray<T>{image.point, traced.ray.direction}, traced.optical_path + image.distance,
-                  traced.transmittance, RayStatus::ok);
+                  traced.transmittance, optics::RayStatus::ok);
     } else {
-        table.add(given.id, "image", traced.ray, traced.optical_path, traced.transmittance, RayStatus::missed);
+        table.add(given.id, "image", traced.ray, traced.optical_path, traced.transmittance, optics::RayStatus::missed);
     }
 }
 
 template <class T>
-void trace_all(const Lens& lens, const std::vector<GivenRay>& rays, const TraceOptions& options, TraceTable& table) {
-    std::map<double, TraceLens<T>> lenses;
+void trace_all(const optics::Lens& lens, const std::vector<GivenRay>& rays, const TraceOptions& options,
+               TraceTable& table) {
+    std::map<double, optics::TraceLens<T>> lenses;
     for (const GivenRay& given : rays) {
         if (!lenses.contains(given.wavelength_nm)) {
-            lenses.emplace(given.wavelength_nm, at_wavelength<T>(lens, given.wavelength_nm));
+            lenses.emplace(given.wavelength_nm, optics::at_wavelength<T>(lens, given.wavelength_nm));
         }
-        const TraceLens<T>& at = lenses.at(given.wavelength_nm);
+        const optics::TraceLens<T>& at = lenses.at(given.wavelength_nm);
         if (options.reverse) {
-            options.no_clip ? trace_one<T, Direction::reverse, Rims::follow>(at, given, table)
-                            : trace_one<T, Direction::reverse, Rims::clip>(at, given, table);
+            options.no_clip ? trace_one<T, optics::Direction::reverse, optics::Rims::follow>(at, given, table)
+                            : trace_one<T, optics::Direction::reverse, optics::Rims::clip>(at, given, table);
         } else {
-            options.no_clip ? trace_one<T, Direction::forward, Rims::follow>(at, given, table)
-                            : trace_one<T, Direction::forward, Rims::clip>(at, given, table);
+            options.no_clip ? trace_one<T, optics::Direction::forward, optics::Rims::follow>(at, given, table)
+                            : trace_one<T, optics::Direction::forward, optics::Rims::clip>(at, given, table);
         }
     }
 }
 
 /// The error of --precision float, measured: the same rays in double too.
 struct MeasuredError {
-    FloatError error;
+    optics::FloatError error;
     bool reverse = false;
     double system_length_mm = 0.0;
 
-    [[nodiscard]] double bound_um() const { return float_error_bound_um(system_length_mm); }
+    [[nodiscard]] double bound_um() const { return optics::float_error_bound_um(system_length_mm); }
 };
 
-MeasuredError measure_float(const Lens& lens, const std::vector<GivenRay>& rays, const TraceOptions& options) {
+MeasuredError measure_float(const optics::Lens& lens, const std::vector<GivenRay>& rays, const TraceOptions& options) {
     MeasuredError measured{.reverse = options.reverse,
                            .system_length_mm = lens.image_z - lens.surfaces.front().vertex_z};
-    std::map<double, std::pair<TraceLens<float>, TraceLens<double>>> lenses;
+    std::map<double, std::pair<optics::TraceLens<float>, optics::TraceLens<double>>> lenses;
     for (const GivenRay& given : rays) {
         const double nm = given.wavelength_nm;
         if (!lenses.contains(nm)) {
-            lenses.emplace(nm, std::pair{at_wavelength<float>(lens, nm), at_wavelength<double>(lens, nm)});
+            lenses.emplace(nm,
+                           std::pair{optics::at_wavelength<float>(lens, nm), optics::at_wavelength<double>(lens, nm)});
         }
         const auto& [in_float, in_double] = lenses.at(nm);
-        measured.error.add(trace_in_float(in_float, in_double, given.ray,
-                                          options.reverse ? Direction::reverse : Direction::forward,
-                                          options.no_clip ? Rims::follow : Rims::clip));
+        measured.error.add(optics::trace_in_float(
+            in_float, in_double, given.ray, options.reverse ? optics::Direction::reverse : optics::Direction::forward,
+            options.no_clip ? optics::Rims::follow : optics::Rims::clip));
     }
     return measured;
 }
 
 void print_error(const MeasuredError& measured) {
-    const FloatError& error = measured.error;
-    const auto text = [](const Distances& distances, const char* where) {
+    const optics::FloatError& error = measured.error;
+    const auto text = [](const optics::Distances& distances, const char* where) {
         return distances.points == 0 ? fmt::format("no point {}", where)
                                      : fmt::format("at most {:.3g} µm {} ({:.3g} µm rms)", distances.largest_um, where,
                                                    distances.rms_um());
@@ -182,7 +186,7 @@ void print_error(const MeasuredError& measured) {
 }
 
 nlohmann::ordered_json error_json(const MeasuredError& measured) {
-    const auto json = [](const Distances& distances) -> nlohmann::ordered_json {
+    const auto json = [](const optics::Distances& distances) -> nlohmann::ordered_json {
         if (distances.points == 0) {
             return nullptr;
         }
@@ -190,7 +194,7 @@ nlohmann::ordered_json error_json(const MeasuredError& measured) {
                 {"largest_um", number_or_null(distances.largest_um)},
                 {"rms_um", number_or_null(distances.rms_um())}};
     };
-    const FloatError& error = measured.error;
+    const optics::FloatError& error = measured.error;
     return {{"rays", error.rays},
             {"other_statuses", error.other_fates},
             {measured.reverse ? "first_surface" : "image_plane", json(error.at_end)},
@@ -204,9 +208,10 @@ int run_trace(const TraceOptions& options) {
         check_output_name(options.output_file);
     }
     check_json_name(options.common);
-    const Lens lens = load_lens(options.lens, {.indices = parse_indices(options.indices),
-                                               .zoom = options.zoom,
-                                               .glasses = read_glass_catalogues(options.glass_catalogues)});
+    const optics::Lens lens =
+        formats::load_lens(options.lens, {.indices = parse_indices(options.indices),
+                                          .zoom = options.zoom,
+                                          .glasses = read_glass_catalogues(options.glass_catalogues)});
     const std::vector<GivenRay> rays = read_rays(options.rays_file);
     TraceTable table;
     if (options.precision == "float") {
@@ -259,4 +264,4 @@ void add_trace_command(CLI::App& app, int& status) {
     command->callback([options, &status] { status = run_trace(*options); });
 }
 
-}  // namespace lensproof
+}  // namespace lensproof::cli

@@ -6,7 +6,7 @@
 #include "engine/analysis/lens_analysis.h"
 #include "engine/formats/prescription/load_lens.h"
 #include "engine/spectral/wavelengths.h"
-#include "experiments/plot/analysis_curves.h"
+#include "experiments/draw/analysis_curves.h"
 #include "tests/benchmarks/benchmarks.h"
 
 namespace lensproof {
@@ -14,26 +14,26 @@ namespace lensproof {
 namespace {
 
 /// What a designer asks of a lens: ten fields up to the stated one, three wavelengths.
-AnalysisSettings usual_settings(const Lens& lens) {
+analysis::AnalysisSettings usual_settings(const optics::Lens& lens) {
     constexpr double kFieldDeg = 20.0;  // where none is stated
-    return {.wavelengths_nm = {kLineD, kLineF, kLineC},
-            .reference_wavelength_nm = kLineD,
-            .fields_deg = even_fields(lens.stated.half_field_deg.value_or(kFieldDeg), 10)};
+    return {.wavelengths_nm = {spectral::kLineD, spectral::kLineF, spectral::kLineC},
+            .reference_wavelength_nm = spectral::kLineD,
+            .fields_deg = analysis::even_fields(lens.stated.half_field_deg.value_or(kFieldDeg), 10)};
 }
 
 void analyze_table(benchmark::State& state, const std::string& name) {
-    const Lens lens = load_lens(name);
-    const AnalysisSettings settings = usual_settings(lens);
+    const optics::Lens lens = formats::load_lens(name);
+    const analysis::AnalysisSettings settings = usual_settings(lens);
     while (state.KeepRunning()) {
-        benchmark::DoNotOptimize(analyze_lens(lens, settings));
+        benchmark::DoNotOptimize(analysis::analyze_lens(lens, settings));
     }
 }
 
 void analyze_curves(benchmark::State& state, const std::string& name) {
-    const Lens lens = load_lens(name);
-    const AnalysisSettings settings = usual_settings(lens);
+    const optics::Lens lens = formats::load_lens(name);
+    const analysis::AnalysisSettings settings = usual_settings(lens);
     while (state.KeepRunning()) {
-        benchmark::DoNotOptimize(analysis_curves(lens, settings));
+        benchmark::DoNotOptimize(draw::analysis_curves(lens, settings));
     }
 }
 

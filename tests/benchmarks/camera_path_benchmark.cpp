@@ -21,7 +21,7 @@ constexpr std::uint32_t kSamples = 64;  // of a pixel
 void time_points_one_by_one(benchmark::State& state) {
     std::uint32_t pixel = 0;
     while (state.KeepRunning()) {
-        const PixelSampler sampler(0, pixel++);
+        const render::PixelSampler sampler(0, pixel++);
         for (std::uint32_t i = 0; i < kSamples; ++i) {
             benchmark::DoNotOptimize(sampler.point(i));
         }
@@ -31,13 +31,13 @@ void time_points_one_by_one(benchmark::State& state) {
 }
 
 /// As camera paths take them: in columns, film positions included.
-void time_points_in_columns(benchmark::State& state, SimdLevel level) {
-    const PathSampling sampling{
+void time_points_in_columns(benchmark::State& state, optics::SimdLevel level) {
+    const render::PathSampling sampling{
         .sensor = {.width = 64, .height = 48, .pixel_pitch_mm = 0.01}, .seed = 0, .wavelengths = kSamples};
-    const auto starts = std::make_unique<PathStarts>();
-    PathCursor cursor{.samples = kSamples};
+    const auto starts = std::make_unique<render::PathStarts>();
+    render::PathCursor cursor{.samples = kSamples};
     while (state.KeepRunning()) {
-        path_kernels<double>(level).draw_samples(sampling, kSamples, cursor, *starts);
+        render::path_kernels<double>(level).draw_samples(sampling, kSamples, cursor, *starts);
         benchmark::DoNotOptimize(*starts);
     }
     state.counters["points/s"] =
@@ -61,21 +61,23 @@ constexpr Setting kSettings[] = {
 class PathScene {
   public:
     explicit PathScene(const Setting& setting)
-        : lens_(focused_at(with_f_number(load_lens(setting.lens), setting.f_number), setting.focus_distance_mm)),
-          in_double_(at_wavelengths<double>(lens_, wavelengths())),
-          in_float_(at_wavelengths<float>(lens_, wavelengths())),
+        : lens_(optics::focused_at(optics::with_f_number(formats::load_lens(setting.lens), setting.f_number),
+                                   setting.focus_distance_mm)),
+          in_double_(optics::at_wavelengths<double>(lens_, wavelengths())),
+          in_float_(optics::at_wavelengths<float>(lens_, wavelengths())),
           sensor_{.width = 40, .height = 30, .pixel_pitch_mm = setting.half_diagonal_mm / 25.0},
-          pose_(place({.distance_mm = setting.focus_distance_mm})),
-          chart_{.pattern = DiscGrid{12, 9, 0.05 * setting.focus_distance_mm, 0.025 * setting.focus_distance_mm}},
+          pose_(scene::place({.distance_mm = setting.focus_distance_mm})),
+          chart_{.pattern =
+                     scene::DiscGrid{12, 9, 0.05 * setting.focus_distance_mm, 0.025 * setting.focus_distance_mm}},
           pupil_(in_double_.at(), lens_.is_rotationally_symmetric, setting.half_diagonal_mm),
           slices_(pupil_, in_double_.wavelengths()) {}
 
     [[nodiscard]] std::uint32_t pixels() const { return 40 * 30; }
-    [[nodiscard]] const Sensor& sensor() const { return sensor_; }
-    [[nodiscard]] const PupilMap& pupil() const { return pupil_; }
+    [[nodiscard]] const render::Sensor& sensor() const { return sensor_; }
+    [[nodiscard]] const pupil::PupilMap& pupil() const { return pupil_; }
 
     template <class T>
-    [[nodiscard]] const SpectralLens<T>& lens() const {
+    [[nodiscard]] const optics::SpectralLens<T>& lens() const {
         if constexpr (std::is_same_v<T, float>) {
             return in_float_;
         } else {
@@ -84,7 +86,7 @@ class PathScene {
     }
 
     template <class T>
-    [[nodiscard]] CameraPathSource<T> source() const {
+    [[nodiscard]] render::CameraPathSource<T> source() const {
         return {.sensor = sensor_, .lens = &lens<T>(), .pupil = &slices_, .seed = 0};
     }
 
@@ -92,20 +94,20 @@ class PathScene {
     template <class T>
     [[nodiscard]] double look_up(const Ray<T>& ray) const {
         const auto in_double = [](const Vec3<T>& v) { return Vec3d{v.x, v.y, v.z}; };
-        return seen_reflectance(chart_, pose_, {in_double(ray.origin), in_double(ray.direction)});
+        return render::seen_reflectance(chart_, pose_, {in_double(ray.origin), in_double(ray.direction)});
     }
 
   private:
-    static std::vector<double> wavelengths() { return WavelengthStrata{400.0, 700.0, 64}.midpoints(); }
+    static std::vector<double> wavelengths() { return spectral::WavelengthStrata{400.0, 700.0, 64}.midpoints(); }
 
-    Lens lens_;
-    SpectralLens<double> in_double_;
-    SpectralLens<float> in_float_;
-    Sensor sensor_;
-    RigidMotion pose_;
-    Chart chart_;
-    PupilMap pupil_;
-    PupilSlices slices_;
+    optics::Lens lens_;
+    optics::SpectralLens<double> in_double_;
+    optics::SpectralLens<float> in_float_;
+    render::Sensor sensor_;
+    scene::RigidMotion pose_;
+    scene::Chart chart_;
+    pupil::PupilMap pupil_;
+    pupil::PupilSlices slices_;
 };
 
 enum class Consumer { none, chart };
@@ -121,21 +123,21 @@ void count_paths(benchmark::State& state, std::int64_t valid, std::int64_t start
 /// Path by path through the scalar tracer, each shaded before the next is begun.
 void time_one_by_one(benchmark::State& state, const Setting& setting, Consumer consumer) {
     const PathScene scene(setting);
-    const PupilMap& pupil = scene.pupil();
+    const pupil::PupilMap& pupil = scene.pupil();
     std::int64_t valid = 0;
     std::int64_t started = 0;
     while (state.KeepRunning()) {
         valid = 0;
         started = 0;
         for (std::uint32_t pixel = 0; pixel < scene.pixels(); ++pixel) {
-            const PixelSampler sampler(0, pixel);
+            const render::PixelSampler sampler(0, pixel);
             const std::uint32_t row = pixel / 40;
             for (std::uint32_t sample = 0; sample < kSamples; ++sample) {
                 const auto xi = sampler.point(sample);
                 const int wavelength = static_cast<int>(xi[4] * 64);
-                const TraceLens<double>& lens = scene.lens<double>().at(wavelength);
+                const optics::TraceLens<double>& lens = scene.lens<double>().at(wavelength);
                 const Vec2d at = scene.sensor().position(pixel % 40 - 0.5 + xi[0], row - 0.5 + xi[1]);
-                const PupilSample in_pupil = pupil.sample(at, wavelength / 63.0, xi[2], xi[3]);
+                const pupil::PupilSample in_pupil = pupil.sample(at, wavelength / 63.0, xi[2], xi[3]);
                 if (!(in_pupil.density > 0.0)) {
                     continue;
                 }
@@ -144,8 +146,8 @@ void time_one_by_one(benchmark::State& state, const Setting& setting, Consumer c
                 const Vec3d way = Vec3d{in_pupil.point.x, in_pupil.point.y, pupil.plane_z()} - film;
                 const double distance2 = dot(way, way);
                 const Ray<double> ray{film, (1.0 / std::sqrt(distance2)) * way};
-                const TracedRay<double> traced = trace<Direction::reverse>(lens, ray);
-                if (traced.status == RayStatus::ok) {
+                const optics::TracedRay<double> traced = optics::trace<optics::Direction::reverse>(lens, ray);
+                if (traced.status == optics::RayStatus::ok) {
                     ++valid;
                     const double weight =
                         traced.transmittance * ray.direction.z * ray.direction.z / (distance2 * in_pupil.density);
@@ -158,11 +160,11 @@ void time_one_by_one(benchmark::State& state, const Setting& setting, Consumer c
 }
 
 template <class T>
-void time_buffers(benchmark::State& state, const Setting& setting, SimdLevel level, Consumer consumer) {
+void time_buffers(benchmark::State& state, const Setting& setting, optics::SimdLevel level, Consumer consumer) {
     const PathScene scene(setting);
-    const CameraPathSource<T> source = scene.source<T>();
-    CameraPathProducer<T> producer(source, level);
-    CameraPathBuffer<T> paths;
+    const render::CameraPathSource<T> source = scene.source<T>();
+    render::CameraPathProducer<T> producer(source, level);
+    render::CameraPathBuffer<T> paths;
     std::int64_t valid = 0;
     while (state.KeepRunning()) {
         valid = 0;
@@ -181,15 +183,15 @@ void time_buffers(benchmark::State& state, const Setting& setting, SimdLevel lev
 /// What a start without a cache costs: the map and its tables.
 void time_set_up(benchmark::State& state, const Setting& setting) {
     const PathScene scene(setting);
-    const std::vector<TraceLens<double>>& band = scene.lens<double>().at();
+    const std::vector<optics::TraceLens<double>>& band = scene.lens<double>().at();
     while (state.KeepRunning()) {
-        const PupilMap map(band, true, setting.half_diagonal_mm);
-        benchmark::DoNotOptimize(PupilSlices(map, scene.lens<double>().wavelengths()).tables());
+        const pupil::PupilMap map(band, true, setting.half_diagonal_mm);
+        benchmark::DoNotOptimize(pupil::PupilSlices(map, scene.lens<double>().wavelengths()).tables());
     }
 }
 
 void register_camera_paths(const Setting& setting, Consumer consumer) {
-    const SimdLevel widest = available_simd_levels().back();
+    const optics::SimdLevel widest = optics::available_simd_levels().back();
     const auto add = [&](const char* way, auto run) {
         benchmark::RegisterBenchmark(
             fmt::format("camera_paths/{}/{}{}", setting.lens, way, consumer == Consumer::chart ? "/chart" : "").c_str(),
@@ -198,7 +200,7 @@ void register_camera_paths(const Setting& setting, Consumer consumer) {
     };
     add("one_by_one", [=](benchmark::State& state) { time_one_by_one(state, setting, consumer); });
     add("buffers/scalar",
-        [=](benchmark::State& state) { time_buffers<double>(state, setting, SimdLevel::scalar, consumer); });
+        [=](benchmark::State& state) { time_buffers<double>(state, setting, optics::SimdLevel::scalar, consumer); });
     add("buffers/double", [=](benchmark::State& state) { time_buffers<double>(state, setting, widest, consumer); });
     add("buffers/float", [=](benchmark::State& state) { time_buffers<float>(state, setting, widest, consumer); });
 }
@@ -207,8 +209,8 @@ void register_camera_paths(const Setting& setting, Consumer consumer) {
 
 void register_camera_path_benchmarks() {
     benchmark::RegisterBenchmark("sampler/points/one_by_one", time_points_one_by_one);
-    for (const SimdLevel level : available_simd_levels()) {
-        benchmark::RegisterBenchmark(fmt::format("sampler/points/{}", simd_name(level)).c_str(),
+    for (const optics::SimdLevel level : optics::available_simd_levels()) {
+        benchmark::RegisterBenchmark(fmt::format("sampler/points/{}", optics::simd_name(level)).c_str(),
                                      [level](benchmark::State& state) { time_points_in_columns(state, level); });
     }
     for (const Setting& setting : kSettings) {

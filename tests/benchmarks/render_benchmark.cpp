@@ -26,7 +26,7 @@ const std::vector<Setting>& settings() {
     return all;
 }
 
-Camera camera_for(const Setting& setting) {
+render::Camera camera_for(const Setting& setting) {
     constexpr int kWidth = 32;
     constexpr int kHeight = 24;
     return {.lens = setting.lens,
@@ -37,35 +37,35 @@ Camera camera_for(const Setting& setting) {
             .response = "camera"};
 }
 
-void time_render(benchmark::State& state, const Setting& setting, const Chart& chart) {
+void time_render(benchmark::State& state, const Setting& setting, const scene::Chart& chart) {
     constexpr int kSamples = 64;
-    const ChartCamera camera(camera_for(setting), Light{}, SpectralSampling{});
-    const Placement placement{.distance_mm = setting.focus_distance_mm};
+    const render::ChartCamera camera(camera_for(setting), render::Light{}, render::SpectralSampling{});
+    const scene::Placement placement{.distance_mm = setting.focus_distance_mm};
     while (state.KeepRunning()) {
         benchmark::DoNotOptimize(camera.render(chart, placement, {.samples_per_pixel = kSamples, .threads = 1}));
     }
-    const Sensor& sensor = camera.sensor();
+    const render::Sensor& sensor = camera.sensor();
     state.counters["paths/s"] = benchmark::Counter(
         static_cast<double>(state.iterations()) * sensor.width * sensor.height * kSamples, benchmark::Counter::kIsRate);
 }
 
 /// The lens at 64 wavelengths, as a render has it.
-std::vector<TraceLens<double>> band_of(const Setting& setting) {
-    const Lens lens = camera_lens(camera_for(setting));
-    std::vector<TraceLens<double>> band;
+std::vector<optics::TraceLens<double>> band_of(const Setting& setting) {
+    const optics::Lens lens = render::camera_lens(camera_for(setting));
+    std::vector<optics::TraceLens<double>> band;
     band.reserve(64);
     for (int i = 0; i < 64; ++i) {
-        band.push_back(at_wavelength<double>(lens, 400.0 + 300.0 * (i + 0.5) / 64));
+        band.push_back(optics::at_wavelength<double>(lens, 400.0 + 300.0 * (i + 0.5) / 64));
     }
     return band;
 }
 
 void time_pupil_samples(benchmark::State& state, const Setting& setting) {
     constexpr std::uint32_t kPoints = 4096;
-    const PupilMap map(band_of(setting), true, setting.half_diagonal_mm);
+    const pupil::PupilMap map(band_of(setting), true, setting.half_diagonal_mm);
     std::vector<std::array<double, 5>> points;
     for (std::uint32_t i = 0; i < kPoints; ++i) {
-        points.push_back(PixelSampler(1, 0).point(i));
+        points.push_back(render::PixelSampler(1, 0).point(i));
     }
     std::size_t i = 0;
     while (state.KeepRunning()) {
@@ -79,12 +79,12 @@ void time_pupil_samples(benchmark::State& state, const Setting& setting) {
 
 void register_render_benchmarks() {
     for (const Setting& setting : settings()) {
-        const Chart flat{.pattern = FlatField{}};
-        const Chart board{.pattern = Checkerboard{12, 9, setting.square_mm}};
-        const Chart discs{.pattern = DiscGrid{12, 9, setting.square_mm, 0.5 * setting.square_mm}};
-        for (const Chart& chart : {flat, board, discs}) {
+        const scene::Chart flat{.pattern = scene::FlatField{}};
+        const scene::Chart board{.pattern = scene::Checkerboard{12, 9, setting.square_mm}};
+        const scene::Chart discs{.pattern = scene::DiscGrid{12, 9, setting.square_mm, 0.5 * setting.square_mm}};
+        for (const scene::Chart& chart : {flat, board, discs}) {
             benchmark::RegisterBenchmark(
-                ("render/" + setting.lens + "/" + kind_name(chart)).c_str(),
+                ("render/" + setting.lens + "/" + scene::kind_name(chart)).c_str(),
                 [&setting, chart](benchmark::State& state) { time_render(state, setting, chart); })
                 ->Unit(benchmark::kMillisecond);
         }

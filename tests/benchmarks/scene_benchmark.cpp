@@ -15,48 +15,51 @@ namespace {
 
 constexpr int kWidth = 150;  // a sixteenth of 600 × 400
 constexpr int kHeight = 100;
-constexpr Sensor kSensor{.width = kWidth, .height = kHeight, .pixel_pitch_mm = 36.0 / kWidth};
-constexpr PathSettings kPaths{.max_bounces = 5};
+constexpr render::Sensor kSensor{.width = kWidth, .height = kHeight, .pixel_pitch_mm = 36.0 / kWidth};
+constexpr render::PathSettings kPaths{.max_bounces = 5};
 
-Scene wall_sphere_and_lamp(const SpectralGrid& grid) {
+scene::Scene wall_sphere_and_lamp(const spectral::SpectralGrid& grid) {
     const AffineMap towards_camera{.linear = about_x(180.0), .translation = {0.0, 0.0, 2000.0}};
-    std::vector<Shape> shapes{Quad{4000.0, 4000.0}, Sphere{200.0}, Quad{500.0, 500.0}};
-    std::vector<SceneObject> objects{
+    std::vector<scene::Shape> shapes{scene::Quad{4000.0, 4000.0}, scene::Sphere{200.0}, scene::Quad{500.0, 500.0}};
+    std::vector<scene::SceneObject> objects{
         {.shape = 0, .to_world = towards_camera, .material = 0},
         {.shape = 1, .to_world = {.linear = kIdentity3, .translation = {150.0, 0.0, 1700.0}}, .material = 1},
         {.shape = 2, .to_world = {.linear = about_x(90.0), .translation = {0.0, 800.0, 1500.0}}, .material = 1}};
-    Scene scene{.grid = grid,
-                .geometry = std::make_unique<SceneGeometry>(std::move(shapes), std::move(objects)),
-                .materials = {},
-                .absorption = {},
-                .lights = {}};
-    const Chart checks{.pattern = Checkerboard{.columns = 40, .rows = 40, .square_mm = 100.0},
-                       .white_reflectance = 0.9,
-                       .black_reflectance = 0.04};
+    scene::Scene scene{.grid = grid,
+                       .geometry = std::make_unique<scene::SceneGeometry>(std::move(shapes), std::move(objects)),
+                       .materials = {},
+                       .absorption = {},
+                       .lights = {}};
+    const scene::Chart checks{.pattern = scene::Checkerboard{.columns = 40, .rows = 40, .square_mm = 100.0},
+                              .white_reflectance = 0.9,
+                              .black_reflectance = 0.04};
     scene.materials.push_back(
-        {.surface = DiffuseMaterial{chart_texture(checks, 4000.0, 4000.0, grid)}, .radiance = {}});
-    scene.materials.push_back({.surface = DiffuseMaterial{constant_spectrum(0.5, grid)}, .radiance = {}});
-    scene.lights = Lights(*scene.geometry, {AreaLight{.object = 2, .radiance = constant_spectrum(20.0, grid)}});
+        {.surface = scene::DiffuseMaterial{scene::chart_texture(checks, 4000.0, 4000.0, grid)}, .radiance = {}});
+    scene.materials.push_back(
+        {.surface = scene::DiffuseMaterial{spectral::constant_spectrum(0.5, grid)}, .radiance = {}});
+    scene.lights = scene::Lights(*scene.geometry,
+                                 {scene::AreaLight{.object = 2, .radiance = spectral::constant_spectrum(20.0, grid)}});
     return scene;
 }
 
 /// A scene and everything that its views need.
 struct Stage {
-    SpectralGrid grid = spectral_grid(400.0, 700.0, 64);
-    Lens lens = focused_at(with_f_number(load_lens("double-gauss-tronnier"), 2.0), 2000.0);
-    SpectralLens<double> traced = at_wavelengths<double>(lens, grid.strata.midpoints());
-    PupilMap pupil{traced.at(), true, kSensor.half_diagonal_mm()};
-    PupilSlices slices{pupil, grid.size()};
-    Scene scene = wall_sphere_and_lamp(grid);
+    spectral::SpectralGrid grid = spectral::spectral_grid(400.0, 700.0, 64);
+    optics::Lens lens =
+        optics::focused_at(optics::with_f_number(formats::load_lens("double-gauss-tronnier"), 2.0), 2000.0);
+    optics::SpectralLens<double> traced = optics::at_wavelengths<double>(lens, grid.strata.midpoints());
+    pupil::PupilMap pupil{traced.at(), true, kSensor.half_diagonal_mm()};
+    pupil::PupilSlices slices{pupil, grid.size()};
+    scene::Scene scene = wall_sphere_and_lamp(grid);
 
-    [[nodiscard]] SceneView view(const SceneCamera& camera) const {
+    [[nodiscard]] render::SceneView view(const render::SceneCamera& camera) const {
         return {.scene = &scene,
                 .camera = &camera,
-                .camera_to_world = camera_to_world({}),
+                .camera_to_world = scene::camera_to_world({}),
                 .sensor = kSensor,
                 .film = {.width = kWidth,
                          .height = kHeight,
-                         .layer_nm = WavelengthStrata{400.0, 700.0, 8}.midpoints(),
+                         .layer_nm = spectral::WavelengthStrata{400.0, 700.0, 8}.midpoints(),
                          .rgb_weights = std::vector<Vec3d>(64, Vec3d{1.0, 1.0, 1.0}),
                          .band_nm = 300.0},
                 .albedo_weights = {},
@@ -65,31 +68,31 @@ struct Stage {
     }
 };
 
-SceneCamera camera_of(const Stage& stage, LensModel model) {
-    if (model == LensModel::exact) {
-        return ExactCamera{&stage.traced, &stage.slices};
+render::SceneCamera camera_of(const Stage& stage, scene::LensModel model) {
+    if (model == scene::LensModel::exact) {
+        return render::ExactCamera{&stage.traced, &stage.slices};
     }
-    std::vector<GaussianCamera> at;
+    std::vector<render::GaussianCamera> at;
     for (const double nm : stage.grid.strata.midpoints()) {
-        at.push_back(gaussian_camera(stage.lens, model, nm));
+        at.push_back(render::gaussian_camera(stage.lens, model, nm));
     }
     return at;
 }
 
-void time_camera_paths(benchmark::State& state, LensModel model) {
+void time_camera_paths(benchmark::State& state, scene::LensModel model) {
     const Stage stage;
-    const SceneCamera camera = camera_of(stage, model);
-    const SceneView view = stage.view(camera);
-    const TileRenderer render = scene_renderer(view);
-    Film film(view.film);
-    FilmTile tile(film.layout());
-    const auto tiles = film_tiles(kWidth, kHeight);
+    const render::SceneCamera camera = camera_of(stage, model);
+    const render::SceneView view = stage.view(camera);
+    const render::TileRenderer render = render::scene_renderer(view);
+    render::Film film(view.film);
+    render::FilmTile tile(film.layout());
+    const auto tiles = render::film_tiles(kWidth, kHeight);
     std::uint32_t sample = 0;
     constexpr std::uint32_t kSamples = 16;
     std::uint64_t rays = 0;
     for (auto _ : state) {
-        for (const PixelRect& rect : tiles) {
-            const TileSamples samples{rect, sample, sample + kSamples};
+        for (const render::PixelRect& rect : tiles) {
+            const render::TileSamples samples{rect, sample, sample + kSamples};
             film.load(samples, tile);
             render(samples, tile);
             tile.finish();
@@ -106,9 +109,9 @@ void time_camera_paths(benchmark::State& state, LensModel model) {
 }  // namespace
 
 void register_scene_benchmarks() {
-    for (const std::string& model : lens_model_names()) {
+    for (const std::string& model : scene::lens_model_names()) {
         benchmark::RegisterBenchmark(("scene/" + model).c_str(), [model](benchmark::State& state) {
-            time_camera_paths(state, lens_model_named(model));
+            time_camera_paths(state, scene::lens_model_named(model));
         })->Unit(benchmark::kMillisecond);
     }
 }

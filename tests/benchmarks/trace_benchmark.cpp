@@ -20,9 +20,9 @@ constexpr std::size_t kRays = 512;  // few enough to stay in the second-level ca
 
 /// Rays from the sensor that pass the whole lens, reverse, or the same light forward. Every one passes, so that each
 /// tracing takes all surfaces.
-std::vector<Ray<double>> passing_rays(const Lens& lens, Direction way) {
-    const TraceLens<double> traced_lens = at_wavelength<double>(lens, kWavelengthNm);
-    const ChiefRays chief_rays(lens, kWavelengthNm);
+std::vector<Ray<double>> passing_rays(const optics::Lens& lens, optics::Direction way) {
+    const optics::TraceLens<double> traced_lens = optics::at_wavelength<double>(lens, kWavelengthNm);
+    const optics::ChiefRays chief_rays(lens, kWavelengthNm);
     const double height = std::abs(chief_rays.at_field(0.7 * chief_rays.largest_field()).value().image_height);
     const double rim = lens.surfaces.back().semi_diameter;
     std::mt19937_64 random(1);
@@ -32,10 +32,11 @@ std::vector<Ray<double>> passing_rays(const Lens& lens, Direction way) {
         const Vec3d film{0.0, height * unit(random), traced_lens.image_z};
         const Vec3d rear{rim * unit(random), rim * unit(random), lens.last_vertex_z()};
         const Ray<double> outwards{film, normalized(rear - film)};
-        const TracedRay<double> out = trace<Direction::reverse>(traced_lens, outwards);
+        const optics::TracedRay<double> out = optics::trace<optics::Direction::reverse>(traced_lens, outwards);
         const Ray<double> inwards{out.ray.origin + 10.0 * out.ray.direction, -1.0 * out.ray.direction};
-        if (out.status == RayStatus::ok && trace(traced_lens, inwards).status == RayStatus::ok) {
-            rays.push_back(way == Direction::reverse ? outwards : inwards);
+        if (out.status == optics::RayStatus::ok &&
+            optics::trace(traced_lens, inwards).status == optics::RayStatus::ok) {
+            rays.push_back(way == optics::Direction::reverse ? outwards : inwards);
         }
     }
     return rays;
@@ -50,22 +51,23 @@ void count(benchmark::State& state, std::size_t surfaces) {
 
 /// The batch tracer at one level; `wavelengths` of them, so that one is a broadcast and more are looked up.
 template <class T>
-void time_batch(benchmark::State& state, const std::string& name, SimdLevel level, Carry carry, int wavelengths) {
-    const Lens lens = load_lens(name);
-    const std::vector<Ray<double>> rays = passing_rays(lens, Direction::reverse);
+void time_batch(benchmark::State& state, const std::string& name, optics::SimdLevel level, optics::Carry carry,
+                int wavelengths) {
+    const optics::Lens lens = formats::load_lens(name);
+    const std::vector<Ray<double>> rays = passing_rays(lens, optics::Direction::reverse);
     std::vector<double> nm(static_cast<std::size_t>(wavelengths), kWavelengthNm);
-    const SpectralLens<T> at = at_wavelengths<T>(lens, nm);
-    RayBatch<T> given(static_cast<int>(kRays));
+    const optics::SpectralLens<T> at = optics::at_wavelengths<T>(lens, nm);
+    optics::RayBatch<T> given(static_cast<int>(kRays));
     given.size = given.capacity;
     for (int i = 0; i < given.size; ++i) {
-        given.set(i, convert_ray<T>(rays[static_cast<std::size_t>(i)]));
+        given.set(i, optics::convert_ray<T>(rays[static_cast<std::size_t>(i)]));
         given.wavelength[static_cast<std::size_t>(i)] = static_cast<std::uint16_t>(i % wavelengths);
     }
-    RayBatch<T> batch = given;
+    optics::RayBatch<T> batch = given;
     while (state.KeepRunning()) {
         batch.origin = given.origin;
         batch.direction = given.direction;
-        trace_batch<Direction::reverse>(at, batch, {.carry = carry, .level = level});
+        optics::trace_batch<optics::Direction::reverse>(at, batch, {.carry = carry, .level = level});
         benchmark::ClobberMemory();
     }
     count(state, lens.surfaces.size());
@@ -84,14 +86,14 @@ std::vector<Ray<T>> in_precision(const std::vector<Ray<double>>& rays) {
     return result;
 }
 
-template <Direction way, Rims rims, class T>
+template <optics::Direction way, optics::Rims rims, class T>
 void time_trace(benchmark::State& state, const std::string& name) {
-    const Lens lens = load_lens(name);
-    const TraceLens<T> traced_lens = at_wavelength<T>(lens, kWavelengthNm);
+    const optics::Lens lens = formats::load_lens(name);
+    const optics::TraceLens<T> traced_lens = optics::at_wavelength<T>(lens, kWavelengthNm);
     const std::vector<Ray<T>> rays = in_precision<T>(passing_rays(lens, way));
     while (state.KeepRunning()) {
         for (const Ray<T>& ray : rays) {
-            benchmark::DoNotOptimize(trace<way, rims>(traced_lens, ray));
+            benchmark::DoNotOptimize(optics::trace<way, rims>(traced_lens, ray));
         }
     }
     count(state, lens.surfaces.size());
@@ -100,9 +102,9 @@ void time_trace(benchmark::State& state, const std::string& name) {
 /// What packets are judged by: the same physics in a plain loop over doubles, ray by ray, without statuses.
 template <bool with_fresnel>
 void time_plain_loop(benchmark::State& state, const std::string& name) {
-    const Lens lens = load_lens(name);
-    const TraceLens<double> traced_lens = at_wavelength<double>(lens, kWavelengthNm);
-    const std::vector<Ray<double>> rays = passing_rays(lens, Direction::reverse);
+    const optics::Lens lens = formats::load_lens(name);
+    const optics::TraceLens<double> traced_lens = optics::at_wavelength<double>(lens, kWavelengthNm);
+    const std::vector<Ray<double>> rays = passing_rays(lens, optics::Direction::reverse);
     while (state.KeepRunning()) {
         for (const Ray<double>& ray : rays) {
             Vec3d origin = ray.origin;
@@ -111,22 +113,22 @@ void time_plain_loop(benchmark::State& state, const std::string& name) {
             for (auto surface = traced_lens.surfaces.rbegin(); surface != traced_lens.surfaces.rend(); ++surface) {
                 const double c = surface->curvature;
                 const Vec3d from_vertex{origin.x, origin.y, origin.z - surface->vertex_z};
-                const Intersection<double> met = intersect(from_vertex, way, c, -1.0);
+                const optics::Intersection<double> met = optics::intersect(from_vertex, way, c, -1.0);
                 if (!met.hit ||
                     met.point.x * met.point.x + met.point.y * met.point.y > surface->semi_diameter_squared) {
                     break;
                 }
                 origin = {met.point.x, met.point.y, met.point.z + surface->vertex_z};
                 const Vec3d normal{c * met.point.x, c * met.point.y, c * met.point.z - 1.0};
-                const Refraction<double> bent =
-                    refract(way, normal, met.cos_incidence, met.sin2_incidence, surface->reverse_ratio);
+                const optics::Refraction<double> bent =
+                    optics::refract(way, normal, met.cos_incidence, met.sin2_incidence, surface->reverse_ratio);
                 if (!bent.transmitted) {
                     break;
                 }
                 way = bent.direction;
                 if (with_fresnel) {
-                    transmittance *= fresnel_transmittance(surface->index_after, surface->index_before,
-                                                           met.cos_incidence, bent.cos_refraction);
+                    transmittance *= optics::fresnel_transmittance(surface->index_after, surface->index_before,
+                                                                   met.cos_incidence, bent.cos_refraction);
                 }
             }
             benchmark::DoNotOptimize(origin);
@@ -137,10 +139,10 @@ void time_plain_loop(benchmark::State& state, const std::string& name) {
     count(state, lens.surfaces.size());
 }
 
-template <Direction way, Rims rims, class T>
+template <optics::Direction way, optics::Rims rims, class T>
 void register_one(const std::string& lens) {
-    const std::string name = "trace/" + lens + (way == Direction::forward ? "/forward" : "/reverse") +
-                             (rims == Rims::clip ? "/clip" : "/follow") +
+    const std::string name = "trace/" + lens + (way == optics::Direction::forward ? "/forward" : "/reverse") +
+                             (rims == optics::Rims::clip ? "/clip" : "/follow") +
                              (std::is_same_v<T, double> ? "/double" : "/float");
     benchmark::RegisterBenchmark(name.c_str(),
                                  [lens](benchmark::State& state) { time_trace<way, rims, T>(state, lens); });
@@ -148,10 +150,10 @@ void register_one(const std::string& lens) {
 
 template <class T>
 void register_precision(const std::string& lens) {
-    register_one<Direction::forward, Rims::clip, T>(lens);
-    register_one<Direction::forward, Rims::follow, T>(lens);
-    register_one<Direction::reverse, Rims::clip, T>(lens);
-    register_one<Direction::reverse, Rims::follow, T>(lens);
+    register_one<optics::Direction::forward, optics::Rims::clip, T>(lens);
+    register_one<optics::Direction::forward, optics::Rims::follow, T>(lens);
+    register_one<optics::Direction::reverse, optics::Rims::clip, T>(lens);
+    register_one<optics::Direction::reverse, optics::Rims::follow, T>(lens);
 }
 
 std::string batch_name(const std::string& lens, const std::string& rest) {
@@ -163,15 +165,15 @@ constexpr std::array kBatchLenses = {"tessar",       "petzval",       "double-ga
 
 template <class T>
 void register_batches(const std::string& lens, const std::string& type) {
-    const auto add = [&](SimdLevel level, const std::string& what, Carry carry, int wavelengths) {
+    const auto add = [&](optics::SimdLevel level, const std::string& what, optics::Carry carry, int wavelengths) {
         benchmark::RegisterBenchmark(
-            batch_name(lens, type + "/" + simd_name(level) + "/" + what).c_str(),
+            batch_name(lens, type + "/" + optics::simd_name(level) + "/" + what).c_str(),
             [=](benchmark::State& state) { time_batch<T>(state, lens, level, carry, wavelengths); });
     };
-    for (const SimdLevel level : available_simd_levels()) {
-        add(level, "geometry", Carry::geometry, 1);
-        add(level, "fresnel", Carry::transmittance, 1);
-        add(level, "fresnel_64_wavelengths", Carry::transmittance, 64);
+    for (const optics::SimdLevel level : optics::available_simd_levels()) {
+        add(level, "geometry", optics::Carry::geometry, 1);
+        add(level, "fresnel", optics::Carry::transmittance, 1);
+        add(level, "fresnel_64_wavelengths", optics::Carry::transmittance, 64);
     }
 }
 

@@ -8,12 +8,12 @@
 #include "engine/base/input_error.h"
 #include "tests/calibration/synthetic.h"
 
-namespace lensproof {
+namespace lensproof::calibration {
 namespace {
 
 using namespace synthetic;
 
-const Chart kBoard{.pattern = Checkerboard{10, 7, 30.0}};
+const scene::Chart kBoard{.pattern = scene::Checkerboard{10, 7, 30.0}};
 
 // Light that falls off by 30 % to the corner (400 px).
 double falloff(const Vec2d& pixel) {
@@ -28,8 +28,8 @@ BrownConrady camera_for(const std::string& channel) {
     return camera;
 }
 
-Image colour_picture(const Pose& pose, unsigned seed) {
-    Image image = make_image(640, 480, {"R", "G", "B"});
+formats::Image colour_picture(const Pose& pose, unsigned seed) {
+    formats::Image image = formats::make_image(640, 480, {"R", "G", "B"});
     for (int c = 0; c < 3; ++c) {
         paint(image, c, camera_for(image.channels[static_cast<std::size_t>(c)]), pose, kBoard, 4,
               [](const Vec2d& p) { return 0.5 * falloff(p); });
@@ -59,7 +59,7 @@ TEST(CalibrationMeasure, AProfileTellsWhatThePicturesWereMadeWith) {
             {"view" + std::to_string(seed), PictureRole::chart, [pose, seed] { return colour_picture(pose, seed); }});
         ++seed;
     }
-    pictures.push_back({"blank", PictureRole::chart, [] { return make_image(640, 480, {"R", "G", "B"}); }});
+    pictures.push_back({"blank", PictureRole::chart, [] { return formats::make_image(640, 480, {"R", "G", "B"}); }});
     const Profile profile = measure(input_with(std::move(pictures)));
 
     ASSERT_TRUE(profile.geometry);
@@ -91,7 +91,7 @@ TEST(CalibrationMeasure, AProfileTellsWhatThePicturesWereMadeWith) {
 
 TEST(CalibrationMeasure, FlatFieldsAloneGiveVignettingAlone) {
     const auto flat = [] {
-        Image image = make_image(640, 480, {"Y"});
+        formats::Image image = formats::make_image(640, 480, {"Y"});
         for (int y = 0; y < 480; ++y) {
             for (int x = 0; x < 640; ++x) {
                 image.at(x, y, 0) = static_cast<float>(0.5 * falloff({x - 1.0, y + 3.5}));  // about the middle
@@ -100,7 +100,7 @@ TEST(CalibrationMeasure, FlatFieldsAloneGiveVignettingAlone) {
         return image;
     };
     MeasureInput input = input_with({{"flat", PictureRole::flat_field, flat}});
-    input.chart.pattern = FlatField{};
+    input.chart.pattern = scene::FlatField{};
     const Profile profile = measure(input);
     EXPECT_FALSE(profile.geometry);
     EXPECT_NEAR(sample(profile.curves.at("vignetting_Y"), 0.9)->value, 1.0 - 0.3 * 0.81, 0.002);
@@ -111,10 +111,10 @@ TEST(CalibrationMeasure, FlatFieldsAloneGiveVignettingAlone) {
 TEST(CalibrationMeasure, UnusableSetsAreRefused) {
     const auto blank = [](int width) {
         return Picture{"blank" + std::to_string(width), PictureRole::chart,
-                       [width] { return make_image(width, 100, {"Y"}); }};
+                       [width] { return formats::make_image(width, 100, {"Y"}); }};
     };
     EXPECT_THROW(measure(input_with({})), InputError);
-    EXPECT_THROW(measure(input_with({{"empty", PictureRole::chart, [] { return Image{}; }}})), InputError);
+    EXPECT_THROW(measure(input_with({{"empty", PictureRole::chart, [] { return formats::Image{}; }}})), InputError);
     EXPECT_THROW(measure(input_with({blank(100), blank(101)})), InputError);
     try {
         measure(input_with({blank(100), blank(100), blank(100)}));
@@ -137,7 +137,8 @@ TEST(CalibrationMeasure, OpenCvPhotosGiveTheKnownFocalLength) {
         if (!std::filesystem::exists(file)) {
             GTEST_SKIP() << "needs the package opencv-doc with " << file.filename();
         }
-        pictures.push_back({file.filename().string(), PictureRole::chart, [file] { return read_image(file); }});
+        pictures.push_back(
+            {file.filename().string(), PictureRole::chart, [file] { return formats::read_image(file); }});
     }
     MeasureInput input = input_with(std::move(pictures));
     input.source.kind = "photo";
@@ -149,4 +150,4 @@ TEST(CalibrationMeasure, OpenCvPhotosGiveTheKnownFocalLength) {
 }
 
 }  // namespace
-}  // namespace lensproof
+}  // namespace lensproof::calibration

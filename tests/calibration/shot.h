@@ -11,12 +11,12 @@
 #include "calibration/detection/refine.h"
 #include "tests/calibration/synthetic.h"
 
-namespace lensproof::synthetic {
+namespace lensproof::calibration::synthetic {
 
 inline constexpr int kSamples = 6;  // 36 a pixel
 
 struct Taken {
-    Image image;
+    formats::Image image;
     std::vector<Vec2d> truth_px;
 };
 
@@ -31,8 +31,8 @@ struct Shot {
 };
 
 // One direction of a Gaussian blur; the frame's pixels go on without end.
-inline void blur_along(Image& image, const std::vector<double>& kernel, int dx, int dy) {
-    const Image source = image;
+inline void blur_along(formats::Image& image, const std::vector<double>& kernel, int dx, int dy) {
+    const formats::Image source = image;
     const int reach = static_cast<int>(kernel.size()) - 1;
     for (int y = 0; y < image.height; ++y) {
         for (int x = 0; x < image.width; ++x) {
@@ -46,7 +46,7 @@ inline void blur_along(Image& image, const std::vector<double>& kernel, int dx, 
     }
 }
 
-inline void blur(Image& image, double sigma_px) {
+inline void blur(formats::Image& image, double sigma_px) {
     std::vector<double> kernel;
     double sum = 0.0;
     for (int k = 0; k <= std::ceil(4.0 * sigma_px); ++k) {
@@ -60,13 +60,13 @@ inline void blur(Image& image, double sigma_px) {
     blur_along(image, kernel, 0, 1);
 }
 
-inline Taken take(const Chart& chart, const CameraModel& camera, const Shot& shot) {
+inline Taken take(const scene::Chart& chart, const CameraModel& camera, const Shot& shot) {
     constexpr double kDegree = std::numbers::pi / 180.0;
     const double tilt = shot.tilt_deg * kDegree;
     const Pose pose{{0.7 * tilt, -0.6 * tilt, shot.roll_deg * kDegree},
                     {shot.aside_mm.x, shot.aside_mm.y, shot.distance_mm}};
-    Taken taken{.image = make_image(640, 480, {"Y"}), .truth_px = {}};
-    for (const Vec2d& point : feature_points(chart)) {
+    Taken taken{.image = formats::make_image(640, 480, {"Y"}), .truth_px = {}};
+    for (const Vec2d& point : scene::feature_points(chart)) {
         taken.truth_px.push_back(predict(camera, pose, point, disc_diameter_mm(chart)).value_or(Vec2d{-1e3, -1e3}));
     }
     paint(taken.image, 0, camera, pose, chart, kSamples);
@@ -85,7 +85,7 @@ struct Errors {
     double worst_px = 0.0;
 };
 
-inline Errors errors(const Chart& chart, const Taken& taken) {
+inline Errors errors(const scene::Chart& chart, const Taken& taken) {
     Errors e;
     const Detection detection = detect(taken.image, chart);
     if (!detection.found()) {
@@ -108,4 +108,4 @@ inline Errors errors(const Chart& chart, const Taken& taken) {
     return e;
 }
 
-}  // namespace lensproof::synthetic
+}  // namespace lensproof::calibration::synthetic

@@ -12,7 +12,7 @@
 #include "engine/formats/image/image.h"
 #include "engine/scene/chart.h"
 
-namespace lensproof::synthetic {
+namespace lensproof::calibration::synthetic {
 
 inline BrownConrady perspective_camera() {
     return {{820.0, 318.5, 243.0, -0.24, 0.09, -0.01, 0.0008, -0.0005}};
@@ -41,9 +41,9 @@ class Noise {
 };
 
 /// Exact projections of the chart's points.
-inline ChartView view_of(const CameraModel& camera, const Pose& pose, const Chart& chart) {
+inline ChartView view_of(const CameraModel& camera, const Pose& pose, const scene::Chart& chart) {
     ChartView view{.name = "synthetic", .chart_mm = {}, .image_px = {}};
-    for (const Vec2d& point : feature_points(chart)) {
+    for (const Vec2d& point : scene::feature_points(chart)) {
         if (const auto pixel = project(camera, to_camera(pose, point))) {
             view.chart_mm.push_back(point);
             view.image_px.push_back(*pixel);
@@ -83,7 +83,7 @@ inline std::vector<double> sample_heights(int n) {
 ///
 /// The map to the chart is exact every 2 px and bilinear between, which moves an edge by less than 1e-3 px.
 inline void paint(
-    Image& image, int channel, const CameraModel& camera, const Pose& pose, const Chart& chart, int n,
+    formats::Image& image, int channel, const CameraModel& camera, const Pose& pose, const scene::Chart& chart, int n,
     const std::function<double(const Vec2d&)>& brightness = [](const Vec2d&) { return 1.0; }) {
     const std::vector<double> heights = sample_heights(n);
     const int columns = image.width / 2 + 2;
@@ -105,19 +105,19 @@ inline void paint(
             for (int k = 0; k < n * n && a && b && c && d; ++k) {
                 const double u = (x % 2 + (k + 0.5) / (n * n)) / 2.0;
                 const double v = (y % 2 + 0.5 + heights[k]) / 2.0;
-                sum += reflectance(chart, std::lerp(std::lerp(a->x, b->x, u), std::lerp(c->x, d->x, u), v),
-                                   std::lerp(std::lerp(a->y, b->y, u), std::lerp(c->y, d->y, u), v));
+                sum += scene::reflectance(chart, std::lerp(std::lerp(a->x, b->x, u), std::lerp(c->x, d->x, u), v),
+                                          std::lerp(std::lerp(a->y, b->y, u), std::lerp(c->y, d->y, u), v));
             }
             image.at(x, y, channel) = static_cast<float>(sum / (n * n) * brightness({double(x), double(y)}));
         }
     }
 }
 
-inline void add_noise(Image& image, double sigma, unsigned seed) {
+inline void add_noise(formats::Image& image, double sigma, unsigned seed) {
     Noise noise(seed);
     for (float& value : image.pixels) {
         value += static_cast<float>(sigma * noise());
     }
 }
 
-}  // namespace lensproof::synthetic
+}  // namespace lensproof::calibration::synthetic

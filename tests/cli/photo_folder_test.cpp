@@ -15,9 +15,9 @@ namespace lensproof {
 namespace {
 
 using Json = nlohmann::json;
-using namespace synthetic;
+using namespace calibration::synthetic;
 
-const Chart kBoard{.pattern = Checkerboard{10, 7, 30.0}};
+const scene::Chart kBoard{.pattern = scene::Checkerboard{10, 7, 30.0}};
 constexpr const char* kBoardFile = "[chart]\nkind = \"checkerboard\"\nsquares = [10, 7]\nsquare_mm = 30.0\n";
 
 /// What a phone notes: a focal length of 820 px on a diagonal of 800 px is 44 mm on 36 × 24 mm.
@@ -27,7 +27,7 @@ struct Shot {
     double f_number = 1.8;
 };
 
-void write_jpeg(const std::filesystem::path& file, const Image& linear, const Shot& shot) {
+void write_jpeg(const std::filesystem::path& file, const formats::Image& linear, const Shot& shot) {
     std::vector<float> bytes;
     for (const float value : linear.pixels) {
         const float light = std::clamp(value, 0.0F, 1.0F);
@@ -49,18 +49,18 @@ void write_jpeg(const std::filesystem::path& file, const Image& linear, const Sh
 }
 
 /// The chart in grey; its light is 0.7 of full scale.
-Image photograph(const Pose& pose, unsigned seed) {
-    Image image = make_image(640, 480, {"Y"});
+formats::Image photograph(const calibration::Pose& pose, unsigned seed) {
+    formats::Image image = formats::make_image(640, 480, {"Y"});
     paint(image, 0, perspective_camera(), pose, kBoard, 4, [](const Vec2d&) { return 0.7; });
     add_noise(image, 0.004, seed);
     return image;
 }
 
 /// Focused elsewhere: every pixel the mean of 31 × 31.
-Image out_of_focus(Image image) {
+formats::Image out_of_focus(formats::Image image) {
     constexpr int kReach = 15;
     for (const bool across : {true, false}) {
-        const Image sharp = image;
+        const formats::Image sharp = image;
         for (int y = 0; y < sharp.height; ++y) {
             for (int x = 0; x < sharp.width; ++x) {
                 float sum = 0.0F;
@@ -76,8 +76,8 @@ Image out_of_focus(Image image) {
 }
 
 /// A room: soft light and a box in it.
-Image without_chart() {
-    Image image = make_image(640, 480, {"Y"});
+formats::Image without_chart() {
+    formats::Image image = formats::make_image(640, 480, {"Y"});
     for (int y = 0; y < image.height; ++y) {
         for (int x = 0; x < image.width; ++x) {
             image.at(x, y, 0) =
@@ -101,7 +101,7 @@ void fill_with_photos(const Workplace& place) {
     place.file("board.toml", kBoardFile);
     place.file("photos/notes.txt", "not a picture");
     const std::filesystem::path folder = place.path() / "photos";
-    std::vector<Pose> poses = tilted_poses(520.0, 0.35, 60.0);
+    std::vector<calibration::Pose> poses = tilted_poses(520.0, 0.35, 60.0);
     poses.back().rotation_rad.z = std::numbers::pi - 0.05;  // upside down
     const std::vector<int> held = {1, 6, 8, 3, 6};
     for (std::size_t i = 0; i < poses.size(); ++i) {
@@ -113,7 +113,7 @@ void fill_with_photos(const Workplace& place) {
     place.file("photos/IMG_8.jpg", place.content("photos/IMG_1.jpg"));
     place.file("photos/IMG_9.jpg", place.content("photos/IMG_2.jpg").substr(0, 20000));
     write_jpeg(folder / "IMG_a.jpg", photograph(poses[1], 7), {.focal_length_mm = 8.0});
-    write_jpeg(folder / "IMG_b.jpg", make_image(480, 640, {"Y"}), {});
+    write_jpeg(folder / "IMG_b.jpg", formats::make_image(480, 640, {"Y"}), {});
 }
 
 // Five photos show the chart, however the phone was held; two shots are of no use (out of focus, no chart), and a copy,

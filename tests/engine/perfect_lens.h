@@ -20,19 +20,19 @@ struct PerfectLens {
     /// The stop's distance that puts the exit pupil at infinity: the front focal plane.
     [[nodiscard]] double telecentric_distance() const { return focal_length - thickness / index; }
 
-    [[nodiscard]] Lens lens() const {
-        PrescribedSurface stop{.thickness_mm = stop_distance, .semi_diameter_mm = beam_radius, .is_stop = true};
-        PrescribedSurface flat{.thickness_mm = thickness, .semi_diameter_mm = 40.0};
+    [[nodiscard]] optics::Lens lens() const {
+        optics::PrescribedSurface stop{.thickness_mm = stop_distance, .semi_diameter_mm = beam_radius, .is_stop = true};
+        optics::PrescribedSurface flat{.thickness_mm = thickness, .semi_diameter_mm = 40.0};
         flat.medium.n_d = index;
-        PrescribedSurface rear{.radius_mm = -focal_length * (index - 1.0),
-                               .conic = -index * index,
-                               .thickness_mm = focal_length + defocus,
-                               .semi_diameter_mm = 40.0};
+        optics::PrescribedSurface rear{.radius_mm = -focal_length * (index - 1.0),
+                                       .conic = -index * index,
+                                       .thickness_mm = focal_length + defocus,
+                                       .semi_diameter_mm = 40.0};
         rear.asphere[1] = spherical;
-        Prescription prescription;
+        optics::Prescription prescription;
         prescription.name = "perfect";
         prescription.surfaces = {stop, flat, rear};
-        return make_lens(prescription, GlassCatalogue{});
+        return optics::make_lens(prescription, optics::GlassCatalogue{});
     }
 };
 

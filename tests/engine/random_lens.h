@@ -15,8 +15,8 @@ class RandomLenses {
   public:
     explicit RandomLenses(std::uint64_t seed) : random_(seed) {}
 
-    Prescription next() {
-        Prescription lens;
+    optics::Prescription next() {
+        optics::Prescription lens;
         lens.name = "random";
         lens.source = "drawn at random";
         semi_diameter_ = between(6.0, 12.0);
@@ -24,7 +24,7 @@ class RandomLenses {
         const int before_stop = whole(0, groups);
         for (int group = 0; group <= groups; ++group) {
             if (group == before_stop) {
-                PrescribedSurface stop;
+                optics::PrescribedSurface stop;
                 stop.semi_diameter_mm = between(0.4, 0.9) * semi_diameter_;
                 stop.is_stop = true;
                 add(lens, stop);
@@ -41,10 +41,10 @@ class RandomLenses {
     int whole(int low, int high) { return std::uniform_int_distribution(low, high)(random_); }
 
   private:
-    void add_group(Prescription& lens) {
+    void add_group(optics::Prescription& lens) {
         const int elements = whole(1, 3);
         for (int i = 0; i <= elements; ++i) {
-            PrescribedSurface surface = face();
+            optics::PrescribedSurface surface = face();
             if (i < elements) {
                 surface.medium.n_d = between(1.45, 1.9);
             }
@@ -52,8 +52,8 @@ class RandomLenses {
         }
     }
 
-    PrescribedSurface face() {
-        PrescribedSurface surface;
+    optics::PrescribedSurface face() {
+        optics::PrescribedSurface surface;
         surface.semi_diameter_mm = semi_diameter_;
         const int kind = whole(0, 9);
         if (kind == 0) {
@@ -74,11 +74,12 @@ class RandomLenses {
     }
 
     /// Puts a surface at the end, so far behind its neighbour that they stand apart at their rims too.
-    void add(Prescription& lens, const PrescribedSurface& surface) {
+    void add(optics::Prescription& lens, const optics::PrescribedSurface& surface) {
         if (!lens.surfaces.empty()) {
-            PrescribedSurface& last = lens.surfaces.back();
+            optics::PrescribedSurface& last = lens.surfaces.back();
             const double r = semi_diameter_;
-            const double at_rim = sag(prescribed_shape(last), r, 0.0) - sag(prescribed_shape(surface), r, 0.0);
+            const double at_rim = optics::sag(optics::prescribed_shape(last), r, 0.0) -
+                                  optics::sag(optics::prescribed_shape(surface), r, 0.0);
             last.thickness_mm = std::max(0.0, at_rim) + between(0.3, 5.0);
         }
         lens.surfaces.push_back(surface);

@@ -11,32 +11,32 @@
 
 namespace lensproof {
 
-void use(const Prescription& prescription) {
-    static const GlassCatalogue glasses = shipped_glasses();
-    check_prescription(prescription, {}, glasses, {});
+void use(const optics::Prescription& prescription) {
+    static const optics::GlassCatalogue glasses = formats::shipped_glasses();
+    check::check_prescription(prescription, {}, glasses, {});
     try {
-        const Lens lens = make_lens(prescription, glasses);
+        const optics::Lens lens = optics::make_lens(prescription, glasses);
         const Ray<double> ray{{0.0, 0.1, -10.0}, {0.0, 0.0, 1.0}};
-        trace(at_wavelength<double>(lens, 550.0), ray);
+        optics::trace(optics::at_wavelength<double>(lens, 550.0), ray);
     } catch (const InputError&) {
         return;  // refused, as the checker has said
     }
 }
 
-void use(const GlassFile& file) {
-    for (const Glass& glass : file.glasses) {
-        refractive_index(glass.formula, glass.min_wavelength_nm);
-        internal_transmittance(glass, 550.0, 10.0);
-        dn_dT_relative(glass, glass.max_wavelength_nm);
+void use(const formats::GlassFile& file) {
+    for (const optics::Glass& glass : file.glasses) {
+        optics::refractive_index(glass.formula, glass.min_wavelength_nm);
+        optics::internal_transmittance(glass, 550.0, 10.0);
+        optics::dn_dT_relative(glass, glass.max_wavelength_nm);
     }
 }
 
-void use(const SceneSetup& setup) {
+void use(const render::SceneSetup& setup) {
     try {
-        SceneShapes shapes = load_shapes(setup.scene);
-        const SceneGeometry geometry(std::move(shapes.shapes), std::move(shapes.objects));
-        const RigidMotion camera = camera_to_world(setup.view);
-        intersect(geometry, camera.translation, rotate(camera, {0.0, 0.0, 1.0}), 0.0, 1e12);
+        scene::SceneShapes shapes = scene::load_shapes(setup.scene);
+        const scene::SceneGeometry geometry(std::move(shapes.shapes), std::move(shapes.objects));
+        const scene::RigidMotion camera = scene::camera_to_world(setup.view);
+        scene::intersect(geometry, camera.translation, scene::rotate(camera, {0.0, 0.0, 1.0}), 0.0, 1e12);
     } catch (const InputError&) {
         return;  // refused, as a render would
     }

@@ -8,12 +8,12 @@ namespace lensproof {
 
 /// Checks the prescription, which must not fail, makes a lens of it with the glasses that ship, unless that is refused,
 /// and traces a ray.
-void use(const Prescription& prescription);
+void use(const optics::Prescription& prescription);
 
 /// Asks each glass for its index, its transmittance and its change with temperature.
-void use(const GlassFile& file);
+void use(const formats::GlassFile& file);
 
 /// Builds the scene's geometry, unless that is refused, and sends a ray from the camera.
-void use(const SceneSetup& setup);
+void use(const render::SceneSetup& setup);
 
 }  // namespace lensproof

@@ -9,28 +9,29 @@
 namespace lensproof {
 namespace {
 
-const SpectralGrid kGrid = spectral_grid(420.0, 680.0, 16);
-const Sensor kSensor{.width = 9, .height = 6, .pixel_pitch_mm = 4.0};
+const spectral::SpectralGrid kGrid = spectral::spectral_grid(420.0, 680.0, 16);
+const render::Sensor kSensor{.width = 9, .height = 6, .pixel_pitch_mm = 4.0};
 
 /// Matt surfaces and a lamp in view, a spherical one beside it, and a sky.
 SceneParts matt_scene() {
     SceneParts parts(kGrid);
-    parts.add(Quad{4000.0, 4000.0}, {.linear = about_x(180.0), .translation = {0.0, 0.0, 2000.0}}, 0.7);
-    parts.add(Sphere{200.0}, {.linear = kIdentity3, .translation = {150.0, 0.0, 1700.0}}, 0.5);
+    parts.add(scene::Quad{4000.0, 4000.0}, {.linear = about_x(180.0), .translation = {0.0, 0.0, 2000.0}}, 0.7);
+    parts.add(scene::Sphere{200.0}, {.linear = kIdentity3, .translation = {150.0, 0.0, 1700.0}}, 0.5);
     const std::uint32_t lamp =
-        parts.add(Quad{300.0, 300.0}, {.linear = about_x(135.0), .translation = {0.0, 300.0, 1800.0}}, 0.0);
+        parts.add(scene::Quad{300.0, 300.0}, {.linear = about_x(135.0), .translation = {0.0, 300.0, 1800.0}}, 0.0);
     const std::uint32_t ball =
-        parts.add(Sphere{60.0}, {.linear = kIdentity3, .translation = {-300.0, -150.0, 1800.0}}, 0.0);
-    parts.lights.emplace_back(AreaLight{.object = lamp, .radiance = constant_spectrum(20.0, kGrid)});
-    parts.lights.emplace_back(AreaLight{.object = ball, .radiance = constant_spectrum(30.0, kGrid)});
-    parts.lights.emplace_back(ConstantLight{constant_spectrum(0.5, kGrid)});
-    parts.lights.emplace_back(PointLight{{300.0, 300.0, 1500.0}, constant_spectrum(0.5, kGrid)});
+        parts.add(scene::Sphere{60.0}, {.linear = kIdentity3, .translation = {-300.0, -150.0, 1800.0}}, 0.0);
+    parts.lights.emplace_back(scene::AreaLight{.object = lamp, .radiance = spectral::constant_spectrum(20.0, kGrid)});
+    parts.lights.emplace_back(scene::AreaLight{.object = ball, .radiance = spectral::constant_spectrum(30.0, kGrid)});
+    parts.lights.emplace_back(scene::ConstantLight{spectral::constant_spectrum(0.5, kGrid)});
+    parts.lights.emplace_back(scene::PointLight{{300.0, 300.0, 1500.0}, spectral::constant_spectrum(0.5, kGrid)});
     return parts;
 }
 
-Material glass() {
+scene::Material glass() {
     // Cauchy's formula with numbers like those of a dense flint: the wavelengths part.
-    return {.surface = dielectric_material(tabulated(kGrid, [](double nm) { return 1.70 + 13000.0 / (nm * nm); }), {}),
+    return {.surface = scene::dielectric_material(
+                spectral::tabulated(kGrid, [](double nm) { return 1.70 + 13000.0 / (nm * nm); }), {}),
             .radiance = {}};
 }
 
@@ -38,17 +39,17 @@ Material glass() {
 /// chance alone, light paths cannot see mirrors.
 SceneParts caustic_scene() {
     SceneParts parts(kGrid);
-    parts.add(Quad{4000.0, 4000.0}, {.linear = about_x(180.0), .translation = {0.0, 0.0, 2250.0}}, 0.7);
-    parts.add(Sphere{150.0}, {.linear = kIdentity3, .translation = {-150.0, 420.0, 2000.0}}, glass());
-    parts.add(Quad{900.0, 900.0},
+    parts.add(scene::Quad{4000.0, 4000.0}, {.linear = about_x(180.0), .translation = {0.0, 0.0, 2250.0}}, 0.7);
+    parts.add(scene::Sphere{150.0}, {.linear = kIdentity3, .translation = {-150.0, 420.0, 2000.0}}, glass());
+    parts.add(scene::Quad{900.0, 900.0},
               {.linear = product(about_y(70.0), about_x(180.0)), .translation = {450.0, 0.0, 2000.0}},
-              Material{.surface =
-                           ConductorMaterial{
-                               .n = constant_spectrum(0.1, kGrid), .k = constant_spectrum(4.0, kGrid), .roughness = {}},
-                       .radiance = {}});
+              scene::Material{.surface = scene::ConductorMaterial{.n = spectral::constant_spectrum(0.1, kGrid),
+                                                                  .k = spectral::constant_spectrum(4.0, kGrid),
+                                                                  .roughness = {}},
+                              .radiance = {}});
     const std::uint32_t lamp =
-        parts.add(Sphere{60.0}, {.linear = kIdentity3, .translation = {-150.0, 1000.0, 1500.0}}, 0.0);
-    parts.lights.emplace_back(AreaLight{.object = lamp, .radiance = constant_spectrum(200.0, kGrid)});
+        parts.add(scene::Sphere{60.0}, {.linear = kIdentity3, .translation = {-150.0, 1000.0, 1500.0}}, 0.0);
+    parts.lights.emplace_back(scene::AreaLight{.object = lamp, .radiance = spectral::constant_spectrum(200.0, kGrid)});
     return parts;
 }
 
@@ -59,21 +60,21 @@ Studio::Setup double_gauss(int max_bounces = 3) {
 TEST(BothPaths, MakeTheImageOfEitherWhereAllIsMatt) {
     SceneParts parts = matt_scene();
     const Studio studio(double_gauss(), parts);
-    const Film both = studio.by_both(256);
+    const render::Film both = studio.by_both(256);
     expect_same_image(both, studio.by_camera(512));
     expect_same_image(both, studio.by_lights(3072));
 }
 
 // The colours of the fisheye part by more than its pixels here; wide filters send the hero alone.
 TEST(BothPaths, MakeTheImageWhereWavelengthsPart) {
-    const Sensor fine{.width = 9, .height = 6, .pixel_pitch_mm = 0.02};
+    const render::Sensor fine{.width = 9, .height = 6, .pixel_pitch_mm = 0.02};
     for (const char* filter : {"box", "gaussian"}) {
         SceneParts parts = matt_scene();
         const Studio studio({.lens = "muller-fisheye",
                              .f_number = 4.0,
                              .sensor = fine,
                              .grid = kGrid,
-                             .filter = PixelFilter::named(filter)},
+                             .filter = render::PixelFilter::named(filter)},
                             parts);
         const FilmDifference found = difference(studio.by_both(256), studio.by_camera(1024));
         EXPECT_NEAR(found.first, found.second, 4.0 * found.error);
@@ -82,7 +83,8 @@ TEST(BothPaths, MakeTheImageWhereWavelengthsPart) {
 }
 
 TEST(BothPaths, MakeTheImageOfIdealCameras) {
-    for (const LensModel model : {LensModel::pinhole, LensModel::thin_lens, LensModel::paraxial}) {
+    for (const scene::LensModel model :
+         {scene::LensModel::pinhole, scene::LensModel::thin_lens, scene::LensModel::paraxial}) {
         SceneParts parts = matt_scene();
         Studio::Setup setup = double_gauss();
         setup.model = model;
@@ -92,8 +94,8 @@ TEST(BothPaths, MakeTheImageOfIdealCameras) {
 }
 
 /// Sums over columns of the film.
-PixelEstimate sum_of(const Film& film, int first, int end) {
-    PixelEstimate sum;
+render::PixelEstimate sum_of(const render::Film& film, int first, int end) {
+    render::PixelEstimate sum;
     for (int y = 0; y < film.height(); ++y) {
         for (int x = first; x < end; ++x) {
             const auto [rgb, variance] = film.estimate(x, y);
@@ -109,9 +111,9 @@ PixelEstimate sum_of(const Film& film, int first, int end) {
 TEST(BothPaths, BringCausticsAndMirrorsTogether) {
     SceneParts parts = caustic_scene();
     const Studio studio(double_gauss(6), parts);
-    const Film both = studio.by_both(512);
-    const Film camera = studio.by_camera(4096);
-    const Film light = studio.by_lights(512);
+    const render::Film both = studio.by_both(512);
+    const render::Film camera = studio.by_camera(4096);
+    const render::Film light = studio.by_lights(512);
     expect_same_image(both, camera, 0.08);
     const double with_mirror = sum_of(both, 0, 2).rgb.x;
     const double without = sum_of(light, 0, 2).rgb.x;
@@ -132,8 +134,8 @@ TEST(BothPaths, AreNoNoisierThanTheBetter) {
     SceneParts parts = matt_scene();
     const Studio studio(double_gauss(), parts);
     constexpr std::uint32_t kSamples = 512;
-    const auto variance_of = [](const Film& film) { return sum_of(film, 0, kSensor.width).variance.x; };
-    const Film both = studio.by_both(kSamples);
+    const auto variance_of = [](const render::Film& film) { return sum_of(film, 0, kSensor.width).variance.x; };
+    const render::Film both = studio.by_both(kSamples);
     const double camera = variance_of(studio.by_camera(kSamples));
     const double light = variance_of(studio.by_lights(kSamples));
     double slack = 0.0;

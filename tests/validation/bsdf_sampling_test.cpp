@@ -12,8 +12,8 @@ namespace {
 
 using std::numbers::pi;
 
-const BsdfTables& tables() {
-    static const BsdfTables all;
+const scene::BsdfTables& tables() {
+    static const scene::BsdfTables all;
     return all;
 }
 
@@ -22,21 +22,21 @@ constexpr double kViews[] = {0.95, 0.6, 0.15, -0.9, -0.4};
 // A sample weighs f |cos| / density, and its density is what `density` says: to the rounding of floats, of which each
 // value takes some ten.
 TEST(Bsdf, SamplesWeighTheirValueOverTheirDensity) {
-    Uniform uniform(1);
-    for (const auto& [name, bsdf] : broad_cases(tables())) {
+    scene::Uniform uniform(1);
+    for (const auto& [name, bsdf] : scene::broad_cases(tables())) {
         for (int i = 0; i < 2000; ++i) {
-            const Vec3d wo = random_direction(uniform);
-            const auto drawn = sample(bsdf, wo, uniform(), uniform(), uniform(), Transport::radiance);
+            const Vec3d wo = scene::random_direction(uniform);
+            const auto drawn = scene::sample(bsdf, wo, uniform(), uniform(), uniform(), scene::Transport::radiance);
             if (!drawn || drawn->is_delta) {
                 continue;
             }
             ASSERT_GT(drawn->density, 0.0) << name;
             EXPECT_NEAR(length(drawn->wi), 1.0, 1e-12) << name;
-            const double again = density(bsdf, wo, drawn->wi, Transport::radiance);
+            const double again = scene::density(bsdf, wo, drawn->wi, scene::Transport::radiance);
             // The facet is found again from the directions, to 1e-15 of its slope over α² and their sum's length.
             EXPECT_NEAR(drawn->density, again, 1e-9 * again) << name;
-            const SpectralSample value = evaluate(bsdf, wo, drawn->wi, Transport::radiance);
-            for (std::size_t c = 0; c < kWavelengthsPerPath; ++c) {
+            const spectral::SpectralSample value = scene::evaluate(bsdf, wo, drawn->wi, scene::Transport::radiance);
+            for (std::size_t c = 0; c < spectral::kWavelengthsPerPath; ++c) {
                 EXPECT_NEAR(drawn->weight[c], value[c] / again, 2e-6 * drawn->weight[c]) << name;
             }
         }
@@ -47,17 +47,17 @@ TEST(Bsdf, SamplesWeighTheirValueOverTheirDensity) {
 // symmetric, n being the index on wo's side, and importance's f is radiance's with the directions exchanged (Veach
 // 1997, §5.2). Single rounding to float of each, and of the index.
 TEST(Bsdf, IsReciprocal) {
-    Uniform uniform(2);
-    for (const auto& [name, bsdf] : broad_cases(tables())) {
-        const auto* glass = std::get_if<DielectricBsdf>(&bsdf);
+    scene::Uniform uniform(2);
+    for (const auto& [name, bsdf] : scene::broad_cases(tables())) {
+        const auto* glass = std::get_if<scene::DielectricBsdf>(&bsdf);
         for (int i = 0; i < 2000; ++i) {
-            const Vec3d wo = random_direction(uniform);
-            const Vec3d wi = random_direction(uniform);
-            const SpectralSample there = evaluate(bsdf, wo, wi, Transport::radiance);
-            const SpectralSample back = evaluate(bsdf, wi, wo, Transport::radiance);
-            const SpectralSample adjoint = evaluate(bsdf, wi, wo, Transport::importance);
+            const Vec3d wo = scene::random_direction(uniform);
+            const Vec3d wi = scene::random_direction(uniform);
+            const spectral::SpectralSample there = scene::evaluate(bsdf, wo, wi, scene::Transport::radiance);
+            const spectral::SpectralSample back = scene::evaluate(bsdf, wi, wo, scene::Transport::radiance);
+            const spectral::SpectralSample adjoint = scene::evaluate(bsdf, wi, wo, scene::Transport::importance);
             const bool passes = wo.z * wi.z < 0.0;
-            for (std::size_t c = 0; c < kWavelengthsPerPath; ++c) {
+            for (std::size_t c = 0; c < spectral::kWavelengthsPerPath; ++c) {
                 const double f = there[c] / std::abs(wi.z);
                 EXPECT_NEAR(f, adjoint[c] / std::abs(wo.z), 1e-6 * f) << name;
                 if (!passes || glass != nullptr) {
@@ -82,7 +82,7 @@ int cell_of(const Vec3d& w) {
 }
 
 /// ∫ density over each cell.
-std::vector<double> cell_probabilities(const Bsdf& bsdf, const Vec3d& wo) {
+std::vector<double> cell_probabilities(const scene::Bsdf& bsdf, const Vec3d& wo) {
     using Gauss = boost::math::quadrature::gauss<double, 20>;
     std::vector<double> probability;
     for (int cell = 0; cell < kCells; ++cell) {
@@ -92,8 +92,10 @@ std::vector<double> cell_probabilities(const Bsdf& bsdf, const Vec3d& wo) {
         probability.push_back(Gauss::integrate(
             [&](double mu) {
                 return Gauss::integrate(
-                    [&](double phi) { return density(bsdf, wo, direction(mu, phi), Transport::radiance); }, from_phi,
-                    from_phi + 2.0 * pi / kSectors);
+                    [&](double phi) {
+                        return scene::density(bsdf, wo, scene::direction(mu, phi), scene::Transport::radiance);
+                    },
+                    from_phi, from_phi + 2.0 * pi / kSectors);
             },
             from_mu, from_mu + 2.0 / kRings));
     }
@@ -106,10 +108,10 @@ std::vector<double> cell_probabilities(const Bsdf& bsdf, const Vec3d& wo) {
 // N · 1e-6, nothing.
 TEST(Bsdf, DrawsDirectionsAsItsDensitySays) {
     constexpr int kSamples = 40000;
-    Uniform uniform(3);
-    for (const auto& [name, bsdf] : broad_cases(tables())) {
+    scene::Uniform uniform(3);
+    for (const auto& [name, bsdf] : scene::broad_cases(tables())) {
         for (const double mu : kViews) {
-            const Vec3d wo = direction(mu, 0.7);
+            const Vec3d wo = scene::direction(mu, 0.7);
             std::vector<double> expected = cell_probabilities(bsdf, wo);
             double total = 0.0;
             for (const double probability : expected) {
@@ -119,7 +121,7 @@ TEST(Bsdf, DrawsDirectionsAsItsDensitySays) {
             expected.push_back(std::max(0.0, 1.0 - total));
             std::vector<int> drawn(expected.size());
             for (int i = 0; i < kSamples; ++i) {
-                const auto s = sample(bsdf, wo, uniform(), uniform(), uniform(), Transport::radiance);
+                const auto s = scene::sample(bsdf, wo, uniform(), uniform(), uniform(), scene::Transport::radiance);
                 ++drawn[static_cast<std::size_t>(s && !s->is_delta ? cell_of(s->wi) : kCells)];
             }
             double chi2 = 0.0;

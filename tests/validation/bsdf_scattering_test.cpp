@@ -19,12 +19,12 @@ struct Estimate {
     double mean = 0.0;
     double error = 0.0;
 };
-Estimate returned_light(const Bsdf& bsdf, const Vec3d& wo, std::size_t wavelength, Uniform& uniform) {
+Estimate returned_light(const scene::Bsdf& bsdf, const Vec3d& wo, std::size_t wavelength, scene::Uniform& uniform) {
     constexpr int kSamples = 40000;
     double sum = 0.0;
     double squares = 0.0;
     for (int i = 0; i < kSamples; ++i) {
-        const auto drawn = sample(bsdf, wo, uniform(), uniform(), uniform(), Transport::importance);
+        const auto drawn = scene::sample(bsdf, wo, uniform(), uniform(), uniform(), scene::Transport::importance);
         const double weight = drawn ? drawn->weight[wavelength] : 0.0;
         sum += weight;
         squares += weight * weight;
@@ -34,7 +34,7 @@ Estimate returned_light(const Bsdf& bsdf, const Vec3d& wo, std::size_t wavelengt
 }
 
 /// Λ of Smith's masking for GGX, as a textbook has it (Heitz 2014, eq. 72 with 80).
-double smith_lambda(const Roughness& r, const Vec3d& w) {
+double smith_lambda(const scene::Roughness& r, const Vec3d& w) {
     const double tan_alpha2 = (std::pow(r.alpha_x * w.x, 2) + std::pow(r.alpha_y * w.y, 2)) / (w.z * w.z);
     return 0.5 * (std::sqrt(1.0 + tan_alpha2) - 1.0);
 }
@@ -43,7 +43,7 @@ double smith_lambda(const Roughness& r, const Vec3d& w) {
 /// even in azimuth and in u = tan²θ / (1 + tan²θ), θ being m's angle in the stretched frame. The integrand grows as
 /// 1 / √(1 − u), which steps of √(1 − u) flatten. By the midpoint rule on 600 × 600 points.
 template <class Function>
-double facet_mean(const Roughness& r, const Vec3d& wo, const Function& per_facet) {
+double facet_mean(const scene::Roughness& r, const Vec3d& wo, const Function& per_facet) {
     constexpr int kPoints = 600;
     double sum = 0.0;
     for (int i = 0; i < kPoints; ++i) {
@@ -62,7 +62,7 @@ double facet_mean(const Roughness& r, const Vec3d& wo, const Function& per_facet
 
 /// What single reflections at facets return of evenly spread light.
 template <class Reflectance>
-double single_reflections(const Roughness& r, const Vec3d& wo, const Reflectance& reflectance) {
+double single_reflections(const scene::Roughness& r, const Vec3d& wo, const Reflectance& reflectance) {
     return facet_mean(r, wo, [&](const Vec3d& m, double cosine) {
         const Vec3d wi = 2.0 * cosine * m - wo;
         return wi.z > 0.0 ? reflectance(cosine) / (1.0 + smith_lambda(r, wo) + smith_lambda(r, wi)) : 0.0;
@@ -70,14 +70,14 @@ double single_reflections(const Roughness& r, const Vec3d& wo, const Reflectance
 }
 
 /// The same for what facets refract below.
-double single_refractions(const Roughness& r, const Vec3d& wo, double eta) {
+double single_refractions(const scene::Roughness& r, const Vec3d& wo, double eta) {
     return facet_mean(r, wo, [&](const Vec3d& m, double cosine) {
         const double sin2 = (1.0 - cosine * cosine) / (eta * eta);
         if (sin2 >= 1.0) {
             return 0.0;
         }
         const Vec3d wi = -1.0 / eta * wo + (cosine / eta - std::sqrt(1.0 - sin2)) * m;
-        return wi.z < 0.0 ? (1.0 - dielectric_reflectance(eta, cosine)) /
+        return wi.z < 0.0 ? (1.0 - scene::dielectric_reflectance(eta, cosine)) /
                                 ((1.0 + smith_lambda(r, wo)) * (1.0 + smith_lambda(r, wi)))
                           : 0.0;
     });
@@ -89,9 +89,10 @@ constexpr double kQuadrature = 2e-4;
 // Smith's masking hides as much as makes the visible facets' area the surface's own: ∫ G₁ (wo·m)⁺ D dm = wo.z
 // (Heitz 2014, eq. 14). The test's own formulae, to be compared with from here on.
 TEST(RoughSurfaces, VisibleFacetsAddUpToTheSurface) {
-    for (const Roughness r : {Roughness{0.1, 0.1}, Roughness{0.5, 0.5}, Roughness{0.6, 0.2}}) {
+    for (const scene::Roughness r :
+         {scene::Roughness{0.1, 0.1}, scene::Roughness{0.5, 0.5}, scene::Roughness{0.6, 0.2}}) {
         for (const double mu : {0.95, 0.6, 0.15}) {
-            const Vec3d wo = direction(mu, 0.7);
+            const Vec3d wo = scene::direction(mu, 0.7);
             EXPECT_NEAR(facet_mean(r, wo, [&](const Vec3d&, double) { return 1.0 / (1.0 + smith_lambda(r, wo)); }), 1.0,
                         kQuadrature);
         }
@@ -100,11 +101,13 @@ TEST(RoughSurfaces, VisibleFacetsAddUpToTheSurface) {
 
 // A perfect metal's facets return all that they reflect out of the surface at once, and lose what falls on others.
 TEST(RoughSurfaces, MetalLosesWhatFallsOnOtherFacets) {
-    Uniform uniform(4);
-    for (const Roughness r : {Roughness{0.1, 0.1}, Roughness{0.5, 0.5}, Roughness{1.0, 1.0}, Roughness{0.6, 0.2}}) {
-        const Bsdf metal = ConductorBsdf{.n = SpectralSample(0.0F), .k = SpectralSample(3.0F), .roughness = r};
+    scene::Uniform uniform(4);
+    for (const scene::Roughness r : {scene::Roughness{0.1, 0.1}, scene::Roughness{0.5, 0.5}, scene::Roughness{1.0, 1.0},
+                                     scene::Roughness{0.6, 0.2}}) {
+        const scene::Bsdf metal = scene::ConductorBsdf{
+            .n = spectral::SpectralSample(0.0F), .k = spectral::SpectralSample(3.0F), .roughness = r};
         for (const double mu : {0.95, 0.6, 0.15}) {
-            const Vec3d wo = direction(mu, 0.7);
+            const Vec3d wo = scene::direction(mu, 0.7);
             const Estimate returned = returned_light(metal, wo, 0, uniform);
             const double expected = single_reflections(r, wo, [](double) { return 1.0; });
             EXPECT_NEAR(returned.mean, expected, 5.0 * returned.error + kQuadrature) << r.alpha_x << " " << mu;
@@ -116,32 +119,34 @@ TEST(RoughSurfaces, MetalLosesWhatFallsOnOtherFacets) {
 // Head on, for α = 1, that has a closed form: facets tilted by θ cover as much ground at each u = sin² θ, mirror to
 // cos 2θ = 1 − 2u, and are shadowed by 2 cos 2θ / (1 + cos 2θ), so ∫₀^½ (1 − 2u) / (1 − u) du = 1 − ln 2 returns.
 TEST(RoughSurfaces, RoughestMetalReturnsOneLessLnTwo) {
-    Uniform uniform(11);
-    const Roughness r{.alpha_x = 1.0, .alpha_y = 1.0};
-    const Bsdf metal = ConductorBsdf{.n = SpectralSample(0.0F), .k = SpectralSample(3.0F), .roughness = r};
+    scene::Uniform uniform(11);
+    const scene::Roughness r{.alpha_x = 1.0, .alpha_y = 1.0};
+    const scene::Bsdf metal =
+        scene::ConductorBsdf{.n = spectral::SpectralSample(0.0F), .k = spectral::SpectralSample(3.0F), .roughness = r};
     const Vec3d head_on{0.0, 0.0, 1.0};
     const Estimate returned = returned_light(metal, head_on, 0, uniform);
     EXPECT_NEAR(returned.mean, 1.0 - std::numbers::ln2, 5.0 * returned.error);
-    EXPECT_NEAR(FacetLosses::of_mirrors(r).at(head_on), std::numbers::ln2, 1e-3);
+    EXPECT_NEAR(scene::FacetLosses::of_mirrors(r).at(head_on), std::numbers::ln2, 1e-3);
 }
 
 // Frosted glass, into it and out of it, at each of four wavelengths that disperse and share one direction: each
 // returns what its own index makes of it, though three in four directions are drawn for another.
 TEST(RoughSurfaces, GlassKeepsEachWavelengthsLight) {
-    Uniform uniform(5);
-    const SpectralSample indices({1.45F, 1.5F, 1.6F, 1.8F});
-    const Roughness r{.alpha_x = 0.25, .alpha_y = 0.4};
+    scene::Uniform uniform(5);
+    const spectral::SpectralSample indices({1.45F, 1.5F, 1.6F, 1.8F});
+    const scene::Roughness r{.alpha_x = 0.25, .alpha_y = 0.4};
     for (const bool is_dispersive : {false, true}) {
         for (const double mu : kViews) {
-            const Vec3d wo = direction(std::abs(mu), 0.7);
-            for (std::size_t c = 0; c < kWavelengthsPerPath; c += is_dispersive ? 1 : 2) {
-                const Bsdf glass =
-                    DielectricBsdf{.eta = is_dispersive ? indices : SpectralSample(indices[c]), .roughness = r};
+            const Vec3d wo = scene::direction(std::abs(mu), 0.7);
+            for (std::size_t c = 0; c < spectral::kWavelengthsPerPath; c += is_dispersive ? 1 : 2) {
+                const scene::Bsdf glass = scene::DielectricBsdf{
+                    .eta = is_dispersive ? indices : spectral::SpectralSample(indices[c]), .roughness = r};
                 const double eta = mu > 0.0 ? double{indices[c]} : 1.0 / double{indices[c]};
                 const double expected =
-                    single_reflections(r, wo, [&](double cosine) { return dielectric_reflectance(eta, cosine); }) +
+                    single_reflections(r, wo,
+                                       [&](double cosine) { return scene::dielectric_reflectance(eta, cosine); }) +
                     single_refractions(r, wo, eta);
-                const Estimate returned = returned_light(glass, direction(mu, 0.7), c, uniform);
+                const Estimate returned = returned_light(glass, scene::direction(mu, 0.7), c, uniform);
                 EXPECT_NEAR(returned.mean, expected, 5.0 * returned.error + kQuadrature) << mu << " " << indices[c];
                 EXPECT_LE(returned.mean, 1.0 + 5.0 * returned.error);
             }
@@ -152,18 +157,19 @@ TEST(RoughSurfaces, GlassKeepsEachWavelengthsLight) {
 // A white furnace stays white: rough metal that mirrors everything returns everything, whatever its roughness and way
 // of brushing, once what single scattering loses is given back; to the tables' 2e-3.
 TEST(RoughSurfaces, PerfectMetalLosesNothing) {
-    Uniform uniform(8);
-    for (const Roughness r : {Roughness{0.1, 0.1}, Roughness{0.5, 0.5}, Roughness{1.0, 1.0}, Roughness{0.6, 0.2}}) {
-        const FacetLosses losses = FacetLosses::of_mirrors(r);
-        const Bsdf metal =
-            ConductorBsdf{.n = SpectralSample(0.0F),
-                          .k = SpectralSample(3.0F),
-                          .roughness = r,
-                          .losses = &losses,
-                          .given_back = SpectralSample(static_cast<float>(given_back(1.0, losses.mean())))};
+    scene::Uniform uniform(8);
+    for (const scene::Roughness r : {scene::Roughness{0.1, 0.1}, scene::Roughness{0.5, 0.5}, scene::Roughness{1.0, 1.0},
+                                     scene::Roughness{0.6, 0.2}}) {
+        const scene::FacetLosses losses = scene::FacetLosses::of_mirrors(r);
+        const scene::Bsdf metal = scene::ConductorBsdf{
+            .n = spectral::SpectralSample(0.0F),
+            .k = spectral::SpectralSample(3.0F),
+            .roughness = r,
+            .losses = &losses,
+            .given_back = spectral::SpectralSample(static_cast<float>(scene::given_back(1.0, losses.mean())))};
         for (const double mu : {0.99, 0.6, 0.15, 0.02}) {
             for (const double phi : {0.0, 0.7, 1.4}) {
-                const Estimate returned = returned_light(metal, direction(mu, phi), 0, uniform);
+                const Estimate returned = returned_light(metal, scene::direction(mu, phi), 0, uniform);
                 EXPECT_NEAR(returned.mean, 1.0, 5.0 * returned.error + 2e-3) << r.alpha_x << " " << mu << " " << phi;
             }
         }
@@ -173,14 +179,15 @@ TEST(RoughSurfaces, PerfectMetalLosesNothing) {
 // So does frosted glass, from within and from without, at each of the wavelengths that share a direction, those between
 // the tables' indices too.
 TEST(RoughSurfaces, GlassLosesNothing) {
-    Uniform uniform(9);
-    const SpectralSample indices({1.45F, 1.5F, 1.6F, 1.8F});
-    for (const Roughness r : {Roughness{0.15, 0.15}, Roughness{0.7, 0.7}, Roughness{0.5, 0.2}}) {
-        const BoundaryLosses losses(r, 1.45, 1.8);
-        const Bsdf glass = DielectricBsdf{.eta = indices, .roughness = r, .losses = &losses};
+    scene::Uniform uniform(9);
+    const spectral::SpectralSample indices({1.45F, 1.5F, 1.6F, 1.8F});
+    for (const scene::Roughness r :
+         {scene::Roughness{0.15, 0.15}, scene::Roughness{0.7, 0.7}, scene::Roughness{0.5, 0.2}}) {
+        const scene::BoundaryLosses losses(r, 1.45, 1.8);
+        const scene::Bsdf glass = scene::DielectricBsdf{.eta = indices, .roughness = r, .losses = &losses};
         for (const double mu : {0.99, 0.5, 0.05, -0.95, -0.7, -0.1}) {
             for (const std::size_t c : {0U, 2U}) {
-                const Estimate returned = returned_light(glass, direction(mu, 0.5), c, uniform);
+                const Estimate returned = returned_light(glass, scene::direction(mu, 0.5), c, uniform);
                 EXPECT_NEAR(returned.mean, 1.0, 5.0 * returned.error + 2e-3) << r.alpha_x << " " << mu << " " << c;
             }
         }
@@ -191,13 +198,13 @@ TEST(RoughSurfaces, GlassLosesNothing) {
 // Gauss's rule in μ on the test's own quadrature.
 TEST(RoughSurfaces, LossesAreWhatTheoryLeaves) {
     using Gauss = boost::math::quadrature::gauss<double, 10>;
-    const Roughness r{.alpha_x = 0.5, .alpha_y = 0.5};
+    const scene::Roughness r{.alpha_x = 0.5, .alpha_y = 0.5};
     const auto lost = [&](double mu) {
-        return 1.0 - single_reflections(r, direction(mu, 0.7), [](double) { return 1.0; });
+        return 1.0 - single_reflections(r, scene::direction(mu, 0.7), [](double) { return 1.0; });
     };
-    const FacetLosses losses = FacetLosses::of_mirrors(r);
+    const scene::FacetLosses losses = scene::FacetLosses::of_mirrors(r);
     for (const double mu : {0.05, 0.3, 0.9}) {
-        EXPECT_NEAR(losses.at(direction(mu, 0.2)), lost(mu), 1e-3) << mu;
+        EXPECT_NEAR(losses.at(scene::direction(mu, 0.2)), lost(mu), 1e-3) << mu;
     }
     EXPECT_NEAR(losses.mean(), Gauss::integrate([&](double mu) { return 2.0 * mu * lost(mu); }, 0.0, 1.0), 1e-3);
 }
@@ -205,35 +212,38 @@ TEST(RoughSurfaces, LossesAreWhatTheoryLeaves) {
 // At grazing angles, at the finest and the coarsest roughness, everything stays finite, and no weight exceeds what one
 // of four wavelengths can: 4 of its own density, and 1/η² for radiance that leaves the denser side.
 TEST(RoughSurfaces, StayFiniteAtGrazing) {
-    Uniform uniform(10);
-    for (const double alpha : {kLeastAlpha, 0.01, 1.0}) {
-        const Roughness r{.alpha_x = alpha, .alpha_y = alpha};
-        const FacetLosses mirrors = FacetLosses::of_mirrors(r);
-        const BoundaryLosses boundary(r, 1.45, 1.8);
-        const DielectricCoat coat(1.5, alpha);
-        const Bsdf surfaces[] = {
-            ConductorBsdf{.n = SpectralSample(0.1F),
-                          .k = SpectralSample(4.0F),
-                          .roughness = r,
-                          .losses = &mirrors,
-                          .given_back = SpectralSample(0.9F)},
-            DielectricBsdf{.eta = SpectralSample({1.45F, 1.5F, 1.6F, 1.8F}), .roughness = r, .losses = &boundary},
-            DielectricBsdf{.eta = SpectralSample(1.6F), .roughness = r, .losses = &boundary},
-            plastic_bsdf(SpectralSample(0.7F), coat)};
-        for (const Bsdf& surface : surfaces) {
+    scene::Uniform uniform(10);
+    for (const double alpha : {scene::kLeastAlpha, 0.01, 1.0}) {
+        const scene::Roughness r{.alpha_x = alpha, .alpha_y = alpha};
+        const scene::FacetLosses mirrors = scene::FacetLosses::of_mirrors(r);
+        const scene::BoundaryLosses boundary(r, 1.45, 1.8);
+        const scene::DielectricCoat coat(1.5, alpha);
+        const scene::Bsdf surfaces[] = {
+            scene::ConductorBsdf{.n = spectral::SpectralSample(0.1F),
+                                 .k = spectral::SpectralSample(4.0F),
+                                 .roughness = r,
+                                 .losses = &mirrors,
+                                 .given_back = spectral::SpectralSample(0.9F)},
+            scene::DielectricBsdf{
+                .eta = spectral::SpectralSample({1.45F, 1.5F, 1.6F, 1.8F}), .roughness = r, .losses = &boundary},
+            scene::DielectricBsdf{.eta = spectral::SpectralSample(1.6F), .roughness = r, .losses = &boundary},
+            scene::plastic_bsdf(spectral::SpectralSample(0.7F), coat)};
+        for (const scene::Bsdf& surface : surfaces) {
             for (int i = 0; i < 4000; ++i) {
                 const double mu = std::pow(10.0, -12.0 * uniform()) * (i % 2 == 0 ? 1.0 : -1.0);
-                const Vec3d wo = direction(mu, 2.0 * pi * uniform());
-                const auto drawn = sample(surface, wo, uniform(), uniform(), uniform(), Transport::radiance);
+                const Vec3d wo = scene::direction(mu, 2.0 * pi * uniform());
+                const auto drawn =
+                    scene::sample(surface, wo, uniform(), uniform(), uniform(), scene::Transport::radiance);
                 if (drawn) {
                     EXPECT_TRUE(std::isfinite(drawn->density) && drawn->density > 0.0) << alpha << " " << mu;
                     for (const float weight : drawn->weight.value) {
                         EXPECT_TRUE(weight >= 0.0F && weight <= 4.0F * 1.8F * 1.8F * 1.01F) << weight << " " << alpha;
                     }
                 }
-                const Vec3d wi = random_direction(uniform);
-                const SpectralSample value = evaluate(surface, wo, wi, Transport::importance);
-                EXPECT_TRUE(std::isfinite(max_value(value)) && max_value(value) >= 0.0F) << alpha << " " << mu;
+                const Vec3d wi = scene::random_direction(uniform);
+                const spectral::SpectralSample value = scene::evaluate(surface, wo, wi, scene::Transport::importance);
+                EXPECT_TRUE(std::isfinite(spectral::max_value(value)) && spectral::max_value(value) >= 0.0F)
+                    << alpha << " " << mu;
             }
         }
     }
@@ -242,16 +252,16 @@ TEST(RoughSurfaces, StayFiniteAtGrazing) {
 // White pigment under varnish returns all light, smooth or rough, and black pigment what the top of the varnish does
 // (Fresnel's; single reflections). The rough coat's table is within 1e-3.
 TEST(RoughSurfaces, WhiteVarnishLosesNothing) {
-    Uniform uniform(6);
+    scene::Uniform uniform(6);
     for (const double alpha : {0.0, 0.1, 0.3, 0.8}) {
-        const DielectricCoat coat(1.5, alpha);
-        const Bsdf white = plastic_bsdf(SpectralSample(1.0F), coat);
-        const Bsdf black = plastic_bsdf(SpectralSample(0.0F), coat);
+        const scene::DielectricCoat coat(1.5, alpha);
+        const scene::Bsdf white = scene::plastic_bsdf(spectral::SpectralSample(1.0F), coat);
+        const scene::Bsdf black = scene::plastic_bsdf(spectral::SpectralSample(0.0F), coat);
         for (const double mu : {0.95, 0.6, 0.15, 0.03}) {
-            const Vec3d wo = direction(mu, 0.7);
+            const Vec3d wo = scene::direction(mu, 0.7);
             const Estimate all = returned_light(white, wo, 0, uniform);
             EXPECT_NEAR(all.mean, 1.0, 5.0 * all.error + (alpha == 0.0 ? 1e-6 : 1e-3)) << alpha << " " << mu;
-            const auto fresnel = [](double cosine) { return dielectric_reflectance(1.5, cosine); };
+            const auto fresnel = [](double cosine) { return scene::dielectric_reflectance(1.5, cosine); };
             const double top = alpha == 0.0 ? fresnel(mu) : single_reflections({alpha, alpha}, wo, fresnel);
             const Estimate gloss = returned_light(black, wo, 0, uniform);
             EXPECT_NEAR(gloss.mean, top, 5.0 * gloss.error + (alpha == 0.0 ? 1e-6 : kQuadrature)) << alpha << " " << mu;
@@ -262,13 +272,14 @@ TEST(RoughSurfaces, WhiteVarnishLosesNothing) {
 
 // Saunderson: grey pigment under a smooth coat returns E + (1 − E) ρ (1 − F̄) / (1 − ρ F̄) in all.
 TEST(RoughSurfaces, GreyVarnishIsSaundersons) {
-    Uniform uniform(7);
-    const DielectricCoat varnish(1.5, 0.0);
+    scene::Uniform uniform(7);
+    const scene::DielectricCoat varnish(1.5, 0.0);
     const double below = varnish.mean_reflectance_below();
     for (const float rho : {0.2F, 0.5F, 0.9F}) {
-        const Vec3d wo = direction(0.8, 0.7);
-        const Estimate returned = returned_light(plastic_bsdf(SpectralSample(rho), varnish), wo, 2, uniform);
-        const double top = dielectric_reflectance(1.5, 0.8);
+        const Vec3d wo = scene::direction(0.8, 0.7);
+        const Estimate returned =
+            returned_light(scene::plastic_bsdf(spectral::SpectralSample(rho), varnish), wo, 2, uniform);
+        const double top = scene::dielectric_reflectance(1.5, 0.8);
         const double expected = top + (1.0 - top) * rho * (1.0 - below) / (1.0 - rho * below);
         EXPECT_NEAR(returned.mean, expected, 5.0 * returned.error + 1e-6) << rho;
     }

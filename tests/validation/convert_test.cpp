@@ -27,24 +27,25 @@ const std::vector<std::string> kForms = {".toml", ".csv", ".zmx", ".dat"};
 /// A path of a ray: its points and states at every surface, and where it meets the sensor's plane.
 struct Path {
     std::vector<Vec3d> points;
-    std::vector<RayStatus> states;
+    std::vector<optics::RayStatus> states;
 };
 
-Path path_of(const TraceLens<double>& lens, const Ray<double>& ray) {
+Path path_of(const optics::TraceLens<double>& lens, const Ray<double>& ray) {
     Path path;
-    const TracedRay<double> traced = trace<Direction::forward, Rims::follow>(lens, ray, [&](const auto& event) {
-        path.points.push_back(event.ray.origin);
-        path.states.push_back(event.status);
-    });
-    if (path.points.size() == lens.surfaces.size() && traced.status != RayStatus::missed &&
-        traced.status != RayStatus::total_internal_reflection) {
-        path.points.push_back(meet_plane(traced.ray, lens.image_z).point);
+    const optics::TracedRay<double> traced =
+        optics::trace<optics::Direction::forward, optics::Rims::follow>(lens, ray, [&](const auto& event) {
+            path.points.push_back(event.ray.origin);
+            path.states.push_back(event.status);
+        });
+    if (path.points.size() == lens.surfaces.size() && traced.status != optics::RayStatus::missed &&
+        traced.status != optics::RayStatus::total_internal_reflection) {
+        path.points.push_back(optics::meet_plane(traced.ray, lens.image_z).point);
     }
     return path;
 }
 
 /// Rays over the front surface's aperture and from all over the field, most of them skew.
-std::vector<Ray<double>> rays_into(const Lens& lens) {
+std::vector<Ray<double>> rays_into(const optics::Lens& lens) {
     std::vector<Ray<double>> rays;
     const double rim = lens.surfaces.front().semi_diameter;
     for (int field = 0; field < 7; ++field) {
@@ -63,9 +64,9 @@ std::vector<Ray<double>> rays_into(const Lens& lens) {
 
 /// The furthest apart that two lenses take any ray at any surface; infinite where one of them stops or loses a ray that
 /// the other does not. Counts the points compared.
-double furthest_apart(const Lens& a, const Lens& b, double wavelength_nm, int& points) {
-    const TraceLens<double> trace_a = at_wavelength<double>(a, wavelength_nm);
-    const TraceLens<double> trace_b = at_wavelength<double>(b, wavelength_nm);
+double furthest_apart(const optics::Lens& a, const optics::Lens& b, double wavelength_nm, int& points) {
+    const optics::TraceLens<double> trace_a = optics::at_wavelength<double>(a, wavelength_nm);
+    const optics::TraceLens<double> trace_b = optics::at_wavelength<double>(b, wavelength_nm);
     double furthest = 0.0;
     for (const Ray<double>& ray : rays_into(a)) {
         const Path path_a = path_of(trace_a, ray);
@@ -85,22 +86,24 @@ double furthest_apart(const Lens& a, const Lens& b, double wavelength_nm, int& p
 class Conversion : public testing::Test {
   protected:
     /// Writes the lens in a form and reads it back. `warnings`: the codes of what the form could not say of its rays.
-    Prescription there_and_back(const Prescription& lens, const std::string& form, std::set<std::string>& warnings) {
+    optics::Prescription there_and_back(const optics::Prescription& lens, const std::string& form,
+                                        std::set<std::string>& warnings) {
         const std::filesystem::path file = folder_.path() / ("lens" + form);
-        for (const Finding& lost : write_prescription(lens, file)) {
-            if (lost.severity != Severity::info) {
+        for (const optics::Finding& lost : formats::write_prescription(lens, file)) {
+            if (lost.severity != optics::Severity::info) {
                 warnings.insert(lost.code);
                 EXPECT_FALSE(lost.message.empty());
             }
         }
-        return read_prescription(file);
+        return formats::read_prescription(file);
     }
 
     /// Asserts that the form warns of just `expected`, and that without a warning no ray moves.
-    void expect_form_keeps(const Prescription& lens, const std::string& form, const std::set<std::string>& expected) {
+    void expect_form_keeps(const optics::Prescription& lens, const std::string& form,
+                           const std::set<std::string>& expected) {
         SCOPED_TRACE(lens.name + " as " + form);
         std::set<std::string> warnings;
-        const Prescription back = there_and_back(lens, form, warnings);
+        const optics::Prescription back = there_and_back(lens, form, warnings);
         EXPECT_EQ(warnings, expected);
         ASSERT_EQ(back.surfaces.size(), lens.surfaces.size());
         // These do not bend rays, at one wavelength and at the position that is written: the rest must still agree.
@@ -114,10 +117,12 @@ class Conversion : public testing::Test {
         }
         int points = 0;
         for (std::size_t position = 0; position < std::max<std::size_t>(1, back.zoom.size()); ++position) {
-            const Lens here = make_lens(at_zoom_position(lens, position), shipped_glasses());
-            const Lens there = make_lens(at_zoom_position(back, position), shipped_glasses());
-            for (const double wavelength_nm : {kLineD, kLineF, kLineC}) {
-                if (!one_colour || wavelength_nm == kLineD) {
+            const optics::Lens here =
+                optics::make_lens(optics::at_zoom_position(lens, position), formats::shipped_glasses());
+            const optics::Lens there =
+                optics::make_lens(optics::at_zoom_position(back, position), formats::shipped_glasses());
+            for (const double wavelength_nm : {spectral::kLineD, spectral::kLineF, spectral::kLineC}) {
+                if (!one_colour || wavelength_nm == spectral::kLineD) {
                     EXPECT_LE(furthest_apart(here, there, wavelength_nm, points), kTolerance_mm)
                         << wavelength_nm << " nm, position " << position + 1;
                 }
@@ -129,8 +134,8 @@ class Conversion : public testing::Test {
     TestFolder folder_;
 };
 
-PrescribedSurface surface(double radius_mm, double thickness_mm, double n_d, double semi_diameter_mm) {
-    PrescribedSurface row;
+optics::PrescribedSurface surface(double radius_mm, double thickness_mm, double n_d, double semi_diameter_mm) {
+    optics::PrescribedSurface row;
     row.radius_mm = radius_mm;
     row.thickness_mm = thickness_mm;
     row.semi_diameter_mm = semi_diameter_mm;
@@ -141,12 +146,12 @@ PrescribedSurface surface(double radius_mm, double thickness_mm, double n_d, dou
 }
 
 /// A doublet with a stop before it, of constant indices: what every form can say.
-Prescription plain() {
-    Prescription lens;
+optics::Prescription plain() {
+    optics::Prescription lens;
     lens.name = "plain";
     lens.source = "made for this test";
     lens.file = "plain.toml";
-    PrescribedSurface stop = surface(std::numeric_limits<double>::infinity(), 4.3, 1.0, 6.0);
+    optics::PrescribedSurface stop = surface(std::numeric_limits<double>::infinity(), 4.3, 1.0, 6.0);
     stop.is_stop = true;
     lens.surfaces = {stop, surface(61.3 / 3.0, 5.1, 1.5168, 9.0), surface(-44.4, 1.7, 1.6727, 9.0),
                      surface(-129.7, 57.9, 1.0, 9.0)};
@@ -157,7 +162,7 @@ TEST_F(Conversion, KeepsEveryRayOfALensThatEveryFormCanSay) {
     for (const std::string& form : kForms) {
         expect_form_keeps(plain(), form, {});
     }
-    Prescription dispersive = plain();
+    optics::Prescription dispersive = plain();
     dispersive.surfaces[1].medium.V_d = 64.17;
     dispersive.surfaces[2].medium.V_d = 32.21;
     expect_form_keeps(dispersive, ".toml", {});
@@ -167,13 +172,13 @@ TEST_F(Conversion, KeepsEveryRayOfALensThatEveryFormCanSay) {
 }
 
 TEST_F(Conversion, KeepsEveryRayOfEveryLensThatShips) {
-    for (const std::string& name : shipped_lens_names()) {
-        Prescription lens = read_prescription(find_lens_file(name));
+    for (const std::string& name : formats::shipped_lens_names()) {
+        optics::Prescription lens = formats::read_prescription(formats::find_lens_file(name));
         std::set<std::string> csv;
         std::set<std::string> pbrt;
         std::set<std::string> zmx;
         double before = 1.0;
-        for (const PrescribedSurface& row : lens.surfaces) {
+        for (const optics::PrescribedSurface& row : lens.surfaces) {
             const bool is_air = row.medium.is_air();
             const double after = is_air ? 1.0 : 2.0;  // of any glass
             if (!is_air && (!row.medium.glass.empty() || row.medium.V_d)) {
@@ -220,7 +225,7 @@ TEST_F(Conversion, KeepsEveryRayOfEveryLensThatShips) {
 }
 
 TEST_F(Conversion, KeepsConicsAndAspheresWhereThereAreColumns) {
-    Prescription lens = plain();
+    optics::Prescription lens = plain();
     lens.surfaces[1].conic = -0.73;
     lens.surfaces[3].asphere = {1e-5, -3.3e-6, 2.1e-8, 0.0, 1e-13};
     expect_form_keeps(lens, ".toml", {});
@@ -230,67 +235,67 @@ TEST_F(Conversion, KeepsConicsAndAspheresWhereThereAreColumns) {
 }
 
 TEST_F(Conversion, WarnsOfWhatTablesCannotSay) {
-    const auto expect = [&](const std::string& what, const Prescription& lens) {
+    const auto expect = [&](const std::string& what, const optics::Prescription& lens) {
         expect_form_keeps(lens, ".toml", {});
         expect_form_keeps(lens, ".csv", {what});
         expect_form_keeps(lens, ".dat", {what});
     };
-    Prescription toroid = plain();
+    optics::Prescription toroid = plain();
     toroid.surfaces[1].radius_x_mm = 25.0;
     expect("lost-toroid", toroid);
-    Prescription tilted = plain();
+    optics::Prescription tilted = plain();
     tilted.surfaces[2].misalignment = {{0.1, -0.05}, {0.4, 0.2, -3.0}};
     expect("lost-misalignment", tilted);
-    Prescription grouped = plain();
+    optics::Prescription grouped = plain();
     grouped.groups = {{.first = 2, .last = 4, .misalignment = {{0.0, 0.2}, {0.5, 0.0, 0.0}}, .pivot_mm = 2.0}};
     expect("lost-misalignment", grouped);
-    Prescription coated = plain();
-    coated.coatings["single"] = std::vector<CoatingLayer>{{1.38, 99.6}};
+    optics::Prescription coated = plain();
+    coated.coatings["single"] = std::vector<optics::CoatingLayer>{{1.38, 99.6}};
     coated.surfaces[1].coating = "single";
     expect("lost-coating", coated);
-    Prescription bladed = plain();
-    bladed.stop_shape = PolygonStop{.blades = 5, .curvature = 0.3, .rotation_deg = 11.0};
+    optics::Prescription bladed = plain();
+    bladed.stop_shape = optics::PolygonStop{.blades = 5, .curvature = 0.3, .rotation_deg = 11.0};
     expect("lost-stop-shape", bladed);
-    Prescription zoom = plain();
+    optics::Prescription zoom = plain();
     zoom.zoom = {{.name = "wide", .gaps_mm = {{1, 2.0}, {4, 60.0}}, .stop_semi_diameter_mm = 5.0, .stated = {}},
                  {.name = "tele", .gaps_mm = {{1, 8.0}, {4, 50.0}}, .stop_semi_diameter_mm = {}, .stated = {}}};
     expect("lost-zoom", zoom);
     for (const std::string& form : kForms) {
-        Prescription tele = at_zoom_position(zoom, 1);
+        optics::Prescription tele = optics::at_zoom_position(zoom, 1);
         tele.name = "tele";
         expect_form_keeps(tele, form, {});
     }
 }
 
 TEST_F(Conversion, WarnsOfAPlaneThatPbrtTakesForTheStop) {
-    Prescription lens = plain();
+    optics::Prescription lens = plain();
     lens.surfaces[3].radius_mm = std::numeric_limits<double>::infinity();
     expect_form_keeps(lens, ".csv", {});
     expect_form_keeps(lens, ".dat", {"lost-flat"});
     // What is written in its place departs from the plane by h² / 2R, 0.4 µm at the rim of 9 mm and R = 10⁵ mm.
     std::set<std::string> warnings;
-    const Lens back = make_lens(there_and_back(lens, ".dat", warnings), shipped_glasses());
-    const Lens here = make_lens(lens, shipped_glasses());
+    const optics::Lens back = optics::make_lens(there_and_back(lens, ".dat", warnings), formats::shipped_glasses());
+    const optics::Lens here = optics::make_lens(lens, formats::shipped_glasses());
     int points = 0;
-    const double apart = furthest_apart(here, back, kLineD, points);
+    const double apart = furthest_apart(here, back, spectral::kLineD, points);
     EXPECT_GT(apart, kTolerance_mm);
     EXPECT_LT(apart, 0.1);
 }
 
 TEST_F(Conversion, WarnsOfAStopThatLiesOnGlass) {
-    Prescription lens = plain();
+    optics::Prescription lens = plain();
     lens.surfaces.erase(lens.surfaces.begin());
     lens.surfaces[1].is_stop = true;
     expect_form_keeps(lens, ".toml", {});
     expect_form_keeps(lens, ".csv", {});
     std::set<std::string> warnings;
-    const Prescription back = there_and_back(lens, ".dat", warnings);
+    const optics::Prescription back = there_and_back(lens, ".dat", warnings);
     EXPECT_EQ(warnings, std::set<std::string>{"lost-stop"});
-    EXPECT_EQ(std::ranges::count_if(back.surfaces, &PrescribedSurface::is_stop), 1);
+    EXPECT_EQ(std::ranges::count_if(back.surfaces, &optics::PrescribedSurface::is_stop), 1);
 }
 
 TEST_F(Conversion, KeepsRimsAndBarrelsAsClearApertures) {
-    Prescription lens = plain();
+    optics::Prescription lens = plain();
     lens.surfaces[1].barrel_mm = 7.5;  // narrows this surface and the next
     lens.surfaces[3].semi_diameter_mm = std::nullopt;
     lens.surfaces[3].rim_mm = 8.0;

@@ -41,25 +41,25 @@ const std::vector<Setting> kSettings = {{"muller-fisheye", 4.0},        {"muller
 
 /// A lens at five wavelengths across a band; its light is looked at in the fourth, between nodes.
 struct Band {
-    Lens lens;
-    std::vector<TraceLens<double>> at;
+    optics::Lens lens;
+    std::vector<optics::TraceLens<double>> at;
 
     static constexpr std::array<double, 5> kWavelengths_nm = {450.0, 500.0, 550.0, 600.0, 650.0};
     static constexpr double kPosition = 0.75;
-    [[nodiscard]] const TraceLens<double>& seen() const { return at[3]; }
-    [[nodiscard]] ChiefRays chief_rays() const { return {lens, kWavelengths_nm[3], Rims::follow}; }
+    [[nodiscard]] const optics::TraceLens<double>& seen() const { return at[3]; }
+    [[nodiscard]] optics::ChiefRays chief_rays() const { return {lens, kWavelengths_nm[3], optics::Rims::follow}; }
 };
 
-Band band_of(const Lens& lens) {
+Band band_of(const optics::Lens& lens) {
     Band band{.lens = lens, .at = {}};
     for (const double nm : Band::kWavelengths_nm) {
-        band.at.push_back(at_wavelength<double>(lens, nm));
+        band.at.push_back(optics::at_wavelength<double>(lens, nm));
     }
     return band;
 }
 
 Band band_of(const Setting& setting) {
-    return band_of(with_f_number(load_lens(setting.lens), setting.f_number));
+    return band_of(optics::with_f_number(formats::load_lens(setting.lens), setting.f_number));
 }
 
 struct Estimate {
@@ -74,7 +74,7 @@ Estimate estimate(int samples_each, const F& f) {
     double sum = 0.0;
     double squares = 0.0;
     for (std::uint32_t sequence = 0; sequence < kSequences; ++sequence) {
-        const PixelSampler sampler(1, sequence);
+        const render::PixelSampler sampler(1, sequence);
         double mean = 0.0;
         for (int i = 0; i < samples_each; ++i) {
             mean += f(sampler.point(static_cast<std::uint32_t>(i))) / samples_each;
@@ -86,9 +86,9 @@ Estimate estimate(int samples_each, const F& f) {
 }
 
 /// What of a ray's light leaves the lens.
-double passing(const TraceLens<double>& lens, const Ray<double>& ray) {
-    const TracedRay<double> traced = trace(lens, ray);
-    return traced.status == RayStatus::ok ? traced.transmittance : 0.0;
+double passing(const optics::TraceLens<double>& lens, const Ray<double>& ray) {
+    const optics::TracedRay<double> traced = optics::trace(lens, ray);
+    return traced.status == optics::RayStatus::ok ? traced.transmittance : 0.0;
 }
 
 Vec3d way_at(double field_angle) {
@@ -96,15 +96,15 @@ Vec3d way_at(double field_angle) {
 }
 
 /// What a sample stands for, of light that is even across its beam.
-double passing(const TraceLens<double>& lens, const EntranceSample& sample) {
+double passing(const optics::TraceLens<double>& lens, const pupil::EntranceSample& sample) {
     return sample.density > 0.0 ? passing(lens, sample.ray) / sample.density : 0.0;
 }
 
 /// ∫ τ dA over the beam of a direction, mm², or over that of a near point per its intensity, sr: by the outline that
 /// the rims leave of it, six Gauss-Legendre nodes along each of its azimuths.
-double flux_by_quadrature(const TraceLens<double>& lens, const FieldBundle& bundle) {
+double flux_by_quadrature(const optics::TraceLens<double>& lens, const optics::FieldBundle& bundle) {
     double flux = 0.0;
-    for (const BeamNode& node : beam_quadrature(beam_outline(lens, bundle), 6)) {
+    for (const analysis::BeamNode& node : analysis::beam_quadrature(analysis::beam_outline(lens, bundle), 6)) {
         const double distance = bundle.distance();
         const double r2 = node.offset.x * node.offset.x + node.offset.y * node.offset.y;
         const double per_mm2 = bundle.is_near() ? distance / std::pow(distance * distance + r2, 1.5) : 1.0;
@@ -114,9 +114,11 @@ double flux_by_quadrature(const TraceLens<double>& lens, const FieldBundle& bund
 }
 
 /// Of the beam that passes the rims, mm².
-double outline_area(const Band& band, const EntranceBeam& beam) {
-    const Region region = [&](Vec2d offset) { return rim_margin(band.seen(), beam.ray(offset), Direction::forward); };
-    return region_outline(region, {.start = {}, .reach = beam.radius}).area;
+double outline_area(const Band& band, const pupil::EntranceBeam& beam) {
+    const optics::Region region = [&](Vec2d offset) {
+        return optics::rim_margin(band.seen(), beam.ray(offset), optics::Direction::forward);
+    };
+    return optics::region_outline(region, {.start = {}, .reach = beam.radius}).area;
 }
 
 // Flux through the lens from a direction: regions against the outline's quadrature, which is exact to 1e-6 or so, to
@@ -127,20 +129,20 @@ TEST(EntranceMap, SendsTheBeamsFlux) {
     settings.push_back({"fisheye-220", 2.8});
     for (const auto& [name, f_number] : settings) {
         const Band band = band_of(Setting{name, f_number});
-        const ChiefRays chief_rays = band.chief_rays();
-        const EntranceMap map(band.at, true);
+        const optics::ChiefRays chief_rays = band.chief_rays();
+        const pupil::EntranceMap map(band.at, true);
         const double end = map.largest_angle();
         std::vector<double> angles = {0.0, 0.371 * end, 0.737 * end, 0.877 * end, 0.983 * end};
         if (name == "fisheye-220") {
             angles.push_back(100.0 * kPi / 180.0);
         }
         for (const double angle : angles) {
-            const EntranceBeam beam = map.beam(way_at(angle));
+            const pupil::EntranceBeam beam = map.beam(way_at(angle));
             const Estimate flux = estimate(1 << 13, [&](const auto& xi) {
                 return passing(band.seen(), map.sample(beam, Band::kPosition, xi[0], xi[1]));
             });
             const double expected =
-                flux_by_quadrature(band.seen(), field_bundle(chief_rays, chief_rays, angle).value());
+                flux_by_quadrature(band.seen(), optics::field_bundle(chief_rays, chief_rays, angle).value());
             const std::string where = name + " f/" + std::to_string(f_number) + " at " + std::to_string(angle);
             EXPECT_GT(expected, 0.0) << where;
             EXPECT_LT(flux.sigma, 2e-4 * expected) << where;
@@ -154,12 +156,12 @@ TEST(EntranceMap, SendsTheBeamsFlux) {
 TEST(EntranceMap, SendsWhatTheWholeElementSends) {
     for (const Setting& setting : kSettings) {
         const Band band = band_of(setting);
-        const EntranceMap map(band.at, true);
-        const EntranceMap whole = EntranceMap::whole_element(band.seen());
+        const pupil::EntranceMap map(band.at, true);
+        const pupil::EntranceMap whole = pupil::EntranceMap::whole_element(band.seen());
         for (const double share : {0.21, 0.83}) {
             const Vec3d way = way_at(share * map.largest_angle());
-            const auto flux_of = [&](const EntranceMap& of, int samples_each) {
-                const EntranceBeam beam = of.beam(way);
+            const auto flux_of = [&](const pupil::EntranceMap& of, int samples_each) {
+                const pupil::EntranceBeam beam = of.beam(way);
                 return estimate(samples_each, [&](const auto& xi) {
                     return passing(band.seen(), of.sample(beam, Band::kPosition, xi[0], xi[1]));
                 });
@@ -176,19 +178,19 @@ TEST(EntranceMap, SendsWhatTheWholeElementSends) {
 
 /// Of the rays started, how many pass: over the directions at field angles from `from` to `to`, evenly in solid angle,
 /// and over the band.
-double passage(const Band& band, const EntranceMap& map, double from, double to) {
+double passage(const Band& band, const pupil::EntranceMap& map, double from, double to) {
     int started = 0;
     int passed = 0;
-    const PixelSampler sampler(2, 0);
+    const render::PixelSampler sampler(2, 0);
     for (std::uint32_t i = 0; i < 1U << 14U; ++i) {
         const std::array<double, 5> xi = sampler.point(i);
         const double cosine = std::cos(from) + xi[2] * (std::cos(to) - std::cos(from));
         const double sine = std::sqrt(1.0 - cosine * cosine);
         const double azimuth = 2.0 * kPi * xi[3];
         const auto lens = static_cast<std::size_t>(xi[4] * static_cast<double>(band.at.size()));
-        const EntranceBeam beam = map.beam({sine * std::sin(azimuth), sine * std::cos(azimuth), cosine});
+        const pupil::EntranceBeam beam = map.beam({sine * std::sin(azimuth), sine * std::cos(azimuth), cosine});
         const double position = static_cast<double>(lens) / static_cast<double>(band.at.size() - 1);
-        const EntranceSample sample = map.sample(beam, position, xi[0], xi[1]);
+        const pupil::EntranceSample sample = map.sample(beam, position, xi[0], xi[1]);
         started += sample.density > 0.0 ? 1 : 0;
         passed += passing(band.at[lens], sample) > 0.0 ? 1 : 0;
     }
@@ -200,14 +202,14 @@ TEST(EntranceMap, StartsFewRaysInVain) {
     fmt::print("{:28}{:>10}{:>10}{:>10}{:>10}\n", "", "field/°", "passage", "least", "whole");
     for (const Setting& setting : kSettings) {
         const Band band = band_of(setting);
-        const EntranceMap map(band.at, true);
+        const pupil::EntranceMap map(band.at, true);
         const double end = map.largest_angle();
         double least = 1.0;
         for (int ring = 0; ring < 8; ++ring) {
             least = std::min(least, passage(band, map, end * ring / 8, end * (ring + 1) / 8));
         }
         const double over_field = passage(band, map, 0.0, end);
-        const double whole = passage(band, EntranceMap::whole_element(band.seen()), 0.0, end);
+        const double whole = passage(band, pupil::EntranceMap::whole_element(band.seen()), 0.0, end);
         fmt::print("{:28}{:10.2f}{:10.4f}{:10.4f}{:10.4f}\n", fmt::format("{} f/{}", setting.lens, setting.f_number),
                    end * 180.0 / kPi, over_field, least, whole);
         EXPECT_GE(over_field, 0.97) << setting.lens << " f/" << setting.f_number;
@@ -228,25 +230,26 @@ TEST(EntranceMap, EtendueIsTheSensors) {
         const Setting& setting = given.setting;
         const double sensor_radius = given.sensor_radius;
         const Band band = band_of(setting);
-        const TraceLens<double>& lens = band.seen();
-        const EntranceMap entrance(band.at, true);
+        const optics::TraceLens<double>& lens = band.seen();
+        const pupil::EntranceMap entrance(band.at, true);
         const double end = entrance.largest_angle();
         const Estimate entering = estimate(1 << 14, [&](const auto& xi) {
             const double solid_angle = 2.0 * kPi * (1.0 - std::cos(end));
-            const EntranceBeam beam = entrance.beam(way_at(std::acos(1.0 - xi[2] * (1.0 - std::cos(end)))));
-            const EntranceSample sample = entrance.sample(beam, Band::kPosition, xi[0], xi[1]);
-            const bool passes = sample.density > 0.0 && trace(lens, sample.ray).status == RayStatus::ok;
+            const pupil::EntranceBeam beam = entrance.beam(way_at(std::acos(1.0 - xi[2] * (1.0 - std::cos(end)))));
+            const pupil::EntranceSample sample = entrance.sample(beam, Band::kPosition, xi[0], xi[1]);
+            const bool passes = sample.density > 0.0 && optics::trace(lens, sample.ray).status == optics::RayStatus::ok;
             return passes ? solid_angle / sample.density : 0.0;
         });
-        const PupilMap pupil(band.at, true, sensor_radius);
+        const pupil::PupilMap pupil(band.at, true, sensor_radius);
         EXPECT_EQ(pupil.region_area({0.0, 0.99 * sensor_radius}, Band::kPosition), 0.0) << "the sensor holds all light";
         const Estimate arriving = estimate(1 << 14, [&](const auto& xi) {
             const Vec3d from{0.0, sensor_radius * std::sqrt(xi[2]), lens.image_z};
-            const PupilSample drawn = pupil.sample({from.x, from.y}, Band::kPosition, xi[0], xi[1]);
+            const pupil::PupilSample drawn = pupil.sample({from.x, from.y}, Band::kPosition, xi[0], xi[1]);
             const Vec3d way = Vec3d{drawn.point.x, drawn.point.y, pupil.plane_z()} - from;
             const double distance2 = dot(way, way);
             const Ray<double> ray{from, (1.0 / std::sqrt(distance2)) * way};
-            const bool passes = drawn.density > 0.0 && trace<Direction::reverse>(lens, ray).status == RayStatus::ok;
+            const bool passes = drawn.density > 0.0 &&
+                                optics::trace<optics::Direction::reverse>(lens, ray).status == optics::RayStatus::ok;
             const double cosine2 = ray.direction.z * ray.direction.z;
             return passes ? kPi * sensor_radius * sensor_radius * cosine2 / (distance2 * drawn.density) : 0.0;
         });
@@ -268,17 +271,19 @@ TEST(EntranceMap, SendsANearPointsFlux) {
                               Case{{"muller-fisheye", 4.0}, 80.0, 1.2}}) {
         const Setting& setting = given.setting;
         const Band band = band_of(setting);
-        const ChiefRays chief_rays = band.chief_rays();
-        const FieldBundle bundle = field_bundle(chief_rays, chief_rays, given.angle, given.object_distance).value();
+        const optics::ChiefRays chief_rays = band.chief_rays();
+        const optics::FieldBundle bundle =
+            optics::field_bundle(chief_rays, chief_rays, given.angle, given.object_distance).value();
         ASSERT_TRUE(bundle.is_near());
         const double expected = flux_by_quadrature(band.seen(), bundle);
         EXPECT_GT(expected, 0.0);
-        const EntranceBeam beam = beam_from(front_sphere(band.seen()), bundle.object_point()).value();
-        const EntranceRegion region(band.at, true, beam);
-        const EntranceMap map(band.at, true, beam.distance);
+        const pupil::EntranceBeam beam =
+            pupil::beam_from(pupil::front_sphere(band.seen()), bundle.object_point()).value();
+        const pupil::EntranceRegion region(band.at, true, beam);
+        const pupil::EntranceMap map(band.at, true, beam.distance);
         const auto check = [&](const auto& sample_at, const std::string& what) {
             const Estimate flux = estimate(1 << 13, [&](const auto& xi) {
-                const EntranceSample sample = sample_at(xi[0], xi[1]);
+                const pupil::EntranceSample sample = sample_at(xi[0], xi[1]);
                 return beam.solid_angle_per_mm2(sample.offset) * passing(band.seen(), sample);
             });
             EXPECT_LT(flux.sigma, 3e-4 * expected) << setting.lens << " by " << what;
@@ -295,17 +300,17 @@ TEST(EntranceMap, SendsANearPointsFlux) {
 TEST(EntranceMap, KnowsLensesThatAreNotRound) {
     const TestFolder folder;
     const std::filesystem::path file = folder.path() / "tilted.toml";
-    write_file(file, read_file(find_lens_file("double-gauss-tronnier")) +
+    write_file(file, read_file(formats::find_lens_file("double-gauss-tronnier")) +
                          "[[groups]]\nsurfaces = [1, 5]\ntilt_deg = [0.3, 0.4, 0]\ndecentre_mm = [0.2, 0]\n");
-    const Band band = band_of(with_f_number(load_lens(file.string()), 2.0));
+    const Band band = band_of(optics::with_f_number(formats::load_lens(file.string()), 2.0));
     ASSERT_FALSE(band.lens.is_rotationally_symmetric);
-    const EntranceMap map(band.at, false);
-    const EntranceMap whole = EntranceMap::whole_element(band.seen());
+    const pupil::EntranceMap map(band.at, false);
+    const pupil::EntranceMap whole = pupil::EntranceMap::whole_element(band.seen());
     for (const double azimuth : {0.0, 1.0, 2.5, 4.0, 5.9}) {
         const double angle = 0.3 * map.largest_angle();
         const Vec3d way{std::sin(angle) * std::sin(azimuth), std::sin(angle) * std::cos(azimuth), std::cos(angle)};
-        const EntranceBeam beam = map.beam(way);
-        const EntranceRegion region(band.at, false, beam);
+        const pupil::EntranceBeam beam = map.beam(way);
+        const pupil::EntranceRegion region(band.at, false, beam);
         const auto flux_of = [&](int samples_each, const auto& sample_at) {
             return estimate(samples_each,
                             [&](const auto& xi) { return passing(band.seen(), sample_at(xi[0], xi[1])); });
@@ -327,15 +332,16 @@ TEST(EntranceMap, KnowsLensesThatAreNotRound) {
 // A region that is wrong costs noise and no light: of the f/8 lens's regions, the lens at f/2 gets its whole flux.
 TEST(EntranceMap, WrongRegionsLoseNoLight) {
     const Band wide = band_of(Setting{"double-gauss-tronnier", 2.0});
-    const EntranceMap narrow(band_of(Setting{"double-gauss-tronnier", 8.0}).at, true,
-                             std::numeric_limits<double>::infinity(), {.defensive_share = 0.5});
-    const ChiefRays chief_rays = wide.chief_rays();
+    const pupil::EntranceMap narrow(band_of(Setting{"double-gauss-tronnier", 8.0}).at, true,
+                                    std::numeric_limits<double>::infinity(), {.defensive_share = 0.5});
+    const optics::ChiefRays chief_rays = wide.chief_rays();
     for (const double angle : {0.0, 0.2, 0.4}) {
-        const EntranceBeam beam = narrow.beam(way_at(angle));
+        const pupil::EntranceBeam beam = narrow.beam(way_at(angle));
         const Estimate flux = estimate(1 << 13, [&](const auto& xi) {
             return passing(wide.seen(), narrow.sample(beam, Band::kPosition, xi[0], xi[1]));
         });
-        const double expected = flux_by_quadrature(wide.seen(), field_bundle(chief_rays, chief_rays, angle).value());
+        const double expected =
+            flux_by_quadrature(wide.seen(), optics::field_bundle(chief_rays, chief_rays, angle).value());
         EXPECT_LT(flux.sigma, 2e-3 * expected);
         EXPECT_NEAR(flux.mean, expected, 5.0 * flux.sigma) << angle;
         EXPECT_LT(narrow.region_area(beam, Band::kPosition), 0.7 * expected) << "too small for it";

@@ -12,30 +12,31 @@ namespace {
 constexpr int kWidth = 24;
 constexpr int kHeight = 18;
 
-ChartCamera tessar_camera(const std::string& filter = "box") {
-    const Camera camera{.lens = "tessar",
-                        .f_number = 4.0,
-                        .focus_distance_mm = 10000.0,
-                        .sensor = {.width = kWidth, .height = kHeight, .pixel_pitch_mm = 1.5},
-                        .exposure = {.time_s = 0.05, .iso = 100.0},
-                        .response = "cie-1931"};
-    return {camera, Light{}, SpectralSampling{}, {}, PixelFilter::named(filter)};
+render::ChartCamera tessar_camera(const std::string& filter = "box") {
+    const render::Camera camera{.lens = "tessar",
+                                .f_number = 4.0,
+                                .focus_distance_mm = 10000.0,
+                                .sensor = {.width = kWidth, .height = kHeight, .pixel_pitch_mm = 1.5},
+                                .exposure = {.time_s = 0.05, .iso = 100.0},
+                                .response = "cie-1931"};
+    return {camera, render::Light{}, render::SpectralSampling{}, {}, render::PixelFilter::named(filter)};
 }
 
-const Chart kFlat{.pattern = FlatField{}};
-const Chart kBoard{.pattern = Checkerboard{8, 6, 500.0}};
-constexpr Placement kFacing{.distance_mm = 10000.0};
+const scene::Chart kFlat{.pattern = scene::FlatField{}};
+const scene::Chart kBoard{.pattern = scene::Checkerboard{8, 6, 500.0}};
+constexpr scene::Placement kFacing{.distance_mm = 10000.0};
 
 /// Samples [first, end) of the view.
-Film rendered(const ChartCamera& camera, SeenChart view, std::uint64_t seed, std::uint32_t first, std::uint32_t end) {
-    const ChartRender render(std::move(view), camera.pupil(), seed);
-    RenderState state(render.film(), {.first = first, .end = end});
-    render_progressively(state, [&] { return render.make_renderer(); }, {}, {.in_passes = false});
+render::Film rendered(const render::ChartCamera& camera, render::SeenChart view, std::uint64_t seed,
+                      std::uint32_t first, std::uint32_t end) {
+    const render::ChartRender render(std::move(view), camera.pupil(), seed);
+    render::RenderState state(render.film(), {.first = first, .end = end});
+    render::render_progressively(state, [&] { return render.make_renderer(); }, {}, {.in_passes = false});
     return std::move(state.film);
 }
 
 /// Mean over pixels and R, G, B of the stated variance.
-double stated_variance(const Film& film) {
+double stated_variance(const render::Film& film) {
     double sum = 0.0;
     for (int i = 0; i < kWidth * kHeight; ++i) {
         const Vec3d variance = film.estimate(i % kWidth, i / kWidth).variance;
@@ -45,15 +46,15 @@ double stated_variance(const Film& film) {
 }
 
 /// The same, as it shows in renders of other seeds.
-double spread_of(const std::vector<Film>& films) {
+double spread_of(const std::vector<render::Film>& films) {
     const auto n = static_cast<double>(films.size());
     double sum = 0.0;
     for (int i = 0; i < kWidth * kHeight; ++i) {
         Vec3d mean;
-        for (const Film& film : films) {
+        for (const render::Film& film : films) {
             mean = mean + (1.0 / n) * film.estimate(i % kWidth, i / kWidth).rgb;
         }
-        for (const Film& film : films) {
+        for (const render::Film& film : films) {
             const Vec3d off = film.estimate(i % kWidth, i / kWidth).rgb - mean;
             sum += dot(off, off) / ((n - 1.0) * 3 * kWidth * kHeight);
         }
@@ -65,31 +66,31 @@ double spread_of(const std::vector<Film>& films) {
 // lie between each other's, which is worth a factor of 2 to 8 in variance here (128 samples; more samples, more). 8
 // renders of 432 pixels and 3 channels scatter by 2 % in spread.
 TEST(FilmRender, StatedErrorsBoundTheSpreadOfSeeds) {
-    const ChartCamera camera = tessar_camera();
-    for (const Chart& chart : {kFlat, kBoard}) {
-        std::vector<Film> films;
+    const render::ChartCamera camera = tessar_camera();
+    for (const scene::Chart& chart : {kFlat, kBoard}) {
+        std::vector<render::Film> films;
         double stated = 0.0;
         for (std::uint64_t seed = 0; seed < 8; ++seed) {
             films.push_back(rendered(camera, camera.view(chart, kFacing), seed, 0, 128));
             stated += stated_variance(films.back()) / 8.0;
         }
         const double spread = spread_of(films);
-        EXPECT_GT(stated, spread) << kind_name(chart);
-        EXPECT_LT(stated, 10.0 * spread) << kind_name(chart);
+        EXPECT_GT(stated, spread) << scene::kind_name(chart);
+        EXPECT_LT(stated, 10.0 * spread) << scene::kind_name(chart);
     }
 }
 
 // Three shards of whole blocks, merged, are the whole render: its values and its variances to rounding.
 TEST(FilmRender, ShardsAddUpWithTheirVariance) {
-    const ChartCamera camera = tessar_camera();
-    const SeenChart view = camera.view(kBoard, kFacing);
-    const Film whole = rendered(camera, view, 1, 0, 220);
-    Film sum = rendered(camera, view, 1, 144, 220);
+    const render::ChartCamera camera = tessar_camera();
+    const render::SeenChart view = camera.view(kBoard, kFacing);
+    const render::Film whole = rendered(camera, view, 1, 0, 220);
+    render::Film sum = rendered(camera, view, 1, 144, 220);
     sum.merge(rendered(camera, view, 1, 0, 64));
     sum.merge(rendered(camera, view, 1, 64, 144));
     for (int i = 0; i < kWidth * kHeight; ++i) {
         const auto [rgb, variance] = sum.estimate(i % kWidth, i / kWidth);
-        const PixelEstimate expected = whole.estimate(i % kWidth, i / kWidth);
+        const render::PixelEstimate expected = whole.estimate(i % kWidth, i / kWidth);
         EXPECT_NEAR(rgb.y, expected.rgb.y, 1e-12 * expected.rgb.y);
         EXPECT_NEAR(variance.y, expected.variance.y, 1e-9 * expected.variance.y);
         EXPECT_EQ(sum.counts(i % kWidth, i / kWidth).samples, 220U);
@@ -99,7 +100,7 @@ TEST(FilmRender, ShardsAddUpWithTheirVariance) {
 // Every filter has integral 1, so that a flat field, whose light falls off by a few per cent towards the corners, stays
 // what it is: means over the picture within four standard errors, stated ones.
 TEST(FilmRender, FiltersKeepTheLight) {
-    const auto mean_green = [](const Film& film) {
+    const auto mean_green = [](const render::Film& film) {
         double sum = 0.0;
         double variance = 0.0;
         for (int i = 0; i < kWidth * kHeight; ++i) {
@@ -108,10 +109,10 @@ TEST(FilmRender, FiltersKeepTheLight) {
         }
         return std::pair(sum, variance);
     };
-    const ChartCamera box_camera = tessar_camera();
+    const render::ChartCamera box_camera = tessar_camera();
     const auto [box, box_variance] = mean_green(rendered(box_camera, box_camera.view(kFlat, kFacing), 1, 0, 128));
-    for (const std::string& name : PixelFilter::known_names()) {
-        const ChartCamera camera = tessar_camera(name);
+    for (const std::string& name : render::PixelFilter::known_names()) {
+        const render::ChartCamera camera = tessar_camera(name);
         const auto [mean, variance] = mean_green(rendered(camera, camera.view(kFlat, kFacing), 2, 0, 128));
         EXPECT_NEAR(mean, box, 4.0 * std::sqrt(variance + box_variance)) << name;
         EXPECT_LT(std::sqrt(variance), 0.01 * mean) << name << ": sharp enough to show a loss";
@@ -121,21 +122,21 @@ TEST(FilmRender, FiltersKeepTheLight) {
 // A board that faces the camera is everywhere as deep as it is far, its normal looks back along the axis, and its
 // albedo is that of its squares. A tilted one's normal is tilted.
 TEST(FilmRender, FeaturesAreThoseOfTheChart) {
-    const ChartCamera camera = tessar_camera();
-    SeenChart view = camera.view(kBoard, kFacing);
+    const render::ChartCamera camera = tessar_camera();
+    render::SeenChart view = camera.view(kBoard, kFacing);
     view.has_features = true;
-    const Film film = rendered(camera, view, 1, 0, 16);
+    const render::Film film = rendered(camera, view, 1, 0, 16);
     for (int i = 0; i < kWidth * kHeight; ++i) {
-        const PixelFeatures features = film.features(i % kWidth, i / kWidth);
+        const render::PixelFeatures features = film.features(i % kWidth, i / kWidth);
         EXPECT_NEAR(features.depth_mm, 10000.0, 1e-6);
         EXPECT_NEAR(features.normal.z, -film.coverage(i % kWidth, i / kWidth), 1e-12);
         EXPECT_GE(features.albedo_rgb.y, 0.04 * film.coverage(i % kWidth, i / kWidth) - 1e-12);
         EXPECT_LE(features.albedo_rgb.y, 0.9 + 1e-12);
     }
     EXPECT_GT(film.coverage(kWidth / 2, kHeight / 2), 0.95) << "a path that the lens stops meets nothing";
-    SeenChart tilted = camera.view(kBoard, {.distance_mm = 10000.0, .tilt_deg = {0.0, 60.0, 0.0}});
+    render::SeenChart tilted = camera.view(kBoard, {.distance_mm = 10000.0, .tilt_deg = {0.0, 60.0, 0.0}});
     tilted.has_features = true;
-    const PixelFeatures features = rendered(camera, tilted, 1, 0, 16).features(kWidth / 2, kHeight / 2);
+    const render::PixelFeatures features = rendered(camera, tilted, 1, 0, 16).features(kWidth / 2, kHeight / 2);
     EXPECT_NEAR(std::abs(features.normal.z / features.normal.x), 1.0 / std::tan(std::acos(-1.0) / 3.0), 1e-12);
 }
 

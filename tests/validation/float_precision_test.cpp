@@ -16,7 +16,7 @@
 #include "engine/optics/lens.h"
 #include "engine/optics/paraxial.h"
 #include "engine/spectral/wavelengths.h"
-#include "experiments/stability/jitter.h"
+#include "experiments/studies/stability/jitter.h"
 #include "tests/validation/shipped_settings.h"
 
 namespace lensproof {
@@ -34,25 +34,25 @@ Vec2d in_disc(Random& random, double radius) {
 /// A shipped lens at one setting: a zoom lens is several.
 struct Setting {
     std::string label;
-    Lens lens;
-    TraceLens<double> in_double;
-    TraceLens<float> in_float;
+    optics::Lens lens;
+    optics::TraceLens<double> in_double;
+    optics::TraceLens<float> in_float;
     double image_radius_mm = 0.0;
     double pupil_diameter_mm = 0.0;
 
-    [[nodiscard]] double bound_um() const { return float_error_bound_um(lens.image_z); }
+    [[nodiscard]] double bound_um() const { return optics::float_error_bound_um(lens.image_z); }
 };
 
 Setting make_setting(const std::string& name, const std::string& zoom) {
     Setting setting{.label = zoom.empty() ? name : name + " at " + zoom,
-                    .lens = load_lens(name, {.zoom = zoom}),
+                    .lens = formats::load_lens(name, {.zoom = zoom}),
                     .in_double = {},
                     .in_float = {}};
-    setting.in_double = at_wavelength<double>(setting.lens, kLineD);
-    setting.in_float = at_wavelength<float>(setting.lens, kLineD);
-    const ChiefRays chief(setting.lens, kLineD);
+    setting.in_double = optics::at_wavelength<double>(setting.lens, spectral::kLineD);
+    setting.in_float = optics::at_wavelength<float>(setting.lens, spectral::kLineD);
+    const optics::ChiefRays chief(setting.lens, spectral::kLineD);
     setting.image_radius_mm = std::abs(chief.at_field(0.999 * chief.largest_field()).value().image_height);
-    setting.pupil_diameter_mm = paraxial_data(setting.in_double).entrance_pupil_diameter;
+    setting.pupil_diameter_mm = optics::paraxial_data(setting.in_double).entrance_pupil_diameter;
     return setting;
 }
 
@@ -61,55 +61,58 @@ Setting make_setting(const std::string& name, const std::string& zoom) {
 struct Pencil {
     std::function<Ray<double>(Vec2d)> ray;
     double radius_mm = 0.0;
-    Direction direction = Direction::forward;
+    optics::Direction direction = optics::Direction::forward;
 };
 
 /// From a point of the image circle to the rear element.
 Pencil camera_pencil(const Setting& setting, Random& random) {
-    const LensSurface& rear = setting.lens.surfaces.back();
+    const optics::LensSurface& rear = setting.lens.surfaces.back();
     const Vec2d at = in_disc(random, setting.image_radius_mm);
     const Vec3d sensor_point{at.x, at.y, setting.lens.image_z};
     const auto towards = [sensor_point, z = rear.vertex_z](Vec2d p) {
         return Ray<double>{sensor_point, normalized(Vec3d{p.x, p.y, z} - sensor_point)};
     };
-    return {towards, rear.semi_diameter, Direction::reverse};
+    return {towards, rear.semi_diameter, optics::Direction::reverse};
 }
 
 /// From a direction of the field: around the way of a camera ray that passes, turned round, from as far in front of the
 /// first surface as the lens is long.
 Pencil scene_pencil(const Setting& setting, Random& random) {
-    TracedRay<double> camera_ray;
+    optics::TracedRay<double> camera_ray;
     do {
         const Pencil camera = camera_pencil(setting, random);
-        camera_ray = trace<Direction::reverse>(setting.in_double, camera.ray(in_disc(random, camera.radius_mm)));
-    } while (camera_ray.status != RayStatus::ok);
+        camera_ray =
+            optics::trace<optics::Direction::reverse>(setting.in_double, camera.ray(in_disc(random, camera.radius_mm)));
+    } while (camera_ray.status != optics::RayStatus::ok);
     const Vec3d way = -1.0 * camera_ray.ray.direction;
     const Vec3d start = camera_ray.ray.origin - setting.lens.image_z * way;
-    const auto beside = [start, way, across = across_axes(way)](Vec2d p) {
+    const auto beside = [start, way, across = optics::across_axes(way)](Vec2d p) {
         return Ray<double>{start + p.x * across[0] + p.y * across[1], way};
     };
-    return {beside, setting.pupil_diameter_mm, Direction::forward};
+    return {beside, setting.pupil_diameter_mm, optics::Direction::forward};
 }
 
-RayInFloat traced(const Setting& setting, const Pencil& pencil, Vec2d p) {
-    return trace_in_float(setting.in_float, setting.in_double, pencil.ray(p), pencil.direction, Rims::clip);
+optics::RayInFloat traced(const Setting& setting, const Pencil& pencil, Vec2d p) {
+    return optics::trace_in_float(setting.in_float, setting.in_double, pencil.ray(p), pencil.direction,
+                                  optics::Rims::clip);
 }
 
-bool passes(const RayInFloat& ray) {
-    return ray.in_double.status == RayStatus::ok;
+bool passes(const optics::RayInFloat& ray) {
+    return ray.in_double.status == optics::RayStatus::ok;
 }
 
 /// A ray in double: where it ends up, as RayInFloat has it, and its fate.
 struct Arrival {
     Vec3d point;
-    RayFate fate;
+    optics::RayFate fate;
 };
 
-Arrival arrival(const TraceLens<double>& lens, const Ray<double>& ray, Direction direction) {
-    const bool forward = direction == Direction::forward;
-    const TracedRay<double> out = forward ? trace<Direction::forward>(lens, ray) : trace<Direction::reverse>(lens, ray);
-    const bool on_image = forward && out.status == RayStatus::ok;
-    return {on_image ? meet_plane(out.ray, lens.image_z).point : out.ray.origin, {out.status, out.surface}};
+Arrival arrival(const optics::TraceLens<double>& lens, const Ray<double>& ray, optics::Direction direction) {
+    const bool forward = direction == optics::Direction::forward;
+    const optics::TracedRay<double> out = forward ? optics::trace<optics::Direction::forward>(lens, ray)
+                                                  : optics::trace<optics::Direction::reverse>(lens, ray);
+    const bool on_image = forward && out.status == optics::RayStatus::ok;
+    return {on_image ? optics::meet_plane(out.ray, lens.image_z).point : out.ray.origin, {out.status, out.surface}};
 }
 
 constexpr double kHalfUlp = 0.5 * std::numeric_limits<float>::epsilon();
@@ -123,7 +126,7 @@ double conditioning_um(const Setting& setting, const Pencil& pencil, Vec2d p, Ra
     constexpr int kDraws = 16;
     const Ray<double> ray = pencil.ray(p);
     const Arrival true_arrival = arrival(setting.in_double, ray, pencil.direction);
-    Jitter<double> jitter(kHalfUlp, random);
+    studies::Jitter<double> jitter(kHalfUlp, random);
     double largest = 0.0;
     for (int draw = 0; draw < kDraws; ++draw) {
         const Arrival moved = arrival(jitter(setting.in_double), jitter(ray), pencil.direction);
@@ -137,29 +140,29 @@ double conditioning_um(const Setting& setting, const Pencil& pencil, Vec2d p, Ra
 /// How far from the rim of `surface` the ray meets it in double, whatever rims it passed before, µm.
 double from_rim_um(const Setting& setting, const Pencil& pencil, Vec2d p, int surface) {
     double mm = std::numeric_limits<double>::infinity();
-    const auto look = [&](const SurfaceEvent<double>& event) {
-        if (event.surface == surface && event.status != RayStatus::missed) {
+    const auto look = [&](const optics::SurfaceEvent<double>& event) {
+        if (event.surface == surface && event.status != optics::RayStatus::missed) {
             mm = std::abs(std::hypot(event.ray.origin.x, event.ray.origin.y) -
                           setting.lens.surfaces[static_cast<std::size_t>(surface)].semi_diameter);
         }
     };
-    pencil.direction == Direction::forward
-        ? trace<Direction::forward, Rims::follow>(setting.in_double, pencil.ray(p), look)
-        : trace<Direction::reverse, Rims::follow>(setting.in_double, pencil.ray(p), look);
+    pencil.direction == optics::Direction::forward
+        ? optics::trace<optics::Direction::forward, optics::Rims::follow>(setting.in_double, pencil.ray(p), look)
+        : optics::trace<optics::Direction::reverse, optics::Rims::follow>(setting.in_double, pencil.ray(p), look);
     return 1e3 * mm;
 }
 
 /// The fate of the two that comes first on the way: the other ray went on from there.
-RayFate first_end(const RayInFloat& ray, Direction direction) {
+optics::RayFate first_end(const optics::RayInFloat& ray, optics::Direction direction) {
     // A surface is asked whether it is met, then for its rim, then for total reflection.
-    const auto when = [direction](const RayFate& fate) {
-        const int step = direction == Direction::forward ? fate.surface : -fate.surface;
+    const auto when = [direction](const optics::RayFate& fate) {
+        const int step = direction == optics::Direction::forward ? fate.surface : -fate.surface;
         switch (fate.status) {
-            case RayStatus::ok:
+            case optics::RayStatus::ok:
                 return std::pair{std::numeric_limits<int>::max(), 0};
-            case RayStatus::missed:
+            case optics::RayStatus::missed:
                 return std::pair{step, 0};
-            case RayStatus::total_internal_reflection:
+            case optics::RayStatus::total_internal_reflection:
                 return std::pair{step, 2};
             default:
                 return std::pair{step, 1};
@@ -172,8 +175,8 @@ RayFate first_end(const RayInFloat& ray, Direction direction) {
 bool is_at_a_change(const Setting& setting, const Pencil& pencil, Vec2d p, Random& random) {
     constexpr int kDraws = 64;
     const Ray<double> ray = pencil.ray(p);
-    const RayFate fate = arrival(setting.in_double, ray, pencil.direction).fate;
-    Jitter<double> jitter(kConditioningFactor * kHalfUlp, random);
+    const optics::RayFate fate = arrival(setting.in_double, ray, pencil.direction).fate;
+    studies::Jitter<double> jitter(kConditioningFactor * kHalfUlp, random);
     for (int draw = 0; draw < kDraws; ++draw) {
         if (!(arrival(jitter(setting.in_double), jitter(ray), pencil.direction).fate == fate)) {
             return true;
@@ -184,7 +187,7 @@ bool is_at_a_change(const Setting& setting, const Pencil& pencil, Vec2d p, Rando
 
 /// What one way of the light through a lens showed.
 struct Row {
-    FloatError error;              // of the rays that pass in both
+    optics::FloatError error;      // of the rays that pass in both
     int over_bound = 0;            // of those
     int other_fates = 0;           // of rays of any fate, many of them aimed at the rims
     double farthest_rim_um = 0.0;  // of those that part at a rim
@@ -193,15 +196,15 @@ struct Row {
 
 class Measurement {
   public:
-    Measurement(const Setting& setting, Direction direction, Random& random)
+    Measurement(const Setting& setting, optics::Direction direction, Random& random)
         : setting_(setting), direction_(direction), random_(random) {}
 
     Row run() {
         constexpr int kPencils = 120;
         constexpr int kRays = 100;
         for (int i = 0; i < kPencils; ++i) {
-            pencil_ =
-                direction_ == Direction::forward ? scene_pencil(setting_, random_) : camera_pencil(setting_, random_);
+            pencil_ = direction_ == optics::Direction::forward ? scene_pencil(setting_, random_)
+                                                               : camera_pencil(setting_, random_);
             std::vector<Vec2d> inside;
             std::vector<Vec2d> outside;
             for (int k = 0; k < kRays; ++k) {
@@ -218,7 +221,7 @@ class Measurement {
   private:
     /// Whether the ray passes in double.
     bool look_at(Vec2d p) {
-        const RayInFloat ray = traced(setting_, pencil_, p);
+        const optics::RayInFloat ray = traced(setting_, pencil_, p);
         if (!(ray.in_float == ray.in_double)) {
             judge_fates(ray, p);
         } else if (passes(ray)) {
@@ -258,10 +261,10 @@ class Measurement {
         }
     }
 
-    void judge_fates(const RayInFloat& ray, Vec2d p) {
+    void judge_fates(const optics::RayInFloat& ray, Vec2d p) {
         ++row_.other_fates;
-        const RayFate first = first_end(ray, direction_);
-        if (first.status == RayStatus::clipped || first.status == RayStatus::stopped) {
+        const optics::RayFate first = first_end(ray, direction_);
+        if (first.status == optics::RayStatus::clipped || first.status == optics::RayStatus::stopped) {
             const double um = from_rim_um(setting_, pencil_, p, first.surface);
             row_.farthest_rim_um = std::max(row_.farthest_rim_um, um);
         } else {
@@ -271,7 +274,7 @@ class Measurement {
     }
 
     const Setting& setting_;
-    Direction direction_;
+    optics::Direction direction_;
     Random& random_;
     Pencil pencil_;
     Row row_;
@@ -310,8 +313,8 @@ TEST(FloatPrecision, IsKeptByEveryLensThatShips) {
     int over_bound = 0;
     print_heading();
     for (const Setting& setting : of_shipped_settings(make_setting)) {
-        const Row camera = Measurement(setting, Direction::reverse, random).run();
-        const Row scene = Measurement(setting, Direction::forward, random).run();
+        const Row camera = Measurement(setting, optics::Direction::reverse, random).run();
+        const Row scene = Measurement(setting, optics::Direction::forward, random).run();
         print_row(setting, camera, scene);
         for (const Row& row : {camera, scene}) {
             EXPECT_GT(row.error.rays, 400) << setting.label;
@@ -321,7 +324,8 @@ TEST(FloatPrecision, IsKeptByEveryLensThatShips) {
         }
         EXPECT_EQ(camera.over_bound, 0) << setting.label;
         EXPECT_LE(scene.over_bound, scene.error.rays / 100) << setting.label;
-        EXPECT_TRUE(scene.over_bound == 0 || setting.lens.projection != Projection::rectilinear) << setting.label;
+        EXPECT_TRUE(scene.over_bound == 0 || setting.lens.projection != optics::Projection::rectilinear)
+            << setting.label;
     }
     EXPECT_GT(other_fates, 1000);
     EXPECT_GT(over_bound, 0);  // or the judge of such rays has not been asked

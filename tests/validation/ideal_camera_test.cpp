@@ -25,11 +25,11 @@ struct Drawn {
 };
 
 /// Of one pixel's paths; `at_mm`: the distance in front of the first vertex at which their x is looked at.
-Drawn draw(const GaussianCamera& camera, const Sensor& sensor, std::uint32_t pixel, double at_mm) {
+Drawn draw(const render::GaussianCamera& camera, const render::Sensor& sensor, std::uint32_t pixel, double at_mm) {
     constexpr std::uint32_t kSamples = 1U << 14U;
-    const std::vector<GaussianCamera> cameras{camera};
-    IdealPathProducer producer({.sensor = sensor, .at = &cameras, .seed = 5, .filter = {}});
-    CameraPathBuffer<double> paths;
+    const std::vector<render::GaussianCamera> cameras{camera};
+    render::IdealPathProducer producer({.sensor = sensor, .at = &cameras, .seed = 5, .filter = {}});
+    render::CameraPathBuffer<double> paths;
     producer.start({.first_pixel = pixel, .pixels = 1, .first_sample = 0, .samples = kSamples});
     Drawn found;
     double squares = 0.0;
@@ -46,12 +46,12 @@ Drawn draw(const GaussianCamera& camera, const Sensor& sensor, std::uint32_t pix
     return found;
 }
 
-Lens double_gauss(double f_number, double focus_mm) {
-    return focused_at(with_f_number(load_lens("double-gauss-tronnier"), f_number), focus_mm);
+optics::Lens double_gauss(double f_number, double focus_mm) {
+    return optics::focused_at(optics::with_f_number(formats::load_lens("double-gauss-tronnier"), f_number), focus_mm);
 }
 
 /// A sensor of one small pixel a column, `columns` of them over `width_mm`.
-Sensor small_pixels(double width_mm, int columns) {
+render::Sensor small_pixels(double width_mm, int columns) {
     return {.width = columns, .height = 1, .pixel_pitch_mm = width_mm / columns};
 }
 
@@ -59,12 +59,12 @@ Sensor small_pixels(double width_mm, int columns) {
 // τ π sin²u, and that is τ π / (4 N²) for tan u = 1 / (2 N). Sampling of the disc is even, so 2^14 points of a
 // scrambled sequence err by less than 1e-4 (seen: 2e-6).
 TEST(IdealCamera, ExposesByItsFNumber) {
-    const Lens lens = double_gauss(4.0, 1e9);
-    const TraceLens<double> traced = at_wavelength<double>(lens, kLineD);
-    const double efl = paraxial_data(traced).efl;
-    const Sensor sensor = small_pixels(40.0, 401);
-    const GaussianCamera pinhole = gaussian_camera(lens, LensModel::pinhole, kLineD);
-    const GaussianCamera thin = gaussian_camera(lens, LensModel::thin_lens, kLineD);
+    const optics::Lens lens = double_gauss(4.0, 1e9);
+    const optics::TraceLens<double> traced = optics::at_wavelength<double>(lens, spectral::kLineD);
+    const double efl = optics::paraxial_data(traced).efl;
+    const render::Sensor sensor = small_pixels(40.0, 401);
+    const render::GaussianCamera pinhole = render::gaussian_camera(lens, scene::LensModel::pinhole, spectral::kLineD);
+    const render::GaussianCamera thin = render::gaussian_camera(lens, scene::LensModel::thin_lens, spectral::kLineD);
     const double area = kPi * std::pow(efl / 4.0 / 2.0, 2);
     for (const std::uint32_t column : {200U, 300U, 400U}) {
         const double x = sensor.position(column, 0.0).x;
@@ -79,10 +79,12 @@ TEST(IdealCamera, ExposesByItsFNumber) {
 // With one f-number every model gives the exposure that the lens itself has on its axis. At f/4 the lens's own beam
 // differs from its paraxial one by pupil aberration of a part in a hundred.
 TEST(IdealCamera, ModelsExposeAlike) {
-    const Lens lens = double_gauss(4.0, 1e9);
-    const double exact = image_bundle(at_wavelength<double>(lens, kLineD), 0.0).transmitted;
-    for (const LensModel model : {LensModel::paraxial, LensModel::thin_lens, LensModel::pinhole}) {
-        const double found = draw(gaussian_camera(lens, model, kLineD), small_pixels(0.1, 1), 0, 1e6).irradiance;
+    const optics::Lens lens = double_gauss(4.0, 1e9);
+    const double exact = optics::image_bundle(optics::at_wavelength<double>(lens, spectral::kLineD), 0.0).transmitted;
+    for (const scene::LensModel model :
+         {scene::LensModel::paraxial, scene::LensModel::thin_lens, scene::LensModel::pinhole}) {
+        const double found =
+            draw(render::gaussian_camera(lens, model, spectral::kLineD), small_pixels(0.1, 1), 0, 1e6).irradiance;
         EXPECT_NEAR(found / exact, 1.0, 0.03) << static_cast<int>(model);
     }
 }
@@ -92,13 +94,13 @@ TEST(IdealCamera, ModelsExposeAlike) {
 // their rms in x is its diameter over 4. Distances count from the lens, at the front principal plane.
 TEST(IdealCamera, ThinLensBlursByItsFormula) {
     constexpr double kFocus = 2000.0;
-    const Lens lens = double_gauss(2.0, kFocus);
-    const TraceLens<double> traced = at_wavelength<double>(lens, kLineD);
-    const ParaxialData data = paraxial_data(traced);
-    const GaussianCamera thin = gaussian_camera(lens, LensModel::thin_lens, kLineD);
-    const GaussianCamera pinhole = gaussian_camera(lens, LensModel::pinhole, kLineD);
-    const GaussianCamera paraxial = gaussian_camera(lens, LensModel::paraxial, kLineD);
-    const Sensor sensor = small_pixels(1e-4, 1);
+    const optics::Lens lens = double_gauss(2.0, kFocus);
+    const optics::TraceLens<double> traced = optics::at_wavelength<double>(lens, spectral::kLineD);
+    const optics::ParaxialData data = optics::paraxial_data(traced);
+    const render::GaussianCamera thin = render::gaussian_camera(lens, scene::LensModel::thin_lens, spectral::kLineD);
+    const render::GaussianCamera pinhole = render::gaussian_camera(lens, scene::LensModel::pinhole, spectral::kLineD);
+    const render::GaussianCamera paraxial = render::gaussian_camera(lens, scene::LensModel::paraxial, spectral::kLineD);
+    const render::Sensor sensor = small_pixels(1e-4, 1);
     for (const double distance : {500.0, 1500.0, 2000.0, 3000.0, 20000.0}) {
         const double from_lens = distance + data.front_principal_z;
         const double focus = kFocus + data.front_principal_z;
@@ -118,13 +120,14 @@ TEST(IdealCamera, ThinLensBlursByItsFormula) {
 // to the third-order distortion of a part in 1e4; thin lens and pinhole, whose pupil stands in the principal plane, see
 // the far world in the same directions.
 TEST(IdealCamera, LooksWhereTheLensLooks) {
-    const Lens lens = double_gauss(8.0, 1e9);
-    const double efl = paraxial_data(at_wavelength<double>(lens, kLineD)).efl;
-    const Sensor sensor = small_pixels(2.001, 2001);
+    const optics::Lens lens = double_gauss(8.0, 1e9);
+    const double efl = optics::paraxial_data(optics::at_wavelength<double>(lens, spectral::kLineD)).efl;
+    const render::Sensor sensor = small_pixels(2.001, 2001);
     const double x = sensor.position(2000.0, 0.0).x;
     EXPECT_NEAR(x, -1.0, 1e-12);
-    for (const LensModel model : {LensModel::paraxial, LensModel::thin_lens, LensModel::pinhole}) {
-        const Drawn seen = draw(gaussian_camera(lens, model, kLineD), sensor, 2000, 1e9);
+    for (const scene::LensModel model :
+         {scene::LensModel::paraxial, scene::LensModel::thin_lens, scene::LensModel::pinhole}) {
+        const Drawn seen = draw(render::gaussian_camera(lens, model, spectral::kLineD), sensor, 2000, 1e9);
         EXPECT_NEAR(seen.mean_x_at / 1e9, 1.0 / efl, 1e-5 / efl) << static_cast<int>(model);
     }
 }

@@ -24,11 +24,11 @@ constexpr double kPi = std::numbers::pi;
 constexpr int kSeeds = 8;
 constexpr double kLuminance = 1000.0;
 const std::vector<double> kWavelengths{456.25, 518.75, 581.25, 643.75};  // the middles of four layers over 425 … 675 nm
-constexpr Sensor kSensor{.width = 421, .height = 1, .pixel_pitch_mm = 0.1};
+constexpr render::Sensor kSensor{.width = 421, .height = 1, .pixel_pitch_mm = 0.1};
 
 /// A camera that looks along +z at whatever stands there, lit by an even sky.
-SceneSetup setup_of(const std::string& camera, const std::string& objects) {
-    return parse_scene_setup(
+render::SceneSetup setup_of(const std::string& camera, const std::string& objects) {
+    return render::parse_scene_setup(
         fmt::format("[camera]\n{}\nposition_mm = [0, 0, 0]\nlook_at_mm = [0, 0, 1]\nsensor_mm = [{}, {}]\n"
                     "pixels = [{}, {}]\nshutter_s = 0.01\niso = 100\nresponse = \"luminance\"\n{}\n"
                     "[[lights]]\nkind = \"environment\"\nluminance_cd_m2 = {}\nilluminant = \"E\"\n"
@@ -39,18 +39,18 @@ SceneSetup setup_of(const std::string& camera, const std::string& objects) {
 }
 
 /// Film irradiance over the radiance of the sky, sr: [pixel][wavelength]. The pixels are `columns` of the sensor.
-std::vector<std::array<Measured, 4>> exposures(const SceneSetup& setup, const std::vector<int>& columns,
+std::vector<std::array<Measured, 4>> exposures(const render::SceneSetup& setup, const std::vector<int>& columns,
                                                std::uint32_t samples) {
-    const PreparedScene scene(setup, {}, {});
-    const Spectrum radiance = radiance_of(illuminant("E"), kLuminance);
-    std::vector<PixelRect> windows;
+    const render::PreparedScene scene(setup, {}, {});
+    const spectral::Spectrum radiance = spectral::radiance_of(spectral::illuminant("E"), kLuminance);
+    std::vector<render::PixelRect> windows;
     windows.reserve(columns.size());
     for (const int column : columns) {
         windows.push_back({column, 0, 1, 1});
     }
     std::vector<std::array<std::vector<double>, 4>> found(columns.size());
     for (int seed = 0; seed < kSeeds; ++seed) {
-        const Film film = rendered(scene, windows, samples, static_cast<std::uint64_t>(seed));
+        const render::Film film = rendered(scene, windows, samples, static_cast<std::uint64_t>(seed));
         for (std::size_t i = 0; i < columns.size(); ++i) {
             std::array<double, 4> layers{};
             film.layers(columns[i], 0, layers);
@@ -79,8 +79,9 @@ void expect_measured(const Measured& found, double expected, double share) {
 const std::vector<int> kColumns{210, 310, 370, 410};  // the axis, 10, 16 and 20 mm beside it
 
 const std::string kDoubleGauss = "lens = \"double-gauss-tronnier\"\nf_number = 2.8\nfocus_distance_mm = 2000";
-const Lens& double_gauss() {
-    static const Lens lens = focused_at(with_f_number(load_lens("double-gauss-tronnier"), 2.8), 2000.0);
+const optics::Lens& double_gauss() {
+    static const optics::Lens lens =
+        optics::focused_at(optics::with_f_number(formats::load_lens("double-gauss-tronnier"), 2.8), 2000.0);
     return lens;
 }
 
@@ -97,8 +98,8 @@ TEST(LensExposure, WhiteFurnaceStaysWhiteThroughTheLens) {
     const auto found = exposures(setup_of(kDoubleGauss, white), kColumns, 4096);
     for (std::size_t i = 0; i < kColumns.size(); ++i) {
         for (std::size_t k = 0; k < kWavelengths.size(); ++k) {
-            const Bundle bundle =
-                image_bundle(at_wavelength<double>(double_gauss(), kWavelengths[k]), height_mm(kColumns[i]));
+            const optics::Bundle bundle = optics::image_bundle(
+                optics::at_wavelength<double>(double_gauss(), kWavelengths[k]), height_mm(kColumns[i]));
             fmt::print("{:.1f} mm, {} nm: {:.5f} ± {:.5f} sr, traced {:.5f}, of which passes {:.3f}\n",
                        height_mm(kColumns[i]), kWavelengths[k], found[i][k].value, found[i][k].error,
                        bundle.transmitted, bundle.transmitted / bundle.projected_solid_angle);
@@ -109,7 +110,7 @@ TEST(LensExposure, WhiteFurnaceStaysWhiteThroughTheLens) {
 }
 
 /// Of the chief ray that reaches this height from a plane at 2 m, by secants.
-double field_deg_of(const ChiefRays& chiefs, double height) {
+double field_deg_of(const optics::ChiefRays& chiefs, double height) {
     double object = 40.0 * height;  // about where a lens of 50 mm images it
     double before = 0.0;
     double height_before = 0.0;
@@ -135,17 +136,18 @@ TEST(LensExposure, MattPlaneFallsOffAsAnalyzeSays) {
         "material = \"matt\"\n";
     const auto found = exposures(setup_of(kDoubleGauss, plane), kColumns, 2048);
     const double reference_nm = kWavelengths[2];
-    const TraceLens<double> traced = at_wavelength<double>(double_gauss(), reference_nm);
-    const ChiefRays chiefs(double_gauss(), reference_nm);
-    const Bundle axis = image_bundle(traced, 0.0);
+    const optics::TraceLens<double> traced = optics::at_wavelength<double>(double_gauss(), reference_nm);
+    const optics::ChiefRays chiefs(double_gauss(), reference_nm);
+    const optics::Bundle axis = optics::image_bundle(traced, 0.0);
     for (std::size_t i = 1; i < kColumns.size(); ++i) {
         const double height = height_mm(kColumns[i]);
         const double field = field_deg_of(chiefs, height);
-        const LensAnalysis analysis = analyze_lens(double_gauss(), {.wavelengths_nm = {reference_nm},
-                                                                    .reference_wavelength_nm = reference_nm,
-                                                                    .fields_deg = {field},
-                                                                    .object_distance = 2000.0});
-        const Bundle bundle = image_bundle(traced, height);
+        const analysis::LensAnalysis analysis =
+            analysis::analyze_lens(double_gauss(), {.wavelengths_nm = {reference_nm},
+                                                    .reference_wavelength_nm = reference_nm,
+                                                    .fields_deg = {field},
+                                                    .object_distance = 2000.0});
+        const optics::Bundle bundle = optics::image_bundle(traced, height);
         const double passing = bundle.transmitted / bundle.projected_solid_angle;
         const double passing_axis = axis.transmitted / axis.projected_solid_angle;
         const double expected = analysis.fields[0].relative_illumination.value() * passing / passing_axis;

@@ -23,22 +23,22 @@ constexpr double kDegree = std::numbers::pi / 180.0;
 /// A shipped lens at one setting: a zoom lens is several.
 struct Setting {
     std::string label;
-    Prescription prescription;  // at that setting
-    Lens lens;
-    TraceLens<double> at_d;
-    ParaxialData paraxial;
+    optics::Prescription prescription;  // at that setting
+    optics::Lens lens;
+    optics::TraceLens<double> at_d;
+    optics::ParaxialData paraxial;
 };
 
 Setting make_setting(const std::string& name, const std::string& zoom) {
-    const Prescription prescription = read_prescription(find_lens_file(name));
-    const std::size_t position = zoom.empty() ? 0 : find_zoom_position(prescription, zoom);
+    const optics::Prescription prescription = formats::read_prescription(formats::find_lens_file(name));
+    const std::size_t position = zoom.empty() ? 0 : optics::find_zoom_position(prescription, zoom);
     Setting setting{.label = zoom.empty() ? name : name + " at " + zoom,
-                    .prescription = at_zoom_position(prescription, position),
-                    .lens = load_lens(name, {.zoom = zoom}),
+                    .prescription = optics::at_zoom_position(prescription, position),
+                    .lens = formats::load_lens(name, {.zoom = zoom}),
                     .at_d = {},
                     .paraxial = {}};
-    setting.at_d = at_wavelength<double>(setting.lens, kLineD);
-    setting.paraxial = paraxial_data(setting.at_d);
+    setting.at_d = optics::at_wavelength<double>(setting.lens, spectral::kLineD);
+    setting.paraxial = optics::paraxial_data(setting.at_d);
     return setting;
 }
 
@@ -52,8 +52,8 @@ TEST(LensLibrary, CoversEveryFamily) {
     std::map<std::string, int> lenses_of;
     std::set<std::string> hemispheric;
     std::set<std::string> narrower;
-    for (const std::string& name : shipped_lens_names()) {
-        const Prescription prescription = read_prescription(find_lens_file(name));
+    for (const std::string& name : formats::shipped_lens_names()) {
+        const optics::Prescription prescription = formats::read_prescription(formats::find_lens_file(name));
         ++lenses_of[prescription.design];
         const double stated_field = 2.0 * prescription.stated.half_field_deg.value_or(0.0);
         if (prescription.design == "fisheye") {
@@ -63,7 +63,7 @@ TEST(LensLibrary, CoversEveryFamily) {
         EXPECT_FALSE(prescription.source.empty()) << name;
         EXPECT_FALSE(prescription.notes.empty()) << name;
     }
-    EXPECT_GE(shipped_lens_names().size(), 20U);
+    EXPECT_GE(formats::shipped_lens_names().size(), 20U);
     for (const char* design :
          {"Tessar", "Petzval", "triplet", "double Gauss", "wide angle", "retrofocus", "telephoto", "zoom", "fisheye"}) {
         EXPECT_GE(lenses_of[design], 1) << design;
@@ -116,9 +116,10 @@ TEST(LensLibrary, FocusesInfinityAtTheSensor) {
 TEST(LensLibrary, PassesTheAxialBeam) {
     for (const Setting& setting : settings()) {
         const double height = 0.45 * setting.paraxial.entrance_pupil_diameter;
-        const TracedRay<double> ray = trace(setting.at_d, Ray<double>{{0.0, height, -10.0}, {0.0, 0.0, 1.0}});
-        ASSERT_EQ(ray.status, RayStatus::ok) << setting.label << ", surface " << ray.surface + 1;
-        EXPECT_NEAR(meet_plane(ray.ray, setting.lens.image_z).point.y, 0.0, 0.025 * setting.paraxial.efl)
+        const optics::TracedRay<double> ray =
+            optics::trace(setting.at_d, Ray<double>{{0.0, height, -10.0}, {0.0, 0.0, 1.0}});
+        ASSERT_EQ(ray.status, optics::RayStatus::ok) << setting.label << ", surface " << ray.surface + 1;
+        EXPECT_NEAR(optics::meet_plane(ray.ray, setting.lens.image_z).point.y, 0.0, 0.025 * setting.paraxial.efl)
             << setting.label;
     }
 }
@@ -126,7 +127,7 @@ TEST(LensLibrary, PassesTheAxialBeam) {
 // The chief ray of the stated field reaches the sensor. Müller's front rim clips it from 74.8° (its notes say so).
 TEST(LensLibrary, SeesTheStatedField) {
     for (const Setting& setting : settings()) {
-        const double largest_deg = ChiefRays(setting.lens, kLineD).largest_field() / kDegree;
+        const double largest_deg = optics::ChiefRays(setting.lens, spectral::kLineD).largest_field() / kDegree;
         EXPECT_GT(largest_deg, 0.0) << setting.label;
         if (const std::optional<double> field = setting.prescription.stated.half_field_deg) {
             EXPECT_GT(largest_deg, setting.label == "muller-fisheye" ? 74.7 : *field) << setting.label;
@@ -145,11 +146,11 @@ TEST(LensLibrary, FollowsItsProjection) {
         if (!stated) {
             continue;
         }
-        const ChiefRays chief(setting.lens, kLineD);
+        const optics::ChiefRays chief(setting.lens, spectral::kLineD);
         const double field = std::min(*stated * kDegree, 0.999 * chief.largest_field());
-        const std::optional<ChiefRay> ray = chief.at_field(field);
+        const std::optional<optics::ChiefRay> ray = chief.at_field(field);
         ASSERT_TRUE(ray) << setting.label;
-        const double ideal = setting.paraxial.efl * projected_radius(setting.lens.projection, field);
+        const double ideal = setting.paraxial.efl * optics::projected_radius(setting.lens.projection, field);
         const auto known = tolerance_percent.find(setting.label);
         EXPECT_NEAR(100.0 * (std::abs(ray->image_height) / ideal - 1.0), 0.0,
                     known == tolerance_percent.end() ? 5.0 : known->second)
@@ -158,10 +159,10 @@ TEST(LensLibrary, FollowsItsProjection) {
 }
 
 /// Sagitta of a surface at height r (mm), NaN beyond its sphere.
-double sag(const LensSurface& surface, double r) {
+double sag(const optics::LensSurface& surface, double r) {
     const double c = surface.curvature;
     double sag = c * r * r / (1.0 + std::sqrt(1.0 - (1.0 + surface.shape.conic) * c * c * r * r));
-    for (int term = 0; term < kAsphereTerms; ++term) {
+    for (int term = 0; term < optics::kAsphereTerms; ++term) {
         sag += surface.shape.asphere[term] * std::pow(r, 2 * (term + 1));
     }
     return sag;
@@ -170,7 +171,7 @@ double sag(const LensSurface& surface, double r) {
 // Neighbouring surfaces do not cross inside their apertures, at any setting; no aperture reaches beyond its sphere.
 TEST(LensLibrary, HasNoCrossingSurfaces) {
     for (const Setting& setting : settings()) {
-        const std::vector<LensSurface>& surfaces = setting.lens.surfaces;
+        const std::vector<optics::LensSurface>& surfaces = setting.lens.surfaces;
         for (std::size_t i = 0; i + 1 < surfaces.size(); ++i) {
             const double shared = std::min(surfaces[i].semi_diameter, surfaces[i + 1].semi_diameter);
             for (int step = 1; step <= 50; ++step) {
@@ -188,13 +189,14 @@ TEST(LensLibrary, HasNoCrossingSurfaces) {
 TEST(LensLibrary, NamesGlassesThatHaveTheStatedFigures) {
     for (const Setting& setting : settings()) {
         for (std::size_t i = 0; i < setting.lens.surfaces.size(); ++i) {
-            const StatedMedium& stated = setting.prescription.surfaces[i].medium;
+            const optics::StatedMedium& stated = setting.prescription.surfaces[i].medium;
             if (stated.glass.empty() || !stated.n_d || !stated.V_d) {
                 continue;
             }
-            const DispersionFormula& formula = setting.lens.surfaces[i].medium.formula;
-            EXPECT_NEAR(refractive_index(formula, kLineD), *stated.n_d, 5.1e-4) << setting.label << " " << i + 1;
-            EXPECT_NEAR(abbe_number(formula) / *stated.V_d, 1.0, 0.005) << setting.label << " " << i + 1;
+            const optics::DispersionFormula& formula = setting.lens.surfaces[i].medium.formula;
+            EXPECT_NEAR(optics::refractive_index(formula, spectral::kLineD), *stated.n_d, 5.1e-4)
+                << setting.label << " " << i + 1;
+            EXPECT_NEAR(optics::abbe_number(formula) / *stated.V_d, 1.0, 0.005) << setting.label << " " << i + 1;
         }
     }
 }

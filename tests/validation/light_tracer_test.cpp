@@ -10,17 +10,17 @@
 namespace lensproof {
 namespace {
 
-const SpectralGrid kGrid = spectral_grid(420.0, 680.0, 16);
-const Sensor kSensor{.width = 9, .height = 6, .pixel_pitch_mm = 4.0};
+const spectral::SpectralGrid kGrid = spectral::spectral_grid(420.0, 680.0, 16);
+const render::Sensor kSensor{.width = 9, .height = 6, .pixel_pitch_mm = 4.0};
 
 TEST(LightTracer, MakesTheCamerasImageOfALitWall) {
     SceneParts parts(kGrid);
     AffineMap towards_camera{.linear = about_x(180.0), .translation = {0.0, 0.0, 2000.0}};
-    parts.add(Quad{4000.0, 4000.0}, towards_camera, 0.7);
-    parts.add(Sphere{200.0}, {.linear = kIdentity3, .translation = {150.0, 0.0, 1700.0}}, 0.5);
+    parts.add(scene::Quad{4000.0, 4000.0}, towards_camera, 0.7);
+    parts.add(scene::Sphere{200.0}, {.linear = kIdentity3, .translation = {150.0, 0.0, 1700.0}}, 0.5);
     const std::uint32_t lamp =
-        parts.add(Quad{500.0, 500.0}, {.linear = about_x(90.0), .translation = {0.0, 800.0, 1500.0}}, 0.0);
-    parts.lights.emplace_back(AreaLight{.object = lamp, .radiance = constant_spectrum(20.0, kGrid)});
+        parts.add(scene::Quad{500.0, 500.0}, {.linear = about_x(90.0), .translation = {0.0, 800.0, 1500.0}}, 0.0);
+    parts.lights.emplace_back(scene::AreaLight{.object = lamp, .radiance = spectral::constant_spectrum(20.0, kGrid)});
     const Studio studio({.lens = "double-gauss-tronnier", .sensor = kSensor, .grid = kGrid}, parts);
     expect_same_image(studio.by_camera(512), studio.by_lights(1852));
 }
@@ -29,14 +29,14 @@ TEST(LightTracer, MakesTheCamerasImageOfALitWall) {
 // neither kind of path shows it.
 TEST(LightTracer, MakesTheCamerasImageUnderTheSky) {
     SceneParts parts(kGrid);
-    parts.add(Quad{3000.0, 3000.0}, {.linear = about_x(-90.0), .translation = {0.0, -400.0, 2500.0}}, 0.6);
-    parts.add(Sphere{400.0}, {.linear = kIdentity3, .translation = {-200.0, 0.0, 2500.0}}, 0.8);
-    parts.lights.emplace_back(ConstantLight{constant_spectrum(1.0, kGrid)});
+    parts.add(scene::Quad{3000.0, 3000.0}, {.linear = about_x(-90.0), .translation = {0.0, -400.0, 2500.0}}, 0.6);
+    parts.add(scene::Sphere{400.0}, {.linear = kIdentity3, .translation = {-200.0, 0.0, 2500.0}}, 0.8);
+    parts.lights.emplace_back(scene::ConstantLight{spectral::constant_spectrum(1.0, kGrid)});
     parts.lights.emplace_back(
-        SunLight{normalized(Vec3d{1.0, 2.0, -1.0}), std::cos(0.02), constant_spectrum(3000.0, kGrid)});
-    parts.lights.emplace_back(PointLight{{300.0, 300.0, 1500.0}, constant_spectrum(5.0, kGrid)});
-    parts.lights.emplace_back(
-        SpotLight{{0.0, 900.0, -600.0}, normalized(Vec3d{0.0, -0.5, 1.0}), 0.95, 0.8, constant_spectrum(9.0, kGrid)});
+        scene::SunLight{normalized(Vec3d{1.0, 2.0, -1.0}), std::cos(0.02), spectral::constant_spectrum(3000.0, kGrid)});
+    parts.lights.emplace_back(scene::PointLight{{300.0, 300.0, 1500.0}, spectral::constant_spectrum(5.0, kGrid)});
+    parts.lights.emplace_back(scene::SpotLight{
+        {0.0, 900.0, -600.0}, normalized(Vec3d{0.0, -0.5, 1.0}), 0.95, 0.8, spectral::constant_spectrum(9.0, kGrid)});
     const Studio studio(
         {.lens = "muller-fisheye", .f_number = 4.0, .focus_mm = 2500.0, .sensor = kSensor, .grid = kGrid}, parts);
     expect_same_image(studio.by_camera(256), studio.by_lights(3704));
@@ -46,14 +46,15 @@ TEST(LightTracer, MakesTheCamerasImageUnderTheSky) {
 // Rough enough that both see all of it.
 TEST(LightTracer, MakesTheCamerasImageOfRoughGlass) {
     SceneParts parts(kGrid);
-    parts.add(Quad{4000.0, 4000.0}, {.linear = about_x(180.0), .translation = {0.0, 0.0, 2300.0}}, 0.7);
-    parts.add(Sphere{250.0}, {.linear = kIdentity3, .translation = {0.0, 0.0, 1900.0}},
-              Material{.surface = DielectricMaterial{.eta = constant_spectrum(1.5, kGrid),
-                                                     .roughness = Roughness{.alpha_x = 0.4, .alpha_y = 0.4}},
-                       .radiance = {}});
+    parts.add(scene::Quad{4000.0, 4000.0}, {.linear = about_x(180.0), .translation = {0.0, 0.0, 2300.0}}, 0.7);
+    parts.add(scene::Sphere{250.0}, {.linear = kIdentity3, .translation = {0.0, 0.0, 1900.0}},
+              scene::Material{
+                  .surface = scene::DielectricMaterial{.eta = spectral::constant_spectrum(1.5, kGrid),
+                                                       .roughness = scene::Roughness{.alpha_x = 0.4, .alpha_y = 0.4}},
+                  .radiance = {}});
     const std::uint32_t lamp =
-        parts.add(Quad{900.0, 900.0}, {.linear = about_x(90.0), .translation = {0.0, 900.0, 1500.0}}, 0.0);
-    parts.lights.emplace_back(AreaLight{.object = lamp, .radiance = constant_spectrum(20.0, kGrid)});
+        parts.add(scene::Quad{900.0, 900.0}, {.linear = about_x(90.0), .translation = {0.0, 900.0, 1500.0}}, 0.0);
+    parts.lights.emplace_back(scene::AreaLight{.object = lamp, .radiance = spectral::constant_spectrum(20.0, kGrid)});
     const Studio studio({.lens = "double-gauss-tronnier", .sensor = kSensor, .grid = kGrid}, parts);
     expect_same_image(studio.by_camera(1024), studio.by_lights(4630));
 }
@@ -61,19 +62,20 @@ TEST(LightTracer, MakesTheCamerasImageOfRoughGlass) {
 /// A wall with a sphere before it, under a lamp that is seen.
 SceneParts lit_wall() {
     SceneParts parts(kGrid);
-    parts.add(Quad{4000.0, 4000.0}, {.linear = about_x(180.0), .translation = {0.0, 0.0, 2000.0}}, 0.7);
-    parts.add(Sphere{200.0}, {.linear = kIdentity3, .translation = {150.0, 0.0, 1700.0}}, 0.5);
+    parts.add(scene::Quad{4000.0, 4000.0}, {.linear = about_x(180.0), .translation = {0.0, 0.0, 2000.0}}, 0.7);
+    parts.add(scene::Sphere{200.0}, {.linear = kIdentity3, .translation = {150.0, 0.0, 1700.0}}, 0.5);
     const std::uint32_t lamp =
-        parts.add(Quad{300.0, 300.0}, {.linear = about_x(135.0), .translation = {0.0, 300.0, 1800.0}}, 0.0);
-    parts.lights.emplace_back(AreaLight{.object = lamp, .radiance = constant_spectrum(20.0, kGrid)});
-    parts.lights.emplace_back(ConstantLight{constant_spectrum(0.5, kGrid)});
+        parts.add(scene::Quad{300.0, 300.0}, {.linear = about_x(135.0), .translation = {0.0, 300.0, 1800.0}}, 0.0);
+    parts.lights.emplace_back(scene::AreaLight{.object = lamp, .radiance = spectral::constant_spectrum(20.0, kGrid)});
+    parts.lights.emplace_back(scene::ConstantLight{spectral::constant_spectrum(0.5, kGrid)});
     return parts;
 }
 
 // Into ideal cameras light paths go through their pupils, whose importance is a closed form: the pinhole's, that of the
 // thin lens, and the paraxial lens's at each wavelength.
 TEST(LightTracer, MakesTheImageOfIdealCameras) {
-    for (const LensModel model : {LensModel::pinhole, LensModel::thin_lens, LensModel::paraxial}) {
+    for (const scene::LensModel model :
+         {scene::LensModel::pinhole, scene::LensModel::thin_lens, scene::LensModel::paraxial}) {
         SceneParts parts = lit_wall();
         const Studio studio({.lens = "double-gauss-tronnier", .model = model, .sensor = kSensor, .grid = kGrid}, parts);
         expect_same_image(studio.by_camera(512), studio.by_lights(2000));

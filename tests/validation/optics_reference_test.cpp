@@ -32,7 +32,7 @@ class OpticsReference : public testing::TestWithParam<const char*> {
             GTEST_SKIP() << "no reference numbers beside the checkout: " << file.lexically_normal().filename();
         }
         data_ = nlohmann::json::parse(read_file(file));
-        IndexOverrides overrides;
+        optics::IndexOverrides overrides;
         if (std::string(GetParam()) == "const") {
             for (const auto& surface : data_["surfaces"]) {
                 if (surface["material"] != "air") {
@@ -40,14 +40,14 @@ class OpticsReference : public testing::TestWithParam<const char*> {
                 }
             }
         }
-        lens_ = load_lens("tessar", {.indices = overrides});
+        lens_ = formats::load_lens("tessar", {.indices = overrides});
     }
 
     [[nodiscard]] double wavelength(const std::string& line) const {
         return data_["index_model"]["wavelengths_nm"][line].get<double>();
     }
 
-    Lens lens_;
+    optics::Lens lens_;
     nlohmann::json data_;
 };
 
@@ -55,7 +55,7 @@ class OpticsReference : public testing::TestWithParam<const char*> {
 TEST_P(OpticsReference, FirstOrderData) {
     for (const char* line : {"F", "d", "C", "g"}) {
         const nlohmann::json& expected = data_["paraxial"][line];
-        const ParaxialData data = paraxial_data(at_wavelength<double>(lens_, wavelength(line)));
+        const optics::ParaxialData data = optics::paraxial_data(optics::at_wavelength<double>(lens_, wavelength(line)));
         const auto near = [&](double value, const char* key) {
             EXPECT_NEAR(value / expected[key].get<double>(), 1.0, 1e-12) << line << " " << key;
         };
@@ -70,26 +70,27 @@ TEST_P(OpticsReference, FirstOrderData) {
         near(data.front_principal_z, "z_front_principal");
         near(lens_.last_vertex_z() + data.rear_principal_z, "z_rear_principal");
         const double full_field = data_["lens"]["full_field_deg"].get<double>() * kDegree;
-        near(lagrange_invariant(at_wavelength<double>(lens_, wavelength(line)), full_field).value(),
+        near(optics::lagrange_invariant(optics::at_wavelength<double>(lens_, wavelength(line)), full_field).value(),
              "lagrange_invariant");
     }
-    const ParaxialData data = paraxial_data(at_wavelength<double>(lens_, wavelength("d")));
+    const optics::ParaxialData data = optics::paraxial_data(optics::at_wavelength<double>(lens_, wavelength("d")));
     EXPECT_NEAR(data.petzval_radius / data_["petzval"]["radius"].get<double>(), 1.0, 1e-12);
 }
 
 // The largest axial beam that passes every rim. Both were found by bisection to the last digits of a double.
 TEST_P(OpticsReference, RealWorkingFNumber) {
     const double expected = data_["axial_real_beam_d"]["real_f_number_1_over_2sinU"];
-    EXPECT_NEAR(real_working_f_number(at_wavelength<double>(lens_, wavelength("d"))) / expected, 1.0, 1e-12);
+    EXPECT_NEAR(analysis::real_working_f_number(optics::at_wavelength<double>(lens_, wavelength("d"))) / expected, 1.0,
+                1e-12);
 }
 
 // Each surface's share against the largest of its kind: a surface's terms are products of a handful of paraxial heights
 // and angles, good to 1e-13 of the largest.
 TEST_P(OpticsReference, SeidelSums) {
     const double full_field = data_["lens"]["full_field_deg"].get<double>() * kDegree;
-    const auto sums =
-        seidel_sums(at_wavelength<double>(lens_, wavelength("d")), at_wavelength<double>(lens_, wavelength("F")),
-                    at_wavelength<double>(lens_, wavelength("C")), full_field);
+    const auto sums = analysis::seidel_sums(optics::at_wavelength<double>(lens_, wavelength("d")),
+                                            optics::at_wavelength<double>(lens_, wavelength("F")),
+                                            optics::at_wavelength<double>(lens_, wavelength("C")), full_field);
     ASSERT_TRUE(sums);
     const nlohmann::json& expected = data_["seidel"];
     ASSERT_EQ(sums->surfaces.size(), expected["per_surface"].size());
@@ -104,14 +105,14 @@ TEST_P(OpticsReference, SeidelSums) {
         }
         EXPECT_NEAR(sums->total.*term, expected["sum"][key].get<double>(), 1e-12 * largest) << key;
     };
-    compare("S1", &SeidelTerms<double>::s1);
-    compare("S2", &SeidelTerms<double>::s2);
-    compare("S3", &SeidelTerms<double>::s3);
-    compare("S4", &SeidelTerms<double>::s4);
-    compare("S5", &SeidelTerms<double>::s5);
-    compare("CL", &SeidelTerms<double>::c1);
-    compare("CT", &SeidelTerms<double>::c2);
-    const SeidelTerms<double>& stop = sums->surfaces[lens_.stop_index()];
+    compare("S1", &analysis::SeidelTerms<double>::s1);
+    compare("S2", &analysis::SeidelTerms<double>::s2);
+    compare("S3", &analysis::SeidelTerms<double>::s3);
+    compare("S4", &analysis::SeidelTerms<double>::s4);
+    compare("S5", &analysis::SeidelTerms<double>::s5);
+    compare("CL", &analysis::SeidelTerms<double>::c1);
+    compare("CT", &analysis::SeidelTerms<double>::c2);
+    const analysis::SeidelTerms<double>& stop = sums->surfaces[lens_.stop_index()];
     for (const double term : {stop.s1, stop.s2, stop.s3, stop.s4, stop.s5, stop.c1, stop.c2}) {
         EXPECT_EQ(term, 0.0);
     }
@@ -121,14 +122,14 @@ TEST_P(OpticsReference, SeidelSums) {
 // whose chief ray passes the rims; the reference follows them beyond, the aiming does not.
 TEST_P(OpticsReference, ChiefRayHeights) {
     const double image_z = data_["image_planes"]["nominal"]["z"];
-    Lens lens = lens_;
+    optics::Lens lens = lens_;
     lens.image_z = image_z;
     int compared = 0;
     for (const auto& row : data_["chief_rays"]["rows"]) {
         if (!row["first_clipped_surface"].is_null()) {
             continue;
         }
-        const ChiefRays rays(lens, wavelength(row["wavelength"]));
+        const optics::ChiefRays rays(lens, wavelength(row["wavelength"]));
         const double field = row["field_deg"].get<double>() * kDegree;
         const auto ray = rays.at_field(field);
         ASSERT_TRUE(ray) << row["field_deg"];
@@ -142,13 +143,13 @@ TEST_P(OpticsReference, ChiefRayHeights) {
 // The projected solid angle of the bundle at the d line, to the reference's own accuracy of about 1e-7 (it does not
 // look for the corners between two rims' arcs).
 TEST_P(OpticsReference, ProjectedSolidAngle) {
-    Lens lens = lens_;
+    optics::Lens lens = lens_;
     lens.image_z = data_["image_planes"]["paraxial_d"]["z"];
-    const TraceLens<double> traced = at_wavelength<double>(lens, wavelength("d"));
+    const optics::TraceLens<double> traced = optics::at_wavelength<double>(lens, wavelength("d"));
     int compared = 0;
     for (const auto& row : data_["relative_illumination"]["rows"]) {
         const double expected = row["projected_solid_angle"];
-        const Bundle bundle = image_bundle(traced, row["image_y"]);
+        const optics::Bundle bundle = optics::image_bundle(traced, row["image_y"]);
         EXPECT_NEAR(bundle.projected_solid_angle / expected, 1.0, 1e-7) << row["field_deg"];
         EXPECT_LT(bundle.transmitted, bundle.projected_solid_angle);
         ++compared;

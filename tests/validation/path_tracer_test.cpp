@@ -15,7 +15,7 @@ namespace {
 
 constexpr double kPi = std::numbers::pi;
 
-const SpectralGrid kGrid = spectral_grid(400.0, 700.0, 8);
+const spectral::SpectralGrid kGrid = spectral::spectral_grid(400.0, 700.0, 8);
 
 AffineMap at(double x, double y, double z) {
     return {.linear = kIdentity3, .translation = {x, y, z}};
@@ -27,12 +27,14 @@ struct Estimate {
 };
 
 /// The mean over many paths along one ray, all wavelengths.
-Estimate radiance(const Scene& scene, const Ray<double>& ray, int paths, const PathSettings& settings = {}) {
+Estimate radiance(const scene::Scene& scene, const Ray<double>& ray, int paths,
+                  const render::PathSettings& settings = {}) {
     double sum = 0.0;
     double squares = 0.0;
     for (int i = 0; i < paths; ++i) {
-        PathSampler numbers(7, 0, static_cast<std::uint32_t>(i));
-        const double found = mean(trace_path(scene, ray, kGrid.path(i % kGrid.size()), settings, numbers).radiance);
+        render::PathSampler numbers(7, 0, static_cast<std::uint32_t>(i));
+        const double found =
+            spectral::mean(render::trace_path(scene, ray, kGrid.path(i % kGrid.size()), settings, numbers).radiance);
         sum += found;
         squares += found * found;
     }
@@ -53,10 +55,10 @@ const Ray<double> kDownwards{{0.0, 0.0, 50.0}, {0.0, 0.0, -1.0}};
 // projected solid angle is that of its disc). A Lambertian plane then has the radiance ρ L (R/d)².
 TEST(PathTracer, SphereLightLightsAPlaneAsItsDiscDoes) {
     SceneParts parts(kGrid);
-    parts.add(Quad{1000.0, 1000.0}, {}, 0.5);
-    const std::uint32_t sphere = parts.add(Sphere{30.0}, at(0.0, 0.0, 200.0), 0.0);
-    parts.lights.emplace_back(AreaLight{.object = sphere, .radiance = constant_spectrum(10.0, kGrid)});
-    const Scene scene = parts.scene();
+    parts.add(scene::Quad{1000.0, 1000.0}, {}, 0.5);
+    const std::uint32_t sphere = parts.add(scene::Sphere{30.0}, at(0.0, 0.0, 200.0), 0.0);
+    parts.lights.emplace_back(scene::AreaLight{.object = sphere, .radiance = spectral::constant_spectrum(10.0, kGrid)});
+    const scene::Scene scene = parts.scene();
     expect_estimate(radiance(scene, kDownwards, 4096), 0.5 * 10.0 * std::pow(30.0 / 200.0, 2));
     // The same on a sphere that is none to the last digits, which is sampled by its area.
     parts.objects.back().to_world.linear[2].z = 1.0 + 1e-9;
@@ -68,12 +70,12 @@ TEST(PathTracer, SphereLightLightsAPlaneAsItsDiscDoes) {
 // Configuration Factors, B-3, four times the corner's).
 TEST(PathTracer, QuadLightHasItsConfigurationFactor) {
     SceneParts parts(kGrid);
-    parts.add(Quad{1000.0, 1000.0}, {}, 0.8);
+    parts.add(scene::Quad{1000.0, 1000.0}, {}, 0.8);
     AffineMap facing_down = at(0.0, 0.0, 100.0);
     facing_down.linear = about_x(180.0);
-    const std::uint32_t quad = parts.add(Quad{120.0, 120.0}, facing_down, 0.0);
-    parts.lights.emplace_back(AreaLight{.object = quad, .radiance = constant_spectrum(3.0, kGrid)});
-    const Scene scene = parts.scene();
+    const std::uint32_t quad = parts.add(scene::Quad{120.0, 120.0}, facing_down, 0.0);
+    parts.lights.emplace_back(scene::AreaLight{.object = quad, .radiance = spectral::constant_spectrum(3.0, kGrid)});
+    const scene::Scene scene = parts.scene();
     const double x = 60.0 / 100.0;
     const double side = x / std::sqrt(1.0 + x * x);
     const double factor = 4.0 / (2.0 * kPi) * 2.0 * side * std::atan(side);
@@ -83,31 +85,34 @@ TEST(PathTracer, QuadLightHasItsConfigurationFactor) {
 // A point's irradiance is I cos θ / d², a spot's within its full cone the same, and the sun's L Ω cos θ.
 TEST(PathTracer, PointSpotAndSunKeepTheirLaws) {
     const double height_m = 0.3;
-    const auto lit_by = [](const LightSource& light) {
+    const auto lit_by = [](const scene::LightSource& light) {
         SceneParts parts(kGrid);
-        parts.add(Quad{1000.0, 1000.0}, {}, 0.5);
+        parts.add(scene::Quad{1000.0, 1000.0}, {}, 0.5);
         parts.lights.push_back(light);
         return radiance(parts.scene(), kDownwards, 256).mean;
     };
     const Vec3d above{400.0, 0.0, 300.0};  // so that cos θ = 3/5 and d = 0.5 m
     const double of_point = 0.5 / kPi * 2.0 * (height_m / 0.5) / (0.5 * 0.5);
-    EXPECT_NEAR(lit_by(PointLight{above, constant_spectrum(2.0, kGrid)}), of_point, 1e-6 * of_point);
-    EXPECT_NEAR(lit_by(SpotLight{above, normalized(-1.0 * above), 0.99, 0.9, constant_spectrum(2.0, kGrid)}), of_point,
-                1e-6 * of_point);
-    EXPECT_EQ(lit_by(SpotLight{above, {1.0, 0.0, 0.0}, 0.99, 0.9, constant_spectrum(2.0, kGrid)}), 0.0);
+    EXPECT_NEAR(lit_by(scene::PointLight{above, spectral::constant_spectrum(2.0, kGrid)}), of_point, 1e-6 * of_point);
+    EXPECT_NEAR(
+        lit_by(scene::SpotLight{above, normalized(-1.0 * above), 0.99, 0.9, spectral::constant_spectrum(2.0, kGrid)}),
+        of_point, 1e-6 * of_point);
+    EXPECT_EQ(lit_by(scene::SpotLight{above, {1.0, 0.0, 0.0}, 0.99, 0.9, spectral::constant_spectrum(2.0, kGrid)}),
+              0.0);
     // The mean cosine over a disc of 0.265° differs from its centre's by less than its radius squared.
     const double cos_radius = std::cos(0.265 * kPi / 180.0);
     const double of_sun = 0.5 / kPi * 1e4 * 2.0 * kPi * (1.0 - cos_radius) * 0.6;
-    EXPECT_NEAR(lit_by(SunLight{normalized(above), cos_radius, constant_spectrum(1e4, kGrid)}), of_sun, 3e-5 * of_sun);
+    EXPECT_NEAR(lit_by(scene::SunLight{normalized(above), cos_radius, spectral::constant_spectrum(1e4, kGrid)}), of_sun,
+                3e-5 * of_sun);
 }
 
 // In a closed room of albedo ρ whose walls radiate 1, the radiance after n bounces is 1 + ρ + … + ρⁿ everywhere.
 TEST(PathTracer, GlowingRoomSumsItsBounces) {
     SceneParts parts(kGrid);
-    const std::uint32_t walls = parts.add(Sphere{100.0}, {}, 0.6);
+    const std::uint32_t walls = parts.add(scene::Sphere{100.0}, {}, 0.6);
     parts.lights.emplace_back(
-        AreaLight{.object = walls, .radiance = constant_spectrum(1.0, kGrid), .is_two_sided = true});
-    const Scene scene = parts.scene();
+        scene::AreaLight{.object = walls, .radiance = spectral::constant_spectrum(1.0, kGrid), .is_two_sided = true});
+    const scene::Scene scene = parts.scene();
     double expected = 0.0;
     double power = 1.0;
     for (const int bounces : {0, 1, 2, 3}) {
@@ -126,11 +131,11 @@ TEST(PathTracer, GlowingRoomSumsItsBounces) {
 // White surfaces of any shape vanish in an even sky: every path carries its radiance out again.
 TEST(PathTracer, WhiteVanishesInAnEvenSky) {
     SceneParts parts(kGrid);
-    parts.add(Sphere{30.0}, at(0.0, 0.0, 0.0), 1.0);
-    parts.add(Sphere{20.0}, at(40.0, 0.0, 10.0), 1.0);
-    parts.add(Quad{400.0, 400.0}, at(0.0, 0.0, -30.0), 1.0);
-    parts.lights.emplace_back(ConstantLight{constant_spectrum(5.0, kGrid)});
-    const Scene scene = parts.scene();
+    parts.add(scene::Sphere{30.0}, at(0.0, 0.0, 0.0), 1.0);
+    parts.add(scene::Sphere{20.0}, at(40.0, 0.0, 10.0), 1.0);
+    parts.add(scene::Quad{400.0, 400.0}, at(0.0, 0.0, -30.0), 1.0);
+    parts.lights.emplace_back(scene::ConstantLight{spectral::constant_spectrum(5.0, kGrid)});
+    const scene::Scene scene = parts.scene();
     for (const double x : {0.0, 15.0, 25.0, 35.0}) {
         const Estimate found = radiance(scene, {{x, 3.0, 200.0}, {0.0, 0.0, -1.0}}, 4096, {.max_bounces = 500});
         EXPECT_NEAR(found.mean, 5.0, 4.0 * found.error + 5e-5) << x;
@@ -140,8 +145,8 @@ TEST(PathTracer, WhiteVanishesInAnEvenSky) {
 // An empty scene has no size, so that its sky sends no power into it, and is seen all the same.
 TEST(PathTracer, SkyIsSeenBesideALampInAnEmptyScene) {
     SceneParts parts(kGrid);
-    parts.lights.emplace_back(ConstantLight{constant_spectrum(5.0, kGrid)});
-    parts.lights.emplace_back(PointLight{{0.0, 0.0, 0.0}, constant_spectrum(1.0, kGrid)});
+    parts.lights.emplace_back(scene::ConstantLight{spectral::constant_spectrum(5.0, kGrid)});
+    parts.lights.emplace_back(scene::PointLight{{0.0, 0.0, 0.0}, spectral::constant_spectrum(1.0, kGrid)});
     EXPECT_EQ(radiance(parts.scene(), kDownwards, 16).mean, 5.0);
 }
 
@@ -163,26 +168,27 @@ TEST(PathTracer, PrismSendsEachWavelengthWhereSnellSays) {
     // Cauchy's formula with numbers like those of a dense flint.
     const auto index_at = [](double nm) { return 1.70 + 13000.0 / (nm * nm); };
     SceneParts parts(kGrid);
-    GridSpectrum eta;
+    spectral::GridSpectrum eta;
     for (const double nm : kGrid.strata.midpoints()) {
         eta.value.push_back(static_cast<float>(index_at(nm)));
     }
-    const Material glass{.surface = DielectricMaterial{.eta = eta, .roughness = {}}, .radiance = {}};
+    const scene::Material glass{.surface = scene::DielectricMaterial{.eta = eta, .roughness = {}}, .radiance = {}};
     // Light comes down along −z: the first face looks up, the second down, turned by the apex about y.
-    parts.add(Quad{20.0, 20.0}, at(0.0, 0.0, 5.0), glass);
+    parts.add(scene::Quad{20.0, 20.0}, at(0.0, 0.0, 5.0), glass);
     AffineMap second;
     second.linear = product(about_y(30.0), about_x(180.0));
-    parts.add(Quad{20.0, 20.0}, second, glass);
+    parts.add(scene::Quad{20.0, 20.0}, second, glass);
     const auto strip_centre = [&](double nm) {
         // The ray along z meets the second face in the origin, and turns towards +x.
         return kScreen * std::tan(prism_exit_angle(index_at(nm), kApex));
     };
     for (int k = 0; k < kGrid.size(); ++k) {
         AffineMap facing_up = at(strip_centre(kGrid.strata.midpoint(k)), 0.0, -kScreen);
-        const std::uint32_t strip = parts.add(Quad{0.2, 50.0}, facing_up, 0.0);
-        parts.lights.emplace_back(AreaLight{.object = strip, .radiance = constant_spectrum(1.0 + k, kGrid)});
+        const std::uint32_t strip = parts.add(scene::Quad{0.2, 50.0}, facing_up, 0.0);
+        parts.lights.emplace_back(
+            scene::AreaLight{.object = strip, .radiance = spectral::constant_spectrum(1.0 + k, kGrid)});
     }
-    const Scene scene = parts.scene();
+    const scene::Scene scene = parts.scene();
     for (int k = 0; k < kGrid.size(); ++k) {
         const double n = index_at(kGrid.strata.midpoint(k));
         const double exit = prism_exit_angle(n, kApex) + kApex;
@@ -193,10 +199,10 @@ TEST(PathTracer, PrismSendsEachWavelengthWhereSnellSays) {
         constexpr int kWalks = 4096;
         double hero = 0.0;
         for (int i = 0; i < kWalks; ++i) {
-            PathSampler numbers(11, 0, static_cast<std::uint32_t>(i));
-            const PathRadiance found =
-                trace_path(scene, {{0.0, 0.0, 100.0}, {0.0, 0.0, -1.0}}, kGrid.path(k), {.max_bounces = 2}, numbers);
-            EXPECT_EQ(found.radiance, SpectralSample());
+            render::PathSampler numbers(11, 0, static_cast<std::uint32_t>(i));
+            const render::PathRadiance found = render::trace_path(scene, {{0.0, 0.0, 100.0}, {0.0, 0.0, -1.0}},
+                                                                  kGrid.path(k), {.max_bounces = 2}, numbers);
+            EXPECT_EQ(found.radiance, spectral::SpectralSample());
             hero += found.hero_radiance / kWalks;
         }
         EXPECT_NEAR(hero / (1.0 + k), passing, 4.0 * std::sqrt(passing * (1.0 - passing) / kWalks)) << k;

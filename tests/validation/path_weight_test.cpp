@@ -12,8 +12,8 @@
 namespace lensproof {
 namespace {
 
-const SpectralGrid kGrid = spectral_grid(420.0, 680.0, 16);
-const Sensor kSensor{.width = 60, .height = 40, .pixel_pitch_mm = 0.6};
+const spectral::SpectralGrid kGrid = spectral::spectral_grid(420.0, 680.0, 16);
+const render::Sensor kSensor{.width = 60, .height = 40, .pixel_pitch_mm = 0.6};
 
 /// Numbers in (0, 1), one after the other.
 class Numbers {
@@ -22,24 +22,25 @@ class Numbers {
     double next() { return sampler_.next()[0]; }
 
   private:
-    PathSampler sampler_;
+    render::PathSampler sampler_;
 };
 
 /// A path's points, the first nearest to the camera, as rays from the one before met them, and the ray that joins the
 /// first to the camera (lens space, inwards).
 struct Path {
-    std::vector<SurfaceHit> points;
-    RayIn in;
+    std::vector<scene::SurfaceHit> points;
+    render::RayIn in;
 };
 
-std::optional<SurfaceHit> hit_along(const Scene& scene, const Vec3d& origin, const Vec3d& direction) {
-    return intersect(*scene.geometry, origin, direction, 0.0, std::numeric_limits<double>::infinity());
+std::optional<scene::SurfaceHit> hit_along(const scene::Scene& scene, const Vec3d& origin, const Vec3d& direction) {
+    return scene::intersect(*scene.geometry, origin, direction, 0.0, std::numeric_limits<double>::infinity());
 }
 
 /// Of so many points: from the middle of the scene a ray to a first point that is joined to the camera, and on at
 /// random; directions that a mirror turns are mirrored, so that deltas are met.
-std::optional<Path> random_path(const Studio& studio, const PathWavelengths& strata, int points, Numbers& numbers) {
-    const Scene& scene = studio.scene();
+std::optional<Path> random_path(const Studio& studio, const spectral::PathWavelengths& strata, int points,
+                                Numbers& numbers) {
+    const scene::Scene& scene = studio.scene();
     const auto anywhere = [&] {
         return normalized(Vec3d{numbers.next() - 0.5, numbers.next() - 0.5, numbers.next() - 0.5});
     };
@@ -54,11 +55,12 @@ std::optional<Path> random_path(const Studio& studio, const PathWavelengths& str
     Path path{.points = {*hit}, .in = *in};
     Vec3d backwards = in->direction;
     while (static_cast<int>(path.points.size()) < points) {
-        const SurfaceHit& last = path.points.back();
-        const PathVertex vertex(last, backwards, scene, strata);
-        const Vec3d onwards =
-            is_delta(vertex.bsdf) ? vertex.frame.to_world({-vertex.wo.x, -vertex.wo.y, vertex.wo.z}) : anywhere();
-        hit = hit_along(scene, ray_origin(last, onwards), onwards);
+        const scene::SurfaceHit& last = path.points.back();
+        const render::PathVertex vertex(last, backwards, scene, strata);
+        const Vec3d onwards = scene::is_delta(vertex.bsdf)
+                                  ? vertex.frame.to_world({-vertex.wo.x, -vertex.wo.y, vertex.wo.z})
+                                  : anywhere();
+        hit = hit_along(scene, scene::ray_origin(last, onwards), onwards);
         if (!hit) {
             return {};
         }
@@ -68,7 +70,7 @@ std::optional<Path> random_path(const Studio& studio, const PathWavelengths& str
     return path;
 }
 
-Vec3d between(const SurfaceHit& from, const SurfaceHit& to) {
+Vec3d between(const scene::SurfaceHit& from, const scene::SurfaceHit& to) {
     return normalized(to.point - from.point);
 }
 
@@ -78,23 +80,27 @@ struct Shares {
     double join = 0.0;
 };
 
-PathTurn turn_at(const PathVertex& vertex, const Vec3d& onwards, bool is_camera) {
-    if (is_delta(vertex.bsdf)) {
+render::PathTurn turn_at(const render::PathVertex& vertex, const Vec3d& onwards, bool is_camera) {
+    if (scene::is_delta(vertex.bsdf)) {
         return {.is_delta = true};
     }
     const Vec3d wi = vertex.frame.to_local(onwards);
-    return is_camera ? camera_turn(vertex, onwards, wi, density(vertex.bsdf, vertex.wo, wi, Transport::radiance))
-                     : light_turn(vertex, onwards, wi, density(vertex.bsdf, vertex.wo, wi, Transport::importance));
+    return is_camera ? render::camera_turn(vertex, onwards, wi,
+                                           scene::density(vertex.bsdf, vertex.wo, wi, scene::Transport::radiance))
+                     : render::light_turn(vertex, onwards, wi,
+                                          scene::density(vertex.bsdf, vertex.wo, wi, scene::Transport::importance));
 }
 
 /// Whether light goes along the path.
-bool is_lit(const Scene& scene, const Path& path, const Vec3d& to_light, const PathWavelengths& strata) {
+bool is_lit(const scene::Scene& scene, const Path& path, const Vec3d& to_light,
+            const spectral::PathWavelengths& strata) {
     Vec3d backwards = path.in.direction;
     for (std::size_t i = 0; i < path.points.size(); ++i) {
-        const PathVertex vertex(path.points[i], backwards, scene, strata);
+        const render::PathVertex vertex(path.points[i], backwards, scene, strata);
         const Vec3d onwards = i + 1 < path.points.size() ? between(path.points[i], path.points[i + 1]) : to_light;
         const Vec3d wi = vertex.frame.to_local(onwards);
-        if (!is_delta(vertex.bsdf) && is_black(evaluate(vertex.bsdf, vertex.wo, wi, Transport::radiance))) {
+        if (!scene::is_delta(vertex.bsdf) &&
+            spectral::is_black(scene::evaluate(vertex.bsdf, vertex.wo, wi, scene::Transport::radiance))) {
             return false;
         }
         backwards = -1.0 * onwards;
@@ -104,16 +110,17 @@ bool is_lit(const Scene& scene, const Path& path, const Vec3d& to_light, const P
 
 /// What ends a path at its last point: the light's sample, and the same seen as a hit and as a start.
 struct End {
-    LightSample sample;
-    Lights::Emission hit;
+    scene::LightSample sample;
+    scene::Lights::Emission hit;
     double cosine = 1.0;
-    LightStart start;
+    scene::LightStart start;
 };
 
 /// Light 0 of the scene, as the last point may sample it.
-std::optional<End> end_of(const Scene& scene, const SurfaceHit& last, const PathWavelengths& strata, Numbers& numbers) {
+std::optional<End> end_of(const scene::Scene& scene, const scene::SurfaceHit& last,
+                          const spectral::PathWavelengths& strata, Numbers& numbers) {
     const auto sample = scene.lights.sample(last.point, strata, numbers.next(), numbers.next(), numbers.next());
-    if (!sample || is_occluded(*scene.geometry, ray_origin(last, sample->direction), sample->end)) {
+    if (!sample || scene::is_occluded(*scene.geometry, scene::ray_origin(last, sample->direction), sample->end)) {
         return {};
     }
     End end{.sample = *sample, .hit = {}, .start = scene.lights.start(strata, 0.5, 0.5, 0.5)};
@@ -124,7 +131,7 @@ std::optional<End> end_of(const Scene& scene, const SurfaceHit& last, const Path
         scene.lights.visit_infinity(sample->direction, strata, [&](const auto& found) { end.hit = found; });
         end.start.direction = -1.0 * sample->direction;
     } else {
-        const auto on_light = hit_along(scene, ray_origin(last, sample->direction), sample->direction);
+        const auto on_light = hit_along(scene, scene::ray_origin(last, sample->direction), sample->direction);
         if (!on_light) {
             return {};
         }
@@ -137,17 +144,17 @@ std::optional<End> end_of(const Scene& scene, const SurfaceHit& last, const Path
     return end.hit.density > 0.0 ? std::optional(end) : std::nullopt;
 }
 
-Shares shares_of(const Studio& studio, const Path& path, const End& end, const PathWavelengths& strata,
+Shares shares_of(const Studio& studio, const Path& path, const End& end, const spectral::PathWavelengths& strata,
                  bool is_hero_alone) {
-    const Scene& scene = studio.scene();
+    const scene::Scene& scene = studio.scene();
     const std::size_t n = path.points.size();
-    const FilmArrival film = studio.end().arrive(path.in.ray, strata);
-    const LightOrigin first{path.points.front().point, false};
+    const render::FilmArrival film = studio.end().arrive(path.in.ray, strata);
+    const render::LightOrigin first{path.points.front().point, false};
     Shares shares;
 
     // From the camera. Its ray begins elsewhere on the line.
     const Ray<double> outwards{path.in.ray.origin - 3.0 * path.in.ray.direction, -1.0 * path.in.ray.direction};
-    CameraPathWeight camera;
+    render::CameraPathWeight camera;
     camera.enter(studio.end().ratio(studio.end().density(first, outwards, strata),
                                     {.shared = film.shared_density(0), .hero = film.drawn[0]}));
     if (is_hero_alone) {
@@ -155,9 +162,9 @@ Shares shares_of(const Studio& studio, const Path& path, const End& end, const P
     }
     Vec3d backwards = path.in.direction;
     for (std::size_t i = 0; i < n; ++i) {
-        const PathVertex vertex(path.points[i], backwards, scene, strata);
+        const render::PathVertex vertex(path.points[i], backwards, scene, strata);
         const Vec3d onwards = i + 1 < n ? between(path.points[i], path.points[i + 1]) : end.sample.direction;
-        const PathTurn turn = turn_at(vertex, onwards, true);
+        const render::PathTurn turn = turn_at(vertex, onwards, true);
         if (i + 1 == n && !turn.is_delta) {
             shares.sample = camera.of_sample(end.sample, turn);
         }
@@ -167,19 +174,20 @@ Shares shares_of(const Studio& studio, const Path& path, const End& end, const P
     shares.hit = end.hit.density > 0.0 ? camera.of_hit(end.hit, end.cosine) : 0.0;
 
     // From the light.
-    LightPathWeight light;
+    render::LightPathWeight light;
     light.leave(scene.lights.way(end.start, path.points.back().point));
     backwards = end.sample.direction;
     for (std::size_t i = n; i-- > 0;) {
-        const PathVertex vertex(path.points[i], backwards, scene, strata);
+        const render::PathVertex vertex(path.points[i], backwards, scene, strata);
         const Vec3d onwards = i > 0 ? between(path.points[i], path.points[i - 1]) : path.in.direction;
-        const PathTurn turn = turn_at(vertex, onwards, false);
+        const render::PathTurn turn = turn_at(vertex, onwards, false);
         if (i > 0) {
             light.turn(turn);
         } else if (!turn.is_delta) {
             const double drawn = is_hero_alone ? film.drawn[0] : film.shared_density(0);
             const double entrance = is_hero_alone ? path.in.density.hero : path.in.density.shared;
-            shares.join = LightPathWeight::share(light.others(turn), drawn / (studio.end().film_area_mm2() * entrance));
+            shares.join =
+                render::LightPathWeight::share(light.others(turn), drawn / (studio.end().film_area_mm2() * entrance));
         }
         backwards = -1.0 * onwards;
     }
@@ -188,40 +196,45 @@ Shares shares_of(const Studio& studio, const Path& path, const End& end, const P
 
 /// Rough metal, a mirror, rough glass, whose tables are made once.
 struct Surfaces {
-    Material metal{.surface = conductor_material(constant_spectrum(0.2, kGrid), constant_spectrum(3.0, kGrid),
-                                                 {.alpha_x = 0.3, .alpha_y = 0.3}),
-                   .radiance = {}};
-    Material mirror{.surface = conductor_material(constant_spectrum(0.2, kGrid), constant_spectrum(3.0, kGrid), {}),
-                    .radiance = {}};
-    Material glass{.surface = dielectric_material(constant_spectrum(1.5, kGrid), {.alpha_x = 0.4, .alpha_y = 0.4}),
-                   .radiance = {}};
+    scene::Material metal{
+        .surface = scene::conductor_material(spectral::constant_spectrum(0.2, kGrid),
+                                             spectral::constant_spectrum(3.0, kGrid), {.alpha_x = 0.3, .alpha_y = 0.3}),
+        .radiance = {}};
+    scene::Material mirror{.surface = scene::conductor_material(spectral::constant_spectrum(0.2, kGrid),
+                                                                spectral::constant_spectrum(3.0, kGrid), {}),
+                           .radiance = {}};
+    scene::Material glass{.surface = scene::dielectric_material(spectral::constant_spectrum(1.5, kGrid),
+                                                                {.alpha_x = 0.4, .alpha_y = 0.4}),
+                          .radiance = {}};
 };
 
 /// A room of matt, rough and mirroring things, under one light.
 SceneParts room(int light, const Surfaces& surfaces) {
     SceneParts parts(kGrid);
-    parts.add(Quad{3000.0, 3000.0}, {.linear = about_x(180.0), .translation = {0.0, 0.0, 2200.0}}, 0.6);
-    parts.add(Sphere{200.0}, {.linear = kIdentity3, .translation = {150.0, 0.0, 1800.0}}, surfaces.metal);
-    parts.add(Quad{900.0, 900.0}, {.linear = about_y(90.0), .translation = {-500.0, 0.0, 1700.0}}, surfaces.mirror);
-    parts.add(Sphere{150.0}, {.linear = kIdentity3, .translation = {-150.0, 200.0, 1800.0}}, surfaces.glass);
+    parts.add(scene::Quad{3000.0, 3000.0}, {.linear = about_x(180.0), .translation = {0.0, 0.0, 2200.0}}, 0.6);
+    parts.add(scene::Sphere{200.0}, {.linear = kIdentity3, .translation = {150.0, 0.0, 1800.0}}, surfaces.metal);
+    parts.add(scene::Quad{900.0, 900.0}, {.linear = about_y(90.0), .translation = {-500.0, 0.0, 1700.0}},
+              surfaces.mirror);
+    parts.add(scene::Sphere{150.0}, {.linear = kIdentity3, .translation = {-150.0, 200.0, 1800.0}}, surfaces.glass);
     const auto shines = [&](std::uint32_t object, bool both_sides) {
-        parts.lights.emplace_back(
-            AreaLight{.object = object, .radiance = constant_spectrum(20.0, kGrid), .is_two_sided = both_sides});
+        parts.lights.emplace_back(scene::AreaLight{
+            .object = object, .radiance = spectral::constant_spectrum(20.0, kGrid), .is_two_sided = both_sides});
     };
     const AffineMap above{.linear = about_x(90.0), .translation = {0.0, 600.0, 1500.0}};
     if (light == 0) {
-        shines(parts.add(Quad{300.0, 300.0}, above, 0.0), true);
+        shines(parts.add(scene::Quad{300.0, 300.0}, above, 0.0), true);
     } else if (light == 1) {
-        shines(parts.add(Sphere{100.0}, above, 0.0), false);
+        shines(parts.add(scene::Sphere{100.0}, above, 0.0), false);
     } else if (light == 2) {
-        parts.lights.emplace_back(SunLight{normalized(Vec3d{1.0, 2.0, -1.0}), 0.999, constant_spectrum(30.0, kGrid)});
+        parts.lights.emplace_back(
+            scene::SunLight{normalized(Vec3d{1.0, 2.0, -1.0}), 0.999, spectral::constant_spectrum(30.0, kGrid)});
     } else if (light == 3) {
-        parts.lights.emplace_back(ConstantLight{constant_spectrum(1.0, kGrid)});
+        parts.lights.emplace_back(scene::ConstantLight{spectral::constant_spectrum(1.0, kGrid)});
     } else if (light == 4) {
-        parts.lights.emplace_back(PointLight{above.translation, constant_spectrum(1.0, kGrid)});
+        parts.lights.emplace_back(scene::PointLight{above.translation, spectral::constant_spectrum(1.0, kGrid)});
     } else {
         parts.lights.emplace_back(
-            SpotLight{above.translation, {0.0, -1.0, 0.0}, 0.5, -0.5, constant_spectrum(1.0, kGrid)});
+            scene::SpotLight{above.translation, {0.0, -1.0, 0.0}, 0.5, -0.5, spectral::constant_spectrum(1.0, kGrid)});
     }
     return parts;
 }
@@ -232,7 +245,8 @@ SceneParts room(int light, const Surfaces& surfaces) {
 // 1e-12 beside each other.
 TEST(PathWeight, SharesOfAPathSumToOne) {
     const Surfaces surfaces;
-    for (const LensModel model : {LensModel::exact, LensModel::pinhole, LensModel::thin_lens, LensModel::paraxial}) {
+    for (const scene::LensModel model : {scene::LensModel::exact, scene::LensModel::pinhole,
+                                         scene::LensModel::thin_lens, scene::LensModel::paraxial}) {
         int counted = 0;
         int with_all = 0;
         for (int light = 0; light < 6; ++light) {
@@ -241,7 +255,7 @@ TEST(PathWeight, SharesOfAPathSumToOne) {
                                 parts);
             for (std::uint32_t i = 0; i < 2000; ++i) {
                 Numbers numbers(i);
-                const PathWavelengths strata = kGrid.path(static_cast<int>(i % 16));
+                const spectral::PathWavelengths strata = kGrid.path(static_cast<int>(i % 16));
                 const auto path = random_path(studio, strata, 1 + static_cast<int>(i % 4), numbers);
                 const auto end = path ? end_of(studio.scene(), path->points.back(), strata, numbers) : std::nullopt;
                 if (!end || !is_lit(studio.scene(), *path, end->sample.direction, strata)) {

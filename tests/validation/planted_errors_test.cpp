@@ -22,7 +22,7 @@ struct Corruption {
     std::string kind;
     int surface = 0;  // from 1; 0: the lens as a whole
     std::string was;  // the number that was right, as a suggestion would write it
-    Prescription prescription;
+    optics::Prescription prescription;
 };
 
 /// The codes that name a kind of corruption rightly.
@@ -80,7 +80,8 @@ std::vector<double> swapped(double value) {
 
 class Corruptor {
   public:
-    Corruptor(const Prescription& good, const GlassCatalogue& glasses) : good_(good), glasses_(glasses) {
+    Corruptor(const optics::Prescription& good, const optics::GlassCatalogue& glasses)
+        : good_(good), glasses_(glasses) {
         for (int i = 0; i < size(); ++i) {
             corrupt_radius(i);
             corrupt_thickness(i);
@@ -95,10 +96,10 @@ class Corruptor {
 
   private:
     [[nodiscard]] int size() const { return static_cast<int>(good_.surfaces.size()); }
-    [[nodiscard]] const PrescribedSurface& row(int i) const { return good_.surfaces[i]; }
+    [[nodiscard]] const optics::PrescribedSurface& row(int i) const { return good_.surfaces[i]; }
 
     void plant(const std::string& kind, int surface, const std::string& was,
-               const std::function<void(Prescription&)>& change) {
+               const std::function<void(optics::Prescription&)>& change) {
         all_.push_back({.kind = kind, .surface = surface, .was = was, .prescription = good_});
         change(all_.back().prescription);
     }
@@ -109,7 +110,7 @@ class Corruptor {
             return;
         }
         const auto set = [&](const std::string& kind, double value) {
-            plant(kind, i + 1, digits_of(radius), [&](Prescription& p) { p.surfaces[i].radius_mm = value; });
+            plant(kind, i + 1, digits_of(radius), [&](optics::Prescription& p) { p.surfaces[i].radius_mm = value; });
         };
         set("radius: sign turned", -radius);
         for (const double value : swapped(radius)) {
@@ -131,7 +132,8 @@ class Corruptor {
             return;  // of a zoom's moving gaps, the table's own value is overridden
         }
         const auto set = [&](const std::string& kind, double value) {
-            plant(kind, i + 1, digits_of(thickness), [&](Prescription& p) { p.surfaces[i].thickness_mm = value; });
+            plant(kind, i + 1, digits_of(thickness),
+                  [&](optics::Prescription& p) { p.surfaces[i].thickness_mm = value; });
         };
         for (const double value : swapped(thickness)) {
             set("thickness: digits swapped", value);
@@ -146,7 +148,7 @@ class Corruptor {
         }
         // As close as the rims forbid: there the surfaces are 5 % of the aperture inside each other.
         const double reach = std::min(*row(i).semi_diameter_mm, *row(i + 1).semi_diameter_mm);
-        const double bulge = thickness - separation_at(row(i), row(i + 1), reach);
+        const double bulge = thickness - check::separation_at(row(i), row(i + 1), reach);
         if (const double gap = bulge - 0.05 * reach; gap > 0.0 && gap < thickness) {
             set("thickness: surfaces crossed", gap);
         }
@@ -155,54 +157,55 @@ class Corruptor {
     void corrupt_semi_diameter(int i) {
         if (row(i).semi_diameter_mm && !row(i).is_stop) {
             plant("one diameter for a semi-diameter", i + 1, "",
-                  [&](Prescription& p) { *p.surfaces[i].semi_diameter_mm *= 2.0; });
+                  [&](optics::Prescription& p) { *p.surfaces[i].semi_diameter_mm *= 2.0; });
         }
     }
 
     void corrupt_glass(int i) {
-        const std::optional<Glass> glass = stated_glass(row(i), glasses_, good_.preferred_makers);
+        const std::optional<optics::Glass> glass = check::stated_glass(row(i), glasses_, good_.preferred_makers);
         if (row(i).medium.is_air() || !glass) {
             return;
         }
-        const double n_d = refractive_index(glass->formula, kLineD);
-        const double V_d = std::holds_alternative<ConstantIndex>(glass->formula) ? 50.0 : abbe_number(glass->formula);
-        const auto set = [&](const std::string& kind, const Glass& other) {
-            plant(kind, i + 1, row(i).medium.glass, [&](Prescription& p) {
-                StatedMedium& medium = p.surfaces[i].medium;
+        const double n_d = optics::refractive_index(glass->formula, spectral::kLineD);
+        const double V_d =
+            std::holds_alternative<optics::ConstantIndex>(glass->formula) ? 50.0 : optics::abbe_number(glass->formula);
+        const auto set = [&](const std::string& kind, const optics::Glass& other) {
+            plant(kind, i + 1, row(i).medium.glass, [&](optics::Prescription& p) {
+                optics::StatedMedium& medium = p.surfaces[i].medium;
                 const bool by_name = !medium.glass.empty();
                 if (by_name) {
                     medium.glass = other.name;
                 }
                 if (!by_name) {
-                    medium.n_d = std::round(refractive_index(other.formula, kLineD) * 1e5) * 1e-5;
-                    medium.V_d =
-                        medium.V_d ? std::optional(std::round(abbe_number(other.formula) * 10) * 0.1) : std::nullopt;
+                    medium.n_d = std::round(optics::refractive_index(other.formula, spectral::kLineD) * 1e5) * 1e-5;
+                    medium.V_d = medium.V_d ? std::optional(std::round(optics::abbe_number(other.formula) * 10) * 0.1)
+                                            : std::nullopt;
                 }
             });
         };
-        const std::vector<Glass> by_distance = glasses_.nearest(n_d, V_d, glasses_.glasses().size());
-        for (const Glass& other : by_distance) {
+        const std::vector<optics::Glass> by_distance = glasses_.nearest(n_d, V_d, glasses_.glasses().size());
+        for (const optics::Glass& other : by_distance) {
             if (other.name != row(i).medium.glass && is_found(other) &&
-                std::abs(refractive_index(other.formula, kLineD) - n_d) > 2e-3) {
+                std::abs(optics::refractive_index(other.formula, spectral::kLineD) - n_d) > 2e-3) {
                 set("glass: the nearest", other);
                 break;
             }
         }
-        for (const Glass& other : by_distance) {
-            if (std::abs(refractive_index(other.formula, kLineD) - n_d) > 0.08) {
+        for (const optics::Glass& other : by_distance) {
+            if (std::abs(optics::refractive_index(other.formula, spectral::kLineD) - n_d) > 0.08) {
                 set("glass: far away", other);
                 break;
             }
         }
-        for (const PrescribedSurface& other : good_.surfaces) {
+        for (const optics::PrescribedSurface& other : good_.surfaces) {
             const bool differs = other.medium.glass != row(i).medium.glass || other.medium.n_d != row(i).medium.n_d;
             if (!other.medium.is_air() && differs) {
                 plant("glass: another of the lens", i + 1, "",
-                      [&](Prescription& p) { p.surfaces[i].medium = other.medium; });
+                      [&](optics::Prescription& p) { p.surfaces[i].medium = other.medium; });
                 break;
             }
         }
-        plant("glass: unknown name", i + 1, "", [&](Prescription& p) {
+        plant("glass: unknown name", i + 1, "", [&](optics::Prescription& p) {
             p.surfaces[i].medium = {};
             p.surfaces[i].medium.glass = "XK7";
         });
@@ -211,24 +214,24 @@ class Corruptor {
     void corrupt_stop() {
         for (int i = 0; i < size(); ++i) {
             if (row(i).is_stop) {
-                plant("stop missing", 0, "", [&](Prescription& p) { p.surfaces[i].is_stop = false; });
+                plant("stop missing", 0, "", [&](optics::Prescription& p) { p.surfaces[i].is_stop = false; });
                 if (row(i).is_flat() && size() > 2 && i > 0) {
-                    plant("stop missing", 0, "", [&](Prescription& p) {
+                    plant("stop missing", 0, "", [&](optics::Prescription& p) {
                         p.surfaces[i - 1].thickness_mm += p.surfaces[i].thickness_mm;
                         p.surfaces.erase(p.surfaces.begin() + i);
                         p.zoom.clear();
                     });
                 }
             } else {
-                plant("stop doubled", i + 1, "", [&](Prescription& p) { p.surfaces[i].is_stop = true; });
+                plant("stop doubled", i + 1, "", [&](optics::Prescription& p) { p.surfaces[i].is_stop = true; });
             }
         }
     }
 
     void corrupt_lens() {
         for (const double factor : {1.0 / 25.4, 0.1}) {
-            plant("all lengths in inches or cm", 0, "", [&](Prescription& p) {
-                for (PrescribedSurface& surface : p.surfaces) {
+            plant("all lengths in inches or cm", 0, "", [&](optics::Prescription& p) {
+                for (optics::PrescribedSurface& surface : p.surfaces) {
                     surface.radius_mm *= factor;
                     surface.thickness_mm *= factor;
                     if (surface.semi_diameter_mm) {
@@ -240,38 +243,38 @@ class Corruptor {
                         scale /= factor * factor;
                     }
                 }
-                for (ZoomPosition& position : p.zoom) {
+                for (optics::ZoomPosition& position : p.zoom) {
                     for (auto& [at, gap] : position.gaps_mm) {
                         gap *= factor;
                     }
                 }
             });
-            plant("all thicknesses in inches or cm", 0, "", [&](Prescription& p) {
-                for (PrescribedSurface& surface : p.surfaces) {
+            plant("all thicknesses in inches or cm", 0, "", [&](optics::Prescription& p) {
+                for (optics::PrescribedSurface& surface : p.surfaces) {
                     surface.thickness_mm *= factor;
                 }
                 p.zoom.clear();
             });
-            plant("all semi-diameters in inches or cm", 0, "", [&](Prescription& p) {
-                for (PrescribedSurface& surface : p.surfaces) {
+            plant("all semi-diameters in inches or cm", 0, "", [&](optics::Prescription& p) {
+                for (optics::PrescribedSurface& surface : p.surfaces) {
                     if (surface.semi_diameter_mm) {
                         *surface.semi_diameter_mm *= factor;
                     }
                 }
             });
         }
-        plant("all diameters for semi-diameters", 0, "", [&](Prescription& p) {
-            for (PrescribedSurface& surface : p.surfaces) {
+        plant("all diameters for semi-diameters", 0, "", [&](optics::Prescription& p) {
+            for (optics::PrescribedSurface& surface : p.surfaces) {
                 if (surface.semi_diameter_mm) {
                     *surface.semi_diameter_mm *= 2.0;
                 }
             }
         });
-        plant("list reversed", 0, "", [&](Prescription& p) {
+        plant("list reversed", 0, "", [&](optics::Prescription& p) {
             for (int i = 0; i < size(); ++i) {
                 const int from = size() - 1 - i;
                 p.surfaces[i] = row(from);
-                p.surfaces[i].medium = from > 0 ? row(from - 1).medium : StatedMedium{};
+                p.surfaces[i].medium = from > 0 ? row(from - 1).medium : optics::StatedMedium{};
                 p.surfaces[i].thickness_mm = from > 0 ? row(from - 1).thickness_mm : row(size() - 1).thickness_mm;
             }
             p.zoom.clear();
@@ -279,24 +282,24 @@ class Corruptor {
     }
 
     /// Whether its name leads to it, not to another maker's glass.
-    [[nodiscard]] bool is_found(const Glass& glass) const {
-        const std::optional<Glass> found = glasses_.resolve(glass.name, good_.preferred_makers).glass;
+    [[nodiscard]] bool is_found(const optics::Glass& glass) const {
+        const std::optional<optics::Glass> found = glasses_.resolve(glass.name, good_.preferred_makers).glass;
         return found && found->formula == glass.formula;
     }
 
-    const Prescription& good_;
-    const GlassCatalogue& glasses_;
+    const optics::Prescription& good_;
+    const optics::GlassCatalogue& glasses_;
     std::vector<Corruption> all_;
 };
 
-using Keys = std::map<std::pair<std::string, int>, Severity>;
+using Keys = std::map<std::pair<std::string, int>, optics::Severity>;
 
 /// Errors and warnings by code and surface.
-Keys keys_of(const CheckReport& report) {
+Keys keys_of(const check::CheckReport& report) {
     Keys keys;
-    for (const Finding& finding : report.findings) {
-        if (finding.severity != Severity::info) {
-            Severity& worst = keys.try_emplace({finding.code, finding.surface}, finding.severity).first->second;
+    for (const optics::Finding& finding : report.findings) {
+        if (finding.severity != optics::Severity::info) {
+            optics::Severity& worst = keys.try_emplace({finding.code, finding.surface}, finding.severity).first->second;
             worst = std::max(worst, finding.severity);
         }
     }
@@ -317,12 +320,12 @@ std::set<std::string> new_codes(const Keys& untouched, const Keys& corrupted) {
 
 /// Below the rounding of published tables: a change of the focus by less than 0.1 % of the focal length is no error
 /// that anyone could see in a table.
-bool is_measurable(const CheckReport& untouched, const CheckReport& corrupted) {
+bool is_measurable(const check::CheckReport& untouched, const check::CheckReport& corrupted) {
     if (untouched.computed.empty() || corrupted.computed.empty()) {
         return true;
     }
-    const ParaxialData& before = untouched.computed.front().paraxial;
-    const ParaxialData& after = corrupted.computed.front().paraxial;
+    const optics::ParaxialData& before = untouched.computed.front().paraxial;
+    const optics::ParaxialData& after = corrupted.computed.front().paraxial;
     const double limit = 1e-3 * std::abs(before.efl);
     return !(std::abs(after.efl - before.efl) < limit && std::abs(after.bfl - before.bfl) < limit);
 }
@@ -338,26 +341,26 @@ struct Tally {
 };
 
 TEST(PlantedErrors, AreFoundAndTheUntouchedLibraryIsClean) {
-    const GlassCatalogue glasses = shipped_glasses();
+    const optics::GlassCatalogue glasses = formats::shipped_glasses();
     std::map<std::string, Tally> tallies;
     Tally total;
     int lenses = 0;
     int false_errors = 0;
     const bool verbose = std::getenv("LENSPROOF_LIST_MISSED") != nullptr;
-    for (const std::string& name : shipped_lens_names()) {
-        const Prescription good = read_prescription(find_lens_file(name));
-        const CheckReport untouched = check_prescription(good, {}, glasses);
+    for (const std::string& name : formats::shipped_lens_names()) {
+        const optics::Prescription good = formats::read_prescription(formats::find_lens_file(name));
+        const check::CheckReport untouched = check::check_prescription(good, {}, glasses);
         ++lenses;
         false_errors += untouched.ok() ? 0 : 1;
         const Corruptor corruptor(good, glasses);
         for (const Corruption& corruption : corruptor.all()) {
-            const CheckReport report = check_prescription(corruption.prescription, {}, glasses);
+            const check::CheckReport report = check::check_prescription(corruption.prescription, {}, glasses);
             const std::set<std::string> codes = new_codes(keys_of(untouched), keys_of(report));
             const bool measurable =
                 !is_judged_by_focus(corruption.kind) || is_measurable(untouched, report) || corruption.surface == 0;
             const bool named = std::ranges::any_of(
                 codes, [&](const std::string& code) { return kRightNames.at(corruption.kind).contains(code); });
-            const bool restored = std::ranges::any_of(report.findings, [&](const Finding& finding) {
+            const bool restored = std::ranges::any_of(report.findings, [&](const optics::Finding& finding) {
                 return finding.code == "suggestion" && finding.surface == corruption.surface &&
                        !corruption.was.empty() &&
                        finding.message.find(" " + corruption.was + " in place") != std::string::npos;

@@ -28,11 +28,11 @@ struct DotRow {
     int dots = 1;              // odd: the middle one stands on the axis
     double pitch_mm = 0.0;
     double dot_mm = 0.0;  // diameter
-    Sensor sensor;
+    render::Sensor sensor;
 };
 
-SceneSetup setup_of(const DotRow& row) {
-    const Sensor& sensor = row.sensor;
+render::SceneSetup setup_of(const DotRow& row) {
+    const render::Sensor& sensor = row.sensor;
     const std::string camera = fmt::format(
         "[camera]\nlens = \"{}\"\nf_number = {}\nfocus_distance_mm = {}\nposition_mm = [0, 0, 0]\nlook_at_mm = [0, 0, "
         "1]\n"
@@ -43,7 +43,7 @@ SceneSetup setup_of(const DotRow& row) {
         "[[objects]]\nshape = \"chart\"\ntranslate_mm = [0, 0, {}]\nrotate_deg = [0, 180, 0]\n"
         "chart = {{ kind = \"point-grid\", points = [{}, 1], pitch_mm = {}, dot_mm = {}, black_reflectance = 0.0 }}\n",
         row.distance_mm, row.dots, row.pitch_mm, row.dot_mm);
-    return parse_scene_setup(
+    return render::parse_scene_setup(
         camera + chart +
             "[[lights]]\nkind = \"sun\"\ndirection = [0, 0, -1]\nilluminance_lx = 1000\nilluminant = \"E\"\n"
             "[render]\nmax_bounces = 1\nlayers = 4\nstrata_per_layer = 1\nwavelengths_nm = [425, 675]\n",
@@ -86,7 +86,7 @@ using OfWavelengths = std::vector<Moments>;
 
 /// Of what lies in a window. A pixel's light is spread over its square, so that of each variance pitch² / 12 is the
 /// pixels' own (Sheppard's correction).
-OfWavelengths moments(const Film& film, const Sensor& sensor, const PixelRect& window) {
+OfWavelengths moments(const render::Film& film, const render::Sensor& sensor, const render::PixelRect& window) {
     std::array<MomentSums, 4> sums;
     std::array<double, 4> layers{};
     const double side = sensor.position(window.x + 0.5 * (window.width - 1), 0.0).x < 0.0 ? -1.0 : 1.0;
@@ -109,18 +109,18 @@ OfWavelengths moments(const Film& film, const Sensor& sensor, const PixelRect& w
     return found;
 }
 
-PixelRect window_around(const Sensor& sensor, double x_mm, int half_px) {
+render::PixelRect window_around(const render::Sensor& sensor, double x_mm, int half_px) {
     const auto u = static_cast<int>(std::lround(sensor.pixel({-x_mm, 0.0}).x));
     return {u - half_px, sensor.height / 2 - half_px, 2 * half_px + 1, 2 * half_px + 1};
 }
 
 /// Moments by seed, of each window.
-std::vector<std::vector<OfWavelengths>> render_dots(const DotRow& row, const std::vector<PixelRect>& windows,
+std::vector<std::vector<OfWavelengths>> render_dots(const DotRow& row, const std::vector<render::PixelRect>& windows,
                                                     std::uint32_t samples) {
-    const PreparedScene scene(setup_of(row), {}, {});
+    const render::PreparedScene scene(setup_of(row), {}, {});
     std::vector<std::vector<OfWavelengths>> found(windows.size());
     for (int seed = 0; seed < kSeeds; ++seed) {
-        const Film film = rendered(scene, windows, samples, static_cast<std::uint64_t>(seed));
+        const render::Film film = rendered(scene, windows, samples, static_cast<std::uint64_t>(seed));
         for (std::size_t i = 0; i < windows.size(); ++i) {
             found[i].push_back(moments(film, row.sensor, windows[i]));
         }
@@ -135,8 +135,8 @@ Measured measured(const std::vector<OfWavelengths>& of_seeds, const Quantity& qu
     return mean_of(values);
 }
 
-Lens lens_of(const DotRow& row) {
-    return focused_at(with_f_number(load_lens(row.lens), row.f_number), row.focus_mm);
+optics::Lens lens_of(const DotRow& row) {
+    return optics::focused_at(optics::with_f_number(formats::load_lens(row.lens), row.f_number), row.focus_mm);
 }
 
 // A row of dots pictured by a retrofocus wide-angle lens with lateral colour of 5 and 6 pixels from blue to red. Each
@@ -153,20 +153,20 @@ TEST(PointImage, LateralColourIsWhereAnalyzePutsIt) {
                      .pitch_mm = 200.0,
                      .dot_mm = 4.0,
                      .sensor = {.width = 6001, .height = 41, .pixel_pitch_mm = 0.006}};
-    const Lens lens = lens_of(row);
-    const ChiefRays reference(lens, kWavelengths.back());
-    AnalysisSettings settings{.wavelengths_nm = kWavelengths,
-                              .reference_wavelength_nm = kWavelengths.back(),
-                              .fields_deg = {},
-                              .object_distance = row.distance_mm};
+    const optics::Lens lens = lens_of(row);
+    const optics::ChiefRays reference(lens, kWavelengths.back());
+    analysis::AnalysisSettings settings{.wavelengths_nm = kWavelengths,
+                                        .reference_wavelength_nm = kWavelengths.back(),
+                                        .fields_deg = {},
+                                        .object_distance = row.distance_mm};
     for (const int dot : {4, 5}) {
         const auto chief = reference.from_point(-dot * row.pitch_mm, -row.distance_mm);
         ASSERT_TRUE(chief.has_value());
         settings.fields_deg.push_back(chief->field_angle * 180.0 / std::numbers::pi);
     }
-    const LensAnalysis analysis = analyze_lens(lens, settings);
+    const analysis::LensAnalysis analysis = analysis::analyze_lens(lens, settings);
     const double pitch = row.sensor.pixel_pitch_mm;
-    std::vector<PixelRect> windows;
+    std::vector<render::PixelRect> windows;
     for (std::size_t field = 0; field < settings.fields_deg.size(); ++field) {
         windows.push_back(window_around(row.sensor, analysis.fields[4 * field + 2].spot_centroid->y, 13));
     }
@@ -192,16 +192,16 @@ TEST(PointImage, LateralColourIsWhereAnalyzePutsIt) {
 // --- Depth of field ---
 
 /// Adds what the object point at (x, y) of the row's plane, seen along the row and across it, makes on the film.
-void add_spot(const TraceLens<double>& lens, const ChiefRays& chiefs, Vec2d point, double distance_mm,
+void add_spot(const optics::TraceLens<double>& lens, const optics::ChiefRays& chiefs, Vec2d point, double distance_mm,
               MomentSums& sums) {
     const double radius = std::hypot(point.x, point.y);
     const auto chief = chiefs.from_point(-radius, -distance_mm);
     ASSERT_TRUE(chief.has_value());
-    const FieldBundle bundle{.chief = *chief, .object_distance = distance_mm};
+    const optics::FieldBundle bundle{.chief = *chief, .object_distance = distance_mm};
     const Vec2d along = radius > 0.0 ? Vec2d{point.x / radius, point.y / radius} : Vec2d{1.0, 0.0};
     // Of a Lambertian point each ray stands for the power of its solid angle times the cosine at the chart.
     const double per_area = chief->front.direction.z / (bundle.distance() * bundle.distance());
-    for (const SpotRay& ray : spot_rays(lens, bundle, beam_outline(lens, bundle))) {
+    for (const analysis::SpotRay& ray : analysis::spot_rays(lens, bundle, analysis::beam_outline(lens, bundle))) {
         sums.add(per_area * ray.weight, along.x * ray.point.y - along.y * ray.point.x,
                  along.y * ray.point.y + along.x * ray.point.x);
     }
@@ -209,7 +209,8 @@ void add_spot(const TraceLens<double>& lens, const ChiefRays& chiefs, Vec2d poin
 
 /// Of the image of a dot, from the spots of 48 points that stand for equal shares of its disc: rings at the middles of
 /// equal areas, whose mean square radius is the disc's.
-Moments traced_moments(const TraceLens<double>& lens, const ChiefRays& chiefs, const DotRow& row, double centre_mm) {
+Moments traced_moments(const optics::TraceLens<double>& lens, const optics::ChiefRays& chiefs, const DotRow& row,
+                       double centre_mm) {
     constexpr int kRings = 4;
     constexpr int kPoints = 12;
     MomentSums sums;
@@ -251,13 +252,13 @@ TEST(PointImage, DepthOfFieldIsThatOfTracedSpots) {
                .pitch_mm = 350.0,
                .dot_mm = 6.0,
                .sensor = {.width = 1801, .height = 81, .pixel_pitch_mm = 0.025}};
-    const Lens lens = lens_of(row);
+    const optics::Lens lens = lens_of(row);
     for (const double distance : {1700.0, 2500.0}) {
         row.distance_mm = distance;
         std::vector<std::vector<Moments>> expected(2);
         for (const double nm : kWavelengths) {
-            const TraceLens<double> traced = at_wavelength<double>(lens, nm);
-            const ChiefRays chiefs(lens, nm);
+            const optics::TraceLens<double> traced = optics::at_wavelength<double>(lens, nm);
+            const optics::ChiefRays chiefs(lens, nm);
             expected[0].push_back(traced_moments(traced, chiefs, row, 0.0));
             expected[1].push_back(traced_moments(traced, chiefs, row, row.pitch_mm));
         }

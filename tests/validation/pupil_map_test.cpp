@@ -42,22 +42,23 @@ std::string name_of(const Setting& s) {
                        s.zoom.empty() ? "" : " zoom " + s.zoom, s.more.empty() ? "" : ", changed");
 }
 
-Lens lens_of(const Setting& s) {
+optics::Lens lens_of(const Setting& s) {
     const TestFolder folder;
     std::string file = s.lens;
     if (!s.more.empty()) {
         file = (folder.path() / "changed.toml").string();
-        write_file(file, read_file(find_lens_file(s.lens)) + s.more);
+        write_file(file, read_file(formats::find_lens_file(s.lens)) + s.more);
     }
-    return focused_at(with_f_number(load_lens(file, {.zoom = s.zoom}), s.f_number), s.focus_distance_mm);
+    return optics::focused_at(optics::with_f_number(formats::load_lens(file, {.zoom = s.zoom}), s.f_number),
+                              s.focus_distance_mm);
 }
 
 /// A lens across the band, its image circle and its map.
 struct Mapped {
-    std::vector<TraceLens<double>> band;
+    std::vector<optics::TraceLens<double>> band;
     double circle_mm = 0.0;  // radius: where the last light of any wavelength ends, or what is stated, if smaller
-    PupilMap map;
-    PupilMap whole;
+    pupil::PupilMap map;
+    pupil::PupilMap whole;
 };
 
 double position(int wavelength) {
@@ -65,18 +66,18 @@ double position(int wavelength) {
 }
 
 /// The radius up to which some wavelength has light, on the azimuth +y.
-double last_light(const std::vector<TraceLens<double>>& band) {
+double last_light(const std::vector<optics::TraceLens<double>>& band) {
     double last = 0.0;
     for (const std::size_t i : {std::size_t{0}, band.size() / 2, band.size() - 1}) {
         double lit = 0.0;
         double dark = 1.0;
-        while (!image_outline(band[i], {0.0, dark}).is_empty()) {
+        while (!optics::image_outline(band[i], {0.0, dark}).is_empty()) {
             lit = dark;
             dark *= 1.25;
         }
         while (dark - lit > 1e-4 * dark) {
             const double middle = 0.5 * (lit + dark);
-            (image_outline(band[i], {0.0, middle}).is_empty() ? dark : lit) = middle;
+            (optics::image_outline(band[i], {0.0, middle}).is_empty() ? dark : lit) = middle;
         }
         last = std::max(last, lit);
     }
@@ -84,27 +85,28 @@ double last_light(const std::vector<TraceLens<double>>& band) {
 }
 
 Mapped mapped(const Setting& setting) {
-    const Lens lens = lens_of(setting);
-    std::vector<TraceLens<double>> band;
+    const optics::Lens lens = lens_of(setting);
+    std::vector<optics::TraceLens<double>> band;
     band.reserve(kWavelengths);
     for (int i = 0; i < kWavelengths; ++i) {
-        band.push_back(at_wavelength<double>(lens, 400.0 + 300.0 * (i + 0.5) / kWavelengths));
+        band.push_back(optics::at_wavelength<double>(lens, 400.0 + 300.0 * (i + 0.5) / kWavelengths));
     }
     const double circle = std::min(last_light(band), lens.stated.image_circle_mm.value_or(kInfinity) / 2.0);
-    PupilMap map(band, lens.is_rotationally_symmetric, circle);
-    PupilMap whole = PupilMap::whole_element(band.front(), circle);
+    pupil::PupilMap map(band, lens.is_rotationally_symmetric, circle);
+    pupil::PupilMap whole = pupil::PupilMap::whole_element(band.front(), circle);
     return {std::move(band), circle, std::move(map), std::move(whole)};
 }
 
 /// The path from the sensor through a point of the pupil, and its share of the film irradiance in a world of radiance
 /// 1, before the density: τ cos⁴θ / Z² = τ cos²θ / way² (Kolb et al. 1995, eq. 4). 0 where it does not leave the front.
-double film_irradiance(const TraceLens<double>& lens, Vec2d at, Vec2d pupil_point, double plane_z) {
+double film_irradiance(const optics::TraceLens<double>& lens, Vec2d at, Vec2d pupil_point, double plane_z) {
     const Vec3d from{at.x, at.y, lens.image_z};
     const Vec3d way = Vec3d{pupil_point.x, pupil_point.y, plane_z} - from;
     const Ray<double> ray{from, normalized(way)};
-    const TracedRay<double> traced = trace<Direction::reverse>(lens, ray);
-    return traced.status == RayStatus::ok ? traced.transmittance * ray.direction.z * ray.direction.z / dot(way, way)
-                                          : 0.0;
+    const optics::TracedRay<double> traced = optics::trace<optics::Direction::reverse>(lens, ray);
+    return traced.status == optics::RayStatus::ok
+               ? traced.transmittance * ray.direction.z * ray.direction.z / dot(way, way)
+               : 0.0;
 }
 
 /// A sensor point of a ring, evenly over its area.
@@ -138,7 +140,7 @@ class RingIrradiance {
     RingIrradiance(const Mapped& lens, int ring, int wavelength)
         : lens_(&lens), traced_({lens.band[wavelength]}), ring_(ring), wavelength_(wavelength) {}
 
-    Estimate operator()(const PupilMap& map, int points) {
+    Estimate operator()(const pupil::PupilMap& map, int points) {
         constexpr int kScrambles = 16;
         std::vector<double> values;
         values.reserve(kScrambles);
@@ -151,35 +153,35 @@ class RingIrradiance {
   private:
     static constexpr int kBatch = 2048;
 
-    double by_scramble(const PupilMap& map, int scramble, int points) {
-        const PixelSampler sampler(static_cast<std::uint64_t>(wavelength_),
-                                   static_cast<std::uint32_t>(ring_ * 16 + scramble));
+    double by_scramble(const pupil::PupilMap& map, int scramble, int points) {
+        const render::PixelSampler sampler(static_cast<std::uint64_t>(wavelength_),
+                                           static_cast<std::uint32_t>(ring_ * 16 + scramble));
         double sum = 0.0;
         for (int done = 0; done < points; done += kBatch) {
             const int count = std::min(kBatch, points - done);
             sampler.points(static_cast<std::uint32_t>(done), static_cast<std::uint32_t>(count), columns());
             start(map, count);
-            trace_batch<Direction::reverse>(traced_, rays_, {.carry = Carry::transmittance});
+            optics::trace_batch<optics::Direction::reverse>(traced_, rays_, {.carry = optics::Carry::transmittance});
             for (int i = 0; i < rays_.size; ++i) {
                 const auto at = static_cast<std::size_t>(i);
-                sum += rays_.status[at] == RayStatus::ok ? weights_[at] * rays_.transmittance[at] : 0.0;
+                sum += rays_.status[at] == optics::RayStatus::ok ? weights_[at] * rays_.transmittance[at] : 0.0;
             }
         }
         return sum / points;
     }
 
-    std::array<double*, PixelSampler::kDimensions> columns() {
-        std::array<double*, PixelSampler::kDimensions> of{};
+    std::array<double*, render::PixelSampler::kDimensions> columns() {
+        std::array<double*, render::PixelSampler::kDimensions> of{};
         std::ranges::transform(numbers_, of.begin(), [](auto& column) { return column.data(); });
         return of;
     }
 
-    void start(const PupilMap& map, int count) {
+    void start(const pupil::PupilMap& map, int count) {
         rays_.size = 0;
         for (int i = 0; i < count; ++i) {
             const auto& [along, unused, u, v, also_unused] = numbers_;
             const Vec2d at = in_ring(lens_->circle_mm, ring_, along[i], 0.0);
-            const PupilSample sample = map.sample(at, position(wavelength_), u[i], v[i]);
+            const pupil::PupilSample sample = map.sample(at, position(wavelength_), u[i], v[i]);
             if (sample.density > 0.0) {
                 const Vec3d from{at.x, at.y, lens_->band[wavelength_].image_z};
                 const Vec3d way = Vec3d{sample.point.x, sample.point.y, map.plane_z()} - from;
@@ -191,12 +193,12 @@ class RingIrradiance {
     }
 
     const Mapped* lens_;
-    SpectralLens<double> traced_;
+    optics::SpectralLens<double> traced_;
     int ring_;
     int wavelength_;
-    std::array<std::array<double, kBatch>, PixelSampler::kDimensions> numbers_{};
+    std::array<std::array<double, kBatch>, render::PixelSampler::kDimensions> numbers_{};
     std::array<double, kBatch> weights_{};  // cos²θ / way² over the density
-    RayBatch<double> rays_{kBatch};
+    optics::RayBatch<double> rays_{kBatch};
 };
 
 // Film irradiance by the map's points and by points of the whole rear element, in eight rings of the image circle at
@@ -242,7 +244,7 @@ Passage passage(const Mapped& lens) {
     constexpr int kPaths = 20000;
     Passage result;
     for (int ring = 0; ring < kRings; ++ring) {
-        const PixelSampler sampler(1, static_cast<std::uint32_t>(ring));
+        const render::PixelSampler sampler(1, static_cast<std::uint32_t>(ring));
         int started = 0;
         int passed = 0;
         int passed_whole = 0;
@@ -250,11 +252,11 @@ Passage passage(const Mapped& lens) {
             const auto xi = sampler.point(static_cast<std::uint32_t>(i));
             const Vec2d at = in_ring(lens.circle_mm, ring, xi[0], xi[1]);
             const int wavelength = static_cast<int>(xi[4] * kWavelengths);
-            const TraceLens<double>& traced = lens.band[wavelength];
+            const optics::TraceLens<double>& traced = lens.band[wavelength];
             const auto passes = [&](Vec2d point) {
                 return film_irradiance(traced, at, point, lens.map.plane_z()) > 0.0 ? 1 : 0;
             };
-            const PupilSample sample = lens.map.sample(at, position(wavelength), xi[2], xi[3]);
+            const pupil::PupilSample sample = lens.map.sample(at, position(wavelength), xi[2], xi[3]);
             started += sample.density > 0.0 ? 1 : 0;
             passed += sample.density > 0.0 ? passes(sample.point) : 0;
             passed_whole += passes(lens.whole.sample(at, position(wavelength), xi[2], xi[3]).point);
@@ -272,7 +274,7 @@ Passage passage(const Mapped& lens) {
 double missed_share(const Mapped& lens) {
     constexpr int kPlaces = 400;
     constexpr int kPoints = 1000;
-    const PixelSampler places(2, 0);
+    const render::PixelSampler places(2, 0);
     double lit = 0.0;
     double missed = 0.0;
     for (int i = 0; i < kPlaces; ++i) {
@@ -285,7 +287,7 @@ double missed_share(const Mapped& lens) {
             continue;
         }
         // A box around what the map draws, an eighth larger.
-        const PixelSampler points(3, static_cast<std::uint32_t>(i));
+        const render::PixelSampler points(3, static_cast<std::uint32_t>(i));
         Vec2d lower{kInfinity, kInfinity};
         Vec2d upper{-kInfinity, -kInfinity};
         for (std::uint32_t k = 0; k < 256; ++k) {
@@ -360,18 +362,18 @@ TEST(PupilMap, AgreesWithQuadrature) {
         for (const int wavelength : {0, kWavelengths / 2, kWavelengths - 1}) {
             for (int k = 0; k < 8; ++k) {
                 const Vec2d at{0.0, lens.circle_mm * (k + 0.3) / 7.7};
-                const PixelSampler sampler(4, static_cast<std::uint32_t>(k));
+                const render::PixelSampler sampler(4, static_cast<std::uint32_t>(k));
                 constexpr int kPoints = 1 << 16;
                 double sum = 0.0;
                 for (std::uint32_t i = 0; i < kPoints; ++i) {
                     const auto xi = sampler.point(i);
-                    const PupilSample sample = lens.map.sample(at, position(wavelength), xi[2], xi[3]);
+                    const pupil::PupilSample sample = lens.map.sample(at, position(wavelength), xi[2], xi[3]);
                     if (sample.density > 0.0) {
                         sum += film_irradiance(lens.band[wavelength], at, sample.point, lens.map.plane_z()) /
                                sample.density;
                     }
                 }
-                EXPECT_NEAR(sum / kPoints / image_bundle(lens.band[wavelength], at.y).transmitted, 1.0, 5e-4)
+                EXPECT_NEAR(sum / kPoints / optics::image_bundle(lens.band[wavelength], at.y).transmitted, 1.0, 5e-4)
                     << name_of(setting) << " at " << at.y << " mm, wavelength " << wavelength;
             }
         }

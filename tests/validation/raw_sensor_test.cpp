@@ -21,7 +21,7 @@ constexpr double kCount = kSide * kSide;
 constexpr double kSigmas = 4.9;  // two-sided, 1e-6
 
 /// A monochrome sensor of 16 bits.
-RawSensor sensor_of(double full_well_electrons, double read_noise_electrons, int black_level, int white_level) {
+render::RawSensor sensor_of(double full_well_electrons, double read_noise_electrons, int black_level, int white_level) {
     return {.full_well_electrons = full_well_electrons,
             .read_noise_electrons = read_noise_electrons,
             .bits = 16,
@@ -32,10 +32,11 @@ RawSensor sensor_of(double full_well_electrons, double read_noise_electrons, int
             .neutral = {1.0, 0.0, 0.0}};
 }
 
-std::vector<std::uint16_t> flat_field(const RawSensor& sensor, double light, std::uint64_t seed, int side = kSide) {
-    Image film = make_image(side, side, {"R", "G", "B"});
+std::vector<std::uint16_t> flat_field(const render::RawSensor& sensor, double light, std::uint64_t seed,
+                                      int side = kSide) {
+    formats::Image film = formats::make_image(side, side, {"R", "G", "B"});
     std::ranges::fill(film.pixels, static_cast<float>(light));
-    return expose(sensor, film, seed).mosaic.values;
+    return render::expose(sensor, film, seed).mosaic.values;
 }
 
 struct Moments {
@@ -64,7 +65,7 @@ double variance_error(double electrons, double variance_electrons) {
 // read noise.
 TEST(RawSensor, HasThePhotonTransferCurveOfItsGainAndReadNoise) {
     for (const double iso : {100.0, 800.0}) {
-        RawSensor sensor = sensor_of(40000.0, 6.0, 1024, 16383);
+        render::RawSensor sensor = sensor_of(40000.0, 6.0, 1024, 16383);
         sensor.camera.exposure.iso = iso;
         const double electrons_at_white = 40000.0 * 100.0 / iso;
         const double gain = (16383.0 - 1024.0) / electrons_at_white;
@@ -104,7 +105,7 @@ TEST(RawSensor, HasThePhotonTransferCurveOfItsGainAndReadNoise) {
 // probabilities by χ². Both of the sampler's methods, on both sides of the mean of 10 where they change.
 TEST(RawSensor, CountsElectronsAsPoissonDoes) {
     for (const double mean : {0.02, 0.3, 1.0, 4.0, 9.99, 10.01, 17.0, 60.0, 900.0}) {
-        const RawSensor sensor = sensor_of(65535.0, 0.0, 0, 65535);
+        const render::RawSensor sensor = sensor_of(65535.0, 0.0, 0, 65535);
         const std::vector<std::uint16_t> values = flat_field(sensor, mean / 65535.0, 11);
         const double of_film = static_cast<double>(static_cast<float>(mean / 65535.0)) * 65535.0;
         const boost::math::poisson_distribution<> poisson(of_film);
@@ -138,7 +139,7 @@ TEST(RawSensor, CountsElectronsAsPoissonDoes) {
 // Read noise is Gaussian: the largest distance between the distribution of a dark frame, in steps of 1/600 σ, and the
 // normal one (Kolmogorov and Smirnov). One run in a million passes √(ln(2e6) / 2n); half a step is 3e-4 of it.
 TEST(RawSensor, ReadsWithGaussianNoise) {
-    const RawSensor sensor = sensor_of(100.0, 1.0, 5000, 65000);
+    const render::RawSensor sensor = sensor_of(100.0, 1.0, 5000, 65000);
     std::vector<std::uint16_t> values = flat_field(sensor, 0.0, 5);
     std::ranges::sort(values);
     const boost::math::normal_distribution<> normal(5000.0, 600.0);
@@ -154,7 +155,7 @@ TEST(RawSensor, ReadsWithGaussianNoise) {
 // Raw values grow with the light to saturation, and then no more: at twice what saturates every one is the white level,
 // and at 1 about half of them, those whose noise is above.
 TEST(RawSensor, IsLinearToSaturationAndThenWhite) {
-    const RawSensor sensor = sensor_of(20000.0, 3.0, 512, 16383);
+    const render::RawSensor sensor = sensor_of(20000.0, 3.0, 512, 16383);
     for (const double light : {0.02, 0.25, 0.5, 0.75, 0.95}) {  // at the last, white is 7 σ away
         const double error = std::sqrt((light * 20000.0 + 9.0) / kCount) / 20000.0;
         const double linear = (moments_of(flat_field(sensor, light, 21)).mean - 512.0) / (16383.0 - 512.0);
@@ -170,7 +171,7 @@ TEST(RawSensor, IsLinearToSaturationAndThenWhite) {
 
 // Dark electrons come with time, bring their own Poisson noise, and add to the light's.
 TEST(RawSensor, DarkCurrentAddsElectronsAndTheirNoise) {
-    RawSensor sensor = sensor_of(20000.0, 3.0, 512, 16383);
+    render::RawSensor sensor = sensor_of(20000.0, 3.0, 512, 16383);
     sensor.dark_current_electrons_per_s = 400.0;  // in half a second 200
     const double gain = (16383.0 - 512.0) / 20000.0;
     const Moments found = moments_of(flat_field(sensor, 0.0, 31));
@@ -181,7 +182,7 @@ TEST(RawSensor, DarkCurrentAddsElectronsAndTheirNoise) {
 
 // No pixel knows of another, and no seed of another: correlations are within 1/√n of none.
 TEST(RawSensor, NoiseOfPixelsAndOfSeedsIsIndependent) {
-    const RawSensor sensor = sensor_of(20000.0, 3.0, 512, 16383);
+    const render::RawSensor sensor = sensor_of(20000.0, 3.0, 512, 16383);
     const std::vector<std::uint16_t> values = flat_field(sensor, 0.1, 41);
     const std::vector<std::uint16_t> others = flat_field(sensor, 0.1, 42);
     const Moments moments = moments_of(values);

@@ -14,7 +14,7 @@
 namespace lensproof {
 namespace {
 
-Camera small_camera(const std::string& lens, double f_number, double width_mm, int pixels) {
+render::Camera small_camera(const std::string& lens, double f_number, double width_mm, int pixels) {
     return {.lens = lens,
             .f_number = f_number,
             .focus_distance_mm = 10000.0,
@@ -23,7 +23,7 @@ Camera small_camera(const std::string& lens, double f_number, double width_mm, i
             .response = "camera"};
 }
 
-constexpr SpectralSampling kSampling{.min_nm = 400.0, .max_nm = 700.0, .layers = 4, .strata_per_layer = 4};
+constexpr render::SpectralSampling kSampling{.min_nm = 400.0, .max_nm = 700.0, .layers = 4, .strata_per_layer = 4};
 
 /// Mean of a channel over the whole picture, with its standard error from the pixels' own (independent of each other).
 struct Mean {
@@ -31,7 +31,7 @@ struct Mean {
     double sigma = 0.0;
 };
 
-Mean ring_mean(const Image& image, const Sensor& sensor, double from_mm, double to_mm) {
+Mean ring_mean(const formats::Image& image, const render::Sensor& sensor, double from_mm, double to_mm) {
     double sum = 0.0;
     double variance = 0.0;
     int count = 0;
@@ -55,25 +55,26 @@ Mean ring_mean(const Image& image, const Sensor& sensor, double from_mm, double 
 TEST(ChartRender, PupilMapsMissNoLight) {
     for (const auto& [lens, f_number, width] :
          {std::tuple{"tessar", 2.8, 72.0}, std::tuple{"tessar", 8.0, 72.0}, std::tuple{"muller-fisheye", 4.0, 21.6}}) {
-        const Camera camera = small_camera(lens, f_number, width, 64);
-        const Lens focused = camera_lens(camera);
-        const Illuminant light = illuminant("D65");
-        std::vector<WavelengthStratum> strata;
+        const render::Camera camera = small_camera(lens, f_number, width, 64);
+        const optics::Lens focused = render::camera_lens(camera);
+        const spectral::Illuminant light = spectral::illuminant("D65");
+        std::vector<render::WavelengthStratum> strata;
         strata.reserve(3);
         for (const double nm : {450.0, 550.0, 650.0}) {
-            strata.push_back({nm, at_wavelength<double>(focused, nm), 1.0, Vec3d{1.0, 1.0, 1.0}});
+            strata.push_back({nm, optics::at_wavelength<double>(focused, nm), 1.0, Vec3d{1.0, 1.0, 1.0}});
         }
-        const std::vector<TraceLens<double>> lenses = {strata[0].lens, strata[1].lens, strata[2].lens};
-        const SeenChart view{.chart = {.pattern = FlatField{}, .white_reflectance = 1.0},
-                             .pose = place({.distance_mm = 1000.0}),
-                             .sensor = camera.sensor,
-                             .strata = strata,
-                             .stratum_width_nm = 1.0 / 3.0,
-                             .layer_nm = {550.0}};
+        const std::vector<optics::TraceLens<double>> lenses = {strata[0].lens, strata[1].lens, strata[2].lens};
+        const render::SeenChart view{.chart = {.pattern = scene::FlatField{}, .white_reflectance = 1.0},
+                                     .pose = scene::place({.distance_mm = 1000.0}),
+                                     .sensor = camera.sensor,
+                                     .strata = strata,
+                                     .stratum_width_nm = 1.0 / 3.0,
+                                     .layer_nm = {550.0}};
         const double edge = camera.sensor.half_diagonal_mm();
-        const Image fast = render_chart(view, PupilMap(lenses, true, edge), {.samples_per_pixel = 96, .seed = 1});
-        const Image slow =
-            render_chart(view, PupilMap::whole_element(lenses[0], edge), {.samples_per_pixel = 768, .seed = 2});
+        const formats::Image fast =
+            render::render_chart(view, pupil::PupilMap(lenses, true, edge), {.samples_per_pixel = 96, .seed = 1});
+        const formats::Image slow = render::render_chart(view, pupil::PupilMap::whole_element(lenses[0], edge),
+                                                         {.samples_per_pixel = 768, .seed = 2});
         for (int ring = 0; ring < 8; ++ring) {
             const Mean a = ring_mean(fast, camera.sensor, edge * ring / 8, edge * (ring + 1) / 8);
             const Mean b = ring_mean(slow, camera.sensor, edge * ring / 8, edge * (ring + 1) / 8);
@@ -89,17 +90,18 @@ TEST(ChartRender, PupilMapsMissNoLight) {
 // the bundle. The spectral layer's mean over the central pixels has a standard error of about 0.1 %; 0.5 % is five of
 // them.
 TEST(ChartRender, FilmIrradianceIsRadianceTimesTheBundle) {
-    const Camera camera = small_camera("tessar", 4.0, 4.0, 16);
-    const Light light{.illuminant = "D65", .luminance_cd_m2 = 1000.0};
-    const ChartCamera chart_camera(camera, light, kSampling);
-    const Chart white{.pattern = FlatField{}, .white_reflectance = 0.9};
-    const Image image = chart_camera.render(white, {.distance_mm = 1000.0}, {.samples_per_pixel = 256});
-    const Spectrum radiance = radiance_of(illuminant("D65"), 1000.0);
+    const render::Camera camera = small_camera("tessar", 4.0, 4.0, 16);
+    const render::Light light{.illuminant = "D65", .luminance_cd_m2 = 1000.0};
+    const render::ChartCamera chart_camera(camera, light, kSampling);
+    const scene::Chart white{.pattern = scene::FlatField{}, .white_reflectance = 0.9};
+    const formats::Image image = chart_camera.render(white, {.distance_mm = 1000.0}, {.samples_per_pixel = 256});
+    const spectral::Spectrum radiance = spectral::radiance_of(spectral::illuminant("D65"), 1000.0);
     for (std::size_t layer = 0; layer < chart_camera.spectral().layer_nm.size(); ++layer) {
         double expected = 0.0;
         for (int k = 0; k < 4; ++k) {
-            const WavelengthStratum& stratum = chart_camera.spectral().strata[4 * layer + k];
-            expected += 0.9 * radiance(stratum.wavelength_nm) * image_bundle(stratum.lens, 0.5).transmitted / 4.0;
+            const render::WavelengthStratum& stratum = chart_camera.spectral().strata[4 * layer + k];
+            expected +=
+                0.9 * radiance(stratum.wavelength_nm) * optics::image_bundle(stratum.lens, 0.5).transmitted / 4.0;
         }
         double mean = 0.0;
         for (int v = 0; v < image.height; ++v) {
@@ -115,10 +117,10 @@ TEST(ChartRender, FilmIrradianceIsRadianceTimesTheBundle) {
 double green_through_tessar_with(const std::string& more) {
     const TestFolder folder;
     const std::filesystem::path file = folder.path() / "tessar_with.toml";
-    write_file(file, read_file(find_lens_file("tessar")) + more);
-    const ChartCamera chart_camera(small_camera(file.string(), 8.0, 4.0, 8), Light{}, kSampling);
-    const Chart white{.pattern = FlatField{}, .white_reflectance = 1.0};
-    const Image image = chart_camera.render(white, {.distance_mm = 1000.0}, {.samples_per_pixel = 1024});
+    write_file(file, read_file(formats::find_lens_file("tessar")) + more);
+    const render::ChartCamera chart_camera(small_camera(file.string(), 8.0, 4.0, 8), render::Light{}, kSampling);
+    const scene::Chart white{.pattern = scene::FlatField{}, .white_reflectance = 1.0};
+    const formats::Image image = chart_camera.render(white, {.distance_mm = 1000.0}, {.samples_per_pixel = 1024});
     double sum = 0.0;
     for (int v = 0; v < image.height; ++v) {
         for (int u = 0; u < image.width; ++u) {
@@ -143,12 +145,12 @@ TEST(ChartRender, SeesBladesAndTurnedLenses) {
 // (ISO 12232); the picture's green is H / H_sat, H_sat = 78 / ISO lx·s. The lens's T is about 0.75: eight uncoated
 // surfaces.
 TEST(ChartRender, ExposureFollowsIso12232) {
-    const Camera camera = small_camera("tessar", 8.0, 4.0, 8);
-    const ChartCamera chart_camera(camera, {.illuminant = "D65", .luminance_cd_m2 = 1000.0}, kSampling);
-    const Chart white{.pattern = FlatField{}, .white_reflectance = 1.0};
-    const Image image = chart_camera.render(white, {.distance_mm = 1000.0}, {.samples_per_pixel = 256});
-    const TraceLens<double>& lens = chart_camera.spectral().strata[8].lens;
-    const Bundle bundle = image_bundle(lens, 0.0);
+    const render::Camera camera = small_camera("tessar", 8.0, 4.0, 8);
+    const render::ChartCamera chart_camera(camera, {.illuminant = "D65", .luminance_cd_m2 = 1000.0}, kSampling);
+    const scene::Chart white{.pattern = scene::FlatField{}, .white_reflectance = 1.0};
+    const formats::Image image = chart_camera.render(white, {.distance_mm = 1000.0}, {.samples_per_pixel = 256});
+    const optics::TraceLens<double>& lens = chart_camera.spectral().strata[8].lens;
+    const optics::Bundle bundle = optics::image_bundle(lens, 0.0);
     const double transmittance = bundle.transmitted / bundle.projected_solid_angle;
     EXPECT_GT(transmittance, 0.6);
     EXPECT_LT(transmittance, 0.8);
@@ -160,9 +162,9 @@ TEST(ChartRender, ExposureFollowsIso12232) {
 
 // The same picture whatever the number of threads, and another one for another seed.
 TEST(ChartRender, DependsOnTheSeedAlone) {
-    const Camera camera = small_camera("tessar", 8.0, 36.0, 24);
-    const ChartCamera chart_camera(camera, Light{}, kSampling);
-    const Chart board{.pattern = Checkerboard{8, 6, 500.0}};
+    const render::Camera camera = small_camera("tessar", 8.0, 36.0, 24);
+    const render::ChartCamera chart_camera(camera, render::Light{}, kSampling);
+    const scene::Chart board{.pattern = scene::Checkerboard{8, 6, 500.0}};
     const auto render = [&](int threads, std::uint64_t seed) {
         return chart_camera
             .render(board, {.distance_mm = 10000.0}, {.samples_per_pixel = 16, .seed = seed, .threads = threads})
@@ -175,10 +177,10 @@ TEST(ChartRender, DependsOnTheSeedAlone) {
 // The same picture without a cache, with an empty one, and with what the render before has left in it.
 TEST(ChartRender, DoesNotDependOnTheCache) {
     const TestFolder folder;
-    const Camera camera = small_camera("muller-fisheye", 8.0, 20.0, 24);
-    const Chart board{.pattern = Checkerboard{8, 6, 500.0}};
+    const render::Camera camera = small_camera("muller-fisheye", 8.0, 20.0, 24);
+    const scene::Chart board{.pattern = scene::Checkerboard{8, 6, 500.0}};
     const auto render = [&](const Cache& cache) {
-        return ChartCamera(camera, Light{}, kSampling, cache)
+        return render::ChartCamera(camera, render::Light{}, kSampling, cache)
             .render(board, {.distance_mm = 10000.0}, {.samples_per_pixel = 16})
             .pixels;
     };
@@ -192,23 +194,23 @@ TEST(ChartRender, DoesNotDependOnTheCache) {
 // Pictures are upright: what stands at the right of the camera is at the right of the picture, what is low is low. The
 // board's top-left square is black, its top-right one (even column count) white.
 TEST(ChartRender, PicturesAreUpright) {
-    const Camera camera = small_camera("tessar", 8.0, 36.0, 48);
-    const ChartCamera chart_camera(camera, Light{}, kSampling);
-    const Chart board{.pattern = Checkerboard{2, 1, 1500.0}};
-    const auto mean_of = [](const Image& image, int u0, int u1) {
+    const render::Camera camera = small_camera("tessar", 8.0, 36.0, 48);
+    const render::ChartCamera chart_camera(camera, render::Light{}, kSampling);
+    const scene::Chart board{.pattern = scene::Checkerboard{2, 1, 1500.0}};
+    const auto mean_of = [](const formats::Image& image, int u0, int u1) {
         double sum = 0.0;
         for (int u = u0; u < u1; ++u) {
             sum += image.at(u, image.height / 2, 1);
         }
         return sum;
     };
-    const Image straight = chart_camera.render(board, {.distance_mm = 10000.0}, {.samples_per_pixel = 16});
+    const formats::Image straight = chart_camera.render(board, {.distance_mm = 10000.0}, {.samples_per_pixel = 16});
     EXPECT_LT(mean_of(straight, 6, 18), 0.2 * mean_of(straight, 30, 42));
     // Turned towards the right, the board's centre (black to its left) moves right by f tan 5° = 8.7 mm = 11.6 px.
-    const Image right =
+    const formats::Image right =
         chart_camera.render(board, {.distance_mm = 10000.0, .towards_right_deg = 5.0}, {.samples_per_pixel = 16});
     EXPECT_LT(mean_of(right, 25, 35), 0.2 * mean_of(right, 37, 47));
-    const Image down =
+    const formats::Image down =
         chart_camera.render(board, {.distance_mm = 10000.0, .towards_down_deg = 10.0}, {.samples_per_pixel = 16});
     EXPECT_GT(down.at(12, 2, 1), 2.0 * down.at(12, 33, 1));
 }

@@ -10,14 +10,14 @@
 namespace lensproof {
 
 /// The film with these windows of it rendered; no film but this one's has its seed's samples.
-inline Film rendered(const PreparedScene& scene, std::span<const PixelRect> windows, std::uint32_t samples,
-                     std::uint64_t seed) {
-    const SceneView view = scene.view(seed, false);
-    const TileRenderer render = scene_renderer(view);
-    Film film(view.film);
-    FilmTile tile(film.layout());
-    for (const PixelRect& window : windows) {
-        const TileSamples what{.rect = window, .first = 0, .end = samples};
+inline render::Film rendered(const render::PreparedScene& scene, std::span<const render::PixelRect> windows,
+                             std::uint32_t samples, std::uint64_t seed) {
+    const render::SceneView view = scene.view(seed, false);
+    const render::TileRenderer render = render::scene_renderer(view);
+    render::Film film(view.film);
+    render::FilmTile tile(film.layout());
+    for (const render::PixelRect& window : windows) {
+        const render::TileSamples what{.rect = window, .first = 0, .end = samples};
         film.load(what, tile);
         render(what, tile);
         tile.finish();

@@ -16,22 +16,23 @@
 namespace lensproof {
 namespace {
 
-const RgbUplift& uplift() {
-    static const RgbUplift table;
+const spectral::RgbUplift& uplift() {
+    static const spectral::RgbUplift table;
     return table;
 }
 
-const Illuminant& d65() {
-    static const Illuminant light = illuminant("D65");
+const spectral::Illuminant& d65() {
+    static const spectral::Illuminant light = spectral::illuminant("D65");
     return light;
 }
 
 /// Linear sRGB of `shape` under D65, by the sensor that renders see by: exact integrals over 1 nm steps.
-Vec3d rgb_of(const SigmoidSpectrum& shape) {
-    static const Exposure exposure;
-    static const SensorResponse sensor = sensor_response("cie-1931", exposure, d65());
-    static const Spectrum white = irradiance_of(d65(), saturation_exposure_lx_s(exposure.iso) / exposure.time_s);
-    Spectrum reflected;
+Vec3d rgb_of(const spectral::SigmoidSpectrum& shape) {
+    static const spectral::Exposure exposure;
+    static const spectral::SensorResponse sensor = spectral::sensor_response("cie-1931", exposure, d65());
+    static const spectral::Spectrum white =
+        spectral::irradiance_of(d65(), spectral::saturation_exposure_lx_s(exposure.iso) / exposure.time_s);
+    spectral::Spectrum reflected;
     for (int wavelength_nm = 360; wavelength_nm <= 830; ++wavelength_nm) {
         reflected.wavelength_nm.push_back(wavelength_nm);
         reflected.value.push_back(white(wavelength_nm) * shape(wavelength_nm));
@@ -41,10 +42,10 @@ Vec3d rgb_of(const SigmoidSpectrum& shape) {
 
 /// ΔE*ab under D65.
 double difference(const Vec3d& a, const Vec3d& b) {
-    static const Vec3d white = tristimulus(d65().relative, cie_1931());
-    static const std::array<Vec3d, 3> primary = rec709_primaries(white);
+    static const Vec3d white = spectral::tristimulus(d65().relative, spectral::cie_1931());
+    static const std::array<Vec3d, 3> primary = spectral::rec709_primaries(white);
     const auto lab = [&](const Vec3d& rgb) {
-        return cielab(rgb.x * primary[0] + rgb.y * primary[1] + rgb.z * primary[2], white);
+        return spectral::cielab(rgb.x * primary[0] + rgb.y * primary[1] + rgb.z * primary[2], white);
     };
     return length(lab(a) - lab(b));
 }
@@ -77,11 +78,11 @@ void table_gives_colours_back() {
 // by parabolas through values 5 nm apart miss h³/60 of a reflectance's third derivative, which for sigmoids that rise
 // within 30 nm is 1e-4 of it.
 void single_colours_are_fitted() {
-    const RgbOfReflectance colour = rgb_of_reflectance();
+    const spectral::RgbOfReflectance colour = spectral::rgb_of_reflectance();
     for (const Vec3d& rgb : random_colours(400)) {
-        const SigmoidSpectrum fitted = fitted_reflectance(uplift(), colour, rgb);
+        const spectral::SigmoidSpectrum fitted = spectral::fitted_reflectance(uplift(), colour, rgb);
         const auto& [a, b, c] = fitted.coefficient;
-        EXPECT_LT(missed_by(colour, rgb, {a, b, c}), 1e-3) << rgb.x << " " << rgb.y << " " << rgb.z;
+        EXPECT_LT(spectral::missed_by(colour, rgb, {a, b, c}), 1e-3) << rgb.x << " " << rgb.y << " " << rgb.z;
         EXPECT_LT(difference(rgb_of(fitted), rgb), 0.01) << rgb.x << " " << rgb.y << " " << rgb.z;
     }
 }
@@ -90,15 +91,16 @@ void single_colours_are_fitted() {
 // largest channel are at most 3 % of that channel.
 void lights_keep_their_colour() {
     for (const Vec3d& rgb : {Vec3d{1, 1, 1}, {12.0, 3.0, 0.5}, {0.001, 0.002, 0.004}, {0.0, 5e4, 0.0}}) {
-        const UpliftedLight light = uplifted_light(uplift(), rgb);
+        const spectral::UpliftedLight light = spectral::uplifted_light(uplift(), rgb);
         const Vec3d back = light.scale * rgb_of(light.shape);
         const double largest = std::max({rgb.x, rgb.y, rgb.z});
         EXPECT_NEAR(back.x, rgb.x, 0.03 * largest);
         EXPECT_NEAR(back.y, rgb.y, 0.03 * largest);
         EXPECT_NEAR(back.z, rgb.z, 0.03 * largest);
     }
-    EXPECT_EQ(uplifted_light(uplift(), {0.0, -1.0, std::numeric_limits<double>::quiet_NaN()}).scale, 0.0);
-    const UpliftedLight endless = uplifted_light(uplift(), {std::numeric_limits<double>::infinity(), 0.0, 0.0});
+    EXPECT_EQ(spectral::uplifted_light(uplift(), {0.0, -1.0, std::numeric_limits<double>::quiet_NaN()}).scale, 0.0);
+    const spectral::UpliftedLight endless =
+        spectral::uplifted_light(uplift(), {std::numeric_limits<double>::infinity(), 0.0, 0.0});
     EXPECT_TRUE(std::isfinite(endless.scale));
 }
 
@@ -112,7 +114,7 @@ TEST(RgbUplift, ColoursComeBack) {
 // white and black is 50 and more, where the sigmoid is as flat.
 void greys_are_constant() {
     for (const double grey : {1e-5, 1e-3, 0.04, 0.18, 0.5, 0.9, 0.999}) {
-        const SigmoidSpectrum spectrum = uplift().reflectance({grey, grey, grey});
+        const spectral::SigmoidSpectrum spectrum = uplift().reflectance({grey, grey, grey});
         for (const double wavelength_nm : {380.0, 450.0, 555.0, 700.0, 780.0}) {
             EXPECT_NEAR(spectrum(wavelength_nm), grey, 1e-4 * grey + 1e-6) << grey;
         }
@@ -132,7 +134,7 @@ void corners_are_reflectances() {
     for (const double r : {0.0, 1.0, -0.5, 3.0, kNaN, kInfinity, 1e-300}) {
         for (const double g : {0.0, 1.0, -kInfinity, kNaN}) {
             for (const double b : {0.0, 1.0, 1e-7}) {
-                const SigmoidSpectrum spectrum = uplift().reflectance({r, g, b});
+                const spectral::SigmoidSpectrum spectrum = uplift().reflectance({r, g, b});
                 for (double wavelength_nm = 300.0; wavelength_nm <= 1100.0; wavelength_nm += 10.0) {
                     const double reflectance = spectrum(wavelength_nm);
                     EXPECT_TRUE(reflectance >= 0.0 && reflectance <= 1.0) << r << " " << g << " " << b;
@@ -151,8 +153,8 @@ void parts_meet() {
     for (const double level : {0.05, 0.4, 0.95}) {
         for (const double third : {0.0, 0.3, 0.9}) {
             const double nudge = 1e-9;
-            const SigmoidSpectrum one = uplift().reflectance({level, level * (1.0 - nudge), third * level});
-            const SigmoidSpectrum other = uplift().reflectance({level * (1.0 - nudge), level, third * level});
+            const spectral::SigmoidSpectrum one = uplift().reflectance({level, level * (1.0 - nudge), third * level});
+            const spectral::SigmoidSpectrum other = uplift().reflectance({level * (1.0 - nudge), level, third * level});
             // Each side comes from another part's entries, within the table's own error.
             EXPECT_LT(difference(rgb_of(one), rgb_of(other)), 2.0) << level << " " << third;
         }
@@ -170,15 +172,15 @@ TEST(RgbUplift, CoversTheWholeCube) {
 TEST(RgbUplift, IsKept) {
     const TestFolder folder;
     const Cache cache(folder.path());
-    const std::string made = kept_rgb_uplift(cache).serialized();
-    ASSERT_TRUE(RgbUplift::deserialized(made));
-    EXPECT_EQ(RgbUplift::deserialized(made)->serialized(), made);
-    EXPECT_FALSE(RgbUplift::deserialized(""));
-    EXPECT_FALSE(RgbUplift::deserialized(made.substr(1)));
-    EXPECT_FALSE(RgbUplift::deserialized(made + "x"));
-    EXPECT_FALSE(RgbUplift::deserialized(std::string(made.size(), '\xff'))) << "NaNs";
+    const std::string made = spectral::kept_rgb_uplift(cache).serialized();
+    ASSERT_TRUE(spectral::RgbUplift::deserialized(made));
+    EXPECT_EQ(spectral::RgbUplift::deserialized(made)->serialized(), made);
+    EXPECT_FALSE(spectral::RgbUplift::deserialized(""));
+    EXPECT_FALSE(spectral::RgbUplift::deserialized(made.substr(1)));
+    EXPECT_FALSE(spectral::RgbUplift::deserialized(made + "x"));
+    EXPECT_FALSE(spectral::RgbUplift::deserialized(std::string(made.size(), '\xff'))) << "NaNs";
 
-    EXPECT_EQ(kept_rgb_uplift(cache).serialized(), made);
+    EXPECT_EQ(spectral::kept_rgb_uplift(cache).serialized(), made);
     const std::filesystem::path file = std::filesystem::directory_iterator(folder.path())->path();
     const std::string whole = read_file(file);
     const std::size_t at = whole.find(made);
@@ -189,9 +191,9 @@ TEST(RgbUplift, IsKept) {
     std::string changed = made;
     changed.replace(0, 4, 4, '\0');
     cache.store(kind, key, changed);
-    EXPECT_EQ(kept_rgb_uplift(cache).serialized(), changed) << "read from the cache";
+    EXPECT_EQ(spectral::kept_rgb_uplift(cache).serialized(), changed) << "read from the cache";
     cache.store(kind, key, "no table");
-    EXPECT_EQ(kept_rgb_uplift(cache).serialized(), made) << "made again";
+    EXPECT_EQ(spectral::kept_rgb_uplift(cache).serialized(), made) << "made again";
 }
 
 }  // namespace

@@ -31,23 +31,23 @@ struct RingProfile {
 };
 
 /// The mean over the wavelengths of what an even scene yields, by quadrature of the bundle.
-std::vector<double> expected_by_radius(const SpectralLens<double>& lens, double step_mm) {
+std::vector<double> expected_by_radius(const optics::SpectralLens<double>& lens, double step_mm) {
     std::vector<double> expected;
     for (int i = 0; i < kReferences; ++i) {
         double sum = 0.0;
-        for (const TraceLens<double>& at : lens.at()) {
-            sum += image_bundle(at, i * step_mm).transmitted / lens.wavelengths();
+        for (const optics::TraceLens<double>& at : lens.at()) {
+            sum += optics::image_bundle(at, i * step_mm).transmitted / lens.wavelengths();
         }
         expected.push_back(sum);
     }
     return expected;
 }
 
-RingProfile flat_field(const SpectralLens<double>& lens, double half_side_mm) {
-    const PupilMap map(lens.at(), true, half_side_mm * std::numbers::sqrt2);
-    const PupilSlices slices(map, lens.wavelengths());
-    const Sensor sensor{.width = kPixels, .height = kPixels, .pixel_pitch_mm = 2.0 * half_side_mm / kPixels};
-    CameraPathProducer<double> producer({.sensor = sensor, .lens = &lens, .pupil = &slices, .seed = 3});
+RingProfile flat_field(const optics::SpectralLens<double>& lens, double half_side_mm) {
+    const pupil::PupilMap map(lens.at(), true, half_side_mm * std::numbers::sqrt2);
+    const pupil::PupilSlices slices(map, lens.wavelengths());
+    const render::Sensor sensor{.width = kPixels, .height = kPixels, .pixel_pitch_mm = 2.0 * half_side_mm / kPixels};
+    render::CameraPathProducer<double> producer({.sensor = sensor, .lens = &lens, .pupil = &slices, .seed = 3});
     producer.start({.first_pixel = 0, .pixels = kPixels * kPixels, .first_sample = 0, .samples = kSamples});
 
     const double step_mm = half_side_mm / (kReferences - 1);
@@ -68,7 +68,7 @@ RingProfile flat_field(const SpectralLens<double>& lens, double half_side_mm) {
     }
     std::vector<double> sum(samples.size());
     std::vector<double> sum_of_squares(samples.size());
-    CameraPathBuffer<double> paths;
+    render::CameraPathBuffer<double> paths;
     while (producer.fill(paths)) {
         for (std::size_t i = 0; i < static_cast<std::size_t>(paths.size); ++i) {
             const std::size_t ring = ring_of(paths.pixel[i]);
@@ -128,8 +128,8 @@ Peak largest_ring(const RingProfile& profile) {
 TEST(PupilMap, ShowsNoRingsInAFlatField) {
     for (const auto& [name, f_number, half_side_mm] :
          {std::tuple{"tessar", 2.8, 40.0}, std::tuple{"muller-fisheye", 4.0, 11.5}}) {
-        const Lens lens = focused_at(with_f_number(load_lens(name), f_number), 1e4);
-        RingProfile profile = flat_field(at_wavelengths<double>(lens, kWavelengths), half_side_mm);
+        const optics::Lens lens = optics::focused_at(optics::with_f_number(formats::load_lens(name), f_number), 1e4);
+        RingProfile profile = flat_field(optics::at_wavelengths<double>(lens, kWavelengths), half_side_mm);
         const Peak found = largest_ring(profile);
         RecordProperty(std::string(name) + "_ring_amplitude_percent", std::to_string(100.0 * found.amplitude));
         EXPECT_LT(found.sigmas, 5.0) << name << ": " << found.rings << " rings of " << found.amplitude;

@@ -14,7 +14,7 @@
 namespace lensproof {
 namespace {
 
-const SpectralGrid kGrid = spectral_grid(420.0, 680.0, 8);
+const spectral::SpectralGrid kGrid = spectral::spectral_grid(420.0, 680.0, 8);
 
 /// Film irradiance in an even world of radiance 1, a wavelength each, with standard errors; and which share of the
 /// paths' other wavelengths counted.
@@ -25,15 +25,16 @@ struct Sums {
 };
 
 /// Of a row of pixels, from their paths by heroes alone or by shared rays.
-Sums irradiance(const std::string& name, const Sensor& sensor, bool is_shared) {
+Sums irradiance(const std::string& name, const render::Sensor& sensor, bool is_shared) {
     constexpr std::uint32_t kSamples = 1U << 14U;
-    const Lens lens = focused_at(with_f_number(load_lens(name), 4.0), 1e6);
-    const auto traced = at_wavelengths<double>(lens, kGrid.strata.midpoints());
-    const PupilMap map(traced.at(), true, sensor.half_diagonal_mm());
-    const PupilSlices slices(map, kGrid.size());
-    CameraPathProducer<double> producer({.sensor = sensor, .lens = &traced, .pupil = &slices, .seed = 3, .filter = {}});
-    SharedRays shared(kGrid, traced, slices, sensor);
-    CameraPathBuffer<double> paths;
+    const optics::Lens lens = optics::focused_at(optics::with_f_number(formats::load_lens(name), 4.0), 1e6);
+    const auto traced = optics::at_wavelengths<double>(lens, kGrid.strata.midpoints());
+    const pupil::PupilMap map(traced.at(), true, sensor.half_diagonal_mm());
+    const pupil::PupilSlices slices(map, kGrid.size());
+    render::CameraPathProducer<double> producer(
+        {.sensor = sensor, .lens = &traced, .pupil = &slices, .seed = 3, .filter = {}});
+    render::SharedRays shared(kGrid, traced, slices, sensor);
+    render::CameraPathBuffer<double> paths;
     std::vector<double> sum(8);
     std::vector<double> squares(8);
     std::int64_t counted = 0;
@@ -46,8 +47,8 @@ Sums irradiance(const std::string& name, const Sensor& sensor, bool is_shared) {
     while (producer.fill(paths)) {
         const auto& weights = shared.weigh(paths);
         for (std::size_t i = 0; i < static_cast<std::size_t>(paths.size); ++i) {
-            const PathWavelengths strata = kGrid.path(paths.wavelength[i]);
-            for (std::size_t m = 0; m < kWavelengthsPerPath; ++m) {
+            const spectral::PathWavelengths strata = kGrid.path(paths.wavelength[i]);
+            for (std::size_t m = 0; m < spectral::kWavelengthsPerPath; ++m) {
                 const double hero = m == 0 ? 4.0 * paths.weight[i] : 0.0;
                 const double value = is_shared ? static_cast<double>(weights[i][m]) : hero;
                 sum[strata.index[m]] += value;
@@ -80,7 +81,7 @@ TEST(SharedRays, CountEachWavelengthAsItsOwnPathsDo) {
     };
     for (const Case& c :
          {Case{"double-gauss-tronnier", 0.3, 101, 0.9, 1.0}, Case{"muller-fisheye", 0.012, 1801, 0.0, 0.6}}) {
-        const Sensor sensor{.width = c.width, .height = 3, .pixel_pitch_mm = c.pitch_mm};
+        const render::Sensor sensor{.width = c.width, .height = 3, .pixel_pitch_mm = c.pitch_mm};
         const Sums heroes = irradiance(c.lens, sensor, false);
         const Sums shared = irradiance(c.lens, sensor, true);
         fmt::print("{}: {:.1f} % shared; errors at the first wavelength {:.3f} and {:.3f} %\n", c.lens,

@@ -11,9 +11,10 @@ namespace lensproof {
 template <class Make>
 auto of_shipped_settings(const Make& make) {
     std::vector<decltype(make(std::string(), std::string()))> made;
-    for (const std::string& name : shipped_lens_names()) {
-        const std::vector<ZoomPosition> positions = read_prescription(find_lens_file(name)).zoom;
-        for (const ZoomPosition& position : positions) {
+    for (const std::string& name : formats::shipped_lens_names()) {
+        const std::vector<optics::ZoomPosition> positions =
+            formats::read_prescription(formats::find_lens_file(name)).zoom;
+        for (const optics::ZoomPosition& position : positions) {
             made.push_back(make(name, position.name));
         }
         if (positions.empty()) {

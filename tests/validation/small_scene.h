@@ -12,10 +12,10 @@ namespace lensproof {
 /// Objects, each of its own material, and lights.
 class SceneParts {
   public:
-    explicit SceneParts(const SpectralGrid& grid) : grid_(grid) {}
+    explicit SceneParts(const spectral::SpectralGrid& grid) : grid_(grid) {}
 
     /// Returns the object's index.
-    std::uint32_t add(Shape shape, const AffineMap& to_world, Material material) {
+    std::uint32_t add(scene::Shape shape, const AffineMap& to_world, scene::Material material) {
         const auto index = static_cast<std::uint32_t>(objects.size());
         shapes.push_back(std::move(shape));
         objects.push_back({.shape = index, .to_world = to_world, .material = index});
@@ -24,28 +24,29 @@ class SceneParts {
     }
 
     /// A diffuse one.
-    std::uint32_t add(Shape shape, const AffineMap& to_world, double albedo) {
+    std::uint32_t add(scene::Shape shape, const AffineMap& to_world, double albedo) {
         return add(std::move(shape), to_world,
-                   Material{.surface = DiffuseMaterial{constant_spectrum(albedo, grid_)}, .radiance = {}});
+                   scene::Material{.surface = scene::DiffuseMaterial{spectral::constant_spectrum(albedo, grid_)},
+                                   .radiance = {}});
     }
 
-    [[nodiscard]] Scene scene() const {
-        Scene made{.grid = grid_,
-                   .geometry = std::make_unique<SceneGeometry>(shapes, objects),
-                   .materials = materials,
-                   .absorption = {},
-                   .lights = {}};
-        made.lights = Lights(*made.geometry, lights);
+    [[nodiscard]] scene::Scene scene() const {
+        scene::Scene made{.grid = grid_,
+                          .geometry = std::make_unique<scene::SceneGeometry>(shapes, objects),
+                          .materials = materials,
+                          .absorption = {},
+                          .lights = {}};
+        made.lights = scene::Lights(*made.geometry, lights);
         return made;
     }
 
-    std::vector<Shape> shapes;
-    std::vector<SceneObject> objects;
-    std::vector<Material> materials;
-    std::vector<LightSource> lights;
+    std::vector<scene::Shape> shapes;
+    std::vector<scene::SceneObject> objects;
+    std::vector<scene::Material> materials;
+    std::vector<scene::LightSource> lights;
 
   private:
-    SpectralGrid grid_;
+    spectral::SpectralGrid grid_;
 };
 
 }  // namespace lensproof

@@ -28,55 +28,58 @@ class Studio {
         std::string lens;
         double f_number = 2.0;
         double focus_mm = 2000.0;
-        LensModel model = LensModel::exact;
-        Sensor sensor;
-        SpectralGrid grid;
+        scene::LensModel model = scene::LensModel::exact;
+        render::Sensor sensor;
+        spectral::SpectralGrid grid;
         int max_bounces = 3;
-        PixelFilter filter;
+        render::PixelFilter filter;
     };
 
     Studio(Setup setup, SceneParts& parts)
         : setup_(std::move(setup)),
-          lens_(focused_at(with_f_number(load_lens(setup_.lens), setup_.f_number), setup_.focus_mm)),
+          lens_(optics::focused_at(optics::with_f_number(formats::load_lens(setup_.lens), setup_.f_number),
+                                   setup_.focus_mm)),
           scene_(parts.scene()) {
-        end_.camera_to_world = camera_to_world({});
+        end_.camera_to_world = scene::camera_to_world({});
         end_.sensor = setup_.sensor;
-        if (setup_.model == LensModel::exact) {
-            traced_.emplace(at_wavelengths<double>(lens_, setup_.grid.strata.midpoints()));
+        if (setup_.model == scene::LensModel::exact) {
+            traced_.emplace(optics::at_wavelengths<double>(lens_, setup_.grid.strata.midpoints()));
             pupil_.emplace(traced_->at(), true, setup_.sensor.half_diagonal_mm(setup_.filter.radius_px() - 0.5));
-            slices_ = std::make_unique<PupilSlices>(*pupil_, setup_.grid.size());
+            slices_ = std::make_unique<pupil::PupilSlices>(*pupil_, setup_.grid.size());
             map_.emplace(traced_->at(), true, std::numeric_limits<double>::infinity(),
-                         PupilMapSettings{.defensive_share = 0.2});
-            camera_ = ExactCamera{&*traced_, slices_.get()};
-            end_.entrance = LensEntrance{
-                .lens = &*traced_, .pupil = &*pupil_, .map = &*map_, .front = front_sphere(traced_->at(0))};
+                         pupil::PupilMapSettings{.defensive_share = 0.2});
+            camera_ = render::ExactCamera{&*traced_, slices_.get()};
+            end_.entrance = render::LensEntrance{
+                .lens = &*traced_, .pupil = &*pupil_, .map = &*map_, .front = pupil::front_sphere(traced_->at(0))};
         } else {
-            std::vector<GaussianCamera> cameras;
+            std::vector<render::GaussianCamera> cameras;
             for (const double nm : setup_.grid.strata.midpoints()) {
-                cameras.push_back(gaussian_camera(lens_, setup_.model, nm));
+                cameras.push_back(render::gaussian_camera(lens_, setup_.model, nm));
             }
             camera_ = std::move(cameras);
-            end_.entrance = IdealEntrance{&std::get<std::vector<GaussianCamera>>(camera_)};
+            end_.entrance = render::IdealEntrance{&std::get<std::vector<render::GaussianCamera>>(camera_)};
         }
     }
     Studio(const Studio&) = delete;
     Studio& operator=(const Studio&) = delete;
 
-    [[nodiscard]] Film by_camera(std::uint32_t samples) const { return film_of(scene_renderer(view()), samples); }
-    [[nodiscard]] Film by_lights(std::uint32_t samples) const {
-        return film_of(light_path_renderer(view(), end_), samples);
+    [[nodiscard]] render::Film by_camera(std::uint32_t samples) const {
+        return film_of(render::scene_renderer(view()), samples);
     }
-    [[nodiscard]] Film by_both(std::uint32_t samples) const {
-        return film_of(both_paths_renderer(view(), end_), samples);
+    [[nodiscard]] render::Film by_lights(std::uint32_t samples) const {
+        return film_of(render::light_path_renderer(view(), end_), samples);
+    }
+    [[nodiscard]] render::Film by_both(std::uint32_t samples) const {
+        return film_of(render::both_paths_renderer(view(), end_), samples);
     }
 
-    [[nodiscard]] const Scene& scene() const { return scene_; }
-    [[nodiscard]] const CameraEnd& end() const { return end_; }
+    [[nodiscard]] const scene::Scene& scene() const { return scene_; }
+    [[nodiscard]] const render::CameraEnd& end() const { return end_; }
 
   private:
-    [[nodiscard]] SceneView view() const {
+    [[nodiscard]] render::SceneView view() const {
         // R, G and B all are the mean irradiance over the band.
-        const WavelengthStrata& strata = setup_.grid.strata;
+        const spectral::WavelengthStrata& strata = setup_.grid.strata;
         const double band = strata.max_nm - strata.min_nm;
         const auto wavelengths = static_cast<std::size_t>(strata.count);
         return {.scene = &scene_,
@@ -95,10 +98,11 @@ class Studio {
                 .seed = 1};
     }
 
-    [[nodiscard]] Film film_of(const TileRenderer& render, std::uint32_t samples) const {
-        Film film(view().film);
-        FilmTile tile(film.layout());
-        const TileSamples all{.rect = {0, 0, setup_.sensor.width, setup_.sensor.height}, .first = 0, .end = samples};
+    [[nodiscard]] render::Film film_of(const render::TileRenderer& render, std::uint32_t samples) const {
+        render::Film film(view().film);
+        render::FilmTile tile(film.layout());
+        const render::TileSamples all{
+            .rect = {0, 0, setup_.sensor.width, setup_.sensor.height}, .first = 0, .end = samples};
         film.load(all, tile);
         render(all, tile);
         tile.finish();
@@ -107,14 +111,14 @@ class Studio {
     }
 
     Setup setup_;
-    Lens lens_;
-    std::optional<SpectralLens<double>> traced_;
-    std::optional<PupilMap> pupil_;
-    std::unique_ptr<PupilSlices> slices_;
-    std::optional<EntranceMap> map_;
-    Scene scene_;
-    SceneCamera camera_;
-    CameraEnd end_;
+    optics::Lens lens_;
+    std::optional<optics::SpectralLens<double>> traced_;
+    std::optional<pupil::PupilMap> pupil_;
+    std::unique_ptr<pupil::PupilSlices> slices_;
+    std::optional<pupil::EntranceMap> map_;
+    scene::Scene scene_;
+    render::SceneCamera camera_;
+    render::CameraEnd end_;
 };
 
 /// How far two films are apart, for what their variances allow.
@@ -126,13 +130,13 @@ struct FilmDifference {
     double error = 0.0;  // standard, of their difference
 };
 
-inline FilmDifference difference(const Film& first, const Film& second) {
+inline FilmDifference difference(const render::Film& first, const render::Film& second) {
     FilmDifference found;
     double variance = 0.0;
     for (int y = 0; y < first.height(); ++y) {
         for (int x = 0; x < first.width(); ++x) {
-            const PixelEstimate a = first.estimate(x, y);
-            const PixelEstimate b = second.estimate(x, y);
+            const render::PixelEstimate a = first.estimate(x, y);
+            const render::PixelEstimate b = second.estimate(x, y);
             const double both = a.variance.x + b.variance.x;
             found.first += a.rgb.x;
             found.second += b.rgb.x;
@@ -151,7 +155,7 @@ inline FilmDifference difference(const Film& first, const Film& second) {
 
 /// Both are unbiased estimates of one film irradiance, so in each pixel they differ by no more than their standard
 /// errors say: χ² over the pixels lies within five of its standard deviations √(2n), and the totals within four errors.
-inline void expect_same_image(const Film& first, const Film& second, double most_error = 0.015) {
+inline void expect_same_image(const render::Film& first, const render::Film& second, double most_error = 0.015) {
     const FilmDifference found = difference(first, second);
     EXPECT_NEAR(found.first, found.second, 4.0 * found.error);
     EXPECT_LT(found.error, most_error * found.first);

@@ -13,22 +13,23 @@
 namespace lensproof {
 namespace {
 
-const RgbUplift& uplift() {
-    static const RgbUplift table;
+const spectral::RgbUplift& uplift() {
+    static const spectral::RgbUplift table;
     return table;
 }
 
-SpectralGrid grid() {
-    return spectral_grid(380.0, 780.0, 80);
+spectral::SpectralGrid grid() {
+    return spectral::spectral_grid(380.0, 780.0, 80);
 }
 
 /// Linear sRGB of a reflectance on the grid under D65, as a render of one stratum after the other sums it up.
 Vec3d rgb_of(const std::vector<float>& reflectance) {
-    static const Illuminant d65 = illuminant("D65");
-    static const Exposure exposure;
-    static const SensorResponse sensor = sensor_response("cie-1931", exposure, d65);
-    static const std::vector<Vec3d> weights = stratum_weights(sensor, grid().strata, d65);
-    static const Spectrum white = irradiance_of(d65, saturation_exposure_lx_s(exposure.iso) / exposure.time_s);
+    static const spectral::Illuminant d65 = spectral::illuminant("D65");
+    static const spectral::Exposure exposure;
+    static const spectral::SensorResponse sensor = spectral::sensor_response("cie-1931", exposure, d65);
+    static const std::vector<Vec3d> weights = spectral::stratum_weights(sensor, grid().strata, d65);
+    static const spectral::Spectrum white =
+        spectral::irradiance_of(d65, spectral::saturation_exposure_lx_s(exposure.iso) / exposure.time_s);
     Vec3d rgb;
     for (std::size_t i = 0; i < weights.size(); ++i) {
         const double power = white(grid().strata.midpoint(static_cast<int>(i))) * grid().strata.width_nm();
@@ -38,10 +39,10 @@ Vec3d rgb_of(const std::vector<float>& reflectance) {
 }
 
 /// A texture's values at all wavelengths of the grid.
-std::vector<float> spectrum_at(const Texture& texture, const Vec2d& uv) {
+std::vector<float> spectrum_at(const scene::Texture& texture, const Vec2d& uv) {
     std::vector<float> values;
     for (int hero = 0; hero < grid().size(); ++hero) {
-        values.push_back(value_at(texture, uv, grid().path(hero))[0]);
+        values.push_back(scene::value_at(texture, uv, grid().path(hero))[0]);
     }
     return values;
 }
@@ -49,8 +50,8 @@ std::vector<float> spectrum_at(const Texture& texture, const Vec2d& uv) {
 constexpr std::array<Vec3d, 3> kColours{{{0.8, 0.3, 0.1}, {0.05, 0.4, 0.6}, {0.5, 0.5, 0.5}}};
 
 /// The three colours beside each other.
-Image three_colours() {
-    Image image = make_image(3, 1, {"R", "G", "B"});
+formats::Image three_colours() {
+    formats::Image image = formats::make_image(3, 1, {"R", "G", "B"});
     for (int x = 0; x < 3; ++x) {
         const Vec3d& rgb = kColours[static_cast<std::size_t>(x)];
         image.at(x, 0, 0) = static_cast<float>(rgb.x);
@@ -71,8 +72,8 @@ void expect_rgb(const Vec3d& rgb, const Vec3d& expected, double tolerance) {
 void pictures_colours_come_back() {
     const TestFolder folder;
     const auto file = folder.path() / "colours.exr";
-    write_exr(three_colours(), file);
-    const Texture texture = reflectance_texture(file, Wrap::clamp, grid(), uplift());
+    formats::write_exr(three_colours(), file);
+    const scene::Texture texture = scene::reflectance_texture(file, scene::Wrap::clamp, grid(), uplift());
     for (std::size_t i = 0; i < 3; ++i) {
         expect_rgb(rgb_of(spectrum_at(texture, {(static_cast<double>(i) + 0.5) / 3.0, 0.5})), kColours[i], 0.006);
     }
@@ -87,24 +88,25 @@ void pictures_colours_come_back() {
 // A colour that a scene states by numbers is fitted exactly: only the strata are left, of which the white is exact.
 void stated_colours_come_back() {
     for (const Vec3d& rgb : kColours) {
-        expect_rgb(rgb_of(rgb_reflectance(rgb, grid(), uplift()).value), rgb, 0.001);
+        expect_rgb(rgb_of(scene::rgb_reflectance(rgb, grid(), uplift()).value), rgb, 0.001);
     }
 }
 
 // Light of (1, 1, 1) is the white itself, to the 1e-4 and less that greys are off; of (40, 10, 2) that many times as
 // much, its colour within the table's error, here 1 % of the largest.
 void light_keeps_its_brightness_and_colour() {
-    const Spectrum white = radiance_of(illuminant("D65"), 1000.0);
-    const GridSpectrum means = stratum_means(white, grid());
-    const GridSpectrum same = rgb_emission({1.0, 1.0, 1.0}, white, grid(), uplift());
+    const spectral::Spectrum white = spectral::radiance_of(spectral::illuminant("D65"), 1000.0);
+    const spectral::GridSpectrum means = spectral::stratum_means(white, grid());
+    const spectral::GridSpectrum same = scene::rgb_emission({1.0, 1.0, 1.0}, white, grid(), uplift());
     for (std::size_t i = 0; i < means.value.size(); ++i) {
         EXPECT_NEAR(same.value[i], means.value[i], 1e-4 * means.value[i]);
     }
-    Image image = make_image(1, 1, {"R", "G", "B"});
+    formats::Image image = formats::make_image(1, 1, {"R", "G", "B"});
     image.pixels = {40.0F, 10.0F, 2.0F};
-    const Texture lamp = emission_texture(image, "lamp.exr", Wrap::repeat, Wrap::clamp, white, grid(), uplift());
+    const scene::Texture lamp =
+        scene::emission_texture(image, "lamp.exr", scene::Wrap::repeat, scene::Wrap::clamp, white, grid(), uplift());
     std::vector<float> shape = spectrum_at(lamp, {0.3, 0.7});
-    const GridSpectrum stated = rgb_emission({40.0, 10.0, 2.0}, white, grid(), uplift());
+    const spectral::GridSpectrum stated = scene::rgb_emission({40.0, 10.0, 2.0}, white, grid(), uplift());
     for (std::size_t i = 0; i < shape.size(); ++i) {
         EXPECT_NEAR(shape[i], stated.value[i], 1e-5 * stated.value[i]);
         shape[i] /= means.value[i];
@@ -113,11 +115,15 @@ void light_keeps_its_brightness_and_colour() {
 }
 
 void missing_and_colourless_pictures_are_named() {
-    EXPECT_THROW(reflectance_texture("no-such-picture.png", Wrap::repeat, grid(), uplift()), InputError);
-    EXPECT_THROW(reflectance_texture(make_image(2, 2, {"R", "G"}), "two.exr", Wrap::repeat, grid(), uplift()),
+    EXPECT_THROW(scene::reflectance_texture("no-such-picture.png", scene::Wrap::repeat, grid(), uplift()), InputError);
+    EXPECT_THROW(scene::reflectance_texture(formats::make_image(2, 2, {"R", "G"}), "two.exr", scene::Wrap::repeat,
+                                            grid(), uplift()),
                  InputError);
-    EXPECT_THROW(reflectance_texture(make_image(0, 0, {"Y"}), "none.exr", Wrap::repeat, grid(), uplift()), InputError);
-    EXPECT_NO_THROW(reflectance_texture(make_image(2, 2, {"Y"}), "grey.exr", Wrap::repeat, grid(), uplift()));
+    EXPECT_THROW(
+        scene::reflectance_texture(formats::make_image(0, 0, {"Y"}), "none.exr", scene::Wrap::repeat, grid(), uplift()),
+        InputError);
+    EXPECT_NO_THROW(scene::reflectance_texture(formats::make_image(2, 2, {"Y"}), "grey.exr", scene::Wrap::repeat,
+                                               grid(), uplift()));
 }
 
 TEST(TextureUplift, TexturesAreTheirPictures) {

@@ -11,7 +11,7 @@
 #include "engine/base/text_encoding.h"
 #include "engine/formats/glass/glass_file.h"
 
-namespace lensproof {
+namespace lensproof::formats {
 
 namespace {
 
@@ -21,16 +21,16 @@ constexpr std::size_t kLargestCatalogue = std::size_t{8} << 20;
 /// Coefficients as a CD record lists them; those that it leaves out are 0.
 using Coefficients = std::array<double, 16>;
 
-Sellmeier sellmeier(const Coefficients& c, std::size_t terms) {
-    Sellmeier formula;
+optics::Sellmeier sellmeier(const Coefficients& c, std::size_t terms) {
+    optics::Sellmeier formula;
     for (std::size_t i = 0; i < 2 * terms; i += 2) {
         formula.terms.push_back({.b = c[i], .c = c[i + 1]});
     }
     return formula;
 }
 
-SquaredPowerSeries power_series(const Coefficients& c, std::initializer_list<double> exponents) {
-    SquaredPowerSeries formula;
+optics::SquaredPowerSeries power_series(const Coefficients& c, std::initializer_list<double> exponents) {
+    optics::SquaredPowerSeries formula;
     for (const double exponent : exponents) {
         formula.terms.push_back({.coefficient = c[formula.terms.size()], .exponent = exponent});
     }
@@ -38,26 +38,27 @@ SquaredPowerSeries power_series(const Coefficients& c, std::initializer_list<dou
 }
 
 /// The formula by its number, or nothing.
-std::optional<DispersionFormula> formula_of(int number, const Coefficients& c) {
+std::optional<optics::DispersionFormula> formula_of(int number, const Coefficients& c) {
     switch (number) {
         case 1:  // Schott
-            return SchottPolynomial{{c[0], c[1], c[2], c[3], c[4], c[5]}};
+            return optics::SchottPolynomial{{c[0], c[1], c[2], c[3], c[4], c[5]}};
         case 2:  // Sellmeier 1
             return sellmeier(c, 3);
         case 3:
-            return Herzberger{{c[0], c[1], c[2], c[3], c[4], c[5]}};
+            return optics::Herzberger{{c[0], c[1], c[2], c[3], c[4], c[5]}};
         case 4:  // Sellmeier 2: n² − 1 = A + B1 λ² / (λ² − λ1²) + B2 / (λ² − λ2²)
-            return ResonancesAndPowers{{{c[1], 2.0, c[2] * c[2]}, {c[3], 0.0, c[4] * c[4]}}, {{1.0 + c[0], 0.0}}};
+            return optics::ResonancesAndPowers{{{c[1], 2.0, c[2] * c[2]}, {c[3], 0.0, c[4] * c[4]}},
+                                               {{1.0 + c[0], 0.0}}};
         case 5:  // Conrady
-            return PowerSeries{{{c[0], 0.0}, {c[1], -1.0}, {c[2], -3.5}}};
+            return optics::PowerSeries{{{c[0], 0.0}, {c[1], -1.0}, {c[2], -3.5}}};
         case 6:  // Sellmeier 3
             return sellmeier(c, 4);
         case 7:  // Handbook of Optics 1: n² = A + B / (λ² − C) − D λ²
-            return ResonancesAndPowers{{{c[1], 0.0, c[2]}}, {{c[0], 0.0}, {-c[3], 2.0}}};
+            return optics::ResonancesAndPowers{{{c[1], 0.0, c[2]}}, {{c[0], 0.0}, {-c[3], 2.0}}};
         case 8:  // Handbook of Optics 2: n² = A + B λ² / (λ² − C) − D λ²
-            return ResonancesAndPowers{{{c[1], 2.0, c[2]}}, {{c[0], 0.0}, {-c[3], 2.0}}};
+            return optics::ResonancesAndPowers{{{c[1], 2.0, c[2]}}, {{c[0], 0.0}, {-c[3], 2.0}}};
         case 9:  // Sellmeier 4: n² = A + B λ² / (λ² − C) + D λ² / (λ² − E)
-            return ResonancesAndPowers{{{c[1], 2.0, c[2]}, {c[3], 2.0, c[4]}}, {{c[0], 0.0}}};
+            return optics::ResonancesAndPowers{{{c[1], 2.0, c[2]}, {c[3], 2.0, c[4]}}, {{c[0], 0.0}}};
         case 10:  // Extended
             return power_series(c, {0, 2, -2, -4, -6, -8, -10, -12});
         case 11:  // Sellmeier 5
@@ -215,9 +216,9 @@ class AgfReader {
         if (record.words.size() < 3) {
             return;  // makers leave lines with a wavelength alone
         }
-        const TransmittancePoint point{.wavelength_nm = 1e3 * number(record, 0, "the wavelength"),
-                                       .transmittance = number(record, 1, "the transmittance"),
-                                       .thickness_mm = number(record, 2, "the thickness")};
+        const optics::TransmittancePoint point{.wavelength_nm = 1e3 * number(record, 0, "the wavelength"),
+                                               .transmittance = number(record, 1, "the transmittance"),
+                                               .thickness_mm = number(record, 2, "the thickness")};
         if (point.wavelength_nm > 0.0 && point.transmittance >= 0.0 && point.transmittance <= 1.0 &&
             point.thickness_mm > 0.0) {
             glass_.internal_transmittance.push_back(point);
@@ -229,12 +230,12 @@ class AgfReader {
     }
 
     /// Of several thicknesses at one wavelength the thickest tells most.
-    static void sort_transmittance(std::vector<TransmittancePoint>& points) {
-        std::ranges::stable_sort(points, [](const TransmittancePoint& a, const TransmittancePoint& b) {
+    static void sort_transmittance(std::vector<optics::TransmittancePoint>& points) {
+        std::ranges::stable_sort(points, [](const optics::TransmittancePoint& a, const optics::TransmittancePoint& b) {
             return a.wavelength_nm != b.wavelength_nm ? a.wavelength_nm < b.wavelength_nm
                                                       : a.thickness_mm > b.thickness_mm;
         });
-        const auto same = [](const TransmittancePoint& a, const TransmittancePoint& b) {
+        const auto same = [](const optics::TransmittancePoint& a, const optics::TransmittancePoint& b) {
             return a.wavelength_nm == b.wavelength_nm;
         };
         points.erase(std::unique(points.begin(), points.end(), same), points.end());
@@ -245,12 +246,12 @@ class AgfReader {
             return;
         }
         const bool whole = formula_ == std::floor(formula_) && formula_ >= 1.0 && formula_ <= 13.0;
-        const std::optional<DispersionFormula> formula =
+        const std::optional<optics::DispersionFormula> formula =
             whole ? formula_of(static_cast<int>(formula_), coefficients_) : std::nullopt;
         std::string complaint = fmt::format("formula is {}, expected one from 1 to 13", formula_);
         if (formula) {
             glass_.formula = *formula;
-            complaint = complaint_about(glass_);
+            complaint = optics::complaint_about(glass_);
         }
         if (glass_.name.empty()) {
             complaint = "has no name";
@@ -267,7 +268,7 @@ class AgfReader {
     GlassFile result_;
     bool named_ = false;  // whether an NM record came
     Record name_record_;
-    Glass glass_;
+    optics::Glass glass_;
     double formula_ = 0.0;
     Coefficients coefficients_{};
 };
@@ -282,4 +283,4 @@ GlassFile parse_agf(const std::string& bytes, const std::filesystem::path& name)
     return AgfReader(name).read(to_utf8(bytes));
 }
 
-}  // namespace lensproof
+}  // namespace lensproof::formats

@@ -11,7 +11,7 @@
 #include "engine/base/input_error.h"
 #include "engine/base/text.h"
 
-namespace lensproof {
+namespace lensproof::formats {
 
 namespace {
 
@@ -28,15 +28,15 @@ std::vector<double> numbers_in(const CsvRow& row, const char* column, std::strin
     return numbers;
 }
 
-std::vector<PowerTerm> power_terms(const std::vector<double>& c) {
-    std::vector<PowerTerm> terms;
+std::vector<optics::PowerTerm> power_terms(const std::vector<double>& c) {
+    std::vector<optics::PowerTerm> terms;
     for (std::size_t i = 0; i + 1 < c.size(); i += 2) {
         terms.push_back({.coefficient = c[i], .exponent = c[i + 1]});
     }
     return terms;
 }
 
-DispersionFormula read_formula(const CsvRow& row) {
+optics::DispersionFormula read_formula(const CsvRow& row) {
     const std::vector<double> c = numbers_in(row, "coefficients", "numbers with blanks between them");
     const std::string formula = row.text("formula");
     const auto expect = [&](bool good, const char* expected) {
@@ -47,7 +47,7 @@ DispersionFormula read_formula(const CsvRow& row) {
     const bool pairs = !c.empty() && c.size() % 2 == 0;
     if (formula == "sellmeier") {
         expect(pairs, "pairs B C, C in µm²");
-        Sellmeier sellmeier;
+        optics::Sellmeier sellmeier;
         for (std::size_t i = 0; i < c.size(); i += 2) {
             sellmeier.terms.push_back({.b = c[i], .c = c[i + 1]});
         }
@@ -55,24 +55,24 @@ DispersionFormula read_formula(const CsvRow& row) {
     }
     if (formula == "schott") {
         expect(c.size() == 6, "the six numbers A0 to A5");
-        SchottPolynomial polynomial;
+        optics::SchottPolynomial polynomial;
         std::ranges::copy(c, polynomial.a.begin());
         return polynomial;
     }
     if (formula == "power-series") {
         expect(pairs, "pairs of a coefficient and an exponent");
-        return SquaredPowerSeries{power_terms(c)};
+        return optics::SquaredPowerSeries{power_terms(c)};
     }
     if (formula == "cauchy") {
         expect(pairs, "pairs of a coefficient and an exponent");
-        return PowerSeries{power_terms(c)};
+        return optics::PowerSeries{power_terms(c)};
     }
     if (formula == "constant") {
         expect(c.size() == 1, "one index");
-        return ConstantIndex{c[0]};
+        return optics::ConstantIndex{c[0]};
     }
     if (formula == "table") {
-        IndexTable table;
+        optics::IndexTable table;
         for (std::size_t i = 0; i + 1 < c.size(); i += 2) {
             expect(i == 0 || c[i] > c[i - 2], "wavelengths that ascend");
             table.wavelength_um.push_back(1e-3 * c[i]);
@@ -84,7 +84,7 @@ DispersionFormula read_formula(const CsvRow& row) {
     row.fail("formula", "one of sellmeier, schott, power-series, cauchy, constant, table");
 }
 
-std::optional<ThermalDispersion> read_thermal(const CsvRow& row) {
+std::optional<optics::ThermalDispersion> read_thermal(const CsvRow& row) {
     const std::vector<double> t = numbers_in(row, "thermal", "the six numbers D0 D1 D2 E0 E1 λ_tk");
     if (t.empty()) {
         return std::nullopt;
@@ -92,7 +92,7 @@ std::optional<ThermalDispersion> read_thermal(const CsvRow& row) {
     if (t.size() != 6) {
         row.fail("thermal", "the six numbers D0 D1 D2 E0 E1 λ_tk");
     }
-    return ThermalDispersion{.d0 = t[0], .d1 = t[1], .d2 = t[2], .e0 = t[3], .e1 = t[4], .lambda_tk_um = t[5]};
+    return optics::ThermalDispersion{.d0 = t[0], .d1 = t[1], .d2 = t[2], .e0 = t[3], .e1 = t[4], .lambda_tk_um = t[5]};
 }
 
 }  // namespace
@@ -108,7 +108,7 @@ GlassFile parse_glass_table(std::string text, const std::filesystem::path& name)
     GlassFile file;
     std::set<std::string> names;
     while (const std::optional<CsvRow> row = table.next()) {
-        Glass& glass = file.glasses.emplace_back();
+        optics::Glass& glass = file.glasses.emplace_back();
         glass.name = row->text("glass");
         if (glass.name.empty() || !names.insert(glass.name).second) {
             row->fail("glass", glass.name.empty() ? "a name" : "a name that does not stand in the file twice");
@@ -128,7 +128,7 @@ GlassFile parse_glass_table(std::string text, const std::filesystem::path& name)
         if (glass.thermal && has("temperature_C")) {
             glass.thermal->reference_C = row->number("temperature_C", {.min = -273.15, .max = 1000.0});
         }
-        if (const std::string complaint = complaint_about(glass); !complaint.empty()) {
+        if (const std::string complaint = optics::complaint_about(glass); !complaint.empty()) {
             row->fail("glass", fmt::format("a glass that can be computed: {}", complaint));
         }
     }
@@ -153,4 +153,4 @@ GlassFile read_glass_file(const std::filesystem::path& file) {
                                  printable(extension)));
 }
 
-}  // namespace lensproof
+}  // namespace lensproof::formats

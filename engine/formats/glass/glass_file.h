@@ -7,11 +7,11 @@
 
 #include "engine/optics/glass.h"
 
-namespace lensproof {
+namespace lensproof::formats {
 
 /// What a file of glasses holds.
 struct GlassFile {
-    std::vector<Glass> glasses;
+    std::vector<optics::Glass> glasses;
     /// What was left out or not understood, as "file:line: …": for the user to see, and no reason to stop.
     std::vector<std::string> notes;
 };
@@ -35,4 +35,4 @@ GlassFile parse_agf(const std::string& bytes, const std::filesystem::path& name)
 /// as transmittance through 10 mm. The glass takes the file's name. Throws InputError for what is not such a page.
 GlassFile parse_rii(const std::string& text, const std::filesystem::path& name);
 
-}  // namespace lensproof
+}  // namespace lensproof::formats

@@ -12,7 +12,7 @@
 #include "engine/base/text_encoding.h"
 #include "engine/formats/glass/glass_file.h"
 
-namespace lensproof {
+namespace lensproof::formats {
 
 namespace {
 
@@ -76,10 +76,11 @@ class RiiPage {
     GlassFile read();
 
   private:
-    [[nodiscard]] DispersionFormula formula(int number, const YAML::Node& node) const;
-    void take_data(const YAML::Node& data, Glass& glass, bool& has_index, std::vector<std::string>& notes) const;
-    void take_specs(const YAML::Node& specs, Glass& glass) const;
-    static void take_absorption(const std::vector<double>& um, const std::vector<double>& k, Glass& glass);
+    [[nodiscard]] optics::DispersionFormula formula(int number, const YAML::Node& node) const;
+    void take_data(const YAML::Node& data, optics::Glass& glass, bool& has_index,
+                   std::vector<std::string>& notes) const;
+    void take_specs(const YAML::Node& specs, optics::Glass& glass) const;
+    static void take_absorption(const std::vector<double>& um, const std::vector<double>& k, optics::Glass& glass);
 
     const std::filesystem::path& file_;
     const YAML::Node& root_;
@@ -97,23 +98,23 @@ class Counted {
 };
 
 /// c(first) λ^c(first + 1) + …
-std::vector<PowerTerm> powers_from(const Counted& c, std::size_t first) {
-    std::vector<PowerTerm> terms;
+std::vector<optics::PowerTerm> powers_from(const Counted& c, std::size_t first) {
+    std::vector<optics::PowerTerm> terms;
     for (std::size_t i = first; i <= c.size(); i += 2) {
         terms.push_back({.coefficient = c(i), .exponent = c(i + 1)});
     }
     return terms;
 }
 
-std::vector<Sellmeier::Term> pairs_from(const Counted& c, bool square_second) {
-    std::vector<Sellmeier::Term> terms;
+std::vector<optics::Sellmeier::Term> pairs_from(const Counted& c, bool square_second) {
+    std::vector<optics::Sellmeier::Term> terms;
     for (std::size_t i = 2; i <= c.size(); i += 2) {
         terms.push_back({.b = c(i), .c = square_second ? c(i + 1) * c(i + 1) : c(i + 1)});
     }
     return terms;
 }
 
-DispersionFormula RiiPage::formula(int number, const YAML::Node& node) const {
+optics::DispersionFormula RiiPage::formula(int number, const YAML::Node& node) const {
     const Counted c(numbers(node, "coefficients"));
     constexpr std::size_t kMostCoefficients = 64;
     if (c.size() < 1 || c.size() > kMostCoefficients) {
@@ -121,41 +122,41 @@ DispersionFormula RiiPage::formula(int number, const YAML::Node& node) const {
     }
     switch (number) {
         case 1:  // n² − 1 = c1 + Σ c2 λ² / (λ² − c3²)
-            return Sellmeier{pairs_from(c, true), c(1)};
+            return optics::Sellmeier{pairs_from(c, true), c(1)};
         case 2:  // the same with c3 for c3²
-            return Sellmeier{pairs_from(c, false), c(1)};
+            return optics::Sellmeier{pairs_from(c, false), c(1)};
         case 3: {  // n² = c1 + Σ c2 λ^c3
-            SquaredPowerSeries series{powers_from(c, 2)};
-            series.terms.insert(series.terms.begin(), PowerTerm{c(1), 0.0});
+            optics::SquaredPowerSeries series{powers_from(c, 2)};
+            series.terms.insert(series.terms.begin(), optics::PowerTerm{c(1), 0.0});
             return series;
         }
         case 4: {  // n² = c1 + c2 λ^c3 / (λ² − c4^c5) + c6 λ^c7 / (λ² − c8^c9) + Σ c10 λ^c11
-            ResonancesAndPowers sum{{}, powers_from(c, 10)};
+            optics::ResonancesAndPowers sum{{}, powers_from(c, 10)};
             for (const std::size_t i : {2, 6}) {
                 if (c(i) != 0.0) {
                     sum.resonances.push_back({c(i), c(i + 1), std::pow(c(i + 2), c(i + 3))});
                 }
             }
-            sum.powers.insert(sum.powers.begin(), PowerTerm{c(1), 0.0});
+            sum.powers.insert(sum.powers.begin(), optics::PowerTerm{c(1), 0.0});
             return sum;
         }
         case 5: {  // n = c1 + Σ c2 λ^c3
-            PowerSeries series{powers_from(c, 2)};
-            series.terms.insert(series.terms.begin(), PowerTerm{c(1), 0.0});
+            optics::PowerSeries series{powers_from(c, 2)};
+            series.terms.insert(series.terms.begin(), optics::PowerTerm{c(1), 0.0});
             return series;
         }
         case 6:  // n − 1 = c1 + Σ c2 / (c3 − λ⁻²)
-            return GasDispersion{pairs_from(c, false), c(1)};
+            return optics::GasDispersion{pairs_from(c, false), c(1)};
         case 7:  // n = c1 + c2 / (λ² − 0.028) + c3 / (λ² − 0.028)² + c4 λ² + c5 λ⁴ + c6 λ⁶
-            return Herzberger{{c(1), c(2), c(3), c(4), c(5), c(6)}};
+            return optics::Herzberger{{c(1), c(2), c(3), c(4), c(5), c(6)}};
         case 8:
-            return RetroDispersion{{c(1), c(2), c(3), c(4)}};
+            return optics::RetroDispersion{{c(1), c(2), c(3), c(4)}};
         default:
-            return ExoticDispersion{{c(1), c(2), c(3), c(4), c(5), c(6)}};
+            return optics::ExoticDispersion{{c(1), c(2), c(3), c(4), c(5), c(6)}};
     }
 }
 
-void RiiPage::take_absorption(const std::vector<double>& um, const std::vector<double>& k, Glass& glass) {
+void RiiPage::take_absorption(const std::vector<double>& um, const std::vector<double>& k, optics::Glass& glass) {
     constexpr double kThickness = 10.0;
     for (std::size_t i = 0; i < um.size(); ++i) {
         const double exponent = 4.0 * std::numbers::pi * k[i] * 1e3 * kThickness / um[i];
@@ -165,7 +166,8 @@ void RiiPage::take_absorption(const std::vector<double>& um, const std::vector<d
     }
 }
 
-void RiiPage::take_data(const YAML::Node& data, Glass& glass, bool& has_index, std::vector<std::string>& notes) const {
+void RiiPage::take_data(const YAML::Node& data, optics::Glass& glass, bool& has_index,
+                        std::vector<std::string>& notes) const {
     if (!data.IsMap()) {
         fail(data, "an entry of DATA is no map, expected type, coefficients or data");
     }
@@ -187,7 +189,7 @@ void RiiPage::take_data(const YAML::Node& data, Glass& glass, bool& has_index, s
         if (columns[0].size() < 2) {
             fail(data, "data holds one row, expected two or more");
         }
-        glass.formula = IndexTable{columns[0], columns[1]};
+        glass.formula = optics::IndexTable{columns[0], columns[1]};
         glass.min_wavelength_nm = 1e3 * columns[0].front();
         glass.max_wavelength_nm = 1e3 * columns[0].back();
         if (columns.size() == 3) {
@@ -203,7 +205,7 @@ void RiiPage::take_data(const YAML::Node& data, Glass& glass, bool& has_index, s
     }
 }
 
-void RiiPage::take_specs(const YAML::Node& specs, Glass& glass) const {
+void RiiPage::take_specs(const YAML::Node& specs, optics::Glass& glass) const {
     const auto number = [&](const char* key) { return parse_number(text(specs[key])); };
     glass.stated_n_d = number("nd");
     glass.stated_V_d = number("Vd");
@@ -251,7 +253,7 @@ GlassFile RiiPage::read() {
             fmt::format("{}: holds no list DATA, expected a page of refractiveindex.info", file_.string()));
     }
     GlassFile result;
-    Glass glass;
+    optics::Glass glass;
     glass.name = file_.stem().string();
     glass.catalogue = "refractiveindex.info";
     glass.source = without_tags(text(root_["REFERENCES"]));
@@ -269,7 +271,7 @@ GlassFile RiiPage::read() {
             take_specs(root_[key], glass);
         }
     }
-    if (const std::string complaint = complaint_about(glass); !complaint.empty()) {
+    if (const std::string complaint = optics::complaint_about(glass); !complaint.empty()) {
         fail(root_["DATA"], complaint);
     }
     result.glasses.push_back(std::move(glass));
@@ -292,4 +294,4 @@ GlassFile parse_rii(const std::string& text, const std::filesystem::path& name) 
     }
 }
 
-}  // namespace lensproof
+}  // namespace lensproof::formats

@@ -12,7 +12,7 @@
 #include "engine/formats/glass/glass_file.h"
 #include "engine/optics/glass_name.h"
 
-namespace lensproof {
+namespace lensproof::formats {
 
 namespace {
 
@@ -25,12 +25,12 @@ std::filesystem::path glass_folder() {
 
 }  // namespace
 
-GlassCatalogue shipped_glasses() {
-    std::vector<Glass> glasses;
+optics::GlassCatalogue shipped_glasses() {
+    std::vector<optics::Glass> glasses;
     for (const std::filesystem::path& file : shipped_glass_files()) {
         std::ranges::move(parse_glass_table(read_file(file), file).glasses, std::back_inserter(glasses));
     }
-    GlassCatalogue catalogue;
+    optics::GlassCatalogue catalogue;
     catalogue.add(std::move(glasses));
     return catalogue;
 }
@@ -44,15 +44,15 @@ std::vector<std::filesystem::path> shipped_glass_files() {
     return files;
 }
 
-std::vector<TransmittancePoint> shipped_transmittance(const Glass& glass) {
+std::vector<optics::TransmittancePoint> shipped_transmittance(const optics::Glass& glass) {
     if (!glass.internal_transmittance.empty()) {
         return glass.internal_transmittance;
     }
-    std::vector<TransmittancePoint> points;
+    std::vector<optics::TransmittancePoint> points;
     for (const char* name : kTables) {
         const std::filesystem::path file = glass_folder() / "transmittance" / fmt::format("{}.csv", name);
         const std::string maker = std::string(name).substr(0, std::string_view(name).find('-'));
-        if (!same_letters(maker, glass.catalogue) || !std::filesystem::exists(file)) {
+        if (!optics::same_letters(maker, glass.catalogue) || !std::filesystem::exists(file)) {
             continue;
         }
         CsvTable table = CsvTable::read(file);
@@ -73,4 +73,4 @@ std::vector<TransmittancePoint> shipped_transmittance(const Glass& glass) {
     return points;
 }
 
-}  // namespace lensproof
+}  // namespace lensproof::formats

@@ -5,15 +5,15 @@
 
 #include "engine/optics/glass_catalogue.h"
 
-namespace lensproof {
+namespace lensproof::formats {
 
 /// All that ship. Throws InputError naming file and line of an entry that is unusable.
-GlassCatalogue shipped_glasses();
+optics::GlassCatalogue shipped_glasses();
 
 /// The files that `shipped_glasses` reads: among the inputs of whatever is computed with them.
 std::vector<std::filesystem::path> shipped_glass_files();
 
 /// The internal transmittance of a glass that ships, which is not read with the rest; the glass's own where it has one.
-std::vector<TransmittancePoint> shipped_transmittance(const Glass& glass);
+std::vector<optics::TransmittancePoint> shipped_transmittance(const optics::Glass& glass);
 
-}  // namespace lensproof
+}  // namespace lensproof::formats

@@ -4,7 +4,7 @@
 
 #include "engine/formats/image/image.h"
 
-namespace lensproof {
+namespace lensproof::formats {
 
 /// Where the first pixel of a picture lies in its frame, and how large the frame is, px.
 struct FramePlacement {
@@ -17,4 +17,4 @@ struct FramePlacement {
 /// As write_exr does without: the picture is EXR's data window, the frame its display window.
 void write_exr(const Image& image, const std::filesystem::path& file, const FramePlacement& placement);
 
-}  // namespace lensproof
+}  // namespace lensproof::formats

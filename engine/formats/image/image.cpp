@@ -15,7 +15,7 @@
 #include "engine/formats/image/srgb.h"
 #include "engine/formats/image/stored_picture.h"
 
-namespace lensproof {
+namespace lensproof::formats {
 
 namespace {
 
@@ -160,4 +160,4 @@ std::string encode_png(const Image& image) {
     return encode_srgb_png<unsigned char>(image, OIIO::TypeDesc::UINT8);
 }
 
-}  // namespace lensproof
+}  // namespace lensproof::formats

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-namespace lensproof {
+namespace lensproof::formats {
 
 /// A picture in linear light: `channels.size()` floats a pixel, rows from the top, pixels from the left.
 ///
@@ -66,4 +66,4 @@ void write_png(const IntegerImage& image, const std::filesystem::path& file);
 /// The 8-bit sRGB PNG as bytes, for a report that holds its pictures inside.
 std::string encode_png(const Image& image);
 
-}  // namespace lensproof
+}  // namespace lensproof::formats

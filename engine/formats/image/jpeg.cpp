@@ -11,7 +11,7 @@
 
 #include "engine/formats/image/srgb.h"
 
-namespace lensproof {
+namespace lensproof::formats {
 
 namespace {
 
@@ -127,4 +127,4 @@ Image after_jpeg(const Image& image, int quality) {
     return result;
 }
 
-}  // namespace lensproof
+}  // namespace lensproof::formats

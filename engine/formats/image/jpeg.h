@@ -5,7 +5,7 @@
 
 #include "engine/formats/image/image.h"
 
-namespace lensproof {
+namespace lensproof::formats {
 
 /// The picture, R, G, B or Y in linear light, as it comes back from a JPEG of `quality` (1 to 100): 8-bit sRGB, colours
 /// at half the resolution, without the file. Throws std::runtime_error where the library fails.
@@ -17,4 +17,4 @@ Image after_jpeg(const Image& image, int quality);
 /// without that table.
 std::optional<int> jpeg_quality(std::string_view file);
 
-}  // namespace lensproof
+}  // namespace lensproof::formats

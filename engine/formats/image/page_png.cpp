@@ -6,7 +6,7 @@
 
 #include <stdexcept>
 
-namespace lensproof {
+namespace lensproof::formats {
 
 std::string encode_page_png(int width, int height, const std::vector<unsigned char>& grey, double dpi) {
     OIIO::ImageSpec spec(width, height, 1, OIIO::TypeDesc::UINT8);
@@ -24,4 +24,4 @@ std::string encode_page_png(int width, int height, const std::vector<unsigned ch
     return {bytes.begin(), bytes.end()};
 }
 
-}  // namespace lensproof
+}  // namespace lensproof::formats

@@ -3,11 +3,11 @@
 #include <string>
 #include <vector>
 
-namespace lensproof {
+namespace lensproof::formats {
 
 /// The bytes of a PNG with one channel of 8 bits, 0 black to 255 white, row by row from the top. `dpi` goes into its
 /// resolution (pHYs, in whole pixels per metre), by which programs print it at its size. Throws std::runtime_error
 /// where the library fails.
 std::string encode_page_png(int width, int height, const std::vector<unsigned char>& grey, double dpi);
 
-}  // namespace lensproof
+}  // namespace lensproof::formats

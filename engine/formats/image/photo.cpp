@@ -9,7 +9,7 @@
 
 #include "engine/formats/image/stored_picture.h"
 
-namespace lensproof {
+namespace lensproof::formats {
 
 namespace {
 
@@ -196,4 +196,4 @@ bool has_picture_name(const std::filesystem::path& file) {
     return is_raw(file) || std::ranges::find(kPictureExtensions, lower_extension(file)) != kPictureExtensions.end();
 }
 
-}  // namespace lensproof
+}  // namespace lensproof::formats

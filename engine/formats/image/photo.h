@@ -9,7 +9,7 @@
 #include "engine/formats/image/image.h"
 #include "engine/formats/image/transfer_curve.h"
 
-namespace lensproof {
+namespace lensproof::formats {
 
 /// What the camera wrote beside the picture (EXIF, DNG). What it does not say is empty.
 struct CameraNotes {
@@ -59,4 +59,4 @@ Image read_photo(const std::filesystem::path& file, const std::optional<Transfer
 /// Whether the name ends as a picture's does (.jpg, .png, .tif, .exr, .dng, .cr2, …).
 bool has_picture_name(const std::filesystem::path& file);
 
-}  // namespace lensproof
+}  // namespace lensproof::formats

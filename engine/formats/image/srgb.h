@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace lensproof {
+namespace lensproof::formats {
 
 inline float srgb_to_linear(float encoded) {
     return encoded <= 0.04045F ? encoded / 12.92F : std::pow((encoded + 0.055F) / 1.055F, 2.4F);
@@ -16,4 +16,4 @@ inline float linear_to_srgb(float linear) {
     return clipped <= 0.0031308F ? 12.92F * clipped : 1.055F * std::pow(clipped, 1.0F / 2.4F) - 0.055F;
 }
 
-}  // namespace lensproof
+}  // namespace lensproof::formats

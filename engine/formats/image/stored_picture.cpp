@@ -9,7 +9,7 @@
 #include "engine/base/file.h"
 #include "engine/base/input_error.h"
 
-namespace lensproof {
+namespace lensproof::formats {
 
 namespace {
 
@@ -135,4 +135,4 @@ float stated_gamma(const std::string& colour_space) {
     }
 }
 
-}  // namespace lensproof
+}  // namespace lensproof::formats

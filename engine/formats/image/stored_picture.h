@@ -6,7 +6,7 @@
 
 #include "engine/formats/image/image.h"
 
-namespace lensproof {
+namespace lensproof::formats {
 
 /// The file's values as they are stored, full scale 1 where they are integers: neither turned nor linearised.
 struct StoredPicture {
@@ -26,4 +26,4 @@ Image turned(Image image, int orientation);
 /// What every curve needs of the colour space that OpenImageIO names: its gamma where it is a bare one ("Gamma1.8").
 float stated_gamma(const std::string& colour_space);
 
-}  // namespace lensproof
+}  // namespace lensproof::formats

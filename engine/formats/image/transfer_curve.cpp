@@ -7,7 +7,7 @@
 
 #include "engine/formats/image/srgb.h"
 
-namespace lensproof {
+namespace lensproof::formats {
 
 std::optional<TransferCurve> parse_transfer_curve(const std::string& text) {
     if (text == "srgb") {
@@ -63,4 +63,4 @@ float to_linear(const TransferCurve& curve, float value) {
     return std::pow(value, static_cast<float>(curve.gamma));
 }
 
-}  // namespace lensproof
+}  // namespace lensproof::formats

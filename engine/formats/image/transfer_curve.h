@@ -3,7 +3,7 @@
 #include <optional>
 #include <string>
 
-namespace lensproof {
+namespace lensproof::formats {
 
 enum class TransferKind { srgb, rec709, linear, gamma };
 
@@ -22,4 +22,4 @@ std::string to_text(const TransferCurve& curve);
 /// The light that a stored value stands for. Values below 0 stay as they are.
 float to_linear(const TransferCurve& curve, float value);
 
-}  // namespace lensproof
+}  // namespace lensproof::formats

@@ -7,7 +7,7 @@
 #include "engine/base/input_error.h"
 #include "engine/base/text.h"
 
-namespace lensproof {
+namespace lensproof::formats {
 
 std::string_view Command::word(std::size_t index) const {
     return index < words.size() ? words[index] : std::string_view();
@@ -46,4 +46,4 @@ void Command::fail(std::string_view found, std::string_view expected) const {
                                  printable(keyword), printable(found), expected));
 }
 
-}  // namespace lensproof
+}  // namespace lensproof::formats

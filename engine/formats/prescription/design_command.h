@@ -5,7 +5,7 @@
 #include <string_view>
 #include <vector>
 
-namespace lensproof {
+namespace lensproof::formats {
 
 /// Throws InputError as "file:line: SURF 3: CURV is "x", expected a curvature" for words that are not what they should
 /// be.
@@ -28,4 +28,4 @@ struct Command {
     [[noreturn]] void fail(std::string_view found, std::string_view expected) const;
 };
 
-}  // namespace lensproof
+}  // namespace lensproof::formats

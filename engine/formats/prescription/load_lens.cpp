@@ -8,13 +8,13 @@
 #include "engine/formats/image/image.h"
 #include "engine/formats/prescription/prescription_file.h"
 
-namespace lensproof {
+namespace lensproof::formats {
 
 namespace {
 
 /// The mean of a picture's channels.
-StopTexture stop_texture(const Image& image) {
-    StopTexture texture{.size_x = image.width, .size_y = image.height, .values = {}};
+optics::StopTexture stop_texture(const Image& image) {
+    optics::StopTexture texture{.size_x = image.width, .size_y = image.height, .values = {}};
     for (int y = 0; y < image.height; ++y) {
         for (int x = 0; x < image.width; ++x) {
             float sum = 0.0F;
@@ -29,28 +29,28 @@ StopTexture stop_texture(const Image& image) {
 
 }  // namespace
 
-GlassCatalogue with_own_catalogues(GlassCatalogue glasses, const Prescription& prescription) {
+optics::GlassCatalogue with_own_catalogues(optics::GlassCatalogue glasses, const optics::Prescription& prescription) {
     for (const std::filesystem::path& file : prescription.catalogues) {
         glasses.add(read_glass_file(file).glasses);
     }
     return glasses;
 }
 
-Prescription with_stop_picture(Prescription prescription) {
-    if (auto* textured = std::get_if<TexturedStop>(&prescription.stop_shape)) {
-        textured->texture = std::make_shared<const StopTexture>(
+optics::Prescription with_stop_picture(optics::Prescription prescription) {
+    if (auto* textured = std::get_if<optics::TexturedStop>(&prescription.stop_shape)) {
+        textured->texture = std::make_shared<const optics::StopTexture>(
             stop_texture(read_image(prescription.file.parent_path() / textured->image)));
     }
     return prescription;
 }
 
-Lens load_lens(const std::string& lens, const LensSettings& settings) {
-    Prescription prescription = with_stop_picture(read_prescription(find_lens_file(lens)));
-    const std::size_t position = settings.zoom.empty() ? 0 : find_zoom_position(prescription, settings.zoom);
-    prescription = at_zoom_position(std::move(prescription), position);
-    const GlassCatalogue glasses =
+optics::Lens load_lens(const std::string& lens, const LensSettings& settings) {
+    optics::Prescription prescription = with_stop_picture(read_prescription(find_lens_file(lens)));
+    const std::size_t position = settings.zoom.empty() ? 0 : optics::find_zoom_position(prescription, settings.zoom);
+    prescription = optics::at_zoom_position(std::move(prescription), position);
+    const optics::GlassCatalogue glasses =
         with_own_catalogues(settings.glasses ? *settings.glasses : shipped_glasses(), prescription);
-    return make_lens(prescription, glasses, settings.indices);
+    return optics::make_lens(prescription, glasses, settings.indices);
 }
 
-}  // namespace lensproof
+}  // namespace lensproof::formats

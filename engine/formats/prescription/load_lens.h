@@ -5,22 +5,22 @@
 
 #include "engine/optics/lens.h"
 
-namespace lensproof {
+namespace lensproof::formats {
 
 /// What a lens is loaded with, beyond its file.
 struct LensSettings {
-    IndexOverrides indices;
-    std::string zoom;                       // the position's name or number; empty: the first
-    std::optional<GlassCatalogue> glasses;  // nothing: those that ship
+    optics::IndexOverrides indices;
+    std::string zoom;                               // the position's name or number; empty: the first
+    std::optional<optics::GlassCatalogue> glasses;  // nothing: those that ship
 };
 
 /// `glasses` behind the prescription's own catalogues. Throws InputError for one that cannot be read.
-GlassCatalogue with_own_catalogues(GlassCatalogue glasses, const Prescription& prescription);
+optics::GlassCatalogue with_own_catalogues(optics::GlassCatalogue glasses, const optics::Prescription& prescription);
 
 /// The prescription with the picture that its stop's shape names. Throws InputError where that cannot be read.
-Prescription with_stop_picture(Prescription prescription);
+optics::Prescription with_stop_picture(optics::Prescription prescription);
 
 /// find_lens_file, read_prescription, the zoom position, and make_lens.
-Lens load_lens(const std::string& lens, const LensSettings& settings = {});
+optics::Lens load_lens(const std::string& lens, const LensSettings& settings = {});
 
-}  // namespace lensproof
+}  // namespace lensproof::formats

@@ -14,7 +14,7 @@
 #include "engine/formats/prescription/prescription_forms.h"
 #include "engine/spectral/wavelengths.h"
 
-namespace lensproof {
+namespace lensproof::formats {
 
 namespace {
 
@@ -42,7 +42,7 @@ struct LineColumn {
     double wavelength_nm;
 };
 const std::vector<LineColumn> kLineColumns = {
-    {{"n_g", {"ng"}}, kLineG}, {{"n_F", {"nF"}}, kLineF}, {{"n_C", {"nC"}}, kLineC}};
+    {{"n_g", {"ng"}}, spectral::kLineG}, {{"n_F", {"nF"}}, spectral::kLineF}, {{"n_C", {"nC"}}, spectral::kLineC}};
 
 /// The table's columns by what they mean; an absent one is empty.
 struct Columns {
@@ -71,7 +71,7 @@ class CsvPrescription {
         read_comments(text);
     }
 
-    Prescription read() {
+    optics::Prescription read() {
         while (const std::optional<CsvRow> row = table_.next()) {
             if (prescription_.surfaces.size() == kMostSurfaces) {
                 throw InputError(
@@ -87,7 +87,7 @@ class CsvPrescription {
 
   private:
     void remark(const std::string& code, int surface, const std::string& message,
-                Severity severity = Severity::warning) {
+                optics::Severity severity = optics::Severity::warning) {
         prescription_.remarks.push_back({.code = code, .severity = severity, .surface = surface, .message = message});
     }
 
@@ -177,10 +177,10 @@ class CsvPrescription {
         return column.empty() || row.is_empty(column) ? std::nullopt : std::optional(row.any_number(column, expected));
     }
 
-    PrescribedSurface read_surface(const CsvRow& row) {
+    optics::PrescribedSurface read_surface(const CsvRow& row) {
         const int number = static_cast<int>(prescription_.surfaces.size()) + 1;
         const std::string label = columns_.surface.empty() ? std::to_string(number) : row.text(columns_.surface);
-        PrescribedSurface surface;
+        optics::PrescribedSurface surface;
         surface.where = row.where(fmt::format("surface {}", printable(label)));
         const std::string kind = read_kind(row, label);
         surface.is_stop = kind == "stop";
@@ -211,11 +211,11 @@ class CsvPrescription {
         return kind;
     }
 
-    void read_terms(const CsvRow& row, int number, PrescribedSurface& surface) {
+    void read_terms(const CsvRow& row, int number, optics::PrescribedSurface& surface) {
         std::vector<std::string> odd;
         for (const auto& [column, power] : columns_.terms) {
             const double term = stated(row, column, "an aspheric coefficient").value_or(0.0);
-            if (power % 2 == 0 && power <= 2 * kAsphereTerms) {
+            if (power % 2 == 0 && power <= 2 * optics::kAsphereTerms) {
                 surface.asphere[power / 2 - 1] = term;
             } else if (term != 0.0) {
                 odd.push_back(fmt::format("{} = {}", column, term));
@@ -225,17 +225,17 @@ class CsvPrescription {
             remark("asphere-term-not-read", number,
                    fmt::format("the aspheric terms {} are left out: even powers up to r²⁰ are carried",
                                fmt::join(odd, ", ")),
-                   Severity::error);
+                   optics::Severity::error);
         }
     }
 
     /// What is behind the surface.
-    StatedMedium read_medium(const CsvRow& row, int number, bool is_stop) {
-        StatedMedium medium;
+    optics::StatedMedium read_medium(const CsvRow& row, int number, bool is_stop) {
+        optics::StatedMedium medium;
         medium.glass = columns_.glass.empty() ? "" : row.text(columns_.glass);
         const std::optional<double> n_d = stated(row, columns_.index, "a refractive index");
         const bool is_air = !n_d || *n_d == 1.0 || (is_stop && *n_d == 0.0);
-        std::vector<WavelengthValue> lines;
+        std::vector<optics::WavelengthValue> lines;
         for (const auto& [column, wavelength_nm] : columns_.lines) {
             const std::optional<double> index = stated(row, column, "a refractive index, or nothing");
             if (index && !(is_air && (*index == 1.0 || *index == 0.0))) {
@@ -245,16 +245,16 @@ class CsvPrescription {
         if (!is_air) {
             medium.n_d = n_d;
             medium.V_d = stated(row, columns_.abbe, "an Abbe number, or nothing");
-            lines.push_back({kLineD, *n_d});
+            lines.push_back({spectral::kLineD, *n_d});
         }
         take_lines(std::move(lines), number, medium);
         return medium;
     }
 
     /// Indices at further lines are kept beside n_d and V_d where no glass is named and they make a dispersion.
-    void take_lines(std::vector<WavelengthValue> lines, int number, StatedMedium& medium) {
+    void take_lines(std::vector<optics::WavelengthValue> lines, int number, optics::StatedMedium& medium) {
         const std::size_t others = lines.size() - (medium.n_d ? 1 : 0);
-        const auto leave_out = [&](Severity severity, const std::string& why) {
+        const auto leave_out = [&](optics::Severity severity, const std::string& why) {
             remark("lines-not-used", number, fmt::format("its indices at lines beside d are left out: {}", why),
                    severity);
         };
@@ -262,16 +262,16 @@ class CsvPrescription {
             return;
         }
         if (!medium.glass.empty()) {
-            leave_out(Severity::info, fmt::format("those of {} are taken", printable(medium.glass)));
+            leave_out(optics::Severity::info, fmt::format("those of {} are taken", printable(medium.glass)));
         } else if (!medium.n_d) {
-            leave_out(Severity::warning, "its n_d says air");
+            leave_out(optics::Severity::warning, "its n_d says air");
         } else if (others < 2) {
-            leave_out(Severity::warning, "one says no dispersion, expected two or more");
-        } else if (!std::ranges::all_of(lines,
-                                        [](const WavelengthValue& at) { return at.value >= 1.0 && at.value <= 5.0; })) {
-            leave_out(Severity::warning, "expected each from 1 to 5");
+            leave_out(optics::Severity::warning, "one says no dispersion, expected two or more");
+        } else if (!std::ranges::all_of(
+                       lines, [](const optics::WavelengthValue& at) { return at.value >= 1.0 && at.value <= 5.0; })) {
+            leave_out(optics::Severity::warning, "expected each from 1 to 5");
         } else {
-            std::ranges::sort(lines, {}, &WavelengthValue::wavelength_nm);
+            std::ranges::sort(lines, {}, &optics::WavelengthValue::wavelength_nm);
             medium.indices = std::move(lines);
         }
     }
@@ -280,13 +280,13 @@ class CsvPrescription {
     const std::filesystem::path& file_;
     Columns columns_;
     std::set<std::string> known_;
-    Prescription prescription_;
+    optics::Prescription prescription_;
 };
 
 }  // namespace
 
-Prescription parse_csv_prescription(const std::string& text, const std::filesystem::path& file) {
+optics::Prescription parse_csv_prescription(const std::string& text, const std::filesystem::path& file) {
     return CsvPrescription(to_utf8(text), file).read();
 }
 
-}  // namespace lensproof
+}  // namespace lensproof::formats

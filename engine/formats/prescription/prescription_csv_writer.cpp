@@ -9,18 +9,18 @@
 #include "engine/formats/prescription/prescription_losses.h"
 #include "engine/spectral/wavelengths.h"
 
-namespace lensproof {
+namespace lensproof::formats {
 
 namespace {
 
 /// Whether the indices are those at d and at least two of the lines that have columns.
-bool fits_line_columns(const StatedMedium& medium) {
-    const std::vector<WavelengthValue>& indices = medium.indices;
+bool fits_line_columns(const optics::StatedMedium& medium) {
+    const std::vector<optics::WavelengthValue>& indices = medium.indices;
     const auto has = [&](double wavelength_nm) {
-        return std::ranges::count(indices, wavelength_nm, &WavelengthValue::wavelength_nm);
+        return std::ranges::count(indices, wavelength_nm, &optics::WavelengthValue::wavelength_nm);
     };
-    const auto others = has(kLineG) + has(kLineF) + has(kLineC);
-    const auto at_d = std::ranges::find(indices, kLineD, &WavelengthValue::wavelength_nm);
+    const auto others = has(spectral::kLineG) + has(spectral::kLineF) + has(spectral::kLineC);
+    const auto at_d = std::ranges::find(indices, spectral::kLineD, &optics::WavelengthValue::wavelength_nm);
     if (at_d == indices.end() || at_d->value != medium.n_d.value_or(at_d->value)) {
         return false;
     }
@@ -28,8 +28,8 @@ bool fits_line_columns(const StatedMedium& medium) {
 }
 
 /// The index at a wavelength that the medium states, as a cell.
-std::string index_cell(const StatedMedium& medium, double wavelength_nm) {
-    const auto found = std::ranges::find(medium.indices, wavelength_nm, &WavelengthValue::wavelength_nm);
+std::string index_cell(const optics::StatedMedium& medium, double wavelength_nm) {
+    const auto found = std::ranges::find(medium.indices, wavelength_nm, &optics::WavelengthValue::wavelength_nm);
     return found == medium.indices.end() ? "" : fmt::format("{}", found->value);
 }
 
@@ -66,14 +66,14 @@ struct Needs {
     bool glass = false;
     bool lines = false;
     bool conic = false;
-    std::array<bool, kAsphereTerms> terms{};
+    std::array<bool, optics::kAsphereTerms> terms{};
 
-    explicit Needs(const Prescription& prescription) {
-        for (const PrescribedSurface& row : prescription.surfaces) {
+    explicit Needs(const optics::Prescription& prescription) {
+        for (const optics::PrescribedSurface& row : prescription.surfaces) {
             glass = glass || !row.medium.glass.empty();
             lines = lines || fits_line_columns(row.medium);
             conic = conic || row.conic != 0.0;
-            for (int term = 0; term < kAsphereTerms; ++term) {
+            for (int term = 0; term < optics::kAsphereTerms; ++term) {
                 terms[term] = terms[term] || row.asphere[term] != 0.0;
             }
         }
@@ -84,23 +84,23 @@ struct Needs {
         text += glass ? ",glass" : "";
         text += lines ? ",n_C,n_F,n_g" : "";
         text += conic ? ",conic" : "";
-        for (int term = 0; term < kAsphereTerms; ++term) {
+        for (int term = 0; term < optics::kAsphereTerms; ++term) {
             text += terms[term] ? fmt::format(",A{}", 2 * (term + 1)) : "";
         }
         return text + "\n";
     }
 
-    [[nodiscard]] std::string cells(const PrescribedSurface& row) const {
+    [[nodiscard]] std::string cells(const optics::PrescribedSurface& row) const {
         std::string text;
         text += glass ? "," + text_cell(row.medium.glass) : "";
         if (lines) {
             const bool fits = fits_line_columns(row.medium);
-            for (const double line : {kLineC, kLineF, kLineG}) {
+            for (const double line : {spectral::kLineC, spectral::kLineF, spectral::kLineG}) {
                 text += "," + (fits ? index_cell(row.medium, line) : "");
             }
         }
         text += conic ? fmt::format(",{}", row.conic) : "";
-        for (int term = 0; term < kAsphereTerms; ++term) {
+        for (int term = 0; term < optics::kAsphereTerms; ++term) {
             text += terms[term] ? fmt::format(",{}", row.asphere[term]) : "";
         }
         return text;
@@ -109,24 +109,24 @@ struct Needs {
 
 }  // namespace
 
-WrittenPrescription to_csv(const Prescription& prescription) {
+WrittenPrescription to_csv(const optics::Prescription& prescription) {
     WrittenPrescription written;
-    const Prescription lens = single_position(prescription, written.lost);
+    const optics::Prescription lens = single_position(prescription, written.lost);
     std::ranges::copy(losses_of_tables(lens), std::back_inserter(written.lost));
     const Needs needs(lens);
     written.text = comment_lines("name: ", lens.name) + comment_lines("source: ", lens.source) +
                    comment_lines("", lens.notes) + needs.header();
     for (std::size_t i = 0; i < lens.surfaces.size(); ++i) {
-        const PrescribedSurface& row = lens.surfaces[i];
-        const StatedMedium& medium = row.medium;
+        const optics::PrescribedSurface& row = lens.surfaces[i];
+        const optics::StatedMedium& medium = row.medium;
         const int number = static_cast<int>(i) + 1;
         std::string n_d = medium.is_air() ? "1" : cell_of(medium.n_d);
         std::string V_d = medium.n_d ? cell_of(medium.V_d) : "";
         if (fits_line_columns(medium)) {
-            n_d = index_cell(medium, kLineD);
+            n_d = index_cell(medium, spectral::kLineD);
         } else if (!medium.indices.empty()) {
             const auto [index, abbe] = figures_of_table(medium);
-            written.lost.push_back(lost("lost-indices", Severity::warning, number,
+            written.lost.push_back(lost("lost-indices", optics::Severity::warning, number,
                                         "its table of indices has not just the lines d, C, F, g that have columns; its "
                                         "n_d and V_d are written"));
             n_d = fmt::format("{}", index);
@@ -142,4 +142,4 @@ WrittenPrescription to_csv(const Prescription& prescription) {
     return written;
 }
 
-}  // namespace lensproof
+}  // namespace lensproof::formats

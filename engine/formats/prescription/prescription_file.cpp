@@ -9,15 +9,15 @@
 #include "engine/base/input_error.h"
 #include "engine/formats/prescription/prescription_forms.h"
 
-namespace lensproof {
+namespace lensproof::formats {
 
 namespace {
 
 /// A form of prescriptions, by the extension of its files.
 struct Form {
     std::string_view extension;
-    Prescription (*parse)(const std::string&, const std::filesystem::path&);
-    WrittenPrescription (*write)(const Prescription&);  // null: read only
+    optics::Prescription (*parse)(const std::string&, const std::filesystem::path&);
+    WrittenPrescription (*write)(const optics::Prescription&);  // null: read only
 };
 
 constexpr Form kForms[] = {
@@ -50,7 +50,7 @@ const Form& find_form(const std::filesystem::path& file) {
 
 }  // namespace
 
-Prescription read_prescription(const std::filesystem::path& file) {
+optics::Prescription read_prescription(const std::filesystem::path& file) {
     return find_form(file).parse(read_file(file), file);
 }
 
@@ -69,15 +69,16 @@ void check_prescription_name(const std::filesystem::path& file) {
     check_output_name(file);
 }
 
-std::vector<Finding> write_prescription(const Prescription& prescription, const std::filesystem::path& file) {
+std::vector<optics::Finding> write_prescription(const optics::Prescription& prescription,
+                                                const std::filesystem::path& file) {
     check_prescription_name(file);
-    Prescription moved = prescription;
+    optics::Prescription moved = prescription;
     const std::filesystem::path folder = std::filesystem::absolute(file).parent_path();
     moved.file = folder / file.filename();
     for (std::filesystem::path& catalogue : moved.catalogues) {
         catalogue = std::filesystem::absolute(catalogue);
     }
-    if (auto* texture = std::get_if<TexturedStop>(&moved.stop_shape)) {
+    if (auto* texture = std::get_if<optics::TexturedStop>(&moved.stop_shape)) {
         const auto image = std::filesystem::absolute(prescription.file).parent_path() / texture->image;
         texture->image = image.lexically_proximate(folder).generic_string();
     }
@@ -112,4 +113,4 @@ std::filesystem::path find_lens_file(const std::string& lens) {
     return path;
 }
 
-}  // namespace lensproof
+}  // namespace lensproof::formats

@@ -7,26 +7,26 @@
 
 #include "engine/optics/prescription.h"
 
-namespace lensproof {
+namespace lensproof::formats {
 
 /// Each takes a file's bytes; `file` names it in messages and in the prescription. See `read_prescription`.
-Prescription parse_toml_prescription(const std::string& text, const std::filesystem::path& file);
-Prescription parse_csv_prescription(const std::string& text, const std::filesystem::path& file);
-Prescription parse_zmx(const std::string& text, const std::filesystem::path& file);
-Prescription parse_seq(const std::string& text, const std::filesystem::path& file);
-Prescription parse_pbrt_lens(const std::string& text, const std::filesystem::path& file);
-Prescription parse_optiland(const std::string& text, const std::filesystem::path& file);
-Prescription parse_fx(const std::string& text, const std::filesystem::path& file);
+optics::Prescription parse_toml_prescription(const std::string& text, const std::filesystem::path& file);
+optics::Prescription parse_csv_prescription(const std::string& text, const std::filesystem::path& file);
+optics::Prescription parse_zmx(const std::string& text, const std::filesystem::path& file);
+optics::Prescription parse_seq(const std::string& text, const std::filesystem::path& file);
+optics::Prescription parse_pbrt_lens(const std::string& text, const std::filesystem::path& file);
+optics::Prescription parse_optiland(const std::string& text, const std::filesystem::path& file);
+optics::Prescription parse_fx(const std::string& text, const std::filesystem::path& file);
 
 /// A prescription in another form, and what that form cannot say.
 struct WrittenPrescription {
     std::string text;
-    std::vector<Finding> lost;
+    std::vector<optics::Finding> lost;
 };
 
-WrittenPrescription to_toml(const Prescription& prescription);
-WrittenPrescription to_csv(const Prescription& prescription);
-WrittenPrescription to_zmx(const Prescription& prescription);
-WrittenPrescription to_pbrt_lens(const Prescription& prescription);
+WrittenPrescription to_toml(const optics::Prescription& prescription);
+WrittenPrescription to_csv(const optics::Prescription& prescription);
+WrittenPrescription to_zmx(const optics::Prescription& prescription);
+WrittenPrescription to_pbrt_lens(const optics::Prescription& prescription);
 
-}  // namespace lensproof
+}  // namespace lensproof::formats

@@ -19,7 +19,7 @@
 #include "engine/base/text_encoding.h"
 #include "engine/formats/prescription/prescription_forms.h"
 
-namespace lensproof {
+namespace lensproof::formats {
 
 namespace {
 
@@ -47,7 +47,7 @@ class FxTable {
         lens_.source = "the file " + file.filename().string();
     }
 
-    Prescription read(std::string_view text) {
+    optics::Prescription read(std::string_view text) {
         const std::vector<std::string_view> lines = lines_of(without_byte_order_mark(text));
         const auto read_each = [&](auto read_one) {
             for (std::size_t i = 0; i < lines.size(); ++i) {
@@ -64,14 +64,14 @@ class FxTable {
         set_zoom();
         set_focal_lengths();
         if (has_planes_) {
-            remark("radius-for-flat", Severity::info, 0,
+            remark("radius-for-flat", optics::Severity::info, 0,
                    "radii of 10000 and 100000 are read as flat, which the form has no other way to say");
         }
         return std::move(lens_);
     }
 
   private:
-    void remark(const std::string& code, Severity severity, int surface, const std::string& message) {
+    void remark(const std::string& code, optics::Severity severity, int surface, const std::string& message) {
         if (lens_.remarks.size() == kMostRemarks) {
             return;
         }
@@ -102,7 +102,7 @@ class FxTable {
             fail(line, "#!scale and a positive number");
         }
         is_scaled_ = true;
-        remark("scaled", Severity::warning, 0,
+        remark("scaled", optics::Severity::warning, 0,
                fmt::format("every length is multiplied by the file's #!scale, {}", scale_));
     }
 
@@ -128,7 +128,7 @@ class FxTable {
         }
         line = trimmed(line.substr(std::min(line.find_first_not_of("#/"), line.size())));
         if (line.starts_with("!")) {
-            remark("line-not-read", Severity::warning, 0,
+            remark("line-not-read", optics::Severity::warning, 0,
                    fmt::format("the line \"{}\" is not understood", printable(line)));
         } else if (!line.empty() && lens_.surfaces.empty() && !is_named_ && line.find(": ") == std::string::npos) {
             lens_.name = line;
@@ -166,7 +166,7 @@ class FxTable {
             fail(line, "radius, thickness, material, n_d and V_d behind glass, semi-diameter");
         }
         const int surface_number = static_cast<int>(lens_.surfaces.size()) + 1;
-        PrescribedSurface surface;
+        optics::PrescribedSurface surface;
         surface.where = fmt::format("{}: surface {}", where_, surface_number);
         const double radius = number(words[0], "a radius");
         surface.radius_mm = stands_for_flat(radius) ? std::numeric_limits<double>::infinity() : scale_ * radius;
@@ -180,14 +180,15 @@ class FxTable {
         }
         surface.semi_diameter_mm = scale_ * number(words[next++], "a semi-diameter");
         if (next < words.size()) {
-            remark("column-not-read", Severity::warning, surface_number,
+            remark("column-not-read", optics::Severity::warning, surface_number,
                    fmt::format("\"{}\" behind the semi-diameter is not understood", printable(words[next])));
         }
         read_aspheric(line, body_end, surface);
         lens_.surfaces.push_back(std::move(surface));
     }
 
-    void read_medium(const std::vector<std::string_view>& words, std::size_t& next, PrescribedSurface& surface) const {
+    void read_medium(const std::vector<std::string_view>& words, std::size_t& next,
+                     optics::PrescribedSurface& surface) const {
         if (next >= words.size()) {
             fail(words.back(), "a material behind the thickness: air, iris, abbe or a glass");
         }
@@ -203,7 +204,7 @@ class FxTable {
         }
         if (kind == "iris") {
             surface.is_stop = true;
-            surface.medium = lens_.surfaces.empty() ? StatedMedium{} : lens_.surfaces.back().medium;
+            surface.medium = lens_.surfaces.empty() ? optics::StatedMedium{} : lens_.surfaces.back().medium;
             return;
         }
         if (parse_number(material)) {
@@ -217,7 +218,7 @@ class FxTable {
         surface.medium.V_d = number(words[next++], "V_d behind n_d");
     }
 
-    void read_aspheric(std::string_view line, std::size_t body_end, PrescribedSurface& surface) const {
+    void read_aspheric(std::string_view line, std::size_t body_end, optics::PrescribedSurface& surface) const {
         const std::size_t at = line.find(kAspheric, body_end);
         if (at == std::string_view::npos) {
             return;
@@ -225,12 +226,12 @@ class FxTable {
         std::string_view list = line.substr(at + kAspheric.size());
         list = list.substr(0, list.find_first_of("#/"));
         std::vector<double> values;
-        while (!trimmed(list).empty() && values.size() <= kAsphereTerms) {
+        while (!trimmed(list).empty() && values.size() <= optics::kAsphereTerms) {
             const std::string_view word = list.substr(0, list.find(','));
             values.push_back(number(trimmed(word), "k,A4,A6,A8,A10 behind #!aspheric="));
             list.remove_prefix(std::min(word.size() + 1, list.size()));
         }
-        if (values.empty() || values.size() > kAsphereTerms) {
+        if (values.empty() || values.size() > optics::kAsphereTerms) {
             fail(line, "k,A4,A6,A8,A10 behind #!aspheric=");
         }
         surface.conic = values[0];
@@ -247,7 +248,7 @@ class FxTable {
         }
         for (std::size_t position = 0; count > 1 && position < count; ++position) {
             constexpr std::array<const char*, kMostPositions> kNames = {"short", "mid", "long"};
-            ZoomPosition zoom;
+            optics::ZoomPosition zoom;
             zoom.name = position + 1 == count ? kNames.back() : kNames[position];
             for (std::size_t i = 0; i < thicknesses_.size(); ++i) {
                 if (thicknesses_[i].size() > 1) {
@@ -259,7 +260,7 @@ class FxTable {
         }
         for (std::size_t i = 0; i < thicknesses_.size(); ++i) {
             if (thicknesses_[i].size() > 1 && thicknesses_[i].size() < count) {
-                remark("zoom-gap-missing", Severity::warning, static_cast<int>(i) + 1,
+                remark("zoom-gap-missing", optics::Severity::warning, static_cast<int>(i) + 1,
                        fmt::format("{} thicknesses where other surfaces have {}: the last one is repeated",
                                    thicknesses_[i].size(), count));
             }
@@ -274,13 +275,13 @@ class FxTable {
                 lens_.zoom[i].stated.efl_mm = scale_ * focal_lengths_[i];
             }
         } else if (!focal_lengths_.empty()) {
-            remark("line-not-read", Severity::warning, 0,
+            remark("line-not-read", optics::Severity::warning, 0,
                    fmt::format("#EFL has {} focal lengths for {} zoom positions", focal_lengths_.size(),
                                std::max<std::size_t>(1, lens_.zoom.size())));
         }
     }
 
-    Prescription lens_;
+    optics::Prescription lens_;
     std::vector<std::vector<double>> thicknesses_;  // of every surface, by zoom position
     std::vector<double> focal_lengths_;             // as #EFL lists them
     std::vector<std::string> notes_;
@@ -293,8 +294,8 @@ class FxTable {
 
 }  // namespace
 
-Prescription parse_fx(const std::string& text, const std::filesystem::path& file) {
+optics::Prescription parse_fx(const std::string& text, const std::filesystem::path& file) {
     return FxTable(file).read(to_utf8(text));
 }
 
-}  // namespace lensproof
+}  // namespace lensproof::formats

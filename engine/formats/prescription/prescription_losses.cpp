@@ -7,24 +7,25 @@
 #include "engine/optics/lens.h"
 #include "engine/spectral/wavelengths.h"
 
-namespace lensproof {
+namespace lensproof::formats {
 
-Finding lost(const std::string& code, Severity severity, int surface, const std::string& message) {
+optics::Finding lost(const std::string& code, optics::Severity severity, int surface, const std::string& message) {
     return {.code = code, .severity = severity, .surface = surface, .message = message};
 }
 
-Prescription single_position(const Prescription& prescription, std::vector<Finding>& lost_here) {
+optics::Prescription single_position(const optics::Prescription& prescription,
+                                     std::vector<optics::Finding>& lost_here) {
     if (prescription.zoom.empty()) {
         return prescription;
     }
-    lost_here.push_back(lost("lost-zoom", Severity::warning, 0,
+    lost_here.push_back(lost("lost-zoom", optics::Severity::warning, 0,
                              fmt::format("one of {} zoom positions is written, \"{}\"; the others are left out",
                                          prescription.zoom.size(), prescription.zoom.front().name)));
-    return at_zoom_position(prescription, 0);
+    return optics::at_zoom_position(prescription, 0);
 }
 
-std::optional<double> plain_semi_diameter(const Prescription& prescription, std::size_t index) {
-    const PrescribedSurface& row = prescription.surfaces[index];
+std::optional<double> plain_semi_diameter(const optics::Prescription& prescription, std::size_t index) {
+    const optics::PrescribedSurface& row = prescription.surfaces[index];
     std::optional<double> narrowest = row.semi_diameter_mm ? row.semi_diameter_mm : row.rim_mm;
     const auto narrow = [&](const std::optional<double>& barrel) {
         if (barrel && !(narrowest && *narrowest <= *barrel)) {
@@ -40,71 +41,75 @@ std::optional<double> plain_semi_diameter(const Prescription& prescription, std:
 
 namespace {
 
-void add_surface_losses(const PrescribedSurface& row, int surface, std::vector<Finding>& losses) {
-    const auto add = [&](const std::string& code, Severity severity, const std::string& message) {
+void add_surface_losses(const optics::PrescribedSurface& row, int surface, std::vector<optics::Finding>& losses) {
+    const auto add = [&](const std::string& code, optics::Severity severity, const std::string& message) {
         losses.push_back(lost(code, severity, surface, message));
     };
     if (row.radius_x_mm) {
-        add("lost-toroid", Severity::warning, "a toroid or cylinder, written as a surface of revolution");
+        add("lost-toroid", optics::Severity::warning, "a toroid or cylinder, written as a surface of revolution");
     }
-    if (row.misalignment != Misalignment{}) {
-        add("lost-misalignment", Severity::warning, "its decentre and tilt are left out");
+    if (row.misalignment != optics::Misalignment{}) {
+        add("lost-misalignment", optics::Severity::warning, "its decentre and tilt are left out");
     }
     if (!row.coating.empty()) {
-        add("lost-coating", Severity::warning,
+        add("lost-coating", optics::Severity::warning,
             fmt::format("its coating \"{}\" is left out: the rays stay, their transmittance changes", row.coating));
     }
     if ((row.rim_mm && row.semi_diameter_mm) || row.barrel_mm) {
-        add("lost-rim", Severity::info, "of rim, barrel and clear aperture, one semi-diameter is written");
+        add("lost-rim", optics::Severity::info, "of rim, barrel and clear aperture, one semi-diameter is written");
     }
 }
 
-bool states_anything(const StatedData& stated) {
+bool states_anything(const optics::StatedData& stated) {
     return stated.efl_mm || stated.bfl_mm || stated.f_number || stated.half_field_deg || stated.image_circle_mm ||
            stated.total_track_mm || stated.entrance_pupil_diameter_mm;
 }
 
 }  // namespace
 
-std::pair<double, double> figures_of_table(const StatedMedium& medium) {
-    PrescribedSurface row;
+std::pair<double, double> figures_of_table(const optics::StatedMedium& medium) {
+    optics::PrescribedSurface row;
     row.medium.indices = medium.indices;
-    const DispersionFormula formula = resolved_medium(row, {}, {}).formula;
-    const double dispersion = refractive_index(formula, kLineF) - refractive_index(formula, kLineC);
-    const double n_d = refractive_index(formula, kLineD);
+    const optics::DispersionFormula formula = optics::resolved_medium(row, {}, {}).formula;
+    const double dispersion =
+        optics::refractive_index(formula, spectral::kLineF) - optics::refractive_index(formula, spectral::kLineC);
+    const double n_d = optics::refractive_index(formula, spectral::kLineD);
     return {n_d, dispersion > 0.0 ? (n_d - 1.0) / dispersion : 0.0};
 }
 
-std::vector<Finding> losses_of_tables(const Prescription& prescription) {
-    std::vector<Finding> losses;
+std::vector<optics::Finding> losses_of_tables(const optics::Prescription& prescription) {
+    std::vector<optics::Finding> losses;
     for (std::size_t i = 0; i < prescription.surfaces.size(); ++i) {
         add_surface_losses(prescription.surfaces[i], static_cast<int>(i) + 1, losses);
     }
-    const auto add = [&](bool holds, const std::string& code, Severity severity, const std::string& message) {
+    const auto add = [&](bool holds, const std::string& code, optics::Severity severity, const std::string& message) {
         if (holds) {
             losses.push_back(lost(code, severity, 0, message));
         }
     };
-    const bool moves = std::ranges::any_of(
-        prescription.groups, [](const MisalignedGroup& group) { return group.misalignment != Misalignment{}; });
-    add(moves, "lost-misalignment", Severity::warning, "decentred and tilted groups are written as if aligned");
-    add(prescription.stop_shape.index() != 0, "lost-stop-shape", Severity::warning,
+    const bool moves = std::ranges::any_of(prescription.groups, [](const optics::MisalignedGroup& group) {
+        return group.misalignment != optics::Misalignment{};
+    });
+    add(moves, "lost-misalignment", optics::Severity::warning, "decentred and tilted groups are written as if aligned");
+    add(prescription.stop_shape.index() != 0, "lost-stop-shape", optics::Severity::warning,
         "the stop's shape is left out: a full circle is written");
-    add(!prescription.focus_groups.empty(), "lost-focus-groups", Severity::warning,
+    add(!prescription.focus_groups.empty(), "lost-focus-groups", optics::Severity::warning,
         "which groups move to focus is left out");
-    add(prescription.surroundings == Surroundings::vacuum, "lost-surroundings", Severity::warning,
+    add(prescription.surroundings == optics::Surroundings::vacuum, "lost-surroundings", optics::Severity::warning,
         "that the lens is in vacuum is left out");
     add(!prescription.catalogues.empty() || !prescription.preferred_makers.empty(), "lost-catalogues",
-        Severity::warning, "the lens's own glass catalogues and preferred makers are left out");
-    add(prescription.projection != Projection::rectilinear, "lost-projection", Severity::info,
+        optics::Severity::warning, "the lens's own glass catalogues and preferred makers are left out");
+    add(prescription.projection != optics::Projection::rectilinear, "lost-projection", optics::Severity::info,
         fmt::format("the {} projection that the lens is meant to have is left out",
-                    projection_name(prescription.projection)));
-    add(states_anything(prescription.stated), "lost-stated", Severity::info,
+                    optics::projection_name(prescription.projection)));
+    add(states_anything(prescription.stated), "lost-stated", optics::Severity::info,
         "what the source states of the whole lens is left out");
     add(prescription.object_distance_mm != std::numeric_limits<double>::infinity(), "lost-object-distance",
-        Severity::info, fmt::format("the object's distance, {} mm, is left out", prescription.object_distance_mm));
-    add(!prescription.wavelengths_nm.empty(), "lost-wavelengths", Severity::info, "the wavelengths are left out");
+        optics::Severity::info,
+        fmt::format("the object's distance, {} mm, is left out", prescription.object_distance_mm));
+    add(!prescription.wavelengths_nm.empty(), "lost-wavelengths", optics::Severity::info,
+        "the wavelengths are left out");
     return losses;
 }
 
-}  // namespace lensproof
+}  // namespace lensproof::formats

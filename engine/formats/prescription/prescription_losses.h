@@ -7,22 +7,22 @@
 
 #include "engine/optics/prescription.h"
 
-namespace lensproof {
+namespace lensproof::formats {
 
 /// Of a form that does not say something: a warning where rays then go another way, else an info.
-Finding lost(const std::string& code, Severity severity, int surface, const std::string& message);
+optics::Finding lost(const std::string& code, optics::Severity severity, int surface, const std::string& message);
 
 /// The prescription at its first zoom position, if it has several; `lost_here` then says so.
-Prescription single_position(const Prescription& prescription, std::vector<Finding>& lost_here);
+optics::Prescription single_position(const optics::Prescription& prescription, std::vector<optics::Finding>& lost_here);
 
 /// The clear semi-diameter of surface `index` (from 0) where nothing but one number can be said of it: the stated one,
 /// or the rim where none is, narrowed by the barrel on either side. Nothing where nothing is stated.
-std::optional<double> plain_semi_diameter(const Prescription& prescription, std::size_t index);
+std::optional<double> plain_semi_diameter(const optics::Prescription& prescription, std::size_t index);
 
 /// n_d and V_d of a medium's table of indices, as it is traced; V_d is 0 where the index does not fall from F to C.
-std::pair<double, double> figures_of_table(const StatedMedium& medium);
+std::pair<double, double> figures_of_table(const optics::StatedMedium& medium);
 
 /// What neither the CSV table nor pbrt's says: toroids, tilts, coatings, blades, groups, surroundings, claims.
-std::vector<Finding> losses_of_tables(const Prescription& prescription);
+std::vector<optics::Finding> losses_of_tables(const optics::Prescription& prescription);
 
-}  // namespace lensproof
+}  // namespace lensproof::formats

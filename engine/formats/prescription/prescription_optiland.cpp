@@ -15,7 +15,7 @@
 #include "engine/formats/prescription/prescription_forms.h"
 #include "engine/optics/frame.h"
 
-namespace lensproof {
+namespace lensproof::formats {
 
 namespace {
 
@@ -25,19 +25,19 @@ constexpr double kDegree = std::numbers::pi / 180.0;
 
 /// Where a surface stands in the whole lens. Optiland turns about x, then the fixed y, then the fixed z, which is about
 /// z, the turned y and the twice turned x.
-Frame read_frame(const JsonValue& system) {
+optics::Frame read_frame(const JsonValue& system) {
     const Vec3d origin{system.number_or("x", 0.0), system.number_or("y", 0.0), system.number_or("z", 0.0)};
     // As deep as the file, which is bounded. An infinite z, the object's, stays out of sums over the axes.
-    const Frame frame =
-        system.has("reference_cs") ? read_frame(system.at("reference_cs")).shifted(origin) : Frame{.origin = origin};
+    const optics::Frame frame = system.has("reference_cs") ? read_frame(system.at("reference_cs")).shifted(origin)
+                                                           : optics::Frame{.origin = origin};
     return frame.turned(2, system.number_or("rz", 0.0) / kDegree)
         .turned(1, system.number_or("ry", 0.0) / kDegree)
         .turned(0, system.number_or("rx", 0.0) / kDegree);
 }
 
 /// The angles as a prescription has them, without the −0 of what is not turned.
-std::array<double, 3> tilt_of(const Frame& frame) {
-    std::array<double, 3> tilts = tilt_angles(frame);
+std::array<double, 3> tilt_of(const optics::Frame& frame) {
+    std::array<double, 3> tilts = optics::tilt_angles(frame);
     std::ranges::for_each(tilts, [](double& angle) { angle += 0.0; });
     return tilts;
 }
@@ -50,7 +50,7 @@ class OptilandLens {
         lens_.source = "the file " + file.filename().string() + ", saved by Optiland";
     }
 
-    Prescription read(const JsonValue& top) {
+    optics::Prescription read(const JsonValue& top) {
         const std::vector<JsonValue> surfaces = top.at("surface_group").at("surfaces").list();
         if (surfaces.size() < 3 || surfaces.size() > kMostSurfaces) {
             throw InputError(
@@ -60,7 +60,7 @@ class OptilandLens {
         if (const std::string name = top.text_or("name", ""); !name.empty()) {
             lens_.name = name;
         }
-        std::vector<Frame> frames;
+        std::vector<optics::Frame> frames;
         frames.reserve(surfaces.size());
         for (const JsonValue& surface : surfaces) {
             frames.push_back(read_frame(surface.at("geometry").at("cs")));
@@ -92,7 +92,7 @@ class OptilandLens {
 
   private:
     void remark(const std::string& code, int surface, const std::string& message,
-                Severity severity = Severity::warning) {
+                optics::Severity severity = optics::Severity::warning) {
         lens_.remarks.push_back({.code = code, .severity = severity, .surface = surface, .message = message});
     }
 
@@ -102,9 +102,9 @@ class OptilandLens {
         }
     }
 
-    void add_surface(const JsonValue& value, const Frame& frame, double thickness) {
+    void add_surface(const JsonValue& value, const optics::Frame& frame, double thickness) {
         const int number = static_cast<int>(lens_.surfaces.size()) + 1;
-        PrescribedSurface surface;
+        optics::PrescribedSurface surface;
         surface.where = value.where();
         // The saved thickness is the shorter number, but where both are said it is the vertices that count.
         const double stated = value.number_or("thickness", thickness);
@@ -122,7 +122,7 @@ class OptilandLens {
         lens_.surfaces.push_back(std::move(surface));
     }
 
-    void read_geometry(const JsonValue& geometry, int number, PrescribedSurface& surface) {
+    void read_geometry(const JsonValue& geometry, int number, optics::PrescribedSurface& surface) {
         const std::string type = geometry.text_or("type", "");
         surface.radius_mm = geometry.number_or("radius", kInfinity);
         surface.conic = geometry.number_or("conic", 0.0);
@@ -142,28 +142,28 @@ class OptilandLens {
             remark("shape-not-read", number,
                    fmt::format("a surface of the kind \"{}\" is not understood: its radius and conic alone are taken",
                                printable(type)),
-                   Severity::error);
+                   optics::Severity::error);
         }
     }
 
-    void read_terms(const JsonValue& geometry, const std::string& key, int number, PrescribedSurface& surface) {
+    void read_terms(const JsonValue& geometry, const std::string& key, int number, optics::PrescribedSurface& surface) {
         if (!geometry.has(key)) {
             return;
         }
         const std::vector<JsonValue> terms = geometry.at(key).list();
         for (std::size_t term = 0; term < terms.size(); ++term) {
             const double coefficient = terms[term].number();
-            if (term < kAsphereTerms) {
+            if (term < optics::kAsphereTerms) {
                 surface.asphere[term] = coefficient;
             } else if (coefficient != 0.0) {
                 remark("asphere-term-not-read", number,
                        fmt::format("the term of r^{} is left out: even powers up to r²⁰ are carried", 2 * term + 2),
-                       Severity::error);
+                       optics::Severity::error);
             }
         }
     }
 
-    void read_material(const JsonValue& material, int number, StatedMedium& medium) {
+    void read_material(const JsonValue& material, int number, optics::StatedMedium& medium) {
         const std::string type = material.text_or("type", "");
         if (type == "IdealMaterial") {
             const double index = material.at("index").number();
@@ -180,7 +180,7 @@ class OptilandLens {
             remark("dispersion-model", number,
                    at_e ? "its index and Abbe number are those of the e line, and are taken as if at the d line"
                         : "between the lines its index follows the normal line, not Optiland's fit",
-                   at_e ? Severity::warning : Severity::info);
+                   at_e ? optics::Severity::warning : optics::Severity::info);
         } else if (type == "Material" || type == "MaterialFile") {
             medium.glass = glass_name(material);
         } else if (type != "Mirror") {
@@ -207,7 +207,7 @@ class OptilandLens {
         return maker + " " + name;
     }
 
-    void read_rim(const JsonValue& value, int number, PrescribedSurface& surface) {
+    void read_rim(const JsonValue& value, int number, optics::PrescribedSurface& surface) {
         if (!value.has("aperture")) {
             return;
         }
@@ -226,7 +226,7 @@ class OptilandLens {
 
     void read_interaction(const JsonValue& model, int number) {
         if (model.is_true("is_reflective")) {
-            remark("mirror", number, "a mirror: it is taken as a refracting surface", Severity::error);
+            remark("mirror", number, "a mirror: it is taken as a refracting surface", optics::Severity::error);
         }
         if (model.has("coating")) {
             remark("coating-not-read", number, "its coating is left out");
@@ -240,7 +240,7 @@ class OptilandLens {
         }
     }
 
-    void read_image(const JsonValue& image, const Frame& frame) {
+    void read_image(const JsonValue& image, const optics::Frame& frame) {
         const double radius = image.at("geometry").number_or("radius", kInfinity);
         if (std::isfinite(radius) && radius != 0.0) {
             remark("curved-image", 0,
@@ -258,7 +258,7 @@ class OptilandLens {
         const JsonValue aperture = top.at("aperture");
         const std::string type = aperture.has("type") ? aperture.at("type").text() : aperture.text_or("ap_type", "");
         const double value = aperture.at("value").number();
-        const auto stop = std::ranges::find_if(lens_.surfaces, &PrescribedSurface::is_stop);
+        const auto stop = std::ranges::find_if(lens_.surfaces, &optics::PrescribedSurface::is_stop);
         if (type == "EPD") {
             lens_.stated.entrance_pupil_diameter_mm = value;
         } else if (type == "imageFNO") {
@@ -321,13 +321,13 @@ class OptilandLens {
         }
     }
 
-    Prescription lens_;
+    optics::Prescription lens_;
 };
 
 }  // namespace
 
-Prescription parse_optiland(const std::string& text, const std::filesystem::path& file) {
+optics::Prescription parse_optiland(const std::string& text, const std::filesystem::path& file) {
     return OptilandLens(file).read(JsonValue::parse(text, file));
 }
 
-}  // namespace lensproof
+}  // namespace lensproof::formats

@@ -18,7 +18,7 @@
 #include "engine/optics/lens.h"
 #include "engine/spectral/wavelengths.h"
 
-namespace lensproof {
+namespace lensproof::formats {
 
 namespace {
 
@@ -47,7 +47,7 @@ class PbrtLens {
         lens_.source = "the file " + file.filename().string();
     }
 
-    Prescription read(std::string_view text) {
+    optics::Prescription read(std::string_view text) {
         std::vector<std::string> comments;
         int number = 0;
         for (const std::string_view line : lines_of(without_byte_order_mark(text))) {
@@ -71,7 +71,7 @@ class PbrtLens {
     }
 
   private:
-    void remark(const std::string& code, Severity severity, int surface, const std::string& message) {
+    void remark(const std::string& code, optics::Severity severity, int surface, const std::string& message) {
         lens_.remarks.push_back({.code = code, .severity = severity, .surface = surface, .message = message});
     }
 
@@ -86,7 +86,7 @@ class PbrtLens {
         const int number = static_cast<int>(lens_.surfaces.size()) + 1;
         const double index = numbers[2] == 0.0 ? 1.0 : numbers[2];
         const double before = lens_.surfaces.empty() ? 1.0 : lens_.surfaces.back().medium.n_d.value_or(1.0);
-        PrescribedSurface surface;
+        optics::PrescribedSurface surface;
         surface.where = fmt::format("{}: surface {}", where, number);
         surface.is_stop = numbers[0] == 0.0 && index == before;
         surface.radius_mm = numbers[0] == 0.0 ? std::numeric_limits<double>::infinity() : numbers[0];
@@ -96,14 +96,14 @@ class PbrtLens {
             surface.medium.n_d = index;
         }
         if (numbers.size() == 5) {
-            remark("column-beyond-pbrt", Severity::info, number,
+            remark("column-beyond-pbrt", optics::Severity::info, number,
                    fmt::format("a fifth number, {}, taken as V_d where glass follows", numbers[4]));
             if (surface.medium.n_d && numbers[4] != 0.0) {
                 surface.medium.V_d = numbers[4];
             }
         }
         if (numbers[0] == 0.0 && !surface.is_stop) {
-            remark("flat-or-stop", Severity::warning, number,
+            remark("flat-or-stop", optics::Severity::warning, number,
                    "radius 0 is pbrt's stop, but the index changes here: taken as a flat surface");
         }
         lens_.surfaces.push_back(std::move(surface));
@@ -126,7 +126,7 @@ class PbrtLens {
     void remark_on_thicknesses() {
         const bool starts_with_zero = lens_.surfaces.size() > 1 && lens_.surfaces.front().thickness_mm == 0.0;
         if (starts_with_zero) {
-            remark("thickness-shifted", Severity::warning, 1,
+            remark("thickness-shifted", optics::Severity::warning, 1,
                    "its thickness is 0: the column may hold distances from the surface before; it is read as pbrt "
                    "does, to the next");
         }
@@ -136,7 +136,7 @@ class PbrtLens {
         const double focus = paraxial_focus();
         if (std::isfinite(focus) && focus > 0.0) {
             lens_.surfaces.back().thickness_mm = focus;
-            remark("sensor-placed", Severity::warning, static_cast<int>(lens_.surfaces.size()),
+            remark("sensor-placed", optics::Severity::warning, static_cast<int>(lens_.surfaces.size()),
                    fmt::format("the sensor's distance is 0, since pbrt's camera focuses: the sensor is put at the "
                                "paraxial focus of infinity, {:.6g} mm behind the last surface",
                                focus));
@@ -148,7 +148,7 @@ class PbrtLens {
         double height = 1.0;
         double slope = 0.0;  // times the index
         double before = 1.0;
-        for (const PrescribedSurface& surface : lens_.surfaces) {
+        for (const optics::PrescribedSurface& surface : lens_.surfaces) {
             const double after = surface.medium.n_d.value_or(1.0);
             slope -= (after - before) * surface.curvature() * height;
             before = after;
@@ -159,12 +159,12 @@ class PbrtLens {
         return -height * before / slope;
     }
 
-    Prescription lens_;
+    optics::Prescription lens_;
 };
 
 class PbrtWriter {
   public:
-    explicit PbrtWriter(const Prescription& prescription)
+    explicit PbrtWriter(const optics::Prescription& prescription)
         : lens_(single_position(prescription, written_.lost)),
           glasses_(with_own_catalogues(shipped_glasses(), lens_)) {}
 
@@ -190,7 +190,7 @@ class PbrtWriter {
         }
     }
 
-    void lose(const std::string& code, Severity severity, std::size_t index, const std::string& message) {
+    void lose(const std::string& code, optics::Severity severity, std::size_t index, const std::string& message) {
         written_.lost.push_back(lost(code, severity, static_cast<int>(index) + 1, message));
     }
 
@@ -199,10 +199,10 @@ class PbrtWriter {
             return 2.0 * *stated;
         }
         if (estimated_.surfaces.empty()) {
-            estimated_ = make_lens(with_stop_picture(lens_), glasses_);
+            estimated_ = optics::make_lens(with_stop_picture(lens_), glasses_);
         }
         const double needed = 2.0 * estimated_.surfaces[index].semi_diameter;
-        lose("aperture-estimated", Severity::info, index,
+        lose("aperture-estimated", optics::Severity::info, index,
              fmt::format("no clear aperture is stated; written is what the stated f-number and field need, {:.6g} mm",
                          needed));
         return needed;
@@ -214,18 +214,18 @@ class PbrtWriter {
 
     /// Returns the index behind the surface.
     double add_row(std::size_t i, double before) {
-        const PrescribedSurface& row = lens_.surfaces[i];
-        const Glass medium = resolved_medium(row, glasses_, lens_.preferred_makers);
-        const double after = refractive_index(medium.formula, kLineD);
+        const optics::PrescribedSurface& row = lens_.surfaces[i];
+        const optics::Glass medium = optics::resolved_medium(row, glasses_, lens_.preferred_makers);
+        const double after = optics::refractive_index(medium.formula, spectral::kLineD);
         if (!row.medium.glass.empty() && !row.medium.is_air()) {
-            lose("lost-dispersion", Severity::warning, i,
+            lose("lost-dispersion", optics::Severity::warning, i,
                  fmt::format("of {} its index at the d line alone is written, {}", row.medium.glass, after));
         } else if (row.medium.V_d || row.medium.indices.size() > 1) {
-            lose("lost-dispersion", Severity::warning, i,
+            lose("lost-dispersion", optics::Severity::warning, i,
                  fmt::format("its index at the d line alone is written, {}", after));
         }
         if (row.conic != 0.0 || row.is_asphere()) {
-            lose("lost-asphere", Severity::warning, i, "its conic and aspheric terms are left out");
+            lose("lost-asphere", optics::Severity::warning, i, "its conic and aspheric terms are left out");
         }
         const double aperture = diameter(i);
         const bool is_plane = row.is_flat();
@@ -234,12 +234,12 @@ class PbrtWriter {
             return after;
         }
         if (row.is_stop) {
-            lose("lost-stop", Severity::warning, i,
+            lose("lost-stop", optics::Severity::warning, i,
                  "the stop lies on a refracting surface; it is written as a plane in front of that");
             add_line(0.0, 0.0, before == 1.0 ? 0.0 : before, aperture);
         }
         if (is_plane) {
-            lose("lost-flat", Severity::warning, i,
+            lose("lost-flat", optics::Severity::warning, i,
                  fmt::format("radius 0 is the stop; the plane is written with a radius of {} mm", kAlmostFlat));
         }
         add_line(is_plane ? kAlmostFlat : row.radius_mm, row.thickness_mm, after, aperture);
@@ -247,19 +247,19 @@ class PbrtWriter {
     }
 
     WrittenPrescription written_;
-    Prescription lens_;
-    GlassCatalogue glasses_;
-    Lens estimated_;  // made where its semi-diameters are asked for
+    optics::Prescription lens_;
+    optics::GlassCatalogue glasses_;
+    optics::Lens estimated_;  // made where its semi-diameters are asked for
 };
 
 }  // namespace
 
-Prescription parse_pbrt_lens(const std::string& text, const std::filesystem::path& file) {
+optics::Prescription parse_pbrt_lens(const std::string& text, const std::filesystem::path& file) {
     return PbrtLens(file).read(to_utf8(text));
 }
 
-WrittenPrescription to_pbrt_lens(const Prescription& prescription) {
+WrittenPrescription to_pbrt_lens(const optics::Prescription& prescription) {
     return PbrtWriter(prescription).write();
 }
 
-}  // namespace lensproof
+}  // namespace lensproof::formats

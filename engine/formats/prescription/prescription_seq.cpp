@@ -13,7 +13,7 @@
 #include "engine/formats/prescription/surface_chain.h"
 #include "engine/optics/glass_name.h"
 
-namespace lensproof {
+namespace lensproof::formats {
 
 namespace {
 
@@ -44,15 +44,15 @@ std::string catalogue_name(const std::string& stated) {
 
 /// n_d and V_d from CODE V's codes. It writes no density: behind six digits and a point stands V_d, and a zero more
 /// says so where there are three digits of it.
-std::optional<GlassCode> glass_code(const std::string& glass) {
+std::optional<optics::GlassCode> glass_code(const std::string& glass) {
     constexpr std::size_t kDigits = 6;
     const bool looks_dense = glass.find('.') == kDigits && glass.size() == kDigits + 4;
-    return parse_glass_code(looks_dense ? glass + "0" : glass);
+    return optics::parse_glass_code(looks_dense ? glass + "0" : glass);
 }
 
 /// The medium behind a surface; `where` is its place in the file.
-StatedMedium read_medium(const SeqFile& file, const std::string& glass, const std::string& where) {
-    StatedMedium medium;
+optics::StatedMedium read_medium(const SeqFile& file, const std::string& glass, const std::string& where) {
+    optics::StatedMedium medium;
     if (glass.empty() || glass == "AIR") {
         return medium;
     }
@@ -60,7 +60,7 @@ StatedMedium read_medium(const SeqFile& file, const std::string& glass, const st
     const std::optional<double> n_d = parse_number(glass.substr(0, colon));
     if (const auto own = file.private_glasses.find(glass); own != file.private_glasses.end()) {
         medium.indices = own->second;
-    } else if (const std::optional<GlassCode> code = glass_code(glass)) {
+    } else if (const std::optional<optics::GlassCode> code = glass_code(glass)) {
         medium.n_d = code->n_d;
         medium.V_d = code->V_d;
     } else if (n_d) {
@@ -75,14 +75,15 @@ StatedMedium read_medium(const SeqFile& file, const std::string& glass, const st
     return medium;
 }
 
-PrescribedSurface read_row(const SeqFile& file, int number, const std::filesystem::path& path, Remarks& remarks) {
+optics::PrescribedSurface read_row(const SeqFile& file, int number, const std::filesystem::path& path,
+                                   Remarks& remarks) {
     const SeqSurface& surface = file.surfaces[number];
     const double unit = file.unit_mm;
     const auto radius = [unit](double curvature) { return curvature == 0.0 ? kInfinity : unit / curvature; };
     const auto length = [unit](std::optional<double> value) {
         return value ? std::optional(*value * unit) : std::nullopt;
     };
-    PrescribedSurface row;
+    optics::PrescribedSurface row;
     row.where = fmt::format("{}:{}: S{}", path.string(), surface.line, number);
     row.is_stop = surface.is_stop;
     row.radius_mm = radius(surface.curvature);
@@ -93,7 +94,7 @@ PrescribedSurface read_row(const SeqFile& file, int number, const std::filesyste
         row.radius_x_mm = radius(surface.curvature);
     }
     row.conic = surface.conic;
-    for (int term = 0; term < kAsphereTerms; ++term) {
+    for (int term = 0; term < optics::kAsphereTerms; ++term) {
         row.asphere[term] = surface.asphere[term] * std::pow(unit, 1 - 2 * (term + 1));
     }
     row.thickness_mm = surface.thickness * unit;
@@ -104,7 +105,7 @@ PrescribedSurface read_row(const SeqFile& file, int number, const std::filesyste
     row.medium = read_medium(file, surface.glass, row.where);
     if (surface.is_mirror) {
         remarks.add(
-            "mirror", Severity::error, number,
+            "mirror", optics::Severity::error, number,
             fmt::format("line {}, surface {} of the file: a mirror, which is not traced", surface.line, number));
     }
     return row;
@@ -118,14 +119,14 @@ std::vector<ChainLink> chain_of(const SeqFile& file, const std::filesystem::path
     };
     const bool has_displaced = std::ranges::any_of(file.surfaces, is_displaced);
     std::vector<ChainLink> links;
-    Frame frame;
+    optics::Frame frame;
     for (std::size_t number = 1; number < file.surfaces.size(); ++number) {
         const SeqSurface& surface = file.surfaces[number];
         const double thickness = surface.thickness * file.unit_mm;
         const double unit = file.unit_mm;
         const Vec3d decentre{surface.decentre[0] * unit, surface.decentre[1] * unit, surface.decentre[2] * unit};
         const std::array<double, 3> tilt = {-surface.tilt_deg[0], -surface.tilt_deg[1], surface.tilt_deg[2]};
-        Frame own = frame;
+        optics::Frame own = frame;
         if (is_displaced(surface)) {
             if (!links.empty()) {
                 links.back().straight = false;
@@ -159,7 +160,8 @@ std::vector<ChainLink> chain_of(const SeqFile& file, const std::filesystem::path
     return links;
 }
 
-void read_aperture(const std::string& type, double value, double unit_mm, StatedData& stated, Remarks& remarks) {
+void read_aperture(const std::string& type, double value, double unit_mm, optics::StatedData& stated,
+                   Remarks& remarks) {
     if (type == "EPD" && value > 0.0) {
         stated.entrance_pupil_diameter_mm = value * unit_mm;
     } else if (type == "FNO" && value > 0.0) {
@@ -168,12 +170,12 @@ void read_aperture(const std::string& type, double value, double unit_mm, Stated
         stated.f_number = 0.5 / value;
     } else if (!type.empty()) {
         remarks.add_once(
-            type, "aperture", Severity::info, 0,
+            type, "aperture", optics::Severity::info, 0,
             fmt::format("{} = {} does not say the aperture; the stop's semi-diameter is taken", type, value));
     }
 }
 
-void read_fields(const SeqFile& file, StatedData& stated, Remarks& remarks) {
+void read_fields(const SeqFile& file, optics::StatedData& stated, Remarks& remarks) {
     const auto largest = [&](const char* in_x, const char* in_y, bool is_angle) {
         const auto x = file.fields.find(in_x);
         const auto y = file.fields.find(in_y);
@@ -199,38 +201,40 @@ void read_fields(const SeqFile& file, StatedData& stated, Remarks& remarks) {
     }
     if (const double height = largest("XOB", "YOB", false); height > 0.0) {
         remarks.add(
-            "fields", Severity::info, 0,
+            "fields", optics::Severity::info, 0,
             fmt::format("fields are stated as object heights, up to {} mm, and left out", height * file.unit_mm));
     }
 }
 
 /// The object, the image and its defocus.
-void read_ends(const SeqFile& file, const std::vector<ChainLink>& links, Prescription& prescription, Remarks& remarks) {
+void read_ends(const SeqFile& file, const std::vector<ChainLink>& links, optics::Prescription& prescription,
+               Remarks& remarks) {
     constexpr double kFarthest = 1e10;  // the program's infinity
     const SeqSurface& object = file.surfaces.front();
     prescription.object_distance_mm = object.thickness >= kFarthest ? kInfinity : object.thickness * file.unit_mm;
     if (object.curvature != 0.0) {
-        remarks.add("object-shape", Severity::warning, 0,
+        remarks.add("object-shape", optics::Severity::warning, 0,
                     fmt::format("line {}: the object is curved, and taken as flat", object.line));
     }
     if (!is_upright(links.back().frame)) {
-        remarks.add("image-tilt", Severity::warning, 0,
+        remarks.add("image-tilt", optics::Severity::warning, 0,
                     "the image is tilted against the first surface's axis; the sensor is taken as perpendicular to it");
     }
     if (!file.has_image) {
-        remarks.add("image", Severity::info, 0, "no SI line; the sensor is taken behind the last surface's thickness");
+        remarks.add("image", optics::Severity::info, 0,
+                    "no SI line; the sensor is taken behind the last surface's thickness");
         return;
     }
     const SeqSurface& image = file.surfaces.back();
     if (image.curvature != 0.0 || image.type != "SPH") {
-        remarks.add("image-shape", Severity::warning, 0,
+        remarks.add("image-shape", optics::Severity::warning, 0,
                     fmt::format("line {}: the image is not flat; the sensor is taken as flat", image.line));
     }
 }
 
 /// The rows in their places; the sensor stands off the image by its defocus, SI's thickness.
-std::vector<PrescribedSurface> placed(std::vector<PrescribedSurface> rows, const SeqFile& file,
-                                      const std::filesystem::path& path) {
+std::vector<optics::PrescribedSurface> placed(std::vector<optics::PrescribedSurface> rows, const SeqFile& file,
+                                              const std::filesystem::path& path) {
     place_rows(rows, chain_of(file, path));
     if (file.has_image && file.surfaces.back().thickness != 0.0) {
         rows.back().thickness_mm += file.surfaces.back().thickness * file.unit_mm;
@@ -238,20 +242,20 @@ std::vector<PrescribedSurface> placed(std::vector<PrescribedSurface> rows, const
     return rows;
 }
 
-void read_zoom(const SeqFile& file, Prescription& prescription, Remarks& remarks) {
+void read_zoom(const SeqFile& file, optics::Prescription& prescription, Remarks& remarks) {
     if (file.zoom_positions == 1) {
         return;
     }
     SeqFile varied = file;
-    std::vector<std::vector<PrescribedSurface>> tables;
+    std::vector<std::vector<optics::PrescribedSurface>> tables;
     for (int i = 0; i < file.zoom_positions; ++i) {
         const auto at = static_cast<std::size_t>(i);
         for (const auto& [surface, values] : file.zoomed_thicknesses) {
             varied.surfaces[surface].thickness = values[std::min(at, values.size() - 1)];
         }
         tables.push_back(placed(prescription.surfaces, varied, prescription.file));
-        ZoomPosition position{.name = at < file.zoom_titles.size() ? file.zoom_titles[at]
-                                                                   : fmt::format("position {}", i + 1)};
+        optics::ZoomPosition position{.name = at < file.zoom_titles.size() ? file.zoom_titles[at]
+                                                                           : fmt::format("position {}", i + 1)};
         for (const auto& [type, values] : file.zoomed_apertures) {
             read_aperture(type, values[std::min(at, values.size() - 1)], file.unit_mm, position.stated, remarks);
         }
@@ -268,7 +272,7 @@ void read_zoom(const SeqFile& file, Prescription& prescription, Remarks& remarks
             prescription.zoom[i].gaps_mm[static_cast<int>(row) + 1] = tables[i][row].thickness_mm;
         }
         if (std::ranges::any_of(tables, is_misplaced)) {
-            remarks.add("multi-configuration", Severity::warning, static_cast<int>(row) + 1,
+            remarks.add("multi-configuration", optics::Severity::warning, static_cast<int>(row) + 1,
                         fmt::format("the decentre of surface {} differs between the zoom positions, which is left out",
                                     row + 1));
         }
@@ -277,10 +281,10 @@ void read_zoom(const SeqFile& file, Prescription& prescription, Remarks& remarks
 
 }  // namespace
 
-Prescription parse_seq(const std::string& text, const std::filesystem::path& file) {
+optics::Prescription parse_seq(const std::string& text, const std::filesystem::path& file) {
     Remarks remarks;
     const SeqFile seq = read_seq_file(to_utf8(text), file, remarks);
-    Prescription prescription;
+    optics::Prescription prescription;
     prescription.file = file;
     prescription.name = seq.title.empty() ? file.stem().string() : seq.title;
     prescription.source = "the file " + file.filename().string();
@@ -312,4 +316,4 @@ Prescription parse_seq(const std::string& text, const std::filesystem::path& fil
     return prescription;
 }
 
-}  // namespace lensproof
+}  // namespace lensproof::formats

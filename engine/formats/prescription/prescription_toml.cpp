@@ -10,7 +10,7 @@
 #include "engine/base/toml.h"
 #include "engine/formats/prescription/prescription_forms.h"
 
-namespace lensproof {
+namespace lensproof::formats {
 
 namespace {
 
@@ -35,13 +35,14 @@ std::array<double, count> numbers_or_zero(TomlTable& table, const std::string& k
     return values;
 }
 
-Misalignment read_misalignment(TomlTable& table) {
+optics::Misalignment read_misalignment(TomlTable& table) {
     return {.decentre_mm = numbers_or_zero<2>(table, "decentre_mm"), .tilt_deg = numbers_or_zero<3>(table, "tilt_deg")};
 }
 
 /// Pairs [wavelength in nm, value], by rising wavelength.
-std::vector<WavelengthValue> read_wavelength_values(TomlTable& table, const std::string& key, const Bounds& values) {
-    std::vector<WavelengthValue> read;
+std::vector<optics::WavelengthValue> read_wavelength_values(TomlTable& table, const std::string& key,
+                                                            const Bounds& values) {
+    std::vector<optics::WavelengthValue> read;
     for (const std::vector<double>& pair : table.number_lists(key)) {
         const bool good = pair.size() == 2 && pair[0] > 0.0 && pair[1] >= values.min && pair[1] <= values.max &&
                           (read.empty() || pair[0] > read.back().wavelength_nm);
@@ -58,8 +59,8 @@ std::vector<WavelengthValue> read_wavelength_values(TomlTable& table, const std:
     return read;
 }
 
-StatedMedium read_medium(TomlTable& row) {
-    StatedMedium medium;
+optics::StatedMedium read_medium(TomlTable& row) {
+    optics::StatedMedium medium;
     medium.glass = row.text_or("glass", "");
     medium.n_d = optional_stated_number(row, "n_d");
     medium.V_d = optional_stated_number(row, "V_d");
@@ -79,15 +80,15 @@ std::string asphere_key(int term) {
     return fmt::format("A{}", 2 * (term + 1));
 }
 
-PrescribedSurface read_surface(TomlTable& row) {
-    PrescribedSurface surface;
+optics::PrescribedSurface read_surface(TomlTable& row) {
+    optics::PrescribedSurface surface;
     surface.where = row.where();
     surface.is_stop = row.boolean_or("stop", false);
     if (row.has("radius_mm")) {
         surface.radius_mm = stated_number(row, "radius_mm");
     }
     surface.conic = optional_stated_number(row, "conic").value_or(0.0);
-    for (int term = 0; term < kAsphereTerms; ++term) {
+    for (int term = 0; term < optics::kAsphereTerms; ++term) {
         surface.asphere[term] = optional_stated_number(row, asphere_key(term)).value_or(0.0);
     }
     surface.radius_x_mm = optional_stated_number(row, "radius_x_mm");
@@ -102,33 +103,34 @@ PrescribedSurface read_surface(TomlTable& row) {
     return surface;
 }
 
-StatedData read_stated(TomlTable& table) {
-    StatedData stated{.efl_mm = table.optional_number("efl_mm"),
-                      .bfl_mm = table.optional_number("bfl_mm"),
-                      .f_number = table.optional_number("f_number", kPositive),
-                      .half_field_deg = table.optional_number("half_field_deg", kPositive),
-                      .image_circle_mm = table.optional_number("image_circle_mm", kPositive),
-                      .total_track_mm = table.optional_number("total_track_mm", kPositive),
-                      .entrance_pupil_diameter_mm = table.optional_number("entrance_pupil_diameter_mm", kPositive),
-                      .source = table.text_or("source", "")};
+optics::StatedData read_stated(TomlTable& table) {
+    optics::StatedData stated{
+        .efl_mm = table.optional_number("efl_mm"),
+        .bfl_mm = table.optional_number("bfl_mm"),
+        .f_number = table.optional_number("f_number", kPositive),
+        .half_field_deg = table.optional_number("half_field_deg", kPositive),
+        .image_circle_mm = table.optional_number("image_circle_mm", kPositive),
+        .total_track_mm = table.optional_number("total_track_mm", kPositive),
+        .entrance_pupil_diameter_mm = table.optional_number("entrance_pupil_diameter_mm", kPositive),
+        .source = table.text_or("source", "")};
     table.finish();
     return stated;
 }
 
-StopShape read_stop_shape(TomlTable& table) {
-    StopShape shape;
+optics::StopShape read_stop_shape(TomlTable& table) {
+    optics::StopShape shape;
     if (table.has("texture")) {
-        shape = TexturedStop{.image = table.text("texture")};
+        shape = optics::TexturedStop{.image = table.text("texture")};
     } else {
-        shape = PolygonStop{.blades = table.integer("blades", 3, 64),
-                            .curvature = table.number_or("curvature", 0.0, {.min = 0.0, .max = 1.0}),
-                            .rotation_deg = table.number_or("rotation_deg", 0.0)};
+        shape = optics::PolygonStop{.blades = table.integer("blades", 3, 64),
+                                    .curvature = table.number_or("curvature", 0.0, {.min = 0.0, .max = 1.0}),
+                                    .rotation_deg = table.number_or("rotation_deg", 0.0)};
     }
     table.finish();
     return shape;
 }
 
-CoatingLayer read_layer(TomlTable& table) {
+optics::CoatingLayer read_layer(TomlTable& table) {
     const double index = table.number("n", {.min = 1.0, .max = 5.0});
     const bool quarter = table.has("quarter_wave_nm");
     const double thickness_nm =
@@ -137,14 +139,15 @@ CoatingLayer read_layer(TomlTable& table) {
     return {.index = index, .thickness_nm = thickness_nm};
 }
 
-Coating read_coating(TomlTable& table) {
-    Coating coating;
+optics::Coating read_coating(TomlTable& table) {
+    optics::Coating coating;
     if (table.has("reflectance")) {
-        coating = table.is_number("reflectance")
-                      ? std::vector<WavelengthValue>{{550.0, table.number("reflectance", {.min = 0.0, .max = 1.0})}}
-                      : read_wavelength_values(table, "reflectance", {.min = 0.0, .max = 1.0});
+        coating =
+            table.is_number("reflectance")
+                ? std::vector<optics::WavelengthValue>{{550.0, table.number("reflectance", {.min = 0.0, .max = 1.0})}}
+                : read_wavelength_values(table, "reflectance", {.min = 0.0, .max = 1.0});
     } else {
-        std::vector<CoatingLayer> layers;
+        std::vector<optics::CoatingLayer> layers;
         for (TomlTable& layer : table.tables("layers")) {
             layers.push_back(read_layer(layer));
         }
@@ -168,8 +171,8 @@ void read_surface_range(TomlTable& table, int surfaces, int& first, int& last) {
     }
 }
 
-MisalignedGroup read_group(TomlTable& table, int surfaces) {
-    MisalignedGroup group;
+optics::MisalignedGroup read_group(TomlTable& table, int surfaces) {
+    optics::MisalignedGroup group;
     read_surface_range(table, surfaces, group.first, group.last);
     group.misalignment = read_misalignment(table);
     group.pivot_mm = table.number_or("pivot_mm", 0.0);
@@ -177,16 +180,16 @@ MisalignedGroup read_group(TomlTable& table, int surfaces) {
     return group;
 }
 
-FocusGroup read_focus_group(TomlTable& table, int surfaces) {
-    FocusGroup group;
+optics::FocusGroup read_focus_group(TomlTable& table, int surfaces) {
+    optics::FocusGroup group;
     read_surface_range(table, surfaces, group.first, group.last);
     group.travel = table.number_or("travel", 1.0);
     table.finish();
     return group;
 }
 
-ZoomPosition read_zoom_position(TomlTable& table, int surfaces) {
-    ZoomPosition position;
+optics::ZoomPosition read_zoom_position(TomlTable& table, int surfaces) {
+    optics::ZoomPosition position;
     position.name = table.text("name");
     TomlTable gaps = table.table("gaps_mm");
     for (const std::string& key : gaps.keys()) {
@@ -205,7 +208,7 @@ ZoomPosition read_zoom_position(TomlTable& table, int surfaces) {
     return position;
 }
 
-void read_moving_parts(TomlTable& top, Prescription& prescription) {
+void read_moving_parts(TomlTable& top, optics::Prescription& prescription) {
     const int count = static_cast<int>(prescription.surfaces.size());
     for (TomlTable& table : top.tables("groups")) {
         prescription.groups.push_back(read_group(table, count));
@@ -218,14 +221,14 @@ void read_moving_parts(TomlTable& top, Prescription& prescription) {
     }
 }
 
-void read_coatings(TomlTable& top, Prescription& prescription) {
+void read_coatings(TomlTable& top, optics::Prescription& prescription) {
     if (auto coatings = top.optional_table("coatings")) {
         for (const std::string& name : coatings->keys()) {
             TomlTable coating = coatings->table(name);
             prescription.coatings[name] = read_coating(coating);
         }
     }
-    for (const PrescribedSurface& surface : prescription.surfaces) {
+    for (const optics::PrescribedSurface& surface : prescription.surfaces) {
         if (!surface.coating.empty() && !prescription.coatings.contains(surface.coating)) {
             top.fail("surfaces", fmt::format("name the coating \"{}\", but there is no table [coatings.{}]",
                                              surface.coating, surface.coating));
@@ -235,9 +238,9 @@ void read_coatings(TomlTable& top, Prescription& prescription) {
 
 }  // namespace
 
-Prescription parse_toml_prescription(const std::string& text, const std::filesystem::path& file) {
+optics::Prescription parse_toml_prescription(const std::string& text, const std::filesystem::path& file) {
     TomlTable top = TomlTable::parse(text, file);
-    Prescription prescription;
+    optics::Prescription prescription;
     prescription.file = file;
     prescription.name = top.text("name");
     prescription.source = top.text("source");
@@ -245,9 +248,9 @@ Prescription parse_toml_prescription(const std::string& text, const std::filesys
     prescription.design = top.text_or("design", "");
     if (top.has("projection")) {
         std::vector<std::string> names;
-        std::ranges::transform(kProjections, std::back_inserter(names), projection_name);
+        std::ranges::transform(optics::kProjections, std::back_inserter(names), optics::projection_name);
         const std::string name = top.choice("projection", names);
-        prescription.projection = kProjections[std::ranges::find(names, name) - names.begin()];
+        prescription.projection = optics::kProjections[std::ranges::find(names, name) - names.begin()];
     }
     if (auto stated = top.optional_table("stated")) {
         prescription.stated = read_stated(*stated);
@@ -265,8 +268,9 @@ Prescription parse_toml_prescription(const std::string& text, const std::filesys
     read_coatings(top, prescription);
     read_moving_parts(top, prescription);
     if (top.has("surroundings")) {
-        prescription.surroundings =
-            top.choice("surroundings", {"air", "vacuum"}) == "air" ? Surroundings::air : Surroundings::vacuum;
+        prescription.surroundings = top.choice("surroundings", {"air", "vacuum"}) == "air"
+                                        ? optics::Surroundings::air
+                                        : optics::Surroundings::vacuum;
     }
     if (top.has("object_distance_mm")) {
         prescription.object_distance_mm =
@@ -287,4 +291,4 @@ Prescription parse_toml_prescription(const std::string& text, const std::filesys
     return prescription;
 }
 
-}  // namespace lensproof
+}  // namespace lensproof::formats

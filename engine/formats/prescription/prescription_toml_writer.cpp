@@ -9,7 +9,7 @@
 
 #include "engine/formats/prescription/prescription_forms.h"
 
-namespace lensproof {
+namespace lensproof::formats {
 
 namespace {
 
@@ -26,9 +26,9 @@ std::string number_list(const Numbers& values) {
     return fmt::format("[{}]", fmt::join(texts, ", "));
 }
 
-std::string pairs(const std::vector<WavelengthValue>& values) {
+std::string pairs(const std::vector<optics::WavelengthValue>& values) {
     std::vector<std::string> texts;
-    std::ranges::transform(values, std::back_inserter(texts), [](const WavelengthValue& pair) {
+    std::ranges::transform(values, std::back_inserter(texts), [](const optics::WavelengthValue& pair) {
         return number_list(std::array{pair.wavelength_nm, pair.value});
     });
     return fmt::format("[{}]", fmt::join(texts, ", "));
@@ -157,7 +157,7 @@ class Rows {
 /// What the form cannot hold is noted here on the way.
 class Writer {
   public:
-    explicit Writer(const Prescription& prescription) : prescription_(prescription) {}
+    explicit Writer(const optics::Prescription& prescription) : prescription_(prescription) {}
 
     WrittenPrescription write() {
         write_head();
@@ -176,15 +176,15 @@ class Writer {
     void line(const std::string& key, const std::string& value) { text_ += fmt::format("{} = {}\n", key, value); }
 
     void lose(const std::string& code, int surface, const std::string& message) {
-        lost_.push_back({.code = code, .severity = Severity::warning, .surface = surface, .message = message});
+        lost_.push_back({.code = code, .severity = optics::Severity::warning, .surface = surface, .message = message});
     }
 
     void write_head() {
-        const Prescription& lens = prescription_;
+        const optics::Prescription& lens = prescription_;
         line("name", toml_string(lens.name));
         line("source", toml_string(lens.source));
-        line("projection", toml_string(projection_name(lens.projection)));
-        if (lens.surroundings == Surroundings::vacuum) {
+        line("projection", toml_string(optics::projection_name(lens.projection)));
+        if (lens.surroundings == optics::Surroundings::vacuum) {
             line("surroundings", toml_string("vacuum"));
         }
         if (lens.object_distance_mm != std::numeric_limits<double>::infinity()) {
@@ -227,13 +227,13 @@ class Writer {
     }
 
     void write_surfaces() {
-        using Row = PrescribedSurface;
+        using Row = optics::PrescribedSurface;
         using Stated = std::optional<double>;
         const auto unless_zero = [](double value) { return value == 0.0 ? std::nullopt : Stated(value); };
         Rows table(prescription_.surfaces.size());
         table.add(radius_cells());
         add_numbers(table, "conic", [&](const Row& row) { return unless_zero(row.conic); });
-        for (int term = 0; term < kAsphereTerms; ++term) {
+        for (int term = 0; term < optics::kAsphereTerms; ++term) {
             add_numbers(table, fmt::format("A{}", 2 * (term + 1)),
                         [&](const Row& row) { return unless_zero(row.asphere[term]); });
         }
@@ -258,9 +258,9 @@ class Writer {
 
     /// `stop = true` stands in the place of a radius, since most stops have none.
     [[nodiscard]] std::vector<std::string> radius_cells() const {
-        const std::vector<PrescribedSurface>& rows = prescription_.surfaces;
+        const std::vector<optics::PrescribedSurface>& rows = prescription_.surfaces;
         std::vector<std::optional<double>> radii;
-        for (const PrescribedSurface& row : rows) {
+        for (const optics::PrescribedSurface& row : rows) {
             const bool is_plain_stop = row.is_stop && row.radius_mm == std::numeric_limits<double>::infinity();
             radii.push_back(is_plain_stop ? std::nullopt : std::optional(row.radius_mm));
         }
@@ -276,7 +276,7 @@ class Writer {
     /// A decentre or a tilt; nothing where it is zero.
     template <std::size_t count>
     std::string shift_cell(const std::string& key, const std::array<double, count>& values,
-                           const PrescribedSurface& row) {
+                           const optics::PrescribedSurface& row) {
         if (values == std::array<double, count>{}) {
             return {};
         }
@@ -288,11 +288,11 @@ class Writer {
         return key + " = " + number_list(values);
     }
 
-    std::string indices_cell(const PrescribedSurface& row) {
+    std::string indices_cell(const optics::PrescribedSurface& row) {
         if (row.medium.indices.empty()) {
             return {};
         }
-        const bool readable = std::ranges::all_of(row.medium.indices, [](const WavelengthValue& at) {
+        const bool readable = std::ranges::all_of(row.medium.indices, [](const optics::WavelengthValue& at) {
             return at.wavelength_nm > 0.0 && at.value >= 1.0 && at.value <= 5.0;
         });
         if (!row.medium.glass.empty() || !readable) {
@@ -303,11 +303,11 @@ class Writer {
         return "indices = " + pairs(row.medium.indices);
     }
 
-    [[nodiscard]] int surface_number(const PrescribedSurface& row) const {
+    [[nodiscard]] int surface_number(const optics::PrescribedSurface& row) const {
         return static_cast<int>(&row - prescription_.surfaces.data()) + 1;
     }
 
-    void write_claims(const std::string& table, const StatedData& stated) {
+    void write_claims(const std::string& table, const optics::StatedData& stated) {
         std::string claims;
         const auto claim = [&](const char* key, const std::optional<double>& value, bool positive) {
             if (value && std::isfinite(*value) && (*value > 0.0 || !positive)) {
@@ -332,42 +332,42 @@ class Writer {
     }
 
     void write_stop() {
-        if (const auto* polygon = std::get_if<PolygonStop>(&prescription_.stop_shape)) {
+        if (const auto* polygon = std::get_if<optics::PolygonStop>(&prescription_.stop_shape)) {
             text_ += fmt::format("\n[stop]\nblades = {}\ncurvature = {}\nrotation_deg = {}\n", polygon->blades,
                                  number(polygon->curvature), number(polygon->rotation_deg));
-        } else if (const auto* texture = std::get_if<TexturedStop>(&prescription_.stop_shape)) {
+        } else if (const auto* texture = std::get_if<optics::TexturedStop>(&prescription_.stop_shape)) {
             text_ += fmt::format("\n[stop]\ntexture = {}\n", toml_string(texture->image));
         }
     }
 
-    void write_coating(const std::string& name, const Coating& coating) {
+    void write_coating(const std::string& name, const optics::Coating& coating) {
         text_ += fmt::format("\n[coatings.{}]\n", key_name(name));
-        if (const auto* layers = std::get_if<std::vector<CoatingLayer>>(&coating)) {
+        if (const auto* layers = std::get_if<std::vector<optics::CoatingLayer>>(&coating)) {
             std::vector<std::string> each;
-            std::ranges::transform(*layers, std::back_inserter(each), [](const CoatingLayer& layer) {
+            std::ranges::transform(*layers, std::back_inserter(each), [](const optics::CoatingLayer& layer) {
                 return fmt::format("{{ n = {}, thickness_nm = {} }}", number(layer.index), number(layer.thickness_nm));
             });
             line("layers", fmt::format("[{}]", fmt::join(each, ", ")));
             return;
         }
-        const auto& reflectance = std::get<std::vector<WavelengthValue>>(coating);
+        const auto& reflectance = std::get<std::vector<optics::WavelengthValue>>(coating);
         line("reflectance", reflectance.size() == 1 ? number(reflectance.front().value) : pairs(reflectance));
     }
 
     void write_groups() {
-        for (const MisalignedGroup& group : prescription_.groups) {
+        for (const optics::MisalignedGroup& group : prescription_.groups) {
             text_ += fmt::format("\n[[groups]]\nsurfaces = [{}, {}]\ndecentre_mm = {}\ntilt_deg = {}\npivot_mm = {}\n",
                                  group.first, group.last, number_list(group.misalignment.decentre_mm),
                                  number_list(group.misalignment.tilt_deg), number(group.pivot_mm));
         }
-        for (const FocusGroup& group : prescription_.focus_groups) {
+        for (const optics::FocusGroup& group : prescription_.focus_groups) {
             text_ += fmt::format("\n[[focus]]\nsurfaces = [{}, {}]\ntravel = {}\n", group.first, group.last,
                                  number(group.travel));
         }
     }
 
     void write_zoom() {
-        for (const ZoomPosition& position : prescription_.zoom) {
+        for (const optics::ZoomPosition& position : prescription_.zoom) {
             std::vector<std::string> gaps;
             for (const auto& [surface, gap] : position.gaps_mm) {
                 gaps.push_back(fmt::format("{} = {}", surface, number(gap)));
@@ -381,15 +381,15 @@ class Writer {
         }
     }
 
-    const Prescription& prescription_;
+    const optics::Prescription& prescription_;
     std::string text_;
-    std::vector<Finding> lost_;
+    std::vector<optics::Finding> lost_;
 };
 
 }  // namespace
 
-WrittenPrescription to_toml(const Prescription& prescription) {
+WrittenPrescription to_toml(const optics::Prescription& prescription) {
     return Writer(prescription).write();
 }
 
-}  // namespace lensproof
+}  // namespace lensproof::formats

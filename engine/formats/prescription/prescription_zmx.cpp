@@ -13,7 +13,7 @@
 #include "engine/formats/prescription/surface_chain.h"
 #include "engine/formats/prescription/zmx_file.h"
 
-namespace lensproof {
+namespace lensproof::formats {
 
 namespace {
 
@@ -25,20 +25,20 @@ double in_mm(double coefficient, int power, double unit_mm) {
 }
 
 void surface_type_error(Remarks& remarks, const ZmxSurface& surface, int number, const std::string& what) {
-    remarks.add_once(fmt::format("{}", number), "surface-type", Severity::error, number,
+    remarks.add_once(fmt::format("{}", number), "surface-type", optics::Severity::error, number,
                      fmt::format("line {}, surface {} of the file: {}", surface.line, number, what));
 }
 
 /// Sets the coefficient of r^power, for which there is a place where the power is even and at most 20.
-void set_term(PrescribedSurface& row, int power, double coefficient, double unit_mm, const ZmxSurface& surface,
+void set_term(optics::PrescribedSurface& row, int power, double coefficient, double unit_mm, const ZmxSurface& surface,
               int number, Remarks& remarks) {
     if (coefficient == 0.0) {
         return;
     }
-    if (power % 2 != 0 || power > 2 * kAsphereTerms) {
+    if (power % 2 != 0 || power > 2 * optics::kAsphereTerms) {
         surface_type_error(remarks, surface, number,
                            fmt::format("the {} has a term {} r^{}, which is left out: even powers to r^{} are known",
-                                       surface.type, coefficient, power, 2 * kAsphereTerms));
+                                       surface.type, coefficient, power, 2 * optics::kAsphereTerms));
         return;
     }
     row.asphere[power / 2 - 1] = in_mm(coefficient, power, unit_mm);
@@ -46,7 +46,8 @@ void set_term(PrescribedSurface& row, int power, double coefficient, double unit
 
 /// The shape beyond the conic. OpticStudio's help, "Even Asphere", "Odd Asphere", "Extended Asphere", "Extended Odd
 /// Asphere", "Toroidal".
-void read_shape(PrescribedSurface& row, const ZmxSurface& surface, int number, double unit_mm, Remarks& remarks) {
+void read_shape(optics::PrescribedSurface& row, const ZmxSurface& surface, int number, double unit_mm,
+                Remarks& remarks) {
     constexpr int kParameterTerms = 8;
     const auto set = [&](int power, double coefficient) {
         set_term(row, power, coefficient, unit_mm, surface, number, remarks);
@@ -99,13 +100,14 @@ void read_shape(PrescribedSurface& row, const ZmxSurface& surface, int number, d
     }
 }
 
-PrescribedSurface read_row(const ZmxFile& file, int number, const std::filesystem::path& path, Remarks& remarks) {
+optics::PrescribedSurface read_row(const ZmxFile& file, int number, const std::filesystem::path& path,
+                                   Remarks& remarks) {
     const ZmxSurface& surface = file.surfaces[number];
     const double unit = file.unit_mm;
     const auto length = [unit](std::optional<double> value) {
         return value ? std::optional(*value * unit) : std::nullopt;
     };
-    PrescribedSurface row;
+    optics::PrescribedSurface row;
     row.where = fmt::format("{}:{}: SURF {}", path.string(), surface.line, number);
     row.is_stop = surface.is_stop;
     if (surface.curvature != 0.0) {
@@ -121,7 +123,7 @@ PrescribedSurface read_row(const ZmxFile& file, int number, const std::filesyste
     row.medium = surface.medium;
     if (surface.is_mirror) {
         remarks.add(
-            "mirror", Severity::error, number,
+            "mirror", optics::Severity::error, number,
             fmt::format("line {}, surface {} of the file: GLAS MIRROR, which is not traced", surface.line, number));
     }
     return row;
@@ -130,7 +132,7 @@ PrescribedSurface read_row(const ZmxFile& file, int number, const std::filesyste
 /// A coordinate break (OpticStudio's help, "Coordinate Break", "Tilt/Decenter"): decentres x and y, then tilts about x,
 /// the turned y and the twice turned z, each by the right-hand rule; with the order flag set, the tilts in reverse
 /// order, then the decentres in the turned coordinates.
-Frame broken(const Frame& frame, const ZmxSurface& surface, double unit_mm) {
+optics::Frame broken(const optics::Frame& frame, const ZmxSurface& surface, double unit_mm) {
     const Vec3d decentre{surface.parameter(1) * unit_mm, surface.parameter(2) * unit_mm, 0.0};
     const std::array<double, 3> tilt = {surface.parameter(3), surface.parameter(4), surface.parameter(5)};
     if (surface.parameter(6) == 0.0) {
@@ -143,7 +145,7 @@ Frame broken(const Frame& frame, const ZmxSurface& surface, double unit_mm) {
 std::vector<ChainLink> chain_of(const ZmxFile& file, const std::filesystem::path& path) {
     const bool has_breaks = std::ranges::any_of(file.surfaces, &ZmxSurface::is_break);
     std::vector<ChainLink> links;
-    Frame frame;
+    optics::Frame frame;
     for (std::size_t number = 1; number < file.surfaces.size(); ++number) {
         const ZmxSurface& surface = file.surfaces[number];
         const double thickness = surface.thickness * file.unit_mm;
@@ -182,14 +184,14 @@ std::vector<int> rows_of_surfaces(const ZmxFile& file) {
     return rows;
 }
 
-void read_aperture(const ZmxFile& file, double value, StatedData& stated, Remarks& remarks) {
+void read_aperture(const ZmxFile& file, double value, optics::StatedData& stated, Remarks& remarks) {
     const bool at_infinity = std::isinf(file.surfaces.front().thickness);
     if (file.aperture_type == "ENPD" && value > 0.0) {
         stated.entrance_pupil_diameter_mm = value * file.unit_mm;
     } else if (file.aperture_type == "FNUM" && value > 0.0 && (!file.is_working_f_number || at_infinity)) {
         stated.f_number = value;
     } else if (file.aperture_type == "OBNA" || file.aperture_type == "FNUM") {
-        remarks.add_once("", "aperture", Severity::info, 0,
+        remarks.add_once("", "aperture", optics::Severity::info, 0,
                          fmt::format("{} = {} says the aperture on the object's side or at a finite distance; the "
                                      "stop's semi-diameter is taken instead",
                                      file.aperture_type, value));
@@ -197,7 +199,7 @@ void read_aperture(const ZmxFile& file, double value, StatedData& stated, Remark
 }
 
 /// Fields as half field angle (angles in x and y add as their tangents) or as image circle.
-void read_fields(const ZmxFile& file, StatedData& stated, Remarks& remarks) {
+void read_fields(const ZmxFile& file, optics::StatedData& stated, Remarks& remarks) {
     const auto stated_count = static_cast<std::size_t>(file.fields);
     std::size_t count = std::max(file.field_x.size(), file.field_y.size());
     count = file.fields > 0 ? std::min(count, stated_count) : count;
@@ -218,9 +220,10 @@ void read_fields(const ZmxFile& file, StatedData& stated, Remarks& remarks) {
     } else if (file.field_type == 2 || file.field_type == 3) {
         stated.image_circle_mm = 2.0 * largest * file.unit_mm;
     } else if (file.field_type == 4) {
-        remarks.add("fields", Severity::info, 0, "fields are stated as theodolite angles (FTYP 4), and left out");
+        remarks.add("fields", optics::Severity::info, 0,
+                    "fields are stated as theodolite angles (FTYP 4), and left out");
     } else {
-        remarks.add("fields", Severity::info, 0,
+        remarks.add("fields", optics::Severity::info, 0,
                     fmt::format("fields are stated as object heights (FTYP {}), up to {} mm, and left out",
                                 file.field_type, largest * file.unit_mm));
     }
@@ -243,7 +246,7 @@ std::vector<double> wavelengths_nm(const ZmxFile& file) {
     return wavelengths;
 }
 
-void read_names(const ZmxFile& file, Prescription& prescription) {
+void read_names(const ZmxFile& file, optics::Prescription& prescription) {
     constexpr std::string_view kSource = "Source: ";
     const std::filesystem::path& path = prescription.file;
     prescription.name = file.name.empty() ? path.stem().string() : file.name;
@@ -258,22 +261,23 @@ void read_names(const ZmxFile& file, Prescription& prescription) {
 }
 
 /// What the object and the image say that a table has no row for.
-void read_ends(const ZmxFile& file, const std::vector<ChainLink>& links, Prescription& prescription, Remarks& remarks) {
+void read_ends(const ZmxFile& file, const std::vector<ChainLink>& links, optics::Prescription& prescription,
+               Remarks& remarks) {
     const ZmxSurface& object = file.surfaces.front();
     const ZmxSurface& image = file.surfaces.back();
     const int image_number = static_cast<int>(file.surfaces.size()) - 1;
     prescription.object_distance_mm = object.thickness * file.unit_mm;
     if (object.curvature != 0.0) {
-        remarks.add("object-shape", Severity::warning, 0,
+        remarks.add("object-shape", optics::Severity::warning, 0,
                     fmt::format("line {}: the object is curved, and taken as flat", object.line));
     }
     if (image.curvature != 0.0 || image.type != "STANDARD") {
-        remarks.add("image-shape", Severity::warning, 0,
+        remarks.add("image-shape", optics::Severity::warning, 0,
                     fmt::format("line {}: the image surface {} is not flat; the sensor is taken as flat", image.line,
                                 image_number));
     }
     if (!is_upright(links.back().frame)) {
-        remarks.add("image-tilt", Severity::warning, 0,
+        remarks.add("image-tilt", optics::Severity::warning, 0,
                     fmt::format("line {}: the image surface {} is tilted against the first surface's axis; the sensor "
                                 "is taken as perpendicular to it",
                                 image.line, image_number));
@@ -284,16 +288,16 @@ void read_ends(const ZmxFile& file, const std::vector<ChainLink>& links, Prescri
 }
 
 /// The gaps of each configuration: the file's with its thicknesses, placed anew.
-void read_configurations(const ZmxFile& file, Prescription& prescription, Remarks& remarks) {
+void read_configurations(const ZmxFile& file, optics::Prescription& prescription, Remarks& remarks) {
     if (file.configurations == 1) {
         return;
     }
     const int last = static_cast<int>(file.surfaces.size()) - 1;
     std::set<std::string> left_out;
-    std::vector<std::vector<PrescribedSurface>> tables;
+    std::vector<std::vector<optics::PrescribedSurface>> tables;
     for (int configuration = 1; configuration <= file.configurations; ++configuration) {
         ZmxFile varied = file;
-        ZoomPosition position{.name = fmt::format("configuration {}", configuration)};
+        optics::ZoomPosition position{.name = fmt::format("configuration {}", configuration)};
         for (const auto& [operand, values] : file.operands) {
             const auto& [keyword, of] = operand;
             const auto value = values.find(configuration);
@@ -310,10 +314,10 @@ void read_configurations(const ZmxFile& file, Prescription& prescription, Remark
         prescription.zoom.push_back(std::move(position));
     }
     for (std::size_t row = 0; row < prescription.surfaces.size(); ++row) {
-        const auto differs = [&](const std::vector<PrescribedSurface>& table) {
+        const auto differs = [&](const std::vector<optics::PrescribedSurface>& table) {
             return table[row].thickness_mm != prescription.surfaces[row].thickness_mm;
         };
-        const auto is_misplaced = [&](const std::vector<PrescribedSurface>& table) {
+        const auto is_misplaced = [&](const std::vector<optics::PrescribedSurface>& table) {
             return table[row].misalignment != prescription.surfaces[row].misalignment;
         };
         for (std::size_t i = 0; std::ranges::any_of(tables, differs) && i < tables.size(); ++i) {
@@ -324,7 +328,7 @@ void read_configurations(const ZmxFile& file, Prescription& prescription, Remark
         }
     }
     if (!left_out.empty()) {
-        remarks.add("multi-configuration", Severity::warning, 0,
+        remarks.add("multi-configuration", optics::Severity::warning, 0,
                     fmt::format("of what differs between the {} configurations, this is left out: {}",
                                 file.configurations, fmt::join(left_out, ", ")));
     }
@@ -332,10 +336,10 @@ void read_configurations(const ZmxFile& file, Prescription& prescription, Remark
 
 }  // namespace
 
-Prescription parse_zmx(const std::string& text, const std::filesystem::path& file) {
+optics::Prescription parse_zmx(const std::string& text, const std::filesystem::path& file) {
     Remarks remarks;
     const ZmxFile zmx = read_zmx_file(to_utf8(text), file, remarks);
-    Prescription prescription;
+    optics::Prescription prescription;
     prescription.file = file;
     read_names(zmx, prescription);
     const int image = static_cast<int>(zmx.surfaces.size()) - 1;
@@ -359,7 +363,7 @@ Prescription parse_zmx(const std::string& text, const std::filesystem::path& fil
     place_rows(prescription.surfaces, links);
     for (std::size_t i = 0; i < prescription.surfaces.size(); ++i) {
         if (prescription.surfaces[i].is_stop && !is_upright(links[i].frame)) {
-            remarks.add_once("", "stop-tilt", Severity::info, 0,
+            remarks.add_once("", "stop-tilt", optics::Severity::info, 0,
                              fmt::format("{}: the stop is tilted against the axis", prescription.surfaces[i].where));
         }
     }
@@ -373,4 +377,4 @@ Prescription parse_zmx(const std::string& text, const std::filesystem::path& fil
     return prescription;
 }
 
-}  // namespace lensproof
+}  // namespace lensproof::formats

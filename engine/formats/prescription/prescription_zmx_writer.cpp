@@ -13,7 +13,7 @@
 #include "engine/formats/prescription/surface_chain.h"
 #include "engine/spectral/wavelengths.h"
 
-namespace lensproof {
+namespace lensproof::formats {
 
 namespace {
 
@@ -35,14 +35,14 @@ std::string zmx_number(double value) {
 }
 
 /// The surfaces with the groups' tilts written into each, so that each stands on its own.
-Prescription without_groups(Prescription prescription) {
+optics::Prescription without_groups(optics::Prescription prescription) {
     if (!prescription.groups.empty()) {
         std::vector<ChainLink> links;
-        for (const Frame& frame : surface_frames(prescription)) {
+        for (const optics::Frame& frame : optics::surface_frames(prescription)) {
             links.push_back({.frame = frame, .straight = false});
         }
         double image_z = 0.0;
-        for (const PrescribedSurface& row : prescription.surfaces) {
+        for (const optics::PrescribedSurface& row : prescription.surfaces) {
             image_z += row.thickness_mm;
         }
         links.push_back({.frame = {.origin = {0.0, 0.0, image_z}}});
@@ -56,7 +56,7 @@ Prescription without_groups(Prescription prescription) {
 
 class ZmxWriter {
   public:
-    explicit ZmxWriter(const Prescription& prescription)
+    explicit ZmxWriter(const optics::Prescription& prescription)
         : original_(prescription), prescription_(without_groups(prescription)) {}
 
     WrittenPrescription write() {
@@ -74,12 +74,13 @@ class ZmxWriter {
         text_ += "\r\n";
     }
 
-    void lose(const std::string& code, int surface, const std::string& what, Severity severity = Severity::warning) {
+    void lose(const std::string& code, int surface, const std::string& what,
+              optics::Severity severity = optics::Severity::warning) {
         lost_.push_back(lost(code, severity, surface, "a .zmx file cannot say " + what));
     }
 
     void write_head() {
-        const StatedData& stated = prescription_.stated;
+        const optics::StatedData& stated = prescription_.stated;
         line("VERS 140124 0 0");
         line("MODE SEQ");
         line("NAME {}", one_line(prescription_.name));
@@ -108,7 +109,7 @@ class ZmxWriter {
         line("YFLN 0 {} {} 0 0 0 0 0 0 0 0 0", std::numbers::sqrt2 / 2.0 * field, field);
         line("FWGN 1 1 1 1 1 1 1 1 1 1 1 1");
         for (std::size_t i = 0; i < wavelengths; ++i) {
-            const double nm = prescription_.wavelengths_nm.empty() ? kLineD : prescription_.wavelengths_nm[i];
+            const double nm = prescription_.wavelengths_nm.empty() ? spectral::kLineD : prescription_.wavelengths_nm[i];
             line("WAVM {} {} 1", i + 1, nm * 1e-3);
         }
         line("PWAV 1");
@@ -122,7 +123,7 @@ class ZmxWriter {
                 makers.push_back(maker);
             }
         };
-        for (const PrescribedSurface& row : prescription_.surfaces) {
+        for (const optics::PrescribedSurface& row : prescription_.surfaces) {
             add(split_glass(row.medium.glass).first);
         }
         for (const std::string& maker : prescription_.preferred_makers) {
@@ -153,7 +154,7 @@ class ZmxWriter {
         ++surfaces_;
     }
 
-    void write_break(const Misalignment& break_by, double sign, double thickness) {
+    void write_break(const optics::Misalignment& break_by, double sign, double thickness) {
         begin_surface("COORDBRK");
         line("  CURV 0.0 0 0 0 0 \"\"");
         line("  PARM 1 {}", sign * break_by.decentre_mm[0]);
@@ -170,8 +171,8 @@ class ZmxWriter {
         line("  CURV 0.0 0 0 0 0 \"\"");
         line("  DISZ {}", zmx_number(prescription_.object_distance_mm));
         for (std::size_t i = 0; i < prescription_.surfaces.size(); ++i) {
-            const PrescribedSurface& row = prescription_.surfaces[i];
-            const bool is_aligned = row.misalignment == Misalignment{};
+            const optics::PrescribedSurface& row = prescription_.surfaces[i];
+            const bool is_aligned = row.misalignment == optics::Misalignment{};
             if (!is_aligned) {
                 write_break(row.misalignment, 1.0, 0.0);
             }
@@ -189,11 +190,11 @@ class ZmxWriter {
         }
     }
 
-    void write_surface(const PrescribedSurface& row, int number, double thickness) {
+    void write_surface(const optics::PrescribedSurface& row, int number, double thickness) {
         constexpr int kEvenAsphereTerms = 8;  // to r^16; beyond, the extended asphere, to r^480
         constexpr int kToroidTerms = 7;
         int terms = 0;
-        for (int i = 0; i < kAsphereTerms; ++i) {
+        for (int i = 0; i < optics::kAsphereTerms; ++i) {
             terms = row.asphere[i] != 0.0 ? i + 1 : terms;
         }
         const bool is_extended = !row.radius_x_mm && terms > kEvenAsphereTerms;
@@ -239,14 +240,14 @@ class ZmxWriter {
         }
         if (row.barrel_mm) {
             lose("lost-barrel", number, "the radius of a barrel; the clear apertures at its ends are narrowed to it",
-                 Severity::info);
+                 optics::Severity::info);
         }
         if (!row.coating.empty()) {
             lose("lost-coating", number, fmt::format("what the coating {} is", row.coating));
         }
     }
 
-    void write_medium(const StatedMedium& medium, int number) {
+    void write_medium(const optics::StatedMedium& medium, int number) {
         if (medium.is_air()) {
             return;
         }
@@ -274,24 +275,24 @@ class ZmxWriter {
     }
 
     /// The surfaces at a zoom position, groups written in.
-    [[nodiscard]] std::vector<PrescribedSurface> surfaces_at(std::size_t position) const {
-        return without_groups(at_zoom_position(original_, position)).surfaces;
+    [[nodiscard]] std::vector<optics::PrescribedSurface> surfaces_at(std::size_t position) const {
+        return without_groups(optics::at_zoom_position(original_, position)).surfaces;
     }
 
     void write_configurations() {
         const std::size_t count = original_.zoom.size();
         line("MNUM {} 1", std::max<std::size_t>(1, count));
-        std::vector<std::vector<PrescribedSurface>> tables;
+        std::vector<std::vector<optics::PrescribedSurface>> tables;
         for (std::size_t position = 0; position < count; ++position) {
             tables.push_back(surfaces_at(position));
-            const ZoomPosition& zoom = original_.zoom[position];
+            const optics::ZoomPosition& zoom = original_.zoom[position];
             if (zoom.stop_semi_diameter_mm) {
                 lose("lost-stop-size", 0, fmt::format("the stop's size at the zoom position {}", zoom.name));
             }
         }
         if (count > 0) {
             lose("lost-zoom-names", 0, "the names and the stated data of zoom positions; they are numbered",
-                 Severity::info);
+                 optics::Severity::info);
         }
         for (std::size_t row = 0; row < prescription_.surfaces.size(); ++row) {
             const auto differs = [&](const auto& table) {
@@ -311,18 +312,18 @@ class ZmxWriter {
     }
 
     void report_lost() {
-        const StatedData& stated = original_.stated;
+        const optics::StatedData& stated = original_.stated;
         if (!std::holds_alternative<std::monostate>(original_.stop_shape)) {
             lose("lost-stop-shape", 0, "a stop that is no circle");
         }
-        if (original_.projection != Projection::rectilinear) {
-            lose("lost-projection", 0, fmt::format("the projection, {}", projection_name(original_.projection)),
-                 Severity::info);
+        if (original_.projection != optics::Projection::rectilinear) {
+            lose("lost-projection", 0, fmt::format("the projection, {}", optics::projection_name(original_.projection)),
+                 optics::Severity::info);
         }
         if (!original_.focus_groups.empty()) {
             lose("lost-focus-groups", 0, "which groups move to focus");
         }
-        if (original_.surroundings == Surroundings::vacuum) {
+        if (original_.surroundings == optics::Surroundings::vacuum) {
             lose("lost-surroundings", 0, "that the lens stands in vacuum");
         }
         if (!original_.catalogues.empty()) {
@@ -330,30 +331,31 @@ class ZmxWriter {
         }
         if (stated.efl_mm || stated.bfl_mm || stated.total_track_mm ||
             (stated.f_number && stated.entrance_pupil_diameter_mm)) {
-            lose("lost-stated", 0, "all of the stated data; the aperture and the field are written", Severity::info);
+            lose("lost-stated", 0, "all of the stated data; the aperture and the field are written",
+                 optics::Severity::info);
         }
-        if (!original_.groups.empty() && surface_frames(original_).front().origin.z != 0.0) {
+        if (!original_.groups.empty() && optics::surface_frames(original_).front().origin.z != 0.0) {
             lose("lost-origin", 1, "that the first vertex lies off its untilted place; lens space begins at it");
         }
         if (!original_.groups.empty()) {
             lose("lost-groups", 0, "which surfaces are tilted as a group; each is tilted on its own, to the same place",
-                 Severity::info);
+                 optics::Severity::info);
         }
     }
 
-    const Prescription& original_;
-    Prescription prescription_;  // without groups
+    const optics::Prescription& original_;
+    optics::Prescription prescription_;  // without groups
     std::string text_;
     int surfaces_ = 0;
     std::vector<int> gap_at_;  // of each row, the surface of the file that carries its gap
     std::map<std::string, std::string> makers_;
-    std::vector<Finding> lost_;
+    std::vector<optics::Finding> lost_;
 };
 
 }  // namespace
 
-WrittenPrescription to_zmx(const Prescription& prescription) {
+WrittenPrescription to_zmx(const optics::Prescription& prescription) {
     return ZmxWriter(prescription).write();
 }
 
-}  // namespace lensproof
+}  // namespace lensproof::formats

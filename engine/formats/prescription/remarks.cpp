@@ -4,20 +4,22 @@
 
 #include "engine/base/text.h"
 
-namespace lensproof {
+namespace lensproof::formats {
 
-void Remarks::add(std::string code, Severity severity, int surface, std::string message) {
+void Remarks::add(std::string code, optics::Severity severity, int surface, std::string message) {
     findings_.push_back(
         {.code = std::move(code), .severity = severity, .surface = surface, .message = std::move(message)});
 }
 
-void Remarks::add_once(const std::string& key, std::string code, Severity severity, int surface, std::string message) {
+void Remarks::add_once(const std::string& key, std::string code, optics::Severity severity, int surface,
+                       std::string message) {
     if (said_.insert(code + " " + key).second) {
         add(std::move(code), severity, surface, std::move(message));
     }
 }
 
-void Remarks::at(const Command& command, std::string code, Severity severity, int surface, const std::string& what) {
+void Remarks::at(const Command& command, std::string code, optics::Severity severity, int surface,
+                 const std::string& what) {
     const std::string of_surface = surface > 0 ? fmt::format(", surface {} of the file", surface) : "";
     add_once(surface > 0 ? command.keyword + of_surface : "", std::move(code), severity, surface,
              fmt::format("line {}{}: {}: {}", command.line, of_surface, printable(command.keyword), what));
@@ -32,25 +34,25 @@ void Remarks::not_understood(const std::string& word, int surface, int line, con
     const std::string shown = printable(word);
     if (said_.insert(fmt::format("not-understood {} {}", shown, surface)).second) {
         ++not_understood_;
-        add("not-understood", Severity::warning, surface,
+        add("not-understood", optics::Severity::warning, surface,
             fmt::format("line {}{}: {} is not understood and left out{}", line,
                         surface > 0 ? fmt::format(", surface {} of the file", surface) : "", shown,
                         what.empty() ? "" : ": " + what));
     }
 }
 
-std::vector<Finding> Remarks::renumbered(const std::vector<int>& row_of) const {
-    std::vector<Finding> findings = findings_;
-    for (Finding& finding : findings) {
+std::vector<optics::Finding> Remarks::renumbered(const std::vector<int>& row_of) const {
+    std::vector<optics::Finding> findings = findings_;
+    for (optics::Finding& finding : findings) {
         const auto number = static_cast<std::size_t>(finding.surface);
         finding.surface = finding.surface >= 0 && number < row_of.size() ? row_of[number] : 0;
     }
     if (unsaid_ > 0) {
         findings.push_back({.code = "not-understood",
-                            .severity = Severity::warning,
+                            .severity = optics::Severity::warning,
                             .message = fmt::format("{} further lines are not understood and left out", unsaid_)});
     }
     return findings;
 }
 
-}  // namespace lensproof
+}  // namespace lensproof::formats

@@ -12,7 +12,7 @@
 #include "engine/formats/prescription/design_command.h"
 #include "engine/formats/prescription/seq_statements.h"
 
-namespace lensproof {
+namespace lensproof::formats {
 
 namespace {
 
@@ -85,7 +85,7 @@ class SeqReader {
                 file_.surfaces[i].curvature = 1.0 / bends_[i];
             }
         }
-        remarks_.add("radius-mode", Severity::warning, 0,
+        remarks_.add("radius-mode", optics::Severity::warning, 0,
                      fmt::format("no RDM says whether the surfaces' first numbers are radii or curvatures; they are "
                                  "taken as {}",
                                  are_radii ? "radii" : "curvatures"));
@@ -170,7 +170,7 @@ class SeqReader {
         if (here_.keyword != "THI" && !is_among(kSilent, here_.keyword) && is_of_one_position()) {
             const int surface = file_.surfaces.empty() ? 0 : surface_named(here_.word(1)).value_or(0);
             remarks_.add_once(fmt::format("{} {}", here_.keyword, here_.word(1)), "multi-configuration",
-                              Severity::warning, surface,
+                              optics::Severity::warning, surface,
                               fmt::format("line {}: {} holds for one zoom position alone, and is left out", here_.line,
                                           printable(here_.keyword)));
             return;
@@ -209,10 +209,10 @@ class SeqReader {
         } else if (here_.keyword == "DEL") {
             read_deletion();
         } else if (is_among(kVignettingFactors, here_.keyword)) {
-            remarks_.at(here_, "vignetting-factors", Severity::info, 0,
+            remarks_.at(here_, "vignetting-factors", optics::Severity::info, 0,
                         "vignetting factors are left out; rims cut the beams");
         } else if (here_.keyword == "TEM" || here_.keyword == "PRE") {
-            remarks_.at(here_, "environment", Severity::info, 0,
+            remarks_.at(here_, "environment", optics::Severity::info, 0,
                         "left out: indices and lengths are taken at 20 °C and 1 atm");
         } else {
             return false;
@@ -226,7 +226,7 @@ class SeqReader {
             file_.unit_mm = 1.0;
         } else if (unit.starts_with('C') || unit.starts_with('I')) {
             file_.unit_mm = unit[0] == 'C' ? 10.0 : 25.4;
-            remarks_.at(here_, "units", Severity::info, 0,
+            remarks_.at(here_, "units", optics::Severity::info, 0,
                         fmt::format("lengths are in {} and taken times {} mm", unit[0] == 'C' ? "cm" : "inches",
                                     file_.unit_mm));
         } else {
@@ -241,7 +241,7 @@ class SeqReader {
             return;
         }
         if (what.starts_with('S')) {
-            remarks_.at(here_, "deleted-surfaces", Severity::error, 0,
+            remarks_.at(here_, "deleted-surfaces", optics::Severity::error, 0,
                         "deletes surfaces, which is not followed: the lens is another");
         } else {
             not_understood();
@@ -301,13 +301,13 @@ class SeqReader {
         } else if (here_.keyword == "CIR" && qualifier_ != "OBS" && qualifier_ != "HOL") {
             (qualifier_ == "EDG" ? surface.edge : surface.semi_diameter) = here_.number(next_, "an aperture's radius");
         } else if (here_.keyword == "CIR" || is_among(kApertureShapes, here_.keyword)) {
-            remarks_.at(here_, "aperture-shape", Severity::warning, surface_,
+            remarks_.at(here_, "aperture-shape", optics::Severity::warning, surface_,
                         "makes the aperture no full circle about the vertex, and is left out");
         } else if (is_among(kSolves, here_.keyword)) {
-            remarks_.at(here_, "solve", Severity::info, 0,
+            remarks_.at(here_, "solve", optics::Severity::info, 0,
                         "what solves and pick-ups gave is taken as stated; they are not followed");
         } else if (is_among(kDiffraction, here_.keyword) || is_among(kOtherTypes, here_.keyword)) {
-            remarks_.at(here_, "surface-type", Severity::error, surface_,
+            remarks_.at(here_, "surface-type", optics::Severity::error, surface_,
                         "the surface is more than a conic, asphere or toroid; the rest is left out");
         } else {
             return false;
@@ -403,7 +403,7 @@ class SeqReader {
                 file_.zoom_titles.push_back(words()[i].text);
             }
         } else if (!is_among(kSilent, command)) {
-            remarks_.add_once(command, "multi-configuration", Severity::warning, 0,
+            remarks_.add_once(command, "multi-configuration", optics::Severity::warning, 0,
                               fmt::format("line {}: {} differs between the zoom positions, which is left out",
                                           here_.line, printable(command)));
         }
@@ -421,14 +421,14 @@ class SeqReader {
                 here_.fail(fmt::format("{} indices", indices.size()),
                            fmt::format("{}, one for each wavelength of PWL", private_wavelengths_.size()));
             }
-            std::vector<WavelengthValue> table;
+            std::vector<optics::WavelengthValue> table;
             for (std::size_t i = 0; i < indices.size(); ++i) {
                 if (!(indices[i] >= 1.0 && indices[i] <= 5.0)) {
                     here_.fail(here_.word(i + 1), "a refractive index from 1 to 5");
                 }
                 table.push_back({private_wavelengths_[i], indices[i]});
             }
-            std::ranges::sort(table, {}, &WavelengthValue::wavelength_nm);
+            std::ranges::sort(table, {}, &optics::WavelengthValue::wavelength_nm);
             file_.private_glasses[here_.keyword] = std::move(table);
         } else {
             not_understood();
@@ -468,4 +468,4 @@ SeqFile read_seq_file(std::string_view text, const std::filesystem::path& file, 
     return SeqReader(file, remarks).read(text);
 }
 
-}  // namespace lensproof
+}  // namespace lensproof::formats

@@ -12,7 +12,7 @@
 #include "engine/formats/prescription/remarks.h"
 #include "engine/optics/prescription.h"
 
-namespace lensproof {
+namespace lensproof::formats {
 
 /// How a surface's decentre and tilt act on those behind it.
 enum class SeqDecentre {
@@ -33,11 +33,11 @@ struct SeqSurface {
     bool is_stop = false;
     bool is_mirror = false;
     double conic = 0.0;
-    std::array<double, kAsphereTerms> asphere{};  // of r², r⁴, … r²⁰; the form has no first
-    std::optional<double> semi_diameter;          // CIR
-    std::optional<double> edge;                   // CIR EDG
-    std::array<double, 3> decentre{};             // XDE, YDE, ZDE
-    std::array<double, 3> tilt_deg{};             // ADE, BDE, CDE
+    std::array<double, optics::kAsphereTerms> asphere{};  // of r², r⁴, … r²⁰; the form has no first
+    std::optional<double> semi_diameter;                  // CIR
+    std::optional<double> edge;                           // CIR EDG
+    std::array<double, 3> decentre{};                     // XDE, YDE, ZDE
+    std::array<double, 3> tilt_deg{};                     // ADE, BDE, CDE
     SeqDecentre decentre_kind = SeqDecentre::basic;
 };
 
@@ -49,9 +49,9 @@ struct SeqFile {
     std::map<std::string, std::vector<double>> fields;  // XAN, YAN, XOB, YOB, XIM, YIM, XRI, YRI
     std::vector<double> wavelengths_nm;
     int reference_wavelength = 1;
-    std::map<std::string, std::vector<WavelengthValue>> private_glasses;  // PRV, by rising wavelength
-    std::vector<SeqSurface> surfaces;                                     // the object first
-    bool has_image = false;                                               // the last surface is SI
+    std::map<std::string, std::vector<optics::WavelengthValue>> private_glasses;  // PRV, by rising wavelength
+    std::vector<SeqSurface> surfaces;                                             // the object first
+    bool has_image = false;                                                       // the last surface is SI
     int zoom_positions = 1;
     std::map<int, std::vector<double>> zoomed_thicknesses;        // ZOO THI, by surface
     std::map<std::string, std::vector<double>> zoomed_apertures;  // ZOO EPD, ZOO FNO
@@ -63,4 +63,4 @@ struct SeqFile {
 /// what is no number where one belongs, and for more than 1000 surfaces.
 SeqFile read_seq_file(std::string_view text, const std::filesystem::path& file, Remarks& remarks);
 
-}  // namespace lensproof
+}  // namespace lensproof::formats

@@ -5,7 +5,7 @@
 
 #include "engine/base/text.h"
 
-namespace lensproof {
+namespace lensproof::formats {
 
 namespace {
 
@@ -74,4 +74,4 @@ std::vector<SeqStatement> seq_statements(std::string_view text) {
     return statements;
 }
 
-}  // namespace lensproof
+}  // namespace lensproof::formats

@@ -4,7 +4,7 @@
 #include <string_view>
 #include <vector>
 
-namespace lensproof {
+namespace lensproof::formats {
 
 struct SeqWord {
     std::string text;  // as it stands between its quotes, if it has any; else in capitals
@@ -20,4 +20,4 @@ struct SeqStatement {
 /// a comment; quotes ' or " hold what is neither. Statements without words are left out.
 std::vector<SeqStatement> seq_statements(std::string_view text);
 
-}  // namespace lensproof
+}  // namespace lensproof::formats

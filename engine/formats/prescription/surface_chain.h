@@ -6,12 +6,12 @@
 #include "engine/optics/frame.h"
 #include "engine/optics/prescription.h"
 
-namespace lensproof {
+namespace lensproof::formats {
 
 /// A surface as design programs place it: in a frame that has come about by thicknesses, shifts and tilts along the
 /// way.
 struct ChainLink {
-    Frame frame;
+    optics::Frame frame;
     double thickness_mm = 0.0;  // as stated behind it
     bool straight = true;       // nothing but that thickness lies between it and the next link
 };
@@ -20,9 +20,9 @@ struct ChainLink {
 /// last link is the image's, which has no row. Where there is nothing but a thickness between two aligned surfaces, it
 /// is taken as stated, digit for digit; shifts and tilts below 1e-12 mm and 1e-12° are what rounding leaves of breaks
 /// that undo each other, and dropped.
-void place_rows(std::vector<PrescribedSurface>& rows, const std::vector<ChainLink>& links);
+void place_rows(std::vector<optics::PrescribedSurface>& rows, const std::vector<ChainLink>& links);
 
 /// Of a frame that stands at rest, but for rounding: no tilt, whatever its decentre.
-bool is_upright(const Frame& frame);
+bool is_upright(const optics::Frame& frame);
 
-}  // namespace lensproof
+}  // namespace lensproof::formats

@@ -12,7 +12,7 @@
 #include "engine/base/text.h"
 #include "engine/formats/prescription/design_command.h"
 
-namespace lensproof {
+namespace lensproof::formats {
 
 namespace {
 
@@ -108,7 +108,7 @@ class ZmxReader {
         } else if (is_among(kSolves, here_.keyword)) {
             report_solve();
         } else if (is_among(kApertureShapes, here_.keyword)) {
-            remarks_.at(here_, "aperture-shape", Severity::warning, surface_number(),
+            remarks_.at(here_, "aperture-shape", optics::Severity::warning, surface_number(),
                         "the aperture is no full circle; the circle of the semi-diameter is taken");
         } else if (is_among(kVignettingFactors, here_.keyword)) {
             read_vignetting();
@@ -155,7 +155,7 @@ class ZmxReader {
         }
         file_.unit_mm = unit->mm;
         if (unit->mm != 1.0) {
-            remarks_.at(here_, "units", Severity::info, 0,
+            remarks_.at(here_, "units", optics::Severity::info, 0,
                         fmt::format("lengths are in {} and taken times {} mm", name, unit->mm));
         }
     }
@@ -207,7 +207,7 @@ class ZmxReader {
         if (here_.words.size() >= 2 && (here_.number(0, "a temperature") != kCatalogueTemperature ||
                                         here_.number(1, "a pressure") != kCataloguePressure)) {
             remarks_.at(
-                here_, "environment", Severity::warning, 0,
+                here_, "environment", optics::Severity::warning, 0,
                 fmt::format("the lens is meant for {} °C and {} atm; indices and lengths are taken at 20 °C and 1 atm",
                             printable(here_.words[0]), printable(here_.words[1])));
         }
@@ -286,7 +286,7 @@ class ZmxReader {
             }
         }
         if (is_model && here_.number_or_zero(5) != 0.0) {
-            remarks_.at(here_, "partial-dispersion", Severity::info, surface_number(),
+            remarks_.at(here_, "partial-dispersion", optics::Severity::info, surface_number(),
                         fmt::format("the model glass's deviation from the normal line, ΔP_gF = {}, is left out",
                                     here_.words[5]));
         }
@@ -314,14 +314,14 @@ class ZmxReader {
             surface().aperture = outer;
         }
         if (inner != 0.0) {
-            remarks_.at(here_, "aperture-shape", Severity::warning, surface_number(),
+            remarks_.at(here_, "aperture-shape", optics::Severity::warning, surface_number(),
                         fmt::format("the aperture's central obstruction of radius {} is left out", inner));
         }
     }
 
     void read_off_centre() {
         if (here_.number_or_zero(0) != 0.0 || here_.number_or_zero(1) != 0.0) {
-            remarks_.at(here_, "aperture-shape", Severity::warning, surface_number(),
+            remarks_.at(here_, "aperture-shape", optics::Severity::warning, surface_number(),
                         "the aperture is off the vertex, and taken about it");
         }
     }
@@ -337,21 +337,21 @@ class ZmxReader {
     }
 
     void read_coating() {
-        remarks_.at(here_, "coating", Severity::info, surface_number(),
+        remarks_.at(here_, "coating", optics::Severity::info, surface_number(),
                     fmt::format("the coating {} is named only; the surface is taken as bare", printable(rest_)));
     }
 
     void read_vignetting() {
         for (std::size_t i = 0; i < here_.words.size(); ++i) {
             if (here_.number_or_zero(i) != 0.0) {
-                remarks_.at(here_, "vignetting-factors", Severity::info, 0,
+                remarks_.at(here_, "vignetting-factors", optics::Severity::info, 0,
                             "vignetting factors are left out; rims cut the beams");
             }
         }
     }
 
     void report_solve() {
-        remarks_.at(here_, "solve", Severity::info, 0,
+        remarks_.at(here_, "solve", optics::Severity::info, 0,
                     "what solves and pick-ups gave is taken as stated; they are not followed");
     }
 
@@ -387,7 +387,7 @@ class ZmxReader {
                 names.push_back(passed.keyword);
             }
         }
-        remarks_.add("not-read", Severity::info, 0,
+        remarks_.add("not-read", optics::Severity::info, 0,
                      fmt::format("from line {} on, {} lines behind the surfaces are left out as merit function and "
                                  "tolerances: {}",
                                  tail_.front().line, tail_lines_, fmt::join(names, ", ")));
@@ -427,4 +427,4 @@ ZmxFile read_zmx_file(std::string_view text, const std::filesystem::path& file, 
     return ZmxReader(file, remarks).read(text);
 }
 
-}  // namespace lensproof
+}  // namespace lensproof::formats

@@ -11,7 +11,7 @@
 #include "engine/formats/prescription/remarks.h"
 #include "engine/optics/prescription.h"
 
-namespace lensproof {
+namespace lensproof::formats {
 
 /// A SURF block. Lengths in the file's unit.
 struct ZmxSurface {
@@ -22,7 +22,7 @@ struct ZmxSurface {
     double thickness = 0.0;
     bool is_stop = false;
     bool is_mirror = false;
-    StatedMedium medium;
+    optics::StatedMedium medium;
     std::optional<double> semi_diameter;  // DIAM; 0 says nothing
     bool semi_diameter_is_fixed = false;  // by the user, not by the rays that the program traced
     std::optional<double> aperture;       // the outer radius of a circular aperture, CLAP or FLAP
@@ -63,4 +63,4 @@ struct ZmxFile {
 /// one belongs, surfaces out of order or more than 1000 of them, and non-sequential mode.
 ZmxFile read_zmx_file(std::string_view text, const std::filesystem::path& file, Remarks& remarks);
 
-}  // namespace lensproof
+}  // namespace lensproof::formats

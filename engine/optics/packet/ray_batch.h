@@ -7,7 +7,7 @@
 #include "engine/base/ray.h"
 #include "engine/optics/ray_status.h"
 
-namespace lensproof {
+namespace lensproof::optics {
 
 /// What the widest packets ask of memory: their alignment in bytes, and how many lanes they may touch at once.
 inline constexpr std::size_t kPacketAlignment = 64;
@@ -82,4 +82,4 @@ struct RayBatch {
     static PacketColumn<T> column(int rays) { return PacketColumn<T>(padded(rays)); }
 };
 
-}  // namespace lensproof
+}  // namespace lensproof::optics

@@ -1,6 +1,6 @@
 #include "engine/optics/packet/simd_level.h"
 
-namespace lensproof {
+namespace lensproof::optics {
 
 const char* simd_name(SimdLevel level) {
     switch (level) {
@@ -30,4 +30,4 @@ std::vector<SimdLevel> available_simd_levels() {
     return levels;
 }
 
-}  // namespace lensproof
+}  // namespace lensproof::optics

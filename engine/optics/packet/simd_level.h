@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-namespace lensproof {
+namespace lensproof::optics {
 
 /// How many lanes a packet has: one, or as many as a register of the named instructions holds.
 enum class SimdLevel {
@@ -55,4 +55,4 @@ class LoopsByLevel {
     std::map<SimdLevel, Loops> loops_;
 };
 
-}  // namespace lensproof
+}  // namespace lensproof::optics

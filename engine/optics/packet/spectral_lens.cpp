@@ -2,7 +2,7 @@
 
 #include <stdexcept>
 
-namespace lensproof {
+namespace lensproof::optics {
 
 namespace {
 
@@ -59,4 +59,4 @@ SpectralLens<T>::SpectralLens(std::vector<TraceLens<T>> at) : at_(std::move(at))
 template class SpectralLens<float>;
 template class SpectralLens<double>;
 
-}  // namespace lensproof
+}  // namespace lensproof::optics

@@ -5,7 +5,7 @@
 
 #include "engine/optics/lens.h"
 
-namespace lensproof {
+namespace lensproof::optics {
 
 /// One lens at up to 65,536 wavelengths in one precision. The surfaces are the same in all of them but for indices and
 /// coatings; the indices lie in a table a surface, so that a packet can look its lanes' up.
@@ -56,4 +56,4 @@ SpectralLens<T> at_wavelengths(const Lens& lens, const std::vector<double>& wave
     return SpectralLens<T>(std::move(at));
 }
 
-}  // namespace lensproof
+}  // namespace lensproof::optics

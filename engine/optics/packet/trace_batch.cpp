@@ -4,7 +4,7 @@
 
 #include "engine/optics/packet/trace_kernels.h"
 
-namespace lensproof {
+namespace lensproof::optics {
 
 namespace {
 
@@ -82,4 +82,4 @@ template void trace_batch<Direction::reverse>(const SpectralLens<float>&, RayBat
 template void trace_batch<Direction::forward>(const SpectralLens<double>&, RayBatch<double>&, const BatchSettings&);
 template void trace_batch<Direction::reverse>(const SpectralLens<double>&, RayBatch<double>&, const BatchSettings&);
 
-}  // namespace lensproof
+}  // namespace lensproof::optics

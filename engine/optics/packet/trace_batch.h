@@ -8,7 +8,7 @@
 #include "engine/optics/packet/simd_level.h"
 #include "engine/optics/packet/spectral_lens.h"
 
-namespace lensproof {
+namespace lensproof::optics {
 
 /// What is found of a ray besides its points and directions: each costs time.
 enum class Carry {
@@ -29,4 +29,4 @@ struct BatchSettings {
 template <Direction direction = Direction::forward, class T>
 void trace_batch(const SpectralLens<T>& lens, RayBatch<T>& rays, const BatchSettings& settings = {});
 
-}  // namespace lensproof
+}  // namespace lensproof::optics

@@ -12,7 +12,7 @@
 #include "engine/optics/refract.h"
 #include "engine/optics/surface_shape.h"
 
-namespace lensproof {
+namespace lensproof::optics {
 
 /// A block of rays on its way through a lens. It walks surface by surface, each surface packet by packet: the packets
 /// are independent of each other, so that the processor works at several at once while one waits for its root.
@@ -410,4 +410,4 @@ TraceKernels<Scalar> kernels_of() {
     return {{loops_by_carry<Scalar, Abi, Direction::forward>(), loops_by_carry<Scalar, Abi, Direction::reverse>()}};
 }
 
-}  // namespace lensproof
+}  // namespace lensproof::optics

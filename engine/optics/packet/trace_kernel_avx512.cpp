@@ -1,6 +1,6 @@
 #include "engine/optics/packet/trace_kernel.h"
 
-namespace lensproof {
+namespace lensproof::optics {
 
 LevelKernels avx512_kernels() {
     namespace abi = std::experimental::simd_abi;
@@ -8,4 +8,4 @@ LevelKernels avx512_kernels() {
             .in_double = kernels_of<double, abi::native<double>>()};
 }
 
-}  // namespace lensproof
+}  // namespace lensproof::optics

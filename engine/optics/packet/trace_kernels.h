@@ -6,7 +6,7 @@
 #include "engine/optics/packet/spectral_lens.h"
 #include "engine/optics/packet/trace_batch.h"
 
-namespace lensproof {
+namespace lensproof::optics {
 
 /// A lens as the inner loop sees it: plain arrays.
 template <class T>
@@ -60,4 +60,4 @@ LevelKernels baseline_kernels();
 LevelKernels avx2_kernels();    // x86-64 alone
 LevelKernels avx512_kernels();  // x86-64 alone
 
-}  // namespace lensproof
+}  // namespace lensproof::optics

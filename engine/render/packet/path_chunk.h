@@ -6,7 +6,7 @@
 #include "engine/optics/packet/ray_batch.h"
 #include "engine/render/sampling/sensor.h"
 
-namespace lensproof {
+namespace lensproof::render {
 
 /// How many: as many as stay in the first-level cache with all their columns.
 inline constexpr int kPathChunk = 256;
@@ -15,7 +15,7 @@ template <class Number>
 using PathColumn = std::array<Number, kPathChunk>;
 
 /// Samples and where they begin and aim at; film and pupil in lens space, mm.
-struct alignas(kPacketAlignment) PathStarts {
+struct alignas(optics::kPacketAlignment) PathStarts {
     PathColumn<std::uint32_t> pixel;
     PathColumn<std::uint32_t> sample;
     PathColumn<double> film_x;
@@ -46,4 +46,4 @@ struct PathCursor {
     std::uint32_t samples = 0;
 };
 
-}  // namespace lensproof
+}  // namespace lensproof::render

@@ -10,7 +10,7 @@
 #include "engine/render/packet/path_kernels.h"
 #include "engine/render/sampling/sampler.h"
 
-namespace lensproof {
+namespace lensproof::render {
 
 /// The next samples of one pixel.
 template <class Abi>
@@ -60,15 +60,15 @@ template <class Abi>
 }
 
 template <class Abi>
-[[gnu::flatten]] void draw_pupil_points(const PupilSliceTables& slices, PathStarts& starts) {
+[[gnu::flatten]] void draw_pupil_points(const pupil::PupilSliceTables& slices, PathStarts& starts) {
     using Numbers = Pack<double, Abi>;
     const Numbers defensive_share(slices.defensive_share);
     for (int i = 0; i < starts.size; i += Numbers::kLanes) {
-        const PupilSlice<Numbers> slice(
+        const pupil::PupilSlice<Numbers> slice(
             slices, Numbers::load(starts.wavelength.data() + i),
             {Numbers::load(starts.film_x.data() + i), Numbers::load(starts.film_y.data() + i)});
         const Numbers u = Numbers::load(starts.pupil_u.data() + i);
-        const PupilDraw<Numbers> draw = slice.sample(u, Numbers::load(starts.pupil_v.data() + i));
+        const pupil::PupilDraw<Numbers> draw = slice.sample(u, Numbers::load(starts.pupil_v.data() + i));
         draw.point.x.store(starts.pupil_x.data() + i);
         draw.point.y.store(starts.pupil_y.data() + i);
         select(u < defensive_share, Numbers(-1.0), draw.area).store(starts.pupil_area.data() + i);
@@ -76,7 +76,7 @@ template <class Abi>
 }
 
 template <class Abi, class T>
-[[gnu::flatten]] void aim_rays(double film_z, double pupil_z, PathStarts& starts, RayBatch<T>& rays) {
+[[gnu::flatten]] void aim_rays(double film_z, double pupil_z, PathStarts& starts, optics::RayBatch<T>& rays) {
     using Numbers = Pack<double, Abi>;
     const Numbers z(film_z);
     const Numbers way_z(pupil_z - film_z);
@@ -106,4 +106,4 @@ LevelPathKernels path_kernels_of() {
             .in_double = {draw_samples<Abi>, draw_pupil_points<Abi>, aim_rays<Abi, double>}};
 }
 
-}  // namespace lensproof
+}  // namespace lensproof::render

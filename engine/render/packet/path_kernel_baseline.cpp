@@ -1,9 +1,9 @@
 #include "engine/render/packet/path_kernel.h"
 
-namespace lensproof {
+namespace lensproof::render {
 
 LevelPathKernels baseline_path_kernels() {
     return path_kernels_of<std::experimental::simd_abi::native<double>>();
 }
 
-}  // namespace lensproof
+}  // namespace lensproof::render

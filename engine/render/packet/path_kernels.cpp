@@ -2,17 +2,17 @@
 
 #include <type_traits>
 
-namespace lensproof {
+namespace lensproof::render {
 
 namespace {
 
-const LoopsByLevel<LevelPathKernels>& kernels() {
-    static const LoopsByLevel<LevelPathKernels> found{
-        {SimdLevel::scalar, scalar_path_kernels},
-        {SimdLevel::baseline, baseline_path_kernels},
+const optics::LoopsByLevel<LevelPathKernels>& kernels() {
+    static const optics::LoopsByLevel<LevelPathKernels> found{
+        {optics::SimdLevel::scalar, scalar_path_kernels},
+        {optics::SimdLevel::baseline, baseline_path_kernels},
 #ifdef LENSPROOF_X86_KERNELS
-        {SimdLevel::avx2, avx2_path_kernels},
-        {SimdLevel::avx512, avx512_path_kernels},
+        {optics::SimdLevel::avx2, avx2_path_kernels},
+        {optics::SimdLevel::avx512, avx512_path_kernels},
 #endif
     };
     return found;
@@ -21,7 +21,7 @@ const LoopsByLevel<LevelPathKernels>& kernels() {
 }  // namespace
 
 template <class T>
-const PathKernels<T>& path_kernels(std::optional<SimdLevel> level) {
+const PathKernels<T>& path_kernels(std::optional<optics::SimdLevel> level) {
     if constexpr (std::is_same_v<T, float>) {
         return kernels().at(level).in_float;
     } else {
@@ -29,7 +29,7 @@ const PathKernels<T>& path_kernels(std::optional<SimdLevel> level) {
     }
 }
 
-template const PathKernels<float>& path_kernels<float>(std::optional<SimdLevel>);
-template const PathKernels<double>& path_kernels<double>(std::optional<SimdLevel>);
+template const PathKernels<float>& path_kernels<float>(std::optional<optics::SimdLevel>);
+template const PathKernels<double>& path_kernels<double>(std::optional<optics::SimdLevel>);
 
-}  // namespace lensproof
+}  // namespace lensproof::render

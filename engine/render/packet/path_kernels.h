@@ -7,7 +7,7 @@
 #include "engine/pupil/pupil_slice.h"
 #include "engine/render/packet/path_chunk.h"
 
-namespace lensproof {
+namespace lensproof::render {
 
 /// The loops of one level; all levels yield the same bits.
 template <class T>
@@ -16,15 +16,15 @@ struct PathKernels {
     void (*draw_samples)(const PathSampling& sampling, int count, PathCursor& cursor, PathStarts& starts);
 
     /// Points of the pupil and their areas; of those that are drawn in defence it leaves −1 as area.
-    void (*draw_pupil_points)(const PupilSliceTables& slices, PathStarts& starts);
+    void (*draw_pupil_points)(const pupil::PupilSliceTables& slices, PathStarts& starts);
 
     /// From film and pupil points the rays and their etendue.
-    void (*aim_rays)(double film_z, double pupil_z, PathStarts& starts, RayBatch<T>& rays);
+    void (*aim_rays)(double film_z, double pupil_z, PathStarts& starts, optics::RayBatch<T>& rays);
 };
 
 /// Those of a level, or of the widest; throws as `LoopsByLevel` does.
 template <class T>
-const PathKernels<T>& path_kernels(std::optional<SimdLevel> level);
+const PathKernels<T>& path_kernels(std::optional<optics::SimdLevel> level);
 
 struct LevelPathKernels {
     PathKernels<float> in_float;
@@ -35,4 +35,4 @@ LevelPathKernels baseline_path_kernels();
 LevelPathKernels avx2_path_kernels();    // x86-64 alone
 LevelPathKernels avx512_path_kernels();  // x86-64 alone
 
-}  // namespace lensproof
+}  // namespace lensproof::render

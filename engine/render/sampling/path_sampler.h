@@ -5,7 +5,7 @@
 
 #include "engine/render/sampling/sampler.h"
 
-namespace lensproof {
+namespace lensproof::render {
 
 /// Five numbers in (0, 1) after five, each set a pure function of (seed, pixel, sample) and how many sets were drawn
 /// before. Within a set the samples of a pixel are a scrambled Sobol sequence, as `PixelSampler` has it; between sets
@@ -38,4 +38,4 @@ class PathSampler {
     std::uint64_t set_ = 0;
 };
 
-}  // namespace lensproof
+}  // namespace lensproof::render

@@ -11,7 +11,7 @@
 
 #include "engine/base/input_error.h"
 
-namespace lensproof {
+namespace lensproof::render {
 
 namespace {
 
@@ -122,4 +122,4 @@ PixelFilter::Draw PixelFilter::draw(double u) const {
     return {.offset_px = offset, .weight = scale_ * shape_(offset) * width * kParts};
 }
 
-}  // namespace lensproof
+}  // namespace lensproof::render

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-namespace lensproof {
+namespace lensproof::render {
 
 /// A pixel's value is ∫∫ E(x, y) f(x − u) f(y − v) dx dy over the film, in px: (u, v) is the pixel's centre, E the film
 /// irradiance, f the filter along one axis, of integral 1.
@@ -61,4 +61,4 @@ class PixelFilter {
     std::vector<double> quantile_;  // offsets that cut ∫ |f| into equal parts, both ends included; none for the box
 };
 
-}  // namespace lensproof
+}  // namespace lensproof::render

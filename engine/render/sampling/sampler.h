@@ -5,7 +5,7 @@
 #include <bit>
 #include <cstdint>
 
-namespace lensproof {
+namespace lensproof::render {
 
 namespace sampler_detail {
 
@@ -159,4 +159,4 @@ class PixelSampler {
     std::array<std::uint32_t, kDimensions> scramble_{};
 };
 
-}  // namespace lensproof
+}  // namespace lensproof::render

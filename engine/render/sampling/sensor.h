@@ -5,7 +5,7 @@
 
 #include "engine/base/vec.h"
 
-namespace lensproof {
+namespace lensproof::render {
 
 /// The sensor behind a lens: square pixels, centred on the axis. The picture is turned upright, as a camera does it:
 /// pixel (u, v) lies at x = −(u − (width − 1)/2) pitch, y = (v − (height − 1)/2) pitch in lens space.
@@ -27,4 +27,4 @@ struct Sensor {
     }
 };
 
-}  // namespace lensproof
+}  // namespace lensproof::render

@@ -4,7 +4,7 @@
 
 #include "engine/scene/bsdf/fresnel.h"
 
-namespace lensproof {
+namespace lensproof::scene {
 
 namespace {
 
@@ -17,7 +17,7 @@ bool is_delta(const ConductorBsdf& bsdf) {
 }
 
 bool is_delta(const PlasticBsdf& bsdf) {
-    return bsdf.coat->roughness().is_smooth() && is_black(bsdf.base);
+    return bsdf.coat->roughness().is_smooth() && spectral::is_black(bsdf.base);
 }
 
 bool is_delta(const MixBsdf& bsdf) {
@@ -26,25 +26,25 @@ bool is_delta(const MixBsdf& bsdf) {
         [](const auto& part) { return std::visit([](const auto& model) { return is_delta(model); }, part); });
 }
 
-SpectralSample normal_albedo(const DiffuseBsdf& bsdf) {
+spectral::SpectralSample normal_albedo(const DiffuseBsdf& bsdf) {
     return bsdf.albedo;
 }
 
-SpectralSample normal_albedo(const ConductorBsdf& bsdf) {
+spectral::SpectralSample normal_albedo(const ConductorBsdf& bsdf) {
     return conductor_reflectance(bsdf.n, bsdf.k, 1.0);
 }
 
-SpectralSample normal_albedo(const DielectricBsdf&) {
-    return SpectralSample(1.0F);
+spectral::SpectralSample normal_albedo(const DielectricBsdf&) {
+    return spectral::SpectralSample(1.0F);
 }
 
-SpectralSample normal_albedo(const PlasticBsdf& bsdf) {
+spectral::SpectralSample normal_albedo(const PlasticBsdf& bsdf) {
     const auto coat = static_cast<float>(bsdf.coat->reflectance(1.0));
-    return SpectralSample(coat) + (1.0F - coat) * bsdf.base;
+    return spectral::SpectralSample(coat) + (1.0F - coat) * bsdf.base;
 }
 
-SpectralSample normal_albedo(const MixBsdf& bsdf) {
-    SpectralSample sum;
+spectral::SpectralSample normal_albedo(const MixBsdf& bsdf) {
+    spectral::SpectralSample sum;
     for (std::size_t i = 0; i < bsdf.count; ++i) {
         sum += static_cast<float>(bsdf.share[i]) *
                std::visit([](const auto& part) { return normal_albedo(part); }, bsdf.part[i]);
@@ -54,7 +54,7 @@ SpectralSample normal_albedo(const MixBsdf& bsdf) {
 
 }  // namespace
 
-SpectralSample evaluate(const Bsdf& bsdf, const Vec3d& wo, const Vec3d& wi, Transport transport) {
+spectral::SpectralSample evaluate(const Bsdf& bsdf, const Vec3d& wo, const Vec3d& wi, Transport transport) {
     return std::visit([&](const auto& model) { return evaluate(model, wo, wi, transport); }, bsdf);
 }
 
@@ -71,8 +71,8 @@ bool is_delta(const Bsdf& bsdf) {
     return std::visit([](const auto& model) { return is_delta(model); }, bsdf);
 }
 
-SpectralSample normal_albedo(const Bsdf& bsdf) {
+spectral::SpectralSample normal_albedo(const Bsdf& bsdf) {
     return std::visit([](const auto& model) { return normal_albedo(model); }, bsdf);
 }
 
-}  // namespace lensproof
+}  // namespace lensproof::scene

@@ -10,7 +10,7 @@
 #include "engine/scene/bsdf/bsdf_sample.h"
 #include "engine/scene/bsdf/mix.h"
 
-namespace lensproof {
+namespace lensproof::scene {
 
 using Bsdf = std::variant<DiffuseBsdf, ConductorBsdf, DielectricBsdf, PlasticBsdf, MixBsdf>;
 
@@ -18,7 +18,7 @@ using Bsdf = std::variant<DiffuseBsdf, ConductorBsdf, DielectricBsdf, PlasticBsd
 ///
 /// f(wo, wi) = f(wi, wo) for reflection. For transmission it is that of the adjoint transport: radiance's f(wo, wi) is
 /// importance's f(wi, wo).
-SpectralSample evaluate(const Bsdf& bsdf, const Vec3d& wo, const Vec3d& wi, Transport transport);
+spectral::SpectralSample evaluate(const Bsdf& bsdf, const Vec3d& wo, const Vec3d& wi, Transport transport);
 
 /// The density per solid angle at which `sample` draws `wi`, one for all of the path's wavelengths. It integrates to 1
 /// less the probability of a delta and of no direction at all.
@@ -33,6 +33,6 @@ bool is_delta(const Bsdf& bsdf);
 
 /// The share of light from straight above that leaves the surface again, reflected or passed, as if facets lost
 /// nothing: the albedo layer that denoisers ask for.
-SpectralSample normal_albedo(const Bsdf& bsdf);
+spectral::SpectralSample normal_albedo(const Bsdf& bsdf);
 
-}  // namespace lensproof
+}  // namespace lensproof::scene

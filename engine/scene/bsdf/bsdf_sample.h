@@ -3,7 +3,7 @@
 #include "engine/base/vec.h"
 #include "engine/spectral/spectral_sample.h"
 
-namespace lensproof {
+namespace lensproof::scene {
 
 /// What flows along a path that scatters from `wi` to `wo`. Refraction squeezes beams, and radiance with them, by the
 /// square of the indices' ratio; importance, which flows the other way, it leaves (E. Veach, PhD thesis, Stanford 1997,
@@ -14,11 +14,11 @@ enum class Transport { radiance, importance };
 /// A direction drawn from a surface's scattering.
 struct BsdfSample {
     Vec3d wi;
-    SpectralSample weight;      // f |cos wi| / density; of a delta, its share over its probability
-    double density = 0.0;       // per solid angle; 0 for a delta
-    bool is_delta = false;      // a mirror's or a lens's one direction, which no other sampling finds
+    spectral::SpectralSample weight;  // f |cos wi| / density; of a delta, its share over its probability
+    double density = 0.0;             // per solid angle; 0 for a delta
+    bool is_delta = false;            // a mirror's or a lens's one direction, which no other sampling finds
     bool is_dispersed = false;  // the direction is the hero's alone: weight[1] to [3] are 0, and weight[0] is as it
                                 // would be without them; whoever goes on gives the hero the others' share
 };
 
-}  // namespace lensproof
+}  // namespace lensproof::scene

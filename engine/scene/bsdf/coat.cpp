@@ -6,7 +6,7 @@
 #include "engine/scene/bsdf/facet_mean.h"
 #include "engine/scene/bsdf/fresnel.h"
 
-namespace lensproof {
+namespace lensproof::scene {
 
 namespace {
 
@@ -61,4 +61,4 @@ double DielectricCoat::mean_reflectance_below() const {
     return 1.0 - (1.0 - mean_reflectance_) / (eta_ * eta_);
 }
 
-}  // namespace lensproof
+}  // namespace lensproof::scene

@@ -4,7 +4,7 @@
 
 #include "engine/scene/bsdf/ggx.h"
 
-namespace lensproof {
+namespace lensproof::scene {
 
 /// A clear layer of index `eta` (> 1) without absorption or dispersion; smooth, or rough alike in every direction.
 class DielectricCoat {
@@ -33,4 +33,4 @@ class DielectricCoat {
     double mean_reflectance_ = 0.0;
 };
 
-}  // namespace lensproof
+}  // namespace lensproof::scene

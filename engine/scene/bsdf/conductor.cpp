@@ -5,7 +5,7 @@
 #include "engine/scene/bsdf/directions.h"
 #include "engine/scene/bsdf/fresnel.h"
 
-namespace lensproof {
+namespace lensproof::scene {
 
 namespace {
 
@@ -21,8 +21,10 @@ double density_above(const ConductorBsdf& bsdf, const Vec3d& wo, const Vec3d& wi
     return (1.0 - p_several) * facets.density + (p_several > 0.0 ? p_several * bsdf.losses->density(wi) : 0.0);
 }
 
-SpectralSample value_above(const ConductorBsdf& bsdf, const Vec3d& wo, const Vec3d& wi, const GgxReflection& facets) {
-    SpectralSample value = static_cast<float>(facets.value) * conductor_reflectance(bsdf.n, bsdf.k, facets.cos_facet);
+spectral::SpectralSample value_above(const ConductorBsdf& bsdf, const Vec3d& wo, const Vec3d& wi,
+                                     const GgxReflection& facets) {
+    spectral::SpectralSample value =
+        static_cast<float>(facets.value) * conductor_reflectance(bsdf.n, bsdf.k, facets.cos_facet);
     const double lost = several_probability(bsdf, wo);
     if (lost > 0.0) {
         const double even = wi.z * std::numbers::inv_pi;
@@ -37,17 +39,18 @@ bool is_possible(const ConductorBsdf& bsdf, const Vec3d& wo, const Vec3d& wi) {
 
 }  // namespace
 
-SpectralSample mean_conductor_reflectance(const SpectralSample& n, const SpectralSample& k) {
+spectral::SpectralSample mean_conductor_reflectance(const spectral::SpectralSample& n,
+                                                    const spectral::SpectralSample& k) {
     using Gauss = boost::math::quadrature::gauss<double, 20>;
-    SpectralSample mean;
-    for (std::size_t i = 0; i < kWavelengthsPerPath; ++i) {
+    spectral::SpectralSample mean;
+    for (std::size_t i = 0; i < spectral::kWavelengthsPerPath; ++i) {
         const auto integrand = [&](double mu) { return 2.0 * mu * conductor_reflectance(n, k, mu)[i]; };
         mean[i] = static_cast<float>(Gauss::integrate(integrand, 0.0, 1.0));
     }
     return mean;
 }
 
-SpectralSample evaluate(const ConductorBsdf& bsdf, const Vec3d& wo, const Vec3d& wi, Transport) {
+spectral::SpectralSample evaluate(const ConductorBsdf& bsdf, const Vec3d& wo, const Vec3d& wi, Transport) {
     if (!is_possible(bsdf, wo, wi)) {
         return {};
     }
@@ -89,4 +92,4 @@ std::optional<BsdfSample> sample(const ConductorBsdf& bsdf, const Vec3d& wo, dou
                       .density = drawn_with};
 }
 
-}  // namespace lensproof
+}  // namespace lensproof::scene

@@ -3,17 +3,17 @@
 #include "engine/scene/bsdf/directions.h"
 #include "engine/scene/bsdf/fresnel.h"
 
-namespace lensproof {
+namespace lensproof::scene {
 
 namespace {
 
 bool is_dispersive(const DielectricBsdf& bsdf) {
-    return bsdf.eta != SpectralSample(bsdf.eta[0]);
+    return bsdf.eta != spectral::SpectralSample(bsdf.eta[0]);
 }
 
 /// How many of the wavelengths' indices differ, as far as it is worth knowing: they are computed one by one then.
 std::size_t distinct_indices(const DielectricBsdf& bsdf) {
-    return is_dispersive(bsdf) ? kWavelengthsPerPath : 1;
+    return is_dispersive(bsdf) ? spectral::kWavelengthsPerPath : 1;
 }
 
 /// The index behind the boundary relative to that before it, for light that meets it from `wo`'s side.
@@ -24,13 +24,13 @@ double eta_behind(const DielectricBsdf& bsdf, const Vec3d& wo, std::size_t wavel
 
 /// Applies `function` to each wavelength's index behind the boundary, or once where they are the same.
 template <class Function>
-SpectralSample for_each_index(const DielectricBsdf& bsdf, const Vec3d& wo, const Function& function) {
+spectral::SpectralSample for_each_index(const DielectricBsdf& bsdf, const Vec3d& wo, const Function& function) {
     const std::size_t count = distinct_indices(bsdf);
-    SpectralSample result;
+    spectral::SpectralSample result;
     for (std::size_t i = 0; i < count; ++i) {
         result[i] = static_cast<float>(function(eta_behind(bsdf, wo, i)));
     }
-    return count == 1 ? SpectralSample(result[0]) : result;
+    return count == 1 ? spectral::SpectralSample(result[0]) : result;
 }
 
 /// The mean of `function` over the wavelengths' indices.
@@ -131,7 +131,7 @@ float transmission_scale(double eta, Transport transport) {
 
 /// The direction behind a boundary of normal m (wo·m > 0) under which `wo` continues; nothing in total reflection.
 std::optional<Vec3d> refracted(const Vec3d& wo, const Vec3d& m, double cos_incidence, double eta) {
-    const auto outcome = refract(-1.0 * wo, -1.0 * m, cos_incidence, 1.0 / eta);
+    const auto outcome = optics::refract(-1.0 * wo, -1.0 * m, cos_incidence, 1.0 / eta);
     return outcome.transmitted ? std::optional(outcome.direction) : std::nullopt;
 }
 
@@ -141,10 +141,10 @@ std::optional<BsdfSample> sample_smooth(const DielectricBsdf& bsdf, const Vec3d&
     const double cos_incidence = std::min(from.z, 1.0);
     const double hero_reflectance = dielectric_reflectance(eta_behind(bsdf, wo, 0), cos_incidence);
     if (u_lobe < hero_reflectance) {
-        const SpectralSample reflectance =
+        const spectral::SpectralSample reflectance =
             for_each_index(bsdf, wo, [&](double eta) { return dielectric_reflectance(eta, cos_incidence); });
         return BsdfSample{.wi = {-wo.x, -wo.y, wo.z},
-                          .weight = reflectance / SpectralSample(static_cast<float>(hero_reflectance)),
+                          .weight = reflectance / spectral::SpectralSample(static_cast<float>(hero_reflectance)),
                           .is_delta = true};
     }
     const double eta = eta_behind(bsdf, wo, 0);
@@ -152,9 +152,9 @@ std::optional<BsdfSample> sample_smooth(const DielectricBsdf& bsdf, const Vec3d&
     if (!down || down->z == 0.0) {
         return std::nullopt;
     }
-    const SpectralSample weight(transmission_scale(eta, transport));
+    const spectral::SpectralSample weight(transmission_scale(eta, transport));
     return BsdfSample{.wi = wo.z > 0.0 ? *down : Vec3d{down->x, down->y, -down->z},
-                      .weight = is_dispersive(bsdf) ? hero_alone(weight) : weight,
+                      .weight = is_dispersive(bsdf) ? spectral::hero_alone(weight) : weight,
                       .is_delta = true,
                       .is_dispersed = is_dispersive(bsdf)};
 }
@@ -202,10 +202,10 @@ std::optional<Vec3d> rough_direction(const DielectricBsdf& bsdf, const Vec3d& wo
 }  // namespace
 
 bool is_delta(const DielectricBsdf& bsdf) {
-    return bsdf.roughness.is_smooth() || bsdf.eta == SpectralSample(1.0F);
+    return bsdf.roughness.is_smooth() || bsdf.eta == spectral::SpectralSample(1.0F);
 }
 
-SpectralSample evaluate(const DielectricBsdf& bsdf, const Vec3d& wo, const Vec3d& wi, Transport transport) {
+spectral::SpectralSample evaluate(const DielectricBsdf& bsdf, const Vec3d& wo, const Vec3d& wi, Transport transport) {
     if (is_delta(bsdf) || wo.z == 0.0 || wi.z == 0.0) {
         return {};
     }
@@ -244,4 +244,4 @@ std::optional<BsdfSample> sample(const DielectricBsdf& bsdf, const Vec3d& wo, do
                       .density = drawn_with};
 }
 
-}  // namespace lensproof
+}  // namespace lensproof::scene

@@ -6,7 +6,7 @@
 #include "engine/scene/bsdf/facet_losses.h"
 #include "engine/scene/bsdf/ggx.h"
 
-namespace lensproof {
+namespace lensproof::scene {
 
 /// The boundary between the outside, z > 0, and a medium of index `eta` relative to it.
 ///
@@ -17,13 +17,13 @@ namespace lensproof {
 /// (Walter's eq. 23). Light that meets a second facet is given back by facet_losses.h, on both sides, so that nothing
 /// is lost; without `losses` it is.
 struct DielectricBsdf {
-    SpectralSample eta;                      // positive
+    spectral::SpectralSample eta;            // positive
     Roughness roughness;                     // `resolvable`
     const BoundaryLosses* losses = nullptr;  // of this roughness and such indices; outlives it
 };
 
 // As in bsdf.h.
-SpectralSample evaluate(const DielectricBsdf& bsdf, const Vec3d& wo, const Vec3d& wi, Transport transport);
+spectral::SpectralSample evaluate(const DielectricBsdf& bsdf, const Vec3d& wo, const Vec3d& wi, Transport transport);
 double density(const DielectricBsdf& bsdf, const Vec3d& wo, const Vec3d& wi, Transport transport);
 std::optional<BsdfSample> sample(const DielectricBsdf& bsdf, const Vec3d& wo, double u_lobe, double u1, double u2,
                                  Transport transport);
@@ -31,4 +31,4 @@ std::optional<BsdfSample> sample(const DielectricBsdf& bsdf, const Vec3d& wo, do
 /// Whether light meets the boundary as if it were smooth: as it is, or as the indices match and nothing bends.
 bool is_delta(const DielectricBsdf& bsdf);
 
-}  // namespace lensproof
+}  // namespace lensproof::scene

@@ -2,9 +2,9 @@
 
 #include "engine/scene/bsdf/directions.h"
 
-namespace lensproof {
+namespace lensproof::scene {
 
-SpectralSample evaluate(const DiffuseBsdf& bsdf, const Vec3d& wo, const Vec3d& wi, Transport transport) {
+spectral::SpectralSample evaluate(const DiffuseBsdf& bsdf, const Vec3d& wo, const Vec3d& wi, Transport transport) {
     return static_cast<float>(density(bsdf, wo, wi, transport)) * bsdf.albedo;
 }
 
@@ -20,4 +20,4 @@ std::optional<BsdfSample> sample(const DiffuseBsdf& bsdf, const Vec3d& wo, doubl
     return BsdfSample{.wi = on_side_of(wo, upward), .weight = bsdf.albedo, .density = upward.z * std::numbers::inv_pi};
 }
 
-}  // namespace lensproof
+}  // namespace lensproof::scene

@@ -4,17 +4,17 @@
 
 #include "engine/scene/bsdf/bsdf_sample.h"
 
-namespace lensproof {
+namespace lensproof::scene {
 
 /// f = albedo / π, the same on both of its faces; light does not pass.
 struct DiffuseBsdf {
-    SpectralSample albedo;  // in [0, 1]
+    spectral::SpectralSample albedo;  // in [0, 1]
 };
 
 // As in bsdf.h.
-SpectralSample evaluate(const DiffuseBsdf& bsdf, const Vec3d& wo, const Vec3d& wi, Transport transport);
+spectral::SpectralSample evaluate(const DiffuseBsdf& bsdf, const Vec3d& wo, const Vec3d& wi, Transport transport);
 double density(const DiffuseBsdf& bsdf, const Vec3d& wo, const Vec3d& wi, Transport transport);
 std::optional<BsdfSample> sample(const DiffuseBsdf& bsdf, const Vec3d& wo, double u_lobe, double u1, double u2,
                                  Transport transport);
 
-}  // namespace lensproof
+}  // namespace lensproof::scene

@@ -6,7 +6,7 @@
 
 #include "engine/base/vec.h"
 
-namespace lensproof {
+namespace lensproof::scene {
 
 /// Whether both point to the same side of the surface; neither lies in it.
 inline bool on_same_side(const Vec3d& a, const Vec3d& b) {
@@ -31,4 +31,4 @@ inline Vec3d cosine_direction(double u1, double u2) {
     return {radius * std::cos(angle), radius * std::sin(angle), std::sqrt(std::max(0.0, 1.0 - u1))};
 }
 
-}  // namespace lensproof
+}  // namespace lensproof::scene

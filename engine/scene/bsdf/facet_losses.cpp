@@ -8,7 +8,7 @@
 #include "engine/scene/bsdf/facet_mean.h"
 #include "engine/scene/bsdf/fresnel.h"
 
-namespace lensproof {
+namespace lensproof::scene {
 
 namespace {
 
@@ -38,7 +38,7 @@ double reflected_share(const Roughness& roughness, const Vec3d& w, const Vec3d& 
 /// What a facet refracts past the others on the far side.
 double refracted_share(const Roughness& roughness, const Vec3d& w, const Vec3d& m, double eta) {
     const double cosine = std::min(dot(w, m), 1.0);
-    const auto onwards = refract(-1.0 * w, -1.0 * m, cosine, 1.0 / eta);
+    const auto onwards = optics::refract(-1.0 * w, -1.0 * m, cosine, 1.0 / eta);
     if (!onwards.transmitted || !(onwards.direction.z < 0.0)) {
         return 0.0;
     }
@@ -175,4 +175,4 @@ double given_back(double mean_reflectance, double mean_loss) {
     return mean_reflectance * mean_reflectance * (1.0 - mean_loss) / (1.0 - mean_reflectance * mean_loss);
 }
 
-}  // namespace lensproof
+}  // namespace lensproof::scene

@@ -9,7 +9,7 @@
 
 #include "engine/scene/bsdf/ggx.h"
 
-namespace lensproof {
+namespace lensproof::scene {
 
 /// l(w) of a rough surface, tabulated.
 class FacetLosses {
@@ -72,4 +72,4 @@ class BoundaryLosses {
 /// at least two reflections, then out (S. Hill's form, as in Kulla and Conty's notes).
 double given_back(double mean_reflectance, double mean_loss);
 
-}  // namespace lensproof
+}  // namespace lensproof::scene

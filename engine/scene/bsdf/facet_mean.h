@@ -4,7 +4,7 @@
 
 #include "engine/scene/bsdf/ggx.h"
 
-namespace lensproof {
+namespace lensproof::scene {
 
 /// ∫₀¹ function, by kPoints of Gauss's.
 template <int kPoints, class Function>
@@ -24,4 +24,4 @@ double visible_facet_mean(const Roughness& roughness, const Vec3d& wo, const Fun
     return sum / kAzimuths;
 }
 
-}  // namespace lensproof
+}  // namespace lensproof::scene

@@ -5,14 +5,14 @@
 #include "engine/optics/refract.h"
 #include "engine/spectral/spectral_sample.h"
 
-namespace lensproof {
+namespace lensproof::scene {
 
 /// A dielectric's, for light from a medium of index 1 that meets one of index `eta` at `cos_incidence` in [0, 1]: 1 in
 /// total reflection. (1 − T of Born & Wolf, §1.5.2.)
 inline double dielectric_reflectance(double eta, double cos_incidence) {
     const double sin2_incidence = (1.0 - cos_incidence) * (1.0 + cos_incidence);
-    const auto [cos_after, transmitted] = cos_refraction(cos_incidence, sin2_incidence, 1.0 / eta);
-    return transmitted ? 1.0 - fresnel_transmittance(1.0, eta, cos_incidence, cos_after) : 1.0;
+    const auto [cos_after, transmitted] = optics::cos_refraction(cos_incidence, sin2_incidence, 1.0 / eta);
+    return transmitted ? 1.0 - optics::fresnel_transmittance(1.0, eta, cos_incidence, cos_after) : 1.0;
 }
 
 /// A conductor's of index n + ik relative to the medium before it, at `cos_incidence` in [0, 1].
@@ -21,11 +21,12 @@ inline double dielectric_reflectance(double eta, double cos_incidence) {
 ///     R_s = ((a − c)² + b²) / ((a + c)² + b²),   R_p = R_s ((a c − s²)² + b² c²) / ((a c + s²)² + b² c²),
 /// c = cos i, s = sin i. Of a² and b², whose sum is |(n + ik)² − s²|, the larger is taken from the sum and the lesser
 /// from a b = n k, which keeps a good mirror's small losses.
-inline SpectralSample conductor_reflectance(const SpectralSample& n, const SpectralSample& k, double cos_incidence) {
+inline spectral::SpectralSample conductor_reflectance(const spectral::SpectralSample& n,
+                                                      const spectral::SpectralSample& k, double cos_incidence) {
     const auto c = static_cast<float>(cos_incidence);
     const auto s2 = static_cast<float>((1.0 - cos_incidence) * (1.0 + cos_incidence));
     const auto square = [](float x) { return x * x; };
-    return for_each_wavelength(
+    return spectral::for_each_wavelength(
         [&](float real, float imaginary) {
             const float difference = (real - imaginary) * (real + imaginary) - s2;  // a² − b²
             const float product = real * imaginary;                                 // a b
@@ -41,4 +42,4 @@ inline SpectralSample conductor_reflectance(const SpectralSample& n, const Spect
         n, k);
 }
 
-}  // namespace lensproof
+}  // namespace lensproof::scene

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace lensproof {
+namespace lensproof::scene {
 
 namespace {
 
@@ -62,4 +62,4 @@ double ggx_reflection_weight(const Roughness& roughness, const Vec3d& wo, const 
     return wi.z * (wo.z + length_o) / (length_o * wi.z + length_i * wo.z);
 }
 
-}  // namespace lensproof
+}  // namespace lensproof::scene

@@ -6,7 +6,7 @@
 #pragma once
 #include "engine/base/vec.h"
 
-namespace lensproof {
+namespace lensproof::scene {
 
 /// The facets' root mean square slope along x and y, roughly; both 0 on a smooth surface.
 struct Roughness {
@@ -48,4 +48,4 @@ inline Vec3d reflected(const Vec3d& w, const Vec3d& m) {
     return 2.0 * dot(w, m) * m - w;
 }
 
-}  // namespace lensproof
+}  // namespace lensproof::scene

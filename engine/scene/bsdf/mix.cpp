@@ -2,10 +2,10 @@
 
 #include <algorithm>
 
-namespace lensproof {
+namespace lensproof::scene {
 
-SpectralSample evaluate(const MixBsdf& bsdf, const Vec3d& wo, const Vec3d& wi, Transport transport) {
-    SpectralSample sum;
+spectral::SpectralSample evaluate(const MixBsdf& bsdf, const Vec3d& wo, const Vec3d& wi, Transport transport) {
+    spectral::SpectralSample sum;
     for (std::size_t i = 0; i < bsdf.count; ++i) {
         sum += static_cast<float>(bsdf.share[i]) *
                std::visit([&](const auto& part) { return evaluate(part, wo, wi, transport); }, bsdf.part[i]);
@@ -40,4 +40,4 @@ std::optional<BsdfSample> sample(const MixBsdf& bsdf, const Vec3d& wo, double u_
     return result;
 }
 
-}  // namespace lensproof
+}  // namespace lensproof::scene

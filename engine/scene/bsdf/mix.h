@@ -9,7 +9,7 @@
 #include "engine/scene/bsdf/diffuse.h"
 #include "engine/scene/bsdf/plastic.h"
 
-namespace lensproof {
+namespace lensproof::scene {
 
 using SimpleBsdf = std::variant<DiffuseBsdf, ConductorBsdf, DielectricBsdf, PlasticBsdf>;
 
@@ -24,9 +24,9 @@ struct MixBsdf {
 };
 
 // As in bsdf.h.
-SpectralSample evaluate(const MixBsdf& bsdf, const Vec3d& wo, const Vec3d& wi, Transport transport);
+spectral::SpectralSample evaluate(const MixBsdf& bsdf, const Vec3d& wo, const Vec3d& wi, Transport transport);
 double density(const MixBsdf& bsdf, const Vec3d& wo, const Vec3d& wi, Transport transport);
 std::optional<BsdfSample> sample(const MixBsdf& bsdf, const Vec3d& wo, double u_lobe, double u1, double u2,
                                  Transport transport);
 
-}  // namespace lensproof
+}  // namespace lensproof::scene

@@ -3,17 +3,17 @@
 #include "engine/scene/bsdf/directions.h"
 #include "engine/scene/bsdf/fresnel.h"
 
-namespace lensproof {
+namespace lensproof::scene {
 
 namespace {
 
 /// How often `sample` reflects at the coat: as much as that returns of all that comes back from `wo`.
 double coat_probability(const PlasticBsdf& bsdf, double coat_reflectance) {
-    return coat_reflectance / (coat_reflectance + (1.0 - coat_reflectance) * mean(bsdf.base));
+    return coat_reflectance / (coat_reflectance + (1.0 - coat_reflectance) * spectral::mean(bsdf.base));
 }
 
 /// The base's f |cos wi|.
-SpectralSample base_value(const PlasticBsdf& bsdf, double reflectance_o, double mu_i) {
+spectral::SpectralSample base_value(const PlasticBsdf& bsdf, double reflectance_o, double mu_i) {
     const DielectricCoat& coat = *bsdf.coat;
     const double in_and_out = (1.0 - reflectance_o) * (1.0 - coat.reflectance(mu_i)) / (1.0 - coat.mean_reflectance());
     return static_cast<float>(in_and_out * mu_i * std::numbers::inv_pi) * bsdf.base;
@@ -21,7 +21,7 @@ SpectralSample base_value(const PlasticBsdf& bsdf, double reflectance_o, double 
 
 /// f |cos wi| and the density for directions above the surface.
 struct Scattered {
-    SpectralSample value;
+    spectral::SpectralSample value;
     double density = 0.0;
 };
 Scattered scattered(const PlasticBsdf& bsdf, const Vec3d& wo, const Vec3d& wi) {
@@ -33,7 +33,7 @@ Scattered scattered(const PlasticBsdf& bsdf, const Vec3d& wo, const Vec3d& wi) {
     if (!coat.roughness().is_smooth()) {
         const GgxReflection facets = ggx_reflection(coat.roughness(), wo, wi);
         const double reflectance = dielectric_reflectance(coat.eta(), facets.cos_facet);
-        result.value += SpectralSample(static_cast<float>(facets.value * reflectance));
+        result.value += spectral::SpectralSample(static_cast<float>(facets.value * reflectance));
         result.density += p_coat * facets.density;
     }
     return result;
@@ -41,16 +41,16 @@ Scattered scattered(const PlasticBsdf& bsdf, const Vec3d& wo, const Vec3d& wi) {
 
 }  // namespace
 
-PlasticBsdf plastic_bsdf(const SpectralSample& albedo, const DielectricCoat& coat) {
+PlasticBsdf plastic_bsdf(const spectral::SpectralSample& albedo, const DielectricCoat& coat) {
     const auto below = static_cast<float>(coat.mean_reflectance_below());
     // As albedo · (…) this way round it is exactly 1 where the albedo is.
-    return {.base = for_each_wavelength(
+    return {.base = spectral::for_each_wavelength(
                 [&](float rho) { return rho * ((1.0F - below) / ((1.0F - below) + (1.0F - rho) * below)); }, albedo),
             .coat = &coat};
 }
 
-SpectralSample evaluate(const PlasticBsdf& bsdf, const Vec3d& wo, const Vec3d& wi, Transport) {
-    return on_same_side(wo, wi) ? scattered(bsdf, upwards(wo), upwards(wi)).value : SpectralSample();
+spectral::SpectralSample evaluate(const PlasticBsdf& bsdf, const Vec3d& wo, const Vec3d& wi, Transport) {
+    return on_same_side(wo, wi) ? scattered(bsdf, upwards(wo), upwards(wi)).value : spectral::SpectralSample();
 }
 
 double density(const PlasticBsdf& bsdf, const Vec3d& wo, const Vec3d& wi, Transport) {
@@ -69,7 +69,7 @@ std::optional<BsdfSample> sample(const PlasticBsdf& bsdf, const Vec3d& wo, doubl
     const bool at_coat = u_lobe < p_coat;
     if (at_coat && roughness.is_smooth()) {
         return BsdfSample{.wi = {-wo.x, -wo.y, wo.z},
-                          .weight = SpectralSample(static_cast<float>(reflectance / p_coat)),
+                          .weight = spectral::SpectralSample(static_cast<float>(reflectance / p_coat)),
                           .is_delta = true};
     }
     const Vec3d wi = at_coat ? reflected(from, ggx_visible_normal(roughness, from, u1, u2)) : cosine_direction(u1, u2);
@@ -82,4 +82,4 @@ std::optional<BsdfSample> sample(const PlasticBsdf& bsdf, const Vec3d& wo, doubl
                       .density = outcome.density};
 }
 
-}  // namespace lensproof
+}  // namespace lensproof::scene

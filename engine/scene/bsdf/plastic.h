@@ -5,7 +5,7 @@
 #include "engine/scene/bsdf/bsdf_sample.h"
 #include "engine/scene/bsdf/coat.h"
 
-namespace lensproof {
+namespace lensproof::scene {
 
 /// A Lambertian base of albedo ρ under a DielectricCoat, light bouncing between the two without end. With E the coat's
 /// reflectance from above, Ē its mean and F̄ its mean from below,
@@ -15,17 +15,17 @@ namespace lensproof {
 /// E(wo) + (1 − E(wo)) ρ (1 − F̄) / (1 − ρ F̄) in all, which is 1 where ρ is. What single reflections at a rough coat's
 /// facets lose goes to the base. Both faces are coated; light does not pass.
 struct PlasticBsdf {
-    SpectralSample base;                   // ρ (1 − F̄) / (1 − ρ F̄), in [0, 1]
+    spectral::SpectralSample base;         // ρ (1 − F̄) / (1 − ρ F̄), in [0, 1]
     const DielectricCoat* coat = nullptr;  // outlives it
 };
 
 /// With a base of albedo ρ in [0, 1].
-PlasticBsdf plastic_bsdf(const SpectralSample& albedo, const DielectricCoat& coat);
+PlasticBsdf plastic_bsdf(const spectral::SpectralSample& albedo, const DielectricCoat& coat);
 
 // As in bsdf.h.
-SpectralSample evaluate(const PlasticBsdf& bsdf, const Vec3d& wo, const Vec3d& wi, Transport transport);
+spectral::SpectralSample evaluate(const PlasticBsdf& bsdf, const Vec3d& wo, const Vec3d& wi, Transport transport);
 double density(const PlasticBsdf& bsdf, const Vec3d& wo, const Vec3d& wi, Transport transport);
 std::optional<BsdfSample> sample(const PlasticBsdf& bsdf, const Vec3d& wo, double u_lobe, double u1, double u2,
                                  Transport transport);
 
-}  // namespace lensproof
+}  // namespace lensproof::scene

@@ -5,7 +5,7 @@
 #include "engine/base/input_error.h"
 #include "tests/calibration/synthetic.h"
 
-namespace lensproof {
+namespace lensproof::calibration {
 namespace {
 
 constexpr std::array<double, 3> kRadial = {1.4, -0.8, 0.3};
@@ -98,4 +98,4 @@ TEST(CalibrationChromaticShift, TooFewOrUselessPairsAreRefused) {
 }
 
 }  // namespace
-}  // namespace lensproof
+}  // namespace lensproof::calibration

@@ -14,19 +14,19 @@
 #include "tests/calibration/synthetic.h"
 #include "tests/places.h"
 
-namespace lensproof {
+namespace lensproof::calibration {
 namespace {
 
 using namespace synthetic;
 namespace fs = std::filesystem;
 
-const Chart kDiscs{.pattern = DiscGrid{12, 9, 30.0, 14.0}};
+const scene::Chart kDiscs{.pattern = scene::DiscGrid{12, 9, 30.0, 14.0}};
 
 double shift_at(double wavelength_nm, double h) {
     return (wavelength_nm - 550.0) / 100.0 * (1.6 * h - 0.4 * h * h * h);
 }
 
-Image band(double wavelength_nm, const Chart& chart = kDiscs) {
+formats::Image band(double wavelength_nm, const scene::Chart& chart = kDiscs) {
     SimulatedCamera camera{
         .model = BrownConrady{{820.0, 319.5, 239.5, -0.1, 0.0, 0.0, 0.0, 0.0}},
         .width_px = 640,
@@ -39,8 +39,8 @@ Image band(double wavelength_nm, const Chart& chart = kDiscs) {
 }
 
 // What a Bayer sensor makes of it, whose colours see the band at 1, 0.4 and 0.05.
-Image mosaic_of(const Image& plane) {
-    Image raw = plane;
+formats::Image mosaic_of(const formats::Image& plane) {
+    formats::Image raw = plane;
     for (int y = 0; y < raw.height; ++y) {
         for (int x = 0; x < raw.width; ++x) {
             const float gain = (x + y) % 2 == 0 ? 0.4F : y % 2 == 0 ? 1.0F : 0.05F;  // gbrg: blue is the strongest
@@ -50,7 +50,7 @@ Image mosaic_of(const Image& plane) {
     return raw;
 }
 
-BandInput two_bands(const std::function<Image(double)>& load) {
+BandInput two_bands(const std::function<formats::Image(double)>& load) {
     BandInput input{.name = "bands",
                     .bands = {},
                     .reference_wavelength_nm = 550.0,
@@ -67,8 +67,8 @@ BandInput two_bands(const std::function<Image(double)>& load) {
 // The target at the corner is 0.02 px at 1 % noise, with and without knowing the chart; nothing turns. A mosaic, which
 // has a quarter of the sites, is allowed twice that.
 TEST(CalibrationBands, TheShiftBetweenBandsIsTheSimulatedOne) {
-    const Image blue = band(450.0);
-    const Image green = band(550.0);
+    const formats::Image blue = band(450.0);
+    const formats::Image green = band(550.0);
     const auto plain = [&](double nm) { return nm < 500.0 ? blue : green; };
     const auto raw = [&](double nm) { return mosaic_plane(mosaic_of(plain(nm)), MosaicPattern::gbrg); };
     BandInput known = two_bands(plain);
@@ -92,9 +92,9 @@ TEST(CalibrationBands, TheShiftBetweenBandsIsTheSimulatedOne) {
 // come close. Then the points reach an image height of 0.9, and the curve and its terms carried on to the corner itself
 // are within 0.02 px at 1 % noise.
 TEST(CalibrationBands, AChartThatFillsTheFrameTellsTheShiftInTheCorner) {
-    const Chart overfilling{.pattern = DiscGrid{32, 24, 15.0, 8.0}};
-    const Image blue = band(450.0, overfilling);
-    const Image green = band(550.0, overfilling);
+    const scene::Chart overfilling{.pattern = scene::DiscGrid{32, 24, 15.0, 8.0}};
+    const formats::Image blue = band(450.0, overfilling);
+    const formats::Image green = band(550.0, overfilling);
     const Profile profile = measure_bands(two_bands([&](double nm) { return nm < 500.0 ? blue : green; }));
     const Curve& radial = profile.curves.at("chromatic_shift_450nm_px");
     EXPECT_GT(radial.covered_image_height, 0.9);
@@ -108,31 +108,31 @@ TEST(CalibrationBands, AChartThatFillsTheFrameTellsTheShiftInTheCorner) {
 // Mosaics of even light become even planes, whatever the colours' sensitivity; a ramp stays a ramp where the strong
 // sites lie on both sides.
 TEST(CalibrationBands, AMosaicBecomesAPlane) {
-    Image ramp = make_image(16, 12, {"Y"});
+    formats::Image ramp = formats::make_image(16, 12, {"Y"});
     for (int y = 0; y < 12; ++y) {
         for (int x = 0; x < 16; ++x) {
             ramp.at(x, y, 0) = 0.5F + 0.01F * static_cast<float>(x - y);
         }
     }
-    Image weak_only = ramp;  // rggb: red alone sees the band
+    formats::Image weak_only = ramp;  // rggb: red alone sees the band
     for (int y = 0; y < 12; ++y) {
         for (int x = 0; x < 16; ++x) {
             weak_only.at(x, y, 0) *= x % 2 == 0 && y % 2 == 0 ? 1.0F : 0.01F;
         }
     }
-    const Image plane = mosaic_plane(weak_only, MosaicPattern::rggb);
+    const formats::Image plane = mosaic_plane(weak_only, MosaicPattern::rggb);
     for (int y = 1; y < 11; ++y) {
         for (int x = 1; x < 15; ++x) {
             EXPECT_NEAR(plane.at(x, y, 0), ramp.at(x, y, 0), 1e-6);
         }
     }
-    EXPECT_THROW(mosaic_plane(make_image(8, 8, {"Y"}), MosaicPattern::rggb), InputError);
-    EXPECT_THROW(mosaic_plane(make_image(8, 8, {"R", "G", "B"}), MosaicPattern::rggb), InputError);
+    EXPECT_THROW(mosaic_plane(formats::make_image(8, 8, {"Y"}), MosaicPattern::rggb), InputError);
+    EXPECT_THROW(mosaic_plane(formats::make_image(8, 8, {"R", "G", "B"}), MosaicPattern::rggb), InputError);
     EXPECT_FALSE(mosaic_pattern("rgbg"));
 }
 
 TEST(CalibrationBands, WhatIsNoSetOfBandsIsRefused) {
-    const auto blank = [](double) { return make_image(64, 48, {"Y"}); };
+    const auto blank = [](double) { return formats::make_image(64, 48, {"Y"}); };
     EXPECT_THROW(measure_bands(two_bands(blank)), InputError);
     BandInput one = two_bands(blank);
     one.bands.pop_back();
@@ -148,9 +148,9 @@ TEST(CalibrationBands, WhatIsNoSetOfBandsIsRefused) {
 }
 
 // The plane of one colour's sites alone, the others between them: no other colour and no gain has a part in it.
-Image colour_plane(const Image& raw, char colour) {
+formats::Image colour_plane(const formats::Image& raw, char colour) {
     const auto is_own = [&](int x, int y) { return "gbrg"[2 * (y % 2) + x % 2] == colour; };
-    Image plane = make_image(raw.width, raw.height, {"Y"});
+    formats::Image plane = formats::make_image(raw.width, raw.height, {"Y"});
     for (int y = 0; y < raw.height; ++y) {
         for (int x = 0; x < raw.width; ++x) {
             double sum = 0.0;
@@ -169,7 +169,7 @@ Image colour_plane(const Image& raw, char colour) {
 }
 
 // The middle of the pixels darker than half the paper's white: no weights, no window that follows.
-Vec2d middle_of_the_dark(const Image& plane, const Vec2d& near, double radius) {
+Vec2d middle_of_the_dark(const formats::Image& plane, const Vec2d& near, double radius) {
     Vec2d sum;
     int count = 0;
     for (int y = static_cast<int>(near.y - radius); y <= static_cast<int>(near.y + radius); ++y) {
@@ -219,17 +219,17 @@ TEST(CalibrationBands, NarrowBandPhotographsShiftAsTheirManifestSays) {
         GTEST_SKIP() << folder << " is not there";
     }
     const auto load = [&](const char* nm) {
-        Image raw = read_image(folder / ("d1_disks32cmV2_" + std::string(nm) + "nm_raw01.tif"));
+        formats::Image raw = formats::read_image(folder / ("d1_disks32cmV2_" + std::string(nm) + "nm_raw01.tif"));
         for (float& value : raw.pixels) {
-            value = linear_to_srgb(value);  // the sensor's own values
+            value = formats::linear_to_srgb(value);  // the sensor's own values
         }
         return raw;
     };
     const Vec2d centre{-408.5, -340.5};
-    const Image green_raw = load("550");
+    const formats::Image green_raw = load("550");
     const std::vector<LooseDisc> discs = find_loose_discs(mosaic_plane(green_raw, MosaicPattern::gbrg), 0);
     EXPECT_GE(discs.size(), 20u);
-    const Image green = colour_plane(green_raw, 'g');
+    const formats::Image green = colour_plane(green_raw, 'g');
     struct Expected {
         const char* nm;
         char colour;  // that sees it
@@ -237,9 +237,9 @@ TEST(CalibrationBands, NarrowBandPhotographsShiftAsTheirManifestSays) {
         double tangential_px;
     };
     for (const Expected& expected : {Expected{"450", 'b', -1.12, 0.5}, Expected{"650", 'r', 2.00, 0.0}}) {
-        const Image raw = load(expected.nm);
-        const Image other = mosaic_plane(raw, MosaicPattern::gbrg);
-        const Image other_colour = colour_plane(raw, expected.colour);
+        const formats::Image raw = load(expected.nm);
+        const formats::Image other = mosaic_plane(raw, MosaicPattern::gbrg);
+        const formats::Image other_colour = colour_plane(raw, expected.colour);
         std::vector<double> radial[2];
         std::vector<double> tangential[2];
         for (const LooseDisc& disc : discs) {
@@ -269,4 +269,4 @@ TEST(CalibrationBands, NarrowBandPhotographsShiftAsTheirManifestSays) {
 }
 
 }  // namespace
-}  // namespace lensproof
+}  // namespace lensproof::calibration

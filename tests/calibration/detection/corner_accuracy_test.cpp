@@ -11,16 +11,16 @@
 #include "engine/scene/aruco.h"
 #include "tests/calibration/shot.h"
 
-namespace lensproof {
+namespace lensproof::calibration {
 namespace {
 
 using namespace synthetic;
 
-const Chart kBoard{.pattern = Checkerboard{10, 7, 30.0}};
+const scene::Chart kBoard{.pattern = scene::Checkerboard{10, 7, 30.0}};
 
-Chart charuco_board() {
-    const ArucoDictionary aruco = aruco_dictionary("DICT_4X4_50");
-    return {.pattern = CharucoBoard{10, 7, 30.0, 22.0, aruco.cells, aruco.markers}};
+scene::Chart charuco_board() {
+    const scene::ArucoDictionary aruco = scene::aruco_dictionary("DICT_4X4_50");
+    return {.pattern = scene::CharucoBoard{10, 7, 30.0, 22.0, aruco.cells, aruco.markers}};
 }
 
 // 36 samples a pixel place an edge's every pixel to 1/36 of the step: 0.005 px in a corner, about what is left here.
@@ -47,7 +47,7 @@ TEST(CalibrationCornerAccuracy, OnePercentOfNoiseLeavesTwoHundredthsOfAPixel) {
 
 // OpenCV 4.6 puts ChArUco corners 0.53 px off in x and y. The bar: bias below 0.02 px.
 TEST(CalibrationCornerAccuracy, CharucoCornersHaveNoBias) {
-    const Chart board = charuco_board();
+    const scene::Chart board = charuco_board();
     for (const Shot& shot :
          {Shot{}, Shot{.blur_px = 1.0, .noise = 0.01}, Shot{.tilt_deg = 40.0, .blur_px = 0.7, .noise = 0.01}}) {
         const Errors e = errors(board, take(board, perspective_camera(), shot));
@@ -61,7 +61,7 @@ TEST(CalibrationCornerAccuracy, CharucoCornersHaveNoBias) {
 // At a blur of 1.75 px a marker's cells of 5 px run into one another, and guards of two blurs' widths would leave
 // nothing of the white between edges and markers: a sharpened copy shows the markers, and half the white is enough.
 TEST(CalibrationCornerAccuracy, ABlurredCharucoBoardIsFoundAndHasNoBias) {
-    const Chart board = charuco_board();
+    const scene::Chart board = charuco_board();
     const Errors e = errors(board, take(board, perspective_camera(),
                                         {.tilt_deg = 20.0, .blur_px = 1.75, .noise = 0.01, .distance_mm = 560.0}));
     EXPECT_GE(e.count, 44);
@@ -71,7 +71,7 @@ TEST(CalibrationCornerAccuracy, ABlurredCharucoBoardIsFoundAndHasNoBias) {
 
 // A board that half leaves the frame: the corners in view are found, under their own numbers.
 TEST(CalibrationCornerAccuracy, APartOfACharucoBoardCounts) {
-    const Chart board = charuco_board();
+    const scene::Chart board = charuco_board();
     const Errors e =
         errors(board, take(board, perspective_camera(),
                            {.tilt_deg = 20.0, .noise = 0.01, .distance_mm = 400.0, .aside_mm = {90.0, -70.0}}));
@@ -82,7 +82,7 @@ TEST(CalibrationCornerAccuracy, APartOfACharucoBoardCounts) {
 
 // The markers number the corners whichever way the camera is turned.
 TEST(CalibrationCornerAccuracy, ATurnedCharucoBoardKeepsItsNumbers) {
-    const Chart board = charuco_board();
+    const scene::Chart board = charuco_board();
     for (const double roll_deg : {90.0, 180.0, -135.0}) {
         const Errors e = errors(board, take(board, perspective_camera(), {.roll_deg = roll_deg, .distance_mm = 800.0}));
         EXPECT_GE(e.count, 45);
@@ -91,7 +91,7 @@ TEST(CalibrationCornerAccuracy, ATurnedCharucoBoardKeepsItsNumbers) {
 }
 
 TEST(CalibrationCornerAccuracy, ACharucoBoardBentByAFisheye) {
-    const Chart board = charuco_board();
+    const scene::Chart board = charuco_board();
     const Errors e =
         errors(board, take(board, fisheye_camera(), {.tilt_deg = 8.0, .noise = 0.005, .distance_mm = 120.0}));
     EXPECT_GE(e.count, 40);
@@ -99,7 +99,7 @@ TEST(CalibrationCornerAccuracy, ACharucoBoardBentByAFisheye) {
 }
 
 TEST(CalibrationCornerAccuracy, AMirroredCharucoBoardIsSaidToBeOne) {
-    const Chart board = charuco_board();
+    const scene::Chart board = charuco_board();
     Taken taken = take(board, perspective_camera(), {});
     for (int y = 0; y < taken.image.height; ++y) {
         for (int x = 0; x < taken.image.width / 2; ++x) {
@@ -126,7 +126,7 @@ TEST(CalibrationCornerAccuracy, CornersNearTheFrameAreMeasured) {
     const Detection detection = detect(whole.image, kBoard);
     ASSERT_TRUE(detection.found());
     const int cut = static_cast<int>(whole.truth_px[0].x) - 8;  // 8 px beside the first corner
-    Image image = make_image(whole.image.width - cut, whole.image.height, {"Y"});
+    formats::Image image = formats::make_image(whole.image.width - cut, whole.image.height, {"Y"});
     ChartPoints start = detection.points;
     for (int y = 0; y < image.height; ++y) {
         for (int x = 0; x < image.width; ++x) {
@@ -143,4 +143,4 @@ TEST(CalibrationCornerAccuracy, CornersNearTheFrameAreMeasured) {
 }
 
 }  // namespace
-}  // namespace lensproof
+}  // namespace lensproof::calibration

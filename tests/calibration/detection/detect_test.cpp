@@ -8,17 +8,18 @@
 #include "engine/base/input_error.h"
 #include "tests/calibration/synthetic.h"
 
-namespace lensproof {
+namespace lensproof::calibration {
 namespace {
 
 using namespace synthetic;
 
-const Chart kBoard{.pattern = Checkerboard{10, 7, 30.0}};
-const Chart kDiscs{.pattern = DiscGrid{8, 6, 40.0, 20.0}};
+const scene::Chart kBoard{.pattern = scene::Checkerboard{10, 7, 30.0}};
+const scene::Chart kDiscs{.pattern = scene::DiscGrid{8, 6, 40.0, 20.0}};
 constexpr int kSamples = 6;  // 36 a pixel: every edge is placed to 1/36 px or better
 
-Image picture(const CameraModel& camera, const Pose& pose, const Chart& chart, double noise, double brightness = 1.0) {
-    Image image = make_image(640, 480, {"Y"});
+formats::Image picture(const CameraModel& camera, const Pose& pose, const scene::Chart& chart, double noise,
+                       double brightness = 1.0) {
+    formats::Image image = formats::make_image(640, 480, {"Y"});
     paint(image, 0, camera, pose, chart, kSamples, [=](const Vec2d&) { return brightness; });
     add_noise(image, noise * brightness, 11);
     return image;
@@ -31,7 +32,7 @@ struct Comparison {
 };
 
 // Detected and refined points against the exact ones.
-Comparison compare(const Image& image, const Chart& chart, const std::vector<Vec2d>& expected) {
+Comparison compare(const formats::Image& image, const scene::Chart& chart, const std::vector<Vec2d>& expected) {
     const Detection detection = detect(image, chart);
     if (!detection.found()) {
         return {};
@@ -98,8 +99,8 @@ TEST(CalibrationDetect, TheBlackSquareNamesTheFirstCorner) {
 // A square board of an odd and a board of an even number of squares look the same after a half turn: rows run right.
 TEST(CalibrationDetect, SymmetricBoardsAreNumberedUpright) {
     const BrownConrady camera = perspective_camera();
-    for (const Chart& chart :
-         {Chart{.pattern = Checkerboard{9, 7, 30.0}}, Chart{.pattern = Checkerboard{7, 7, 30.0}}}) {
+    for (const scene::Chart& chart : {scene::Chart{.pattern = scene::Checkerboard{9, 7, 30.0}},
+                                      scene::Chart{.pattern = scene::Checkerboard{7, 7, 30.0}}}) {
         const Pose pose{{0.0, 0.1, 0.2}, {0.0, 0.0, 700.0}};
         const Comparison c = compare(picture(camera, pose, chart, 0.0), chart, view_of(camera, pose, chart).image_px);
         EXPECT_GT(c.found, 30);
@@ -112,7 +113,7 @@ TEST(CalibrationDetect, DiscCentroidsAreWithinATwentiethOfAPixel) {
     const BrownConrady camera = perspective_camera();
     for (const Pose& pose : {Pose{{0.0, 0.0, 0.0}, {0.0, 0.0, 700.0}}, Pose{{0.3, -0.4, 0.1}, {0.0, 0.0, 750.0}}}) {
         std::vector<Vec2d> expected;
-        for (const Vec2d& centre : feature_points(kDiscs)) {
+        for (const Vec2d& centre : scene::feature_points(kDiscs)) {
             expected.push_back(predict(camera, pose, centre, 20.0).value());
         }
         const Comparison c = compare(picture(camera, pose, kDiscs, 0.01), kDiscs, expected);
@@ -125,7 +126,7 @@ TEST(CalibrationDetect, DiscsInAFisheye) {
     const KannalaBrandt camera = fisheye_camera();
     const Pose pose{{0.05, -0.1, 0.02}, {5.0, -4.0, 160.0}};
     std::vector<Vec2d> expected;
-    for (const Vec2d& centre : feature_points(kDiscs)) {
+    for (const Vec2d& centre : scene::feature_points(kDiscs)) {
         expected.push_back(predict(camera, pose, centre, 20.0).value());
     }
     const Comparison c = compare(picture(camera, pose, kDiscs, 0.005), kDiscs, expected);
@@ -134,10 +135,10 @@ TEST(CalibrationDetect, DiscsInAFisheye) {
 }
 
 TEST(CalibrationDetect, NothingIsFoundWhereNothingIs) {
-    EXPECT_FALSE(detect(Image{}, kBoard).found());
-    EXPECT_FALSE(detect(make_image(1, 1, {"R", "G", "B"}), kBoard).found());
-    EXPECT_FALSE(detect(make_image(640, 480, {"Y"}), kBoard).found());
-    Image grey = make_image(320, 240, {"Y"});
+    EXPECT_FALSE(detect(formats::Image{}, kBoard).found());
+    EXPECT_FALSE(detect(formats::make_image(1, 1, {"R", "G", "B"}), kBoard).found());
+    EXPECT_FALSE(detect(formats::make_image(640, 480, {"Y"}), kBoard).found());
+    formats::Image grey = formats::make_image(320, 240, {"Y"});
     std::fill(grey.pixels.begin(), grey.pixels.end(), 0.5F);
     EXPECT_FALSE(detect(grey, kBoard).found());
     EXPECT_FALSE(detect(grey, kDiscs).found());
@@ -146,16 +147,16 @@ TEST(CalibrationDetect, NothingIsFoundWhereNothingIs) {
     EXPECT_FALSE(detect(grey, kDiscs).found());
     std::fill(grey.pixels.begin(), grey.pixels.end(), std::numeric_limits<float>::quiet_NaN());
     EXPECT_FALSE(detect(grey, kBoard).found());
-    EXPECT_THROW(detect(grey, Chart{.pattern = FlatField{}}), InputError);
-    EXPECT_THROW(detect(grey, Chart{.pattern = AstigmatismCrosses{9, 7, 20.0, 10.0, 1.0}}), InputError);
-    EXPECT_THROW(detect(grey, Chart{.pattern = Checkerboard{2, 2, 30.0}}), InputError);
+    EXPECT_THROW(detect(grey, scene::Chart{.pattern = scene::FlatField{}}), InputError);
+    EXPECT_THROW(detect(grey, scene::Chart{.pattern = scene::AstigmatismCrosses{9, 7, 20.0, 10.0, 1.0}}), InputError);
+    EXPECT_THROW(detect(grey, scene::Chart{.pattern = scene::Checkerboard{2, 2, 30.0}}), InputError);
 }
 
 // A picture without the chart says why, in words that a photographer can act on.
 TEST(CalibrationDetect, AChartNotFoundHasItsReason) {
-    EXPECT_NE(detect(make_image(1, 1, {"Y"}), kBoard).reason.find("too small"), std::string::npos);
-    EXPECT_NE(detect(make_image(64, 48, {"Y"}), kBoard).reason.find("no contrast"), std::string::npos);
-    Image noise = make_image(64, 48, {"Y"});
+    EXPECT_NE(detect(formats::make_image(1, 1, {"Y"}), kBoard).reason.find("too small"), std::string::npos);
+    EXPECT_NE(detect(formats::make_image(64, 48, {"Y"}), kBoard).reason.find("no contrast"), std::string::npos);
+    formats::Image noise = formats::make_image(64, 48, {"Y"});
     add_noise(noise, 0.1, 4);
     EXPECT_EQ(detect(noise, kBoard).reason, "no checkerboard of 9 × 6 inner corners found");
     EXPECT_EQ(detect(noise, kDiscs).reason, "no grid of 8 × 6 discs found");
@@ -165,7 +166,7 @@ TEST(CalibrationDetect, AChartNotFoundHasItsReason) {
 TEST(CalibrationDetect, SpoiledCornersAreMissing) {
     const BrownConrady camera = perspective_camera();
     const Pose pose{{0.1, 0.1, 0.0}, {0.0, 0.0, 600.0}};
-    Image image = picture(camera, pose, kBoard, 0.0);
+    formats::Image image = picture(camera, pose, kBoard, 0.0);
     std::vector<Vec2d> points = view_of(camera, pose, kBoard).image_px;
     const std::vector<bool> all(points.size(), true);
     image.at(static_cast<int>(points[10].x), static_cast<int>(points[10].y), 0) = std::nanf("");
@@ -185,4 +186,4 @@ TEST(CalibrationDetect, SpoiledCornersAreMissing) {
 }
 
 }  // namespace
-}  // namespace lensproof
+}  // namespace lensproof::calibration

@@ -6,32 +6,32 @@
 #include "engine/scene/aruco.h"
 #include "tests/calibration/shot.h"
 
-namespace lensproof {
+namespace lensproof::calibration {
 namespace {
 
 using namespace synthetic;
 
-const Chart kBoard{.pattern = Checkerboard{10, 7, 30.0}};
-const Chart kDiscs{.pattern = DiscGrid{9, 6, 33.0, 18.0}};
-const Chart kDots{.pattern = PointGrid{9, 6, 33.0, 10.0}};
-const Chart kLines{.pattern = StraightLines{9, 7, 30.0, 2.0}};
+const scene::Chart kBoard{.pattern = scene::Checkerboard{10, 7, 30.0}};
+const scene::Chart kDiscs{.pattern = scene::DiscGrid{9, 6, 33.0, 18.0}};
+const scene::Chart kDots{.pattern = scene::PointGrid{9, 6, 33.0, 10.0}};
+const scene::Chart kLines{.pattern = scene::StraightLines{9, 7, 30.0, 2.0}};
 
 ChartPoints exact(const Taken& taken) {
     return {.image_px = taken.truth_px, .found = std::vector<bool>(taken.truth_px.size(), true)};
 }
 
 /// Scatter of the points over noises, over what was stated: 1.
-double chi_squared(const Chart& chart, const Taken& clean, int trials) {
+double chi_squared(const scene::Chart& chart, const Taken& clean, int trials) {
     const std::size_t count = clean.truth_px.size();
     std::vector<double> sum(2 * count);
     std::vector<double> squares(2 * count);
     std::vector<double> stated(2 * count);
     for (int trial = 0; trial < trials; ++trial) {
-        Image image = clean.image;
+        formats::Image image = clean.image;
         add_noise(image, 0.01, static_cast<unsigned>(trial));
         const ChartPoints points = refine(image, 0, exact(clean), chart);
         for (std::size_t i = 0; i < count; ++i) {
-            EXPECT_TRUE(points.found[i] && points.standard_error_px[i]) << kind_name(chart) << i;
+            EXPECT_TRUE(points.found[i] && points.standard_error_px[i]) << scene::kind_name(chart) << i;
             const Vec2d error = points.standard_error_px[i].value_or(Vec2d{});
             for (const std::size_t axis : {0U, 1U}) {
                 const double off =
@@ -53,11 +53,11 @@ double chi_squared(const Chart& chart, const Taken& clean, int trials) {
 // 54 points, two coordinates, ten noises: chi² has a standard deviation of √(2 / 972) = 0.045. The noise is found to
 // 3 %, 6 % of chi², edges making it rather too large.
 TEST(CalibrationPointsTold, StandardErrorsAreTheScatterOverNoises) {
-    for (const Chart& chart : {kBoard, kDiscs, kDots}) {
+    for (const scene::Chart& chart : {kBoard, kDiscs, kDots}) {
         const Taken clean = take(chart, perspective_camera(), {.tilt_deg = 25.0, .blur_px = 0.7});
         const double chi = chi_squared(chart, clean, 10);
-        EXPECT_GT(chi, 0.80) << kind_name(chart);
-        EXPECT_LT(chi, 1.15) << kind_name(chart);
+        EXPECT_GT(chi, 0.80) << scene::kind_name(chart);
+        EXPECT_LT(chi, 1.15) << scene::kind_name(chart);
     }
 }
 
@@ -75,7 +75,7 @@ TEST(CalibrationPointsTold, DotsBesideWhitePaperAreWhereTheyAre) {
     EXPECT_LT(std::sqrt(0.5 * squares / static_cast<double>(points.found.size())), 0.008);
 }
 
-Numbering numbering(const Chart& chart, const Shot& shot) {
+Numbering numbering(const scene::Chart& chart, const Shot& shot) {
     const Detection detection = detect(take(chart, perspective_camera(), shot).image, chart);
     EXPECT_TRUE(detection.found()) << detection.reason;
     return detection.numbering;
@@ -83,8 +83,8 @@ Numbering numbering(const Chart& chart, const Shot& shot) {
 
 TEST(CalibrationPointsTold, WhichPointIsWhichIsSaid) {
     EXPECT_EQ(numbering(kBoard, {}), Numbering::certain);  // 10 + 7 squares: odd
-    EXPECT_EQ(numbering({.pattern = Checkerboard{9, 7, 30.0}}, {}), Numbering::half_turn);
-    EXPECT_EQ(numbering({.pattern = Checkerboard{7, 7, 30.0}}, {}), Numbering::quarter_turn);
+    EXPECT_EQ(numbering({.pattern = scene::Checkerboard{9, 7, 30.0}}, {}), Numbering::half_turn);
+    EXPECT_EQ(numbering({.pattern = scene::Checkerboard{7, 7, 30.0}}, {}), Numbering::quarter_turn);
     EXPECT_EQ(numbering(kDiscs, {}), Numbering::half_turn);
     EXPECT_EQ(numbering(kDiscs, {.distance_mm = 500.0, .aside_mm = {90.0, 0.0}}), Numbering::whole_pitches);
     EXPECT_EQ(numbering_in_words(Numbering::certain), "");
@@ -109,7 +109,7 @@ TEST(CalibrationPointsTold, LinesAreStraightUnderTheTrueModelAlone) {
     camera.white = 0.9;
     camera.read_noise = 0.005;
     const Pose pose{{0.18, -0.16, 0.07}, {0.0, 0.0, 640.0}};
-    const Image image = simulate_chart(camera, pose, kLines, 3);
+    const formats::Image image = simulate_chart(camera, pose, kLines, 3);
     const ChartPoints crossings{.image_px = view_of(camera.model, pose, kLines).image_px,
                                 .found = std::vector<bool>(63, true)};
     const std::vector<LinePoints> lines = line_points(image, 0, crossings, kLines);
@@ -134,4 +134,4 @@ TEST(CalibrationPointsTold, LinesAreStraightUnderTheTrueModelAlone) {
 }
 
 }  // namespace
-}  // namespace lensproof
+}  // namespace lensproof::calibration

@@ -5,7 +5,7 @@
 #include "calibration/profile/profile.h"
 #include "tests/calibration/synthetic.h"
 
-namespace lensproof::synthetic {
+namespace lensproof::calibration::synthetic {
 
 /// A profile whose model is `model`, of a picture of that size, measured as far as `covered` of its half diagonal.
 inline Profile profile_of(const CameraModel& model, int width_px, int height_px, double covered = 0.9) {
@@ -50,4 +50,4 @@ inline std::vector<Vec2d> covered_pixels(const Profile& profile) {
     return pixels;
 }
 
-}  // namespace lensproof::synthetic
+}  // namespace lensproof::calibration::synthetic

@@ -9,7 +9,7 @@
 #include "engine/base/input_error.h"
 #include "tests/calibration/export/export_profile.h"
 
-namespace lensproof {
+namespace lensproof::calibration {
 namespace {
 
 using namespace synthetic;
@@ -117,4 +117,4 @@ TEST(ExportOpencv, WithoutACameraModelThereIsNothingToWrite) {
 }
 
 }  // namespace
-}  // namespace lensproof
+}  // namespace lensproof::calibration

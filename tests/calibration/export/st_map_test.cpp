@@ -8,7 +8,7 @@
 #include "tests/calibration/export/export_profile.h"
 #include "tests/test_folder.h"
 
-namespace lensproof {
+namespace lensproof::calibration {
 namespace {
 
 using namespace synthetic;
@@ -18,7 +18,7 @@ class ReadMap {
   public:
     ReadMap(const StMap& map, const TestFolder& folder) {
         const auto file = folder.path() / (map.image.metadata.at("lensproof:map") + ".exr");
-        write_exr(map.image, file, map.placement);
+        formats::write_exr(map.image, file, map.placement);
         buffer_.reset(file.string());
         EXPECT_TRUE(buffer_.read(0, 0, true, OIIO::TypeDesc::FLOAT));
     }
@@ -131,4 +131,4 @@ TEST(ExportStMap, ThreadsChangeNothing) {
 }
 
 }  // namespace
-}  // namespace lensproof
+}  // namespace lensproof::calibration

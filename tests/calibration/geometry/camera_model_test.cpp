@@ -6,7 +6,7 @@
 
 #include "tests/calibration/synthetic.h"
 
-namespace lensproof {
+namespace lensproof::calibration {
 namespace {
 
 constexpr double kDegree = std::numbers::pi / 180.0;
@@ -74,4 +74,4 @@ TEST(CalibrationCameraModel, PerspectiveImagesNothingBehindTheCamera) {
 }
 
 }  // namespace
-}  // namespace lensproof
+}  // namespace lensproof::calibration

@@ -7,7 +7,7 @@
 #include "calibration/detection/refine.h"
 #include "tests/places.h"
 
-namespace lensproof {
+namespace lensproof::calibration {
 namespace {
 
 // Fifteen photos of a board of 6 × 8 inner corners that a fisheye bends: every one is found, nearly every corner
@@ -17,9 +17,9 @@ TEST(CalibrationFisheyeBoard, EveryViewIsFound) {
     if (!std::filesystem::exists(folder)) {
         GTEST_SKIP() << "needs the photos of fisheye_board";
     }
-    const Chart board{.pattern = Checkerboard{7, 9, 32.5}};
+    const scene::Chart board{.pattern = scene::Checkerboard{7, 9, 32.5}};
     for (int i = 1; i <= 15; ++i) {
-        const Image image = read_image(folder / ("Fisheye1_" + std::to_string(i) + ".jpg"));
+        const formats::Image image = formats::read_image(folder / ("Fisheye1_" + std::to_string(i) + ".jpg"));
         const Detection detection = detect(image, board);
         ASSERT_TRUE(detection.found()) << i << ": " << detection.reason;
         EXPECT_GE(count_found(refine(image, 1, detection.points, board)), 46) << i;
@@ -27,4 +27,4 @@ TEST(CalibrationFisheyeBoard, EveryViewIsFound) {
 }
 
 }  // namespace
-}  // namespace lensproof
+}  // namespace lensproof::calibration

@@ -8,17 +8,17 @@
 #include "engine/base/input_error.h"
 #include "tests/calibration/synthetic.h"
 
-namespace lensproof {
+namespace lensproof::calibration {
 namespace {
 
 using namespace synthetic;
 
-const Chart kBoard{.pattern = Checkerboard{10, 7, 30.0}};
+const scene::Chart kBoard{.pattern = scene::Checkerboard{10, 7, 30.0}};
 constexpr int kWidth = 640;
 constexpr int kHeight = 480;
 
 std::vector<ChartView> views_of(const CameraModel& camera, const std::vector<Pose>& poses,
-                                const Chart& chart = kBoard) {
+                                const scene::Chart& chart = kBoard) {
     std::vector<ChartView> views;
     views.reserve(poses.size());
     for (const Pose& pose : poses) {
@@ -151,11 +151,11 @@ TEST(CalibrationGeometry, CentroidOfADiscIsTheCentreOfItsEllipse) {
 // Centroids that are taken for images of centres bias the camera; the option removes it. The centroids here come from
 // 20 000 points spread evenly over each disc, weighted by the image's local area.
 TEST(CalibrationGeometry, DiscCentroidsAreModelled) {
-    const Chart discs{.pattern = DiscGrid{8, 6, 40.0, 24.0}};
+    const scene::Chart discs{.pattern = scene::DiscGrid{8, 6, 40.0, 24.0}};
     const BrownConrady truth = perspective_camera();
     std::vector<ChartView> views;
     for (const Pose& pose : tilted_poses(600.0, 0.6, 40.0)) {
-        ChartView view{.name = "discs", .chart_mm = feature_points(discs), .image_px = {}};
+        ChartView view{.name = "discs", .chart_mm = scene::feature_points(discs), .image_px = {}};
         for (const Vec2d& centre : view.chart_mm) {
             double mass = 0.0;
             Vec2d moment;
@@ -193,4 +193,4 @@ TEST(CalibrationGeometry, DiscCentroidsAreModelled) {
 }
 
 }  // namespace
-}  // namespace lensproof
+}  // namespace lensproof::calibration

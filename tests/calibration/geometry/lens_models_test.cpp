@@ -8,7 +8,7 @@
 #include "calibration/geometry/fit_geometry.h"
 #include "tests/calibration/synthetic.h"
 
-namespace lensproof {
+namespace lensproof::calibration {
 namespace {
 
 constexpr double kDegree = std::numbers::pi / 180.0;
@@ -148,7 +148,7 @@ TEST(CalibrationLensModels, BrownConradyIsOpenCvs) {
 // Exact views give every model back: the mapping to 1e-4 px over the heights seen (parameters of a rational function
 // are less well conditioned than what they say). A fitted spline has its knots elsewhere, which costs 0.01 px.
 TEST(CalibrationLensModels, ExactViewsGiveBackEveryModel) {
-    const Chart board{.pattern = Checkerboard{9, 8, 30.0}};
+    const scene::Chart board{.pattern = scene::Checkerboard{9, 8, 30.0}};
     for (const Case& c : every_model()) {
         const double focal = focal_length_px(c.model);
         std::vector<ChartView> views;
@@ -187,4 +187,4 @@ TEST(CalibrationLensModels, TheSplineIsSmoothAcrossItsKnots) {
 }
 
 }  // namespace
-}  // namespace lensproof
+}  // namespace lensproof::calibration

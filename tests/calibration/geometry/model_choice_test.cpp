@@ -7,7 +7,7 @@
 #include "engine/base/input_error.h"
 #include "tests/calibration/synthetic.h"
 
-namespace lensproof {
+namespace lensproof::calibration {
 namespace {
 
 using namespace synthetic;
@@ -17,7 +17,7 @@ constexpr int kHeight = 480;
 
 std::vector<ChartView> noisy_views(const CameraModel& camera, const std::vector<Pose>& poses, double sigma_px,
                                    unsigned seed) {
-    const Chart board{.pattern = Checkerboard{10, 7, 30.0}};
+    const scene::Chart board{.pattern = scene::Checkerboard{10, 7, 30.0}};
     Noise noise(seed);
     std::vector<ChartView> views;
     for (const Pose& pose : poses) {
@@ -108,4 +108,4 @@ TEST(CalibrationModelChoice, ASingleViewIsSplitByItsPoints) {
 }
 
 }  // namespace
-}  // namespace lensproof
+}  // namespace lensproof::calibration

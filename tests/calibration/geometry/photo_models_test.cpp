@@ -17,7 +17,7 @@
 #include "engine/formats/image/image.h"
 #include "tests/places.h"
 
-namespace lensproof {
+namespace lensproof::calibration {
 namespace {
 
 const std::filesystem::path kPhotos = shared_data() / "photos";
@@ -98,20 +98,20 @@ TEST(CalibrationPhotoModels, TheChosenModelBeatsEightCoefficientsOnTheSamyang) {
 // own.
 TEST(CalibrationPhotoModels, TheFisheyeBoardAgreesWithItsManifest) {
     const auto folder = kPhotos / "fisheye_board";
-    const Chart board{.pattern = Checkerboard{9, 7, 32.5}};
+    const scene::Chart board{.pattern = scene::Checkerboard{9, 7, 32.5}};
     std::vector<ChartView> views;
     for (int number = 1; number <= 15; ++number) {
         const auto file = folder / ("Fisheye1_" + std::to_string(number) + ".jpg");
         if (!std::filesystem::exists(file)) {
             GTEST_SKIP() << "needs ../shared/photos/fisheye_board";
         }
-        const Image image = read_image(file);
+        const formats::Image image = formats::read_image(file);
         const Detection detection = detect(image, board);
         if (!detection.found()) {
             continue;
         }
         const ChartPoints points = refine(image, reference_channel(image), detection.points, board);
-        const std::vector<Vec2d> features = feature_points(board);
+        const std::vector<Vec2d> features = scene::feature_points(board);
         ChartView view{.name = file.filename().string(), .chart_mm = {}, .image_px = {}};
         for (std::size_t i = 0; i < features.size(); ++i) {
             if (points.found[i]) {
@@ -143,4 +143,4 @@ TEST(CalibrationPhotoModels, TheFisheyeBoardAgreesWithItsManifest) {
 }
 
 }  // namespace
-}  // namespace lensproof
+}  // namespace lensproof::calibration

@@ -13,7 +13,7 @@
 #include "calibration/geometry/geometry_curves.h"
 #include "tests/calibration/synthetic.h"
 
-namespace lensproof {
+namespace lensproof::calibration {
 namespace {
 
 using namespace synthetic;
@@ -21,7 +21,7 @@ using namespace synthetic;
 constexpr int kWidth = 640;
 constexpr int kHeight = 480;
 
-const Chart kSmall{.pattern = Checkerboard{8, 7, 45.0}};
+const scene::Chart kSmall{.pattern = scene::Checkerboard{8, 7, 45.0}};
 
 struct Study {
     BrownConrady truth = perspective_camera();
@@ -321,4 +321,4 @@ TEST(CalibrationUncertainty, ABentBoardIsFound) {
 }
 
 }  // namespace
-}  // namespace lensproof
+}  // namespace lensproof::calibration

@@ -7,7 +7,7 @@
 #include "engine/base/input_error.h"
 #include "tests/calibration/synthetic.h"
 
-namespace lensproof {
+namespace lensproof::calibration {
 namespace {
 
 using Falloff = std::function<double(double)>;
@@ -21,8 +21,8 @@ double height_at(double x, double y) {
     return std::hypot(x - kCentre.x, y - kCentre.y) / kHalfDiagonal;
 }
 
-Image flat_field(const Falloff& falloff, double gain, double relative_noise, unsigned seed) {
-    Image image = make_image(kWidth, kHeight, {"Y"});
+formats::Image flat_field(const Falloff& falloff, double gain, double relative_noise, unsigned seed) {
+    formats::Image image = formats::make_image(kWidth, kHeight, {"Y"});
     synthetic::Noise noise(seed);
     for (int y = 0; y < kHeight; ++y) {
         for (int x = 0; x < kWidth; ++x) {
@@ -151,7 +151,7 @@ TEST(CalibrationVignetting, ChartsUnderUnevenLightGiveTheSameCurve) {
 }
 
 TEST(CalibrationVignetting, ClippedAndUnusablePixelsAreLeftOut) {
-    Image image = flat_field(cos4, 1.2, 0.0, 1);
+    formats::Image image = flat_field(cos4, 1.2, 0.0, 1);
     for (float& value : image.pixels) {
         value = std::min(value, 1.0F);
     }
@@ -171,16 +171,16 @@ TEST(CalibrationVignetting, TooLittleIsRefused) {
     EXPECT_THROW(fit_vignetting({LightGroup{}}, kCentre, kHalfDiagonal), InputError);
     const LightGroup same{.on_chart = false, .samples = std::vector<LightSample>(40, {{100, 100}, 0.5, 0.01, {}})};
     EXPECT_THROW(fit_vignetting({same}, kCentre, kHalfDiagonal), InputError);
-    EXPECT_TRUE(flat_field_samples(make_image(1, 1, {"Y"}), 0).samples.empty());
-    EXPECT_TRUE(flat_field_samples(Image{}, 0).samples.empty());
+    EXPECT_TRUE(flat_field_samples(formats::make_image(1, 1, {"Y"}), 0).samples.empty());
+    EXPECT_TRUE(flat_field_samples(formats::Image{}, 0).samples.empty());
 }
 
 // The samples are the white of the board: their value is the paper's reflectance, wherever the board stands.
 TEST(CalibrationVignetting, WhiteSquaresAreSampledInside) {
-    const Chart board{.pattern = Checkerboard{10, 7, 30.0}};
+    const scene::Chart board{.pattern = scene::Checkerboard{10, 7, 30.0}};
     const BrownConrady camera = synthetic::perspective_camera();
     const Pose pose{{0.2, -0.3, 0.05}, {0.0, 0.0, 600.0}};
-    Image image = make_image(640, 480, {"Y"});
+    formats::Image image = formats::make_image(640, 480, {"Y"});
     synthetic::paint(image, 0, camera, pose, board, 2);
     ChartPoints points{.image_px = synthetic::view_of(camera, pose, board).image_px,
                        .found = std::vector<bool>(54, true)};
@@ -188,7 +188,7 @@ TEST(CalibrationVignetting, WhiteSquaresAreSampledInside) {
     EXPECT_EQ(group.samples.size(), 20u);  // of 8 × 5 inner squares every other one
     for (const LightSample& s : group.samples) {
         EXPECT_NEAR(s.value, board.white_reflectance, 1e-6);
-        EXPECT_EQ(reflectance(board, s.chart_mm.x, s.chart_mm.y), board.white_reflectance);
+        EXPECT_EQ(scene::reflectance(board, s.chart_mm.x, s.chart_mm.y), board.white_reflectance);
     }
 }
 
@@ -299,4 +299,4 @@ TEST(CalibrationVignetting, TheShadingGridIsTheLightItself) {
 }
 
 }  // namespace
-}  // namespace lensproof
+}  // namespace lensproof::calibration

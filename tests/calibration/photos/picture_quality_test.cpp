@@ -7,24 +7,24 @@
 #include "calibration/photos/photo_survey.h"
 #include "tests/calibration/export/export_profile.h"
 
-namespace lensproof {
+namespace lensproof::calibration {
 namespace {
 
 using namespace synthetic;
 
-const Chart kBoard{.pattern = Checkerboard{10, 7, 30.0}};
+const scene::Chart kBoard{.pattern = scene::Checkerboard{10, 7, 30.0}};
 
 const BrownConrady kCamera{{410.0, 159.5, 119.5, 0, 0, 0, 0, 0}};
 const Pose kPose{{0.0, 0.0, 0.0}, {-120.0, -90.0, 450.0}};
 
 // A board that faces the camera, its edges a Gaussian of `sigma` px: 27 px between corners. What is brighter than full
 // scale is clipped.
-Image board_picture(double white, double sigma) {
-    Image image = make_image(320, 240, {"Y"});
+formats::Image board_picture(double white, double sigma) {
+    formats::Image image = formats::make_image(320, 240, {"Y"});
     paint(image, 0, kCamera, kPose, kBoard, 4, [&](const Vec2d&) { return white; });
     const int reach = static_cast<int>(4.0 * sigma);
     for (const bool across : {true, false}) {
-        const Image sharp = image;
+        const formats::Image sharp = image;
         for (int y = 0; y < image.height && reach > 0; ++y) {
             for (int x = 0; x < image.width; ++x) {
                 double sum = 0.0;
@@ -75,7 +75,7 @@ TEST(PictureQuality, FaultsAreSeenWhereTheyAre) {
     EXPECT_NE(visible_fault(board_picture(0.7, 9.0), 0).find("blurred"), std::string::npos);
     EXPECT_NE(visible_fault(board_picture(1.5, 1.0), 0).find("over-exposed"), std::string::npos);
     EXPECT_NE(visible_fault(board_picture(0.01, 1.0), 0).find("under-exposed"), std::string::npos);
-    EXPECT_EQ(visible_fault(make_image(1, 1, {"Y"}), 0), "");
+    EXPECT_EQ(visible_fault(formats::make_image(1, 1, {"Y"}), 0), "");
 }
 
 Profile with_curves(const BrownConrady& model) {
@@ -101,7 +101,7 @@ TEST(CorrectionSuspected, WhereAWideLensHasNoDistortion) {
 // 820 px on a diagonal of 800 px are 44.3 mm on one of 43.27 mm: what the camera rounds to 44, not 50.
 TEST(CorrectionSuspected, WhereTheFocalLengthIsNotTheStatedOne) {
     Profile profile = profile_of(perspective_camera(), 640, 480);
-    profile.source.notes = CameraNotes{.focal_length_mm = 4.0, .equivalent_focal_length_mm = 44.0};
+    profile.source.notes = formats::CameraNotes{.focal_length_mm = 4.0, .equivalent_focal_length_mm = 44.0};
     EXPECT_TRUE(suspicions_of(profile).empty());
     profile.source.notes->equivalent_focal_length_mm = 50.0;
     ASSERT_EQ(suspicions_of(profile).size(), 1u);
@@ -109,4 +109,4 @@ TEST(CorrectionSuspected, WhereTheFocalLengthIsNotTheStatedOne) {
 }
 
 }  // namespace
-}  // namespace lensproof
+}  // namespace lensproof::calibration

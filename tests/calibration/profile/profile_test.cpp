@@ -5,14 +5,14 @@
 #include "engine/base/input_error.h"
 #include "tests/calibration/synthetic.h"
 
-namespace lensproof {
+namespace lensproof::calibration {
 namespace {
 
 Profile example() {
     Profile profile;
     profile.name = "example";
     profile.source = {.kind = "photo", .images = {"a.jpg", "b \"quoted\" ä.jpg"}, .camera = "", .lens = "a lens"};
-    profile.source.notes = CameraNotes{.make = "Maker", .focal_length_mm = 18.0, .f_number = 1.0 / 3.0};
+    profile.source.notes = formats::CameraNotes{.make = "Maker", .focal_length_mm = 18.0, .f_number = 1.0 / 3.0};
     profile.source.suspicions = {"a sign"};
     profile.pictures = {{.image = "a.jpg", .role = "chart", .used = true, .orientation = 6},
                         {.image = "b", .role = "flat field", .used = false, .reason = "unreadable"}};
@@ -153,4 +153,4 @@ TEST(CalibrationProfile, EveryTruncationIsRefusedCleanly) {
 }
 
 }  // namespace
-}  // namespace lensproof
+}  // namespace lensproof::calibration

@@ -9,13 +9,15 @@
 #include "calibration/photos/picture_traits.h"
 #include "tests/calibration/synthetic.h"
 
-namespace lensproof {
+namespace lensproof::calibration {
 namespace {
 
 using namespace synthetic;
 
-const Chart kBoard{.pattern = Checkerboard{10, 7, 30.0}, .white_reflectance = 0.8, .black_reflectance = 0.1};
-const Chart kDiscs{.pattern = DiscGrid{9, 6, 30.0, 16.0}, .white_reflectance = 0.8, .black_reflectance = 0.1};
+const scene::Chart kBoard{
+    .pattern = scene::Checkerboard{10, 7, 30.0}, .white_reflectance = 0.8, .black_reflectance = 0.1};
+const scene::Chart kDiscs{
+    .pattern = scene::DiscGrid{9, 6, 30.0, 16.0}, .white_reflectance = 0.8, .black_reflectance = 0.1};
 
 SimulatedCamera camera_with(double blur_px, double noise) {
     return {.model = perspective_camera(),
@@ -40,7 +42,7 @@ SimulatedCamera small_camera_with(double blur_px, double noise) {
     return camera;
 }
 
-ChartPoints exact_points(const CameraModel& camera, const Pose& pose, const Chart& chart) {
+ChartPoints exact_points(const CameraModel& camera, const Pose& pose, const scene::Chart& chart) {
     ChartPoints points;
     points.image_px = view_of(camera, pose, chart).image_px;
     points.found.assign(points.image_px.size(), true);
@@ -53,21 +55,22 @@ ChartPoints exact_points(const CameraModel& camera, const Pose& pose, const Char
 // blur stated has the pixel's box (1/12 px²) in it.
 TEST(PictureTraits, AreThoseThatThePictureWasMadeWith) {
     const Pose pose{{0.3, -0.2, 0.1}, {0.0, 0.0, 480.0}};
-    for (const Chart& chart : {kBoard, kDiscs}) {
+    for (const scene::Chart& chart : {kBoard, kDiscs}) {
         for (const double blur : {0.4, 0.8, 2.5}) {
             const SimulatedCamera camera = camera_with(blur, 0.0);
-            const Image clean = simulate_chart(camera, pose, chart, 3);
+            const formats::Image clean = simulate_chart(camera, pose, chart, 3);
             for (const double noise : {0.001, 0.005}) {
-                Image image = clean;
+                formats::Image image = clean;
                 add_noise(image, noise, 3);
                 const auto traits = picture_traits(image, 0, exact_points(camera.model, pose, chart));
                 ASSERT_TRUE(traits);
                 EXPECT_NEAR(traits->white, 0.4, 0.1 * 0.35);
                 EXPECT_NEAR(traits->black, 0.05, 0.1 * 0.35);
-                EXPECT_NEAR(traits->noise / noise, 1.0, 0.25) << kind_name(chart) << " blur " << blur << " " << noise;
+                EXPECT_NEAR(traits->noise / noise, 1.0, 0.25)
+                    << scene::kind_name(chart) << " blur " << blur << " " << noise;
                 ASSERT_TRUE(traits->blur_px);
                 EXPECT_NEAR(*traits->blur_px / std::sqrt(blur * blur + 1.0 / 12.0), 1.0, 0.25)
-                    << kind_name(chart) << " blur " << blur << " " << noise;
+                    << scene::kind_name(chart) << " blur " << blur << " " << noise;
             }
         }
     }
@@ -81,14 +84,14 @@ TEST(PictureTraits, AFlatFieldHasItsOwn) {
     const FlatFieldTraits traits = flat_field_traits(simulate_flat_field(camera, 5), 0);
     EXPECT_NEAR(traits.noise, 0.004, 0.02 * 0.004);
     EXPECT_NEAR(traits.white, 0.5, 0.005 * 0.5);
-    EXPECT_EQ(flat_field_traits(make_image(4, 4, {"Y"}), 0).white, 0.0);
+    EXPECT_EQ(flat_field_traits(formats::make_image(4, 4, {"Y"}), 0).white, 0.0);
 }
 
 TEST(PictureTraits, NoPointsHaveNone) {
-    EXPECT_FALSE(picture_traits(make_image(64, 64, {"Y"}), 0, {}));
+    EXPECT_FALSE(picture_traits(formats::make_image(64, 64, {"Y"}), 0, {}));
 }
 
-MeasureInput input_of(const SimulatedCamera& camera, const Chart& chart) {
+MeasureInput input_of(const SimulatedCamera& camera, const scene::Chart& chart) {
     MeasureInput input;
     input.name = "simulated";
     input.chart = chart;
@@ -107,14 +110,15 @@ MeasureInput input_of(const SimulatedCamera& camera, const Chart& chart) {
 // was measured, must find the same: within a quarter, since the rms of 2 N = 540 numbers scatters by 3 % (four standard
 // errors: 12 %), and noise and blur are known to 10 % each.
 TEST(SelfTest, SaysTheErrorThatTheMeasurementHas) {
-    for (const Chart& chart : {kBoard, kDiscs}) {
+    for (const scene::Chart& chart : {kBoard, kDiscs}) {
         const SimulatedCamera camera = small_camera_with(0.7, 0.005);
         const MeasureInput input = input_of(camera, chart);
         const Profile profile = measure(input);
         ASSERT_TRUE(profile.self_test);
         EXPECT_EQ(profile.self_test->pictures, 5);
-        const double diameter_mm =
-            std::holds_alternative<DiscGrid>(chart.pattern) ? std::get<DiscGrid>(chart.pattern).diameter_mm : 0.0;
+        const double diameter_mm = std::holds_alternative<scene::DiscGrid>(chart.pattern)
+                                       ? std::get<scene::DiscGrid>(chart.pattern).diameter_mm
+                                       : 0.0;
         double squares = 0.0;
         int count = 0;
         const auto poses = tilted_poses(520.0, 0.35, 60.0);
@@ -126,7 +130,7 @@ TEST(SelfTest, SaysTheErrorThatTheMeasurementHas) {
             }
         }
         const double rms = std::sqrt(squares / count);
-        EXPECT_NEAR(profile.self_test->point_rms_px / rms, 1.0, 0.25) << kind_name(chart);
+        EXPECT_NEAR(profile.self_test->point_rms_px / rms, 1.0, 0.25) << scene::kind_name(chart);
         EXPECT_LT(profile.self_test->point_bias_px, rms);
         // The second fit is off by its own error, which the first states as its own band.
         const Curve& angle = profile.curves.at("field_angle_deg");
@@ -243,7 +247,7 @@ TEST(SelfTest, UnevenLightRaisesTheFloorAndIsMeasured) {
 TEST(SelfTest, ItIsSaidWhyThereIsNone) {
     MeasureInput input;
     input.name = "flat";
-    input.chart = {.pattern = FlatField{}};
+    input.chart = {.pattern = scene::FlatField{}};
     input.self_test = true;
     input.pictures.push_back(
         {"flat", PictureRole::flat_field, [] { return simulate_flat_field(camera_with(0.0, 0.001), 1); }});
@@ -253,4 +257,4 @@ TEST(SelfTest, ItIsSaidWhyThereIsNone) {
 }
 
 }  // namespace
-}  // namespace lensproof
+}  // namespace lensproof::calibration

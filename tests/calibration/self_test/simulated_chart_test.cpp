@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace lensproof {
+namespace lensproof::calibration {
 namespace {
 
 constexpr double kFocal_px = 200.0;
@@ -24,8 +24,8 @@ SimulatedCamera grey_camera() {
 const Pose kFacing{{0.0, 0.0, 0.0}, {0.0, 0.0, kDistance_mm}};
 
 // A board of white, so that only its middle edge is in the picture: columns meet at x = 0, rows far outside.
-const Chart kEdge{
-    .pattern = Checkerboard{2, 1, 100.0 * kMmPerPixel}, .white_reflectance = 1.0, .black_reflectance = 0.0};
+const scene::Chart kEdge{
+    .pattern = scene::Checkerboard{2, 1, 100.0 * kMmPerPixel}, .white_reflectance = 1.0, .black_reflectance = 0.0};
 
 // ∫ Φ(s) ds, Φ the normal distribution's function.
 double integrated_phi(double s) {
@@ -49,7 +49,7 @@ TEST(SimulatedChart, AnEdgeIsTheIntegralOfTheBlur) {
             camera.blur_px = sigma;
             Pose pose = kFacing;
             pose.translation_mm.x = edge_px * kMmPerPixel;
-            const Image image = simulate_chart(camera, pose, kEdge, 0);
+            const formats::Image image = simulate_chart(camera, pose, kEdge, 0);
             for (int x = 70; x < 90; ++x) {
                 EXPECT_NEAR(image.at(x, 60, 0), blurred_edge(x, 79.5 + edge_px, sigma), 0.004) << sigma << " " << x;
             }
@@ -64,7 +64,7 @@ TEST(SimulatedChart, ATurnedEdgeLiesWhereItShould) {
     for (const double turn : {0.0, 0.02, 0.1, 0.3, 0.7}) {
         Pose pose = kFacing;
         pose.rotation_rad.z = turn;
-        const Image image = simulate_chart(grey_camera(), pose, kEdge, 0);
+        const formats::Image image = simulate_chart(grey_camera(), pose, kEdge, 0);
         double mean_error = 0.0;
         constexpr int kRows = 41;
         for (int y = 40; y < 40 + kRows; ++y) {
@@ -91,7 +91,7 @@ TEST(SimulatedChart, ShiftAndVignettingAreWhatTheyAreSaidToBe) {
                         .vignetting = [](double rho) { return 1.0 - 0.5 * rho * rho; }}};
     Pose pose = kFacing;
     pose.translation_mm.x = 50.0 * kMmPerPixel;  // the edge at x = 129.5
-    const Image image = simulate_chart(camera, pose, kEdge, 0);
+    const formats::Image image = simulate_chart(camera, pose, kEdge, 0);
     const auto edge = [&](int channel, double white) {
         double black = 0.0;
         for (int x = 120; x < 140; ++x) {
@@ -103,7 +103,7 @@ TEST(SimulatedChart, ShiftAndVignettingAreWhatTheyAreSaidToBe) {
     const double rho = 50.0 / half_diagonal;
     // Light changes by 1 % a pixel there, so the ten white pixels are off by up to 5 %, evenly to both sides.
     EXPECT_NEAR(edge(1, 1.0 - 0.5 * 0.55 * 0.55), 129.5 + 0.8 * rho, 0.05);
-    const Image flat = simulate_flat_field(camera, 0);
+    const formats::Image flat = simulate_flat_field(camera, 0);
     EXPECT_FLOAT_EQ(flat.at(130, 60, 0), 1.0F);
     const double own = std::hypot(130 - 79.5, 60 - 59.5) / half_diagonal;
     EXPECT_FLOAT_EQ(flat.at(130, 60, 1), static_cast<float>(1.0 - 0.5 * own * own));
@@ -117,7 +117,7 @@ TEST(SimulatedChart, NoiseHasTheVarianceStated) {
     camera.read_noise = 0.003;
     camera.shot_noise = 0.01;
     camera.threads = 1;
-    const Image image = simulate_flat_field(camera, 1);
+    const formats::Image image = simulate_flat_field(camera, 1);
     double sum = 0.0;
     double squares = 0.0;
     for (const float value : image.pixels) {
@@ -139,10 +139,10 @@ TEST(SimulatedChart, JpegCostsWhatItsQualitySays) {
     SimulatedCamera camera = grey_camera();
     camera.blur_px = 0.7;
     camera.white = 0.8;
-    const Image exact = simulate_chart(camera, kFacing, kEdge, 0);
+    const formats::Image exact = simulate_chart(camera, kFacing, kEdge, 0);
     const auto largest_error = [&](int quality) {
         camera.jpeg_quality = quality;
-        const Image image = simulate_chart(camera, kFacing, kEdge, 0);
+        const formats::Image image = simulate_chart(camera, kFacing, kEdge, 0);
         double largest = 0.0;
         for (std::size_t i = 0; i < image.pixels.size(); ++i) {
             largest = std::max(largest, std::abs(static_cast<double>(image.pixels[i]) - exact.pixels[i]));
@@ -157,12 +157,12 @@ TEST(SimulatedChart, JpegCostsWhatItsQualitySays) {
 // wide is, and is the same: one column of squares between endless white, as a board and as a cross of two lines.
 TEST(SimulatedChart, WhatIsSkippedIsWhatIsSeen) {
     const double side = 20.0 * kMmPerPixel;
-    const Chart board{.pattern = Checkerboard{1, 1, side}};
-    const Chart square{.pattern = SlantedEdges{1, 1, 2.0 * side, side, 0.0}};
+    const scene::Chart board{.pattern = scene::Checkerboard{1, 1, side}};
+    const scene::Chart square{.pattern = scene::SlantedEdges{1, 1, 2.0 * side, side, 0.0}};
     Pose pose = kFacing;
     pose.rotation_rad = {0.2, -0.1, 0.4};
-    const Image skipped = simulate_chart(grey_camera(), pose, board, 0);
-    const Image seen = simulate_chart(grey_camera(), pose, square, 0);
+    const formats::Image skipped = simulate_chart(grey_camera(), pose, board, 0);
+    const formats::Image seen = simulate_chart(grey_camera(), pose, square, 0);
     EXPECT_EQ(skipped.pixels, seen.pixels);
 }
 
@@ -171,7 +171,7 @@ TEST(SimulatedChart, WhereThereIsNoChartItIsBlack) {
     SimulatedCamera camera = grey_camera();
     camera.model = KannalaBrandt{{60.0, 79.5, 59.5}};  // 95° at the corners
     camera.white = 1.0;
-    const Image image = simulate_chart(camera, kFacing, kEdge, 0);
+    const formats::Image image = simulate_chart(camera, kFacing, kEdge, 0);
     EXPECT_EQ(image.at(0, 0, 0), 0.0F);
     EXPECT_EQ(image.at(120, 59, 0), 1.0F);
     Pose behind = kFacing;
@@ -182,4 +182,4 @@ TEST(SimulatedChart, WhereThereIsNoChartItIsBlack) {
 }
 
 }  // namespace
-}  // namespace lensproof
+}  // namespace lensproof::calibration

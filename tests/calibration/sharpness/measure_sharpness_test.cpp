@@ -10,7 +10,7 @@
 #include "tests/calibration/sharpness/sharpness_edge.h"
 #include "tests/places.h"
 
-namespace lensproof {
+namespace lensproof::calibration {
 namespace {
 
 using namespace synthetic;
@@ -19,13 +19,13 @@ namespace fs = std::filesystem;
 // A chart of slanted squares through a lens whose blur is the same everywhere: both curves are level, at the MTF50 of
 // that Gaussian and the pixel's box, within the target of 2 % (each of 140 edges is known to about 2 %).
 TEST(CalibrationMeasureSharpness, AnEvenBlurGivesLevelCurves) {
-    const Chart chart{.pattern = SlantedEdges{7, 5, 60.0, 34.0, 6.0}};
+    const scene::Chart chart{.pattern = scene::SlantedEdges{7, 5, 60.0, 34.0, 6.0}};
     const Pose pose{{0.02, -0.03, 0.0}, {0.0, 0.0, 600.0}};
     SimulatedCamera camera{
         .model = perspective_camera(), .width_px = 640, .height_px = 480, .channels = {{.name = "G"}}};
     camera.blur_px = 0.8;
     camera.read_noise = 0.005;
-    const Image image = simulate_chart(camera, pose, chart, 7);
+    const formats::Image image = simulate_chart(camera, pose, chart, 7);
     SharpnessObservations seen;
     const ChartPoints points{.image_px = view_of(camera.model, pose, chart).image_px,
                              .found = std::vector<bool>(35, true)};
@@ -83,7 +83,7 @@ TEST(CalibrationMeasureSharpness, SampleEdgesOfAnotherProgramAgreeAmongThemselve
     const auto profile_of = [&](const char* file) {
         const fs::path path = folder / file;
         return measure(
-            only_edges({{file, PictureRole::edges, [path] { return read_image(path); }}}, {PixelRectangle{}}));
+            only_edges({{file, PictureRole::edges, [path] { return formats::read_image(path); }}}, {PixelRectangle{}}));
     };
     const Profile tiff = profile_of("Test_edge1.tif");
     const Profile bitmap = profile_of("Test_edge1.bmp");
@@ -99,4 +99,4 @@ TEST(CalibrationMeasureSharpness, SampleEdgesOfAnotherProgramAgreeAmongThemselve
 }
 
 }  // namespace
-}  // namespace lensproof
+}  // namespace lensproof::calibration

@@ -8,7 +8,7 @@
 #include "calibration/sharpness/slanted_edge.h"
 #include "tests/calibration/synthetic.h"
 
-namespace lensproof::synthetic {
+namespace lensproof::calibration::synthetic {
 
 /// A blur by its edge-spread function along the normal (from 0 to 1) and its MTF; the pixel's box is not part of it.
 struct Blur {
@@ -55,9 +55,9 @@ struct EdgePicture {
 
 /// Pixels are exact integrals of the blurred edge over their box, by n × n cells of 2 × 2 Gauss-Legendre
 /// points.
-inline Image paint_edge(const EdgePicture& edge, const Blur& blur, int n = 4) {
+inline formats::Image paint_edge(const EdgePicture& edge, const Blur& blur, int n = 4) {
     const double a = edge.normal_deg * std::numbers::pi / 180.0;
-    Image image = make_image(edge.width, edge.height, {"Y"});
+    formats::Image image = formats::make_image(edge.width, edge.height, {"Y"});
     for (int y = 0; y < edge.height; ++y) {
         for (int x = 0; x < edge.width; ++x) {
             double sum = 0.0;
@@ -107,4 +107,4 @@ inline EdgeRegion region_of(const EdgePicture& edge, double half_length = 32.0, 
     return {edge.middle, {-std::sin(a), std::cos(a)}, half_length, half_width};
 }
 
-}  // namespace lensproof::synthetic
+}  // namespace lensproof::calibration::synthetic

@@ -6,12 +6,12 @@
 #include "engine/base/input_error.h"
 #include "tests/calibration/sharpness/sharpness_edge.h"
 
-namespace lensproof {
+namespace lensproof::calibration {
 namespace {
 
 using namespace synthetic;
 
-const SiemensStar kStar{.sectors = 144, .radius_mm = 100.0};
+const scene::SiemensStar kStar{.sectors = 144, .radius_mm = 100.0};
 
 struct View {
     double blur_px = 0.8;
@@ -24,7 +24,7 @@ Pose pose_of(const View& view) {
     return {{0.7 * tilt, -0.6 * tilt, 0.1}, {20.0, -10.0, view.distance_mm}};
 }
 
-Image picture(const View& view, const SiemensStar& star = kStar) {
+formats::Image picture(const View& view, const scene::SiemensStar& star = kStar) {
     SimulatedCamera camera{
         .model = perspective_camera(), .width_px = 640, .height_px = 480, .channels = {{.name = "Y"}}};
     camera.blur_px = view.blur_px;
@@ -34,7 +34,7 @@ Image picture(const View& view, const SiemensStar& star = kStar) {
                           1);
 }
 
-StarMtf measured(const Image& image, const SiemensStar& star = kStar) {
+StarMtf measured(const formats::Image& image, const scene::SiemensStar& star = kStar) {
     const auto found = find_stars(image, 0, star);
     if (const auto* refusal = std::get_if<StarRefusal>(&found)) {
         ADD_FAILURE() << refusal->reason;
@@ -63,7 +63,7 @@ double true_mtf50(double sigma, double frequency_deg) {
 // The centre's image is known; so is how large a circle looks: as the chart's own circle, projected.
 TEST(CalibrationSiemensStar, IsFoundWhereItIs) {
     const View view{.blur_px = 1.2, .tilt_deg = 40.0};
-    Image image = picture(view);
+    formats::Image image = picture(view);
     add_noise(image, 0.005, 3);
     const StarMtf star = measured(image);
     const Vec2d centre = project(perspective_camera(), to_camera(pose_of(view), {0.0, 0.0})).value();
@@ -91,7 +91,7 @@ TEST(CalibrationSiemensStar, IsFoundWhereItIs) {
 TEST(CalibrationSiemensStar, Mtf50IsWithinTwoPercentInEveryDirection) {
     for (const View& view : {View{.blur_px = 0.3}, View{.blur_px = 0.8, .tilt_deg = 30.0},
                              View{.blur_px = 1.5, .tilt_deg = 40.0, .distance_mm = 500.0}}) {
-        Image image = picture(view);
+        formats::Image image = picture(view);
         add_noise(image, 0.007, 5);
         const StarMtf star = measured(image);
         EXPECT_EQ(star.segments.size(), 8u);
@@ -107,8 +107,8 @@ TEST(CalibrationSiemensStar, Mtf50IsWithinTwoPercentInEveryDirection) {
 // Light that is smeared over three pixels of a row is less sharp along x alone. The smear's own transform is
 // (1 + 2 cos 2πf) / 3; a segment is the mean over directions that are up to 22.5° aside, hence 6 %.
 TEST(CalibrationSiemensStar, DirectionsAreToldApart) {
-    const Image image = picture({.blur_px = 0.6});
-    Image smeared = image;
+    const formats::Image image = picture({.blur_px = 0.6});
+    formats::Image smeared = image;
     for (int y = 0; y < image.height; ++y) {
         for (int x = 1; x + 1 < image.width; ++x) {
             smeared.at(x, y, 0) = (image.at(x - 1, y, 0) + image.at(x, y, 0) + image.at(x + 1, y, 0)) / 3.0F;
@@ -131,12 +131,12 @@ TEST(CalibrationSiemensStar, DirectionsAreToldApart) {
 // The star's map as known without noise; 30 noises × 8 segments. Of 240 intervals that hold the truth with 95 %, 93.75
 // to 99 % do within three standard errors (1.4 %); what is left of 64 samples a pixel adds some bias, so 91 %.
 TEST(CalibrationSiemensStar, StatedIntervalsCoverTheTruth) {
-    const Image clean = picture({.blur_px = 0.8, .tilt_deg = 15.0});
+    const formats::Image clean = picture({.blur_px = 0.8, .tilt_deg = 15.0});
     const StarMap map = std::get<std::vector<StarMap>>(find_stars(clean, 0, kStar)).front();
     int covered = 0;
     int count = 0;
     for (unsigned seed = 0; seed < 30; ++seed) {
-        Image image = clean;
+        formats::Image image = clean;
         add_noise(image, 0.014, seed);
         const auto star = std::get<StarMtf>(measure_star(image, 0, map, kStar));
         for (const StarSegment& segment : star.segments) {
@@ -150,7 +150,7 @@ TEST(CalibrationSiemensStar, StatedIntervalsCoverTheTruth) {
     EXPECT_LT(covered, 0.995 * count);
 }
 
-std::string refusal(const Image& image, const SiemensStar& star = kStar) {
+std::string refusal(const formats::Image& image, const scene::SiemensStar& star = kStar) {
     const auto found = find_stars(image, 0, star);
     const auto* none = std::get_if<StarRefusal>(&found);
     return none == nullptr ? "" : none->reason;
@@ -158,15 +158,15 @@ std::string refusal(const Image& image, const SiemensStar& star = kStar) {
 
 // Pictures of something else, of another star, of too little light or too much say so.
 TEST(CalibrationSiemensStar, WrongPicturesHaveTheirReasons) {
-    const Image image = picture({});
+    const formats::Image image = picture({});
     EXPECT_NE(refusal(image, {.sectors = 72, .radius_mm = 100.0}).find("no circle in it crosses 72 sectors"),
               std::string::npos);
-    Image board = make_image(640, 480, {"Y"});
-    paint(board, 0, perspective_camera(), pose_of({}), {.pattern = Checkerboard{10, 7, 30.0}}, 2);
+    formats::Image board = formats::make_image(640, 480, {"Y"});
+    paint(board, 0, perspective_camera(), pose_of({}), {.pattern = scene::Checkerboard{10, 7, 30.0}}, 2);
     EXPECT_NE(refusal(board).find("no circle in it crosses 144 sectors"), std::string::npos);
-    EXPECT_NE(refusal(make_image(64, 48, {"Y"})).find("of one tone"), std::string::npos);
-    EXPECT_NE(refusal(make_image(8, 8, {"Y"})).find("too small"), std::string::npos);
-    Image clipped = image;
+    EXPECT_NE(refusal(formats::make_image(64, 48, {"Y"})).find("of one tone"), std::string::npos);
+    EXPECT_NE(refusal(formats::make_image(8, 8, {"Y"})).find("too small"), std::string::npos);
+    formats::Image clipped = image;
     for (float& value : clipped.pixels) {
         value = std::min(1.0F, 2.0F * value);
     }
@@ -181,7 +181,7 @@ TEST(CalibrationSiemensStar, AProfileOfAStarIsItsSharpness) {
     input.name = "star";
     input.chart = {.pattern = kStar};
     input.pictures = {{"star", PictureRole::chart, [] { return picture({}); }},
-                      {"grey", PictureRole::chart, [] { return make_image(640, 480, {"Y"}); }}};
+                      {"grey", PictureRole::chart, [] { return formats::make_image(640, 480, {"Y"}); }}};
     input.pixel_pitch_um = 4.0;
     const Profile profile = measure(input);
     ASSERT_EQ(profile.siemens_stars.at("Y").size(), 1u);
@@ -196,4 +196,4 @@ TEST(CalibrationSiemensStar, AProfileOfAStarIsItsSharpness) {
 }
 
 }  // namespace
-}  // namespace lensproof
+}  // namespace lensproof::calibration

@@ -3,14 +3,14 @@
 #include "calibration/sharpness/chart_edges.h"
 #include "tests/calibration/sharpness/sharpness_edge.h"
 
-namespace lensproof {
+namespace lensproof::calibration {
 namespace {
 
 using namespace synthetic;
 
 constexpr double kNoise = 0.01;  // of white
 
-EdgeMtf measured(const Image& image, const EdgeRegion& region) {
+EdgeMtf measured(const formats::Image& image, const EdgeRegion& region) {
     const auto result = measure_edge(image, 0, region);
     if (const auto* refusal = std::get_if<EdgeRefusal>(&result)) {
         ADD_FAILURE() << "the edge " << refusal->reason;
@@ -19,7 +19,7 @@ EdgeMtf measured(const Image& image, const EdgeRegion& region) {
     return std::get<EdgeMtf>(result);
 }
 
-std::string refused(const Image& image, const EdgeRegion& region) {
+std::string refused(const formats::Image& image, const EdgeRegion& region) {
     const auto result = measure_edge(image, 0, region);
     const auto* refusal = std::get_if<EdgeRefusal>(&result);
     return refusal != nullptr ? refusal->reason : "";
@@ -62,7 +62,7 @@ TEST(CalibrationSharpnessEdge, IntervalsCoverTheTruth) {
     for (const auto& [blur, normal_deg] :
          {std::pair{gaussian_blur(0.5), 5.0}, {gaussian_blur(1.0), 30.0}, {smeared_blur(0.6, 1.2), 8.0}}) {
         const EdgePicture edge{.normal_deg = normal_deg};
-        const Image clean = paint_edge(edge, blur);
+        const formats::Image clean = paint_edge(edge, blur);
         const double truth50 = true_frequency(blur, normal_deg, 0.5);
         const double truth10 = true_frequency(blur, normal_deg, 0.1);
         int covered50 = 0;
@@ -70,7 +70,7 @@ TEST(CalibrationSharpnessEdge, IntervalsCoverTheTruth) {
         double squares = 0.0;
         double stated = 0.0;
         for (int trial = 0; trial < trials; ++trial) {
-            Image noisy = clean;
+            formats::Image noisy = clean;
             add_noise(noisy, kNoise, static_cast<unsigned>(trial));
             const EdgeMtf mtf = measured(noisy, region_of(edge));
             ASSERT_TRUE(mtf.mtf50 && mtf.mtf10);
@@ -95,13 +95,13 @@ TEST(CalibrationSharpnessEdge, CorrelatedNoiseWidensTheInterval) {
     constexpr int trials = 300;
     const Blur blur = gaussian_blur(1.0);
     const EdgePicture edge{.normal_deg = 12.0};
-    const Image clean = paint_edge(edge, blur);
+    const formats::Image clean = paint_edge(edge, blur);
     const double truth = true_frequency(blur, edge.normal_deg, 0.5);
     int covered = 0;
     for (int trial = 0; trial < trials; ++trial) {
-        Image white = make_image(edge.width, edge.height, {"Y"});
+        formats::Image white = formats::make_image(edge.width, edge.height, {"Y"});
         add_noise(white, kNoise, static_cast<unsigned>(trial));
-        Image noisy = clean;
+        formats::Image noisy = clean;
         for (int y = 1; y + 1 < edge.height; ++y) {
             for (int x = 1; x + 1 < edge.width; ++x) {
                 for (int k = 0; k < 9; ++k) {
@@ -134,7 +134,7 @@ TEST(CalibrationSharpnessEdge, BentEdgesAndUnevenLightDoNotMatter) {
 TEST(CalibrationSharpnessEdge, TheRegionNeedNotBeExact) {
     const Blur blur = gaussian_blur(1.0);
     const EdgePicture edge{.normal_deg = 10.0};
-    const Image image = paint_edge(edge, blur);
+    const formats::Image image = paint_edge(edge, blur);
     EdgeRegion region = region_of(edge, 26.0, 18.0);
     region.centre_px.x += 3.0;
     const double turn = 2.0 * std::numbers::pi / 180.0;
@@ -149,12 +149,12 @@ TEST(CalibrationSharpnessEdge, WhatCannotBeMeasuredSaysWhy) {
     EXPECT_EQ(refused(paint_edge(along_columns, blur), region_of(along_columns)),
               "is too short, or lies along the pixels' rows, columns or diagonals");
     const EdgePicture edge{.normal_deg = 5.0};
-    Image clipped = paint_edge(edge, blur);
+    formats::Image clipped = paint_edge(edge, blur);
     for (float& value : clipped.pixels) {
         value = std::min(1.0F, value * 1.2F);
     }
     EXPECT_EQ(refused(clipped, region_of(edge)), "is clipped at white");
-    Image cut = paint_edge(edge, blur);
+    formats::Image cut = paint_edge(edge, blur);
     add_noise(cut, 0.05, 3);
     for (float& value : cut.pixels) {
         value = std::max(0.0F, value);
@@ -165,7 +165,7 @@ TEST(CalibrationSharpnessEdge, WhatCannotBeMeasuredSaysWhy) {
     EXPECT_EQ(refused(paint_edge(edge, gaussian_blur(6.0)), region_of(edge)), "is too narrow for its blur");
     EXPECT_EQ(refused(paint_edge(edge, blur), region_of(edge, 80.0)), "reaches beyond the picture");
     EXPECT_EQ(refused(paint_edge(edge, blur), region_of(edge, 5.0)), "is too small");
-    Image holes = paint_edge(edge, blur);
+    formats::Image holes = paint_edge(edge, blur);
     holes.at(30, 40, 0) = std::nanf("");
     EXPECT_EQ(refused(holes, region_of(edge)), "has pixels without a value");
 }
@@ -175,7 +175,7 @@ TEST(CalibrationSharpnessEdge, AnEdgeIsFoundInARectangle) {
     const Blur blur = gaussian_blur(1.0);
     for (const double normal_deg : {5.0, 85.0, -140.0, -10.0}) {
         const EdgePicture edge{.normal_deg = normal_deg, .width = 90, .height = 90, .middle = {44.0, 47.0}};
-        Image image = paint_edge(edge, blur);
+        formats::Image image = paint_edge(edge, blur);
         add_noise(image, 0.005, 1);
         const auto found = find_edge(image, 0, {0, 0, 90, 90});
         ASSERT_TRUE(std::holds_alternative<EdgeRegion>(found));
@@ -183,9 +183,9 @@ TEST(CalibrationSharpnessEdge, AnEdgeIsFoundInARectangle) {
         EXPECT_NEAR(mtf.mtf50->cycles_per_px / true_frequency(blur, normal_deg, 0.5), 1.0, 0.02);
         EXPECT_NEAR(mtf.normal_deg, normal_deg, 0.1);
     }
-    EXPECT_TRUE(std::holds_alternative<EdgeRefusal>(find_edge(make_image(40, 40, {"Y"}), 0, {0, 0, 40, 40})));
-    EXPECT_TRUE(std::holds_alternative<EdgeRefusal>(find_edge(make_image(40, 40, {"Y"}), 0, {0, 0, 41, 40})));
-    EXPECT_TRUE(std::holds_alternative<EdgeRefusal>(find_edge(make_image(40, 40, {"Y"}), 0, {-1, 0, 4, 4})));
+    EXPECT_TRUE(std::holds_alternative<EdgeRefusal>(find_edge(formats::make_image(40, 40, {"Y"}), 0, {0, 0, 40, 40})));
+    EXPECT_TRUE(std::holds_alternative<EdgeRefusal>(find_edge(formats::make_image(40, 40, {"Y"}), 0, {0, 0, 41, 40})));
+    EXPECT_TRUE(std::holds_alternative<EdgeRefusal>(find_edge(formats::make_image(40, 40, {"Y"}), 0, {-1, 0, 4, 4})));
 }
 
 // Every region of a chart lies on an edge of the chart, wherever a tilted camera sees it: on its axis both tones meet,
@@ -193,13 +193,15 @@ TEST(CalibrationSharpnessEdge, AnEdgeIsFoundInARectangle) {
 TEST(CalibrationSharpnessEdge, RegionsOfAChartLieOnItsEdges) {
     const CameraModel camera = perspective_camera();
     const Pose pose{{0.15, -0.2, 0.1}, {0.0, 0.0, 500.0}};
-    CharucoBoard charuco{.columns = 6, .rows = 5, .square_mm = 50.0, .marker_mm = 30.0, .cells = 4, .markers = {}};
+    scene::CharucoBoard charuco{
+        .columns = 6, .rows = 5, .square_mm = 50.0, .marker_mm = 30.0, .cells = 4, .markers = {}};
     charuco.markers.assign(15, 0);
-    const Chart charts[] = {
-        {.pattern = SlantedEdges{5, 4, 60.0, 40.0, 8.0}}, {.pattern = Checkerboard{7, 6, 40.0}}, {.pattern = charuco}};
+    const scene::Chart charts[] = {{.pattern = scene::SlantedEdges{5, 4, 60.0, 40.0, 8.0}},
+                                   {.pattern = scene::Checkerboard{7, 6, 40.0}},
+                                   {.pattern = charuco}};
     const std::size_t expected[] = {80, 49, 31};  // 4 · 20, 5 · 5 + 6 · 4, 4 · 4 + 5 · 3
     for (std::size_t i = 0; i < std::size(charts); ++i) {
-        const std::vector<Vec2d> features = feature_points(charts[i]);
+        const std::vector<Vec2d> features = scene::feature_points(charts[i]);
         const ChartPoints points{.image_px = view_of(camera, pose, charts[i]).image_px,
                                  .found = std::vector<bool>(features.size(), true)};
         const std::vector<EdgeRegion> regions = chart_edges(points, charts[i]);
@@ -209,7 +211,7 @@ TEST(CalibrationSharpnessEdge, RegionsOfAChartLieOnItsEdges) {
                 const Vec2d pixel{region.centre_px.x + u * region.along.x - v * region.along.y,
                                   region.centre_px.y + u * region.along.y + v * region.along.x};
                 const Vec2d mm = chart_point(camera, pose, pixel).value();
-                return is_black(charts[i], mm.x, mm.y);
+                return scene::is_black(charts[i], mm.x, mm.y);
             };
             for (const double u : {-1.0, 0.0, 1.0}) {
                 for (const double v : {0.2, 0.6, 1.0}) {
@@ -221,9 +223,9 @@ TEST(CalibrationSharpnessEdge, RegionsOfAChartLieOnItsEdges) {
             }
         }
     }
-    const Chart discs{.pattern = DiscGrid{4, 3, 20.0, 10.0}};
+    const scene::Chart discs{.pattern = scene::DiscGrid{4, 3, 20.0, 10.0}};
     EXPECT_TRUE(chart_edges({.image_px = std::vector<Vec2d>(12), .found = std::vector<bool>(12, true)}, discs).empty());
 }
 
 }  // namespace
-}  // namespace lensproof
+}  // namespace lensproof::calibration

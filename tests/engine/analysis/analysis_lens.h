@@ -6,7 +6,7 @@
 
 #include "engine/optics/trace.h"
 
-namespace lensproof {
+namespace lensproof::analysis {
 
 /// A row of a lens's table.
 struct Row {
@@ -23,14 +23,14 @@ struct Row {
 
 /// The lens of `rows` behind a medium of `index_before`; the image plane stands the last thickness behind it.
 template <class T>
-TraceLens<T> lens_of(const std::vector<Row>& rows, double index_before = 1.0) {
-    TraceLens<T> lens{.surfaces = {}, .image_z = T(0)};
+optics::TraceLens<T> lens_of(const std::vector<Row>& rows, double index_before = 1.0) {
+    optics::TraceLens<T> lens{.surfaces = {}, .image_z = T(0)};
     for (const Row& row : rows) {
         const T curvature = T(1) / T(row.radius);
-        lens.surfaces.push_back(make_trace_surface<T>(curvature + 2 * T(row.a2), lens.image_z, T(row.semi_diameter),
-                                                      T(index_before), T(row.index), row.is_stop));
+        lens.surfaces.push_back(optics::make_trace_surface<T>(
+            curvature + 2 * T(row.a2), lens.image_z, T(row.semi_diameter), T(index_before), T(row.index), row.is_stop));
         if (row.conic != 0.0 || row.a2 != 0.0 || row.a4 != 0.0 || row.a6 != 0.0) {
-            SpecialSurface<T> special;
+            optics::SpecialSurface<T> special;
             special.has_shape = true;
             special.shape = {.curvature = curvature,
                              .conic = T(row.conic),
@@ -47,16 +47,16 @@ TraceLens<T> lens_of(const std::vector<Row>& rows, double index_before = 1.0) {
 
 /// The same numbers in another precision, for what the paraxial and the third-order theory ask.
 template <class T>
-TraceLens<T> converted(const TraceLens<double>& lens) {
-    TraceLens<T> made{.surfaces = {}, .image_z = T(lens.image_z)};
-    for (const TraceSurface<double>& from : lens.surfaces) {
-        made.surfaces.push_back(make_trace_surface<T>(T(from.curvature), T(from.vertex_z), T(0), T(from.index_before),
-                                                      T(from.index_after), from.is_stop));
+optics::TraceLens<T> converted(const optics::TraceLens<double>& lens) {
+    optics::TraceLens<T> made{.surfaces = {}, .image_z = T(lens.image_z)};
+    for (const optics::TraceSurface<double>& from : lens.surfaces) {
+        made.surfaces.push_back(optics::make_trace_surface<T>(T(from.curvature), T(from.vertex_z), T(0),
+                                                              T(from.index_before), T(from.index_after), from.is_stop));
         made.surfaces.back().semi_diameter_squared = T(from.semi_diameter_squared);
         made.surfaces.back().special = from.special;
     }
-    for (const SpecialSurface<double>& from : lens.specials) {
-        SpecialSurface<T> special;
+    for (const optics::SpecialSurface<double>& from : lens.specials) {
+        optics::SpecialSurface<T> special;
         special.has_shape = from.has_shape;
         special.shape = {.curvature = T(from.shape.curvature),
                          .conic = T(from.shape.conic),
@@ -67,4 +67,4 @@ TraceLens<T> converted(const TraceLens<double>& lens) {
     return made;
 }
 
-}  // namespace lensproof
+}  // namespace lensproof::analysis

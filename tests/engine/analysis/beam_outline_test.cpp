@@ -8,7 +8,7 @@
 #include <limits>
 #include <numbers>
 
-namespace lensproof {
+namespace lensproof::analysis {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
@@ -19,9 +19,9 @@ struct Disc {
 };
 
 /// What several discs have in common. `sees_margin`: false tells only inside from outside, as a missed surface does.
-Region common_part(std::vector<Disc> discs, bool sees_margin = true) {
+optics::Region common_part(std::vector<Disc> discs, bool sees_margin = true) {
     return [discs = std::move(discs), sees_margin](Vec2d at) {
-        RegionSample worst{.margin = -std::numeric_limits<double>::infinity()};
+        optics::RegionSample worst{.margin = -std::numeric_limits<double>::infinity()};
         for (std::size_t i = 0; i < discs.size(); ++i) {
             const double x = at.x - discs[i].centre.x;
             const double y = at.y - discs[i].centre.y;
@@ -52,7 +52,7 @@ double lens_area(double narrow, double wide, double apart) {
 TEST(RegionOutline, DiscSeenFromAnywhere) {
     for (const double start_y : {0.0, 1.0, 2.9}) {
         for (const bool is_mirror : {false, true}) {
-            const RegionOutline outline = region_outline(
+            const optics::RegionOutline outline = optics::region_outline(
                 common_part({{{0.0, 0.5}, 3.0}}), {.start = {0.0, start_y}, .reach = 7.0, .is_mirror = is_mirror});
             EXPECT_NEAR(outline.area / (9.0 * kPi), 1.0, 1e-13) << start_y;
             EXPECT_TRUE(outline.is_star_shaped);
@@ -67,9 +67,9 @@ TEST(RegionOutline, CommonPartOfTwoDiscs) {
     for (const double apart : {0.5, 2.0, 4.0, 4.8, 4.99, 4.9999}) {
         for (const bool sees_margin : {true, false}) {
             for (const bool is_mirror : {true, false}) {
-                const RegionOutline outline =
-                    region_outline(common_part({{{0.0, 0.0}, 3.0}, {{0.0, apart}, 2.0}}, sees_margin),
-                                   {.start = {0.0, 0.5 * (apart - 2.0 + 3.0)}, .reach = 7.0, .is_mirror = is_mirror});
+                const optics::RegionOutline outline = optics::region_outline(
+                    common_part({{{0.0, 0.0}, 3.0}, {{0.0, apart}, 2.0}}, sees_margin),
+                    {.start = {0.0, 0.5 * (apart - 2.0 + 3.0)}, .reach = 7.0, .is_mirror = is_mirror});
                 const double expected = apart < 1.0 ? 4.0 * kPi : lens_area(3.0, 2.0, apart);
                 const double rounding = 1e-14 / std::min(4.0, 5.0 - apart);
                 EXPECT_NEAR(outline.area / expected, 1.0, 1e-11 + rounding) << apart << " " << sees_margin << is_mirror;
@@ -80,11 +80,12 @@ TEST(RegionOutline, CommonPartOfTwoDiscs) {
 
 // A sliver far from where the search starts: 1e-4 as wide as the discs, found down the margin.
 TEST(RegionOutline, FindsASliver) {
-    const Region region = common_part({{{0.3, -1.0}, 3.0}, {{0.3, 3.9999}, 2.0}});
-    const RegionOutline outline = region_outline(region, {.start = {0.0, 0.0}, .reach = 8.0});
+    const optics::Region region = common_part({{{0.3, -1.0}, 3.0}, {{0.3, 3.9999}, 2.0}});
+    const optics::RegionOutline outline = optics::region_outline(region, {.start = {0.0, 0.0}, .reach = 8.0});
     EXPECT_NEAR(outline.area / lens_area(3.0, 2.0, 4.9999), 1.0, 1e-9);
     EXPECT_TRUE(
-        region_outline(common_part({{{0.0, 0.0}, 3.0}, {{0.0, 5.01}, 2.0}}), {.start = {}, .reach = 8.0}).is_empty());
+        optics::region_outline(common_part({{{0.0, 0.0}, 3.0}, {{0.0, 5.01}, 2.0}}), {.start = {}, .reach = 8.0})
+            .is_empty());
 }
 
 // Three discs, no symmetry: Reuleaux's triangle of width w has the area (π − √3) w² / 2.
@@ -93,14 +94,16 @@ TEST(RegionOutline, ReuleauxTriangle) {
     for (const double azimuth : {0.2, 0.2 + 2.0 * kPi / 3.0, 0.2 + 4.0 * kPi / 3.0}) {
         discs.push_back({{std::cos(azimuth) / std::sqrt(3.0), std::sin(azimuth) / std::sqrt(3.0)}, 1.0});
     }
-    const RegionOutline outline = region_outline(common_part(discs), {.start = {0.1, 0.1}, .reach = 2.0});
+    const optics::RegionOutline outline =
+        optics::region_outline(common_part(discs), {.start = {0.1, 0.1}, .reach = 2.0});
     EXPECT_NEAR(outline.area / (0.5 * (kPi - std::sqrt(3.0))), 1.0, 1e-11);
 }
 
 // ∫ y² over a disc about a point off its middle is π R⁴ / 4 + π R² y₀², and the weights add up to the area; the nodes
 // need no more than two rings for a quadratic (degree 2 · 2 − 2).
 TEST(RegionOutline, QuadratureIntegratesPolynomials) {
-    const RegionOutline outline = region_outline(common_part({{{0.0, 0.5}, 3.0}}), {.start = {}, .reach = 7.0});
+    const optics::RegionOutline outline =
+        optics::region_outline(common_part({{{0.0, 0.5}, 3.0}}), {.start = {}, .reach = 7.0});
     double area = 0.0;
     double second = 0.0;
     for (const BeamNode& node : beam_quadrature(outline, 2)) {
@@ -114,13 +117,14 @@ TEST(RegionOutline, QuadratureIntegratesPolynomials) {
 // A disc with a bite: star-shaped only about points with y > 1.05, where the tangents at the bite's ends meet the axis,
 // and its centroid is not among them.
 TEST(RegionOutline, CrescentIsSeenFromItsFarSide) {
-    const Region crescent = [](Vec2d at) {
+    const optics::Region crescent = [](Vec2d at) {
         const double outer = (at.x * at.x + at.y * at.y) / 9.0 - 1.0;
         const double bite = 1.0 - (at.x * at.x + (at.y + 3.4) * (at.y + 3.4)) / (2.2 * 2.2);
-        return bite > outer ? RegionSample{bite, 1} : RegionSample{outer, 0};
+        return bite > outer ? optics::RegionSample{bite, 1} : optics::RegionSample{outer, 0};
     };
     for (const bool is_mirror : {true, false}) {
-        const RegionOutline outline = region_outline(crescent, {.start = {}, .reach = 7.0, .is_mirror = is_mirror});
+        const optics::RegionOutline outline =
+            optics::region_outline(crescent, {.start = {}, .reach = 7.0, .is_mirror = is_mirror});
         EXPECT_TRUE(outline.is_star_shaped);
         EXPECT_GT(outline.centre.y, 1.04);
         EXPECT_NEAR(outline.area / (9.0 * kPi - lens_area(2.2, 3.0, 3.4)), 1.0, 1e-11);
@@ -133,20 +137,21 @@ TEST(RegionOutline, BentStripIsStraightened) {
     const auto margin = [](Vec2d at, double y, double radius) {
         return (at.x * at.x + (at.y - y) * (at.y - y)) / (radius * radius) - 1.0;
     };
-    const Region banana = [&](Vec2d at) {
-        RegionSample worst{margin(at, 0.0, 10.3), 0};
-        for (const RegionSample& other :
-             {RegionSample{-margin(at, 0.0, 10.0), 1}, RegionSample{margin(at, 10.1, 4.0), 2}}) {
+    const optics::Region banana = [&](Vec2d at) {
+        optics::RegionSample worst{margin(at, 0.0, 10.3), 0};
+        for (const optics::RegionSample& other :
+             {optics::RegionSample{-margin(at, 0.0, 10.0), 1}, optics::RegionSample{margin(at, 10.1, 4.0), 2}}) {
             worst = other.margin > worst.margin ? other : worst;
         }
         return worst;
     };
-    const RegionOutline outline = region_outline(banana, {.start = {0.0, 10.1}, .reach = 10.0, .is_mirror = true});
+    const optics::RegionOutline outline =
+        optics::region_outline(banana, {.start = {0.0, 10.1}, .reach = 10.0, .is_mirror = true});
     EXPECT_TRUE(outline.is_star_shaped);
     EXPECT_NE(outline.bend, 0.0);
     EXPECT_NEAR(outline.area / (lens_area(4.0, 10.3, 10.1) - lens_area(4.0, 10.0, 10.1)), 1.0, 1e-10);
     double area = 0.0;
-    for (const RegionNode& node : region_quadrature(outline, 4)) {
+    for (const optics::RegionNode& node : optics::region_quadrature(outline, 4)) {
         EXPECT_LT(banana(node.point).margin, 0.0);
         area += node.weight;
     }
@@ -155,12 +160,12 @@ TEST(RegionOutline, BentStripIsStraightened) {
 
 // An annulus is not star-shaped, and said not to be.
 TEST(RegionOutline, SaysWhereItIsNotStarShaped) {
-    const Region annulus = [](Vec2d at) {
+    const optics::Region annulus = [](Vec2d at) {
         const double r2 = at.x * at.x + at.y * at.y;
-        return r2 < 1.0 ? RegionSample{1.0 - r2, 1} : RegionSample{r2 / 9.0 - 1.0, 0};
+        return r2 < 1.0 ? optics::RegionSample{1.0 - r2, 1} : optics::RegionSample{r2 / 9.0 - 1.0, 0};
     };
-    EXPECT_FALSE(region_outline(annulus, {.start = {0.0, 1.5}, .reach = 7.0}).is_star_shaped);
+    EXPECT_FALSE(optics::region_outline(annulus, {.start = {0.0, 1.5}, .reach = 7.0}).is_star_shaped);
 }
 
 }  // namespace
-}  // namespace lensproof
+}  // namespace lensproof::analysis

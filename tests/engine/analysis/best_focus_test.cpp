@@ -14,18 +14,19 @@
 #include "engine/spectral/wavelengths.h"
 #include "tests/engine/perfect_lens.h"
 
-namespace lensproof {
+namespace lensproof::analysis {
 namespace {
 
 constexpr double kDegree = std::numbers::pi / 180.0;
 
-WeightedField field_of(const Lens& lens, double field_angle,
-                       const std::vector<WeightedWavelength>& wavelengths = {{kLineD, 1.0}}) {
-    const FieldBundle bundle{.chief = ChiefRays(lens, kLineD, Rims::follow).at_field(field_angle).value()};
-    return {polychromatic_field(lens, bundle, kLineD, wavelengths), 1.0};
+WeightedField field_of(const optics::Lens& lens, double field_angle,
+                       const std::vector<WeightedWavelength>& wavelengths = {{spectral::kLineD, 1.0}}) {
+    const optics::FieldBundle bundle{
+        .chief = optics::ChiefRays(lens, spectral::kLineD, optics::Rims::follow).at_field(field_angle).value()};
+    return {polychromatic_field(lens, bundle, spectral::kLineD, wavelengths), 1.0};
 }
 
-std::vector<WeightedField> axis_of(const Lens& lens) {
+std::vector<WeightedField> axis_of(const optics::Lens& lens) {
     return {field_of(lens, 0.0)};
 }
 
@@ -35,10 +36,11 @@ PerfectLens with_spherical(double a4) {
 }
 
 /// Where the marginal ray crosses the axis behind the image plane, by tracing.
-double marginal_crossing(const Lens& lens, double radius) {
-    const TraceLens<double> traced = at_wavelength<double>(lens, kLineD);
-    const Ray<double> ray =
-        trace<Direction::forward, Rims::follow>(traced, Ray<double>{{0.0, radius, -50.0}, {0.0, 0.0, 1.0}}).ray;
+double marginal_crossing(const optics::Lens& lens, double radius) {
+    const optics::TraceLens<double> traced = optics::at_wavelength<double>(lens, spectral::kLineD);
+    const Ray<double> ray = optics::trace<optics::Direction::forward, optics::Rims::follow>(
+                                traced, Ray<double>{{0.0, radius, -50.0}, {0.0, 0.0, 1.0}})
+                                .ray;
     return ray.origin.z - ray.origin.y * ray.direction.z / ray.direction.y - lens.image_z;
 }
 
@@ -49,11 +51,11 @@ double marginal_crossing(const Lens& lens, double radius) {
 TEST(BestFocus, OfSphericalAberration) {
     for (const double a4 : {2e-6, -2e-6}) {
         const PerfectLens perfect = with_spherical(a4);
-        const Lens lens = perfect.lens();
+        const optics::Lens lens = perfect.lens();
         const double marginal = marginal_crossing(lens, perfect.beam_radius);
         ASSERT_GT(std::abs(marginal), 0.02);
         const double infinity = std::numeric_limits<double>::infinity();
-        EXPECT_NEAR(paraxial_focus_shift(lens, kLineD, infinity), 0.0, 1e-12);
+        EXPECT_NEAR(paraxial_focus_shift(lens, spectral::kLineD, infinity), 0.0, 1e-12);
         EXPECT_NEAR(spot_focus_shift(axis_of(lens)) / marginal, 2.0 / 3.0, 0.01);
         EXPECT_NEAR(wavefront_focus_shift(axis_of(lens)) / marginal, 0.5, 0.01);
     }
@@ -61,8 +63,8 @@ TEST(BestFocus, OfSphericalAberration) {
 
 // Of a lens without aberration all criteria find the focus.
 TEST(BestFocus, OfAPerfectLensIsItsFocus) {
-    const Lens lens = PerfectLens{.stop_distance = 20.0, .defocus = 0.3}.lens();
-    EXPECT_NEAR(paraxial_focus_shift(lens, kLineD, std::numeric_limits<double>::infinity()), -0.3, 1e-12);
+    const optics::Lens lens = PerfectLens{.stop_distance = 20.0, .defocus = 0.3}.lens();
+    EXPECT_NEAR(paraxial_focus_shift(lens, spectral::kLineD, std::numeric_limits<double>::infinity()), -0.3, 1e-12);
     EXPECT_NEAR(spot_focus_shift(axis_of(lens)), -0.3, 1e-12);
     EXPECT_NEAR(wavefront_focus_shift(axis_of(lens)), -0.3, 1e-11);
     // The maximum is symmetric but for terms of the order sin²U of the depth of focus, 4 λ / sin²U = 0.06 mm.
@@ -71,10 +73,10 @@ TEST(BestFocus, OfAPerfectLensIsItsFocus) {
 
 // Each criterion's plane is better by its own measure than those around, for several fields and wavelengths together.
 TEST(BestFocus, IsTheBestAround) {
-    const Lens lens = with_f_number(load_lens("double-gauss-tronnier"), 4.0);
-    const std::vector<WeightedWavelength> light = {{kLineF, 1.0}, {kLineC, 1.0}};
+    const optics::Lens lens = optics::with_f_number(formats::load_lens("double-gauss-tronnier"), 4.0);
+    const std::vector<WeightedWavelength> light = {{spectral::kLineF, 1.0}, {spectral::kLineC, 1.0}};
     const auto fields_at = [&](double shift) {
-        const Lens moved = with_image_shift(lens, shift);
+        const optics::Lens moved = with_image_shift(lens, shift);
         return std::vector<WeightedField>{field_of(moved, 0.0, light), field_of(moved, 10.0 * kDegree, light)};
     };
     const std::vector<WeightedField> fields = fields_at(0.0);
@@ -133,12 +135,12 @@ TEST(BestFocus, IsTheBestAround) {
 
 // Blurred over many cycles, a field counts by its rays; the answer is still next to where its spot is least.
 TEST(BestFocus, GoesOnWithRaysWherePupilsCannotBeSampled) {
-    const std::vector<WeightedField> fields = {field_of(load_lens("petzval"), 0.0)};
+    const std::vector<WeightedField> fields = {field_of(formats::load_lens("petzval"), 0.0)};
     EXPECT_NEAR(mtf_focus_shift(fields, 5.0), spot_focus_shift(fields), 0.5);
 }
 
 TEST(BestFocus, RefusesWhatHasNone) {
-    const Lens lens = load_lens("tessar");
+    const optics::Lens lens = formats::load_lens("tessar");
     EXPECT_THROW(spot_focus_shift({}), InputError);
     EXPECT_THROW(wavefront_focus_shift({}), InputError);
     EXPECT_THROW(mtf_focus_shift(axis_of(lens), 5000.0), InputError);
@@ -147,4 +149,4 @@ TEST(BestFocus, RefusesWhatHasNone) {
 }
 
 }  // namespace
-}  // namespace lensproof
+}  // namespace lensproof::analysis

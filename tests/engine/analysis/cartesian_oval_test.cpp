@@ -7,7 +7,7 @@
 #include "engine/analysis/beam_outline.h"
 #include "engine/analysis/spot.h"
 
-namespace lensproof {
+namespace lensproof::analysis {
 namespace {
 
 constexpr double kIndex = 1.5;
@@ -34,7 +34,7 @@ long double oval_sag(long double h) {
 }
 
 /// The even polynomial through the oval at Chebyshev's nodes of r², ten terms.
-SurfaceShape<double> oval() {
+optics::SurfaceShape<double> oval() {
     using Matrix = Eigen::Matrix<long double, 10, 10>;
     using Vector = Eigen::Matrix<long double, 10, 1>;
     Matrix powers;
@@ -48,7 +48,7 @@ SurfaceShape<double> oval() {
         sags(i) = oval_sag(kSemiDiameter * std::sqrt(t));
     }
     const Vector terms = powers.fullPivLu().solve(sags);
-    SurfaceShape<double> shape{.terms = 10};
+    optics::SurfaceShape<double> shape{.terms = 10};
     for (int k = 0; k < 10; ++k) {
         shape.asphere[k] = static_cast<double>(terms(k) / std::pow(kSemiDiameter, 2.0L * (k + 1)));
     }
@@ -56,17 +56,17 @@ SurfaceShape<double> oval() {
 }
 
 /// The oval as the only surface, its image inside the glass.
-TraceLens<double> oval_lens() {
-    const SurfaceShape<double> shape = oval();
-    TraceLens<double> lens{
-        .surfaces = {make_trace_surface(2.0 * shape.asphere[0], 0.0, kSemiDiameter, 1.0, kIndex, true)},
+optics::TraceLens<double> oval_lens() {
+    const optics::SurfaceShape<double> shape = oval();
+    optics::TraceLens<double> lens{
+        .surfaces = {optics::make_trace_surface(2.0 * shape.asphere[0], 0.0, kSemiDiameter, 1.0, kIndex, true)},
         .image_z = kImage};
     lens.surfaces.front().special = 0;
     lens.specials.push_back({.has_shape = true, .shape = shape});
     return lens;
 }
 
-FieldBundle axial_bundle() {
+optics::FieldBundle axial_bundle() {
     return {.chief = {.field_angle = 0.0,
                       .front = {{0.0, 0.0, 0.0}, {0.0, 0.0, 1.0}},
                       .image_height = 0.0,
@@ -77,28 +77,28 @@ FieldBundle axial_bundle() {
 // The polynomial leaves (semi-diameter / radius of convergence)²² of the sag; that is below an ulp of it here, so the
 // rays meet in a point to the rounding of a point 300 mm away, and every path is the chief ray's.
 TEST(CartesianOval, ImagesItsPointPerfectly) {
-    const TraceLens<double> lens = oval_lens();
-    const FieldBundle bundle = axial_bundle();
-    const RegionOutline outline = beam_outline(lens, bundle);
+    const optics::TraceLens<double> lens = oval_lens();
+    const optics::FieldBundle bundle = axial_bundle();
+    const optics::RegionOutline outline = beam_outline(lens, bundle);
     const SpotSize spot = spot_size(spot_rays(lens, bundle, outline, 12));
     EXPECT_LT(spot.rms, 1e-12);
     EXPECT_LT(spot.max_radius, 1e-11);
     for (double height = -5.0; height <= 5.0; height += 1.0) {
-        const TracedRay<double> ray = trace(lens, bundle.ray({0.0, height}));
-        ASSERT_EQ(ray.status, RayStatus::ok);
-        const PlanePoint<double> image = meet_plane(ray.ray, lens.image_z);
+        const optics::TracedRay<double> ray = optics::trace(lens, bundle.ray({0.0, height}));
+        ASSERT_EQ(ray.status, optics::RayStatus::ok);
+        const optics::PlanePoint<double> image = optics::meet_plane(ray.ray, lens.image_z);
         EXPECT_NEAR(ray.optical_path + kIndex * image.distance, kIndex * kImage, 4e-13) << height;
     }
 }
 
 // A sphere of the same power does not.
 TEST(CartesianOval, ASphereInItsPlaceDoesNot) {
-    TraceLens<double> lens = oval_lens();
+    optics::TraceLens<double> lens = oval_lens();
     lens.surfaces.front().special = -1;
     lens.specials.clear();
-    const FieldBundle bundle = axial_bundle();
+    const optics::FieldBundle bundle = axial_bundle();
     EXPECT_GT(spot_size(spot_rays(lens, bundle, beam_outline(lens, bundle), 12)).rms, 1e-3);
 }
 
 }  // namespace
-}  // namespace lensproof
+}  // namespace lensproof::analysis

@@ -13,27 +13,27 @@
 #include "engine/optics/illumination.h"
 #include "engine/spectral/wavelengths.h"
 
-namespace lensproof {
+namespace lensproof::analysis {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
 
-Lens made_of(std::vector<PrescribedSurface> surfaces) {
-    Prescription prescription;
+optics::Lens made_of(std::vector<optics::PrescribedSurface> surfaces) {
+    optics::Prescription prescription;
     prescription.surfaces = std::move(surfaces);
-    return make_lens(prescription, GlassCatalogue{});
+    return optics::make_lens(prescription, optics::GlassCatalogue{});
 }
 
-Lens bare_stop(double radius, double distance) {
+optics::Lens bare_stop(double radius, double distance) {
     return made_of({{.thickness_mm = distance, .semi_diameter_mm = radius, .is_stop = true}});
 }
 
 /// A ball of glass with a stop at its centre, the sensor `image` mm behind the centre.
 constexpr double kBall = 10.0;
 constexpr double kIndex = 1.5;
-Lens ball(double stop, double image) {
-    PrescribedSurface front{.radius_mm = kBall, .thickness_mm = kBall, .semi_diameter_mm = 9.99};
-    PrescribedSurface middle{.thickness_mm = kBall, .semi_diameter_mm = stop, .is_stop = true};
+optics::Lens ball(double stop, double image) {
+    optics::PrescribedSurface front{.radius_mm = kBall, .thickness_mm = kBall, .semi_diameter_mm = 9.99};
+    optics::PrescribedSurface middle{.thickness_mm = kBall, .semi_diameter_mm = stop, .is_stop = true};
     front.medium.n_d = middle.medium.n_d = kIndex;
     return made_of({front, middle, {.radius_mm = -kBall, .thickness_mm = image - kBall, .semi_diameter_mm = 9.99}});
 }
@@ -44,29 +44,30 @@ Lens ball(double stop, double image) {
 TEST(FieldLight, DiscSeenFromAPlane) {
     for (const double radius : {0.01, 3.0, 40.0}) {
         constexpr double kDistance = 50.0;
-        const Lens lens = bare_stop(radius, kDistance);
-        const TraceLens<double> traced = at_wavelength<double>(lens, kLineD);
+        const optics::Lens lens = bare_stop(radius, kDistance);
+        const optics::TraceLens<double> traced = optics::at_wavelength<double>(lens, spectral::kLineD);
         const double on_axis = kPi * radius * radius / (kDistance * kDistance + radius * radius);
-        EXPECT_NEAR(image_outline(traced, {}).area / on_axis, 1.0, 1e-12);
+        EXPECT_NEAR(optics::image_outline(traced, {}).area / on_axis, 1.0, 1e-12);
         for (const double at : {1.0, 20.0, 100.0, 300.0}) {
             const long double H = kDistance / at;
             const long double R = radius / at;
             const long double Z = 1 + H * H + R * R;
             const long double expected = kPi / 2 * (1 - (1 + H * H - R * R) / std::sqrt(Z * Z - 4 * R * R));
-            const double area = image_outline(traced, {0.0, at}).area;
+            const double area = optics::image_outline(traced, {0.0, at}).area;
             // The outline's own 1e-11, and a few ulps of the direction cosines over the disc's width in them.
             const double width = radius * kDistance * kDistance / std::pow(std::hypot(kDistance, at), 3);
             const double tolerance = 1e-11 + 1e-15 / width;
             EXPECT_NEAR(area / static_cast<double>(expected), 1.0, tolerance) << radius << " " << at;
             // The same whichever way the point lies, by the half outline and by the whole one.
-            EXPECT_NEAR(image_outline(traced, {at * std::sin(0.7), at * std::cos(0.7)}).area / area, 1.0, tolerance);
+            EXPECT_NEAR(optics::image_outline(traced, {at * std::sin(0.7), at * std::cos(0.7)}).area / area, 1.0,
+                        tolerance);
         }
     }
 }
 
 // A small stop obeys cos⁴ θ, and its beam cos θ; what is left is of the order of (a / h)², 4e-8.
 TEST(FieldLight, SmallStopObeysTheCosineLaws) {
-    const ColourOfLens d(bare_stop(0.01, 50.0), kLineD);
+    const ColourOfLens d(bare_stop(0.01, 50.0), spectral::kLineD);
     const std::vector<double> fields = {0.0, 0.3, 0.8, 1.3};
     const std::vector<IlluminationPoint> curve = illumination_curve(d, d, fields);
     ASSERT_EQ(curve.size(), fields.size());
@@ -83,8 +84,8 @@ TEST(FieldLight, SmallStopObeysTheCosineLaws) {
 // about 1e-5.
 TEST(FieldLight, EtendueIsConserved) {
     for (const char* name : {"tessar", "triplet-cooke"}) {
-        const ColourOfLens d(load_lens(name), kLineD);
-        const GaussRule rule = gauss_legendre(4);
+        const ColourOfLens d(formats::load_lens(name), spectral::kLineD);
+        const optics::GaussRule rule = optics::gauss_legendre(4);
         constexpr int kIntervals = 24;
         const auto integral = [&](double end, const auto& integrand) {
             double sum = 0.0;
@@ -98,13 +99,13 @@ TEST(FieldLight, EtendueIsConserved) {
         const double end = d.chief_rays.largest_field();
         double image_end = 0.0;  // beyond the last height that light reaches
         const double entering = integral(end, [&](double field) {
-            const FieldBundle bundle = field_bundle(d.chief_rays, d.chief_rays, field).value();
+            const optics::FieldBundle bundle = optics::field_bundle(d.chief_rays, d.chief_rays, field).value();
             image_end = std::max(image_end, 1.1 * bundle.chief.image_height);
             return 2.0 * kPi * std::sin(field) * beam_outline(d.lens, bundle).area;
         });
-        EXPECT_EQ(image_outline(d.lens, {0.0, image_end}).area, 0.0);
+        EXPECT_EQ(optics::image_outline(d.lens, {0.0, image_end}).area, 0.0);
         const double arriving = integral(image_end, [&](double height) {
-            return 2.0 * kPi * height * image_outline(d.lens, {0.0, height}).area;
+            return 2.0 * kPi * height * optics::image_outline(d.lens, {0.0, height}).area;
         });
         EXPECT_NEAR(arriving / entering, 1.0, 1e-4) << name;
     }
@@ -115,15 +116,15 @@ TEST(FieldLight, EtendueIsConserved) {
 TEST(FieldLight, TurnedLensSeesTheTurnedBeam) {
     constexpr double kTilt = 5.0 * kPi / 180.0;
     const auto light = [](std::array<double, 3> tilt_deg, double field) {
-        Prescription prescription;
-        PrescribedSurface front{.radius_mm = 40.0, .thickness_mm = 5.0, .semi_diameter_mm = 9.0};
+        optics::Prescription prescription;
+        optics::PrescribedSurface front{.radius_mm = 40.0, .thickness_mm = 5.0, .semi_diameter_mm = 9.0};
         front.medium.n_d = 1.6;
         prescription.surfaces = {front,
                                  {.radius_mm = 300.0, .thickness_mm = 6.0, .semi_diameter_mm = 9.0},
                                  {.thickness_mm = 60.0, .semi_diameter_mm = 7.0, .is_stop = true}};
         prescription.groups = {{.first = 1, .last = 3, .misalignment = {.tilt_deg = tilt_deg}}};
-        const ColourOfLens d(make_lens(prescription, GlassCatalogue{}), kLineD);
-        const FieldBundle bundle = field_bundle(d.chief_rays, d.chief_rays, field).value();
+        const ColourOfLens d(optics::make_lens(prescription, optics::GlassCatalogue{}), spectral::kLineD);
+        const optics::FieldBundle bundle = optics::field_bundle(d.chief_rays, d.chief_rays, field).value();
         return field_light(d.lens, bundle, bundle.chief.image_point);
     };
     const FieldLight straight = light({}, 0.3);
@@ -144,22 +145,24 @@ TEST(FieldLight, TurnedLensSeesTheTurnedBeam) {
 // distortion at its own paraxial image.
 TEST(Distortion, BallLens) {
     constexpr double kFocal = kIndex * kBall / (2.0 * (kIndex - 1.0));
-    const ColourOfLens far(ball(1.0, kFocal), kLineD);
+    const ColourOfLens far(ball(1.0, kFocal), spectral::kLineD);
     constexpr double kObject = 90.0;  // in front of the vertex: s = −100 from the centre
     const double near_image = 1.0 / (1.0 / kFocal - 1.0 / (kObject + kBall));
-    const ColourOfLens near(ball(1.0, near_image), kLineD);
+    const ColourOfLens near(ball(1.0, near_image), spectral::kLineD);
     for (const double field : {0.0, 1e-6, 0.4, 1.2}) {
-        const FieldBundle bundle = field_bundle(far.chief_rays, far.chief_rays, field).value();
-        EXPECT_NEAR(distortion_percent(far.lens, Projection::rectilinear, bundle).value(), 0.0, 1e-10);
-        const FieldBundle near_bundle = field_bundle(near.chief_rays, near.chief_rays, field, kObject).value();
-        EXPECT_NEAR(distortion_percent(near.lens, Projection::rectilinear, near_bundle).value(), 0.0, 1e-10);
+        const optics::FieldBundle bundle = optics::field_bundle(far.chief_rays, far.chief_rays, field).value();
+        EXPECT_NEAR(distortion_percent(far.lens, optics::Projection::rectilinear, bundle).value(), 0.0, 1e-10);
+        const optics::FieldBundle near_bundle =
+            optics::field_bundle(near.chief_rays, near.chief_rays, field, kObject).value();
+        EXPECT_NEAR(distortion_percent(near.lens, optics::Projection::rectilinear, near_bundle).value(), 0.0, 1e-10);
         if (field < 0.1) {
             continue;
         }
-        const std::pair<Projection, double> laws[] = {{Projection::equidistant, field},
-                                                      {Projection::equisolid, 2.0 * std::sin(0.5 * field)},
-                                                      {Projection::stereographic, 2.0 * std::tan(0.5 * field)},
-                                                      {Projection::orthographic, std::sin(field)}};
+        const std::pair<optics::Projection, double> laws[] = {
+            {optics::Projection::equidistant, field},
+            {optics::Projection::equisolid, 2.0 * std::sin(0.5 * field)},
+            {optics::Projection::stereographic, 2.0 * std::tan(0.5 * field)},
+            {optics::Projection::orthographic, std::sin(field)}};
         for (const auto& [projection, radius] : laws) {
             const double expected = 100.0 * (std::tan(field) / radius - 1.0);
             EXPECT_NEAR(distortion_percent(far.lens, projection, bundle).value(), expected, 1e-10);
@@ -167,20 +170,22 @@ TEST(Distortion, BallLens) {
             EXPECT_NEAR(distortion_percent(near.lens, projection, near_bundle).value(), expected, 1e-10);
         }
     }
-    EXPECT_EQ(distortion_percent(far.lens, Projection::rectilinear, {.chief = far.chief_rays.at_field(0.0).value()}),
-              0.0);
+    EXPECT_EQ(
+        distortion_percent(far.lens, optics::Projection::rectilinear, {.chief = far.chief_rays.at_field(0.0).value()}),
+        0.0);
 }
 
 // Beyond 90° there is no rectilinear height; the fisheye's own law has one.
 TEST(Distortion, BehindTheLens) {
-    const Lens lens = load_lens("fisheye-220");
-    const ColourOfLens d(lens, kLineD);
+    const optics::Lens lens = formats::load_lens("fisheye-220");
+    const ColourOfLens d(lens, spectral::kLineD);
     for (const double degrees : {90.0, 105.0}) {
-        const FieldBundle bundle = field_bundle(d.chief_rays, d.chief_rays, degrees * kPi / 180.0).value();
-        EXPECT_FALSE(distortion_percent(d.lens, Projection::rectilinear, bundle));
+        const optics::FieldBundle bundle =
+            optics::field_bundle(d.chief_rays, d.chief_rays, degrees * kPi / 180.0).value();
+        EXPECT_FALSE(distortion_percent(d.lens, optics::Projection::rectilinear, bundle));
         EXPECT_LT(std::abs(distortion_percent(d.lens, lens.projection, bundle).value()), 5.0);
     }
 }
 
 }  // namespace
-}  // namespace lensproof
+}  // namespace lensproof::analysis

@@ -14,15 +14,16 @@
 #include "engine/spectral/wavelengths.h"
 #include "tests/engine/perfect_lens.h"
 
-namespace lensproof {
+namespace lensproof::analysis {
 namespace {
 
 constexpr double kDegree = std::numbers::pi / 180.0;
 
-PolychromaticField field_of(const Lens& lens, double field_angle,
-                            const std::vector<WeightedWavelength>& wavelengths = {{kLineD, 1.0}}) {
-    const FieldBundle bundle{.chief = ChiefRays(lens, kLineD, Rims::follow).at_field(field_angle).value()};
-    return polychromatic_field(lens, bundle, kLineD, wavelengths);
+PolychromaticField field_of(const optics::Lens& lens, double field_angle,
+                            const std::vector<WeightedWavelength>& wavelengths = {{spectral::kLineD, 1.0}}) {
+    const optics::FieldBundle bundle{
+        .chief = optics::ChiefRays(lens, spectral::kLineD, optics::Rims::follow).at_field(field_angle).value()};
+    return polychromatic_field(lens, bundle, spectral::kLineD, wavelengths);
 }
 
 /// f/50, so that the sine condition holds to 1e-4; telecentric.
@@ -71,7 +72,7 @@ constexpr double kRimCells = 1e-3;
 TEST(Mtf, CircularPupilIsClosedForm) {
     const PolychromaticField field = slow_field(0.0);
     const double cutoff = cutoff_frequency(field);
-    EXPECT_NEAR(cutoff, 0.02 / (kLineD * 1e-6), 0.01);
+    EXPECT_NEAR(cutoff, 0.02 / (spectral::kLineD * 1e-6), 0.01);
     const std::vector<double> frequencies = up_to(1.2 * cutoff, 60);
     for (const MtfKind kind : {MtfKind::diffraction, MtfKind::diffraction_limited}) {
         const MtfCurve curve = diffraction_mtf(field, frequencies, kind);
@@ -87,7 +88,7 @@ TEST(Mtf, CircularPupilIsClosedForm) {
 TEST(Mtf, DefocusedLensIsHopkins) {
     for (const double w020 : {0.25, 0.7, 2.0}) {
         // W = ζ (1 − cos U) = ζ sin²U / 2, to 1e-4.
-        const PolychromaticField field = slow_field(w020 * 2.0 * kLineD * 1e-6 / 1e-4);
+        const PolychromaticField field = slow_field(w020 * 2.0 * spectral::kLineD * 1e-6 / 1e-4);
         const double cutoff = cutoff_frequency(field);
         const std::vector<double> frequencies = up_to(cutoff, 50);
         const MtfCurve curve = diffraction_mtf(field, frequencies);
@@ -123,9 +124,9 @@ struct Case {
     double field_deg;
 };
 
-Lens lens_of(const Case& c) {
-    const Lens lens = load_lens(c.lens);
-    return c.f_number > 0.0 ? with_f_number(lens, c.f_number) : lens;
+optics::Lens lens_of(const Case& c) {
+    const optics::Lens lens = formats::load_lens(c.lens);
+    return c.f_number > 0.0 ? optics::with_f_number(lens, c.f_number) : lens;
 }
 
 // The Fourier transform of the picture is the second way to the same curve, with lateral colour and vignetting. Both
@@ -133,7 +134,8 @@ Lens lens_of(const Case& c) {
 // The rim's cells, in two different grids: 3e-3 each across a slim pupil.
 TEST(Mtf, IsTheTransformOfThePsf) {
     for (const Case& c : {Case{"tessar", 8.0, 15.0}, Case{"muller-fisheye", 5.6, 75.5}}) {
-        const PolychromaticField field = field_of(lens_of(c), c.field_deg * kDegree, {{kLineF, 1.0}, {kLineC, 1.0}});
+        const PolychromaticField field =
+            field_of(lens_of(c), c.field_deg * kDegree, {{spectral::kLineF, 1.0}, {spectral::kLineC, 1.0}});
         const Psf psf = fft_psf(field, {.size = 256});
         const std::vector<double> frequencies = {10.0, 30.0, 50.0, 80.0, 120.0};
         const MtfCurve curve = diffraction_mtf(field, frequencies);
@@ -159,7 +161,7 @@ TEST(Mtf, IsTheTransformOfThePsf) {
 // With shorter and shorter waves the diffraction MTF becomes the rays', by an error that falls with the wavelength, and
 // stays below what the shear leaves out of the common area. The lens has the same index for all of them.
 TEST(Mtf, GeometricIsTheLimitOfShortWaves) {
-    const Lens lens = PerfectLens{.stop_distance = 30.0, .defocus = 0.15, .spherical = 2e-7}.lens();
+    const optics::Lens lens = PerfectLens{.stop_distance = 30.0, .defocus = 0.15, .spherical = 2e-7}.lens();
     const std::vector<double> frequencies = up_to(60.0, 12);
     double last = 0.0;
     for (const double wavelength_nm : {1600.0, 400.0, 200.0}) {
@@ -200,10 +202,10 @@ TEST(Mtf, IsBoundByThatOfThePerfectPupil) {
 // Off the axis the cone seen from the image is narrower in the meridional plane by cos³, and at full aperture rims cut
 // it: tangential lines are transferred less by a perfect lens of this pupil.
 TEST(Mtf, DiffractionLimitIsTheVignettedPupils) {
-    const PolychromaticField field = field_of(load_lens("double-gauss-tronnier"), 18.0 * kDegree);
+    const PolychromaticField field = field_of(formats::load_lens("double-gauss-tronnier"), 18.0 * kDegree);
     const CosineBox box = cosine_box(field, field.parts.front());
-    const double tangential_cutoff = (box.high.y - box.low.y) / (kLineD * 1e-6);
-    const double sagittal_cutoff = (box.high.x - box.low.x) / (kLineD * 1e-6);
+    const double tangential_cutoff = (box.high.y - box.low.y) / (spectral::kLineD * 1e-6);
+    const double sagittal_cutoff = (box.high.x - box.low.x) / (spectral::kLineD * 1e-6);
     ASSERT_LT(tangential_cutoff, 0.9 * sagittal_cutoff);
     const MtfCurve curve = diffraction_mtf(
         field, std::vector<double>{0.5 * tangential_cutoff, 1.02 * tangential_cutoff}, MtfKind::diffraction_limited);
@@ -213,7 +215,7 @@ TEST(Mtf, DiffractionLimitIsTheVignettedPupils) {
 }
 
 TEST(Mtf, SaysWhatItCannotSample) {
-    const PolychromaticField wide = field_of(with_f_number(load_lens("tessar"), 4.0), 15.0 * kDegree);
+    const PolychromaticField wide = field_of(optics::with_f_number(formats::load_lens("tessar"), 4.0), 15.0 * kDegree);
     const std::vector<double> frequencies = {30.0};
     EXPECT_EQ(diffraction_mtf(wide, frequencies, MtfKind::diffraction, 32).status, PupilStatus::aliased);
     EXPECT_EQ(diffraction_mtf(wide, frequencies, MtfKind::diffraction_limited, 32).status, PupilStatus::ok);
@@ -230,4 +232,4 @@ TEST(Mtf, SaysWhatItCannotSample) {
 }
 
 }  // namespace
-}  // namespace lensproof
+}  // namespace lensproof::analysis

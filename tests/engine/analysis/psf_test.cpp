@@ -14,20 +14,21 @@
 #include "engine/spectral/wavelengths.h"
 #include "tests/engine/perfect_lens.h"
 
-namespace lensproof {
+namespace lensproof::analysis {
 namespace {
 
 constexpr double kDegree = std::numbers::pi / 180.0;
 
-PolychromaticField field_of(const Lens& lens, double field_angle,
-                            const std::vector<WeightedWavelength>& wavelengths = {{kLineD, 1.0}}) {
-    const FieldBundle bundle{.chief = ChiefRays(lens, kLineD, Rims::follow).at_field(field_angle).value()};
-    return polychromatic_field(lens, bundle, kLineD, wavelengths);
+PolychromaticField field_of(const optics::Lens& lens, double field_angle,
+                            const std::vector<WeightedWavelength>& wavelengths = {{spectral::kLineD, 1.0}}) {
+    const optics::FieldBundle bundle{
+        .chief = optics::ChiefRays(lens, spectral::kLineD, optics::Rims::follow).at_field(field_angle).value()};
+    return polychromatic_field(lens, bundle, spectral::kLineD, wavelengths);
 }
 
 /// f/50: the sine condition, which a hyperboloid breaks, holds to sin²U = 1e-4, and the beam is a circle in direction
 /// cosines.
-Lens slow_lens() {
+optics::Lens slow_lens() {
     return PerfectLens{.beam_radius = 0.5, .stop_distance = PerfectLens{}.telecentric_distance()}.lens();
 }
 
@@ -38,7 +39,7 @@ double sine(const PolychromaticField& field) {
 
 /// (2 J₁(v) / v)², v = 2π r sin U / λ (Airy 1835; Born & Wolf 8.5.2).
 double airy(double r_um, double sine) {
-    const double v = 2.0 * std::numbers::pi * r_um * sine / (kLineD * 1e-3);
+    const double v = 2.0 * std::numbers::pi * r_um * sine / (spectral::kLineD * 1e-3);
     const double amplitude = v > 0.0 ? 2.0 * std::cyl_bessel_j(1.0, v) / v : 1.0;
     return amplitude * amplitude;
 }
@@ -52,11 +53,11 @@ double total(const Psf& psf) {
 TEST(Psf, FftOfAPerfectPupilIsAirys) {
     const PolychromaticField field = field_of(slow_lens(), 0.0);
     // 64 samples across the pupil.
-    const Psf psf = fft_psf(field, {.size = 256, .pixel_um = 0.25 * kLineD * 1e-3 / (2.0 * sine(field))});
+    const Psf psf = fft_psf(field, {.size = 256, .pixel_um = 0.25 * spectral::kLineD * 1e-3 / (2.0 * sine(field))});
     ASSERT_EQ(psf.status, PupilStatus::ok);
     // The peak of a disc of area a in direction cosines: a / λ².
     const double area = std::numbers::pi * sine(field) * sine(field);
-    EXPECT_NEAR(psf.perfect_peak * kLineD * kLineD * 1e-6 / area, 1.0, 3e-4);
+    EXPECT_NEAR(psf.perfect_peak * spectral::kLineD * spectral::kLineD * 1e-6 / area, 1.0, 3e-4);
     EXPECT_NEAR(psf.strehl, 1.0, 1e-9);
     for (int row = 80; row < 176; ++row) {
         for (int column = 80; column < 176; ++column) {
@@ -67,7 +68,7 @@ TEST(Psf, FftOfAPerfectPupilIsAirys) {
     // 1 − J₀² of the light lies within the first dark ring, 1.2197 λN (Rayleigh; Born & Wolf 8.5.2): 83.8 %. Pixels of
     // an eighth of λN: the ring is dark, so that its place does not matter, but for the far light that the window
     // loses.
-    const double ring = 1.219670 * kLineD * 1e-3 / (2.0 * sine(field));
+    const double ring = 1.219670 * spectral::kLineD * 1e-3 / (2.0 * sine(field));
     const double dark = std::cyl_bessel_j(0.0, 3.8317059702);
     EXPECT_NEAR(encircled_energy(psf, {}, ring), 1.0 - dark * dark, 1e-3);
     EXPECT_NEAR(airy(ring, sine(field)), 0.0, 1e-12);
@@ -92,9 +93,9 @@ struct Case {
     double field_deg;
 };
 
-Lens lens_of(const Case& c) {
-    const Lens lens = load_lens(c.lens);
-    return c.f_number > 0.0 ? with_f_number(lens, c.f_number) : lens;
+optics::Lens lens_of(const Case& c) {
+    const optics::Lens lens = formats::load_lens(c.lens);
+    return c.f_number > 0.0 ? optics::with_f_number(lens, c.f_number) : lens;
 }
 
 constexpr Case kCases[] = {{"tessar", 8.0, 0.0},
@@ -154,7 +155,7 @@ TEST_P(PsfOfLens, ConservesEnergy) {
     const Case& c = GetParam();
     const PolychromaticField field = field_of(lens_of(c), c.field_deg * kDegree);
     const Psf psf = fft_psf(field, {.size = 128});
-    const double spacing = 1e-6 * kLineD / (psf.size * psf.pixel_um * 1e-3);  // as fft_psf has it
+    const double spacing = 1e-6 * spectral::kLineD / (psf.size * psf.pixel_um * 1e-3);  // as fft_psf has it
     const SampledPupil pupil = sample_pupil(field, field.parts.front(), spacing);
     double squares = 0.0;
     for (const double amplitude : pupil.amplitude) {
@@ -202,9 +203,9 @@ TEST(Psf, StrehlRatioIsMarechals) {
             .beam_radius = 4.0, .stop_distance = PerfectLens{}.telecentric_distance(), .spherical = spherical};
         const PolychromaticField field = field_of(perfect.lens(), 0.0);
         const PolychromaticField::Part& part = field.parts.front();
-        const double sigma =
-            wavefront_errors(wavefront(part.lens, kLineD, field.bundle, field.sphere, beam_quadrature(part.outline, 8)))
-                .rms_without_tilt;
+        const double sigma = wavefront_errors(wavefront(part.lens, spectral::kLineD, field.bundle, field.sphere,
+                                                        beam_quadrature(part.outline, 8)))
+                                 .rms_without_tilt;
         ASSERT_GT(sigma, 0.01);
         const double phase = 2.0 * std::numbers::pi * sigma;
         EXPECT_NEAR(fft_psf(field, {.size = 128}).strehl, std::exp(-phase * phase), std::pow(phase, 3) + 1e-4) << sigma;
@@ -213,12 +214,12 @@ TEST(Psf, StrehlRatioIsMarechals) {
 
 // Wavelengths add up on one grid about one image point.
 TEST(Psf, WavelengthsAddUp) {
-    const Lens lens = with_f_number(load_lens("biotar"), 8.0);
-    const PolychromaticField both = field_of(lens, 0.1, {{kLineF, 1.0}, {kLineC, 3.0}});
+    const optics::Lens lens = optics::with_f_number(formats::load_lens("biotar"), 8.0);
+    const PolychromaticField both = field_of(lens, 0.1, {{spectral::kLineF, 1.0}, {spectral::kLineC, 3.0}});
     const FftPsfSettings settings{.size = 128, .pixel_um = 1.5};
     const Psf sum = fft_psf(both, settings);
-    const Psf blue = fft_psf(field_of(lens, 0.1, {{kLineF, 1.0}}), settings);
-    const Psf red = fft_psf(field_of(lens, 0.1, {{kLineC, 1.0}}), settings);
+    const Psf blue = fft_psf(field_of(lens, 0.1, {{spectral::kLineF, 1.0}}), settings);
+    const Psf red = fft_psf(field_of(lens, 0.1, {{spectral::kLineC, 1.0}}), settings);
     ASSERT_EQ(sum.status, PupilStatus::ok);
     const double share = both.parts.front().weight;
     EXPECT_NEAR(share, 0.25, 0.01);
@@ -229,7 +230,7 @@ TEST(Psf, WavelengthsAddUp) {
 }
 
 TEST(Psf, SaysWhatItCannotSample) {
-    const PolychromaticField wide = field_of(with_f_number(load_lens("tessar"), 4.0), 15.0 * kDegree);
+    const PolychromaticField wide = field_of(optics::with_f_number(formats::load_lens("tessar"), 4.0), 15.0 * kDegree);
     const Psf small = fft_psf(wide, {.size = 64});
     EXPECT_EQ(small.status, PupilStatus::aliased);
     EXPECT_GT(small.needed_size, 64);
@@ -238,8 +239,8 @@ TEST(Psf, SaysWhatItCannotSample) {
     EXPECT_THROW(fft_psf(wide, {.size = 100}), InputError);
     EXPECT_THROW(fft_psf(wide, {.size = 64, .pixel_um = 50.0}), InputError);
     EXPECT_THROW(huygens_psf(wide, {.pixel_um = 0.0}), InputError);
-    Lens closed = load_lens("tessar");
-    for (LensSurface& surface : closed.surfaces) {
+    optics::Lens closed = formats::load_lens("tessar");
+    for (optics::LensSurface& surface : closed.surfaces) {
         surface.semi_diameter = surface.is_stop ? 0.0 : surface.semi_diameter;
     }
     EXPECT_EQ(fft_psf(field_of(closed, 0.0), {}).status, PupilStatus::no_light);
@@ -247,4 +248,4 @@ TEST(Psf, SaysWhatItCannotSample) {
 }
 
 }  // namespace
-}  // namespace lensproof
+}  // namespace lensproof::analysis

@@ -9,34 +9,35 @@
 
 #include "engine/spectral/wavelengths.h"
 
-namespace lensproof {
+namespace lensproof::analysis {
 namespace {
 
 constexpr double kDegree = std::numbers::pi / 180.0;
 
-PrescribedSurface surface(double radius, double thickness, double semi_diameter, double index = 0.0) {
-    PrescribedSurface made{.radius_mm = radius, .thickness_mm = thickness, .semi_diameter_mm = semi_diameter};
+optics::PrescribedSurface surface(double radius, double thickness, double semi_diameter, double index = 0.0) {
+    optics::PrescribedSurface made{.radius_mm = radius, .thickness_mm = thickness, .semi_diameter_mm = semi_diameter};
     if (index > 0.0) {
         made.medium.n_d = index;
     }
     return made;
 }
 
-PrescribedSurface stop(double thickness, double semi_diameter) {
+optics::PrescribedSurface stop(double thickness, double semi_diameter) {
     return {.thickness_mm = thickness, .semi_diameter_mm = semi_diameter, .is_stop = true};
 }
 
-Lens made_of(std::vector<PrescribedSurface> surfaces) {
-    Prescription prescription;
+optics::Lens made_of(std::vector<optics::PrescribedSurface> surfaces) {
+    optics::Prescription prescription;
     prescription.surfaces = std::move(surfaces);
-    return make_lens(prescription, GlassCatalogue{});
+    return optics::make_lens(prescription, optics::GlassCatalogue{});
 }
 
-AstigmaticFoci foci_at(const Lens& lens, double field,
+AstigmaticFoci foci_at(const optics::Lens& lens, double field,
                        double object_distance = std::numeric_limits<double>::infinity()) {
-    const ChiefRays rays(lens, kLineD);
-    const std::optional<FieldBundle> bundle = field_bundle(rays, rays, field, object_distance);
-    return astigmatic_foci(ray_pencil(at_wavelength<double>(lens, kLineD), bundle.value()).value(), lens.image_z);
+    const optics::ChiefRays rays(lens, spectral::kLineD);
+    const std::optional<optics::FieldBundle> bundle = optics::field_bundle(rays, rays, field, object_distance);
+    return astigmatic_foci(ray_pencil(optics::at_wavelength<double>(lens, spectral::kLineD), bundle.value()).value(),
+                           lens.image_z);
 }
 
 // A ball with the stop at its centre has no axis: every field has T = S on a sphere about the centre, of radius the
@@ -45,10 +46,10 @@ TEST(RayPencil, BallLensHasOneFocusInEveryDirection) {
     constexpr double kRadius = 10.0;
     constexpr double kIndex = 1.5;
     constexpr double kFocal = kIndex * kRadius / (2.0 * (kIndex - 1.0));
-    std::vector<PrescribedSurface> ball = {surface(kRadius, kRadius, 9.9, kIndex), stop(kRadius, 2.0),
-                                           surface(-kRadius, 5.0, 9.9)};
+    std::vector<optics::PrescribedSurface> ball = {surface(kRadius, kRadius, 9.9, kIndex), stop(kRadius, 2.0),
+                                                   surface(-kRadius, 5.0, 9.9)};
     ball[1].medium.n_d = kIndex;
-    const Lens lens = made_of(ball);
+    const optics::Lens lens = made_of(ball);
     for (const double field : {0.0, 0.3, 0.9, 1.3}) {
         const AstigmaticFoci foci = foci_at(lens, field);
         const double expected = kRadius + kFocal * std::cos(field) - lens.image_z;
@@ -64,12 +65,12 @@ TEST(RayPencil, AplanaticPointsOfASphere) {
     constexpr double kIndex = 1.6;
     constexpr double kRadius = 20.0;
     constexpr double kObject = kRadius * (1.0 + kIndex);
-    const Lens lens = made_of(
+    const optics::Lens lens = made_of(
         {stop(2.0, 10.0), surface(-kRadius, 30.0, 15.0, kIndex), surface(-30.0 - kObject / kIndex, 10.0, 40.0)});
-    const TraceLens<double> traced = at_wavelength<double>(lens, kLineD);
+    const optics::TraceLens<double> traced = optics::at_wavelength<double>(lens, spectral::kLineD);
     const double object_z = 2.0 - kObject;
     for (const double slope : {0.0, 0.05, 0.2, 0.35}) {
-        FieldBundle bundle{.object_distance = -object_z};
+        optics::FieldBundle bundle{.object_distance = -object_z};
         const Vec3d direction = normalized(Vec3d{0.0, slope, 1.0});
         bundle.chief.front = {{0.0, -object_z * slope, 0.0}, direction};
         const AstigmaticFoci foci = astigmatic_foci(ray_pencil(traced, bundle).value(), lens.image_z);
@@ -87,7 +88,7 @@ TEST(RayPencil, AgreesWithCoddingtonAtASphereAndAPlane) {
     constexpr double kRadius = 30.0;
     constexpr double kThickness = 12.0;
     for (const double object : {80.0, std::numeric_limits<double>::infinity()}) {
-        const Lens lens =
+        const optics::Lens lens =
             made_of({stop(0.0, 3.0), surface(kRadius, kThickness, 20.0, kIndex), surface(0.0, 20.0, 30.0)});
         for (const double field : {0.1, 0.5, 1.2}) {
             const double inside = std::asin(std::sin(field) / kIndex);
@@ -109,7 +110,7 @@ TEST(RayPencil, AgreesWithCoddingtonAtASphereAndAPlane) {
 
 // Parallel rays stay parallel through a plate: the foci are infinite, not a division by 0.
 TEST(RayPencil, PlateLeavesParallelRaysParallel) {
-    const Lens lens = made_of({stop(3.0, 3.0), surface(0.0, 10.0, 20.0, 1.5), surface(0.0, 20.0, 30.0)});
+    const optics::Lens lens = made_of({stop(3.0, 3.0), surface(0.0, 10.0, 20.0, 1.5), surface(0.0, 20.0, 30.0)});
     for (const double field : {0.0, 0.7}) {
         const AstigmaticFoci foci = foci_at(lens, field);
         EXPECT_TRUE(std::isinf(foci.tangential));
@@ -119,7 +120,8 @@ TEST(RayPencil, PlateLeavesParallelRaysParallel) {
 
 /// Image points around the chief ray by central differences of real rays in long double at a distance of h and 2 h,
 /// extrapolated to order h⁴.
-std::array<Vec2d, 2> close_rays(const TraceLens<long double>& lens, const FieldBundle& bundle, double image_z) {
+std::array<Vec2d, 2> close_rays(const optics::TraceLens<long double>& lens, const optics::FieldBundle& bundle,
+                                double image_z) {
     const auto meets = [&](Vec2d offset) {
         // The bundle's rays are rounded to double; the pencil of an infinite object only needs their origins moved.
         const Vec3d at = bundle.chief.front.origin;
@@ -132,8 +134,8 @@ std::array<Vec2d, 2> close_rays(const TraceLens<long double>& lens, const FieldB
         const Ray<long double> ray{
             {part(at.x, axes[0].x, axes[1].x), part(at.y, axes[0].y, axes[1].y), part(at.z, axes[0].z, axes[1].z)},
             normalized(Vec3<long double>{d.x, d.y, d.z})};
-        const auto traced = trace<Direction::forward, Rims::follow>(lens, ray);
-        return meet_plane(traced.ray, static_cast<long double>(image_z)).point;
+        const auto traced = optics::trace<optics::Direction::forward, optics::Rims::follow>(lens, ray);
+        return optics::meet_plane(traced.ray, static_cast<long double>(image_z)).point;
     };
     constexpr double kStep = 1e-3;
     std::array<Vec2d, 2> slopes;
@@ -156,7 +158,7 @@ std::array<Vec2d, 2> close_rays(const TraceLens<long double>& lens, const FieldB
 // tilted and decentred. The remainder of the extrapolation is of order h⁴ = 1e-12 times a fifth derivative; noise is
 // 1e-19 · 100 / 1e-3.
 TEST(RayPencil, MovesAsCloseRealRaysDo) {
-    Prescription prescription;
+    optics::Prescription prescription;
     prescription.surfaces = {surface(45.0, 6.0, 15.0, 1.6),  surface(-300.0, 5.0, 15.0), stop(4.0, 6.0),
                              surface(-40.0, 3.0, 15.0, 1.7), surface(80.0, 4.0, 15.0),   surface(150.0, 4.0, 15.0, 1.5),
                              surface(-35.0, 70.0, 15.0)};
@@ -169,13 +171,14 @@ TEST(RayPencil, MovesAsCloseRealRaysDo) {
             prescription.surfaces[0].misalignment = {.decentre_mm = {0.2, -0.1}, .tilt_deg = {1.5, 0.5, 10.0}};
             prescription.surfaces[4].misalignment = {.decentre_mm = {-0.3, 0.2}, .tilt_deg = {-2.0, 1.0, 25.0}};
         }
-        const Lens lens = make_lens(prescription, GlassCatalogue{});
-        const ChiefRays rays(lens, kLineD);
+        const optics::Lens lens = optics::make_lens(prescription, optics::GlassCatalogue{});
+        const optics::ChiefRays rays(lens, spectral::kLineD);
         for (const double field : {0.0, 10.0 * kDegree}) {
-            const FieldBundle bundle = field_bundle(rays, rays, field).value();
-            const RayPencil pencil = ray_pencil(at_wavelength<double>(lens, kLineD), bundle).value();
-            const auto slopes = close_rays(at_wavelength<long double>(lens, kLineD), bundle, lens.image_z);
-            const double way = meet_plane(pencil.chief, lens.image_z).distance;
+            const optics::FieldBundle bundle = optics::field_bundle(rays, rays, field).value();
+            const RayPencil pencil = ray_pencil(optics::at_wavelength<double>(lens, spectral::kLineD), bundle).value();
+            const auto slopes =
+                close_rays(optics::at_wavelength<long double>(lens, spectral::kLineD), bundle, lens.image_z);
+            const double way = optics::meet_plane(pencil.chief, lens.image_z).distance;
             for (std::size_t i = 0; i < 2; ++i) {
                 const Vec3d across = pencil.shift[i] + way * pencil.turn[i];
                 const Vec3d& d = pencil.chief.direction;
@@ -190,11 +193,11 @@ TEST(RayPencil, MovesAsCloseRealRaysDo) {
 // turned by 90° has them exchanged.
 TEST(RayPencil, FocalLinesTurnWithTheLens) {
     const auto turned = [](double degrees) {
-        Prescription prescription;
+        optics::Prescription prescription;
         prescription.surfaces = {stop(2.0, 3.0), surface(50.0, 4.0, 15.0, 1.6), surface(-60.0, 40.0, 15.0)};
         prescription.surfaces[1].radius_x_mm = 40.0;
         prescription.surfaces[1].misalignment.tilt_deg = {0.0, 0.0, degrees};
-        return foci_at(make_lens(prescription, GlassCatalogue{}), 0.0);
+        return foci_at(optics::make_lens(prescription, optics::GlassCatalogue{}), 0.0);
     };
     const AstigmaticFoci straight = turned(0.0);
     EXPECT_GT(std::abs(straight.tangential - straight.sagittal), 1.0);
@@ -207,4 +210,4 @@ TEST(RayPencil, FocalLinesTurnWithTheLens) {
 }
 
 }  // namespace
-}  // namespace lensproof
+}  // namespace lensproof::analysis

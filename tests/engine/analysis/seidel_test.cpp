@@ -14,7 +14,7 @@
 #include "engine/spectral/wavelengths.h"
 #include "tests/engine/analysis/analysis_lens.h"
 
-namespace lensproof {
+namespace lensproof::analysis {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
@@ -26,12 +26,13 @@ constexpr std::array<Term, 7> kTerms = {&Terms::s1, &Terms::s2, &Terms::s3, &Ter
                                         &Terms::s5, &Terms::c1, &Terms::c2};
 
 /// The sums of a lens without dispersion.
-SeidelSums<double> sums_of(const TraceLens<double>& lens, double field_angle, double object_distance = kInfinity) {
+SeidelSums<double> sums_of(const optics::TraceLens<double>& lens, double field_angle,
+                           double object_distance = kInfinity) {
     return seidel_sums(lens, lens, lens, field_angle, object_distance).value();
 }
 
-TraceLens<double> with_indices_changed(TraceLens<double> lens, double relative_change) {
-    for (TraceSurface<double>& surface : lens.surfaces) {
+optics::TraceLens<double> with_indices_changed(optics::TraceLens<double> lens, double relative_change) {
+    for (optics::TraceSurface<double>& surface : lens.surfaces) {
         // As a glass's dispersion grows with its index.
         const auto changed = [&](double n) { return n + relative_change * (n - 1.0) * (n - 1.0); };
         surface.index_before = changed(surface.index_before);
@@ -53,9 +54,9 @@ TEST(Seidel, PlaneParallelPlate) {
     constexpr double t = 10.0;
     constexpr double dn = 0.01;
     for (const double distance : {-100.0, -15.0, 60.0}) {
-        const TraceLens<double> plate = lens_of<double>(
+        const optics::TraceLens<double> plate = lens_of<double>(
             {{.thickness = 3.0, .semi_diameter = 4.0, .is_stop = true}, {.thickness = t, .index = n}, {}});
-        TraceLens<double> blue = plate;
+        optics::TraceLens<double> blue = plate;
         blue.surfaces[1].index_after = blue.surfaces[2].index_before = n + dn;
         const double u = 4.0 / distance;
         const double ratio = std::tan(0.2) / u;
@@ -103,7 +104,7 @@ TEST(Seidel, CartesianSurfacesHaveNoSphericalAberration) {
 TEST(Seidel, AplanaticPointsOfASphere) {
     constexpr double n = 1.5;
     constexpr double R = 32.0;
-    const TraceLens<double> lens =
+    const optics::TraceLens<double> lens =
         lens_of<double>({{.thickness = 4.0, .semi_diameter = 3.0, .is_stop = true}, {.radius = R, .index = n}});
     const double field = 0.3;
     const double scale = sums_of(lens, field, 500.0).total.s3;
@@ -137,12 +138,12 @@ TEST(Seidel, PetzvalSumKnowsPowersAlone) {
     for (const double conic : {0.0, -4.0}) {
         for (const double bending : {-0.03, 0.0, 0.02}) {
             for (const double distance : {kInfinity, 150.0}) {
-                const TraceLens<double> lens = lens_of<double>(
+                const optics::TraceLens<double> lens = lens_of<double>(
                     {{.radius = 1 / (0.01 + bending), .thickness = 5.0, .index = 1.6, .conic = conic, .a4 = 1e-6},
                      {.radius = 1 / bending, .thickness = 3.0},
                      {.semi_diameter = 6.0, .is_stop = true}});
-                const double invariant = lagrange_invariant(lens, field).value();
-                const double expected = -invariant * invariant / paraxial_data(lens).petzval_radius;
+                const double invariant = optics::lagrange_invariant(lens, field).value();
+                const double expected = -invariant * invariant / optics::paraxial_data(lens).petzval_radius;
                 EXPECT_NEAR(sums_of(lens, field, distance).total.s4, expected, 1e-13 * expected);
             }
         }
@@ -170,21 +171,21 @@ std::vector<Row> figured_lens(int stop, double semi_diameter) {
 TEST(Seidel, StopShift) {
     const double field = 0.2;
     for (const double distance : {kInfinity, 400.0}) {
-        const TraceLens<double> before = lens_of<double>(figured_lens(0, 5.0));
-        const ParaxialRay marginal = paraxial_marginal_ray(before, distance).value();
+        const optics::TraceLens<double> before = lens_of<double>(figured_lens(0, 5.0));
+        const optics::ParaxialRay marginal = optics::paraxial_marginal_ray(before, distance).value();
         const double slope = std::tan(field);
-        const auto sums = [&](const TraceLens<double>& lens) {
+        const auto sums = [&](const optics::TraceLens<double>& lens) {
             return seidel_sums(with_indices_changed(lens, 0.0), with_indices_changed(lens, 0.02),
                                with_indices_changed(lens, -0.02), field, distance)
                 .value();
         };
         const SeidelSums<double> old_sums = sums(before);
         for (const int stop : {3, 6}) {
-            const double at_stop = trace_paraxial(before, marginal, 0, stop).height;
-            const TraceLens<double> after = lens_of<double>(figured_lens(stop, at_stop));
+            const double at_stop = optics::trace_paraxial(before, marginal, 0, stop).height;
+            const optics::TraceLens<double> after = lens_of<double>(figured_lens(stop, at_stop));
             // The field is that of one object point: H is kept, and with it n ū y − n u ȳ. For an object at infinity ū
             // is the same; for a near one the new chief ray has another angle.
-            const ParaxialRay chief = paraxial_chief_ray(after, field).value();
+            const optics::ParaxialRay chief = optics::paraxial_chief_ray(after, field).value();
             const double old_invariant = marginal.height * slope;  // ȳ = 0 at the old stop, which is surface 0
             const double new_invariant = marginal.height * chief.slope - marginal.slope * chief.height;
             const double share = old_invariant / new_invariant;
@@ -240,7 +241,7 @@ TEST(Seidel, FiguresThatAgreeToTheFourthPowerAreOne) {
 /// A case for real rays: a lens, its field, and its object.
 struct RayCase {
     const char* name;
-    TraceLens<long double> lens;
+    optics::TraceLens<long double> lens;
     long double field_angle;
     long double object_distance;
 };
@@ -249,7 +250,7 @@ struct RayCase {
 /// paraxial image plane, less the paraxial image.
 Vec2<long double> real_ray_error(const RayCase& c, Vec2<long double> pupil, long double field) {
     using T = long double;
-    const auto data = paraxial_data(c.lens);
+    const auto data = optics::paraxial_data(c.lens);
     const T slope = field * std::tan(c.field_angle);
     const T radius = data.entrance_pupil_diameter / 2;
     const Vec3<T> in_pupil{pupil.x * radius, pupil.y * radius, data.entrance_pupil_z};
@@ -258,16 +259,18 @@ Vec2<long double> real_ray_error(const RayCase& c, Vec2<long double> pupil, long
         const Vec3<T> object{T(0), -slope * (c.object_distance + data.entrance_pupil_z), -c.object_distance};
         ray = {object, normalized(in_pupil - object)};
     }
-    const TracedRay<T> traced = trace<Direction::forward, Rims::follow>(c.lens, ray);
+    const optics::TracedRay<T> traced = optics::trace<optics::Direction::forward, optics::Rims::follow>(c.lens, ray);
     const int last = static_cast<int>(c.lens.surfaces.size()) - 1;
-    const T image_distance = paraxial_image_distance(c.lens, c.object_distance);
-    const Vec3<T> point = meet_plane(traced.ray, c.lens.surfaces.back().vertex_z + image_distance).point;
-    const auto chief = trace_paraxial(c.lens, {-slope * data.entrance_pupil_z, slope}, 0, last);
+    const T image_distance = optics::paraxial_image_distance(c.lens, c.object_distance);
+    const Vec3<T> point = optics::meet_plane(traced.ray, c.lens.surfaces.back().vertex_z + image_distance).point;
+    const auto chief = optics::trace_paraxial(c.lens, {-slope * data.entrance_pupil_z, slope}, 0, last);
     return {point.x, point.y - (chief.height + image_distance * chief.slope)};
 }
 
 std::vector<RayCase> ray_cases() {
-    const auto shipped = [](const char* name) { return at_wavelength<long double>(load_lens(name), kLineD); };
+    const auto shipped = [](const char* name) {
+        return optics::at_wavelength<long double>(formats::load_lens(name), spectral::kLineD);
+    };
     const long double infinity = std::numeric_limits<long double>::infinity();
     return {{"tessar", shipped("tessar"), 0.3L, infinity},
             {"triplet", shipped("triplet-cooke"), 0.3L, infinity},
@@ -306,18 +309,20 @@ TEST(Seidel, RealRaysAgreeInTheLimit) {
 // −C1 / (n' u'²) and the heights at which one incoming chief ray meets the reference's image plane by C2 / (n' u'), to
 // a relative error that falls with s².
 TEST(Seidel, ColourIsTheLimitOfSmallDispersion) {
-    const TraceLens<double> lens = at_wavelength<double>(load_lens("triplet-cooke"), kLineD);
+    const optics::TraceLens<double> lens =
+        optics::at_wavelength<double>(formats::load_lens("triplet-cooke"), spectral::kLineD);
     const int last = static_cast<int>(lens.surfaces.size()) - 1;
     for (const double distance : {kInfinity, 500.0}) {
-        const double image_distance = paraxial_image_distance(lens, distance);
-        const ParaxialRay chief = paraxial_chief_ray(lens, 0.3).value();
+        const double image_distance = optics::paraxial_image_distance(lens, distance);
+        const optics::ParaxialRay chief = optics::paraxial_chief_ray(lens, 0.3).value();
         const auto deviation = [&](double s) {
-            const TraceLens<double> blue = with_indices_changed(lens, s);
-            const TraceLens<double> red = with_indices_changed(lens, -s);
+            const optics::TraceLens<double> blue = with_indices_changed(lens, s);
+            const optics::TraceLens<double> red = with_indices_changed(lens, -s);
             const SeidelSums<double> sums = seidel_sums(lens, blue, red, 0.3, distance).value();
-            const double axial = paraxial_image_distance(blue, distance) - paraxial_image_distance(red, distance);
-            const auto height = [&](const TraceLens<double>& coloured) {
-                const ParaxialRay out = trace_paraxial(coloured, chief, 0, last);
+            const double axial =
+                optics::paraxial_image_distance(blue, distance) - optics::paraxial_image_distance(red, distance);
+            const auto height = [&](const optics::TraceLens<double>& coloured) {
+                const optics::ParaxialRay out = optics::trace_paraxial(coloured, chief, 0, last);
                 return out.height + image_distance * out.slope;
             };
             const double lateral = height(blue) - height(red);
@@ -355,15 +360,16 @@ TEST(Seidel, RayErrorIsTheWavefrontsGradient) {
 
 // What has no paraxial rays has no sums.
 TEST(Seidel, SaysWhereThereAreNone) {
-    const TraceLens<double> lens = at_wavelength<double>(load_lens("muller-fisheye"), kLineD);
+    const optics::TraceLens<double> lens =
+        optics::at_wavelength<double>(formats::load_lens("muller-fisheye"), spectral::kLineD);
     EXPECT_TRUE(seidel_sums(lens, lens, lens, 89.9 * kDegree));
     EXPECT_FALSE(seidel_sums(lens, lens, lens, 90.0 * kDegree));
     EXPECT_FALSE(seidel_sums(lens, lens, lens, 135.0 * kDegree));
-    const TraceLens<double> telecentric =
+    const optics::TraceLens<double> telecentric =
         lens_of<double>({{.radius = 64.0, .index = 2.0}, {.thickness = 64.0}, {.semi_diameter = 4.0, .is_stop = true}});
     EXPECT_FALSE(seidel_sums(telecentric, telecentric, telecentric, 0.1, 128.0));
-    TraceLens<double> unlimited = lens;
-    for (TraceSurface<double>& surface : unlimited.surfaces) {
+    optics::TraceLens<double> unlimited = lens;
+    for (optics::TraceSurface<double>& surface : unlimited.surfaces) {
         surface.semi_diameter_squared = kInfinity;
     }
     EXPECT_FALSE(seidel_sums(unlimited, unlimited, unlimited, 0.1));
@@ -380,10 +386,10 @@ TEST(Seidel, DoubleAgreesWithFiftyDigits) {
     for (const char* name :
          {"tessar", "petzval", "double-gauss-angenieux", "distagon-28", "triplet-cooke", "muller-fisheye",
           "nikkor-fisheye-10", "fisheye-220", "gyogyotto", "canon-zoom-70-200", "super-takumar-135"}) {
-        const Lens lens = load_lens(name);
-        const TraceLens<double> d = at_wavelength<double>(lens, kLineD);
-        const TraceLens<double> blue = at_wavelength<double>(lens, 486.1327);
-        const TraceLens<double> red = at_wavelength<double>(lens, 656.2725);
+        const optics::Lens lens = formats::load_lens(name);
+        const optics::TraceLens<double> d = optics::at_wavelength<double>(lens, spectral::kLineD);
+        const optics::TraceLens<double> blue = optics::at_wavelength<double>(lens, 486.1327);
+        const optics::TraceLens<double> red = optics::at_wavelength<double>(lens, 656.2725);
         for (const double distance : {kInfinity, 1000.0}) {
             const auto sums = seidel_sums(d, blue, red, 0.4, distance).value();
             const auto wide =
@@ -413,4 +419,4 @@ TEST(Seidel, DoubleAgreesWithFiftyDigits) {
 }
 
 }  // namespace
-}  // namespace lensproof
+}  // namespace lensproof::analysis

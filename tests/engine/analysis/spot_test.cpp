@@ -14,28 +14,28 @@
 #include "engine/formats/prescription/prescription_file.h"
 #include "engine/spectral/wavelengths.h"
 
-namespace lensproof {
+namespace lensproof::analysis {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-Lens made_of(std::vector<PrescribedSurface> surfaces) {
-    Prescription prescription;
+optics::Lens made_of(std::vector<optics::PrescribedSurface> surfaces) {
+    optics::Prescription prescription;
     prescription.surfaces = std::move(surfaces);
-    return make_lens(prescription, GlassCatalogue{});
+    return optics::make_lens(prescription, optics::GlassCatalogue{});
 }
 
 struct Subject {
-    Lens lens;
-    TraceLens<double> traced;
-    FieldBundle bundle;
-    RegionOutline outline;
+    optics::Lens lens;
+    optics::TraceLens<double> traced;
+    optics::FieldBundle bundle;
+    optics::RegionOutline outline;
 
-    Subject(Lens whole, double field, double object_distance = kInfinity)
-        : lens(std::move(whole)), traced(at_wavelength<double>(lens, kLineD)) {
-        const ChiefRays rays(lens, kLineD, Rims::follow);
-        bundle = field_bundle(rays, rays, field, object_distance).value();
+    Subject(optics::Lens whole, double field, double object_distance = kInfinity)
+        : lens(std::move(whole)), traced(optics::at_wavelength<double>(lens, spectral::kLineD)) {
+        const optics::ChiefRays rays(lens, spectral::kLineD, optics::Rims::follow);
+        bundle = optics::field_bundle(rays, rays, field, object_distance).value();
         outline = beam_outline(traced, bundle);
     }
 
@@ -43,7 +43,7 @@ struct Subject {
 };
 
 /// A stop of radius 3 mm, alone, 50 mm in front of the sensor.
-Lens bare_stop() {
+optics::Lens bare_stop() {
     return made_of({{.thickness_mm = 50.0, .semi_diameter_mm = 3.0, .is_stop = true}});
 }
 
@@ -52,12 +52,12 @@ Lens bare_stop() {
 constexpr double kIndex = 1.6;
 constexpr double kRadius = 30.0;
 constexpr double kFocus = kIndex * kRadius / (kIndex - 1.0);  // 80 mm behind the vertex
-Lens ellipsoid(double defocus) {
+optics::Lens ellipsoid(double defocus) {
     constexpr double kThickness = 50.0;
-    PrescribedSurface front{
+    optics::PrescribedSurface front{
         .radius_mm = kRadius, .conic = -1.0 / (kIndex * kIndex), .thickness_mm = kThickness, .semi_diameter_mm = 12.0};
     front.medium.n_d = kIndex;
-    const PrescribedSurface rear{
+    const optics::PrescribedSurface rear{
         .radius_mm = kFocus - kThickness, .thickness_mm = kFocus - kThickness + defocus, .semi_diameter_mm = 15.0};
     return made_of({{.semi_diameter_mm = 10.0, .is_stop = true}, front, rear});
 }
@@ -127,8 +127,8 @@ TEST(Spot, DefocusOfAPerfectFocus) {
 // `kSpotRings` is that at twice as many to 1e-9 mm, in spots of up to 0.15 mm.
 TEST(Spot, ConvergesWithTheRings) {
     for (const char* name : {"tessar", "double-gauss-angenieux", "muller-fisheye", "canon-ef-s-24"}) {
-        const Lens lens = load_lens(name);
-        const double largest = ChiefRays(lens, kLineD).largest_field();
+        const optics::Lens lens = formats::load_lens(name);
+        const double largest = optics::ChiefRays(lens, spectral::kLineD).largest_field();
         for (const double share : {0.0, 0.5, 0.9}) {
             const Subject subject(lens, share * largest);
             const SpotSize coarse = spot_size(subject.spot(kSpotRings));
@@ -143,13 +143,13 @@ TEST(Spot, ConvergesWithTheRings) {
 // Around the outline they have converged as well: turned about its own axis by 33°, the lens is the same, but the nodes
 // lie elsewhere, and in four quarters instead of two.
 TEST(Spot, HasConvergedInAzimuth) {
-    Prescription prescription = read_prescription(find_lens_file("tessar"));
+    optics::Prescription prescription = formats::read_prescription(formats::find_lens_file("tessar"));
     const double field = 0.3;
-    const SpotSize straight = spot_size(Subject(load_lens("tessar"), field).spot(kSpotRings));
+    const SpotSize straight = spot_size(Subject(formats::load_lens("tessar"), field).spot(kSpotRings));
     prescription.groups = {{.first = 1,
                             .last = static_cast<int>(prescription.surfaces.size()),
                             .misalignment = {.tilt_deg = {0.0, 0.0, 33.0}}}};
-    const Subject turned(make_lens(prescription, shipped_glasses()), field);
+    const Subject turned(optics::make_lens(prescription, formats::shipped_glasses()), field);
     EXPECT_FALSE(turned.outline.is_half);
     const SpotSize size = spot_size(turned.spot(kSpotRings));
     EXPECT_NEAR(size.rms, straight.rms, 1e-9);
@@ -160,7 +160,7 @@ TEST(Spot, HasConvergedInAzimuth) {
 // From rim to rim: the outermost rays pass, those a little further out do not; the middle ray of an odd count on the
 // axis is the chief ray. Parallel light through a bare stop: the error is the offset, on the oblique plane.
 TEST(RayFan, RunsFromRimToRim) {
-    const Lens lens = load_lens("tessar");
+    const optics::Lens lens = formats::load_lens("tessar");
     for (const double field : {0.0, 0.2, 0.4}) {
         const Subject subject(lens, field);
         for (const FanPlane plane : {FanPlane::tangential, FanPlane::sagittal}) {
@@ -169,11 +169,11 @@ TEST(RayFan, RunsFromRimToRim) {
             ASSERT_EQ(fan.size(), 21U);
             const auto status = [&](double offset) {
                 const Vec2d at = plane == FanPlane::tangential ? Vec2d{0.0, offset} : Vec2d{offset, 0.0};
-                return trace(subject.traced, subject.bundle.ray(at)).status;
+                return optics::trace(subject.traced, subject.bundle.ray(at)).status;
             };
             for (const FanPoint& end : {fan.front(), fan.back()}) {
-                EXPECT_EQ(status((1.0 - 1e-12) * end.offset), RayStatus::ok);
-                EXPECT_NE(status((1.0 + 1e-12) * end.offset), RayStatus::ok);
+                EXPECT_EQ(status((1.0 - 1e-12) * end.offset), optics::RayStatus::ok);
+                EXPECT_NE(status((1.0 + 1e-12) * end.offset), optics::RayStatus::ok);
             }
             EXPECT_EQ(std::max(fan.back().pupil, -fan.front().pupil), 1.0);
             if (plane == FanPlane::sagittal) {  // symmetric: x errors odd, y errors even
@@ -193,16 +193,17 @@ TEST(RayFan, RunsFromRimToRim) {
 
 // A beam whose chief ray is clipped has its meridional fan where the light is.
 TEST(RayFan, BesideAClippedChiefRay) {
-    const Subject subject(load_lens("muller-fisheye"), 76.0 * kPi / 180.0);
-    ASSERT_NE(subject.bundle.chief.status, RayStatus::ok);
+    const Subject subject(formats::load_lens("muller-fisheye"), 76.0 * kPi / 180.0);
+    ASSERT_NE(subject.bundle.chief.status, optics::RayStatus::ok);
     ASSERT_GT(subject.outline.area, 0.0);
     const auto fan = ray_fan(subject.traced, subject.bundle, subject.outline, FanPlane::tangential, {}, 11);
     ASSERT_EQ(fan.size(), 11U);
     for (std::size_t i = 1; i + 1 < fan.size(); ++i) {
-        EXPECT_EQ(trace(subject.traced, subject.bundle.ray({0.0, fan[i].offset})).status, RayStatus::ok);
+        EXPECT_EQ(optics::trace(subject.traced, subject.bundle.ray({0.0, fan[i].offset})).status,
+                  optics::RayStatus::ok);
     }
     EXPECT_TRUE(ray_fan(subject.traced, subject.bundle, subject.outline, FanPlane::sagittal, {}, 11).empty());
 }
 
 }  // namespace
-}  // namespace lensproof
+}  // namespace lensproof::analysis

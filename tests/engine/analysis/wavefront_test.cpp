@@ -13,7 +13,7 @@
 #include "engine/spectral/wavelengths.h"
 #include "tests/engine/perfect_lens.h"
 
-namespace lensproof {
+namespace lensproof::analysis {
 namespace {
 
 using Exact = boost::multiprecision::number<boost::multiprecision::cpp_bin_float<50>, boost::multiprecision::et_off>;
@@ -21,8 +21,8 @@ using Exact = boost::multiprecision::number<boost::multiprecision::cpp_bin_float
 constexpr double kDegree = std::numbers::pi / 180.0;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-FieldBundle bundle_at(const Lens& lens, double field_angle, double object_distance = kInfinity) {
-    const ChiefRays chiefs(lens, kLineD, Rims::follow);
+optics::FieldBundle bundle_at(const optics::Lens& lens, double field_angle, double object_distance = kInfinity) {
+    const optics::ChiefRays chiefs(lens, spectral::kLineD, optics::Rims::follow);
     if (std::isinf(object_distance)) {
         return {.chief = chiefs.at_field(field_angle).value()};
     }
@@ -44,10 +44,11 @@ constexpr double kRounding = 1e-13;
 
 TEST(Wavefront, HyperboloidHasNone) {
     for (const double stop_distance : {0.0, 30.0, 46.0, 60.0}) {
-        const Lens lens = PerfectLens{.stop_distance = stop_distance}.lens();
-        const TraceLens<double> traced = at_wavelength<double>(lens, kLineD);
-        const FieldBundle bundle = bundle_at(lens, 0.0);
-        const Wavefront front = wavefront(traced, kLineD, bundle, reference_sphere(traced, bundle).value(), ring(5.0));
+        const optics::Lens lens = PerfectLens{.stop_distance = stop_distance}.lens();
+        const optics::TraceLens<double> traced = optics::at_wavelength<double>(lens, spectral::kLineD);
+        const optics::FieldBundle bundle = bundle_at(lens, 0.0);
+        const Wavefront front =
+            wavefront(traced, spectral::kLineD, bundle, reference_sphere(traced, bundle).value(), ring(5.0));
         ASSERT_EQ(front.rays.size(), 12U);
         for (const WavefrontRay& ray : front.rays) {
             EXPECT_NEAR(ray.opd_mm, 0.0, kRounding) << stop_distance;
@@ -61,8 +62,8 @@ TEST(Wavefront, DefocusIsPositiveBehindTheFocus) {
     constexpr double kDefocus = 0.4;
     for (const double stop_distance : {0.0, 30.0, PerfectLens{}.telecentric_distance(), 60.0, 1e6}) {
         const PerfectLens perfect{.stop_distance = stop_distance, .defocus = kDefocus};
-        const TraceLens<double> traced = at_wavelength<double>(perfect.lens(), kLineD);
-        const FieldBundle bundle = bundle_at(perfect.lens(), 0.0);
+        const optics::TraceLens<double> traced = optics::at_wavelength<double>(perfect.lens(), spectral::kLineD);
+        const optics::FieldBundle bundle = bundle_at(perfect.lens(), 0.0);
         const ReferenceSphere sphere = reference_sphere(traced, bundle).value();
         // The stop, imaged by a thin lens at the rear principal plane, the hyperboloid's vertex (Newton's equation).
         const double beyond_focus =
@@ -76,9 +77,10 @@ TEST(Wavefront, DefocusIsPositiveBehindTheFocus) {
             EXPECT_NEAR(sphere.curvature / expected_curvature, 1.0, 1e-11 + position * std::abs(expected_curvature))
                 << stop_distance;
         }
-        for (const WavefrontRay& ray : wavefront(traced, kLineD, bundle, sphere, ring(4.9)).rays) {
+        for (const WavefrontRay& ray : wavefront(traced, spectral::kLineD, bundle, sphere, ring(4.9)).rays) {
             const Vec3d direction =
-                trace<Direction::forward, Rims::follow>(traced, bundle.ray(ray.offset)).ray.direction;
+                optics::trace<optics::Direction::forward, optics::Rims::follow>(traced, bundle.ray(ray.offset))
+                    .ray.direction;
             const double cosine = direction.z;
             const double sine2 = direction.x * direction.x + direction.y * direction.y;
             const double c = sphere.curvature;
@@ -96,10 +98,10 @@ TEST(Wavefront, DefocusIsPositiveBehindTheFocus) {
 // Hamilton: with paths up to the feet of the perpendiculars from C, dW = ε · dL, ε being where the ray meets the plane
 // through C, L its direction cosines. Central differences of step h leave h²/6 of third derivatives, 1e-6 of W here.
 TEST(Wavefront, GradientIsTheTransverseAberration) {
-    const Lens lens = load_lens("tessar");
-    const TraceLens<double> traced = at_wavelength<double>(lens, kLineD);
+    const optics::Lens lens = formats::load_lens("tessar");
+    const optics::TraceLens<double> traced = optics::at_wavelength<double>(lens, spectral::kLineD);
     for (const double field : {0.0, 7.0, 15.0}) {
-        const FieldBundle bundle = bundle_at(lens, field * kDegree);
+        const optics::FieldBundle bundle = bundle_at(lens, field * kDegree);
         ReferenceSphere plane = reference_sphere(traced, bundle).value();
         plane.curvature = 0.0;
         constexpr double kStep = 1e-3;
@@ -107,9 +109,10 @@ TEST(Wavefront, GradientIsTheTransverseAberration) {
             for (const Vec2d step : {Vec2d{kStep, 0.0}, Vec2d{0.0, kStep}}) {
                 const std::vector<BeamNode> nodes = {{{at.x + step.x, at.y + step.y}, 1.0},
                                                      {{at.x - step.x, at.y - step.y}, 1.0}};
-                const Wavefront pair = wavefront(traced, kLineD, bundle, plane, nodes);
-                const TracedRay<double> ray = trace<Direction::forward, Rims::follow>(traced, bundle.ray(at));
-                const Vec3d error = meet_plane(ray.ray, lens.image_z).point - plane.centre;
+                const Wavefront pair = wavefront(traced, spectral::kLineD, bundle, plane, nodes);
+                const optics::TracedRay<double> ray =
+                    optics::trace<optics::Direction::forward, optics::Rims::follow>(traced, bundle.ray(at));
+                const Vec3d error = optics::meet_plane(ray.ray, lens.image_z).point - plane.centre;
                 const double expected = error.x * (pair.rays[0].pupil.x - pair.rays[1].pupil.x) +
                                         error.y * (pair.rays[0].pupil.y - pair.rays[1].pupil.y);
                 EXPECT_NEAR(pair.rays[0].opd_mm - pair.rays[1].opd_mm, expected, 1e-5 * std::abs(expected) + 1e-12);
@@ -119,12 +122,12 @@ TEST(Wavefront, GradientIsTheTransverseAberration) {
 }
 
 /// Of a lens of centred spheres.
-TraceLens<Exact> in_50_digits(const TraceLens<double>& lens) {
+optics::TraceLens<Exact> in_50_digits(const optics::TraceLens<double>& lens) {
     EXPECT_TRUE(lens.specials.empty());
-    TraceLens<Exact> exact{.surfaces = {}, .image_z = lens.image_z};
-    for (const TraceSurface<double>& s : lens.surfaces) {
-        TraceSurface<Exact> wide =
-            make_trace_surface<Exact>(s.curvature, s.vertex_z, Exact(1), s.index_before, s.index_after, s.is_stop);
+    optics::TraceLens<Exact> exact{.surfaces = {}, .image_z = lens.image_z};
+    for (const optics::TraceSurface<double>& s : lens.surfaces) {
+        optics::TraceSurface<Exact> wide = optics::make_trace_surface<Exact>(s.curvature, s.vertex_z, Exact(1),
+                                                                             s.index_before, s.index_after, s.is_stop);
         wide.semi_diameter_squared = s.semi_diameter_squared;
         exact.surfaces.push_back(wide);
     }
@@ -137,7 +140,8 @@ Vec3<Exact> widened(const Vec3d& v) {
 
 /// [object → sphere], in 50 digits, for the ray of a given offset, from the object point (or the plane wavefront)
 /// itself: the sphere's near point by the quadratic equation.
-Exact exact_path(const TraceLens<Exact>& lens, const FieldBundle& bundle, const ReferenceSphere& sphere, Vec2d offset) {
+Exact exact_path(const optics::TraceLens<Exact>& lens, const optics::FieldBundle& bundle, const ReferenceSphere& sphere,
+                 Vec2d offset) {
     const Vec3<Exact> along = normalized(widened(bundle.chief.front.direction));
     const Vec3<Exact> across{Exact(offset.x), Exact(offset.y) * along.z, -Exact(offset.y) * along.y};
     const Vec3<Exact> through = widened(bundle.chief.front.origin) + across;
@@ -147,8 +151,9 @@ Exact exact_path(const TraceLens<Exact>& lens, const FieldBundle& bundle, const 
         ray.origin = widened(bundle.chief.front.origin) - distance * along;
         ray.direction = normalized(through - ray.origin);
     }
-    const TracedRay<Exact> traced =
-        trace_through<Direction::forward, Rims::follow, false>(lens, ray, [](const SurfaceEvent<Exact>&) {});
+    const optics::TracedRay<Exact> traced =
+        optics::trace_through<optics::Direction::forward, optics::Rims::follow, false>(
+            lens, ray, [](const optics::SurfaceEvent<Exact>&) {});
     const Vec3<Exact> from_centre = traced.ray.origin - widened(sphere.centre);
     const Exact radius = Exact(1) / Exact(sphere.curvature);
     const Exact b = dot(from_centre, traced.ray.direction);
@@ -159,19 +164,19 @@ Exact exact_path(const TraceLens<Exact>& lens, const FieldBundle& bundle, const 
 // Path differences hold λ/1000 = 6e-7 mm at any object distance with six digits to spare.
 TEST(Wavefront, HoldsDigitsForFarObjects) {
     for (const char* name : {"tessar", "double-gauss-tronnier", "muller-fisheye"}) {
-        const Lens lens = load_lens(name);
-        const TraceLens<double> traced = at_wavelength<double>(lens, kLineD);
-        const TraceLens<Exact> exact = in_50_digits(traced);
+        const optics::Lens lens = formats::load_lens(name);
+        const optics::TraceLens<double> traced = optics::at_wavelength<double>(lens, spectral::kLineD);
+        const optics::TraceLens<Exact> exact = in_50_digits(traced);
         const double beam = std::string(name) == "muller-fisheye" ? 0.6 : 5.0;
         for (const double distance : {1e3, 1e8, 1e15, kInfinity}) {
             for (const double field : {0.0, 1e-9, 14.0, 70.0}) {
-                if (field == 70.0 && (lens.projection == Projection::rectilinear || std::isfinite(distance))) {
+                if (field == 70.0 && (lens.projection == optics::Projection::rectilinear || std::isfinite(distance))) {
                     continue;
                 }
-                const FieldBundle bundle = bundle_at(lens, field * kDegree, distance);
+                const optics::FieldBundle bundle = bundle_at(lens, field * kDegree, distance);
                 const ReferenceSphere sphere = reference_sphere(traced, bundle).value();
                 const Exact chief = exact_path(exact, bundle, sphere, {});
-                const Wavefront front = wavefront(traced, kLineD, bundle, sphere, ring(beam));
+                const Wavefront front = wavefront(traced, spectral::kLineD, bundle, sphere, ring(beam));
                 ASSERT_EQ(front.rays.size(), 12U);
                 for (const WavefrontRay& ray : front.rays) {
                     const auto expected = static_cast<double>(chief - exact_path(exact, bundle, sphere, ray.offset));
@@ -202,14 +207,17 @@ TEST(Wavefront, AgreesWithRayoptics) {
         {9.8, {0.0, -6.316293211846566, 0.4667608285911814}, -0.16305726330726764},
         {9.8, {3.4999999952302536, -2.361005024467417, 0.20790749614995935}, 0.23805807309892657},
     };
-    const Lens lens = load_lens("tessar", {.indices = {{"LAK9", 1.691}, {"LLF7", 1.549}, {"SF7", 1.64}}});
-    const TraceLens<double> traced = at_wavelength<double>(lens, kLineD);
+    const optics::Lens lens =
+        formats::load_lens("tessar", {.indices = {{"LAK9", 1.691}, {"LLF7", 1.549}, {"SF7", 1.64}}});
+    const optics::TraceLens<double> traced = optics::at_wavelength<double>(lens, spectral::kLineD);
     for (const Row& row : kRows) {
-        const FieldBundle bundle = bundle_at(lens, row.field_deg * kDegree, 1e10);
+        const optics::FieldBundle bundle = bundle_at(lens, row.field_deg * kDegree, 1e10);
         const Vec3d apart = row.point - bundle.chief.front.origin;
         const std::vector<BeamNode> node = {{{dot(apart, bundle.across()[0]), dot(apart, bundle.across()[1])}, 1.0}};
-        const Wavefront front = wavefront(traced, kLineD, bundle, reference_sphere(traced, bundle).value(), node);
-        EXPECT_NEAR(front.rays.front().opd_mm * 1e6 / kLineD, row.waves, 1e-6) << row.field_deg << " " << row.point.y;
+        const Wavefront front =
+            wavefront(traced, spectral::kLineD, bundle, reference_sphere(traced, bundle).value(), node);
+        EXPECT_NEAR(front.rays.front().opd_mm * 1e6 / spectral::kLineD, row.waves, 1e-6)
+            << row.field_deg << " " << row.point.y;
     }
 }
 
@@ -217,13 +225,13 @@ TEST(Wavefront, AgreesWithRayoptics) {
 // is left once they are taken out, and what was taken out is the shift. Second order: shift² / radius.
 TEST(Wavefront, BestSphereFindsTheFocus) {
     const PerfectLens perfect{.beam_radius = 8.0, .stop_distance = 10.0};
-    const TraceLens<double> traced = at_wavelength<double>(perfect.lens(), kLineD);
-    const FieldBundle bundle = bundle_at(perfect.lens(), 0.0);
+    const optics::TraceLens<double> traced = optics::at_wavelength<double>(perfect.lens(), spectral::kLineD);
+    const optics::FieldBundle bundle = bundle_at(perfect.lens(), 0.0);
     const std::vector<BeamNode> nodes = beam_quadrature(beam_outline(traced, bundle), 6);
     ReferenceSphere sphere = reference_sphere(traced, bundle).value();
     const Vec3d shift{1e-4, -2e-4, 3e-3};
     sphere.centre = sphere.centre + shift;
-    const WavefrontErrors errors = wavefront_errors(wavefront(traced, kLineD, bundle, sphere, nodes));
+    const WavefrontErrors errors = wavefront_errors(wavefront(traced, spectral::kLineD, bundle, sphere, nodes));
     EXPECT_NEAR(errors.best_centre.x, -shift.x, 1e-6);
     EXPECT_NEAR(errors.best_centre.y, -shift.y, 1e-6);
     EXPECT_NEAR(errors.best_centre.z, -shift.z, 1e-6);
@@ -232,7 +240,7 @@ TEST(Wavefront, BestSphereFindsTheFocus) {
     EXPECT_GT(errors.rms, errors.rms_without_tilt);
     // Tilt a·r over a disc of radius 1 has the variance a²/4. sin U of the rim by the sine condition that a hyperboloid
     // breaks by 1 %.
-    const double tilt = std::hypot(shift.x, shift.y) * 0.16 / (kLineD * 1e-6);
+    const double tilt = std::hypot(shift.x, shift.y) * 0.16 / (spectral::kLineD * 1e-6);
     EXPECT_NEAR(std::sqrt(errors.rms * errors.rms - errors.rms_without_tilt * errors.rms_without_tilt), 0.5 * tilt,
                 0.03 * tilt);
 }
@@ -240,9 +248,9 @@ TEST(Wavefront, BestSphereFindsTheFocus) {
 // The map of a perfect lens out of focus, W = ζ (1 − cos U) from a telecentric pupil, at each of its cells.
 TEST(WavefrontMap, OfADefocusedLens) {
     const PerfectLens perfect{.stop_distance = PerfectLens{}.telecentric_distance(), .defocus = 0.05};
-    const FieldBundle bundle = bundle_at(perfect.lens(), 0.0);
-    const PolychromaticField field =
-        polychromatic_field(perfect.lens(), bundle, kLineD, std::vector<WeightedWavelength>{{kLineD, 1.0}});
+    const optics::FieldBundle bundle = bundle_at(perfect.lens(), 0.0);
+    const PolychromaticField field = polychromatic_field(perfect.lens(), bundle, spectral::kLineD,
+                                                         std::vector<WeightedWavelength>{{spectral::kLineD, 1.0}});
     constexpr int kCells = 40;
     const WavefrontMap map = wavefront_map(field, field.parts.front(), kCells);
     int inside = 0;
@@ -255,7 +263,7 @@ TEST(WavefrontMap, OfADefocusedLens) {
             ++inside;
             const Vec2d pupil = map.pupil(row, column);
             const double cosine = std::sqrt(1.0 - pupil.x * pupil.x - pupil.y * pupil.y);
-            EXPECT_NEAR(map.at(row, column), 0.05 * (1.0 - cosine) / (kLineD * 1e-6), 1e-6);
+            EXPECT_NEAR(map.at(row, column), 0.05 * (1.0 - cosine) / (spectral::kLineD * 1e-6), 1e-6);
         }
     }
     // A disc's cells, to those of its rim.
@@ -265,10 +273,10 @@ TEST(WavefrontMap, OfADefocusedLens) {
 
 // Off the axis the cells are those of `wavefront` at the same rays, rim to rim.
 TEST(WavefrontMap, IsTheWavefrontOffTheAxis) {
-    const Lens lens = load_lens("double-gauss-tronnier");
-    const FieldBundle bundle = bundle_at(lens, 14.0 * kDegree);
+    const optics::Lens lens = formats::load_lens("double-gauss-tronnier");
+    const optics::FieldBundle bundle = bundle_at(lens, 14.0 * kDegree);
     const PolychromaticField field =
-        polychromatic_field(lens, bundle, kLineD, std::vector<WeightedWavelength>{{kLineD, 1.0}});
+        polychromatic_field(lens, bundle, spectral::kLineD, std::vector<WeightedWavelength>{{spectral::kLineD, 1.0}});
     const PolychromaticField::Part& part = field.parts.front();
     const WavefrontMap map = wavefront_map(field, part, 48);
     double sum = 0.0;
@@ -282,22 +290,23 @@ TEST(WavefrontMap, IsTheWavefrontOffTheAxis) {
         }
     }
     const double rms = std::sqrt(squares / cells - sum * sum / cells / cells);
-    const double expected =
-        wavefront_errors(wavefront(part.lens, kLineD, bundle, field.sphere, beam_quadrature(part.outline, 10))).rms;
+    const double expected = wavefront_errors(wavefront(part.lens, spectral::kLineD, bundle, field.sphere,
+                                                       beam_quadrature(part.outline, 10)))
+                                .rms;
     // Even cells in direction against even cells in the beam, and 4/48 of them at the rim.
     EXPECT_NEAR(rms / expected, 1.0, 0.1);
 }
 
 // A chief ray that a rim clips leaves the field its rays.
 TEST(Wavefront, GoesOnWhereTheChiefRayIsClipped) {
-    const Lens lens = load_lens("muller-fisheye");
-    const TraceLens<double> traced = at_wavelength<double>(lens, kLineD);
-    const FieldBundle bundle = bundle_at(lens, 75.5 * kDegree);
-    ASSERT_EQ(bundle.chief.status, RayStatus::clipped);
-    const RegionOutline outline = beam_outline(traced, bundle);
+    const optics::Lens lens = formats::load_lens("muller-fisheye");
+    const optics::TraceLens<double> traced = optics::at_wavelength<double>(lens, spectral::kLineD);
+    const optics::FieldBundle bundle = bundle_at(lens, 75.5 * kDegree);
+    ASSERT_EQ(bundle.chief.status, optics::RayStatus::clipped);
+    const optics::RegionOutline outline = beam_outline(traced, bundle);
     ASSERT_FALSE(outline.is_empty());
-    const Wavefront front =
-        wavefront(traced, kLineD, bundle, reference_sphere(traced, bundle).value(), beam_quadrature(outline, 6));
+    const Wavefront front = wavefront(traced, spectral::kLineD, bundle, reference_sphere(traced, bundle).value(),
+                                      beam_quadrature(outline, 6));
     EXPECT_EQ(front.lost_weight, 0.0);
     double area = 0.0;
     for (const WavefrontRay& ray : front.rays) {
@@ -308,4 +317,4 @@ TEST(Wavefront, GoesOnWhereTheChiefRayIsClipped) {
 }
 
 }  // namespace
-}  // namespace lensproof
+}  // namespace lensproof::analysis

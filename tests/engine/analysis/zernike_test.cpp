@@ -10,7 +10,7 @@
 #include "engine/spectral/wavelengths.h"
 #include "tests/engine/perfect_lens.h"
 
-namespace lensproof {
+namespace lensproof::analysis {
 namespace {
 
 // Noll (1976), table 1, read row by row, and 16 to 22 by its rule.
@@ -49,7 +49,7 @@ TEST(Zernike, NumberingsGoRound) {
 // the unit matrix, to the rounding of 325 terms.
 TEST(Zernike, OrthonormalOverTheDisc) {
     constexpr int kDegree = 12;
-    const GaussRule rule = gauss_legendre(13);
+    const optics::GaussRule rule = optics::gauss_legendre(13);
     const int terms = zernike_count(kDegree);
     std::vector<double> products(static_cast<std::size_t>(terms) * terms, 0.0);
     for (std::size_t k = 0; k < rule.nodes.size(); ++k) {
@@ -136,15 +136,16 @@ TEST(Zernike, RefusesTooFewSamples) {
 TEST(Zernike, DefocusedLens) {
     const PerfectLens perfect{
         .beam_radius = 4.0, .stop_distance = PerfectLens{}.telecentric_distance(), .defocus = 0.1};
-    const TraceLens<double> traced = at_wavelength<double>(perfect.lens(), kLineD);
-    const FieldBundle bundle{.chief = ChiefRays(perfect.lens(), kLineD).at_field(0.0).value()};
+    const optics::TraceLens<double> traced = optics::at_wavelength<double>(perfect.lens(), spectral::kLineD);
+    const optics::FieldBundle bundle{.chief =
+                                         optics::ChiefRays(perfect.lens(), spectral::kLineD).at_field(0.0).value()};
     const ReferenceSphere sphere = reference_sphere(traced, bundle).value();
-    const RegionOutline outline = beam_outline(traced, bundle);
+    const optics::RegionOutline outline = beam_outline(traced, bundle);
     const double sine = pupil_radius(traced, bundle, sphere, outline);
     EXPECT_NEAR(sine, 4.0 / 50.0, 0.001);
     const ZernikeFit fit =
-        wavefront_zernike(wavefront(traced, kLineD, bundle, sphere, beam_quadrature(outline, 8)), sine, 8);
-    const double waves = 0.1 / (kLineD * 1e-6);
+        wavefront_zernike(wavefront(traced, spectral::kLineD, bundle, sphere, beam_quadrature(outline, 8)), sine, 8);
+    const double waves = 0.1 / (spectral::kLineD * 1e-6);
     const double s2 = sine * sine;
     // r⁴ = (R40 + 3 R20 + 2) / 6
     EXPECT_NEAR(fit.noll(4), waves * (s2 / 4.0 + s2 * s2 / 16.0) / std::sqrt(3.0), waves * s2 * s2 * s2 / 16.0);
@@ -153,4 +154,4 @@ TEST(Zernike, DefocusedLens) {
 }
 
 }  // namespace
-}  // namespace lensproof
+}  // namespace lensproof::analysis

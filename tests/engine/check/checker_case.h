@@ -11,16 +11,16 @@
 #include "engine/check/checker.h"
 #include "engine/formats/glass/shipped_glasses.h"
 
-namespace lensproof {
+namespace lensproof::check {
 
-inline CheckReport checked(const Prescription& prescription, const StatedData& claims = {}) {
-    static const GlassCatalogue shipped = shipped_glasses();
+inline CheckReport checked(const optics::Prescription& prescription, const optics::StatedData& claims = {}) {
+    static const optics::GlassCatalogue shipped = formats::shipped_glasses();
     return check_prescription(prescription, claims, shipped);
 }
 
 /// The first finding of that code, at that surface where one is given; else null.
-inline const Finding* find(const CheckReport& report, const std::string& code, int surface = -1) {
-    const auto found = std::ranges::find_if(report.findings, [&](const Finding& finding) {
+inline const optics::Finding* find(const CheckReport& report, const std::string& code, int surface = -1) {
+    const auto found = std::ranges::find_if(report.findings, [&](const optics::Finding& finding) {
         return finding.code == code && (surface < 0 || finding.surface == surface);
     });
     return found == report.findings.end() ? nullptr : &*found;
@@ -29,7 +29,7 @@ inline const Finding* find(const CheckReport& report, const std::string& code, i
 /// All that a report says, for a test's message.
 inline std::string said(const CheckReport& report) {
     std::string all;
-    for (const Finding& finding : report.findings) {
+    for (const optics::Finding& finding : report.findings) {
         all += finding.code + " at " + std::to_string(finding.surface) + ": " + finding.message + "\n";
     }
     return all;
@@ -38,22 +38,22 @@ inline std::string said(const CheckReport& report) {
 /// What must be said once a defect is planted. A value that is NaN is not compared.
 struct Expected {
     const char* code;
-    Severity severity;
+    optics::Severity severity;
     int surface = 0;  // 0: the lens
-    double value = Finding::kNothing;
+    double value = optics::Finding::kNothing;
     double tolerance = 1e-9;
-    double limit = Finding::kNothing;
+    double limit = optics::Finding::kNothing;
 };
 
 /// That `good` has no finding of the code, and that `plant` brings one about.
-inline void expect_planted(Prescription good, const std::function<void(Prescription&)>& plant,
+inline void expect_planted(optics::Prescription good, const std::function<void(optics::Prescription&)>& plant,
                            const Expected& expected) {
     SCOPED_TRACE(expected.code);
     const CheckReport before = checked(good);
     EXPECT_EQ(find(before, expected.code), nullptr) << "the good lens has it:\n" << said(before);
     plant(good);
     const CheckReport after = checked(good);
-    const Finding* finding = find(after, expected.code);
+    const optics::Finding* finding = find(after, expected.code);
     ASSERT_NE(finding, nullptr) << said(after);
     EXPECT_EQ(finding->severity, expected.severity) << finding->message;
     EXPECT_EQ(finding->surface, expected.surface) << finding->message;
@@ -68,8 +68,8 @@ inline void expect_planted(Prescription good, const std::function<void(Prescript
 
 /// A half ball of n = 1.5 and R = 10 mm whose flat side is in front and is the stop. Each formula for it is closed:
 /// f = R / (n − 1) = 20 mm, counted from the vertex behind, as the back focus is.
-inline Prescription half_ball(double stop_semi_diameter = 1.0) {
-    Prescription lens;
+inline optics::Prescription half_ball(double stop_semi_diameter = 1.0) {
+    optics::Prescription lens;
     lens.surfaces.resize(2);
     lens.surfaces[0] = {.thickness_mm = 10.0, .semi_diameter_mm = stop_semi_diameter, .is_stop = true};
     lens.surfaces[0].medium.n_d = 1.5;
@@ -79,8 +79,8 @@ inline Prescription half_ball(double stop_semi_diameter = 1.0) {
 
 /// A whole one, with the stop in its middle: f = n R / (2 (n − 1)) = 15 mm, counted from its centre, through which
 /// every chief ray passes undeviated.
-inline Prescription ball(double rim) {
-    Prescription lens;
+inline optics::Prescription ball(double rim) {
+    optics::Prescription lens;
     lens.surfaces.resize(3);
     lens.surfaces[0] = {.radius_mm = 10.0, .thickness_mm = 10.0, .semi_diameter_mm = rim};
     lens.surfaces[1] = {.thickness_mm = 10.0, .semi_diameter_mm = 1.0, .is_stop = true};
@@ -89,4 +89,4 @@ inline Prescription ball(double rim) {
     return lens;
 }
 
-}  // namespace lensproof
+}  // namespace lensproof::check

@@ -7,21 +7,21 @@
 #include "engine/formats/prescription/prescription_file.h"
 #include "tests/engine/check/checker_case.h"
 
-namespace lensproof {
+namespace lensproof::check {
 namespace {
 
-using P = Prescription;
+using P = optics::Prescription;
 
 constexpr double kDegree = std::numbers::pi / 180.0;
 
-Prescription at_field(Prescription lens, double half_field_deg) {
+optics::Prescription at_field(optics::Prescription lens, double half_field_deg) {
     lens.stated.half_field_deg = half_field_deg;
     return lens;
 }
 
 /// Plants the field.
-std::function<void(Prescription&)> field(double half_field_deg) {
-    return [=](Prescription& lens) { lens.stated.half_field_deg = half_field_deg; };
+std::function<void(optics::Prescription&)> field(double half_field_deg) {
+    return [=](optics::Prescription& lens) { lens.stated.half_field_deg = half_field_deg; };
 }
 
 // A ray at height h meets the half ball's rear at i = asin(h / R), leaves at asin(n h / R) from the normal, so at the
@@ -29,12 +29,12 @@ std::function<void(Prescription&)> field(double half_field_deg) {
 TEST(CheckerRays, TheHalfBallsRealFNumber) {
     const double delta = std::asin(1.5 * 0.4) - std::asin(0.4);
     expect_planted(half_ball(1.0), [](P& p) { p.surfaces[0].semi_diameter_mm = 4.0; },
-                   {"real-f-number", Severity::info, 0, 0.5 / std::sin(delta), 1e-9, 2.5});
+                   {"real-f-number", optics::Severity::info, 0, 0.5 / std::sin(delta), 1e-9, 2.5});
 }
 
 /// Set to an object 40 mm in front of its flat face.
-Prescription near_half_ball(double stop_semi_diameter) {
-    Prescription lens = half_ball(stop_semi_diameter);
+optics::Prescription near_half_ball(double stop_semi_diameter) {
+    optics::Prescription lens = half_ball(stop_semi_diameter);
     lens.object_distance_mm = 40.0;
     return lens;
 }
@@ -49,15 +49,16 @@ TEST(CheckerRays, ANearObjectsFNumbersAreTheWorkingOnes) {
     const double incidence = std::asin(0.1 * kHeight * std::cos(inside));
     const double outside = std::asin(1.5 * std::sin(incidence)) - incidence - inside;
     expect_planted(near_half_ball(1.0), [=](P& p) { p.surfaces[0].semi_diameter_mm = kHeight; },
-                   {"real-f-number", Severity::info, 0, 0.5 / std::sin(outside), 1e-9, 15.0 / kHeight});
+                   {"real-f-number", optics::Severity::info, 0, 0.5 / std::sin(outside), 1e-9, 15.0 / kHeight});
 }
 
 TEST(CheckerRays, ANearObjectsBeamIsHeldAgainstTheStopsFromThere) {
-    const Prescription good = near_half_ball(3.0);
+    const optics::Prescription good = near_half_ball(3.0);
     EXPECT_EQ(find(checked(good), "marginal-ray"), nullptr);
     const auto narrow_the_rear = [](P& p) { p.surfaces[1].semi_diameter_mm = 3.0; };
-    expect_planted(good, narrow_the_rear, {"stop-not-limiting", Severity::warning, 2, Finding::kNothing, 0.0, 3.0});
-    Prescription narrowed = good;
+    expect_planted(good, narrow_the_rear,
+                   {"stop-not-limiting", optics::Severity::warning, 2, optics::Finding::kNothing, 0.0, 3.0});
+    optics::Prescription narrowed = good;
     narrow_the_rear(narrowed);
     const CheckReport report = checked(narrowed);
     EXPECT_NE(find(report, "stop-not-limiting")->message.find("f/5.00 by the stop"), std::string::npos) << said(report);
@@ -66,15 +67,15 @@ TEST(CheckerRays, ANearObjectsBeamIsHeldAgainstTheStopsFromThere) {
 // The rear's rim reaches 20 − √(20² − 6²) = 0.92 mm behind its vertex, past the stop's plane 0.3 mm behind it. No ray
 // bends in that plane, so none is kept from its way.
 TEST(CheckerRays, AStopInsideASurfacesSagTurnsNoRayBack) {
-    Prescription lens;
+    optics::Prescription lens;
     lens.surfaces.resize(3);
     lens.surfaces[0] = {.radius_mm = 15.0, .thickness_mm = 3.0, .semi_diameter_mm = 7.0};
     lens.surfaces[0].medium.n_d = 1.5;
     lens.surfaces[1] = {.radius_mm = 20.0, .thickness_mm = 2.0, .semi_diameter_mm = 7.0};
     lens.surfaces[2] = {.thickness_mm = 0.0, .semi_diameter_mm = 6.0, .is_stop = true};
     const auto close_up = [](P& p) { p.surfaces[1].thickness_mm = 0.3; };
-    expect_planted(at_field(lens, 10.0), close_up, {"surfaces-cross", Severity::warning, 2});
-    Prescription closed_up = at_field(lens, 10.0);
+    expect_planted(at_field(lens, 10.0), close_up, {"surfaces-cross", optics::Severity::warning, 2});
+    optics::Prescription closed_up = at_field(lens, 10.0);
     close_up(closed_up);
     const CheckReport report = checked(closed_up);
     EXPECT_EQ(find(report, "order-of-surfaces"), nullptr) << said(report);
@@ -84,7 +85,8 @@ TEST(CheckerRays, AStopInsideASurfacesSagTurnsNoRayBack) {
 
 // Where the stop is a glass surface, its own total reflection ends the field: at 90° in air.
 TEST(CheckerRays, AStopOnGlassEndsTheFieldWhereItReflectsTotally) {
-    expect_planted(at_field(half_ball(), 55.0), field(95.0), {"chief-ray", Severity::error, 1, 90.0, 1e-3, 95.0});
+    expect_planted(at_field(half_ball(), 55.0), field(95.0),
+                   {"chief-ray", optics::Severity::error, 1, 90.0, 1e-3, 95.0});
 }
 
 // By the law of sines that ray crosses the axis n h / sin δ behind the ball's centre. Over the pupil, the rms of its
@@ -110,23 +112,24 @@ TEST(CheckerRays, TheHalfBallsBlur) {
     }
     const double blur = std::sqrt((yy - yt * yt / tt) / weights);
     expect_planted(half_ball(1.0), [=](P& p) { p.surfaces[0].semi_diameter_mm = kRadius; },
-                   {"blur", Severity::warning, 0, 100.0 * blur / 20.0, 0.005 * 100.0 * blur / 20.0, 0.25});
+                   {"blur", optics::Severity::warning, 0, 100.0 * blur / 20.0, 0.005 * 100.0 * blur / 20.0, 0.25});
 }
 
 // Of a single element f_F − f_C = −f (n_F − n_C)(n_d − 1) / ((n_F − 1)(n_C − 1)), which is −f / V but for terms of
 // relative order 1 / V.
 TEST(CheckerRays, ASingleElementsColourIsOneOverV) {
-    Prescription lens = half_ball();
+    optics::Prescription lens = half_ball();
     lens.surfaces[0].medium.V_d = 80.0;
     expect_planted(lens, [](P& p) { p.surfaces[0].medium.V_d = 60.0; },
-                   {"axial-colour", Severity::warning, 0, -100.0 / 60.0, 100.0 / 60.0 / 60.0, 1.5});
+                   {"axial-colour", optics::Severity::warning, 0, -100.0 / 60.0, 100.0 / 60.0 / 60.0, 1.5});
 }
 
 // Rays meet the flat front at the field's angle, and the rear, which is concentric with the stop, nearly at none.
 TEST(CheckerRays, AFlatFrontIsMetAtTheFieldsAngle) {
-    expect_planted(at_field(half_ball(), 55.0), field(65.0), {"incidence-angle", Severity::info, 1, 65.0, 1e-6, 60.0});
+    expect_planted(at_field(half_ball(), 55.0), field(65.0),
+                   {"incidence-angle", optics::Severity::info, 1, 65.0, 1e-6, 60.0});
     expect_planted(at_field(half_ball(), 55.0), field(78.0),
-                   {"incidence-angle", Severity::warning, 1, 78.0, 1e-6, 75.0});
+                   {"incidence-angle", optics::Severity::warning, 1, 78.0, 1e-6, 75.0});
 }
 
 // A hole in the front surface looks narrower by cos θ. It is counted in cells of a sixtieth of its radius, of which it
@@ -134,7 +137,7 @@ TEST(CheckerRays, AFlatFrontIsMetAtTheFieldsAngle) {
 TEST(CheckerRays, AStopInFrontVignettesWithTheCosine) {
     const double share = 100.0 * std::cos(75.0 * kDegree);
     expect_planted(at_field(half_ball(), 65.0), field(75.0),
-                   {"vignetting", Severity::warning, 0, share, 0.02 * share, 30.0});
+                   {"vignetting", optics::Severity::warning, 0, share, 0.02 * share, 30.0});
 }
 
 // The chief ray leaves the front at asin(sin θ / n) and goes straight on to the sensor, f + R = 30 mm behind.
@@ -142,49 +145,51 @@ TEST(CheckerRays, TheHalfBallsDistortion) {
     const double height = 30.0 * std::tan(std::asin(0.5 / 1.5));
     const double off = height / (20.0 * std::tan(30.0 * kDegree)) - 1.0;
     expect_planted(at_field(half_ball(), 20.0), field(30.0),
-                   {"distortion", Severity::warning, 0, 100.0 * off, 1e-6, 5.0});
+                   {"distortion", optics::Severity::warning, 0, 100.0 * off, 1e-6, 5.0});
 }
 
 // The ball images as f tan θ: against a fisheye's f θ, that is off by tan θ / θ − 1.
 TEST(CheckerRays, AFisheyeIsHeldToItsOwnProjection) {
     const double theta = 30.0 * kDegree;
-    expect_planted(at_field(ball(9.0), 30.0), [](P& p) { p.projection = Projection::equidistant; },
-                   {"distortion", Severity::warning, 0, 100.0 * (std::tan(theta) / theta - 1.0), 1e-6, 10.0});
+    expect_planted(at_field(ball(9.0), 30.0), [](P& p) { p.projection = optics::Projection::equidistant; },
+                   {"distortion", optics::Severity::warning, 0, 100.0 * (std::tan(theta) / theta - 1.0), 1e-6, 10.0});
 }
 
 TEST(CheckerRays, NoRectilinearLensSeesAHalfFieldBeyondEightyDegrees) {
-    expect_planted(at_field(ball(9.9), 70.0), field(81.0), {"distortion", Severity::warning, 0, 81.0, 1e-9, 80.0});
+    expect_planted(at_field(ball(9.9), 70.0), field(81.0),
+                   {"distortion", optics::Severity::warning, 0, 81.0, 1e-9, 80.0});
 }
 
 // 2 f tan θ; and where no field is claimed, up to the chief ray that meets the sphere at its rim: sin θ = 5 / 10.
 TEST(CheckerRays, TheBallsImageCircle) {
-    Prescription lens = at_field(ball(9.0), 20.0);
+    optics::Prescription lens = at_field(ball(9.0), 20.0);
     const double circle = 30.0 * std::tan(20.0 * kDegree);
     lens.stated.image_circle_mm = circle;
     const auto claim = [](P& p) { p.stated.image_circle_mm = 24.0; };
-    expect_planted(lens, claim, {"image-circle", Severity::warning, 0, circle, 1e-6, 24.0});
+    expect_planted(lens, claim, {"image-circle", optics::Severity::warning, 0, circle, 1e-6, 24.0});
 
-    Prescription rimmed = ball(5.0);
+    optics::Prescription rimmed = ball(5.0);
     rimmed.stated.image_circle_mm = 17.0;
-    expect_planted(rimmed, claim, {"image-circle", Severity::warning, 0, 30.0 * std::tan(30.0 * kDegree), 1e-6, 24.0});
+    expect_planted(rimmed, claim,
+                   {"image-circle", optics::Severity::warning, 0, 30.0 * std::tan(30.0 * kDegree), 1e-6, 24.0});
 }
 
 // Plano-convex, R = 20, 1 mm thick: from √(1 · (2 · 20 − 1)) = 6.24 mm on, its flat rear lies in front of its front.
 // The stop, 5 mm behind, takes the field of 40° from 7 mm: every ray of it.
 TEST(CheckerRays, SurfacesInTheWrongOrderAtTheField) {
-    Prescription lens;
+    optics::Prescription lens;
     lens.surfaces.resize(3);
     lens.surfaces[0] = {.radius_mm = 20.0, .thickness_mm = 4.0, .semi_diameter_mm = 11.0};
     lens.surfaces[0].medium.n_d = 1.5;
     lens.surfaces[1] = {.thickness_mm = 5.0, .semi_diameter_mm = 11.0};
     lens.surfaces[2] = {.thickness_mm = 0.0, .semi_diameter_mm = 0.3, .is_stop = true};
     expect_planted(at_field(lens, 40.0), [](P& p) { p.surfaces[0].thickness_mm = 1.0; },
-                   {"order-of-surfaces", Severity::error, 2, 100.0, 1e-9, 1.0});
+                   {"order-of-surfaces", optics::Severity::error, 2, 100.0, 1e-9, 1.0});
 }
 
 TEST(CheckerRays, WhatIsNotAskedOfTiltedAndToroidalLensesIsSaid) {
-    const Prescription good = at_field(read_prescription(find_lens_file("tessar")), 24.0);
-    const Expected expected{"not-judged", Severity::info, 0};
+    const optics::Prescription good = at_field(formats::read_prescription(formats::find_lens_file("tessar")), 24.0);
+    const Expected expected{"not-judged", optics::Severity::info, 0};
     expect_planted(
         good, [](P& p) { p.surfaces[0].misalignment.tilt_deg[1] = 0.1; }, expected);
     expect_planted(
@@ -196,7 +201,7 @@ TEST(CheckerRays, WhatIsNotAskedOfTiltedAndToroidalLensesIsSaid) {
         },
         expected);
     // A rim in the field's way is named in the centred lens only.
-    Prescription clipped = good;
+    optics::Prescription clipped = good;
     clipped.surfaces[7].semi_diameter_mm = 10.0;
     EXPECT_NE(find(checked(clipped), "chief-ray"), nullptr);
     clipped.surfaces[0].misalignment.tilt_deg[1] = 0.1;
@@ -207,10 +212,10 @@ TEST(CheckerRays, WhatIsNotAskedOfTiltedAndToroidalLensesIsSaid) {
 }
 
 TEST(CheckerRays, WhatIsNotAskedOfAFiniteObjectsFieldIsSaid) {
-    const Prescription good = at_field(half_ball(), 20.0);
+    const optics::Prescription good = at_field(half_ball(), 20.0);
     const auto come_near = [](P& p) { p.object_distance_mm = 1000.0; };
-    expect_planted(good, come_near, {"not-judged", Severity::info, 0});
-    Prescription unclaimed = half_ball();
+    expect_planted(good, come_near, {"not-judged", optics::Severity::info, 0});
+    optics::Prescription unclaimed = half_ball();
     come_near(unclaimed);
     EXPECT_EQ(find(checked(unclaimed), "not-judged"), nullptr) << "nothing is claimed that rays could judge";
 }
@@ -218,16 +223,16 @@ TEST(CheckerRays, WhatIsNotAskedOfAFiniteObjectsFieldIsSaid) {
 // The Tessar without its semi-diameters: estimated rims let rays pass that no real rim would, which the table never
 // said.
 TEST(OrderOfSurfaces, IsNoErrorWhereTheRimsAreEstimated) {
-    Prescription lens = read_prescription(find_lens_file("tessar"));
-    for (PrescribedSurface& row : lens.surfaces) {
+    optics::Prescription lens = formats::read_prescription(formats::find_lens_file("tessar"));
+    for (optics::PrescribedSurface& row : lens.surfaces) {
         row.semi_diameter_mm.reset();
     }
     const CheckReport report = checked(lens);
-    const Finding* found = find(report, "order-of-surfaces");
+    const optics::Finding* found = find(report, "order-of-surfaces");
     ASSERT_NE(found, nullptr) << said(report);
-    EXPECT_EQ(found->severity, Severity::warning);
+    EXPECT_EQ(found->severity, optics::Severity::warning);
     EXPECT_TRUE(report.ok()) << said(report);
 }
 
 }  // namespace
-}  // namespace lensproof
+}  // namespace lensproof::check

@@ -16,29 +16,29 @@
 #include "tests/engine/check/checker_case.h"
 #include "tests/places.h"
 
-namespace lensproof {
+namespace lensproof::check {
 namespace {
 
-Prescription tessar() {
-    return read_prescription(find_lens_file("tessar"));
+optics::Prescription tessar() {
+    return formats::read_prescription(formats::find_lens_file("tessar"));
 }
 
 /// One defect and what must be said of it.
 struct Defect {
     const char* name;
-    std::function<void(Prescription&)> plant;
+    std::function<void(optics::Prescription&)> plant;
     const char* code;
-    Severity severity;
+    optics::Severity severity;
     int surface;  // 0: the lens
 };
 
 constexpr double kNotANumber = std::numeric_limits<double>::quiet_NaN();
 
 std::vector<Defect> defects_of_the_tessar() {
-    using P = Prescription;
-    const auto error = Severity::error;
-    const auto warning = Severity::warning;
-    const auto info = Severity::info;
+    using P = optics::Prescription;
+    const auto error = optics::Severity::error;
+    const auto warning = optics::Severity::warning;
+    const auto info = optics::Severity::info;
     return {
         {"radius NaN", [](P& p) { p.surfaces[0].radius_mm = kNotANumber; }, "not-finite", error, 1},
         {"thickness infinite", [](P& p) { p.surfaces[1].thickness_mm = INFINITY; }, "not-finite", error, 2},
@@ -130,7 +130,7 @@ std::vector<Defect> defects_of_the_tessar() {
          "negative-power", error, 0},
         {"no power",
          [](P& p) {
-             for (PrescribedSurface& surface : p.surfaces) {
+             for (optics::PrescribedSurface& surface : p.surfaces) {
                  surface.radius_mm = INFINITY;
              }
          },
@@ -155,7 +155,7 @@ std::vector<Defect> defects_of_the_tessar() {
          "sensor-inside-lens", error, 8},
         {"diameters",
          [](P& p) {
-             for (PrescribedSurface& surface : p.surfaces) {
+             for (optics::PrescribedSurface& surface : p.surfaces) {
                  *surface.semi_diameter_mm *= 2;
              }
          },
@@ -172,7 +172,7 @@ std::vector<Defect> defects_of_the_tessar() {
         {"f = 1",
          [](P& p) {
              p.stated = {};
-             for (PrescribedSurface& surface : p.surfaces) {
+             for (optics::PrescribedSurface& surface : p.surfaces) {
                  surface.radius_mm /= 100;
                  surface.thickness_mm /= 100;
                  *surface.semi_diameter_mm /= 100;
@@ -181,7 +181,7 @@ std::vector<Defect> defects_of_the_tessar() {
          "units", warning, 0},
         {"signs turned",
          [](P& p) {
-             for (PrescribedSurface& surface : p.surfaces) {
+             for (optics::PrescribedSurface& surface : p.surfaces) {
                  surface.radius_mm *= -1;
              }
          },
@@ -224,20 +224,20 @@ TEST(Checker, EachDefectIsNamed) {
     EXPECT_TRUE(good.ok());
     for (const Defect& defect : defects_of_the_tessar()) {
         SCOPED_TRACE(defect.name);
-        Prescription bad = tessar();
+        optics::Prescription bad = tessar();
         defect.plant(bad);
         const CheckReport report = checked(bad);
-        const Finding* finding = find(report, defect.code, defect.surface);
+        const optics::Finding* finding = find(report, defect.code, defect.surface);
         EXPECT_NE(finding, nullptr) << said(report);
         if (finding == nullptr) {
             continue;
         }
         EXPECT_EQ(finding->severity, defect.severity) << finding->message;
         EXPECT_FALSE(finding->message.empty());
-        const Finding* before = find(good, defect.code, finding->surface);
+        const optics::Finding* before = find(good, defect.code, finding->surface);
         EXPECT_TRUE(before == nullptr || before->message != finding->message) << "the good lens has it too";
-        EXPECT_EQ(report.ok(), std::ranges::none_of(report.findings, [](const Finding& other) {
-                      return other.severity == Severity::error;
+        EXPECT_EQ(report.ok(), std::ranges::none_of(report.findings, [](const optics::Finding& other) {
+                      return other.severity == optics::Severity::error;
                   }));
     }
 }
@@ -245,7 +245,7 @@ TEST(Checker, EachDefectIsNamed) {
 // A biconvex lens of R = ±50, 4 mm thick, semi-diameter 20: each sag is 50 − √(2500 − 400) = 4.1742431 mm, so its edge
 // is 4 − 2 · 4.1742431 = −4.3484861 mm.
 TEST(Checker, EdgeThicknessIsThicknessLessSags) {
-    Prescription lens = tessar();
+    optics::Prescription lens = tessar();
     lens.stated = {};
     lens.surfaces.resize(3);
     lens.surfaces[0] = {.radius_mm = 50.0, .thickness_mm = 4.0, .semi_diameter_mm = 20.0};
@@ -253,7 +253,7 @@ TEST(Checker, EdgeThicknessIsThicknessLessSags) {
     lens.surfaces[1] = {.radius_mm = -50.0, .thickness_mm = 10.0, .semi_diameter_mm = 20.0};
     lens.surfaces[2] = {.thickness_mm = 30.0, .semi_diameter_mm = 5.0, .is_stop = true};
     const CheckReport report = checked(lens);
-    const Finding* edge = find(report, "edge-thickness", 1);
+    const optics::Finding* edge = find(report, "edge-thickness", 1);
     ASSERT_NE(edge, nullptr);
     EXPECT_NEAR(edge->value, -4.348486100883, 1e-9);
     EXPECT_EQ(edge->limit, 0.0);
@@ -262,7 +262,7 @@ TEST(Checker, EdgeThicknessIsThicknessLessSags) {
 
 // 1/f = (n − 1)(1/R1 − 1/R2 + (n − 1) t / (n R1 R2)) (the lensmaker's equation), n = 1.5, R = ±50, t = 6: f = 51.0204.
 TEST(Checker, ComputedDataFollowTheLensmakersEquation) {
-    Prescription lens = tessar();
+    optics::Prescription lens = tessar();
     lens.stated = {};
     lens.surfaces.resize(3);
     lens.surfaces[0] = {.radius_mm = 50.0, .thickness_mm = 6.0, .semi_diameter_mm = 10.0};
@@ -276,7 +276,7 @@ TEST(Checker, ComputedDataFollowTheLensmakersEquation) {
 }
 
 TEST(Checker, JudgesGeometryWhereNoRayCanBeTraced) {
-    Prescription lens = tessar();
+    optics::Prescription lens = tessar();
     lens.surfaces[3].is_stop = false;
     lens.surfaces[5].thickness_mm = 2.0;
     lens.surfaces[7].radius_mm = kNotANumber;
@@ -284,14 +284,14 @@ TEST(Checker, JudgesGeometryWhereNoRayCanBeTraced) {
     EXPECT_NE(find(report, "stop-missing"), nullptr);
     EXPECT_NE(find(report, "surfaces-cross", 6), nullptr);
     EXPECT_NE(find(report, "not-finite", 8), nullptr);
-    const Finding* untold = find(report, "not-judged");
+    const optics::Finding* untold = find(report, "not-judged");
     ASSERT_NE(untold, nullptr);
-    EXPECT_EQ(untold->severity, Severity::info);
+    EXPECT_EQ(untold->severity, optics::Severity::info);
     EXPECT_TRUE(report.computed.empty());
 }
 
 TEST(Checker, AMissingStopHidesNoFocalLength) {
-    Prescription lens = tessar();
+    optics::Prescription lens = tessar();
     lens.surfaces[3].is_stop = false;
     const CheckReport report = checked(lens);
     ASSERT_EQ(report.computed.size(), 1U);
@@ -305,68 +305,68 @@ TEST(Checker, ClaimsFromOutsideGoBeforeTheFilesOwn) {
 }
 
 TEST(Checker, TheReadersRemarksComeFirst) {
-    Prescription lens = tessar();
+    optics::Prescription lens = tessar();
     lens.remarks.push_back({.code = "not-understood", .message = "GCAT"});
     EXPECT_EQ(checked(lens).findings.front().code, "not-understood");
 }
 
 TEST(Checker, AReadersWarningSoftensNoError) {
-    Prescription lens = tessar();
+    optics::Prescription lens = tessar();
     lens.remarks.push_back({.code = "not-understood", .surface = 6, .message = "a column"});
     lens.surfaces[5].thickness_mm = 2.0;
     const CheckReport report = checked(lens);
     ASSERT_NE(find(report, "surfaces-cross", 6), nullptr);
-    EXPECT_EQ(find(report, "surfaces-cross", 6)->severity, Severity::error);
+    EXPECT_EQ(find(report, "surfaces-cross", 6)->severity, optics::Severity::error);
 }
 
 TEST(Checker, AZoomIsJudgedAtEachPosition) {
-    Prescription lens = tessar();
+    optics::Prescription lens = tessar();
     lens.zoom = {{.name = "near", .gaps_mm = {{6, 10.64}}, .stop_semi_diameter_mm = {}, .stated = {}},
                  {.name = "far", .gaps_mm = {{6, 2.0}}, .stop_semi_diameter_mm = {}, .stated = {}}};
     const CheckReport report = checked(lens);
     EXPECT_EQ(report.computed.size(), 2U);
-    const Finding* crossing = find(report, "surfaces-cross", 6);
+    const optics::Finding* crossing = find(report, "surfaces-cross", 6);
     ASSERT_NE(crossing, nullptr);
     EXPECT_TRUE(crossing->message.starts_with("at far: ")) << crossing->message;
 }
 
 TEST(Suggestions, SwappedDigitsAndLostSignsAreFoundFirst) {
-    Prescription swapped = tessar();
+    optics::Prescription swapped = tessar();
     swapped.surfaces[5].radius_mm = 49.30;  // of 40.93: no neighbours swapped, two are across the point
     swapped.surfaces[5].radius_mm = 49.03;
     CheckReport report = checked(swapped);
-    const Finding* first = find(report, "suggestion");
+    const optics::Finding* first = find(report, "suggestion");
     ASSERT_NE(first, nullptr);
     EXPECT_EQ(first->surface, 6);
     EXPECT_NE(first->message.find("radius 40.93 in place of 49.03 (two digits swapped)"), std::string::npos)
         << first->message;
     EXPECT_LT(first->value, 0.05) << "percent of the focal length: the catalogue glasses meet the table";
 
-    Prescription unsigned_radius = tessar();
+    optics::Prescription unsigned_radius = tessar();
     unsigned_radius.surfaces[4].radius_mm = 59.06;
     report = checked(unsigned_radius);
     first = find(report, "suggestion");
     ASSERT_NE(first, nullptr);
     EXPECT_NE(first->message.find("radius -59.06 in place of 59.06 (the sign lost)"), std::string::npos)
         << first->message;
-    EXPECT_EQ(first->severity, Severity::info) << "never a silent fix";
+    EXPECT_EQ(first->severity, optics::Severity::info) << "never a silent fix";
 }
 
 // The last thickness is a claim of its own: the lens itself is as stated, so nothing else is blamed.
 TEST(Suggestions, SlipInTheLastThicknessIsNamed) {
-    Prescription moved = tessar();
+    optics::Prescription moved = tessar();
     moved.surfaces.back().thickness_mm = 97.831;
     const CheckReport report = checked(moved);
-    const Finding* first = find(report, "suggestion");
+    const optics::Finding* first = find(report, "suggestion");
     ASSERT_NE(first, nullptr) << said(report);
     EXPECT_EQ(first->surface, 8);
     EXPECT_NE(first->message.find("thickness 79.831 in place of 97.831"), std::string::npos) << first->message;
-    EXPECT_EQ(std::ranges::count(report.findings, "suggestion", &Finding::code), 1);
+    EXPECT_EQ(std::ranges::count(report.findings, "suggestion", &optics::Finding::code), 1);
 }
 
 // Tronnier's Heliar is off by 0.76 % for the rounding of its indices: its 1.85 mm of glass are not meant to be 0.07 mm.
 TEST(Suggestions, NoGlassIsThoughtToBeAFoil) {
-    const CheckReport report = checked(read_prescription(find_lens_file("heliar-tronnier")));
+    const CheckReport report = checked(formats::read_prescription(formats::find_lens_file("heliar-tronnier")));
     EXPECT_NE(find(report, "focal-length"), nullptr);
     EXPECT_EQ(find(report, "suggestion"), nullptr) << said(report);
 }
@@ -392,12 +392,12 @@ TEST(Digits, ChangesAreThoseOfTheShortestDecimalForm) {
 // Found by other tracers before this one was written: the front rim of the Müller fisheye clips the chief ray
 // from 74.8° on and all light from 76.9°, although 77.95° is claimed.
 TEST(Checker, TheMullerFisheyesClaimedFieldIsClipped) {
-    Prescription lens = read_prescription(find_lens_file("muller-fisheye"));
+    optics::Prescription lens = formats::read_prescription(formats::find_lens_file("muller-fisheye"));
     const CheckReport report = checked(lens, {.half_field_deg = 77.95});
-    const Finding* chief = find(report, "chief-ray");
+    const optics::Finding* chief = find(report, "chief-ray");
     ASSERT_NE(chief, nullptr);
     EXPECT_EQ(chief->surface, 1);
-    EXPECT_EQ(chief->severity, Severity::warning);
+    EXPECT_EQ(chief->severity, optics::Severity::warning);
     EXPECT_NEAR(chief->value, 74.8, 0.05);
     ASSERT_NE(find(report, "vignetting"), nullptr);
     EXPECT_EQ(find(report, "vignetting")->value, 0.0);
@@ -406,7 +406,7 @@ TEST(Checker, TheMullerFisheyesClaimedFieldIsClipped) {
 
 // Likewise: in Tronnier's double Gauss, as pbrt carries it, surface 3 clips the axial beam before the stop does.
 TEST(Checker, SurfaceThreeLimitsTronniersAxialBeam) {
-    const CheckReport report = checked(read_prescription(find_lens_file("double-gauss-tronnier")));
+    const CheckReport report = checked(formats::read_prescription(formats::find_lens_file("double-gauss-tronnier")));
     EXPECT_NE(find(report, "stop-not-limiting", 3), nullptr);
 }
 
@@ -417,10 +417,10 @@ TEST(Checker, TheTessarsEdgesAreThoseOfTheReference) {
         GTEST_SKIP() << "no reference data here";
     }
     const nlohmann::json gaps = nlohmann::json::parse(file)["geometry"]["gaps"];
-    const Prescription lens = tessar();
+    const optics::Prescription lens = tessar();
     for (std::size_t i = 0; i < gaps.size(); ++i) {
-        const PrescribedSurface& front = lens.surfaces[i];
-        const PrescribedSurface& rear = lens.surfaces[i + 1];
+        const optics::PrescribedSurface& front = lens.surfaces[i];
+        const optics::PrescribedSurface& rear = lens.surfaces[i + 1];
         const double edge =
             front.thickness_mm + sag_at(rear, *rear.semi_diameter_mm) - sag_at(front, *front.semi_diameter_mm);
         EXPECT_NEAR(edge, gaps[i]["edge_thickness_own_semidiameters"].get<double>(), 1e-12);
@@ -429,13 +429,14 @@ TEST(Checker, TheTessarsEdgesAreThoseOfTheReference) {
 
 // Every lens that ships is free of errors.
 TEST(Checker, TheLibraryHasNoErrors) {
-    for (const std::string& name : shipped_lens_names()) {
-        for (const Finding& finding : checked(read_prescription(find_lens_file(name))).findings) {
-            EXPECT_NE(finding.severity, Severity::error)
+    for (const std::string& name : formats::shipped_lens_names()) {
+        for (const optics::Finding& finding :
+             checked(formats::read_prescription(formats::find_lens_file(name))).findings) {
+            EXPECT_NE(finding.severity, optics::Severity::error)
                 << name << " surface " << finding.surface << " " << finding.code << ": " << finding.message;
         }
     }
 }
 
 }  // namespace
-}  // namespace lensproof
+}  // namespace lensproof::check

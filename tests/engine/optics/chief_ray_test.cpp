@@ -11,7 +11,7 @@
 #include "engine/optics/field_bundle.h"
 #include "engine/spectral/wavelengths.h"
 
-namespace lensproof {
+namespace lensproof::optics {
 namespace {
 
 /// A biconvex lens whose front is the stop, or has the stop in its vertex's plane just before it.
@@ -31,8 +31,8 @@ Prescription singlet(bool front_is_stop) {
 
 // The stop's centre is the vertex in both, so that the chief rays are the same.
 TEST(ChiefRays, BendAtAStopOfGlass) {
-    const ChiefRays on_glass(make_lens(singlet(true), GlassCatalogue{}), kLineD);
-    const ChiefRays in_air(make_lens(singlet(false), GlassCatalogue{}), kLineD);
+    const ChiefRays on_glass(make_lens(singlet(true), GlassCatalogue{}), spectral::kLineD);
+    const ChiefRays in_air(make_lens(singlet(false), GlassCatalogue{}), spectral::kLineD);
     for (const double field : {0.0, 0.1, 0.3, 0.5}) {
         const auto a = on_glass.at_field(field);
         const auto b = in_air.at_field(field);
@@ -50,7 +50,7 @@ double miss_at_stop(const Lens& lens, const Ray<double>& ray) {
     const LensSurface& surface = lens.surfaces[stop];
     double miss = std::numeric_limits<double>::infinity();
     trace<Direction::forward, Rims::follow>(
-        at_wavelength<double>(lens, kLineD), ray, [&](const SurfaceEvent<double>& event) {
+        at_wavelength<double>(lens, spectral::kLineD), ray, [&](const SurfaceEvent<double>& event) {
             if (event.surface == stop) {
                 const Vec3d& at = event.ray.origin;
                 miss = length(at - Vec3d{surface.vertex.x, surface.vertex.y, surface.vertex_z});
@@ -62,8 +62,8 @@ double miss_at_stop(const Lens& lens, const Ray<double>& ray) {
 // On the axis exactly, beside it, at 90° and behind the lens. The angle to 1e-12, and so the way to the stop: where the
 // fisheye's front makes an angle of 1e-12 a miss of 1e-12 times the way (some 200 mm).
 TEST(ChiefRays, ReachEveryFieldOfAFisheye) {
-    const Lens lens = load_lens("fisheye-220");
-    const ChiefRays rays(lens, kLineD);
+    const Lens lens = formats::load_lens("fisheye-220");
+    const ChiefRays rays(lens, spectral::kLineD);
     ASSERT_GT(rays.largest_field(), 110.0 * kDegree);
     for (const double degrees : {0.0, 1e-9, 1.0, 60.0, 90.0, 105.0, 110.0}) {
         const double field = degrees * kDegree;
@@ -85,9 +85,9 @@ TEST(ChiefRays, ReachEveryFieldOfAFisheye) {
 // and those within the rims the same as without following.
 TEST(ChiefRays, FollowedUpToTheFold) {
     for (const char* name : {"triplet-cooke", "tessar", "muller-fisheye"}) {
-        const Lens lens = load_lens(name);
-        const ChiefRays within(lens, kLineD);
-        const ChiefRays beyond(lens, kLineD, Rims::follow);
+        const Lens lens = formats::load_lens(name);
+        const ChiefRays within(lens, spectral::kLineD);
+        const ChiefRays beyond(lens, spectral::kLineD, Rims::follow);
         EXPECT_GT(beyond.largest_field(), within.largest_field()) << name;
         for (const double share : {0.1, 0.5, 0.99}) {
             const auto ray = beyond.at_field(share * beyond.largest_field());
@@ -111,8 +111,8 @@ TEST(ChiefRays, AimThroughATurnedLens) {
         turned.groups = {
             {.first = 1, .last = 3, .misalignment = {.tilt_deg = {about_x ? kTilt : 0.0, about_x ? 0.0 : kTilt, 0.0}}}};
         const Lens lens = make_lens(turned, GlassCatalogue{});
-        const ChiefRays rays(lens, kLineD);
-        const ChiefRays straight_rays(make_lens(straight, GlassCatalogue{}), kLineD);
+        const ChiefRays rays(lens, spectral::kLineD);
+        const ChiefRays straight_rays(make_lens(straight, GlassCatalogue{}), spectral::kLineD);
         for (const double field : {-0.2, 0.0, 0.1, 0.3}) {
             const auto ray = rays.at_field(field);
             ASSERT_TRUE(ray) << field;
@@ -135,8 +135,8 @@ TEST(ChiefRays, AimThroughADecentredElement) {
     Prescription prescription = singlet(false);
     prescription.surfaces[1].misalignment = {.decentre_mm = {0.4, -0.3}, .tilt_deg = {1.0, -2.0, 30.0}};
     const Lens lens = make_lens(prescription, GlassCatalogue{});
-    const ChiefRays rays(lens, kLineD);
-    const ChiefRays other(lens, kLineF);
+    const ChiefRays rays(lens, spectral::kLineD);
+    const ChiefRays other(lens, spectral::kLineF);
     for (const double field : {-0.3, 0.0, 0.2}) {
         const auto far = field_bundle(other, rays, field);
         ASSERT_TRUE(far);
@@ -152,4 +152,4 @@ TEST(ChiefRays, AimThroughADecentredElement) {
 }
 
 }  // namespace
-}  // namespace lensproof
+}  // namespace lensproof::optics

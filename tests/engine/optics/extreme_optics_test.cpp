@@ -13,7 +13,7 @@
 #include "engine/optics/lens.h"
 #include "engine/optics/multiprecision.h"
 
-namespace lensproof {
+namespace lensproof::optics {
 namespace {
 
 using Exact = Multiprecision;
@@ -47,7 +47,7 @@ double distance(const Vec3d& a, const Vec3<Exact>& b) {
 
 // The same numbers in a hundred digits: nothing is rounded, and what follows from them follows in a hundred digits.
 TEST(ConvertLens, KeepsEveryNumberAndFormsTheRestAnew) {
-    const TraceLens<double> lens = at_wavelength<double>(load_lens("tessar"), 550.0);
+    const TraceLens<double> lens = at_wavelength<double>(formats::load_lens("tessar"), 550.0);
     const TraceLens<Exact> exact = convert_lens<Exact>(lens);
     ASSERT_EQ(exact.surfaces.size(), lens.surfaces.size());
     for (std::size_t i = 0; i < lens.surfaces.size(); ++i) {
@@ -59,7 +59,7 @@ TEST(ConvertLens, KeepsEveryNumberAndFormsTheRestAnew) {
         EXPECT_LT(abs(to.forward_ratio * to.index_after - to.index_before), Exact("1e-98"));
         EXPECT_EQ(to.is_stop, from.is_stop);
         // A semi-diameter of the file, whose square no double holds.
-        const double semi_diameter = load_lens("tessar").surfaces[i].semi_diameter;
+        const double semi_diameter = formats::load_lens("tessar").surfaces[i].semi_diameter;
         EXPECT_EQ(to.semi_diameter_squared, Exact(semi_diameter) * Exact(semi_diameter));
     }
     const TraceLens<double> back = convert_lens<double>(exact);
@@ -74,7 +74,7 @@ TEST(ConvertLens, KeepsEveryNumberAndFormsTheRestAnew) {
 // too.
 TEST(ExtremeOptics, GlassFormulasHoldAtTheEndsOfTheirRanges) {
     int sellmeier = 0;
-    const GlassCatalogue catalogue = shipped_glasses();
+    const GlassCatalogue catalogue = formats::shipped_glasses();
     for (const Glass& glass : catalogue.glasses()) {
         for (const double nm : {glass.min_wavelength_nm, glass.max_wavelength_nm}) {
             const double index = refractive_index(glass.formula, nm);
@@ -321,4 +321,4 @@ TEST(ExtremeOptics, NegativeThicknessesAreForDummies) {
 }
 
 }  // namespace
-}  // namespace lensproof
+}  // namespace lensproof::optics

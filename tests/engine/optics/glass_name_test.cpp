@@ -10,11 +10,11 @@
 #include "engine/optics/glass_catalogue.h"
 #include "engine/spectral/wavelengths.h"
 
-namespace lensproof {
+namespace lensproof::optics {
 namespace {
 
 const GlassCatalogue& shipped() {
-    static const GlassCatalogue catalogue = shipped_glasses();
+    static const GlassCatalogue catalogue = formats::shipped_glasses();
     return catalogue;
 }
 
@@ -101,7 +101,7 @@ TEST(GlassName, NearestGlassesHaveNearFigures) {
     const std::vector<Glass> nearest = shipped().nearest(1.62041, 60.32, 3);
     ASSERT_EQ(nearest.size(), 3U);
     for (const Glass& glass : nearest) {
-        EXPECT_NEAR(refractive_index(glass.formula, kLineD), 1.62041, 1e-3) << glass.name;
+        EXPECT_NEAR(refractive_index(glass.formula, spectral::kLineD), 1.62041, 1e-3) << glass.name;
     }
     EXPECT_EQ(shipped().nearest(1.5, 60.0, 100000).size(), shipped().glasses().size());
 }
@@ -133,4 +133,4 @@ TEST(GlassName, SpellingDistanceCountsSlipsOfTheFinger) {
 }
 
 }  // namespace
-}  // namespace lensproof
+}  // namespace lensproof::optics

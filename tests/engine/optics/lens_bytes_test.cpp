@@ -11,7 +11,7 @@
 #include "engine/optics/lens.h"
 #include "engine/spectral/wavelengths.h"
 
-namespace lensproof {
+namespace lensproof::optics {
 namespace {
 
 std::string bytes_of(const TraceLens<double>& lens) {
@@ -21,7 +21,7 @@ std::string bytes_of(const TraceLens<double>& lens) {
 }
 
 TraceLens<double> with_everything() {
-    TraceLens<double> lens = at_wavelength<double>(load_lens("tessar"), kLineD);
+    TraceLens<double> lens = at_wavelength<double>(formats::load_lens("tessar"), spectral::kLineD);
     lens.surfaces[2].special = 0;
     lens.specials.emplace_back();
     lens.specials[0].coating.layers = {{1.38, 0.25}, {2.1, 0.5}};
@@ -80,4 +80,4 @@ TEST(LensBytes, TellEveryLensFromEveryOther) {
 }
 
 }  // namespace
-}  // namespace lensproof
+}  // namespace lensproof::optics

@@ -10,7 +10,7 @@
 #include "engine/optics/lens.h"
 #include "engine/spectral/wavelengths.h"
 
-namespace lensproof {
+namespace lensproof::optics {
 namespace {
 
 TraceSurface<double> surface(double curvature, double z, double before, double after, double semi_diameter = 10.0,
@@ -38,7 +38,7 @@ TEST(Paraxial, BallLens) {
 
 // Newton: object and image distances from the focal points multiply to efl².
 TEST(Paraxial, ConjugatesObeyNewton) {
-    const TraceLens<double> tessar = at_wavelength<double>(load_lens("tessar"), kLineD);
+    const TraceLens<double> tessar = at_wavelength<double>(formats::load_lens("tessar"), spectral::kLineD);
     const ParaxialData data = paraxial_data(tessar);
     for (const double distance : {200.0, 1000.0, 1e4, 1e7}) {
         const double x = distance + data.ffl;
@@ -50,23 +50,23 @@ TEST(Paraxial, ConjugatesObeyNewton) {
 
 // Published numbers: the Brendel Tessar's back focus is listed as 79.831 mm, its focal length as 100.
 TEST(Paraxial, TessarHasItsPublishedFocus) {
-    const ParaxialData data = paraxial_data(at_wavelength<double>(load_lens("tessar"), kLineD));
+    const ParaxialData data = paraxial_data(at_wavelength<double>(formats::load_lens("tessar"), spectral::kLineD));
     EXPECT_NEAR(data.bfl, 79.831, 0.0005);
     EXPECT_NEAR(data.efl, 100.0, 0.05);
 }
 
 TEST(Lens, FNumberSetsTheStop) {
-    const Lens lens = with_f_number(load_lens("tessar"), 8.0);
-    EXPECT_NEAR(paraxial_data(at_wavelength<double>(lens, kLineD)).f_number, 8.0, 1e-12);
-    EXPECT_THROW(with_f_number(load_lens("tessar"), 1.4), InputError);
+    const Lens lens = with_f_number(formats::load_lens("tessar"), 8.0);
+    EXPECT_NEAR(paraxial_data(at_wavelength<double>(lens, spectral::kLineD)).f_number, 8.0, 1e-12);
+    EXPECT_THROW(with_f_number(formats::load_lens("tessar"), 1.4), InputError);
 }
 
 TEST(Lens, FocusMovesTheSensorToTheImage) {
-    const Lens lens = focused_at(load_lens("tessar"), 1000.0);
+    const Lens lens = focused_at(formats::load_lens("tessar"), 1000.0);
     EXPECT_NEAR(lens.image_z - lens.last_vertex_z(),
-                paraxial_image_distance(at_wavelength<double>(lens, kLineD), 1000.0), 1e-12);
-    EXPECT_THROW(focused_at(load_lens("tessar"), 50.0), InputError);
+                paraxial_image_distance(at_wavelength<double>(lens, spectral::kLineD), 1000.0), 1e-12);
+    EXPECT_THROW(focused_at(formats::load_lens("tessar"), 50.0), InputError);
 }
 
 }  // namespace
-}  // namespace lensproof
+}  // namespace lensproof::optics

@@ -11,7 +11,7 @@
 #include "engine/optics/paraxial.h"
 #include "engine/spectral/wavelengths.h"
 
-namespace lensproof {
+namespace lensproof::optics {
 namespace {
 
 constexpr double kUlp = std::numeric_limits<double>::epsilon();
@@ -456,7 +456,9 @@ TEST(ZoomPosition, ReplacesGapsStopAndClaims) {
 TEST(Medium, InVacuumIsTheCataloguesTimesThatOfAir) {
     Prescription prescription = prescription_of({row(40.0, 6.0), row(-60.0, 3.0), stop_row(50.0, 20.0)});
     prescription.surfaces[0].medium.glass = "N-BK7";
-    const auto index = [&] { return at_wavelength<double>(make_lens(prescription, shipped_glasses()), kWavelength); };
+    const auto index = [&] {
+        return at_wavelength<double>(make_lens(prescription, formats::shipped_glasses()), kWavelength);
+    };
     const double in_air = index().surfaces[0].index_after;
     EXPECT_NEAR(in_air, 1.5168, 1e-6);
     prescription.surroundings = Surroundings::vacuum;
@@ -494,4 +496,4 @@ TEST(SemiDiameter, IsEstimatedFromApertureAndField) {
 }
 
 }  // namespace
-}  // namespace lensproof
+}  // namespace lensproof::optics

@@ -9,7 +9,7 @@
 #include "engine/optics/trace.h"
 #include "tests/engine/random_lens.h"
 
-namespace lensproof {
+namespace lensproof::optics {
 namespace {
 
 constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
@@ -380,4 +380,4 @@ TEST(AnyLens, SplittingAGapChangesNothing) {
 }
 
 }  // namespace
-}  // namespace lensproof
+}  // namespace lensproof::optics

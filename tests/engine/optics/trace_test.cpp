@@ -10,7 +10,7 @@
 #include "engine/formats/prescription/load_lens.h"
 #include "engine/optics/lens.h"
 
-namespace lensproof {
+namespace lensproof::optics {
 namespace {
 
 constexpr double kUlp = std::numeric_limits<double>::epsilon();
@@ -84,7 +84,7 @@ TEST(Trace, SphereIsAplanaticForItsConjugatePair) {
 // the same optical path and transmittance (reciprocity of Fresnel's equations). 16 refractions of numbers of size 100
 // mm.
 TEST(Trace, ReverseRetracesForward) {
-    const TraceLens<double> lens = at_wavelength<double>(load_lens("tessar"), 550.0);
+    const TraceLens<double> lens = at_wavelength<double>(formats::load_lens("tessar"), 550.0);
     std::mt19937_64 random(1);
     std::uniform_real_distribution<double> position(-10.0, 10.0);
     std::uniform_real_distribution<double> slope(-0.2, 0.2);
@@ -201,7 +201,7 @@ TEST(Intersect, KeepsItsDigitsForNearlyFlatSurfacesAndFarOrigins) {
 // float is the fast path: its image error through the Tessar is a few ulp of the path's length, 2^-24 · 120 mm ≈ 7
 // µm·1e-3.
 TEST(Trace, FloatStaysCloseToDouble) {
-    const Lens lens = load_lens("tessar");
+    const Lens lens = formats::load_lens("tessar");
     const TraceLens<double> exact = at_wavelength<double>(lens, 550.0);
     const TraceLens<float> fast = at_wavelength<float>(lens, 550.0);
     double worst = 0.0;
@@ -224,4 +224,4 @@ TEST(Trace, FloatStaysCloseToDouble) {
 }
 
 }  // namespace
-}  // namespace lensproof
+}  // namespace lensproof::optics

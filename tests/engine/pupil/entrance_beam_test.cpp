@@ -13,7 +13,7 @@
 #include "engine/spectral/wavelengths.h"
 #include "tests/engine/random_lens.h"
 
-namespace lensproof {
+namespace lensproof::pupil {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
@@ -24,14 +24,14 @@ double turned_to(double low, double high, std::mt19937_64& random) {
 
 /// A point of the first surface inside its rim, and the surface's normal there, towards the sensor; by the tracer, from
 /// in front.
-std::optional<Ray<double>> point_of_front(const TraceLens<double>& lens, std::mt19937_64& random) {
-    TraceLens<double> first = lens;
+std::optional<Ray<double>> point_of_front(const optics::TraceLens<double>& lens, std::mt19937_64& random) {
+    optics::TraceLens<double> first = lens;
     first.surfaces.resize(1);
     const double reach = 1.2 * std::sqrt(first.surfaces[0].semi_diameter_squared);
     const Ray<double> along{{turned_to(-reach, reach, random), turned_to(-reach, reach, random), -300.0},
                             {0.0, 0.0, 1.0}};
-    const TracedRay<double> met = trace(first, along);
-    return met.status == RayStatus::ok ? std::optional(met.ray) : std::nullopt;
+    const optics::TracedRay<double> met = optics::trace(first, along);
+    return met.status == optics::RayStatus::ok ? std::optional(met.ray) : std::nullopt;
 }
 
 /// Every line through the point, in any direction, passes the plane across that direction inside the disc.
@@ -59,7 +59,7 @@ void expect_inside(const BoundingSphere& front, const Vec3d& point, std::mt19937
 // and random spheres, conics and aspheres.
 TEST(EntranceBeam, DiscHoldsTheFrontSurface) {
     std::mt19937_64 random(7);
-    const auto check = [&](const TraceLens<double>& lens, const std::string& name) {
+    const auto check = [&](const optics::TraceLens<double>& lens, const std::string& name) {
         const BoundingSphere front = front_sphere(lens);
         int points = 0;
         for (int i = 0; i < 300; ++i) {
@@ -71,18 +71,19 @@ TEST(EntranceBeam, DiscHoldsTheFrontSurface) {
         EXPECT_GT(points, 50) << name;
     };
     for (const char* name : {"tessar", "fisheye-220", "muller-fisheye", "canon-ef-s-24", "nikkor-fisheye-10"}) {
-        check(at_wavelength<double>(load_lens(name), kLineD), name);
+        check(optics::at_wavelength<double>(formats::load_lens(name), spectral::kLineD), name);
     }
     RandomLenses lenses(11);
     for (int i = 0; i < 40; ++i) {
-        check(at_wavelength<double>(make_lens(lenses.next(), GlassCatalogue{}), kLineD),
-              "random lens " + std::to_string(i));
+        check(
+            optics::at_wavelength<double>(optics::make_lens(lenses.next(), optics::GlassCatalogue{}), spectral::kLineD),
+            "random lens " + std::to_string(i));
     }
 }
 
 TEST(EntranceBeam, DiscHoldsTiltedFrontSurfacesAndToroids) {
     std::mt19937_64 random(8);
-    TraceLens<double> lens = at_wavelength<double>(load_lens("tessar"), kLineD);
+    optics::TraceLens<double> lens = optics::at_wavelength<double>(formats::load_lens("tessar"), spectral::kLineD);
     lens.surfaces[0].special = 0;
     lens.specials.emplace_back();
     lens.specials[0].vertex = {1.0, -2.0};
@@ -102,7 +103,8 @@ TEST(EntranceBeam, DiscHoldsTiltedFrontSurfacesAndToroids) {
 
 // A sphere is as large as it must be: the rim itself lies on it.
 TEST(EntranceBeam, DiscIsTheRimOnTheAxis) {
-    const TraceLens<double> lens = at_wavelength<double>(load_lens("fisheye-220"), kLineD);
+    const optics::TraceLens<double> lens =
+        optics::at_wavelength<double>(formats::load_lens("fisheye-220"), spectral::kLineD);
     const EntranceBeam beam = beam_along(front_sphere(lens), {0.0, 0.0, 1.0});
     EXPECT_DOUBLE_EQ(beam.radius, 106.5);
     EXPECT_DOUBLE_EQ(beam.axis.origin.z, 143.47 - std::sqrt(143.47 * 143.47 - 106.5 * 106.5));
@@ -112,7 +114,7 @@ TEST(EntranceBeam, DiscIsTheRimOnTheAxis) {
 // disc by 40 Gauss-Legendre nodes in the radius, exact to rounding.
 TEST(EntranceBeam, SolidAngleIsTheTangentCones) {
     const BoundingSphere front{.centre = {0.0, 0.0, 3.0}, .radius = 20.0};
-    const GaussRule rule = gauss_legendre(40);
+    const optics::GaussRule rule = optics::gauss_legendre(40);
     for (const double distance : {21.0, 40.0, 1000.0}) {
         const EntranceBeam beam = beam_from(front, {0.0, 0.6 * distance, 3.0 - 0.8 * distance}).value();
         double sum = 0.0;
@@ -139,7 +141,7 @@ TEST(EntranceBeam, OffsetsAreThoseOfTheFieldBundle) {
         const Vec3d way{0.0, std::sin(field), std::cos(field)};
         const EntranceBeam beam = beam_along(front, way);
         for (int axis = 0; axis < 2; ++axis) {
-            EXPECT_LE(length(beam.across[axis] - across_axes(way)[axis]), 1e-15) << field;
+            EXPECT_LE(length(beam.across[axis] - optics::across_axes(way)[axis]), 1e-15) << field;
         }
         for (const double azimuth : {0.3, 2.0, 4.5}) {
             const EntranceBeam other = beam_along(front, turned(way, azimuth));
@@ -152,4 +154,4 @@ TEST(EntranceBeam, OffsetsAreThoseOfTheFieldBundle) {
 }
 
 }  // namespace
-}  // namespace lensproof
+}  // namespace lensproof::pupil

@@ -10,11 +10,11 @@
 #include "engine/spectral/wavelengths.h"
 #include "tests/test_folder.h"
 
-namespace lensproof {
+namespace lensproof::pupil {
 namespace {
 
-std::vector<TraceLens<double>> tessar() {
-    return {at_wavelength<double>(load_lens("tessar"), kLineD)};
+std::vector<optics::TraceLens<double>> tessar() {
+    return {optics::at_wavelength<double>(formats::load_lens("tessar"), spectral::kLineD)};
 }
 
 /// The folder's only file.
@@ -66,7 +66,7 @@ TEST(KeptMaps, AreKeptApart) {
     const auto files = [&] {
         return std::distance(std::filesystem::directory_iterator(folder.path()), std::filesystem::directory_iterator());
     };
-    std::vector<TraceLens<double>> lens = tessar();
+    std::vector<optics::TraceLens<double>> lens = tessar();
     kept_pupil_map(cache, lens, true, 20.0);
     kept_pupil_map(cache, lens, true, 20.5);
     kept_pupil_map(cache, lens, true, 20.0, {.defensive_share = 0.01});
@@ -83,7 +83,7 @@ TEST(KeptMaps, AreKeptApart) {
     lens[0].specials.emplace_back();
     kept_pupil_map(cache, lens, true, 20.0);
     EXPECT_EQ(files(), 9);
-    lens[0].specials[0].mask = StopMask(PolygonStop{.blades = 5});
+    lens[0].specials[0].mask = optics::StopMask(optics::PolygonStop{.blades = 5});
     kept_pupil_map(cache, lens, true, 20.0);
     EXPECT_EQ(files(), 9);
 }
@@ -100,4 +100,4 @@ TEST(KeptMaps, EntrancesComeBackToo) {
 }
 
 }  // namespace
-}  // namespace lensproof
+}  // namespace lensproof::pupil

@@ -15,28 +15,30 @@
 #include "engine/optics/lens.h"
 #include "tests/test_folder.h"
 
-namespace lensproof {
+namespace lensproof::pupil {
 namespace {
 
-std::vector<TraceLens<double>> band_of(const Lens& lens, const std::vector<double>& wavelengths_nm) {
-    std::vector<TraceLens<double>> band;
+std::vector<optics::TraceLens<double>> band_of(const optics::Lens& lens, const std::vector<double>& wavelengths_nm) {
+    std::vector<optics::TraceLens<double>> band;
     band.reserve(wavelengths_nm.size());
     for (const double nm : wavelengths_nm) {
-        band.push_back(at_wavelength<double>(lens, nm));
+        band.push_back(optics::at_wavelength<double>(lens, nm));
     }
     return band;
 }
 
 /// The Tessar with its rear doublet tilted, at f/8.
-Lens tilted_tessar() {
+optics::Lens tilted_tessar() {
     const TestFolder folder;
     const std::filesystem::path file = folder.path() / "tilted.toml";
-    write_file(file, read_file(find_lens_file("tessar")) + "\n[[groups]]\nsurfaces = [7, 8]\ntilt_deg = [1.0, 0, 0]\n");
-    return with_f_number(load_lens(file.string()), 8.0);
+    write_file(file, read_file(formats::find_lens_file("tessar")) +
+                         "\n[[groups]]\nsurfaces = [7, 8]\ntilt_deg = [1.0, 0, 0]\n");
+    return optics::with_f_number(formats::load_lens(file.string()), 8.0);
 }
 
 const PupilMap& tessar_map() {
-    static const PupilMap map(band_of(with_f_number(load_lens("tessar"), 4.0), {450.0, 550.0, 650.0}), true, 45.0);
+    static const PupilMap map(band_of(optics::with_f_number(formats::load_lens("tessar"), 4.0), {450.0, 550.0, 650.0}),
+                              true, 45.0);
     return map;
 }
 
@@ -112,10 +114,11 @@ TEST(PupilMap, DensitiesIntegrateToOne) {
 TEST(RearDisc, HoldsEveryPath) {
     std::mt19937_64 random(13);
     std::uniform_real_distribution<double> uniform(0.0, 1.0);
-    for (const Lens& lens : {load_lens("tessar"), load_lens("wide-nakamura"), load_lens("muller-fisheye"),
-                             load_lens("canon-ef-s-24"), tilted_tessar()}) {
-        const TraceLens<double> traced = at_wavelength<double>(lens, 550.0);
-        const LensSurface& rear = lens.surfaces.back();
+    for (const optics::Lens& lens :
+         {formats::load_lens("tessar"), formats::load_lens("wide-nakamura"), formats::load_lens("muller-fisheye"),
+          formats::load_lens("canon-ef-s-24"), tilted_tessar()}) {
+        const optics::TraceLens<double> traced = optics::at_wavelength<double>(lens, 550.0);
+        const optics::LensSurface& rear = lens.surfaces.back();
         for (const double sensor_radius : {0.3 * rear.semi_diameter, 3.0 * rear.semi_diameter}) {
             const RearDisc disc = rear_disc(traced, sensor_radius);
             EXPECT_LT(disc.plane_z, lens.image_z);
@@ -127,9 +130,9 @@ TEST(RearDisc, HoldsEveryPath) {
                 };
                 const Vec2d from = on_disc(sensor_radius);
                 const Vec2d own = on_disc(rear.semi_diameter);
-                SurfaceShape<double> shape = rear.shape;
+                optics::SurfaceShape<double> shape = rear.shape;
                 shape.curvature = rear.curvature;
-                const Vec3d on_surface{own.x, own.y, sag(shape, own.x, own.y)};
+                const Vec3d on_surface{own.x, own.y, optics::sag(shape, own.x, own.y)};
                 const Vec3d to =
                     Vec3d{rear.vertex.x, rear.vertex.y, rear.vertex_z} +
                     (on_surface.x * rear.axes[0] + (on_surface.y * rear.axes[1] + on_surface.z * rear.axes[2]));
@@ -144,7 +147,8 @@ TEST(RearDisc, HoldsEveryPath) {
 
 // A map and what its bytes become draw the same points, to the last bit.
 TEST(PupilMap, ComesBackFromItsBytes) {
-    const PupilMap whole = PupilMap::whole_element(at_wavelength<double>(load_lens("tessar"), 550.0), 45.0);
+    const PupilMap whole =
+        PupilMap::whole_element(optics::at_wavelength<double>(formats::load_lens("tessar"), 550.0), 45.0);
     for (const PupilMap* map : {&tessar_map(), &tilted_map(), &whole}) {
         const std::optional<PupilMap> again = PupilMap::deserialized(map->serialized());
         ASSERT_TRUE(again.has_value());
@@ -176,4 +180,4 @@ TEST(PupilMap, DamagedBytesAreNoMap) {
 }
 
 }  // namespace
-}  // namespace lensproof
+}  // namespace lensproof::pupil

@@ -10,7 +10,7 @@
 
 #include "engine/pupil/column_fit.h"
 
-namespace lensproof {
+namespace lensproof::pupil {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
@@ -167,4 +167,4 @@ TEST(PupilOutline, FramesAreCentred) {
 }
 
 }  // namespace
-}  // namespace lensproof
+}  // namespace lensproof::pupil

@@ -8,7 +8,7 @@
 #include <random>
 #include <vector>
 
-namespace lensproof {
+namespace lensproof::pupil {
 namespace {
 
 /// A region of the given width with the chains y = lower(x), y = upper(x).
@@ -249,4 +249,4 @@ TEST(PupilRegion, NoAreaIsNoTrouble) {
 }
 
 }  // namespace
-}  // namespace lensproof
+}  // namespace lensproof::pupil

@@ -8,15 +8,15 @@
 #include "engine/formats/prescription/load_lens.h"
 #include "engine/optics/lens.h"
 
-namespace lensproof {
+namespace lensproof::pupil {
 namespace {
 
-std::vector<TraceLens<double>> band_of(const std::string& name, int wavelengths) {
-    const Lens lens = load_lens(name);
-    std::vector<TraceLens<double>> band;
+std::vector<optics::TraceLens<double>> band_of(const std::string& name, int wavelengths) {
+    const optics::Lens lens = formats::load_lens(name);
+    std::vector<optics::TraceLens<double>> band;
     band.reserve(static_cast<std::size_t>(wavelengths));
     for (int i = 0; i < wavelengths; ++i) {
-        band.push_back(at_wavelength<double>(lens, 420.0 + 260.0 * i / (wavelengths - 1)));
+        band.push_back(optics::at_wavelength<double>(lens, 420.0 + 260.0 * i / (wavelengths - 1)));
     }
     return band;
 }
@@ -123,4 +123,4 @@ TEST(PupilSlices, AskTheMapWhereTheLensIsNotRound) {
 }
 
 }  // namespace
-}  // namespace lensproof
+}  // namespace lensproof::pupil

@@ -11,7 +11,7 @@
 #include "engine/optics/lens.h"
 #include "engine/render/sampling/sampler.h"
 
-namespace lensproof {
+namespace lensproof::render {
 namespace {
 
 constexpr std::uint64_t kSeed = 17;
@@ -21,8 +21,8 @@ const std::vector<double> kWavelengths = {430.0, 490.0, 550.0, 610.0, 670.0};
 template <class T>
 struct TestCamera {
     explicit TestCamera(const std::string& name, double half_diagonal_mm, bool by_radius = true)
-        : lens(at_wavelengths<T>(load_lens(name), kWavelengths)),
-          in_double(at_wavelengths<double>(load_lens(name), kWavelengths)),
+        : lens(optics::at_wavelengths<T>(formats::load_lens(name), kWavelengths)),
+          in_double(optics::at_wavelengths<double>(formats::load_lens(name), kWavelengths)),
           pupil(in_double.at(), by_radius, half_diagonal_mm),
           slices(pupil, lens.wavelengths()),
           source{.sensor = {.width = 8, .height = 6, .pixel_pitch_mm = half_diagonal_mm / 5.0},
@@ -30,10 +30,10 @@ struct TestCamera {
                  .pupil = &slices,
                  .seed = kSeed} {}
 
-    SpectralLens<T> lens;
-    SpectralLens<double> in_double;
-    PupilMap pupil;
-    PupilSlices slices;
+    optics::SpectralLens<T> lens;
+    optics::SpectralLens<double> in_double;
+    pupil::PupilMap pupil;
+    pupil::PupilSlices slices;
     CameraPathSource<T> source;
 };
 
@@ -70,7 +70,7 @@ Paths<T> one_by_one(const TestCamera<T>& camera, const CameraPathRange& range) {
             const auto xi = sampler.point(sample);
             const int wavelength = static_cast<int>(xi[4] * static_cast<double>(kWavelengths.size()));
             const Vec2d film = sensor.position(pixel % 8 - 0.5 + xi[0], row - 0.5 + xi[1]);
-            const PupilDraw<double> in_pupil = camera.slices.sample(film, wavelength, xi[2], xi[3]);
+            const pupil::PupilDraw<double> in_pupil = camera.slices.sample(film, wavelength, xi[2], xi[3]);
             if (!(in_pupil.area > 0.0)) {
                 continue;
             }
@@ -78,9 +78,11 @@ Paths<T> one_by_one(const TestCamera<T>& camera, const CameraPathRange& range) {
             const Vec3d way{in_pupil.point.x - film.x, in_pupil.point.y - film.y, camera.pupil.plane_z() - film_z};
             const double per_distance2 = 1.0 / dot(way, way);
             const Vec3d direction = std::sqrt(per_distance2) * way;
-            const Ray<T> start{convert_vector<T>(Vec3d{film.x, film.y, film_z}), convert_vector<T>(direction)};
-            const TracedRay<T> traced = trace<Direction::reverse>(camera.lens.at(wavelength), start);
-            if (traced.status == RayStatus::ok) {
+            const Ray<T> start{optics::convert_vector<T>(Vec3d{film.x, film.y, film_z}),
+                               optics::convert_vector<T>(direction)};
+            const optics::TracedRay<T> traced =
+                optics::trace<optics::Direction::reverse>(camera.lens.at(wavelength), start);
+            if (traced.status == optics::RayStatus::ok) {
                 const double etendue = direction.z * direction.z * per_distance2 * in_pupil.area;
                 found.valid.push_back(
                     {pixel, sample, wavelength, film, traced.transmittance * static_cast<T>(etendue), traced.ray});
@@ -91,7 +93,8 @@ Paths<T> one_by_one(const TestCamera<T>& camera, const CameraPathRange& range) {
 }
 
 template <class T>
-Paths<T> through_buffers(const TestCamera<T>& camera, const CameraPathRange& range, int capacity, SimdLevel level) {
+Paths<T> through_buffers(const TestCamera<T>& camera, const CameraPathRange& range, int capacity,
+                         optics::SimdLevel level) {
     CameraPathProducer<T> producer(camera.source, level);
     CameraPathBuffer<T> buffer(capacity);
     Paths<T> found;
@@ -142,10 +145,10 @@ TYPED_TEST(CameraPaths, HaveTheBitsOfOneByOneInOrder) {
         EXPECT_LT(expected.started, 48 * 37) << "some of the film gets no light";
         EXPECT_LT(expected.valid.size(), static_cast<std::size_t>(expected.started)) << "the lens stops some paths";
         EXPECT_GT(expected.valid.size(), 48U * 37U / 3U) << "and passes many";
-        for (const SimdLevel level : available_simd_levels()) {
+        for (const optics::SimdLevel level : optics::available_simd_levels()) {
             for (const int capacity : {1, 5, 16, 100, 4096}) {
                 expect_same(through_buffers(camera, all, capacity, level), expected,
-                            fmt::format("{}, {}, capacity {}", name, simd_name(level), capacity));
+                            fmt::format("{}, {}, capacity {}", name, optics::simd_name(level), capacity));
             }
         }
     }
@@ -155,7 +158,8 @@ TYPED_TEST(CameraPaths, HaveTheBitsOfOneByOneInOrder) {
 TYPED_TEST(CameraPaths, DoNotDependOnTheRange) {
     const TestCamera<TypeParam> camera("tessar", 70.0);
     const CameraPathRange part{.first_pixel = 19, .pixels = 5, .first_sample = 250, .samples = 12};
-    expect_same(through_buffers(camera, part, 64, available_simd_levels().back()), one_by_one(camera, part), "part");
+    expect_same(through_buffers(camera, part, 64, optics::available_simd_levels().back()), one_by_one(camera, part),
+                "part");
 }
 
 // A lens that is not known to be round has no tables of pupils for packets.
@@ -163,7 +167,8 @@ TYPED_TEST(CameraPaths, HaveTheSameBitsWherePupilsAreDrawnOneByOne) {
     const TestCamera<TypeParam> camera("tessar", 30.0, false);
     const CameraPathRange part{.first_pixel = 0, .pixels = 48, .first_sample = 0, .samples = 3};
     ASSERT_EQ(camera.slices.tables(), nullptr);
-    expect_same(through_buffers(camera, part, 64, available_simd_levels().back()), one_by_one(camera, part), "turned");
+    expect_same(through_buffers(camera, part, 64, optics::available_simd_levels().back()), one_by_one(camera, part),
+                "turned");
 }
 
 // The top left pixel lies outside the fisheye's image circle: the few paths that the map starts there in defence all
@@ -171,14 +176,14 @@ TYPED_TEST(CameraPaths, HaveTheSameBitsWherePupilsAreDrawnOneByOne) {
 TYPED_TEST(CameraPaths, MayAllBeStopped) {
     const TestCamera<TypeParam> camera("muller-fisheye", 40.0);
     const CameraPathRange corner{.pixels = 1, .samples = 4000};
-    const Paths<TypeParam> paths = through_buffers(camera, corner, 64, available_simd_levels().back());
+    const Paths<TypeParam> paths = through_buffers(camera, corner, 64, optics::available_simd_levels().back());
     EXPECT_TRUE(paths.valid.empty());
     EXPECT_GT(paths.started, 0);
 }
 
 TYPED_TEST(CameraPaths, OfNoSamplesOrPixelsAreNone) {
     const TestCamera<TypeParam> camera("tessar", 70.0);
-    const SimdLevel level = available_simd_levels().back();
+    const optics::SimdLevel level = optics::available_simd_levels().back();
     EXPECT_TRUE(through_buffers(camera, {.pixels = 48, .samples = 0}, 64, level).valid.empty());
     EXPECT_TRUE(through_buffers(camera, {.pixels = 0, .samples = 16}, 64, level).valid.empty());
 }
@@ -201,4 +206,4 @@ TEST(CameraPathBuffer, HasRoomForOnePathAtLeast) {
 }
 
 }  // namespace
-}  // namespace lensproof
+}  // namespace lensproof::render

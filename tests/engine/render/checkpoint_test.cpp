@@ -9,7 +9,7 @@
 #include "tests/engine/render/film_sample.h"
 #include "tests/test_folder.h"
 
-namespace lensproof {
+namespace lensproof::render {
 namespace {
 
 const RenderIdentity kIdentity = {{"scene", "abc"}, {"lens", "def"}};
@@ -128,4 +128,4 @@ TEST(WriteWhole, LeftoversOfDeadProcessesGo) {
 }
 
 }  // namespace
-}  // namespace lensproof
+}  // namespace lensproof::render

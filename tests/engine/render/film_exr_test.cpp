@@ -10,7 +10,7 @@
 #include "tests/engine/render/film_sample.h"
 #include "tests/test_folder.h"
 
-namespace lensproof {
+namespace lensproof::render {
 namespace {
 
 // Single precision: half an ulp of a mean is 6e-8 of it, and a few of these come together.
@@ -18,7 +18,7 @@ constexpr double kFloat = 3e-7;
 
 const FilmNotes kNotes = {.identity = {{"scene", "abc"}, {"seed", "7"}},
                           .metadata = {{"lensproof:lens", "a lens"}, {"lensproof:shard", "1/2"}},
-                          .colours = RgbSpace{{0.64, 0.33}, {0.3, 0.6}, {0.15, 0.06}, {0.3127, 0.329}}};
+                          .colours = spectral::RgbSpace{{0.64, 0.33}, {0.3, 0.6}, {0.15, 0.06}, {0.3127, 0.329}}};
 
 /// Samples [first, end) of a film of 70 × 33 pixels with everything that a film may have.
 Film full_film(std::uint32_t first, std::uint32_t end) {
@@ -105,7 +105,7 @@ TEST(FilmExr, IsAPictureToo) {
     const TestFolder folder;
     const Film film = full_film(0, 20);
     write_film_exr(film, kNotes, folder.path() / "a.exr");
-    const Image image = read_image(folder.path() / "a.exr");
+    const formats::Image image = formats::read_image(folder.path() / "a.exr");
     EXPECT_EQ(image.channels, (std::vector<std::string>{"R", "G", "B"}));
     EXPECT_EQ(image.at(69, 32, 2), static_cast<float>(film.estimate(69, 32).rgb.z));
     EXPECT_EQ(image.metadata.at("lensproof:lens"), "a lens");
@@ -134,9 +134,9 @@ TEST(FilmExr, RefusesWhatItDidNotWrite) {
     const TestFolder folder;
     const std::filesystem::path file = folder.path() / "a.exr";
     EXPECT_THROW(read_film_exr(file), InputError);
-    write_exr(make_image(4, 3, {"R", "G", "B"}), file);
+    formats::write_exr(formats::make_image(4, 3, {"R", "G", "B"}), file);
     EXPECT_THROW(read_film_exr(file), InputError);
-    write_png(make_image(4, 3, {"R", "G", "B"}), folder.path() / "a.png");
+    formats::write_png(formats::make_image(4, 3, {"R", "G", "B"}), folder.path() / "a.png");
     EXPECT_THROW(read_film_exr(folder.path() / "a.png"), InputError);
     write_film_exr(full_film(0, 20), kNotes, file);
     const std::string good = read_file(file);
@@ -147,4 +147,4 @@ TEST(FilmExr, RefusesWhatItDidNotWrite) {
 }
 
 }  // namespace
-}  // namespace lensproof
+}  // namespace lensproof::render

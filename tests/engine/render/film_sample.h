@@ -8,7 +8,7 @@
 #include "engine/render/progressive.h"
 #include "engine/render/sampling/sampler.h"
 
-namespace lensproof {
+namespace lensproof::render {
 
 /// One stratum a layer, over a band of 1 nm, so that R, G and B are the film irradiance times 1, 2 and 3.
 inline FilmLayout plain_film(int width, int height, int layers = 1) {
@@ -64,4 +64,4 @@ inline Film exponential_film(int side, std::uint64_t seed, std::uint32_t first, 
     return film;
 }
 
-}  // namespace lensproof
+}  // namespace lensproof::render

@@ -10,7 +10,7 @@
 
 #include "tests/engine/render/film_sample.h"
 
-namespace lensproof {
+namespace lensproof::render {
 namespace {
 
 constexpr double kRounding = 1e-14;  // of some dozens of additions of numbers of size 1
@@ -306,4 +306,4 @@ TEST(Film, KeepsFeaturesAsMeans) {
 }
 
 }  // namespace
-}  // namespace lensproof
+}  // namespace lensproof::render

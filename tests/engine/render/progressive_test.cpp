@@ -10,7 +10,7 @@
 
 #include "tests/engine/render/film_sample.h"
 
-namespace lensproof {
+namespace lensproof::render {
 namespace {
 
 /// Every bit of a film's sums.
@@ -213,4 +213,4 @@ TEST(ProgressiveNoise, StopsInTheDark) {
 }
 
 }  // namespace
-}  // namespace lensproof
+}  // namespace lensproof::render

@@ -14,7 +14,7 @@
 #include "engine/base/input_error.h"
 #include "engine/spectral/illuminant.h"
 
-namespace lensproof {
+namespace lensproof::render {
 namespace {
 
 constexpr std::array<const char*, 4> kPatterns = {"RGGB", "BGGR", "GRBG", "GBRG"};
@@ -42,8 +42,8 @@ std::string complaint(const std::string& text, const RawCamera& behind = camera(
 }
 
 /// A film whose channels are what `value` says.
-Image film(int width, int height, const std::function<double(int x, int y, int channel)>& value) {
-    Image image = make_image(width, height, {"R", "G", "B"});
+formats::Image film(int width, int height, const std::function<double(int x, int y, int channel)>& value) {
+    formats::Image image = formats::make_image(width, height, {"R", "G", "B"});
     for (int y = 0; y < height; ++y) {
         for (int x = 0; x < width; ++x) {
             for (int channel = 0; channel < 3; ++channel) {
@@ -134,7 +134,8 @@ TEST(RawSensor, FillsThePixelsOfTheLightsColour) {
                                       "\"\nfull_well_electrons = 1e9\nread_noise_electrons = 0\nbits = 14\n"
                                       "neutral = [1, 1, 1]\n");
         for (int lit = 0; lit < 3; ++lit) {
-            const Image light = film(6, 4, [lit](int, int, int channel) { return channel == lit ? 0.5 : 0.0; });
+            const formats::Image light =
+                film(6, 4, [lit](int, int, int channel) { return channel == lit ? 0.5 : 0.0; });
             const RawImage raw = expose(sensor, light, 1);
             for (int y = 0; y < 4; ++y) {
                 for (int x = 0; x < 6; ++x) {
@@ -160,7 +161,7 @@ TEST(RawImage, DevelopsAFlatColourToThatColour) {
                 });
                 raw.neutral = {0.5, 1.0, 0.8};
                 raw.demosaicing = way;
-                const Image image = develop(raw);
+                const formats::Image image = develop(raw);
                 for (int y = 0; y < height; ++y) {
                     for (int x = 0; x < width; ++x) {
                         ASSERT_NEAR(image.at(x, y, 0), 0.4 / 0.5, kSteps / 0.5) << pattern << " " << x << " " << y;
@@ -185,7 +186,7 @@ TEST(RawImage, DevelopsASlopeUnmoved) {
         for (const Demosaicing way : {Demosaicing::bilinear, Demosaicing::edge_aware}) {
             RawImage raw = noiseless(pattern, 31, 22, slope);
             raw.demosaicing = way;
-            const Image image = develop(raw);
+            const formats::Image image = develop(raw);
             for (int y = 1; y < 21; ++y) {
                 for (int x = 1; x < 30; ++x) {
                     for (int channel = 0; channel < 3; ++channel) {
@@ -207,8 +208,10 @@ TEST(RawImage, KeepsEdgesInTheirPlaces) {
             const auto edge = [place](int at) {
                 return 0.1 + 0.4 * std::erfc((place - at) / (1.5 * std::numbers::sqrt2));
             };
-            const Image upright = develop(noiseless(pattern, 24, 24, [&edge](int x, int, char) { return edge(x); }));
-            const Image lying = develop(noiseless(pattern, 24, 24, [&edge](int, int y, char) { return edge(y); }));
+            const formats::Image upright =
+                develop(noiseless(pattern, 24, 24, [&edge](int x, int, char) { return edge(x); }));
+            const formats::Image lying =
+                develop(noiseless(pattern, 24, 24, [&edge](int, int y, char) { return edge(y); }));
             for (int channel = 0; channel < 3; ++channel) {
                 for (const int line : {10, 11}) {
                     double across = 0.0;
@@ -246,13 +249,13 @@ TEST(RawSensor, BearsAnyLight) {
 
 TEST(RawSensor, HasTheSameNoiseOnAnyNumberOfThreads) {
     const RawSensor sensor = read(kTable);
-    const Image light = film(40, 30, [](int x, int y, int) { return 0.02 * x + 0.001 * y; });
+    const formats::Image light = film(40, 30, [](int x, int y, int) { return 0.02 * x + 0.001 * y; });
     const std::vector<std::uint16_t> one = expose(sensor, light, 7, 1).mosaic.values;
     EXPECT_EQ(expose(sensor, light, 7, 5).mosaic.values, one);
     EXPECT_EQ(expose(sensor, light, 7, 0).mosaic.values, one);
     EXPECT_NE(expose(sensor, light, 8, 1).mosaic.values, one);
     // A pixel's noise is its own: rows further down change nothing above them.
-    const Image less = film(40, 10, [](int x, int y, int) { return 0.02 * x + 0.001 * y; });
+    const formats::Image less = film(40, 10, [](int x, int y, int) { return 0.02 * x + 0.001 * y; });
     const std::vector<std::uint16_t> part = expose(sensor, less, 7, 1).mosaic.values;
     EXPECT_TRUE(std::equal(part.begin(), part.end(), one.begin()));
 }
@@ -266,8 +269,10 @@ TEST(RawSensor, DevelopsWhiteToWhite) {
             behind.white = white;
             const RawSensor sensor =
                 read("pattern = \"GRBG\"\nfull_well_electrons = 1e9\nread_noise_electrons = 0\nbits = 16\n", behind);
-            const SensorResponse sees = sensor_response(response, behind.exposure, illuminant(white));
-            const Vec3d saturating = sees.values(irradiance_of(illuminant(white), 0.9 * 78.0 / 100.0 / 0.01));
+            const spectral::SensorResponse sees =
+                spectral::sensor_response(response, behind.exposure, spectral::illuminant(white));
+            const Vec3d saturating =
+                sees.values(spectral::irradiance_of(spectral::illuminant(white), 0.9 * 78.0 / 100.0 / 0.01));
             const std::array<double, 3> light = {saturating.x, saturating.y, saturating.z};
             const RawImage raw = expose(sensor, film(20, 10, [&](int, int, int channel) { return light[channel]; }), 1);
             for (const float value : develop(raw).pixels) {
@@ -282,10 +287,10 @@ TEST(RawSensor, DevelopsWhiteToWhite) {
 // Each channel's neutral is what the data say: the integral of light times sensitivity, over the largest. A flat
 // spectrum from 400 to 700 nm against the camera's columns, summed here by the trapezium rule of their 5 nm steps.
 TEST(RawSensor, NeutralIsWhatTheResponseMakesOfWhite) {
-    const Illuminant equal = illuminant("E");
-    const Vec3d neutral = sensor_neutral("camera", equal);
-    const std::vector<Spectrum> columns =
-        read_spectra(spectral_data("camera-nikon-d5100.csv"), {"red", "green", "blue"});
+    const spectral::Illuminant equal = spectral::illuminant("E");
+    const Vec3d neutral = spectral::sensor_neutral("camera", equal);
+    const std::vector<spectral::Spectrum> columns =
+        spectral::read_spectra(spectral::spectral_data("camera-nikon-d5100.csv"), {"red", "green", "blue"});
     std::array<double, 3> sum{};
     for (int channel = 0; channel < 3; ++channel) {
         for (int nm = 380; nm < 780; nm += 5) {
@@ -295,15 +300,17 @@ TEST(RawSensor, NeutralIsWhatTheResponseMakesOfWhite) {
     EXPECT_NEAR(neutral.x, sum[0] / sum[1], 1e-12);
     EXPECT_EQ(neutral.y, 1.0);
     EXPECT_NEAR(neutral.z, sum[2] / sum[1], 1e-12);
-    EXPECT_LT(sensor_neutral("camera", illuminant("A")).z, neutral.z) << "incandescent light has little blue";
-    EXPECT_EQ(sensor_neutral("cie-1931", equal), (Vec3d{1.0, 1.0, 1.0}));
-    EXPECT_EQ(sensor_neutral("luminance", equal), (Vec3d{1.0, 0.0, 0.0}));
+    EXPECT_LT(spectral::sensor_neutral("camera", spectral::illuminant("A")).z, neutral.z)
+        << "incandescent light has little blue";
+    EXPECT_EQ(spectral::sensor_neutral("cie-1931", equal), (Vec3d{1.0, 1.0, 1.0}));
+    EXPECT_EQ(spectral::sensor_neutral("luminance", equal), (Vec3d{1.0, 0.0, 0.0}));
 }
 
 // Behind no filter each pixel measures what there is: one value, or one a channel; nothing is made up.
 TEST(RawSensor, MeasuresEveryChannelWithoutAPattern) {
     const std::string table = "pattern = \"none\"\nfull_well_electrons = 1e9\nread_noise_electrons = 0\nbits = 14\n";
-    const Image light = film(5, 3, [](int x, int y, int channel) { return 0.1 + 0.05 * x + 0.1 * y + 0.02 * channel; });
+    const formats::Image light =
+        film(5, 3, [](int x, int y, int channel) { return 0.1 + 0.05 * x + 0.1 * y + 0.02 * channel; });
     const RawImage grey = expose(read(table, camera("luminance")), light, 1);
     const RawImage stack = expose(read(table + "neutral = [1, 1, 1]\n"), light, 1);
     EXPECT_EQ(grey.mosaic.channels, 1);
@@ -343,4 +350,4 @@ TEST(RawSensor, FillFactorIsTheSquareRootOfTheSideOfWhatAPixelSees) {
 }
 
 }  // namespace
-}  // namespace lensproof
+}  // namespace lensproof::render

@@ -12,7 +12,7 @@
 #include "engine/scene/aruco.h"
 #include "engine/scene/chart_file.h"
 
-namespace lensproof {
+namespace lensproof::scene {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
@@ -237,4 +237,4 @@ TEST(SceneChart, WhatDoesNotFitIsRefusedByKey) {
 }
 
 }  // namespace
-}  // namespace lensproof
+}  // namespace lensproof::scene

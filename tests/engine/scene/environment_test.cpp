@@ -9,19 +9,19 @@
 #include "engine/base/input_error.h"
 #include "engine/render/sampling/sampler.h"
 
-namespace lensproof {
+namespace lensproof::scene {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
-const SpectralGrid kGrid = spectral_grid(400.0, 700.0, 8);
+const spectral::SpectralGrid kGrid = spectral::spectral_grid(400.0, 700.0, 8);
 
 /// A picture of one grey a pixel, as light of radiance 1 where it is 1.
 ImageTexture grey_picture(int width, int height, const std::vector<float>& values) {
     ImageTexture picture{.grid = {width, height, Wrap::repeat, Wrap::clamp},
                          .texel = {},
-                         .abscissa = tabulated(kGrid, sigmoid_abscissa),
-                         .white = constant_spectrum(1.0, kGrid)};
-    const SigmoidSpectrum half{};  // 1/2 everywhere
+                         .abscissa = spectral::tabulated(kGrid, spectral::sigmoid_abscissa),
+                         .white = spectral::constant_spectrum(1.0, kGrid)};
+    const spectral::SigmoidSpectrum half{};  // 1/2 everywhere
     for (const float value : values) {
         picture.texel.push_back({.shape = half, .scale = value / half.at(0.0F)});
     }
@@ -31,7 +31,7 @@ ImageTexture grey_picture(int width, int height, const std::vector<float>& value
 // The picture's middle column shows +x, what is left of it lies counter-clockwise, and the top row lies upwards.
 TEST(Environment, StandsAsItSays) {
     const ImageTexture picture = grey_picture(4, 2, {1, 2, 3, 4, 5, 6, 7, 8});
-    const PathWavelengths path = kGrid.path(0);
+    const spectral::PathWavelengths path = kGrid.path(0);
     const auto seen = [&](const Environment& sky, double azimuth_deg, double height_deg) {
         const double a = azimuth_deg * kPi / 180.0;
         const double h = height_deg * kPi / 180.0;
@@ -53,11 +53,11 @@ TEST(Environment, DrawsWithItsDensity) {
     std::vector<float> values(std::size_t{16} * 8, 0.1F);
     values[3 * 16 + 5] = 100.0F;
     const Environment sky(grey_picture(16, 8, values), {0.0, 0.0, 1.0}, 0.0);
-    const PathWavelengths path = kGrid.path(0);
+    const spectral::PathWavelengths path = kGrid.path(0);
     constexpr int kDraws = 1 << 16;
     double all = 0.0;
     double from_above = 0.0;
-    const PixelSampler sampler(1, 0);
+    const render::PixelSampler sampler(1, 0);
     for (int i = 0; i < kDraws; ++i) {
         const auto u = sampler.point(static_cast<std::uint32_t>(i));
         const Environment::Draw draw = sky.draw(u[0], u[1]);
@@ -88,4 +88,4 @@ TEST(Environment, RefusesABlackPicture) {
 }
 
 }  // namespace
-}  // namespace lensproof
+}  // namespace lensproof::scene

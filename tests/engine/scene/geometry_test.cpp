@@ -7,7 +7,7 @@
 
 #include "tests/engine/scene/scene_shapes.h"
 
-namespace lensproof {
+namespace lensproof::scene {
 namespace {
 
 using test::at;
@@ -376,4 +376,4 @@ TEST(SceneGeometry, NothingIsMetByRaysThatAreNone) {
 }
 
 }  // namespace
-}  // namespace lensproof
+}  // namespace lensproof::scene

@@ -6,28 +6,29 @@
 #include "engine/spectral/metal.h"
 #include "tests/engine/scene/bsdf/bsdf_cases.h"
 
-namespace lensproof {
+namespace lensproof::scene {
 namespace {
 
-SpectralGrid grid() {
-    return spectral_grid(400.0, 700.0, 16);
+spectral::SpectralGrid grid() {
+    return spectral::spectral_grid(400.0, 700.0, 16);
 }
 
 Material diffuse(double albedo) {
-    return {.surface = DiffuseMaterial{.albedo = constant_spectrum(albedo, grid())}, .radiance = {}};
+    return {.surface = DiffuseMaterial{.albedo = spectral::constant_spectrum(albedo, grid())}, .radiance = {}};
 }
 
 const Vec2d kMiddle{0.5, 0.5};
 
 // A surface has its materials' numbers at the path's wavelengths.
 TEST(Material, ScattersAsItsTablesSayThere) {
-    const PathWavelengths path = grid().path(3);
-    const ComplexIndex gold = metal("gold");
-    const Material mirror{.surface = conductor_material(at_midpoints(gold.n, grid()), at_midpoints(gold.k, grid()),
-                                                        {.alpha_x = 0.1, .alpha_y = 0.2}),
-                          .radiance = {}};
+    const spectral::PathWavelengths path = grid().path(3);
+    const spectral::ComplexIndex gold = spectral::metal("gold");
+    const Material mirror{
+        .surface = conductor_material(spectral::at_midpoints(gold.n, grid()), spectral::at_midpoints(gold.k, grid()),
+                                      {.alpha_x = 0.1, .alpha_y = 0.2}),
+        .radiance = {}};
     const auto metal_there = std::get<ConductorBsdf>(bsdf_at(mirror, kMiddle, path));
-    for (std::size_t c = 0; c < kWavelengthsPerPath; ++c) {
+    for (std::size_t c = 0; c < spectral::kWavelengthsPerPath; ++c) {
         EXPECT_EQ(metal_there.n[c], static_cast<float>(gold.n(grid().wavelengths_nm(path)[c])));
         EXPECT_EQ(metal_there.k[c], static_cast<float>(gold.k(grid().wavelengths_nm(path)[c])));
     }
@@ -38,19 +39,20 @@ TEST(Material, ScattersAsItsTablesSayThere) {
     EXPECT_LT(metal_there.given_back[0], head_on);
     EXPECT_GT(metal_there.given_back[0], 0.5F * head_on * head_on);
     const auto cauchy = [](double nm) { return 1.5 + 5000.0 / (nm * nm); };
-    const Material glass{.surface = dielectric_material(tabulated(grid(), cauchy), {}), .radiance = {}};
+    const Material glass{.surface = dielectric_material(spectral::tabulated(grid(), cauchy), {}), .radiance = {}};
     const auto glass_there = std::get<DielectricBsdf>(bsdf_at(glass, kMiddle, path));
     EXPECT_EQ(glass_there.eta[1], static_cast<float>(cauchy(grid().wavelengths_nm(path)[1])));
-    const Material plastic{.surface = plastic_material(constant_spectrum(1.0, grid()), 1.5, 0.0), .radiance = {}};
-    EXPECT_EQ(std::get<PlasticBsdf>(bsdf_at(plastic, kMiddle, path)).base, SpectralSample(1.0F));
+    const Material plastic{.surface = plastic_material(spectral::constant_spectrum(1.0, grid()), 1.5, 0.0),
+                           .radiance = {}};
+    EXPECT_EQ(std::get<PlasticBsdf>(bsdf_at(plastic, kMiddle, path)).base, spectral::SpectralSample(1.0F));
 }
 
 // Lamps say what they send out; all else sends nothing.
 TEST(Material, EmitsWhatItIsGiven) {
     Material lamp = diffuse(0.0);
-    EXPECT_TRUE(is_black(radiance_at(lamp, kMiddle, grid().path(0))));
-    lamp.radiance = constant_spectrum(3.0, grid());
-    EXPECT_EQ(radiance_at(lamp, kMiddle, grid().path(0)), SpectralSample(3.0F));
+    EXPECT_TRUE(spectral::is_black(radiance_at(lamp, kMiddle, grid().path(0))));
+    lamp.radiance = spectral::constant_spectrum(3.0, grid());
+    EXPECT_EQ(radiance_at(lamp, kMiddle, grid().path(0)), spectral::SpectralSample(3.0F));
 }
 
 // Of mixes of mixes each material has its share of its share, and all of them make one: Lambertian surfaces of albedo
@@ -93,4 +95,4 @@ TEST(Material, MasksChooseByPlace) {
 }
 
 }  // namespace
-}  // namespace lensproof
+}  // namespace lensproof::scene

@@ -12,7 +12,7 @@
 #include "engine/scene/surface_sampler.h"
 #include "tests/engine/scene/scene_shapes.h"
 
-namespace lensproof {
+namespace lensproof::scene {
 namespace {
 
 namespace fs = std::filesystem;
@@ -310,4 +310,4 @@ TEST_F(MeshFileTest, CutFilesAreRefusedOrWhole) {
 }
 
 }  // namespace
-}  // namespace lensproof
+}  // namespace lensproof::scene

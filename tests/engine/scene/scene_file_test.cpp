@@ -10,7 +10,7 @@
 #include "engine/render/scene_setup.h"
 #include "engine/scene/scene_shapes.h"
 
-namespace lensproof {
+namespace lensproof::scene {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
@@ -48,8 +48,8 @@ position_mm = [0.0, 500.0, 0.0]
 intensity_cd = 100.0
 )";
 
-SceneSetup parse(const std::string& text) {
-    return parse_scene_setup(text, "scene.toml");
+render::SceneSetup parse(const std::string& text) {
+    return render::parse_scene_setup(text, "scene.toml");
 }
 
 std::string refusal(const std::string& text) {
@@ -73,8 +73,10 @@ void expect_refused(const std::string& text, const std::string& said) {
 }
 
 TEST(SceneFile, TheExamplesAreRead) {
-    const auto read = [](const char* name) { return read_scene_setup(data_root() / "experiments/scenes" / name); };
-    const SceneSetup box = read("cornell_box.toml");
+    const auto read = [](const char* name) {
+        return render::read_scene_setup(data_root() / "experiments/scenes" / name);
+    };
+    const render::SceneSetup box = read("cornell_box.toml");
     EXPECT_EQ(box.scene.objects.size(), 19U);
     EXPECT_EQ(box.view.model, LensModel::pinhole);
     EXPECT_EQ(box.view.focal_length_mm, 35.0);
@@ -84,11 +86,11 @@ TEST(SceneFile, TheExamplesAreRead) {
     ASSERT_TRUE(light.emission.radiance);
     EXPECT_EQ(light.emission.radiance->column, "radiance");
     EXPECT_EQ(read("checker_wall.toml").max_bounces, 5);
-    const SceneSetup room = read("fisheye_room.toml");
+    const render::SceneSetup room = read("fisheye_room.toml");
     EXPECT_EQ(std::get<ConductorDescription>(room.scene.materials[3].kind).index.name, "metal:Au");
     EXPECT_EQ(std::get<Sphere>(load_shapes(room.scene).shapes.at(9)).radius_mm, 300.0);
     for (const char* name : {"bokeh_lights.toml", "cornell_box_petzval.toml", "glass_caustic.toml"}) {
-        const SceneSetup setup = read(name);
+        const render::SceneSetup setup = read(name);
         EXPECT_EQ(setup.view.model, LensModel::exact) << name;
         EXPECT_FALSE(setup.scene.objects.empty()) << name;
         EXPECT_FALSE(setup.scene.lights.empty()) << name;
@@ -97,7 +99,7 @@ TEST(SceneFile, TheExamplesAreRead) {
 
 // The Cornell box's published dimensions: of its 19 polygons, the areas by the shoelace formula in each one's plane.
 TEST(SceneFile, TheCornellBoxIsClosedButForItsFront) {
-    const SceneSetup box = read_scene_setup(data_root() / "experiments/scenes/cornell_box.toml");
+    const render::SceneSetup box = render::read_scene_setup(data_root() / "experiments/scenes/cornell_box.toml");
     SceneShapes shapes = load_shapes(box.scene);
     const SceneGeometry geometry(std::move(shapes.shapes), std::move(shapes.objects));
     // From the middle of the room, every ray that does not leave by the open front meets a surface, on its inner side
@@ -123,7 +125,7 @@ TEST(SceneFile, TheCornellBoxIsClosedButForItsFront) {
 }
 
 TEST(SceneFile, DefaultsAreAsDocumented) {
-    const SceneSetup setup = parse(kScene);
+    const render::SceneSetup setup = parse(kScene);
     EXPECT_EQ(setup.view.model, LensModel::exact);
     EXPECT_EQ(setup.samples_per_pixel, 64);
     EXPECT_EQ(setup.max_bounces, 16);
@@ -151,7 +153,7 @@ TEST(SceneFile, TheCameraStandsAsItsKeysSay) {
 
 TEST(SceneFile, SpectraComeInTheirForms) {
     const auto reflectance = [](const std::string& value) {
-        const SceneSetup setup = parse(with(kScene, "reflectance = 0.8", "reflectance = " + value));
+        const render::SceneSetup setup = parse(with(kScene, "reflectance = 0.8", "reflectance = " + value));
         return std::get<DiffuseDescription>(setup.scene.materials[0].kind).reflectance;
     };
     EXPECT_EQ(std::get<double>(reflectance("0.25")), 0.25);
@@ -167,7 +169,7 @@ TEST(SceneFile, SpectraComeInTheirForms) {
 }
 
 TEST(SceneFile, MaterialsOfEveryKind) {
-    const SceneSetup setup = parse(kScene + R"(
+    const render::SceneSetup setup = parse(kScene + R"(
 [[materials]]
 name = "silver"
 kind = "conductor"
@@ -274,7 +276,7 @@ TEST(SceneFile, ObjectsThatMakeNoSenseAreRefused) {
 }
 
 TEST(SceneFile, LightsOfEveryKind) {
-    const SceneSetup setup = parse(kScene + R"(
+    const render::SceneSetup setup = parse(kScene + R"(
 [[lights]]
 kind = "area"
 object = "ball"
@@ -355,7 +357,7 @@ TEST(SceneFile, CamerasThatMakeNoSenseAreRefused) {
 }
 
 TEST(SceneFile, InstancesAndFilesShareShapes) {
-    const SceneSetup setup = parse(kScene + R"(
+    const render::SceneSetup setup = parse(kScene + R"(
 [[objects]]
 instance_of = "ball"
 scale = 2.0
@@ -385,4 +387,4 @@ TEST(NearestName, TheLeastChangeIsMeant) {
 }
 
 }  // namespace
-}  // namespace lensproof
+}  // namespace lensproof::scene

@@ -8,7 +8,7 @@
 
 #include "engine/scene/geometry.h"
 
-namespace lensproof::test {
+namespace lensproof::scene::test {
 
 inline Vec3d random_direction(std::mt19937_64& random) {
     std::normal_distribution<double> normal;
@@ -82,4 +82,4 @@ inline TriangleMesh box_mesh(float half) {
     return mesh;
 }
 
-}  // namespace lensproof::test
+}  // namespace lensproof::scene::test

@@ -9,7 +9,7 @@
 #include "engine/base/input_error.h"
 #include "engine/scene/shapes.h"
 
-namespace lensproof {
+namespace lensproof::scene {
 namespace {
 
 using test::at;
@@ -60,4 +60,4 @@ TEST(SceneShapes, DegenerateTrianglesAreDroppedAndCounted) {
 }
 
 }  // namespace
-}  // namespace lensproof
+}  // namespace lensproof::scene

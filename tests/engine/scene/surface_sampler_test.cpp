@@ -7,7 +7,7 @@
 
 #include "tests/engine/scene/scene_shapes.h"
 
-namespace lensproof {
+namespace lensproof::scene {
 namespace {
 
 using test::at;
@@ -107,4 +107,4 @@ TEST(SurfaceSampler, DrawnPointsAreWhatRaysMeet) {
 }
 
 }  // namespace
-}  // namespace lensproof
+}  // namespace lensproof::scene

@@ -11,11 +11,11 @@
 #include "tests/engine/scene/bsdf/bsdf_cases.h"
 #include "tests/test_folder.h"
 
-namespace lensproof {
+namespace lensproof::scene {
 namespace {
 
-SpectralGrid grid() {
-    return spectral_grid(400.0, 700.0, 16);
+spectral::SpectralGrid grid() {
+    return spectral::spectral_grid(400.0, 700.0, 16);
 }
 
 /// 3 × 2 pixels: 0.1, 0.2, 0.3 above 0.4, 0.5, 0.6.
@@ -81,19 +81,19 @@ TEST(Texture, ColourCheckersPatchesAreAsMeasured) {
     // 6 × 4 patches of 40 mm, 6 mm apart: a card of 282 × 190 mm.
     const Chart card{.pattern = ColourChecker{.patch_mm = 40.0, .gap_mm = 6.0}, .black_reflectance = 0.04};
     const Texture texture = chart_texture(card, 276.0, 184.0, grid());
-    const std::vector<ColourPatch> patches = colour_checker();
-    const PathWavelengths path = grid().path(5);
+    const std::vector<spectral::ColourPatch> patches = spectral::colour_checker();
+    const spectral::PathWavelengths path = grid().path(5);
     for (std::size_t i = 0; i < patches.size(); ++i) {
         const std::size_t column = i % 6;
         const std::size_t row = i / 6;
         const Vec2d middle{(static_cast<double>(column) + 0.5) / 6.0, 1.0 - (static_cast<double>(row) + 0.5) / 4.0};
-        const SpectralSample value = value_at(texture, middle, path);
-        for (std::size_t c = 0; c < kWavelengthsPerPath; ++c) {
+        const spectral::SpectralSample value = value_at(texture, middle, path);
+        for (std::size_t c = 0; c < spectral::kWavelengthsPerPath; ++c) {
             EXPECT_NEAR(value[c], patches[i].reflectance(grid().wavelengths_nm(path)[c]), kFloatRounding);
         }
     }
     for (const Vec2d frame : {Vec2d{0.0, 0.0}, {1.0, 1.0}, {1.0 / 6.0, 0.4}, {0.4, 0.25}, {-3.0, 0.5}, {0.5, 7.0}}) {
-        EXPECT_EQ(value_at(texture, frame, path), SpectralSample(0.04F));
+        EXPECT_EQ(value_at(texture, frame, path), spectral::SpectralSample(0.04F));
     }
 }
 
@@ -101,10 +101,10 @@ TEST(Texture, ColourCheckersPatchesAreAsMeasured) {
 TEST(Texture, MasksAreReadAsNumbers) {
     const TestFolder folder;
     const auto file = folder.path() / "mask.exr";
-    Image image = make_image(2, 1, {"Y"});
+    formats::Image image = formats::make_image(2, 1, {"Y"});
     image.at(0, 0, 0) = 0.25F;
     image.at(1, 0, 0) = 7.0F;
-    write_exr(image, file);
+    formats::write_exr(image, file);
     const ScalarTexture mask = scalar_texture(file, Wrap::clamp);
     EXPECT_EQ(value_at(mask, {0.25, 0.5}), 0.25);
     EXPECT_EQ(value_at(mask, {0.75, 0.5}), 1.0);
@@ -122,7 +122,7 @@ TEST(Texture, MissingAndColourlessPicturesAreNamed) {
         EXPECT_NE(std::string(error.what()).find("no-such-picture.png"), std::string::npos) << error.what();
     }
     const auto spectral = folder.path() / "spectral.exr";
-    write_exr(make_image(2, 2, {"S0.550,000000nm", "S0.600,000000nm"}), spectral);
+    formats::write_exr(formats::make_image(2, 2, {"S0.550,000000nm", "S0.600,000000nm"}), spectral);
     try {
         scalar_texture(spectral, Wrap::repeat);
         FAIL();
@@ -135,4 +135,4 @@ TEST(Texture, MissingAndColourlessPicturesAreNamed) {
 }
 
 }  // namespace
-}  // namespace lensproof
+}  // namespace lensproof::scene

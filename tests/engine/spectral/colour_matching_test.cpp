@@ -6,7 +6,7 @@
 
 #include "engine/spectral/illuminant.h"
 
-namespace lensproof {
+namespace lensproof::spectral {
 namespace {
 
 constexpr double kHalfOfFifthDecimal = 5e-6;
@@ -92,4 +92,4 @@ TEST(ColourMatching, MaximumLuminousEfficacyFollowsFromTheSi) {
 }
 
 }  // namespace
-}  // namespace lensproof
+}  // namespace lensproof::spectral

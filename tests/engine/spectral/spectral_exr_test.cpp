@@ -4,7 +4,7 @@
 
 #include "engine/spectral/wavelengths.h"
 
-namespace lensproof {
+namespace lensproof::spectral {
 namespace {
 
 /// The wavelength that `name` stands for, nm; 0 where it is no spectral channel.
@@ -57,4 +57,4 @@ TEST(SpectralExr, AttributesSayWhatTheLayersHold) {
 }
 
 }  // namespace
-}  // namespace lensproof
+}  // namespace lensproof::spectral

@@ -6,7 +6,7 @@
 
 #include "engine/base/input_error.h"
 
-namespace lensproof {
+namespace lensproof::spectral {
 namespace {
 
 Spectrum line(double from_nm, double to_nm, double from_value, double to_value) {
@@ -100,4 +100,4 @@ TEST(SpectrumFile, AMissingFileIsAnInputError) {
 }
 
 }  // namespace
-}  // namespace lensproof
+}  // namespace lensproof::spectral

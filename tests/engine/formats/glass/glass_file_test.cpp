@@ -10,7 +10,7 @@
 #include "engine/base/input_error.h"
 #include "engine/spectral/wavelengths.h"
 
-namespace lensproof {
+namespace lensproof::formats {
 namespace {
 
 // SCHOTT's own record of N-BK7 (catalogue of 2017-01-20), shortened.
@@ -49,13 +49,13 @@ double agf_index(int number, const std::string& cd, double um) {
     const std::string text = fmt::format("NM TEST {} 0 1 0 0 0 0\nCD {}\nLD 0.9 2.1\n", number, cd);
     const GlassFile file = parse_agf(text, "t.agf");
     EXPECT_TRUE(file.notes.empty()) << file.notes.front();
-    return refractive_index(file.glasses.at(0).formula, 1e3 * um);
+    return optics::refractive_index(file.glasses.at(0).formula, 1e3 * um);
 }
 
 double rii_index(int number, const std::string& coefficients, double um) {
     const std::string text = fmt::format(
         "DATA:\n  - type: formula {}\n    wavelength_range: 0.9 2.1\n    coefficients: {}\n", number, coefficients);
-    return refractive_index(parse_rii(text, "t.yml").glasses.at(0).formula, 1e3 * um);
+    return optics::refractive_index(parse_rii(text, "t.yml").glasses.at(0).formula, 1e3 * um);
 }
 
 std::string complaint(GlassFile (*parse)(const std::string&, const std::filesystem::path&), const std::string& text) {
@@ -71,13 +71,13 @@ TEST(Agf, ReadsAGlassWithAllThatIsKnownOfIt) {
     const GlassFile file = parse_agf(kBk7, "folder/schott.agf");
     EXPECT_TRUE(file.notes.empty());
     ASSERT_EQ(file.glasses.size(), 1U);
-    const Glass& glass = file.glasses.front();
+    const optics::Glass& glass = file.glasses.front();
     EXPECT_EQ(glass.name, "N-BK7");
     EXPECT_EQ(glass.catalogue, "SCHOTT");
     EXPECT_EQ(glass.status, "current");
     EXPECT_EQ(glass.note, "step 0.5 available");
-    EXPECT_NEAR(refractive_index(glass.formula, kLineD), *glass.stated_n_d, 1e-5);
-    EXPECT_NEAR(abbe_number(glass.formula), *glass.stated_V_d, 0.01);
+    EXPECT_NEAR(optics::refractive_index(glass.formula, spectral::kLineD), *glass.stated_n_d, 1e-5);
+    EXPECT_NEAR(optics::abbe_number(glass.formula), *glass.stated_V_d, 0.01);
     EXPECT_EQ(glass.min_wavelength_nm, 300.0);
     EXPECT_EQ(glass.thermal->e1, 6.27e-10);
     ASSERT_EQ(glass.internal_transmittance.size(), 2U) << "the thicker of two";
@@ -163,9 +163,9 @@ TEST(Agf, HasMakersGlasses) {
         "CD 1.16195687 0.0159659509 0.644860099 0.000505502467 1.25062221 93.8284169\nLD 0.29 2.4\n",
         "t.agf");
     ASSERT_EQ(file.glasses.size(), 3U);
-    for (const Glass& glass : file.glasses) {
-        EXPECT_NEAR(refractive_index(glass.formula, kLineD), *glass.stated_n_d, 1e-5) << glass.name;
-        EXPECT_NEAR(abbe_number(glass.formula), *glass.stated_V_d, 0.01) << glass.name;
+    for (const optics::Glass& glass : file.glasses) {
+        EXPECT_NEAR(optics::refractive_index(glass.formula, spectral::kLineD), *glass.stated_n_d, 1e-5) << glass.name;
+        EXPECT_NEAR(optics::abbe_number(glass.formula), *glass.stated_V_d, 0.01) << glass.name;
     }
     EXPECT_EQ(file.glasses[1].status, "obsolete");
 }
@@ -227,17 +227,17 @@ constexpr const char* kRiiBk7 =
 TEST(Rii, ReadsAPage) {
     const GlassFile file = parse_rii(kRiiBk7, "glass/N-BK7.yml");
     ASSERT_EQ(file.glasses.size(), 1U);
-    const Glass& glass = file.glasses[0];
+    const optics::Glass& glass = file.glasses[0];
     EXPECT_EQ(glass.name, "N-BK7");
     EXPECT_EQ(glass.source, "SCHOTT Zemax catalog");
     EXPECT_EQ(glass.status, "current");
-    EXPECT_NEAR(refractive_index(glass.formula, kLineD), *glass.stated_n_d, 1e-5);
-    EXPECT_NEAR(abbe_number(glass.formula), *glass.stated_V_d, 0.01);
+    EXPECT_NEAR(optics::refractive_index(glass.formula, spectral::kLineD), *glass.stated_n_d, 1e-5);
+    EXPECT_NEAR(optics::abbe_number(glass.formula), *glass.stated_V_d, 0.01);
     EXPECT_EQ(glass.formula, parse_agf(kBk7, "t.agf").glasses[0].formula);
     EXPECT_EQ(glass.thermal->d0, 1.86e-6);
     // The sheet of N-BK7: 0.992 and 0.971 through 25 mm.
-    EXPECT_NEAR(internal_transmittance(glass, 400.0, 25.0).value(), 0.992, 5e-4);
-    EXPECT_NEAR(internal_transmittance(glass, 365.0, 25.0).value(), 0.971, 5e-4);
+    EXPECT_NEAR(optics::internal_transmittance(glass, 400.0, 25.0).value(), 0.992, 5e-4);
+    EXPECT_NEAR(optics::internal_transmittance(glass, 365.0, 25.0).value(), 0.971, 5e-4);
 }
 
 TEST(Rii, HasEveryFormula) {
@@ -264,43 +264,48 @@ TEST(Rii, HasEveryFormula) {
         EXPECT_NEAR(rii_index(row.number, row.coefficients, 2.0), row.at_2_um, 1e-14) << row.number;
     }
     // Ciddor's standard air in the database's gas form, at 633 nm: his table 1 scaled to 15 °C and 101 325 Pa.
-    const Glass air = parse_rii(
-                          "DATA:\n  - type: formula 6\n    wavelength_range: 0.23 1.690\n"
-                          "    coefficients: 0 0.05792105 238.0185 0.00167917 57.362\n",
-                          "air.yml")
-                          .glasses[0];
-    EXPECT_NEAR(refractive_index(air.formula, 633.0), 1.0 + 26824.4e-8 * 1.01325 * 293.15 / 288.15, 5e-8);
+    const optics::Glass air = parse_rii(
+                                  "DATA:\n  - type: formula 6\n    wavelength_range: 0.23 1.690\n"
+                                  "    coefficients: 0 0.05792105 238.0185 0.00167917 57.362\n",
+                                  "air.yml")
+                                  .glasses[0];
+    EXPECT_NEAR(optics::refractive_index(air.formula, 633.0), 1.0 + 26824.4e-8 * 1.01325 * 293.15 / 288.15, 5e-8);
 }
 
 // N-BK7 from its formula at the 13 lines of a maker's sheet: the curve between them errs as the header says.
 TEST(Rii, InterpolatesATable) {
-    const DispersionFormula exact = parse_rii(kRiiBk7, "t.yml").glasses[0].formula;
+    const optics::DispersionFormula exact = parse_rii(kRiiBk7, "t.yml").glasses[0].formula;
     std::string text = "DATA:\n  - type: tabulated n\n    data: |\n";
-    for (const SpectralLine& line : spectral_lines()) {
-        text +=
-            fmt::format("        {} {:.10f}\n", 1e-3 * line.wavelength_nm, refractive_index(exact, line.wavelength_nm));
+    for (const spectral::SpectralLine& line : spectral::spectral_lines()) {
+        text += fmt::format("        {} {:.10f}\n", 1e-3 * line.wavelength_nm,
+                            optics::refractive_index(exact, line.wavelength_nm));
     }
-    const Glass glass = parse_rii(text, "t.yml").glasses[0];
+    const optics::Glass glass = parse_rii(text, "t.yml").glasses[0];
     double worst = 0.0;
     double worst_visible = 0.0;
-    for (double nm = kLineI; nm <= kLineT; nm += 1.0) {
-        const double error = std::abs(refractive_index(glass.formula, nm) - refractive_index(exact, nm));
+    for (double nm = spectral::kLineI; nm <= spectral::kLineT; nm += 1.0) {
+        const double error =
+            std::abs(optics::refractive_index(glass.formula, nm) - optics::refractive_index(exact, nm));
         worst = std::max(worst, error);
-        worst_visible = nm >= kLineH && nm <= kLineR ? std::max(worst_visible, error) : worst_visible;
+        worst_visible =
+            nm >= spectral::kLineH && nm <= spectral::kLineR ? std::max(worst_visible, error) : worst_visible;
     }
     EXPECT_LT(worst, 4e-5);
     EXPECT_LT(worst_visible, 3e-6);
-    EXPECT_NEAR(refractive_index(glass.formula, kLineE), refractive_index(exact, kLineE), 1e-10) << "at a row";
-    EXPECT_EQ(refractive_index(glass.formula, 100.0), refractive_index(glass.formula, kLineI)) << "beyond the end";
+    EXPECT_NEAR(optics::refractive_index(glass.formula, spectral::kLineE),
+                optics::refractive_index(exact, spectral::kLineE), 1e-10)
+        << "at a row";
+    EXPECT_EQ(optics::refractive_index(glass.formula, 100.0), optics::refractive_index(glass.formula, spectral::kLineI))
+        << "beyond the end";
     // A step stays a step: no value outside those of its ends.
-    const Glass step = parse_rii(
-                           "DATA:\n  - type: tabulated n\n    data: |\n        1 1.5\n        2 1.5\n"
-                           "        3 1.7\n        4 1.7\n",
-                           "t.yml")
-                           .glasses[0];
+    const optics::Glass step = parse_rii(
+                                   "DATA:\n  - type: tabulated n\n    data: |\n        1 1.5\n        2 1.5\n"
+                                   "        3 1.7\n        4 1.7\n",
+                                   "t.yml")
+                                   .glasses[0];
     for (double nm = 1000.0; nm <= 4000.0; nm += 50.0) {
-        EXPECT_GE(refractive_index(step.formula, nm), 1.5 - 1e-15);
-        EXPECT_LE(refractive_index(step.formula, nm), 1.7 + 1e-15);
+        EXPECT_GE(optics::refractive_index(step.formula, nm), 1.5 - 1e-15);
+        EXPECT_LE(optics::refractive_index(step.formula, nm), 1.7 + 1e-15);
     }
 }
 
@@ -362,9 +367,9 @@ TEST(GlassTable, ReadsEveryFormulaAndMinds) {
                           "mine.csv");
     ASSERT_EQ(file.glasses.size(), 4U);
     EXPECT_EQ(file.glasses[0].catalogue, "mine");
-    EXPECT_EQ(refractive_index(file.glasses[1].formula, 1000.0), 1.504);
-    EXPECT_EQ(refractive_index(file.glasses[2].formula, 500.0), 1.52);
-    EXPECT_EQ(refractive_index(file.glasses[3].formula, 500.0), 1.5);
+    EXPECT_EQ(optics::refractive_index(file.glasses[1].formula, 1000.0), 1.504);
+    EXPECT_EQ(optics::refractive_index(file.glasses[2].formula, 500.0), 1.52);
+    EXPECT_EQ(optics::refractive_index(file.glasses[3].formula, 500.0), 1.5);
     for (const char* row : {"A,constant,,400,700", "A,constant,nan,400,700", "A,sellmeier,1,400,700",
                             ",constant,1,400,700", "A,magic,1,400,700", "A,constant,1.5,700,400",
                             "A,constant,1.5,0,400", "A,schott,1 2,400,700", "A,table,400 1.5 300 1.5,400,700",
@@ -381,4 +386,4 @@ TEST(GlassTable, ReadsEveryFormulaAndMinds) {
 }
 
 }  // namespace
-}  // namespace lensproof
+}  // namespace lensproof::formats

@@ -8,12 +8,12 @@
 
 #include "engine/base/input_error.h"
 
-namespace lensproof {
+namespace lensproof::formats {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-using Parse = Prescription (*)(const std::string&, const std::filesystem::path&);
+using Parse = optics::Prescription (*)(const std::string&, const std::filesystem::path&);
 
 /// The complaint about a text, or "" when there is none.
 std::string complaint(Parse parse, const std::string& text) {
@@ -25,14 +25,14 @@ std::string complaint(Parse parse, const std::string& text) {
     return "";
 }
 
-const Finding* find_remark(const Prescription& lens, const std::string& code, int surface = 0) {
+const optics::Finding* find_remark(const optics::Prescription& lens, const std::string& code, int surface = 0) {
     const auto found = std::ranges::find_if(
-        lens.remarks, [&](const Finding& remark) { return remark.code == code && remark.surface == surface; });
+        lens.remarks, [&](const optics::Finding& remark) { return remark.code == code && remark.surface == surface; });
     return found == lens.remarks.end() ? nullptr : &*found;
 }
 
-void expect_remark(const Prescription& lens, const std::string& code, int surface, const std::string& word) {
-    const Finding* remark = find_remark(lens, code, surface);
+void expect_remark(const optics::Prescription& lens, const std::string& code, int surface, const std::string& word) {
+    const optics::Finding* remark = find_remark(lens, code, surface);
     ASSERT_NE(remark, nullptr) << code << " at surface " << surface;
     EXPECT_NE(remark->message.find(word), std::string::npos) << remark->message;
 }
@@ -40,10 +40,11 @@ void expect_remark(const Prescription& lens, const std::string& code, int surfac
 const std::string kHeader = "surface,radius_mm,thickness_mm,n_d,V_d,semi_aperture_mm,kind";
 
 TEST(CsvTable, TakesNumbersAsTheyAre) {
-    const Prescription lens = parse_csv_prescription("# A lens\n# source: a book\n# of 1950\n" + kHeader +
-                                                         "\n1,nan,-3,1.5,,0,glass\n2,0,inf,,,,air\n3,,1,1,,-4,stop\n"
-                                                         "4,Infinity,1,1,,1,stop\n",
-                                                     "a.csv");
+    const optics::Prescription lens =
+        parse_csv_prescription("# A lens\n# source: a book\n# of 1950\n" + kHeader +
+                                   "\n1,nan,-3,1.5,,0,glass\n2,0,inf,,,,air\n3,,1,1,,-4,stop\n"
+                                   "4,Infinity,1,1,,1,stop\n",
+                               "a.csv");
     EXPECT_EQ(lens.name, "A lens");
     EXPECT_EQ(lens.source, "a book");
     EXPECT_EQ(lens.notes, "of 1950");
@@ -65,13 +66,13 @@ TEST(CsvTable, TakesNumbersAsTheyAre) {
 }
 
 TEST(CsvTable, ReadsGlassConicAndEvenTermsAndNamesTheOthers) {
-    const Prescription lens =
+    const optics::Prescription lens =
         parse_csv_prescription(kHeader +
                                    ",glass,conic,A2,A4,A5,A20,A22,mood\n"
                                    "1,50,4,,,10,glass,SCHOTT LAK9,-0.5,1e-3,1e-5,2e-6,1e-22,3,good\n"
                                    "2,-50,4,1.5,,10,air,,,,,,,,\n3,0,1,1.4,60,5,stop,,,,,0,,0,\n",
                                "a.csv");
-    const PrescribedSurface& first = lens.surfaces[0];
+    const optics::PrescribedSurface& first = lens.surfaces[0];
     EXPECT_EQ(first.medium.glass, "SCHOTT LAK9");
     EXPECT_FALSE(first.medium.n_d);
     EXPECT_EQ(first.conic, -0.5);
@@ -80,7 +81,7 @@ TEST(CsvTable, ReadsGlassConicAndEvenTermsAndNamesTheOthers) {
     EXPECT_EQ(first.asphere[9], 1e-22);
     EXPECT_EQ(lens.surfaces[2].medium.n_d, 1.4) << "a stop keeps the medium that it states";
     expect_remark(lens, "asphere-term-not-read", 1, "A5 = 2e-06, A22 = 3");
-    EXPECT_EQ(find_remark(lens, "asphere-term-not-read", 1)->severity, Severity::error) << "another surface";
+    EXPECT_EQ(find_remark(lens, "asphere-term-not-read", 1)->severity, optics::Severity::error) << "another surface";
     EXPECT_EQ(find_remark(lens, "asphere-term-not-read", 3), nullptr) << "0 is no term";
     expect_remark(lens, "column-not-read", 0, "mood");
     expect_remark(lens, "kind-contradicts-index", 2, "air");
@@ -88,7 +89,7 @@ TEST(CsvTable, ReadsGlassConicAndEvenTermsAndNamesTheOthers) {
 }
 
 TEST(CsvTable, KnowsTheNamesThatOthersGiveItsColumns) {
-    const Prescription lens = parse_csv_prescription(
+    const optics::Prescription lens = parse_csv_prescription(
         "# product: A product\n# patent/source of numbers: US 1\n"
         "surface,R,d,nd,vd,nC,nF,ng,semi_diameter,K,A4\n"
         "1,39.03,2,1.62299,58.2,1.619739,1.63045,1.636296,25.6,,\n2A,9.1,1.5,1,,,,,5.1,-1,-0.00013\nSTO,inf,4,1,,,,,3,,"
@@ -96,7 +97,7 @@ TEST(CsvTable, KnowsTheNamesThatOthersGiveItsColumns) {
         "a.csv");
     EXPECT_EQ(lens.name, "A product");
     EXPECT_EQ(lens.source, "US 1");
-    const StatedMedium& medium = lens.surfaces[0].medium;
+    const optics::StatedMedium& medium = lens.surfaces[0].medium;
     EXPECT_EQ(medium.n_d, 1.62299);
     EXPECT_EQ(medium.V_d, 58.2);
     ASSERT_EQ(medium.indices.size(), 4U);
@@ -109,7 +110,7 @@ TEST(CsvTable, KnowsTheNamesThatOthersGiveItsColumns) {
 }
 
 TEST(CsvTable, SaysWhereIndicesAtLinesAreNotUsed) {
-    const Prescription lens = parse_csv_prescription(
+    const optics::Prescription lens = parse_csv_prescription(
         kHeader +
             ",glass,n_C,n_F,n_g\n1,50,4,1.5,60,10,glass,BK7,1.49,1.51,1.52\n2,50,4,1.5,60,10,glass,,1.49,,\n"
             "3,50,4,1.5,60,10,glass,,1.49,15.1,1.52\n4,50,4,,,10,,,1.49,1.51,\n5,50,4,1,,10,air,,1,1,1\n"
@@ -119,7 +120,7 @@ TEST(CsvTable, SaysWhereIndicesAtLinesAreNotUsed) {
     EXPECT_EQ(lens.surfaces[0].medium.n_d, 1.5);
     EXPECT_EQ(lens.surfaces[0].medium.V_d, 60.0);
     expect_remark(lens, "lines-not-used", 1, "BK7");
-    EXPECT_EQ(find_remark(lens, "lines-not-used", 1)->severity, Severity::info);
+    EXPECT_EQ(find_remark(lens, "lines-not-used", 1)->severity, optics::Severity::info);
     expect_remark(lens, "lines-not-used", 2, "two or more");
     expect_remark(lens, "lines-not-used", 3, "from 1 to 5");
     expect_remark(lens, "lines-not-used", 4, "air");
@@ -148,7 +149,7 @@ TEST(CsvTable, SaysWhatIsNoPrescription) {
 }
 
 TEST(PbrtLens, ReadsDiametersAndZeroForAirAndStop) {
-    const Prescription lens = parse_pbrt_lens(
+    const optics::Prescription lens = parse_pbrt_lens(
         "# D-GAUSS F/2\n# from a book\n# radius\taxpos\tN\taperture\n29.475\t3.76\t1.67\t25.2\n84.83\t0.12\t1\t25.2\n"
         "0\t4.5\t0\t17.1  # the stop\n-39.73 35.5 0 20",
         "a.dat");
@@ -166,13 +167,13 @@ TEST(PbrtLens, ReadsDiametersAndZeroForAirAndStop) {
 
 TEST(PbrtLens, SaysWhatItTookUponItself) {
     // A thin lens of two equal radii: 1/f = 2 (n − 1) / R = 1/100, and nothing is between it and its focus.
-    const Prescription lens = parse_pbrt_lens("100 0 1.5 20 60\n-100 0 1 20\n", "a.dat");
+    const optics::Prescription lens = parse_pbrt_lens("100 0 1.5 20 60\n-100 0 1 20\n", "a.dat");
     EXPECT_NEAR(lens.surfaces[1].thickness_mm, 100.0, 1e-12);
     expect_remark(lens, "sensor-placed", 2, "100 mm");
     expect_remark(lens, "thickness-shifted", 1, "before");
     expect_remark(lens, "column-beyond-pbrt", 1, "60");
     EXPECT_EQ(lens.surfaces[0].medium.V_d, 60.0);
-    const Prescription flat = parse_pbrt_lens("100 5 1.5 20\n0 10 0 20\n", "a.dat");
+    const optics::Prescription flat = parse_pbrt_lens("100 5 1.5 20\n0 10 0 20\n", "a.dat");
     EXPECT_FALSE(flat.surfaces[1].is_stop);
     expect_remark(flat, "flat-or-stop", 2, "flat");
 }
@@ -192,7 +193,7 @@ TEST(PbrtLens, SaysWhatIsNoPrescription) {
 }
 
 TEST(FxTable, ReadsGlassIrisZoomCylindersAspheresAndScale) {
-    const Prescription lens = parse_fx(
+    const optics::Prescription lens = parse_fx(
         "// CANON; US PAT 5,537,259\n#EFL\t70\t135\t200\t// effective focal length\n#!scale 0.5\n\n"
         "311.919\t2.80\t\tLAFN7\t1.7495\t35\t38\n"
         "-263.46 8.78/26.15 /32.85\tair\t38\t// variable\n"
@@ -225,7 +226,7 @@ TEST(FxTable, ReadsGlassIrisZoomCylindersAspheresAndScale) {
 
 TEST(FxTable, ScaleIsOfEveryRowWhereverItStands) {
     const std::string rows = "10 3 abbe 1.5 60 5\n-20 4 air 5\n";
-    const Prescription lens = parse_fx(rows + "#!scale 2\n", "a.fx");
+    const optics::Prescription lens = parse_fx(rows + "#!scale 2\n", "a.fx");
     EXPECT_EQ(lens.surfaces[0].radius_mm, 20.0);
     EXPECT_EQ(lens.surfaces[0].thickness_mm, 6.0);
     EXPECT_EQ(lens.surfaces[1].semi_diameter_mm, 10.0);
@@ -234,12 +235,13 @@ TEST(FxTable, ScaleIsOfEveryRowWhereverItStands) {
 }
 
 TEST(FxTable, AnIrisInsideGlassKeepsIt) {
-    const Prescription lens = parse_fx("6.5 3 abbe 1.3374 70 5\n100000 0.01 iris 3\n10.2 4 air 5\n", "a.fx");
+    const optics::Prescription lens = parse_fx("6.5 3 abbe 1.3374 70 5\n100000 0.01 iris 3\n10.2 4 air 5\n", "a.fx");
     EXPECT_EQ(lens.surfaces[1].medium.n_d, 1.3374);
 }
 
 TEST(FxTable, NamesWhatItDoesNotUnderstand) {
-    const Prescription lens = parse_fx("#!curved_sensor 12\n#EFL 1 2\n10 3/4/5 air 5 7\n20 1/2 air 5\n", "a.fx");
+    const optics::Prescription lens =
+        parse_fx("#!curved_sensor 12\n#EFL 1 2\n10 3/4/5 air 5 7\n20 1/2 air 5\n", "a.fx");
     expect_remark(lens, "line-not-read", 0, "curved_sensor");
     expect_remark(lens, "column-not-read", 1, "7");
     expect_remark(lens, "zoom-gap-missing", 2, "repeated");
@@ -301,7 +303,7 @@ constexpr const char* kOptiland = R"({
    "index": 1.0, "absorp": 0.0}}]}})";
 
 TEST(Optiland, ReadsWhatItSaves) {
-    const Prescription lens = parse_optiland(kOptiland, "a.json");
+    const optics::Prescription lens = parse_optiland(kOptiland, "a.json");
     EXPECT_EQ(lens.name, "Tilted");
     ASSERT_EQ(lens.surfaces.size(), 5U);
     EXPECT_EQ(lens.surfaces[0].radius_mm, 50.0);
@@ -334,21 +336,22 @@ std::string replaced(std::string text, const std::string& from, const std::strin
 }
 
 TEST(Optiland, NamesWhatItDoesNotUnderstand) {
-    const Prescription mirror =
+    const optics::Prescription mirror =
         parse_optiland(replaced(kOptiland, "\"is_reflective\": false", "\"is_reflective\": true"), "a.json");
     ASSERT_NE(find_remark(mirror, "mirror", 1), nullptr);
-    EXPECT_EQ(find_remark(mirror, "mirror", 1)->severity, Severity::error);
-    const Prescription odd = parse_optiland(replaced(kOptiland, "EvenAsphere", "ZernikePolynomial"), "a.json");
+    EXPECT_EQ(find_remark(mirror, "mirror", 1)->severity, optics::Severity::error);
+    const optics::Prescription odd = parse_optiland(replaced(kOptiland, "EvenAsphere", "ZernikePolynomial"), "a.json");
     expect_remark(odd, "shape-not-read", 2, "ZernikePolynomial");
-    EXPECT_EQ(find_remark(odd, "shape-not-read", 2)->severity, Severity::error);
-    const Prescription terms =
+    EXPECT_EQ(find_remark(odd, "shape-not-read", 2)->severity, optics::Severity::error);
+    const optics::Prescription terms =
         parse_optiland(replaced(kOptiland, "2e-09]", "2e-09, 0, 0, 0, 0, 0, 0, 0, 1e-30, 0]"), "a.json");
     expect_remark(terms, "asphere-term-not-read", 2, "r^22");
-    EXPECT_EQ(find_remark(terms, "asphere-term-not-read", 2)->severity, Severity::error);
+    EXPECT_EQ(find_remark(terms, "asphere-term-not-read", 2)->severity, optics::Severity::error);
     EXPECT_EQ(terms.remarks.size(), 5U) << "and the four of the lens as it is; 0 is no term";
-    const Prescription stuff = parse_optiland(replaced(kOptiland, "AbbeMaterial", "GradientMaterial"), "a.json");
+    const optics::Prescription stuff =
+        parse_optiland(replaced(kOptiland, "AbbeMaterial", "GradientMaterial"), "a.json");
     expect_remark(stuff, "material-not-read", 4, "GradientMaterial");
-    const Prescription rim = parse_optiland(replaced(kOptiland, "RadialAperture", "PolygonAperture"), "a.json");
+    const optics::Prescription rim = parse_optiland(replaced(kOptiland, "RadialAperture", "PolygonAperture"), "a.json");
     expect_remark(rim, "aperture-not-read", 1, "PolygonAperture");
 }
 
@@ -382,7 +385,7 @@ TEST(EveryReader, KnowsEveryLineEnd) {
             for (const char letter : text) {
                 ended += letter == '\n' ? end : std::string(1, letter);
             }
-            const Prescription lens = parse(ended, "a.x");
+            const optics::Prescription lens = parse(ended, "a.x");
             ASSERT_EQ(lens.surfaces.size(), 2U) << text;
             EXPECT_EQ(lens.name, "x");
             EXPECT_EQ(lens.notes, "a note");
@@ -416,4 +419,4 @@ TEST(EveryReader, BearsNoiseAndCutFiles) {
 }
 
 }  // namespace
-}  // namespace lensproof
+}  // namespace lensproof::formats

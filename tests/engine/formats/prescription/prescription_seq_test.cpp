@@ -11,15 +11,15 @@
 #include "engine/optics/lens.h"
 #include "tests/engine/formats/prescription/same_rays.h"
 
-namespace lensproof {
+namespace lensproof::formats {
 namespace {
 
-Prescription parse(const std::string& text) {
+optics::Prescription parse(const std::string& text) {
     return parse_seq(text, "test.seq");
 }
 
-bool has_finding(const Prescription& prescription, const std::string& code, const std::string& words) {
-    return std::ranges::any_of(prescription.remarks, [&](const Finding& finding) {
+bool has_finding(const optics::Prescription& prescription, const std::string& code, const std::string& words) {
+    return std::ranges::any_of(prescription.remarks, [&](const optics::Finding& finding) {
         return finding.code == code && finding.message.find(words) != std::string::npos;
     });
 }
@@ -62,8 +62,8 @@ GO
 )";
 
 TEST(Seq, TessarIsTheTomlLens) {
-    const Prescription lens = parse(kTessar);
-    const Prescription expected = read_prescription(find_lens_file("tessar"));
+    const optics::Prescription lens = parse(kTessar);
+    const optics::Prescription expected = read_prescription(find_lens_file("tessar"));
     expect_same_rays(expected, lens);
     EXPECT_TRUE(lens.remarks.empty());
     EXPECT_EQ(lens.name, "Tessar; 100 mm!");
@@ -78,7 +78,7 @@ TEST(Seq, TessarIsTheTomlLens) {
 // The ray from (0.5, 1, −20) along (0.03, −0.02, 1) through basic, DAR and REV decentres, as rayoptics 0.9.8 traces it
 // in global coordinates at the d line, where its model glasses are 1.5 and 1.6 too. Decimals as printed.
 TEST(Seq, DecentresAddUpAsInRayoptics) {
-    const Prescription lens = parse(
+    const optics::Prescription lens = parse(
         "RDM;LEN\nDIM M\nEPD 4\nWL 587.5618\nYAN 0\nSO 0 20\nS 0 10\n STO\nS 50 5 500.600\n"
         " XDE 0.5; YDE -0.3; ADE 7; BDE 4; CDE 11\nS -33 1\nS 100 3 600.600\n"
         " DAR; XDE -0.4; YDE 0.2; ADE -3; BDE 2; CDE 5\nS 0 6\n ADE 2\nS 80 4 600.600\n"
@@ -92,10 +92,10 @@ TEST(Seq, DecentresAddUpAsInRayoptics) {
                                             {1.1234145451725253, -0.04099434388271894, 25.271694048934773},
                                             {0.9287083978575511, 0.015667018778847464, 29.26936073077089}}};
     std::vector<Vec3d> points;
-    trace<Direction::forward, Rims::follow>(
-        at_wavelength<double>(make_lens(lens, {}), 587.5618),
+    optics::trace<optics::Direction::forward, optics::Rims::follow>(
+        optics::at_wavelength<double>(optics::make_lens(lens, {}), 587.5618),
         Ray<double>{{0.5, 1.0, -20.0}, {0.03 / norm, -0.02 / norm, 1.0 / norm}},
-        [&](const SurfaceEvent<double>& event) { points.push_back(event.ray.origin); });
+        [&](const optics::SurfaceEvent<double>& event) { points.push_back(event.ray.origin); });
     ASSERT_EQ(points.size(), expected.size());
     for (std::size_t i = 0; i < expected.size(); ++i) {
         EXPECT_NEAR(length(points[i] - expected[i]), 0.0, 1e-12) << i;
@@ -106,7 +106,7 @@ TEST(Seq, DecentresAddUpAsInRayoptics) {
 }
 
 TEST(Seq, ReadsShapesAndUnits) {
-    const Prescription lens = parse(
+    const optics::Prescription lens = parse(
         "RDM N;LEN\nDIM I\nYIM 0 0.5\nSO 0 1e11\nS 0.5 0.1 NBK7_SCHOTT\n STO\n ASP\n K -1; A 2; J 3\n"
         "S 0.2 1\n CYL\nS 0.25 1\n YTO; RDX 8; B 1e-3\nS 0.25 1\n XTO; CUX 0.5; A 1e-3\nSI 0 0\n");
     EXPECT_DOUBLE_EQ(lens.stated.image_circle_mm.value(), 25.4);
@@ -127,7 +127,7 @@ TEST(Seq, ReadsShapesAndUnits) {
 }
 
 TEST(Seq, ReadsEveryWayToStateAGlass) {
-    const Prescription lens = parse(
+    const optics::Prescription lens = parse(
         "RDM;LEN\nPRV\n PWL 650.0 587.6 &\n 486.1\n 'E48' 1.5286 1.53116&\n  1.5378\nEND\nSO 0 1e13\n"
         "S 10 1 'E48'\n STO\nS 10 1 517642\nS 10 1 620410.3637\nS 10 1 1.5168:64.17\nS 10 1 1.6\nS 10 1 SLAH66_OHARA\n"
         "S 10 1 AIR\nS 10 1\nGLA S8 SF7_HIKARI\nS 10 1 003283\nS 10 1 620410.364\nSI 0 0\n");
@@ -155,7 +155,7 @@ TEST(Seq, ReadsEveryWayToStateAGlass) {
 }
 
 TEST(Seq, ReadsZoomPositions) {
-    const Prescription lens = parse(
+    const optics::Prescription lens = parse(
         "RDM;LEN\nEPD 2\nSO 0 1e13\nS 10 1 517642\n STO\nS 20 5\nSI 0 0\n"
         "ZOO 3\nZOO THI S2 5 6 7\nZOO TIT 'wide' 'middle' 'tele'\nZOO EPD 2 3 4\nZOO YAN F2 1 2 3\nTHI S1 Z3 "
         "1.5\nGO\n");
@@ -168,7 +168,7 @@ TEST(Seq, ReadsZoomPositions) {
 }
 
 TEST(Seq, WhatHoldsForOnePositionAloneIsNamedAndLeftOut) {
-    const Prescription lens = parse(
+    const optics::Prescription lens = parse(
         "RDM;LEN\nEPD 2\nSO 0 1e13\nS 10 1 517642\n STO\n CIR 4\nS 20 5\nSI 0 0\nZOO 2\nCIR S1 Z2 3\nRDY S1 Z2 77\n"
         "GLA S1 Z2 620364\nEPD Z2 5\nYAN F2 Z1 3\nCCY S1 Z2 0\nGO\n");
     ASSERT_EQ(lens.surfaces.size(), 2U);
@@ -181,17 +181,17 @@ TEST(Seq, WhatHoldsForOnePositionAloneIsNamedAndLeftOut) {
     }
     EXPECT_EQ(lens.remarks.size(), 5U);
     EXPECT_EQ(lens.remarks[0].surface, 1);
-    EXPECT_EQ(lens.remarks[0].severity, Severity::warning);
+    EXPECT_EQ(lens.remarks[0].severity, optics::Severity::warning);
 }
 
 TEST(Seq, DeletedSurfacesMakeAnotherLens) {
     const std::string lens = "RDM;LEN\nSO 0 1e13\nS 10 1 517642\n STO\nS 20 5\nS 20 5\nSI 0 0\n";
-    const Prescription cut = parse(lens + "DEL S2..3\nDEL PIK THI S1\nDEL SOL S1\nDEL APE S1\n");
+    const optics::Prescription cut = parse(lens + "DEL S2..3\nDEL PIK THI S1\nDEL SOL S1\nDEL APE S1\n");
     ASSERT_EQ(cut.remarks.size(), 2U);
     EXPECT_TRUE(has_finding(cut, "deleted-surfaces", "line 8: DEL"));
-    EXPECT_EQ(cut.remarks[0].severity, Severity::error);
+    EXPECT_EQ(cut.remarks[0].severity, optics::Severity::error);
     EXPECT_TRUE(has_finding(cut, "not-understood", "DEL"));
-    EXPECT_THROW(make_lens(cut, {}), InputError);
+    EXPECT_THROW(optics::make_lens(cut, {}), InputError);
 }
 
 TEST(Seq, EveryLineEndIsOne) {
@@ -201,7 +201,7 @@ TEST(Seq, EveryLineEndIsOne) {
 }
 
 TEST(Seq, NamesWhatItDoesNotUnderstand) {
-    const Prescription lens = parse(
+    const optics::Prescription lens = parse(
         "LEN\nQQQ 1\nVUY 0 0.2\nNAO 0.1\nSO 0.1 100\nS 50 2 517642\n STO; ZZZ 1; REX 3; CCY 0\n DIF DOE; HOR 1\n"
         "S -0.01 3 REFL\n PIM; RET S1\nSI -0.01 0\n");
     EXPECT_TRUE(has_finding(lens, "not-understood", "line 2: QQQ"));
@@ -255,4 +255,4 @@ TEST(Seq, HostileFilesAreRefusedByLine) {
 }
 
 }  // namespace
-}  // namespace lensproof
+}  // namespace lensproof::formats

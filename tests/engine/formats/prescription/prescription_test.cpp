@@ -10,7 +10,7 @@
 #include "engine/optics/lens.h"
 #include "tests/test_folder.h"
 
-namespace lensproof {
+namespace lensproof::formats {
 namespace {
 
 class PrescriptionFile : public testing::Test {
@@ -78,13 +78,13 @@ TEST_F(PrescriptionFile, CsvCarriesTheSameLens) {
     const auto file = write("plate.csv",
                             "# a comment\nsurface,radius_mm,thickness_mm,n_d,V_d,semi_aperture_mm,kind\n"
                             "1,50,4,1.5168,64.17,10,glass\n2,inf,1,1.0,,10,air\n3,0,40,1,,5,stop\n");
-    const Lens lens = load_lens(file.string());
+    const optics::Lens lens = load_lens(file.string());
     ASSERT_EQ(lens.surfaces.size(), 3U);
     EXPECT_DOUBLE_EQ(lens.surfaces[0].curvature, 0.02);
     EXPECT_EQ(lens.surfaces[1].curvature, 0.0);
     EXPECT_TRUE(lens.surfaces[2].is_stop);
     EXPECT_DOUBLE_EQ(lens.image_z, 45.0);
-    EXPECT_NEAR(refractive_index(lens.surfaces[0].medium.formula, 587.5618), 1.5168, 1e-12);
+    EXPECT_NEAR(optics::refractive_index(lens.surfaces[0].medium.formula, 587.5618), 1.5168, 1e-12);
 
     const std::string said = complaint(write("bad.csv",
                                              "surface,radius_mm,thickness_mm,n_d,V_d,semi_aperture_mm,kind\n"
@@ -93,13 +93,14 @@ TEST_F(PrescriptionFile, CsvCarriesTheSameLens) {
 }
 
 TEST(Projections, AgreeNearTheAxisAndHoldBeyondNinetyDegrees) {
-    for (const Projection projection : {Projection::rectilinear, Projection::equidistant, Projection::equisolid,
-                                        Projection::stereographic, Projection::orthographic}) {
-        EXPECT_NEAR(projected_radius(projection, 1e-4), 1e-4, 1e-12) << projection_name(projection);
+    for (const optics::Projection projection :
+         {optics::Projection::rectilinear, optics::Projection::equidistant, optics::Projection::equisolid,
+          optics::Projection::stereographic, optics::Projection::orthographic}) {
+        EXPECT_NEAR(optics::projected_radius(projection, 1e-4), 1e-4, 1e-12) << optics::projection_name(projection);
     }
-    EXPECT_DOUBLE_EQ(projected_radius(Projection::equidistant, 2.0), 2.0);
-    EXPECT_DOUBLE_EQ(projected_radius(Projection::equisolid, 2.0), 2.0 * std::sin(1.0));
+    EXPECT_DOUBLE_EQ(optics::projected_radius(optics::Projection::equidistant, 2.0), 2.0);
+    EXPECT_DOUBLE_EQ(optics::projected_radius(optics::Projection::equisolid, 2.0), 2.0 * std::sin(1.0));
 }
 
 }  // namespace
-}  // namespace lensproof
+}  // namespace lensproof::formats

@@ -10,18 +10,18 @@
 #include "engine/formats/prescription/prescription_forms.h"
 #include "tests/test_folder.h"
 
-namespace lensproof {
+namespace lensproof::formats {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-bool same_values(const std::vector<WavelengthValue>& a, const std::vector<WavelengthValue>& b) {
-    return std::ranges::equal(a, b, [](const WavelengthValue& x, const WavelengthValue& y) {
+bool same_values(const std::vector<optics::WavelengthValue>& a, const std::vector<optics::WavelengthValue>& b) {
+    return std::ranges::equal(a, b, [](const optics::WavelengthValue& x, const optics::WavelengthValue& y) {
         return x.wavelength_nm == y.wavelength_nm && x.value == y.value;
     });
 }
 
-void expect_same(const StatedData& a, const StatedData& b) {
+void expect_same(const optics::StatedData& a, const optics::StatedData& b) {
     EXPECT_EQ(a.efl_mm, b.efl_mm);
     EXPECT_EQ(a.bfl_mm, b.bfl_mm);
     EXPECT_EQ(a.f_number, b.f_number);
@@ -32,7 +32,7 @@ void expect_same(const StatedData& a, const StatedData& b) {
     EXPECT_EQ(a.source, b.source);
 }
 
-void expect_same(const PrescribedSurface& a, const PrescribedSurface& b) {
+void expect_same(const optics::PrescribedSurface& a, const optics::PrescribedSurface& b) {
     EXPECT_EQ(a.radius_mm, b.radius_mm);
     EXPECT_EQ(a.conic, b.conic);
     EXPECT_EQ(a.asphere, b.asphere);
@@ -50,27 +50,28 @@ void expect_same(const PrescribedSurface& a, const PrescribedSurface& b) {
     EXPECT_EQ(a.misalignment, b.misalignment);
 }
 
-void expect_same(const Coating& a, const Coating& b) {
+void expect_same(const optics::Coating& a, const optics::Coating& b) {
     ASSERT_EQ(a.index(), b.index());
-    if (const auto* layers = std::get_if<std::vector<CoatingLayer>>(&a)) {
-        EXPECT_TRUE(std::ranges::equal(*layers, std::get<std::vector<CoatingLayer>>(b),
-                                       [](const CoatingLayer& x, const CoatingLayer& y) {
+    if (const auto* layers = std::get_if<std::vector<optics::CoatingLayer>>(&a)) {
+        EXPECT_TRUE(std::ranges::equal(*layers, std::get<std::vector<optics::CoatingLayer>>(b),
+                                       [](const optics::CoatingLayer& x, const optics::CoatingLayer& y) {
                                            return x.index == y.index && x.thickness_nm == y.thickness_nm;
                                        }));
     } else {
-        EXPECT_TRUE(same_values(std::get<std::vector<WavelengthValue>>(a), std::get<std::vector<WavelengthValue>>(b)));
+        EXPECT_TRUE(same_values(std::get<std::vector<optics::WavelengthValue>>(a),
+                                std::get<std::vector<optics::WavelengthValue>>(b)));
     }
 }
 
 /// A prescription that uses everything there is.
-Prescription everything() {
-    Prescription lens;
+optics::Prescription everything() {
+    optics::Prescription lens;
     lens.file = "folder/a.toml";
     lens.name = "Quotes \" and \\ and a tab\t, µ and \x01\x7f";
     lens.source = "line\nbreak";
     lens.notes = "Two lines,\nthe second with \"\"\"three quotes\"\"\" \\ and \"one at the end\"";
-    lens.projection = Projection::equisolid;
-    lens.surroundings = Surroundings::vacuum;
+    lens.projection = optics::Projection::equisolid;
+    lens.surroundings = optics::Surroundings::vacuum;
     lens.object_distance_mm = 1234.5;
     lens.wavelengths_nm = {587.5618, 486.1327};
     lens.catalogues = {"folder/mine.agf", "folder/deep/other.yml", "beside.agf"};
@@ -83,12 +84,12 @@ Prescription everything() {
                    .total_track_mm = 1e-7,
                    .entrance_pupil_diameter_mm = 1.0 / 3.0,
                    .source = "claims"};
-    lens.stop_shape = PolygonStop{.blades = 7, .curvature = 0.25, .rotation_deg = -12.5};
-    lens.coatings["single layer"] = std::vector<CoatingLayer>{{1.38, 99.6}, {2.1, 0.1}};
-    lens.coatings["stated"] = std::vector<WavelengthValue>{{400.0, 0.01}, {700.0, 0.02}};
-    lens.coatings["same"] = std::vector<WavelengthValue>{{550.0, 0.005}};
+    lens.stop_shape = optics::PolygonStop{.blades = 7, .curvature = 0.25, .rotation_deg = -12.5};
+    lens.coatings["single layer"] = std::vector<optics::CoatingLayer>{{1.38, 99.6}, {2.1, 0.1}};
+    lens.coatings["stated"] = std::vector<optics::WavelengthValue>{{400.0, 0.01}, {700.0, 0.02}};
+    lens.coatings["same"] = std::vector<optics::WavelengthValue>{{550.0, 0.005}};
 
-    PrescribedSurface front;
+    optics::PrescribedSurface front;
     front.radius_mm = 0.1 + 0.2;
     front.conic = -1.5;
     front.asphere = {1e-300, -2.5e-6, 0.0, 1.0 / 7.0, 0.0, 0.0, 0.0, 0.0, 0.0, 3e-21};
@@ -100,20 +101,20 @@ Prescription everything() {
     front.medium = {.glass = "SCHOTT N-BK7", .n_d = 1.5168, .V_d = 64.17, .indices = {}};
     front.coating = "single layer";
     front.misalignment = {{0.1, -0.2}, {1.0, 2.0, -3.0}};
-    PrescribedSurface table = {};
+    optics::PrescribedSurface table = {};
     table.radius_mm = std::nan("");
     table.thickness_mm = -2.0;
     table.medium.indices = {{435.8343, 1.53}, {587.5618, 1.52}, {656.2725, 1.51}};
     table.coating = "stated";
-    PrescribedSurface stop;
+    optics::PrescribedSurface stop;
     stop.is_stop = true;
     stop.thickness_mm = kInfinity;
-    PrescribedSurface curved_stop;
+    optics::PrescribedSurface curved_stop;
     curved_stop.is_stop = true;
     curved_stop.radius_mm = -1e20;
     curved_stop.radius_x_mm = kInfinity;
     curved_stop.coating = "same";
-    lens.surfaces = {front, table, stop, curved_stop, PrescribedSurface{.radius_mm = -kInfinity}};
+    lens.surfaces = {front, table, stop, curved_stop, optics::PrescribedSurface{.radius_mm = -kInfinity}};
 
     lens.groups = {{.first = 1, .last = 2, .misalignment = {{0.5, 0.0}, {0.0, -1e-3, 0.0}}, .pivot_mm = 3.5}};
     lens.focus_groups = {{.first = 1, .last = 1, .travel = 1.0}, {.first = 2, .last = 4, .travel = -0.75}};
@@ -126,10 +127,10 @@ Prescription everything() {
 }
 
 TEST(TomlWriter, ReadsBackToTheSamePrescription) {
-    const Prescription lens = everything();
+    const optics::Prescription lens = everything();
     const WrittenPrescription written = to_toml(lens);
     EXPECT_TRUE(written.lost.empty());
-    const Prescription back = parse_toml_prescription(written.text, lens.file);
+    const optics::Prescription back = parse_toml_prescription(written.text, lens.file);
     EXPECT_EQ(back.name, lens.name);
     EXPECT_EQ(back.source, lens.source);
     EXPECT_EQ(back.notes, lens.notes);
@@ -140,16 +141,16 @@ TEST(TomlWriter, ReadsBackToTheSamePrescription) {
         SCOPED_TRACE(i + 1);
         if (std::isnan(lens.surfaces[i].radius_mm)) {
             EXPECT_TRUE(std::isnan(back.surfaces[i].radius_mm));
-            PrescribedSurface same = back.surfaces[i];
+            optics::PrescribedSurface same = back.surfaces[i];
             same.radius_mm = 1.0;
-            PrescribedSurface as_said = lens.surfaces[i];
+            optics::PrescribedSurface as_said = lens.surfaces[i];
             as_said.radius_mm = 1.0;
             expect_same(same, as_said);
         } else {
             expect_same(back.surfaces[i], lens.surfaces[i]);
         }
     }
-    const auto& polygon = std::get<PolygonStop>(back.stop_shape);
+    const auto& polygon = std::get<optics::PolygonStop>(back.stop_shape);
     EXPECT_EQ(polygon.blades, 7);
     EXPECT_EQ(polygon.curvature, 0.25);
     EXPECT_EQ(polygon.rotation_deg, -12.5);
@@ -183,16 +184,16 @@ TEST(TomlWriter, ReadsBackToTheSamePrescription) {
 }
 
 TEST(TomlWriter, KeepsATexturedStopAndReplacesWhatIsNotUtf8) {
-    Prescription lens = everything();
-    lens.stop_shape = TexturedStop{.image = "sto\\p.png"};
+    optics::Prescription lens = everything();
+    lens.stop_shape = optics::TexturedStop{.image = "sto\\p.png"};
     lens.name = "M\xFCller";
-    const Prescription back = parse_toml_prescription(to_toml(lens).text, lens.file);
-    EXPECT_EQ(std::get<TexturedStop>(back.stop_shape).image, "sto\\p.png");
+    const optics::Prescription back = parse_toml_prescription(to_toml(lens).text, lens.file);
+    EXPECT_EQ(std::get<optics::TexturedStop>(back.stop_shape).image, "sto\\p.png");
     EXPECT_EQ(back.name, "M\xEF\xBF\xBDller");
 }
 
 TEST(TomlWriter, LeavesOutWhatItsReaderRefusesAndSaysSo) {
-    Prescription lens = everything();
+    optics::Prescription lens = everything();
     lens.stated.f_number = 0.0;
     lens.stated.efl_mm = std::nan("");
     lens.surfaces[0].misalignment.tilt_deg[0] = kInfinity;
@@ -205,14 +206,14 @@ TEST(TomlWriter, LeavesOutWhatItsReaderRefusesAndSaysSo) {
 }
 
 TEST(TomlWriter, AlignsTheTable) {
-    Prescription lens;
+    optics::Prescription lens;
     lens.name = "x";
-    PrescribedSurface front;
+    optics::PrescribedSurface front;
     front.radius_mm = 42.97;
     front.thickness_mm = 9.8;
     front.medium.glass = "LAK9";
     front.semi_diameter_mm = 19.2;
-    PrescribedSurface stop;
+    optics::PrescribedSurface stop;
     stop.is_stop = true;
     stop.thickness_mm = 79.831;
     stop.semi_diameter_mm = 5.0;
@@ -226,9 +227,9 @@ TEST(TomlWriter, AlignsTheTable) {
 }
 
 TEST(CsvWriter, CarriesWhatItsColumnsHoldAndNamesTheRest) {
-    const Prescription lens = everything();
+    const optics::Prescription lens = everything();
     const WrittenPrescription written = to_csv(lens);
-    const Prescription back = parse_csv_prescription(written.text, "a.csv");
+    const optics::Prescription back = parse_csv_prescription(written.text, "a.csv");
     ASSERT_EQ(back.surfaces.size(), lens.surfaces.size());
     EXPECT_EQ(back.surfaces[0].radius_mm, lens.surfaces[0].radius_mm);
     EXPECT_EQ(back.surfaces[0].asphere, lens.surfaces[0].asphere);
@@ -243,7 +244,7 @@ TEST(CsvWriter, CarriesWhatItsColumnsHoldAndNamesTheRest) {
     for (const char* code :
          {"lost-zoom", "lost-toroid", "lost-misalignment", "lost-coating", "lost-stop-shape", "lost-focus-groups",
           "lost-surroundings", "lost-catalogues", "lost-projection", "lost-stated", "lost-object-distance"}) {
-        EXPECT_NE(std::ranges::find(written.lost, code, &Finding::code), written.lost.end()) << code;
+        EXPECT_NE(std::ranges::find(written.lost, code, &optics::Finding::code), written.lost.end()) << code;
     }
 }
 
@@ -251,13 +252,13 @@ TEST(WritePrescription, NamesFilesFromTheNewPlace) {
     const TestFolder place;
     const std::filesystem::path& folder = place.path();
     std::filesystem::create_directories(folder / "deep");
-    Prescription lens = everything();
+    optics::Prescription lens = everything();
     lens.file = folder / "a.toml";
     lens.catalogues = {folder / "mine.agf"};
-    lens.stop_shape = TexturedStop{.image = "stop.png"};
+    lens.stop_shape = optics::TexturedStop{.image = "stop.png"};
     EXPECT_TRUE(write_prescription(lens, folder / "deep" / "b.toml").empty());
-    const Prescription back = read_prescription(folder / "deep" / "b.toml");
-    EXPECT_EQ(std::get<TexturedStop>(back.stop_shape).image, "../stop.png");
+    const optics::Prescription back = read_prescription(folder / "deep" / "b.toml");
+    EXPECT_EQ(std::get<optics::TexturedStop>(back.stop_shape).image, "../stop.png");
     EXPECT_EQ(back.catalogues.front().lexically_normal(), (folder / "mine.agf").lexically_normal());
 }
 
@@ -273,4 +274,4 @@ TEST(WritePrescription, NamesTheFormsThatItCanWrite) {
 }
 
 }  // namespace
-}  // namespace lensproof
+}  // namespace lensproof::formats

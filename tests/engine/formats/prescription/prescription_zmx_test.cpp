@@ -12,7 +12,7 @@
 #include "engine/optics/lens.h"
 #include "tests/engine/formats/prescription/same_rays.h"
 
-namespace lensproof {
+namespace lensproof::formats {
 namespace {
 
 constexpr double kUlp = std::numeric_limits<double>::epsilon();
@@ -34,12 +34,12 @@ std::string coordinate_break(const std::array<double, 6>& values, double thickne
 const std::string kObject = surf(0, "  TYPE STANDARD\r\n  DISZ INFINITY\r\n");
 const std::string kStop = surf(1, "  STOP\r\n  DISZ 10\r\n  DIAM 5 1 0 0 1 \"\"\r\n");
 
-Prescription parse(const std::string& text) {
+optics::Prescription parse(const std::string& text) {
     return parse_zmx(text, "test.zmx");
 }
 
-bool has_finding(const Prescription& prescription, const std::string& code, const std::string& words) {
-    return std::ranges::any_of(prescription.remarks, [&](const Finding& finding) {
+bool has_finding(const optics::Prescription& prescription, const std::string& code, const std::string& words) {
+    return std::ranges::any_of(prescription.remarks, [&](const optics::Finding& finding) {
         return finding.code == code && finding.message.find(words) != std::string::npos;
     });
 }
@@ -54,11 +54,11 @@ std::string complaint(const std::string& text) {
 }
 
 /// The events of a ray at 587.5618 nm, the rims not clipping.
-std::vector<SurfaceEvent<double>> events_of(const Prescription& prescription, const Ray<double>& ray) {
-    std::vector<SurfaceEvent<double>> events;
-    const TraceLens<double> lens = at_wavelength<double>(make_lens(prescription, {}), 587.5618);
-    trace<Direction::forward, Rims::follow>(lens, ray,
-                                            [&](const SurfaceEvent<double>& event) { events.push_back(event); });
+std::vector<optics::SurfaceEvent<double>> events_of(const optics::Prescription& prescription, const Ray<double>& ray) {
+    std::vector<optics::SurfaceEvent<double>> events;
+    const optics::TraceLens<double> lens = optics::at_wavelength<double>(optics::make_lens(prescription, {}), 587.5618);
+    optics::trace<optics::Direction::forward, optics::Rims::follow>(
+        lens, ray, [&](const optics::SurfaceEvent<double>& event) { events.push_back(event); });
     return events;
 }
 
@@ -95,7 +95,7 @@ std::string twice_broken(const std::array<double, 6>& first, const std::array<do
 // global coordinates. Its reader takes tilts about x and y by the left-hand rule, against OpticStudio's help ("in a
 // right hand direction"), so it was given these two with their signs turned. Decimals as printed, 16 digits of 60 mm.
 TEST(Zmx, BreaksAddUpAsInRayoptics) {
-    const Prescription lens = parse(twice_broken({0.5, -0.3, 7, 4, 11, 0}, {-0.4, 0.2, -3, 2, 5, 0}));
+    const optics::Prescription lens = parse(twice_broken({0.5, -0.3, 7, 4, 11, 0}, {-0.4, 0.2, -3, 2, 5, 0}));
     const double norm = std::sqrt(0.1 * 0.1 + 0.05 * 0.05 + 1.0);
     const auto events = events_of(lens, {{1.0, 2.0, -20.0}, {0.1 / norm, -0.05 / norm, 1.0 / norm}});
     const std::array<Vec3d, 5> expected = {{{3.0, 1.0, 0.0},
@@ -112,7 +112,7 @@ TEST(Zmx, BreaksAddUpAsInRayoptics) {
 // The same with tilts about x only, which Optiland 0.6.3 takes by the right-hand rule too (its order of several tilts
 // is another). It keeps the models' n_d as 1.5 and 1.6 at the d line.
 TEST(Zmx, TiltsAboutOneAxisAsInOptiland) {
-    const Prescription lens = parse(twice_broken({0.5, -0.3, 7, 0, 0, 0}, {-0.4, 0.2, -3, 0, 0, 0}));
+    const optics::Prescription lens = parse(twice_broken({0.5, -0.3, 7, 0, 0, 0}, {-0.4, 0.2, -3, 0, 0, 0}));
     const double norm = std::sqrt(0.1 * 0.1 + 0.05 * 0.05 + 1.0);
     const auto events = events_of(lens, {{1.0, 2.0, -20.0}, {0.1 / norm, -0.05 / norm, 1.0 / norm}});
     const std::array<Vec3d, 5> expected = {{{3.0, 1.0, 0.0},
@@ -128,12 +128,13 @@ TEST(Zmx, TiltsAboutOneAxisAsInOptiland) {
 
 // A break with the order flag and every sign turned undoes the break without (OpticStudio's help, "Coordinate Break").
 TEST(Zmx, ReversedBreakUndoesABreak) {
-    const Prescription lens = parse(kHead + kObject + kStop + surf(2, coordinate_break({0.5, -0.3, 7, 4, 11, 0}, 0)) +
-                                    surf(3, coordinate_break({-0.5, 0.3, -7, -4, -11, 1}, 0)) + surf(4, kLensOne) +
-                                    surf(5, "  DISZ 40\r\n  DIAM 15 1\r\n") + surf(6, "  DISZ 0\r\n"));
+    const optics::Prescription lens =
+        parse(kHead + kObject + kStop + surf(2, coordinate_break({0.5, -0.3, 7, 4, 11, 0}, 0)) +
+              surf(3, coordinate_break({-0.5, 0.3, -7, -4, -11, 1}, 0)) + surf(4, kLensOne) +
+              surf(5, "  DISZ 40\r\n  DIAM 15 1\r\n") + surf(6, "  DISZ 0\r\n"));
     ASSERT_EQ(lens.surfaces.size(), 3U);
-    for (const PrescribedSurface& row : lens.surfaces) {
-        EXPECT_EQ(row.misalignment, Misalignment{});
+    for (const optics::PrescribedSurface& row : lens.surfaces) {
+        EXPECT_EQ(row.misalignment, optics::Misalignment{});
     }
     EXPECT_TRUE(lens.remarks.empty());
     EXPECT_NEAR(lens.surfaces[0].thickness_mm, 10.0, 8 * 10.0 * kUlp);
@@ -149,7 +150,7 @@ TEST(Zmx, SaysWhatTheHeadMeans) {
              "  STOP\n  TYPE EVENASPH\n  CURV 0.5\n  PARM 1 0.25\n  PARM 2 2\n  CONI -1\n  DISZ 0.1\n"
              "  GLAS N-BK7 0 0 1.5 40\n  DIAM 0.3 1\n  MEMA 0.4 0\n") +
         surf(2, "  DISZ 1\n  GLAS LAK9 0 0 1.691 54.7\n") + surf(3, "  DISZ 0\n  DIAM 0.5 1\n");
-    const Prescription lens = parse(text);
+    const optics::Prescription lens = parse(text);
     EXPECT_EQ(lens.name, "A lens");
     EXPECT_EQ(lens.source, "a book");
     EXPECT_EQ(lens.notes, "a note");
@@ -160,7 +161,7 @@ TEST(Zmx, SaysWhatTheHeadMeans) {
     EXPECT_EQ(lens.wavelengths_nm, (std::vector<double>{587.5618, 486.1327}));
     EXPECT_TRUE(std::isinf(lens.object_distance_mm));
     EXPECT_TRUE(has_finding(lens, "units", "in IN"));
-    const PrescribedSurface& asphere = lens.surfaces.at(0);
+    const optics::PrescribedSurface& asphere = lens.surfaces.at(0);
     EXPECT_DOUBLE_EQ(asphere.radius_mm, 2 * 25.4);
     EXPECT_DOUBLE_EQ(asphere.thickness_mm, 2.54);
     EXPECT_DOUBLE_EQ(asphere.asphere[0], 0.25 / 25.4);
@@ -175,7 +176,7 @@ TEST(Zmx, SaysWhatTheHeadMeans) {
 }
 
 TEST(Zmx, NamesWhatItDoesNotUnderstand) {
-    const Prescription lens =
+    const optics::Prescription lens =
         parse(kHead + "WHAT 3\r\n" + kObject +
               surf(1, "  STOP\r\n  TYPE BICONICX\r\n  DISZ 2\r\n  ZZZZ 1\r\n  ZZZZ 2\r\n  SQAP 1 1\r\n  COAT AR\r\n") +
               surf(2, "  CURV 0.1 4 1 1 0\r\n  DISZ 3\r\n  GLAS MIRROR 0 0\r\n  PZUP 1 1 0 0\r\n") +
@@ -195,21 +196,22 @@ TEST(Zmx, NamesWhatItDoesNotUnderstand) {
     EXPECT_EQ(lens.remarks.size(), 11U) << "each once";
     ASSERT_EQ(lens.zoom.size(), 2U);
     EXPECT_EQ(lens.zoom[1].gaps_mm.at(1), 4.0);
-    EXPECT_TRUE(std::ranges::any_of(lens.remarks, [](const Finding& finding) {
-        return finding.code == "mirror" && finding.surface == 2 && finding.severity == Severity::error;
+    EXPECT_TRUE(std::ranges::any_of(lens.remarks, [](const optics::Finding& finding) {
+        return finding.code == "mirror" && finding.surface == 2 && finding.severity == optics::Severity::error;
     }));
 }
 
 TEST(Zmx, NamesTermsThatAnEvenAsphereHasNot) {
-    const Prescription lens = parse(kHead + "FTYP 4 0 1 1\r\nYFLN 20\r\n" + kObject +
-                                    surf(1,
-                                         "  STOP\r\n  TYPE EVENASPH\r\n  PARM 8 0\r\n  PARM 9 1e-9\r\n  PARM 10 0\r\n"
-                                         "  PARM 11 2\r\n  DISZ 2\r\n") +
-                                    surf(2, "  DISZ 0\r\n"));
+    const optics::Prescription lens =
+        parse(kHead + "FTYP 4 0 1 1\r\nYFLN 20\r\n" + kObject +
+              surf(1,
+                   "  STOP\r\n  TYPE EVENASPH\r\n  PARM 8 0\r\n  PARM 9 1e-9\r\n  PARM 10 0\r\n"
+                   "  PARM 11 2\r\n  DISZ 2\r\n") +
+              surf(2, "  DISZ 0\r\n"));
     EXPECT_TRUE(has_finding(lens, "surface-type", "PARM 9 = 1e-09, PARM 11 = 2 of the EVENASPH"));
     EXPECT_TRUE(has_finding(lens, "fields", "theodolite"));
     EXPECT_FALSE(has_finding(lens, "fields", "mm"));
-    EXPECT_THROW(make_lens(lens, {}), InputError);
+    EXPECT_THROW(optics::make_lens(lens, {}), InputError);
 }
 
 TEST(Zmx, HostileFilesAreRefusedByLine) {
@@ -258,17 +260,17 @@ TEST(Zmx, EveryEncodingIsTheSameLens) {
 }
 
 /// Written and read again.
-Prescription again(const Prescription& prescription) {
+optics::Prescription again(const optics::Prescription& prescription) {
     return parse_zmx(to_zmx(prescription).text, prescription.file);
 }
 
-Prescription tessar() {
+optics::Prescription tessar() {
     return read_prescription(find_lens_file("tessar"));
 }
 
 TEST(Zmx, TessarComesBack) {
-    const Prescription lens = tessar();
-    const Prescription back = again(lens);
+    const optics::Prescription lens = tessar();
+    const optics::Prescription back = again(lens);
     expect_same_rays(lens, back);
     EXPECT_TRUE(back.remarks.empty());
     EXPECT_EQ(back.name, lens.name);
@@ -276,13 +278,13 @@ TEST(Zmx, TessarComesBack) {
     EXPECT_EQ(back.notes, lens.notes);
     EXPECT_EQ(back.stated.f_number, lens.stated.f_number);
     EXPECT_EQ(back.stated.half_field_deg, lens.stated.half_field_deg);
-    const std::vector<Finding> lost = to_zmx(lens).lost;
+    const std::vector<optics::Finding> lost = to_zmx(lens).lost;
     ASSERT_EQ(lost.size(), 1U);
-    EXPECT_EQ(lost[0].severity, Severity::info);
+    EXPECT_EQ(lost[0].severity, optics::Severity::info);
 }
 
 TEST(Zmx, EveryShapeComesBack) {
-    Prescription lens = tessar();
+    optics::Prescription lens = tessar();
     lens.surfaces[0].conic = -0.3;
     lens.surfaces[0].asphere = {1e-5, 2e-7, -3e-10, 1e-13};
     lens.surfaces[2].asphere[9] = 1e-26;
@@ -293,7 +295,7 @@ TEST(Zmx, EveryShapeComesBack) {
     lens.surfaces[7].rim_mm = 18.0;
     lens.object_distance_mm = 2000.0;
     lens.wavelengths_nm = {546.074, 480.0};
-    const Prescription back = again(lens);
+    const optics::Prescription back = again(lens);
     expect_same_rays(lens, back);
     EXPECT_TRUE(back.remarks.empty());
     EXPECT_EQ(back.surfaces[7].rim_mm, 18.0);
@@ -302,30 +304,30 @@ TEST(Zmx, EveryShapeComesBack) {
 }
 
 TEST(Zmx, TiltedSurfacesAndGroupsComeBack) {
-    Prescription lens = tessar();
+    optics::Prescription lens = tessar();
     lens.surfaces[7].misalignment = {.decentre_mm = {0.2, -0.1}, .tilt_deg = {1.0, -0.5, 30.0}};
     lens.groups.push_back({.first = 5, .last = 6, .misalignment = {{0.3, 0.4}, {-2.0, 1.0, 10.0}}, .pivot_mm = 5.0});
-    const Prescription back = again(lens);
+    const optics::Prescription back = again(lens);
     expect_same_rays(lens, back);
     EXPECT_TRUE(back.remarks.empty());
 }
 
 TEST(Zmx, ZoomPositionsComeBack) {
-    Prescription lens = tessar();
+    optics::Prescription lens = tessar();
     lens.surfaces[2].misalignment.tilt_deg = {1.0, 0.0, 0.0};
     lens.zoom = {{.name = "near", .gaps_mm = {{3, 5.0}, {8, 79.0}}}, {.name = "far", .gaps_mm = {{8, 82.0}}}};
-    const Prescription back = again(lens);
+    const optics::Prescription back = again(lens);
     ASSERT_EQ(back.zoom.size(), 2U);
     for (std::size_t position = 0; position < 2; ++position) {
-        expect_same_rays(at_zoom_position(lens, position), at_zoom_position(back, position));
+        expect_same_rays(optics::at_zoom_position(lens, position), optics::at_zoom_position(back, position));
     }
 }
 
 TEST(Zmx, SaysWhatItCannotWrite) {
-    Prescription lens = tessar();
-    lens.projection = Projection::equidistant;
-    lens.stop_shape = PolygonStop{};
-    lens.coatings["AR"] = std::vector<WavelengthValue>{{550.0, 0.01}};
+    optics::Prescription lens = tessar();
+    lens.projection = optics::Projection::equidistant;
+    lens.stop_shape = optics::PolygonStop{};
+    lens.coatings["AR"] = std::vector<optics::WavelengthValue>{{550.0, 0.01}};
     lens.surfaces[1].coating = "AR";
     lens.surfaces[2].barrel_mm = 20.0;
     lens.surfaces[4].medium = {.indices = {{400.0, 1.66}, {700.0, 1.63}}};
@@ -333,7 +335,7 @@ TEST(Zmx, SaysWhatItCannotWrite) {
     lens.surfaces[4].asphere[8] = 1e-26;
     lens.focus_groups.push_back({.first = 1, .last = 8});
     std::string said;
-    for (const Finding& finding : to_zmx(lens).lost) {
+    for (const optics::Finding& finding : to_zmx(lens).lost) {
         EXPECT_TRUE(finding.code.starts_with("lost-")) << finding.code;
         said += std::to_string(finding.surface) + " " + finding.message + "\n";
     }
@@ -345,4 +347,4 @@ TEST(Zmx, SaysWhatItCannotWrite) {
 }
 
 }  // namespace
-}  // namespace lensproof
+}  // namespace lensproof::formats

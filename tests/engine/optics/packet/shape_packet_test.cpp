@@ -9,7 +9,7 @@
 #include "engine/base/pack.h"
 #include "engine/optics/surface_shape.h"
 
-namespace lensproof {
+namespace lensproof::optics {
 namespace {
 
 using Random = std::mt19937_64;
@@ -254,4 +254,4 @@ TEST(ShapePacket, LanesThatAreNotWantedAreLeftAlone) {
 }
 
 }  // namespace
-}  // namespace lensproof
+}  // namespace lensproof::optics

@@ -16,7 +16,7 @@
 #include "engine/optics/packet/trace_batch.h"
 #include "tests/test_folder.h"
 
-namespace lensproof {
+namespace lensproof::optics {
 namespace {
 
 /// Rays towards the front of `lens` from all sides, so that some pass, some are clipped, miss or are reflected.
@@ -96,7 +96,7 @@ std::vector<TraceLens<double>> at_three(const Lens& lens) {
 TEST(TracePacket, EveryLaneHasTheBitsOfTheScalar) {
     Fates seen{};
     for (const char* name : {"tessar", "petzval", "muller-fisheye"}) {
-        const Lens lens = load_lens(name);
+        const Lens lens = formats::load_lens(name);
         const std::vector<Ray<double>> rays = rays_at(lens, 801, name[0] == 'm' ? 1.8 : 0.6);
         seen = seen + compare<Direction::forward>(at_three(lens), rays);
         seen = seen + compare<Direction::forward>({at_wavelength<double>(lens, 550.0)}, rays);
@@ -108,7 +108,7 @@ TEST(TracePacket, EveryLaneHasTheBitsOfTheScalar) {
 }
 
 TEST(TracePacket, GoesBackwardsToo) {
-    const Lens lens = load_lens("tessar");
+    const Lens lens = formats::load_lens("tessar");
     std::vector<Ray<double>> rays = rays_at(lens, 400, 0.6);
     for (Ray<double>& ray : rays) {
         ray = {{ray.origin.x, ray.origin.y, lens.image_z}, -1.0 * ray.direction};
@@ -119,7 +119,7 @@ TEST(TracePacket, GoesBackwardsToo) {
 
 // What is not asked for stays as it was, and rays beyond the batch's size are not touched.
 TEST(TracePacket, LeavesAloneWhatIsNotAskedFor) {
-    const Lens lens = load_lens("tessar");
+    const Lens lens = formats::load_lens("tessar");
     const SpectralLens<double> at = at_wavelengths<double>(lens, {550.0});
     const std::vector<Ray<double>> rays = rays_at(lens, 40, 0.1);
     for (const SimdLevel level : available_simd_levels()) {
@@ -142,15 +142,15 @@ TEST(TracePacket, LeavesAloneWhatIsNotAskedFor) {
 }
 
 TEST(TracePacket, RefusesLensesThatAreNotOne) {
-    const TraceLens<double> tessar = at_wavelength<double>(load_lens("tessar"), 550.0);
-    const TraceLens<double> petzval = at_wavelength<double>(load_lens("petzval"), 550.0);
+    const TraceLens<double> tessar = at_wavelength<double>(formats::load_lens("tessar"), 550.0);
+    const TraceLens<double> petzval = at_wavelength<double>(formats::load_lens("petzval"), 550.0);
     EXPECT_THROW(SpectralLens<double>({tessar, petzval}), std::invalid_argument);
     EXPECT_THROW(SpectralLens<double>({}), std::invalid_argument);
 }
 
 // A closed stop stops every lane, the one on the axis too.
 TEST(TracePacket, AClosedStopStopsEveryLane) {
-    const Lens lens = load_lens("tessar");
+    const Lens lens = formats::load_lens("tessar");
     TraceLens<double> at = at_wavelength<double>(lens, 550.0);
     at.surfaces[static_cast<std::size_t>(lens.stop_index())].semi_diameter_squared = 0.0;
     std::vector<Ray<double>> rays = rays_at(lens, 7, 0.1);
@@ -164,8 +164,8 @@ TEST(TracePacket, AClosedStopStopsEveryLane) {
 Lens tessar_with(const std::string& more) {
     const TestFolder folder;
     const std::filesystem::path file = folder.path() / "tessar_with.toml";
-    write_file(file, read_file(find_lens_file("tessar")) + more);
-    return load_lens(file.string());
+    write_file(file, read_file(formats::find_lens_file("tessar")) + more);
+    return formats::load_lens(file.string());
 }
 
 // Blades, coatings and turned, displaced groups, each at three wavelengths, where a coating's share differs.
@@ -173,7 +173,7 @@ TEST(TracePacket, TracesBladesCoatingsAndTurnedGroups) {
     for (const Lens& lens :
          {tessar_with("[stop]\nblades = 6\nrotation_deg = 10\n"),
           tessar_with("[[groups]]\nsurfaces = [3, 6]\ntilt_deg = [1, -2, 0]\ndecentre_mm = [0.3, 0.2]\n"),
-          load_lens("heliar-tronnier")}) {
+          formats::load_lens("heliar-tronnier")}) {
         ASSERT_FALSE(at_wavelength<double>(lens, 550.0).specials.empty());
         const Fates fates = compare<Direction::forward>(at_three(lens), rays_at(lens, 400, 0.4));
         EXPECT_GT(fates[static_cast<std::size_t>(RayStatus::ok)], 20);
@@ -183,7 +183,7 @@ TEST(TracePacket, TracesBladesCoatingsAndTurnedGroups) {
 
 // A shaped, displaced surface.
 TEST(TracePacket, TracesWhatIsNoSphere) {
-    const Lens lens = load_lens("tessar");
+    const Lens lens = formats::load_lens("tessar");
     TraceLens<double> at = at_wavelength<double>(lens, 550.0);
     SpecialSurface<double> special;
     special.has_shape = true;
@@ -196,4 +196,4 @@ TEST(TracePacket, TracesWhatIsNoSphere) {
 }
 
 }  // namespace
-}  // namespace lensproof
+}  // namespace lensproof::optics

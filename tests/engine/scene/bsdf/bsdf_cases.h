@@ -9,7 +9,7 @@
 
 #include "engine/scene/bsdf/bsdf.h"
 
-namespace lensproof {
+namespace lensproof::scene {
 
 /// Numbers in (0, 1), the same on every machine.
 class Uniform {
@@ -51,20 +51,20 @@ struct BsdfTables {
 
 /// Rough and diffuse surfaces: each with a density over directions. `tables` must outlive them.
 inline std::vector<BsdfCase> broad_cases(const BsdfTables& tables) {
-    const SpectralSample albedo({0.9F, 0.5F, 0.2F, 0.05F});
+    const spectral::SpectralSample albedo({0.9F, 0.5F, 0.2F, 0.05F});
     const DiffuseBsdf diffuse{.albedo = albedo};
-    const ConductorBsdf metal{.n = SpectralSample({0.2F, 0.6F, 1.3F, 1.4F}),
-                              .k = SpectralSample({3.5F, 2.1F, 1.9F, 1.8F}),
+    const ConductorBsdf metal{.n = spectral::SpectralSample({0.2F, 0.6F, 1.3F, 1.4F}),
+                              .k = spectral::SpectralSample({3.5F, 2.1F, 1.9F, 1.8F}),
                               .roughness = {.alpha_x = 0.3, .alpha_y = 0.3}};
     ConductorBsdf brushed = metal;
     brushed.roughness = tables.brushed;
     ConductorBsdf lossless_metal = brushed;
     lossless_metal.losses = &tables.metal_losses;
-    lossless_metal.given_back = SpectralSample({0.9F, 0.5F, 0.2F, 0.2F});
-    const DielectricBsdf frosted{.eta = SpectralSample(1.5F), .roughness = tables.frosted};
+    lossless_metal.given_back = spectral::SpectralSample({0.9F, 0.5F, 0.2F, 0.2F});
+    const DielectricBsdf frosted{.eta = spectral::SpectralSample(1.5F), .roughness = tables.frosted};
     DielectricBsdf lossless_glass = frosted;
     lossless_glass.losses = &tables.glass_losses;
-    const DielectricBsdf prism{.eta = SpectralSample({1.5F, 1.53F, 1.56F, 1.6F}),
+    const DielectricBsdf prism{.eta = spectral::SpectralSample({1.5F, 1.53F, 1.56F, 1.6F}),
                                .roughness = {.alpha_x = 0.3, .alpha_y = 0.2}};
     DielectricBsdf lossless_prism = prism;
     lossless_prism.roughness = tables.frosted;
@@ -86,4 +86,4 @@ inline std::vector<BsdfCase> broad_cases(const BsdfTables& tables) {
             {"mix", mix}};
 }
 
-}  // namespace lensproof
+}  // namespace lensproof::scene

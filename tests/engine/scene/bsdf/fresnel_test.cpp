@@ -8,14 +8,14 @@
 
 #include "tests/engine/scene/bsdf/bsdf_cases.h"
 
-namespace lensproof {
+namespace lensproof::scene {
 namespace {
 
 constexpr auto kRadiance = Transport::radiance;
 constexpr double kFloatRounding = 0x1p-24;
 
-SpectralSample conductor_at(float n, float k, double cos_incidence) {
-    return conductor_reflectance(SpectralSample(n), SpectralSample(k), cos_incidence);
+spectral::SpectralSample conductor_at(float n, float k, double cos_incidence) {
+    return conductor_reflectance(spectral::SpectralSample(n), spectral::SpectralSample(k), cos_incidence);
 }
 
 // ((n − 1)² + k²) / ((n + 1)² + k²) head on (Born & Wolf, §14.2, eq. 15), for metals from silver to chromium; and the
@@ -65,21 +65,21 @@ TEST(Fresnel, ReflectsTotallyBeyondTheCriticalAngle) {
     EXPECT_EQ(dielectric_reflectance(1.0 / kIndex, std::cos(critical + 1e-6)), 1.0);
     EXPECT_EQ(dielectric_reflectance(1.0 / kIndex, 0.0), 1.0);
     EXPECT_LT(dielectric_reflectance(1.0 / kIndex, std::cos(critical - 1e-6)), 0.999);
-    const Bsdf glass = DielectricBsdf{.eta = SpectralSample(1.5F)};
+    const Bsdf glass = DielectricBsdf{.eta = spectral::SpectralSample(1.5F)};
     const Vec3d inside = direction(-std::cos(critical + 1e-3), 0.3);
     for (const double u : {0.01, 0.5, 0.99}) {
         const auto drawn = sample(glass, inside, u, 0.5, 0.5, kRadiance);
         ASSERT_TRUE(drawn);
         EXPECT_EQ(drawn->wi, (Vec3d{-inside.x, -inside.y, inside.z}));
-        EXPECT_EQ(drawn->weight, SpectralSample(1.0F));
+        EXPECT_EQ(drawn->weight, spectral::SpectralSample(1.0F));
     }
 }
 
 // Snell: n sin i is the same on both sides, and the ray stays in its plane, for whichever wavelength is the hero; the
 // others stay behind. Into the glass and out of it. Rounding of a unit vector's sine, whatever the float index.
 TEST(Dielectric, EachHeroFollowsSnellAlone) {
-    const SpectralSample indices({1.51F, 1.52F, 1.535F, 1.56F});
-    for (std::size_t hero = 0; hero < kWavelengthsPerPath; ++hero) {
+    const spectral::SpectralSample indices({1.51F, 1.52F, 1.535F, 1.56F});
+    for (std::size_t hero = 0; hero < spectral::kWavelengthsPerPath; ++hero) {
         DielectricBsdf glass{.eta = indices};
         std::swap(glass.eta[0], glass.eta[hero]);
         for (const double mu : {0.99, 0.7, 0.2, -0.95, -0.8}) {
@@ -94,7 +94,7 @@ TEST(Dielectric, EachHeroFollowsSnellAlone) {
             EXPECT_TRUE(drawn->is_dispersed);
             EXPECT_TRUE(drawn->is_delta);
             EXPECT_NEAR(drawn->weight[0] * eta * eta, 1.0, 4 * kFloatRounding);
-            EXPECT_EQ(drawn->weight, hero_alone(drawn->weight));
+            EXPECT_EQ(drawn->weight, spectral::hero_alone(drawn->weight));
         }
     }
 }
@@ -102,13 +102,13 @@ TEST(Dielectric, EachHeroFollowsSnellAlone) {
 // Mirrors do not disperse: all wavelengths come back from a prism's face, and over the hero's chance of doing so each
 // weighs its own reflectance. Two float divisions.
 TEST(Dielectric, ReflectionKeepsAllWavelengths) {
-    const SpectralSample indices({1.5F, 1.55F, 1.6F, 1.7F});
+    const spectral::SpectralSample indices({1.5F, 1.55F, 1.6F, 1.7F});
     const Vec3d wo = direction(0.6, 1.0);
     const auto drawn = sample(Bsdf(DielectricBsdf{.eta = indices}), wo, 1e-3, 0.5, 0.5, kRadiance);
     ASSERT_TRUE(drawn);
     EXPECT_FALSE(drawn->is_dispersed);
     EXPECT_EQ(drawn->wi, (Vec3d{-wo.x, -wo.y, wo.z}));
-    for (std::size_t i = 0; i < kWavelengthsPerPath; ++i) {
+    for (std::size_t i = 0; i < spectral::kWavelengthsPerPath; ++i) {
         const double expected = dielectric_reflectance(indices[i], 0.6) / dielectric_reflectance(indices[0], 0.6);
         EXPECT_NEAR(drawn->weight[i], expected, 4 * kFloatRounding * expected);
     }
@@ -117,21 +117,22 @@ TEST(Dielectric, ReflectionKeepsAllWavelengths) {
 // A smooth boundary loses nothing whichever way light goes: importance weighs 1 in both, radiance 1 and 1/η², the
 // radiance within being η² as much. A perfect metal and white paint return everything. Exactly: nothing is estimated.
 TEST(SmoothSurfaces, KeepAllLight) {
-    const Bsdf glass = DielectricBsdf{.eta = SpectralSample(1.5F)};
+    const Bsdf glass = DielectricBsdf{.eta = spectral::SpectralSample(1.5F)};
     for (const double mu : {1.0, 0.9, 0.3, 0.01, -1.0, -0.9, -0.3}) {
         const double eta = mu > 0.0 ? 1.5 : 1.0 / 1.5;
         for (const double u : {1e-9, 0.02, 0.1, 0.6, 0.999}) {
             const auto importance = sample(glass, direction(mu, 2.0), u, 0.5, 0.5, Transport::importance);
             const auto radiance = sample(glass, direction(mu, 2.0), u, 0.5, 0.5, Transport::radiance);
             ASSERT_TRUE(importance && radiance);
-            EXPECT_EQ(importance->weight, SpectralSample(1.0F));
+            EXPECT_EQ(importance->weight, spectral::SpectralSample(1.0F));
             const bool passes = radiance->wi.z * mu < 0.0;
-            EXPECT_EQ(radiance->weight, SpectralSample(passes ? static_cast<float>(1.0 / (eta * eta)) : 1.0F));
+            EXPECT_EQ(radiance->weight,
+                      spectral::SpectralSample(passes ? static_cast<float>(1.0 / (eta * eta)) : 1.0F));
         }
-        const Bsdf mirror = ConductorBsdf{.n = SpectralSample(0.0F), .k = SpectralSample(3.0F)};
-        const Bsdf paint = DiffuseBsdf{.albedo = SpectralSample(1.0F)};
-        EXPECT_EQ(sample(mirror, direction(mu, 2.0), 0.5, 0.5, 0.5, kRadiance)->weight, SpectralSample(1.0F));
-        EXPECT_EQ(sample(paint, direction(mu, 2.0), 0.5, 0.5, 0.5, kRadiance)->weight, SpectralSample(1.0F));
+        const Bsdf mirror = ConductorBsdf{.n = spectral::SpectralSample(0.0F), .k = spectral::SpectralSample(3.0F)};
+        const Bsdf paint = DiffuseBsdf{.albedo = spectral::SpectralSample(1.0F)};
+        EXPECT_EQ(sample(mirror, direction(mu, 2.0), 0.5, 0.5, 0.5, kRadiance)->weight, spectral::SpectralSample(1.0F));
+        EXPECT_EQ(sample(paint, direction(mu, 2.0), 0.5, 0.5, 0.5, kRadiance)->weight, spectral::SpectralSample(1.0F));
     }
 }
 
@@ -159,8 +160,8 @@ TEST(Bsdf, KnowsWhereLightsNeedNotBeSampled) {
     for (const auto& [name, bsdf] : broad_cases(tables)) {
         EXPECT_FALSE(is_delta(bsdf)) << name;
     }
-    const DielectricBsdf glass{.eta = SpectralSample(1.5F)};
-    const ConductorBsdf mirror{.n = SpectralSample(0.2F), .k = SpectralSample(3.0F)};
+    const DielectricBsdf glass{.eta = spectral::SpectralSample(1.5F)};
+    const ConductorBsdf mirror{.n = spectral::SpectralSample(0.2F), .k = spectral::SpectralSample(3.0F)};
     MixBsdf mix;
     mix.count = 2;
     mix.part = {glass, mirror};
@@ -168,13 +169,14 @@ TEST(Bsdf, KnowsWhereLightsNeedNotBeSampled) {
     EXPECT_TRUE(is_delta(Bsdf(glass)));
     EXPECT_TRUE(is_delta(Bsdf(mirror)));
     EXPECT_TRUE(is_delta(Bsdf(mix)));
-    mix.part[1] = DiffuseBsdf{.albedo = SpectralSample(0.5F)};
+    mix.part[1] = DiffuseBsdf{.albedo = spectral::SpectralSample(0.5F)};
     EXPECT_FALSE(is_delta(Bsdf(mix)));
-    EXPECT_TRUE(is_delta(Bsdf(plastic_bsdf(SpectralSample(0.0F), tables.smooth_coat))));
-    EXPECT_EQ(normal_albedo(Bsdf(mix)), SpectralSample(0.75F));
-    const SpectralSample coated = normal_albedo(Bsdf(plastic_bsdf(SpectralSample(1.0F), tables.smooth_coat)));
+    EXPECT_TRUE(is_delta(Bsdf(plastic_bsdf(spectral::SpectralSample(0.0F), tables.smooth_coat))));
+    EXPECT_EQ(normal_albedo(Bsdf(mix)), spectral::SpectralSample(0.75F));
+    const spectral::SpectralSample coated =
+        normal_albedo(Bsdf(plastic_bsdf(spectral::SpectralSample(1.0F), tables.smooth_coat)));
     EXPECT_NEAR(coated[0], 1.0, 2 * kFloatRounding);
 }
 
 }  // namespace
-}  // namespace lensproof
+}  // namespace lensproof::scene

@@ -1,0 +1,146 @@
+#include "experiments/draw/curves_json.h"
+
+#include "engine/base/json_number.h"
+#include "experiments/draw/analysis_drawings.h"
+
+namespace lensproof::draw {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json points_json(const std::vector<Vec2d>& points) {
+    Json json = Json::array();
+    for (const Vec2d& point : points) {
+        json.push_back({number_or_null(point.x), number_or_null(point.y)});
+    }
+    return json;
+}
+
+Json curves_array(const std::vector<WavelengthCurve>& curves) {
+    Json json = Json::array();
+    for (const WavelengthCurve& curve : curves) {
+        json.push_back({{"wavelength_nm", curve.wavelength_nm}, {"points", points_json(curve.points)}});
+    }
+    return json;
+}
+
+Json fans_json(const std::vector<FieldFans>& fields) {
+    Json json = Json::array();
+    for (const FieldFans& field : fields) {
+        json.push_back({{"field_deg", field.field_deg},
+                        {"tangential_pupil_um", curves_array(field.tangential)},
+                        {"sagittal_pupil_um", curves_array(field.sagittal)}});
+    }
+    return json;
+}
+
+Json field_curves_json(const std::vector<FieldCurve>& curves) {
+    Json json = Json::array();
+    for (const FieldCurve& curve : curves) {
+        Json points = Json::array();
+        for (const FieldCurve::Point& point : curve.points) {
+            points.push_back({{"field_deg", point.field_deg},
+                              {"tangential_focus_mm", number_or_null(point.tangential_mm)},
+                              {"sagittal_focus_mm", number_or_null(point.sagittal_mm)},
+                              {"distortion_percent", number_or_null(point.distortion_percent)}});
+        }
+        json.push_back({{"wavelength_nm", curve.wavelength_nm}, {"points", std::move(points)}});
+    }
+    return json;
+}
+
+Json spots_json(const AnalysisCurves& curves) {
+    Json json = Json::array();
+    for (const FieldSpots& field : curves.spots) {
+        Json planes = Json::array();
+        for (std::size_t i = 0; i < field.spots.size(); ++i) {
+            planes.push_back({{"defocus_mm", curves.defocus_mm[i]},
+                              {"spot_rms_um", number_or_null(field.spots[i].rms_um)},
+                              {"rays_um", curves_array(field.spots[i].rays)}});
+        }
+        json.push_back({{"field_deg", field.field_deg},
+                        {"airy_radius_um", number_or_null(field.airy_radius_um)},
+                        {"planes", std::move(planes)}});
+    }
+    return json;
+}
+
+Json illumination_json(const std::vector<FieldBrightness>& points) {
+    Json json = Json::array();
+    for (const FieldBrightness& point : points) {
+        json.push_back({{"field_deg", point.field_deg},
+                        {"relative_illumination", number_or_null(point.relative_illumination)},
+                        {"vignetting", number_or_null(point.vignetting)}});
+    }
+    return json;
+}
+
+Json map_json(const SquareMap& map) {
+    Json values = Json::array();
+    for (const double value : map.values) {
+        values.push_back(number_or_null(value));
+    }
+    return {{"size", map.size}, {"half_width", number_or_null(map.half_width)}, {"values", std::move(values)}};
+}
+
+Json wavefronts_json(const std::vector<FieldWavefront>& maps) {
+    Json json = Json::array();
+    for (const FieldWavefront& map : maps) {
+        json.push_back({{"field_deg", map.field_deg},
+                        {"wavelength_nm", map.wavelength_nm},
+                        {"wavefront_rms_waves", number_or_null(map.rms_waves)},
+                        {"peak_to_valley_waves", number_or_null(map.peak_to_valley_waves)},
+                        {"zernike_noll_waves", map.zernike_waves},
+                        {"opd_waves", map_json(map.opd_waves)}});
+    }
+    return json;
+}
+
+Json psfs_json(const std::vector<PsfMap>& maps) {
+    Json json = Json::array();
+    for (const PsfMap& map : maps) {
+        json.push_back({{"field_deg", map.field_deg},
+                        {"strehl", number_or_null(map.strehl)},
+                        {"pixel_um", map.intensity.size > 0 ? number_or_null(pixel_um(map)) : Json(nullptr)},
+                        {"file", map.intensity.size > 0 ? Json(psf_file_name(map)) : Json(nullptr)}});
+    }
+    return json;
+}
+
+Json mtf_json(const std::vector<FieldMtf>& fields) {
+    Json json = Json::array();
+    for (const FieldMtf& field : fields) {
+        json.push_back({{"field_deg", field.field_deg},
+                        {"remark", field.remark},
+                        {"tangential", points_json(field.tangential)},
+                        {"sagittal", points_json(field.sagittal)}});
+    }
+    return json;
+}
+
+}  // namespace
+
+Json curves_json(const AnalysisCurves& curves, const WaveCurves& waves) {
+    Json over_field = Json::array();
+    for (const FrequencyMtf& curve : waves.mtf_over_field) {
+        over_field.push_back({{"cycles_per_mm", curve.cycles_per_mm},
+                              {"tangential", points_json(curve.tangential)},
+                              {"sagittal", points_json(curve.sagittal)}});
+    }
+    return {{"ray_fans", fans_json(curves.fans)},
+            {"field_curves", field_curves_json(curves.field_curves)},
+            {"longitudinal_zone_mm", curves_array(curves.longitudinal)},
+            {"lateral_colour_deg_um", curves_array(curves.lateral_colour)},
+            {"airy_radius_deg_um", points_json(curves.airy_radius)},
+            {"spots", spots_json(curves)},
+            {"illumination", illumination_json(curves.illumination)},
+            {"wavefronts", wavefronts_json(waves.wavefronts)},
+            {"psfs", psfs_json(waves.psfs)},
+            {"mtf", mtf_json(waves.mtf)},
+            {"geometric_mtf", mtf_json(waves.geometric_mtf)},
+            {"diffraction_limit", points_json(waves.diffraction_limit)},
+            {"mtf_over_field", std::move(over_field)}};
+}
+
+}  // namespace lensproof::draw

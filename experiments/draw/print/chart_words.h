@@ -1,0 +1,38 @@
+// experiments/draw/print/chart_words.h — charts to print, from what a user asks for.
+#pragma once
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "experiments/draw/print/chart_print.h"
+
+namespace lensproof::draw {
+
+/// What a user says of a chart, by the keys of its file (engine/scene/chart_file.h); the rest has defaults.
+struct ChartWish {
+    std::string kind;
+    std::map<std::string, scene::GridSize> counts;  // "squares", "discs", "points", "crosses", "lines"
+    std::map<std::string, double> numbers;          // "square_mm", …, "sectors", "angle_deg"
+    std::string dictionary;
+};
+
+/// The kinds that can be printed.
+std::vector<std::string> printable_kinds();
+
+/// The keys that counts, and numbers, may have.
+std::vector<std::string> count_keys();
+std::vector<std::string> number_keys();
+
+/// "10x7". Throws InputError naming `option`.
+scene::GridSize parse_grid_size(const std::string& option, const std::string& text);
+
+/// The TOML file's [chart] table. Counts default to what suits the kind, the pitch to the largest whole mm that fits on
+/// the page, other lengths to a share of the pitch. Throws InputError for a kind that cannot be printed and for a key
+/// that the kind does not have.
+std::string chart_toml(const ChartWish& wish, const PrintLayout& layout);
+
+/// One line for the foot of the page: the kind and its dimensions.
+std::string chart_caption(const std::string& toml);
+
+}  // namespace lensproof::draw

@@ -1,0 +1,352 @@
+#include "experiments/draw/report/report.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <string_view>
+#include <vector>
+
+#include "engine/base/markup.h"
+#include "experiments/draw/report/html_text.h"
+
+namespace lensproof::draw {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr char kTemplate[] = {
+#include "report_template.inc"
+};
+
+constexpr std::size_t kSubjectColours = 7;  // .s0 … .s6 in the template
+
+// ---- Reading a report that may lack anything -----------------------------------------------------------------------
+
+const Json& member(const Json& object, const char* key) {
+    static const Json kNothing;
+    if (!object.is_object()) return kNothing;
+    const auto found = object.find(key);
+    return found == object.end() ? kNothing : *found;
+}
+
+/// The array there, or an empty one.
+const Json& list(const Json& object, const char* key) {
+    static const Json kEmpty = Json::array();
+    const Json& value = member(object, key);
+    return value.is_array() ? value : kEmpty;
+}
+
+std::optional<double> as_number(const Json& value) {
+    if (!value.is_number() || !std::isfinite(value.get<double>())) return std::nullopt;
+    return value.get<double>();
+}
+
+std::string as_text(const Json& value) {
+    if (value.is_string()) return value.get<std::string>();
+    if (value.is_null()) return "";
+    if (value.is_number_float()) return number_text(value.get<double>());
+    return value.dump(-1, ' ', false, Json::error_handler_t::replace);
+}
+
+std::string text(const Json& object, const char* key) {
+    return escape_markup(as_text(member(object, key)));
+}
+
+std::string with_unit(const std::string& number, const std::string& unit) {
+    return unit.empty() || unit == "°" ? number + unit : number + "\u00a0" + unit;  // 21°, but 5 % and 3 px
+}
+
+// ---- Verdicts and checks ---------------------------------------------------------------------------------------
+
+/// The class that gives shape and colour. A word this page does not know is no pass.
+std::string verdict_class(const Json& object) {
+    const std::string word = as_text(member(object, "verdict"));
+    return word == "PASS" ? "pass" : word == "FAIL" ? "fail" : "inconclusive";
+}
+
+std::string verdict_html(const Json& object) {
+    const std::string kind = verdict_class(object);
+    const std::string word = text(object, "verdict");
+    return "<span class=\"verdict " + kind + "\"><svg viewBox=\"0 0 16 16\" aria-hidden=\"true\"><use href=\"#mark-" +
+           kind + "\"></use></svg>" + (word.empty() ? "INCONCLUSIVE" : word) + "</span>";
+}
+
+/// "12 of 14 checks pass, 1 fails, 1 is inconclusive."
+std::string tally(const std::vector<const Json*>& checks) {
+    std::size_t pass = 0;
+    std::size_t fail = 0;
+    for (const Json* check : checks) {
+        const std::string kind = verdict_class(*check);
+        pass += kind == "pass";
+        fail += kind == "fail";
+    }
+    const std::size_t open = checks.size() - pass - fail;
+    std::string out = std::to_string(pass) + " of " + std::to_string(checks.size()) + " pass";
+    if (fail > 0) out += ", " + std::to_string(fail) + (fail == 1 ? " fails" : " fail");
+    if (open > 0) out += ", " + std::to_string(open) + (open == 1 ? " is inconclusive" : " are inconclusive");
+    return out;
+}
+
+std::string limit_html(const Json& check) {
+    const auto limit = as_number(member(check, "limit"));
+    if (!limit) return "—";
+    const std::string unit = text(check, "unit");
+    const std::string amount = with_unit(number_text(*limit), unit);
+    const auto target = as_number(member(check, "target"));
+    const std::string expect = as_text(member(check, "expect"));
+    if (expect == "at most") return "≤\u00a0" + amount;
+    if (expect == "at least") return "≥\u00a0" + amount;
+    const std::string from =
+        target ? " " + std::string(expect == "within" ? "of " : "from ") + with_unit(number_text(*target), unit) : "";
+    if (expect == "within") return "within " + amount + (target ? from : " of 0");
+    if (expect == "differs") return "differs by &gt;\u00a0" + amount + from;
+    return escape_markup(expect) + " " + amount;
+}
+
+/// "s2" for the third subject, "" for an id that no subject has.
+std::string subject_colour(const Json& report, const Json& id) {
+    const Json& subjects = list(report, "subjects");
+    for (std::size_t i = 0; i < subjects.size() && id.is_string(); ++i) {
+        if (member(subjects[i], "id") == id) return std::string("s").append(std::to_string(i % kSubjectColours));
+    }
+    return "";
+}
+
+struct Group {
+    std::string name;
+    std::vector<const Json*> checks;
+    std::vector<std::size_t> places;  // in the report's list, for the script
+};
+
+/// In the order in which a group is first named.
+std::vector<Group> groups_of(const Json& checks) {
+    std::vector<Group> groups;
+    std::map<std::string, std::size_t> place_of;
+    for (std::size_t i = 0; i < checks.size(); ++i) {
+        const std::string name = as_text(member(checks[i], "group"));
+        const auto [at, is_new] = place_of.try_emplace(name, groups.size());
+        if (is_new) groups.push_back({name, {}, {}});
+        groups[at->second].checks.push_back(&checks[i]);
+        groups[at->second].places.push_back(i);
+    }
+    return groups;
+}
+
+std::string floor_cell(const Json& check) {
+    const auto floor = as_number(member(check, "floor"));
+    return "<td class=\"floor\">" + (floor ? with_unit(floor_text(*floor), text(check, "unit")) : "—") + "</td>";
+}
+
+/// `has_floors`: the table has the column.
+std::string check_row(const Json& check, std::size_t place, bool has_floors) {
+    constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+    const double value = as_number(member(check, "value")).value_or(kNaN);
+    const std::string measured = measurement_text(value, as_number(member(check, "sigma")));
+    const std::string why = text(check, "explanation");
+    const std::string kind = verdict_class(check);
+    const bool hides_why = kind == "pass" && !why.empty();  // until the row has the focus
+    return "<tr class=\"check " + kind + (hides_why ? "\" tabindex=\"0" : "") +
+           "\"><th scope=\"row\"><span class=\"name\">" + text(check, "label") + "</span>" +
+           (why.empty() ? "" : "<span class=\"why\">" + why + "</span>") + "</th><td class=\"value\">" +
+           with_unit(measured, std::isfinite(value) ? text(check, "unit") : "") + "</td>" +
+           (has_floors ? floor_cell(check) : "") + "<td class=\"scale\" data-check=\"" + std::to_string(place) +
+           "\"></td><td class=\"limit\">" + limit_html(check) + "</td><td class=\"result\">" + verdict_html(check) +
+           "</td></tr>\n";
+}
+
+std::string checks_html(const Json& report) {
+    const Json& checks = list(report, "checks");
+    if (checks.empty()) return "<p class=\"empty\">This report holds no checks.</p>\n";
+    const bool has_floors = std::any_of(
+        checks.begin(), checks.end(), [](const Json& check) { return as_number(member(check, "floor")).has_value(); });
+    std::string out =
+        "<table class=\"checks\"><caption class=\"unseen\">Every check, its result and its limit</caption>\n"
+        "<thead><tr><th scope=\"col\">Check</th><th scope=\"col\">Measured, ± 1 σ</th>" +
+        std::string(has_floors ? "<th scope=\"col\">Method’s own error</th>" : "") +
+        "<th scope=\"col\" class=\"scale\">Against its limit</th>"
+        "<th scope=\"col\">Limit</th><th scope=\"col\">Verdict</th></tr></thead>\n";
+    for (const Group& group : groups_of(checks)) {
+        const std::string colour = subject_colour(report, member(*group.checks.front(), "subject"));
+        out += "<tbody><tr class=\"group\"><th scope=\"rowgroup\" colspan=\"" + std::string(has_floors ? "6" : "5") +
+               "\">";
+        if (!colour.empty()) out += "<i class=\"swatch " + colour + "\" aria-hidden=\"true\"></i>";
+        out += escape_markup(group.name.empty() ? "Checks" : group.name) + " <small>" + tally(group.checks) +
+               "</small></th></tr>\n";
+        for (std::size_t i = 0; i < group.checks.size(); ++i)
+            out += check_row(*group.checks[i], group.places[i], has_floors);
+        out += "</tbody>\n";
+    }
+    return out + "</table>\n";
+}
+
+std::string tally_html(const Json& report) {
+    std::vector<const Json*> checks;
+    for (const Json& check : list(report, "checks")) checks.push_back(&check);
+    return checks.empty() ? "" : "<p class=\"tally\">Of the checks, " + tally(checks) + ".</p>";
+}
+
+// ---- Subjects --------------------------------------------------------------------------------------------------
+
+std::string fact_row(const std::string& label, const std::string& value) {
+    return "<tr><th scope=\"row\">" + label + "</th><td>" + value + "</td></tr>\n";
+}
+
+std::string facts_html(const Json& subject) {
+    std::string rows;
+    for (const Json& fact : list(subject, "facts")) rows += fact_row(text(fact, "label"), text(fact, "value"));
+    const Json& focal_length = member(subject, "focal_length_px");
+    if (const auto value = as_number(member(focal_length, "value"))) {
+        rows += fact_row("Focal length, fitted",
+                         with_unit(measurement_text(*value, as_number(member(focal_length, "sigma"))), "px"));
+    }
+    return rows.empty() ? "" : "<table class=\"facts\"><tbody>\n" + rows + "</tbody></table>\n";
+}
+
+std::string picture_html(const Json& picture, const std::string& id, const std::map<std::string, std::string>& pngs) {
+    const auto png = pngs.find(as_text(member(picture, "name")));
+    const std::string caption = text(picture, "caption");
+    std::string out = "<figure class=\"picture\" id=\"" + id + "\"><div class=\"stage\">";
+    if (png == pngs.end()) {
+        out += "<p class=\"missing\">not in this report: " + text(picture, "name") + "</p>";
+    } else {
+        const char* type = png->first.ends_with(".svg") ? "svg+xml" : "png";
+        out += "<img alt=\"" + (caption.empty() ? text(picture, "name") : caption) + "\" src=\"data:image/" + type +
+               ";base64," + base64(png->second) + "\">";
+    }
+    return out + "</div><figcaption><span class=\"caption\">" + caption + "</span></figcaption></figure>\n";
+}
+
+/// Where the measurements are sure, beside the curves that say how sure they are along the radius.
+std::string maps_html(const Json& report, const std::map<std::string, std::string>& pngs) {
+    std::string out;
+    const Json& maps = list(report, "maps");
+    for (std::size_t i = 0; i < maps.size(); ++i) {
+        out += picture_html(maps[i], "map-" + std::to_string(i), pngs);
+    }
+    return out.empty() ? ""
+                       : "<h3 class=\"maps-title\">Certainty and coverage over the frame</h3>\n<div class=\"maps\">\n" +
+                             out + "</div>\n";
+}
+
+std::string subjects_html(const Json& report, const std::map<std::string, std::string>& pngs) {
+    const Json& subjects = list(report, "subjects");
+    if (subjects.empty()) return "<p class=\"empty\">This report shows no lens and no photo.</p>\n";
+    std::string out;
+    for (std::size_t i = 0; i < subjects.size(); ++i) {
+        const std::string number = std::to_string(i);
+        out += "<section class=\"subject s" + std::to_string(i % kSubjectColours) + "\" id=\"subject-" + number +
+               "\"><h3><i class=\"swatch\" aria-hidden=\"true\"></i>" + text(subjects[i], "label") + " <small>" +
+               text(subjects[i], "kind") + "</small></h3>\n" + facts_html(subjects[i]);
+        const Json& pictures = list(subjects[i], "pictures");
+        if (!pictures.empty()) out += "<div class=\"pictures\">\n";
+        for (std::size_t k = 0; k < pictures.size(); ++k) {
+            out += picture_html(pictures[k], "picture-" + number + "-" + std::to_string(k), pngs);
+        }
+        out += pictures.empty() ? "</section>\n" : "</div></section>\n";
+    }
+    return out;
+}
+
+// ---- Provenance ------------------------------------------------------------------------------------------------
+
+/// The columns are the first entry's keys.
+std::string table_html(const Json& rows) {
+    std::string out = "<table class=\"list\"><thead><tr>";
+    for (const auto& [key, value] : rows.front().items()) out += "<th scope=\"col\">" + escape_markup(key) + "</th>";
+    out += "</tr></thead><tbody>\n";
+    for (const Json& row : rows) {
+        out += "<tr>";
+        for (const auto& [key, value] : rows.front().items()) out += "<td>" + text(row, key.c_str()) + "</td>";
+        out += "</tr>\n";
+    }
+    return out + "</tbody></table>";
+}
+
+std::string joined(const Json& values, const char* separator) {
+    std::string out;
+    for (const Json& value : values) out += (out.empty() ? "" : separator) + escape_markup(as_text(value));
+    return out;
+}
+
+/// A row for each setting: {"render": {"samples": 64}} is "render.samples 64".
+std::string settings_rows(const Json& object, const std::string& prefix) {
+    std::string out;
+    for (const auto& [key, value] : object.items()) {
+        const std::string name = prefix + key;
+        if (value.is_object()) {
+            out += settings_rows(value, name + ".");
+        } else {
+            out +=
+                fact_row(escape_markup(name), value.is_array() ? joined(value, ", ") : escape_markup(as_text(value)));
+        }
+    }
+    return out;
+}
+
+std::string value_html(const Json& value) {
+    if (value.is_object()) return "<table class=\"list\"><tbody>\n" + settings_rows(value, "") + "</tbody></table>";
+    if (!value.is_array()) return escape_markup(as_text(value));
+    if (!value.empty() && value.front().is_object()) return table_html(value);
+    return joined(value, "<br>");
+}
+
+std::string provenance_html(const Json& report) {
+    const Json& provenance = member(report, "provenance");
+    if (!provenance.is_object() || provenance.empty()) {
+        return "<p class=\"empty\">This report does not say where it comes from.</p>\n";
+    }
+    std::string out = "<dl class=\"provenance\">\n";
+    for (const auto& [key, value] : provenance.items()) {
+        std::string label = key;
+        for (char& c : label) c = c == '_' ? ' ' : c;
+        out += "<div><dt>" + escape_markup(label) + "</dt><dd>" + value_html(value) + "</dd></div>\n";
+    }
+    return out + "</dl>\n";
+}
+
+std::string reproduce_html(const Json& report) {
+    const std::string command = text(report, "reproduce");
+    if (command.empty()) return "<p class=\"empty\">This report names no command.</p>";
+    return "<div class=\"command\"><pre><code id=\"command\">" + command + "</code></pre></div>";
+}
+
+// ---- The page --------------------------------------------------------------------------------------------------
+
+/// Fills each {{name}} in one pass, so that a filled-in text is never looked at again. Unknown names stay.
+std::string fill(std::string_view page, const std::map<std::string, std::string, std::less<>>& parts) {
+    std::string out;
+    while (true) {
+        const std::size_t open = page.find("{{");
+        const std::size_t close = open == page.npos ? page.npos : page.find("}}", open);
+        if (close == page.npos) return out.append(page);
+        out.append(page.substr(0, open));
+        const auto part = parts.find(page.substr(open + 2, close - open - 2));
+        out.append(part == parts.end() ? page.substr(open, close + 2 - open) : std::string_view(part->second));
+        page.remove_prefix(close + 2);
+    }
+}
+
+}  // namespace
+
+std::string report_html(const Json& report, const std::map<std::string, std::string>& png_bytes_by_name) {
+    const std::string title = text(report, "title");
+    const std::string subjects = text(report, "subjects_title");
+    // A report without the key has no curves to draw; one with none in its list says so.
+    const char* curves_hidden = report.is_object() && report.contains("plots") ? "" : "hidden";
+    return fill({kTemplate, sizeof kTemplate}, {{"title", title.empty() ? "lensproof report" : title},
+                                                {"summary", text(report, "summary")},
+                                                {"curves_hidden", curves_hidden},
+                                                {"subjects_title", subjects.empty() ? "Renders and photos" : subjects},
+                                                {"verdict", verdict_html(report)},
+                                                {"tally", tally_html(report)},
+                                                {"checks", checks_html(report)},
+                                                {"maps", maps_html(report, png_bytes_by_name)},
+                                                {"subjects", subjects_html(report, png_bytes_by_name)},
+                                                {"provenance", provenance_html(report)},
+                                                {"reproduce", reproduce_html(report)},
+                                                {"data", json_for_script(report)}});
+}
+
+}  // namespace lensproof::draw

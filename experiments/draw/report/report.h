@@ -1,0 +1,54 @@
+// experiments/draw/report/report.h — the comparison report: one HTML file that works offline and asks nothing of
+// anyone.
+#pragma once
+#include <map>
+#include <nlohmann/json.hpp>
+#include <string>
+
+namespace lensproof::draw {
+
+/// The page for `report`, with the pictures inside it. Without JavaScript it still shows the answer, the table of
+/// checks, the facts, the pictures and the provenance; the script adds the scales, the curves and the overlays.
+///
+/// `png_bytes_by_name` holds the files' bytes under the `name` that a picture in `report` has. A name that is missing
+/// leaves a labelled gap; a picture that neither a subject nor a map names is left out. Names in .svg are SVG.
+///
+/// Whatever `report` holds is shown as text: no string in it can become markup or script. Any key may be absent or
+/// null, and a number that is not finite counts as null; nothing throws but std::bad_alloc. The same arguments give the
+/// same bytes.
+///
+/// The schema, lensproof-report/1 ("?" marks what may be absent or null):
+///
+///     {"schema": "lensproof-report/1", "title", "summary": "one paragraph that answers the question",
+///      "verdict": "PASS" | "FAIL" | "INCONCLUSIVE",
+///      "checks": [{"id", "group", "label", "value"?, "sigma"?: one standard error, "unit": "px", "%", "EV", "", …,
+///                  "limit", "expect": "at most" | "at least"       value against limit
+///                                   | "within"                     |value − target| ≤ limit
+///                                   | "differs",                   |value − target| > limit, a negative control
+///                  "target"?: 0 where absent, "verdict", "explanation"?,
+///                  "subject"?: an id below, for the group's colour,
+///                  "floor"?: the method's own error, in the same unit}],
+///      "subjects_title"?: over the subjects; "Renders and photos" where absent,
+///      "subjects": [{"id", "kind": "simulation" | "photos", "label",
+///                    "facts"?: [{"label", "value": string or number}], "focal_length_px"?: {"value", "sigma"?},
+///                    "pictures"?: [{"name", "caption", "width", "height",   of the picture that was measured, px; the
+///                                                                           PNG may be a smaller copy of it
+///                                   "points"?: [[x, y, dx, dy], …]}]}],     detected point and measured − model, px
+///      "plots"?: [{"id", "title", "subtitle"?, "x_label", "y_label", "x_unit"?, "y_unit"?,
+///                 "limit"?: draws the band ± limit,
+///                 "series": [{"label", "subject"?: an id above, which gives the colour,
+///                             "style": "measured" (solid) | "reference" (dashed) | "difference" (solid),
+///                             "x": [rising], "y": [null leaves a gap], "lower"?, "upper"?: the 95 % band,
+///                             "floor"?: the method's own error, drawn as dotted lines about the curve, or about 0
+///                                       for a difference,
+///                             "covered_to"?: beyond this x the data ended, and the curve is drawn faded}]}],
+///      "maps"?: [{"name", "subject"?, "caption"?}],         drawings over the frame, after the plots
+///      "provenance"?: {"program", "version", "commit", "inputs": [{"file", "sha256"}], "settings": {…}, …},
+///      "reproduce"?: "lensproof run …"}
+///
+/// Pixel coordinates are those of engine/formats/image/image.h: the centre of the top-left pixel is (0, 0), y runs
+/// down. `provenance` may hold further keys; a list of objects becomes a table, an object a list of its settings.
+std::string report_html(const nlohmann::ordered_json& report,
+                        const std::map<std::string, std::string>& png_bytes_by_name);
+
+}  // namespace lensproof::draw

@@ -1,0 +1,41 @@
+// experiments/studies/pupil_passage/measure_passage.h — how many camera paths leave a lens, with and without pupil
+// sampling.
+#pragma once
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "engine/optics/lens.h"
+#include "experiments/runner/experiment.h"
+
+namespace lensproof::studies {
+
+inline constexpr int kPassageRings = 8;  // of the image circle, of equal width
+
+/// A path in the section x = 0, from the sensor to where it left the front or was stopped; lens space, mm.
+struct DrawnPath {
+    std::vector<Vec2d> points;  // (z, y)
+    bool passes = false;
+};
+
+/// One way of choosing paths' first points.
+struct PassageOf {
+    std::array<double, kPassageRings> rings{};  // shares that pass
+    double mean = 0.0;                          // over the image circle's area
+    double error = 0.0;                         // standard, from independent scrambles of the sequence
+    std::vector<DrawnPath> drawn;               // from a few heights, evenly over what is drawn from there
+};
+
+struct Passage {
+    runner::PassageSetting setting;
+    optics::Lens lens;
+    double circle_mm = 0.0;  // radius: where the last light of the band ends, or what is stated, if that is smaller
+    PassageOf whole_element;
+    PassageOf pupil;
+};
+
+/// Traces paths of wavelengths from 400 to 700 nm. Throws InputError for a lens that cannot be loaded or set so.
+Passage measure_passage(const runner::PassageSetting& setting, std::uint64_t seed);
+
+}  // namespace lensproof::studies

@@ -1,0 +1,205 @@
+// tests/experiments/draw/report/report_test.cpp — the report page: nothing in a report can become markup, and it stands
+// without script.
+#include "experiments/draw/report/report.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <string>
+
+#include "engine/base/markup.h"
+#include "experiments/draw/report/html_text.h"
+
+namespace lensproof::draw {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr char kAttack[] = "</script><img src=x onerror=alert(1)>\"'&{{data}}";
+
+std::size_t count(const std::string& text, const std::string& part) {
+    std::size_t n = 0;
+    for (std::size_t at = text.find(part); at != text.npos; at = text.find(part, at + part.size())) ++n;
+    return n;
+}
+
+bool has(const std::string& text, const std::string& part) {
+    return text.find(part) != text.npos;
+}
+
+std::string embedded_json(const std::string& page) {
+    const std::string open = "<script type=\"application/json\" id=\"report\">";
+    const std::size_t from = page.find(open) + open.size();
+    return page.substr(from, page.find("</script>", from) - from);
+}
+
+Json one_check(const Json& extra) {
+    Json check = {{"id", "distortion"}, {"group", "Tessar"},       {"label", "distortion, rms"},
+                  {"value", 0.0421},    {"sigma", 0.0031},         {"unit", "px"},
+                  {"limit", 0.1},       {"expect", "at most"},     {"target", nullptr},
+                  {"verdict", "PASS"},  {"explanation", "because"}};
+    check.update(extra);
+    return {{"schema", "lensproof-report/1"}, {"title", "T"}, {"verdict", "PASS"}, {"checks", {check}}};
+}
+
+// RFC 4648, section 10.
+TEST(HtmlText, Base64GivesTheRfcsVectors) {
+    EXPECT_EQ(base64(""), "");
+    EXPECT_EQ(base64("f"), "Zg==");
+    EXPECT_EQ(base64("fo"), "Zm8=");
+    EXPECT_EQ(base64("foo"), "Zm9v");
+    EXPECT_EQ(base64("foob"), "Zm9vYg==");
+    EXPECT_EQ(base64("fooba"), "Zm9vYmE=");
+    EXPECT_EQ(base64("foobar"), "Zm9vYmFy");
+    EXPECT_EQ(base64(std::string("\xff\xef\x00", 3)), "/+8A");  // section 4's alphabet, bytes above 127, and zero
+}
+
+TEST(HtmlText, EscapesWhatMeansSomethingToHtml) {
+    EXPECT_EQ(escape_markup("<a href=\"x\" id='y'>&amp;"), "&lt;a href=&quot;x&quot; id=&#39;y&#39;&gt;&amp;amp;");
+}
+
+TEST(HtmlText, JsonInAScriptReadsBackTheSame) {
+    const Json json = {{kAttack, kAttack}, {"comment", "<!--<script>"}, {"separator", "\u2028"}};
+    const std::string text = json_for_script(json);
+    EXPECT_EQ(text.find_first_of("<>&"), text.npos);
+    EXPECT_EQ(Json::parse(text), json);
+}
+
+TEST(HtmlText, JsonTakesBadBytesAndNaN) {
+    const Json json = {{"bytes", "\xff\xfe"}, {"number", std::numeric_limits<double>::quiet_NaN()}};
+    EXPECT_EQ(Json::parse(json_for_script(json)), (Json{{"bytes", "\ufffd\ufffd"}, {"number", nullptr}}));
+}
+
+// The convention of the GUM, 7.2.6: two digits of the uncertainty, the value to the same place.
+TEST(HtmlText, UncertaintySetsTheDigits) {
+    EXPECT_EQ(measurement_text(0.04214, 0.00312), "0.0421 ± 0.0031");
+    EXPECT_EQ(measurement_text(-3.14159, 0.0996), "\u22123.14 ± 0.10");
+    EXPECT_EQ(measurement_text(2381.44, 12.3), "2381 ± 12");
+    EXPECT_EQ(measurement_text(-0.0001, 0.01), "0.000 ± 0.010");
+    EXPECT_EQ(measurement_text(5.0, std::nullopt), "5");
+    EXPECT_EQ(measurement_text(5.0, 0.0), "5");
+    EXPECT_EQ(measurement_text(5.0, std::nan("")), "5");
+    EXPECT_EQ(measurement_text(std::nan(""), 0.1), "—");
+    EXPECT_EQ(number_text(-1.5), "\u22121.5");
+    EXPECT_EQ(number_text(-0.0), "0");
+    EXPECT_EQ(number_text(0.1), "0.1");
+}
+
+TEST(Report, HostileTextStaysText) {
+    const Json report = {{"title", kAttack},
+                         {"summary", kAttack},
+                         {"verdict", kAttack},
+                         {"reproduce", kAttack},
+                         {"checks",
+                          {{{"id", kAttack},
+                            {"group", kAttack},
+                            {"label", kAttack},
+                            {"value", 1},
+                            {"unit", kAttack},
+                            {"limit", 2},
+                            {"expect", kAttack},
+                            {"verdict", kAttack},
+                            {"explanation", kAttack}}}},
+                         {"subjects",
+                          {{{"id", kAttack},
+                            {"kind", kAttack},
+                            {"label", kAttack},
+                            {"facts", {{{"label", kAttack}, {"value", kAttack}}}},
+                            {"pictures",
+                             {{{"name", "missing" + std::string(kAttack)}, {"caption", kAttack}},
+                              {{"name", kAttack}, {"caption", kAttack}}}}}}},
+                         {"plots", {{{"title", kAttack}}}},
+                         {"provenance",
+                          {{kAttack, kAttack},
+                           {"inputs", {{{"file", kAttack}, {kAttack, kAttack}}}},
+                           {"settings", {{kAttack, {{kAttack, kAttack}}}}}}}};
+    const std::string page = report_html(report, {{kAttack, "PNG"}});
+    const std::string blank = report_html(Json::object(), {});
+    EXPECT_FALSE(has(page, "<img src=x"));
+    EXPECT_EQ(count(page, "</script>"), count(blank, "</script>"));
+    EXPECT_EQ(count(page, "<script"), count(blank, "<script"));
+    EXPECT_EQ(count(page, "<img "), 1u);  // the one picture that is there
+    EXPECT_EQ(Json::parse(embedded_json(page)), report);
+}
+
+TEST(Report, PicturesTravelInside) {
+    const Json report = {
+        {"subjects",
+         {{{"id", "a"},
+           {"pictures", {{{"name", "a/1.png"}, {"caption", "one"}}, {{"name", "a/2.png"}, {"caption", "two"}}}}}}}};
+    const std::string page = report_html(report, {{"a/1.png", "foobar"}, {"unused.png", "fooba"}});
+    EXPECT_TRUE(has(page, "src=\"data:image/png;base64,Zm9vYmFy\""));
+    EXPECT_FALSE(has(page, "Zm9vYmE="));
+    EXPECT_TRUE(has(page, "not in this report: a/2.png"));
+}
+
+TEST(Report, TheTableOfChecksNeedsNoScript) {
+    const std::string page = report_html(one_check(Json::object()), {});
+    EXPECT_TRUE(has(page, "<th scope=\"row\"><span class=\"name\">distortion, rms</span><span class=\"why\">because"));
+    EXPECT_TRUE(has(page, "<td class=\"value\">0.0421 ± 0.0031\u00a0px</td>"));
+    EXPECT_TRUE(has(page, "<td class=\"limit\">≤\u00a00.1\u00a0px</td>"));
+    EXPECT_TRUE(has(page, "</svg>PASS</span></td></tr>"));
+    EXPECT_TRUE(has(page, "1 of 1 pass"));
+}
+
+TEST(Report, TheMethodsOwnErrorStandsBesideTheValueWhereItIsKnown) {
+    const std::string page = report_html(one_check({{"floor", 0.00561}}), {});
+    EXPECT_TRUE(has(page, "<td class=\"floor\">0.0056\u00a0px</td>"));
+    EXPECT_TRUE(has(page, "Method’s own error</th>"));
+    EXPECT_TRUE(has(page, "colspan=\"6\""));
+    const std::string without = report_html(one_check({{"floor", nullptr}}), {});
+    EXPECT_FALSE(has(without, "<td class=\"floor\">"));
+    EXPECT_FALSE(has(without, "own error</th>"));
+    Json two = one_check({{"floor", 0.01}});
+    two["checks"].push_back(one_check(Json::object())["checks"][0]);
+    EXPECT_TRUE(has(report_html(two, {}), "<td class=\"floor\">—</td>"));
+}
+
+TEST(Report, EachExpectationIsSaidInWords) {
+    const auto limit_of = [](const Json& extra) {
+        const std::string page = report_html(one_check(extra), {});
+        const std::string open = "<td class=\"limit\">";
+        const std::size_t from = page.find(open) + open.size();
+        return page.substr(from, page.find("</td>", from) - from);
+    };
+    EXPECT_EQ(limit_of({{"expect", "at least"}}), "≥\u00a00.1\u00a0px");
+    EXPECT_EQ(limit_of({{"expect", "within"}, {"target", 7}}), "within 0.1\u00a0px of 7\u00a0px");
+    EXPECT_EQ(limit_of({{"expect", "within"}}), "within 0.1\u00a0px of 0");
+    EXPECT_EQ(limit_of({{"expect", "differs"}}), "differs by &gt;\u00a00.1\u00a0px");
+    EXPECT_EQ(limit_of({{"expect", "differs"}, {"target", 7}}), "differs by &gt;\u00a00.1\u00a0px from 7\u00a0px");
+    EXPECT_EQ(limit_of({{"limit", nullptr}}), "—");
+}
+
+TEST(Report, AnUnknownVerdictIsNoPass) {
+    EXPECT_TRUE(has(report_html(one_check({{"verdict", "MAYBE"}}), {}), "0 of 1 pass, 1 is inconclusive"));
+    EXPECT_TRUE(has(report_html(one_check({{"verdict", nullptr}}), {}), "</svg>INCONCLUSIVE</span></td>"));
+}
+
+TEST(Report, TakesReportsThatLackEverything) {
+    for (const char* text : {"null", "[]", "{}", R"({"checks": null, "subjects": 3, "provenance": []})",
+                             R"({"checks": [null, 1, {}], "subjects": [null, {"pictures": [null]}], "plots": [null]})",
+                             R"({"provenance": {"inputs": [], "settings": {}, "a": [1, 2], "b": [{}, null]}})"}) {
+        const std::string page = report_html(Json::parse(text), {});
+        EXPECT_TRUE(page.starts_with("<!DOCTYPE html>")) << text;
+        EXPECT_FALSE(has(page, "{{")) << text;
+    }
+}
+
+TEST(Report, AsksNothingOfTheNetwork) {
+    const std::string page = report_html(one_check(Json::object()), {});
+    EXPECT_TRUE(has(page,
+                    "content=\"default-src 'none'; style-src 'unsafe-inline'; script-src 'unsafe-inline'; "
+                    "img-src data:"));
+    for (const char* way_out :
+         {"https:", "src=\"http", "url(http", "@import", "fetch(", "XMLHttpRequest", "WebSocket", "innerHTML"}) {
+        EXPECT_FALSE(has(page, way_out)) << way_out;
+    }
+}
+
+TEST(Report, TheSameReportGivesTheSameBytes) {
+    EXPECT_EQ(report_html(one_check(Json::object()), {}), report_html(one_check(Json::object()), {}));
+}
+
+}  // namespace
+}  // namespace lensproof::draw
