@@ -3,11 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/base/json.h"
+
 namespace lensproof::calibration {
 namespace {
-
-using Json = nlohmann::ordered_json;
-
 constexpr const char* kUncertaintyDefinition =
     "standard deviation (px, worst direction) of where a point fixed in the scene would be imaged had the same views "
     "been taken with other noise; intrinsics and poses move together";
@@ -17,11 +16,11 @@ Json or_null(const std::optional<double>& value) {
 }
 
 std::optional<double> optional_number(const JsonNode& node) {
-    return node.is_null() ? std::nullopt : std::optional(node.number());
+    return node.value().is_null() ? std::nullopt : std::optional(node.number());
 }
 
 Json list(const std::vector<std::optional<double>>& values) {
-    Json result = Json::array();
+    Json result = Json::list();
     for (const auto& value : values) {
         result.push_back(or_null(value));
     }
@@ -141,7 +140,7 @@ UncertaintyMap parse_uncertainty_map(const JsonNode& node) {
 }
 
 Json to_json(const ModelChoice& choice) {
-    Json candidates = Json::array();
+    Json candidates = Json::list();
     for (const ModelCandidate& candidate : choice.candidates) {
         candidates.push_back(candidate_json(candidate));
     }

@@ -3,12 +3,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/base/json.h"
+
 namespace lensproof::calibration {
-
-using Json = nlohmann::ordered_json;
-
 Json to_json(const std::vector<VignettingModel>& models) {
-    Json list = Json::array();
+    Json list = Json::list();
     for (const VignettingModel& model : models) {
         Json json = {{"name", model.name}, {"parameters", Json::object()}};
         const std::size_t count = model.values.size();

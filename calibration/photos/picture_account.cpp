@@ -3,11 +3,10 @@
 #include <array>
 #include <utility>
 
+#include "engine/base/json.h"
+
 namespace lensproof::calibration {
 namespace {
-
-using Json = nlohmann::ordered_json;
-
 // The keys of the notes that are numbers, and where they belong.
 constexpr std::array kNumbers = {
     std::pair{"focal_length_mm", &formats::CameraNotes::focal_length_mm},

@@ -1,10 +1,9 @@
 // calibration/photos/picture_account.h — what became of each picture of a set, and what its camera noted.
 #pragma once
-#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
-#include "calibration/profile/json_node.h"
+#include "engine/base/json_node.h"
 #include "engine/formats/image/photo.h"
 
 namespace lensproof::calibration {
@@ -20,10 +19,10 @@ struct PictureAccount {
     friend bool operator==(const PictureAccount&, const PictureAccount&) = default;
 };
 
-nlohmann::ordered_json to_json(const formats::CameraNotes& notes);
+Json to_json(const formats::CameraNotes& notes);
 formats::CameraNotes parse_camera_notes(const JsonNode& node);
 
-nlohmann::ordered_json to_json(const PictureAccount& account);
+Json to_json(const PictureAccount& account);
 PictureAccount parse_picture_account(const JsonNode& node);
 
 }  // namespace lensproof::calibration

@@ -2,7 +2,6 @@
 #pragma once
 #include <filesystem>
 #include <map>
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -21,6 +20,7 @@
 #include "calibration/sharpness/profile_edge.h"
 #include "calibration/sharpness/profile_star.h"
 #include "calibration/statistics/curve.h"
+#include "engine/base/json.h"
 
 namespace lensproof::calibration {
 
@@ -131,7 +131,7 @@ double half_diagonal_px(const Profile& profile);
 
 /// The profile as JSON (a stretch_y that was held at 0 is not written), schema "lensproof-profile/1"; numbers are
 /// written so that reading returns the same bits.
-nlohmann::ordered_json to_json(const Profile& profile);
+Json to_json(const Profile& profile);
 
 /// Reads what `to_json` wrote. Unknown keys are ignored. Throws InputError naming `file`, the key, what was found and
 /// what is expected.

@@ -2,16 +2,14 @@
 
 #include "calibration/geometry/geometry_json.h"
 #include "calibration/light/vignetting_json.h"
-#include "calibration/profile/json_node.h"
 #include "calibration/profile/profile.h"
 #include "calibration/self_test/self_test_json.h"
 #include "engine/base/file.h"
 #include "engine/base/input_error.h"
+#include "engine/base/json_node.h"
 
 namespace lensproof::calibration {
 namespace {
-
-using Json = nlohmann::ordered_json;
 using Node = JsonNode;
 
 ProfileSource parse_source(const Node& node) {
@@ -169,19 +167,10 @@ Curve parse_curve(const Node& node) {
     return curve;
 }
 
-Json parse_json(std::string_view text, const std::string& file) {
-    try {
-        return Json::parse(text);
-    } catch (const Json::exception& e) {
-        throw InputError(file + ": not JSON: " + e.what());
-    }
-}
-
 }  // namespace
 
 Profile parse_profile(std::string_view text, const std::string& file) {
-    const Json json = parse_json(text, file);
-    const Node root(json, file, "");
+    const Node root = Node::parse(text, file);
     const Node schema = root.at("schema");
     if (schema.text() != kProfileSchema) {
         throw schema.error("\"" + std::string(kProfileSchema) + "\"");
@@ -199,7 +188,8 @@ Profile parse_profile(std::string_view text, const std::string& file) {
     if (profile.width_px < 1 || profile.height_px < 1) {
         throw size.error("a width and a height of at least 1");
     }
-    if (const Node pitch = root.at("pixel_pitch_um"); !pitch.is_null()) {
+    if (root.has("pixel_pitch_um")) {
+        const Node pitch = root.at("pixel_pitch_um");
         profile.pixel_pitch_um = pitch.number();
         if (!(*profile.pixel_pitch_um > 0.0)) {
             throw pitch.error("a positive length");

@@ -6,19 +6,17 @@
 #include "calibration/profile/profile.h"
 #include "calibration/self_test/self_test_json.h"
 #include "engine/base/file.h"
+#include "engine/base/json.h"
 
 namespace lensproof::calibration {
 namespace {
-
-using Json = nlohmann::ordered_json;
-
 constexpr std::string_view kPixelConvention = "the centre of the top-left pixel is (0, 0), x to the right, y down";
 
 Json pair(const Vec2d& v) {
-    return Json::array({v.x, v.y});
+    return Json::list({v.x, v.y});
 }
 Json triple(const Vec3d& v) {
-    return Json::array({v.x, v.y, v.z});
+    return Json::list({v.x, v.y, v.z});
 }
 
 Json source_json(const ProfileSource& source) {
@@ -40,7 +38,7 @@ Json model_json(const ProfileGeometry& geometry) {
         names.pop_back();
     }
     Json list = Json::object();
-    Json matrix = Json::array();
+    Json matrix = Json::list();
     for (std::size_t i = 0; i < names.size(); ++i) {
         list[names[i]] = {{"value", values[i]}, {"standard_error", geometry.standard_error(i)}};
         if (!geometry.view_standard_error.empty()) {
@@ -70,7 +68,7 @@ Json view_json(const ProfileView& view) {
     }
     json["rotation_vector_rad"] = triple(view.pose.rotation_rad);
     json["translation_mm"] = triple(view.pose.translation_mm);
-    Json points = Json::array();
+    Json points = Json::list();
     for (const ProfilePoint& p : view.points) {
         Json point = {{"chart_mm", pair(p.chart_mm)},
                       {"image_px", pair(p.image_px)},
@@ -90,7 +88,7 @@ Json view_json(const ProfileView& view) {
 
 Json terms_json(const FittedTerms& terms) {
     const std::size_t count = terms.names.size();
-    Json json{{"parameters", Json::object()}, {"covariance", Json::array()}};
+    Json json{{"parameters", Json::object()}, {"covariance", Json::list()}};
     for (std::size_t i = 0; i < count; ++i) {
         const double variance = terms.covariance[i * (count + 1)];
         json["parameters"][terms.names[i]] = {{"value", terms.values[i]},
@@ -142,11 +140,11 @@ Json to_json(const Profile& profile) {
             json["projection_uncertainty"] = to_json(*profile.geometry->uncertainty);
         }
     }
-    json["pictures"] = Json::array();
+    json["pictures"] = Json::list();
     for (const PictureAccount& picture : profile.pictures) {
         json["pictures"].push_back(to_json(picture));
     }
-    json["views"] = Json::array();
+    json["views"] = Json::list();
     for (const ProfileView& view : profile.views) {
         json["views"].push_back(view_json(view));
     }
@@ -159,14 +157,14 @@ Json to_json(const Profile& profile) {
         json["terms"][name] = terms_json(terms);
     }
     for (const auto& [channel, edges] : profile.sharpness) {
-        Json list = Json::array();
+        Json list = Json::list();
         for (const ProfileEdge& edge : edges) {
             list.push_back(to_json(edge, profile.pixel_pitch_um));
         }
         json["sharpness"][channel] = std::move(list);
     }
     for (const auto& [channel, stars] : profile.siemens_stars) {
-        Json list = Json::array();
+        Json list = Json::list();
         for (const ProfileStar& star : stars) {
             list.push_back(to_json(star, profile.pixel_pitch_um));
         }
@@ -189,7 +187,7 @@ Json to_json(const Profile& profile) {
 }
 
 void write_profile(const Profile& profile, const std::filesystem::path& file) {
-    write_file(file, to_json(profile).dump(1, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n");
+    write_file(file, to_json(profile).dump(1) + "\n");
 }
 
 }  // namespace lensproof::calibration

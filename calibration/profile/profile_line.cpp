@@ -4,11 +4,10 @@
 #include <cmath>
 #include <optional>
 
+#include "engine/base/json.h"
+
 namespace lensproof::calibration {
 namespace {
-
-using Json = nlohmann::ordered_json;
-
 constexpr std::size_t kFewestPoints = 8;
 constexpr double kUnknowns = 2.0;  // of a plane through the camera
 

@@ -1,11 +1,10 @@
 // calibration/profile/profile_line.h — how straight a chart's line is once the model has undistorted it.
 #pragma once
-#include <nlohmann/json.hpp>
 #include <vector>
 
 #include "calibration/detection/line_points.h"
 #include "calibration/geometry/camera_model.h"
-#include "calibration/profile/json_node.h"
+#include "engine/base/json_node.h"
 
 namespace lensproof::calibration {
 
@@ -26,7 +25,7 @@ struct ProfileLine {
 std::vector<ProfileLine> straightness(const std::vector<LinePoints>& lines, const CameraModel& model);
 
 /// `along`: "column" or "row", `index`, `points`, `rms_px`, `rms_standard_error_px`, `noise_px`.
-nlohmann::ordered_json to_json(const ProfileLine& line);
+Json to_json(const ProfileLine& line);
 
 /// Throws InputError as JsonNode says.
 ProfileLine parse_line(const JsonNode& node);

@@ -1,9 +1,8 @@
 #include "calibration/self_test/self_test_json.h"
 
+#include "engine/base/json.h"
+
 namespace lensproof::calibration {
-
-using Json = nlohmann::ordered_json;
-
 Json to_json(const PictureTraits& traits) {
     Json json{{"white", traits.white}, {"black", traits.black}, {"noise", traits.noise}};
     if (traits.blur_px) {

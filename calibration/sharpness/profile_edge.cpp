@@ -2,10 +2,9 @@
 
 #include <string>
 
+#include "engine/base/json.h"
+
 namespace lensproof::calibration {
-
-using Json = nlohmann::ordered_json;
-
 void add_mtf_frequency(Json& json, const std::string& name, const std::optional<MtfFrequency>& frequency,
                        std::optional<double> pixel_pitch_um) {
     if (!frequency) {

@@ -1,12 +1,10 @@
 #include "calibration/sharpness/profile_star.h"
 
 #include "calibration/sharpness/profile_edge.h"
+#include "engine/base/json.h"
 
 namespace lensproof::calibration {
 namespace {
-
-using Json = nlohmann::ordered_json;
-
 Json segment_json(const StarSegment& segment, std::optional<double> pixel_pitch_um) {
     Json json = {{"frequency_deg", segment.frequency_deg},
                  {"side_deg", segment.side_deg},
@@ -43,7 +41,7 @@ Json to_json(const ProfileStar& star, std::optional<double> pixel_pitch_um) {
                   {{"centre_px", {rim.centre_px.x, rim.centre_px.y}},
                    {"half_axes_px", {rim.long_half_axis_px, rim.short_half_axis_px}},
                    {"angle_deg", rim.angle_deg}}},
-                 {"segments", Json::array()}};
+                 {"segments", Json::list()}};
     for (const StarSegment& segment : star.star.segments) {
         json["segments"].push_back(segment_json(segment, pixel_pitch_um));
     }

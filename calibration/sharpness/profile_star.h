@@ -1,11 +1,10 @@
 // calibration/sharpness/profile_star.h — a Siemens star as a profile lists it.
 #pragma once
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 
-#include "calibration/profile/json_node.h"
 #include "calibration/sharpness/siemens_star.h"
+#include "engine/base/json_node.h"
 
 namespace lensproof::calibration {
 
@@ -19,7 +18,7 @@ struct ProfileStar {
 /// +y), `side_deg` (where it lies, seen from the centre), `contrast` and `contrast_standard_error` ((white − black) /
 /// (white + black) of the sectors), MTF50 and MTF10 as edges have them (calibration/sharpness/profile_edge.h), and
 /// `curve`: `cycles_per_px`, `mtf`, `standard_error`.
-nlohmann::ordered_json to_json(const ProfileStar& star, std::optional<double> pixel_pitch_um);
+Json to_json(const ProfileStar& star, std::optional<double> pixel_pitch_um);
 
 /// Throws InputError as JsonNode says.
 ProfileStar parse_star(const JsonNode& node);

@@ -5,62 +5,62 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/base/json.h"
 #include "experiments/cli/command.h"
 
 namespace lensproof::cli {
 
 namespace {
-
-using Json = nlohmann::ordered_json;
-
 constexpr double kMicrometre = 1e-3;  // in mm
 
 Json optional_json(const std::optional<double>& value, double unit = 1.0) {
-    return value ? number_or_null(*value / unit + 0.0) : Json(nullptr);
+    return value ? *value / unit + 0.0 : Json(nullptr);
 }
 
 Json paraxial_json(const optics::ParaxialData& data) {
-    return {{"efl_mm", number_or_null(data.efl)},
-            {"bfl_mm", number_or_null(data.bfl)},
-            {"ffl_mm", number_or_null(data.ffl)},
-            {"entrance_pupil_z_mm", number_or_null(data.entrance_pupil_z)},
-            {"entrance_pupil_diameter_mm", number_or_null(data.entrance_pupil_diameter)},
-            {"exit_pupil_z_mm", number_or_null(data.exit_pupil_z)},
-            {"exit_pupil_diameter_mm", number_or_null(data.exit_pupil_diameter)},
-            {"f_number", number_or_null(data.f_number)},
-            {"front_principal_z_mm", number_or_null(data.front_principal_z)},
-            {"rear_principal_z_mm", number_or_null(data.rear_principal_z)},
-            {"front_nodal_z_mm", number_or_null(data.front_nodal_z)},
-            {"rear_nodal_z_mm", number_or_null(data.rear_nodal_z)},
-            {"petzval_radius_mm", number_or_null(data.petzval_radius)}};
+    return {{"efl_mm", data.efl},
+            {"bfl_mm", data.bfl},
+            {"ffl_mm", data.ffl},
+            {"entrance_pupil_z_mm", data.entrance_pupil_z},
+            {"entrance_pupil_diameter_mm", data.entrance_pupil_diameter},
+            {"exit_pupil_z_mm", data.exit_pupil_z},
+            {"exit_pupil_diameter_mm", data.exit_pupil_diameter},
+            {"f_number", data.f_number},
+            {"front_principal_z_mm", data.front_principal_z},
+            {"rear_principal_z_mm", data.rear_principal_z},
+            {"front_nodal_z_mm", data.front_nodal_z},
+            {"rear_nodal_z_mm", data.rear_nodal_z},
+            {"petzval_radius_mm", data.petzval_radius}};
 }
 
 Json reference_json(const optics::Lens& lens, const analysis::LensAnalysis& analysis) {
     Json json = paraxial_json(analysis.reference_paraxial);
-    json["total_track_mm"] = number_or_null(lens.image_z - lens.surfaces.front().vertex_z);
+    json["total_track_mm"] = lens.image_z - lens.surfaces.front().vertex_z;
     json["lagrange_invariant_mm"] = optional_json(analysis.lagrange_invariant);
-    json["image_plane_mm"] = number_or_null(lens.image_z - lens.last_vertex_z());
-    json["image_distance_mm"] = number_or_null(analysis.conjugates.image_distance);
-    json["magnification"] = number_or_null(analysis.conjugates.magnification);
-    json["working_f_number"] = number_or_null(analysis.conjugates.working_f_number);
-    json["real_working_f_number"] = number_or_null(analysis.real_working_f_number);
+    json["image_plane_mm"] = lens.image_z - lens.last_vertex_z();
+    json["image_distance_mm"] = analysis.conjugates.image_distance;
+    json["magnification"] = analysis.conjugates.magnification;
+    json["working_f_number"] = analysis.conjugates.working_f_number;
+    json["real_working_f_number"] = analysis.real_working_f_number;
     return json;
 }
 
 Json terms_json(const analysis::SeidelTerms<double>& terms) {
-    return {{"s1", number_or_null(terms.s1)}, {"s2", number_or_null(terms.s2)}, {"s3", number_or_null(terms.s3)},
-            {"s4", number_or_null(terms.s4)}, {"s5", number_or_null(terms.s5)}, {"c1", number_or_null(terms.c1)},
-            {"c2", number_or_null(terms.c2)}};
+    return {{"s1", terms.s1}, {"s2", terms.s2}, {"s3", terms.s3}, {"s4", terms.s4},
+            {"s5", terms.s5}, {"c1", terms.c1}, {"c2", terms.c2}};
 }
 
 Json seidel_json(const std::optional<analysis::SeidelSums<double>>& sums) {
     if (!sums) {
         return nullptr;
     }
-    Json surfaces = Json::array();
+    Json surfaces = Json::list();
     for (std::size_t i = 0; i < sums->surfaces.size(); ++i) {
         Json row{{"surface", i + 1}};
-        row.update(terms_json(sums->surfaces[i]));
+        const Json terms = terms_json(sums->surfaces[i]);
+        for (const auto& [key, value] : terms.members()) {
+            row[key] = value;
+        }
         surfaces.push_back(std::move(row));
     }
     return {{"surfaces", std::move(surfaces)}, {"total", terms_json(sums->total)}};
@@ -72,8 +72,8 @@ Json field_json(const analysis::FieldAnalysis& row) {
         {"wavelength_nm", row.wavelength_nm},
         {"status", optics::status_name(row.status)},
         {"surface", row.surface >= 0 && row.status != optics::RayStatus::ok ? Json(row.surface + 1) : Json(nullptr)},
-        {"chief_ray_height_mm", row.chief_ray_point ? number_or_null(row.chief_ray_point->y + 0.0) : Json(nullptr)},
-        {"chief_ray_x_mm", row.chief_ray_point ? number_or_null(row.chief_ray_point->x + 0.0) : Json(nullptr)},
+        {"chief_ray_height_mm", row.chief_ray_point ? row.chief_ray_point->y + 0.0 : Json(nullptr)},
+        {"chief_ray_x_mm", row.chief_ray_point ? row.chief_ray_point->x + 0.0 : Json(nullptr)},
         {"distortion_percent", optional_json(row.distortion_percent)},
         {"tangential_focus_mm", optional_json(row.tangential_focus)},
         {"sagittal_focus_mm", optional_json(row.sagittal_focus)},
@@ -167,12 +167,12 @@ Json analysis_json(const optics::Lens& lens, const analysis::AnalysisSettings& s
     Json json{{"lens", lens.id},
               {"name", lens.name},
               {"reference_wavelength_nm", settings.reference_wavelength_nm},
-              {"object_distance_mm", number_or_null(settings.object_distance)},
+              {"object_distance_mm", settings.object_distance},
               {"projection", optics::projection_name(lens.projection)},
               {"paraxial", reference_json(lens, analysis)},
               {"seidel", seidel_json(analysis.seidel)},
-              {"fields", Json::array()},
-              {"wavelengths", Json::array()}};
+              {"fields", Json::list()},
+              {"wavelengths", Json::list()}};
     for (const analysis::FieldAnalysis& row : analysis.fields) {
         json["fields"].push_back(field_json(row));
     }

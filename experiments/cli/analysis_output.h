@@ -1,15 +1,15 @@
 // experiments/cli/analysis_output.h — what `lensproof analyze` found, for programs and for people.
 #pragma once
-#include <nlohmann/json.hpp>
 #include <string>
 
 #include "engine/analysis/lens_analysis.h"
+#include "engine/base/json.h"
 
 namespace lensproof::cli {
 
 /// The contract's JSON: what does not exist is null.
-nlohmann::ordered_json analysis_json(const optics::Lens& lens, const analysis::AnalysisSettings& settings,
-                                     const analysis::LensAnalysis& analysis);
+Json analysis_json(const optics::Lens& lens, const analysis::AnalysisSettings& settings,
+                   const analysis::LensAnalysis& analysis);
 
 /// The same as tables to read.
 std::string analysis_text(const optics::Lens& lens, const analysis::AnalysisSettings& settings,

@@ -211,72 +211,72 @@ int run_analyze(const AnalyzeOptions& options) {
 
 }  // namespace
 
-void add_analyze_command(CLI::App& app, int& status) {
+void add_analyze_command(Program& program) {
     const auto options = std::make_shared<AnalyzeOptions>();
     options->rings = analysis::AnalysisSettings{}.rings;
-    CLI::App* command =
-        app.add_subcommand("analyze", "First-order data, Seidel sums, real-ray curves, spots, wavefront");
-    command->footer(
+    Command command =
+        program.add_command("analyze", "First-order data, Seidel sums, real-ray curves, spots, wavefront");
+    command.footer(
         "Example: lensproof analyze tessar --fields 0,12,24 --f-number 4 --plots tessar-plots\n"
         "Fields are angles at the entrance pupil; what does not exist (light from beyond the field, say) is null or "
         "a dash.");
-    command->add_option("LENS", options->lens, "A prescription file, or the name of a lens that ships")->required();
+    command.add_option("LENS", options->lens, "A prescription file, or the name of a lens that ships").required();
     command
-        ->add_option("--wavelengths", options->wavelengths_nm,
-                     "nm; the first is the reference (default: those of a design program's file, else d, F, C)")
-        ->delimiter(',')
-        ->check(kPositiveOption)
-        ->type_name("NM,…");
+        .add_option("--wavelengths", options->wavelengths_nm,
+                    "nm; the first is the reference (default: those of a design program's file, else d, F, C)")
+        .separated_by(',')
+        .check(kPositiveOption)
+        .type_name("NM,…");
     command
-        ->add_option("--reference-wavelength", options->reference_wavelength_nm,
-                     "nm, of first-order data, Seidel sums and the image point of each field")
-        ->check(kPositiveOption)
-        ->type_name("NM");
+        .add_option("--reference-wavelength", options->reference_wavelength_nm,
+                    "nm, of first-order data, Seidel sums and the image point of each field")
+        .check(kPositiveOption)
+        .type_name("NM");
     command
-        ->add_option("--fields", options->fields_deg,
-                     "Field angles in degrees (default: five, up to the field that the source states)")
-        ->delimiter(',')
-        ->check(kNumberOption)
-        ->type_name("DEG,…");
+        .add_option("--fields", options->fields_deg,
+                    "Field angles in degrees (default: five, up to the field that the source states)")
+        .separated_by(',')
+        .check(kNumberOption)
+        .type_name("DEG,…");
     command
-        ->add_option("--focus", options->focus,
-                     "Distance of the object in front of the first vertex (default: the prescription's). Its focusing "
-                     "groups move to it; a lens without any stays as it is, and --best-focus or --image-distance "
-                     "moves the image plane")
-        ->type_name("infinity|MM");
-    command->add_option("--f-number", options->f_number, "Close the stop to this paraxial f-number")
-        ->check(kPositiveOption)
-        ->type_name("N");
+        .add_option("--focus", options->focus,
+                    "Distance of the object in front of the first vertex (default: the prescription's). Its focusing "
+                    "groups move to it; a lens without any stays as it is, and --best-focus or --image-distance "
+                    "moves the image plane")
+        .type_name("infinity|MM");
+    command.add_option("--f-number", options->f_number, "Close the stop to this paraxial f-number")
+        .check(kPositiveOption)
+        .type_name("N");
     command
-        ->add_option("--image-distance", options->image_distance_mm,
-                     "Image plane behind the last vertex (default: the prescription's)")
-        ->type_name("MM");
-    command->add_option("--rings", options->rings, "Rings of rays over a beam, for spots and wavefronts")
-        ->check(CLI::Range(1, 1000))
-        ->capture_default_str();
-    auto* best_focus =
+        .add_option("--image-distance", options->image_distance_mm,
+                    "Image plane behind the last vertex (default: the prescription's)")
+        .type_name("MM");
+    command.add_option("--rings", options->rings, "Rings of rays over a beam, for spots and wavefronts")
+        .check(in_range(1, 1000))
+        .shows_default();
+    const Option best_focus =
         command
-            ->add_option("--best-focus", options->best_focus,
-                         "Move the image plane to the best image of all fields and wavelengths together: paraxial, "
-                         "spot (least rms, lateral colour included), wavefront (least rms) or mtf (highest at "
-                         "--focus-frequency)")
-            ->check(CLI::IsMember(std::vector<std::string>(std::begin(kCriteria), std::end(kCriteria))))
-            ->type_name("CRITERION");
-    command->add_option("--focus-frequency", options->focus_frequency, "cycles/mm, for --best-focus mtf")
-        ->needs(best_focus)
-        ->check(kPositiveOption)
-        ->type_name("F");
+            .add_option("--best-focus", options->best_focus,
+                        "Move the image plane to the best image of all fields and wavelengths together: paraxial, "
+                        "spot (least rms, lateral colour included), wavefront (least rms) or mtf (highest at "
+                        "--focus-frequency)")
+            .check(one_of(std::vector<std::string>(std::begin(kCriteria), std::end(kCriteria))))
+            .type_name("CRITERION");
+    command.add_option("--focus-frequency", options->focus_frequency, "cycles/mm, for --best-focus mtf")
+        .needs(best_focus)
+        .check(kPositiveOption)
+        .type_name("F");
     command
-        ->add_option("--plots", options->plots_folder,
-                     "Draw the lens section, ray fans, field curves, spots, MTF and the rest into a folder (SVG), "
-                     "their numbers beside them (curves.json)")
-        ->type_name("DIR");
-    command->add_option("--zoom", options->zoom, "Position of a zoom lens, by name or number (default: the first)")
-        ->type_name("POSITION");
-    add_index_option(*command, options->indices);
-    add_glass_catalogue_option(*command, options->glass_catalogues);
-    add_common_options(*command, options->common);
-    command->callback([options, &status] { status = run_analyze(*options); });
+        .add_option("--plots", options->plots_folder,
+                    "Draw the lens section, ray fans, field curves, spots, MTF and the rest into a folder (SVG), "
+                    "their numbers beside them (curves.json)")
+        .type_name("DIR");
+    command.add_option("--zoom", options->zoom, "Position of a zoom lens, by name or number (default: the first)")
+        .type_name("POSITION");
+    add_index_option(command, options->indices);
+    add_glass_catalogue_option(command, options->glass_catalogues);
+    add_common_options(command, options->common);
+    command.runs([options] { return run_analyze(*options); });
 }
 
 }  // namespace lensproof::cli

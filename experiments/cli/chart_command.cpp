@@ -2,7 +2,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <map>
 #include <memory>
+#include <optional>
 #include <utility>
 
 #include "engine/base/file.h"
@@ -19,6 +21,7 @@ struct ChartOptions {
     CommonOptions common;
     draw::ChartWish wish;
     std::map<std::string, std::string> counts;
+    std::map<std::string, std::optional<double>> numbers;
     std::string paper = "A4";
     bool portrait = false;
     double margin_mm = 10.0;
@@ -54,6 +57,11 @@ int print(const ChartOptions& options) {
             wish.counts[key] = draw::parse_grid_size(option_of(key), text);
         }
     }
+    for (const auto& [key, value] : options.numbers) {
+        if (value) {
+            wish.numbers[key] = *value;
+        }
+    }
     const std::string toml = draw::chart_toml(wish, layout);
     const std::filesystem::path file = options.output.empty() ? wish.kind + ".pdf" : options.output;
     std::filesystem::path description = file;
@@ -85,40 +93,33 @@ int print(const ChartOptions& options) {
 
 }  // namespace
 
-void add_chart_command(CLI::App& app, int& status) {
+void add_chart_command(Program& program) {
     const auto options = std::make_shared<ChartOptions>();
-    CLI::App* command = app.add_subcommand("chart", "Write a chart to print, and the file that describes it");
-    command->footer(
+    Command command = program.add_command("chart", "Write a chart to print, and the file that describes it");
+    command.footer(
         "Example: lensproof chart charuco --squares 12x8 --square-mm 30 --paper A3 -o board.pdf\n"
         "writes board.pdf and, for `lensproof measure`, board.toml. What is not said is chosen to fill the page.");
-    command->add_option("KIND", options->wish.kind, fmt::format("{}", fmt::join(draw::printable_kinds(), ", ")))
-        ->required();
-    command->add_option("-o,--output", options->output, "PDF, SVG or PNG to write (default: KIND.pdf)")
-        ->type_name("FILE");
-    command->add_option("--paper", options->paper, "A0 to A5, letter, tabloid, or WIDTHxHEIGHT in mm")
-        ->capture_default_str();
-    command->add_flag("--portrait", options->portrait, "The paper's shorter side across");
-    command->add_option("--margin", options->margin_mm, "Least margin in mm")
-        ->check(kNumberOption)
-        ->check(CLI::NonNegativeNumber)
-        ->capture_default_str();
-    command->add_option("--dpi", options->dpi, "Pixels per inch of a PNG")
-        ->check(kPositiveOption)
-        ->capture_default_str();
+    command.add_option("KIND", options->wish.kind, fmt::format("{}", fmt::join(draw::printable_kinds(), ", ")))
+        .required();
+    command.add_option("-o,--output", options->output, "PDF, SVG or PNG to write (default: KIND.pdf)")
+        .type_name("FILE");
+    command.add_option("--paper", options->paper, "A0 to A5, letter, tabloid, or WIDTHxHEIGHT in mm").shows_default();
+    command.add_flag("--portrait", options->portrait, "The paper's shorter side across");
+    command.add_option("--margin", options->margin_mm, "Least margin in mm")
+        .check(kNumberOption)
+        .check(kNotNegativeOption)
+        .shows_default();
+    command.add_option("--dpi", options->dpi, "Pixels per inch of a PNG").check(kPositiveOption).shows_default();
     for (const std::string& key : draw::count_keys()) {
-        command->add_option(option_of(key), options->counts[key], "Columns and rows, as in 10x7")->type_name("CxR");
+        command.add_option(option_of(key), options->counts[key], "Columns and rows, as in 10x7").type_name("CxR");
     }
     for (const std::string& key : draw::number_keys()) {
-        const CLI::Validator& check = key == "angle_deg" ? kNumberOption : kPositiveOption;
-        command
-            ->add_option_function<double>(
-                option_of(key), [options, key](const double& value) { options->wish.numbers[key] = value; },
-                "As in the chart's file")
-            ->check(check);
+        const OptionCheck& check = key == "angle_deg" ? kNumberOption : kPositiveOption;
+        command.add_option(option_of(key), options->numbers[key], "As in the chart's file").check(check);
     }
-    command->add_option("--dictionary", options->wish.dictionary, "Of a ChArUco board's markers, such as DICT_4X4_50");
-    add_common_options(*command, options->common);
-    command->callback([options, &status] { status = print(*options); });
+    command.add_option("--dictionary", options->wish.dictionary, "Of a ChArUco board's markers, such as DICT_4X4_50");
+    add_common_options(command, options->common);
+    command.runs([options] { return print(*options); });
 }
 
 }  // namespace lensproof::cli

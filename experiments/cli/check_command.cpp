@@ -9,6 +9,7 @@
 
 #include "engine/base/file.h"
 #include "engine/base/input_error.h"
+#include "engine/base/json.h"
 #include "engine/base/text.h"
 #include "engine/check/checker.h"
 #include "engine/formats/prescription/load_lens.h"
@@ -76,30 +77,26 @@ optics::StatedData parse_claims(const std::string& text) {
     return claims;
 }
 
-nlohmann::ordered_json computed_json(const check::ComputedData& computed) {
-    nlohmann::ordered_json json;
+Json computed_json(const check::ComputedData& computed) {
+    Json json;
     if (!computed.zoom_position.empty()) {
         json["zoom_position"] = computed.zoom_position;
     }
     const optics::ParaxialData& data = computed.paraxial;
     json["wavelength_nm"] = computed.wavelength_nm;
-    json["efl_mm"] = number_or_null(data.efl);
-    json["bfl_mm"] = number_or_null(data.bfl);
-    json["ffl_mm"] = number_or_null(data.ffl);
-    json["entrance_pupil_z_mm"] = number_or_null(data.entrance_pupil_z);
-    json["entrance_pupil_diameter_mm"] = number_or_null(data.entrance_pupil_diameter);
-    json["exit_pupil_z_mm"] = number_or_null(data.exit_pupil_z);
-    json["exit_pupil_diameter_mm"] = number_or_null(data.exit_pupil_diameter);
-    json["f_number"] = number_or_null(data.f_number);
+    json["efl_mm"] = data.efl;
+    json["bfl_mm"] = data.bfl;
+    json["ffl_mm"] = data.ffl;
+    json["entrance_pupil_z_mm"] = data.entrance_pupil_z;
+    json["entrance_pupil_diameter_mm"] = data.entrance_pupil_diameter;
+    json["exit_pupil_z_mm"] = data.exit_pupil_z;
+    json["exit_pupil_diameter_mm"] = data.exit_pupil_diameter;
+    json["f_number"] = data.f_number;
     return json;
 }
 
-nlohmann::ordered_json report_json(const std::string& lens, const optics::Prescription& prescription,
-                                   const check::CheckReport& report) {
-    nlohmann::ordered_json json{{"lens", lens},
-                                {"file", prescription.file.string()},
-                                {"ok", report.ok()},
-                                {"findings", nlohmann::json::array()}};
+Json report_json(const std::string& lens, const optics::Prescription& prescription, const check::CheckReport& report) {
+    Json json{{"lens", lens}, {"file", prescription.file.string()}, {"ok", report.ok()}, {"findings", Json::list()}};
     for (const optics::Finding& finding : report.findings) {
         json["findings"].push_back(finding_json(finding));
     }
@@ -173,7 +170,7 @@ int run_check(const CheckOptions& options) {
             settings.back().zoom_position = optics::find_zoom_position(prescriptions.back(), options.zoom);
         }
     }
-    nlohmann::ordered_json lenses = nlohmann::ordered_json::array();
+    Json lenses = Json::list();
     bool all_ok = true;
     for (std::size_t i = 0; i < prescriptions.size(); ++i) {
         const optics::GlassCatalogue own = formats::with_own_catalogues(glasses, prescriptions[i]);
@@ -193,29 +190,29 @@ int run_check(const CheckOptions& options) {
 
 }  // namespace
 
-void add_check_command(CLI::App& app, int& status) {
+void add_check_command(Program& program) {
     const auto options = std::make_shared<CheckOptions>();
-    CLI::App* command = app.add_subcommand("check", "Say what is wrong with prescriptions");
-    command->footer(
+    Command command = program.add_command("check", "Say what is wrong with prescriptions");
+    command.footer(
         "Example: lensproof check tessar my.zmx --stated efl_mm=100,f_number=2.8 --json -\n"
         "Exit status 1 when any finding is an error; 2 when any file cannot be read, and then none is judged.");
-    command->add_option("LENS", options->lenses, "Prescription files, or names of lenses that ship")->required();
+    command.add_option("LENS", options->lenses, "Prescription files, or names of lenses that ship").required();
     command
-        ->add_option("--stated", options->stated,
-                     "What the source claims where the file is silent or wrong: efl_mm, bfl_mm, f_number, "
-                     "half_field_deg, image_circle_mm, total_track_mm (of each lens; of a zoom, at each position)")
-        ->type_name("KEY=NUMBER,…");
-    add_index_option(*command, options->indices);
-    command->add_option("--wavelength", options->wavelength_nm, "nm, of first-order data and rays")
-        ->check(kPositiveOption)
-        ->capture_default_str();
-    command->add_option("--zoom", options->zoom, "Check this zoom position alone (default: every one)")
-        ->type_name("NAME|N");
-    command->add_option("--plot", options->plot_file, "Draw the lens's section, with what was found marked")
-        ->type_name("OUT.svg");
-    add_glass_catalogue_option(*command, options->glass_catalogues);
-    add_common_options(*command, options->common);
-    command->callback([options, &status] { status = run_check(*options); });
+        .add_option("--stated", options->stated,
+                    "What the source claims where the file is silent or wrong: efl_mm, bfl_mm, f_number, "
+                    "half_field_deg, image_circle_mm, total_track_mm (of each lens; of a zoom, at each position)")
+        .type_name("KEY=NUMBER,…");
+    add_index_option(command, options->indices);
+    command.add_option("--wavelength", options->wavelength_nm, "nm, of first-order data and rays")
+        .check(kPositiveOption)
+        .shows_default();
+    command.add_option("--zoom", options->zoom, "Check this zoom position alone (default: every one)")
+        .type_name("NAME|N");
+    command.add_option("--plot", options->plot_file, "Draw the lens's section, with what was found marked")
+        .type_name("OUT.svg");
+    add_glass_catalogue_option(command, options->glass_catalogues);
+    add_common_options(command, options->common);
+    command.runs([options] { return run_check(*options); });
 }
 
 }  // namespace lensproof::cli

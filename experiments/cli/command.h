@@ -1,17 +1,16 @@
 // experiments/cli/command.h — what the program's commands share.
 #pragma once
-#include <CLI/CLI.hpp>
 #include <cstdint>
 #include <filesystem>
 #include <functional>
-#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
-#include "engine/base/json_number.h"
+#include "engine/base/json.h"
 #include "engine/optics/finding.h"
 #include "engine/optics/glass_catalogue.h"
 #include "engine/optics/lens.h"
+#include "experiments/cli/command_line.h"
 
 namespace lensproof::cli {
 
@@ -27,23 +26,17 @@ struct CommonOptions {
 };
 
 /// Adds --json, --quiet, --threads and --seed to `command`.
-void add_common_options(CLI::App& command, CommonOptions& options);
-
-/// Whether an option's text is a finite number above 0. (CLI::PositiveNumber lets nan pass.)
-extern const CLI::Validator kPositiveOption;
-
-/// Whether an option's text is a finite number. (The library takes an empty text for 0.)
-extern const CLI::Validator kNumberOption;
+void add_common_options(Command& command, CommonOptions& options);
 
 /// Adds --glass-catalogue FILE, which may be repeated.
-void add_glass_catalogue_option(CLI::App& command, std::vector<std::string>& files);
+void add_glass_catalogue_option(Command& command, std::vector<std::string>& files);
 
 /// The glasses that ship, behind those of the user's files, of which the last comes first. What a file has that is left
 /// out goes to standard error.
 optics::GlassCatalogue read_glass_catalogues(const std::vector<std::string>& files);
 
 /// Adds --index NAME=VALUE, which may be repeated and takes no more than that one argument.
-void add_index_option(CLI::App& command, std::vector<std::string>& texts);
+void add_index_option(Command& command, std::vector<std::string>& texts);
 
 /// What --index was given. Throws InputError unless each is a name and an index from 1 to 10.
 optics::IndexOverrides parse_indices(const std::vector<std::string>& texts);
@@ -53,27 +46,27 @@ void check_json_name(const CommonOptions& options);
 
 /// Writes the machine-readable result where --json asked for it. Bytes that are not UTF-8, as in some files' names, are
 /// replaced.
-void write_json_result(const CommonOptions& options, const nlohmann::ordered_json& result);
+void write_json_result(const CommonOptions& options, const Json& result);
 
 /// Every key is there; what does not apply is null: the surface of a finding about the lens as a whole, say.
-nlohmann::ordered_json finding_json(const optics::Finding& finding);
+Json finding_json(const optics::Finding& finding);
 
 /// Whether a person-readable result may go to standard output (not when the JSON goes there).
 bool prints_text(const CommonOptions& options);
 
-/// Each adds its subcommand to `app`; running it stores the exit status in `status`.
-void add_chart_command(CLI::App& app, int& status);
-void add_check_command(CLI::App& app, int& status);
-void add_analyze_command(CLI::App& app, int& status);
-void add_trace_command(CLI::App& app, int& status);
-void add_render_command(CLI::App& app, int& status);
-void add_measure_command(CLI::App& app, int& status);
-void add_merge_command(CLI::App& app, int& status);
-void add_compare_command(CLI::App& app, int& status);
-void add_convert_command(CLI::App& app, int& status);
-void add_export_command(CLI::App& app, int& status);
-void add_run_command(CLI::App& app, int& status);
-void add_lenses_command(CLI::App& app, int& status);
-void add_glasses_command(CLI::App& app, int& status);
+/// Each adds its command.
+void add_chart_command(Program& program);
+void add_check_command(Program& program);
+void add_analyze_command(Program& program);
+void add_trace_command(Program& program);
+void add_render_command(Program& program);
+void add_measure_command(Program& program);
+void add_merge_command(Program& program);
+void add_compare_command(Program& program);
+void add_convert_command(Program& program);
+void add_export_command(Program& program);
+void add_run_command(Program& program);
+void add_lenses_command(Program& program);
+void add_glasses_command(Program& program);
 
 }  // namespace lensproof::cli

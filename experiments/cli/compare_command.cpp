@@ -10,6 +10,7 @@
 #include "calibration/profile/profile.h"
 #include "engine/base/cache.h"
 #include "engine/base/input_error.h"
+#include "engine/base/json.h"
 #include "engine/formats/image/image.h"
 #include "experiments/cli/command.h"
 #include "experiments/runner/verdict.h"
@@ -83,8 +84,8 @@ std::string unit_key(const std::string& unit) {
     return unit == "%" ? "_percent" : unit == "EV" ? "_ev" : unit == "px" ? "_px" : "";
 }
 
-int report(const std::vector<Row>& rows, const nlohmann::ordered_json& curves, const CompareOptions& options) {
-    nlohmann::ordered_json json{{"a", options.a}, {"b", options.b}, {"differences", nlohmann::ordered_json::array()}};
+int report(const std::vector<Row>& rows, const Json& curves, const CompareOptions& options) {
+    Json json{{"a", options.a}, {"b", options.b}, {"differences", Json::list()}};
     int status = kDone;
     for (const Row& row : rows) {
         const runner::Check& check = row.check;
@@ -98,9 +99,9 @@ int report(const std::vector<Row>& rows, const nlohmann::ordered_json& curves, c
             continue;
         }
         const runner::Verdict verdict = check.verdict();
-        nlohmann::ordered_json entry{{"quantity", check.label},
-                                     {"rms" + unit_key(check.unit), check.value},
-                                     {"standard_error" + unit_key(check.unit), check.sigma}};
+        Json entry{{"quantity", check.label},
+                   {"rms" + unit_key(check.unit), check.value},
+                   {"standard_error" + unit_key(check.unit), check.sigma}};
         if (row.limited) {
             entry["limit" + unit_key(check.unit)] = check.limit;
             entry["verdict"] = runner::verdict_name(verdict);
@@ -122,7 +123,7 @@ int report(const std::vector<Row>& rows, const nlohmann::ordered_json& curves, c
 
 int compare_profiles(const calibration::Profile& a, const calibration::Profile& b, const CompareOptions& options) {
     std::vector<Row> rows;
-    nlohmann::ordered_json curves;
+    Json curves;
     const auto add = [&](const std::string& name, const std::string& unit,
                          const std::optional<calibration::CurveDifference>& found, double limit) {
         rows.push_back(make_row(name, unit, found, limit));
@@ -262,31 +263,29 @@ int run_compare(const CompareOptions& options) {
 
 }  // namespace
 
-void add_compare_command(CLI::App& app, int& status) {
+void add_compare_command(Program& program) {
     const auto options = std::make_shared<CompareOptions>();
-    CLI::App* command = app.add_subcommand("compare", "Compare two profiles, two images, or a lens with a profile");
-    command->footer("Example: lensproof compare tessar profile.json --f-number 8 --position-limit 0.5");
-    command->add_option("A", options->a, "A profile (.json), an image, or a lens")->required();
-    command->add_option("B", options->b, "Likewise")->required();
-    command->add_option("--position-limit", options->position_limit_px, "Limit of image position, rms, px")
-        ->check(kPositiveOption);
-    command->add_option("--distortion-limit", options->distortion_limit_percent, "Limit of distortion, rms, %")
-        ->check(kPositiveOption);
-    command->add_option("--vignetting-limit", options->vignetting_limit_ev, "Limit of vignetting, rms, EV")
-        ->check(kPositiveOption);
-    command->add_option("--chromatic-limit", options->chromatic_limit_px, "Limit of chromatic shift, rms, px")
-        ->check(kPositiveOption);
-    command->add_option("--rms-limit", options->rms_limit, "Limit of images' rms difference, full scale 1")
-        ->check(kPositiveOption);
-    command->add_option("--f-number", options->f_number, "f-number of a lens")
-        ->check(kPositiveOption)
-        ->capture_default_str();
-    command->add_option("--focus", options->focus_mm, "Focus distance of a lens, mm, or inf")
-        ->check(kPositiveOption | CLI::IsMember({"inf"}))
-        ->default_str("inf");
-    command->add_option("--response", options->response, "Sensor response behind a lens")->capture_default_str();
-    add_common_options(*command, options->common);
-    command->callback([options, &status] { status = run_compare(*options); });
+    Command command = program.add_command("compare", "Compare two profiles, two images, or a lens with a profile");
+    command.footer("Example: lensproof compare tessar profile.json --f-number 8 --position-limit 0.5");
+    command.add_option("A", options->a, "A profile (.json), an image, or a lens").required();
+    command.add_option("B", options->b, "Likewise").required();
+    command.add_option("--position-limit", options->position_limit_px, "Limit of image position, rms, px")
+        .check(kPositiveOption);
+    command.add_option("--distortion-limit", options->distortion_limit_percent, "Limit of distortion, rms, %")
+        .check(kPositiveOption);
+    command.add_option("--vignetting-limit", options->vignetting_limit_ev, "Limit of vignetting, rms, EV")
+        .check(kPositiveOption);
+    command.add_option("--chromatic-limit", options->chromatic_limit_px, "Limit of chromatic shift, rms, px")
+        .check(kPositiveOption);
+    command.add_option("--rms-limit", options->rms_limit, "Limit of images' rms difference, full scale 1")
+        .check(kPositiveOption);
+    command.add_option("--f-number", options->f_number, "f-number of a lens").check(kPositiveOption).shows_default();
+    command.add_option("--focus", options->focus_mm, "Focus distance of a lens, mm, or inf")
+        .check(either(kPositiveOption, one_of({"inf"})))
+        .shows_default();
+    command.add_option("--response", options->response, "Sensor response behind a lens").shows_default();
+    add_common_options(command, options->common);
+    command.runs([options] { return run_compare(*options); });
 }
 
 }  // namespace lensproof::cli

@@ -3,6 +3,7 @@
 
 #include <memory>
 
+#include "engine/base/json.h"
 #include "engine/formats/prescription/prescription_file.h"
 #include "experiments/cli/command.h"
 
@@ -17,8 +18,8 @@ struct ConvertOptions {
     std::string zoom;
 };
 
-nlohmann::ordered_json to_json(const std::vector<optics::Finding>& findings) {
-    nlohmann::ordered_json list = nlohmann::ordered_json::array();
+Json to_json(const std::vector<optics::Finding>& findings) {
+    Json list = Json::list();
     for (const optics::Finding& finding : findings) {
         list.push_back(finding_json(finding));
     }
@@ -57,22 +58,22 @@ int convert(const ConvertOptions& options) {
 
 }  // namespace
 
-void add_convert_command(CLI::App& app, int& status) {
-    auto* command = app.add_subcommand("convert", "Write a prescription in another form");
+void add_convert_command(Program& program) {
+    Command command = program.add_command("convert", "Write a prescription in another form");
     auto options = std::make_shared<ConvertOptions>();
-    command->footer(
+    command.footer(
         "Reads .toml, .zmx, .seq, .dat (pbrt), .json (Optiland), .fx (lensoptics) and .csv, writes .toml, .zmx, .dat "
         "and .csv.\n"
         "What the reader did not understand, and what the form of OUT cannot say, goes to standard error: as a warning "
         "where rays then go another way, else as an info.\n"
         "Example: lensproof convert patent.fx patent.toml");
-    command->add_option("IN", options->in, "A prescription file, or the name of a lens that ships")->required();
-    command->add_option("OUT", options->out, "The file to write; its extension tells the form")->required();
-    command->add_option("--zoom", options->zoom,
-                        "Write one zoom position alone, by its name or its number from 1. Forms without zoom hold the "
-                        "first one otherwise");
-    add_common_options(*command, options->common);
-    command->callback([options, &status] { status = convert(*options); });
+    command.add_option("IN", options->in, "A prescription file, or the name of a lens that ships").required();
+    command.add_option("OUT", options->out, "The file to write; its extension tells the form").required();
+    command.add_option("--zoom", options->zoom,
+                       "Write one zoom position alone, by its name or its number from 1. Forms without zoom hold the "
+                       "first one otherwise");
+    add_common_options(command, options->common);
+    command.runs([options] { return convert(*options); });
 }
 
 }  // namespace lensproof::cli

@@ -156,47 +156,47 @@ int run_export(const ExportOptions& options) {
 
 }  // namespace
 
-void add_export_command(CLI::App& app, int& status) {
+void add_export_command(Program& program) {
     const auto options = std::make_shared<ExportOptions>();
-    CLI::App* command = app.add_subcommand("export", "Write a measured profile for lensfun, OpenCV or compositing");
-    command->footer(
+    Command command = program.add_command("export", "Write a measured profile for lensfun, OpenCV or compositing");
+    command.footer(
         "Example: lensproof export profile.json --to lensfun --crop-factor 1.53 --focal-length-mm 18 -o lens.xml\n"
         "lensfun: XML for its database. opencv: YAML as cv::FileStorage reads it. stmap: two EXR maps,\n"
         "FILE_undistort.exr and FILE_distort.exr (u and v from 0 to 1, origin at the lower left).");
-    command->add_option("PROFILE", options->profile, "A profile that measure wrote")->required();
-    command->add_option("--to", options->format, "lensfun, opencv or stmap")
-        ->required()
-        ->check(CLI::IsMember({"lensfun", "opencv", "stmap"}));
-    command->add_option("-o,--output", options->output, "The file to write")->required()->type_name("FILE");
-    command->add_option("--crop-factor", options->crop_factor, "lensfun: the camera's (default: the profile's)")
-        ->check(kPositiveOption);
+    command.add_option("PROFILE", options->profile, "A profile that measure wrote").required();
+    command.add_option("--to", options->format, "lensfun, opencv or stmap")
+        .required()
+        .check(one_of({"lensfun", "opencv", "stmap"}));
+    command.add_option("-o,--output", options->output, "The file to write").required().type_name("FILE");
+    command.add_option("--crop-factor", options->crop_factor, "lensfun: the camera's (default: the profile's)")
+        .check(kPositiveOption);
     command
-        ->add_option("--focal-length-mm", options->focal_length_mm,
-                     "lensfun: the focal length that the camera notes in its pictures (default: the profile's)")
-        ->check(kPositiveOption);
-    command->add_option("--f-number", options->f_number, "lensfun: the aperture, without which vignetting is left out")
-        ->check(kPositiveOption);
-    command->add_option("--focus-distance-m", options->focus_distance_m, "lensfun: for vignetting")
-        ->check(kPositiveOption)
-        ->capture_default_str();
-    command->add_option("--lens-maker", options->maker, "lensfun: who made the lens");
-    command->add_option("--lens-model", options->lens, "lensfun: the lens's name (default: the profile's)");
-    command->add_option("--mount", options->mount, "lensfun: the mount's name")->capture_default_str();
-    const CLI::IsMember projections({"rectilinear", "fisheye", "equisolid", "stereographic", "orthographic"});
+        .add_option("--focal-length-mm", options->focal_length_mm,
+                    "lensfun: the focal length that the camera notes in its pictures (default: the profile's)")
+        .check(kPositiveOption);
+    command.add_option("--f-number", options->f_number, "lensfun: the aperture, without which vignetting is left out")
+        .check(kPositiveOption);
+    command.add_option("--focus-distance-m", options->focus_distance_m, "lensfun: for vignetting")
+        .check(kPositiveOption)
+        .shows_default();
+    command.add_option("--lens-maker", options->maker, "lensfun: who made the lens");
+    command.add_option("--lens-model", options->lens, "lensfun: the lens's name (default: the profile's)");
+    command.add_option("--mount", options->mount, "lensfun: the mount's name").shows_default();
+    const OptionCheck projections = one_of({"rectilinear", "fisheye", "equisolid", "stereographic", "orthographic"});
     command
-        ->add_option("--lens-type", options->lens_type,
-                     "lensfun: the projection (default: rectilinear up to 52° from the axis, else the nearest)")
-        ->check(projections);
-    command->add_option("--undistorted", options->undistorted, "stmap: the projection without distortion")
-        ->check(projections)
-        ->capture_default_str();
+        .add_option("--lens-type", options->lens_type,
+                    "lensfun: the projection (default: rectilinear up to 52° from the axis, else the nearest)")
+        .check(projections);
+    command.add_option("--undistorted", options->undistorted, "stmap: the projection without distortion")
+        .check(projections)
+        .shows_default();
     command
-        ->add_option("--overscan-percent", options->most_overscan_percent,
-                     "stmap: how far the undistorted picture may reach beyond its frame on each side")
-        ->check(CLI::Range(0.0, 500.0))
-        ->capture_default_str();
-    add_common_options(*command, options->common);
-    command->callback([options, &status] { status = run_export(*options); });
+        .add_option("--overscan-percent", options->most_overscan_percent,
+                    "stmap: how far the undistorted picture may reach beyond its frame on each side")
+        .check(in_range(0.0, 500.0))
+        .shows_default();
+    add_common_options(command, options->common);
+    command.runs([options] { return run_export(*options); });
 }
 
 }  // namespace lensproof::cli

@@ -2,10 +2,12 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <limits>
 #include <memory>
 
 #include "engine/base/input_error.h"
+#include "engine/base/json.h"
 #include "engine/base/text.h"
 #include "engine/formats/glass/shipped_glasses.h"
 #include "engine/optics/air.h"
@@ -35,11 +37,11 @@ double abbe_where_covered(const optics::Glass& glass) {
                : std::numeric_limits<double>::quiet_NaN();
 }
 
-nlohmann::ordered_json summary(const optics::Glass& glass) {
+Json summary(const optics::Glass& glass) {
     return {{"glass", glass.name},
             {"catalogue", glass.catalogue},
-            {"n_d", number_or_null(index_where_covered(glass, spectral::kLineD))},
-            {"V_d", number_or_null(abbe_where_covered(glass))},
+            {"n_d", index_where_covered(glass, spectral::kLineD)},
+            {"V_d", abbe_where_covered(glass)},
             {"min_wavelength_nm", glass.min_wavelength_nm},
             {"max_wavelength_nm", glass.max_wavelength_nm},
             {"status", glass.status},
@@ -48,7 +50,7 @@ nlohmann::ordered_json summary(const optics::Glass& glass) {
 }
 
 int list_glasses(const GlassesOptions& options, const optics::GlassCatalogue& catalogue) {
-    nlohmann::ordered_json glasses = nlohmann::ordered_json::array();
+    Json glasses = Json::list();
     for (const optics::Glass& glass : catalogue.glasses()) {
         glasses.push_back(summary(glass));
         if (prints_text(options.common)) {
@@ -62,33 +64,32 @@ int list_glasses(const GlassesOptions& options, const optics::GlassCatalogue& ca
 }
 
 /// The lines of a maker's sheet, from i to t.
-nlohmann::ordered_json index_rows(const optics::Glass& glass) {
-    nlohmann::ordered_json rows = nlohmann::ordered_json::array();
+Json index_rows(const optics::Glass& glass) {
+    Json rows = Json::list();
     for (const spectral::SpectralLine& line : spectral::spectral_lines()) {
         const double n = index_where_covered(glass, line.wavelength_nm);
         const double reference_C = glass.thermal ? glass.thermal->reference_C : 20.0;
         rows.push_back({{"line", line.name},
                         {"wavelength_nm", line.wavelength_nm},
-                        {"n", number_or_null(n)},
-                        {"n_in_vacuum", number_or_null(optics::absolute_index(n, line.wavelength_nm, reference_C))},
-                        {"dn_dT_relative_per_K", number_or_null(optics::dn_dT_relative(glass, line.wavelength_nm))},
-                        {"dn_dT_absolute_per_K", number_or_null(optics::dn_dT_absolute(glass, line.wavelength_nm))}});
+                        {"n", n},
+                        {"n_in_vacuum", optics::absolute_index(n, line.wavelength_nm, reference_C)},
+                        {"dn_dT_relative_per_K", optics::dn_dT_relative(glass, line.wavelength_nm)},
+                        {"dn_dT_absolute_per_K", optics::dn_dT_absolute(glass, line.wavelength_nm)}});
     }
     return rows;
 }
 
-nlohmann::ordered_json sheet(const optics::Glass& glass, const std::vector<std::string>& also_in) {
-    nlohmann::ordered_json json = summary(glass);
+Json sheet(const optics::Glass& glass, const std::vector<std::string>& also_in) {
+    Json json = summary(glass);
     const bool visible = optics::covers(glass, spectral::kLineG) && optics::covers(glass, spectral::kLineC);
     json["also_in"] = also_in;
-    json["stated_n_d"] = glass.stated_n_d ? nlohmann::ordered_json(*glass.stated_n_d) : nullptr;
-    json["stated_V_d"] = glass.stated_V_d ? nlohmann::ordered_json(*glass.stated_V_d) : nullptr;
-    json["V_e"] = visible ? number_or_null(optics::abbe_number_e(glass.formula)) : nullptr;
-    json["P_gF"] = visible
-                       ? number_or_null(optics::partial_dispersion(glass.formula, spectral::kLineG, spectral::kLineF))
-                       : nullptr;
+    json["stated_n_d"] = glass.stated_n_d;
+    json["stated_V_d"] = glass.stated_V_d;
+    json["V_e"] = visible ? Json(optics::abbe_number_e(glass.formula)) : nullptr;
+    json["P_gF"] =
+        visible ? Json(optics::partial_dispersion(glass.formula, spectral::kLineG, spectral::kLineF)) : nullptr;
     json["lines"] = index_rows(glass);
-    nlohmann::ordered_json transmittance = nlohmann::ordered_json::array();
+    Json transmittance = Json::list();
     for (const optics::TransmittancePoint& point : formats::shipped_transmittance(glass)) {
         transmittance.push_back({{"wavelength_nm", point.wavelength_nm},
                                  {"internal_transmittance", point.transmittance},
@@ -99,43 +100,43 @@ nlohmann::ordered_json sheet(const optics::Glass& glass, const std::vector<std::
 }
 
 /// A number of a sheet in a column, or a dash.
-std::string cell(const nlohmann::ordered_json& value, double factor, int digits) {
-    return value.is_number() ? fmt::format("{:.{}f}", factor * value.get<double>(), digits) : "-";
+std::string cell(const Json& value, double factor, int digits) {
+    return value.is_number() ? fmt::format("{:.{}f}", factor * value.number(), digits) : "-";
 }
 
-void print_sheet(const nlohmann::ordered_json& json) {
-    const auto text = [&](const char* key) { return json[key].get<std::string>(); };
+void print_sheet(const Json& json) {
+    const auto text = [&](const char* key) { return json[key].text(); };
     fmt::print("{} ({}{})\n  {}\n", text("glass"), text("catalogue"),
                text("status").empty() ? "" : ", " + text("status"), text("source"));
     if (!text("note").empty()) {
         fmt::print("  {}\n", text("note"));
     }
-    if (!json["also_in"].empty()) {
-        fmt::print("  a glass of this name, with another formula: {}\n",
-                   fmt::join(json["also_in"].get<std::vector<std::string>>(), ", "));
+    std::vector<std::string> also_in;
+    std::ranges::transform(json["also_in"], std::back_inserter(also_in), &Json::text);
+    if (!also_in.empty()) {
+        fmt::print("  a glass of this name, with another formula: {}\n", fmt::join(also_in, ", "));
     }
     fmt::print("  n_d {}  V_d {}  V_e {}  P_gF {}  {:.0f} to {:.0f} nm\n", cell(json["n_d"], 1.0, 6),
                cell(json["V_d"], 1.0, 2), cell(json["V_e"], 1.0, 2), cell(json["P_gF"], 1.0, 4),
-               json["min_wavelength_nm"].get<double>(), json["max_wavelength_nm"].get<double>());
+               json["min_wavelength_nm"].number(), json["max_wavelength_nm"].number());
     fmt::print("  line         nm   n (in air)  n (vacuum)  dn/dT at 20 °C, 1e-6/K: in air, vacuum\n");
     for (const auto& line : json["lines"]) {
-        fmt::print("  {:4} {:10.4f}   {:>10}  {:>10}  {:>7} {:>7}\n", line["line"].get<std::string>(),
-                   line["wavelength_nm"].get<double>(), cell(line["n"], 1.0, 6), cell(line["n_in_vacuum"], 1.0, 6),
+        fmt::print("  {:4} {:10.4f}   {:>10}  {:>10}  {:>7} {:>7}\n", line["line"].text(),
+                   line["wavelength_nm"].number(), cell(line["n"], 1.0, 6), cell(line["n_in_vacuum"], 1.0, 6),
                    cell(line["dn_dT_relative_per_K"], 1e6, 2), cell(line["dn_dT_absolute_per_K"], 1e6, 2));
     }
     if (!json["internal_transmittance"].empty()) {
         fmt::print("  internal transmittance through {} mm\n ",
-                   json["internal_transmittance"][0]["thickness_mm"].get<double>());
+                   json["internal_transmittance"][0]["thickness_mm"].number());
         for (const auto& point : json["internal_transmittance"]) {
-            fmt::print(" {:.0f}:{}", point["wavelength_nm"].get<double>(),
-                       cell(point["internal_transmittance"], 1.0, 3));
+            fmt::print(" {:.0f}:{}", point["wavelength_nm"].number(), cell(point["internal_transmittance"], 1.0, 3));
         }
         fmt::print("\n");
     }
 }
 
 int show_glasses(const GlassesOptions& options, const optics::GlassCatalogue& catalogue) {
-    nlohmann::ordered_json sheets = nlohmann::ordered_json::array();
+    Json sheets = Json::list();
     for (const std::string& name : options.names) {
         const optics::GlassMatch match = catalogue.resolve(name);
         if (!match.glass) {
@@ -155,18 +156,18 @@ int show_glasses(const GlassesOptions& options, const optics::GlassCatalogue& ca
 
 }  // namespace
 
-void add_glasses_command(CLI::App& app, int& status) {
+void add_glasses_command(Program& program) {
     const auto options = std::make_shared<GlassesOptions>();
-    CLI::App* command = app.add_subcommand(
+    Command command = program.add_command(
         "glasses", "List the glasses that are known, with their sources, or show the sheets of some");
-    command->footer("Example: lensproof glasses N-BK7 \"SCHOTT LAK9\"");
-    command->add_option("NAME", options->names, "Glasses to show, as lens people write them");
-    add_glass_catalogue_option(*command, options->catalogues);
-    add_common_options(*command, options->common);
-    command->callback([options, &status] {
+    command.footer("Example: lensproof glasses N-BK7 \"SCHOTT LAK9\"");
+    command.add_option("NAME", options->names, "Glasses to show, as lens people write them");
+    add_glass_catalogue_option(command, options->catalogues);
+    add_common_options(command, options->common);
+    command.runs([options] {
         check_json_name(options->common);
         const optics::GlassCatalogue catalogue = read_glass_catalogues(options->catalogues);
-        status = options->names.empty() ? list_glasses(*options, catalogue) : show_glasses(*options, catalogue);
+        return options->names.empty() ? list_glasses(*options, catalogue) : show_glasses(*options, catalogue);
     });
 }
 

@@ -6,6 +6,7 @@
 #include <numbers>
 #include <sstream>
 
+#include "engine/base/json.h"
 #include "engine/formats/prescription/load_lens.h"
 #include "engine/formats/prescription/prescription_file.h"
 #include "engine/optics/chief_ray.h"
@@ -34,15 +35,15 @@ Figures figures_of(const optics::Lens& lens) {
             .half_field_deg = optics::ChiefRays(lens, spectral::kLineD).largest_field() * 180.0 / std::numbers::pi};
 }
 
-void add_figures(nlohmann::ordered_json& json, const Figures& figures) {
+void add_figures(Json& json, const Figures& figures) {
     json["efl_mm"] = figures.efl_mm;
     json["bfl_mm"] = figures.bfl_mm;
     json["f_number"] = figures.f_number;
     json["half_field_deg"] = figures.half_field_deg;
 }
 
-nlohmann::ordered_json lens_json(const std::string& id, const optics::Prescription& prescription) {
-    nlohmann::ordered_json json{{"lens", id}, {"name", prescription.name}};
+Json lens_json(const std::string& id, const optics::Prescription& prescription) {
+    Json json{{"lens", id}, {"name", prescription.name}};
     add_figures(json, figures_of(formats::load_lens(id)));
     json["projection"] = optics::projection_name(prescription.projection);
     json["source"] = prescription.source;
@@ -54,7 +55,7 @@ nlohmann::ordered_json lens_json(const std::string& id, const optics::Prescripti
         json["stated_half_field_deg"] = *prescription.stated.half_field_deg;
     }
     for (const optics::ZoomPosition& zoom : prescription.zoom) {
-        nlohmann::ordered_json position{{"name", zoom.name}};
+        Json position{{"name", zoom.name}};
         add_figures(position, figures_of(formats::load_lens(id, {.zoom = zoom.name})));
         json["zoom"].push_back(position);
     }
@@ -79,28 +80,25 @@ std::string indented_lines(const std::string& text) {
     return lines + line;
 }
 
-void print_figures(const std::string& label, const nlohmann::ordered_json& json, const std::string& rest) {
-    fmt::print("{:25} {:8.2f} {:8.2f} {:7.2f} {:8.1f}{}\n", label, json["efl_mm"].get<double>(),
-               json["bfl_mm"].get<double>(), json["f_number"].get<double>(), json["half_field_deg"].get<double>(),
-               rest);
+void print_figures(const std::string& label, const Json& json, const std::string& rest) {
+    fmt::print("{:25} {:8.2f} {:8.2f} {:7.2f} {:8.1f}{}\n", label, json["efl_mm"].number(), json["bfl_mm"].number(),
+               json["f_number"].number(), json["half_field_deg"].number(), rest);
 }
 
-void print_lens(const nlohmann::ordered_json& json) {
-    const std::string field = json.contains("stated_half_field_deg")
-                                  ? fmt::format("{:.1f}", json["stated_half_field_deg"].get<double>())
-                                  : "–";
-    print_figures(json["lens"].get<std::string>(), json,
-                  fmt::format("  {:>6} {:>5}  {:12} {}", field, json["elements"].get<int>(),
-                              json["design"].get<std::string>(), json["projection"].get<std::string>()));
-    for (const nlohmann::ordered_json& position : json.value("zoom", nlohmann::ordered_json::array())) {
-        print_figures(fmt::format("{} at {}", kIndent, position["name"].get<std::string>()), position, "");
+void print_lens(const Json& json) {
+    const std::string field =
+        json.contains("stated_half_field_deg") ? fmt::format("{:.1f}", json["stated_half_field_deg"].number()) : "–";
+    print_figures(json["lens"].text(), json,
+                  fmt::format("  {:>6} {:>5}  {:12} {}", field, json["elements"].number(), json["design"].text(),
+                              json["projection"].text()));
+    for (const Json& position : json["zoom"]) {
+        print_figures(fmt::format("{} at {}", kIndent, position["name"].text()), position, "");
     }
-    fmt::print("{} {}\n{}\n\n", kIndent, json["name"].get<std::string>(),
-               indented_lines(json["source"].get<std::string>()));
+    fmt::print("{} {}\n{}\n\n", kIndent, json["name"].text(), indented_lines(json["source"].text()));
 }
 
 int list_lenses(const CommonOptions& options) {
-    nlohmann::ordered_json lenses = nlohmann::ordered_json::array();
+    Json lenses = Json::list();
     if (prints_text(options)) {
         fmt::print(
             "Computed from each table at the d line, for an object at infinity; field: half, in degrees, of the "
@@ -111,7 +109,7 @@ int list_lenses(const CommonOptions& options) {
     for (const std::string& name : formats::shipped_lens_names()) {
         lenses.push_back(lens_json(name, formats::read_prescription(formats::find_lens_file(name))));
         if (prints_text(options)) {
-            print_lens(lenses.back());
+            print_lens(lenses.elements().back());
         }
     }
     write_json_result(options, {{"lenses", lenses}});
@@ -120,20 +118,20 @@ int list_lenses(const CommonOptions& options) {
 
 }  // namespace
 
-void add_lenses_command(CLI::App& app, int& status) {
+void add_lenses_command(Program& program) {
     const auto options = std::make_shared<CommonOptions>();
-    CLI::App* command = app.add_subcommand("lenses", "List the lenses that ship, with their sources");
-    command->footer(
+    Command command = program.add_command("lenses", "List the lenses that ship, with their sources");
+    command.footer(
         "The JSON has for each lens: lens, name, efl_mm, bfl_mm, f_number and half_field_deg (of the last\n"
         "chief ray that passes every rim), all computed at the d line for an object at infinity; projection,\n"
         "source, design, elements, surfaces (the stop included), stated_half_field_deg where the source\n"
         "states one, and zoom: the name and the computed figures of each position of a zoom lens, whose\n"
         "own figures are those of the first.\n"
         "Example: lensproof lenses --json -");
-    add_common_options(*command, *options);
-    command->callback([options, &status] {
+    add_common_options(command, *options);
+    command.runs([options] {
         check_json_name(*options);
-        status = list_lenses(*options);
+        return list_lenses(*options);
     });
 }
 

@@ -51,36 +51,25 @@ int flushed(int status) {
 }
 
 int run(int argc, char** argv) {
-    int status = kDone;
-    CLI::App app{
+    Program program(
+        "lensproof",
         "lensproof: does the simulated lens behave like the real one, where not, by how much, and how sure are we?",
-        "lensproof"};
-    app.set_version_flag("--version", LENSPROOF_VERSION);
-    app.footer("The launcher also has: ./lensproof demo, the demo experiment, and ./lensproof test, every test.");
-    app.require_subcommand(1);
-    add_check_command(app, status);
-    add_convert_command(app, status);
-    add_analyze_command(app, status);
-    add_trace_command(app, status);
-    add_render_command(app, status);
-    add_merge_command(app, status);
-    add_chart_command(app, status);
-    add_measure_command(app, status);
-    add_compare_command(app, status);
-    add_export_command(app, status);
-    add_run_command(app, status);
-    add_lenses_command(app, status);
-    add_glasses_command(app, status);
-    try {
-        app.parse(argc, argv);
-    } catch (const CLI::Success& success) {
-        return app.exit(success);  // --help, --version
-    } catch (const CLI::ParseError& error) {
-        const std::string asked = app.get_subcommands().empty() ? "" : app.get_subcommands().front()->get_name() + " ";
-        say(fmt::format("{}\nTry: lensproof {}--help", error.what(), asked));
-        return kUnusableInput;
-    }
-    return status;
+        LENSPROOF_VERSION,
+        "The launcher also has: ./lensproof demo, the demo experiment, and ./lensproof test, every test.");
+    add_check_command(program);
+    add_convert_command(program);
+    add_analyze_command(program);
+    add_trace_command(program);
+    add_render_command(program);
+    add_merge_command(program);
+    add_chart_command(program);
+    add_measure_command(program);
+    add_compare_command(program);
+    add_export_command(program);
+    add_run_command(program);
+    add_lenses_command(program);
+    add_glasses_command(program);
+    return program.run(argc, argv);
 }
 
 }  // namespace

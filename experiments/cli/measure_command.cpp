@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <charconv>
 #include <memory>
+#include <sstream>
 
 #include "calibration/detection/detect.h"
 #include "calibration/measure.h"
@@ -23,7 +24,8 @@ calibration::PixelRectangle parse_rectangle(const std::string& text) {
         return {};
     }
     std::vector<int> numbers;
-    for (const std::string& field : CLI::detail::split(text, ',')) {
+    std::istringstream fields(text);
+    for (std::string field; std::getline(fields, field, ',');) {
         int value = 0;
         const auto [end, error] = std::from_chars(field.data(), field.data() + field.size(), value);
         if (error != std::errc() || end != field.data() + field.size()) {
@@ -70,13 +72,13 @@ void write_and_print(const MeasureOptions& options, const calibration::Profile& 
     }
 }
 
-const CLI::Validator kTransferOption(
+const OptionCheck kTransferOption{
     [](const std::string& text) {
         return formats::parse_transfer_curve(text)
                    ? std::string()
                    : fmt::format("'{}' is no curve: expected srgb, rec709, linear or gamma:2.2", text);
     },
-    "CURVE");
+    "CURVE"};
 
 /// Folders stand for the pictures in them. A name that was given has to be there.
 std::vector<std::filesystem::path> expanded(const std::vector<std::string>& names) {
@@ -148,69 +150,68 @@ scene::Chart chart_to_find(const std::string& file) {
     return chart;
 }
 
-void add_measure_command(CLI::App& app, int& status) {
+void add_measure_command(Program& program) {
     const auto options = std::make_shared<MeasureOptions>();
-    CLI::App* command = app.add_subcommand(
+    Command command = program.add_command(
         "measure", "Find a chart in pictures; estimate distortion, vignetting, chromatic shift and sharpness");
-    command->footer(
+    command.footer(
         "Example: lensproof measure photos/*.jpg --chart photos/manifest.toml -o profile.json\n"
         "CHART is any TOML file with a [chart] table: a chart's own, a photo set's manifest, a scene.");
-    command->add_option("IMAGE", options->images,
-                        "Pictures of the chart (JPEG, PNG, TIFF, EXR, RAW, …), or folders of them");
-    command->add_option("--chart", options->chart, "TOML file with a [chart] table")->type_name("FILE");
+    command.add_option("IMAGE", options->images,
+                       "Pictures of the chart (JPEG, PNG, TIFF, EXR, RAW, …), or folders of them");
+    command.add_option("--chart", options->chart, "TOML file with a [chart] table").type_name("FILE");
     command
-        ->add_option("--edge", options->edges,
-                     "Instead of a chart: a rectangle x,y,width,height (px) that holds one slanted edge; or whole")
-        ->allow_extra_args(false)
-        ->type_name("RECTANGLE");
+        .add_option("--edge", options->edges,
+                    "Instead of a chart: a rectangle x,y,width,height (px) that holds one slanted edge; or whole")
+        .takes_one_argument()
+        .type_name("RECTANGLE");
     command
-        ->add_option("--focus-positions", options->focus_positions_mm,
-                     "Where the focus stood in each IMAGE, mm, for field curvature")
-        ->delimiter(',');
-    command->add_option("--flat-field", options->flat_fields, "Pictures of an even surface, for vignetting")
-        ->type_name("FILE");
+        .add_option("--focus-positions", options->focus_positions_mm,
+                    "Where the focus stood in each IMAGE, mm, for field curvature")
+        .separated_by(',');
+    command.add_option("--flat-field", options->flat_fields, "Pictures of an even surface, for vignetting")
+        .type_name("FILE");
     std::vector<std::string> models = calibration::model_kind_names();
     models.emplace_back("auto");
     command
-        ->add_option("--model", options->model,
-                     "The lens model; auto chooses by held-out error and uncertainty, and says why")
-        ->check(CLI::IsMember(models))
-        ->capture_default_str();
+        .add_option("--model", options->model,
+                    "The lens model; auto chooses by held-out error and uncertainty, and says why")
+        .check(one_of(models))
+        .shows_default();
+    command.add_option("--aspect", options->aspect, "Of the pixels: square, or free to fit a vertical focal length too")
+        .check(one_of({"square", "free"}))
+        .shows_default();
+    command.add_flag("--board-shape", options->fit_board_shape, "Fit how far the chart is from flat, with the lens");
+    command.add_option("--pixel-pitch", options->pixel_pitch_um, "Pixel pitch in µm, for lengths in mm")
+        .check(kPositiveOption);
+    command.add_option("--lens", options->lens, "The lens's name, noted in the profile").shows_default();
+    command.add_option("--camera", options->camera, "The camera's name, noted in the profile").shows_default();
+    command.add_option("--kind", options->kind, "photo or render, noted in the profile")
+        .check(one_of({"photo", "render"}))
+        .shows_default();
+    command.add_flag("--no-self-test", options->no_self_test,
+                     "Do not simulate and measure the pictures again to find the method's own error");
     command
-        ->add_option("--aspect", options->aspect, "Of the pixels: square, or free to fit a vertical focal length too")
-        ->check(CLI::IsMember({"square", "free"}))
-        ->capture_default_str();
-    command->add_flag("--board-shape", options->fit_board_shape, "Fit how far the chart is from flat, with the lens");
-    command->add_option("--pixel-pitch", options->pixel_pitch_um, "Pixel pitch in µm, for lengths in mm")
-        ->check(kPositiveOption);
-    command->add_option("--lens", options->lens, "The lens's name, noted in the profile")->capture_default_str();
-    command->add_option("--camera", options->camera, "The camera's name, noted in the profile")->capture_default_str();
-    command->add_option("--kind", options->kind, "photo or render, noted in the profile")
-        ->check(CLI::IsMember({"photo", "render"}))
-        ->capture_default_str();
-    command->add_flag("--no-self-test", options->no_self_test,
-                      "Do not simulate and measure the pictures again to find the method's own error");
+        .add_option("--transfer", options->transfer,
+                    "The curve of pictures that state none: srgb, rec709, linear or gamma:2.2 (default: srgb)")
+        .check(kTransferOption);
+    command.add_option("-o,--output", options->output, "Profile JSON to write").type_name("FILE");
     command
-        ->add_option("--transfer", options->transfer,
-                     "The curve of pictures that state none: srgb, rec709, linear or gamma:2.2 (default: srgb)")
-        ->check(kTransferOption);
-    command->add_option("-o,--output", options->output, "Profile JSON to write")->type_name("FILE");
+        .add_option("--bands", options->bands,
+                    "Instead of pictures: one scene in narrow bands, for the chromatic shift per wavelength (nm)")
+        .separated_by(',')
+        .type_name("NM=FILE");
+    command.add_option("--reference-band", options->reference_band_nm, "The band that shifts are counted from, nm")
+        .shows_default();
+    command.add_option("--mosaic", options->mosaic, "The bands are raw Bayer mosaics: their top left 2 x 2 colours")
+        .check(one_of({"rggb", "bggr", "grbg", "gbrg"}));
     command
-        ->add_option("--bands", options->bands,
-                     "Instead of pictures: one scene in narrow bands, for the chromatic shift per wavelength (nm)")
-        ->delimiter(',')
-        ->type_name("NM=FILE");
-    command->add_option("--reference-band", options->reference_band_nm, "The band that shifts are counted from, nm")
-        ->capture_default_str();
-    command->add_option("--mosaic", options->mosaic, "The bands are raw Bayer mosaics: their top left 2 x 2 colours")
-        ->check(CLI::IsMember({"rggb", "bggr", "grbg", "gbrg"}));
-    command
-        ->add_option("--image-centre", options->image_centre_px,
-                     "Of the bands' pictures: the optical centre x,y, px (default: their middle)")
-        ->delimiter(',')
-        ->expected(2);
-    add_common_options(*command, options->common);
-    command->callback([options, &status] { status = run_measure(*options); });
+        .add_option("--image-centre", options->image_centre_px,
+                    "Of the bands' pictures: the optical centre x,y, px (default: their middle)")
+        .separated_by(',')
+        .takes(2);
+    add_common_options(command, options->common);
+    command.runs([options] { return run_measure(*options); });
 }
 
 }  // namespace lensproof::cli

@@ -8,6 +8,7 @@
 
 #include "engine/base/file.h"
 #include "engine/base/input_error.h"
+#include "engine/base/json.h"
 #include "engine/formats/image/image.h"
 #include "engine/render/film_exr.h"
 #include "engine/render/film_image.h"
@@ -126,8 +127,7 @@ int run_merge(const MergeOptions& options) {
     render::write_film_exr(sum.film, sum.notes, exr);
     formats::write_png(render::film_rgb(sum.film), png);
     const std::optional<RawFiles> raw = write_raw_files(sum.film, sum.notes, exr, options.common.threads);
-    nlohmann::ordered_json json = {
-        {"shards", shards.indices}, {"missing", missing}, {"exr", exr.string()}, {"png", png.string()}};
+    Json json = {{"shards", shards.indices}, {"missing", missing}, {"exr", exr.string()}, {"png", png.string()}};
     report_left_out(sum.film, json);
     if (prints_text(options.common)) {
         fmt::print("{}\n{}\n", exr.string(), png.string());
@@ -141,18 +141,18 @@ int run_merge(const MergeOptions& options) {
 
 }  // namespace
 
-void add_merge_command(CLI::App& app, int& status) {
+void add_merge_command(Program& program) {
     const auto options = std::make_shared<MergeOptions>();
-    CLI::App* command = app.add_subcommand("merge", "Add up the shards of a render");
-    command->footer("Example: lensproof merge part1.exr part2.exr part3.exr -o chart.exr");
-    command->add_option("SHARD", options->files, "What `render --shard` wrote, in any order")->required();
-    command->add_option("-o,--output", options->output, "EXR to write; a PNG appears beside it")
-        ->type_name("FILE")
-        ->required();
-    command->add_flag("--partial", options->takes_some,
-                      "Take the shards that there are; the result merges further as a shard");
-    add_common_options(*command, options->common);
-    command->callback([options, &status] { status = run_merge(*options); });
+    Command command = program.add_command("merge", "Add up the shards of a render");
+    command.footer("Example: lensproof merge part1.exr part2.exr part3.exr -o chart.exr");
+    command.add_option("SHARD", options->files, "What `render --shard` wrote, in any order").required();
+    command.add_option("-o,--output", options->output, "EXR to write; a PNG appears beside it")
+        .type_name("FILE")
+        .required();
+    command.add_flag("--partial", options->takes_some,
+                     "Take the shards that there are; the result merges further as a shard");
+    add_common_options(command, options->common);
+    command.runs([options] { return run_merge(*options); });
 }
 
 }  // namespace lensproof::cli

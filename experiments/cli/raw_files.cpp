@@ -9,6 +9,7 @@
 #include <string>
 
 #include "engine/base/file.h"
+#include "engine/base/json.h"
 #include "engine/render/film_image.h"
 #include "engine/render/raw_sensor.h"
 
@@ -77,7 +78,7 @@ std::optional<RawFiles> write_raw_files(const render::Film& film, const render::
     return files;
 }
 
-void report_raw_files(const RawFiles& files, nlohmann::ordered_json& json, const CommonOptions& common) {
+void report_raw_files(const RawFiles& files, Json& json, const CommonOptions& common) {
     json["raw"] = files.raw.string();
     json["demosaiced"] = files.demosaiced.string();
     json["film_noise_over_sensor_noise"] = files.noise_ratio;

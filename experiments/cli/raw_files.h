@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <optional>
 
+#include "engine/base/json.h"
 #include "engine/render/film_exr.h"
 #include "experiments/cli/command.h"
 
@@ -28,6 +29,6 @@ std::optional<RawFiles> write_raw_files(const render::Film& film, const render::
                                         const std::filesystem::path& exr, int threads);
 
 /// Says what was written: keys of a machine-readable result, and where a person reads it.
-void report_raw_files(const RawFiles& files, nlohmann::ordered_json& json, const CommonOptions& common);
+void report_raw_files(const RawFiles& files, Json& json, const CommonOptions& common);
 
 }  // namespace lensproof::cli

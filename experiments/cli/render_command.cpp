@@ -150,24 +150,24 @@ int run_render(const RenderJobOptions& options, PathsFrom from) {
 
 }  // namespace
 
-void add_render_command(CLI::App& app, int& status) {
+void add_render_command(Program& program) {
     const auto options = std::make_shared<RenderJobOptions>();
-    CLI::App* command = app.add_subcommand("render", "Render a scene or a chart through a lens");
-    command->footer(
+    Command command = program.add_command("render", "Render a scene or a chart through a lens");
+    command.footer(
         "Example: lensproof render experiments/scenes/tessar_checkerboard.toml -o chart.exr\n"
         "         lensproof render experiments/scenes/cornell_box.toml --spp 256 -o box.exr\n"
         "         lensproof render SCENE --noise 0.01 --time 3600 --preview now.png --checkpoint chart.checkpoint\n"
         "         lensproof render SCENE --spp 1024 --shard 2/5 -o part2.exr; lensproof merge part*.exr -o chart.exr\n"
         "Ctrl-C ends a render with a checkpoint written and exit status 3; a second one at once.");
-    command->add_option("SCENE", options->scene, "A scene file")->required();
-    add_render_job_options(*command, *options);
+    command.add_option("SCENE", options->scene, "A scene file").required();
+    add_render_job_options(command, *options);
     const auto paths = std::make_shared<std::string>("camera");
     command
-        ->add_option("--paths", *paths,
-                     "Where paths begin: camera (the default); light, which finds what shines through glass and cannot "
-                     "see mirrors; or both, each counted by how well it makes what it finds. One image by each")
-        ->check(CLI::IsMember({"camera", "light", "both"}));
-    command->callback([options, paths, &status] { status = run_render(*options, paths_from(*paths)); });
+        .add_option("--paths", *paths,
+                    "Where paths begin: camera (the default); light, which finds what shines through glass and cannot "
+                    "see mirrors; or both, each counted by how well it makes what it finds. One image by each")
+        .check(one_of({"camera", "light", "both"}));
+    command.runs([options, paths] { return run_render(*options, paths_from(*paths)); });
 }
 
 }  // namespace lensproof::cli

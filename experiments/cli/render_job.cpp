@@ -8,6 +8,7 @@
 
 #include "engine/base/file.h"
 #include "engine/base/input_error.h"
+#include "engine/base/json.h"
 #include "engine/render/checkpoint.h"
 #include "engine/render/engine_version.h"
 #include "engine/render/film_image.h"
@@ -152,7 +153,7 @@ render::FilmNotes notes_of(const RenderJob& job, const RenderJobOptions& options
 
 void report(const RenderJob& job, const render::RenderState& state, const RenderJobOptions& options,
             const RenderFiles& files, const std::optional<RawFiles>& raw) {
-    nlohmann::ordered_json json = job.json;
+    Json json = job.json;
     json["samples_per_pixel"] = mean_samples(state);
     json["seed"] = options.common.seed;
     if (!options.shard.empty()) {
@@ -243,7 +244,7 @@ int run_render_job(const RenderJob& job, const RenderJobOptions& options) {
     return kDone;
 }
 
-void report_left_out(const render::Film& film, nlohmann::ordered_json& json) {
+void report_left_out(const render::Film& film, Json& json) {
     if (film.left_out() > 0) {
         fmt::print(stderr,
                    "lensproof: {} samples were no finite numbers; they were left out, as if they had met no light\n",
@@ -252,31 +253,31 @@ void report_left_out(const render::Film& film, nlohmann::ordered_json& json) {
     }
 }
 
-void add_render_job_options(CLI::App& command, RenderJobOptions& options) {
-    const CLI::Range samples(1, static_cast<int>(render::kMostSamples));
-    command.add_option("-o,--output", options.output, "EXR to write; a PNG appears beside it")->type_name("FILE");
+void add_render_job_options(Command& command, RenderJobOptions& options) {
+    const OptionCheck samples = in_range(1, static_cast<int>(render::kMostSamples));
+    command.add_option("-o,--output", options.output, "EXR to write; a PNG appears beside it").type_name("FILE");
     command
         .add_option("--samples,--spp", options.samples,
                     "Samples a pixel, in place of the scene's; with --time or --noise, at most so many")
-        ->check(samples);
-    command.add_option("--time", options.time_s, "End after so many seconds of rendering")->check(kPositiveOption);
+        .check(samples);
+    command.add_option("--time", options.time_s, "End after so many seconds of rendering").check(kPositiveOption);
     command
         .add_option("--noise", options.noise,
                     "End where a pixel's standard error is this share of its value (0.01: 1 %), tile by tile")
-        ->check(kPositiveOption);
-    command.add_option("--preview", options.preview, "A PNG that shows the picture as it grows")->type_name("FILE");
+        .check(kPositiveOption);
+    command.add_option("--preview", options.preview, "A PNG that shows the picture as it grows").type_name("FILE");
     command
         .add_option("--checkpoint", options.checkpoint,
                     "Keep the render's state here; where the file is there, go on from it")
-        ->type_name("FILE");
+        .type_name("FILE");
     command.add_option("--checkpoint-interval", options.checkpoint_interval_s, "Seconds between two checkpoints")
-        ->check(kPositiveOption)
-        ->capture_default_str();
+        .check(kPositiveOption)
+        .shows_default();
     command.add_option("--shard", options.shard, "Render the i-th of n parts of the samples; `merge` adds them up")
-        ->type_name("i/n");
+        .type_name("i/n");
     command.add_option("--filter", options.filter, "Pixel filter")
-        ->check(CLI::IsMember(render::PixelFilter::known_names()))
-        ->capture_default_str();
+        .check(one_of(render::PixelFilter::known_names()))
+        .shows_default();
     command.add_flag("--features", options.has_features, "Also write depth, albedo and normals");
     add_common_options(command, options.common);
 }

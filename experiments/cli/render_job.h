@@ -6,6 +6,7 @@
 #include <optional>
 #include <string>
 
+#include "engine/base/json.h"
 #include "engine/render/film_exr.h"
 #include "engine/render/progressive.h"
 #include "engine/render/raw_sensor.h"
@@ -30,7 +31,7 @@ struct RenderJobOptions {
 };
 
 /// Adds the options above, but those that name the scene.
-void add_render_job_options(CLI::App& command, RenderJobOptions& options);
+void add_render_job_options(Command& command, RenderJobOptions& options);
 
 /// The files that a job writes. Throws InputError where one cannot be, or where the options make no sense by
 /// themselves: to be asked before long work begins.
@@ -48,11 +49,11 @@ struct RenderJob {
     render::FilmNotes notes;                  // metadata and colours
     std::uint32_t samples = 0;                // a pixel, the scene's own
     std::optional<render::RawSensor> sensor;  // for a raw file beside the film's, of a whole render
-    nlohmann::ordered_json json;              // what the machine-readable result begins with
+    Json json;                                // what the machine-readable result begins with
 };
 
 /// Says on standard error, and in `json`, how many samples were left out of the film, where any were.
-void report_left_out(const render::Film& film, nlohmann::ordered_json& json);
+void report_left_out(const render::Film& film, Json& json);
 
 /// Renders, writes the pictures and says where they are. Returns the exit status: kInternalFailure where a signal ended
 /// it before its goal, with a checkpoint written.

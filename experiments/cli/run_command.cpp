@@ -5,6 +5,7 @@
 
 #include "engine/base/cache.h"
 #include "engine/base/file.h"
+#include "engine/base/json.h"
 #include "experiments/cli/command.h"
 #include "experiments/cli/progress.h"
 #include "experiments/draw/report/report.h"
@@ -61,13 +62,12 @@ void print_checks(const std::vector<runner::Check>& checks) {
 
 /// Writes report.json and report.html, prints the checks, and says how it went.
 int finish_report(const RunOptions& options, const std::filesystem::path& folder,
-                  const std::vector<runner::Check>& checks, const nlohmann::ordered_json& report,
+                  const std::vector<runner::Check>& checks, const Json& report,
                   const std::map<std::string, std::string>& pictures) {
     for (const auto& [name, bytes] : pictures) {
         write_file(folder / "images" / name, bytes);
     }
-    write_file(folder / "report.json",
-               report.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n");
+    write_file(folder / "report.json", report.dump(2) + "\n");
     write_file(folder / "report.html", draw::report_html(report, pictures));
 
     write_json_result(options.common, report);
@@ -122,15 +122,14 @@ int run(const RunOptions& options) {
 
 }  // namespace
 
-void add_run_command(CLI::App& app, int& status) {
+void add_run_command(Program& program) {
     const auto options = std::make_shared<RunOptions>();
-    CLI::App* command = app.add_subcommand("run", "Run an experiment end to end and write its report");
-    command->footer("Example: lensproof run experiments/first_light.toml -o output/first_light");
-    command->add_option("EXPERIMENT", options->experiment, "An experiment file")->required();
-    command->add_option("-o,--output", options->output, "Folder to write (default: output/EXPERIMENT)")
-        ->type_name("DIR");
-    add_common_options(*command, options->common);
-    command->callback([options, &status] { status = run(*options); });
+    Command command = program.add_command("run", "Run an experiment end to end and write its report");
+    command.footer("Example: lensproof run experiments/first_light.toml -o output/first_light");
+    command.add_option("EXPERIMENT", options->experiment, "An experiment file").required();
+    command.add_option("-o,--output", options->output, "Folder to write (default: output/EXPERIMENT)").type_name("DIR");
+    add_common_options(command, options->common);
+    command.runs([options] { return run(*options); });
 }
 
 }  // namespace lensproof::cli

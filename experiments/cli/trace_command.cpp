@@ -10,6 +10,7 @@
 #include "engine/base/csv.h"
 #include "engine/base/file.h"
 #include "engine/base/input_error.h"
+#include "engine/base/json.h"
 #include "engine/formats/prescription/load_lens.h"
 #include "engine/optics/float_error.h"
 #include "engine/optics/lens.h"
@@ -93,11 +94,11 @@ class TraceTable {
     }
 
     [[nodiscard]] std::string csv() const { return std::string(kResultHeader) + "\n" + csv_; }
-    [[nodiscard]] const nlohmann::ordered_json& json() const { return json_; }
+    [[nodiscard]] const Json& json() const { return json_; }
 
   private:
     std::string csv_;
-    nlohmann::ordered_json json_ = nlohmann::ordered_json::array();
+    Json json_ = Json::list();
 };
 
 template <class T, optics::Direction direction, optics::Rims rims>
@@ -185,14 +186,12 @@ void print_error(const MeasuredError& measured) {
                text(error.anywhere, "anywhere"), error.other_fates, error.rays, measured.bound_um());
 }
 
-nlohmann::ordered_json error_json(const MeasuredError& measured) {
-    const auto json = [](const optics::Distances& distances) -> nlohmann::ordered_json {
+Json error_json(const MeasuredError& measured) {
+    const auto json = [](const optics::Distances& distances) -> Json {
         if (distances.points == 0) {
             return nullptr;
         }
-        return {{"points", distances.points},
-                {"largest_um", number_or_null(distances.largest_um)},
-                {"rms_um", number_or_null(distances.rms_um())}};
+        return {{"points", distances.points}, {"largest_um", distances.largest_um}, {"rms_um", distances.rms_um()}};
     };
     const optics::FloatError& error = measured.error;
     return {{"rays", error.rays},
@@ -226,7 +225,7 @@ int run_trace(const TraceOptions& options) {
     } else if (prints_text(options.common)) {
         fmt::print("{}", table.csv());
     }
-    nlohmann::ordered_json result{{"lens", lens.id}, {"rows", table.json()}};
+    Json result{{"lens", lens.id}, {"rows", table.json()}};
     if (options.precision == "float") {
         const MeasuredError measured = measure_float(lens, rays, options);
         if (!options.common.quiet) {
@@ -240,28 +239,27 @@ int run_trace(const TraceOptions& options) {
 
 }  // namespace
 
-void add_trace_command(CLI::App& app, int& status) {
+void add_trace_command(Program& program) {
     const auto options = std::make_shared<TraceOptions>();
-    CLI::App* command = app.add_subcommand("trace", "Trace given rays and write every intersection");
-    command->footer(
+    Command command = program.add_command("trace", "Trace given rays and write every intersection");
+    command.footer(
         "Example: lensproof trace tessar --rays rays.csv -o traced.csv\n"
         "rays.csv has the header id,x_mm,y_mm,z_mm,dx,dy,dz,wavelength_nm");
-    command->add_option("LENS", options->lens, "A prescription file, or the name of a lens that ships")->required();
-    command->add_option("--rays", options->rays_file, "CSV of rays")->required()->type_name("FILE");
-    command->add_option("-o,--output", options->output_file, "CSV to write (default: standard output)")
-        ->type_name("FILE");
-    command->add_option("--precision", options->precision, "float (and its error is measured), double or extended")
-        ->check(CLI::IsMember({"float", "double", "extended"}))
-        ->capture_default_str();
-    add_index_option(*command, options->indices);
-    command->add_option("--zoom", options->zoom, "Position of a zoom lens, by name or number (default: the first)")
-        ->type_name("POSITION");
-    add_glass_catalogue_option(*command, options->glass_catalogues);
-    command->add_flag("--reverse", options->reverse, "Rays run from the sensor outwards");
-    command->add_flag("--no-clip", options->no_clip,
-                      "Follow rays beyond the rims; the first rim passed is still named");
-    add_common_options(*command, options->common);
-    command->callback([options, &status] { status = run_trace(*options); });
+    command.add_option("LENS", options->lens, "A prescription file, or the name of a lens that ships").required();
+    command.add_option("--rays", options->rays_file, "CSV of rays").required().type_name("FILE");
+    command.add_option("-o,--output", options->output_file, "CSV to write (default: standard output)")
+        .type_name("FILE");
+    command.add_option("--precision", options->precision, "float (and its error is measured), double or extended")
+        .check(one_of({"float", "double", "extended"}))
+        .shows_default();
+    add_index_option(command, options->indices);
+    command.add_option("--zoom", options->zoom, "Position of a zoom lens, by name or number (default: the first)")
+        .type_name("POSITION");
+    add_glass_catalogue_option(command, options->glass_catalogues);
+    command.add_flag("--reverse", options->reverse, "Rays run from the sensor outwards");
+    command.add_flag("--no-clip", options->no_clip, "Follow rays beyond the rims; the first rim passed is still named");
+    add_common_options(command, options->common);
+    command.runs([options] { return run_trace(*options); });
 }
 
 }  // namespace lensproof::cli

@@ -1,24 +1,21 @@
 #include "experiments/draw/curves_json.h"
 
-#include "engine/base/json_number.h"
+#include "engine/base/json.h"
 #include "experiments/draw/analysis_drawings.h"
 
 namespace lensproof::draw {
 
 namespace {
-
-using Json = nlohmann::ordered_json;
-
 Json points_json(const std::vector<Vec2d>& points) {
-    Json json = Json::array();
+    Json json = Json::list();
     for (const Vec2d& point : points) {
-        json.push_back({number_or_null(point.x), number_or_null(point.y)});
+        json.push_back({point.x, point.y});
     }
     return json;
 }
 
 Json curves_array(const std::vector<WavelengthCurve>& curves) {
-    Json json = Json::array();
+    Json json = Json::list();
     for (const WavelengthCurve& curve : curves) {
         json.push_back({{"wavelength_nm", curve.wavelength_nm}, {"points", points_json(curve.points)}});
     }
@@ -26,7 +23,7 @@ Json curves_array(const std::vector<WavelengthCurve>& curves) {
 }
 
 Json fans_json(const std::vector<FieldFans>& fields) {
-    Json json = Json::array();
+    Json json = Json::list();
     for (const FieldFans& field : fields) {
         json.push_back({{"field_deg", field.field_deg},
                         {"tangential_pupil_um", curves_array(field.tangential)},
@@ -36,14 +33,14 @@ Json fans_json(const std::vector<FieldFans>& fields) {
 }
 
 Json field_curves_json(const std::vector<FieldCurve>& curves) {
-    Json json = Json::array();
+    Json json = Json::list();
     for (const FieldCurve& curve : curves) {
-        Json points = Json::array();
+        Json points = Json::list();
         for (const FieldCurve::Point& point : curve.points) {
             points.push_back({{"field_deg", point.field_deg},
-                              {"tangential_focus_mm", number_or_null(point.tangential_mm)},
-                              {"sagittal_focus_mm", number_or_null(point.sagittal_mm)},
-                              {"distortion_percent", number_or_null(point.distortion_percent)}});
+                              {"tangential_focus_mm", point.tangential_mm},
+                              {"sagittal_focus_mm", point.sagittal_mm},
+                              {"distortion_percent", point.distortion_percent}});
         }
         json.push_back({{"wavelength_nm", curve.wavelength_nm}, {"points", std::move(points)}});
     }
@@ -51,46 +48,45 @@ Json field_curves_json(const std::vector<FieldCurve>& curves) {
 }
 
 Json spots_json(const AnalysisCurves& curves) {
-    Json json = Json::array();
+    Json json = Json::list();
     for (const FieldSpots& field : curves.spots) {
-        Json planes = Json::array();
+        Json planes = Json::list();
         for (std::size_t i = 0; i < field.spots.size(); ++i) {
             planes.push_back({{"defocus_mm", curves.defocus_mm[i]},
-                              {"spot_rms_um", number_or_null(field.spots[i].rms_um)},
+                              {"spot_rms_um", field.spots[i].rms_um},
                               {"rays_um", curves_array(field.spots[i].rays)}});
         }
-        json.push_back({{"field_deg", field.field_deg},
-                        {"airy_radius_um", number_or_null(field.airy_radius_um)},
-                        {"planes", std::move(planes)}});
+        json.push_back(
+            {{"field_deg", field.field_deg}, {"airy_radius_um", field.airy_radius_um}, {"planes", std::move(planes)}});
     }
     return json;
 }
 
 Json illumination_json(const std::vector<FieldBrightness>& points) {
-    Json json = Json::array();
+    Json json = Json::list();
     for (const FieldBrightness& point : points) {
         json.push_back({{"field_deg", point.field_deg},
-                        {"relative_illumination", number_or_null(point.relative_illumination)},
-                        {"vignetting", number_or_null(point.vignetting)}});
+                        {"relative_illumination", point.relative_illumination},
+                        {"vignetting", point.vignetting}});
     }
     return json;
 }
 
 Json map_json(const SquareMap& map) {
-    Json values = Json::array();
+    Json values = Json::list();
     for (const double value : map.values) {
-        values.push_back(number_or_null(value));
+        values.push_back(value);
     }
-    return {{"size", map.size}, {"half_width", number_or_null(map.half_width)}, {"values", std::move(values)}};
+    return {{"size", map.size}, {"half_width", map.half_width}, {"values", std::move(values)}};
 }
 
 Json wavefronts_json(const std::vector<FieldWavefront>& maps) {
-    Json json = Json::array();
+    Json json = Json::list();
     for (const FieldWavefront& map : maps) {
         json.push_back({{"field_deg", map.field_deg},
                         {"wavelength_nm", map.wavelength_nm},
-                        {"wavefront_rms_waves", number_or_null(map.rms_waves)},
-                        {"peak_to_valley_waves", number_or_null(map.peak_to_valley_waves)},
+                        {"wavefront_rms_waves", map.rms_waves},
+                        {"peak_to_valley_waves", map.peak_to_valley_waves},
                         {"zernike_noll_waves", map.zernike_waves},
                         {"opd_waves", map_json(map.opd_waves)}});
     }
@@ -98,18 +94,18 @@ Json wavefronts_json(const std::vector<FieldWavefront>& maps) {
 }
 
 Json psfs_json(const std::vector<PsfMap>& maps) {
-    Json json = Json::array();
+    Json json = Json::list();
     for (const PsfMap& map : maps) {
         json.push_back({{"field_deg", map.field_deg},
-                        {"strehl", number_or_null(map.strehl)},
-                        {"pixel_um", map.intensity.size > 0 ? number_or_null(pixel_um(map)) : Json(nullptr)},
+                        {"strehl", map.strehl},
+                        {"pixel_um", map.intensity.size > 0 ? pixel_um(map) : Json(nullptr)},
                         {"file", map.intensity.size > 0 ? Json(psf_file_name(map)) : Json(nullptr)}});
     }
     return json;
 }
 
 Json mtf_json(const std::vector<FieldMtf>& fields) {
-    Json json = Json::array();
+    Json json = Json::list();
     for (const FieldMtf& field : fields) {
         json.push_back({{"field_deg", field.field_deg},
                         {"remark", field.remark},
@@ -122,7 +118,7 @@ Json mtf_json(const std::vector<FieldMtf>& fields) {
 }  // namespace
 
 Json curves_json(const AnalysisCurves& curves, const WaveCurves& waves) {
-    Json over_field = Json::array();
+    Json over_field = Json::list();
     for (const FrequencyMtf& curve : waves.mtf_over_field) {
         over_field.push_back({{"cycles_per_mm", curve.cycles_per_mm},
                               {"tangential", points_json(curve.tangential)},

@@ -7,24 +7,18 @@
 #include <cmath>
 #include <functional>
 
+#include "engine/base/json.h"
 #include "experiments/runner/provenance.h"
 #include "experiments/studies/certainty_map.h"
 
 namespace lensproof::runner {
 
 namespace {
-
-using Json = nlohmann::ordered_json;
-
 /// .s0 … .s6 of the report's page, on white.
 constexpr std::array kSubjectColours = {"#0072b2", "#c77b00", "#b5548a", "#3d9fd8", "#8a8200", "#009e73", "#d55e00"};
 
-Json number(double value) {
-    return std::isfinite(value) ? Json(value) : Json(nullptr);
-}
-
 Json points_json(const calibration::ProfileView& view) {
-    Json points = Json::array();
+    Json points = Json::list();
     for (const calibration::ProfilePoint& point : view.points) {
         points.push_back({point.image_px.x, point.image_px.y, point.residual_px.x, point.residual_px.y});
     }
@@ -79,7 +73,7 @@ struct Plot {
     std::string subtitle;
     std::string y_label;
     std::string y_unit;
-    Json series = Json::array();
+    Json series = Json::list();
     std::optional<double> limit;
 };
 
@@ -174,7 +168,7 @@ bool is_fisheye(const Subject& subject) {
 }
 
 Json plots_json(const Experiment& experiment, const ExperimentResult& result) {
-    Json plots = Json::array();
+    Json plots = Json::list();
     const auto& simulations = experiment.simulations;
     append_plot(plots, measured_plot(
                            result,
@@ -315,7 +309,7 @@ std::map<std::string, studies::CertaintyMap> certainty_maps(const ExperimentResu
 
 Json maps_json(const ExperimentResult& result) {
     const std::map<std::string, studies::CertaintyMap> maps = certainty_maps(result);
-    Json json = Json::array();
+    Json json = Json::list();
     for (const Subject& subject : result.subjects) {
         if (has_certainty(subject)) {
             const std::string name = certainty_name(subject);
@@ -335,7 +329,7 @@ std::string summary_of(const Experiment& experiment, const ExperimentResult& res
 
 }  // namespace
 
-nlohmann::ordered_json check_json(const Check& check) {
+Json check_json(const Check& check) {
     std::string explanation = check.explanation;
     if (check.is_below_floor()) {
         explanation += fmt::format(
@@ -347,18 +341,18 @@ nlohmann::ordered_json check_json(const Check& check) {
             {"group", check.group},
             {"subject", check.subject},
             {"label", check.label},
-            {"value", number(check.value)},
-            {"sigma", number(check.sigma)},
+            {"value", check.value},
+            {"sigma", check.sigma},
             {"unit", check.unit},
-            {"limit", number(check.limit)},
+            {"limit", check.limit},
             {"expect", expectation_name(check.expectation)},
             {"target", check.expectation == Expectation::within ? Json(check.target) : Json(nullptr)},
             {"verdict", verdict_name(check.verdict())},
-            {"floor", check.floor ? number(*check.floor) : Json(nullptr)},
+            {"floor", check.floor ? *check.floor : Json(nullptr)},
             {"explanation", explanation}};
 }
 
-nlohmann::ordered_json provenance_json(std::vector<std::filesystem::path> inputs, const RunSettings& settings) {
+Json provenance_json(std::vector<std::filesystem::path> inputs, const RunSettings& settings) {
     Json provenance{{"program", "lensproof"}, {"version", LENSPROOF_VERSION}, {"commit", source_commit()}};
     provenance["settings"] = {{"seed", settings.seed}};
     std::ranges::sort(inputs);
@@ -369,14 +363,13 @@ nlohmann::ordered_json provenance_json(std::vector<std::filesystem::path> inputs
     return provenance;
 }
 
-nlohmann::ordered_json report_json(const Experiment& experiment, const ExperimentResult& result,
-                                   const RunSettings& settings) {
+Json report_json(const Experiment& experiment, const ExperimentResult& result, const RunSettings& settings) {
     Json report{{"schema", "lensproof-report/1"},
                 {"title", experiment.title},
                 {"summary", summary_of(experiment, result)},
                 {"verdict", verdict_name(overall(result.checks))},
-                {"checks", Json::array()},
-                {"subjects", Json::array()}};
+                {"checks", Json::list()},
+                {"subjects", Json::list()}};
     for (const Check& check : result.checks) {
         report["checks"].push_back(check_json(check));
     }

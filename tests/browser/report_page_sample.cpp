@@ -4,9 +4,9 @@
 #include <fstream>
 #include <iterator>
 #include <map>
-#include <nlohmann/json.hpp>
 #include <string>
 
+#include "engine/base/json.h"
 #include "experiments/draw/report/report.h"
 
 namespace {
@@ -27,6 +27,6 @@ int main(int argc, char** argv) {
         png_bytes_by_name[entry.path().lexically_relative(pictures).generic_string()] = bytes_of(entry.path());
     }
     std::ofstream(argv[3], std::ios::binary)
-        << lensproof::draw::report_html(nlohmann::ordered_json::parse(bytes_of(argv[1])), png_bytes_by_name);
+        << lensproof::draw::report_html(lensproof::Json::parse(bytes_of(argv[1]), argv[1]), png_bytes_by_name);
     return 0;
 }

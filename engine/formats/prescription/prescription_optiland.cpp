@@ -10,9 +10,9 @@
 #include <set>
 
 #include "engine/base/input_error.h"
-#include "engine/base/json_value.h"
 #include "engine/base/text.h"
 #include "engine/formats/prescription/prescription_forms.h"
+#include "engine/formats/prescription/python_json.h"
 #include "engine/optics/frame.h"
 
 namespace lensproof::formats {
@@ -25,14 +25,14 @@ constexpr double kDegree = std::numbers::pi / 180.0;
 
 /// Where a surface stands in the whole lens. Optiland turns about x, then the fixed y, then the fixed z, which is about
 /// z, the turned y and the twice turned x.
-optics::Frame read_frame(const JsonValue& system) {
-    const Vec3d origin{system.number_or("x", 0.0), system.number_or("y", 0.0), system.number_or("z", 0.0)};
+optics::Frame read_frame(const JsonNode& system) {
+    const Vec3d origin{number_or(system, "x", 0.0), number_or(system, "y", 0.0), number_or(system, "z", 0.0)};
     // As deep as the file, which is bounded. An infinite z, the object's, stays out of sums over the axes.
     const optics::Frame frame = system.has("reference_cs") ? read_frame(system.at("reference_cs")).shifted(origin)
                                                            : optics::Frame{.origin = origin};
-    return frame.turned(2, system.number_or("rz", 0.0) / kDegree)
-        .turned(1, system.number_or("ry", 0.0) / kDegree)
-        .turned(0, system.number_or("rx", 0.0) / kDegree);
+    return frame.turned(2, number_or(system, "rz", 0.0) / kDegree)
+        .turned(1, number_or(system, "ry", 0.0) / kDegree)
+        .turned(0, number_or(system, "rx", 0.0) / kDegree);
 }
 
 /// The angles as a prescription has them, without the −0 of what is not turned.
@@ -50,19 +50,19 @@ class OptilandLens {
         lens_.source = "the file " + file.filename().string() + ", saved by Optiland";
     }
 
-    optics::Prescription read(const JsonValue& top) {
-        const std::vector<JsonValue> surfaces = top.at("surface_group").at("surfaces").list();
+    optics::Prescription read(const JsonNode& top) {
+        const std::vector<JsonNode> surfaces = top.at("surface_group").at("surfaces").elements();
         if (surfaces.size() < 3 || surfaces.size() > kMostSurfaces) {
             throw InputError(
                 fmt::format("{}: {} surfaces, expected from 3, the object's and the image's included, to {}",
                             lens_.file.string(), surfaces.size(), kMostSurfaces));
         }
-        if (const std::string name = top.text_or("name", ""); !name.empty()) {
+        if (const std::string name = text_or(top, "name", ""); !name.empty()) {
             lens_.name = name;
         }
         std::vector<optics::Frame> frames;
         frames.reserve(surfaces.size());
-        for (const JsonValue& surface : surfaces) {
+        for (const JsonNode& surface : surfaces) {
             frames.push_back(read_frame(surface.at("geometry").at("cs")));
         }
         for (std::size_t i = 1; i + 1 < surfaces.size(); ++i) {
@@ -77,11 +77,11 @@ class OptilandLens {
         read_fields(top);
         read_wavelengths(top);
         for (const char* key : {"apodization", "pickups"}) {
-            if (top.says(key)) {
+            if (says(top, key)) {
                 remark("not-read", 0, fmt::format("\"{}\" is not carried over", key));
             }
         }
-        if (top.has("solves") && (top.at("solves").says("solves"))) {
+        if (top.has("solves") && (says(top.at("solves"), "solves"))) {
             remark("not-read", 0, "\"solves\" is not carried over; the lengths are those saved");
         }
         name_unknown_keys(top, 0,
@@ -96,20 +96,20 @@ class OptilandLens {
         lens_.remarks.push_back({.code = code, .severity = severity, .surface = surface, .message = message});
     }
 
-    void name_unknown_keys(const JsonValue& value, int surface, const std::set<std::string>& known) {
-        for (const std::string& key : value.keys_beside(known)) {
+    void name_unknown_keys(const JsonNode& value, int surface, const std::set<std::string>& known) {
+        for (const std::string& key : keys_beside(value, known)) {
             remark("not-read", surface, fmt::format("\"{}\" is not understood", printable(key)));
         }
     }
 
-    void add_surface(const JsonValue& value, const optics::Frame& frame, double thickness) {
+    void add_surface(const JsonNode& value, const optics::Frame& frame, double thickness) {
         const int number = static_cast<int>(lens_.surfaces.size()) + 1;
         optics::PrescribedSurface surface;
         surface.where = value.where();
         // The saved thickness is the shorter number, but where both are said it is the vertices that count.
-        const double stated = value.number_or("thickness", thickness);
+        const double stated = number_or(value, "thickness", thickness);
         surface.thickness_mm = std::abs(stated - thickness) < 1e-9 ? stated : thickness;
-        surface.is_stop = value.is_true("is_stop");
+        surface.is_stop = is_true(value, "is_stop");
         surface.misalignment = {{frame.origin.x, frame.origin.y}, tilt_of(frame)};
         read_geometry(value.at("geometry"), number, surface);
         read_material(value.at("material_post"), number, surface.medium);
@@ -122,23 +122,23 @@ class OptilandLens {
         lens_.surfaces.push_back(std::move(surface));
     }
 
-    void read_geometry(const JsonValue& geometry, int number, optics::PrescribedSurface& surface) {
-        const std::string type = geometry.text_or("type", "");
-        surface.radius_mm = geometry.number_or("radius", kInfinity);
-        surface.conic = geometry.number_or("conic", 0.0);
+    void read_geometry(const JsonNode& geometry, int number, optics::PrescribedSurface& surface) {
+        const std::string type = text_or(geometry, "type", "");
+        surface.radius_mm = number_or(geometry, "radius", kInfinity);
+        surface.conic = number_or(geometry, "conic", 0.0);
         if (type == "Plane" || type == "StandardGeometry") {
             return;
         }
         if (type == "EvenAsphere") {
             read_terms(geometry, "coefficients", number, surface);
         } else if (type == "ToroidalGeometry") {
-            surface.radius_mm = geometry.number_or("radius_y", kInfinity);
-            surface.radius_x_mm = geometry.number_or("radius_x", kInfinity);
-            surface.conic = geometry.number_or("conic_yz", 0.0);
+            surface.radius_mm = number_or(geometry, "radius_y", kInfinity);
+            surface.radius_x_mm = number_or(geometry, "radius_x", kInfinity);
+            surface.conic = number_or(geometry, "conic_yz", 0.0);
             read_terms(geometry, "coeffs_poly_y", number, surface);
         } else {
-            surface.radius_mm = geometry.number_or("radius_y", surface.radius_mm);
-            surface.conic = geometry.number_or("conic_y", surface.conic);
+            surface.radius_mm = number_or(geometry, "radius_y", surface.radius_mm);
+            surface.conic = number_or(geometry, "conic_y", surface.conic);
             remark("shape-not-read", number,
                    fmt::format("a surface of the kind \"{}\" is not understood: its radius and conic alone are taken",
                                printable(type)),
@@ -146,13 +146,13 @@ class OptilandLens {
         }
     }
 
-    void read_terms(const JsonValue& geometry, const std::string& key, int number, optics::PrescribedSurface& surface) {
+    void read_terms(const JsonNode& geometry, const std::string& key, int number, optics::PrescribedSurface& surface) {
         if (!geometry.has(key)) {
             return;
         }
-        const std::vector<JsonValue> terms = geometry.at(key).list();
+        const std::vector<JsonNode> terms = geometry.at(key).elements();
         for (std::size_t term = 0; term < terms.size(); ++term) {
-            const double coefficient = terms[term].number();
+            const double coefficient = any_number(terms[term]);
             if (term < optics::kAsphereTerms) {
                 surface.asphere[term] = coefficient;
             } else if (coefficient != 0.0) {
@@ -163,19 +163,19 @@ class OptilandLens {
         }
     }
 
-    void read_material(const JsonValue& material, int number, optics::StatedMedium& medium) {
-        const std::string type = material.text_or("type", "");
+    void read_material(const JsonNode& material, int number, optics::StatedMedium& medium) {
+        const std::string type = text_or(material, "type", "");
         if (type == "IdealMaterial") {
-            const double index = material.at("index").number();
+            const double index = any_number(material.at("index"));
             if (index != 1.0) {
                 medium.n_d = index;
             }
-            if (material.number_or("absorp", 0.0) != 0.0) {
+            if (number_or(material, "absorp", 0.0) != 0.0) {
                 remark("absorption-not-read", number, "the absorption of its material is left out");
             }
         } else if (type == "AbbeMaterial" || type == "AbbeMaterialE") {
-            medium.n_d = material.at("index").number();
-            medium.V_d = material.at("abbe").number();
+            medium.n_d = any_number(material.at("index"));
+            medium.V_d = any_number(material.at("abbe"));
             const bool at_e = type == "AbbeMaterialE";
             remark("dispersion-model", number,
                    at_e ? "its index and Abbe number are those of the e line, and are taken as if at the d line"
@@ -194,11 +194,11 @@ class OptilandLens {
     }
 
     /// "SCHOTT N-BK7", with the maker that Optiland found, which stands in the path of its file.
-    static std::string glass_name(const JsonValue& material) {
-        std::string path = material.text_or("filename", "");
+    static std::string glass_name(const JsonNode& material) {
+        std::string path = text_or(material, "filename", "");
         std::ranges::replace(path, '\\', '/');
         const std::filesystem::path file(path);
-        std::string name = material.text_or("name", file.stem().string());
+        std::string name = text_or(material, "name", file.stem().string());
         if (file.parent_path().parent_path().filename() != "glass") {
             return name;
         }
@@ -207,25 +207,25 @@ class OptilandLens {
         return maker + " " + name;
     }
 
-    void read_rim(const JsonValue& value, int number, optics::PrescribedSurface& surface) {
+    void read_rim(const JsonNode& value, int number, optics::PrescribedSurface& surface) {
         if (!value.has("aperture")) {
             return;
         }
-        const JsonValue aperture = value.at("aperture");
-        const std::string type = aperture.text_or("type", "");
+        const JsonNode aperture = value.at("aperture");
+        const std::string type = text_or(aperture, "type", "");
         if (type != "RadialAperture") {
             remark("aperture-not-read", number,
                    fmt::format("an aperture of the kind \"{}\" is left out", printable(type)));
             return;
         }
-        surface.semi_diameter_mm = aperture.at("r_max").number();
-        if (aperture.number_or("r_min", 0.0) != 0.0) {
+        surface.semi_diameter_mm = any_number(aperture.at("r_max"));
+        if (number_or(aperture, "r_min", 0.0) != 0.0) {
             remark("aperture-not-read", number, "the hole in its aperture is left out");
         }
     }
 
-    void read_interaction(const JsonValue& model, int number) {
-        if (model.is_true("is_reflective")) {
+    void read_interaction(const JsonNode& model, int number) {
+        if (is_true(model, "is_reflective")) {
             remark("mirror", number, "a mirror: it is taken as a refracting surface", optics::Severity::error);
         }
         if (model.has("coating")) {
@@ -234,14 +234,14 @@ class OptilandLens {
         if (model.has("bsdf")) {
             remark("not-read", number, "its scattering is left out");
         }
-        const std::string type = model.text_or("type", "RefractiveReflectiveModel");
+        const std::string type = text_or(model, "type", "RefractiveReflectiveModel");
         if (type.find("Model") != std::string::npos && type != "RefractiveReflectiveModel") {
             remark("not-read", number, fmt::format("what \"{}\" does to rays is left out", printable(type)));
         }
     }
 
-    void read_image(const JsonValue& image, const optics::Frame& frame) {
-        const double radius = image.at("geometry").number_or("radius", kInfinity);
+    void read_image(const JsonNode& image, const optics::Frame& frame) {
+        const double radius = number_or(image.at("geometry"), "radius", kInfinity);
         if (std::isfinite(radius) && radius != 0.0) {
             remark("curved-image", 0,
                    fmt::format("the image's surface has a radius of {} mm; the sensor is flat", radius));
@@ -251,13 +251,13 @@ class OptilandLens {
         }
     }
 
-    void read_aperture(const JsonValue& top) {
+    void read_aperture(const JsonNode& top) {
         if (!top.has("aperture")) {
             return;
         }
-        const JsonValue aperture = top.at("aperture");
-        const std::string type = aperture.has("type") ? aperture.at("type").text() : aperture.text_or("ap_type", "");
-        const double value = aperture.at("value").number();
+        const JsonNode aperture = top.at("aperture");
+        const std::string type = aperture.has("type") ? aperture.at("type").text() : text_or(aperture, "ap_type", "");
+        const double value = any_number(aperture.at("value"));
         const auto stop = std::ranges::find_if(lens_.surfaces, &optics::PrescribedSurface::is_stop);
         if (type == "EPD") {
             lens_.stated.entrance_pupil_diameter_mm = value;
@@ -270,19 +270,19 @@ class OptilandLens {
         }
     }
 
-    void read_fields(const JsonValue& top) {
+    void read_fields(const JsonNode& top) {
         if (!top.has("fields")) {
             return;
         }
-        const JsonValue fields = top.at("fields");
+        const JsonNode fields = top.at("fields");
         const std::string type = fields.has("field_definition")
-                                     ? fields.at("field_definition").text_or("field_type", "")
-                                     : fields.text_or("field_type", "");
+                                     ? text_or(fields.at("field_definition"), "field_type", "")
+                                     : text_or(fields, "field_type", "");
         double largest = 0.0;
         bool vignetted = false;
-        for (const JsonValue& field : fields.at("fields").list()) {
-            largest = std::max(largest, std::hypot(field.number_or("x", 0.0), field.number_or("y", 0.0)));
-            vignetted = vignetted || field.number_or("vx", 0.0) != 0.0 || field.number_or("vy", 0.0) != 0.0;
+        for (const JsonNode& field : fields.at("fields").elements()) {
+            largest = std::max(largest, std::hypot(number_or(field, "x", 0.0), number_or(field, "y", 0.0)));
+            vignetted = vignetted || number_or(field, "vx", 0.0) != 0.0 || number_or(field, "vy", 0.0) != 0.0;
         }
         if (vignetted) {
             remark("not-read", 0, "the fields' vignetting factors are left out: rims vignette here");
@@ -299,20 +299,20 @@ class OptilandLens {
         }
     }
 
-    void read_wavelengths(const JsonValue& top) {
+    void read_wavelengths(const JsonNode& top) {
         if (!top.has("wavelengths")) {
             return;
         }
-        for (const JsonValue& wavelength : top.at("wavelengths").at("wavelengths").list()) {
-            const std::string unit = wavelength.text_or("unit", "um");
+        for (const JsonNode& wavelength : top.at("wavelengths").at("wavelengths").elements()) {
+            const std::string unit = text_or(wavelength, "unit", "um");
             // Rounded to what a wavelength in µm can have been written with: 0.5875618 is 587.5618.
-            const double nm = std::round(wavelength.at("value").number() * (unit == "nm" ? 1.0 : 1e3) * 1e9) / 1e9;
+            const double nm = std::round(any_number(wavelength.at("value")) * (unit == "nm" ? 1.0 : 1e3) * 1e9) / 1e9;
             if (!(nm > 0.0) || !std::isfinite(nm) || (unit != "um" && unit != "nm")) {
                 remark("not-read", 0, fmt::format("a wavelength in \"{}\" is left out", printable(unit)));
                 continue;
             }
             lens_.wavelengths_nm.insert(
-                wavelength.is_true("is_primary") ? lens_.wavelengths_nm.begin() : lens_.wavelengths_nm.end(), nm);
+                is_true(wavelength, "is_primary") ? lens_.wavelengths_nm.begin() : lens_.wavelengths_nm.end(), nm);
         }
         const std::string polarization =
             top.at("wavelengths").has("polarization") ? top.at("wavelengths").at("polarization").text() : "ignore";
@@ -327,7 +327,7 @@ class OptilandLens {
 }  // namespace
 
 optics::Prescription parse_optiland(const std::string& text, const std::filesystem::path& file) {
-    return OptilandLens(file).read(JsonValue::parse(text, file));
+    return OptilandLens(file).read(parse_python_json(text, file.string()));
 }
 
 }  // namespace lensproof::formats

@@ -5,8 +5,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <nlohmann/json.hpp>
 
+#include "engine/base/json.h"
 #include "engine/formats/prescription/prescription_forms.h"
 
 namespace lensproof::formats {
@@ -36,8 +36,7 @@ std::string pairs(const std::vector<optics::WavelengthValue>& values) {
 
 /// `bytes` with whatever is not UTF-8 replaced by U+FFFD, since a TOML file may hold nothing else.
 std::string valid_utf8(std::string_view bytes) {
-    using Json = nlohmann::json;
-    return Json::parse(Json(bytes).dump(-1, ' ', false, Json::error_handler_t::replace)).get<std::string>();
+    return Json::parse(Json(bytes).dump(), "").text();
 }
 
 /// `letter` where it may not stand as it is between quotes.

@@ -5,6 +5,8 @@
 #include <charconv>
 #include <cmath>
 
+#include "engine/base/json.h"
+
 namespace lensproof::draw {
 namespace {
 
@@ -21,8 +23,8 @@ std::string with_true_minus(const std::string& digits) {
 
 }  // namespace
 
-std::string json_for_script(const nlohmann::ordered_json& json) {
-    const std::string plain = json.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
+std::string json_for_script(const Json& json) {
+    const std::string plain = json.dump();
     std::string out;
     out.reserve(plain.size());
     for (const char c : plain) {  // these three stand only inside strings, where an escape means the same character

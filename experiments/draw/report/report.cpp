@@ -13,9 +13,6 @@
 
 namespace lensproof::draw {
 namespace {
-
-using Json = nlohmann::ordered_json;
-
 constexpr char kTemplate[] = {
 #include "report_template.inc"
 };
@@ -24,34 +21,20 @@ constexpr std::size_t kSubjectColours = 7;  // .s0 … .s6 in the template
 
 // ---- Reading a report that may lack anything -----------------------------------------------------------------------
 
-const Json& member(const Json& object, const char* key) {
-    static const Json kNothing;
-    if (!object.is_object()) return kNothing;
-    const auto found = object.find(key);
-    return found == object.end() ? kNothing : *found;
-}
-
-/// The array there, or an empty one.
-const Json& list(const Json& object, const char* key) {
-    static const Json kEmpty = Json::array();
-    const Json& value = member(object, key);
-    return value.is_array() ? value : kEmpty;
-}
-
 std::optional<double> as_number(const Json& value) {
-    if (!value.is_number() || !std::isfinite(value.get<double>())) return std::nullopt;
-    return value.get<double>();
+    if (!value.is_number() || !std::isfinite(value.number())) return std::nullopt;
+    return value.number();
 }
 
 std::string as_text(const Json& value) {
-    if (value.is_string()) return value.get<std::string>();
+    if (value.is_text()) return value.text();
     if (value.is_null()) return "";
-    if (value.is_number_float()) return number_text(value.get<double>());
-    return value.dump(-1, ' ', false, Json::error_handler_t::replace);
+    if (value.is_number() && !value.is_whole()) return number_text(value.number());
+    return value.dump();
 }
 
 std::string text(const Json& object, const char* key) {
-    return escape_markup(as_text(member(object, key)));
+    return escape_markup(as_text(object[key]));
 }
 
 std::string with_unit(const std::string& number, const std::string& unit) {
@@ -62,7 +45,7 @@ std::string with_unit(const std::string& number, const std::string& unit) {
 
 /// The class that gives shape and colour. A word this page does not know is no pass.
 std::string verdict_class(const Json& object) {
-    const std::string word = as_text(member(object, "verdict"));
+    const std::string word = as_text(object["verdict"]);
     return word == "PASS" ? "pass" : word == "FAIL" ? "fail" : "inconclusive";
 }
 
@@ -90,12 +73,12 @@ std::string tally(const std::vector<const Json*>& checks) {
 }
 
 std::string limit_html(const Json& check) {
-    const auto limit = as_number(member(check, "limit"));
+    const auto limit = as_number(check["limit"]);
     if (!limit) return "—";
     const std::string unit = text(check, "unit");
     const std::string amount = with_unit(number_text(*limit), unit);
-    const auto target = as_number(member(check, "target"));
-    const std::string expect = as_text(member(check, "expect"));
+    const auto target = as_number(check["target"]);
+    const std::string expect = as_text(check["expect"]);
     if (expect == "at most") return "≤\u00a0" + amount;
     if (expect == "at least") return "≥\u00a0" + amount;
     const std::string from =
@@ -107,9 +90,9 @@ std::string limit_html(const Json& check) {
 
 /// "s2" for the third subject, "" for an id that no subject has.
 std::string subject_colour(const Json& report, const Json& id) {
-    const Json& subjects = list(report, "subjects");
-    for (std::size_t i = 0; i < subjects.size() && id.is_string(); ++i) {
-        if (member(subjects[i], "id") == id) return std::string("s").append(std::to_string(i % kSubjectColours));
+    const Json::List& subjects = report["subjects"].elements();
+    for (std::size_t i = 0; i < subjects.size() && id.is_text(); ++i) {
+        if (subjects[i]["id"] == id) return std::string("s").append(std::to_string(i % kSubjectColours));
     }
     return "";
 }
@@ -121,11 +104,11 @@ struct Group {
 };
 
 /// In the order in which a group is first named.
-std::vector<Group> groups_of(const Json& checks) {
+std::vector<Group> groups_of(const Json::List& checks) {
     std::vector<Group> groups;
     std::map<std::string, std::size_t> place_of;
     for (std::size_t i = 0; i < checks.size(); ++i) {
-        const std::string name = as_text(member(checks[i], "group"));
+        const std::string name = as_text(checks[i]["group"]);
         const auto [at, is_new] = place_of.try_emplace(name, groups.size());
         if (is_new) groups.push_back({name, {}, {}});
         groups[at->second].checks.push_back(&checks[i]);
@@ -135,15 +118,15 @@ std::vector<Group> groups_of(const Json& checks) {
 }
 
 std::string floor_cell(const Json& check) {
-    const auto floor = as_number(member(check, "floor"));
+    const auto floor = as_number(check["floor"]);
     return "<td class=\"floor\">" + (floor ? with_unit(floor_text(*floor), text(check, "unit")) : "—") + "</td>";
 }
 
 /// `has_floors`: the table has the column.
 std::string check_row(const Json& check, std::size_t place, bool has_floors) {
     constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-    const double value = as_number(member(check, "value")).value_or(kNaN);
-    const std::string measured = measurement_text(value, as_number(member(check, "sigma")));
+    const double value = as_number(check["value"]).value_or(kNaN);
+    const std::string measured = measurement_text(value, as_number(check["sigma"]));
     const std::string why = text(check, "explanation");
     const std::string kind = verdict_class(check);
     const bool hides_why = kind == "pass" && !why.empty();  // until the row has the focus
@@ -157,10 +140,10 @@ std::string check_row(const Json& check, std::size_t place, bool has_floors) {
 }
 
 std::string checks_html(const Json& report) {
-    const Json& checks = list(report, "checks");
+    const Json::List& checks = report["checks"].elements();
     if (checks.empty()) return "<p class=\"empty\">This report holds no checks.</p>\n";
-    const bool has_floors = std::any_of(
-        checks.begin(), checks.end(), [](const Json& check) { return as_number(member(check, "floor")).has_value(); });
+    const bool has_floors = std::any_of(checks.begin(), checks.end(),
+                                        [](const Json& check) { return as_number(check["floor"]).has_value(); });
     std::string out =
         "<table class=\"checks\"><caption class=\"unseen\">Every check, its result and its limit</caption>\n"
         "<thead><tr><th scope=\"col\">Check</th><th scope=\"col\">Measured, ± 1 σ</th>" +
@@ -168,7 +151,7 @@ std::string checks_html(const Json& report) {
         "<th scope=\"col\" class=\"scale\">Against its limit</th>"
         "<th scope=\"col\">Limit</th><th scope=\"col\">Verdict</th></tr></thead>\n";
     for (const Group& group : groups_of(checks)) {
-        const std::string colour = subject_colour(report, member(*group.checks.front(), "subject"));
+        const std::string colour = subject_colour(report, (*group.checks.front())["subject"]);
         out += "<tbody><tr class=\"group\"><th scope=\"rowgroup\" colspan=\"" + std::string(has_floors ? "6" : "5") +
                "\">";
         if (!colour.empty()) out += "<i class=\"swatch " + colour + "\" aria-hidden=\"true\"></i>";
@@ -183,7 +166,7 @@ std::string checks_html(const Json& report) {
 
 std::string tally_html(const Json& report) {
     std::vector<const Json*> checks;
-    for (const Json& check : list(report, "checks")) checks.push_back(&check);
+    for (const Json& check : report["checks"]) checks.push_back(&check);
     return checks.empty() ? "" : "<p class=\"tally\">Of the checks, " + tally(checks) + ".</p>";
 }
 
@@ -195,17 +178,17 @@ std::string fact_row(const std::string& label, const std::string& value) {
 
 std::string facts_html(const Json& subject) {
     std::string rows;
-    for (const Json& fact : list(subject, "facts")) rows += fact_row(text(fact, "label"), text(fact, "value"));
-    const Json& focal_length = member(subject, "focal_length_px");
-    if (const auto value = as_number(member(focal_length, "value"))) {
+    for (const Json& fact : subject["facts"]) rows += fact_row(text(fact, "label"), text(fact, "value"));
+    const Json& focal_length = subject["focal_length_px"];
+    if (const auto value = as_number(focal_length["value"])) {
         rows += fact_row("Focal length, fitted",
-                         with_unit(measurement_text(*value, as_number(member(focal_length, "sigma"))), "px"));
+                         with_unit(measurement_text(*value, as_number(focal_length["sigma"])), "px"));
     }
     return rows.empty() ? "" : "<table class=\"facts\"><tbody>\n" + rows + "</tbody></table>\n";
 }
 
 std::string picture_html(const Json& picture, const std::string& id, const std::map<std::string, std::string>& pngs) {
-    const auto png = pngs.find(as_text(member(picture, "name")));
+    const auto png = pngs.find(as_text(picture["name"]));
     const std::string caption = text(picture, "caption");
     std::string out = "<figure class=\"picture\" id=\"" + id + "\"><div class=\"stage\">";
     if (png == pngs.end()) {
@@ -221,7 +204,7 @@ std::string picture_html(const Json& picture, const std::string& id, const std::
 /// Where the measurements are sure, beside the curves that say how sure they are along the radius.
 std::string maps_html(const Json& report, const std::map<std::string, std::string>& pngs) {
     std::string out;
-    const Json& maps = list(report, "maps");
+    const Json::List& maps = report["maps"].elements();
     for (std::size_t i = 0; i < maps.size(); ++i) {
         out += picture_html(maps[i], "map-" + std::to_string(i), pngs);
     }
@@ -231,7 +214,7 @@ std::string maps_html(const Json& report, const std::map<std::string, std::strin
 }
 
 std::string subjects_html(const Json& report, const std::map<std::string, std::string>& pngs) {
-    const Json& subjects = list(report, "subjects");
+    const Json::List& subjects = report["subjects"].elements();
     if (subjects.empty()) return "<p class=\"empty\">This report shows no lens and no photo.</p>\n";
     std::string out;
     for (std::size_t i = 0; i < subjects.size(); ++i) {
@@ -239,7 +222,7 @@ std::string subjects_html(const Json& report, const std::map<std::string, std::s
         out += "<section class=\"subject s" + std::to_string(i % kSubjectColours) + "\" id=\"subject-" + number +
                "\"><h3><i class=\"swatch\" aria-hidden=\"true\"></i>" + text(subjects[i], "label") + " <small>" +
                text(subjects[i], "kind") + "</small></h3>\n" + facts_html(subjects[i]);
-        const Json& pictures = list(subjects[i], "pictures");
+        const Json::List& pictures = subjects[i]["pictures"].elements();
         if (!pictures.empty()) out += "<div class=\"pictures\">\n";
         for (std::size_t k = 0; k < pictures.size(); ++k) {
             out += picture_html(pictures[k], "picture-" + number + "-" + std::to_string(k), pngs);
@@ -254,11 +237,11 @@ std::string subjects_html(const Json& report, const std::map<std::string, std::s
 /// The columns are the first entry's keys.
 std::string table_html(const Json& rows) {
     std::string out = "<table class=\"list\"><thead><tr>";
-    for (const auto& [key, value] : rows.front().items()) out += "<th scope=\"col\">" + escape_markup(key) + "</th>";
+    for (const auto& [key, value] : rows[0].members()) out += "<th scope=\"col\">" + escape_markup(key) + "</th>";
     out += "</tr></thead><tbody>\n";
     for (const Json& row : rows) {
         out += "<tr>";
-        for (const auto& [key, value] : rows.front().items()) out += "<td>" + text(row, key.c_str()) + "</td>";
+        for (const auto& [key, value] : rows[0].members()) out += "<td>" + text(row, key.c_str()) + "</td>";
         out += "</tr>\n";
     }
     return out + "</tbody></table>";
@@ -273,13 +256,12 @@ std::string joined(const Json& values, const char* separator) {
 /// A row for each setting: {"render": {"samples": 64}} is "render.samples 64".
 std::string settings_rows(const Json& object, const std::string& prefix) {
     std::string out;
-    for (const auto& [key, value] : object.items()) {
+    for (const auto& [key, value] : object.members()) {
         const std::string name = prefix + key;
         if (value.is_object()) {
             out += settings_rows(value, name + ".");
         } else {
-            out +=
-                fact_row(escape_markup(name), value.is_array() ? joined(value, ", ") : escape_markup(as_text(value)));
+            out += fact_row(escape_markup(name), value.is_list() ? joined(value, ", ") : escape_markup(as_text(value)));
         }
     }
     return out;
@@ -287,18 +269,18 @@ std::string settings_rows(const Json& object, const std::string& prefix) {
 
 std::string value_html(const Json& value) {
     if (value.is_object()) return "<table class=\"list\"><tbody>\n" + settings_rows(value, "") + "</tbody></table>";
-    if (!value.is_array()) return escape_markup(as_text(value));
-    if (!value.empty() && value.front().is_object()) return table_html(value);
+    if (!value.is_list()) return escape_markup(as_text(value));
+    if (!value.empty() && value[0].is_object()) return table_html(value);
     return joined(value, "<br>");
 }
 
 std::string provenance_html(const Json& report) {
-    const Json& provenance = member(report, "provenance");
+    const Json& provenance = report["provenance"];
     if (!provenance.is_object() || provenance.empty()) {
         return "<p class=\"empty\">This report does not say where it comes from.</p>\n";
     }
     std::string out = "<dl class=\"provenance\">\n";
-    for (const auto& [key, value] : provenance.items()) {
+    for (const auto& [key, value] : provenance.members()) {
         std::string label = key;
         for (char& c : label) c = c == '_' ? ' ' : c;
         out += "<div><dt>" + escape_markup(label) + "</dt><dd>" + value_html(value) + "</dd></div>\n";

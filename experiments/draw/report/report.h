@@ -2,8 +2,9 @@
 // anyone.
 #pragma once
 #include <map>
-#include <nlohmann/json.hpp>
 #include <string>
+
+#include "engine/base/json.h"
 
 namespace lensproof::draw {
 
@@ -48,7 +49,6 @@ namespace lensproof::draw {
 ///
 /// Pixel coordinates are those of engine/formats/image/image.h: the centre of the top-left pixel is (0, 0), y runs
 /// down. `provenance` may hold further keys; a list of objects becomes a table, an object a list of its settings.
-std::string report_html(const nlohmann::ordered_json& report,
-                        const std::map<std::string, std::string>& png_bytes_by_name);
+std::string report_html(const Json& report, const std::map<std::string, std::string>& png_bytes_by_name);
 
 }  // namespace lensproof::draw

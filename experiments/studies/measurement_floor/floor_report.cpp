@@ -6,6 +6,7 @@
 #include <cmath>
 #include <iterator>
 
+#include "engine/base/json.h"
 #include "experiments/draw/chart.h"
 #include "experiments/draw/palette.h"
 #include "experiments/runner/provenance.h"
@@ -14,9 +15,6 @@
 namespace lensproof::studies {
 
 namespace {
-
-using Json = nlohmann::ordered_json;
-
 constexpr draw::ChartSize kChartSize{.width = 760.0, .height = 420.0};
 
 void append(MeasurementFloor& floor, MeasurementFloor part) {
@@ -68,21 +66,17 @@ std::string sweep_chart(const FloorSweep& sweep) {
     return draw::chart_svg(chart, kChartSize);
 }
 
-Json number(double value) {
-    return std::isfinite(value) ? Json(value) : Json(nullptr);
-}
-
 Json sweep_json(const FloorSweep& sweep) {
     Json json{
         {"id", sweep.id},     {"title", sweep.title}, {"setting", sweep.setting},      {"parameter", sweep.parameter},
         {"unit", sweep.unit}, {"error", sweep.error}, {"error_unit", sweep.error_unit}};
     for (const FloorCurve& curve : sweep.curves) {
-        Json points = Json::array();
+        Json points = Json::list();
         for (const FloorPoint& point : curve.points) {
             points.push_back({{"value", point.value},
-                              {"error", number(point.error)},
-                              {"sigma", number(point.sigma)},
-                              {"found_percent", number(point.found_percent)},
+                              {"error", point.error},
+                              {"sigma", point.sigma},
+                              {"found_percent", point.found_percent},
                               {"trials", point.trials},
                               {"failed", point.failed}});
         }
@@ -157,8 +151,8 @@ Json floor_report_json(const runner::Experiment& experiment, const MeasurementFl
                 {"summary", fmt::format("{} {} of {} checks hold.", experiment.summary, passed, floor.checks.size())},
                 {"verdict", runner::verdict_name(runner::overall(floor.checks))},
                 {"subjects_title", "Sweeps"},
-                {"checks", Json::array()},
-                {"subjects", Json::array()}};
+                {"checks", Json::list()},
+                {"subjects", Json::list()}};
     std::ranges::transform(floor.checks, std::back_inserter(report["checks"]), runner::check_json);
     std::ranges::transform(floor.sweeps, std::back_inserter(report["subjects"]), subject_json);
     std::ranges::transform(floor.sweeps, std::back_inserter(report["sweeps"]), sweep_json);

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <iterator>
 
+#include "engine/base/json.h"
 #include "engine/formats/prescription/prescription_file.h"
 #include "experiments/draw/section_drawing.h"
 #include "experiments/runner/provenance.h"
@@ -13,9 +14,6 @@
 namespace lensproof::studies {
 
 namespace {
-
-using Json = nlohmann::ordered_json;
-
 constexpr double kWidth = 900.0;
 constexpr double kMargin = 24.0;
 constexpr double kTitle = 26.0;
@@ -98,7 +96,7 @@ double section_height(const Passage& passage) {
 }
 
 Json percentages(const std::array<double, kPassageRings>& shares) {
-    Json list = Json::array();
+    Json list = Json::list();
     std::ranges::transform(shares, std::back_inserter(list), [](double share) { return 100.0 * share; });
     return list;
 }
@@ -188,13 +186,13 @@ std::map<std::string, std::string> passage_drawings(const std::vector<Passage>& 
     return drawings;
 }
 
-nlohmann::ordered_json passage_report_json(const runner::Experiment& experiment, const std::vector<Passage>& passages,
-                                           const runner::RunSettings& settings) {
+Json passage_report_json(const runner::Experiment& experiment, const std::vector<Passage>& passages,
+                         const runner::RunSettings& settings) {
     const std::vector<runner::Check> checks = passage_checks(passages);
     Json report{{"schema", "lensproof-report/1"}, {"title", experiment.title},
                 {"summary", experiment.summary},  {"verdict", runner::verdict_name(runner::overall(checks))},
-                {"subjects_title", "Lenses"},     {"checks", Json::array()},
-                {"subjects", Json::array()}};
+                {"subjects_title", "Lenses"},     {"checks", Json::list()},
+                {"subjects", Json::list()}};
     std::ranges::transform(checks, std::back_inserter(report["checks"]), runner::check_json);
     std::ranges::transform(passages, std::back_inserter(report["subjects"]), subject_json);
     std::ranges::transform(passages, std::back_inserter(report["passages"]), passage_json);

@@ -2,10 +2,10 @@
 // report's JSON.
 #pragma once
 #include <map>
-#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
+#include "engine/base/json.h"
 #include "experiments/runner/run_experiment.h"
 #include "experiments/studies/pupil_passage/measure_passage.h"
 
@@ -26,7 +26,7 @@ std::map<std::string, std::string> passage_drawings(const std::vector<Passage>& 
 /// In the schema of experiments/draw/report/report.h, each setting a subject, with "passages" besides:
 ///     [{"lens", "f_number", "image_circle_mm", "whole_element_percent", "pupil_percent", "pupil_error_percent",
 ///       "whole_element_rings_percent": […], "pupil_rings_percent": […], "published_percent": {…} or null}]
-nlohmann::ordered_json passage_report_json(const runner::Experiment& experiment, const std::vector<Passage>& passages,
-                                           const runner::RunSettings& settings);
+Json passage_report_json(const runner::Experiment& experiment, const std::vector<Passage>& passages,
+                         const runner::RunSettings& settings);
 
 }  // namespace lensproof::studies

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/base/json.h"
 #include "engine/base/parallel.h"
 #include "experiments/runner/provenance.h"
 #include "experiments/runner/report_content.h"
@@ -13,9 +14,6 @@
 namespace lensproof::studies {
 
 namespace {
-
-using Json = nlohmann::ordered_json;
-
 /// Of each number type; where the checks' text says more, a double's.
 constexpr std::array<double, kNumberTypes.size()> kTroubleMm = {1e-3, kErrorBoundMm, kErrorBoundMm};
 
@@ -207,9 +205,8 @@ std::map<std::string, std::string> stability_charts(const std::vector<StabilityS
     return charts;
 }
 
-nlohmann::ordered_json stability_report_json(const runner::Experiment& experiment,
-                                             const std::vector<StabilitySweep>& sweeps,
-                                             const runner::RunSettings& settings) {
+Json stability_report_json(const runner::Experiment& experiment, const std::vector<StabilitySweep>& sweeps,
+                           const runner::RunSettings& settings) {
     const std::vector<runner::Check> checks = stability_checks(sweeps);
     const auto passed = std::ranges::count_if(
         checks, [](const runner::Check& check) { return check.verdict() == runner::Verdict::pass; });
@@ -218,8 +215,8 @@ nlohmann::ordered_json stability_report_json(const runner::Experiment& experimen
                 {"summary", fmt::format("{} {} of {} checks hold.", experiment.summary, passed, checks.size())},
                 {"verdict", runner::verdict_name(runner::overall(checks))},
                 {"subjects_title", "Extremes"},
-                {"checks", Json::array()},
-                {"subjects", Json::array()}};
+                {"checks", Json::list()},
+                {"subjects", Json::list()}};
     std::ranges::transform(checks, std::back_inserter(report["checks"]), runner::check_json);
     std::ranges::transform(sweeps, std::back_inserter(report["subjects"]), subject_json);
     std::ranges::transform(sweeps, std::back_inserter(report["extremes"]), extreme_json);

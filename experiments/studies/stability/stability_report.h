@@ -1,10 +1,10 @@
 // experiments/studies/stability/stability_report.h — the sweeps as checks, as charts, and as the report's JSON.
 #pragma once
 #include <map>
-#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
+#include "engine/base/json.h"
 #include "experiments/runner/run_experiment.h"
 #include "experiments/studies/stability/measure_stability.h"
 
@@ -44,8 +44,7 @@ std::optional<Onset> onset_of_trouble(const StabilitySweep& sweep, std::size_t t
 ///                   "types": {type: {"error_mm", "other_statuses", "close_calls", "not_finite"}}}
 ///                  or {"value", "refusal"}]}]
 /// A value that is infinite is the text "inf" or "-inf".
-nlohmann::ordered_json stability_report_json(const runner::Experiment& experiment,
-                                             const std::vector<StabilitySweep>& sweeps,
-                                             const runner::RunSettings& settings);
+Json stability_report_json(const runner::Experiment& experiment, const std::vector<StabilitySweep>& sweeps,
+                           const runner::RunSettings& settings);
 
 }  // namespace lensproof::studies

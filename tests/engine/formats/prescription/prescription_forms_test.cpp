@@ -360,12 +360,12 @@ TEST(Optiland, SaysWhatIsNoPrescription) {
              {"", "not JSON"},
              {"{", "not JSON"},
              {"[1, 2]", "surface_group"},
-             {R"({"surface_group": {"surfaces": 3}})", "surfaces is 3, expected a list"},
+             {R"({"surface_group": {"surfaces": 3}})", "surfaces is 3: expected a list"},
              {R"({"surface_group": {"surfaces": []}})", "0 surfaces"},
              {replaced(kOptiland, "\"radius\": 50.0", "\"radius\": \"5O\""), "surfaces[1].geometry.radius is"},
              {replaced(kOptiland, "\"radius\": 50.0", "\"radius\": [1, 2]"), "expected a number"},
              {replaced(kOptiland, "\"radius\": 50.0", "\"radius\": 1e999"), "cannot be read"},
-             {replaced(kOptiland, "\"cs\"", "\"sc\""), "has no \"cs\""},
+             {replaced(kOptiland, "\"cs\"", "\"sc\""), "surfaces[0].geometry.cs is missing"},
              {std::string(100000, '['), "brackets"},
              {replaced(kOptiland, "Tilted", "Til\xffted"), "lens.x"}}) {
         const std::string said = complaint(parse_optiland, text);

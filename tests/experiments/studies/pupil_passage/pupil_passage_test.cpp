@@ -62,7 +62,7 @@ TEST(PupilPassage, IsReported) {
     EXPECT_EQ(report["passages"][0]["pupil_rings_percent"].size(), 8U);
     EXPECT_EQ(report["passages"][0]["published_percent"]["pupil"], 82.0);
     const auto drawings = passage_drawings(passages);
-    const std::string name = report["subjects"][0]["pictures"][0]["name"];
+    const std::string name = report["subjects"][0]["pictures"][0]["name"].text();
     ASSERT_TRUE(drawings.contains(name));
     EXPECT_NE(drawings.at(name).find("Points of the pupil of each pixel"), std::string::npos);
     EXPECT_NE(drawings.at(name).find("ray blocked"), std::string::npos);

@@ -7,6 +7,7 @@
 #include <ostream>
 
 #include "engine/base/file.h"
+#include "engine/base/json.h"
 #include "experiments/studies/stability/measure_stability.h"
 #include "experiments/studies/stability/stability_report.h"
 #include "tests/test_folder.h"
@@ -130,7 +131,7 @@ TEST(StabilityReport, SaysWhatTheProgramDoes) {
     const TestFolder folder;
     const std::filesystem::path file = folder.path() / "stability.toml";
     write_file(file, "title = 'T'\n");
-    const nlohmann::ordered_json report = stability_report_json(
+    const Json report = stability_report_json(
         {.file = file, .title = "T", .summary = "S", .stability = runner::StabilityExperiment{}}, sweeps, {});
     EXPECT_EQ(report["verdict"], "FAIL");
     const auto& extreme = report["extremes"][0];

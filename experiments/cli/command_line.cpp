@@ -1,0 +1,165 @@
+#include "experiments/cli/command_line.h"
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <charconv>
+#include <cmath>
+#include <cstdint>
+#include <cstdlib>
+#include <optional>
+
+#include "engine/base/input_error.h"
+#include "engine/base/text.h"
+
+namespace lensproof::cli {
+
+namespace {
+
+OptionCheck check_by(const CLI::Validator& validator) {
+    return {[validator](std::string text) { return validator(text); }, validator.get_description()};
+}
+
+CLI::Validator validator_of(const OptionCheck& check) {
+    return {[complaint = check.complaint](const std::string& text) { return complaint(text); }, check.name};
+}
+
+std::string complain_unless_seed(const std::string& text) {
+    std::uint64_t seed = 0;
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), seed);
+    const bool good = error == std::errc() && end == text.data() + text.size();
+    return good ? "" : fmt::format("\"{}\", expected a whole number from 0 to 2^64 - 1", text);
+}
+
+std::string complain_unless_positive(const std::string& text) {
+    char* end = nullptr;
+    const double value = std::strtod(text.c_str(), &end);
+    const bool good = !text.empty() && end == text.c_str() + text.size() && std::isfinite(value) && value > 0.0;
+    return good ? "" : fmt::format("\"{}\", expected a finite number above 0", text);
+}
+
+std::string complain_unless_number(const std::string& text) {
+    const std::optional<double> value = parse_number(text);
+    const bool good = value && std::isfinite(*value);
+    return good ? "" : fmt::format("\"{}\", expected a number", printable(text));
+}
+
+}  // namespace
+
+OptionCheck one_of(const std::vector<std::string>& texts) {
+    return check_by(CLI::IsMember(texts));
+}
+
+OptionCheck in_range(int from, int to) {
+    return check_by(CLI::Range(from, to));
+}
+
+OptionCheck in_range(double from, double to) {
+    return check_by(CLI::Range(from, to));
+}
+
+OptionCheck either(const OptionCheck& one, const OptionCheck& other) {
+    return check_by(validator_of(one) | validator_of(other));
+}
+
+const OptionCheck kNumberOption{complain_unless_number, "NUMBER"};
+const OptionCheck kPositiveOption{complain_unless_positive, "POSITIVE"};
+const OptionCheck kNotNegativeOption = check_by(CLI::NonNegativeNumber);
+const OptionCheck kSeedOption{complain_unless_seed, "UINT"};
+
+Option& Option::required() {
+    option_->required();
+    return *this;
+}
+
+Option& Option::type_name(const std::string& name) {
+    option_->type_name(name);
+    return *this;
+}
+
+Option& Option::check(const OptionCheck& check) {
+    option_->check(validator_of(check));
+    return *this;
+}
+
+Option& Option::shows_default() {
+    option_->capture_default_str();
+    return *this;
+}
+
+Option& Option::separated_by(char separator) {
+    option_->delimiter(separator);
+    return *this;
+}
+
+Option& Option::takes_one_argument() {
+    option_->allow_extra_args(false);
+    return *this;
+}
+
+Option& Option::takes(int values) {
+    option_->expected(values);
+    return *this;
+}
+
+Option& Option::needs(const Option& other) {
+    option_->needs(other.option_);
+    return *this;
+}
+
+template <class T>
+Option Command::add_option(const std::string& names, T& value, const std::string& help) {
+    return Option(app_->add_option(names, value, help));
+}
+
+template Option Command::add_option(const std::string&, std::string&, const std::string&);
+template Option Command::add_option(const std::string&, double&, const std::string&);
+template Option Command::add_option(const std::string&, int&, const std::string&);
+template Option Command::add_option(const std::string&, unsigned int&, const std::string&);
+template Option Command::add_option(const std::string&, std::uint64_t&, const std::string&);
+template Option Command::add_option(const std::string&, std::optional<std::string>&, const std::string&);
+template Option Command::add_option(const std::string&, std::optional<double>&, const std::string&);
+template Option Command::add_option(const std::string&, std::optional<int>&, const std::string&);
+template Option Command::add_option(const std::string&, std::vector<std::string>&, const std::string&);
+template Option Command::add_option(const std::string&, std::vector<double>&, const std::string&);
+
+Option Command::add_flag(const std::string& names, bool& value, const std::string& help) {
+    return Option(app_->add_flag(names, value, help));
+}
+
+void Command::footer(const std::string& text) {
+    app_->footer(text);
+}
+
+void Command::runs(const std::function<int()>& run) {
+    app_->callback([run, status = status_] { *status = run(); });
+}
+
+Program::Program(const std::string& name, const std::string& description, const std::string& version,
+                 const std::string& footer)
+    : app_(std::make_unique<CLI::App>(description, name)), name_(name) {
+    app_->set_version_flag("--version", version);
+    app_->footer(footer);
+    app_->require_subcommand(1);
+}
+
+Program::~Program() = default;
+
+Command Program::add_command(const std::string& name, const std::string& description) {
+    return {app_->add_subcommand(name, description), &status_};
+}
+
+int Program::run(int argc, char** argv) {
+    try {
+        app_->parse(argc, argv);
+    } catch (const CLI::Success& success) {
+        return app_->exit(success);  // --help, --version
+    } catch (const CLI::ParseError& error) {
+        const auto asked = app_->get_subcommands();
+        throw InputError(fmt::format("{}\nTry: {} {}--help", error.what(), name_,
+                                     asked.empty() ? "" : asked.front()->get_name() + " "));
+    }
+    return status_;
+}
+
+}  // namespace lensproof::cli

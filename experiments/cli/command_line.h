@@ -1,0 +1,93 @@
+// experiments/cli/command_line.h — the program's commands, and what each takes on the command line.
+//
+// The parser library's header costs each file that includes it some eight seconds; it is kept to command_line.cpp.
+#pragma once
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace CLI {
+class App;
+class Option;
+}  // namespace CLI
+
+namespace lensproof::cli {
+
+/// What the text given to an option has to be.
+struct OptionCheck {
+    std::function<std::string(const std::string& text)> complaint;  // empty where the text will do
+    std::string name;                                               // that stands for the value in the help
+};
+
+OptionCheck one_of(const std::vector<std::string>& texts);
+OptionCheck in_range(int from, int to);
+OptionCheck in_range(double from, double to);
+OptionCheck either(const OptionCheck& one, const OptionCheck& other);
+extern const OptionCheck kNumberOption;       // a finite number. (The library takes an empty text for 0.)
+extern const OptionCheck kPositiveOption;     // a finite number above 0. (The library's own lets nan pass.)
+extern const OptionCheck kNotNegativeOption;  // a number that is not below 0
+extern const OptionCheck kSeedOption;         // digits alone. (The library turns -1 and 1e30 into some other seed.)
+
+/// An option of a command, while it is declared.
+class Option {
+  public:
+    explicit Option(CLI::Option* option) : option_(option) {}
+    Option& required();
+    Option& type_name(const std::string& name);  // "FILE": what stands for the value in the help
+    Option& check(const OptionCheck& check);     // each check that is asked for has to hold
+    Option& shows_default();
+    Option& separated_by(char separator);  // values of a list in one argument
+    Option& takes_one_argument();          // of a list: an option's further values repeat its name
+    Option& takes(int values);
+    Option& needs(const Option& other);
+
+  private:
+    CLI::Option* option_;
+};
+
+/// A command, while it is declared.
+class Command {
+  public:
+    /// `status`: where what it returns goes.
+    Command(CLI::App* app, int* status) : app_(app), status_(status) {}
+
+    /// `names`: "-o,--output", or a bare name for what stands without one. The value is set where the option is given;
+    /// it outlives the program. T: std::string, double and int, these as std::optional, lists of the first two;
+    /// unsigned and std::uint64_t.
+    template <class T>
+    Option add_option(const std::string& names, T& value, const std::string& help);
+    Option add_flag(const std::string& names, bool& value, const std::string& help);
+
+    /// What stands below the options in the help: an example.
+    void footer(const std::string& text);
+
+    /// What the command does; returns the exit status.
+    void runs(const std::function<int()>& run);
+
+  private:
+    CLI::App* app_;
+    int* status_;
+};
+
+class Program {
+  public:
+    Program(const std::string& name, const std::string& description, const std::string& version,
+            const std::string& footer);
+    ~Program();
+    Program(const Program&) = delete;
+    Program& operator=(const Program&) = delete;
+
+    Command add_command(const std::string& name, const std::string& description);
+
+    /// Runs the command that the arguments name, and returns its exit status; 0 after --help and --version. Throws
+    /// InputError for arguments that are unusable.
+    int run(int argc, char** argv);
+
+  private:
+    std::unique_ptr<CLI::App> app_;
+    std::string name_;
+    int status_ = 0;
+};
+
+}  // namespace lensproof::cli
