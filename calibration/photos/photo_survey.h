@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "calibration/measure.h"
+#include "calibration/measure/measure.h"
 #include "engine/formats/image/transfer_curve.h"
 
 namespace lensproof::calibration {

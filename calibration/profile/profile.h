@@ -13,10 +13,10 @@
 #include "calibration/geometry/planar_pose.h"
 #include "calibration/geometry/projection_uncertainty.h"
 #include "calibration/light/vignetting_models.h"
-#include "calibration/photos/picture_account.h"
-#include "calibration/photos/picture_traits.h"
+#include "calibration/picture/picture_account.h"
+#include "calibration/picture/picture_traits.h"
 #include "calibration/profile/profile_line.h"
-#include "calibration/self_test/self_test.h"
+#include "calibration/profile/self_test_result.h"
 #include "calibration/sharpness/profile_edge.h"
 #include "calibration/sharpness/profile_star.h"
 #include "calibration/statistics/curve.h"
@@ -94,7 +94,7 @@ struct FittedTerms {
 /// Curves by name: "field_angle_deg", "distortion_percent" (against f tan θ), "distortion_equidistant_percent"
 /// (against f θ), and for a channel C "vignetting_C" (ratio to the axis), "vignetting_C_ev", "chromatic_shift_C_px"
 /// (radial) and "chromatic_shift_tangential_C_px" (a spectral layer's C is its wavelength, "450nm"), and those of
-/// sharpness and focus (calibration/sharpness/measure_sharpness.h). What could not be measured is absent there and has
+/// sharpness and focus (calibration/measure/measure_sharpness.h). What could not be measured is absent there and has
 /// its reason in `not_measured`, under "geometry", "vignetting", "chromatic_shift", "sharpness_over_the_field" or
 /// "field_curvature"; a self-test that was asked for and could not be made under "self_test".
 struct Profile {

@@ -3,7 +3,6 @@
 #include "calibration/geometry/geometry_json.h"
 #include "calibration/light/vignetting_json.h"
 #include "calibration/profile/profile.h"
-#include "calibration/self_test/self_test_json.h"
 #include "engine/base/file.h"
 #include "engine/base/input_error.h"
 #include "engine/base/json_node.h"

@@ -1,15 +1,11 @@
 #include "calibration/self_test/self_test.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <optional>
-#include <string_view>
 
 #include "calibration/detection/working_copy.h"
-#include "calibration/measure.h"
-#include "calibration/photos/flat_field_traits.h"
+#include "calibration/picture/flat_field_traits.h"
 #include "calibration/profile/curve_difference.h"
 #include "calibration/self_test/simulated_chart.h"
 
@@ -160,7 +156,6 @@ bool is_simulated(const std::string& curve) {
 
 SelfTest self_test(const MeasureInput& input, const Profile& profile) {
     MeasureInput simulated = input;
-    simulated.self_test = false;
     simulated.model = kind(profile.geometry->model);
     if (const auto& choice = profile.geometry->choice) {
         simulated.geometry.radial_terms = choice->candidates[static_cast<std::size_t>(choice->chosen)].radial_terms;
@@ -185,35 +180,16 @@ SelfTest self_test(const MeasureInput& input, const Profile& profile) {
     return result;
 }
 
-const CurveFloor* floor_of(const std::optional<SelfTest>& test, const std::string& curve) {
-    if (!test) {
-        return nullptr;
+void add_self_test(Profile& profile, const MeasureInput& input) {
+    if (!profile.geometry) {
+        profile.not_measured["self_test"] = "without a geometry there is nothing to simulate";
+        return;
     }
-    const auto found = test->curves.find(curve);
-    return found == test->curves.end() ? nullptr : &found->second;
-}
-
-std::string describe_floor(const SelfTest& test) {
-    std::string text = fmt::format("points {:.3f} px", test.point_rms_px);
-    if (const auto radial = test.curves.find("radial_px"); radial != test.curves.end()) {
-        text += fmt::format(", image position {:.3f} px rms", radial->second.rms);
+    try {
+        profile.self_test = self_test(input, profile);
+    } catch (const InputError& e) {
+        profile.not_measured["self_test"] = e.what();
     }
-    const auto largest = [&](std::string_view prefix, std::string_view suffix) {
-        std::optional<double> most;
-        for (const auto& [name, floor] : test.curves) {
-            if (name.starts_with(prefix) && name.ends_with(suffix)) {
-                most = std::max(most.value_or(0.0), floor.largest);
-            }
-        }
-        return most;
-    };
-    if (const auto ev = largest("vignetting_", "_ev")) {
-        text += fmt::format(", vignetting {:.2f} %", 100.0 * (std::exp2(*ev) - 1.0));
-    }
-    if (const auto shift = largest("chromatic_shift_", "_px")) {
-        text += fmt::format(", chromatic shift {:.3f} px", *shift);
-    }
-    return text;
 }
 
 }  // namespace lensproof::calibration

@@ -4,8 +4,8 @@
 #include <charconv>
 #include <cmath>
 
-#include "calibration/chromatic/measure_bands.h"
 #include "calibration/chromatic/mosaic.h"
+#include "calibration/measure/measure_bands.h"
 #include "engine/base/input_error.h"
 #include "engine/formats/image/photo.h"
 #include "experiments/cli/measure_parts.h"

@@ -7,8 +7,9 @@
 #include <sstream>
 
 #include "calibration/detection/detect.h"
-#include "calibration/measure.h"
+#include "calibration/measure/measure.h"
 #include "calibration/photos/photo_survey.h"
+#include "calibration/self_test/self_test.h"
 #include "engine/base/file.h"
 #include "engine/base/input_error.h"
 #include "engine/scene/chart_file.h"
@@ -115,7 +116,6 @@ int run_measure(const MeasureOptions& options) {
     if (options.edges.empty()) {
         input.chart = chart_to_find(options.chart);
     }
-    input.self_test = !options.no_self_test;
     input.model = calibration::model_kind(options.model);  // none for "auto"
     input.source = source;
     input.geometry.fit_board_shape = options.fit_board_shape;
@@ -127,7 +127,10 @@ int run_measure(const MeasureOptions& options) {
         expanded(options.images), expanded(options.flat_fields), formats::parse_transfer_curve(options.transfer));
     calibration::take_survey(input, survey);
     add_sharpness_input(input, options);
-    const calibration::Profile profile = calibration::measure_surveyed(input);
+    calibration::Profile profile = calibration::measure_surveyed(input);
+    if (!options.no_self_test) {
+        calibration::add_self_test(profile, input);
+    }
     write_and_print(options, profile);
     return kDone;
 }

@@ -6,8 +6,9 @@
 #include <cmath>
 #include <iterator>
 
-#include "calibration/measure.h"
+#include "calibration/measure/measure.h"
 #include "calibration/photos/photo_survey.h"
+#include "calibration/self_test/self_test.h"
 #include "engine/base/file.h"
 #include "engine/base/input_error.h"
 #include "engine/formats/glass/shipped_glasses.h"
@@ -148,15 +149,18 @@ class SimulationRun {
                                 .load = [image = std::move(image)] { return image; }});
         }
         progress_(simulation_.name + ", measuring", 0.0);
-        subject.profile = calibration::measure(
-            {.name = simulation_.name,
-             .pictures = std::move(pictures),
-             .chart = simulation_.scene.chart,
-             .model = simulation_.model,
-             .geometry = {.fit_tangential = false},  // a centred lens
-             .source = {.kind = "render", .images = {}, .camera = "simulated", .lens = subject.label},
-             .pixel_pitch_um = 1e3 * camera_.sensor().pixel_pitch_mm,
-             .self_test = settings_.self_test});
+        const calibration::MeasureInput input{
+            .name = simulation_.name,
+            .pictures = std::move(pictures),
+            .chart = simulation_.scene.chart,
+            .model = simulation_.model,
+            .geometry = {.fit_tangential = false},  // a centred lens
+            .source = {.kind = "render", .images = {}, .camera = "simulated", .lens = subject.label},
+            .pixel_pitch_um = 1e3 * camera_.sensor().pixel_pitch_mm};
+        subject.profile = calibration::measure(input);
+        if (settings_.self_test) {
+            calibration::add_self_test(subject.profile, input);
+        }
         progress_(simulation_.name + ", tracing", 0.0);
         subject.traced = studies::lens_profile(camera_);
         add_facts(subject);
@@ -242,8 +246,7 @@ Subject run_photos(const PhotoSubject& photos, const studies::PhotoSet& set, boo
                                     .model = photos.model,
                                     .geometry = {},
                                     .source = {.kind = "photo", .images = {}, .camera = set.camera, .lens = set.lens},
-                                    .pixel_pitch_um = set.pixel_pitch_um,
-                                    .self_test = self_test};
+                                    .pixel_pitch_um = set.pixel_pitch_um};
     calibration::take_survey(input, calibration::survey_photos(set.photos, set.flat_fields, std::nullopt));
     for (std::size_t i = 0; i < set.focus_positions_mm.size(); ++i) {
         input.focus_position_mm[set.photos[i].string()] = set.focus_positions_mm[i];
@@ -259,6 +262,9 @@ Subject run_photos(const PhotoSubject& photos, const studies::PhotoSet& set, boo
     }
     progress(photos.name + ", measuring", 0.0);
     subject.profile = calibration::measure_surveyed(input);
+    if (self_test) {
+        calibration::add_self_test(subject.profile, input);
+    }
     const calibration::ProfileSource& source = subject.profile.source;
     subject.facts = {{"camera", source.camera}, {"lens", source.lens}, {"licence", set.licence}, {"from", set.source}};
     add_account(subject);

@@ -4,9 +4,9 @@
 
 #include <cmath>
 
-#include "calibration/measure.h"
-#include "calibration/photos/flat_field_traits.h"
-#include "calibration/photos/picture_traits.h"
+#include "calibration/measure/measure.h"
+#include "calibration/picture/flat_field_traits.h"
+#include "calibration/picture/picture_traits.h"
 #include "tests/calibration/synthetic.h"
 
 namespace lensproof::calibration {
@@ -16,6 +16,12 @@ using namespace synthetic;
 
 const scene::Chart kBoard{
     .pattern = scene::Checkerboard{10, 7, 30.0}, .white_reflectance = 0.8, .black_reflectance = 0.1};
+Profile measure_with_self_test(const MeasureInput& input) {
+    Profile profile = measure(input);
+    add_self_test(profile, input);
+    return profile;
+}
+
 const scene::Chart kDiscs{
     .pattern = scene::DiscGrid{9, 6, 30.0, 16.0}, .white_reflectance = 0.8, .black_reflectance = 0.1};
 
@@ -96,7 +102,6 @@ MeasureInput input_of(const SimulatedCamera& camera, const scene::Chart& chart) 
     input.name = "simulated";
     input.chart = chart;
     input.model = ModelKind::brown_conrady;
-    input.self_test = true;
     std::uint32_t seed = 100;
     for (const Pose& pose : tilted_poses(520.0, 0.35, 60.0)) {
         input.pictures.push_back({"view" + std::to_string(seed), PictureRole::chart,
@@ -113,7 +118,7 @@ TEST(SelfTest, SaysTheErrorThatTheMeasurementHas) {
     for (const scene::Chart& chart : {kBoard, kDiscs}) {
         const SimulatedCamera camera = small_camera_with(0.7, 0.005);
         const MeasureInput input = input_of(camera, chart);
-        const Profile profile = measure(input);
+        const Profile profile = measure_with_self_test(input);
         ASSERT_TRUE(profile.self_test);
         EXPECT_EQ(profile.self_test->pictures, 5);
         const double diameter_mm = std::holds_alternative<scene::DiscGrid>(chart.pattern)
@@ -154,7 +159,7 @@ TEST(SelfTest, FallsOffIntoTheCornersAsTheLensDoes) {
     MeasureInput input = input_of(camera, kBoard);
     input.pictures.resize(3);
     input.pictures.push_back({"flat", PictureRole::flat_field, [camera] { return simulate_flat_field(camera, 7); }});
-    const Profile profile = measure(input);
+    const Profile profile = measure_with_self_test(input);
     const Curve& light = profile.curves.at("vignetting_Y");
     double widest = 0.0;
     for (std::size_t i = 0; i < light.value.size(); ++i) {
@@ -169,7 +174,8 @@ TEST(SelfTest, MoreNoiseIsAHigherFloor) {
     MeasureInput loud = input_of(small_camera_with(0.7, 0.02), kBoard);
     quiet.pictures.resize(2);
     loud.pictures.resize(2);
-    EXPECT_GT(measure(loud).self_test->point_rms_px, 2.0 * measure(quiet).self_test->point_rms_px);
+    EXPECT_GT(measure_with_self_test(loud).self_test->point_rms_px,
+              2.0 * measure_with_self_test(quiet).self_test->point_rms_px);
 }
 
 /// A measurement of three pictures, to make self-tests of it that differ in one trait.
@@ -184,7 +190,7 @@ Measured measured_once() {
     static const Measured once = [] {
         Measured made{input_of(small_camera_with(0.7, 0.002), kBoard), {}};
         made.input.pictures.resize(3);
-        made.profile = measure(made.input);
+        made.profile = measure_with_self_test(made.input);
         return made;
     }();
     return once;
@@ -236,7 +242,6 @@ TEST(SelfTest, UnevenLightRaisesTheFloorAndIsMeasured) {
     camera.light_gradient_per_mm = gradient;
     MeasureInput lit = input_of(camera, kBoard);
     lit.pictures.resize(2);
-    lit.self_test = false;
     for (const ProfileView& view : measure(lit).views) {
         ASSERT_TRUE(view.traits && view.traits->light_gradient_per_mm) << view.reason;
         EXPECT_NEAR(view.traits->light_gradient_per_mm->x, gradient.x, 0.02 * gradient.x);
@@ -248,10 +253,9 @@ TEST(SelfTest, ItIsSaidWhyThereIsNone) {
     MeasureInput input;
     input.name = "flat";
     input.chart = {.pattern = scene::FlatField{}};
-    input.self_test = true;
     input.pictures.push_back(
         {"flat", PictureRole::flat_field, [] { return simulate_flat_field(camera_with(0.0, 0.001), 1); }});
-    const Profile profile = measure(input);
+    const Profile profile = measure_with_self_test(input);
     EXPECT_FALSE(profile.self_test);
     EXPECT_TRUE(profile.not_measured.contains("self_test"));
 }

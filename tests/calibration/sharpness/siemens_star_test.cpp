@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "calibration/measure.h"
+#include "calibration/measure/measure.h"
 #include "engine/base/input_error.h"
 #include "tests/calibration/sharpness/sharpness_edge.h"
 

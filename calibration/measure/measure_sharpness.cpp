@@ -1,4 +1,4 @@
-#include "calibration/sharpness/measure_sharpness.h"
+#include "calibration/measure/measure_sharpness.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-// calibration/photos/flat_field_traits.h — what a picture of an even surface is like.
+// calibration/picture/flat_field_traits.h — what a picture of an even surface is like.
 #pragma once
 #include "engine/formats/image/image.h"
 

@@ -1,17 +1,44 @@
-#include "calibration/self_test/self_test_json.h"
+#include "calibration/profile/self_test_result.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string_view>
 
 #include "engine/base/json.h"
 
 namespace lensproof::calibration {
-Json to_json(const PictureTraits& traits) {
-    Json json{{"white", traits.white}, {"black", traits.black}, {"noise", traits.noise}};
-    if (traits.blur_px) {
-        json["blur_px"] = *traits.blur_px;
+
+const CurveFloor* floor_of(const std::optional<SelfTest>& test, const std::string& curve) {
+    if (!test) {
+        return nullptr;
     }
-    if (traits.light_gradient_per_mm) {
-        json["light_gradient_per_mm"] = {traits.light_gradient_per_mm->x, traits.light_gradient_per_mm->y};
+    const auto found = test->curves.find(curve);
+    return found == test->curves.end() ? nullptr : &found->second;
+}
+
+std::string describe_floor(const SelfTest& test) {
+    std::string text = fmt::format("points {:.3f} px", test.point_rms_px);
+    if (const auto radial = test.curves.find("radial_px"); radial != test.curves.end()) {
+        text += fmt::format(", image position {:.3f} px rms", radial->second.rms);
     }
-    return json;
+    const auto largest = [&](std::string_view prefix, std::string_view suffix) {
+        std::optional<double> most;
+        for (const auto& [name, floor] : test.curves) {
+            if (name.starts_with(prefix) && name.ends_with(suffix)) {
+                most = std::max(most.value_or(0.0), floor.largest);
+            }
+        }
+        return most;
+    };
+    if (const auto ev = largest("vignetting_", "_ev")) {
+        text += fmt::format(", vignetting {:.2f} %", 100.0 * (std::exp2(*ev) - 1.0));
+    }
+    if (const auto shift = largest("chromatic_shift_", "_px")) {
+        text += fmt::format(", chromatic shift {:.3f} px", *shift);
+    }
+    return text;
 }
 
 Json to_json(const SelfTest& test) {
@@ -31,20 +58,6 @@ Json to_json(const SelfTest& test) {
             {"rms", floor.rms}, {"largest", floor.largest}, {"largest_at_image_height", floor.largest_at}};
     }
     return json;
-}
-
-PictureTraits parse_traits(const JsonNode& node) {
-    PictureTraits traits{.white = node.at("white").number(),
-                         .black = node.at("black").number(),
-                         .noise = node.at("noise").number(),
-                         .blur_px = {}};
-    if (node.has("blur_px")) {
-        traits.blur_px = node.at("blur_px").number();
-    }
-    if (node.has("light_gradient_per_mm")) {
-        traits.light_gradient_per_mm = node.at("light_gradient_per_mm").pair();
-    }
-    return traits;
 }
 
 SelfTest parse_self_test(const JsonNode& node) {

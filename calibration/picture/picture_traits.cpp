@@ -1,4 +1,4 @@
-#include "calibration/photos/picture_traits.h"
+#include "calibration/picture/picture_traits.h"
 
 #include <algorithm>
 #include <boost/math/special_functions/erf.hpp>
@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "calibration/detection/pixel_noise.h"
+#include "engine/base/json.h"
 
 namespace lensproof::calibration {
 namespace {
@@ -86,6 +87,31 @@ std::optional<PictureTraits> picture_traits(const formats::Image& image, int cha
     }
     if (2 * blurs.size() > windows.size()) {
         traits.blur_px = percentile(blurs, 0.5);
+    }
+    return traits;
+}
+
+Json to_json(const PictureTraits& traits) {
+    Json json{{"white", traits.white}, {"black", traits.black}, {"noise", traits.noise}};
+    if (traits.blur_px) {
+        json["blur_px"] = *traits.blur_px;
+    }
+    if (traits.light_gradient_per_mm) {
+        json["light_gradient_per_mm"] = {traits.light_gradient_per_mm->x, traits.light_gradient_per_mm->y};
+    }
+    return json;
+}
+
+PictureTraits parse_traits(const JsonNode& node) {
+    PictureTraits traits{.white = node.at("white").number(),
+                         .black = node.at("black").number(),
+                         .noise = node.at("noise").number(),
+                         .blur_px = {}};
+    if (node.has("blur_px")) {
+        traits.blur_px = node.at("blur_px").number();
+    }
+    if (node.has("light_gradient_per_mm")) {
+        traits.light_gradient_per_mm = node.at("light_gradient_per_mm").pair();
     }
     return traits;
 }

@@ -1,4 +1,4 @@
-#include "calibration/photos/flat_field_traits.h"
+#include "calibration/picture/flat_field_traits.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-// calibration/chromatic/measure_bands.h — the chromatic shift between pictures of one scene at different wavelengths.
+// calibration/measure/measure_bands.h — the chromatic shift between pictures of one scene at different wavelengths.
 #pragma once
 #include <functional>
 #include <optional>

@@ -1,4 +1,4 @@
-// calibration/sharpness/measure_sharpness.h — from pictures' edges to the sharpness in a profile.
+// calibration/measure/measure_sharpness.h — from pictures' edges to the sharpness in a profile.
 #pragma once
 #include <map>
 #include <string>

@@ -1,5 +1,5 @@
 // Whether pictures are judged as blurred, badly exposed or corrected where they are, and only there.
-#include "calibration/photos/picture_quality.h"
+#include "calibration/picture/picture_quality.h"
 
 #include <gtest/gtest.h>
 

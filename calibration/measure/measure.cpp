@@ -1,17 +1,16 @@
-#include "calibration/measure.h"
+#include "calibration/measure/measure.h"
 
 #include <map>
 #include <utility>
 
 #include "calibration/chromatic/chromatic_shift.h"
-#include "calibration/chromatic/measure_bands.h"
 #include "calibration/geometry/geometry_curves.h"
 #include "calibration/geometry/model_choice.h"
 #include "calibration/light/light_gradient.h"
 #include "calibration/light/vignetting.h"
-#include "calibration/observe.h"
-#include "calibration/self_test/self_test.h"
-#include "calibration/sharpness/measure_sharpness.h"
+#include "calibration/measure/measure_bands.h"
+#include "calibration/measure/measure_sharpness.h"
+#include "calibration/measure/observe.h"
 #include "engine/base/input_error.h"
 
 namespace lensproof::calibration {
@@ -123,18 +122,6 @@ void add_chromatic_shifts(Profile& profile, const Observations& seen, const Vec2
     }
 }
 
-void add_self_test(Profile& profile, const MeasureInput& input) {
-    if (!profile.geometry) {
-        profile.not_measured["self_test"] = "without a geometry there is nothing to simulate";
-        return;
-    }
-    try {
-        profile.self_test = self_test(input, profile);
-    } catch (const InputError& e) {
-        profile.not_measured["self_test"] = e.what();
-    }
-}
-
 }  // namespace
 
 Profile measure(const MeasureInput& input) {
@@ -176,9 +163,6 @@ Profile measure(const MeasureInput& input) {
     add_vignetting(profile, seen, centre);
     add_light_gradients(profile, seen, centre);
     add_chromatic_shifts(profile, seen, centre);
-    if (input.self_test) {
-        add_self_test(profile, input);
-    }
     return profile;
 }
 

@@ -1,10 +1,10 @@
-#include "calibration/sharpness/measure_sharpness.h"
+#include "calibration/measure/measure_sharpness.h"
 
 #include <gtest/gtest.h>
 
 #include <filesystem>
 
-#include "calibration/measure.h"
+#include "calibration/measure/measure.h"
 #include "calibration/self_test/simulated_chart.h"
 #include "engine/base/input_error.h"
 #include "tests/calibration/sharpness/sharpness_edge.h"

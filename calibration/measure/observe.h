@@ -1,4 +1,4 @@
-// calibration/observe.h — from pictures to what is seen in them, the first half of a measurement.
+// calibration/measure/observe.h — from pictures to what is seen in them, the first half of a measurement.
 #pragma once
 #include <map>
 #include <optional>
@@ -9,8 +9,8 @@
 #include "calibration/chromatic/chromatic_shift.h"
 #include "calibration/detection/line_points.h"
 #include "calibration/light/light_samples.h"
-#include "calibration/measure.h"
-#include "calibration/sharpness/measure_sharpness.h"
+#include "calibration/measure/measure.h"
+#include "calibration/measure/measure_sharpness.h"
 #include "engine/base/input_error.h"
 
 namespace lensproof::calibration {

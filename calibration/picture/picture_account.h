@@ -1,4 +1,4 @@
-// calibration/photos/picture_account.h — what became of each picture of a set, and what its camera noted.
+// calibration/picture/picture_account.h — what became of each picture of a set, and what its camera noted.
 #pragma once
 #include <string>
 #include <vector>

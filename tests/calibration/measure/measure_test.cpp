@@ -1,4 +1,4 @@
-#include "calibration/measure.h"
+#include "calibration/measure/measure.h"
 
 #include <gtest/gtest.h>
 

@@ -1,9 +1,9 @@
-// calibration/photos/picture_quality.h — whether a picture is sharp and well exposed, in words.
+// calibration/picture/picture_quality.h — whether a picture is sharp and well exposed, in words.
 #pragma once
 #include <string>
 
 #include "calibration/detection/refine.h"
-#include "calibration/photos/picture_traits.h"
+#include "calibration/picture/picture_traits.h"
 #include "engine/formats/image/image.h"
 #include "engine/scene/chart.h"
 

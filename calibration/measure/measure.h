@@ -1,4 +1,4 @@
-// calibration/measure.h — from pictures to a profile.
+// calibration/measure/measure.h — from pictures to a profile.
 #pragma once
 #include <functional>
 #include <map>
@@ -37,8 +37,6 @@ struct MeasureInput {
     GeometryOptions geometry;  // `model` and `disc_diameter_mm` are filled in by `measure`
     ProfileSource source;      // `images` is filled in
     std::optional<double> pixel_pitch_um;
-    /// Whether the profile is to say its own floor (calibration/self_test/self_test.h), which takes as long again.
-    bool self_test = false;
     /// In pictures of the role `edges`: rectangles with one edge each; one without a size is the whole picture.
     std::vector<PixelRectangle> edges;
     /// Where the focus stood in which picture (by name), mm, for field curvature; empty: not known.

@@ -1,4 +1,4 @@
-#include "calibration/photos/picture_quality.h"
+#include "calibration/picture/picture_quality.h"
 
 #include <fmt/format.h>
 

@@ -1,4 +1,4 @@
-#include "calibration/photos/picture_account.h"
+#include "calibration/picture/picture_account.h"
 
 #include <array>
 #include <utility>

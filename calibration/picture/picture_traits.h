@@ -1,8 +1,9 @@
-// calibration/photos/picture_traits.h — what a picture of a chart is like: its tones, its noise and its blur.
+// calibration/picture/picture_traits.h — what a picture of a chart is like: its tones, its noise and its blur.
 #pragma once
 #include <optional>
 
 #include "calibration/detection/refine.h"
+#include "engine/base/json_node.h"
 #include "engine/formats/image/image.h"
 
 namespace lensproof::calibration {
@@ -30,5 +31,10 @@ struct PictureTraits {
 ///
 /// None when no point was found.
 std::optional<PictureTraits> picture_traits(const formats::Image& image, int channel, const ChartPoints& points);
+
+Json to_json(const PictureTraits& traits);
+
+/// What the above wrote. Throws InputError as JsonNode does.
+PictureTraits parse_traits(const JsonNode& node);
 
 }  // namespace lensproof::calibration

@@ -1,4 +1,4 @@
-#include "calibration/observe.h"
+#include "calibration/measure/observe.h"
 
 #include <algorithm>
 #include <numeric>
@@ -6,7 +6,7 @@
 #include "calibration/detection/detect.h"
 #include "calibration/detection/refine.h"
 #include "calibration/detection/working_copy.h"
-#include "calibration/photos/picture_quality.h"
+#include "calibration/picture/picture_quality.h"
 #include "engine/base/hash.h"
 
 namespace lensproof::calibration {

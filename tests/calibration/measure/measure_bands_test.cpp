@@ -1,4 +1,4 @@
-#include "calibration/chromatic/measure_bands.h"
+#include "calibration/measure/measure_bands.h"
 
 #include <gtest/gtest.h>
 
