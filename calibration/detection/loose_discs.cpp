@@ -7,6 +7,7 @@
 
 #include "calibration/detection/spot_centroid.h"
 #include "calibration/detection/working_copy.h"
+#include "calibration/statistics/order_statistics.h"
 
 namespace lensproof::calibration {
 namespace {
@@ -71,8 +72,7 @@ std::vector<LooseDisc> find_loose_discs(const formats::Image& image, int channel
     for (const LooseDisc& blob : blobs) {
         radii.push_back(blob.radius_px);
     }
-    std::nth_element(radii.begin(), radii.begin() + static_cast<std::ptrdiff_t>(radii.size() / 2), radii.end());
-    const double usual = radii[radii.size() / 2];
+    const double usual = median(radii);
     std::vector<LooseDisc> discs;
     for (LooseDisc blob : blobs) {
         if (blob.radius_px < 0.7 * usual || blob.radius_px > 1.4 * usual) {

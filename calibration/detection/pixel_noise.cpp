@@ -5,6 +5,8 @@
 #include <limits>
 #include <optional>
 
+#include "calibration/statistics/order_statistics.h"
+
 namespace lensproof::calibration {
 namespace {
 
@@ -14,12 +16,6 @@ constexpr double kMaskNorm = 6.0;        // root of the sum of the mask's square
 constexpr std::size_t kFewestPixels = 25;
 constexpr double kMostStep = 7.0;   // of the noise: five standard deviations of a difference; more is an edge
 constexpr double kFullScale = 1.0;  // integer formats end there
-
-double median(std::vector<double>& values) {
-    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-    std::nth_element(values.begin(), middle, values.end());
-    return *middle;
-}
 
 struct Region {
     int x0;

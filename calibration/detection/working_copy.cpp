@@ -4,6 +4,8 @@
 #include <cmath>
 #include <vector>
 
+#include "calibration/statistics/order_statistics.h"
+
 namespace lensproof::calibration {
 namespace {
 
@@ -13,12 +15,6 @@ constexpr double kLeastContrast =
 
 double srgb_encode(double linear) {
     return linear <= 0.0031308 ? 12.92 * linear : 1.055 * std::pow(linear, 1.0 / 2.4) - 0.055;
-}
-
-float percentile(std::vector<float>& values, double fraction) {
-    const auto nth = values.begin() + static_cast<std::ptrdiff_t>(fraction * static_cast<double>(values.size() - 1));
-    std::nth_element(values.begin(), nth, values.end());
-    return *nth;
 }
 
 }  // namespace
@@ -44,8 +40,8 @@ cv::Mat detector_copy(const formats::Image& image) {
     if (values.empty()) {
         return {};
     }
-    const float white = percentile(values, kWhitePercentile);
-    const float black = percentile(values, 1.0 - kWhitePercentile);
+    const float white = quantile(values, kWhitePercentile);
+    const float black = quantile(values, 1.0 - kWhitePercentile);
     if (!(white > 0.0F) || white - black < kLeastContrast * white) {
         return {};
     }

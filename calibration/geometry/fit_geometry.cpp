@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "calibration/geometry/bundle_start.h"
+#include "calibration/statistics/order_statistics.h"
 #include "engine/base/input_error.h"
 
 namespace lensproof::calibration {
@@ -193,9 +194,7 @@ class Fit {
         if (magnitudes.empty()) {
             return {};
         }
-        const auto middle = magnitudes.begin() + static_cast<std::ptrdiff_t>(magnitudes.size() / 2);
-        std::nth_element(magnitudes.begin(), middle, magnitudes.end());
-        return {.robust = 1.4826 * *middle,  // of a normal distribution with this median magnitude
+        return {.robust = kSigmaPerMedian * median(magnitudes),
                 .plain = std::sqrt(sum / static_cast<double>(magnitudes.size()))};
     }
 

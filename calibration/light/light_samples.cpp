@@ -5,6 +5,8 @@
 #include <numbers>
 #include <optional>
 
+#include "calibration/statistics/order_statistics.h"
+
 namespace lensproof::calibration {
 namespace {
 
@@ -90,10 +92,9 @@ LightGroup flat_field_samples(const formats::Image& image, int channel) {
     if (values.empty()) {
         return group;
     }
-    const auto bright = values.begin() + static_cast<std::ptrdiff_t>(0.95 * static_cast<double>(values.size() - 1));
-    std::nth_element(values.begin(), bright, values.end());
+    const double bright = quantile(values, 0.95);
     for (std::size_t i = 0; i < samples.size(); ++i) {
-        if (state[i] == Cell::lit && !(samples[i].value > kDark * *bright)) {
+        if (state[i] == Cell::lit && !(samples[i].value > kDark * bright)) {
             state[i] = Cell::dark;
         }
     }

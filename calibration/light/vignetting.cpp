@@ -9,6 +9,7 @@
 
 #include "calibration/light/even_spline.h"
 #include "calibration/statistics/linear_fit.h"
+#include "calibration/statistics/order_statistics.h"
 #include "calibration/statistics/smoothed_fit.h"
 #include "engine/base/input_error.h"
 
@@ -51,9 +52,7 @@ void pool_errors(std::vector<LightSample>& samples) {
         for (std::size_t k = first; k < first + window; ++k) {
             errors.push_back(samples[k].relative_error);
         }
-        const auto middle = errors.begin() + static_cast<std::ptrdiff_t>(window / 2);
-        std::nth_element(errors.begin(), middle, errors.end());
-        pooled.push_back(*middle);
+        pooled.push_back(median(errors));
     }
     for (std::size_t i = 0; i < samples.size(); ++i) {
         samples[i].relative_error = pooled[i];

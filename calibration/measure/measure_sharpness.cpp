@@ -5,6 +5,7 @@
 
 #include "calibration/sharpness/chart_edges.h"
 #include "calibration/sharpness/sharpness_field.h"
+#include "calibration/statistics/order_statistics.h"
 #include "engine/base/input_error.h"
 
 namespace lensproof::calibration {
@@ -53,12 +54,7 @@ double median_mtf50(const std::vector<EdgeMtf>& edges) {
             values.push_back(edge.mtf50->cycles_per_px);
         }
     }
-    if (values.empty()) {
-        return 0.0;
-    }
-    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-    std::nth_element(values.begin(), middle, values.end());
-    return *middle;
+    return values.empty() ? 0.0 : median(values);
 }
 
 std::vector<FocusedEdges> by_position(const SharpnessObservations& seen, const std::vector<ProfileEdge>& edges) {

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <vector>
 
+#include "calibration/statistics/order_statistics.h"
+
 namespace lensproof::calibration {
 namespace {
 
@@ -16,12 +18,6 @@ constexpr double kMostClipped = 0.3;         // of a picture
 constexpr double kDarkest = 0.02;            // of full scale, what the brightest parts should reach
 constexpr double kLeastSlope_per_px = 0.06;  // steepest slope over contrast: a Gaussian edge of σ = 6.6 px
 constexpr double kSteepestPart = 0.999;      // of the pixels are less steep
-
-double median(std::vector<double> values) {
-    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-    std::nth_element(values.begin(), middle, values.end());
-    return *middle;
-}
 
 }  // namespace
 
@@ -68,11 +64,6 @@ std::string visible_fault(const formats::Image& image, int channel) {
     if (tones.empty()) {
         return "";
     }
-    const auto quantile = [](std::vector<float>& values, double share) {
-        const auto place = values.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
-        std::nth_element(values.begin(), place, values.end());
-        return static_cast<double>(*place);
-    };
     const double clipped = static_cast<double>(std::ranges::count_if(tones, [](float v) { return v >= kFullScale; })) /
                            static_cast<double>(tones.size());
     const double bright = quantile(tones, 0.995);

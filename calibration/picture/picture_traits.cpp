@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "calibration/detection/pixel_noise.h"
+#include "calibration/statistics/order_statistics.h"
 #include "engine/base/json.h"
 
 namespace lensproof::calibration {
@@ -14,12 +15,6 @@ namespace {
 
 constexpr double kSteepest = 0.98;   // of the pixels around a point are less steep than the edge's middle
 constexpr double kAboveNoise = 5.0;  // that an edge has to be for its blur to be told
-
-double percentile(std::vector<double>& values, double share) {
-    const auto place = values.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
-    std::ranges::nth_element(values, place);
-    return *place;
-}
 
 struct Window {
     double white;
@@ -47,7 +42,7 @@ std::optional<Window> look_around(const formats::Image& image, int channel, cons
     if (tones.size() < 25) {
         return std::nullopt;
     }
-    return Window{percentile(tones, 0.95), percentile(tones, 0.05), percentile(steps, kSteepest)};
+    return Window{quantile(tones, 0.95), quantile(tones, 0.05), quantile(steps, kSteepest)};
 }
 
 double median_of(const std::vector<Window>& windows, double Window::*member) {
@@ -56,7 +51,7 @@ double median_of(const std::vector<Window>& windows, double Window::*member) {
     for (const Window& window : windows) {
         values.push_back(window.*member);
     }
-    return percentile(values, 0.5);
+    return quantile(values, 0.5);
 }
 
 }  // namespace
@@ -86,7 +81,7 @@ std::optional<PictureTraits> picture_traits(const formats::Image& image, int cha
         }
     }
     if (2 * blurs.size() > windows.size()) {
-        traits.blur_px = percentile(blurs, 0.5);
+        traits.blur_px = quantile(blurs, 0.5);
     }
     return traits;
 }

@@ -6,6 +6,8 @@
 #include <numbers>
 #include <vector>
 
+#include "calibration/statistics/order_statistics.h"
+
 namespace lensproof::calibration {
 namespace {
 
@@ -101,8 +103,7 @@ bool fit_rim(const cv::Mat& plane, const scene::SiemensStar& star, std::optional
         for (const End& end : ends) {
             off.push_back(std::abs(end.row.dot(solution) - end.value));
         }
-        std::ranges::nth_element(off, off.begin() + static_cast<std::ptrdiff_t>(off.size() / 2));
-        limit = std::max(kOutlier * 1.4826 * off[off.size() / 2], 1e-12);
+        limit = std::max(kOutlier * kSigmaPerMedian * median(off), 1e-12);
     }
     // 1/ρ = (1 + R g·q̂) / (R |A q̂|), the present A times a scale that is to be found.
     if (!(solution(0) > 0.0) || !(std::hypot(solution(1), solution(2)) < 0.9 * solution(0))) {

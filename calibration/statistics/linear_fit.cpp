@@ -6,6 +6,8 @@
 #include <limits>
 #include <map>
 
+#include "calibration/statistics/order_statistics.h"
+
 namespace lensproof::calibration {
 namespace {
 
@@ -41,12 +43,6 @@ std::optional<Solution> solve(const LinearProblem& problem, const Eigen::VectorX
                     inverse_size.asDiagonal() * (spread * spread.transpose()) * inverse_size.asDiagonal()};
 }
 
-double median(std::vector<double> values) {
-    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-    std::nth_element(values.begin(), middle, values.end());
-    return *middle;
-}
-
 Eigen::VectorXd normalized_residuals(const LinearProblem& problem, const Eigen::VectorXd& parameters) {
     return (problem.y - problem.a * parameters).cwiseQuotient(problem.row_sigma);
 }
@@ -54,7 +50,7 @@ Eigen::VectorXd normalized_residuals(const LinearProblem& problem, const Eigen::
 double robust_scale(const Eigen::VectorXd& residuals) {
     std::vector<double> magnitudes(static_cast<std::size_t>(residuals.size()));
     std::transform(residuals.begin(), residuals.end(), magnitudes.begin(), [](double r) { return std::abs(r); });
-    return 1.4826 * median(std::move(magnitudes));  // of a normal distribution with this median magnitude
+    return kSigmaPerMedian * median(magnitudes);
 }
 
 // 1 for rows that belong to the bulk, 0 for outliers and the rows of their group.
