@@ -6,7 +6,6 @@
 #include <unistd.h>
 
 #include <cerrno>
-#include <charconv>
 #include <csignal>
 #include <cstddef>
 #include <cstdlib>
@@ -14,6 +13,7 @@
 #include <system_error>
 
 #include "engine/base/input_error.h"
+#include "engine/base/text.h"
 
 namespace lensproof {
 
@@ -131,10 +131,8 @@ void remove_leftovers(const fs::path& file) {
             continue;
         }
         const std::string number = name.substr(before.size(), name.size() - before.size() - after.size());
-        pid_t process = 0;
-        const auto [end, failure] = std::from_chars(number.data(), number.data() + number.size(), process);
-        if (failure == std::errc() && end == number.data() + number.size() && process > 0 && ::kill(process, 0) == -1 &&
-            errno == ESRCH) {
+        const pid_t process = parse_exact<pid_t>(number).value_or(0);
+        if (process > 0 && ::kill(process, 0) == -1 && errno == ESRCH) {
             fs::remove(entry.path(), error);
         }
     }
@@ -151,6 +149,10 @@ void write_file(const fs::path& file, std::string_view content) {
                                     file.string() + " cannot be written");
         }
     });
+}
+
+std::string lower_extension(const fs::path& file) {
+    return lower_case(file.extension().string());
 }
 
 fs::path data_root() {

@@ -33,6 +33,9 @@ void write_whole(const std::filesystem::path& file, const std::function<void(con
 /// Removes what killed processes left of `write_whole` beside `file`.
 void remove_leftovers(const std::filesystem::path& file);
 
+/// The name's extension with its dot, in small letters.
+std::string lower_extension(const std::filesystem::path& file);
+
 /// The folder that holds lenses/, experiments/ and reference_photos/: $LENSPROOF_HOME, else the source tree built from.
 std::filesystem::path data_root();
 

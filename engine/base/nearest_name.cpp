@@ -4,37 +4,42 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <numeric>
+#include <utility>
 
 namespace lensproof {
 
-namespace {
-
-std::size_t distance(const std::string& a, const std::string& b) {
-    std::vector<std::size_t> row(b.size() + 1);
-    std::iota(row.begin(), row.end(), std::size_t{0});
-    for (std::size_t i = 0; i < a.size(); ++i) {
-        std::size_t diagonal = row[0]++;
-        for (std::size_t k = 0; k < b.size(); ++k) {
-            const std::size_t changed = diagonal + (a[i] == b[k] ? 0 : 1);
-            diagonal = row[k + 1];
-            row[k + 1] = std::min({changed, row[k] + 1, row[k + 1] + 1});
-        }
+int spelling_distance(std::string_view a, std::string_view b, bool with_swaps) {
+    // Rows of the usual table (Damerau 1964, neighbours swapped once): two above the current one.
+    std::vector<int> before(b.size() + 1);
+    std::vector<int> above(b.size() + 1);
+    std::vector<int> row(b.size() + 1);
+    for (std::size_t j = 0; j <= b.size(); ++j) {
+        above[j] = static_cast<int>(j);
     }
-    return row.back();
+    for (std::size_t i = 1; i <= a.size(); ++i) {
+        row[0] = static_cast<int>(i);
+        for (std::size_t j = 1; j <= b.size(); ++j) {
+            const int change = a[i - 1] == b[j - 1] ? 0 : 1;
+            row[j] = std::min({above[j] + 1, row[j - 1] + 1, above[j - 1] + change});
+            if (with_swaps && i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1]) {
+                row[j] = std::min(row[j], before[j - 2] + 1);
+            }
+        }
+        std::swap(before, above);
+        std::swap(above, row);
+    }
+    return above[b.size()];
 }
-
-}  // namespace
 
 std::string name_hint(const std::string& name, const std::vector<std::string>& known) {
     constexpr std::size_t kLongest = 100;
     constexpr std::size_t kMostListed = 10;
     const std::string* nearest = nullptr;
-    std::size_t least = kLongest;
+    int least = static_cast<int>(kLongest);
     for (const std::string& candidate : known) {
         if (name.size() <= kLongest && candidate.size() <= kLongest) {
-            const std::size_t letters = distance(name, candidate);
-            if (letters < least && letters <= std::max<std::size_t>(1, candidate.size() / 3)) {
+            const int letters = spelling_distance(name, candidate, false);
+            if (letters < least && letters <= std::max(1, static_cast<int>(candidate.size() / 3))) {
                 least = letters;
                 nearest = &candidate;
             }

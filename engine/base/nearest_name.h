@@ -1,13 +1,17 @@
 // engine/base/nearest_name.h — what a misspelt name may have meant.
 #pragma once
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace lensproof {
 
-/// "; did you mean \"white\"?" for the known name with the fewest letters to change, add or drop (Levenshtein's
-/// distance), where those are at most a third of its letters, and at least one; else, of ten names at most, "; known
-/// are: white, red"; else nothing.
+/// How many letters have to be changed, added, dropped or, unless without swaps, swapped with their neighbour (each at
+/// most once) to make `a` into `b` (Damerau 1964; Levenshtein 1966).
+int spelling_distance(std::string_view a, std::string_view b, bool with_swaps = true);
+
+/// "; did you mean \"white\"?" for the known name with the fewest letters to change, add or drop, where those are at
+/// most a third of its letters, and at least one; else, of ten names at most, "; known are: white, red"; else nothing.
 std::string name_hint(const std::string& name, const std::vector<std::string>& known);
 
 }  // namespace lensproof

@@ -1,8 +1,6 @@
 #include "engine/base/text.h"
 
 #include <algorithm>
-#include <charconv>
-#include <system_error>
 
 namespace lensproof {
 
@@ -42,13 +40,23 @@ std::string_view without_byte_order_mark(std::string_view text) {
     return text.starts_with(kByteOrderMark) ? text.substr(kByteOrderMark.size()) : text;
 }
 
+std::string lower_case(std::string_view text) {
+    std::string lower(text);
+    std::ranges::transform(lower, lower.begin(), [](char c) { return c >= 'A' && c <= 'Z' ? char(c - 'A' + 'a') : c; });
+    return lower;
+}
+
+std::string upper_case(std::string_view text) {
+    std::string upper(text);
+    std::ranges::transform(upper, upper.begin(), [](char c) { return c >= 'a' && c <= 'z' ? char(c - 'a' + 'A') : c; });
+    return upper;
+}
+
 std::optional<double> parse_number(std::string_view text) {
     if (text.size() > 1 && text[0] == '+' && text[1] != '-') {  // from_chars knows no plus
         text.remove_prefix(1);
     }
-    double number = 0.0;
-    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
-    return error == std::errc() && end == text.data() + text.size() ? std::optional(number) : std::nullopt;
+    return parse_exact<double>(text);
 }
 
 int whole_number_within(double value, int low, int high) {

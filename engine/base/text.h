@@ -1,8 +1,10 @@
 // engine/base/text.h — pieces of text files: cut, read as numbers, shown in messages.
 #pragma once
+#include <charconv>
 #include <optional>
 #include <string>
 #include <string_view>
+#include <system_error>
 #include <vector>
 
 namespace lensproof {
@@ -18,6 +20,18 @@ std::vector<std::string_view> lines_of(std::string_view text);
 
 /// The words of a line, at blanks and tabs. They look into `line`.
 std::vector<std::string_view> words_of(std::string_view line);
+
+/// `text` in ASCII's small letters, in its capitals.
+std::string lower_case(std::string_view text);
+std::string upper_case(std::string_view text);
+
+/// The Number that the whole of `text` is as std::from_chars reads it: no blank, no plus.
+template <class Number>
+std::optional<Number> parse_exact(std::string_view text) {
+    Number number{};
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+    return error == std::errc() && end == text.data() + text.size() ? std::optional(number) : std::nullopt;
+}
 
 /// The number that the whole of `text` is, whatever the locale: "1.5", "+2", "-3e-4", and also "inf" and "nan".
 /// Nothing where it is no number, or one that a double cannot hold.
