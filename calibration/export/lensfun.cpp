@@ -10,6 +10,7 @@
 #include "calibration/export/covered_frame.h"
 #include "calibration/light/vignetting.h"
 #include "calibration/statistics/linear_fit.h"
+#include "engine/base/bisect.h"
 #include "engine/base/input_error.h"
 #include "engine/base/markup.h"
 
@@ -77,12 +78,9 @@ std::optional<double> solve(const RadialPolynomial& polynomial, double radius, d
             return std::nullopt;
         }
         if (value >= radius) {
-            double high = low + step;
-            for (int bisection = 0; bisection < 60; ++bisection) {
-                const double middle = 0.5 * (low + high);
-                (polynomial(middle) < radius ? low : high) = middle;
-            }
-            return 0.5 * (low + high);
+            const auto [inside, outside] =
+                bisected({low, low + step}, 60, [&](double t) { return polynomial(t) < radius; });
+            return 0.5 * (inside + outside);
         }
         low += step;
         previous = value;
@@ -126,7 +124,7 @@ std::optional<Distortion> lensfun_terms(const std::string& model, RadialPolynomi
 }
 
 /// Where lensfun's correction says that a direction is imaged.
-std::optional<Vec2d> image_of(const Distortion& distortion, IdealProjection type, const Vec2d& centre,
+std::optional<Vec2d> image_of(const Distortion& distortion, optics::Projection type, const Vec2d& centre,
                               const Vec3d& direction) {
     const double lateral = std::hypot(direction.x, direction.y);
     const auto t = ideal_radius(type, std::atan2(lateral, direction.z));
@@ -137,7 +135,7 @@ std::optional<Vec2d> image_of(const Distortion& distortion, IdealProjection type
     return Vec2d{centre.x + scale * direction.x, centre.y + scale * direction.y};
 }
 
-std::optional<Distortion> fit_distortion(const Profile& profile, IdealProjection type, double unit_px) {
+std::optional<Distortion> fit_distortion(const Profile& profile, optics::Projection type, double unit_px) {
     std::vector<Sample> samples;
     for (const RadialPoint& point : radial_points(profile, kRadii)) {
         const auto t = ideal_radius(type, point.angle_rad);
@@ -172,15 +170,15 @@ std::optional<Distortion> fit_distortion(const Profile& profile, IdealProjection
 
 /// Rectilinear for a lens that does not reach far, however barrel-shaped its distortion: its corrected pictures are to
 /// keep lines straight. Else the type whose ideal projection, of the lens's own focal length, departs least from r(θ).
-IdealProjection nearest_type(const Profile& profile) {
+optics::Projection nearest_type(const Profile& profile) {
     const double focal = focal_length_px(exported_geometry(profile).model);
     const std::vector<RadialPoint> radii = radial_points(profile, kRadii);
     if (std::ranges::none_of(radii, [](const RadialPoint& p) { return p.covered && p.angle_rad > kFisheyeFrom_rad; })) {
-        return IdealProjection::rectilinear;
+        return optics::Projection::rectilinear;
     }
     double least = INFINITY;
-    IdealProjection nearest = IdealProjection::fisheye;
-    for (const IdealProjection type : kIdealProjections) {
+    optics::Projection nearest = optics::Projection::equidistant;
+    for (const optics::Projection type : optics::kProjections) {
         double largest = 0.0;
         for (const RadialPoint& point : radii) {
             const auto ideal = ideal_radius(type, point.angle_rad);

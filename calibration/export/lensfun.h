@@ -19,12 +19,12 @@ struct LensfunOptions {
     std::string mount = "Generic";
     /// The projection that distortion is a departure from. Not set: rectilinear for fields up to
     /// 52° from the axis, else the one that the lens departs least from.
-    std::optional<IdealProjection> type;
+    std::optional<optics::Projection> type;
 };
 
 struct LensfunExport {
     std::string xml;
-    IdealProjection type = IdealProjection::rectilinear;
+    optics::Projection type = optics::Projection::rectilinear;
     std::string distortion_model;            // poly3, poly5 or ptlens
     double corrected_focal_length_px = 0.0;  // f of the ideal projection that lensfun's correction leads to
     double largest_difference_px = 0.0;      // of distortion, over the covered frame

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "calibration/export/covered_frame.h"
+#include "engine/base/bisect.h"
 #include "engine/base/parallel.h"
 
 namespace lensproof::calibration {
@@ -14,7 +15,7 @@ namespace {
 /// The photo, and the undistorted picture beside it, which share frame, focal length and principal point.
 struct Pair {
     const Profile* profile = nullptr;
-    IdealProjection ideal = IdealProjection::rectilinear;
+    optics::Projection ideal = optics::Projection::rectilinear;
     double focal_px = 0.0;
     Vec2d centre;
     double covered_radius_px = 0.0;
@@ -24,16 +25,12 @@ struct Pair {
 /// To half a frame beyond the farthest corner, or where r(θ) turns back before.
 double find_largest_angle(const Pair& pair) {
     const CameraModel& model = pair.profile->geometry->model;
-    double inside = 0.0;
-    double outside = 3.0 * half_diagonal_px(*pair.profile);
-    if (const auto angle = field_angle_rad(model, outside)) {
+    const double farthest = 3.0 * half_diagonal_px(*pair.profile);
+    if (const auto angle = field_angle_rad(model, farthest)) {
         return *angle;
     }
-    for (int bisection = 0; bisection < 60; ++bisection) {
-        const double middle = 0.5 * (inside + outside);
-        (field_angle_rad(model, middle) ? inside : outside) = middle;
-    }
-    return field_angle_rad(model, inside).value_or(0.0);
+    const auto is_imaged = [&](double radius) { return field_angle_rad(model, radius).has_value(); };
+    return field_angle_rad(model, bisected({0.0, farthest}, 60, is_imaged).inside).value_or(0.0);
 }
 
 /// Where the undistorted picture shows what the photo shows at `photo_px`.

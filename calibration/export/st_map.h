@@ -13,7 +13,7 @@ namespace lensproof::calibration {
 struct StMapOptions {
     /// What the undistorted picture is: this projection at the profile's own focal length (on the axis) and principal
     /// point, its frame as large as the picture's.
-    IdealProjection undistorted = IdealProjection::rectilinear;
+    optics::Projection undistorted = optics::Projection::rectilinear;
     /// How far the undistorted picture may reach beyond its frame on each side, as a share of the frame's width and
     /// height. What would lie farther out is cut.
     double most_overscan = 0.5;

@@ -4,14 +4,13 @@
 
 #include <algorithm>
 #include <array>
-#include <numbers>
 #include <utility>
 
 namespace lensproof::calibration {
 namespace {
 
-constexpr double kScanStep = std::numbers::pi / 180.0;  // no 4-term polynomial folds and unfolds within a degree
-constexpr int kFoldSteps = 64;                          // a fold is located to 1/64°
+constexpr double kScanStep = kDegree;  // no 4-term polynomial folds and unfolds within a degree
+constexpr int kFoldSteps = 64;         // a fold is located to 1/64°
 
 double largest_angle(const CameraModel& model) {
     return std::visit([](const auto& m) { return m.largest_angle; }, model);

@@ -1,6 +1,7 @@
 // calibration/geometry/fisheye_models.h — lens models about a fisheye's own projections, and one without a formula.
 #pragma once
 #include "calibration/geometry/radial_model.h"
+#include "engine/optics/projection.h"
 
 namespace lensproof::calibration {
 
@@ -11,7 +12,7 @@ struct KannalaBrandtRadial {
     static constexpr std::string_view kind = "kannala-brandt";
     static constexpr std::array<std::string_view, 4> names{"k1", "k2", "k3", "k4"};
     static constexpr int coefficients = 4;
-    static constexpr double largest_angle = std::numbers::pi;
+    static constexpr double largest_angle = kPi;
 
     template <class T>
     static T radius(const T* p, const T& angle) {
@@ -26,75 +27,28 @@ using KannalaBrandt = RadialModel<KannalaBrandtRadial>;
 ///     r(θ) = f g (1 + k1 g² + k2 g⁴),
 /// which is to the projection what k1 and k2 are to the pinhole: a lens that is centred on its axis has an r(θ) that is
 /// odd in θ, and so only even powers of g in the bracket. Without terms (`radial_terms` 0) it is the projection itself.
-template <class Projection>
+template <optics::Projection projection>
 struct PolynomialRadial {
-    static constexpr std::string_view kind = Projection::kind;
+    static constexpr std::string_view kind = optics::projection_name(projection);
     static constexpr std::array<std::string_view, 2> names{"k1", "k2"};
     static constexpr int coefficients = 2;
-    static constexpr double largest_angle = Projection::largest_angle;
+    static constexpr double largest_angle = projection == optics::Projection::orthographic    ? kRightAngle
+                                            : projection == optics::Projection::stereographic ? kPi - 1e-6
+                                                                                              : kPi;
 
     template <class T>
     static T radius(const T* p, const T& angle) {
-        const T g = Projection::ideal(angle);
+        const T g = optics::projected_radius(projection, angle);
         const T g2 = g * g;
         return p[0] * g * (T(1) + g2 * (p[3] + g2 * p[4]));
     }
-    static double undistorted_angle(double radius) { return Projection::inverse(radius); }
+    static double undistorted_angle(double radius) { return optics::projected_angle(projection, radius); }
 };
 
-// The inverses return more than π for a radius that the projection does not reach.
-
-/// g = θ.
-struct EquidistantProjection {
-    static constexpr std::string_view kind = "equidistant";
-    static constexpr double largest_angle = std::numbers::pi;
-    template <class T>
-    static T ideal(const T& angle) {
-        return angle;
-    }
-    static double inverse(double g) { return g; }
-};
-
-/// g = 2 sin(θ/2): equal solid angles have equal areas.
-struct EquisolidProjection {
-    static constexpr std::string_view kind = "equisolid";
-    static constexpr double largest_angle = std::numbers::pi;
-    template <class T>
-    static T ideal(const T& angle) {
-        using std::sin;
-        return T(2) * sin(T(0.5) * angle);
-    }
-    static double inverse(double g) { return g <= 2.0 ? 2.0 * std::asin(0.5 * g) : 2.0 * g; }
-};
-
-/// g = 2 tan(θ/2): circles stay circles.
-struct StereographicProjection {
-    static constexpr std::string_view kind = "stereographic";
-    static constexpr double largest_angle = std::numbers::pi - 1e-6;
-    template <class T>
-    static T ideal(const T& angle) {
-        using std::tan;
-        return T(2) * tan(T(0.5) * angle);
-    }
-    static double inverse(double g) { return 2.0 * std::atan(0.5 * g); }
-};
-
-/// g = sin θ: the picture's illumination is even under an even sky. Ends at 90°.
-struct OrthographicProjection {
-    static constexpr std::string_view kind = "orthographic";
-    static constexpr double largest_angle = kRightAngle;
-    template <class T>
-    static T ideal(const T& angle) {
-        using std::sin;
-        return sin(angle);
-    }
-    static double inverse(double g) { return g <= 1.0 ? std::asin(g) : 4.0 * g; }
-};
-
-using Equidistant = RadialModel<PolynomialRadial<EquidistantProjection>>;
-using Equisolid = RadialModel<PolynomialRadial<EquisolidProjection>>;
-using Stereographic = RadialModel<PolynomialRadial<StereographicProjection>>;
-using Orthographic = RadialModel<PolynomialRadial<OrthographicProjection>>;
+using Equidistant = RadialModel<PolynomialRadial<optics::Projection::equidistant>>;
+using Equisolid = RadialModel<PolynomialRadial<optics::Projection::equisolid>>;
+using Stereographic = RadialModel<PolynomialRadial<optics::Projection::stereographic>>;
+using Orthographic = RadialModel<PolynomialRadial<optics::Projection::orthographic>>;
 
 /// No formula: r(θ) = f θ (1 + S(θ)), S a uniform cubic B-spline of 10 intervals over 0 … `spline_end_rad`,
 ///     S(θ) = Σ_j c_j B₃(10 θ / end − j),   j = −1 … 11,   B₃ the cardinal cubic B-spline about 0,
@@ -108,7 +62,7 @@ struct SplineRadial {
     static constexpr std::array<std::string_view, intervals + 2> names{
         "c1", "c2", "c3", "c4", "c5", "c6", "c7", "c8", "c9", "c10", "c11", "spline_end_rad"};
     static constexpr int coefficients = intervals + 1;
-    static constexpr double largest_angle = std::numbers::pi;
+    static constexpr double largest_angle = kPi;
 
     template <class T>
     static T coefficient(const T* p, int j) {

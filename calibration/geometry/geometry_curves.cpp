@@ -2,12 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
+
+#include "engine/base/angle.h"
 
 namespace lensproof::calibration {
 namespace {
-
-constexpr double kDegree = std::numbers::pi / 180.0;
 
 // A quantity that the model says about the radius `r`, px; none where it says nothing.
 using Quantity = std::optional<double> (*)(const CameraModel& model, double r);

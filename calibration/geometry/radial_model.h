@@ -3,14 +3,14 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
-#include <numbers>
 #include <string_view>
 
+#include "engine/base/angle.h"
 #include "engine/base/vec.h"
 
 namespace lensproof::calibration {
 
-inline constexpr double kRightAngle = std::numbers::pi / 2 - 1e-6;  // where a perspective picture ends
+inline constexpr double kRightAngle = kPi / 2 - 1e-6;  // where a perspective picture ends
 
 /// The last parameter of every model: what heights in the picture are stretched by, less 1. With it the vertical focal
 /// length is f (1 + stretch_y), f being the horizontal one: pixels that are not square, or a picture that was scaled.

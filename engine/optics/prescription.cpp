@@ -4,43 +4,11 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <charconv>
 
 #include "engine/base/input_error.h"
+#include "engine/base/text.h"
 
 namespace lensproof::optics {
-
-std::string projection_name(Projection projection) {
-    switch (projection) {
-        case Projection::rectilinear:
-            return "rectilinear";
-        case Projection::equidistant:
-            return "equidistant";
-        case Projection::equisolid:
-            return "equisolid";
-        case Projection::stereographic:
-            return "stereographic";
-        case Projection::orthographic:
-            return "orthographic";
-    }
-    return "unknown";
-}
-
-double projected_radius(Projection projection, double field_angle) {
-    switch (projection) {
-        case Projection::rectilinear:
-            return std::tan(field_angle);
-        case Projection::equidistant:
-            return field_angle;
-        case Projection::equisolid:
-            return 2.0 * std::sin(0.5 * field_angle);
-        case Projection::stereographic:
-            return 2.0 * std::tan(0.5 * field_angle);
-        case Projection::orthographic:
-            return std::sin(field_angle);
-    }
-    return 0.0;
-}
 
 double interpolated(const std::vector<WavelengthValue>& values, double wavelength_nm) {
     const auto above = std::ranges::upper_bound(values, wavelength_nm, {}, &WavelengthValue::wavelength_nm);
@@ -48,8 +16,16 @@ double interpolated(const std::vector<WavelengthValue>& values, double wavelengt
         return above == values.begin() ? values.front().value : values.back().value;
     }
     const WavelengthValue& low = *(above - 1);
-    const double share = (wavelength_nm - low.wavelength_nm) / (above->wavelength_nm - low.wavelength_nm);
-    return low.value + share * (above->value - low.value);
+    const double fraction = (wavelength_nm - low.wavelength_nm) / (above->wavelength_nm - low.wavelength_nm);
+    return low.value + fraction * (above->value - low.value);
+}
+
+void take_claims(StatedData& stated, const StatedData& other) {
+    for (const Claim& claim : kClaims) {
+        if (other.*claim.value) {
+            stated.*claim.value = other.*claim.value;
+        }
+    }
 }
 
 bool StatedMedium::is_air() const {
@@ -86,21 +62,11 @@ Prescription at_zoom_position(Prescription prescription, std::size_t position) {
             stop->semi_diameter_mm = chosen.stop_semi_diameter_mm;
         }
     }
-    const auto take = [](std::optional<double>& claim, const std::optional<double>& here) {
-        if (here) {
-            claim = here;
-        }
-    };
     StatedData& stated = prescription.stated;
     // What a source says of the whole lens holds at each position that says nothing else, but for lengths that zooming
     // changes.
-    stated.efl_mm = chosen.stated.efl_mm;
-    stated.bfl_mm = chosen.stated.bfl_mm;
-    stated.total_track_mm = chosen.stated.total_track_mm;
-    take(stated.half_field_deg, chosen.stated.half_field_deg);
-    take(stated.entrance_pupil_diameter_mm, chosen.stated.entrance_pupil_diameter_mm);
-    take(stated.f_number, chosen.stated.f_number);
-    take(stated.image_circle_mm, chosen.stated.image_circle_mm);
+    stated.efl_mm = stated.bfl_mm = stated.total_track_mm = std::nullopt;
+    take_claims(stated, chosen.stated);
     prescription.zoom.clear();
     return prescription;
 }
@@ -110,10 +76,9 @@ std::size_t find_zoom_position(const Prescription& prescription, const std::stri
     if (named != prescription.zoom.end()) {
         return static_cast<std::size_t>(named - prescription.zoom.begin());
     }
-    std::size_t number = 0;
-    const auto [end, error] = std::from_chars(name.data(), name.data() + name.size(), number);
+    const std::size_t number = parse_exact<std::size_t>(name).value_or(0);
     const std::size_t count = std::max<std::size_t>(1, prescription.zoom.size());
-    if (error == std::errc() && end == name.data() + name.size() && number >= 1 && number <= count) {
+    if (number >= 1 && number <= count) {
         return number - 1;
     }
     std::vector<std::string> names;

@@ -3,7 +3,6 @@
 #include <array>
 #include <cmath>
 #include <filesystem>
-#include <limits>
 #include <map>
 #include <memory>
 #include <optional>
@@ -11,25 +10,17 @@
 #include <variant>
 #include <vector>
 
+#include "engine/base/infinity.h"
 #include "engine/optics/finding.h"
+#include "engine/optics/projection.h"
 
 namespace lensproof::optics {
-
-/// The mapping from field angle θ to image height that a lens is designed for.
-enum class Projection { rectilinear, equidistant, equisolid, stereographic, orthographic };
-
-inline constexpr std::array kProjections = {Projection::rectilinear, Projection::equidistant, Projection::equisolid,
-                                            Projection::stereographic, Projection::orthographic};
-
-std::string projection_name(Projection projection);
-
-/// r / f of a projection at field angle θ (radians): tan θ, θ, 2 sin(θ/2), 2 tan(θ/2), sin θ.
-double projected_radius(Projection projection, double field_angle);
 
 /// A wavelength in nm and a value there.
 struct WavelengthValue {
     double wavelength_nm = 0.0;
     double value = 0.0;
+    bool operator==(const WavelengthValue&) const = default;
 };
 
 /// Linear between the values, the first and the last one kept beyond them. `values`: at least one, by rising
@@ -45,6 +36,7 @@ struct StatedMedium {
     std::vector<WavelengthValue> indices;
 
     [[nodiscard]] bool is_air() const;
+    bool operator==(const StatedMedium&) const = default;
 };
 
 /// Coefficients of r², r⁴, … r²⁰: the even asphere's departure from its conic, mm^(1−2i).
@@ -57,14 +49,14 @@ struct Misalignment {
     std::array<double, 2> decentre_mm{};
     std::array<double, 3> tilt_deg{};
 
-    friend bool operator==(const Misalignment&, const Misalignment&) = default;
+    bool operator==(const Misalignment&) const = default;
 };
 
 /// One row of a prescription. Numbers are as stated, NaN and absurd ones included: the checker names those, and
 /// `make_lens` refuses them.
 struct PrescribedSurface {
-    double radius_mm = std::numeric_limits<double>::infinity();  // infinite or 0: flat
-    double conic = 0.0;                                          // 0 a sphere, −1 a paraboloid
+    double radius_mm = kInfinity;  // infinite or 0: flat
+    double conic = 0.0;            // 0 a sphere, −1 a paraboloid
     AsphereTerms asphere{};
     std::optional<double> radius_x_mm;  // a toroid: the curve in y–z turned about an axis at this distance; inf: a
                                         // cylinder
@@ -81,6 +73,7 @@ struct PrescribedSurface {
     [[nodiscard]] bool is_flat() const { return radius_mm == 0.0 || std::isinf(radius_mm); }
     [[nodiscard]] double curvature() const { return is_flat() ? 0.0 : 1.0 / radius_mm; }  // 1/mm
     [[nodiscard]] bool is_asphere() const { return asphere != AsphereTerms{}; }
+    bool operator==(const PrescribedSurface&) const = default;
 };
 
 /// What the source claims about the lens as a whole; each is optional.
@@ -93,7 +86,27 @@ struct StatedData {
     std::optional<double> total_track_mm;              // first vertex to image
     std::optional<double> entrance_pupil_diameter_mm;  // as design programs say the aperture
     std::string source;                                // where these claims stand, if not in the lens's source
+    bool operator==(const StatedData&) const = default;
 };
+
+/// A number of StatedData, as files key it.
+struct Claim {
+    const char* key;
+    std::optional<double> StatedData::*value;
+    bool is_positive;  // or else may have either sign
+};
+inline constexpr std::array kClaims = {
+    Claim{"efl_mm", &StatedData::efl_mm, false},
+    Claim{"bfl_mm", &StatedData::bfl_mm, false},
+    Claim{"f_number", &StatedData::f_number, true},
+    Claim{"half_field_deg", &StatedData::half_field_deg, true},
+    Claim{"image_circle_mm", &StatedData::image_circle_mm, true},
+    Claim{"total_track_mm", &StatedData::total_track_mm, true},
+    Claim{"entrance_pupil_diameter_mm", &StatedData::entrance_pupil_diameter_mm, true},
+};
+
+/// Takes the claims that `other` makes in the place of those here.
+void take_claims(StatedData& stated, const StatedData& other);
 
 /// A stop whose blades leave a regular polygon. Its corners lie on the circle of the stop's semi-diameter.
 struct PolygonStop {
@@ -121,6 +134,7 @@ using StopShape = std::variant<std::monostate, PolygonStop, TexturedStop>;  // m
 struct CoatingLayer {
     double index = 1.0;
     double thickness_nm = 0.0;
+    bool operator==(const CoatingLayer&) const = default;
 };
 
 /// What lies on a surface: layers from the scene's side to the sensor's, or the reflectance that a maker states.
@@ -170,11 +184,11 @@ struct Prescription {
     std::vector<ZoomPosition> zoom;        // empty: a lens of one focal length
     std::vector<FocusGroup> focus_groups;  // empty: the lens focuses as a whole, that is, the sensor moves
     Surroundings surroundings = Surroundings::air;
-    double object_distance_mm = std::numeric_limits<double>::infinity();  // that the table is set to
-    std::vector<double> wavelengths_nm;                                   // that a design program's file names, the
-                                                                          // reference first; may be empty
-    std::vector<std::filesystem::path> catalogues;                        // glass files of its own
-    std::vector<std::string> preferred_makers;                            // whose glass a bare name means first
+    double object_distance_mm = kInfinity;          // that the table is set to
+    std::vector<double> wavelengths_nm;             // that a design program's file names, the
+                                                    // reference first; may be empty
+    std::vector<std::filesystem::path> catalogues;  // glass files of its own
+    std::vector<std::string> preferred_makers;      // whose glass a bare name means first
     std::vector<Finding> remarks;  // what its reader could not carry over, and what it took upon itself
     std::filesystem::path file;
 

@@ -4,27 +4,6 @@
 
 namespace lensproof::draw {
 
-namespace {
-
-/// What the lens's distortion refers to.
-std::string projection_formula(optics::Projection projection) {
-    switch (projection) {
-        case optics::Projection::rectilinear:
-            return "f tan θ";
-        case optics::Projection::equidistant:
-            return "f θ";
-        case optics::Projection::equisolid:
-            return "2 f sin(θ/2)";
-        case optics::Projection::stereographic:
-            return "2 f tan(θ/2)";
-        case optics::Projection::orthographic:
-            return "f sin θ";
-    }
-    return "";
-}
-
-}  // namespace
-
 double pixel_um(const PsfMap& psf) {
     return 2.0 * psf.intensity.half_width / static_cast<double>(psf.intensity.size);
 }
@@ -53,17 +32,18 @@ std::optional<formats::Image> psf_image(const PsfMap& psf) {
 
 std::map<std::string, std::string> analysis_drawings(const PlotHeading& heading, optics::Projection projection,
                                                      const AnalysisCurves& curves, const WaveCurves& waves) {
-    return {{"ray_fans.svg", ray_fans_svg(heading, curves.fans)},
-            {"field_curves.svg", field_curves_svg(heading, curves.field_curves, projection_formula(projection))},
-            {"longitudinal_aberration.svg", longitudinal_aberration_svg(heading, curves.longitudinal)},
-            {"lateral_colour.svg", lateral_colour_svg(heading, curves.lateral_colour, curves.airy_radius)},
-            {"spots.svg", spots_svg(heading, curves.defocus_mm, curves.spots)},
-            {"illumination.svg", illumination_svg(heading, curves.illumination)},
-            {"wavefront.svg", wavefront_svg(heading, waves.wavefronts)},
-            {"psf.svg", psf_svg(heading, waves.psfs)},
-            {"mtf.svg", mtf_svg(heading, waves.mtf, waves.diffraction_limit)},
-            {"mtf_geometric.svg", mtf_svg(heading, waves.geometric_mtf, waves.diffraction_limit, "geometric")},
-            {"mtf_over_field.svg", mtf_field_svg(heading, waves.mtf_over_field)}};
+    return {
+        {"ray_fans.svg", ray_fans_svg(heading, curves.fans)},
+        {"field_curves.svg", field_curves_svg(heading, curves.field_curves, optics::projection_formula(projection))},
+        {"longitudinal_aberration.svg", longitudinal_aberration_svg(heading, curves.longitudinal)},
+        {"lateral_colour.svg", lateral_colour_svg(heading, curves.lateral_colour, curves.airy_radius)},
+        {"spots.svg", spots_svg(heading, curves.defocus_mm, curves.spots)},
+        {"illumination.svg", illumination_svg(heading, curves.illumination)},
+        {"wavefront.svg", wavefront_svg(heading, waves.wavefronts)},
+        {"psf.svg", psf_svg(heading, waves.psfs)},
+        {"mtf.svg", mtf_svg(heading, waves.mtf, waves.diffraction_limit)},
+        {"mtf_geometric.svg", mtf_svg(heading, waves.geometric_mtf, waves.diffraction_limit, "geometric")},
+        {"mtf_over_field.svg", mtf_field_svg(heading, waves.mtf_over_field)}};
 }
 
 }  // namespace lensproof::draw

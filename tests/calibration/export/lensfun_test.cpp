@@ -101,7 +101,7 @@ constexpr double kFloat_px = 2e-3;
 TEST(ExportLensfun, AModelThatPoly5CanSayIsSaidExactly) {
     const Profile profile = profile_of(BrownConrady{{1900.0, 761.0, 493.0, -0.12, 0.03, 0.0, 0.0, 0.0}}, 1500, 1000);
     const LensfunExport result = lensfun_export(profile, options());
-    EXPECT_EQ(result.type, IdealProjection::rectilinear);
+    EXPECT_EQ(result.type, optics::Projection::rectilinear);
     EXPECT_EQ(result.distortion_model, "poly5");
     EXPECT_LT(result.largest_difference_px, 1e-6);
     EXPECT_NEAR(result.corrected_focal_length_px, 1900.0, 1e-6);
@@ -132,7 +132,7 @@ TEST(ExportLensfun, TheStatedDifferenceIsTheLibrarysOwn) {
 // Without tangential terms the radial fits are good to hundredths of a pixel, on each type that can say the field.
 TEST(ExportLensfun, EveryTypeFollowsAModerateLens) {
     const Profile profile = profile_of(BrownConrady{{820.0, 318.5, 243.0, -0.24, 0.09, -0.01, 0.0, 0.0}}, 640, 480);
-    for (const IdealProjection type : kIdealProjections) {
+    for (const optics::Projection type : optics::kProjections) {
         LensfunOptions chosen = options();
         chosen.type = type;
         const LensfunExport result = lensfun_export(profile, chosen);

@@ -119,7 +119,7 @@ TEST(ExportStMap, AFisheyeIsCutOrUndistortedToAFisheye) {
         return std::ranges::any_of(maps.notes, [](const auto& n) { return n.find("beyond the overscan") != n.npos; });
     };
     EXPECT_TRUE(says_lost(pinhole));
-    const StMaps equidistant = st_maps(profile, {.undistorted = IdealProjection::fisheye});
+    const StMaps equidistant = st_maps(profile, {.undistorted = optics::Projection::equidistant});
     EXPECT_FALSE(says_lost(equidistant));
     EXPECT_EQ(equidistant.distort.image.at(0, 0, 3), 1.0F);
 }
