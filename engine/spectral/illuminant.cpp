@@ -2,10 +2,10 @@
 
 #include <fmt/format.h>
 
-#include <charconv>
 #include <string_view>
 
 #include "engine/base/input_error.h"
+#include "engine/base/text.h"
 #include "engine/spectral/colour_matching.h"
 #include "engine/spectral/planck.h"
 
@@ -48,11 +48,8 @@ Spectrum blackbody(double temperature_k) {
 }
 
 double temperature_in(const std::string& name) {
-    double temperature_k = 0.0;
-    const char* const begin = name.data() + kBlackbody.size();
-    const char* const end = name.data() + name.size();
-    const auto [parsed, error] = std::from_chars(begin, end, temperature_k);
-    if (error != std::errc() || parsed != end || !(temperature_k >= kColdest && temperature_k <= kHottest)) {
+    const double temperature_k = parse_exact<double>(name.substr(kBlackbody.size())).value_or(0.0);
+    if (!(temperature_k >= kColdest && temperature_k <= kHottest)) {
         throw InputError(fmt::format("illuminant '{}': expected a temperature from {} to {} K after '{}'", name,
                                      kColdest, kHottest, kBlackbody));
     }

@@ -186,9 +186,7 @@ class AgfReader {
         coefficients_ = {};
         name_record_ = record;
         glass_.name = record.words.empty() ? "" : std::string(record.words[0]);
-        glass_.catalogue = file_.stem().string();
-        std::ranges::transform(glass_.catalogue, glass_.catalogue.begin(),
-                               [](unsigned char letter) { return static_cast<char>(std::toupper(letter)); });
+        glass_.catalogue = upper_case(file_.stem().string());
         glass_.source = file_.filename().string();
         formula_ = number(record, 1, "the formula");
         const double n_d = number(record, 3, "n_d");

@@ -136,9 +136,7 @@ GlassFile parse_glass_table(std::string text, const std::filesystem::path& name)
 }
 
 GlassFile read_glass_file(const std::filesystem::path& file) {
-    std::string extension = file.extension().string();
-    std::ranges::transform(extension, extension.begin(),
-                           [](unsigned char letter) { return static_cast<char>(std::tolower(letter)); });
+    const std::string extension = lower_extension(file);
     if (extension == ".agf") {
         return parse_agf(read_file(file), file);
     }

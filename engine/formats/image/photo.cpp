@@ -7,6 +7,7 @@
 #include <cctype>
 #include <cmath>
 
+#include "engine/base/file.h"
 #include "engine/formats/image/stored_picture.h"
 
 namespace lensproof::formats {
@@ -18,13 +19,6 @@ constexpr std::array kRawExtensions = {".dng", ".cr2", ".cr3", ".crw", ".nef", "
                                        ".iiq", ".mos", ".mrw", ".erf", ".kdc", ".dcr", ".mef", ".raw"};
 constexpr std::array kPictureExtensions = {".jpg", ".jpeg", ".png", ".tif",  ".tiff", ".exr",
                                            ".ppm", ".pgm",  ".bmp", ".webp", ".heic", ".hdr"};
-
-std::string lower_extension(const std::filesystem::path& file) {
-    std::string extension = file.extension().string();
-    std::ranges::transform(extension, extension.begin(),
-                           [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-    return extension;
-}
 
 bool is_raw(const std::filesystem::path& file) {
     return std::ranges::find(kRawExtensions, lower_extension(file)) != kRawExtensions.end();

@@ -2,48 +2,37 @@
 
 #include <fmt/format.h>
 
-#include <charconv>
+#include <algorithm>
+#include <array>
 #include <cmath>
+#include <string_view>
 
+#include "engine/base/text.h"
 #include "engine/formats/image/srgb.h"
 
 namespace lensproof::formats {
 
+namespace {
+
+constexpr std::array kNames = {"srgb", "rec709", "linear"};  // in TransferKind's order; "gamma:2.2" is its last
+constexpr std::string_view kGamma = "gamma:";
+
+}  // namespace
+
 std::optional<TransferCurve> parse_transfer_curve(const std::string& text) {
-    if (text == "srgb") {
-        return TransferCurve{.kind = TransferKind::srgb};
+    const auto* const named = std::ranges::find(kNames, text);
+    if (named != kNames.end()) {
+        return TransferCurve{.kind = static_cast<TransferKind>(named - kNames.begin())};
     }
-    if (text == "rec709") {
-        return TransferCurve{.kind = TransferKind::rec709};
-    }
-    if (text == "linear") {
-        return TransferCurve{.kind = TransferKind::linear};
-    }
-    const std::string prefix = "gamma:";
-    double gamma = 0.0;
-    const char* const end = text.data() + text.size();
-    if (text.rfind(prefix, 0) != 0) {
-        return std::nullopt;
-    }
-    const auto [rest, error] = std::from_chars(text.data() + prefix.size(), end, gamma);
-    if (error != std::errc() || rest != end || !(gamma >= 0.1 && gamma <= 10.0)) {
-        return std::nullopt;
-    }
-    return TransferCurve{.kind = TransferKind::gamma, .gamma = gamma};
+    const bool is_gamma = text.starts_with(kGamma);
+    const double gamma = is_gamma ? parse_exact<double>(text.substr(kGamma.size())).value_or(0.0) : 0.0;
+    return gamma >= 0.1 && gamma <= 10.0 ? std::optional(TransferCurve{.kind = TransferKind::gamma, .gamma = gamma})
+                                         : std::nullopt;
 }
 
 std::string to_text(const TransferCurve& curve) {
-    switch (curve.kind) {
-        case TransferKind::srgb:
-            return "srgb";
-        case TransferKind::rec709:
-            return "rec709";
-        case TransferKind::linear:
-            return "linear";
-        case TransferKind::gamma:
-            break;
-    }
-    return fmt::format("gamma:{:g}", curve.gamma);
+    return curve.kind == TransferKind::gamma ? fmt::format("{}{:g}", kGamma, curve.gamma)
+                                             : kNames[static_cast<std::size_t>(curve.kind)];
 }
 
 float to_linear(const TransferCurve& curve, float value) {

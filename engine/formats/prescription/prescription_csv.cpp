@@ -8,9 +8,11 @@
 #include <set>
 
 #include "engine/base/csv.h"
+#include "engine/base/infinity.h"
 #include "engine/base/input_error.h"
 #include "engine/base/text.h"
 #include "engine/base/text_encoding.h"
+#include "engine/formats/prescription/design_program.h"
 #include "engine/formats/prescription/prescription_forms.h"
 #include "engine/spectral/wavelengths.h"
 
@@ -63,10 +65,7 @@ int term_power(const std::string& column) {
 class CsvPrescription {
   public:
     CsvPrescription(const std::string& text, const std::filesystem::path& file)
-        : table_(CsvTable::parse(text, file)), file_(file) {
-        prescription_.file = file;
-        prescription_.name = file.stem().string();
-        prescription_.source = "the file " + file.filename().string();
+        : table_(CsvTable::parse(text, file)), file_(file), prescription_(prescription_of(file)) {
         find_columns();
         read_comments(text);
     }
@@ -184,8 +183,7 @@ class CsvPrescription {
         surface.where = row.where(fmt::format("surface {}", printable(label)));
         const std::string kind = read_kind(row, label);
         surface.is_stop = kind == "stop";
-        surface.radius_mm = stated(row, columns_.radius, "a radius in mm, or inf for a flat")
-                                .value_or(std::numeric_limits<double>::infinity());
+        surface.radius_mm = stated(row, columns_.radius, "a radius in mm, or inf for a flat").value_or(kInfinity);
         surface.thickness_mm = row.any_number(columns_.thickness, "a length in mm");
         surface.semi_diameter_mm = stated(row, columns_.semi_diameter, "a length in mm");
         surface.conic = stated(row, columns_.conic, "a conic constant").value_or(0.0);

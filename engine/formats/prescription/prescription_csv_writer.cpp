@@ -53,10 +53,8 @@ std::string text_cell(std::string text) {
 
 std::string comment_lines(const std::string& key, std::string_view text) {
     std::string lines;
-    while (!text.empty()) {
-        const std::size_t end = std::min(text.find('\n'), text.size());
-        lines += fmt::format("# {}{}\n", key, trimmed(text.substr(0, end)));
-        text.remove_prefix(std::min(end + 1, text.size()));
+    for (const std::string_view line : lines_of(text)) {
+        lines += fmt::format("# {}{}\n", key, trimmed(line));
     }
     return lines;
 }

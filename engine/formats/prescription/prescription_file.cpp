@@ -32,9 +32,7 @@ constexpr Form kForms[] = {
 
 /// The form of that extension, letter case aside, or the end.
 const Form* form_of(const std::filesystem::path& file) {
-    std::string extension = file.extension().string();
-    std::ranges::transform(extension, extension.begin(), [](unsigned char letter) { return std::tolower(letter); });
-    return std::ranges::find(kForms, extension, &Form::extension);
+    return std::ranges::find(kForms, lower_extension(file), &Form::extension);
 }
 
 const Form& find_form(const std::filesystem::path& file) {

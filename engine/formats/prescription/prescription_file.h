@@ -22,7 +22,8 @@ void check_prescription_name(const std::filesystem::path& file);
 
 /// Writes a prescription as .toml, .zmx, .dat (pbrt) or .csv, told by the extension; the file appears whole or not
 /// at all. Files that it names, a glass catalogue or a stop's picture, are named from the new place. Returns what the
-/// form cannot say: warnings where rays then go another way. Throws InputError for an extension that cannot be written.
+/// form cannot say: warnings where rays then take other paths. Throws InputError for an extension that cannot be
+/// written.
 std::vector<optics::Finding> write_prescription(const optics::Prescription& prescription,
                                                 const std::filesystem::path& file);
 

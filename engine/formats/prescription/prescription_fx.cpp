@@ -14,9 +14,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/base/infinity.h"
 #include "engine/base/input_error.h"
 #include "engine/base/text.h"
 #include "engine/base/text_encoding.h"
+#include "engine/formats/prescription/design_program.h"
 #include "engine/formats/prescription/prescription_forms.h"
 
 namespace lensproof::formats {
@@ -29,23 +31,13 @@ constexpr std::size_t kMostRemarks = 1000;  // a file of nothing else says no mo
 constexpr std::string_view kScale = "#!scale";
 constexpr std::string_view kAspheric = "#!aspheric=";
 
-std::string lower(std::string_view text) {
-    std::string small(text);
-    std::ranges::transform(small, small.begin(), [](unsigned char letter) { return std::tolower(letter); });
-    return small;
-}
-
 bool stands_for_flat(double radius) {
     return std::abs(radius) == 1e4 || std::abs(radius) == 1e5;
 }
 
 class FxTable {
   public:
-    explicit FxTable(const std::filesystem::path& file) {
-        lens_.file = file;
-        lens_.name = file.stem().string();
-        lens_.source = "the file " + file.filename().string();
-    }
+    explicit FxTable(const std::filesystem::path& file) : lens_(prescription_of(file)) {}
 
     optics::Prescription read(std::string_view text) {
         const std::vector<std::string_view> lines = lines_of(without_byte_order_mark(text));
@@ -169,7 +161,7 @@ class FxTable {
         optics::PrescribedSurface surface;
         surface.where = fmt::format("{}: surface {}", where_, surface_number);
         const double radius = number(words[0], "a radius");
-        surface.radius_mm = stands_for_flat(radius) ? std::numeric_limits<double>::infinity() : scale_ * radius;
+        surface.radius_mm = stands_for_flat(radius) ? kInfinity : scale_ * radius;
         has_planes_ = has_planes_ || stands_for_flat(radius);
         std::size_t next = 1;
         thicknesses_.push_back(read_thicknesses(words, next));
@@ -193,12 +185,12 @@ class FxTable {
             fail(words.back(), "a material behind the thickness: air, iris, abbe or a glass");
         }
         std::string_view material = words[next++];
-        if (lower(material).starts_with("cx_")) {
+        if (lower_case(material).starts_with("cx_")) {
             material.remove_prefix(3);
             surface.radius_x_mm = surface.radius_mm;
-            surface.radius_mm = std::numeric_limits<double>::infinity();
+            surface.radius_mm = kInfinity;
         }
-        const std::string kind = lower(material);
+        const std::string kind = lower_case(material);
         if (kind == "air") {
             return;
         }

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "engine/base/infinity.h"
 #include "engine/optics/lens.h"
 #include "engine/spectral/wavelengths.h"
 
@@ -61,8 +62,8 @@ void add_surface_losses(const optics::PrescribedSurface& row, int surface, std::
 }
 
 bool states_anything(const optics::StatedData& stated) {
-    return stated.efl_mm || stated.bfl_mm || stated.f_number || stated.half_field_deg || stated.image_circle_mm ||
-           stated.total_track_mm || stated.entrance_pupil_diameter_mm;
+    return std::ranges::any_of(optics::kClaims,
+                               [&](const optics::Claim& claim) { return (stated.*claim.value).has_value(); });
 }
 
 }  // namespace
@@ -104,8 +105,7 @@ std::vector<optics::Finding> losses_of_tables(const optics::Prescription& prescr
                     optics::projection_name(prescription.projection)));
     add(states_anything(prescription.stated), "lost-stated", optics::Severity::info,
         "what the source states of the whole lens is left out");
-    add(prescription.object_distance_mm != std::numeric_limits<double>::infinity(), "lost-object-distance",
-        optics::Severity::info,
+    add(prescription.object_distance_mm != kInfinity, "lost-object-distance", optics::Severity::info,
         fmt::format("the object's distance, {} mm, is left out", prescription.object_distance_mm));
     add(!prescription.wavelengths_nm.empty(), "lost-wavelengths", optics::Severity::info,
         "the wavelengths are left out");

@@ -9,7 +9,7 @@
 
 namespace lensproof::formats {
 
-/// Of a form that does not say something: a warning where rays then go another way, else an info.
+/// Of a form that does not say something: a warning where rays then take other paths, else an info.
 optics::Finding lost(const std::string& code, optics::Severity severity, int surface, const std::string& message);
 
 /// The prescription at its first zoom position, if it has several; `lost_here` then says so.

@@ -6,11 +6,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <set>
 
+#include "engine/base/angle.h"
+#include "engine/base/infinity.h"
 #include "engine/base/input_error.h"
 #include "engine/base/text.h"
+#include "engine/formats/prescription/design_program.h"
 #include "engine/formats/prescription/prescription_forms.h"
 #include "engine/formats/prescription/python_json.h"
 #include "engine/optics/frame.h"
@@ -20,8 +22,6 @@ namespace lensproof::formats {
 namespace {
 
 constexpr std::size_t kMostSurfaces = 1000;
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr double kDegree = std::numbers::pi / 180.0;
 
 /// Where a surface stands in the whole lens. Optiland turns about x, then the fixed y, then the fixed z, which is about
 /// z, the turned y and the twice turned x.
@@ -44,10 +44,8 @@ std::array<double, 3> tilt_of(const optics::Frame& frame) {
 
 class OptilandLens {
   public:
-    explicit OptilandLens(const std::filesystem::path& file) {
-        lens_.file = file;
-        lens_.name = file.stem().string();
-        lens_.source = "the file " + file.filename().string() + ", saved by Optiland";
+    explicit OptilandLens(const std::filesystem::path& file) : lens_(prescription_of(file)) {
+        lens_.source += ", saved by Optiland";
     }
 
     optics::Prescription read(const JsonNode& top) {
@@ -202,9 +200,7 @@ class OptilandLens {
         if (file.parent_path().parent_path().filename() != "glass") {
             return name;
         }
-        std::string maker = file.parent_path().filename().string();
-        std::ranges::transform(maker, maker.begin(), [](unsigned char letter) { return std::toupper(letter); });
-        return maker + " " + name;
+        return upper_case(file.parent_path().filename().string()) + " " + name;
     }
 
     void read_rim(const JsonNode& value, int number, optics::PrescribedSurface& surface) {

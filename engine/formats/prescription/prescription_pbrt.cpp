@@ -8,10 +8,12 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/base/infinity.h"
 #include "engine/base/input_error.h"
 #include "engine/base/text.h"
 #include "engine/base/text_encoding.h"
 #include "engine/formats/glass/shipped_glasses.h"
+#include "engine/formats/prescription/design_program.h"
 #include "engine/formats/prescription/load_lens.h"
 #include "engine/formats/prescription/prescription_forms.h"
 #include "engine/formats/prescription/prescription_losses.h"
@@ -41,11 +43,7 @@ std::vector<double> read_numbers(std::string_view line, const std::string& where
 
 class PbrtLens {
   public:
-    explicit PbrtLens(const std::filesystem::path& file) {
-        lens_.file = file;
-        lens_.name = file.stem().string();
-        lens_.source = "the file " + file.filename().string();
-    }
+    explicit PbrtLens(const std::filesystem::path& file) : lens_(prescription_of(file)) {}
 
     optics::Prescription read(std::string_view text) {
         std::vector<std::string> comments;
@@ -89,7 +87,7 @@ class PbrtLens {
         optics::PrescribedSurface surface;
         surface.where = fmt::format("{}: surface {}", where, number);
         surface.is_stop = numbers[0] == 0.0 && index == before;
-        surface.radius_mm = numbers[0] == 0.0 ? std::numeric_limits<double>::infinity() : numbers[0];
+        surface.radius_mm = numbers[0] == 0.0 ? kInfinity : numbers[0];
         surface.thickness_mm = numbers[1];
         surface.semi_diameter_mm = 0.5 * numbers[3];
         if (index != 1.0) {

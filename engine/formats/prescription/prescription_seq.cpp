@@ -3,11 +3,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
+#include "engine/base/infinity.h"
 #include "engine/base/input_error.h"
 #include "engine/base/text.h"
 #include "engine/base/text_encoding.h"
+#include "engine/formats/prescription/design_program.h"
 #include "engine/formats/prescription/prescription_forms.h"
 #include "engine/formats/prescription/seq_file.h"
 #include "engine/formats/prescription/surface_chain.h"
@@ -16,9 +17,6 @@
 namespace lensproof::formats {
 
 namespace {
-
-constexpr double kDegree = std::numbers::pi / 180.0;
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 /// "NBK7_SCHOTT" is SCHOTT's N-BK7: CODE V leaves out the hyphen behind a maker's letter for glasses of its present
 /// line.
@@ -183,13 +181,9 @@ void read_fields(const SeqFile& file, optics::StatedData& stated, Remarks& remar
         const std::size_t count =
             std::max(x == file.fields.end() ? 0 : x->second.size(), y == file.fields.end() ? 0 : y->second.size());
         for (std::size_t i = 0; i < count; ++i) {
-            const double here_x = x != file.fields.end() && i < x->second.size() ? std::abs(x->second[i]) : 0.0;
-            const double here_y = y != file.fields.end() && i < y->second.size() ? std::abs(y->second[i]) : 0.0;
-            const bool is_oblique = is_angle && here_x != 0.0 && here_y != 0.0 && std::max(here_x, here_y) < 90.0;
-            const double angle =
-                is_oblique ? std::atan(std::hypot(std::tan(here_x * kDegree), std::tan(here_y * kDegree))) / kDegree
-                           : std::hypot(here_x, here_y);
-            most = std::max(most, angle);
+            const double here_x = x != file.fields.end() && i < x->second.size() ? x->second[i] : 0.0;
+            const double here_y = y != file.fields.end() && i < y->second.size() ? y->second[i] : 0.0;
+            most = std::max(most, is_angle ? field_angle_deg(here_x, here_y) : std::hypot(here_x, here_y));
         }
         return most;
     };
@@ -247,7 +241,7 @@ void read_zoom(const SeqFile& file, optics::Prescription& prescription, Remarks&
         return;
     }
     SeqFile varied = file;
-    std::vector<std::vector<optics::PrescribedSurface>> tables;
+    std::vector<PrescriptionTable> tables;
     for (int i = 0; i < file.zoom_positions; ++i) {
         const auto at = static_cast<std::size_t>(i);
         for (const auto& [surface, values] : file.zoomed_thicknesses) {
@@ -261,21 +255,10 @@ void read_zoom(const SeqFile& file, optics::Prescription& prescription, Remarks&
         }
         prescription.zoom.push_back(std::move(position));
     }
-    for (std::size_t row = 0; row < prescription.surfaces.size(); ++row) {
-        const auto differs = [&](const auto& table) {
-            return table[row].thickness_mm != prescription.surfaces[row].thickness_mm;
-        };
-        const auto is_misplaced = [&](const auto& table) {
-            return table[row].misalignment != prescription.surfaces[row].misalignment;
-        };
-        for (std::size_t i = 0; std::ranges::any_of(tables, differs) && i < tables.size(); ++i) {
-            prescription.zoom[i].gaps_mm[static_cast<int>(row) + 1] = tables[i][row].thickness_mm;
-        }
-        if (std::ranges::any_of(tables, is_misplaced)) {
-            remarks.add("multi-configuration", optics::Severity::warning, static_cast<int>(row) + 1,
-                        fmt::format("the decentre of surface {} differs between the zoom positions, which is left out",
-                                    row + 1));
-        }
+    for (const int row : take_zoom_gaps(prescription, tables)) {
+        remarks.add(
+            "multi-configuration", optics::Severity::warning, row,
+            fmt::format("the decentre of surface {} differs between the zoom positions, which is left out", row));
     }
 }
 
@@ -284,10 +267,8 @@ void read_zoom(const SeqFile& file, optics::Prescription& prescription, Remarks&
 optics::Prescription parse_seq(const std::string& text, const std::filesystem::path& file) {
     Remarks remarks;
     const SeqFile seq = read_seq_file(to_utf8(text), file, remarks);
-    optics::Prescription prescription;
-    prescription.file = file;
-    prescription.name = seq.title.empty() ? file.stem().string() : seq.title;
-    prescription.source = "the file " + file.filename().string();
+    optics::Prescription prescription = prescription_of(file);
+    prescription.name = seq.title.empty() ? prescription.name : seq.title;
     const int rows = static_cast<int>(seq.surfaces.size()) - (seq.has_image ? 1 : 0);
     std::vector<int> row_of = {0};
     for (int number = 1; number < rows; ++number) {

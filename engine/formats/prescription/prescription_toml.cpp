@@ -4,9 +4,10 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 
+#include "engine/base/infinity.h"
+#include "engine/base/text.h"
 #include "engine/base/toml.h"
 #include "engine/formats/prescription/prescription_forms.h"
 
@@ -15,7 +16,6 @@ namespace lensproof::formats {
 namespace {
 
 constexpr int kMostSurfaces = 1000;
-constexpr double kUnlimited = std::numeric_limits<double>::infinity();
 
 /// A number as it stands, NaN and infinities included: whether it makes sense is for the checker to say.
 double stated_number(TomlTable& table, const std::string& key) {
@@ -104,15 +104,11 @@ optics::PrescribedSurface read_surface(TomlTable& row) {
 }
 
 optics::StatedData read_stated(TomlTable& table) {
-    optics::StatedData stated{
-        .efl_mm = table.optional_number("efl_mm"),
-        .bfl_mm = table.optional_number("bfl_mm"),
-        .f_number = table.optional_number("f_number", kPositive),
-        .half_field_deg = table.optional_number("half_field_deg", kPositive),
-        .image_circle_mm = table.optional_number("image_circle_mm", kPositive),
-        .total_track_mm = table.optional_number("total_track_mm", kPositive),
-        .entrance_pupil_diameter_mm = table.optional_number("entrance_pupil_diameter_mm", kPositive),
-        .source = table.text_or("source", "")};
+    optics::StatedData stated;
+    for (const optics::Claim& claim : optics::kClaims) {
+        stated.*claim.value = table.optional_number(claim.key, claim.is_positive ? kPositive : kAnyNumber);
+    }
+    stated.source = table.text_or("source", "");
     table.finish();
     return stated;
 }
@@ -193,9 +189,8 @@ optics::ZoomPosition read_zoom_position(TomlTable& table, int surfaces) {
     position.name = table.text("name");
     TomlTable gaps = table.table("gaps_mm");
     for (const std::string& key : gaps.keys()) {
-        int surface = 0;
-        const auto [end, error] = std::from_chars(key.data(), key.data() + key.size(), surface);
-        if (error != std::errc() || end != key.data() + key.size() || surface < 1 || surface > surfaces) {
+        const int surface = parse_exact<int>(key).value_or(0);
+        if (surface < 1 || surface > surfaces) {
             gaps.fail(key, fmt::format("expected a surface from 1 to {}, whose gap it is", surfaces));
         }
         position.gaps_mm[surface] = stated_number(gaps, key);
@@ -274,7 +269,7 @@ optics::Prescription parse_toml_prescription(const std::string& text, const std:
     }
     if (top.has("object_distance_mm")) {
         prescription.object_distance_mm =
-            top.infinity("object_distance_mm") > 0 ? kUnlimited : top.number("object_distance_mm", kPositive);
+            top.infinity("object_distance_mm") > 0 ? kInfinity : top.number("object_distance_mm", kPositive);
     }
     if (top.has("wavelengths_nm")) {
         prescription.wavelengths_nm = top.numbers("wavelengths_nm", 0, kPositive);

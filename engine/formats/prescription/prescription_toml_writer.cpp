@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/base/infinity.h"
 #include "engine/base/json.h"
 #include "engine/formats/prescription/prescription_forms.h"
 
@@ -153,7 +154,7 @@ class Rows {
     std::vector<std::string> rows_;
 };
 
-/// What the form cannot hold is noted here on the way.
+/// What the form cannot hold is noted here.
 class Writer {
   public:
     explicit Writer(const optics::Prescription& prescription) : prescription_(prescription) {}
@@ -186,7 +187,7 @@ class Writer {
         if (lens.surroundings == optics::Surroundings::vacuum) {
             line("surroundings", toml_string("vacuum"));
         }
-        if (lens.object_distance_mm != std::numeric_limits<double>::infinity()) {
+        if (lens.object_distance_mm != kInfinity) {
             if (std::isfinite(lens.object_distance_mm) && lens.object_distance_mm > 0.0) {
                 line("object_distance_mm", number(lens.object_distance_mm));
             } else {
@@ -260,7 +261,7 @@ class Writer {
         const std::vector<optics::PrescribedSurface>& rows = prescription_.surfaces;
         std::vector<std::optional<double>> radii;
         for (const optics::PrescribedSurface& row : rows) {
-            const bool is_plain_stop = row.is_stop && row.radius_mm == std::numeric_limits<double>::infinity();
+            const bool is_plain_stop = row.is_stop && row.radius_mm == kInfinity;
             radii.push_back(is_plain_stop ? std::nullopt : std::optional(row.radius_mm));
         }
         std::vector<std::string> cells = aligned("radius_mm", radii);
@@ -308,20 +309,14 @@ class Writer {
 
     void write_claims(const std::string& table, const optics::StatedData& stated) {
         std::string claims;
-        const auto claim = [&](const char* key, const std::optional<double>& value, bool positive) {
-            if (value && std::isfinite(*value) && (*value > 0.0 || !positive)) {
+        for (const auto& [key, member, is_positive] : optics::kClaims) {
+            const std::optional<double>& value = stated.*member;
+            if (value && std::isfinite(*value) && (*value > 0.0 || !is_positive)) {
                 claims += fmt::format("{} = {}\n", key, number(*value));
             } else if (value) {
                 lose("lost-stated", 0, fmt::format("{} = {} is left out of [{}]", key, *value, table));
             }
-        };
-        claim("efl_mm", stated.efl_mm, false);
-        claim("bfl_mm", stated.bfl_mm, false);
-        claim("f_number", stated.f_number, true);
-        claim("half_field_deg", stated.half_field_deg, true);
-        claim("image_circle_mm", stated.image_circle_mm, true);
-        claim("total_track_mm", stated.total_track_mm, true);
-        claim("entrance_pupil_diameter_mm", stated.entrance_pupil_diameter_mm, true);
+        }
         if (!stated.source.empty()) {
             claims += fmt::format("source = {}\n", toml_string(stated.source));
         }

@@ -4,11 +4,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <set>
 
+#include "engine/base/infinity.h"
 #include "engine/base/input_error.h"
 #include "engine/base/text_encoding.h"
+#include "engine/formats/prescription/design_program.h"
 #include "engine/formats/prescription/prescription_forms.h"
 #include "engine/formats/prescription/surface_chain.h"
 #include "engine/formats/prescription/zmx_file.h"
@@ -16,8 +17,6 @@
 namespace lensproof::formats {
 
 namespace {
-
-constexpr double kDegree = std::numbers::pi / 180.0;
 
 /// A coefficient of r^power, mm.
 double in_mm(double coefficient, int power, double unit_mm) {
@@ -86,8 +85,7 @@ void read_shape(optics::PrescribedSurface& row, const ZmxSurface& surface, int n
         normalized_terms(1);
     } else if (surface.type == "TOROIDAL") {
         const double radius_of_rotation = surface.parameter(1);
-        row.radius_x_mm =
-            radius_of_rotation == 0.0 ? std::numeric_limits<double>::infinity() : radius_of_rotation * unit_mm;
+        row.radius_x_mm = radius_of_rotation == 0.0 ? kInfinity : radius_of_rotation * unit_mm;
         for (int i = 2; i <= kParameterTerms; ++i) {
             set(2 * (i - 1), surface.parameter(i));
         }
@@ -198,19 +196,16 @@ void read_aperture(const ZmxFile& file, double value, optics::StatedData& stated
     }
 }
 
-/// Fields as half field angle (angles in x and y add as their tangents) or as image circle.
+/// Fields as half field angle or as image circle.
 void read_fields(const ZmxFile& file, optics::StatedData& stated, Remarks& remarks) {
     const auto stated_count = static_cast<std::size_t>(file.fields);
     std::size_t count = std::max(file.field_x.size(), file.field_y.size());
     count = file.fields > 0 ? std::min(count, stated_count) : count;
     double largest = 0.0;
     for (std::size_t i = 0; i < count; ++i) {
-        const double x = i < file.field_x.size() ? std::abs(file.field_x[i]) : 0.0;
-        const double y = i < file.field_y.size() ? std::abs(file.field_y[i]) : 0.0;
-        const bool is_oblique = file.field_type == 0 && x != 0.0 && y != 0.0 && std::max(x, y) < 90.0;
-        const double here = is_oblique ? std::atan(std::hypot(std::tan(x * kDegree), std::tan(y * kDegree))) / kDegree
-                                       : std::hypot(x, y);
-        largest = std::max(largest, here);
+        const double x = i < file.field_x.size() ? file.field_x[i] : 0.0;
+        const double y = i < file.field_y.size() ? file.field_y[i] : 0.0;
+        largest = std::max(largest, file.field_type == 0 ? field_angle_deg(x, y) : std::hypot(x, y));
     }
     if (largest == 0.0) {
         return;
@@ -248,9 +243,7 @@ std::vector<double> wavelengths_nm(const ZmxFile& file) {
 
 void read_names(const ZmxFile& file, optics::Prescription& prescription) {
     constexpr std::string_view kSource = "Source: ";
-    const std::filesystem::path& path = prescription.file;
-    prescription.name = file.name.empty() ? path.stem().string() : file.name;
-    prescription.source = "the file " + path.filename().string();
+    prescription.name = file.name.empty() ? prescription.name : file.name;
     for (const std::string& note : file.notes) {
         if (note.starts_with(kSource)) {
             prescription.source = note.substr(kSource.size());
@@ -294,7 +287,7 @@ void read_configurations(const ZmxFile& file, optics::Prescription& prescription
     }
     const int last = static_cast<int>(file.surfaces.size()) - 1;
     std::set<std::string> left_out;
-    std::vector<std::vector<optics::PrescribedSurface>> tables;
+    std::vector<PrescriptionTable> tables;
     for (int configuration = 1; configuration <= file.configurations; ++configuration) {
         ZmxFile varied = file;
         optics::ZoomPosition position{.name = fmt::format("configuration {}", configuration)};
@@ -313,19 +306,8 @@ void read_configurations(const ZmxFile& file, optics::Prescription& prescription
         place_rows(tables.back(), chain_of(varied, prescription.file));
         prescription.zoom.push_back(std::move(position));
     }
-    for (std::size_t row = 0; row < prescription.surfaces.size(); ++row) {
-        const auto differs = [&](const std::vector<optics::PrescribedSurface>& table) {
-            return table[row].thickness_mm != prescription.surfaces[row].thickness_mm;
-        };
-        const auto is_misplaced = [&](const std::vector<optics::PrescribedSurface>& table) {
-            return table[row].misalignment != prescription.surfaces[row].misalignment;
-        };
-        for (std::size_t i = 0; std::ranges::any_of(tables, differs) && i < tables.size(); ++i) {
-            prescription.zoom[i].gaps_mm[static_cast<int>(row) + 1] = tables[i][row].thickness_mm;
-        }
-        if (std::ranges::any_of(tables, is_misplaced)) {
-            left_out.insert(fmt::format("the decentre of row {}", row + 1));
-        }
+    for (const int row : take_zoom_gaps(prescription, tables)) {
+        left_out.insert(fmt::format("the decentre of row {}", row));
     }
     if (!left_out.empty()) {
         remarks.add("multi-configuration", optics::Severity::warning, 0,
@@ -339,8 +321,7 @@ void read_configurations(const ZmxFile& file, optics::Prescription& prescription
 optics::Prescription parse_zmx(const std::string& text, const std::filesystem::path& file) {
     Remarks remarks;
     const ZmxFile zmx = read_zmx_file(to_utf8(text), file, remarks);
-    optics::Prescription prescription;
-    prescription.file = file;
+    optics::Prescription prescription = prescription_of(file);
     read_names(zmx, prescription);
     const int image = static_cast<int>(zmx.surfaces.size()) - 1;
     for (int number = 1; number < image; ++number) {

@@ -7,7 +7,9 @@
 #include <numbers>
 #include <tuple>
 
+#include "engine/base/text.h"
 #include "engine/base/text_encoding.h"
+#include "engine/formats/prescription/design_program.h"
 #include "engine/formats/prescription/prescription_forms.h"
 #include "engine/formats/prescription/prescription_losses.h"
 #include "engine/formats/prescription/surface_chain.h"
@@ -85,10 +87,8 @@ class ZmxWriter {
         line("MODE SEQ");
         line("NAME {}", one_line(prescription_.name));
         line("NOTE 0 Source: {}", one_line(prescription_.source));
-        for (std::string_view notes = prescription_.notes; !notes.empty();) {
-            const std::size_t end = std::min(notes.find('\n'), notes.size());
-            line("NOTE 0 {}", one_line(std::string(notes.substr(0, end))));
-            notes.remove_prefix(std::min(notes.size(), end + 1));
+        for (const std::string_view note : lines_of(prescription_.notes)) {
+            line("NOTE 0 {}", one_line(std::string(note)));
         }
         line("UNIT MM X W X CM MR CPMM");
         if (stated.entrance_pupil_diameter_mm) {
@@ -275,14 +275,14 @@ class ZmxWriter {
     }
 
     /// The surfaces at a zoom position, groups written in.
-    [[nodiscard]] std::vector<optics::PrescribedSurface> surfaces_at(std::size_t position) const {
+    [[nodiscard]] PrescriptionTable surfaces_at(std::size_t position) const {
         return without_groups(optics::at_zoom_position(original_, position)).surfaces;
     }
 
     void write_configurations() {
         const std::size_t count = original_.zoom.size();
         line("MNUM {} 1", std::max<std::size_t>(1, count));
-        std::vector<std::vector<optics::PrescribedSurface>> tables;
+        std::vector<PrescriptionTable> tables;
         for (std::size_t position = 0; position < count; ++position) {
             tables.push_back(surfaces_at(position));
             const optics::ZoomPosition& zoom = original_.zoom[position];
@@ -295,17 +295,13 @@ class ZmxWriter {
                  optics::Severity::info);
         }
         for (std::size_t row = 0; row < prescription_.surfaces.size(); ++row) {
-            const auto differs = [&](const auto& table) {
-                return table[row].thickness_mm != prescription_.surfaces[row].thickness_mm;
-            };
-            const auto is_misplaced = [&](const auto& table) {
-                return table[row].misalignment != prescription_.surfaces[row].misalignment;
-            };
-            for (std::size_t i = 0; std::ranges::any_of(tables, differs) && i < tables.size(); ++i) {
+            const bool has_gaps =
+                differs(tables, prescription_.surfaces, row, &optics::PrescribedSurface::thickness_mm);
+            for (std::size_t i = 0; has_gaps && i < tables.size(); ++i) {
                 line("THIC {} {} {} 0 0 0 1 1 1 0 0 \"\" 0", gap_at_[row], i + 1,
                      zmx_number(tables[i][row].thickness_mm));
             }
-            if (std::ranges::any_of(tables, is_misplaced)) {
+            if (differs(tables, prescription_.surfaces, row, &optics::PrescribedSurface::misalignment)) {
                 lose("lost-misalignment", static_cast<int>(row) + 1, "a decentre that differs between zoom positions");
             }
         }

@@ -10,6 +10,7 @@
 #include "engine/base/input_error.h"
 #include "engine/base/text.h"
 #include "engine/formats/prescription/design_command.h"
+#include "engine/formats/prescription/design_program.h"
 #include "engine/formats/prescription/seq_statements.h"
 
 namespace lensproof::formats {
@@ -38,10 +39,6 @@ constexpr std::string_view kTypes[] = {"SPH", "CON", "ASP", "CYL", "YTO", "XTO"}
 constexpr std::string_view kOtherTypes[] = {"AAS", "XYP", "SPS", "SPL", "UDS", "ZRN",
                                             "QBF", "QCN", "NSS", "GRN", "LEM"};
 constexpr std::string_view kAsphereTermNames = "ABCDEFGHJ";  // of r⁴, r⁶, … r²⁰
-
-bool is_among(const auto& words, std::string_view word) {
-    return std::ranges::find(words, word) != std::end(words);
-}
 
 class SeqReader {
   public:

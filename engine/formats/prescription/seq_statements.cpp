@@ -1,7 +1,6 @@
 #include "engine/formats/prescription/seq_statements.h"
 
 #include <algorithm>
-#include <cctype>
 
 #include "engine/base/text.h"
 
@@ -26,9 +25,7 @@ std::string_view take_words(std::string_view line, std::vector<SeqWord>& words) 
             continue;
         }
         const std::size_t end = std::min(line.find_first_of(" \t\r\n;!'\",", 1), line.size());
-        SeqWord word{.text = std::string(line.substr(0, end))};
-        std::ranges::transform(word.text, word.text.begin(),
-                               [](unsigned char letter) { return static_cast<char>(std::toupper(letter)); });
+        SeqWord word{.text = upper_case(line.substr(0, end))};
         if (word.text != ",") {
             words.push_back(std::move(word));
         }

@@ -8,8 +8,8 @@
 
 namespace lensproof::formats {
 
-/// A surface as design programs place it: in a frame that has come about by thicknesses, shifts and tilts along the
-/// way.
+/// A surface as design programs place it: in a frame that has come about by the thicknesses, shifts and tilts before
+/// it.
 struct ChainLink {
     optics::Frame frame;
     double thickness_mm = 0.0;  // as stated behind it

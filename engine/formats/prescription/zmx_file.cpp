@@ -11,6 +11,7 @@
 #include "engine/base/input_error.h"
 #include "engine/base/text.h"
 #include "engine/formats/prescription/design_command.h"
+#include "engine/formats/prescription/design_program.h"
 
 namespace lensproof::formats {
 
@@ -37,10 +38,6 @@ constexpr std::string_view kApertureShapes[] = {"SQAP", "ELAP", "OBSC", "SQOB", 
 
 /// Vignetting factors: Zemax shrinks pupils by them where rims would cut the beams.
 constexpr std::string_view kVignettingFactors[] = {"VDXN", "VDYN", "VCXN", "VCYN", "VANN"};
-
-bool is_among(const auto& words, std::string_view word) {
-    return std::ranges::find(words, word) != std::end(words);
-}
 
 /// Reads one file, line by line.
 class ZmxReader {

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "engine/base/input_error.h"
+#include "tests/complaint.h"
 
 namespace lensproof::spectral {
 namespace {
@@ -13,13 +14,8 @@ Spectrum line(double from_nm, double to_nm, double from_value, double to_value) 
     return {.wavelength_nm = {from_nm, to_nm}, .value = {from_value, to_value}};
 }
 
-std::string complaint_about(const std::string& text) {
-    try {
-        parse_spectra(text, "table.csv", {"a"});
-    } catch (const InputError& error) {
-        return error.what();
-    }
-    return "no complaint";
+std::string complaint_about_table(const std::string& text) {
+    return complaint_about([&] { parse_spectra(text, "table.csv", {"a"}); });
 }
 
 TEST(Spectrum, IsALineBetweenSamplesAndZeroOutside) {
@@ -75,24 +71,24 @@ TEST(SpectrumFile, ReadsTheNamedColumnsInTheOrderAsked) {
 
 TEST(SpectrumFile, MalformedTablesAreRefusedByLine) {
     const std::string head = "# source\nwavelength_nm,a\n";
-    EXPECT_EQ(complaint_about(head + "400,1\n500,2\n"), "no complaint");
-    EXPECT_EQ(complaint_about(head + "400,1\n500,two\n"), "table.csv:4: a is \"two\", expected a finite number");
-    EXPECT_EQ(complaint_about(head + "400,1\n500,nan\n"), "table.csv:4: a is \"nan\", expected a finite number");
-    EXPECT_EQ(complaint_about(head + "400,1\n500,\n"), "table.csv:4: a is \"\", expected a finite number");
-    EXPECT_EQ(complaint_about(head + "400,1\n500,1 2\n"), "table.csv:4: a is \"1 2\", expected a finite number");
-    EXPECT_EQ(complaint_about(head + "400,1\n500\n"),
+    EXPECT_EQ(complaint_about_table(head + "400,1\n500,2\n"), "");
+    EXPECT_EQ(complaint_about_table(head + "400,1\n500,two\n"), "table.csv:4: a is \"two\", expected a finite number");
+    EXPECT_EQ(complaint_about_table(head + "400,1\n500,nan\n"), "table.csv:4: a is \"nan\", expected a finite number");
+    EXPECT_EQ(complaint_about_table(head + "400,1\n500,\n"), "table.csv:4: a is \"\", expected a finite number");
+    EXPECT_EQ(complaint_about_table(head + "400,1\n500,1 2\n"), "table.csv:4: a is \"1 2\", expected a finite number");
+    EXPECT_EQ(complaint_about_table(head + "400,1\n500\n"),
               "table.csv:4: 1 cells, expected 2 as in the header: wavelength_nm,a");
-    EXPECT_EQ(complaint_about(head + "500,1\n400,2\n"),
+    EXPECT_EQ(complaint_about_table(head + "500,1\n400,2\n"),
               "table.csv:4: wavelength_nm is \"400\", expected more than 500, as wavelengths ascend");
-    EXPECT_EQ(complaint_about(head + "0,1\n400,2\n"),
+    EXPECT_EQ(complaint_about_table(head + "0,1\n400,2\n"),
               "table.csv:3: wavelength_nm is \"0\", expected more than 0, as wavelengths ascend");
-    EXPECT_EQ(complaint_about(head + "400,1\n"), "table.csv: 1 rows of numbers, expected at least 2");
-    EXPECT_EQ(complaint_about("wavelength_nm,b\n400,1\n500,1\n"),
+    EXPECT_EQ(complaint_about_table(head + "400,1\n"), "table.csv: 1 rows of numbers, expected at least 2");
+    EXPECT_EQ(complaint_about_table("wavelength_nm,b\n400,1\n500,1\n"),
               "table.csv:1: the header is \"wavelength_nm,b\", expected a column a in it");
-    EXPECT_EQ(complaint_about("nm,a\n400,1\n500,1\n"),
+    EXPECT_EQ(complaint_about_table("nm,a\n400,1\n500,1\n"),
               "table.csv:1: the first column is \"nm\", expected wavelength_nm");
-    EXPECT_EQ(complaint_about("# only\n\n"), "table.csv: is empty, expected a table with a header");
-    EXPECT_EQ(complaint_about(""), "table.csv: is empty, expected a table with a header");
+    EXPECT_EQ(complaint_about_table("# only\n\n"), "table.csv: is empty, expected a table with a header");
+    EXPECT_EQ(complaint_about_table(""), "table.csv: is empty, expected a table with a header");
 }
 
 TEST(SpectrumFile, AMissingFileIsAnInputError) {

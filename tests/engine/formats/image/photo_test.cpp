@@ -210,8 +210,8 @@ class DngFile {
 };
 
 // A Bayer frame (RGGB) of even red, green and blue: 1/8, 1/2 and 1/4 of the way from black (512) to white (16512). Read
-// back, the channels are those very shares: no white balance (which AsShotNeutral asks for), matrix, brightening, curve
-// or turning has touched them.
+// back, the channels are those very fractions: no white balance (which AsShotNeutral asks for), matrix, brightening,
+// curve or turning has touched them.
 TEST(Photo, RawIsLinearAndAsTheSensorSawIt) {
     constexpr int kWidth = 128;
     constexpr int kHeight = 96;

@@ -4,25 +4,19 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <limits>
 
+#include "engine/base/infinity.h"
 #include "engine/base/input_error.h"
+#include "tests/complaint.h"
 
 namespace lensproof::formats {
 namespace {
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 using Parse = optics::Prescription (*)(const std::string&, const std::filesystem::path&);
 
 /// The complaint about a text, or "" when there is none.
 std::string complaint(Parse parse, const std::string& text) {
-    try {
-        parse(text, "folder/lens.x");
-    } catch (const InputError& error) {
-        return error.what();
-    }
-    return "";
+    return complaint_about([&] { parse(text, "folder/lens.x"); });
 }
 
 const optics::Finding* find_remark(const optics::Prescription& lens, const std::string& code, int surface = 0) {

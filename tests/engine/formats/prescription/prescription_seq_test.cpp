@@ -9,6 +9,8 @@
 #include "engine/formats/prescription/prescription_file.h"
 #include "engine/formats/prescription/prescription_forms.h"
 #include "engine/optics/lens.h"
+#include "tests/complaint.h"
+#include "tests/engine/formats/prescription/has_finding.h"
 #include "tests/engine/formats/prescription/same_rays.h"
 
 namespace lensproof::formats {
@@ -18,19 +20,8 @@ optics::Prescription parse(const std::string& text) {
     return parse_seq(text, "test.seq");
 }
 
-bool has_finding(const optics::Prescription& prescription, const std::string& code, const std::string& words) {
-    return std::ranges::any_of(prescription.remarks, [&](const optics::Finding& finding) {
-        return finding.code == code && finding.message.find(words) != std::string::npos;
-    });
-}
-
 std::string complaint(const std::string& text) {
-    try {
-        parse(text);
-    } catch (const InputError& error) {
-        return error.what();
-    }
-    return "";
+    return complaint_about([&] { parse(text); });
 }
 
 const std::string kTessar = R"(RDM;LEN      "VERSION: 10.7       LENS VERSION: 80"

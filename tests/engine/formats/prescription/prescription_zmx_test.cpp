@@ -3,13 +3,16 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
+#include "engine/base/angle.h"
+#include "engine/base/infinity.h"
 #include "engine/base/input_error.h"
 #include "engine/base/text_encoding.h"
 #include "engine/formats/prescription/prescription_file.h"
 #include "engine/formats/prescription/prescription_forms.h"
 #include "engine/optics/lens.h"
+#include "tests/complaint.h"
+#include "tests/engine/formats/prescription/has_finding.h"
 #include "tests/engine/formats/prescription/same_rays.h"
 
 namespace lensproof::formats {
@@ -38,19 +41,8 @@ optics::Prescription parse(const std::string& text) {
     return parse_zmx(text, "test.zmx");
 }
 
-bool has_finding(const optics::Prescription& prescription, const std::string& code, const std::string& words) {
-    return std::ranges::any_of(prescription.remarks, [&](const optics::Finding& finding) {
-        return finding.code == code && finding.message.find(words) != std::string::npos;
-    });
-}
-
 std::string complaint(const std::string& text) {
-    try {
-        parse(text);
-    } catch (const InputError& error) {
-        return error.what();
-    }
-    return "";
+    return complaint_about([&] { parse(text); });
 }
 
 /// The events of a ray at 587.5618 nm, the rims not clipping.
@@ -74,7 +66,7 @@ TEST(Zmx, TiltedPlateShiftsTheAxialRay) {
                              surf(5, coordinate_break({0, 0, -20, 0, 0, 1}, 8)) + surf(6, "  DISZ 0\r\n");
     const auto events = events_of(parse(text), {{0, 0, -3}, {0, 0, 1}});
     ASSERT_EQ(events.size(), 3U);
-    const double outside = 20.0 * std::numbers::pi / 180.0;
+    const double outside = radians(20.0);
     const double inside = std::asin(std::sin(outside) / kIndex);
     const double shift = kThickness * std::sin(outside - inside) / std::cos(inside);
     EXPECT_NEAR(events[2].ray.origin.y, -shift, 300 * kUlp);
@@ -290,7 +282,7 @@ TEST(Zmx, EveryShapeComesBack) {
     lens.surfaces[2].asphere[9] = 1e-26;
     lens.surfaces[4].radius_x_mm = -70.0;
     lens.surfaces[4].asphere[1] = 1e-7;
-    lens.surfaces[5].radius_x_mm = std::numeric_limits<double>::infinity();
+    lens.surfaces[5].radius_x_mm = kInfinity;
     lens.surfaces[6].medium = {.n_d = 1.7, .V_d = 50.0};
     lens.surfaces[7].rim_mm = 18.0;
     lens.object_distance_mm = 2000.0;
