@@ -4,7 +4,6 @@
 #include <array>
 #include <cmath>
 #include <functional>
-#include <numbers>
 #include <opencv2/calib3d.hpp>
 #include <opencv2/imgproc.hpp>
 #include <optional>
@@ -15,6 +14,7 @@
 #include "calibration/detection/detect_charuco.h"
 #include "calibration/detection/detect_lattice.h"
 #include "calibration/detection/working_copy.h"
+#include "engine/base/angle.h"
 #include "engine/base/input_error.h"
 
 namespace lensproof::calibration {
@@ -87,7 +87,7 @@ bool inside(const Points& points, const cv::Mat& picture) {
 
 bool find_bent(const cv::Mat& picture, const std::vector<Finder>& finders, Points& points) {
     for (const double corner_angle_deg : {50.0, 70.0, 85.0}) {
-        const Unbent unbent(picture, corner_angle_deg * std::numbers::pi / 180.0);
+        const Unbent unbent(picture, radians(corner_angle_deg));
         for (const Finder& find : finders) {
             if (find(unbent.picture, points)) {
                 for (cv::Point2f& point : points) {

@@ -6,6 +6,8 @@
 #include <optional>
 #include <variant>
 
+#include "engine/base/angle.h"
+
 namespace lensproof::calibration {
 namespace {
 
@@ -90,7 +92,7 @@ class Grid {
 
 std::vector<EdgeRegion> edges_of_squares(const ChartPoints& points, const scene::Chart& chart,
                                          const scene::SlantedEdges& squares) {
-    const double angle = squares.angle_deg * std::numbers::pi / 180.0;
+    const double angle = radians(squares.angle_deg);
     const double half = 0.5 * squares.square_mm;
     const double gap = squares.pitch_mm - squares.square_mm * (std::abs(std::cos(angle)) + std::abs(std::sin(angle)));
     const double depth = std::min(kDepthShare * squares.square_mm, kGapShare * gap);

@@ -5,9 +5,9 @@
 #include <cmath>
 #include <functional>
 #include <limits>
-#include <numbers>
 
 #include "calibration/statistics/linear_fit.h"
+#include "engine/base/angle.h"
 #include "engine/base/input_error.h"
 
 namespace lensproof::calibration {
@@ -39,7 +39,7 @@ std::vector<BlurRow> blur_rows(const std::vector<EdgeMtf>& edges, const Vec2d& c
         const double f = edge.mtf50->cycles_per_px;
         const double dx = edge.centre_px.x - centre.x;
         const double dy = edge.centre_px.y - centre.y;
-        const double turn = edge.normal_deg * std::numbers::pi / 180.0 - std::atan2(dy, dx);
+        const double turn = radians(edge.normal_deg) - std::atan2(dy, dx);
         rows.push_back({.height = std::hypot(dx, dy) / half_diagonal,
                         .tangential = std::cos(turn) * std::cos(turn),
                         .value = 1.0 / (f * f),

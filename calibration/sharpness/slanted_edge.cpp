@@ -9,6 +9,7 @@
 
 #include "calibration/sharpness/edge_alignment.h"
 #include "calibration/statistics/student.h"
+#include "engine/base/angle.h"
 
 namespace lensproof::calibration {
 namespace {
@@ -299,7 +300,7 @@ std::variant<EdgeMtf, EdgeRefusal> measure_edge(const formats::Image& image, int
     const MeasuredMtf measured(EdgeTransform(*profile, window),
                                segment_residuals(edge, even, *profile, gradient ? &*gradient : nullptr));
     EdgeMtf result{.centre_px = edge.centre_px,
-                   .normal_deg = std::atan2(edge.normal.y, edge.normal.x) * 180.0 / std::numbers::pi,
+                   .normal_deg = degrees(std::atan2(edge.normal.y, edge.normal.x)),
                    .rise_px = edge.rise_px,
                    .bend_px = edge.bend_px,
                    .mtf = {},

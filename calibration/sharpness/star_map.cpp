@@ -4,6 +4,8 @@
 #include <Eigen/LU>
 #include <numbers>
 
+#include "engine/base/angle.h"
+
 namespace lensproof::calibration {
 namespace {
 
@@ -89,7 +91,7 @@ EllipseOutline outline(const StarMap& map, double radius_mm) {
     const double level = -(conic(2, 2) + conic.topRightCorner<2, 1>().dot(middle));
     const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> axes(form);  // ascending: the longer axis first
     const Eigen::Vector2d along = axes.eigenvectors().col(0);
-    double angle = std::atan2(along(1), along(0)) * 180.0 / std::numbers::pi;
+    double angle = degrees(std::atan2(along(1), along(0)));
     angle -= angle > 90.0 ? 180.0 : angle <= -90.0 ? -180.0 : 0.0;
     return {.centre_px = {map.centre_px.x + middle(0), map.centre_px.y + middle(1)},
             .long_half_axis_px = std::sqrt(level / axes.eigenvalues()(0)),

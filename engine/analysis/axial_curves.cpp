@@ -20,24 +20,20 @@ double axial_semi_diameter(const optics::TraceLens<double>& lens, const optics::
 std::vector<AxialPoint> longitudinal_aberration(const optics::TraceLens<double>& lens, const optics::FieldBundle& axis,
                                                 double semi_diameter, int count) {
     std::vector<AxialPoint> points;
-    const double efl = optics::paraxial_data(lens).efl;
     if (const std::optional<RayPencil> pencil = ray_pencil(lens, axis)) {
         points.push_back({0.0, 0.0, astigmatic_foci(*pencil, lens.image_z).tangential});
     }
     for (int i = 1; i < count && semi_diameter > 0.0; ++i) {
         const double zone = static_cast<double>(i) / (count - 1);
         const double height = zone * semi_diameter;
-        const auto traced =
-            optics::trace<optics::Direction::forward, optics::Rims::follow>(lens, axis.ray({0.0, height}));
-        if (traced.status == optics::RayStatus::missed ||
-            traced.status == optics::RayStatus::total_internal_reflection) {
+        const auto traced = optics::trace_past_rims(lens, axis.ray({0.0, height}));
+        if (!optics::gets_through(traced.status)) {
             continue;
         }
         const Ray<double>& ray = traced.ray;
         // Parallel to the axis: infinitely far.
         const double crossing = ray.origin.z - ray.origin.y * ray.direction.z / ray.direction.y;
-        const double offence = axis.is_near() ? 0.0 : -height / ray.direction.y - efl;
-        points.push_back({zone, height, crossing - lens.image_z, offence});
+        points.push_back({zone, height, crossing - lens.image_z});
     }
     return points;
 }

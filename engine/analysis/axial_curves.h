@@ -7,10 +7,9 @@
 namespace lensproof::analysis {
 
 struct AxialPoint {
-    double zone;                // share of the beam's semi-diameter, 0 … 1
-    double height;              // mm across the axis at the first surface
-    double focus;               // mm from the image plane to where the ray crosses the axis, positive beyond
-    double sine_offence = 0.0;  // h / sin U' − f, mm, for an object at infinity: 0 where the sine condition holds
+    double zone;    // fraction of the beam's semi-diameter, 0 … 1
+    double height;  // mm across the axis at the first surface
+    double focus;   // mm from the image plane to where the ray crosses the axis, positive beyond
 };
 
 /// The axial beam's semi-diameter, mm: the offset of the last ray that passes every rim, along +y.

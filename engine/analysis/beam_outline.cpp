@@ -18,12 +18,4 @@ optics::RegionOutline beam_outline(const optics::TraceLens<double>& lens, const 
     return optics::region_outline(region, {.start = {}, .reach = reach, .is_mirror = is_mirror});
 }
 
-std::vector<BeamNode> beam_quadrature(const optics::RegionOutline& outline, int rings) {
-    std::vector<BeamNode> nodes;
-    for (const optics::RegionNode& node : optics::region_quadrature(outline, rings)) {
-        nodes.push_back({node.point, node.weight});
-    }
-    return nodes;
-}
-
 }  // namespace lensproof::analysis

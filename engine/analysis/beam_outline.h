@@ -1,4 +1,4 @@
-// engine/analysis/beam_outline.h — the part of an object point's light that passes every rim, and sums over it.
+// engine/analysis/beam_outline.h — the part of an object point's light that passes every rim.
 #pragma once
 #include <vector>
 
@@ -7,12 +7,6 @@
 
 namespace lensproof::analysis {
 
-/// A node of a sum over the beam.
-struct BeamNode {
-    Vec2d offset;   // mm, as FieldBundle::ray takes it
-    double weight;  // mm², of the beam's cross-section
-};
-
 /// The outline of the offsets (mm across the chief ray, FieldBundle) whose rays pass every rim. For an object at
 /// infinity its area is the beam's cross-section; for a near one it is that of the cone in the plane across the chief
 /// ray at its point on the first surface. Limits are surfaces, as `rim_margin` numbers them. Empty where no ray passes.
@@ -20,8 +14,5 @@ struct BeamNode {
 /// Where the chief ray itself is clipped, a passing ray is looked for over the first element. The beam is taken to be
 /// star-shaped, see RegionOutline: the far side of a central obstruction is not seen.
 optics::RegionOutline beam_outline(const optics::TraceLens<double>& lens, const optics::FieldBundle& bundle);
-
-/// Nodes over the beam: `rings` of them along each azimuth of its outline. The weights add up to its area, mm².
-std::vector<BeamNode> beam_quadrature(const optics::RegionOutline& outline, int rings);
 
 }  // namespace lensproof::analysis

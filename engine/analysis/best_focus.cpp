@@ -9,10 +9,10 @@
 #include <cmath>
 #include <complex>
 #include <cstdint>
-#include <limits>
 #include <numbers>
 
 #include "engine/analysis/mtf.h"
+#include "engine/base/infinity.h"
 #include "engine/base/input_error.h"
 #include "engine/optics/paraxial.h"
 
@@ -28,15 +28,15 @@ struct Hit {
     Vec2d slope;     // dx/dz, dy/dz less the chief ray's, which the image point moves along
     Vec3d direction;
     double path;
-    double weight;  // share in the field's light
+    double weight;  // in the field's light
 };
 
 std::vector<Hit> hits_of(const PolychromaticField& field, const PolychromaticField::Part& part,
-                         const std::vector<BeamNode>& nodes) {
+                         const std::vector<optics::RegionNode>& nodes) {
     const Vec3d& chief = field.chief_direction;
     std::vector<Hit> hits;
-    for (const BeamNode& node : nodes) {
-        if (const std::optional<ImageRay> ray = image_ray(part, field, node.offset)) {
+    for (const optics::RegionNode& node : nodes) {
+        if (const std::optional<ImageRay> ray = image_ray(part, field, node.point)) {
             const Vec3d& along = ray->direction;
             hits.push_back({ray->aberration,
                             {along.x / along.z - chief.x / chief.z, along.y / along.z - chief.y / chief.z},
@@ -51,7 +51,7 @@ std::vector<Hit> hits_of(const PolychromaticField& field, const PolychromaticFie
 std::vector<Hit> hits_of(const PolychromaticField& field) {
     std::vector<Hit> hits;
     for (const PolychromaticField::Part& part : field.parts) {
-        const std::vector<Hit> more = hits_of(field, part, beam_quadrature(part.outline, kRings));
+        const std::vector<Hit> more = hits_of(field, part, optics::region_quadrature(part.outline, kRings));
         hits.insert(hits.end(), more.begin(), more.end());
     }
     return hits;
@@ -75,9 +75,9 @@ Crossing crossing_of(const std::vector<Hit>& hits) {
     double sum = 0.0;
     double squares = 0.0;
     for (const Hit& hit : hits) {
-        const double slope2 = hit.slope.x * hit.slope.x + hit.slope.y * hit.slope.y;
+        const double slope2 = dot(hit.slope, hit.slope);
         if (slope2 > 0.0) {
-            const double z = -(hit.position.x * hit.slope.x + hit.position.y * hit.slope.y) / slope2;
+            const double z = -dot(hit.position, hit.slope) / slope2;
             weights += hit.weight * slope2;
             sum += hit.weight * slope2 * z;
             squares += hit.weight * slope2 * z * z;
@@ -158,15 +158,15 @@ double spot_focus_shift(std::span<const WeightedField> fields) {
         Vec2d slope{};
         double sum = 0.0;
         for (const Hit& hit : hits) {
-            position = {position.x + hit.weight * hit.position.x, position.y + hit.weight * hit.position.y};
-            slope = {slope.x + hit.weight * hit.slope.x, slope.y + hit.weight * hit.slope.y};
+            position = position + hit.weight * hit.position;
+            slope = slope + hit.weight * hit.slope;
             sum += hit.weight;
         }
         for (const Hit& hit : hits) {
-            const Vec2d p{hit.position.x - position.x / sum, hit.position.y - position.y / sum};
-            const Vec2d s{hit.slope.x - slope.x / sum, hit.slope.y - slope.y / sum};
-            covariance += weighted.weight * hit.weight * (p.x * s.x + p.y * s.y);
-            variance += weighted.weight * hit.weight * (s.x * s.x + s.y * s.y);
+            const Vec2d p = hit.position - position / sum;
+            const Vec2d s = hit.slope - slope / sum;
+            covariance += weighted.weight * hit.weight * dot(p, s);
+            variance += weighted.weight * hit.weight * dot(s, s);
         }
     }
     return required(-covariance, variance);
@@ -178,7 +178,8 @@ double wavefront_focus_shift(std::span<const WeightedField> fields) {
     for (const WeightedField& weighted : fields) {
         const Vec3d& chief = weighted.field.chief_direction;
         for (const PolychromaticField::Part& part : weighted.field.parts) {
-            const std::vector<Hit> hits = hits_of(weighted.field, part, beam_quadrature(part.outline, kRings));
+            const std::vector<Hit> hits =
+                hits_of(weighted.field, part, optics::region_quadrature(part.outline, kRings));
             const auto count = static_cast<Eigen::Index>(hits.size());
             if (count < 4) {
                 continue;
@@ -204,7 +205,7 @@ double wavefront_focus_shift(std::span<const WeightedField> fields) {
 
 double mtf_focus_shift(std::span<const WeightedField> fields, double frequency) {
     double cutoff = 0.0;
-    double nearest = std::numeric_limits<double>::infinity();
+    double nearest = kInfinity;
     double farthest = -nearest;
     std::vector<std::pair<FieldModulation, double>> modulations;
     for (const WeightedField& weighted : fields) {

@@ -15,7 +15,7 @@ enum class FocusCriterion {
     mtf,        // highest mean of tangential and sagittal MTF at a frequency
 };
 
-/// A field and its share in the decision.
+/// A field and its weight in the decision.
 struct WeightedField {
     PolychromaticField field;
     double weight = 1.0;

@@ -14,7 +14,7 @@ std::vector<FieldCurvePoint> field_curves(const ColourOfLens& colour, optics::Pr
                                           std::span<const double> fields, double object_distance) {
     std::vector<FieldCurvePoint> curve;
     for (const double field : fields) {
-        const auto bundle = optics::field_bundle(colour.chief_rays, colour.chief_rays, field, object_distance);
+        const auto bundle = optics::field_bundle(colour.chief_rays, field, object_distance);
         const auto pencil = bundle ? ray_pencil(colour.lens, *bundle) : std::nullopt;
         if (pencil) {
             curve.push_back({.field_angle = field,
@@ -30,7 +30,7 @@ std::vector<LateralColourPoint> lateral_colour(std::span<const ColourOfLens> col
                                                std::span<const double> fields, double object_distance) {
     std::vector<LateralColourPoint> curve;
     for (const double field : fields) {
-        const auto aimed = optics::field_bundle(reference.chief_rays, reference.chief_rays, field, object_distance);
+        const auto aimed = optics::field_bundle(reference.chief_rays, field, object_distance);
         if (!aimed) {
             continue;
         }
@@ -50,7 +50,7 @@ std::vector<LateralColourPoint> lateral_colour(std::span<const ColourOfLens> col
 std::vector<IlluminationPoint> illumination_curve(const ColourOfLens& colour, const ColourOfLens& reference,
                                                   std::span<const double> fields, double object_distance) {
     const auto light_at = [&](double field) -> std::optional<std::pair<FieldLight, double>> {
-        const auto aimed = optics::field_bundle(reference.chief_rays, reference.chief_rays, field, object_distance);
+        const auto aimed = optics::field_bundle(reference.chief_rays, field, object_distance);
         const auto own = aimed ? optics::same_object(*aimed, colour.chief_rays) : std::nullopt;
         if (!own) {
             return std::nullopt;

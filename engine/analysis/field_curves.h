@@ -6,6 +6,7 @@
 #include "engine/analysis/distortion.h"
 #include "engine/analysis/field_light.h"
 #include "engine/analysis/ray_pencil.h"
+#include "engine/base/infinity.h"
 #include "engine/optics/lens.h"
 
 namespace lensproof::analysis {
@@ -35,8 +36,7 @@ struct FieldCurvePoint {
 
 /// Astigmatism, field curvature and distortion. Fields without a chief ray are left out.
 std::vector<FieldCurvePoint> field_curves(const ColourOfLens& colour, optics::Projection projection,
-                                          std::span<const double> fields,
-                                          double object_distance = std::numeric_limits<double>::infinity());
+                                          std::span<const double> fields, double object_distance = kInfinity);
 
 struct LateralColourPoint {
     double field_angle;         // radians
@@ -46,8 +46,7 @@ struct LateralColourPoint {
 
 /// Lateral colour of every colour against `reference`. Fields that a colour's chief ray does not reach are left out.
 std::vector<LateralColourPoint> lateral_colour(std::span<const ColourOfLens> colours, const ColourOfLens& reference,
-                                               std::span<const double> fields,
-                                               double object_distance = std::numeric_limits<double>::infinity());
+                                               std::span<const double> fields, double object_distance = kInfinity);
 
 struct IlluminationPoint {
     double field_angle;   // radians
@@ -57,7 +56,6 @@ struct IlluminationPoint {
 
 /// Vignetting and relative illumination at the reference chief rays' image points.
 std::vector<IlluminationPoint> illumination_curve(const ColourOfLens& colour, const ColourOfLens& reference,
-                                                  std::span<const double> fields,
-                                                  double object_distance = std::numeric_limits<double>::infinity());
+                                                  std::span<const double> fields, double object_distance = kInfinity);
 
 }  // namespace lensproof::analysis

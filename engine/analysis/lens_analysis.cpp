@@ -2,17 +2,15 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include "engine/analysis/field_curves.h"
 #include "engine/analysis/spot.h"
 #include "engine/analysis/wavefront.h"
+#include "engine/base/angle.h"
 
 namespace lensproof::analysis {
 
 namespace {
-
-constexpr double kDegree = std::numbers::pi / 180.0;
 
 /// A lens at one wavelength, with the axis's light that every field's is compared to.
 struct AnalysedColour {
@@ -21,8 +19,7 @@ struct AnalysedColour {
 
     AnalysedColour(const optics::Lens& lens, double wavelength_nm, const AnalysisSettings& settings)
         : colour(lens, wavelength_nm) {
-        if (const auto axial =
-                optics::field_bundle(colour.chief_rays, colour.chief_rays, 0.0, settings.object_distance)) {
+        if (const auto axial = optics::field_bundle(colour.chief_rays, 0.0, settings.object_distance)) {
             axis = field_light(colour.lens, *axial, axial->chief.image_point);
         }
     }
@@ -36,7 +33,7 @@ void add_image(FieldAnalysis& row, const ColourOfLens& colour, const optics::Fie
     row.spot_centroid = spot.centroid;
     if (const auto sphere = reference_sphere(colour.lens, bundle)) {
         const Wavefront waves =
-            wavefront(colour.lens, colour.wavelength_nm, bundle, *sphere, beam_quadrature(beam, rings));
+            wavefront(colour.lens, colour.wavelength_nm, bundle, *sphere, optics::region_quadrature(beam, rings));
         row.wavefront_rms_waves = wavefront_errors(waves).rms;
     }
 }
@@ -104,8 +101,7 @@ LensAnalysis analyze_lens(const optics::Lens& lens, const AnalysisSettings& sett
                                   optics::at_wavelength<double>(lens, *longest), largest_field, from_front);
     analysis.lagrange_invariant = optics::lagrange_invariant(reference.lens, largest_field);
     for (const double field : settings.fields_deg) {
-        const auto bundle =
-            optics::field_bundle(reference.chief_rays, reference.chief_rays, field * kDegree, settings.object_distance);
+        const auto bundle = optics::field_bundle(reference.chief_rays, field * kDegree, settings.object_distance);
         for (const AnalysedColour& colour : colours) {
             analysis.fields.push_back(analyze_field(field, colour, bundle, lens.projection, settings.rings));
         }
@@ -124,7 +120,7 @@ std::vector<std::optional<PolychromaticField>> polychromatic_fields(const optics
     std::vector<std::optional<PolychromaticField>> fields;
     fields.reserve(settings.fields_deg.size());
     for (const double field : settings.fields_deg) {
-        const auto bundle = optics::field_bundle(chief_rays, chief_rays, field * kDegree, settings.object_distance);
+        const auto bundle = optics::field_bundle(chief_rays, field * kDegree, settings.object_distance);
         fields.push_back(
             bundle ? std::optional(polychromatic_field(lens, *bundle, settings.reference_wavelength_nm, wavelengths))
                    : std::nullopt);

@@ -1,12 +1,12 @@
 // engine/analysis/lens_analysis.h — a lens's numbers over field and wavelength, as `lensproof analyze` prints them.
 #pragma once
-#include <limits>
 #include <optional>
 #include <vector>
 
 #include "engine/analysis/polychromatic_field.h"
 #include "engine/analysis/seidel.h"
 #include "engine/analysis/working_f_number.h"
+#include "engine/base/infinity.h"
 #include "engine/optics/lens.h"
 #include "engine/optics/paraxial.h"
 
@@ -17,9 +17,8 @@ struct AnalysisSettings {
     std::vector<double> wavelengths_nm;    // at least one
     double reference_wavelength_nm = 0.0;  // need not be among them
     std::vector<double> fields_deg;        // at least one, −180 < θ < 180
-    double object_distance =
-        std::numeric_limits<double>::infinity();  // in front of z = 0, the table's first vertex, mm
-    int rings = 12;                               // of the quadrature over a beam
+    double object_distance = kInfinity;    // in front of z = 0, the table's first vertex, mm
+    int rings = 12;                        // of the quadrature over a beam
 };
 
 /// One field at one wavelength. What does not exist, such as a chief ray beyond the field, is nothing; mm.

@@ -56,7 +56,7 @@ class Transfer {
     }
 
   private:
-    /// Normalised by the beam's energy, which is its value at 0: cells at the rim, which the product of two shares
+    /// Normalised by the beam's energy, which is its value at 0: cells at the rim, which the product of two fractions
     /// would count too little there, are whole in the energy.
     Complex autocorrelation(int shear) {
         if (shear == 0) {
@@ -94,11 +94,11 @@ Vec2d centroid(const SampledPupil& pupil) {
     Vec2d sum{};
     double weight = 0.0;
     for (std::size_t i = 0; i < pupil.amplitude.size(); ++i) {
-        const double share = pupil.amplitude[i] * pupil.amplitude[i];
-        sum = {sum.x + share * pupil.aberration[i].x, sum.y + share * pupil.aberration[i].y};
-        weight += share;
+        const double light = pupil.amplitude[i] * pupil.amplitude[i];
+        sum = sum + light * pupil.aberration[i];
+        weight += light;
     }
-    return {sum.x / weight, sum.y / weight};
+    return sum / weight;
 }
 
 MtfCurve empty_curve(std::span<const double> frequencies) {
@@ -181,15 +181,15 @@ MtfCurve geometric_mtf(const PolychromaticField& field, std::span<const double> 
         std::vector<std::pair<Vec2d, double>> hits;
         std::optional<Vec2d> last;
         int count = 0;
-        for (const BeamNode& node : polar_nodes(part, field.bundle, settings.azimuths, settings.rings)) {
-            const std::optional<ImageRay> ray = image_ray(part, field, node.offset);
+        for (const optics::RegionNode& node : polar_nodes(part, field.bundle, settings.azimuths, settings.rings)) {
+            const std::optional<ImageRay> ray = image_ray(part, field, node.point);
             last = count++ % settings.rings == 0 ? std::nullopt : last;
             if (!ray) {
                 last.reset();
                 continue;
             }
             if (last) {
-                farthest = std::max(farthest, std::hypot(ray->aberration.x - last->x, ray->aberration.y - last->y));
+                farthest = std::max(farthest, length(ray->aberration - *last));
             }
             last = ray->aberration;
             hits.emplace_back(ray->aberration, node.weight);

@@ -4,8 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
+#include "engine/base/angle.h"
+#include "engine/base/bisect.h"
 #include "engine/base/input_error.h"
 #include "engine/optics/rim_margin.h"
 
@@ -13,7 +14,7 @@ namespace lensproof::analysis {
 
 namespace {
 
-constexpr double kTurn = 2.0 * std::numbers::pi;
+constexpr double kTurn = 2.0 * kPi;
 
 /// From the plane in which the outline's radii are straight to offsets (RegionOutline::bend).
 Vec2d bent(const optics::RegionOutline& outline, Vec2d straight) {
@@ -39,14 +40,13 @@ class Outline {
     /// From the centre to the rim.
     [[nodiscard]] Vec2d edge_at(double azimuth) const {
         const Vec2d along = along_at(azimuth);
-        const double distance = optics::region_edge(region_, centre_, along).distance;
-        return {distance * along.x, distance * along.y};
+        return optics::region_edge(region_, centre_, along).distance * along;
     }
 
     /// d area = factor · t dt d azimuth, t running from 0 to 1 along an edge.
     [[nodiscard]] double area_factor(double azimuth, Vec2d edge) const {
         const Vec2d along = along_at(azimuth);
-        const double stretched = dot2(edge, along) / dot2(along, along);
+        const double stretched = dot(edge, along) / dot(along, along);
         return stretch_.x * stretch_.y * stretched * stretched;
     }
 
@@ -58,13 +58,8 @@ class Outline {
         for (int i = 1; i <= azimuths; ++i) {
             const int here = limit_at(kTurn * i / azimuths);
             if (here != last) {
-                double before = kTurn * (i - 1) / azimuths;
-                double behind = kTurn * i / azimuths;
-                for (int halving = 0; halving < 30; ++halving) {
-                    const double middle = 0.5 * (before + behind);
-                    (limit_at(middle) == last ? before : behind) = middle;
-                }
-                found.push_back(before);
+                const Bracket corner{kTurn * (i - 1) / azimuths, kTurn * i / azimuths};
+                found.push_back(bisected(corner, 30, [&](double at) { return limit_at(at) == last; }).inside);
             }
             last = here;
         }
@@ -72,7 +67,6 @@ class Outline {
     }
 
   private:
-    static double dot2(Vec2d a, Vec2d b) { return a.x * b.x + a.y * b.y; }
     [[nodiscard]] Vec2d along_at(double azimuth) const {
         return {stretch_.x * std::cos(azimuth), stretch_.y * std::sin(azimuth)};
     }
@@ -96,20 +90,19 @@ PolychromaticField polychromatic_field(const optics::Lens& lens, const optics::F
         return field;
     }
     field.sphere = *sphere;
-    field.chief_direction =
-        optics::trace<optics::Direction::forward, optics::Rims::follow>(reference, bundle.ray({})).ray.direction;
+    field.chief_direction = optics::trace_past_rims(reference, bundle.ray({})).ray.direction;
     double total = 0.0;
-    for (const WeightedWavelength& share : wavelengths) {
-        if (!(share.weight >= 0.0) || !std::isfinite(share.weight)) {
-            throw InputError(fmt::format("the weight of {} nm is {}: expected 0 or a positive number",
-                                         share.wavelength_nm, share.weight));
+    for (const WeightedWavelength& of : wavelengths) {
+        if (!(of.weight >= 0.0) || !std::isfinite(of.weight)) {
+            throw InputError(
+                fmt::format("the weight of {} nm is {}: expected 0 or a positive number", of.wavelength_nm, of.weight));
         }
-        optics::TraceLens<double> traced = optics::at_wavelength<double>(lens, share.wavelength_nm);
+        optics::TraceLens<double> traced = optics::at_wavelength<double>(lens, of.wavelength_nm);
         optics::RegionOutline outline = beam_outline(traced, bundle);
-        if (share.weight > 0.0 && outline.area > 0.0) {
-            const double weight = share.weight * outline.area;
+        if (of.weight > 0.0 && outline.area > 0.0) {
+            const double weight = of.weight * outline.area;
             total += weight;
-            field.parts.push_back({share.wavelength_nm, weight, std::move(traced), std::move(outline)});
+            field.parts.push_back({of.wavelength_nm, weight, std::move(traced), std::move(outline)});
         }
     }
     for (PolychromaticField::Part& part : field.parts) {
@@ -118,21 +111,20 @@ PolychromaticField polychromatic_field(const optics::Lens& lens, const optics::F
     return field;
 }
 
-std::vector<BeamNode> polar_nodes(const PolychromaticField::Part& part, const optics::FieldBundle& bundle, int azimuths,
-                                  int rings) {
+std::vector<optics::RegionNode> polar_nodes(const PolychromaticField::Part& part, const optics::FieldBundle& bundle,
+                                            int azimuths, int rings) {
     if (part.outline.is_empty()) {
         return {};
     }
     const Outline outline(part, bundle);
-    std::vector<BeamNode> nodes;
+    std::vector<optics::RegionNode> nodes;
     const optics::GaussRule radial = optics::gauss_legendre(rings);
     const auto add = [&](double azimuth, double width) {
         const Vec2d edge = outline.edge_at(azimuth);
         const double wedge = width * outline.area_factor(azimuth, edge);
         for (std::size_t k = 0; k < radial.nodes.size(); ++k) {
             const double t = radial.nodes[k];
-            const Vec2d straight{part.outline.centre.x + t * edge.x, part.outline.centre.y + t * edge.y};
-            nodes.push_back({bent(part.outline, straight), wedge * radial.weights[k] * t});
+            nodes.push_back({bent(part.outline, part.outline.centre + t * edge), wedge * radial.weights[k] * t});
         }
     };
     const std::vector<double> corners = outline.corners(azimuths);
@@ -154,8 +146,7 @@ std::vector<BeamNode> polar_nodes(const PolychromaticField::Part& part, const op
 }
 
 std::optional<ImageRay> image_ray(const PolychromaticField::Part& part, const PolychromaticField& field, Vec2d offset) {
-    const optics::TracedRay<double> traced =
-        optics::trace<optics::Direction::forward, optics::Rims::follow>(part.lens, field.bundle.ray(offset));
+    const optics::TracedRay<double> traced = optics::trace_past_rims(part.lens, field.bundle.ray(offset));
     const ReferenceSphere plane{.centre = field.sphere.centre, .curvature = 0.0};
     const std::optional<SphereMeeting> meeting = meet_sphere(part.lens, plane, traced);
     if (!meeting || !(traced.ray.direction.z > 0.0)) {

@@ -9,7 +9,7 @@
 
 namespace lensproof::analysis {
 
-/// A wavelength and its share of the light; shares need not add up to 1.
+/// A wavelength and how much of the light it has; the weights need not add up to 1.
 struct WeightedWavelength {
     double wavelength_nm = 0.0;
     double weight = 1.0;
@@ -21,7 +21,7 @@ struct WeightedWavelength {
 struct PolychromaticField {
     struct Part {
         double wavelength_nm = 0.0;
-        double weight = 0.0;  // of its share in the sensor's light: the given weight times the beam's cross-section
+        double weight = 0.0;  // in the sensor's light: the given weight times the beam's cross-section
         optics::TraceLens<double> lens;
         optics::RegionOutline outline;  // of the beam
     };
@@ -38,9 +38,9 @@ PolychromaticField polychromatic_field(const optics::Lens& lens, const optics::F
 
 /// Sums over the beam for integrands that oscillate: `rings` Gauss-Legendre nodes along each of about `azimuths` radii
 /// from the outline's centre to its rim; the radii are even around an outline without corners, else Gauss-Legendre from
-/// corner to corner. Weights in mm². (For smooth integrands `beam_quadrature` needs fewer rays.)
-std::vector<BeamNode> polar_nodes(const PolychromaticField::Part& part, const optics::FieldBundle& bundle, int azimuths,
-                                  int rings);
+/// corner to corner. Weights in mm². (For smooth integrands `region_quadrature` needs fewer rays.)
+std::vector<optics::RegionNode> polar_nodes(const PolychromaticField::Part& part, const optics::FieldBundle& bundle,
+                                            int azimuths, int rings);
 
 /// A ray of the beam at the image.
 struct ImageRay {

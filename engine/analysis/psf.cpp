@@ -35,7 +35,7 @@ Vec2d climb(const std::function<double(Vec2d)>& value, Vec2d start, double step)
     for (int halving = 0; halving < kHalvings && moves < kMoves;) {
         Vec2d better = start;
         for (const Vec2d move : {Vec2d{step, 0.0}, Vec2d{-step, 0.0}, Vec2d{0.0, step}, Vec2d{0.0, -step}}) {
-            const Vec2d there{start.x + move.x, start.y + move.y};
+            const Vec2d there = start + move;
             if (const double here = value(there); here > best * kGain) {
                 best = here;
                 better = there;
@@ -136,18 +136,16 @@ WaveletPart wavelets_of(const PolychromaticField& field, const PolychromaticFiel
                         const HuygensPsfSettings& settings) {
     WaveletPart found{.wavelength_nm = part.wavelength_nm, .weight = part.weight};
     const auto meet = [&](Vec2d offset) {
-        return meet_sphere(
-            part.lens, field.sphere,
-            optics::trace<optics::Direction::forward, optics::Rims::follow>(part.lens, field.bundle.ray(offset)));
+        return meet_sphere(part.lens, field.sphere, optics::trace_past_rims(part.lens, field.bundle.ray(offset)));
     };
     const double step = 1e-4 * std::sqrt(part.outline.area);
     const double mean_path = meet(part.outline.centre).value_or(SphereMeeting{}).optical_path;
-    for (const BeamNode& node : polar_nodes(part, field.bundle, settings.azimuths, settings.rings)) {
-        const auto here = meet(node.offset);
-        const auto right = meet({node.offset.x + step, node.offset.y});
-        const auto left = meet({node.offset.x - step, node.offset.y});
-        const auto up = meet({node.offset.x, node.offset.y + step});
-        const auto down = meet({node.offset.x, node.offset.y - step});
+    for (const optics::RegionNode& node : polar_nodes(part, field.bundle, settings.azimuths, settings.rings)) {
+        const auto here = meet(node.point);
+        const auto right = meet(node.point + Vec2d{step, 0.0});
+        const auto left = meet(node.point - Vec2d{step, 0.0});
+        const auto up = meet(node.point + Vec2d{0.0, step});
+        const auto down = meet(node.point - Vec2d{0.0, step});
         if (!here || !right || !left || !up || !down) {
             continue;
         }
@@ -162,9 +160,9 @@ WaveletPart wavelets_of(const PolychromaticField& field, const PolychromaticFiel
 
 /// The irradiance at a point, 1/µm².
 double irradiance_at(const WaveletPart& part, double curvature, Vec2d point_um) {
-    const Vec2d point{kMicrometre * point_um.x, kMicrometre * point_um.y};
+    const Vec2d point = kMicrometre * point_um;
     const double wavenumber = 2.0 * std::numbers::pi / wavelength_mm(part.wavelength_nm);
-    const double c_square = curvature * (point.x * point.x + point.y * point.y);
+    const double c_square = curvature * dot(point, point);
     Complex sum = 0.0;
     for (const Wavelet& wavelet : part.wavelets) {
         const double along = wavelet.towards.x * point.x + wavelet.towards.y * point.y;
@@ -260,7 +258,7 @@ Psf huygens_psf(const PolychromaticField& field, const HuygensPsfSettings& setti
         double aberration = 0.0;
         for (const optics::OutlinePoint& point : part.outline.points) {
             const Vec2d lands = image_ray(part, field, part.outline.at(point, 1.0)).value_or(ImageRay{}).aberration;
-            aberration = std::max(aberration, std::hypot(lands.x, lands.y));
+            aberration = std::max(aberration, length(lands));
         }
         psf.largest_aberration_um = std::max(psf.largest_aberration_um, aberration / kMicrometre);
         is_seen = is_seen && !wavelets.wavelets.empty() && are_close(wavelets, corner + aberration, settings);
@@ -287,27 +285,6 @@ Psf huygens_psf(const PolychromaticField& field, const HuygensPsfSettings& setti
     psf.status = is_seen ? PupilStatus::ok : PupilStatus::aliased;
     find_peak(psf, irradiance);
     return psf;
-}
-
-double encircled_energy(const Psf& psf, Vec2d centre_um, double radius_um) {
-    constexpr int kParts = 8;
-    double sum = 0.0;
-    for (int row = 0; row < psf.size; ++row) {
-        for (int column = 0; column < psf.size; ++column) {
-            const double x = psf.position_um(column) - centre_um.x;
-            const double y = psf.position_um(row) - centre_um.y;
-            int inside = 0;
-            for (int i = 0; i < kParts; ++i) {
-                const double part_y = y + psf.pixel_um * ((i + 0.5) / kParts - 0.5);
-                for (int k = 0; k < kParts; ++k) {
-                    const double part_x = x + psf.pixel_um * ((k + 0.5) / kParts - 0.5);
-                    inside += part_x * part_x + part_y * part_y <= radius_um * radius_um ? 1 : 0;
-                }
-            }
-            sum += psf.at(row, column) * inside;
-        }
-    }
-    return sum * psf.pixel_um * psf.pixel_um / (kParts * kParts);
 }
 
 }  // namespace lensproof::analysis

@@ -16,7 +16,7 @@ struct Psf {
     double strehl = 0.0;                 // the peak, found between the pixels, over `perfect_peak`
     Vec2d peak_um;                       // where it is
     double largest_aberration_um = 0.0;  // of the rays, from the image point
-    int needed_size = 0;  // of an FFT with such pixels: the power of two whose window holds the rays; 0: by another way
+    int needed_size = 0;  // of an FFT with such pixels: the power of two whose window holds the rays; 0: not by FFT
 
     /// From the image point (PolychromaticField), along x or y, of a column or row.
     [[nodiscard]] double position_um(int index) const {
@@ -53,14 +53,10 @@ struct HuygensPsfSettings {
 
 /// By the direct sum of spherical wavelets from the reference sphere in the exit pupil (Born & Wolf 8.2; from a
 /// telecentric pupil, plane waves). With u the unit vector from a ray's point on the sphere to the image point, and
-/// curvature c, a wavelet's way to the point ξ beside that is longer by
+/// curvature c, a wavelet's path to the point ξ beside that is longer by
 ///     (2 u·ξ + c ξ²) / (1 + √(1 + 2 c u·ξ + c² ξ²)).
 /// Shares no grid, no aiming and no transform with `fft_psf`; they agree where the Fresnel number of the exit pupil is
 /// large.
 Psf huygens_psf(const PolychromaticField& field, const HuygensPsfSettings& settings = {});
-
-/// The share of the light within `radius_um` of `centre_um`; pixels at the circle's edge count in part. Light outside
-/// the picture counts as outside.
-double encircled_energy(const Psf& psf, Vec2d centre_um, double radius_um);
 
 }  // namespace lensproof::analysis

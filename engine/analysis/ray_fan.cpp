@@ -42,13 +42,12 @@ std::optional<Extent> fan_extent(const optics::TraceLens<double>& lens, const op
 
 std::optional<Vec2d> transverse_error(const optics::TraceLens<double>& lens, const optics::FieldBundle& bundle,
                                       Vec2d offset, Vec2d reference) {
-    const auto traced = optics::trace<optics::Direction::forward, optics::Rims::follow>(lens, bundle.ray(offset));
-    if (traced.status == optics::RayStatus::missed || traced.status == optics::RayStatus::total_internal_reflection ||
-        !(traced.ray.direction.z > 0.0)) {
+    const auto traced = optics::trace_past_rims(lens, bundle.ray(offset));
+    if (!optics::gets_through(traced.status) || !(traced.ray.direction.z > 0.0)) {
         return std::nullopt;
     }
     const Vec3d point = optics::meet_plane(traced.ray, lens.image_z).point;
-    return Vec2d{point.x - reference.x, point.y - reference.y};
+    return Vec2d{point.x, point.y} - reference;
 }
 
 std::vector<FanPoint> ray_fan(const optics::TraceLens<double>& lens, const optics::FieldBundle& bundle,
@@ -60,8 +59,8 @@ std::vector<FanPoint> ray_fan(const optics::TraceLens<double>& lens, const optic
     const double farther = std::max(std::abs(extent->lower), std::abs(extent->upper));
     std::vector<FanPoint> fan;
     for (int i = 0; i < count; ++i) {
-        const double share = static_cast<double>(i) / (count - 1);
-        const double offset = (1.0 - share) * extent->lower + share * extent->upper;
+        const double t = static_cast<double>(i) / (count - 1);
+        const double offset = (1.0 - t) * extent->lower + t * extent->upper;
         const Vec2d at = plane == FanPlane::tangential ? Vec2d{0.0, offset} : Vec2d{offset, 0.0};
         if (const std::optional<Vec2d> error = transverse_error(lens, bundle, at, reference)) {
             fan.push_back({.pupil = offset / farther, .offset = offset, .error = *error});

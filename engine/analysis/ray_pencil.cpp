@@ -1,9 +1,10 @@
 #include "engine/analysis/ray_pencil.h"
 
 #include <cmath>
-#include <limits>
 #include <utility>
 
+#include "engine/base/infinity.h"
+#include "engine/optics/surface_axes.h"
 #include "engine/optics/surface_curvature.h"
 
 namespace lensproof::analysis {
@@ -15,16 +16,9 @@ class LocalSurface {
   public:
     LocalSurface(const optics::TraceLens<double>& lens, int index, const Vec3d& at) {
         const optics::TraceSurface<double>& surface = lens.surfaces[index];
-        optics::SurfaceShape<double> shape{.curvature = surface.curvature};
-        Vec3d own{at.x, at.y, at.z - surface.vertex_z};
-        if (surface.special >= 0) {
-            frame_ = &lens.specials[surface.special];
-            own = frame_->to_own({at.x - frame_->vertex.x, at.y - frame_->vertex.y, own.z});
-            if (frame_->has_shape) {
-                shape = frame_->shape;
-            }
-        }
-        const optics::SurfaceDerivatives<double> derivatives = optics::surface_derivatives(shape, own);
+        frame_ = optics::special_of(lens, surface);
+        const optics::SurfaceDerivatives<double> derivatives =
+            optics::surface_derivatives(optics::shape_of(lens, surface), optics::to_own_axes(lens, surface, at));
         hessian_ = derivatives.hessian;
         steepness_ = length(derivatives.gradient);
         normal_ = from_own((1.0 / steepness_) * derivatives.gradient);
@@ -51,13 +45,9 @@ class LocalSurface {
 /// A 2 × 2 matrix by columns: how (x, y) across the chief ray depend on the offset's x and y.
 using Columns = std::array<Vec2d, 2>;
 
-double determinant(const Vec2d& a, const Vec2d& b) {
-    return a.x * b.y - a.y * b.x;
-}
-
 /// −numerator / denominator, infinite where both rays stay parallel.
 double quotient(double numerator, double denominator) {
-    return denominator != 0.0 ? -numerator / denominator : std::numeric_limits<double>::infinity();
+    return denominator != 0.0 ? -numerator / denominator : kInfinity;
 }
 
 /// How far along the chief ray det (shift + t turn) vanishes, the tangential focus first.
@@ -66,9 +56,9 @@ std::pair<double, double> focal_distances(const Columns& shift, const Columns& t
         return {quotient(shift[1].y, turn[1].y), quotient(shift[0].x, turn[0].x)};
     }
     // c + b t + a t² = 0 for t, each root in the form that does not cancel.
-    const double a = determinant(turn[0], turn[1]);
-    const double b = determinant(shift[0], turn[1]) + determinant(turn[0], shift[1]);
-    const double c = determinant(shift[0], shift[1]);
+    const double a = cross(turn[0], turn[1]);
+    const double b = cross(shift[0], turn[1]) + cross(turn[0], shift[1]);
+    const double c = cross(shift[0], shift[1]);
     const double root2 = b * b - 4.0 * a * c;
     const double q = -0.5 * (b + std::copysign(std::sqrt(std::max(root2, 0.0)), b));
     const double first = quotient(-c, q);
@@ -98,7 +88,7 @@ std::optional<RayPencil> ray_pencil(const optics::TraceLens<double>& lens, const
         pencil.turn = {divergence * across[0], divergence * across[1]};
     }
     const auto step = [&](const optics::SurfaceEvent<double>& event) {
-        if (event.status == optics::RayStatus::missed || event.status == optics::RayStatus::total_internal_reflection) {
+        if (!optics::gets_through(event.status)) {
             return;
         }
         const optics::TraceSurface<double>& surface = lens.surfaces[event.surface];
@@ -109,9 +99,9 @@ std::optional<RayPencil> ray_pencil(const optics::TraceLens<double>& lens, const
         const double n1 = surface.index_before;
         const double n2 = surface.index_after;
         const double bending = n2 * dot(after, normal) - n1 * dot(before, normal);
-        const double way = dot(event.ray.origin - pencil.chief.origin, before);
+        const double distance = dot(event.ray.origin - pencil.chief.origin, before);
         for (std::size_t i = 0; i < pencil.shift.size(); ++i) {
-            const Vec3d arriving = pencil.shift[i] + way * pencil.turn[i];
+            const Vec3d arriving = pencil.shift[i] + distance * pencil.turn[i];
             const Vec3d on_surface = arriving - (dot(arriving, normal) / dot(before, normal)) * before;
             const Vec3d turned = n1 * pencil.turn[i] + bending * local.normal_turn(on_surface);
             const double change = -dot(turned, after) / dot(normal, after);
@@ -122,10 +112,7 @@ std::optional<RayPencil> ray_pencil(const optics::TraceLens<double>& lens, const
     };
     pencil.status =
         optics::trace<optics::Direction::forward, optics::Rims::follow>(lens, bundle.chief.front, step).status;
-    if (pencil.status == optics::RayStatus::missed || pencil.status == optics::RayStatus::total_internal_reflection) {
-        return std::nullopt;
-    }
-    return pencil;
+    return optics::gets_through(pencil.status) ? std::optional(pencil) : std::nullopt;
 }
 
 AstigmaticFoci astigmatic_foci(const RayPencil& pencil, double image_z) {

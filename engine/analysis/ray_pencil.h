@@ -17,7 +17,7 @@ struct RayPencil {
 };
 
 /// Differentiates the laws of transfer and refraction along the chief ray: a shift P and a turn Q of the ray become
-/// P + t Q over a way t; at a surface with the unit normal N and Γ = n' cos i' − n cos i
+/// P + t Q over a distance t; at a surface with the unit normal N and Γ = n' cos i' − n cos i
 ///     σ = P − d (P·N) / (d·N),   n' Q' = n Q + Γ δN + δΓ N,   P' = σ − d' (σ·d'),
 /// where δN is by how much the normal turns over σ, and δΓ keeps Q' perpendicular to d'. In the meridional plane of a
 /// centred lens this is Coddington's pair of equations (Welford, Aberrations of Optical Systems, §9.4; Igehy, "Tracing

@@ -3,9 +3,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <numbers>
 #include <queue>
+
+#include "engine/base/infinity.h"
 
 namespace lensproof::analysis {
 
@@ -44,10 +45,10 @@ class Aim {
 
     /// By central differences: the error is that of third derivatives times step², some 1e-9 of the whole.
     [[nodiscard]] std::optional<Jacobian> jacobian(Vec2d at) const {
-        const auto right = ray({at.x + step_, at.y});
-        const auto left = ray({at.x - step_, at.y});
-        const auto up = ray({at.x, at.y + step_});
-        const auto down = ray({at.x, at.y - step_});
+        const auto right = ray(at + Vec2d{step_, 0.0});
+        const auto left = ray(at - Vec2d{step_, 0.0});
+        const auto up = ray(at + Vec2d{0.0, step_});
+        const auto down = ray(at - Vec2d{0.0, step_});
         if (!right || !left || !up || !down) {
             return std::nullopt;
         }
@@ -65,11 +66,11 @@ class Aim {
         constexpr int kSteps = 30;
         std::optional<ImageRay> here = ray(guess);
         for (int i = 0; here && i < kSteps; ++i) {
-            const Vec2d error{cosines.x - here->direction.x, cosines.y - here->direction.y};
+            const Vec2d error = cosines - Vec2d{here->direction.x, here->direction.y};
             const Vec2d move = slope.solve(error);
-            guess = {guess.x + move.x, guess.y + move.y};
-            if (std::hypot(error.x, error.y) < kTolerance) {
-                here->path -= here->aberration.x * error.x + here->aberration.y * error.y;
+            guess = guess + move;
+            if (length(error) < kTolerance) {
+                here->path -= dot(here->aberration, error);
                 here->direction.x = cosines.x;
                 here->direction.y = cosines.y;
                 return AimedRay{guess, *here, slope};
@@ -79,7 +80,7 @@ class Aim {
                 // What the slope left over, laid on the step.
                 const double left_x = here->direction.x - cosines.x;
                 const double left_y = here->direction.y - cosines.y;
-                const double square = move.x * move.x + move.y * move.y;
+                const double square = dot(move, move);
                 slope.xx += left_x * move.x / square;
                 slope.xy += left_x * move.y / square;
                 slope.yx += left_y * move.x / square;
@@ -89,16 +90,15 @@ class Aim {
         return std::nullopt;
     }
 
-    /// The share of a cell around `aimed` whose rays pass, by the map's linear part.
-    [[nodiscard]] double open_share(const AimedRay& aimed, const Jacobian& slope, double spacing) const {
+    /// The fraction of a cell around `aimed` whose rays pass, by the map's linear part.
+    [[nodiscard]] double open_fraction(const AimedRay& aimed, const Jacobian& slope, double spacing) const {
         int open = 0;
         for (int i = 0; i < kEdgeSamples; ++i) {
             for (int k = 0; k < kEdgeSamples; ++k) {
                 const Vec2d within{spacing * ((k + 0.5) / kEdgeSamples - 0.5),
                                    spacing * ((i + 0.5) / kEdgeSamples - 0.5)};
-                const Vec2d move = slope.solve(within);
-                const Vec2d offset{aimed.offset.x + move.x, aimed.offset.y + move.y};
-                open += optics::trace(part_.lens, field_.bundle.ray(offset)).status == optics::RayStatus::ok ? 1 : 0;
+                const Ray<double> ray = field_.bundle.ray(aimed.offset + slope.solve(within));
+                open += optics::trace(part_.lens, ray).status == optics::RayStatus::ok ? 1 : 0;
             }
         }
         return static_cast<double>(open) / (kEdgeSamples * kEdgeSamples);
@@ -177,8 +177,7 @@ class CellRays {
             if (r < 0 || c < 0 || r >= grid_.size || c >= grid_.size || !at(r, c)) {
                 return std::nullopt;
             }
-            const double per_cosine = factor / (12.0 * grid_.spacing);
-            sum = {sum.x + per_cosine * at(r, c)->offset.x, sum.y + per_cosine * at(r, c)->offset.y};
+            sum = sum + factor / (12.0 * grid_.spacing) * at(r, c)->offset;
         }
         return sum;
     }
@@ -189,8 +188,8 @@ class CellRays {
             return;
         }
         const Vec2d target = grid_.cosines(row, column);
-        const Vec2d move = from.slope.solve({target.x - from.ray.direction.x, target.y - from.ray.direction.y});
-        mine = aim.towards(target, {from.offset.x + move.x, from.offset.y + move.y}, from.slope);
+        const Vec2d move = from.slope.solve(target - Vec2d{from.ray.direction.x, from.ray.direction.y});
+        mine = aim.towards(target, from.offset + move, from.slope);
         if (mine && mine->ray.passes) {
             front_.push({row, column});
         }
@@ -203,31 +202,16 @@ class CellRays {
 
 }  // namespace
 
-const char* pupil_status_name(PupilStatus status) {
-    switch (status) {
-        case PupilStatus::ok:
-            return "ok";
-        case PupilStatus::no_light:
-            return "no-light";
-        case PupilStatus::aliased:
-            return "aliased";
-        case PupilStatus::folded:
-            return "folded";
-    }
-    return "unknown";
-}
-
 CosineBox cosine_box(const PolychromaticField& field, const PolychromaticField::Part& part) {
-    constexpr double kFar = std::numeric_limits<double>::infinity();
-    CosineBox box{{kFar, kFar}, {-kFar, -kFar}};
+    CosineBox box{{kInfinity, kInfinity}, {-kInfinity, -kInfinity}};
     for (const optics::OutlinePoint& point : part.outline.points) {
         for (const double side : {1.0, -1.0}) {
             if (side < 0.0 && !part.outline.is_half) {
                 continue;
             }
             // A limit that no rim is (a total reflection) may let nothing pass on the very edge.
-            for (const double share : {1.0, 0.999}) {
-                const Vec2d inside = part.outline.at(point, share);
+            for (const double t : {1.0, 0.999}) {
+                const Vec2d inside = part.outline.at(point, t);
                 const Vec2d offset{side * inside.x, inside.y};
                 if (const std::optional<ImageRay> ray = image_ray(part, field, offset)) {
                     box.low = {std::min(box.low.x, ray->direction.x), std::min(box.low.y, ray->direction.y)};
@@ -246,15 +230,18 @@ int pupil_cells(double width, double spacing) {
 }
 
 SampledPupil sample_pupil(const PolychromaticField& field, const PolychromaticField::Part& part, double spacing) {
-    SampledPupil pupil{.wavelength_nm = part.wavelength_nm, .weight = part.weight, .spacing = spacing};
+    SampledPupil pupil;
+    pupil.wavelength_nm = part.wavelength_nm;
+    pupil.weight = part.weight;
+    pupil.spacing = spacing;
     const CosineBox box = cosine_box(field, part);
     if (!(box.width() > 0.0)) {
         return pupil;
     }
     pupil.size = pupil_cells(box.width(), spacing);
-    pupil.centre = {0.5 * (box.low.x + box.high.x), 0.5 * (box.low.y + box.high.y)};
+    pupil.centre = 0.5 * (box.low + box.high);
     const std::size_t cells = static_cast<std::size_t>(pupil.size) * static_cast<std::size_t>(pupil.size);
-    pupil.share.assign(cells, 0.0);
+    pupil.fraction.assign(cells, 0.0);
     pupil.amplitude.assign(cells, 0.0);
     pupil.path.assign(cells, 0.0);
     pupil.offset.assign(cells, {});
@@ -272,21 +259,20 @@ SampledPupil sample_pupil(const PolychromaticField& field, const PolychromaticFi
                 continue;
             }
             const Jacobian slope = rays.jacobian(aim, row, column);
-            const double share = rays.is_inner(row, column) ? 1.0 : aim.open_share(*aimed, slope, spacing);
-            if (!(share > 0.0)) {
+            const double fraction = rays.is_inner(row, column) ? 1.0 : aim.open_fraction(*aimed, slope, spacing);
+            if (!(fraction > 0.0)) {
                 continue;
             }
             (slope.determinant() < 0.0 ? turned : straight) += 1;
             const double area = 1.0 / std::abs(slope.determinant());
             const std::size_t cell = pupil.cell(row, column);
-            pupil.share[cell] = share;
-            pupil.amplitude[cell] = share * std::sqrt(area);
+            pupil.fraction[cell] = fraction;
+            pupil.amplitude[cell] = fraction * std::sqrt(area);
             pupil.path[cell] = aimed->ray.path - mean_path;
             pupil.offset[cell] = aimed->offset;
             pupil.aberration[cell] = aimed->ray.aberration;
-            pupil.energy += share * area * spacing * spacing;
-            pupil.largest_aberration =
-                std::max(pupil.largest_aberration, std::hypot(aimed->ray.aberration.x, aimed->ray.aberration.y));
+            pupil.energy += fraction * area * spacing * spacing;
+            pupil.largest_aberration = std::max(pupil.largest_aberration, length(aimed->ray.aberration));
         }
     }
     if (pupil.energy > 0.0) {
@@ -314,7 +300,7 @@ SampledPupil refocused(SampledPupil pupil, const PolychromaticField& field, doub
             pupil.path[cell] += cosines.x * move.x + cosines.y * move.y + z * move.z - chief_path;
             Vec2d& aberration = pupil.aberration[cell];
             aberration = {aberration.x + shift * cosines.x / z - move.x, aberration.y + shift * cosines.y / z - move.y};
-            pupil.largest_aberration = std::max(pupil.largest_aberration, std::hypot(aberration.x, aberration.y));
+            pupil.largest_aberration = std::max(pupil.largest_aberration, length(aberration));
         }
     }
     if (pupil.status == PupilStatus::ok || pupil.status == PupilStatus::aliased) {

@@ -5,10 +5,11 @@
 #include <vector>
 
 #include "engine/optics/paraxial.h"
+#include "engine/optics/surface_axes.h"
 
 namespace lensproof::analysis {
 
-/// One surface's share of the sums, or their total; mm. Welford, Aberrations of Optical Systems (1986), ch. 8 and
+/// What one surface adds to the sums, or their total; mm. Welford, Aberrations of Optical Systems (1986), ch. 8 and
 /// 10; signs as in rayoptics, so that S1 > 0 is undercorrected spherical aberration.
 template <class T>
 struct SeidelTerms {
@@ -61,44 +62,6 @@ std::optional<SeidelSums<T>> seidel_sums(
     const optics::TraceLens<T>& long_wavelength, const std::type_identity_t<T>& field_angle,
     const std::type_identity_t<T>& object_distance = std::numeric_limits<T>::infinity());
 
-/// The wavefront's aberrations at the edge of pupil and field, mm of optical path, positive where the wavefront runs
-/// ahead of the reference sphere about the paraxial image (Hopkins' coefficients; Welford, ch. 8):
-///     W = W040 ρ⁴ + W131 η ρ³ cos φ + W222 η² ρ² cos² φ + W220 η² ρ² + W311 η³ ρ cos φ  (+ W020 ρ² + W111 η ρ cos φ),
-/// ρ and η being relative to the edges, φ from +y. The last two are those of the short wavelength against the long one.
-template <class T>
-struct ThirdOrderWavefront {
-    T w040, w131, w222, w220, w311, w020, w111;
-};
-
-template <class T>
-ThirdOrderWavefront<T> third_order_wavefront(const SeidelTerms<T>& terms) {
-    return {.w040 = terms.s1 / 8,
-            .w131 = terms.s2 / 2,
-            .w222 = terms.s3 / 2,
-            .w220 = (terms.s3 + terms.s4) / 4,
-            .w311 = terms.s5 / 2,
-            .w020 = terms.c1 / 2,
-            .w111 = terms.c2};
-}
-
-/// How far (mm, x and y) from the paraxial image a ray meets the paraxial image plane: the ray through the pupil at
-/// `pupil` (relative to its edge) from the share `field` of the full field, which lies in +y. To third order, at the
-/// reference wavelength: the gradient of W over n' u'. Nothing where the image lies at infinity.
-template <class T>
-std::optional<Vec2<T>> third_order_ray_error(const SeidelSums<T>& sums, const Vec2<T>& pupil, const T& field) {
-    if (sums.image_slope == T(0)) {
-        return std::nullopt;
-    }
-    const SeidelTerms<T>& s = sums.total;
-    const T rho2 = pupil.x * pupil.x + pupil.y * pupil.y;
-    const T field2 = field * field;
-    const T scale = 1 / (2 * sums.image_slope);
-    const T x = (s.s1 * rho2 + 2 * s.s2 * field * pupil.y + (s.s3 + s.s4) * field2) * pupil.x;
-    const T y = (s.s1 * rho2 + (3 * s.s3 + s.s4) * field2) * pupil.y + s.s2 * field * (rho2 + 2 * pupil.y * pupil.y) +
-                s.s5 * field2 * field;
-    return Vec2<T>{scale * x, scale * y};
-}
-
 // ---------------------------------------------------------------------------------------------------------------------
 
 namespace seidel_detail {
@@ -107,10 +70,7 @@ namespace seidel_detail {
 /// states and its r² term a, the vertex has c + 2 a, and 8 G = (1 + k) c³ − (c + 2 a)³ + 8 A4.
 template <class T>
 T departure_from_sphere(const optics::TraceLens<T>& lens, const optics::TraceSurface<T>& surface) {
-    if (surface.special < 0 || !lens.specials[surface.special].has_shape) {
-        return T(0);
-    }
-    const optics::SurfaceShape<T>& shape = lens.specials[surface.special].shape;
+    const optics::SurfaceShape<T> shape = optics::shape_of(lens, surface);
     const T& c = shape.curvature;
     const T& c_vertex = surface.curvature;
     const T r2_term = 2 * shape.asphere[0];

@@ -11,12 +11,12 @@ namespace {
 /// Nothing for a ray that leaves the lens away from the sensor.
 std::optional<SpotRay> at_image(const optics::TraceLens<double>& lens, const optics::TracedRay<double>& traced,
                                 double weight) {
-    const Vec3d& way = traced.ray.direction;
-    if (!(way.z > 0.0)) {
+    const Vec3d& direction = traced.ray.direction;
+    if (!(direction.z > 0.0)) {
         return std::nullopt;
     }
     const Vec3d point = optics::meet_plane(traced.ray, lens.image_z).point;
-    return SpotRay{{point.x, point.y}, {way.x / way.z, way.y / way.z}, weight};
+    return SpotRay{{point.x, point.y}, {direction.x / direction.z, direction.y / direction.z}, weight};
 }
 
 struct Means {
@@ -29,12 +29,12 @@ Means means(std::span<const SpotRay> rays) {
     Means sum;
     for (const SpotRay& ray : rays) {
         sum.weight += ray.weight;
-        sum.point = {sum.point.x + ray.weight * ray.point.x, sum.point.y + ray.weight * ray.point.y};
-        sum.slope = {sum.slope.x + ray.weight * ray.slope.x, sum.slope.y + ray.weight * ray.slope.y};
+        sum.point = sum.point + ray.weight * ray.point;
+        sum.slope = sum.slope + ray.weight * ray.slope;
     }
     if (sum.weight > 0.0) {
-        sum.point = {sum.point.x / sum.weight, sum.point.y / sum.weight};
-        sum.slope = {sum.slope.x / sum.weight, sum.slope.y / sum.weight};
+        sum.point = sum.point / sum.weight;
+        sum.slope = sum.slope / sum.weight;
     }
     return sum;
 }
@@ -47,11 +47,9 @@ std::vector<SpotRay> spot_rays(const optics::TraceLens<double>& lens, const opti
     const auto add = [&](Vec2d offset, double weight, bool is_mirrored) {
         // A ray on the outline is inside to a rounding; it is followed all the same.
         const optics::TracedRay<double> traced =
-            weight > 0.0 ? optics::trace(lens, bundle.ray(offset))
-                         : optics::trace<optics::Direction::forward, optics::Rims::follow>(lens, bundle.ray(offset));
+            weight > 0.0 ? optics::trace(lens, bundle.ray(offset)) : optics::trace_past_rims(lens, bundle.ray(offset));
         const bool arrives =
-            traced.status == optics::RayStatus::ok || (weight == 0.0 && (traced.status == optics::RayStatus::clipped ||
-                                                                         traced.status == optics::RayStatus::stopped));
+            weight > 0.0 ? traced.status == optics::RayStatus::ok : optics::gets_through(traced.status);
         const std::optional<SpotRay> ray = arrives ? at_image(lens, traced, weight) : std::nullopt;
         if (!ray) {
             return;
@@ -108,59 +106,17 @@ SpotSize spot_size(std::span<const SpotRay> rays, double defocus_mm) {
         return {};
     }
     SpotSize size;
-    size.centroid = {mean.point.x + defocus_mm * mean.slope.x, mean.point.y + defocus_mm * mean.slope.y};
+    size.centroid = mean.point + defocus_mm * mean.slope;
     double sum = 0.0;
     double largest = 0.0;
     for (const SpotRay& ray : rays) {
-        const Vec2d at = ray.at(defocus_mm);
-        const double x = at.x - size.centroid.x;
-        const double y = at.y - size.centroid.y;
-        sum += ray.weight * (x * x + y * y);
-        largest = std::max(largest, x * x + y * y);
+        const Vec2d off = ray.at(defocus_mm) - size.centroid;
+        sum += ray.weight * dot(off, off);
+        largest = std::max(largest, dot(off, off));
     }
     size.rms = std::sqrt(sum / mean.weight);
     size.max_radius = std::sqrt(largest);
     return size;
-}
-
-std::vector<ThroughFocusPoint> through_focus(std::span<const SpotRay> rays, std::span<const double> defocus_mm) {
-    std::vector<ThroughFocusPoint> points;
-    points.reserve(defocus_mm.size());
-    for (const double defocus : defocus_mm) {
-        points.push_back({defocus, spot_size(rays, defocus)});
-    }
-    return points;
-}
-
-double best_spot_defocus(std::span<const SpotRay> rays) {
-    const Means mean = means(rays);
-    double covariance = 0.0;
-    double variance = 0.0;
-    for (const SpotRay& ray : rays) {
-        const Vec2d point{ray.point.x - mean.point.x, ray.point.y - mean.point.y};
-        const Vec2d slope{ray.slope.x - mean.slope.x, ray.slope.y - mean.slope.y};
-        covariance += ray.weight * (point.x * slope.x + point.y * slope.y);
-        variance += ray.weight * (slope.x * slope.x + slope.y * slope.y);
-    }
-    return variance > 0.0 ? -covariance / variance : 0.0;
-}
-
-std::vector<double> encircled_energy(std::span<const SpotRay> rays, std::span<const double> radii, double defocus_mm) {
-    const Vec2d centroid = spot_size(rays, defocus_mm).centroid;
-    double total = 0.0;
-    std::vector<double> shares(radii.size(), 0.0);
-    for (const SpotRay& ray : rays) {
-        const Vec2d at = ray.at(defocus_mm);
-        const double distance = std::hypot(at.x - centroid.x, at.y - centroid.y);
-        total += ray.weight;
-        for (std::size_t i = 0; i < radii.size(); ++i) {
-            shares[i] += distance <= radii[i] ? ray.weight : 0.0;
-        }
-    }
-    for (double& share : shares) {
-        share = total > 0.0 ? share / total : 0.0;
-    }
-    return shares;
 }
 
 }  // namespace lensproof::analysis

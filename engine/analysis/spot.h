@@ -13,17 +13,15 @@ struct SpotRay {
     Vec2d slope;    // dx/dz, dy/dz: at a plane z behind it, the ray is at point + z · slope
     double weight;  // mm² of the incoming beam's cross-section; 0 for a ray on the outline, which only bounds the spot
 
-    [[nodiscard]] Vec2d at(double defocus_mm) const {
-        return {point.x + defocus_mm * slope.x, point.y + defocus_mm * slope.y};
-    }
+    [[nodiscard]] Vec2d at(double defocus_mm) const { return point + defocus_mm * slope; }
 };
 
 /// Rings with which the rms of a camera lens's spot has converged to 1e-9 mm (its square is a polynomial of degree 20
 /// or so in the offset).
 inline constexpr int kSpotRings = 12;
 
-/// The bundle's rays at the nodes of `beam_quadrature`, for sums, and those along its outline, with weight 0. Sums over
-/// them converge with the number of rings as those of smooth functions do.
+/// The bundle's rays at the nodes of `region_quadrature`, for sums, and those along its outline, with weight 0. Sums
+/// over them converge with the number of rings as those of smooth functions do.
 std::vector<SpotRay> spot_rays(const optics::TraceLens<double>& lens, const optics::FieldBundle& bundle,
                                const optics::RegionOutline& outline, int rings = kSpotRings);
 
@@ -43,21 +41,5 @@ struct SpotSize {
 
 /// At the plane `defocus_mm` behind the sensor's. No light, no size: all zero.
 SpotSize spot_size(std::span<const SpotRay> rays, double defocus_mm = 0.0);
-
-/// Sizes through focus, from the rays of one plane.
-struct ThroughFocusPoint {
-    double defocus_mm;
-    SpotSize size;
-};
-std::vector<ThroughFocusPoint> through_focus(std::span<const SpotRay> rays, std::span<const double> defocus_mm);
-
-/// The defocus, mm from the sensor's plane, that makes the rms size least: a parabola's vertex. 0 where every ray is
-/// parallel.
-double best_spot_defocus(std::span<const SpotRay> rays);
-
-/// The share of the light within each of `radii` (mm) of the centroid, at a defocus. Counted ray by ray, so good to
-/// about a ray's share.
-std::vector<double> encircled_energy(std::span<const SpotRay> rays, std::span<const double> radii,
-                                     double defocus_mm = 0.0);
 
 }  // namespace lensproof::analysis

@@ -37,12 +37,9 @@ Fit fit(const Eigen::MatrixXd& columns, const Eigen::VectorXd& opd, const Eigen:
 
 std::optional<ReferenceSphere> reference_sphere(const optics::TraceLens<double>& lens,
                                                 const optics::FieldBundle& bundle) {
-    const optics::TracedRay<double> chief =
-        optics::trace<optics::Direction::forward, optics::Rims::follow>(lens, bundle.ray({}));
-    const bool arrives = chief.status == optics::RayStatus::ok || chief.status == optics::RayStatus::clipped ||
-                         chief.status == optics::RayStatus::stopped;
+    const optics::TracedRay<double> chief = optics::trace_past_rims(lens, bundle.ray({}));
     const Vec3d& direction = chief.ray.direction;
-    if (!arrives || !(direction.z > 0.0)) {
+    if (!optics::gets_through(chief.status) || !(direction.z > 0.0)) {
         return std::nullopt;
     }
     ReferenceSphere sphere;
@@ -61,15 +58,13 @@ std::optional<ReferenceSphere> reference_sphere(const optics::TraceLens<double>&
 
 std::optional<SphereMeeting> meet_sphere(const optics::TraceLens<double>& lens, const ReferenceSphere& sphere,
                                          const optics::TracedRay<double>& ray) {
-    const bool arrives = ray.status == optics::RayStatus::ok || ray.status == optics::RayStatus::clipped ||
-                         ray.status == optics::RayStatus::stopped;
     const double c = sphere.curvature;
     const Vec3d& direction = ray.ray.direction;
     const double to_foot = dot(sphere.centre - ray.ray.origin, direction);
     const Vec3d q = ray.ray.origin + to_foot * direction - sphere.centre;
     const double q2 = dot(q, q);
     const double cos2 = 1.0 - c * c * q2;
-    if (!arrives || !(cos2 > 0.0)) {
+    if (!optics::gets_through(ray.status) || !(cos2 > 0.0)) {
         return std::nullopt;
     }
     const double sag = c * q2 / (1.0 + std::sqrt(cos2));
@@ -78,25 +73,24 @@ std::optional<SphereMeeting> meet_sphere(const optics::TraceLens<double>& lens, 
 }
 
 Wavefront wavefront(const optics::TraceLens<double>& lens, double wavelength_nm, const optics::FieldBundle& bundle,
-                    const ReferenceSphere& sphere, std::span<const BeamNode> nodes) {
+                    const ReferenceSphere& sphere, std::span<const optics::RegionNode> nodes) {
     const auto meeting_at = [&](Vec2d offset) {
-        return meet_sphere(lens, sphere,
-                           optics::trace<optics::Direction::forward, optics::Rims::follow>(lens, bundle.ray(offset)));
+        return meet_sphere(lens, sphere, optics::trace_past_rims(lens, bundle.ray(offset)));
     };
     Wavefront front{.wavelength_nm = wavelength_nm, .sphere = sphere};
     const std::optional<SphereMeeting> chief = meeting_at({});
     const SphereMeeting zero = chief.value_or(SphereMeeting{0.0, {0.0, 0.0, 1.0}});
     double weight = 0.0;
     double sum = 0.0;
-    for (const BeamNode& node : nodes) {
-        const std::optional<SphereMeeting> meeting = meeting_at(node.offset);
+    for (const optics::RegionNode& node : nodes) {
+        const std::optional<SphereMeeting> meeting = meeting_at(node.point);
         if (!meeting) {
             front.lost_weight += node.weight;
             continue;
         }
         const Vec3d pupil = meeting->towards - zero.towards;
         const double opd_mm = zero.optical_path - meeting->optical_path;
-        front.rays.push_back({node.offset, node.weight, opd_mm, {pupil.x, pupil.y}, pupil.z});
+        front.rays.push_back({node.point, node.weight, opd_mm, {pupil.x, pupil.y}, pupil.z});
         weight += node.weight;
         sum += node.weight * opd_mm;
     }

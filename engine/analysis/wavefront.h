@@ -57,12 +57,12 @@ struct Wavefront {
     double lost_weight = 0.0;  // mm², of nodes whose ray did not reach the sphere
 };
 
-/// Traces `bundle` at `nodes`, which the caller took inside the beam (`beam_quadrature`): rays are followed beyond
+/// Traces `bundle` at `nodes`, which the caller took inside the beam (`region_quadrature`): rays are followed beyond
 /// rims, so that those on a rim are not lost to rounding. All path differences are sums over the lens alone, whatever
 /// the object's distance (FieldBundle). `lens` may be at another wavelength than `sphere` was made for. Where the chief
 /// ray does not get through at this wavelength, the mean stands for its path.
 Wavefront wavefront(const optics::TraceLens<double>& lens, double wavelength_nm, const optics::FieldBundle& bundle,
-                    const ReferenceSphere& sphere, std::span<const BeamNode> nodes);
+                    const ReferenceSphere& sphere, std::span<const optics::RegionNode> nodes);
 
 /// Root mean squares over the beam's cross-section, in waves; the mean (piston) is always taken out.
 struct WavefrontErrors {

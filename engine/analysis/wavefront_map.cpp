@@ -7,16 +7,14 @@ namespace lensproof::analysis {
 WavefrontMap wavefront_map(const PolychromaticField& field, const PolychromaticField::Part& part, int samples) {
     const SampledPupil pupil = sample_pupil(field, part, cosine_box(field, part).width() / samples);
     const Vec3d& chief = field.chief_direction;
-    WavefrontMap map{.status = pupil.status,
-                     .wavelength_nm = part.wavelength_nm,
-                     .size = pupil.size,
-                     .spacing = pupil.spacing,
-                     .centre = {pupil.centre.x - chief.x, pupil.centre.y - chief.y},
-                     .opd_waves = std::vector<double>(pupil.amplitude.size(), 0.0),
-                     .inside = std::vector<std::uint8_t>(pupil.amplitude.size(), 0)};
+    WavefrontMap map{{pupil.size, pupil.spacing, pupil.centre - Vec2d{chief.x, chief.y}},
+                     pupil.status,
+                     part.wavelength_nm,
+                     std::vector<double>(pupil.amplitude.size(), 0.0),
+                     std::vector<std::uint8_t>(pupil.amplitude.size(), 0)};
     for (std::size_t i = 0; i < map.opd_waves.size(); ++i) {
-        if (pupil.share[i] >= 0.5) {
-            const std::array<BeamNode, 1> node = {{{pupil.offset[i], 1.0}}};
+        if (pupil.fraction[i] >= 0.5) {
+            const std::array<optics::RegionNode, 1> node = {{{pupil.offset[i], 1.0}}};
             const Wavefront one = wavefront(part.lens, part.wavelength_nm, field.bundle, field.sphere, node);
             if (!one.rays.empty()) {
                 map.inside[i] = 1;

@@ -9,22 +9,12 @@ namespace lensproof::analysis {
 
 /// Path differences against the reference sphere (signs: Wavefront), on an even grid of direction cosines of the rays
 /// that arrive, less those of the chief ray.
-struct WavefrontMap {
+struct WavefrontMap : PupilGrid {
     PupilStatus status = PupilStatus::no_light;  // `aliased` matters to PSF and MTF, not to the map
     double wavelength_nm = 0.0;
-    int size = 0;                      // cells along each side
-    double spacing = 0.0;              // of direction cosines
-    Vec2d centre;                      // in the middle of the grid
-    std::vector<double> opd_waves;     // row-major, y rising by rows, x by columns; 0 outside the beam
+    std::vector<double> opd_waves;     // 0 outside the beam
     std::vector<std::uint8_t> inside;  // 1 where at least half of the cell lies in the beam
 
-    [[nodiscard]] Vec2d pupil(int row, int column) const {
-        const double middle = 0.5 * (size - 1);
-        return {centre.x + spacing * (column - middle), centre.y + spacing * (row - middle)};
-    }
-    [[nodiscard]] std::size_t cell(int row, int column) const {
-        return static_cast<std::size_t>(row) * static_cast<std::size_t>(size) + static_cast<std::size_t>(column);
-    }
     [[nodiscard]] double at(int row, int column) const { return opd_waves[cell(row, column)]; }
     [[nodiscard]] bool is_inside(int row, int column) const { return inside[cell(row, column)] != 0; }
 };

@@ -1,7 +1,7 @@
 // engine/analysis/working_f_number.h — how wide the cone of real rays is that reaches the axis of the image.
 #pragma once
-#include <limits>
 
+#include "engine/base/infinity.h"
 #include "engine/optics/trace.h"
 
 namespace lensproof::analysis {
@@ -11,7 +11,6 @@ namespace lensproof::analysis {
 /// 1 / (n' (sin U'₁ − sin U'₂)) of the upper and the lower one. Unlike the paraxial f-number it knows the aberrations
 /// of the pupils and the rims that cut before the stop does, and it sets the irradiance on the axis. Infinite where no
 /// such light passes or it leaves parallel to the axis.
-double real_working_f_number(const optics::TraceLens<double>& lens,
-                             double object_distance = std::numeric_limits<double>::infinity());
+double real_working_f_number(const optics::TraceLens<double>& lens, double object_distance = kInfinity);
 
 }  // namespace lensproof::analysis

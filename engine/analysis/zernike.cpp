@@ -13,15 +13,6 @@ namespace lensproof::analysis {
 
 namespace {
 
-/// The largest n whose first polynomial, number n (n + 1) / 2, is not beyond `number`, counted from 0.
-int degree_of(int number) {
-    int n = 0;
-    while ((n + 1) * (n + 2) / 2 <= number) {
-        ++n;
-    }
-    return n;
-}
-
 std::size_t entry(int i) {
     return static_cast<std::size_t>(i);
 }
@@ -39,24 +30,8 @@ int noll_index(ZernikeMode mode) {
     return (first % 2 == 0) == wants_even ? first : first + 1;
 }
 
-ZernikeMode mode_of_noll(int index) {
-    const int n = degree_of(index - 1);
-    const int place = index - 1 - n * (n + 1) / 2;  // within the degree, |m| ascending
-    const int size = n % 2 == 0 ? 2 * ((place + 1) / 2) : 2 * (place / 2) + 1;
-    return {n, index % 2 == 0 ? size : -size};
-}
-
-int ansi_index(ZernikeMode mode) {
-    return (mode.n * (mode.n + 2) + mode.m) / 2;
-}
-
-ZernikeMode mode_of_ansi(int index) {
-    const int n = degree_of(index);
-    return {n, 2 * index - n * (n + 2)};
-}
-
 std::vector<double> zernike_values(int degree, Vec2d point) {
-    const double r = std::hypot(point.x, point.y);
+    const double r = length(point);
     const double cosine = r > 0.0 ? point.x / r : 1.0;
     const double sine = r > 0.0 ? point.y / r : 0.0;
     std::vector<double> cosines(entry(degree) + 1, 1.0);
@@ -90,15 +65,6 @@ std::vector<double> zernike_values(int degree, Vec2d point) {
     return values;
 }
 
-double ZernikeFit::value(Vec2d point) const {
-    const std::vector<double> values = zernike_values(degree, point);
-    double sum = 0.0;
-    for (std::size_t i = 0; i < values.size(); ++i) {
-        sum += coefficients[i] * values[i];
-    }
-    return sum;
-}
-
 ZernikeFit fit_zernike(std::span<const ZernikeSample> samples, int degree) {
     const int terms = zernike_count(degree);
     if (samples.size() < entry(terms)) {
@@ -125,13 +91,13 @@ ZernikeFit fit_zernike(std::span<const ZernikeSample> samples, int degree) {
 
 double pupil_radius(const optics::TraceLens<double>& lens, const optics::FieldBundle& bundle,
                     const ReferenceSphere& sphere, const optics::RegionOutline& outline) {
-    std::vector<BeamNode> rim;
+    std::vector<optics::RegionNode> rim;
     for (const optics::OutlinePoint& point : outline.points) {
         rim.push_back({outline.at(point, 1.0), 1.0});
     }
     double radius = 0.0;
     for (const WavefrontRay& ray : wavefront(lens, 1.0, bundle, sphere, rim).rays) {
-        radius = std::max(radius, std::hypot(ray.pupil.x, ray.pupil.y));
+        radius = std::max(radius, length(ray.pupil));
     }
     return radius;
 }
@@ -141,7 +107,7 @@ ZernikeFit wavefront_zernike(const Wavefront& wavefront, double radius, int degr
     std::vector<ZernikeSample> samples;
     samples.reserve(wavefront.rays.size());
     for (const WavefrontRay& ray : wavefront.rays) {
-        samples.push_back({{ray.pupil.x / radius, ray.pupil.y / radius}, ray.opd_mm * waves_per_mm, ray.weight});
+        samples.push_back({ray.pupil / radius, ray.opd_mm * waves_per_mm, ray.weight});
     }
     return fit_zernike(samples, degree);
 }

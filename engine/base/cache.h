@@ -46,4 +46,18 @@ class Cache {
     std::uintmax_t limit_bytes_ = 0;
 };
 
+/// What make() makes: from the cache where that has it, else made, and kept. `Kept` has serialized() and
+/// deserialized(bytes), which gives nothing for what is none.
+template <class Kept, class Make>
+Kept kept(const Cache& cache, std::string_view kind, std::string_view key, const Make& make) {
+    if (const std::optional<std::string> bytes = cache.find(kind, key)) {
+        if (std::optional<Kept> found = Kept::deserialized(*bytes)) {
+            return *std::move(found);
+        }
+    }
+    Kept made = make();
+    cache.store(kind, key, made.serialized());
+    return made;
+}
+
 }  // namespace lensproof

@@ -5,14 +5,12 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/base/infinity.h"
 #include "engine/base/input_error.h"
 
 namespace lensproof::check {
 
 namespace {
-
-constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
-constexpr double kUnlimited = std::numeric_limits<double>::infinity();
 
 double index_behind(const optics::PrescribedSurface& row, const std::optional<optics::Glass>& medium,
                     const CheckSettings& settings) {
@@ -21,22 +19,7 @@ double index_behind(const optics::PrescribedSurface& row, const std::optional<op
         return override_index->second;
     }
     const bool is_known = medium && optics::covers(*medium, settings.wavelength_nm);
-    return is_known ? optics::refractive_index(medium->formula, settings.wavelength_nm) : kUnknown;
-}
-
-/// What is claimed from outside goes before what the file says.
-optics::StatedData joined(const optics::StatedData& from_outside, optics::StatedData claims) {
-    const auto take = [](std::optional<double>& claim, const std::optional<double>& given) {
-        claim = given ? given : claim;
-    };
-    take(claims.efl_mm, from_outside.efl_mm);
-    take(claims.bfl_mm, from_outside.bfl_mm);
-    take(claims.f_number, from_outside.f_number);
-    take(claims.half_field_deg, from_outside.half_field_deg);
-    take(claims.image_circle_mm, from_outside.image_circle_mm);
-    take(claims.total_track_mm, from_outside.total_track_mm);
-    take(claims.entrance_pupil_diameter_mm, from_outside.entrance_pupil_diameter_mm);
-    return claims;
+    return is_known ? optics::refractive_index(medium->formula, settings.wavelength_nm) : kNaN;
 }
 
 /// Where a stop is missing or doubled, rays are judged as though the narrowest of the surfaces that may be meant were
@@ -47,7 +30,7 @@ std::optional<int> assume_stop(optics::Prescription& prescription) {
         return std::nullopt;
     }
     const auto narrowness = [&](const optics::PrescribedSurface& row) {
-        return stops > 1 && !row.is_stop ? kUnlimited : row.semi_diameter_mm.value_or(kUnlimited);
+        return stops > 1 && !row.is_stop ? kInfinity : row.semi_diameter_mm.value_or(kInfinity);
     };
     const auto narrowest = std::ranges::min_element(prescription.surfaces, {}, narrowness);
     for (optics::PrescribedSurface& row : prescription.surfaces) {
@@ -101,7 +84,7 @@ optics::TraceLens<double> paraxial_lens(const ParaxialTable& table) {
     double z = 0.0;
     for (std::size_t i = 0; i < table.curvature.size(); ++i) {
         lens.surfaces.push_back(
-            optics::make_trace_surface(table.curvature[i], z, kUnlimited, index_before, table.index[i], false));
+            optics::make_trace_surface(table.curvature[i], z, kInfinity, index_before, table.index[i], false));
         index_before = table.index[i];
         z += table.gap[i];
     }
@@ -126,7 +109,8 @@ CheckedLens make_checked_lens(const optics::Prescription& at_one_position, const
                               const optics::GlassCatalogue& glasses, const CheckSettings& settings) {
     CheckedLens checked;
     checked.prescription = at_one_position;
-    checked.claims = joined(claims, at_one_position.stated);
+    checked.claims = at_one_position.stated;
+    optics::take_claims(checked.claims, claims);  // from outside: before what the file says
     checked.settings = settings;
     checked.known_glasses = &glasses;
     trace_if_possible(checked);
@@ -150,7 +134,7 @@ CheckedLens make_checked_lens(const optics::Prescription& at_one_position, const
     for (int i = 0; i < checked.size(); ++i) {
         const optics::PrescribedSurface& row = checked.row(i);
         const bool is_stated = row.semi_diameter_mm || row.rim_mm;
-        const double estimate = checked.lens ? checked.lens->surfaces[i].semi_diameter : kUnknown;
+        const double estimate = checked.lens ? checked.lens->surfaces[i].semi_diameter : kNaN;
         checked.semi_diameters.push_back(row.semi_diameter_mm.value_or(row.rim_mm.value_or(estimate)));
         checked.is_estimated.push_back(!is_stated);
     }

@@ -83,11 +83,11 @@ std::optional<ComputedData> computed_data(const CheckedLens& checked, std::strin
     optics::ParaxialData paraxial = checked.paraxial.value_or(optics::ParaxialData{});
     if (!checked.paraxial || checked.assumed_stop) {
         // What a stop is needed for is not known.
-        paraxial.entrance_pupil_z = paraxial.entrance_pupil_diameter = optics::Finding::kNothing;
-        paraxial.exit_pupil_z = paraxial.exit_pupil_diameter = paraxial.f_number = optics::Finding::kNothing;
+        paraxial.entrance_pupil_z = paraxial.entrance_pupil_diameter = kNaN;
+        paraxial.exit_pupil_z = paraxial.exit_pupil_diameter = paraxial.f_number = kNaN;
     }
     if (!checked.paraxial) {
-        paraxial.ffl = optics::Finding::kNothing;
+        paraxial.ffl = kNaN;
     }
     paraxial.efl = checked.focus->efl;
     paraxial.bfl = checked.focus->bfl;

@@ -17,7 +17,7 @@ void check_glasses(const CheckedLens& checked, Findings& findings);
 /// First-order data against what is claimed.
 void check_first_order(const CheckedLens& checked, Findings& findings);
 
-/// Whether the list runs the wrong way, is in other units, or holds diameters.
+/// Whether the list is reversed, is in other units, or holds diameters.
 void check_conventions(const CheckedLens& checked, Findings& findings);
 
 /// Real rays of the axial beam.

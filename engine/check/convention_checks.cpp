@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 
+#include "engine/base/infinity.h"
 #include "engine/check/checks.h"
 #include "engine/check/restoration.h"
 #include "engine/check/sag.h"
@@ -102,18 +103,18 @@ void check_mixed_units(const CheckedLens& checked, const Restoration& restoratio
     }
 }
 
-/// How many surfaces and elements are impossible with semi-diameters of `share` of those given.
-int impossible_rims(const CheckedLens& checked, double share) {
+/// How many surfaces and elements are impossible with semi-diameters `scale` times those given.
+int impossible_rims(const CheckedLens& checked, double scale) {
     int count = 0;
     for (int i = 0; i < checked.size(); ++i) {
-        const double own_reach = share * checked.semi_diameters[i];
+        const double own_reach = scale * checked.semi_diameters[i];
         const double sag = sag_at(checked.row(i), own_reach);
         if (std::isnan(sag)) {
             ++count;
         } else if (i + 1 < checked.size() && checked.is_glass_behind(i)) {
             const double edge =
-                checked.row(i).thickness_mm + sag_at(checked.row(i + 1), share * checked.semi_diameters[i + 1]) - sag;
-            const double reach = share * std::min(checked.semi_diameters[i], checked.semi_diameters[i + 1]);
+                checked.row(i).thickness_mm + sag_at(checked.row(i + 1), scale * checked.semi_diameters[i + 1]) - sag;
+            const double reach = scale * std::min(checked.semi_diameters[i], checked.semi_diameters[i + 1]);
             const bool crosses = separation_at(checked.row(i), checked.row(i + 1), reach) < 0.0;
             count += edge < 0.0 && crosses ? 1 : 0;
         }
@@ -168,7 +169,7 @@ void check_all_diameters(const CheckedLens& checked, Findings& findings) {
 void check_one_diameter(const CheckedLens& checked, int i, Findings& findings) {
     const double here = checked.semi_diameters[i];
     double largest = 0.0;
-    double smallest = std::numeric_limits<double>::infinity();
+    double smallest = kInfinity;
     for (const int k : {i - 1, i + 1}) {
         if (k >= 0 && k < checked.size()) {
             largest = std::max(largest, checked.semi_diameters[k]);

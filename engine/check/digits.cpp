@@ -3,9 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <string_view>
+
+#include "engine/base/text.h"
 
 namespace lensproof::check {
 
@@ -46,10 +47,8 @@ class Changes {
     }
 
     void add(const std::string& text, const char* slip, double unlikelihood) {
-        double magnitude = 0.0;
-        const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), magnitude);
-        if (error == std::errc() && end == text.data() + text.size()) {
-            add(magnitude, slip, unlikelihood);
+        if (const std::optional<double> magnitude = parse_exact<double>(text)) {
+            add(*magnitude, slip, unlikelihood);
         }
     }
 
@@ -72,10 +71,7 @@ class Changes {
 
 /// To as many digits as any table has, so that 4.297 moved by a place is 42.97.
 double rounded(double value) {
-    const std::string text = fmt::format("{:.10g}", value);
-    double nearest = value;
-    std::from_chars(text.data(), text.data() + text.size(), nearest);
-    return nearest;
+    return parse_exact<double>(fmt::format("{:.10g}", value)).value_or(value);
 }
 
 void add_swaps(Changes& changes) {

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "engine/base/angle.h"
+#include "engine/base/infinity.h"
 #include "engine/check/checks.h"
 #include "engine/check/rays.h"
 #include "engine/check/sag.h"
@@ -14,7 +16,6 @@ namespace lensproof::check {
 
 namespace {
 
-constexpr double kDegree = std::numbers::pi / 180.0;
 constexpr double kLeastTransmitted = 0.30;   // of the axial beam's area, rule 28
 constexpr double kRoundedField = 0.95;       // of the claimed field: up to there at least some light must come
 constexpr double kDistortion = 0.05;         // rule 31
@@ -23,15 +24,15 @@ constexpr double kWidestRectilinear = 80.0;  // degrees: f tan grows without bou
 constexpr double kImageCircle = 0.05;        // this project's
 constexpr double kSteepIncidence = 60.0;     // degrees, rule 33
 constexpr double kGrazingIncidence = 75.0;
-constexpr double kBackwardsShare = 0.01;  // of the beam that passes, below which a rim's edge explains it
+constexpr double kBackwardsFraction = 0.01;  // of the beam that passes, below which a rim's edge explains it
 
-/// The lens as the field is judged by: its sensor in the paraxial image, its rims as they are or out of the way.
+/// The lens as the field is judged by: its sensor in the paraxial image, its rims as they are or wide open.
 optics::Lens lens_in_focus(const CheckedLens& checked, bool with_rims) {
     optics::Lens lens = *checked.lens;
     lens.image_z = lens.last_vertex_z() + checked.focus->image_distance;
     for (optics::LensSurface& surface : lens.surfaces) {
         if (!with_rims) {
-            surface.semi_diameter = std::numeric_limits<double>::infinity();
+            surface.semi_diameter = kInfinity;
         }
     }
     return lens;
@@ -49,9 +50,9 @@ RayFate first_failure(const CheckedLens& checked) {
     constexpr int kAngles = 900;
     for (int k = 1; k < kAngles; ++k) {
         const double angle = 90.0 * kDegree * k / kAngles;
-        const Vec3d way{0.0, std::sin(angle), std::cos(angle)};
+        const Vec3d direction{0.0, std::sin(angle), std::cos(angle)};
         // Where the stop is a glass surface, the ray bends at its vertex.
-        const double sine = lens.surfaces[stop].reverse_ratio * way.y;
+        const double sine = lens.surfaces[stop].reverse_ratio * direction.y;
         if (!(sine < 1.0)) {
             return {.status = optics::RayStatus::total_internal_reflection, .surface = stop};
         }
@@ -59,7 +60,7 @@ RayFate first_failure(const CheckedLens& checked) {
         const optics::TracedRay<double> outwards =
             optics::trace<optics::Direction::reverse>(front, Ray<double>{{0.0, 0.0, z}, back});
         const optics::TracedRay<double> inwards =
-            optics::trace<optics::Direction::forward>(rear, Ray<double>{{0.0, 0.0, z}, way});
+            optics::trace<optics::Direction::forward>(rear, Ray<double>{{0.0, 0.0, z}, direction});
         if (stop > 0 && outwards.status != optics::RayStatus::ok) {
             return {.status = outwards.status, .surface = outwards.surface};
         }
@@ -119,7 +120,7 @@ struct SampledBeam {
 
 SampledBeam sample_beam(const CheckedLens& checked, double field, double centre, double half_width) {
     constexpr int kCells = 120;  // across; the beam is symmetric in x
-    const Vec3d way{0.0, std::sin(field), std::cos(field)};
+    const Vec3d direction{0.0, std::sin(field), std::cos(field)};
     const Vec3d across{0.0, std::cos(field), -std::sin(field)};
     const double cell = 2.0 * half_width / kCells;
     SampledBeam beam;
@@ -127,7 +128,7 @@ SampledBeam sample_beam(const CheckedLens& checked, double field, double centre,
         for (int k = 0; k < kCells; ++k) {
             const double a = (i + 0.5) * cell;
             const double b = centre - half_width + (k + 0.5) * cell;
-            const RayFate fate = follow(*checked.traced, {Vec3d{a, 0.0, 0.0} + b * across, way});
+            const RayFate fate = follow(*checked.traced, {Vec3d{a, 0.0, 0.0} + b * across, direction});
             if (fate.status == optics::RayStatus::ok && fate.is_backwards) {
                 beam.backwards += 2.0 * cell * cell;
                 beam.backwards_surface = fate.surface;
@@ -193,7 +194,7 @@ void check_beam(const CheckedLens& checked, double field, const std::optional<op
     }
     const SampledBeam beam = field_beam(checked, field, *chief, axial);
     check_vignetting(checked, field, axial, beam.area, findings);
-    if (beam.backwards > kBackwardsShare * (beam.area + beam.backwards)) {
+    if (beam.backwards > kBackwardsFraction * (beam.area + beam.backwards)) {
         // Rims that were estimated are no claim of the table's.
         const int there = beam.backwards_surface;
         const bool is_estimated = checked.is_estimated[there] || (there > 0 && checked.is_estimated[there - 1]);
@@ -204,7 +205,7 @@ void check_beam(const CheckedLens& checked, double field, const std::optional<op
                                                    "have to run backwards to meet surface {}",
                                                    field / kDegree, there + 1),
                             .value = 100.0 * beam.backwards / (beam.area + beam.backwards),
-                            .limit = 100.0 * kBackwardsShare,
+                            .limit = 100.0 * kBackwardsFraction,
                             .unit = "%"});
     }
     const double incidence = beam.largest_incidence / kDegree;

@@ -66,7 +66,7 @@ void check_power(const CheckedLens& checked, Findings& findings) {
     }
 }
 
-/// A measured length against a stated one; `scale` is what the limits are shares of.
+/// A measured length against a stated one; `scale` is what the limits are fractions of.
 struct Comparison {
     const char* code;
     std::string what;
@@ -157,13 +157,13 @@ void check_petzval(const CheckedLens& checked, Findings& findings) {
         sum -= checked.table.curvature[i] * (n2 - n1) / (n1 * n2);
     }
     const double radius = 1.0 / sum;
-    const double shares = std::abs(radius / checked.focus->efl);
-    if (shares < kPetzvalWarning) {
+    const double relative = std::abs(radius / checked.focus->efl);
+    if (relative < kPetzvalWarning) {
         findings.push_back({.code = "petzval-radius",
                             .severity = optics::Severity::warning,
                             .message = fmt::format("the Petzval radius is {:.4g} mm, {:.2f} focal lengths: the field "
                                                    "is curved more strongly than a single element's",
-                                                   radius, shares),
+                                                   radius, relative),
                             .value = radius,
                             .limit = kPetzvalWarning * checked.focus->efl,
                             .unit = "mm"});
@@ -206,7 +206,7 @@ void check_invariant(const CheckedLens& checked, Findings& findings) {
     const optics::TraceLens<double> lens = paraxial_lens(checked.table);
     optics::ParaxialRay one{1.0, 0.0};
     optics::ParaxialRay other{0.0, 0.1};
-    double expected = optics::Finding::kNothing;
+    double expected = kNaN;
     for (int i = 0; i < checked.size(); ++i) {
         one = optics::trace_paraxial(lens, one, i, i);
         other = optics::trace_paraxial(lens, other, i, i);

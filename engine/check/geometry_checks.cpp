@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/base/bisect.h"
 #include "engine/check/checks.h"
 #include "engine/check/sag.h"
 
@@ -18,12 +19,12 @@ constexpr double kFlattestSag = 0.1;  // mm, rule 8, same source
 constexpr double kBlankMargin = 0.5;  // mm of radius
 constexpr double kThinnestBlankEdge = 0.7;
 constexpr double kThinnestEdge = 1.0;
-constexpr double kThinnestEdgeShare = 0.05;  // of the diameter
+constexpr double kThinnestRelativeEdge = 0.05;  // of the diameter
 // Rule 10: 6 : 1 to 10 : 1 is the usual rule for diameter to centre thickness. Nearly every lens that was ever sold
 // breaks it somewhere, so half of it is what is warned of.
 constexpr double kThinnestCentre = 1.0;
-constexpr double kThinnestCentreShare = 0.1;
-constexpr double kThinCentreShare = 0.05;
+constexpr double kThinnestRelativeCentre = 0.1;
+constexpr double kThinRelativeCentre = 0.05;
 constexpr double kNarrowestGap = 0.05;  // mm, rule 11
 constexpr double kSelfCentring = 0.56;  // rule 36: Karow, Fabrication Methods for Precision Optics (1993), p. 524
 constexpr int kSamples = 64;            // of the height, where no closed form serves
@@ -94,14 +95,14 @@ bool cuts_no_glass(const Space& space) {
 /// Rules 6 to 8 for a surface by itself.
 void check_steepness(const CheckedLens& checked, int i, Findings& findings) {
     const optics::PrescribedSurface& row = checked.row(i);
-    const double share = std::abs(checked.semi_diameters[i] * row.curvature());
-    if (share > kSteepest && share < 1.0) {
+    const double steepness = std::abs(checked.semi_diameters[i] * row.curvature());
+    if (steepness > kSteepest && steepness < 1.0) {
         findings.push_back(
             {.code = "steep-surface",
              .severity = optics::Severity::warning,
              .surface = i + 1,
-             .message = fmt::format("its radius is only {:.2f} of its diameter: hard to make", 0.5 / share),
-             .value = share,
+             .message = fmt::format("its radius is only {:.2f} of its diameter: hard to make", 0.5 / steepness),
+             .value = steepness,
              .limit = kSteepest});
     }
     const double depth = std::abs(sag_at(row, checked.semi_diameters[i]));
@@ -126,7 +127,7 @@ void check_edge(const Space& space, Findings& findings) {
     const double edge = edge_with(0.0);
     const double blank_edge = edge_with(kBlankMargin);
     const double reach = std::max(space.front_reach, space.rear_reach);
-    const double least = std::max(kThinnestEdge, kThinnestEdgeShare * 2.0 * reach);
+    const double least = std::max(kThinnestEdge, kThinnestRelativeEdge * 2.0 * reach);
     const auto report = [&](optics::Severity severity, double value, double limit, std::string message) {
         findings.push_back({.code = "edge-thickness",
                             .severity = severity,
@@ -158,10 +159,10 @@ void check_edge(const Space& space, Findings& findings) {
 void check_centre(const Space& space, Findings& findings) {
     const double diameter = 2.0 * std::max(space.front_reach, space.rear_reach);
     const bool is_negative = space.front.curvature() < space.rear.curvature();
-    const double least = std::max(kThinnestCentre, is_negative ? kThinnestCentreShare * diameter : 0.0);
+    const double least = std::max(kThinnestCentre, is_negative ? kThinnestRelativeCentre * diameter : 0.0);
     const double thickness = space.front.thickness_mm;
     if (thickness > 0.0 && thickness < least) {
-        const bool is_thin = thickness < std::max(kThinnestCentre, kThinCentreShare * diameter);
+        const bool is_thin = thickness < std::max(kThinnestCentre, kThinRelativeCentre * diameter);
         findings.push_back({.code = "centre-thickness",
                             .severity = is_thin ? optics::Severity::warning : optics::Severity::info,
                             .surface = space.surface(),
@@ -319,17 +320,14 @@ void check_asphere(const CheckedLens& checked, int i, Findings& findings) {
             return;
         }
         const double slope = slope_at(r);
-        // A slope of a minute of arc the other way is a correction plate's; what it then reaches counts.
+        // A slope of a minute of arc in the other direction is a correction plate's; what it then reaches counts.
         constexpr double kNoticeable = 0.03;
         if (slope * steepest >= 0.0) {
             rising_to = r;
             steepest = std::abs(slope) > std::abs(steepest) ? slope : steepest;
         } else if (std::abs(slope) > kNoticeable && std::abs(steepest) > kNoticeable) {
-            double turned_at = r;
-            for (int halving = 0; halving < kHalvings; ++halving) {
-                const double middle = 0.5 * (rising_to + turned_at);
-                (slope_at(middle) * steepest > 0.0 ? rising_to : turned_at) = middle;
-            }
+            const double turned_at =
+                bisected({rising_to, r}, kHalvings, [&](double at) { return slope_at(at) * steepest > 0.0; }).outside;
             findings.push_back({.code = "asphere-turns-over",
                                 .severity = optics::Severity::warning,
                                 .surface = i + 1,

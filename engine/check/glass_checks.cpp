@@ -31,8 +31,7 @@ optics::GlassMatch resolve(const CheckedLens& checked, const std::string& name) 
 }
 
 std::string medium_in_words(const optics::StatedMedium& medium) {
-    return medium.glass.empty() ? fmt::format("n_d = {}", medium.n_d.value_or(optics::Finding::kNothing))
-                                : medium.glass;
+    return medium.glass.empty() ? fmt::format("n_d = {}", medium.n_d.value_or(kNaN)) : medium.glass;
 }
 
 /// Rule 13.

@@ -5,6 +5,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/base/bisect.h"
+#include "engine/base/infinity.h"
+
 namespace lensproof::check {
 
 namespace {
@@ -28,25 +31,22 @@ AxialBeam beam_through(const CheckedLens& checked, const optics::TraceLens<doubl
     if (!std::isfinite(widest)) {
         return beam;
     }
-    double passing = 0.0;
-    double failing = widest;
+    const auto passes = [&](double h) { return follow(lens, axial_ray(checked, h)).passes(); };
+    Bracket edge{.inside = 0.0, .outside = widest};
     for (int step = 0; step <= kSteps; ++step) {
         // Not on the axis itself, where a ray meets no slope.
         const double h = widest * std::max(1e-3, static_cast<double>(step)) / kSteps;
-        if (!follow(lens, axial_ray(checked, h)).passes()) {
-            failing = h;
+        if (!passes(h)) {
+            edge.outside = h;
             break;
         }
-        passing = h;
+        edge.inside = h;
     }
-    for (int i = 0; i < kHalvings && passing > 0.0; ++i) {
-        const double middle = 0.5 * (passing + failing);
-        (follow(lens, axial_ray(checked, middle)).passes() ? passing : failing) = middle;
-    }
-    beam.height = passing;
-    beam.limit = follow(lens, axial_ray(checked, failing));
-    const Vec3d way = follow(lens, axial_ray(checked, passing)).ray.direction;
-    beam.exit_sine = std::hypot(way.x, way.y);
+    edge = bisected(edge, edge.inside > 0.0 ? kHalvings : 0, passes);
+    beam.height = edge.inside;
+    beam.limit = follow(lens, axial_ray(checked, edge.outside));
+    const Vec3d outermost = follow(lens, axial_ray(checked, edge.inside)).ray.direction;
+    beam.exit_sine = std::hypot(outermost.x, outermost.y);
     return beam;
 }
 
@@ -124,7 +124,7 @@ optics::TraceLens<double> without_rims(const CheckedLens& checked, bool keep_sto
     optics::TraceLens<double> lens = *checked.traced;
     for (optics::TraceSurface<double>& surface : lens.surfaces) {
         if (!(keep_stop && surface.is_stop)) {
-            surface.semi_diameter_squared = std::numeric_limits<double>::infinity();
+            surface.semi_diameter_squared = kInfinity;
         }
     }
     return lens;

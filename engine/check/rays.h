@@ -7,7 +7,7 @@
 
 namespace lensproof::check {
 
-/// What became of a ray on its way to the image plane.
+/// What became of a ray towards the image plane.
 struct RayFate {
     optics::RayStatus status = optics::RayStatus::ok;
     int surface = 0;                 // from 0: where it failed, or was cut first

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/base/infinity.h"
+
 namespace lensproof::check {
 
 Restoration::Restoration(const CheckedLens& checked)
@@ -14,7 +16,7 @@ Restoration::Restoration(const CheckedLens& checked)
     if (!image_distance_ && last > 0.0 && std::isfinite(last)) {
         image_distance_ = last;
     }
-    as_given_ = checked.focus ? residual(checked.table) : std::numeric_limits<double>::infinity();
+    as_given_ = checked.focus ? residual(checked.table) : kInfinity;
 }
 
 double Restoration::residual(const ParaxialTable& table) const {
@@ -24,7 +26,7 @@ double Restoration::residual(const ParaxialTable& table) const {
     const double at = image_distance_is_bfl_ ? focus.bfl : focus.image_distance;
     const double off_image = image_distance_ ? std::abs(at - *image_distance_) : 0.0;
     const double worst = std::max(off_efl, off_image) / scale;
-    return std::isfinite(worst) ? worst : std::numeric_limits<double>::infinity();
+    return std::isfinite(worst) ? worst : kInfinity;
 }
 
 }  // namespace lensproof::check

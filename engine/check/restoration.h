@@ -12,7 +12,7 @@ class Restoration {
     /// Whether anything is claimed that a change could restore.
     [[nodiscard]] bool has_claims() const { return efl_ || image_distance_; }
 
-    /// The larger of the two departures from the claims, as a share of the focal length; infinite where the table has
+    /// The larger of the two departures from the claims, over the focal length; infinite where the table has
     /// no focus.
     [[nodiscard]] double residual(const ParaxialTable& table) const;
 

@@ -14,11 +14,11 @@ namespace lensproof::check {
 
 namespace {
 
-constexpr std::size_t kMost = 5;         // suggestions that are reported
-constexpr double kRounding = 5e-4;       // of the focal length: residuals below it are alike
-constexpr std::size_t kNeighbours = 12;  // glasses that one may have been mistaken for
-constexpr double kThinnestShare = 0.02;  // of the diameter: no glass is meant to be thinner
-constexpr double kFromWarning = 0.003;   // residual from which something looks wrong
+constexpr std::size_t kMost = 5;            // suggestions that are reported
+constexpr double kRounding = 5e-4;          // of the focal length: residuals below it are alike
+constexpr std::size_t kNeighbours = 12;     // glasses that one may have been mistaken for
+constexpr double kThinnestRelative = 0.02;  // of the diameter: no glass is meant to be thinner
+constexpr double kFromWarning = 0.003;      // residual from which something looks wrong
 
 /// One number of the table as it might have been meant.
 struct Trial {
@@ -150,7 +150,7 @@ bool is_possible(const CheckedLens& checked, const Trial& trial) {
             continue;
         }
         const double reach = std::min(checked.semi_diameters[i], checked.semi_diameters[i + 1]);
-        const bool is_foil = trial.table.gap[i] < kThinnestShare * 2.0 * checked.semi_diameters[i];
+        const bool is_foil = trial.table.gap[i] < kThinnestRelative * 2.0 * checked.semi_diameters[i];
         if (checked.is_glass_behind(i) && is_foil && trial.table.gap[i] != checked.table.gap[i]) {
             return false;
         }

@@ -20,7 +20,7 @@ constexpr double kLargestConic = 1e4;
 constexpr double kUsualLength = 1e4;  // mm: beyond 10 m, glass or aperture is a slip of the decimal point
 
 void add(Findings& findings, const char* code, optics::Severity severity, int surface, std::string message,
-         double value = optics::Finding::kNothing, double limit = optics::Finding::kNothing, const char* unit = "") {
+         double value = kNaN, double limit = kNaN, const char* unit = "") {
     findings.push_back({.code = code,
                         .severity = severity,
                         .surface = surface,

@@ -4,8 +4,10 @@
 #include <boost/math/tools/toms748_solve.hpp>
 #include <cmath>
 #include <cstdint>
-#include <limits>
-#include <numbers>
+
+#include "engine/base/angle.h"
+#include "engine/base/bisect.h"
+#include "engine/base/infinity.h"
 
 namespace lensproof::optics {
 
@@ -26,16 +28,6 @@ TracedRay<double> trace_half(const TraceLens<double>& half, const Ray<double>& r
 
 double field_of(const Vec3d& incoming) {
     return std::atan2(incoming.y, incoming.z);
-}
-
-/// The last number from `passing` towards `blocked` at which `passes` holds.
-template <class Predicate>
-double last_passing(double passing, double blocked, const Predicate& passes) {
-    for (int i = 0; i < kHalvings; ++i) {
-        const double middle = 0.5 * (passing + blocked);
-        (passes(middle) ? passing : blocked) = middle;
-    }
-    return passing;
 }
 
 /// The ray of a symmetric lens on the other side of its axis.
@@ -66,8 +58,8 @@ ChiefRays::ChiefRays(const Lens& lens, double wavelength_nm, Rims rims)
 
 double ChiefRays::end_of_family() const {
     constexpr int kSteps = 64;
-    constexpr double kStep = 0.5 * std::numbers::pi / kSteps;
-    constexpr double kNowhere = -std::numeric_limits<double>::infinity();
+    constexpr double kStep = 0.5 * kPi / kSteps;
+    constexpr double kNowhere = -kInfinity;
     const auto field = [&](double angle) {
         const std::optional<ChiefRay> ray = from_stop(angle);
         return ray ? ray->field_angle : kNowhere;
@@ -84,10 +76,11 @@ double ChiefRays::end_of_family() const {
         }
         last = here;
     }
-    const double end =
-        last_passing((step - 1) * kStep, step * kStep, [&](double angle) { return field(angle) > kNowhere; });
-    // Where it turns back before it ends, that is on the way to here, or, if it has just done so, in the step before.
-    return rises(end) ? end : last_passing(std::max(0, step - 2) * kStep, end, rises);
+    const double end = bisected({(step - 1) * kStep, step * kStep}, kHalvings, [&](double angle) {
+                           return field(angle) > kNowhere;
+                       }).inside;
+    // Where it turns back before it ends, that is in the last step, or, if it has just done so, in the one before.
+    return rises(end) ? end : bisected({std::max(0, step - 2) * kStep, end}, kHalvings, rises).inside;
 }
 
 double ChiefRays::find_largest_field() const {
@@ -95,7 +88,7 @@ double ChiefRays::find_largest_field() const {
         const std::optional<ChiefRay> last = from_stop(largest_stop_angle_);
         return last ? last->field_angle : 0.0;
     }
-    return last_passing(0.0, std::numbers::pi, [&](double field) { return at_field(field).has_value(); });
+    return bisected({0.0, kPi}, kHalvings, [&](double field) { return at_field(field).has_value(); }).inside;
 }
 
 std::optional<ChiefRay> ChiefRays::through_stop(const Vec3d& direction, Rims rims) const {
@@ -182,23 +175,21 @@ std::optional<ChiefRay> ChiefRays::aim(const Residual& residual) const {
     constexpr double kStride = 0.05;
     constexpr int kMostSteps = 20;
     const Vec2d start = best->residual;
-    const int strides = 1 + static_cast<int>(std::hypot(start.x, start.y) / kStride);
+    const int strides = 1 + static_cast<int>(length(start) / kStride);
     for (int stride = strides - 1; stride >= 0; --stride) {
-        const Vec2d goal{start.x * stride / strides, start.y * stride / strides};
-        const auto miss = [&](const Aim& aim) { return std::hypot(aim.residual.x - goal.x, aim.residual.y - goal.y); };
+        const Vec2d goal = 1.0 * stride * start / (1.0 * strides);
+        const auto miss = [&](const Aim& aim) { return length(aim.residual - goal); };
         for (int step = 0; step < kMostSteps && miss(*best) > 0.0; ++step) {
-            const std::optional<Aim> in_x = shoot({best->angles.x + kDifference, best->angles.y});
-            const std::optional<Aim> in_y = shoot({best->angles.x, best->angles.y + kDifference});
+            const std::optional<Aim> in_x = shoot(best->angles + Vec2d{kDifference, 0.0});
+            const std::optional<Aim> in_y = shoot(best->angles + Vec2d{0.0, kDifference});
             if (!in_x || !in_y) {
                 break;
             }
-            const Vec2d by_x{in_x->residual.x - best->residual.x, in_x->residual.y - best->residual.y};
-            const Vec2d by_y{in_y->residual.x - best->residual.x, in_y->residual.y - best->residual.y};
-            const Vec2d left{goal.x - best->residual.x, goal.y - best->residual.y};
-            const double determinant = by_x.x * by_y.y - by_y.x * by_x.y;
-            const Vec2d move{kDifference * (left.x * by_y.y - by_y.x * left.y) / determinant,
-                             kDifference * (by_x.x * left.y - left.x * by_x.y) / determinant};
-            const std::optional<Aim> next = shoot({best->angles.x + move.x, best->angles.y + move.y});
+            const Vec2d by_x = in_x->residual - best->residual;
+            const Vec2d by_y = in_y->residual - best->residual;
+            const Vec2d left = goal - best->residual;
+            const Vec2d move = kDifference * Vec2d{cross(left, by_y), cross(by_x, left)} / cross(by_x, by_y);
+            const std::optional<Aim> next = shoot(best->angles + move);
             if (!next || !(miss(*next) < miss(*best))) {
                 break;
             }
@@ -206,7 +197,7 @@ std::optional<ChiefRay> ChiefRays::aim(const Residual& residual) const {
         }
     }
     constexpr double kAimed = 1e-12;
-    const bool is_aimed = std::hypot(best->residual.x, best->residual.y) <= kAimed;
+    const bool is_aimed = length(best->residual) <= kAimed;
     const bool passes = rims_ == Rims::follow || best->ray.status == RayStatus::ok;
     return is_aimed && passes ? std::optional(best->ray) : std::nullopt;
 }
@@ -227,8 +218,7 @@ std::optional<ChiefRay> ChiefRays::from_point(const Vec3d& object) const {
         return aim([&](const ChiefRay& ray) {
             const Vec3d wanted = normalized(ray.front.origin - object);
             const Vec3d& found = ray.front.direction;
-            return Vec2d{found.x - wanted.x,
-                         std::remainder(field_of(found) - field_of(wanted), 2.0 * std::numbers::pi)};
+            return Vec2d{found.x - wanted.x, std::remainder(field_of(found) - field_of(wanted), 2.0 * kPi)};
         });
     }
     if (object.y > 0.0) {

@@ -21,8 +21,8 @@ struct TraceCoating {
     [[nodiscard]] bool is_bare() const { return layers.empty() && !reflectance; }
 };
 
-/// The share of unpolarised light that passes from a medium of index `n1` at the angle of cosine `cos1` into one of
-/// `n2` at `cos2`; n1 lies on the scene's side, whichever way the light goes (the share is the same both ways).
+/// The transmittance for unpolarised light from a medium of index `n1` at the angle of cosine `cos1` into one of `n2`
+/// at `cos2`; n1 lies on the scene's side, wherever the light comes from (the transmittance is the same).
 ///
 /// Each layer's characteristic matrix is [cos δ, i sin δ / η; i η sin δ, cos δ] with δ = 2π n d cos θ / λ and the
 /// tilted admittance η = n cos θ (s) or n / cos θ (p); with [B; C] their product on [1; η₂], T = 4 η₁ η₂ / |η₁ B + C|²

@@ -3,6 +3,8 @@
 #include <cmath>
 #include <utility>
 
+#include "engine/base/infinity.h"
+
 namespace lensproof::optics {
 
 std::array<Vec3d, 2> across_axes(const Vec3d& along) {
@@ -30,8 +32,7 @@ bool FieldBundle::is_near() const {
 }
 
 double FieldBundle::distance() const {
-    return is_near() ? (object_distance + chief.front.origin.z) / chief.front.direction.z
-                     : std::numeric_limits<double>::infinity();
+    return is_near() ? (object_distance + chief.front.origin.z) / chief.front.direction.z : kInfinity;
 }
 
 Vec3d FieldBundle::object_point() const {
@@ -95,14 +96,9 @@ std::optional<FieldBundle> same_object(const FieldBundle& bundle, const ChiefRay
     return own ? std::optional(FieldBundle{.chief = *own, .object_distance = bundle.object_distance}) : std::nullopt;
 }
 
-std::optional<FieldBundle> field_bundle(const ChiefRays& of_wavelength, const ChiefRays& reference, double field_angle,
-                                        double object_distance) {
-    const std::optional<ChiefRay> aimed = reference.at_field(field_angle);
-    if (!aimed) {
-        return std::nullopt;
-    }
-    const FieldBundle bundle{.chief = *aimed, .object_distance = object_distance};
-    return &of_wavelength == &reference ? std::optional(bundle) : same_object(bundle, of_wavelength);
+std::optional<FieldBundle> field_bundle(const ChiefRays& chief_rays, double field_angle, double object_distance) {
+    const std::optional<ChiefRay> chief = chief_rays.at_field(field_angle);
+    return chief ? std::optional(FieldBundle{.chief = *chief, .object_distance = object_distance}) : std::nullopt;
 }
 
 }  // namespace lensproof::optics

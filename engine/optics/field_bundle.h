@@ -1,8 +1,8 @@
-// engine/optics/field_bundle.h — the light of one object point on its way into the lens.
+// engine/optics/field_bundle.h — the light of one object point before it enters the lens.
 #pragma once
 #include <array>
-#include <limits>
 
+#include "engine/base/infinity.h"
 #include "engine/optics/chief_ray.h"
 
 namespace lensproof::optics {
@@ -22,7 +22,7 @@ Ray<double> ray_beside(const Ray<double>& axis, const std::array<Vec3d, 2>& acro
 /// plane x = 0: x as near to +x as can be across it). Lens space, mm, radians.
 struct FieldBundle {
     ChiefRay chief;
-    double object_distance = std::numeric_limits<double>::infinity();  // of the point's plane in front of z = 0, mm
+    double object_distance = kInfinity;  // of the point's plane in front of z = 0, mm
 
     /// Whether the object point is so near that its rays are not parallel. Where the chief ray does not come from the
     /// object's plane (θ ≥ 90°) the point is taken as one at infinity.
@@ -42,13 +42,13 @@ struct FieldBundle {
     [[nodiscard]] Ray<double> ray(Vec2d offset) const { return ray_beside(chief.front, across(), distance(), offset); }
 };
 
+/// The bundle of the object at `field_angle`: at infinity the direction, else the point where the chief ray leaves the
+/// object's plane. Nothing where there is no such ray.
+std::optional<FieldBundle> field_bundle(const ChiefRays& chief_rays, double field_angle,
+                                        double object_distance = kInfinity);
+
 /// The bundle of the same object at another wavelength, around that wavelength's own chief ray: at infinity the same
 /// direction, else the same point. Nothing where there is no such ray.
 std::optional<FieldBundle> same_object(const FieldBundle& bundle, const ChiefRays& of_wavelength);
-
-/// The bundle of the object at `field_angle`, which the chief ray of the reference wavelength defines: at infinity the
-/// direction, else the point where that ray leaves the object's plane. Nothing where either ray does not exist.
-std::optional<FieldBundle> field_bundle(const ChiefRays& of_wavelength, const ChiefRays& reference, double field_angle,
-                                        double object_distance = std::numeric_limits<double>::infinity());
 
 }  // namespace lensproof::optics

@@ -1,23 +1,20 @@
 // engine/optics/finding.h — something worth saying about a prescription: by its reader, or by its checker.
 #pragma once
+#include <array>
+#include <cstddef>
 #include <string>
 #include <string_view>
 #include <vector>
+
+#include "engine/base/infinity.h"
 
 namespace lensproof::optics {
 
 enum class Severity { info, warning, error };
 
 constexpr std::string_view severity_name(Severity severity) {
-    switch (severity) {
-        case Severity::info:
-            return "info";
-        case Severity::warning:
-            return "warning";
-        case Severity::error:
-            break;
-    }
-    return "error";
+    constexpr std::array<std::string_view, 3> kNames = {"info", "warning", "error"};
+    return kNames[static_cast<std::size_t>(severity)];
 }
 
 /// One finding. `value` and `limit` are NaN where there is nothing to measure.
@@ -26,11 +23,9 @@ struct Finding {
     Severity severity = Severity::warning;
     int surface = 0;  // counted from 1, the stop included; 0: the lens as a whole
     std::string message;
-    double value = kNothing;
-    double limit = kNothing;
+    double value = kNaN;
+    double limit = kNaN;
     std::string unit;  // of value and limit; empty: a bare number
-
-    static constexpr double kNothing = __builtin_nan("");
 };
 
 }  // namespace lensproof::optics

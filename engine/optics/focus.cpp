@@ -4,9 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <optional>
 
+#include "engine/base/bisect.h"
+#include "engine/base/infinity.h"
 #include "engine/base/input_error.h"
 #include "engine/optics/paraxial.h"
 #include "engine/spectral/wavelengths.h"
@@ -42,7 +43,7 @@ double defocus(const Lens& lens, double object_distance_mm) {
 /// The lens with its focusing groups where the image of the object is as far from the sensor as infinity's is in the
 /// table, which is where the table's own sensor stands.
 Lens focused_by_groups(const Lens& lens, double object_distance_mm) {
-    const double aim = defocus(lens, std::numeric_limits<double>::infinity());
+    const double aim = defocus(lens, kInfinity);
     const auto error = [&](double drive) -> std::optional<double> {
         const std::optional<Lens> moved = driven(lens, drive);
         return moved ? std::optional(defocus(*moved, object_distance_mm) - aim) : std::nullopt;
@@ -56,13 +57,8 @@ Lens focused_by_groups(const Lens& lens, double object_distance_mm) {
             const double far = direction * i * step;
             const std::optional<double> here = error(far);
             if (here && (*here <= 0.0) != (*last <= 0.0) && std::abs(*here - *last) < lens.image_z) {
-                double low = near;
-                double high = far;
-                for (int halving = 0; halving < 60; ++halving) {
-                    const double middle = 0.5 * (low + high);
-                    ((*error(middle) <= 0.0) == (*last <= 0.0) ? low : high) = middle;
-                }
-                return *driven(lens, low);
+                const auto is_nearer = [&](double at) { return (*error(at) <= 0.0) == (*last <= 0.0); };
+                return *driven(lens, bisected({near, far}, 60, is_nearer).inside);
             }
             last = here;
             near = far;

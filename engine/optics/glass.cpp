@@ -4,8 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
+#include "engine/base/infinity.h"
 #include "engine/optics/air.h"
 
 namespace lensproof::optics {
@@ -16,7 +16,7 @@ bool covers(const Glass& glass, double wavelength_nm) {
 
 double dn_dT_absolute(const Glass& glass, double wavelength_nm, double temperature_C) {
     if (!glass.thermal) {
-        return std::numeric_limits<double>::quiet_NaN();
+        return kNaN;
     }
     const ThermalDispersion& t = *glass.thermal;
     const double n = refractive_index(glass.formula, wavelength_nm);

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "engine/base/nearest_name.h"
 #include "engine/base/text.h"
 #include "engine/optics/glass_name.h"
 #include "engine/spectral/wavelengths.h"

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cctype>
 #include <cmath>
-#include <vector>
 
 #include "engine/base/text.h"
 
@@ -73,29 +72,6 @@ std::string bare_name(std::string_view name) {
         }
     }
     return bare;
-}
-
-int spelling_distance(std::string_view a, std::string_view b) {
-    // Rows of the usual table (Damerau 1964, neighbours swapped once): two above the current one.
-    std::vector<int> before(b.size() + 1);
-    std::vector<int> above(b.size() + 1);
-    std::vector<int> row(b.size() + 1);
-    for (std::size_t j = 0; j <= b.size(); ++j) {
-        above[j] = static_cast<int>(j);
-    }
-    for (std::size_t i = 1; i <= a.size(); ++i) {
-        row[0] = static_cast<int>(i);
-        for (std::size_t j = 1; j <= b.size(); ++j) {
-            const int change = a[i - 1] == b[j - 1] ? 0 : 1;
-            row[j] = std::min({above[j] + 1, row[j - 1] + 1, above[j - 1] + change});
-            if (i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1]) {
-                row[j] = std::min(row[j], before[j - 2] + 1);
-            }
-        }
-        std::swap(before, above);
-        std::swap(above, row);
-    }
-    return above[b.size()];
 }
 
 std::optional<GlassCode> parse_glass_code(std::string_view text) {

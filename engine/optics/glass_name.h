@@ -15,9 +15,6 @@ bool same_spelling(std::string_view a, std::string_view b);
 /// A name's letters and digits, in capitals.
 std::string bare_name(std::string_view name);
 
-/// How many letters have to be changed, added, dropped or swapped with their neighbour to make `a` into `b`.
-int spelling_distance(std::string_view a, std::string_view b);
-
 /// n_d and V_d from a six-digit code and its kin: 517642, 517642.251 (SCHOTT, with the density), 517.642 and
 /// 516800.641700 (CODE V), 1.517:64.2. A code of three digits drops the 1 of n_d, and above 2 the 2: 001291 is 2.001.
 /// Nothing where `text` is no such code.

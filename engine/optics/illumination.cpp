@@ -2,8 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
+#include "engine/base/infinity.h"
 #include "engine/optics/rim_margin.h"
 
 namespace lensproof::optics {
@@ -23,8 +23,7 @@ struct SensorPoint {
 
     [[nodiscard]] RegionSample margin(Vec2d cosines) const {
         const std::optional<Ray<double>> outwards = ray(cosines);
-        return outwards ? rim_margin(lens, *outwards, Direction::reverse)
-                        : RegionSample{.margin = std::numeric_limits<double>::infinity()};
+        return outwards ? rim_margin(lens, *outwards, Direction::reverse) : RegionSample{.margin = kInfinity};
     }
 
     [[nodiscard]] double transmittance(Vec2d cosines) const {

@@ -65,15 +65,15 @@ Intersection<T> intersect_from_near(const Vec3<T>& origin, const Vec3<T>& direct
 
 /// Along the ray to its closest approach to the vertex (0, 0, 0), mm.
 template <class T>
-T way_to_vertex(const Vec3<T>& origin, const Vec3<T>& direction) {
+T distance_to_vertex(const Vec3<T>& origin, const Vec3<T>& direction) {
     return -dot(origin, direction);
 }
 
-/// The same from any origin o, by way of the ray's closest approach to the vertex, p = o − (o·d) d: far-away origins do
+/// The same from any origin o, from the ray's closest approach to the vertex, p = o − (o·d) d: far-away origins do
 /// not matter. p·d would be zero but for rounding: from an object at 1e12 mm it is 1e-4 mm, and b carries it.
 template <class T>
 Intersection<T> intersect(const Vec3<T>& origin, const Vec3<T>& direction, const T& c, const T& heading) {
-    const T to_vertex = way_to_vertex(origin, direction);
+    const T to_vertex = distance_to_vertex(origin, direction);
     Intersection<T> meeting = intersect_from_near(origin + to_vertex * direction, direction, c, heading);
     meeting.distance = to_vertex + meeting.distance;
     return meeting;

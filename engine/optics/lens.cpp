@@ -5,10 +5,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
-#include <numbers>
 #include <set>
 
+#include "engine/base/angle.h"
+#include "engine/base/infinity.h"
 #include "engine/base/input_error.h"
 #include "engine/base/text.h"
 #include "engine/optics/air.h"
@@ -21,7 +21,6 @@ namespace lensproof::optics {
 
 namespace {
 
-constexpr double kUnlimited = std::numeric_limits<double>::infinity();
 // Far beyond any lens, far below what a square would overflow at.
 constexpr double kLargestLength = 1e7;
 constexpr double kLargestThickness = 1e10;
@@ -31,7 +30,7 @@ Glass everywhere(std::string name, DispersionFormula formula) {
     Glass glass;
     glass.name = std::move(name);
     glass.formula = formula;
-    glass.max_wavelength_nm = std::numeric_limits<double>::infinity();
+    glass.max_wavelength_nm = kInfinity;
     return glass;
 }
 
@@ -95,7 +94,7 @@ void require_traceable(const Prescription& prescription) {
 }
 
 /// Light of a refracting lens runs forwards. Only a dummy, with one medium on both sides, may stand behind the surface
-/// that follows it, or in front of the one before it: there the way back is a way of reckoning.
+/// that follows it, or in front of the one before it: there the step back is only in the table.
 void require_forwards(const Prescription& prescription, const std::vector<LensSurface>& surfaces) {
     const auto is_dummy = [&](std::size_t i) {
         return i < surfaces.size() && (i == 0 ? surfaces[0].medium.formula == DispersionFormula(ConstantIndex{1.0})
@@ -108,15 +107,13 @@ void require_forwards(const Prescription& prescription, const std::vector<LensSu
     }
 }
 
-constexpr double kDegree = std::numbers::pi / 180.0;
-
 LensSurface placed_surface(const PrescribedSurface& row, const Frame& frame) {
     LensSurface surface;
     surface.curvature = row.curvature();
     surface.vertex_z = frame.origin.z;
     surface.vertex = {frame.origin.x, frame.origin.y};
     surface.axes = frame.axes;
-    surface.semi_diameter = row.semi_diameter_mm.value_or(row.rim_mm.value_or(kUnlimited));
+    surface.semi_diameter = row.semi_diameter_mm.value_or(row.rim_mm.value_or(kInfinity));
     surface.is_stop = row.is_stop;
     surface.has_shape = row.conic != 0.0 || row.is_asphere() || row.radius_x_mm.has_value();
     surface.shape = prescribed_shape(row);
@@ -230,7 +227,7 @@ Lens make_lens(const Prescription& prescription, const GlassCatalogue& glasses, 
     lens.is_rotationally_symmetric = prescription.is_rotationally_symmetric();
     std::set<std::string> used;
     const std::vector<Frame> frames = surface_frames(prescription);
-    double barrel_before = kUnlimited;
+    double barrel_before = kInfinity;
     for (const PrescribedSurface& row : prescription.surfaces) {
         const auto override_index = overrides.find(row.medium.glass);
         Glass medium = override_index != overrides.end()
@@ -239,13 +236,13 @@ Lens make_lens(const Prescription& prescription, const GlassCatalogue& glasses, 
         used.insert(row.medium.glass);
         LensSurface surface = placed_surface(row, frames[lens.surfaces.size()]);
         // A barrel is convex, so a path runs inside it where it does so at both ends.
-        surface.semi_diameter = std::min({surface.semi_diameter, barrel_before, row.barrel_mm.value_or(kUnlimited)});
+        surface.semi_diameter = std::min({surface.semi_diameter, barrel_before, row.barrel_mm.value_or(kInfinity)});
         surface.medium = std::move(medium);
         if (!row.coating.empty()) {
             surface.coating = prescription.coatings.at(row.coating);
         }
         lens.surfaces.push_back(std::move(surface));
-        barrel_before = row.barrel_mm.value_or(kUnlimited);
+        barrel_before = row.barrel_mm.value_or(kInfinity);
         lens.image_z += row.thickness_mm;
     }
     require_forwards(prescription, lens.surfaces);
@@ -266,7 +263,7 @@ Lens make_lens(const Prescription& prescription, const GlassCatalogue& glasses, 
 }
 
 WavelengthRange wavelength_range(const Lens& lens) {
-    WavelengthRange range{0.0, std::numeric_limits<double>::infinity()};
+    WavelengthRange range{0.0, kInfinity};
     for (const LensSurface& surface : lens.surfaces) {
         range.min_nm = std::max(range.min_nm, surface.medium.min_wavelength_nm);
         range.max_nm = std::min(range.max_nm, surface.medium.max_wavelength_nm);

@@ -2,18 +2,18 @@
 
 #include <cmath>
 
+#include "engine/base/bisect.h"
+
 namespace lensproof::optics {
 
 MeridionalBundle meridional_bundle(const TraceLens<double>& lens, const ChiefRay& chief, double object_distance) {
     MeridionalBundle bundle{{.chief = chief, .object_distance = object_distance}};
     const auto last_passing = [&](double beyond) {
         constexpr int kHalvings = 50;
-        double passing = 0.0;
-        for (int i = 0; i < kHalvings; ++i) {
-            const double middle = 0.5 * (passing + beyond);
-            (trace(lens, bundle.ray({0.0, middle})).status == RayStatus::ok ? passing : beyond) = middle;
-        }
-        return passing;
+        const auto passes = [&](double offset) {
+            return trace(lens, bundle.ray({0.0, offset})).status == RayStatus::ok;
+        };
+        return bisected({0.0, beyond}, kHalvings, passes).inside;
     };
     // No two points of the first surface are farther apart than its diameter and its depth, which on a sphere is at
     // most its semi-diameter.

@@ -1,5 +1,6 @@
 // engine/optics/meridional_bundle.h — the rays of a field point in the meridional plane, from rim to rim.
 #pragma once
+#include "engine/base/infinity.h"
 #include "engine/optics/field_bundle.h"
 
 namespace lensproof::optics {
@@ -14,6 +15,6 @@ struct MeridionalBundle : FieldBundle {
 /// The bundle around `chief`, which passes. Its ends are found by bisection, so the offsets that pass are taken to be
 /// one interval: a ray that misses, is clipped, stopped or totally reflected bounds it.
 MeridionalBundle meridional_bundle(const TraceLens<double>& lens, const ChiefRay& chief,
-                                   double object_distance = std::numeric_limits<double>::infinity());
+                                   double object_distance = kInfinity);
 
 }  // namespace lensproof::optics

@@ -54,7 +54,7 @@ struct BasicConjugates {
     // Of the paraxial ray through the stop's edge: 1 / (2 n' |u'|), u' being a slope (a tangent). With an object at
     // infinity this is the f-number's size; of a lens without coma the real 1 / (2 n' sin U') is the same.
     T working_f_number = T(0);
-    T object_numerical_aperture = T(0);  // n |u| of that ray, to be read as a sine in the same way
+    T object_numerical_aperture = T(0);  // n |u| of that ray, to be read as a sine likewise
 };
 
 using ParaxialRay = BasicParaxialRay<double>;

@@ -1,5 +1,7 @@
 // engine/optics/ray_status.h — what became of a ray.
 #pragma once
+#include <array>
+#include <cstddef>
 #include <cstdint>
 
 namespace lensproof::optics {
@@ -13,21 +15,15 @@ enum class RayStatus : std::uint8_t {
     stopped,                    // meets the aperture stop outside its opening
 };
 
-/// The status as files spell it: "ok", "missed", "clipped", "total-internal-reflection", "stopped".
+/// The status as files spell it.
 constexpr const char* status_name(RayStatus status) {
-    switch (status) {
-        case RayStatus::ok:
-            return "ok";
-        case RayStatus::missed:
-            return "missed";
-        case RayStatus::clipped:
-            return "clipped";
-        case RayStatus::total_internal_reflection:
-            return "total-internal-reflection";
-        case RayStatus::stopped:
-            return "stopped";
-    }
-    return "unknown";
+    constexpr std::array kNames = {"ok", "missed", "clipped", "total-internal-reflection", "stopped"};
+    return kNames[static_cast<std::size_t>(status)];
+}
+
+/// Whether a ray that is followed past rims leaves the lens.
+constexpr bool gets_through(RayStatus status) {
+    return status != RayStatus::missed && status != RayStatus::total_internal_reflection;
 }
 
 }  // namespace lensproof::optics

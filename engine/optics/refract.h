@@ -67,7 +67,7 @@ Refraction<T> refract(const Vec3<T>& direction, const Vec3<T>& normal, const T& 
     return refract(direction, normal, cos_incidence, dot(across, across), index_ratio);
 }
 
-/// The share of unpolarised light that passes an uncoated surface (Fresnel; Born & Wolf, Principles of Optics, 7th ed.,
+/// The transmittance of an uncoated surface for unpolarised light (Fresnel; Born & Wolf, Principles of Optics, 7th ed.,
 /// §1.5.2, eqs. 21a, 21b).
 ///
 /// Of either polarisation T = 4 a b / (a + b)², with a and b the two media's n cos i (s), or each index with the other

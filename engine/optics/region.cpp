@@ -29,14 +29,14 @@ std::optional<Vec2d> find_inside(const Region& region, const RegionSearch& searc
     const int middle_row = rows / 2;
     for (int i = -middle_column; i <= middle_column; ++i) {
         for (int k = -middle_row; k <= middle_row; ++k) {
-            look({search.start.x + i * step, search.start.y + k * step});
+            look(search.start + step * Vec2d{1.0 * i, 1.0 * k});
         }
     }
     constexpr double kSmallestStep = 1e-9;
     while (!(least.margin < 0.0) && step > kSmallestStep * search.reach) {
-        bool is_better = look({best.x, best.y + step}) || look({best.x, best.y - step});
+        bool is_better = look(best + Vec2d{0.0, step}) || look(best - Vec2d{0.0, step});
         if (!search.is_mirror) {
-            is_better = look({best.x + step, best.y}) || look({best.x - step, best.y}) || is_better;
+            is_better = look(best + Vec2d{step, 0.0}) || look(best - Vec2d{step, 0.0}) || is_better;
         }
         if (!is_better) {
             step *= 0.5;
@@ -46,9 +46,7 @@ std::optional<Vec2d> find_inside(const Region& region, const RegionSearch& searc
 }
 
 RegionEdge region_edge(const Region& region, Vec2d inside, Vec2d along, double hint) {
-    const auto sample = [&](double distance) {
-        return region({inside.x + distance * along.x, inside.y + distance * along.y});
-    };
+    const auto sample = [&](double distance) { return region(inside + distance * along); };
     double low = 0.0;
     double high = hint > 0.0 && std::isfinite(hint) ? hint : 1.0;
     RegionSample near = sample(low);

@@ -10,7 +10,7 @@ namespace lensproof::optics {
 /// How a point stands to a region.
 struct RegionSample {
     double margin = 0.0;  // ≤ 0 inside; > 0 outside: smooth along one limit, infinite where nothing is known but that
-    int limit = -1;       // the limit that comes first in the way: the one with the largest margin
+    int limit = -1;       // the limit that counts: the one with the largest margin
 };
 
 using Region = std::function<RegionSample(Vec2d)>;
@@ -26,13 +26,13 @@ struct RegionSearch {
 /// Torczon, SIAM Review 45, 2003); of a mirror image, on x = 0. Nothing where none is found.
 std::optional<Vec2d> find_inside(const Region& region, const RegionSearch& search);
 
-/// Where a region is left on the way from a point inside it.
+/// Where a line from a point inside a region leaves it.
 struct RegionEdge {
     double distance = 0.0;  // in units of `along`, the last one inside to 1e-14
     int limit = -1;
 };
 
-/// The way goes from `inside` along the vector `along`; the edge is expected at about `hint` times it. Found between
+/// The line runs from `inside` along the vector `along`; the edge is expected at about `hint` times it. Found between
 /// points inside and outside by TOMS 748 (Alefeld, Potra, Shi 1995), or by halving where the margin is infinite.
 RegionEdge region_edge(const Region& region, Vec2d inside, Vec2d along, double hint = 1.0);
 

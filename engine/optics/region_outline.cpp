@@ -7,13 +7,13 @@
 #include <cmath>
 #include <functional>
 #include <limits>
-#include <numbers>
+
+#include "engine/base/angle.h"
 
 namespace lensproof::optics {
 
 namespace {
 
-constexpr double kPi = std::numbers::pi;
 constexpr double kAreaTolerance = 1e-11;
 // A corner that is off by δ costs δ² / 2 times the change of slope.
 constexpr double kCornerTolerance = 1e-6;
@@ -64,8 +64,7 @@ class PolarFrame {
     }
 
     [[nodiscard]] RegionSample sample(double azimuth, double distance) const {
-        const Vec2d at = from_centre(azimuth, distance);
-        return (*region_)({centre_.x + at.x, centre_.y + at.y});
+        return (*region_)(centre_ + from_centre(azimuth, distance));
     }
 
     /// The edge at `azimuth`, which is expected at about `hint`.
@@ -106,7 +105,7 @@ PolarFrame centred(PolarFrame frame, bool is_mirror) {
             hint = frame.edge(azimuth, hint).distance;
             const Vec2d at = frame.from_centre(azimuth, hint);
             area += hint * hint;
-            moment = {moment.x + hint * hint * at.x, moment.y + hint * hint * at.y};
+            moment = moment + hint * hint * at;
             lower = {std::min(lower.x, at.x), std::min(lower.y, at.y)};
             upper = {std::max(upper.x, at.x), std::max(upper.y, at.y)};
         }
@@ -117,9 +116,9 @@ PolarFrame centred(PolarFrame frame, bool is_mirror) {
         if (!(area > 0.0)) {
             return frame;
         }
-        const Vec2d shift{2.0 / 3.0 * moment.x / area, 2.0 / 3.0 * moment.y / area};
-        const Vec2d scale{0.5 * (upper.x - lower.x), 0.5 * (upper.y - lower.y)};
-        const Vec2d centre{frame.centre().x + shift.x, frame.centre().y + shift.y};
+        const Vec2d shift = 2.0 / 3.0 * moment / area;
+        const Vec2d scale = 0.5 * (upper - lower);
+        const Vec2d centre = frame.centre() + shift;
         const bool is_inside = frame.region()(centre).margin < 0.0;
         const Vec2d stretch{scale.x / frame.scale().x, scale.y / frame.scale().y};
         frame = PolarFrame(frame.region(), is_inside ? centre : frame.centre(), scale);
@@ -298,10 +297,10 @@ RegionOutline outline_in(const PolarFrame& frame, bool is_mirror) {
 /// edge; else that about the frame's.
 RegionOutline outline_about_another(const PolarFrame& frame, bool is_mirror, RegionOutline outline) {
     const int azimuths = is_mirror ? 2 : 8;
-    for (const double share : {0.5, 0.8}) {
+    for (const double t : {0.5, 0.8}) {
         for (int i = 0; i < azimuths; ++i) {
             const double azimuth = 2.0 * kPi * i / azimuths + 0.5 * kPi;
-            Vec2d at = frame.from_centre(azimuth, share * frame.edge(azimuth, 1.0).distance);
+            Vec2d at = frame.from_centre(azimuth, t * frame.edge(azimuth, 1.0).distance);
             at = {is_mirror ? frame.centre().x : frame.centre().x + at.x, frame.centre().y + at.y};
             RegionOutline other = outline_in(PolarFrame(frame.region(), at, frame.scale()), is_mirror);
             if (other.is_star_shaped) {
@@ -321,8 +320,8 @@ RegionOutline straightened_outline(const PolarFrame& frame) {
     const Region straight = [&](Vec2d at) { return frame.region()({at.x, at.y + bend * at.x * at.x}); };
     constexpr int kRounds = 6;
     for (int round = 0; round < kRounds; ++round) {
-        constexpr double kShare = 0.8;
-        const double x = kShare * scale.x * region_edge(straight, centre, {scale.x, 0.0}).distance;
+        constexpr double kOut = 0.8;
+        const double x = kOut * scale.x * region_edge(straight, centre, {scale.x, 0.0}).distance;
         const auto middle = [&](double at_x) {
             const double above = region_edge(straight, {at_x, centre.y}, {0.0, scale.y}).distance;
             const double below = region_edge(straight, {at_x, centre.y}, {0.0, -scale.y}).distance;

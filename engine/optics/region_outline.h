@@ -31,7 +31,7 @@ struct RegionOutline {
 
     [[nodiscard]] bool is_empty() const { return points.empty(); }
 
-    /// Of the way from the centre to a point of the outline, the point after the share `t`; with t = 1 that point
+    /// The point at the fraction `t` of the distance from the centre to a point of the outline; with t = 1 that point
     /// itself.
     [[nodiscard]] Vec2d at(const OutlinePoint& point, double t) const {
         const double x = t * point.edge.x;

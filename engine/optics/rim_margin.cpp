@@ -2,44 +2,37 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
+
+#include "engine/base/infinity.h"
+#include "engine/optics/surface_axes.h"
 
 namespace lensproof::optics {
 
 namespace {
 
-/// The point on the surface in the surface's own axes.
-Vec3d own_point(const TraceLens<double>& lens, const TraceSurface<double>& surface, const Vec3d& at) {
-    const Vec3d from_vertex{at.x, at.y, at.z - surface.vertex_z};
-    if (surface.special < 0) {
-        return from_vertex;
-    }
-    const SpecialSurface<double>& special = lens.specials[surface.special];
-    return special.to_own({at.x - special.vertex.x, at.y - special.vertex.y, from_vertex.z});
-}
-
 template <Direction direction>
 RegionSample margin_along(const TraceLens<double>& lens, const Ray<double>& ray) {
     const auto count = static_cast<int>(lens.surfaces.size());
     constexpr int kStatuses = 6;  // 1 + the last status's number, and one more
-    RegionSample worst{.margin = -std::numeric_limits<double>::infinity()};
+    RegionSample worst{.margin = -kInfinity};
     const auto compare = [&](const SurfaceEvent<double>& event) {
         if (event.status == RayStatus::missed) {
             return;
         }
         const TraceSurface<double>& surface = lens.surfaces[event.surface];
-        const Vec3d at = own_point(lens, surface, event.ray.origin);
+        const Vec3d at = to_own_axes(lens, surface, event.ray.origin);
         // Its sign is that of the tracer's comparison, to the last bit. Through a closed stop nothing passes.
         const double margin =
             surface.semi_diameter_squared > 0.0
                 ? (at.x * at.x + at.y * at.y - surface.semi_diameter_squared) / surface.semi_diameter_squared
-                : std::numeric_limits<double>::infinity();
+                : kInfinity;
         if (margin > worst.margin) {
             worst = {margin, event.surface};
         }
-        if (surface.special >= 0 && !lens.specials[surface.special].mask.is_full_circle()) {
+        const SpecialSurface<double>* special = special_of(lens, surface);
+        if (special != nullptr && !special->mask.is_full_circle()) {
             const double scale = 1.0 / std::sqrt(surface.semi_diameter_squared);
-            const auto blade = lens.specials[surface.special].mask.edge_margin(scale * at.x, scale * at.y);
+            const auto blade = special->mask.edge_margin(scale * at.x, scale * at.y);
             if (blade.margin > worst.margin) {
                 worst = {blade.margin, count * (kStatuses + blade.edge) + event.surface};
             }
@@ -49,8 +42,7 @@ RegionSample margin_along(const TraceLens<double>& lens, const Ray<double>& ray)
     if (traced.status == RayStatus::ok || worst.margin > 0.0) {
         return worst;
     }
-    return {.margin = std::numeric_limits<double>::infinity(),
-            .limit = count * (1 + static_cast<int>(traced.status)) + traced.surface};
+    return {.margin = kInfinity, .limit = count * (1 + static_cast<int>(traced.status)) + traced.surface};
 }
 
 }  // namespace

@@ -4,10 +4,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numbers>
 
+#include "engine/base/angle.h"
 #include "engine/base/bytes.h"
+#include "engine/base/infinity.h"
 #include "engine/base/input_error.h"
 
 namespace lensproof::optics {
@@ -15,7 +16,7 @@ namespace lensproof::optics {
 StopMask::StopMask(const StopShape& shape) {
     if (const auto* polygon = std::get_if<PolygonStop>(&shape)) {
         const double half = std::numbers::pi / polygon->blades;
-        const double rotation = polygon->rotation_deg * std::numbers::pi / 180.0;
+        const double rotation = radians(polygon->rotation_deg);
         for (int i = 0; i < polygon->blades; ++i) {
             const double azimuth = rotation + (2 * i + 1) * half;
             Arc arc{.x = std::cos(azimuth), .y = std::sin(azimuth), .centre = std::cos(half)};
@@ -43,7 +44,7 @@ double StopMask::Arc::margin(double at_x, double at_y) const {
 
 StopMask::EdgeMargin StopMask::edge_margin(double x, double y) const {
     if (texture_) {
-        return {transmittance(x, y) > 0.0 ? -1.0 : std::numeric_limits<double>::infinity(), 0};
+        return {transmittance(x, y) > 0.0 ? -1.0 : kInfinity, 0};
     }
     EdgeMargin worst;
     for (std::size_t i = 0; i < arcs_.size(); ++i) {

@@ -182,9 +182,9 @@ void assign_where(const MaskOf<T>& mask, ShapeCrossing<T>& to, const ShapeCrossi
 }
 
 /// Newton's method along a ray from the point at `start` (mm) to where it crosses `shape` in the heading's sense, until
-/// a step is below the precision of the numbers. A step to where there is no surface, or where the ray runs the other
-/// way through it, is halved. `found` is false where that leads nowhere. Lanes outside `wanted` are not waited for, and
-/// are not found; a lane that has arrived stays while others go on.
+/// a step is below the precision of the numbers. A step to where there is no surface, or where the ray crosses in
+/// the other sense, is halved. `found` is false where that leads nowhere. Lanes outside `wanted` are not waited for,
+/// and are not found; a lane that has arrived stays while others go on.
 template <class Scalar, class T>
 ShapeCrossing<T> newton_intersect(const SurfaceShape<Scalar>& shape, const Vec3<T>& origin, const Vec3<T>& d,
                                   const T& heading, const T& start, const MaskOf<T>& wanted) {
@@ -248,8 +248,8 @@ ShapeCrossing<T> find_crossing(const SurfaceShape<Scalar>& shape, const Vec3<T>&
     if (any(sought)) {
         const T nearest = -dot(origin, d);
         const T across = length(origin + nearest * d);
-        for (const int share : {0, 2, -2, 1, -1, 4, -4}) {
-            try_from(nearest + T(share) / T(2) * across, sought);
+        for (const int halves : {0, 2, -2, 1, -1, 4, -4}) {
+            try_from(nearest + T(halves) / T(2) * across, sought);
         }
     }
     crossing.gradient = select(crossing.found, crossing.gradient, Vec3<T>{T(0), T(0), heading});

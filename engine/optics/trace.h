@@ -28,7 +28,7 @@ struct TraceSurface {
     T reverse_ratio;
     bool is_stop;
     int special = -1;  // into TraceLens::specials; -1: a bare, centred sphere with a round aperture
-    // Whether rays on their way forward, in reverse, may come from far off in units of the radius (`note_near_gaps`).
+    // Whether rays that travel forward, in reverse, may come from far off in units of the radius (`note_near_gaps`).
     bool from_far_forward = true;
     bool from_far_reverse = true;
 };
@@ -61,9 +61,9 @@ struct SpecialSurface {
     }
 };
 
-/// The share of a stop's texture, or of its blades' opening, at a point inside its circle; 1 where it has neither.
+/// The transmittance of a stop's texture or blades at a point inside its circle; 1 where it has neither.
 template <class T>
-T open_share(const TraceSurface<T>& surface, const SpecialSurface<T>& special, const T& x, const T& y) {
+T mask_transmittance(const TraceSurface<T>& surface, const SpecialSurface<T>& special, const T& x, const T& y) {
     if (special.mask.is_full_circle()) {
         return T(1);
     }
@@ -72,10 +72,10 @@ T open_share(const TraceSurface<T>& surface, const SpecialSurface<T>& special, c
     return static_cast<T>(special.mask.transmittance(static_cast<double>(scale * x), static_cast<double>(scale * y)));
 }
 
-/// The share of unpolarised light that passes a coated surface, from either side.
+/// The transmittance of a coated surface for unpolarised light, from either side.
 template <class T>
-T coated_share(const TraceSurface<T>& surface, const SpecialSurface<T>& special, bool forward, const T& cos_incidence,
-               const T& cos_refraction) {
+T coated_transmittance(const TraceSurface<T>& surface, const SpecialSurface<T>& special, bool forward,
+                       const T& cos_incidence, const T& cos_refraction) {
     return coating_transmittance(special.coating, surface.index_before, surface.index_after,
                                  forward ? cos_incidence : cos_refraction, forward ? cos_refraction : cos_incidence);
 }
@@ -124,7 +124,7 @@ struct TraceLens {
     std::vector<SpecialSurface<T>> specials{};
 };
 
-/// The way a ray walks: from the scene to the sensor, or from the sensor outwards.
+/// Where a ray travels: from the scene to the sensor, or from the sensor outwards.
 enum class Direction { forward, reverse };
 
 /// Whether a ray that meets a surface beyond its rim ends there. `follow` traces the geometry alone; the status still
@@ -160,12 +160,12 @@ TracedRay<T> trace_through(const TraceLens<T>& lens, const Ray<T>& ray, Visitor&
     // do not forward from store to load. That doubled the time of a surface (lensproof_benchmark, trace/tessar).
     Vec3<T> origin = ray.origin;  // z from the last vertex passed, where the numbers are small
     T last_vertex_z = T(0);
-    Vec3<T> way = ray.direction;
+    Vec3<T> ray_direction = ray.direction;
     T optical_path = T(0);
     T transmittance = T(1);
     RayStatus status = RayStatus::ok;
     int ended_at = -1;
-    const auto global = [&] { return Ray<T>{{origin.x, origin.y, origin.z + last_vertex_z}, way}; };
+    const auto global = [&] { return Ray<T>{{origin.x, origin.y, origin.z + last_vertex_z}, ray_direction}; };
     const auto report = [&](int index, RayStatus here) {
         visit(SurfaceEvent<T>{index, global(), optical_path, transmittance, here});
     };
@@ -183,14 +183,14 @@ TracedRay<T> trace_through(const TraceLens<T>& lens, const Ray<T>& ray, Visitor&
 
         // In the surface's own frame, until the ray leaves it.
         Vec3<T> from_vertex{origin.x, origin.y, origin.z - (surface.vertex_z - last_vertex_z)};
-        Vec3<T> own_way = way;
+        Vec3<T> own_direction = ray_direction;
         const SpecialSurface<T>* special = nullptr;
         if constexpr (has_specials) {
             if (surface.special >= 0) {
                 special = &lens.specials[surface.special];
                 from_vertex =
                     special->to_own({origin.x - special->vertex.x, origin.y - special->vertex.y, from_vertex.z});
-                own_way = special->to_own(way);
+                own_direction = special->to_own(ray_direction);
             }
         }
         const bool is_shaped = has_specials && special != nullptr && special->has_shape;
@@ -198,14 +198,14 @@ TracedRay<T> trace_through(const TraceLens<T>& lens, const Ray<T>& ray, Visitor&
         Intersection<T> meeting;
         Vec3<T> shape_normal;  // of unit length, turned along the ray
         if (is_shaped) {
-            std::tie(meeting, shape_normal) = intersect(special->shape, from_vertex, own_way, heading);
+            std::tie(meeting, shape_normal) = intersect(special->shape, from_vertex, own_direction, heading);
         } else {
             const bool from_far = direction == Direction::forward ? surface.from_far_forward : surface.from_far_reverse;
             if (rims == Rims::follow || from_far) {
-                to_vertex = way_to_vertex(from_vertex, own_way);
-                from_vertex = from_vertex + to_vertex * own_way;
+                to_vertex = distance_to_vertex(from_vertex, own_direction);
+                from_vertex = from_vertex + to_vertex * own_direction;
             }
-            meeting = intersect_from_near(from_vertex, own_way, c, heading);
+            meeting = intersect_from_near(from_vertex, own_direction, c, heading);
         }
         if (!meeting.hit) {
             status = RayStatus::missed;
@@ -230,7 +230,7 @@ TracedRay<T> trace_through(const TraceLens<T>& lens, const Ray<T>& ray, Visitor&
         T open = T(1);
         if constexpr (has_specials) {
             if (special != nullptr && !is_beyond) {
-                open = open_share(surface, *special, point.x, point.y);
+                open = mask_transmittance(surface, *special, point.x, point.y);
             }
         }
         if (is_beyond || (has_specials && !(open > T(0)))) {
@@ -247,9 +247,10 @@ TracedRay<T> trace_through(const TraceLens<T>& lens, const Ray<T>& ray, Visitor&
 
         Refraction<T> bent;
         if (is_shaped) {
-            bent = refract(own_way, shape_normal, meeting.cos_incidence, meeting.sin2_incidence, ratio);
+            bent = refract(own_direction, shape_normal, meeting.cos_incidence, meeting.sin2_incidence, ratio);
         } else {
-            bent = refract_at_sphere(own_way, point, c, heading, meeting.cos_incidence, meeting.sin2_incidence, ratio);
+            bent = refract_at_sphere(own_direction, point, c, heading, meeting.cos_incidence, meeting.sin2_incidence,
+                                     ratio);
         }
         if (!bent.transmitted) {
             status = RayStatus::total_internal_reflection;
@@ -257,17 +258,17 @@ TracedRay<T> trace_through(const TraceLens<T>& lens, const Ray<T>& ray, Visitor&
             report(index, status);
             return traced();
         }
-        way = bent.direction;
+        ray_direction = bent.direction;
         T passing = T(1);
         if (has_specials && special != nullptr && !special->coating.is_bare()) {
-            passing = coated_share(surface, *special, direction == Direction::forward, meeting.cos_incidence,
-                                   bent.cos_refraction);
+            passing = coated_transmittance(surface, *special, direction == Direction::forward, meeting.cos_incidence,
+                                           bent.cos_refraction);
         } else {
             passing = fresnel_transmittance(index_before, index_after, meeting.cos_incidence, bent.cos_refraction);
         }
         if constexpr (has_specials) {
             if (special != nullptr) {
-                way = special->from_own(way);
+                ray_direction = special->from_own(ray_direction);
                 passing = passing * open;
             }
         }
@@ -295,7 +296,13 @@ TracedRay<T> trace(const TraceLens<T>& lens, const Ray<T>& ray) {
     return trace<direction, rims>(lens, ray, [](const SurfaceEvent<T>&) {});
 }
 
-/// Where `ray` meets the plane at `z` mm, and the geometrical way there (signed, mm). The ray must not run parallel to
+/// Forward, whatever the rims would cut.
+template <class T>
+TracedRay<T> trace_past_rims(const TraceLens<T>& lens, const Ray<T>& ray) {
+    return trace<Direction::forward, Rims::follow>(lens, ray);
+}
+
+/// Where `ray` meets the plane at `z` mm, and the distance along it (signed, mm). The ray must not run parallel to
 /// it.
 template <class T>
 struct PlanePoint {

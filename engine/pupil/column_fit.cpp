@@ -1,13 +1,12 @@
 #include "engine/pupil/column_fit.h"
 
 #include <algorithm>
-#include <limits>
+
+#include "engine/base/infinity.h"
 
 namespace lensproof::pupil {
 
 namespace {
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 /// What outlines reach at a region's columns; the columns beside them have what the nearest one has.
 struct Reach {
@@ -15,12 +14,13 @@ struct Reach {
     std::array<double, kPupilPanels + 1> upper;
 };
 
-Reach reach_at_columns(std::span<const PupilOutline> outlines, double left, double width, const PupilShares& shares) {
+Reach reach_at_columns(std::span<const PupilOutline> outlines, double left, double width,
+                       const PupilFractions& fractions) {
     Reach reach{};
     reach.lower.fill(kInfinity);
     reach.upper.fill(-kInfinity);
     const auto column_at = [&](double x) {
-        return std::lower_bound(shares.at.begin(), shares.at.end(), (x - left) / width) - shares.at.begin();
+        return std::lower_bound(fractions.at.begin(), fractions.at.end(), (x - left) / width) - fractions.at.begin();
     };
     for (const PupilOutline& outline : outlines) {
         for (std::size_t i = 0; i < outline.points.size(); ++i) {
@@ -29,8 +29,8 @@ Reach reach_at_columns(std::span<const PupilOutline> outlines, double left, doub
             if (q.x < p.x) {
                 std::swap(p, q);
             }
-            for (auto k = column_at(p.x); k <= kPupilPanels && left + width * shares.at[k] <= q.x; ++k) {
-                const double t = q.x > p.x ? (left + width * shares.at[k] - p.x) / (q.x - p.x) : 0.0;
+            for (auto k = column_at(p.x); k <= kPupilPanels && left + width * fractions.at[k] <= q.x; ++k) {
+                const double t = q.x > p.x ? (left + width * fractions.at[k] - p.x) / (q.x - p.x) : 0.0;
                 const double y = p.y + t * (q.y - p.y);
                 reach.lower[k] = std::min(reach.lower[k], y);
                 reach.upper[k] = std::max(reach.upper[k], y);
@@ -61,17 +61,17 @@ void ColumnGrowth::include(const ColumnGrowth& other) {
 
 ColumnGrowth missing_growth(const PupilRegion& region, std::span<const PupilOutline> outlines, PupilSymmetry symmetry) {
     ColumnGrowth growth;
-    const PupilShares& shares = pupil_shares(symmetry);
-    const Reach reach = reach_at_columns(outlines, region.left, region.width, shares);
+    const PupilFractions& fractions = pupil_fractions(symmetry);
+    const Reach reach = reach_at_columns(outlines, region.left, region.width, fractions);
     for (std::size_t i = 0; i < growth.up.size(); ++i) {
         growth.down[i] = std::max(0.0, region.columns[i].lower - reach.lower[i]);
         growth.up[i] = std::max(0.0, reach.upper[i] - region.columns[i].upper);
     }
     for (const PupilOutline& outline : outlines) {
         for (const Vec2d& point : outline.points) {
-            const double share = (point.x - region.left) / region.width;
-            const auto i = static_cast<std::size_t>(shares.panel(share));
-            const double t = std::clamp((share - shares.at[i]) * shares.per_width[i], 0.0, 1.0);
+            const double fraction = (point.x - region.left) / region.width;
+            const auto i = static_cast<std::size_t>(fractions.panel(fraction));
+            const double t = std::clamp((fraction - fractions.at[i]) * fractions.per_width[i], 0.0, 1.0);
             const PupilColumn& a = region.columns[i];
             const PupilColumn& b = region.columns[i + 1];
             const double down = a.lower + t * (b.lower - a.lower) - point.y;
@@ -95,7 +95,7 @@ void grow(PupilRegion& region, const ColumnGrowth& growth, double scale, PupilSy
 
 PupilRegion region_around(std::span<const PupilOutline> outlines, const Extent& extent, PupilSymmetry symmetry) {
     PupilRegion region{.left = extent.left, .width = extent.right - extent.left};
-    const Reach reach = reach_at_columns(outlines, region.left, region.width, pupil_shares(symmetry));
+    const Reach reach = reach_at_columns(outlines, region.left, region.width, pupil_fractions(symmetry));
     const auto filled = std::ranges::find_if(outlines, [](const PupilOutline& outline) { return !outline.is_empty(); });
     PupilColumn nearest{.lower = filled->points.front().y, .upper = filled->points.front().y};
     for (std::size_t i = region.columns.size(); i-- > 0;) {  // the first that is reached, for those before it

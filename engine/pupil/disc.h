@@ -11,7 +11,7 @@ struct Disc {
     double radius = 0.0;
 
     [[nodiscard]] double area() const { return std::numbers::pi * radius * radius; }
-    [[nodiscard]] bool contains(Vec2d point) const { return point.x * point.x + point.y * point.y <= radius * radius; }
+    [[nodiscard]] bool contains(Vec2d point) const { return dot(point, point) <= radius * radius; }
 
     /// The point that (u, v) in the unit square maps to, evenly over the disc (Shirley & Chiu, J. Graphics Tools 2(3),
     /// 1997).

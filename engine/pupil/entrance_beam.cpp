@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "engine/optics/field_bundle.h"
+#include "engine/optics/surface_axes.h"
 #include "engine/pupil/surface_cap.h"
 
 namespace lensproof::pupil {
@@ -37,13 +38,8 @@ BoundingSphere own_sphere(const SurfaceCap& cap) {
 
 BoundingSphere front_sphere(const optics::TraceLens<double>& lens) {
     const optics::TraceSurface<double>& front = lens.surfaces.front();
-    const optics::SpecialSurface<double>* special = front.special >= 0 ? &lens.specials[front.special] : nullptr;
-    BoundingSphere sphere = own_sphere(surface_cap(lens, front));
-    if (special != nullptr) {
-        sphere.centre = special->from_own(sphere.centre) + Vec3d{special->vertex.x, special->vertex.y, 0.0};
-    }
-    sphere.centre.z += front.vertex_z;
-    return sphere;
+    const BoundingSphere sphere = own_sphere(surface_cap(lens, front));
+    return {.centre = optics::from_own_axes(lens, front, sphere.centre), .radius = sphere.radius};
 }
 
 Ray<double> EntranceBeam::ray(Vec2d offset) const {
@@ -57,10 +53,10 @@ double EntranceBeam::solid_angle_per_mm2(Vec2d offset) const {
 
 EntranceBeam beam_along(const BoundingSphere& front, const Vec3d& direction, double distance_mm) {
     const Vec3d& d = direction;
-    const double share = 1.0 / (1.0 + d.z);  // of a turn by θ about (−d_y, d_x, 0): (1 − cos θ) / sin² θ
+    const double versine = 1.0 / (1.0 + d.z);  // of a turn by θ about (−d_y, d_x, 0): (1 − cos θ) / sin² θ
     EntranceBeam beam{.axis = {front.centre, d},
-                      .across = {{{1.0 - share * d.x * d.x, -share * d.x * d.y, -d.x},
-                                  {-share * d.x * d.y, 1.0 - share * d.y * d.y, -d.y}}},
+                      .across = {{{1.0 - versine * d.x * d.x, -versine * d.x * d.y, -d.x},
+                                  {-versine * d.x * d.y, 1.0 - versine * d.y * d.y, -d.y}}},
                       .distance = distance_mm,
                       .radius = front.radius};
     if (std::isfinite(distance_mm)) {
@@ -71,9 +67,10 @@ EntranceBeam beam_along(const BoundingSphere& front, const Vec3d& direction, dou
 }
 
 std::optional<EntranceBeam> beam_from(const BoundingSphere& front, const Vec3d& point) {
-    const Vec3d way = front.centre - point;
-    const double distance = length(way);
-    return distance > front.radius ? std::optional(beam_along(front, (1.0 / distance) * way, distance)) : std::nullopt;
+    const Vec3d towards = front.centre - point;
+    const double distance = length(towards);
+    return distance > front.radius ? std::optional(beam_along(front, (1.0 / distance) * towards, distance))
+                                   : std::nullopt;
 }
 
 }  // namespace lensproof::pupil

@@ -1,9 +1,9 @@
 // engine/pupil/entrance_beam.h — the light of a scene point, or from a direction, that meets a lens's first surface.
 #pragma once
 #include <array>
-#include <limits>
 #include <optional>
 
+#include "engine/base/infinity.h"
 #include "engine/optics/trace.h"
 
 namespace lensproof::pupil {
@@ -21,16 +21,16 @@ struct BoundingSphere {
 BoundingSphere front_sphere(const optics::TraceLens<double>& lens);
 
 /// All rays of one scene point, or from one direction, that may meet the first surface inside its rim. They are told
-/// apart by their offset (mm) in the plane through the front sphere's centre across the way there from the point, along
-/// x and y as the shortest turn from +z to the way carries them: for a way in the plane x = 0 those of FieldBundle, and
-/// a beam turned about the axis has its offsets turned with it. Each ray that meets the sphere crosses the plane within
-/// `radius` of its centre. No cosine of the field angle is divided by: light may come from the side and from behind the
-/// first vertex, only not along −z.
+/// apart by their offset (mm) in the plane through the front sphere's centre across the direction there from the point,
+/// along x and y as the shortest turn from +z to that direction carries them: for one in the plane x = 0 those of
+/// FieldBundle, and a beam turned about the axis has its offsets turned with it. Each ray that meets the sphere crosses
+/// the plane within `radius` of its centre. No cosine of the field angle is divided by: light may come from the side
+/// and from behind the first vertex, only not along −z.
 struct EntranceBeam {
-    Ray<double> axis;                                           // from the point through the sphere's centre
-    std::array<Vec3d, 2> across;                                // the offsets' x and y, unit vectors
-    double distance = std::numeric_limits<double>::infinity();  // from the point to the sphere's centre, mm
-    double radius = 0.0;                                        // mm
+    Ray<double> axis;             // from the point through the sphere's centre
+    std::array<Vec3d, 2> across;  // the offsets' x and y, unit vectors
+    double distance = kInfinity;  // from the point to the sphere's centre, mm
+    double radius = 0.0;          // mm
 
     [[nodiscard]] Ray<double> ray(Vec2d offset) const;
 
@@ -41,8 +41,7 @@ struct EntranceBeam {
 
 /// The light that travels along `direction` (of unit length; field angle θ: {0, sin θ, cos θ}) to the sphere's centre
 /// from `distance_mm` before it, which is more than the sphere's radius.
-EntranceBeam beam_along(const BoundingSphere& front, const Vec3d& direction,
-                        double distance_mm = std::numeric_limits<double>::infinity());
+EntranceBeam beam_along(const BoundingSphere& front, const Vec3d& direction, double distance_mm = kInfinity);
 
 /// The light of a scene point. Nothing where the point lies in the sphere: closer than the front element's own
 /// semi-diameter to the centre of its rim.

@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numbers>
 #include <utility>
 
+#include "engine/base/angle.h"
 #include "engine/base/bytes.h"
 #include "engine/pupil/pupil_nodes.h"
 
@@ -13,7 +13,7 @@ namespace lensproof::pupil {
 
 namespace {
 
-constexpr double kWidestAngle = 160.0 * std::numbers::pi / 180.0;
+constexpr double kWidestAngle = radians(160.0);
 
 /// A direction as a place: its field angle along its azimuth.
 Vec2d place_of(const Vec3d& direction) {
@@ -23,7 +23,7 @@ Vec2d place_of(const Vec3d& direction) {
 }
 
 Vec3d direction_of(Vec2d place) {
-    const double angle = std::hypot(place.x, place.y);
+    const double angle = length(place);
     const double scale = angle > 0.0 ? std::sin(angle) / angle : 0.0;
     return {scale * place.x, scale * place.y, std::cos(angle)};
 }
@@ -34,28 +34,14 @@ RayFamily rays_of_directions(const BoundingSphere& front, double distance_mm) {
             }};
 }
 
-NodeSearch node_search(const EntranceBeam& beam, bool by_angle, const PupilMapSettings& settings) {
-    return {.disc = {beam.radius}, .by_radius = by_angle, .end = kWidestAngle, .most_excess = settings.most_excess};
-}
-
 RegionMap direction_map(const std::vector<optics::TraceLens<double>>& band, const BoundingSphere& front, bool by_angle,
                         double distance_mm, const PupilMapSettings& settings) {
-    const NodeSearch search = node_search(beam_along(front, {0.0, 0.0, 1.0}, distance_mm), by_angle, settings);
-    return {search.disc, settings.defensive_share,
+    const NodeSearch search{.disc = {beam_along(front, {0.0, 0.0, 1.0}, distance_mm).radius},
+                            .by_radius = by_angle,
+                            .end = kWidestAngle,
+                            .most_excess = settings.most_excess};
+    return {search.disc, settings.defensive_fraction,
             find_pupil_nodes(band, rays_of_directions(front, distance_mm), search)};
-}
-
-RegionMap beam_region(const std::vector<optics::TraceLens<double>>& band, const EntranceBeam& beam, bool by_angle,
-                      const PupilMapSettings& settings) {
-    const RayFamily rays{.direction = optics::Direction::forward,
-                         .ray = [&beam](Vec2d, Vec2d offset) { return beam.ray(offset); }};
-    const NodeSearch search = node_search(beam, by_angle, settings);
-    return {search.disc, settings.defensive_share,
-            find_pupil_region(band, rays, place_of(beam.axis.direction), search)};
-}
-
-EntranceSample sample_of(const EntranceBeam& beam, const PupilSample& drawn) {
-    return {.ray = beam.ray(drawn.point), .offset = drawn.point, .density = drawn.density};
 }
 
 }  // namespace
@@ -80,11 +66,12 @@ EntranceBeam EntranceMap::beam(const Vec3d& direction) const {
 }
 
 EntranceSample EntranceMap::sample(const EntranceBeam& beam, double band_position, double u, double v) const {
-    return sample_of(beam, regions_.sample(place_of(beam.axis.direction), band_position, u, v));
+    const PupilSample drawn = regions_.sample(place_of(beam.axis.direction), band_position, u, v);
+    return {.ray = beam.ray(drawn.point), .offset = drawn.point, .pdf = drawn.pdf};
 }
 
-double EntranceMap::density(const EntranceBeam& beam, double band_position, Vec2d offset) const {
-    return regions_.density(place_of(beam.axis.direction), band_position, offset);
+double EntranceMap::pdf(const EntranceBeam& beam, double band_position, Vec2d offset) const {
+    return regions_.pdf(place_of(beam.axis.direction), band_position, offset);
 }
 
 double EntranceMap::region_area(const EntranceBeam& beam, double band_position) const {
@@ -116,18 +103,6 @@ std::optional<EntranceMap> EntranceMap::deserialized(std::string_view bytes) {
         std::isfinite(x) && std::isfinite(y) && std::isfinite(z) && radius > 0.0 && distance_mm > radius;
     std::optional<RegionMap> regions = is_sound ? RegionMap::deserialized(bytes) : std::nullopt;
     return regions ? std::optional(EntranceMap({{x, y, z}, radius}, distance_mm, *std::move(regions))) : std::nullopt;
-}
-
-EntranceRegion::EntranceRegion(const std::vector<optics::TraceLens<double>>& band, bool by_angle,
-                               const EntranceBeam& beam, const PupilMapSettings& settings)
-    : beam_(beam), region_(beam_region(band, beam, by_angle, settings)) {}
-
-EntranceSample EntranceRegion::sample(double u, double v) const {
-    return sample_of(beam_, region_.sample(place_of(beam_.axis.direction), 0.0, u, v));
-}
-
-double EntranceRegion::area() const {
-    return region_.area(place_of(beam_.axis.direction), 0.0);
 }
 
 }  // namespace lensproof::pupil

@@ -1,23 +1,23 @@
 // engine/pupil/entrance_map.h — through which part of the front element light from each direction enters a lens.
 #pragma once
-#include <limits>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "engine/base/infinity.h"
 #include "engine/pupil/entrance_beam.h"
 #include "engine/pupil/pupil_map.h"
 #include "engine/pupil/region_map.h"
 
 namespace lensproof::pupil {
 
-/// A ray into the lens, its offset in its beam, mm, and the density that it was drawn with, 1/mm² of the plane across
-/// the beam. A density of 0: no path is to be started, its estimate is 0.
+/// A ray into the lens, its offset in its beam, mm, and the pdf that it was drawn with, 1/mm² of the plane across
+/// the beam. A pdf of 0: no path is to be started, its estimate is 0.
 struct EntranceSample {
     Ray<double> ray;
     Vec2d offset;
-    double density = 0.0;
+    double pdf = 0.0;
 };
 
 /// Draws the first rays of paths of light: for each direction of the scene, rays of its light that may pass the lens,
@@ -25,19 +25,18 @@ struct EntranceSample {
 /// the field angle in the place of the sensor's radius, up to 160° and the last light.
 ///
 /// With f the transmittance of a ray, or 0 where it does not pass: a far source of irradiance E (across its light)
-/// sends the flux E · E[f / density] through the lens, and an even scene of radiance L the flux L · E[f / density] a
-/// steradian. No cosine comes in, since densities are per mm² across the light. A source of intensity I at the map's
-/// distance sends I · E[f · solid_angle_per_mm2 / density] (EntranceBeam).
+/// sends the flux E · E[f / pdf] through the lens, and an even scene of radiance L the flux L · E[f / pdf] a
+/// steradian. No cosine comes in, since pdfs are per mm² across the light. A source of intensity I at the map's
+/// distance sends I · E[f · solid_angle_per_mm2 / pdf] (EntranceBeam).
 class EntranceMap {
   public:
     /// `band` and `settings` as PupilMap has them. `by_angle`: the lens is rotationally symmetric, its stop's blades
     /// aside. `distance_mm`: of the sources from the centre of the front sphere (EntranceBeam), beyond its radius.
-    EntranceMap(const std::vector<optics::TraceLens<double>>& band, bool by_angle,
-                double distance_mm = std::numeric_limits<double>::infinity(), const PupilMapSettings& settings = {});
+    EntranceMap(const std::vector<optics::TraceLens<double>>& band, bool by_angle, double distance_mm = kInfinity,
+                const PupilMapSettings& settings = {});
 
     /// The whole front element for every direction: the baseline that maps are judged against.
-    static EntranceMap whole_element(const optics::TraceLens<double>& lens,
-                                     double distance_mm = std::numeric_limits<double>::infinity());
+    static EntranceMap whole_element(const optics::TraceLens<double>& lens, double distance_mm = kInfinity);
 
     /// The light of a source at the map's distance that travels along `direction` (of unit length) to the centre of the
     /// front sphere.
@@ -46,10 +45,10 @@ class EntranceMap {
     /// The ray of `beam`, one of this map's, that (u, v) in the unit square maps to.
     [[nodiscard]] EntranceSample sample(const EntranceBeam& beam, double band_position, double u, double v) const;
 
-    /// The density that `sample` draws an offset with, 1/mm²; 0 outside the disc and the region.
-    [[nodiscard]] double density(const EntranceBeam& beam, double band_position, Vec2d offset) const;
+    /// The pdf that `sample` draws an offset with, 1/mm²; 0 outside the disc and the region.
+    [[nodiscard]] double pdf(const EntranceBeam& beam, double band_position, Vec2d offset) const;
 
-    /// The area that is drawn from but for the defensive share, mm²; 0 where no light was found.
+    /// The area that is drawn from but for the defensive fraction, mm²; 0 where no light was found.
     [[nodiscard]] double region_area(const EntranceBeam& beam, double band_position) const;
 
     /// The largest field angle that light was found at in the band, rad; 0 where there is none.
@@ -65,26 +64,6 @@ class EntranceMap {
     BoundingSphere front_;
     double distance_mm_;
     RegionMap regions_;
-};
-
-/// The same for the light of one scene point, as near as it may be, or along one direction, found on demand: some
-/// thousands of rays for each lens of the band.
-class EntranceRegion {
-  public:
-    EntranceRegion(const std::vector<optics::TraceLens<double>>& band, bool by_angle, const EntranceBeam& beam,
-                   const PupilMapSettings& settings = {});
-
-    [[nodiscard]] const EntranceBeam& beam() const { return beam_; }
-
-    /// The ray that (u, v) in the unit square maps to, at every wavelength of the band.
-    [[nodiscard]] EntranceSample sample(double u, double v) const;
-
-    /// The area that is drawn from but for the defensive share, mm²; 0 where no light was found.
-    [[nodiscard]] double area() const;
-
-  private:
-    EntranceBeam beam_;
-    RegionMap region_;
 };
 
 }  // namespace lensproof::pupil

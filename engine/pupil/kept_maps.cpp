@@ -16,27 +16,13 @@ namespace {
 std::string key_of(const std::vector<optics::TraceLens<double>>& band, bool is_symmetric, double extent,
                    const PupilMapSettings& settings) {
     std::string key(kSourceDigest);
-    const auto& [defensive_share, most_excess] = settings;
-    append_bytes(key, is_symmetric, extent, defensive_share, most_excess, band.size());
+    const auto& [defensive_fraction, most_excess] = settings;
+    append_bytes(key, is_symmetric, extent, defensive_fraction, most_excess, band.size());
     for (optics::TraceLens<double> lens : band) {
-        for (optics::SpecialSurface<double>& special : lens.specials) {
-            special.mask = {};
-        }
+        open_stop(lens);
         optics::append_lens_bytes(key, lens);
     }
     return key;
-}
-
-template <class Map, class Make>
-Map kept(const Cache& cache, std::string_view kind, const std::string& key, const Make& make) {
-    if (const std::optional<std::string> bytes = cache.find(kind, key)) {
-        if (std::optional<Map> map = Map::deserialized(*bytes)) {
-            return *std::move(map);
-        }
-    }
-    Map map = make();
-    cache.store(kind, key, map.serialized());
-    return map;
 }
 
 }  // namespace

@@ -1,9 +1,9 @@
 // engine/pupil/kept_maps.h — maps of pupils and entrances that are found once a lens and kept on disk.
 #pragma once
-#include <limits>
 #include <vector>
 
 #include "engine/base/cache.h"
+#include "engine/base/infinity.h"
 #include "engine/pupil/entrance_map.h"
 #include "engine/pupil/pupil_map.h"
 
@@ -17,7 +17,6 @@ PupilMap kept_pupil_map(const Cache& cache, const std::vector<optics::TraceLens<
 
 /// The same for EntranceMap.
 EntranceMap kept_entrance_map(const Cache& cache, const std::vector<optics::TraceLens<double>>& band, bool by_angle,
-                              double distance_mm = std::numeric_limits<double>::infinity(),
-                              const PupilMapSettings& settings = {});
+                              double distance_mm = kInfinity, const PupilMapSettings& settings = {});
 
 }  // namespace lensproof::pupil

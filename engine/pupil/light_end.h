@@ -9,8 +9,8 @@ namespace lensproof::pupil {
 /// Where it is looked for.
 struct LightEndSearch {
     double farthest = 0.0;
-    double precision = 0.0;        // as a share of that
-    std::vector<double> azimuths;  // as shares of a turn
+    double precision = 0.0;        // of that
+    std::vector<double> azimuths;  // in turns
 };
 
 /// Of each of these lenses of the band, azimuth by azimuth, the last radius that is lit: `farthest` itself,

@@ -2,7 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
+
+#include "engine/base/infinity.h"
 
 namespace lensproof::pupil {
 
@@ -22,20 +23,20 @@ std::optional<Span> span_at(std::span<const Vec2d> polygon, double x) {
 }
 
 Apex apex_over(Vec2d before, Vec2d p, Vec2d q, Vec2d after) {
-    const Vec2d along = from_to(before, p);
-    const Vec2d back = from_to(after, q);
-    const Vec2d side = from_to(p, q);
-    if (!(cross(along, side) > 0.0 && cross(side, from_to(q, after)) > 0.0)) {
+    const Vec2d along = p - before;
+    const Vec2d back = q - after;
+    const Vec2d side = q - p;
+    if (!(cross(along, side) > 0.0 && cross(side, after - q) > 0.0)) {
         return {};  // not convex here: the side itself bounds the region
     }
     // p + s along = q + t back, with s, t > 0 unless the outline turns by more than half a circle.
     const double determinant = cross(along, back);
     const double s = cross(side, back) / determinant;
     if (!(determinant < 0.0 || determinant > 0.0) || !(s > 0.0)) {
-        return {.point = {}, .area = std::numeric_limits<double>::infinity(), .exists = false};
+        return {.point = {}, .area = kInfinity, .exists = false};
     }
-    const Vec2d apex{p.x + s * along.x, p.y + s * along.y};
-    return {.point = apex, .area = 0.5 * std::abs(cross(side, from_to(p, apex))), .exists = true};
+    const Vec2d apex = p + s * along;
+    return {.point = apex, .area = 0.5 * std::abs(cross(side, apex - p)), .exists = true};
 }
 
 }  // namespace lensproof::pupil

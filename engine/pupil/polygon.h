@@ -7,15 +7,6 @@
 
 namespace lensproof::pupil {
 
-/// Twice the signed area that two vectors span, positive where b lies to the left of a.
-inline double cross(Vec2d a, Vec2d b) {
-    return a.x * b.y - a.y * b.x;
-}
-
-inline Vec2d from_to(Vec2d a, Vec2d b) {
-    return {b.x - a.x, b.y - a.y};
-}
-
 /// The lowest and the highest y that a closed polygon has at x; nothing beside it.
 struct Span {
     double lower;

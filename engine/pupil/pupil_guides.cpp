@@ -18,13 +18,13 @@ std::vector<double> inverse_steps(const std::vector<double>& nodes) {
 }  // namespace
 
 PupilGuides::PupilGuides(const PupilNodes& nodes)
-    : per_step_(inverse_steps(nodes.shares)), per_position_(inverse_steps(nodes.positions)) {
+    : per_step_(inverse_steps(nodes.fractions)), per_position_(inverse_steps(nodes.positions)) {
     std::uint32_t below = 0;
     for (int i = 0; i <= kSteps; ++i) {
-        while (below + 2 < nodes.shares.size() && nodes.shares[below + 1] * kSteps <= i) {
+        while (below + 2 < nodes.fractions.size() && nodes.fractions[below + 1] * kSteps <= i) {
             ++below;
         }
-        share_below_.push_back(below);
+        node_below_.push_back(below);
     }
     std::ranges::transform(nodes.regions, std::back_inserter(panels_), panel_guide);
 }

@@ -9,7 +9,7 @@
 
 namespace lensproof::pupil {
 
-/// Where something lies among nodes: between two, after the share t of the way.
+/// Where something lies among nodes: between two, at the fraction t.
 struct BetweenNodes {
     std::size_t below = 0;
     std::size_t above = 0;
@@ -22,7 +22,7 @@ struct PupilPlace {
     double sine = 0.0;
     BetweenNodes position{};
     BetweenNodes azimuth{};
-    std::size_t share = 0;  // between it and the next, after the share t
+    std::size_t fraction = 0;  // between it and the next, at the fraction t
     double t = 0.0;
     bool is_lit = false;
 
@@ -45,12 +45,12 @@ class PupilGuides {
         const double end = (1.0 - position.t) * end_between(nodes, position.below, azimuth) +
                            position.t * end_between(nodes, position.above, azimuth);
         const double radius = std::sqrt(at.x * at.x + at.y * at.y);
-        const double share = radius / end;
-        if (!(share <= 1.0)) {
+        const double fraction = radius / end;
+        if (!(fraction <= 1.0)) {
             return {};
         }
-        std::size_t below = share_below_[static_cast<std::size_t>(share * kSteps)];
-        while (below + 2 < nodes.shares.size() && nodes.shares[below + 1] < share) {
+        std::size_t below = node_below_[static_cast<std::size_t>(fraction * kSteps)];
+        while (below + 2 < nodes.fractions.size() && nodes.fractions[below + 1] < fraction) {
             ++below;
         }
         const double per_radius = radius > 0.0 ? 1.0 / radius : 0.0;
@@ -58,8 +58,8 @@ class PupilGuides {
                 .sine = at.x * per_radius,
                 .position = position,
                 .azimuth = azimuth,
-                .share = below,
-                .t = std::clamp((share - nodes.shares[below]) * per_step_[below], 0.0, 1.0),
+                .fraction = below,
+                .t = std::clamp((fraction - nodes.fractions[below]) * per_step_[below], 0.0, 1.0),
                 .is_lit = true};
     }
     /// Of a region.
@@ -89,9 +89,9 @@ class PupilGuides {
                 .t = std::clamp((band_position - nodes.positions[below]) * per_position_[below], 0.0, 1.0)};
     }
 
-    std::vector<std::uint32_t> share_below_;  // for each step, the last node below it
-    std::vector<double> per_step_;            // 1 / the step from each share to the next
-    std::vector<double> per_position_;        // 1 / the step from each position to the next
+    std::vector<std::uint32_t> node_below_;  // for each step, the last node below it
+    std::vector<double> per_step_;           // 1 / the step from each fraction to the next
+    std::vector<double> per_position_;       // 1 / the step from each position to the next
     std::vector<PanelGuide> panels_;
 };
 

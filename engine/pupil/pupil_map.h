@@ -12,11 +12,11 @@
 namespace lensproof::pupil {
 
 struct PupilMapSettings {
-    /// The share of samples drawn over the whole rear element, whatever the map says: what the map missed costs noise
-    /// then, and is not lost.
-    double defensive_share = 0.003;
+    /// The fraction of samples drawn over the whole rear element, whatever the map says: what the map missed costs
+    /// noise then, and is not lost.
+    double defensive_fraction = 0.003;
     /// Steps in radius, azimuth and wavelength are halved until regions between two nodes have to be enlarged by no
-    /// more than this share of their area. Steps below 1/64 of the radius, where few points lie, may need more.
+    /// more than this fraction of their area. Steps below 1/64 of the radius, where few points lie, may need more.
     double most_excess = 0.005;
 };
 
@@ -24,11 +24,12 @@ struct PupilMapSettings {
 /// over a region that holds all of them and little else (after Steinert et al. 2011, "pixel pupil sampling").
 ///
 /// Regions are found by tracing at nodes: wavelengths of a band, azimuths where the lens is not rotationally symmetric,
-/// and radii on the sensor as shares of the radius where the light ends. Between nodes they are linear in all three;
+/// and radii on the sensor as fractions of the radius where the light ends. Between nodes they are linear in all three;
 /// they hold the regions traced at the nodes and in the middles between them. In the frame of a region its sensor point
 /// lies at (0, r), r ≥ 0. Blades and textures of the stop are taken for their full circle.
 ///
-/// A share of the samples is drawn over the whole disc, so that nothing is lost however wrong a region is (RegionMap).
+/// A fraction of the samples is drawn over the whole disc, so that nothing is lost however wrong a region is
+/// (RegionMap).
 class PupilMap {
   public:
     /// `band`: the lens at wavelengths that are spread evenly over the band. Sensor points lie within
@@ -40,14 +41,14 @@ class PupilMap {
     static PupilMap whole_element(const optics::TraceLens<double>& lens, double sensor_radius_mm);
 
     /// The point that (u, v) in the unit square maps to, x and y in lens space in the plane z = plane_z, and its
-    /// density.
+    /// pdf.
     [[nodiscard]] PupilSample sample(Vec2d sensor_point, double band_position, double u, double v) const {
         return regions_.sample(sensor_point, band_position, u, v);
     }
 
-    /// The density that `sample` draws a point with, 1/mm²; 0 outside the disc and the region.
-    [[nodiscard]] double density(Vec2d sensor_point, double band_position, Vec2d pupil_point) const {
-        return regions_.density(sensor_point, band_position, pupil_point);
+    /// The pdf that `sample` draws a point with, 1/mm²; 0 outside the disc and the region.
+    [[nodiscard]] double pdf(Vec2d sensor_point, double band_position, Vec2d pupil_point) const {
+        return regions_.pdf(sensor_point, band_position, pupil_point);
     }
 
     /// z of the plane that the points lie in.
@@ -56,7 +57,7 @@ class PupilMap {
     /// What every path crosses.
     [[nodiscard]] const RearDisc& disc() const { return disc_; }
 
-    /// The area that is drawn from but for the defensive share, mm²; 0 where no light was found.
+    /// The area that is drawn from but for the defensive fraction, mm²; 0 where no light was found.
     [[nodiscard]] double region_area(Vec2d sensor_point, double band_position) const {
         return regions_.area(sensor_point, band_position);
     }

@@ -1,9 +1,7 @@
 #include "engine/pupil/pupil_nodes.h"
 
 #include <algorithm>
-#include <cmath>
 #include <iterator>
-#include <numbers>
 
 #include "engine/pupil/column_fit.h"
 #include "engine/pupil/light_end.h"
@@ -13,7 +11,7 @@ namespace lensproof::pupil {
 
 namespace {
 
-constexpr int kFirstShares = 16;
+constexpr int kFirstRadii = 16;
 constexpr std::size_t kFirstAzimuths = 4;
 constexpr std::size_t kMostAzimuths = 16;
 // Over azimuth too there are so many regions to be traced that they may each be this much larger.
@@ -30,7 +28,7 @@ constexpr double kMargin = 0.0005;  // of a region's height, on both sides toget
 enum class Axis { radius, azimuth, band };
 constexpr std::size_t kAxes = 3;
 
-/// Something traced between two nodes, after the share t of the way from `a` to `b`: they have to hold it.
+/// Something traced between two nodes, at the fraction t from `a` to `b`: they have to hold it.
 struct Between {
     const PupilOutline* outline;
     std::size_t a;
@@ -38,7 +36,7 @@ struct Between {
     double t;
     Axis axis;  // along which a and b are neighbours
     std::size_t position;
-    std::size_t share;  // of a, among the nodes
+    std::size_t fraction;  // of a, among the nodes
 };
 struct Mean {
     double sum = 0.0;
@@ -53,14 +51,6 @@ struct Mean {
 
 PupilSymmetry symmetry_of(const NodeSearch& search) {
     return search.by_radius ? PupilSymmetry::mirror : PupilSymmetry::none;
-}
-
-void open_stops(std::vector<optics::TraceLens<double>>& band) {
-    for (optics::TraceLens<double>& lens : band) {
-        for (optics::SpecialSurface<double>& special : lens.specials) {
-            special.mask = {};
-        }
-    }
 }
 
 void add_margin(PupilRegion& region, PupilSymmetry symmetry) {
@@ -84,8 +74,8 @@ class NodeFinder {
 
     PupilNodes find() {
         set_lenses({0, last_lens_ / 2, last_lens_});
-        for (int i = 0; i <= kFirstShares; ++i) {
-            nodes_.shares.push_back(static_cast<double>(i) / kFirstShares);
+        for (int i = 0; i <= kFirstRadii; ++i) {
+            nodes_.fractions.push_back(static_cast<double>(i) / kFirstRadii);
         }
         if (std::ranges::any_of(nodes_.ends, [](double end) { return !(end > 0.0); })) {
             return {};
@@ -93,7 +83,7 @@ class NodeFinder {
         do {
             trace();
             measure_excess();
-        } while (split_shares() || split_azimuths() || split_band());
+        } while (split_radii() || split_azimuths() || split_band());
         fit();
         return nodes_;
     }
@@ -135,7 +125,7 @@ class NodeFinder {
         return static_cast<double>(k % nodes_.azimuths) / static_cast<double>(nodes_.azimuths);
     }
     [[nodiscard]] StationPlace node(std::size_t p, std::size_t k, std::size_t i) const {
-        return {lenses_[p], azimuth(k), nodes_.shares[i] * nodes_.ends[p * nodes_.azimuths + k % nodes_.azimuths]};
+        return {lenses_[p], azimuth(k), nodes_.fractions[i] * nodes_.ends[p * nodes_.azimuths + k % nodes_.azimuths]};
     }
 
     /// Calls see(place, between, neighbours) for each middle between two nodes; `between` without its outline.
@@ -143,7 +133,7 @@ class NodeFinder {
     void for_each_middle(const See& see) const {
         for (std::size_t p = 0; p < lenses_.size(); ++p) {
             for (std::size_t k = 0; k < nodes_.azimuths; ++k) {
-                for (std::size_t i = 0; i < nodes_.shares.size(); ++i) {
+                for (std::size_t i = 0; i < nodes_.fractions.size(); ++i) {
                     see_middles(p, k, i, see);
                 }
             }
@@ -154,7 +144,7 @@ class NodeFinder {
     void see_middles(std::size_t p, std::size_t k, std::size_t i, const See& see) const {
         const StationPlace here = node(p, k, i);
         const std::size_t index = nodes_.index(p, k, i);
-        if (i + 1 < nodes_.shares.size()) {
+        if (i + 1 < nodes_.fractions.size()) {
             const StationPlace next = node(p, k, i + 1);
             see(StationPlace{here.lens, here.azimuth, 0.5 * (here.radius + next.radius)},
                 Between{nullptr, index, nodes_.index(p, k, i + 1), 0.5, Axis::radius, p, i}, here, next);
@@ -180,7 +170,7 @@ class NodeFinder {
         std::vector<PupilStations::Request> requests;
         for (std::size_t p = 0; p < lenses_.size(); ++p) {
             for (std::size_t k = 0; k < nodes_.azimuths; ++k) {
-                for (std::size_t i = 0; i < nodes_.shares.size(); ++i) {
+                for (std::size_t i = 0; i < nodes_.fractions.size(); ++i) {
                     requests.push_back({.place = node(p, k, i)});
                 }
             }
@@ -194,19 +184,19 @@ class NodeFinder {
     }
 
     /// Halves the steps of the radius whose regions have to be enlarged too much; whether there are any.
-    bool split_shares() {
+    bool split_radii() {
         std::vector<double> finer;
-        for (std::size_t i = 0; i < nodes_.shares.size(); ++i) {
-            finer.push_back(nodes_.shares[i]);
-            if (i + 1 < nodes_.shares.size()) {
-                const double step = nodes_.shares[i + 1] - nodes_.shares[i];
-                if (share_excess_[i] > most_excess_ * std::max(1.0, kSmallStep / step) && step > kSmallestStep) {
-                    finer.push_back(0.5 * (nodes_.shares[i] + nodes_.shares[i + 1]));
+        for (std::size_t i = 0; i < nodes_.fractions.size(); ++i) {
+            finer.push_back(nodes_.fractions[i]);
+            if (i + 1 < nodes_.fractions.size()) {
+                const double step = nodes_.fractions[i + 1] - nodes_.fractions[i];
+                if (radius_excess_[i] > most_excess_ * std::max(1.0, kSmallStep / step) && step > kSmallestStep) {
+                    finer.push_back(0.5 * (nodes_.fractions[i] + nodes_.fractions[i + 1]));
                 }
             }
         }
-        const bool is_split = finer.size() > nodes_.shares.size();
-        nodes_.shares = std::move(finer);
+        const bool is_split = finer.size() > nodes_.fractions.size();
+        nodes_.fractions = std::move(finer);
         return is_split;
     }
 
@@ -239,7 +229,7 @@ class NodeFinder {
     /// The outline at a node; where it is dark, that of the next lit one inwards, outwards, or on another azimuth: at
     /// the light's end one is lit.
     [[nodiscard]] const PupilOutline& outline_at(std::size_t p, std::size_t k, std::size_t i) const {
-        const std::size_t count = nodes_.shares.size();
+        const std::size_t count = nodes_.fractions.size();
         for (std::size_t turn = 0; turn + 1 < nodes_.azimuths * count; ++turn) {
             const std::size_t step = turn % count;
             const PupilOutline* outline = stations_.find(node(p, k + turn / count, step <= i ? i - step : step));
@@ -289,7 +279,7 @@ class NodeFinder {
         std::vector<const PupilOutline*> outlines;
         for (std::size_t p = 0; p < lenses_.size(); ++p) {
             for (std::size_t k = 0; k < nodes_.azimuths; ++k) {
-                for (std::size_t i = 0; i < nodes_.shares.size(); ++i) {
+                for (std::size_t i = 0; i < nodes_.fractions.size(); ++i) {
                     outlines.push_back(&outline_at(p, k, i));
                 }
             }
@@ -333,17 +323,6 @@ class NodeFinder {
         return {search_.by_radius ? 0.0 : extent.left, extent.right};
     }
 
-    [[nodiscard]] PupilRegion mean_region(const PupilRegion& a, const PupilRegion& b, double t) const {
-        const auto mean = [&](double of_a, double of_b) { return (1.0 - t) * of_a + t * of_b; };
-        PupilRegion between{.left = mean(a.left, b.left), .width = mean(a.width, b.width)};
-        for (std::size_t i = 0; i < between.columns.size(); ++i) {
-            between.columns[i] = {.lower = mean(a.columns[i].lower, b.columns[i].lower),
-                                  .upper = mean(a.columns[i].upper, b.columns[i].upper)};
-        }
-        between.sum_areas(nodes_.symmetry);
-        return between;
-    }
-
     /// By how much the region between two nodes, enlarged to hold what was traced there, is larger than that.
     [[nodiscard]] double excess_of(const PupilOutline& at_a, const PupilOutline& at_b, const Between& middle) const {
         const auto around = [&](const PupilOutline& outline, const Extent& more) {
@@ -361,7 +340,7 @@ class NodeFinder {
     /// The mean excess at each step of the radius, and over the sensor's area for the other axes.
     void measure_excess() {
         const std::vector<const PupilOutline*> outlines = node_outlines();
-        std::vector<Mean> by_share(nodes_.shares.size());
+        std::vector<Mean> by_step(nodes_.fractions.size());
         std::vector<Mean> by_position(lenses_.size());
         Mean by_azimuth;
         for (const Between& middle : lit_middles()) {
@@ -369,17 +348,17 @@ class NodeFinder {
             if (is_new) {
                 known->second = excess_of(*outlines[middle.a], *outlines[middle.b], middle);
             }
-            const double share = nodes_.shares[middle.share];
-            const double step = share - nodes_.shares[middle.share > 0 ? middle.share - 1 : 0];
+            const double fraction = nodes_.fractions[middle.fraction];
+            const double step = fraction - nodes_.fractions[middle.fraction > 0 ? middle.fraction - 1 : 0];
             if (middle.axis == Axis::radius) {
-                by_share[middle.share].add(known->second, 1.0);
+                by_step[middle.fraction].add(known->second, 1.0);
             } else {
                 (middle.axis == Axis::band ? by_position[middle.position] : by_azimuth)
-                    .add(known->second, share * step);
+                    .add(known->second, fraction * step);
             }
         }
-        share_excess_.clear();
-        std::ranges::transform(by_share, std::back_inserter(share_excess_), &Mean::value);
+        radius_excess_.clear();
+        std::ranges::transform(by_step, std::back_inserter(radius_excess_), &Mean::value);
         band_excess_.clear();
         std::ranges::transform(by_position, std::back_inserter(band_excess_), &Mean::value);
         azimuth_excess_ = by_azimuth.value();
@@ -392,44 +371,25 @@ class NodeFinder {
     std::vector<std::size_t> lenses_;  // at the nodes of the band
     PupilNodes nodes_;
     std::map<std::pair<const PupilOutline*, Axis>, double> excesses_;  // of middles
-    std::vector<double> share_excess_;                                 // of each step of the radius
+    std::vector<double> radius_excess_;                                // of each step of the radius
     std::vector<double> band_excess_;                                  // of each step in the band
     double azimuth_excess_ = 0.0;
 };
 
 }  // namespace
 
-PupilNodes find_pupil_nodes(std::vector<optics::TraceLens<double>> band, const RayFamily& rays,
-                            const NodeSearch& search) {
-    open_stops(band);
-    return NodeFinder(band, rays, search).find();
+void open_stop(optics::TraceLens<double>& lens) {
+    for (optics::SpecialSurface<double>& special : lens.specials) {
+        special.mask = {};
+    }
 }
 
-PupilNodes find_pupil_region(std::vector<optics::TraceLens<double>> band, const RayFamily& rays, Vec2d place,
-                             const NodeSearch& search) {
-    open_stops(band);
-    PupilStations stations(band, rays, search.disc, symmetry_of(search));
-    const double azimuth = std::atan2(place.x, place.y) / (2.0 * std::numbers::pi);
-    std::vector<PupilStations::Request> requests;
-    for (std::size_t lens = 0; lens < band.size(); ++lens) {
-        requests.push_back({.place = {lens, azimuth, std::hypot(place.x, place.y)}});
+PupilNodes find_pupil_nodes(std::vector<optics::TraceLens<double>> band, const RayFamily& rays,
+                            const NodeSearch& search) {
+    for (optics::TraceLens<double>& lens : band) {
+        open_stop(lens);
     }
-    stations.trace(requests);
-    std::vector<PupilOutline> outlines;
-    std::ranges::transform(requests, std::back_inserter(outlines),
-                           [&](const PupilStations::Request& request) { return *stations.find(request.place); });
-    if (std::ranges::all_of(outlines, &PupilOutline::is_empty)) {
-        return {};
-    }
-    const Extent extent = extent_of(outlines);
-    PupilRegion region =
-        region_around(outlines, {search.by_radius ? 0.0 : extent.left, extent.right}, symmetry_of(search));
-    add_margin(region, symmetry_of(search));
-    return {.symmetry = symmetry_of(search),
-            .positions = {0.0},
-            .ends = {2.0 * std::hypot(place.x, place.y) + 1.0},
-            .shares = {0.0, 1.0},
-            .regions = {region, region}};
+    return NodeFinder(band, rays, search).find();
 }
 
 }  // namespace lensproof::pupil

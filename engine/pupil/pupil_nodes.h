@@ -9,19 +9,19 @@
 namespace lensproof::pupil {
 
 /// Regions of a plane, each in the frame in which its place (RayFamily) lies at (0, r), at nodes in position in the
-/// band, azimuth, and radius as a share of where the light ends. Between nodes they are linear in all
+/// band, azimuth, and radius as a fraction of where the light ends. Between nodes they are linear in all
 /// three, and hold what passes.
 struct PupilNodes {
     PupilSymmetry symmetry = PupilSymmetry::mirror;
     std::size_t azimuths = 1;       // evenly spread, from +y towards +x
     std::vector<double> positions;  // in the band, rising from 0 to 1
     std::vector<double> ends;       // radii, where the light or the search ends, at [position · azimuths + azimuth]
-    std::vector<double> shares;     // of the end: rising from 0 to 1. None: no light at all
+    std::vector<double> fractions;  // of the end: rising from 0 to 1. None: no light at all
     std::vector<PupilRegion> regions;
 
     /// Of the region at three nodes.
-    [[nodiscard]] std::size_t index(std::size_t position, std::size_t azimuth, std::size_t share) const {
-        return (position * azimuths + azimuth) * shares.size() + share;
+    [[nodiscard]] std::size_t index(std::size_t position, std::size_t azimuth, std::size_t fraction) const {
+        return (position * azimuths + azimuth) * fractions.size() + fraction;
     }
 };
 
@@ -33,14 +33,11 @@ struct NodeSearch {
     double most_excess = 0.005;  // as PupilMapSettings has it
 };
 
-/// Traces regions of lenses across a band, one a wavelength, and sets nodes where they are needed. Stops are opened to
-/// the full circle, which holds what any blades leave.
+/// Lets the full circle pass the stop, which holds what any blades leave.
+void open_stop(optics::TraceLens<double>& lens);
+
+/// Traces regions of lenses across a band, one a wavelength, and sets nodes where they are needed. Stops are opened.
 PupilNodes find_pupil_nodes(std::vector<optics::TraceLens<double>> band, const RayFamily& rays,
                             const NodeSearch& search);
-
-/// The region of a single place, for all wavelengths of the band at once and in the form of nodes around it; none where
-/// no light was found.
-PupilNodes find_pupil_region(std::vector<optics::TraceLens<double>> band, const RayFamily& rays, Vec2d place,
-                             const NodeSearch& search);
 
 }  // namespace lensproof::pupil

@@ -2,17 +2,16 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
+#include "engine/base/angle.h"
 #include "engine/pupil/polygon.h"
 
 namespace lensproof::pupil {
 
 namespace {
 
-constexpr double kPi = std::numbers::pi;
-constexpr double kPrecision = 1e-4;    // of an edge's distance
-constexpr double kCornerShare = 5e-5;  // of the region's area: what a corner may hide
+constexpr double kPrecision = 1e-4;       // of an edge's distance
+constexpr double kCornerFraction = 5e-5;  // of the region's area: what a corner may hide
 constexpr int kCornerRounds = 8;
 constexpr int kCoarseAzimuths = 16;  // over the half plane x ≥ 0
 constexpr int kFineAzimuths = 48;
@@ -31,7 +30,7 @@ struct EdgeRay {
     }
 };
 
-/// A region on its way to an outline.
+/// A region that is being outlined.
 struct Found {
     int region = 0;
     PupilFrame frame;
@@ -125,7 +124,7 @@ class OutlineFinder {
                 }
             }
             const auto& [region, box] = boxes[b];
-            const Vec2d cell{2.0 * kMargin * box.scale.x / kGrid, 2.0 * kMargin * box.scale.y / kGrid};
+            const Vec2d cell = 2.0 * kMargin * box.scale / (1.0 * kGrid);
             frames.push_back(hits.empty() ? PupilFrame{.centre = {}, .scale = cell} : frame_of(hits, cell));
             centres.push_back({region, frames.back().centre});
         }
@@ -159,8 +158,7 @@ class OutlineFinder {
         for (const Vec2d& hit : hits) {
             lower = {std::min(lower.x, hit.x), std::min(lower.y, hit.y)};
             upper = {std::max(upper.x, hit.x), std::max(upper.y, hit.y)};
-            const auto count = static_cast<double>(hits.size());
-            mean = {mean.x + hit.x / count, mean.y + hit.y / count};
+            mean = mean + hit / static_cast<double>(hits.size());
         }
         if (is_mirror_) {
             mean.x = 0.0;
@@ -173,9 +171,7 @@ class OutlineFinder {
             centre.x = 0.0;
             lower.x = -upper.x;
         }
-        return {.centre = centre,
-                .scale = {0.5 * (upper.x - lower.x + cell.x), 0.5 * (upper.y - lower.y + cell.y)},
-                .bend = 0.0};
+        return {.centre = centre, .scale = 0.5 * (upper - lower + cell), .bend = 0.0};
     }
 
     /// Centres, scales and bends the frames by a coarse outline.
@@ -218,7 +214,7 @@ class OutlineFinder {
             polygon.front().x = 0.0;  // which cosines of ±π/2 miss
             polygon.back().x = 0.0;
         }
-        const Vec2d half{0.5 * (upper.x - lower.x), 0.5 * (upper.y - lower.y)};
+        const Vec2d half = 0.5 * (upper - lower);
         const double middle_x = is_mirror_ ? 0.0 : 0.5 * (lower.x + upper.x);
         const auto middle_at = [&](double x) {
             const std::optional<Span> span = span_at(polygon, x);
@@ -230,8 +226,8 @@ class OutlineFinder {
         const double middle = middle_at(middle_x);
         PupilFrame frame = found.frame;
         frame.centre = found.frame.from_own({middle_x, middle});
-        const double way = kOut * half.x * found.frame.scale.x;
-        frame.bend += found.frame.scale.y * (0.5 * (left + right) - middle) / (way * way);
+        const double reach = kOut * half.x * found.frame.scale.x;
+        frame.bend += found.frame.scale.y * (0.5 * (left + right) - middle) / (reach * reach);
         frame.scale = {half.x * found.frame.scale.x, half.y * found.frame.scale.y};
         return frame;
     }
@@ -261,7 +257,7 @@ class OutlineFinder {
         constexpr double kFar = 1e12;
         while (distance < kFar) {
             const Vec2d at = frame.from_own(ray.at(distance));
-            if (at.x * at.x + at.y * at.y > search_.radius * search_.radius) {
+            if (dot(at, at) > search_.radius * search_.radius) {
                 break;
             }
             distance *= 2.0;
@@ -344,14 +340,14 @@ class OutlineFinder {
             const std::vector<Vec2d> points = edge_points(found);
             double twice_area = 0.0;
             for (std::size_t i = 0; i < sides(found); ++i) {
-                twice_area += cross(from_to(found.frame.centre, points[i]),
-                                    from_to(found.frame.centre, points[(i + 1) % points.size()]));
+                twice_area +=
+                    cross(points[i] - found.frame.centre, points[(i + 1) % points.size()] - found.frame.centre);
             }
             std::vector<EdgeRay> rays;
             std::vector<std::size_t> added;
             for (std::size_t i = 0; i < found.rays.size(); ++i) {
                 rays.push_back(found.rays[i]);
-                if (i < sides(found) && apex(points, i).area > 0.5 * kCornerShare * twice_area) {
+                if (i < sides(found) && apex(points, i).area > 0.5 * kCornerFraction * twice_area) {
                     const EdgeRay& next = found.rays[(i + 1) % found.rays.size()];
                     const double turn = next.azimuth - rays.back().azimuth;
                     const auto [nearer, farther] = std::minmax(found.rays[i].outside, next.outside);

@@ -52,8 +52,8 @@ struct OutlineSearch {
 ///
 /// A region is found by a grid over its expected place, or over the whole disc; from a point inside, its edge is found
 /// by halving along rays that are evenly spread in the region's frame, which makes a sliver round and straight. Where
-/// neighbouring edge points turn sharply, rays are added. Edge points lie outside, by 1e-4 of the way at most, and
-/// between them stands the point where the sides next to them, drawn on, meet: the polygon holds an outline that is
+/// neighbouring edge points turn sharply, rays are added. Edge points lie outside, by 1e-4 of their distance at most,
+/// and between them stands the point where the sides next to them, drawn on, meet: the polygon holds an outline that is
 /// convex there. A region has to be star-shaped about its centre in its frame.
 std::vector<PupilOutline> pupil_outlines(const PassTest& passes, std::span<const std::optional<PupilFrame>> expected,
                                          const OutlineSearch& search);

@@ -4,7 +4,7 @@
 
 namespace lensproof::pupil {
 
-PupilShares::PupilShares(PupilSymmetry symmetry) {
+PupilFractions::PupilFractions(PupilSymmetry symmetry) {
     for (int i = 0; i <= kPupilPanels; ++i) {
         const double angle = std::numbers::pi * i / kPupilPanels;
         at[i] = symmetry == PupilSymmetry::mirror ? std::sin(0.5 * angle) : 0.5 * (1.0 - std::cos(angle));
@@ -15,13 +15,26 @@ PupilShares::PupilShares(PupilSymmetry symmetry) {
 }
 
 void PupilRegion::sum_areas(PupilSymmetry symmetry) {
-    const auto& shares = pupil_shares(symmetry).at;
+    const auto& fractions = pupil_fractions(symmetry).at;
     columns[0].area_before = 0.0;
     for (std::size_t i = 0; i < kPupilPanels; ++i) {
         const double mean_height =
             0.5 * (columns[i].upper - columns[i].lower + columns[i + 1].upper - columns[i + 1].lower);
-        columns[i + 1].area_before = columns[i].area_before + mean_height * (shares[i + 1] - shares[i]);
+        columns[i + 1].area_before = columns[i].area_before + mean_height * (fractions[i + 1] - fractions[i]);
     }
+}
+
+PupilRegion mean_region(const PupilRegion& a, const PupilRegion& b, double t) {
+    const auto between = [t](double from, double to) { return (1.0 - t) * from + t * to; };
+    PupilRegion region{.left = between(a.left, b.left), .width = between(a.width, b.width)};
+    for (std::size_t i = 0; i < region.columns.size(); ++i) {
+        const PupilColumn& from = a.columns[i];
+        const PupilColumn& to = b.columns[i];
+        region.columns[i] = {.lower = between(from.lower, to.lower),
+                             .upper = between(from.upper, to.upper),
+                             .area_before = between(from.area_before, to.area_before)};
+    }
+    return region;
 }
 
 PanelGuide panel_guide(const PupilRegion& region) {

@@ -17,22 +17,22 @@ enum class PupilSymmetry { none, mirror };
 /// How many panels a region is cut into, each a trapezoid between two columns.
 inline constexpr int kPupilPanels = 24;
 
-/// Where the columns stand, as shares of the region's width from its left end: closer together towards an end where an
-/// outline that is round there turns, so that equal arcs of an ellipse lie between them.
-struct PupilShares {
+/// Where the columns stand, as fractions of the region's width from its left end: closer together towards an end where
+/// an outline that is round there turns, so that equal arcs of an ellipse lie between them.
+struct PupilFractions {
     std::array<double, kPupilPanels + 1> at{};
-    std::array<double, kPupilPanels> per_width{};  // 1 / (the next share − this one)
+    std::array<double, kPupilPanels> per_width{};  // 1 / (the next fraction − this one)
 
-    explicit PupilShares(PupilSymmetry symmetry);
-    /// The panel that a share from 0 to 1 lies in.
-    [[nodiscard]] int panel(double share) const {
-        return static_cast<int>(std::upper_bound(at.begin() + 1, at.end() - 1, share) - at.begin()) - 1;
+    explicit PupilFractions(PupilSymmetry symmetry);
+    /// The panel that a fraction from 0 to 1 lies in.
+    [[nodiscard]] int panel(double fraction) const {
+        return static_cast<int>(std::upper_bound(at.begin() + 1, at.end() - 1, fraction) - at.begin()) - 1;
     }
 };
-inline const PupilShares kWholeShares{PupilSymmetry::none};
-inline const PupilShares kHalfShares{PupilSymmetry::mirror};
-inline const PupilShares& pupil_shares(PupilSymmetry symmetry) {
-    return symmetry == PupilSymmetry::mirror ? kHalfShares : kWholeShares;
+inline const PupilFractions kWholeFractions{PupilSymmetry::none};
+inline const PupilFractions kHalfFractions{PupilSymmetry::mirror};
+inline const PupilFractions& pupil_fractions(PupilSymmetry symmetry) {
+    return symmetry == PupilSymmetry::mirror ? kHalfFractions : kWholeFractions;
 }
 
 /// A column of a region: the points between two y, mm.
@@ -42,8 +42,9 @@ struct PupilColumn {
     double area_before = 0.0;  // of the panels before it, over the region's width: mm
 };
 
-/// A region of a plane, mm: at x = left + share · width, with straight lines between the columns. It may bend, and ends
-/// may be round, pointed or cut off; a line parallel to y meets it once. A mirror image stores x ≥ 0, and left is 0.
+/// A region of a plane, mm: at x = left + fraction · width, with straight lines between the columns. It may bend, and
+/// ends may be round, pointed or cut off; a line parallel to y meets it once. A mirror image stores x ≥ 0, and left is
+/// 0.
 struct PupilRegion {
     double left = 0.0;
     double width = 0.0;
@@ -52,6 +53,9 @@ struct PupilRegion {
     /// To be called when lower and upper are set: sums the panels' areas up.
     void sum_areas(PupilSymmetry symmetry);
 };
+
+/// The region at t between two, column by column; its sums of area, too, are linear in the columns.
+PupilRegion mean_region(const PupilRegion& a, const PupilRegion& b, double t);
 
 /// The panel that each 128th of a region's area begins in: where a search for a panel starts.
 inline constexpr int kGuideSteps = 128;
@@ -68,7 +72,7 @@ class BlendedRegion {
                   PupilSymmetry symmetry)
         : regions_(regions),
           weights_(weights),
-          shares_(&pupil_shares(symmetry)),
+          fractions_(&pupil_fractions(symmetry)),
           is_mirror_(symmetry == PupilSymmetry::mirror),
           left_(mean([](const PupilRegion& region) { return region.left; })),
           width_(mean([](const PupilRegion& region) { return region.width; })) {}
@@ -77,12 +81,12 @@ class BlendedRegion {
     [[nodiscard]] double area() const { return (is_mirror_ ? 2.0 : 1.0) * width_ * area_before(kPupilPanels); }
 
     /// The point that (u, v) in the unit square maps to, evenly over a region whose area is not 0: u picks the panel by
-    /// its area, then x inside it, where the density is linear, and v picks y. Any guide yields the same point; a
+    /// its area, then x inside it, where the pdf is linear, and v picks y. Any guide yields the same point; a
     /// guide of a similar region yields it sooner.
     [[nodiscard]] Vec2d sample(double u, double v, const PanelGuide& guide) const {
-        const double share_of_area = is_mirror_ ? std::abs(2.0 * u - 1.0) : u;
-        const double target = share_of_area * area_before(kPupilPanels);
-        int panel = guide[std::min(kGuideSteps - 1, static_cast<int>(share_of_area * kGuideSteps))];
+        const double area_fraction = is_mirror_ ? std::abs(2.0 * u - 1.0) : u;
+        const double target = area_fraction * area_before(kPupilPanels);
+        int panel = guide[std::min(kGuideSteps - 1, static_cast<int>(area_fraction * kGuideSteps))];
         while (panel > 0 && area_before(panel) > target) {
             --panel;
         }
@@ -96,12 +100,12 @@ class BlendedRegion {
     }
 
     [[nodiscard]] bool contains(Vec2d point) const {
-        const double share = ((is_mirror_ ? std::abs(point.x) : point.x) - left_) / width_;
-        if (!(share >= 0.0 && share <= 1.0)) {
+        const double fraction = ((is_mirror_ ? std::abs(point.x) : point.x) - left_) / width_;
+        if (!(fraction >= 0.0 && fraction <= 1.0)) {
             return false;
         }
-        const PupilPanel<double> p = at(shares_->panel(share));
-        const double t = (share - p.share) * p.per_share_width;
+        const PupilPanel<double> p = at(fractions_->panel(fraction));
+        const double t = (fraction - p.fraction) * p.per_fraction;
         return point.y >= p.lower_at(t) && point.y <= p.upper_at(t);
     }
 
@@ -120,9 +124,9 @@ class BlendedRegion {
     }
 
     [[nodiscard]] PupilPanel<double> at(int panel) const {
-        return {.share = shares_->at[panel],
-                .next_share = shares_->at[panel + 1],
-                .per_share_width = shares_->per_width[panel],
+        return {.fraction = fractions_->at[panel],
+                .next_fraction = fractions_->at[panel + 1],
+                .per_fraction = fractions_->per_width[panel],
                 .lower = mean([&](const PupilRegion& region) { return region.columns[panel].lower; }),
                 .upper = mean([&](const PupilRegion& region) { return region.columns[panel].upper; }),
                 .next_lower = mean([&](const PupilRegion& region) { return region.columns[panel + 1].lower; }),
@@ -131,7 +135,7 @@ class BlendedRegion {
 
     std::array<const PupilRegion*, Count> regions_;
     std::array<double, Count> weights_;
-    const PupilShares* shares_;
+    const PupilFractions* fractions_;
     bool is_mirror_;
     double left_;
     double width_;

@@ -23,24 +23,24 @@ struct PupilSliceTables {
 
     int nodes = 0;                              // in radius
     const double* per_end = nullptr;            // of a slice: 1 / the radius where the light ends, 1/mm
-    const double* shares = nullptr;             // of a node: its radius over the end
-    const double* per_step = nullptr;           // 1 / the step to the next share
+    const double* fractions = nullptr;          // of a node: its radius over the end
+    const double* per_step = nullptr;           // 1 / the step to the next fraction
     const std::int32_t* node_below = nullptr;   // for each step in radius, the last node at or below it
     const double* regions = nullptr;            // [slice][node][number]
     const std::uint8_t* panel_below = nullptr;  // [slice][node][step]: a panel no later than that which each 128th of
                                                 // the area begins in, between this node and the next
-    const double* panel_shares = nullptr;       // where the columns stand in a region's width
-    const double* per_panel = nullptr;          // 1 / the share that each panel has of the width
-    double disc_radius2 = 0.0;                  // of the disc that the defensive share is drawn from, mm²
-    double disc_density = 0.0;                  // what it adds to the density there, 1/mm²
-    double defensive_share = 0.0;
-    double per_other_share = 1.0;  // 1 / (1 − the defensive share)
+    const double* panel_fractions = nullptr;    // where the columns stand in a region's width
+    const double* per_panel = nullptr;          // 1 / the fraction that each panel has of the width
+    double disc_radius2 = 0.0;                  // of the disc that the defensive fraction is drawn from, mm²
+    double disc_pdf = 0.0;                      // what it adds to the pdf there, 1/mm²
+    double defensive_fraction = 0.0;
+    double per_other_fraction = 1.0;  // 1 / (1 − the defensive fraction)
 };
 
 template <class T>
 struct PupilDraw {
     Vec2<T> point;
-    T area;  // 1 / the density, mm²; 0: no path is to be started
+    T area;  // 1 / the pdf, mm²; 0: no path is to be started
 };
 
 /// The region for a sensor point in a slice, or for a packet of each: a mean of two nodes' regions.
@@ -54,16 +54,16 @@ class PupilSlice {
     PupilSlice(const PupilSliceTables& tables, const T& slice, const Vec2<T>& sensor_point) : tables_(tables) {
         using std::sqrt;
         const T radius = sqrt(sensor_point.x * sensor_point.x + sensor_point.y * sensor_point.y);
-        const T share_or_none = radius * look_up(tables.per_end, slice);
-        is_lit_ = share_or_none < T(1.0 + 0x1p-52);
-        const T share = select(is_lit_, share_or_none, T(0));
-        T node = look_up(tables.node_below, share * T(PupilSliceTables::kRadiusSteps));
+        const T fraction_or_none = radius * look_up(tables.per_end, slice);
+        is_lit_ = fraction_or_none < T(1.0 + 0x1p-52);
+        const T fraction = select(is_lit_, fraction_or_none, T(0));
+        T node = look_up(tables.node_below, fraction * T(PupilSliceTables::kRadiusSteps));
         for (Mask is_beyond = is_lit_; any(is_beyond);) {
-            is_beyond = look_up(tables.shares + 1, node) < share;
+            is_beyond = look_up(tables.fractions + 1, node) < fraction;
             node = select(is_beyond, node + T(1), node);
         }
         const Index<T> node_index(node);
-        const T t = (share - node_index.look_up(tables.shares)) * node_index.look_up(tables.per_step);
+        const T t = (fraction - node_index.look_up(tables.fractions)) * node_index.look_up(tables.per_step);
         outer_weight_ = select(t > T(0), select(t < T(1), t, T(1)), T(0));
         inner_weight_ = T(1) - outer_weight_;
         region_ = slice * T(tables.nodes) + node;
@@ -79,19 +79,19 @@ class PupilSlice {
         sine_ = sensor_point.x * per_radius;
     }
 
-    /// The point that (u, v) in the unit square maps to, u being at least the defensive share.
+    /// The point that (u, v) in the unit square maps to, u being at least the defensive fraction.
     [[nodiscard]] PupilDraw<T> sample(const T& u, const T& v) const {
         constexpr double kBelowOne = 1.0 - 0x1p-53;
-        const T rest = (u - T(tables_.defensive_share)) * T(tables_.per_other_share);
+        const T rest = (u - T(tables_.defensive_fraction)) * T(tables_.per_other_fraction);
         const T towards_right = T(2) * rest - T(1);
         const Mask is_left = towards_right < T(0);
-        const T share_or_one = select(is_left, -towards_right, towards_right);
-        const T share = select(share_or_one < T(kBelowOne), share_or_one, T(kBelowOne));
+        const T fraction_or_one = select(is_left, -towards_right, towards_right);
+        const T fraction = select(fraction_or_one < T(kBelowOne), fraction_or_one, T(kBelowOne));
 
         // The last panel with no more area before it than asked for. The areas of a mean lie between those of its
         // parts, so that no earlier panel than the first of the parts' comes into question.
-        const T target = share * whole_area_;
-        T panel = first_panel(share);
+        const T target = fraction * whole_area_;
+        T panel = first_panel(fraction);
         T area_before = mean(column(panel), kArea);
         for (Mask is_before = is_lit_; any(is_before);) {
             const T area_after = mean(column(panel), kArea + kPerColumn);
@@ -104,8 +104,8 @@ class PupilSlice {
         const T x = select(is_left, -width_, width_) * own.x;
         const Vec2<T> point{cosine_ * x + sine_ * own.y, cosine_ * own.y - sine_ * x};
         const Mask is_on_disc = !(point.x * point.x + point.y * point.y > T(tables_.disc_radius2));
-        const T of_disc = select(is_on_disc, T(tables_.disc_density), T(0));
-        return {point, area() / (T(1.0 - tables_.defensive_share) + of_disc * area())};
+        const T of_disc = select(is_on_disc, T(tables_.disc_pdf), T(0));
+        return {point, area() / (T(1.0 - tables_.defensive_fraction) + of_disc * area())};
     }
 
     /// Of the region, mm²; 0 where no light was found.
@@ -114,16 +114,16 @@ class PupilSlice {
     [[nodiscard]] Mask contains(const Vec2<T>& point) const {
         const T x = cosine_ * point.x - sine_ * point.y;
         const T y = sine_ * point.x + cosine_ * point.y;
-        const T share = select(x < T(0), -x, x) / select(is_lit_, width_, T(1));
+        const T fraction = select(x < T(0), -x, x) / select(is_lit_, width_, T(1));
         T panel(0);
         for (Mask is_beyond = is_lit_; any(is_beyond);) {
-            is_beyond =
-                panel + T(1) < T(PupilSliceTables::kPanels) && !(look_up(tables_.panel_shares + 1, panel) > share);
+            is_beyond = panel + T(1) < T(PupilSliceTables::kPanels) &&
+                        !(look_up(tables_.panel_fractions + 1, panel) > fraction);
             panel = select(is_beyond, panel + T(1), panel);
         }
         const PupilPanel<T> found = panel_at(panel);
-        const T t = (share - found.share) * found.per_share_width;
-        return is_lit_ && !(share > T(1)) && !(y < found.lower_at(t)) && !(y > found.upper_at(t));
+        const T t = (fraction - found.fraction) * found.per_fraction;
+        return is_lit_ && !(fraction > T(1)) && !(y < found.lower_at(t)) && !(y > found.upper_at(t));
     }
 
   private:
@@ -142,18 +142,18 @@ class PupilSlice {
         return Index<T>(first_number_ + T(PupilSliceTables::kPerColumn) * panel);
     }
 
-    /// A panel at or before the one that has the share of the area before it.
-    [[nodiscard]] T first_panel(const T& share) const {
+    /// A panel at or before the one that has the fraction of the area before it.
+    [[nodiscard]] T first_panel(const T& fraction) const {
         constexpr int kSteps = PupilSliceTables::kAreaSteps;
-        return look_up(tables_.panel_below, region_ * T(kSteps) + whole(share * T(kSteps)));
+        return look_up(tables_.panel_below, region_ * T(kSteps) + whole(fraction * T(kSteps)));
     }
 
     [[nodiscard]] PupilPanel<T> panel_at(const T& panel) const {
         const Index<T> index(panel);
         const Index<T> before = column(panel);
-        return {.share = index.look_up(tables_.panel_shares),
-                .next_share = index.look_up(tables_.panel_shares + 1),
-                .per_share_width = index.look_up(tables_.per_panel),
+        return {.fraction = index.look_up(tables_.panel_fractions),
+                .next_fraction = index.look_up(tables_.panel_fractions + 1),
+                .per_fraction = index.look_up(tables_.per_panel),
                 .lower = mean(before, kLower),
                 .upper = mean(before, kUpper),
                 .next_lower = mean(before, kLower + kPerColumn),

@@ -11,19 +11,6 @@ static_assert(PupilSliceTables::kPanels == kPupilPanels && PupilSliceTables::kAr
 
 constexpr int kMostSlices = 256;  // of some 30 kB
 
-PupilRegion mean(const PupilRegion& a, const PupilRegion& b, double t) {
-    const auto between = [t](double from, double to) { return (1.0 - t) * from + t * to; };
-    PupilRegion region{.left = between(a.left, b.left), .width = between(a.width, b.width)};
-    for (std::size_t i = 0; i < region.columns.size(); ++i) {
-        const PupilColumn& from = a.columns[i];
-        const PupilColumn& to = b.columns[i];
-        region.columns[i] = {.lower = between(from.lower, to.lower),
-                             .upper = between(from.upper, to.upper),
-                             .area_before = between(from.area_before, to.area_before)};
-    }
-    return region;
-}
-
 double position_of(int slice, int slices) {
     return slices > 1 ? slice / (slices - 1.0) : 0.0;
 }
@@ -36,14 +23,14 @@ PupilSlices::PupilSlices(const PupilMap& map, int slices) : map_(map), slices_(s
         slices > kMostSlices) {
         return;
     }
-    const std::size_t count = nodes.shares.size();
+    const std::size_t count = nodes.fractions.size();
     for (std::size_t i = 0; i + 1 < count; ++i) {
-        per_step_.push_back(1.0 / (nodes.shares[i + 1] - nodes.shares[i]));
+        per_step_.push_back(1.0 / (nodes.fractions[i + 1] - nodes.fractions[i]));
     }
     std::int32_t below = 0;
     for (int i = 0; i <= PupilSliceTables::kRadiusSteps; ++i) {
         while (below + 2 < static_cast<std::int32_t>(count) &&
-               nodes.shares[below + 1] * PupilSliceTables::kRadiusSteps <= i) {
+               nodes.fractions[below + 1] * PupilSliceTables::kRadiusSteps <= i) {
             ++below;
         }
         node_below_.push_back(below);
@@ -52,22 +39,22 @@ PupilSlices::PupilSlices(const PupilMap& map, int slices) : map_(map), slices_(s
         add_slice(position_of(slice, slices));
     }
     panel_below_.insert(panel_below_.end(), kBytesBeyond, 0);
-    const PupilShares& shares = pupil_shares(nodes.symmetry);
+    const PupilFractions& fractions = pupil_fractions(nodes.symmetry);
     const Disc& disc = map.regions().disc();
-    const double defensive_share = map.regions().defensive_share();
+    const double defensive_fraction = map.regions().defensive_fraction();
     tables_ = {.nodes = static_cast<int>(count),
                .per_end = per_end_.data(),
-               .shares = nodes.shares.data(),
+               .fractions = nodes.fractions.data(),
                .per_step = per_step_.data(),
                .node_below = node_below_.data(),
                .regions = regions_.data(),
                .panel_below = panel_below_.data(),
-               .panel_shares = shares.at.data(),
-               .per_panel = shares.per_width.data(),
+               .panel_fractions = fractions.at.data(),
+               .per_panel = fractions.per_width.data(),
                .disc_radius2 = disc.radius * disc.radius,
-               .disc_density = defensive_share / disc.area(),
-               .defensive_share = defensive_share,
-               .per_other_share = 1.0 / (1.0 - defensive_share)};
+               .disc_pdf = defensive_fraction / disc.area(),
+               .defensive_fraction = defensive_fraction,
+               .per_other_fraction = 1.0 / (1.0 - defensive_fraction)};
 }
 
 void PupilSlices::add_slice(double position) {
@@ -83,9 +70,9 @@ void PupilSlices::add_slice(double position) {
                          : 0.0;
     per_end_.push_back(1.0 / ((1.0 - t) * nodes.ends[below] + t * nodes.ends[above]));
     std::vector<PanelGuide> guides;
-    for (std::size_t i = 0; i < nodes.shares.size(); ++i) {
+    for (std::size_t i = 0; i < nodes.fractions.size(); ++i) {
         const PupilRegion region =
-            mean(nodes.regions[nodes.index(below, 0, i)], nodes.regions[nodes.index(above, 0, i)], t);
+            mean_region(nodes.regions[nodes.index(below, 0, i)], nodes.regions[nodes.index(above, 0, i)], t);
         regions_.push_back(region.width);
         for (const PupilColumn& column : region.columns) {
             regions_.insert(regions_.end(), {column.lower, column.upper, column.area_before});
@@ -101,13 +88,13 @@ void PupilSlices::add_slice(double position) {
 PupilDraw<double> PupilSlices::sample(Vec2d sensor_point, int slice, double u, double v) const {
     if (tables() == nullptr) {
         const PupilSample sample = map_.sample(sensor_point, position_of(slice, slices_), u, v);
-        return {sample.point, sample.density > 0.0 ? 1.0 / sample.density : 0.0};
+        return {sample.point, sample.pdf > 0.0 ? 1.0 / sample.pdf : 0.0};
     }
     const PupilSlice<double> region(tables_, slice, sensor_point);
-    if (u < tables_.defensive_share) {
-        const Vec2d point = map_.regions().disc().warped(u / tables_.defensive_share, v);
-        const double of_region = region.contains(point) ? (1.0 - tables_.defensive_share) / region.area() : 0.0;
-        return {point, 1.0 / (tables_.disc_density + of_region)};
+    if (u < tables_.defensive_fraction) {
+        const Vec2d point = map_.regions().disc().warped(u / tables_.defensive_fraction, v);
+        const double of_region = region.contains(point) ? (1.0 - tables_.defensive_fraction) / region.area() : 0.0;
+        return {point, 1.0 / (tables_.disc_pdf + of_region)};
     }
     return region.sample(u, v);
 }

@@ -16,8 +16,8 @@ PupilFrame mean_frame(const std::vector<PupilFrame>& frames, const std::vector<d
     PupilFrame mean{.centre = {}, .scale = {}, .bend = 0.0};
     for (std::size_t i = 0; i < frames.size(); ++i) {
         const PupilFrame& frame = frames[i];
-        mean.centre = {mean.centre.x + weights[i] * frame.centre.x, mean.centre.y + weights[i] * frame.centre.y};
-        mean.scale = {mean.scale.x + weights[i] * frame.scale.x, mean.scale.y + weights[i] * frame.scale.y};
+        mean.centre = mean.centre + weights[i] * frame.centre;
+        mean.scale = mean.scale + weights[i] * frame.scale;
         mean.bend += weights[i] * frame.bend;
     }
     return mean;

@@ -22,7 +22,7 @@ struct RayFamily {
 /// A place, and which lens of a band it is seen through. Ordered along the radii.
 struct StationPlace {
     std::size_t lens = 0;
-    double azimuth = 0.0;  // as a share of a turn, from +y towards +x
+    double azimuth = 0.0;  // in turns, from +y towards +x
     double radius = 0.0;
 
     friend bool operator<(const StationPlace& a, const StationPlace& b) {

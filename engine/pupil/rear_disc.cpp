@@ -2,9 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <vector>
 
+#include "engine/base/infinity.h"
+#include "engine/optics/surface_axes.h"
 #include "engine/pupil/surface_cap.h"
 
 namespace lensproof::pupil {
@@ -25,7 +26,6 @@ struct CapPoint {
 /// The points of a polar grid on the surface, ring by ring from its vertex to its rim.
 std::vector<CapPoint> rear_cap(const optics::TraceLens<double>& lens) {
     const optics::TraceSurface<double>& rear = lens.surfaces.back();
-    const optics::SpecialSurface<double>* special = rear.special >= 0 ? &lens.specials[rear.special] : nullptr;
     const auto [shape, rim] = surface_cap(lens, rear);
     std::vector<CapPoint> cap;
     for (int ring = 0; ring <= kRings; ++ring) {
@@ -35,10 +35,8 @@ std::vector<CapPoint> rear_cap(const optics::TraceLens<double>& lens) {
             Vec3d at{radius * std::cos(azimuth), radius * std::sin(azimuth), 0.0};
             const double height = optics::sag(shape, at.x, at.y);
             at.z = std::isfinite(height) ? height : 0.0;
-            if (special != nullptr) {
-                at = special->from_own(at) + Vec3d{special->vertex.x, special->vertex.y, 0.0};
-            }
-            cap.push_back({special != nullptr ? kBulge * std::hypot(at.x, at.y) : radius, rear.vertex_z + at.z});
+            at = optics::from_own_axes(lens, rear, at);
+            cap.push_back({rear.special >= 0 ? kBulge * std::hypot(at.x, at.y) : radius, at.z});
         }
     }
     return cap;
@@ -49,7 +47,7 @@ std::vector<CapPoint> rear_cap(const optics::TraceLens<double>& lens) {
 RearDisc rear_disc(const optics::TraceLens<double>& lens, double sensor_radius_mm) {
     const std::vector<CapPoint> cap = rear_cap(lens);
     RearDisc disc;
-    disc.plane_z = -std::numeric_limits<double>::infinity();
+    disc.plane_z = -kInfinity;
     for (const CapPoint& point : cap) {
         disc.plane_z = std::max(disc.plane_z, point.z);
     }
@@ -61,23 +59,23 @@ RearDisc rear_disc(const optics::TraceLens<double>& lens, double sensor_radius_m
         }
         disc.plane_z += 0.5 * largest_step;
     }
-    const auto share_of_sensor = [&](const CapPoint& point) {
+    const auto sensor_fraction = [&](const CapPoint& point) {
         return (disc.plane_z - point.z) / (lens.image_z - point.z);
     };
     for (int ring = 0; ring < kRings; ++ring) {
         for (int i = 0; i < kAzimuths; ++i) {
             const int next = (i + 1) % kAzimuths;
-            double innermost = std::numeric_limits<double>::infinity();
+            double innermost = kInfinity;
             double outermost = 0.0;
-            double largest_share = 0.0;
+            double largest_fraction = 0.0;
             for (const int corner : {ring * kAzimuths + i, ring * kAzimuths + next, (ring + 1) * kAzimuths + i,
                                      (ring + 1) * kAzimuths + next}) {
                 innermost = std::min(innermost, cap[corner].radius / kBulge);
                 outermost = std::max(outermost, cap[corner].radius);
-                largest_share = std::max(largest_share, share_of_sensor(cap[corner]));
+                largest_fraction = std::max(largest_fraction, sensor_fraction(cap[corner]));
             }
             disc.radius =
-                std::max(disc.radius, outermost + largest_share * std::max(0.0, sensor_radius_mm - innermost));
+                std::max(disc.radius, outermost + largest_fraction * std::max(0.0, sensor_radius_mm - innermost));
         }
     }
     return disc;

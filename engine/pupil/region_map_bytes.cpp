@@ -57,7 +57,7 @@ bool is_sound_axis(const std::vector<double>& nodes) {
 }
 
 bool is_sound(const PupilNodes& nodes) {
-    return is_sound_axis(nodes.positions) && is_sound_axis(nodes.shares) && nodes.shares.size() > 1 &&
+    return is_sound_axis(nodes.positions) && is_sound_axis(nodes.fractions) && nodes.fractions.size() > 1 &&
            std::ranges::all_of(nodes.ends, [](double end) { return end > 0.0; }) &&
            std::ranges::all_of(nodes.regions, [](const PupilRegion& region) { return is_sound(region); });
 }
@@ -72,14 +72,14 @@ bool is_count(double value) {
 std::string RegionMap::serialized() const {
     std::vector<double> numbers = {kMark,
                                    disc_.radius,
-                                   defensive_share_,
+                                   defensive_fraction_,
                                    nodes_.symmetry == PupilSymmetry::mirror ? 1.0 : 0.0,
                                    static_cast<double>(nodes_.azimuths),
                                    static_cast<double>(nodes_.positions.size()),
-                                   static_cast<double>(nodes_.shares.size())};
+                                   static_cast<double>(nodes_.fractions.size())};
     append(numbers, nodes_.positions);
     append(numbers, nodes_.ends);
-    append(numbers, nodes_.shares);
+    append(numbers, nodes_.fractions);
     for (const PupilRegion& region : nodes_.regions) {
         append_region(numbers, region);
     }
@@ -102,25 +102,25 @@ std::optional<RegionMap> RegionMap::deserialized(std::string_view bytes) {
     PupilNodes nodes{.symmetry = numbers[3] == 1.0 ? PupilSymmetry::mirror : PupilSymmetry::none,
                      .azimuths = static_cast<std::size_t>(numbers[4])};
     const auto positions = static_cast<std::size_t>(numbers[5]);
-    const auto shares = static_cast<std::size_t>(numbers[6]);
+    const auto fractions = static_cast<std::size_t>(numbers[6]);
     const double regions = numbers[4] * numbers[5] * numbers[6];
     if (static_cast<double>(numbers.size()) !=
         kHead + (1.0 + numbers[4]) * numbers[5] + numbers[6] + regions * static_cast<double>(kNumbersPerRegion)) {
         return std::nullopt;
     }
     const Disc disc{.radius = numbers[1]};
-    const double defensive_share = numbers[2];
+    const double defensive_fraction = numbers[2];
     if (!(regions > 0.0)) {
-        return positions + shares == 0 ? std::optional(RegionMap(disc, defensive_share, {})) : std::nullopt;
+        return positions + fractions == 0 ? std::optional(RegionMap(disc, defensive_fraction, {})) : std::nullopt;
     }
     std::span<const double> rest = std::span<const double>(numbers).subspan(kHead);
     nodes.positions = taken(rest, positions);
     nodes.ends = taken(rest, positions * nodes.azimuths);
-    nodes.shares = taken(rest, shares);
+    nodes.fractions = taken(rest, fractions);
     while (!rest.empty()) {
         nodes.regions.push_back(taken_region(rest, nodes.symmetry));
     }
-    return is_sound(nodes) ? std::optional(RegionMap(disc, defensive_share, std::move(nodes))) : std::nullopt;
+    return is_sound(nodes) ? std::optional(RegionMap(disc, defensive_fraction, std::move(nodes))) : std::nullopt;
 }
 
 }  // namespace lensproof::pupil

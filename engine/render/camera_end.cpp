@@ -45,7 +45,7 @@ PathDensity beam_density(const LensEntrance& lens, const pupil::EntranceBeam& be
     const pupil::EntranceBeam far_beam = lens.map->beam(beam.axis.direction);
     const double mm2 = std::isfinite(beam.distance) ? 1.0 / beam.solid_angle_per_mm2(offset) : 1.0;
     return over_heroes(
-        [&](std::size_t i) { return mm2 * lens.map->density(far_beam, band_position(lens, path.index[i]), offset); });
+        [&](std::size_t i) { return mm2 * lens.map->pdf(far_beam, band_position(lens, path.index[i]), offset); });
 }
 
 std::optional<RayIn> draw_in(const LensEntrance& lens, const Origin& from, const spectral::PathWavelengths& path,
@@ -56,7 +56,7 @@ std::optional<RayIn> draw_in(const LensEntrance& lens, const Origin& from, const
     }
     const pupil::EntranceSample drawn =
         lens.map->sample(lens.map->beam(beam->axis.direction), band_position(lens, path.index[0]), u, v);
-    if (!(drawn.density > 0.0)) {
+    if (!(drawn.pdf > 0.0)) {
         return {};
     }
     const Ray<double> ray = beam->ray(drawn.offset);

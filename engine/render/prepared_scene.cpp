@@ -137,7 +137,7 @@ const CameraEnd& PreparedScene::camera_end(const Cache& cache) {
             // Drawn over the whole front in a fifth of all cases, since the map is that of far light.
             entrance_map_ = std::make_unique<pupil::EntranceMap>(
                 pupil::kept_entrance_map(cache, traced_->at(), lens_->is_rotationally_symmetric,
-                                         std::numeric_limits<double>::infinity(), {.defensive_share = 0.2}));
+                                         std::numeric_limits<double>::infinity(), {.defensive_fraction = 0.2}));
             end_->entrance = LensEntrance{.lens = traced_.get(),
                                           .pupil = pupil_.get(),
                                           .map = entrance_map_.get(),

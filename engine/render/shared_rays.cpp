@@ -11,7 +11,7 @@ FilmMeeting meet_film(const pupil::PupilMap& pupil, double film_z, double band_p
         return Vec2d{behind.origin.x + along * behind.direction.x, behind.origin.y + along * behind.direction.y};
     };
     const Vec2d film = crossing(film_z);
-    const double density = pupil.density(film, band_position, crossing(pupil.plane_z()));
+    const double density = pupil.pdf(film, band_position, crossing(pupil.plane_z()));
     const double way = (film_z - pupil.plane_z()) / behind.direction.z;
     return {.point = film, .density = density * way * way / (behind.direction.z * behind.direction.z)};
 }

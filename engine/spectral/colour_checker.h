@@ -7,9 +7,6 @@
 
 namespace lensproof::spectral {
 
-inline constexpr int kColourCheckerRows = 4;
-inline constexpr int kColourCheckerColumns = 6;
-
 struct ColourPatch {
     std::string name;  // "dark_skin"
     Spectrum reflectance;

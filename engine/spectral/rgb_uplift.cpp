@@ -209,14 +209,7 @@ RgbUplift kept_rgb_uplift(const Cache& cache) {
     for (std::size_t i = 0; i < colour.abscissa.size(); ++i) {
         append_bytes(key, colour.abscissa[i], colour.xyz_weight[i].x, colour.xyz_weight[i].y, colour.xyz_weight[i].z);
     }
-    if (const std::optional<std::string> bytes = cache.find("rgb-uplift", key)) {
-        if (std::optional<RgbUplift> kept = RgbUplift::deserialized(*bytes)) {
-            return *std::move(kept);
-        }
-    }
-    RgbUplift made;
-    cache.store("rgb-uplift", key, made.serialized());
-    return made;
+    return kept<RgbUplift>(cache, "rgb-uplift", key, [] { return RgbUplift(); });
 }
 
 SigmoidSpectrum fitted_reflectance(const RgbUplift& uplift, const RgbOfReflectance& colour, const Vec3d& rgb) {

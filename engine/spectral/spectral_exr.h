@@ -14,7 +14,6 @@ namespace lensproof::spectral {
 /// What our layers hold. The unit that the layout foresees, "W.m^-2.sr^-1", is radiance; a film holds irradiance, and
 /// our values are per nm, so the text says what they are. The authors' own library does not interpret it.
 inline constexpr const char* kFilmIrradianceUnits = "W.m^-2.nm^-1";
-inline constexpr const char* kRadianceUnits = "W.m^-2.sr^-1.nm^-1";
 
 /// "S0.550,000000nm": an unpolarised channel at `wavelength_nm`, with a decimal comma as dots separate layers. Six
 /// decimals, as the authors' own library writes.

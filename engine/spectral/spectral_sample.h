@@ -95,7 +95,7 @@ constexpr float mean(const SpectralSample& a) {
 constexpr bool is_black(const SpectralSample& a) {
     return a.value[0] == 0.0F && a.value[1] == 0.0F && a.value[2] == 0.0F && a.value[3] == 0.0F;
 }
-/// The hero's number, and 0 for the others: for light whose way the hero alone can take.
+/// The hero's number, and 0 for the others: for light whose path the hero alone can take.
 constexpr SpectralSample hero_alone(const SpectralSample& a) {
     return SpectralSample({a.value[0], 0.0F, 0.0F, 0.0F});
 }

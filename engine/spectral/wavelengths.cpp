@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <string>
 
 #include "engine/base/input_error.h"
 
@@ -28,18 +27,6 @@ std::span<const SpectralLine> spectral_lines() {
         {"t", kLineT, "Hg"},
     }};
     return kLines;
-}
-
-double line_wavelength_nm(std::string_view name) {
-    std::string known;
-    for (const SpectralLine& line : spectral_lines()) {
-        if (line.name == name) {
-            return line.wavelength_nm;
-        }
-        known += known.empty() ? "" : ", ";
-        known += line.name;
-    }
-    throw InputError(fmt::format("spectral line '{}' is not known: expected one of {}", name, known));
 }
 
 std::vector<double> WavelengthStrata::midpoints() const {

@@ -32,9 +32,6 @@ struct SpectralLine {
 /// All of the lines above, from violet to infrared.
 std::span<const SpectralLine> spectral_lines();
 
-/// The wavelength of the line called `name` ("d", "F'"), nm. Throws InputError listing the names known.
-double line_wavelength_nm(std::string_view name);
-
 /// `count` equal strata that fill [min_nm, max_nm]. A renderer evaluates each at its midpoint, or anywhere inside by
 /// `at`, and weighs each by `width_nm`; at midpoints that sum is exact for a straight line.
 struct WavelengthStrata {
@@ -43,7 +40,7 @@ struct WavelengthStrata {
     int count = 16;
 
     [[nodiscard]] double width_nm() const { return (max_nm - min_nm) / count; }
-    /// The wavelength a fraction u in [0, 1] of the way through stratum `index`.
+    /// The wavelength at the fraction u in [0, 1] of stratum `index`.
     [[nodiscard]] double at(int index, double u) const { return min_nm + (max_nm - min_nm) * ((index + u) / count); }
     [[nodiscard]] double midpoint(int index) const { return at(index, 0.5); }
     /// Every midpoint, ascending.

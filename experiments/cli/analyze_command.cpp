@@ -6,12 +6,12 @@
 #include <cmath>
 #include <limits>
 #include <memory>
-#include <numbers>
 #include <optional>
 
 #include "engine/analysis/best_focus.h"
 #include "engine/analysis/field_curves.h"
 #include "engine/analysis/lens_analysis.h"
+#include "engine/base/angle.h"
 #include "engine/base/file.h"
 #include "engine/base/input_error.h"
 #include "engine/base/text.h"
@@ -98,7 +98,7 @@ optics::Lens prepared_lens(const AnalyzeOptions& options, const optics::Prescrip
 /// ray reaches.
 std::vector<double> usual_fields(const optics::Lens& lens, double wavelength_nm) {
     constexpr double kThousandths = 1000.0;  // a hair inside the last ray that passes, where rounding does not decide
-    const double reached = optics::ChiefRays(lens, wavelength_nm).largest_field() * 180.0 / std::numbers::pi;
+    const double reached = degrees(optics::ChiefRays(lens, wavelength_nm).largest_field());
     const double largest = std::floor(kThousandths * reached) / kThousandths;
     const double stated = lens.stated.half_field_deg.value_or(largest);
     return analysis::even_fields(stated > 0.0 && stated < 180.0 ? stated : largest, 5);

@@ -3,12 +3,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <memory>
 
 #include "calibration/profile/curve_difference.h"
 #include "calibration/profile/profile.h"
 #include "engine/base/cache.h"
+#include "engine/base/infinity.h"
 #include "engine/base/input_error.h"
 #include "engine/base/json.h"
 #include "engine/formats/image/image.h"
@@ -30,7 +30,7 @@ struct CompareOptions {
     double chromatic_limit_px = 0.0;
     double rms_limit = 0.0;
     double f_number = 8.0;
-    double focus_mm = std::numeric_limits<double>::infinity();
+    double focus_mm = kInfinity;
     std::string response = "camera";
 };
 

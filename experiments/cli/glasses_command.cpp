@@ -3,9 +3,9 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <limits>
 #include <memory>
 
+#include "engine/base/infinity.h"
 #include "engine/base/input_error.h"
 #include "engine/base/json.h"
 #include "engine/base/text.h"
@@ -26,15 +26,14 @@ struct GlassesOptions {
 };
 
 double index_where_covered(const optics::Glass& glass, double wavelength_nm) {
-    return optics::covers(glass, wavelength_nm) ? optics::refractive_index(glass.formula, wavelength_nm)
-                                                : std::numeric_limits<double>::quiet_NaN();
+    return optics::covers(glass, wavelength_nm) ? optics::refractive_index(glass.formula, wavelength_nm) : kNaN;
 }
 
 /// V_d where the formula reaches from F to C.
 double abbe_where_covered(const optics::Glass& glass) {
     return optics::covers(glass, spectral::kLineF) && optics::covers(glass, spectral::kLineC)
                ? optics::abbe_number(glass.formula)
-               : std::numeric_limits<double>::quiet_NaN();
+               : kNaN;
 }
 
 Json summary(const optics::Glass& glass) {

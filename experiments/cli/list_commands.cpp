@@ -3,9 +3,9 @@
 
 #include <algorithm>
 #include <memory>
-#include <numbers>
 #include <sstream>
 
+#include "engine/base/angle.h"
 #include "engine/base/json.h"
 #include "engine/formats/prescription/load_lens.h"
 #include "engine/formats/prescription/prescription_file.h"
@@ -32,7 +32,7 @@ Figures figures_of(const optics::Lens& lens) {
     return {.efl_mm = data.efl,
             .bfl_mm = data.bfl,
             .f_number = data.f_number,
-            .half_field_deg = optics::ChiefRays(lens, spectral::kLineD).largest_field() * 180.0 / std::numbers::pi};
+            .half_field_deg = degrees(optics::ChiefRays(lens, spectral::kLineD).largest_field())};
 }
 
 void add_figures(Json& json, const Figures& figures) {

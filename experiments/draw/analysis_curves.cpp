@@ -2,21 +2,19 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
-#include <numbers>
 
 #include "engine/analysis/axial_curves.h"
 #include "engine/analysis/field_curves.h"
 #include "engine/analysis/ray_fan.h"
 #include "engine/analysis/spot.h"
+#include "engine/base/angle.h"
+#include "engine/base/infinity.h"
 
 namespace lensproof::draw {
 
 namespace {
 
-constexpr double kDegree = std::numbers::pi / 180.0;
 constexpr double kMicrometresPerMm = 1000.0;
-constexpr double kNothing = std::numeric_limits<double>::quiet_NaN();
 
 constexpr int kCurveFields = 61;  // of a curve over the field
 constexpr int kFanRays = 41;
@@ -54,8 +52,7 @@ struct FieldBeams {
 };
 
 FieldBeams field_beams(const Colours& colours, double field, double object_distance) {
-    FieldBeams result{.reference = optics::field_bundle(colours.reference.chief_rays, colours.reference.chief_rays,
-                                                        field, object_distance),
+    FieldBeams result{.reference = optics::field_bundle(colours.reference.chief_rays, field, object_distance),
                       .beams = {}};
     for (const analysis::ColourOfLens& colour : colours.all) {
         const auto bundle = result.reference ? optics::same_object(*result.reference, colour.chief_rays) : std::nullopt;
@@ -98,7 +95,7 @@ FieldCurve field_curve(const analysis::ColourOfLens& colour, optics::Projection 
             {.field_deg = point.field_angle / kDegree,
              .tangential_mm = point.foci.tangential,
              .sagittal_mm = point.foci.sagittal,
-             .distortion_percent = point.field_angle > 0.0 ? point.distortion_percent.value_or(kNothing) : kNothing});
+             .distortion_percent = point.field_angle > 0.0 ? point.distortion_percent.value_or(kNaN) : kNaN});
     }
     return curve;
 }

@@ -3,13 +3,12 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
-#include <limits>
+
+#include "engine/base/infinity.h"
 
 namespace lensproof::draw {
 
 namespace {
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 /// The range of what can be shown of a chart along one axis.
 struct Extent {
@@ -256,7 +255,7 @@ bool is_empty(const PlotChart& chart) {
 
 double ResolvedAxis::share(double value) const {
     if (!can_show(scale, value)) {
-        return std::numeric_limits<double>::quiet_NaN();
+        return kNaN;
     }
     return scale == AxisScale::linear ? (value - low) / (high - low) : std::log(value / low) / std::log(high / low);
 }

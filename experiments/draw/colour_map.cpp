@@ -4,7 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
+
+#include "engine/base/angle.h"
+#include "engine/base/bisect.h"
 
 namespace lensproof::draw {
 
@@ -12,7 +14,7 @@ namespace {
 
 /// OKLab's lightness, chroma and hue to linear sRGB (Ottosson 2020).
 Vec3d linear_srgb(double lightness, double chroma, double hue_deg) {
-    const double hue = hue_deg * std::numbers::pi / 180.0;
+    const double hue = radians(hue_deg);
     const double a = chroma * std::cos(hue);
     const double b = chroma * std::sin(hue);
     const auto cube = [](double v) { return v * v * v; };
@@ -33,13 +35,8 @@ Vec3d strongest(double lightness, double most, double hue_deg) {
     if (in_gamut(linear_srgb(lightness, most, hue_deg))) {
         return linear_srgb(lightness, most, hue_deg);
     }
-    double inside = 0.0;
-    double outside = most;
-    for (int i = 0; i < 30; ++i) {
-        const double middle = 0.5 * (inside + outside);
-        (in_gamut(linear_srgb(lightness, middle, hue_deg)) ? inside : outside) = middle;
-    }
-    return linear_srgb(lightness, inside, hue_deg);
+    const auto is_shown = [&](double chroma) { return in_gamut(linear_srgb(lightness, chroma, hue_deg)); };
+    return linear_srgb(lightness, bisected({0.0, most}, 30, is_shown).inside, hue_deg);
 }
 
 int srgb_byte(double linear) {

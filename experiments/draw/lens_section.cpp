@@ -4,8 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
+#include "engine/base/angle.h"
 #include "engine/base/input_error.h"
 #include "engine/optics/paraxial.h"
 #include "experiments/draw/label_row.h"
@@ -18,7 +18,6 @@ namespace {
 constexpr double kMargin = 40.0;  // px
 constexpr double kTextSize = 12.0;
 constexpr double kLeader = 14.0;  // height of a leader's slanted piece
-constexpr double kDegree = std::numbers::pi / 180.0;
 
 /// What is known of the whole lens: computed, with the claim in brackets where there is one.
 std::string summary(const optics::Prescription& prescription, const optics::Lens* lens) {

@@ -7,13 +7,14 @@
 #include <numbers>
 #include <optional>
 
+#include "engine/base/bisect.h"
+#include "engine/base/infinity.h"
 #include "engine/spectral/wavelengths.h"
 
 namespace lensproof::draw {
 
 namespace {
 
-constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 constexpr double kLargest = 1e7;  // mm, as in make_lens
 
 bool is_length(double value) {
@@ -91,7 +92,7 @@ class OwnFrame {
         const double height = optics::sag(shape, t * u_, t * v_);
         // An asphere whose coefficients run away ends where no glass could be.
         constexpr double kSteepest = 4.0;
-        return point(t, std::abs(height) <= kSteepest * surface_.semi_diameter ? height : kUnknown);
+        return point(t, std::abs(height) <= kSteepest * surface_.semi_diameter ? height : kNaN);
     }
 
     [[nodiscard]] SectionPoint across() const { return across_; }
@@ -114,17 +115,9 @@ bool is_finite(SectionPoint point) {
 
 /// The last height at which the surface exists: the semi-diameter, or the equator.
 double drawn_height(const OwnFrame& frame, double semi_diameter) {
-    double reach = semi_diameter;
-    if (!is_finite(frame.at(semi_diameter)) || !is_finite(frame.at(-semi_diameter))) {
-        double beyond = reach;
-        reach = 0.0;
-        constexpr int kHalvings = 40;
-        for (int i = 0; i < kHalvings; ++i) {
-            const double middle = 0.5 * (reach + beyond);
-            (is_finite(frame.at(middle)) && is_finite(frame.at(-middle)) ? reach : beyond) = middle;
-        }
-    }
-    return reach;
+    constexpr int kHalvings = 40;
+    const auto exists = [&](double height) { return is_finite(frame.at(height)) && is_finite(frame.at(-height)); };
+    return exists(semi_diameter) ? semi_diameter : bisected({0.0, semi_diameter}, kHalvings, exists).inside;
 }
 
 SectionLine profile(const OwnFrame& frame, double reach) {
@@ -179,8 +172,8 @@ SectionElement element(const optics::Prescription& prescription, const optics::L
     const optics::PrescribedSurface& row = prescription.surfaces[i];
     SectionElement made;
     made.front = static_cast<int>(i) + 1;
-    made.n_d = row.medium.n_d.value_or(kUnknown);
-    made.V_d = row.medium.V_d.value_or(kUnknown);
+    made.n_d = row.medium.n_d.value_or(kNaN);
+    made.V_d = row.medium.V_d.value_or(kNaN);
     if (lens != nullptr) {
         const optics::Glass& glass = lens->surfaces[i].medium;
         made.n_d = optics::refractive_index(glass.formula, spectral::kLineD);

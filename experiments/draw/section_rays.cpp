@@ -4,8 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
+#include "engine/base/angle.h"
+#include "engine/base/bisect.h"
+#include "engine/base/infinity.h"
 #include "engine/base/input_error.h"
 #include "engine/optics/meridional_bundle.h"
 #include "engine/spectral/wavelengths.h"
@@ -13,8 +15,6 @@
 namespace lensproof::draw {
 
 namespace {
-
-constexpr double kDegree = std::numbers::pi / 180.0;
 
 /// The ray from a wavefront that the chief ray (along `incoming`) crosses at `start`, to the sensor or its block.
 SectionRay drawn_ray(const optics::TraceLens<double>& lens, const Ray<double>& ray, const Vec3d& start,
@@ -45,17 +45,14 @@ double wanted_field(const optics::StatedData& stated, const optics::ChiefRays& c
         return *stated.half_field_deg * kDegree;
     }
     if (!stated.image_circle_mm || !(*stated.image_circle_mm > 0.0)) {
-        return std::numeric_limits<double>::infinity();
+        return kInfinity;
     }
-    double inside = 0.0;
-    double outside = chiefs.largest_field();
     constexpr int kHalvings = 30;
-    for (int i = 0; i < kHalvings; ++i) {
-        const double middle = 0.5 * (inside + outside);
-        const auto chief = chiefs.at_field(middle);
-        (chief && std::abs(chief->image_height) < 0.5 * *stated.image_circle_mm ? inside : outside) = middle;
-    }
-    return outside;
+    const auto is_inside = [&](double field) {
+        const auto chief = chiefs.at_field(field);
+        return chief && std::abs(chief->image_height) < 0.5 * *stated.image_circle_mm;
+    };
+    return bisected({0.0, chiefs.largest_field()}, kHalvings, is_inside).outside;
 }
 
 SectionBundle drawn_bundle(const optics::TraceLens<double>& lens, const optics::MeridionalBundle& bundle, double lead,

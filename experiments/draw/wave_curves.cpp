@@ -2,20 +2,18 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "engine/analysis/field_curves.h"
 #include "engine/analysis/mtf.h"
 #include "engine/analysis/psf.h"
 #include "engine/analysis/wavefront_map.h"
 #include "engine/analysis/zernike.h"
+#include "engine/base/infinity.h"
 #include "engine/base/parallel.h"
 
 namespace lensproof::draw {
 
 namespace {
-
-constexpr double kNothing = std::numeric_limits<double>::quiet_NaN();
 
 constexpr int kMapCells = 64;        // across a wavefront map
 constexpr int kLargestPsf = 2048;    // pixels of a PSF's window
@@ -50,7 +48,7 @@ SquareMap over_pupil(const analysis::WavefrontMap& map, double radius) {
     const int size = map.size + 2 * std::max(std::abs(shift_x), std::abs(shift_y));
     SquareMap shown{.size = static_cast<std::size_t>(size),
                     .half_width = 0.5 * size * map.spacing / radius,
-                    .values = std::vector<double>(static_cast<std::size_t>(size) * size, kNothing)};
+                    .values = std::vector<double>(static_cast<std::size_t>(size) * size, kNaN)};
     const int margin = (size - map.size) / 2;
     for (int row = 0; row < map.size; ++row) {
         for (int column = 0; column < map.size; ++column) {
@@ -75,7 +73,7 @@ FieldWavefront field_wavefront(const analysis::PolychromaticField& field,
     }
     shown.opd_waves = over_pupil(map, radius);
     const analysis::Wavefront waves = analysis::wavefront(part.lens, part.wavelength_nm, field.bundle, field.sphere,
-                                                          analysis::beam_quadrature(part.outline, rings));
+                                                          optics::region_quadrature(part.outline, rings));
     const analysis::WavefrontErrors errors = analysis::wavefront_errors(waves);
     if (waves.rays.size() >= static_cast<std::size_t>(analysis::zernike_count(kZernikeDegree))) {
         const double pupil = analysis::pupil_radius(part.lens, field.bundle, field.sphere, part.outline);
@@ -159,8 +157,8 @@ std::vector<FrequencyMtf> mtf_over_field(const optics::Lens& lens, analysis::Ana
     for (const FieldMtf& field : mtf) {
         for (std::size_t k = 0; k < curves.size(); ++k) {
             const bool is_known = !field.tangential.empty();
-            curves[k].tangential.push_back({field.field_deg, is_known ? field.tangential[k].y : kNothing});
-            curves[k].sagittal.push_back({field.field_deg, is_known ? field.sagittal[k].y : kNothing});
+            curves[k].tangential.push_back({field.field_deg, is_known ? field.tangential[k].y : kNaN});
+            curves[k].sagittal.push_back({field.field_deg, is_known ? field.sagittal[k].y : kNaN});
         }
     }
     return curves;

@@ -4,8 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
+#include "engine/base/infinity.h"
 #include "experiments/draw/chart.h"
 #include "experiments/draw/palette.h"
 
@@ -13,7 +13,6 @@ namespace lensproof::studies {
 
 namespace {
 
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr double kFrameWidth = 380.0;      // of each drawing, of the page
 constexpr std::size_t kFineColumns = 190;  // of the colours
 constexpr const char* kHullColour = "#b5003c";
@@ -75,7 +74,7 @@ draw::HeatMap heat_map(const calibration::Profile& profile, const draw::AxisRang
 
 /// The part of the line x + y = sum (both in units of the frame) inside a convex polygon, by x; none where it misses.
 std::optional<draw::AxisRange> crossing(const std::vector<Vec2d>& polygon, double sum) {
-    draw::AxisRange inside{std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()};
+    draw::AxisRange inside{kInfinity, -kInfinity};
     for (std::size_t i = 0; i < polygon.size(); ++i) {
         const Vec2d a = polygon[i];
         const Vec2d b = polygon[(i + 1) % polygon.size()];
@@ -117,7 +116,7 @@ draw::PlotChart empty_frame(const calibration::Profile& profile, const std::stri
 /// "0.004 px at the best place, at most 0.012 px inside the points' hull (71 % of the frame), 0.3 px in a corner".
 std::string in_words(const calibration::Profile& profile) {
     const calibration::UncertaintyMap& map = *profile.geometry->uncertainty;
-    double best = std::numeric_limits<double>::infinity();
+    double best = kInfinity;
     double covered = 0.0;
     double anywhere = 0.0;
     std::size_t inside = 0;
@@ -169,7 +168,7 @@ std::vector<std::vector<Vec2d>> hatching_outside(const std::vector<Vec2d>& polyg
 }
 
 draw::AxisRange certainty_range(const std::vector<const calibration::Profile*>& profiles) {
-    draw::AxisRange range{std::numeric_limits<double>::infinity(), 0.0};
+    draw::AxisRange range{kInfinity, 0.0};
     for (const calibration::Profile* profile : profiles) {
         if (!profile->geometry || !profile->geometry->uncertainty) {
             continue;

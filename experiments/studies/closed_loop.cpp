@@ -2,9 +2,8 @@
 
 #include <fmt/format.h>
 
-#include <limits>
-
 #include "calibration/profile/curve_difference.h"
+#include "engine/base/infinity.h"
 
 namespace lensproof::studies {
 
@@ -26,7 +25,7 @@ runner::Check make_check(const Quantity& quantity, const calibration::Profile& m
         check.floor = quantity.scale * (quantity.use_rms ? floor->rms : floor->largest);
     }
     if (!difference) {
-        check.value = std::numeric_limits<double>::quiet_NaN();
+        check.value = kNaN;
         check.explanation = "The curve was not measured.";
         return check;
     }

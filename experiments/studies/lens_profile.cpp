@@ -5,6 +5,7 @@
 #include <numbers>
 #include <string>
 
+#include "engine/base/angle.h"
 #include "engine/base/parallel.h"
 #include "engine/optics/chief_ray.h"
 #include "engine/optics/illumination.h"
@@ -15,7 +16,6 @@ namespace {
 
 constexpr std::array<const char*, 3> kChannels = {"R", "G", "B"};
 constexpr int kGreen = 1;
-constexpr double kDegree = std::numbers::pi / 180.0;
 
 // Linear interpolation between 400 field angles errs by h″ Δθ² / 8: below 0.1 µm for a 100 mm lens with a field of 25°.
 constexpr int kFieldAngles = 400;

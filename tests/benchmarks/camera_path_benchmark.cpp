@@ -138,7 +138,7 @@ void time_one_by_one(benchmark::State& state, const Setting& setting, Consumer c
                 const optics::TraceLens<double>& lens = scene.lens<double>().at(wavelength);
                 const Vec2d at = scene.sensor().position(pixel % 40 - 0.5 + xi[0], row - 0.5 + xi[1]);
                 const pupil::PupilSample in_pupil = pupil.sample(at, wavelength / 63.0, xi[2], xi[3]);
-                if (!(in_pupil.density > 0.0)) {
+                if (!(in_pupil.pdf > 0.0)) {
                     continue;
                 }
                 ++started;
@@ -150,7 +150,7 @@ void time_one_by_one(benchmark::State& state, const Setting& setting, Consumer c
                 if (traced.status == optics::RayStatus::ok) {
                     ++valid;
                     const double weight =
-                        traced.transmittance * ray.direction.z * ray.direction.z / (distance2 * in_pupil.density);
+                        traced.transmittance * ray.direction.z * ray.direction.z / (distance2 * in_pupil.pdf);
                     benchmark::DoNotOptimize(consumer == Consumer::chart ? weight * scene.look_up(traced.ray) : weight);
                 }
             }

@@ -4,11 +4,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <vector>
 
 #include "calibration/detection/detect.h"
 #include "calibration/detection/refine.h"
+#include "engine/base/angle.h"
 #include "tests/calibration/synthetic.h"
 
 namespace lensproof::calibration::synthetic {
@@ -61,7 +61,6 @@ inline void blur(formats::Image& image, double sigma_px) {
 }
 
 inline Taken take(const scene::Chart& chart, const CameraModel& camera, const Shot& shot) {
-    constexpr double kDegree = std::numbers::pi / 180.0;
     const double tilt = shot.tilt_deg * kDegree;
     const Pose pose{{0.7 * tilt, -0.6 * tilt, shot.roll_deg * kDegree},
                     {shot.aside_mm.x, shot.aside_mm.y, shot.distance_mm}};

@@ -12,6 +12,7 @@
 #include <set>
 
 #include "engine/base/file.h"
+#include "engine/base/infinity.h"
 #include "engine/formats/glass/shipped_glasses.h"
 #include "engine/formats/prescription/prescription_file.h"
 #include "engine/optics/lens.h"
@@ -72,7 +73,7 @@ double furthest_apart(const optics::Lens& a, const optics::Lens& b, double wavel
         const Path path_a = path_of(trace_a, ray);
         const Path path_b = path_of(trace_b, ray);
         if (path_a.states != path_b.states || path_a.points.size() != path_b.points.size()) {
-            return std::numeric_limits<double>::infinity();
+            return kInfinity;
         }
         for (std::size_t i = 0; i < path_a.points.size(); ++i) {
             const Vec3d apart = path_a.points[i] - path_b.points[i];
@@ -151,7 +152,7 @@ optics::Prescription plain() {
     lens.name = "plain";
     lens.source = "made for this test";
     lens.file = "plain.toml";
-    optics::PrescribedSurface stop = surface(std::numeric_limits<double>::infinity(), 4.3, 1.0, 6.0);
+    optics::PrescribedSurface stop = surface(kInfinity, 4.3, 1.0, 6.0);
     stop.is_stop = true;
     lens.surfaces = {stop, surface(61.3 / 3.0, 5.1, 1.5168, 9.0), surface(-44.4, 1.7, 1.6727, 9.0),
                      surface(-129.7, 57.9, 1.0, 9.0)};
@@ -269,7 +270,7 @@ TEST_F(Conversion, WarnsOfWhatTablesCannotSay) {
 
 TEST_F(Conversion, WarnsOfAPlaneThatPbrtTakesForTheStop) {
     optics::Prescription lens = plain();
-    lens.surfaces[3].radius_mm = std::numeric_limits<double>::infinity();
+    lens.surfaces[3].radius_mm = kInfinity;
     expect_form_keeps(lens, ".csv", {});
     expect_form_keeps(lens, ".dat", {"lost-flat"});
     // What is written in its place departs from the plane by h² / 2R, 0.4 µm at the rim of 9 mm and R = 10⁵ mm.

@@ -9,6 +9,7 @@
 #include <numbers>
 #include <random>
 
+#include "engine/base/infinity.h"
 #include "engine/formats/prescription/load_lens.h"
 #include "engine/optics/chief_ray.h"
 #include "engine/optics/field_bundle.h"
@@ -130,8 +131,7 @@ double conditioning_um(const Setting& setting, const Pencil& pencil, Vec2d p, Ra
     double largest = 0.0;
     for (int draw = 0; draw < kDraws; ++draw) {
         const Arrival moved = arrival(jitter(setting.in_double), jitter(ray), pencil.direction);
-        const double mm = moved.fate == true_arrival.fate ? length(moved.point - true_arrival.point)
-                                                          : std::numeric_limits<double>::infinity();
+        const double mm = moved.fate == true_arrival.fate ? length(moved.point - true_arrival.point) : kInfinity;
         largest = std::max(largest, 1e3 * mm);
     }
     return largest;
@@ -139,7 +139,7 @@ double conditioning_um(const Setting& setting, const Pencil& pencil, Vec2d p, Ra
 
 /// How far from the rim of `surface` the ray meets it in double, whatever rims it passed before, µm.
 double from_rim_um(const Setting& setting, const Pencil& pencil, Vec2d p, int surface) {
-    double mm = std::numeric_limits<double>::infinity();
+    double mm = kInfinity;
     const auto look = [&](const optics::SurfaceEvent<double>& event) {
         if (event.surface == surface && event.status != optics::RayStatus::missed) {
             mm = std::abs(std::hypot(event.ray.origin.x, event.ray.origin.y) -

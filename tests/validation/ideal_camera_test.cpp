@@ -5,8 +5,8 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <numbers>
 
+#include "engine/base/angle.h"
 #include "engine/formats/prescription/load_lens.h"
 #include "engine/optics/focus.h"
 #include "engine/optics/illumination.h"
@@ -15,8 +15,6 @@
 
 namespace lensproof {
 namespace {
-
-constexpr double kPi = std::numbers::pi;
 
 struct Drawn {
     double irradiance = 0.0;  // in a world of radiance 1

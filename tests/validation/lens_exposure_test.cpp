@@ -6,9 +6,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numbers>
 
 #include "engine/analysis/lens_analysis.h"
+#include "engine/base/angle.h"
 #include "engine/base/input_error.h"
 #include "engine/formats/prescription/load_lens.h"
 #include "engine/optics/chief_ray.h"
@@ -20,7 +20,6 @@
 namespace lensproof {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
 constexpr int kSeeds = 8;
 constexpr double kLuminance = 1000.0;
 const std::vector<double> kWavelengths{456.25, 518.75, 581.25, 643.75};  // the middles of four layers over 425 … 675 nm
@@ -124,7 +123,7 @@ double field_deg_of(const optics::ChiefRays& chiefs, double height) {
         height_before = reached;
         object = next;
     }
-    return chiefs.from_point(-object, -2000.0).value().field_angle * 180.0 / kPi;
+    return degrees(chiefs.from_point(-object, -2000.0).value().field_angle);
 }
 
 // A matt plane across the axis that an even sky lights has the radiance ρ L, the same in every direction. Its image
@@ -154,7 +153,7 @@ TEST(LensExposure, MattPlaneFallsOffAsAnalyzeSays) {
         const double ratio = found[i][2].value / found[0][2].value;
         const double error =
             ratio * std::hypot(found[i][2].error / found[i][2].value, found[0][2].error / found[0][2].value);
-        const double cos = std::cos(field * kPi / 180.0);
+        const double cos = std::cos(radians(field));
         fmt::print("{:.1f} mm, {:.2f}°: {:.4f} ± {:.4f} of the axis, by analyze {:.4f}; cos⁴ {:.4f}\n", height, field,
                    ratio, error, expected, std::pow(cos, 4));
         expect_measured({ratio, error}, expected, 1e-4);

@@ -4,9 +4,9 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <numbers>
 #include <set>
 
+#include "engine/base/angle.h"
 #include "engine/formats/prescription/load_lens.h"
 #include "engine/formats/prescription/prescription_file.h"
 #include "engine/optics/chief_ray.h"
@@ -17,8 +17,6 @@
 
 namespace lensproof {
 namespace {
-
-constexpr double kDegree = std::numbers::pi / 180.0;
 
 /// A shipped lens at one setting: a zoom lens is several.
 struct Setting {

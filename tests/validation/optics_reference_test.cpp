@@ -7,10 +7,10 @@
 #include <cmath>
 #include <fstream>
 #include <nlohmann/json.hpp>
-#include <numbers>
 
 #include "engine/analysis/seidel.h"
 #include "engine/analysis/working_f_number.h"
+#include "engine/base/angle.h"
 #include "engine/base/file.h"
 #include "engine/formats/prescription/load_lens.h"
 #include "engine/optics/chief_ray.h"
@@ -20,8 +20,6 @@
 
 namespace lensproof {
 namespace {
-
-constexpr double kDegree = std::numbers::pi / 180.0;
 
 class OpticsReference : public testing::TestWithParam<const char*> {
   protected:

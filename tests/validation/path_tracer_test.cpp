@@ -5,15 +5,13 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <numbers>
 #include <vector>
 
+#include "engine/base/angle.h"
 #include "tests/validation/small_scene.h"
 
 namespace lensproof {
 namespace {
-
-constexpr double kPi = std::numbers::pi;
 
 const spectral::SpectralGrid kGrid = spectral::spectral_grid(400.0, 700.0, 8);
 
@@ -100,7 +98,7 @@ TEST(PathTracer, PointSpotAndSunKeepTheirLaws) {
     EXPECT_EQ(lit_by(scene::SpotLight{above, {1.0, 0.0, 0.0}, 0.99, 0.9, spectral::constant_spectrum(2.0, kGrid)}),
               0.0);
     // The mean cosine over a disc of 0.265° differs from its centre's by less than its radius squared.
-    const double cos_radius = std::cos(0.265 * kPi / 180.0);
+    const double cos_radius = std::cos(radians(0.265));
     const double of_sun = 0.5 / kPi * 1e4 * 2.0 * kPi * (1.0 - cos_radius) * 0.6;
     EXPECT_NEAR(lit_by(scene::SunLight{normalized(above), cos_radius, spectral::constant_spectrum(1e4, kGrid)}), of_sun,
                 3e-5 * of_sun);
@@ -163,7 +161,7 @@ double prism_exit_angle(double index, double apex) {
 // squeeze of n² at the first being undone at the second. Faces choose at random between mirror and window, so the mean
 // of n walks has the error √(T (1 − T) / n).
 TEST(PathTracer, PrismSendsEachWavelengthWhereSnellSays) {
-    constexpr double kApex = 30.0 * kPi / 180.0;
+    constexpr double kApex = radians(30.0);
     constexpr double kScreen = 1000.0;  // from the prism
     // Cauchy's formula with numbers like those of a dense flint.
     const auto index_at = [](double nm) { return 1.70 + 13000.0 / (nm * nm); };

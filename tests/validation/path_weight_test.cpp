@@ -5,8 +5,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
+#include "engine/base/infinity.h"
 #include "tests/validation/studio.h"
 
 namespace lensproof {
@@ -33,7 +33,7 @@ struct Path {
 };
 
 std::optional<scene::SurfaceHit> hit_along(const scene::Scene& scene, const Vec3d& origin, const Vec3d& direction) {
-    return scene::intersect(*scene.geometry, origin, direction, 0.0, std::numeric_limits<double>::infinity());
+    return scene::intersect(*scene.geometry, origin, direction, 0.0, kInfinity);
 }
 
 /// Of so many points: from the middle of the scene a ray to a first point that is joined to the camera, and on at

@@ -9,6 +9,7 @@
 #include <map>
 #include <set>
 
+#include "engine/base/infinity.h"
 #include "engine/check/checked_lens.h"
 #include "engine/check/sag.h"
 #include "engine/formats/glass/shipped_glasses.h"
@@ -122,7 +123,7 @@ class Corruptor {
         }
         set("radius: in inches or cm", radius / 25.4);
         set("radius: in inches or cm", radius / 10.0);
-        set("not a number", std::numeric_limits<double>::quiet_NaN());
+        set("not a number", kNaN);
     }
 
     void corrupt_thickness(int i) {
@@ -141,7 +142,7 @@ class Corruptor {
         set("thickness: negative", -thickness);
         set("thickness: in inches or cm", thickness / 25.4);
         set("thickness: in inches or cm", thickness / 10.0);
-        set("not a number", std::numeric_limits<double>::quiet_NaN());
+        set("not a number", kNaN);
         if (i + 1 == size() || !row(i).semi_diameter_mm || !row(i + 1).semi_diameter_mm || row(i).is_stop ||
             row(i + 1).is_stop) {
             return;

@@ -9,6 +9,7 @@
 
 #include "engine/analysis/lens_analysis.h"
 #include "engine/analysis/spot.h"
+#include "engine/base/angle.h"
 #include "engine/formats/prescription/load_lens.h"
 #include "engine/optics/focus.h"
 #include "tests/validation/rendered_scene.h"
@@ -162,7 +163,7 @@ TEST(PointImage, LateralColourIsWhereAnalyzePutsIt) {
     for (const int dot : {4, 5}) {
         const auto chief = reference.from_point(-dot * row.pitch_mm, -row.distance_mm);
         ASSERT_TRUE(chief.has_value());
-        settings.fields_deg.push_back(chief->field_angle * 180.0 / std::numbers::pi);
+        settings.fields_deg.push_back(degrees(chief->field_angle));
     }
     const analysis::LensAnalysis analysis = analysis::analyze_lens(lens, settings);
     const double pitch = row.sensor.pixel_pitch_mm;

@@ -7,10 +7,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
-#include <numbers>
 
+#include "engine/base/angle.h"
 #include "engine/base/file.h"
+#include "engine/base/infinity.h"
 #include "engine/formats/prescription/load_lens.h"
 #include "engine/formats/prescription/prescription_file.h"
 #include "engine/optics/focus.h"
@@ -23,10 +23,8 @@
 namespace lensproof {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr int kRings = 8;
 constexpr int kWavelengths = 16;  // the centres of as many strata from 400 to 700 nm
-constexpr double kPi = std::numbers::pi;
 
 struct Setting {
     std::string lens;
@@ -182,11 +180,11 @@ class RingIrradiance {
             const auto& [along, unused, u, v, also_unused] = numbers_;
             const Vec2d at = in_ring(lens_->circle_mm, ring_, along[i], 0.0);
             const pupil::PupilSample sample = map.sample(at, position(wavelength_), u[i], v[i]);
-            if (sample.density > 0.0) {
+            if (sample.pdf > 0.0) {
                 const Vec3d from{at.x, at.y, lens_->band[wavelength_].image_z};
                 const Vec3d way = Vec3d{sample.point.x, sample.point.y, map.plane_z()} - from;
                 const double squared = dot(way, way);
-                weights_[static_cast<std::size_t>(rays_.size)] = way.z * way.z / (squared * squared * sample.density);
+                weights_[static_cast<std::size_t>(rays_.size)] = way.z * way.z / (squared * squared * sample.pdf);
                 rays_.set(rays_.size++, {from, normalized(way)});
             }
         }
@@ -257,8 +255,8 @@ Passage passage(const Mapped& lens) {
                 return film_irradiance(traced, at, point, lens.map.plane_z()) > 0.0 ? 1 : 0;
             };
             const pupil::PupilSample sample = lens.map.sample(at, position(wavelength), xi[2], xi[3]);
-            started += sample.density > 0.0 ? 1 : 0;
-            passed += sample.density > 0.0 ? passes(sample.point) : 0;
+            started += sample.pdf > 0.0 ? 1 : 0;
+            passed += sample.pdf > 0.0 ? passes(sample.point) : 0;
             passed_whole += passes(lens.whole.sample(at, position(wavelength), xi[2], xi[3]).point);
         }
         const double area = (2.0 * ring + 1.0) / (kRings * kRings);
@@ -303,7 +301,7 @@ double missed_share(const Mapped& lens) {
             const Vec2d p{lower.x + (1.125 * eta[2] - 0.0625) * size.x, lower.y + (1.125 * eta[3] - 0.0625) * size.y};
             if (film_irradiance(lens.band[wavelength], at, p, lens.map.plane_z()) > 0.0) {
                 lit += 1.0;
-                missed += lens.map.density(at, position(wavelength), p) < 0.5 / area ? 1.0 : 0.0;
+                missed += lens.map.pdf(at, position(wavelength), p) < 0.5 / area ? 1.0 : 0.0;
             }
         }
     }
@@ -368,9 +366,9 @@ TEST(PupilMap, AgreesWithQuadrature) {
                 for (std::uint32_t i = 0; i < kPoints; ++i) {
                     const auto xi = sampler.point(i);
                     const pupil::PupilSample sample = lens.map.sample(at, position(wavelength), xi[2], xi[3]);
-                    if (sample.density > 0.0) {
-                        sum += film_irradiance(lens.band[wavelength], at, sample.point, lens.map.plane_z()) /
-                               sample.density;
+                    if (sample.pdf > 0.0) {
+                        sum +=
+                            film_irradiance(lens.band[wavelength], at, sample.point, lens.map.plane_z()) / sample.pdf;
                     }
                 }
                 EXPECT_NEAR(sum / kPoints / optics::image_bundle(lens.band[wavelength], at.y).transmitted, 1.0, 5e-4)

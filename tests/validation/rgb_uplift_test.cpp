@@ -4,10 +4,10 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <limits>
 #include <random>
 
 #include "engine/base/file.h"
+#include "engine/base/infinity.h"
 #include "engine/spectral/colour_matching.h"
 #include "engine/spectral/illuminant.h"
 #include "engine/spectral/sensor_response.h"
@@ -98,9 +98,8 @@ void lights_keep_their_colour() {
         EXPECT_NEAR(back.y, rgb.y, 0.03 * largest);
         EXPECT_NEAR(back.z, rgb.z, 0.03 * largest);
     }
-    EXPECT_EQ(spectral::uplifted_light(uplift(), {0.0, -1.0, std::numeric_limits<double>::quiet_NaN()}).scale, 0.0);
-    const spectral::UpliftedLight endless =
-        spectral::uplifted_light(uplift(), {std::numeric_limits<double>::infinity(), 0.0, 0.0});
+    EXPECT_EQ(spectral::uplifted_light(uplift(), {0.0, -1.0, kNaN}).scale, 0.0);
+    const spectral::UpliftedLight endless = spectral::uplifted_light(uplift(), {kInfinity, 0.0, 0.0});
     EXPECT_TRUE(std::isfinite(endless.scale));
 }
 
@@ -129,8 +128,6 @@ void greys_are_constant() {
 // nearest colour inside. The corners' colours come back within 0.05 of ΔE*ab: 1 − kBrightest is 0.005 of it, the rest
 // sums in steps of 5 nm, for theirs are the steepest spectra.
 void corners_are_reflectances() {
-    constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-    constexpr double kInfinity = std::numeric_limits<double>::infinity();
     for (const double r : {0.0, 1.0, -0.5, 3.0, kNaN, kInfinity, 1e-300}) {
         for (const double g : {0.0, 1.0, -kInfinity, kNaN}) {
             for (const double b : {0.0, 1.0, 1e-7}) {

@@ -5,12 +5,12 @@
 
 #include <cmath>
 #include <cstdint>
-#include <limits>
 #include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "engine/base/infinity.h"
 #include "engine/formats/prescription/load_lens.h"
 #include "engine/optics/focus.h"
 #include "engine/optics/lens.h"
@@ -46,8 +46,7 @@ class Studio {
             traced_.emplace(optics::at_wavelengths<double>(lens_, setup_.grid.strata.midpoints()));
             pupil_.emplace(traced_->at(), true, setup_.sensor.half_diagonal_mm(setup_.filter.radius_px() - 0.5));
             slices_ = std::make_unique<pupil::PupilSlices>(*pupil_, setup_.grid.size());
-            map_.emplace(traced_->at(), true, std::numeric_limits<double>::infinity(),
-                         pupil::PupilMapSettings{.defensive_share = 0.2});
+            map_.emplace(traced_->at(), true, kInfinity, pupil::PupilMapSettings{.defensive_fraction = 0.2});
             camera_ = render::ExactCamera{&*traced_, slices_.get()};
             end_.entrance = render::LensEntrance{
                 .lens = &*traced_, .pupil = &*pupil_, .map = &*map_, .front = pupil::front_sphere(traced_->at(0))};

@@ -1,19 +1,12 @@
 #include "engine/optics/packet/simd_level.h"
 
+#include <array>
+
 namespace lensproof::optics {
 
 const char* simd_name(SimdLevel level) {
-    switch (level) {
-        case SimdLevel::scalar:
-            return "scalar";
-        case SimdLevel::baseline:
-            return "baseline";
-        case SimdLevel::avx2:
-            return "avx2";
-        case SimdLevel::avx512:
-            return "avx512";
-    }
-    return "unknown";
+    constexpr std::array kNames = {"scalar", "baseline", "avx2", "avx512"};
+    return kNames[static_cast<std::size_t>(level)];
 }
 
 std::vector<SimdLevel> available_simd_levels() {

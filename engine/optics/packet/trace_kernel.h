@@ -14,9 +14,9 @@
 
 namespace lensproof::optics {
 
-/// A block of rays on its way through a lens. It walks surface by surface, each surface packet by packet: the packets
+/// A block of rays through a lens. It walks surface by surface, each surface packet by packet: the packets
 /// are independent of each other, so that the processor works at several at once while one waits for its root.
-template <class Scalar, class Abi, Direction direction, Carry carry>
+template <class Scalar, class Abi, Direction sense, Carry carry>
 class BlockTracer {
   public:
     static constexpr int kBlock = 128;  // rays; their columns stay in the first-level cache
@@ -46,11 +46,11 @@ class BlockTracer {
     using Numbers = Pack<Scalar, Abi>;
     using Mask = PackMask<Scalar, Abi>;
     static constexpr int kLanes = Numbers::kLanes;
-    static constexpr bool kForward = direction == Direction::forward;
+    static constexpr bool kForward = sense == Direction::forward;
 
     struct State {
         Vec3<Numbers> origin;  // z from the last vertex passed
-        Vec3<Numbers> way;
+        Vec3<Numbers> direction;
     };
 
     /// A surface's numbers for a packet of rays.
@@ -81,9 +81,9 @@ class BlockTracer {
         state.origin.x.store(x_.data() + i);
         state.origin.y.store(y_.data() + i);
         state.origin.z.store(z_.data() + i);
-        state.way.x.store(dx_.data() + i);
-        state.way.y.store(dy_.data() + i);
-        state.way.z.store(dz_.data() + i);
+        state.direction.x.store(dx_.data() + i);
+        state.direction.y.store(dy_.data() + i);
+        state.direction.z.store(dz_.data() + i);
     }
 
     void start(int packet, int count) {
@@ -91,7 +91,7 @@ class BlockTracer {
         store(packet, {{Numbers::load(rays_.x + i), Numbers::load(rays_.y + i), Numbers::load(rays_.z + i)},
                        {Numbers::load(rays_.dx + i), Numbers::load(rays_.dy + i), Numbers::load(rays_.dz + i)}});
         set_going(packet, is_ray(packet, count));
-        Numbers(Scalar(1)).store(share_.data() + packet * kLanes);
+        Numbers(Scalar(1)).store(transmittance_.data() + packet * kLanes);
         Numbers(Scalar(0)).store(path_.data() + packet * kLanes);
     }
 
@@ -107,11 +107,11 @@ class BlockTracer {
         put(state.origin.x, rays_.x);
         put(state.origin.y, rays_.y);
         put(state.origin.z, rays_.z);
-        put(state.way.x, rays_.dx);
-        put(state.way.y, rays_.dy);
-        put(state.way.z, rays_.dz);
+        put(state.direction.x, rays_.dx);
+        put(state.direction.y, rays_.dy);
+        put(state.direction.z, rays_.dz);
         if constexpr (carry != Carry::geometry) {
-            put(Numbers::load(share_.data() + packet * kLanes), rays_.transmittance);
+            put(Numbers::load(transmittance_.data() + packet * kLanes), rays_.transmittance);
         }
         if constexpr (carry == Carry::all) {
             put(Numbers::load(path_.data() + packet * kLanes), rays_.optical_path);
@@ -188,7 +188,7 @@ class BlockTracer {
         }
         const State before = load(packet);
         const Vec3<Numbers> near = moved_near<from_far>(here, before);
-        const Intersection<Numbers> met = intersect_from_near(near, before.way, curvature(here), heading());
+        const Intersection<Numbers> met = intersect_from_near(near, before.direction, curvature(here), heading());
         const Refraction<Numbers> bent = bent_at(here, before, met, media);
         const Mask passes = met.hit && is_inside(here, met) && bent.transmitted;
         if (!all(passes || !going)) {
@@ -199,9 +199,9 @@ class BlockTracer {
         if (all(going)) {
             store(packet, {at_surface, bent.direction});
         } else {
-            store(packet, {select(going, at_surface, before.origin), select(going, bent.direction, before.way)});
+            store(packet, {select(going, at_surface, before.origin), select(going, bent.direction, before.direction)});
         }
-        add_path(packet, media, way_moved<from_far>(here, before) + met.distance, going);
+        add_path(packet, media, distance_moved<from_far>(here, before) + met.distance, going);
         add_loss(packet, fresnel(media, met, bent), going);
     }
 
@@ -214,14 +214,14 @@ class BlockTracer {
 
     /// How far a ray from far off goes before it is met: to its closest approach to the vertex.
     template <bool from_far>
-    static Numbers way_moved(const Here& here, const State& before) {
-        return from_far ? way_to_vertex(from_vertex(here, before), before.way) : Numbers(Scalar(0));
+    static Numbers distance_moved(const Here& here, const State& before) {
+        return from_far ? distance_to_vertex(from_vertex(here, before), before.direction) : Numbers(Scalar(0));
     }
 
     template <bool from_far>
     static Vec3<Numbers> moved_near(const Here& here, const State& before) {
         if constexpr (from_far) {
-            return from_vertex(here, before) + way_moved<from_far>(here, before) * before.way;
+            return from_vertex(here, before) + distance_moved<from_far>(here, before) * before.direction;
         } else {
             return from_vertex(here, before);  // and no copy of it: see going()
         }
@@ -233,7 +233,7 @@ class BlockTracer {
 
     static Refraction<Numbers> bent_at(const Here& here, const State& before, const Intersection<Numbers>& met,
                                        const Media& media) {
-        return refract_at_sphere(before.way, met.point, curvature(here), heading(), met.cos_incidence,
+        return refract_at_sphere(before.direction, met.point, curvature(here), heading(), met.cos_incidence,
                                  met.sin2_incidence, media.ratio);
     }
 
@@ -249,9 +249,9 @@ class BlockTracer {
     /// Takes a surface's loss from the rays in `lanes`, where it is asked for.
     void add_loss(int packet, const Numbers& passing, const Mask& lanes) {
         if constexpr (carry != Carry::geometry) {
-            Scalar* share = share_.data() + packet * kLanes;
-            const Numbers so_far = Numbers::load(share);
-            select(lanes, so_far * passing, so_far).store(share);
+            Scalar* transmittance = transmittance_.data() + packet * kLanes;
+            const Numbers so_far = Numbers::load(transmittance);
+            select(lanes, so_far * passing, so_far).store(transmittance);
         }
     }
 
@@ -261,11 +261,11 @@ class BlockTracer {
         const State before = load(packet);
         const Media media = this->template media<per_lane>(here.index, packet);
         const Vec3<Numbers> near = moved_near<from_far>(here, before);
-        const Intersection<Numbers> met = intersect_from_near(near, before.way, curvature(here), heading());
+        const Intersection<Numbers> met = intersect_from_near(near, before.direction, curvature(here), heading());
         const Refraction<Numbers> bent = bent_at(here, before, met, media);
         const Fate fate =
             settle(here, packet, before, {met.point, bent.direction}, met.hit, !is_inside(here, met), bent.transmitted);
-        add_path(packet, media, way_moved<from_far>(here, before) + met.distance, fate.met);
+        add_path(packet, media, distance_moved<from_far>(here, before) + met.distance, fate.met);
         add_loss(packet, fresnel(media, met, bent), fate.on);
     }
 
@@ -280,26 +280,27 @@ class BlockTracer {
             }
             const State before = load(packet);
             const Media media = this->template media<per_lane>(here.index, packet);
-            const State own{special.to_own(from_vertex(here, before) - vertex), special.to_own(before.way)};
+            const State own{special.to_own(from_vertex(here, before) - vertex), special.to_own(before.direction)};
             Intersection<Numbers> met;
             Refraction<Numbers> bent;
             if (special.has_shape) {
                 Vec3<Numbers> normal;
-                std::tie(met, normal) = intersect(special.shape, own.origin, own.way, heading());
-                bent = refract(own.way, normal, met.cos_incidence, met.sin2_incidence, media.ratio);
+                std::tie(met, normal) = intersect(special.shape, own.origin, own.direction, heading());
+                bent = refract(own.direction, normal, met.cos_incidence, met.sin2_incidence, media.ratio);
             } else {
-                met = intersect(own.origin, own.way, curvature(here), heading());
+                met = intersect(own.origin, own.direction, curvature(here), heading());
                 bent = bent_at(here, own, met, media);
             }
             const Mask beyond = !is_inside(here, met);
-            const Numbers open = open_shares(here, special, met.point, going(packet) && met.hit && !beyond);
+            const Numbers open = mask_transmittances(here, special, met.point, going(packet) && met.hit && !beyond);
             const State after{special.from_own(met.point) + vertex, special.from_own(bent.direction)};
             const Fate fate =
                 settle(here, packet, before, after, met.hit, beyond || !(open > Numbers(Scalar(0))), bent.transmitted);
             add_path(packet, media, met.distance, fate.met);
             if constexpr (carry != Carry::geometry) {
-                const Numbers passing = special.coating.is_bare() ? fresnel(media, met, bent)
-                                                                  : coated_shares(here, packet, met, bent, fate.on);
+                const Numbers passing = special.coating.is_bare()
+                                            ? fresnel(media, met, bent)
+                                            : coated_transmittances(here, packet, met, bent, fate.on);
                 add_loss(packet, passing * open, fate.on);
             }
         }
@@ -310,27 +311,27 @@ class BlockTracer {
     }
 
     /// Of the rays in `lanes`, one by one; 1 for the others.
-    Numbers open_shares(const Here& here, const SpecialSurface<Scalar>& special, const Vec3<Numbers>& point,
-                        const Mask& lanes) const {
+    Numbers mask_transmittances(const Here& here, const SpecialSurface<Scalar>& special, const Vec3<Numbers>& point,
+                                const Mask& lanes) const {
         Numbers open(Scalar(1));
         if (!special.mask.is_full_circle()) {
             for (int lane = 0; lane < kLanes; ++lane) {
                 if (lanes[lane]) {
-                    open.set(lane, lane_open_share(*lens_.lens, here.index, point.x[lane], point.y[lane]));
+                    open.set(lane, lane_mask_transmittance(*lens_.lens, here.index, point.x[lane], point.y[lane]));
                 }
             }
         }
         return open;
     }
 
-    Numbers coated_shares(const Here& here, int packet, const Intersection<Numbers>& met,
-                          const Refraction<Numbers>& bent, const Mask& lanes) const {
+    Numbers coated_transmittances(const Here& here, int packet, const Intersection<Numbers>& met,
+                                  const Refraction<Numbers>& bent, const Mask& lanes) const {
         Numbers passing(Scalar(1));
         for (int lane = 0; lane < kLanes; ++lane) {
             if (lanes[lane]) {
                 const int wavelength = lens_.is_monochromatic ? 0 : rays_.wavelength[at(packet) + lane];
-                passing.set(lane, lane_coated_share(*lens_.lens, wavelength, here.index, kForward,
-                                                    met.cos_incidence[lane], bent.cos_refraction[lane]));
+                passing.set(lane, lane_coated_transmittance(*lens_.lens, wavelength, here.index, kForward,
+                                                            met.cos_incidence[lane], bent.cos_refraction[lane]));
             }
         }
         return passing;
@@ -355,7 +356,7 @@ class BlockTracer {
         Vec3<Numbers> last = select(met, after.origin, before.origin);
         const Numbers global_z = last.z + select(met, Numbers(here.surface.vertex_z), Numbers(last_vertex_z_));
         last.z = select(going && !on, global_z, last.z);
-        store(packet, {last, select(on, after.way, before.way)});
+        store(packet, {last, select(on, after.direction, before.direction)});
         set_going(packet, on);
         return {met, on};
     }
@@ -386,8 +387,8 @@ class BlockTracer {
     alignas(kPacketAlignment) Column dy_;
     alignas(kPacketAlignment) Column dz_;
     alignas(kPacketAlignment) Column path_;
-    alignas(kPacketAlignment) Column share_;
-    alignas(kPacketAlignment) Column going_;  // 1: on its way, 0: ended or no ray
+    alignas(kPacketAlignment) Column transmittance_;
+    alignas(kPacketAlignment) Column going_;  // 1: not ended, 0: ended or no ray
 };
 
 template <class Scalar, class Abi, Direction direction, Carry carry>

@@ -36,12 +36,12 @@ struct KernelRays {
     int size;
 };
 
-/// `open_share` and `coated_share` of one ray. Not inline, so that they are compiled for any machine.
+/// `mask_transmittance` and `coated_transmittance` of one ray. Not inline, so that they are compiled for any machine.
 template <class T>
-T lane_open_share(const SpectralLens<T>& lens, int surface, T x, T y);
+T lane_mask_transmittance(const SpectralLens<T>& lens, int surface, T x, T y);
 template <class T>
-T lane_coated_share(const SpectralLens<T>& lens, int wavelength, int surface, bool forward, T cos_incidence,
-                    T cos_refraction);
+T lane_coated_transmittance(const SpectralLens<T>& lens, int wavelength, int surface, bool forward, T cos_incidence,
+                            T cos_refraction);
 
 template <class T>
 using TraceKernel = void (*)(const KernelLens<T>& lens, const KernelRays<T>& rays, bool clip);

@@ -62,7 +62,7 @@ template <class Abi>
 template <class Abi>
 [[gnu::flatten]] void draw_pupil_points(const pupil::PupilSliceTables& slices, PathStarts& starts) {
     using Numbers = Pack<double, Abi>;
-    const Numbers defensive_share(slices.defensive_share);
+    const Numbers defensive_fraction(slices.defensive_fraction);
     for (int i = 0; i < starts.size; i += Numbers::kLanes) {
         const pupil::PupilSlice<Numbers> slice(
             slices, Numbers::load(starts.wavelength.data() + i),
@@ -71,7 +71,7 @@ template <class Abi>
         const pupil::PupilDraw<Numbers> draw = slice.sample(u, Numbers::load(starts.pupil_v.data() + i));
         draw.point.x.store(starts.pupil_x.data() + i);
         draw.point.y.store(starts.pupil_y.data() + i);
-        select(u < defensive_share, Numbers(-1.0), draw.area).store(starts.pupil_area.data() + i);
+        select(u < defensive_fraction, Numbers(-1.0), draw.area).store(starts.pupil_area.data() + i);
     }
 }
 

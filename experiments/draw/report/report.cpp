@@ -3,11 +3,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <optional>
 #include <string_view>
 #include <vector>
 
+#include "engine/base/infinity.h"
 #include "engine/base/markup.h"
 #include "experiments/draw/report/html_text.h"
 
@@ -124,7 +124,6 @@ std::string floor_cell(const Json& check) {
 
 /// `has_floors`: the table has the column.
 std::string check_row(const Json& check, std::size_t place, bool has_floors) {
-    constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
     const double value = as_number(check["value"]).value_or(kNaN);
     const std::string measured = measurement_text(value, as_number(check["sigma"]));
     const std::string why = text(check, "explanation");

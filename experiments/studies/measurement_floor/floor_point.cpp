@@ -4,7 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
+
+#include "engine/base/infinity.h"
 
 namespace lensproof::studies {
 
@@ -15,7 +16,7 @@ FloorPoint rms_point(double value, const std::vector<double>& errors) {
             squares.push_back(error * error);
         }
     }
-    FloorPoint point{.value = value, .error = std::numeric_limits<double>::quiet_NaN(), .sigma = 0.0};
+    FloorPoint point{.value = value, .error = kNaN, .sigma = 0.0};
     point.trials = static_cast<int>(errors.size());
     point.failed = static_cast<int>(errors.size() - squares.size());
     point.found_percent = 100.0 * static_cast<double>(squares.size()) / static_cast<double>(errors.size());
@@ -32,7 +33,7 @@ FloorPoint rms_point(double value, const std::vector<double>& errors) {
         variance += (square - mean) * (square - mean) / std::max(1.0, n - 1.0);
     }
     point.error = std::sqrt(mean);
-    point.sigma = n < 2.0             ? std::numeric_limits<double>::quiet_NaN()  // one number does not scatter
+    point.sigma = n < 2.0             ? kNaN  // one number does not scatter
                   : point.error > 0.0 ? std::sqrt(variance / n) / (2.0 * point.error)
                                       : 0.0;
     return point;

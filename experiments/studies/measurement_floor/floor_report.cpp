@@ -6,6 +6,7 @@
 #include <cmath>
 #include <iterator>
 
+#include "engine/base/infinity.h"
 #include "engine/base/json.h"
 #include "experiments/draw/chart.h"
 #include "experiments/draw/palette.h"
@@ -87,7 +88,7 @@ Json sweep_json(const FloorSweep& sweep) {
 
 /// A curve in words: "0.004 … 0.03 px; fewest found: 87 % at 4 %".
 std::string in_words(const FloorSweep& sweep, const FloorCurve& curve) {
-    double least = std::numeric_limits<double>::infinity();
+    double least = kInfinity;
     double most = 0.0;
     const FloorPoint* fewest = nullptr;
     for (const FloorPoint& point : curve.points) {

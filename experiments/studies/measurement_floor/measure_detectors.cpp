@@ -3,12 +3,12 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
-#include <limits>
 
 #include "calibration/detection/detect.h"
 #include "calibration/detection/refine.h"
 #include "calibration/geometry/fit_geometry.h"
 #include "calibration/self_test/simulated_chart.h"
+#include "engine/base/infinity.h"
 #include "engine/base/parallel.h"
 #include "engine/scene/aruco.h"
 #include "experiments/studies/measurement_floor/floor_point.h"
@@ -101,9 +101,7 @@ struct Errors {
         squares += other.squares;
         sum = {sum.x + other.sum.x, sum.y + other.sum.y};
     }
-    [[nodiscard]] double rms() const {
-        return found > 0 ? std::sqrt(squares / (2.0 * found)) : std::numeric_limits<double>::quiet_NaN();
-    }
+    [[nodiscard]] double rms() const { return found > 0 ? std::sqrt(squares / (2.0 * found)) : kNaN; }
     /// Of the rms, as if errors were independent and normal.
     [[nodiscard]] double sigma() const { return found > 0 ? rms() / std::sqrt(4.0 * found) : 0.0; }
     [[nodiscard]] double bias() const { return found > 0 ? std::hypot(sum.x, sum.y) / found : 0.0; }

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numbers>
 
 #include "calibration/chromatic/chromatic_shift.h"
 #include "calibration/geometry/fit_geometry.h"
@@ -11,6 +10,7 @@
 #include "calibration/light/light_samples.h"
 #include "calibration/light/vignetting.h"
 #include "calibration/self_test/simulated_chart.h"
+#include "engine/base/angle.h"
 #include "engine/base/input_error.h"
 #include "engine/base/parallel.h"
 #include "experiments/studies/measurement_floor/measure_floor.h"
@@ -23,8 +23,7 @@ namespace {
 constexpr int kWidth = 640;
 constexpr int kHeight = 480;
 constexpr double kHalfDiagonal = 400.0;
-constexpr double kPointNoise_px = 0.02;  // what points are asked to be known to
-constexpr double kDegree = std::numbers::pi / 180.0;
+constexpr double kPointNoise_px = 0.02;                        // what points are asked to be known to
 constexpr std::array<double, 3> kHeights = {0.25, 0.5, 0.75};  // image heights at which curves are judged
 
 calibration::BrownConrady true_camera() {

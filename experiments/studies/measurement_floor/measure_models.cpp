@@ -3,13 +3,13 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <map>
 
 #include "calibration/geometry/cross_validation.h"
 #include "calibration/geometry/fit_geometry.h"
 #include "calibration/geometry/model_choice.h"
 #include "calibration/geometry/projection_uncertainty.h"
+#include "engine/base/infinity.h"
 #include "engine/base/input_error.h"
 #include "engine/base/parallel.h"
 #include "experiments/studies/measurement_floor/floor_point.h"
@@ -173,9 +173,9 @@ double mapping_error(const Trial& trial, const std::vector<calibration::ChartVie
         const calibration::GeometryFit fit = calibration::fit_geometry(views, kWidth, kHeight, {.model = trial.fitted});
         const auto apart = calibration::mapping_difference(
             fit.model, trial.truth, where == Where::covered ? covered_grid(views) : frame_grid());
-        return apart ? apart->rms_px : std::numeric_limits<double>::quiet_NaN();
+        return apart ? apart->rms_px : kNaN;
     } catch (const InputError&) {
-        return std::numeric_limits<double>::quiet_NaN();
+        return kNaN;
     }
 }
 
@@ -186,10 +186,10 @@ double choice_error(const calibration::CameraModel& lens, const std::vector<cali
         const calibration::ChosenGeometry choice = calibration::choose_model(views, kWidth, kHeight, {});
         chosen = calibration::kind_name(choice.fit.model);
         const auto apart = calibration::mapping_difference(choice.fit.model, lens, covered_grid(views));
-        return apart ? apart->rms_px : std::numeric_limits<double>::quiet_NaN();
+        return apart ? apart->rms_px : kNaN;
     } catch (const InputError&) {
         chosen = "none";
-        return std::numeric_limits<double>::quiet_NaN();
+        return kNaN;
     }
 }
 

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <numbers>
 
 #include "calibration/chromatic/chromatic_shift.h"
@@ -15,6 +14,9 @@
 #include "calibration/measure/measure_sharpness.h"
 #include "calibration/profile/curve_difference.h"
 #include "calibration/self_test/simulated_chart.h"
+#include "engine/base/angle.h"
+#include "engine/base/bisect.h"
+#include "engine/base/infinity.h"
 #include "engine/base/input_error.h"
 #include "engine/base/parallel.h"
 #include "experiments/studies/measurement_floor/floor_point.h"
@@ -26,7 +28,6 @@ namespace lensproof::studies {
 
 namespace {
 
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr int kWidth = 640;
 constexpr int kHeight = 480;
 constexpr double kHalfDiagonal = 400.0;
@@ -95,19 +96,13 @@ double vignetting_error_percent(const std::vector<calibration::LightGroup>& grou
 
 /// Where a Gaussian blur and the pixel's box together have fallen to a half, in the direction of an edge's normal.
 double true_mtf50(double blur_px, double normal_deg) {
-    const double angle = normal_deg * std::numbers::pi / 180.0;
+    const double angle = radians(normal_deg);
     const auto box = [](double f) { return f == 0.0 ? 1.0 : std::sin(std::numbers::pi * f) / (std::numbers::pi * f); };
     const auto mtf = [&](double f) {
         return std::exp(-2.0 * std::pow(std::numbers::pi * blur_px * f, 2.0)) * box(f * std::cos(angle)) *
                box(f * std::sin(angle));
     };
-    double low = 0.0;
-    double high = 1.0;
-    for (int i = 0; i < 50; ++i) {
-        const double middle = 0.5 * (low + high);
-        (mtf(middle) > 0.5 ? low : high) = middle;
-    }
-    return low;
+    return bisected({0.0, 1.0}, 50, [&](double f) { return mtf(f) > 0.5; }).inside;
 }
 
 /// Red against green, and the light on the charts' white.

@@ -6,13 +6,9 @@
 #include <cmath>
 #include <numbers>
 
+#include "engine/base/angle.h"
+
 namespace lensproof::studies {
-
-namespace {
-
-constexpr double kDegree = std::numbers::pi / 180.0;
-
-}  // namespace
 
 double normal(std::mt19937& random) {
     const double radius = std::sqrt(-2.0 * std::log(1.0 - uniform(random)));

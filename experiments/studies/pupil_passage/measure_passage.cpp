@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numbers>
 
+#include "engine/base/infinity.h"
 #include "engine/formats/prescription/load_lens.h"
 #include "engine/optics/focus.h"
 #include "engine/optics/illumination.h"
@@ -115,7 +115,7 @@ class PassageMeter {
             const Vec2d film = in_ring(circle_mm_, ring, u[0], u[1]);
             const int wavelength = static_cast<int>(u[4] * kWavelengths);
             const pupil::PupilSample start = map.sample(film, position(wavelength), u[2], u[3]);
-            if (start.density > 0.0) {
+            if (start.pdf > 0.0) {
                 const optics::TraceLens<double>& lens = band_[static_cast<std::size_t>(wavelength)];
                 const Ray<double> ray = path_from(lens, film, start.point, map.plane_z());
                 ++started;
@@ -132,7 +132,7 @@ class PassageMeter {
         const optics::TraceLens<double>& lens = band_[static_cast<std::size_t>(wavelength)];
         const Vec2d film{0.0, height};
         const double radius = map.disc().radius;
-        const auto density = [&](double y) { return map.density(film, position(wavelength), {0.0, y}); };
+        const auto density = [&](double y) { return map.pdf(film, position(wavelength), {0.0, y}); };
         constexpr int kSteps = 2000;
         double largest = 0.0;
         for (int i = 0; i <= kSteps; ++i) {
@@ -161,19 +161,18 @@ class PassageMeter {
 }  // namespace
 
 Passage measure_passage(const runner::PassageSetting& setting, std::uint64_t seed) {
-    Passage passage{
-        .setting = setting,
-        .lens = optics::focused_at(optics::with_f_number(formats::load_lens(setting.lens), setting.f_number),
-                                   std::numeric_limits<double>::infinity()),
-        .whole_element = {},
-        .pupil = {}};
+    Passage passage{.setting = setting,
+                    .lens = optics::focused_at(
+                        optics::with_f_number(formats::load_lens(setting.lens), setting.f_number), kInfinity),
+                    .whole_element = {},
+                    .pupil = {}};
     std::vector<optics::TraceLens<double>> band;
     band.reserve(kWavelengths);
     for (int i = 0; i < kWavelengths; ++i) {
         band.push_back(optics::at_wavelength<double>(passage.lens, 400.0 + 300.0 * (i + 0.5) / kWavelengths));
     }
     const auto& stated = passage.lens.stated.image_circle_mm;
-    passage.circle_mm = last_light(band, stated ? 0.5 * *stated : std::numeric_limits<double>::infinity());
+    passage.circle_mm = last_light(band, stated ? 0.5 * *stated : kInfinity);
     const pupil::PupilMap map(band, passage.lens.is_rotationally_symmetric, passage.circle_mm);
     const PassageMeter meter(band, passage.circle_mm, seed);
     passage.whole_element = meter.measure(pupil::PupilMap::whole_element(band.front(), passage.circle_mm));

@@ -1,14 +1,14 @@
 // experiments/studies/stability/extreme_parts.h — what the extremes are put together from.
 #pragma once
-#include <limits>
 #include <random>
 #include <vector>
 
+#include "engine/base/infinity.h"
 #include "engine/optics/lens.h"
 
 namespace lensproof::studies {
 
-inline constexpr double kFlatRadius = std::numeric_limits<double>::infinity();
+inline constexpr double kFlatRadius = kInfinity;
 
 /// A surface of a prescription; `n` is the index behind it. Lengths in mm.
 struct SurfaceRow {

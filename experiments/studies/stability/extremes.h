@@ -2,11 +2,11 @@
 // breaking.
 #pragma once
 #include <functional>
-#include <limits>
 #include <random>
 #include <string>
 #include <vector>
 
+#include "engine/base/infinity.h"
 #include "engine/optics/trace.h"
 
 namespace lensproof::studies {
@@ -31,8 +31,8 @@ struct Extreme {
     /// Throws InputError where the program refuses such a lens: its message is a part of the result.
     std::function<StabilityCase(double value, std::mt19937_64& random)> build;
     /// What the program has to take; it has to refuse all other values.
-    double least_taken = -std::numeric_limits<double>::infinity();
-    double most_taken = std::numeric_limits<double>::infinity();
+    double least_taken = -kInfinity;
+    double most_taken = kInfinity;
 };
 
 /// Every extreme, in the order of the report.

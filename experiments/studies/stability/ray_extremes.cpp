@@ -2,14 +2,14 @@
 #include <cmath>
 #include <numbers>
 
+#include "engine/base/angle.h"
+#include "engine/base/infinity.h"
 #include "experiments/studies/stability/extreme_parts.h"
 #include "experiments/studies/stability/extremes.h"
 
 namespace lensproof::studies {
 
 namespace {
-
-constexpr double kDegree = std::numbers::pi / 180.0;
 
 optics::TraceLens<double> doublet() {
     return lens_of({{.radius = 60.0, .thickness = 6.0, .n = 1.5, .semi_diameter = 20.0},
@@ -35,7 +35,7 @@ StabilityCase object_case(double distance, double field, std::mt19937_64& random
 
 std::vector<double> object_distances() {
     std::vector<double> values = decades(1e-3, 1e15);
-    values.push_back(std::numeric_limits<double>::infinity());
+    values.push_back(kInfinity);
     return values;
 }
 
@@ -151,8 +151,7 @@ std::vector<Extreme> ray_extremes() {
          "Parallel light through the stop onto a hyperbola, f = 20 mm.",
          "f-number",
          "",
-         {0.5, 0.7, 1.0, 2.0, 4.0, 8.0, 16.0, 32.0, 64.0, 128.0, 256.0, 512.0, 1024.0, 1e9,
-          std::numeric_limits<double>::infinity()},
+         {0.5, 0.7, 1.0, 2.0, 4.0, 8.0, 16.0, 32.0, 64.0, 128.0, 256.0, 512.0, 1024.0, 1e9, kInfinity},
          true,
          stop_case},
         {"rim-outside", "Rays on a rim, and outside by x", "A rim of 5 mm, rays parallel to the axis.", "x", "mm",

@@ -2,14 +2,11 @@
 
 #include <gtest/gtest.h>
 
-#include <numbers>
-
+#include "engine/base/angle.h"
 #include "tests/calibration/synthetic.h"
 
 namespace lensproof::calibration {
 namespace {
-
-constexpr double kDegree = std::numbers::pi / 180.0;
 
 Vec3d direction(double angle, double azimuth) {
     return {std::sin(angle) * std::cos(azimuth), std::sin(angle) * std::sin(azimuth), std::cos(angle)};

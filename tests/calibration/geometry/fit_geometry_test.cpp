@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "calibration/detection/disc_centroid.h"
+#include "engine/base/angle.h"
 #include "engine/base/input_error.h"
 #include "tests/calibration/synthetic.h"
 
@@ -63,7 +64,7 @@ TEST(CalibrationGeometry, ExactViewsGiveBackThePerspectiveCamera) {
 TEST(CalibrationGeometry, ExactViewsGiveBackTheFisheyeBeyond90Degrees) {
     const KannalaBrandt truth = fisheye_camera();
     auto poses = tilted_poses(170.0, 0.3, 40.0);
-    const double side = 80.0 * std::numbers::pi / 180.0;
+    const double side = radians(80.0);
     poses.push_back({{0.0, -side, 0.0}, {200.0 * std::sin(-side) * -1.0, 0.0, 200.0 * std::cos(side)}});
     poses.push_back({{0.0, side, 0.0}, {-200.0 * std::sin(side), 0.0, 200.0 * std::cos(side)}});
     const auto views = views_of(truth, poses);
@@ -74,7 +75,7 @@ TEST(CalibrationGeometry, ExactViewsGiveBackTheFisheyeBeyond90Degrees) {
                 std::max(widest, field_angle_rad(truth, std::hypot(pixel.x - 322.0, pixel.y - 236.0)).value_or(0.0));
         }
     }
-    ASSERT_GT(widest, 95.0 * std::numbers::pi / 180.0);
+    ASSERT_GT(widest, radians(95.0));
     const GeometryFit fit = fit_geometry(views, kWidth, kHeight, options_for(ModelKind::kannala_brandt));
     for (std::size_t i = 0; i < truth.parameters.size(); ++i) {
         EXPECT_NEAR(parameters(fit.model)[i], truth.parameters[i], 1e-6) << KannalaBrandt::names[i];

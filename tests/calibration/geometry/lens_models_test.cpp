@@ -2,16 +2,14 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <numbers>
 #include <opencv2/calib3d.hpp>
 
 #include "calibration/geometry/fit_geometry.h"
+#include "engine/base/angle.h"
 #include "tests/calibration/synthetic.h"
 
 namespace lensproof::calibration {
 namespace {
-
-constexpr double kDegree = std::numbers::pi / 180.0;
 
 CameraModel model_of(const std::string& kind, const std::vector<double>& values) {
     return with_parameters(empty_model(model_kind(kind).value()), values);

@@ -6,11 +6,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numbers>
 
 #include "calibration/geometry/cross_validation.h"
 #include "calibration/geometry/fit_geometry.h"
 #include "calibration/geometry/geometry_curves.h"
+#include "engine/base/angle.h"
 #include "tests/calibration/synthetic.h"
 
 namespace lensproof::calibration {
@@ -81,7 +81,7 @@ TEST(CalibrationUncertainty, StatedIntervalsCoverTheTruth) {
         const Curve curve = field_angle_curve(fit, 300.0);
         for (std::size_t h = 0; h < heights.size(); ++h) {
             const Banded band = sample(curve, heights[h]).value();
-            const double angle = field_angle_rad(study.truth, 300.0 * heights[h]).value() * 180.0 / std::numbers::pi;
+            const double angle = degrees(field_angle_rad(study.truth, 300.0 * heights[h]).value());
             covered[5 + h] += angle > band.lower_95 && angle < band.upper_95 ? 1 : 0;
         }
         mapping2 += std::pow(mapping_difference(study.truth, fit.model, seen).value().rms_px, 2) / trials;

@@ -6,6 +6,7 @@
 
 #include "engine/base/input_error.h"
 #include "tests/calibration/synthetic.h"
+#include "tests/complaint.h"
 
 namespace lensproof::calibration {
 namespace {
@@ -41,12 +42,7 @@ Profile example() {
 }
 
 std::string message_of(const std::string& text) {
-    try {
-        parse_profile(text, "some.json");
-    } catch (const InputError& e) {
-        return e.what();
-    }
-    return "";
+    return complaint_about([&] { parse_profile(text, "some.json"); });
 }
 
 // Shortest decimal that reads back to the same bits: writing, reading and writing again changes no byte.

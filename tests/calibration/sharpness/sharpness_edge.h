@@ -6,6 +6,8 @@
 #include <numbers>
 
 #include "calibration/sharpness/slanted_edge.h"
+#include "engine/base/angle.h"
+#include "engine/base/bisect.h"
 #include "tests/calibration/synthetic.h"
 
 namespace lensproof::calibration::synthetic {
@@ -56,7 +58,7 @@ struct EdgePicture {
 /// Pixels are exact integrals of the blurred edge over their box, by n × n cells of 2 × 2 Gauss-Legendre
 /// points.
 inline formats::Image paint_edge(const EdgePicture& edge, const Blur& blur, int n = 4) {
-    const double a = edge.normal_deg * std::numbers::pi / 180.0;
+    const double a = radians(edge.normal_deg);
     formats::Image image = formats::make_image(edge.width, edge.height, {"Y"});
     for (int y = 0; y < edge.height; ++y) {
         for (int x = 0; x < edge.width; ++x) {
@@ -82,28 +84,23 @@ inline formats::Image paint_edge(const EdgePicture& edge, const Blur& blur, int 
 /// The blur's MTF times that of the pixel's box along the normal.
 inline double true_mtf(const Blur& blur, double normal_deg, double frequency) {
     const auto sinc = [](double x) { return std::abs(x) > 1e-12 ? std::sin(x) / x : 1.0; };
-    const double a = normal_deg * std::numbers::pi / 180.0;
+    const double a = radians(normal_deg);
     const double w = std::numbers::pi * frequency;
     return std::abs(blur.mtf(frequency) * sinc(w * std::cos(a)) * sinc(w * std::sin(a)));
 }
 
 /// Where the true MTF falls to `level`, by bisection on its first descent.
 inline double true_frequency(const Blur& blur, double normal_deg, double level) {
-    double low = 0.0;
+    const auto is_above = [&](double frequency) { return true_mtf(blur, normal_deg, frequency) > level; };
     double high = 0.0;
-    while (true_mtf(blur, normal_deg, high) > level) {
+    while (is_above(high)) {
         high += 1e-3;
     }
-    low = high - 1e-3;
-    for (int i = 0; i < 40; ++i) {
-        const double middle = 0.5 * (low + high);
-        (true_mtf(blur, normal_deg, middle) > level ? low : high) = middle;
-    }
-    return low;
+    return bisected({high - 1e-3, high}, 40, is_above).inside;
 }
 
 inline EdgeRegion region_of(const EdgePicture& edge, double half_length = 32.0, double half_width = 20.0) {
-    const double a = edge.normal_deg * std::numbers::pi / 180.0;
+    const double a = radians(edge.normal_deg);
     return {edge.middle, {-std::sin(a), std::cos(a)}, half_length, half_width};
 }
 

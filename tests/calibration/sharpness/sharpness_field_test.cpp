@@ -4,8 +4,8 @@
 
 #include <cmath>
 #include <functional>
-#include <numbers>
 
+#include "engine/base/angle.h"
 #include "engine/base/input_error.h"
 #include "tests/calibration/synthetic.h"
 
@@ -27,7 +27,7 @@ std::vector<EdgeMtf> edges_of(const Blur2& tangential, const Blur2& sagittal, do
             const double dy = y - kCentre.y;
             const double h = std::hypot(dx, dy) / kHalfDiagonal;
             for (const double normal_deg : {5.0, 95.0, -175.0, -85.0}) {
-                const double phi = normal_deg * std::numbers::pi / 180.0 - std::atan2(dy, dx);
+                const double phi = radians(normal_deg) - std::atan2(dy, dx);
                 const double b = tangential(h) * std::pow(std::cos(phi), 2) + sagittal(h) * std::pow(std::sin(phi), 2);
                 const double f = (1.0 + relative_noise * noise()) / std::sqrt(b);
                 EdgeMtf edge{.centre_px = {static_cast<double>(x), static_cast<double>(y)}, .normal_deg = normal_deg};

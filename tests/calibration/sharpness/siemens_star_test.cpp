@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "calibration/measure/measure.h"
+#include "engine/base/angle.h"
 #include "engine/base/input_error.h"
 #include "tests/calibration/sharpness/sharpness_edge.h"
 
@@ -20,7 +21,7 @@ struct View {
 };
 
 Pose pose_of(const View& view) {
-    const double tilt = view.tilt_deg * std::numbers::pi / 180.0;
+    const double tilt = radians(view.tilt_deg);
     return {{0.7 * tilt, -0.6 * tilt, 0.1}, {20.0, -10.0, view.distance_mm}};
 }
 

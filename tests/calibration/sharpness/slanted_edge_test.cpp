@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include "calibration/sharpness/chart_edges.h"
+#include "engine/base/angle.h"
 #include "tests/calibration/sharpness/sharpness_edge.h"
 
 namespace lensproof::calibration {
@@ -137,7 +138,7 @@ TEST(CalibrationSharpnessEdge, TheRegionNeedNotBeExact) {
     const formats::Image image = paint_edge(edge, blur);
     EdgeRegion region = region_of(edge, 26.0, 18.0);
     region.centre_px.x += 3.0;
-    const double turn = 2.0 * std::numbers::pi / 180.0;
+    const double turn = radians(2.0);
     region.along = {region.along.x * std::cos(turn) - region.along.y * std::sin(turn),
                     region.along.x * std::sin(turn) + region.along.y * std::cos(turn)};
     EXPECT_NEAR(measured(image, region).mtf50->cycles_per_px / true_frequency(blur, 10.0, 0.5), 1.0, 2e-3);

@@ -1,16 +1,16 @@
 // tests/engine/analysis/analysis_lens.h — lenses for the tests of the analysis, in any precision and between any two
 // media.
 #pragma once
-#include <limits>
 #include <vector>
 
+#include "engine/base/infinity.h"
 #include "engine/optics/trace.h"
 
 namespace lensproof::analysis {
 
 /// A row of a lens's table.
 struct Row {
-    double radius = std::numeric_limits<double>::infinity();
+    double radius = kInfinity;
     double thickness = 0.0;
     double index = 1.0;  // behind the surface
     double conic = 0.0;
@@ -43,28 +43,6 @@ optics::TraceLens<T> lens_of(const std::vector<Row>& rows, double index_before =
         lens.image_z += T(row.thickness);
     }
     return lens;
-}
-
-/// The same numbers in another precision, for what the paraxial and the third-order theory ask.
-template <class T>
-optics::TraceLens<T> converted(const optics::TraceLens<double>& lens) {
-    optics::TraceLens<T> made{.surfaces = {}, .image_z = T(lens.image_z)};
-    for (const optics::TraceSurface<double>& from : lens.surfaces) {
-        made.surfaces.push_back(optics::make_trace_surface<T>(T(from.curvature), T(from.vertex_z), T(0),
-                                                              T(from.index_before), T(from.index_after), from.is_stop));
-        made.surfaces.back().semi_diameter_squared = T(from.semi_diameter_squared);
-        made.surfaces.back().special = from.special;
-    }
-    for (const optics::SpecialSurface<double>& from : lens.specials) {
-        optics::SpecialSurface<T> special;
-        special.has_shape = from.has_shape;
-        special.shape = {.curvature = T(from.shape.curvature),
-                         .conic = T(from.shape.conic),
-                         .asphere = {T(from.shape.asphere[0]), T(from.shape.asphere[1])},
-                         .terms = 2};
-        made.specials.push_back(special);
-    }
-    return made;
 }
 
 }  // namespace lensproof::analysis

@@ -5,13 +5,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
-#include <numbers>
+
+#include "engine/base/angle.h"
+#include "engine/base/infinity.h"
 
 namespace lensproof::analysis {
 namespace {
-
-constexpr double kPi = std::numbers::pi;
 
 struct Disc {
     Vec2d centre;
@@ -21,7 +20,7 @@ struct Disc {
 /// What several discs have in common. `sees_margin`: false tells only inside from outside, as a missed surface does.
 optics::Region common_part(std::vector<Disc> discs, bool sees_margin = true) {
     return [discs = std::move(discs), sees_margin](Vec2d at) {
-        optics::RegionSample worst{.margin = -std::numeric_limits<double>::infinity()};
+        optics::RegionSample worst{.margin = -kInfinity};
         for (std::size_t i = 0; i < discs.size(); ++i) {
             const double x = at.x - discs[i].centre.x;
             const double y = at.y - discs[i].centre.y;
@@ -31,7 +30,7 @@ optics::Region common_part(std::vector<Disc> discs, bool sees_margin = true) {
             }
         }
         if (worst.margin > 0.0 && !sees_margin) {
-            worst.margin = std::numeric_limits<double>::infinity();
+            worst.margin = kInfinity;
         }
         return worst;
     };
@@ -106,9 +105,9 @@ TEST(RegionOutline, QuadratureIntegratesPolynomials) {
         optics::region_outline(common_part({{{0.0, 0.5}, 3.0}}), {.start = {}, .reach = 7.0});
     double area = 0.0;
     double second = 0.0;
-    for (const BeamNode& node : beam_quadrature(outline, 2)) {
+    for (const optics::RegionNode& node : optics::region_quadrature(outline, 2)) {
         area += node.weight;
-        second += node.weight * node.offset.y * node.offset.y;
+        second += node.weight * node.point.y * node.point.y;
     }
     EXPECT_NEAR(area / (9.0 * kPi), 1.0, 1e-13);
     EXPECT_NEAR(second / (81.0 * kPi / 4.0 + 9.0 * kPi * 0.25), 1.0, 1e-12);

@@ -4,30 +4,23 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <numbers>
 
 #include "engine/analysis/mtf.h"
 #include "engine/analysis/psf.h"
+#include "engine/base/angle.h"
+#include "engine/base/infinity.h"
 #include "engine/base/input_error.h"
 #include "engine/formats/prescription/load_lens.h"
 #include "engine/optics/focus.h"
 #include "engine/spectral/wavelengths.h"
+#include "tests/engine/analysis/analysis_field.h"
 #include "tests/engine/perfect_lens.h"
 
 namespace lensproof::analysis {
 namespace {
 
-constexpr double kDegree = std::numbers::pi / 180.0;
-
-WeightedField field_of(const optics::Lens& lens, double field_angle,
-                       const std::vector<WeightedWavelength>& wavelengths = {{spectral::kLineD, 1.0}}) {
-    const optics::FieldBundle bundle{
-        .chief = optics::ChiefRays(lens, spectral::kLineD, optics::Rims::follow).at_field(field_angle).value()};
-    return {polychromatic_field(lens, bundle, spectral::kLineD, wavelengths), 1.0};
-}
-
 std::vector<WeightedField> axis_of(const optics::Lens& lens) {
-    return {field_of(lens, 0.0)};
+    return {{field_of(lens, 0.0)}};
 }
 
 /// A slow lens of f/12.5 whose only aberration is an asphere's r⁴, W040 = (n − 1) A4 r⁴; telecentric.
@@ -54,7 +47,7 @@ TEST(BestFocus, OfSphericalAberration) {
         const optics::Lens lens = perfect.lens();
         const double marginal = marginal_crossing(lens, perfect.beam_radius);
         ASSERT_GT(std::abs(marginal), 0.02);
-        const double infinity = std::numeric_limits<double>::infinity();
+        const double infinity = kInfinity;
         EXPECT_NEAR(paraxial_focus_shift(lens, spectral::kLineD, infinity), 0.0, 1e-12);
         EXPECT_NEAR(spot_focus_shift(axis_of(lens)) / marginal, 2.0 / 3.0, 0.01);
         EXPECT_NEAR(wavefront_focus_shift(axis_of(lens)) / marginal, 0.5, 0.01);
@@ -64,7 +57,7 @@ TEST(BestFocus, OfSphericalAberration) {
 // Of a lens without aberration all criteria find the focus.
 TEST(BestFocus, OfAPerfectLensIsItsFocus) {
     const optics::Lens lens = PerfectLens{.stop_distance = 20.0, .defocus = 0.3}.lens();
-    EXPECT_NEAR(paraxial_focus_shift(lens, spectral::kLineD, std::numeric_limits<double>::infinity()), -0.3, 1e-12);
+    EXPECT_NEAR(paraxial_focus_shift(lens, spectral::kLineD, kInfinity), -0.3, 1e-12);
     EXPECT_NEAR(spot_focus_shift(axis_of(lens)), -0.3, 1e-12);
     EXPECT_NEAR(wavefront_focus_shift(axis_of(lens)), -0.3, 1e-11);
     // The maximum is symmetric but for terms of the order sin²U of the depth of focus, 4 λ / sin²U = 0.06 mm.
@@ -77,7 +70,7 @@ TEST(BestFocus, IsTheBestAround) {
     const std::vector<WeightedWavelength> light = {{spectral::kLineF, 1.0}, {spectral::kLineC, 1.0}};
     const auto fields_at = [&](double shift) {
         const optics::Lens moved = with_image_shift(lens, shift);
-        return std::vector<WeightedField>{field_of(moved, 0.0, light), field_of(moved, 10.0 * kDegree, light)};
+        return std::vector<WeightedField>{{field_of(moved, 0.0, light)}, {field_of(moved, 10.0 * kDegree, light)}};
     };
     const std::vector<WeightedField> fields = fields_at(0.0);
 
@@ -88,8 +81,8 @@ TEST(BestFocus, IsTheBestAround) {
             Vec2d mean{};
             double squares = 0.0;
             for (const PolychromaticField::Part& part : weighted.field.parts) {
-                for (const BeamNode& node : beam_quadrature(part.outline, 8)) {
-                    const Vec2d at = image_ray(part, weighted.field, node.offset)->aberration;
+                for (const optics::RegionNode& node : optics::region_quadrature(part.outline, 8)) {
+                    const Vec2d at = image_ray(part, weighted.field, node.point)->aberration;
                     const double weight = part.weight * node.weight / part.outline.area;
                     weights += weight;
                     mean = {mean.x + weight * at.x, mean.y + weight * at.y};
@@ -104,9 +97,10 @@ TEST(BestFocus, IsTheBestAround) {
         double sum = 0.0;
         for (const WeightedField& weighted : fields_at(shift)) {
             for (const PolychromaticField::Part& part : weighted.field.parts) {
-                const double rms = wavefront_errors(wavefront(part.lens, part.wavelength_nm, weighted.field.bundle,
-                                                              weighted.field.sphere, beam_quadrature(part.outline, 8)))
-                                       .rms_without_tilt;
+                const double rms =
+                    wavefront_errors(wavefront(part.lens, part.wavelength_nm, weighted.field.bundle,
+                                               weighted.field.sphere, optics::region_quadrature(part.outline, 8)))
+                        .rms_without_tilt;
                 sum += part.weight * rms * rms;
             }
         }
@@ -135,7 +129,7 @@ TEST(BestFocus, IsTheBestAround) {
 
 // Blurred over many cycles, a field counts by its rays; the answer is still next to where its spot is least.
 TEST(BestFocus, GoesOnWithRaysWherePupilsCannotBeSampled) {
-    const std::vector<WeightedField> fields = {field_of(formats::load_lens("petzval"), 0.0)};
+    const std::vector<WeightedField> fields = {{field_of(formats::load_lens("petzval"), 0.0)}};
     EXPECT_NEAR(mtf_focus_shift(fields, 5.0), spot_focus_shift(fields), 0.5);
 }
 

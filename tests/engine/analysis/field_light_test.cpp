@@ -5,18 +5,16 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include "engine/analysis/distortion.h"
 #include "engine/analysis/field_curves.h"
+#include "engine/base/angle.h"
 #include "engine/formats/prescription/load_lens.h"
 #include "engine/optics/illumination.h"
 #include "engine/spectral/wavelengths.h"
 
 namespace lensproof::analysis {
 namespace {
-
-constexpr double kPi = std::numbers::pi;
 
 optics::Lens made_of(std::vector<optics::PrescribedSurface> surfaces) {
     optics::Prescription prescription;
@@ -99,7 +97,7 @@ TEST(FieldLight, EtendueIsConserved) {
         const double end = d.chief_rays.largest_field();
         double image_end = 0.0;  // beyond the last height that light reaches
         const double entering = integral(end, [&](double field) {
-            const optics::FieldBundle bundle = optics::field_bundle(d.chief_rays, d.chief_rays, field).value();
+            const optics::FieldBundle bundle = optics::field_bundle(d.chief_rays, field).value();
             image_end = std::max(image_end, 1.1 * bundle.chief.image_height);
             return 2.0 * kPi * std::sin(field) * beam_outline(d.lens, bundle).area;
         });
@@ -114,7 +112,7 @@ TEST(FieldLight, EtendueIsConserved) {
 // A lens turned as a whole about x sees the beam of the field that the turn makes of it, and turned about its own axis
 // the same one, although no half of the outline stands for the other any more.
 TEST(FieldLight, TurnedLensSeesTheTurnedBeam) {
-    constexpr double kTilt = 5.0 * kPi / 180.0;
+    constexpr double kTilt = radians(5.0);
     const auto light = [](std::array<double, 3> tilt_deg, double field) {
         optics::Prescription prescription;
         optics::PrescribedSurface front{.radius_mm = 40.0, .thickness_mm = 5.0, .semi_diameter_mm = 9.0};
@@ -124,7 +122,7 @@ TEST(FieldLight, TurnedLensSeesTheTurnedBeam) {
                                  {.thickness_mm = 60.0, .semi_diameter_mm = 7.0, .is_stop = true}};
         prescription.groups = {{.first = 1, .last = 3, .misalignment = {.tilt_deg = tilt_deg}}};
         const ColourOfLens d(optics::make_lens(prescription, optics::GlassCatalogue{}), spectral::kLineD);
-        const optics::FieldBundle bundle = optics::field_bundle(d.chief_rays, d.chief_rays, field).value();
+        const optics::FieldBundle bundle = optics::field_bundle(d.chief_rays, field).value();
         return field_light(d.lens, bundle, bundle.chief.image_point);
     };
     const FieldLight straight = light({}, 0.3);
@@ -150,10 +148,9 @@ TEST(Distortion, BallLens) {
     const double near_image = 1.0 / (1.0 / kFocal - 1.0 / (kObject + kBall));
     const ColourOfLens near(ball(1.0, near_image), spectral::kLineD);
     for (const double field : {0.0, 1e-6, 0.4, 1.2}) {
-        const optics::FieldBundle bundle = optics::field_bundle(far.chief_rays, far.chief_rays, field).value();
+        const optics::FieldBundle bundle = optics::field_bundle(far.chief_rays, field).value();
         EXPECT_NEAR(distortion_percent(far.lens, optics::Projection::rectilinear, bundle).value(), 0.0, 1e-10);
-        const optics::FieldBundle near_bundle =
-            optics::field_bundle(near.chief_rays, near.chief_rays, field, kObject).value();
+        const optics::FieldBundle near_bundle = optics::field_bundle(near.chief_rays, field, kObject).value();
         EXPECT_NEAR(distortion_percent(near.lens, optics::Projection::rectilinear, near_bundle).value(), 0.0, 1e-10);
         if (field < 0.1) {
             continue;
@@ -180,8 +177,7 @@ TEST(Distortion, BehindTheLens) {
     const optics::Lens lens = formats::load_lens("fisheye-220");
     const ColourOfLens d(lens, spectral::kLineD);
     for (const double degrees : {90.0, 105.0}) {
-        const optics::FieldBundle bundle =
-            optics::field_bundle(d.chief_rays, d.chief_rays, degrees * kPi / 180.0).value();
+        const optics::FieldBundle bundle = optics::field_bundle(d.chief_rays, radians(degrees)).value();
         EXPECT_FALSE(distortion_percent(d.lens, optics::Projection::rectilinear, bundle));
         EXPECT_LT(std::abs(distortion_percent(d.lens, lens.projection, bundle).value()), 5.0);
     }

@@ -3,10 +3,12 @@
 
 #include <boost/multiprecision/cpp_bin_float.hpp>
 #include <cmath>
-#include <numbers>
 
 #include "engine/analysis/working_f_number.h"
+#include "engine/base/angle.h"
+#include "engine/base/infinity.h"
 #include "engine/formats/prescription/load_lens.h"
+#include "engine/optics/convert_lens.h"
 #include "engine/optics/focus.h"
 #include "engine/optics/lens.h"
 #include "engine/optics/paraxial.h"
@@ -16,8 +18,6 @@
 namespace lensproof::analysis {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr double kDegree = std::numbers::pi / 180.0;
 // Room for some tens of roundings.
 constexpr double kRounding = 1e-14;
 
@@ -331,7 +331,7 @@ TEST(FirstOrder, DoubleAgreesWithFiftyDigits) {
           "nikkor-fisheye-10", "fisheye-220", "gyogyotto", "canon-zoom-70-200", "super-takumar-135"}) {
         const optics::TraceLens<double> lens = shipped(name);
         const optics::ParaxialData data = optics::paraxial_data(lens);
-        const auto wide_lens = converted<Wide>(lens);
+        const auto wide_lens = optics::convert_lens<Wide>(lens);
         const auto wide = optics::paraxial_data(wide_lens);
         const auto near = [&](double value, const Wide& expected, const char* what) {
             EXPECT_LE(abs(Wide(value) - expected), 1e-11 * abs(expected)) << name << " " << what;

@@ -8,23 +8,14 @@
 #include <numbers>
 
 #include "engine/analysis/psf.h"
+#include "engine/base/angle.h"
 #include "engine/base/input_error.h"
-#include "engine/formats/prescription/load_lens.h"
-#include "engine/optics/focus.h"
 #include "engine/spectral/wavelengths.h"
+#include "tests/engine/analysis/analysis_field.h"
 #include "tests/engine/perfect_lens.h"
 
 namespace lensproof::analysis {
 namespace {
-
-constexpr double kDegree = std::numbers::pi / 180.0;
-
-PolychromaticField field_of(const optics::Lens& lens, double field_angle,
-                            const std::vector<WeightedWavelength>& wavelengths = {{spectral::kLineD, 1.0}}) {
-    const optics::FieldBundle bundle{
-        .chief = optics::ChiefRays(lens, spectral::kLineD, optics::Rims::follow).at_field(field_angle).value()};
-    return polychromatic_field(lens, bundle, spectral::kLineD, wavelengths);
-}
 
 /// f/50, so that the sine condition holds to 1e-4; telecentric.
 PolychromaticField slow_field(double defocus) {
@@ -66,7 +57,7 @@ double defocused_mtf(double s, double w020) {
 }
 
 // 128 samples: cells at the rim that are split alike on both sides of the shear are counted by the product of their
-// shares, too little by up to 1e-3 where the shear runs along the rim.
+// weights, too little by up to 1e-3 where the shear runs along the rim.
 constexpr double kRimCells = 1e-3;
 
 TEST(Mtf, CircularPupilIsClosedForm) {
@@ -116,17 +107,6 @@ TEST(Mtf, GeometricDiscIsBessels) {
         EXPECT_NEAR(curve.tangential[i], expected, 3e-4) << frequencies[i];
         EXPECT_NEAR(curve.sagittal[i], expected, 3e-4) << frequencies[i];
     }
-}
-
-struct Case {
-    const char* lens;
-    double f_number;
-    double field_deg;
-};
-
-optics::Lens lens_of(const Case& c) {
-    const optics::Lens lens = formats::load_lens(c.lens);
-    return c.f_number > 0.0 ? optics::with_f_number(lens, c.f_number) : lens;
 }
 
 // The Fourier transform of the picture is the second way to the same curve, with lateral colour and vignetting. Both
@@ -180,7 +160,7 @@ TEST(Mtf, GeometricIsTheLimitOfShortWaves) {
             EXPECT_LT(worst, 0.7 * last) << wavelength_nm;
         }
         last = worst;
-        // f/5: a shear of λ f N of the pupil's width takes 4/π of that share of the common area.
+        // f/5: a shear of λ f N of the pupil's width takes 4/π of that fraction of the common area.
         EXPECT_LT(worst, 4.0 / std::numbers::pi * wavelength_nm * 1e-6 * 60.0 * 5.0 + kRimCells) << wavelength_nm;
     }
 }

@@ -4,15 +4,13 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <limits>
-#include <numbers>
 
+#include "engine/base/angle.h"
+#include "engine/base/infinity.h"
 #include "engine/spectral/wavelengths.h"
 
 namespace lensproof::analysis {
 namespace {
-
-constexpr double kDegree = std::numbers::pi / 180.0;
 
 optics::PrescribedSurface surface(double radius, double thickness, double semi_diameter, double index = 0.0) {
     optics::PrescribedSurface made{.radius_mm = radius, .thickness_mm = thickness, .semi_diameter_mm = semi_diameter};
@@ -32,10 +30,9 @@ optics::Lens made_of(std::vector<optics::PrescribedSurface> surfaces) {
     return optics::make_lens(prescription, optics::GlassCatalogue{});
 }
 
-AstigmaticFoci foci_at(const optics::Lens& lens, double field,
-                       double object_distance = std::numeric_limits<double>::infinity()) {
+AstigmaticFoci foci_at(const optics::Lens& lens, double field, double object_distance = kInfinity) {
     const optics::ChiefRays rays(lens, spectral::kLineD);
-    const std::optional<optics::FieldBundle> bundle = optics::field_bundle(rays, rays, field, object_distance);
+    const std::optional<optics::FieldBundle> bundle = optics::field_bundle(rays, field, object_distance);
     return astigmatic_foci(ray_pencil(optics::at_wavelength<double>(lens, spectral::kLineD), bundle.value()).value(),
                            lens.image_z);
 }
@@ -87,7 +84,7 @@ TEST(RayPencil, AgreesWithCoddingtonAtASphereAndAPlane) {
     constexpr double kIndex = 1.7;
     constexpr double kRadius = 30.0;
     constexpr double kThickness = 12.0;
-    for (const double object : {80.0, std::numeric_limits<double>::infinity()}) {
+    for (const double object : {80.0, kInfinity}) {
         const optics::Lens lens =
             made_of({stop(0.0, 3.0), surface(kRadius, kThickness, 20.0, kIndex), surface(0.0, 20.0, 30.0)});
         for (const double field : {0.1, 0.5, 1.2}) {
@@ -96,9 +93,9 @@ TEST(RayPencil, AgreesWithCoddingtonAtASphereAndAPlane) {
             const double cos2 = std::cos(field) * std::cos(field);
             const double cos2_inside = std::cos(inside) * std::cos(inside);
             const double start = -std::cos(field) / object;  // 1/t, 1/s
-            const double way = kThickness / std::cos(inside);
-            const double t = kIndex * cos2_inside / (cos2 * start + power) - way;
-            const double s = kIndex / (start + power) - way;
+            const double path = kThickness / std::cos(inside);
+            const double t = kIndex * cos2_inside / (cos2 * start + power) - path;
+            const double s = kIndex / (start + power) - path;
             const double t_out = t * cos2 / (kIndex * cos2_inside);
             const double s_out = s / kIndex;
             const AstigmaticFoci foci = foci_at(lens, field, object);
@@ -174,13 +171,13 @@ TEST(RayPencil, MovesAsCloseRealRaysDo) {
         const optics::Lens lens = optics::make_lens(prescription, optics::GlassCatalogue{});
         const optics::ChiefRays rays(lens, spectral::kLineD);
         for (const double field : {0.0, 10.0 * kDegree}) {
-            const optics::FieldBundle bundle = optics::field_bundle(rays, rays, field).value();
+            const optics::FieldBundle bundle = optics::field_bundle(rays, field).value();
             const RayPencil pencil = ray_pencil(optics::at_wavelength<double>(lens, spectral::kLineD), bundle).value();
             const auto slopes =
                 close_rays(optics::at_wavelength<long double>(lens, spectral::kLineD), bundle, lens.image_z);
-            const double way = optics::meet_plane(pencil.chief, lens.image_z).distance;
+            const double distance = optics::meet_plane(pencil.chief, lens.image_z).distance;
             for (std::size_t i = 0; i < 2; ++i) {
-                const Vec3d across = pencil.shift[i] + way * pencil.turn[i];
+                const Vec3d across = pencil.shift[i] + distance * pencil.turn[i];
                 const Vec3d& d = pencil.chief.direction;
                 EXPECT_NEAR(across.x - d.x / d.z * across.z, slopes[i].x, 1e-10) << is_displaced << field;
                 EXPECT_NEAR(across.y - d.y / d.z * across.z, slopes[i].y, 1e-10) << is_displaced << field;

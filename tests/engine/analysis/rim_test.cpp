@@ -2,16 +2,14 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <numbers>
 
 #include "engine/analysis/beam_outline.h"
+#include "engine/base/angle.h"
 #include "engine/optics/illumination.h"
 #include "engine/spectral/wavelengths.h"
 
 namespace lensproof::analysis {
 namespace {
-
-constexpr double kPi = std::numbers::pi;
 
 /// A bare stop of radius 2 mm, 40 mm in front of the sensor.
 optics::Prescription bare_stop(optics::StopShape shape) {

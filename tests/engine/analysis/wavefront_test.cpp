@@ -9,6 +9,8 @@
 #include <numbers>
 
 #include "engine/analysis/wavefront_map.h"
+#include "engine/base/angle.h"
+#include "engine/base/infinity.h"
 #include "engine/formats/prescription/load_lens.h"
 #include "engine/spectral/wavelengths.h"
 #include "tests/engine/perfect_lens.h"
@@ -17,9 +19,6 @@ namespace lensproof::analysis {
 namespace {
 
 using Exact = boost::multiprecision::number<boost::multiprecision::cpp_bin_float<50>, boost::multiprecision::et_off>;
-
-constexpr double kDegree = std::numbers::pi / 180.0;
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 optics::FieldBundle bundle_at(const optics::Lens& lens, double field_angle, double object_distance = kInfinity) {
     const optics::ChiefRays chiefs(lens, spectral::kLineD, optics::Rims::follow);
@@ -30,8 +29,8 @@ optics::FieldBundle bundle_at(const optics::Lens& lens, double field_angle, doub
     return {.chief = chiefs.from_point(height, -object_distance).value(), .object_distance = object_distance};
 }
 
-std::vector<BeamNode> ring(double radius) {
-    std::vector<BeamNode> nodes;
+std::vector<optics::RegionNode> ring(double radius) {
+    std::vector<optics::RegionNode> nodes;
     for (int i = 0; i < 12; ++i) {
         const double azimuth = 30.0 * i * kDegree;
         nodes.push_back({{radius * std::cos(azimuth), radius * std::sin(azimuth)}, 1.0});
@@ -107,8 +106,8 @@ TEST(Wavefront, GradientIsTheTransverseAberration) {
         constexpr double kStep = 1e-3;
         for (const Vec2d at : {Vec2d{3.0, 5.0}, Vec2d{0.0, -8.0}, Vec2d{-6.0, 0.0}}) {
             for (const Vec2d step : {Vec2d{kStep, 0.0}, Vec2d{0.0, kStep}}) {
-                const std::vector<BeamNode> nodes = {{{at.x + step.x, at.y + step.y}, 1.0},
-                                                     {{at.x - step.x, at.y - step.y}, 1.0}};
+                const std::vector<optics::RegionNode> nodes = {{{at.x + step.x, at.y + step.y}, 1.0},
+                                                               {{at.x - step.x, at.y - step.y}, 1.0}};
                 const Wavefront pair = wavefront(traced, spectral::kLineD, bundle, plane, nodes);
                 const optics::TracedRay<double> ray =
                     optics::trace<optics::Direction::forward, optics::Rims::follow>(traced, bundle.ray(at));
@@ -213,7 +212,8 @@ TEST(Wavefront, AgreesWithRayoptics) {
     for (const Row& row : kRows) {
         const optics::FieldBundle bundle = bundle_at(lens, row.field_deg * kDegree, 1e10);
         const Vec3d apart = row.point - bundle.chief.front.origin;
-        const std::vector<BeamNode> node = {{{dot(apart, bundle.across()[0]), dot(apart, bundle.across()[1])}, 1.0}};
+        const std::vector<optics::RegionNode> node = {
+            {{dot(apart, bundle.across()[0]), dot(apart, bundle.across()[1])}, 1.0}};
         const Wavefront front =
             wavefront(traced, spectral::kLineD, bundle, reference_sphere(traced, bundle).value(), node);
         EXPECT_NEAR(front.rays.front().opd_mm * 1e6 / spectral::kLineD, row.waves, 1e-6)
@@ -227,7 +227,7 @@ TEST(Wavefront, BestSphereFindsTheFocus) {
     const PerfectLens perfect{.beam_radius = 8.0, .stop_distance = 10.0};
     const optics::TraceLens<double> traced = optics::at_wavelength<double>(perfect.lens(), spectral::kLineD);
     const optics::FieldBundle bundle = bundle_at(perfect.lens(), 0.0);
-    const std::vector<BeamNode> nodes = beam_quadrature(beam_outline(traced, bundle), 6);
+    const std::vector<optics::RegionNode> nodes = optics::region_quadrature(beam_outline(traced, bundle), 6);
     ReferenceSphere sphere = reference_sphere(traced, bundle).value();
     const Vec3d shift{1e-4, -2e-4, 3e-3};
     sphere.centre = sphere.centre + shift;
@@ -261,7 +261,7 @@ TEST(WavefrontMap, OfADefocusedLens) {
                 continue;
             }
             ++inside;
-            const Vec2d pupil = map.pupil(row, column);
+            const Vec2d pupil = map.cosines(row, column);
             const double cosine = std::sqrt(1.0 - pupil.x * pupil.x - pupil.y * pupil.y);
             EXPECT_NEAR(map.at(row, column), 0.05 * (1.0 - cosine) / (spectral::kLineD * 1e-6), 1e-6);
         }
@@ -291,7 +291,7 @@ TEST(WavefrontMap, IsTheWavefrontOffTheAxis) {
     }
     const double rms = std::sqrt(squares / cells - sum * sum / cells / cells);
     const double expected = wavefront_errors(wavefront(part.lens, spectral::kLineD, bundle, field.sphere,
-                                                       beam_quadrature(part.outline, 10)))
+                                                       optics::region_quadrature(part.outline, 10)))
                                 .rms;
     // Even cells in direction against even cells in the beam, and 4/48 of them at the rim.
     EXPECT_NEAR(rms / expected, 1.0, 0.1);
@@ -306,7 +306,7 @@ TEST(Wavefront, GoesOnWhereTheChiefRayIsClipped) {
     const optics::RegionOutline outline = beam_outline(traced, bundle);
     ASSERT_FALSE(outline.is_empty());
     const Wavefront front = wavefront(traced, spectral::kLineD, bundle, reference_sphere(traced, bundle).value(),
-                                      beam_quadrature(outline, 6));
+                                      optics::region_quadrature(outline, 6));
     EXPECT_EQ(front.lost_weight, 0.0);
     double area = 0.0;
     for (const WavefrontRay& ray : front.rays) {

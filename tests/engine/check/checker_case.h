@@ -40,9 +40,9 @@ struct Expected {
     const char* code;
     optics::Severity severity;
     int surface = 0;  // 0: the lens
-    double value = optics::Finding::kNothing;
+    double value = kNaN;
     double tolerance = 1e-9;
-    double limit = optics::Finding::kNothing;
+    double limit = kNaN;
 };
 
 /// That `good` has no finding of the code, and that `plant` brings one about.

@@ -2,8 +2,8 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <numbers>
 
+#include "engine/base/angle.h"
 #include "engine/formats/prescription/prescription_file.h"
 #include "tests/engine/check/checker_case.h"
 
@@ -11,8 +11,6 @@ namespace lensproof::check {
 namespace {
 
 using P = optics::Prescription;
-
-constexpr double kDegree = std::numbers::pi / 180.0;
 
 optics::Prescription at_field(optics::Prescription lens, double half_field_deg) {
     lens.stated.half_field_deg = half_field_deg;
@@ -56,8 +54,7 @@ TEST(CheckerRays, ANearObjectsBeamIsHeldAgainstTheStopsFromThere) {
     const optics::Prescription good = near_half_ball(3.0);
     EXPECT_EQ(find(checked(good), "marginal-ray"), nullptr);
     const auto narrow_the_rear = [](P& p) { p.surfaces[1].semi_diameter_mm = 3.0; };
-    expect_planted(good, narrow_the_rear,
-                   {"stop-not-limiting", optics::Severity::warning, 2, optics::Finding::kNothing, 0.0, 3.0});
+    expect_planted(good, narrow_the_rear, {"stop-not-limiting", optics::Severity::warning, 2, kNaN, 0.0, 3.0});
     optics::Prescription narrowed = good;
     narrow_the_rear(narrowed);
     const CheckReport report = checked(narrowed);
@@ -65,7 +62,7 @@ TEST(CheckerRays, ANearObjectsBeamIsHeldAgainstTheStopsFromThere) {
 }
 
 // The rear's rim reaches 20 − √(20² − 6²) = 0.92 mm behind its vertex, past the stop's plane 0.3 mm behind it. No ray
-// bends in that plane, so none is kept from its way.
+// bends in that plane, so none is stopped there.
 TEST(CheckerRays, AStopInsideASurfacesSagTurnsNoRayBack) {
     optics::Prescription lens;
     lens.surfaces.resize(3);
@@ -135,9 +132,9 @@ TEST(CheckerRays, AFlatFrontIsMetAtTheFieldsAngle) {
 // A hole in the front surface looks narrower by cos θ. It is counted in cells of a sixtieth of its radius, of which it
 // cuts some hundreds; half of them are counted, so no more than one part in fifty is off.
 TEST(CheckerRays, AStopInFrontVignettesWithTheCosine) {
-    const double share = 100.0 * std::cos(75.0 * kDegree);
+    const double open_percent = 100.0 * std::cos(75.0 * kDegree);
     expect_planted(at_field(half_ball(), 65.0), field(75.0),
-                   {"vignetting", optics::Severity::warning, 0, share, 0.02 * share, 30.0});
+                   {"vignetting", optics::Severity::warning, 0, open_percent, 0.02 * open_percent, 30.0});
 }
 
 // The chief ray leaves the front at asin(sin θ / n) and goes straight on to the sensor, f + R = 30 mm behind.
@@ -200,7 +197,7 @@ TEST(CheckerRays, WhatIsNotAskedOfTiltedAndToroidalLensesIsSaid) {
             p.groups = {{.first = 5, .last = 6, .misalignment = {.decentre_mm = {0.1, 0.0}}}};
         },
         expected);
-    // A rim in the field's way is named in the centred lens only.
+    // A rim in the field's light is named in the centred lens only.
     optics::Prescription clipped = good;
     clipped.surfaces[7].semi_diameter_mm = 10.0;
     EXPECT_NE(find(checked(clipped), "chief-ray"), nullptr);

@@ -7,9 +7,9 @@
 #include <cmath>
 #include <fstream>
 #include <functional>
-#include <limits>
 #include <nlohmann/json.hpp>
 
+#include "engine/base/infinity.h"
 #include "engine/check/digits.h"
 #include "engine/check/sag.h"
 #include "engine/formats/prescription/prescription_file.h"
@@ -32,17 +32,15 @@ struct Defect {
     int surface;  // 0: the lens
 };
 
-constexpr double kNotANumber = std::numeric_limits<double>::quiet_NaN();
-
 std::vector<Defect> defects_of_the_tessar() {
     using P = optics::Prescription;
     const auto error = optics::Severity::error;
     const auto warning = optics::Severity::warning;
     const auto info = optics::Severity::info;
     return {
-        {"radius NaN", [](P& p) { p.surfaces[0].radius_mm = kNotANumber; }, "not-finite", error, 1},
+        {"radius NaN", [](P& p) { p.surfaces[0].radius_mm = kNaN; }, "not-finite", error, 1},
         {"thickness infinite", [](P& p) { p.surfaces[1].thickness_mm = INFINITY; }, "not-finite", error, 2},
-        {"index NaN", [](P& p) { p.surfaces[0].medium = {.glass = "", .n_d = kNotANumber, .V_d = {}, .indices = {}}; },
+        {"index NaN", [](P& p) { p.surfaces[0].medium = {.glass = "", .n_d = kNaN, .V_d = {}, .indices = {}}; },
          "not-finite", error, 1},
         {"flat spelt 1e8", [](P& p) { p.surfaces[2].radius_mm = 1e8; }, "flat-radius", info, 3},
         {"flat spelt 0", [](P& p) { p.surfaces[2].radius_mm = 0; }, "flat-radius", info, 3},
@@ -279,7 +277,7 @@ TEST(Checker, JudgesGeometryWhereNoRayCanBeTraced) {
     optics::Prescription lens = tessar();
     lens.surfaces[3].is_stop = false;
     lens.surfaces[5].thickness_mm = 2.0;
-    lens.surfaces[7].radius_mm = kNotANumber;
+    lens.surfaces[7].radius_mm = kNaN;
     const CheckReport report = checked(lens);
     EXPECT_NE(find(report, "stop-missing"), nullptr);
     EXPECT_NE(find(report, "surfaces-cross", 6), nullptr);
@@ -385,7 +383,7 @@ TEST(Digits, ChangesAreThoseOfTheShortestDecimalForm) {
     EXPECT_TRUE(has(42.97, 2.97));
     EXPECT_TRUE(has(42.97, 142.97));
     EXPECT_FALSE(has(42.97, 42.97));
-    EXPECT_TRUE(plausible_changes(kNotANumber).empty());
+    EXPECT_TRUE(plausible_changes(kNaN).empty());
     EXPECT_TRUE(plausible_changes(INFINITY).empty());
 }
 

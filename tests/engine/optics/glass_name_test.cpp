@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <map>
 
+#include "engine/base/nearest_name.h"
 #include "engine/formats/glass/shipped_glasses.h"
 #include "engine/optics/glass_catalogue.h"
 #include "engine/spectral/wavelengths.h"

@@ -5,6 +5,8 @@
 #include <numbers>
 #include <random>
 
+#include "engine/base/angle.h"
+#include "engine/base/infinity.h"
 #include "engine/formats/glass/shipped_glasses.h"
 #include "engine/optics/focus.h"
 #include "engine/optics/lens.h"
@@ -16,7 +18,7 @@ namespace {
 
 constexpr double kUlp = std::numeric_limits<double>::epsilon();
 constexpr double kWavelength = 587.5618;
-constexpr double kFlat = std::numeric_limits<double>::infinity();
+constexpr double kFlat = kInfinity;
 
 PrescribedSurface row(double radius_mm, double thickness_mm, double n_d = 1.0, double semi_diameter_mm = 50.0) {
     PrescribedSurface surface;
@@ -233,8 +235,8 @@ TEST(Misalignment, TurningTheLensIsTurningTheRay) {
                       .pivot_mm = kPivot}};
     const TraceLens<double> lens = traceable(straight);
     const TraceLens<double> turned_lens = traceable(turned);
-    const double sine = std::sin(kTilt * std::numbers::pi / 180.0);
-    const double cosine = std::cos(kTilt * std::numbers::pi / 180.0);
+    const double sine = std::sin(radians(kTilt));
+    const double cosine = std::cos(radians(kTilt));
     // Right-handed about x: y turns towards z.
     const auto rotate = [&](const Vec3d& v) {
         return Vec3d{v.x, cosine * v.y - sine * v.z, sine * v.y + cosine * v.z};
@@ -353,9 +355,9 @@ TEST(Coating, IsTracedFromThePrescriptionBothWays) {
     EXPECT_NEAR(back.transmittance, stated, 1e-14);
 }
 
-/// The share of the stop's circle that a mask lets through, on a grid: its error is that of the cells at the edge,
+/// The fraction of the stop's circle that a mask lets through, on a grid: its error is that of the cells at the edge,
 /// perimeter / cell = 2π·400 of 4·10⁵, random in sign.
-double open_share(const StopMask& mask) {
+double mask_transmittance(const StopMask& mask) {
     constexpr int kCells = 800;
     double open = 0.0;
     int inside = 0;
@@ -373,12 +375,12 @@ double open_share(const StopMask& mask) {
 }
 
 // A regular polygon fills N sin(2π/N) / 2π of its circle; blades as curved as the circle fill all of it.
-TEST(StopMask, PolygonsFillTheirShareOfTheCircle) {
+TEST(StopMask, PolygonsFillTheirPartOfTheCircle) {
     for (const int blades : {3, 5, 6, 9}) {
         const double expected = blades * std::sin(2.0 * std::numbers::pi / blades) / (2.0 * std::numbers::pi);
-        EXPECT_NEAR(open_share(StopMask(PolygonStop{.blades = blades, .rotation_deg = 11.0})), expected, 1e-3);
-        EXPECT_NEAR(open_share(StopMask(PolygonStop{.blades = blades, .curvature = 1.0})), 1.0, 1e-3);
-        const double half_curved = open_share(StopMask(PolygonStop{.blades = blades, .curvature = 0.5}));
+        EXPECT_NEAR(mask_transmittance(StopMask(PolygonStop{.blades = blades, .rotation_deg = 11.0})), expected, 1e-3);
+        EXPECT_NEAR(mask_transmittance(StopMask(PolygonStop{.blades = blades, .curvature = 1.0})), 1.0, 1e-3);
+        const double half_curved = mask_transmittance(StopMask(PolygonStop{.blades = blades, .curvature = 0.5}));
         EXPECT_GT(half_curved, expected);
         EXPECT_LT(half_curved, 1.0);
     }
@@ -492,7 +494,7 @@ TEST(SemiDiameter, IsEstimatedFromApertureAndField) {
     prescription.stated.half_field_deg = 10.0;
     const Lens lens = make_lens(prescription, GlassCatalogue{});
     EXPECT_NEAR(lens.surfaces[0].semi_diameter, 5.0, 1e-12);
-    EXPECT_NEAR(lens.surfaces[1].semi_diameter, 5.0 + 20.0 * std::tan(10.0 * std::numbers::pi / 180.0), 1e-12);
+    EXPECT_NEAR(lens.surfaces[1].semi_diameter, 5.0 + 20.0 * std::tan(radians(10.0)), 1e-12);
 }
 
 }  // namespace

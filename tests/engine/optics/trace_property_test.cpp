@@ -1,4 +1,4 @@
-// What is true of every lens: light finds its way back, étendue is conserved, and scaling, turning, mirroring or
+// What is true of every lens: light finds its path back, étendue is conserved, and scaling, turning, mirroring or
 // splitting a gap changes nothing. Held against lenses that nobody designed (tests/engine/random_lens.h).
 #include <gtest/gtest.h>
 
@@ -6,6 +6,7 @@
 #include <limits>
 #include <numbers>
 
+#include "engine/base/infinity.h"
 #include "engine/optics/trace.h"
 #include "tests/engine/random_lens.h"
 
@@ -95,7 +96,7 @@ void for_random_rays(std::uint64_t seed, Check&& check) {
     EXPECT_GT(passed, kLenses * kRaysOfALens / 10);
 }
 
-// Light finds the same way back: from the image plane in reverse to the plane that it came from, to 1e-10 mm, with the
+// Light finds the same path back: from the image plane in reverse to the plane that it came from, to 1e-10 mm, with the
 // same optical path, direction and (reciprocity of Fresnel's equations) transmittance.
 TEST(AnyLens, LightFindsItsWayBack) {
     for_random_rays(1, [](const Prescription&, const TraceLens<double>& lens, const Ray<double>& ray,
@@ -187,9 +188,9 @@ long double determinant(std::array<Phase, 4> m) {
         }
         product *= m[k][k];
         for (std::size_t i = k + 1; i < 4; ++i) {
-            const long double share = m[i][k] / m[k][k];
+            const long double factor = m[i][k] / m[k][k];
             for (std::size_t j = k; j < 4; ++j) {
-                m[i][j] -= share * m[k][j];
+                m[i][j] -= factor * m[k][j];
             }
         }
     }
@@ -349,14 +350,14 @@ TEST(AnyLens, IsSymmetricInX) {
     });
 }
 
-/// The lens with a surface that changes no medium at `share` of the gap behind surface i.
-Prescription split(Prescription lens, std::size_t i, double share, double radius_mm) {
+/// The lens with a surface that changes no medium at `fraction` of the gap behind surface i.
+Prescription split(Prescription lens, std::size_t i, double fraction, double radius_mm) {
     PrescribedSurface dummy;
     dummy.radius_mm = radius_mm;
     dummy.semi_diameter_mm = 1e3;
     dummy.medium = lens.surfaces[i].medium;
-    dummy.thickness_mm = (1.0 - share) * lens.surfaces[i].thickness_mm;
-    lens.surfaces[i].thickness_mm *= share;
+    dummy.thickness_mm = (1.0 - fraction) * lens.surfaces[i].thickness_mm;
+    lens.surfaces[i].thickness_mm *= fraction;
     lens.surfaces.insert(lens.surfaces.begin() + static_cast<std::ptrdiff_t>(i) + 1, dummy);
     return lens;
 }
@@ -367,7 +368,7 @@ TEST(AnyLens, SplittingAGapChangesNothing) {
     for_random_rays(8, [count = std::size_t{0}](const Prescription& prescription, const TraceLens<double>& lens,
                                                 const Ray<double>& ray, const TracedRay<double>& out) mutable {
         const std::size_t gap = count++ % (prescription.surfaces.size() - 1);
-        for (const double radius : {std::numeric_limits<double>::infinity(), 2000.0, -3000.0}) {
+        for (const double radius : {kInfinity, 2000.0, -3000.0}) {
             const TraceLens<double> longer = traced_lens<double>(split(prescription, gap, 0.4, radius));
             const TracedRay<double> other = trace(longer, ray);
             ASSERT_EQ(other.status, RayStatus::ok);

@@ -7,6 +7,7 @@
 #include <limits>
 #include <random>
 
+#include "engine/base/angle.h"
 #include "engine/formats/prescription/load_lens.h"
 #include "engine/optics/lens.h"
 
@@ -80,7 +81,7 @@ TEST(Trace, SphereIsAplanaticForItsConjugatePair) {
     }
 }
 
-// Light finds the same way back: the tracer in reverse, from where a forward ray arrived, returns to its origin with
+// Light finds the same path back: the tracer in reverse, from where a forward ray arrived, returns to its origin with
 // the same optical path and transmittance (reciprocity of Fresnel's equations). 16 refractions of numbers of size 100
 // mm.
 TEST(Trace, ReverseRetracesForward) {
@@ -170,7 +171,7 @@ TEST(Trace, FollowsBeyondRimsWhenAskedAndNamesTheFirst) {
 TEST(Intersect, DomeIsMetFromBehindTheFrontPlane) {
     constexpr double kRadius = 10.0;
     for (const double field_deg : {0.0, 60.0, 89.0, 90.0, 91.0, 100.0, 110.0}) {
-        const double field = field_deg * std::acos(-1.0) / 180.0;
+        const double field = radians(field_deg);
         const Vec3d direction{0.0, std::sin(field), std::cos(field)};
         const Vec3d centre{0.0, 0.0, kRadius};
         const Intersection<double> met =

@@ -3,9 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <numbers>
 #include <random>
 
+#include "engine/base/angle.h"
 #include "engine/formats/prescription/load_lens.h"
 #include "engine/optics/field_bundle.h"
 #include "engine/optics/lens.h"
@@ -15,8 +15,6 @@
 
 namespace lensproof::pupil {
 namespace {
-
-constexpr double kPi = std::numbers::pi;
 
 double turned_to(double low, double high, std::mt19937_64& random) {
     return std::uniform_real_distribution(low, high)(random);
@@ -138,13 +136,13 @@ Vec3d turned(const Vec3d& v, double azimuth) {
 TEST(EntranceBeam, OffsetsAreThoseOfTheFieldBundle) {
     const BoundingSphere front{.centre = {0.0, 0.0, 3.0}, .radius = 1.0};
     for (const double field : {0.0, 1e-9, 0.5, 0.5 * kPi, 1.9}) {
-        const Vec3d way{0.0, std::sin(field), std::cos(field)};
-        const EntranceBeam beam = beam_along(front, way);
+        const Vec3d direction{0.0, std::sin(field), std::cos(field)};
+        const EntranceBeam beam = beam_along(front, direction);
         for (int axis = 0; axis < 2; ++axis) {
-            EXPECT_LE(length(beam.across[axis] - optics::across_axes(way)[axis]), 1e-15) << field;
+            EXPECT_LE(length(beam.across[axis] - optics::across_axes(direction)[axis]), 1e-15) << field;
         }
         for (const double azimuth : {0.3, 2.0, 4.5}) {
-            const EntranceBeam other = beam_along(front, turned(way, azimuth));
+            const EntranceBeam other = beam_along(front, turned(direction, azimuth));
             const Vec3d offset{0.3, 0.5, 0.0};
             const Vec3d turned_offset = turned(offset, azimuth);
             const Vec3d expected = turned(beam.ray({offset.x, offset.y}).origin, azimuth);

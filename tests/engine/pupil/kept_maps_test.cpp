@@ -5,6 +5,7 @@
 #include <filesystem>
 
 #include "engine/base/file.h"
+#include "engine/base/infinity.h"
 #include "engine/formats/prescription/load_lens.h"
 #include "engine/optics/lens.h"
 #include "engine/spectral/wavelengths.h"
@@ -42,7 +43,7 @@ TEST(KeptMaps, AreTheMapsThatAreMade) {
         const PupilSample a = made.sample(at, 0.0, 0.01 * i + 0.005, 0.3);
         const PupilSample b = kept.sample(at, 0.0, 0.01 * i + 0.005, 0.3);
         EXPECT_EQ(a.point, b.point);
-        EXPECT_EQ(a.density, b.density);
+        EXPECT_EQ(a.pdf, b.pdf);
     }
 
     const std::string whole = read_file(only_file(folder));
@@ -69,7 +70,7 @@ TEST(KeptMaps, AreKeptApart) {
     std::vector<optics::TraceLens<double>> lens = tessar();
     kept_pupil_map(cache, lens, true, 20.0);
     kept_pupil_map(cache, lens, true, 20.5);
-    kept_pupil_map(cache, lens, true, 20.0, {.defensive_share = 0.01});
+    kept_pupil_map(cache, lens, true, 20.0, {.defensive_fraction = 0.01});
     kept_pupil_map(cache, lens, true, 20.0, {.most_excess = 0.1});
     kept_pupil_map(cache, {lens[0], lens[0]}, true, 20.0);
     kept_entrance_map(cache, lens, true);
@@ -89,7 +90,7 @@ TEST(KeptMaps, AreKeptApart) {
 }
 
 TEST(KeptMaps, EntrancesComeBackToo) {
-    for (const double distance_mm : {std::numeric_limits<double>::infinity(), 500.0}) {
+    for (const double distance_mm : {kInfinity, 500.0}) {
         const EntranceMap made(tessar(), true, distance_mm);
         const std::string bytes = made.serialized();
         EXPECT_EQ(EntranceMap::deserialized(bytes).value().serialized(), bytes);

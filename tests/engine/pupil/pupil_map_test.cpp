@@ -1,4 +1,4 @@
-// Pupil maps: densities that agree with themselves, discs that miss no path, bytes and back.
+// Pupil maps: pdfs that agree with themselves, discs that miss no path, bytes and back.
 #include "engine/pupil/pupil_map.h"
 
 #include <gtest/gtest.h>
@@ -63,9 +63,9 @@ std::vector<Place> places() {
     return all;
 }
 
-// The density that a point is drawn with is that which the map states for it. Points at an edge of the region may be
+// The pdf that a point is drawn with is that which the map states for it. Points at an edge of the region may be
 // rounded across it; v keeps them 1e-6 of its height inside.
-TEST(PupilMap, SamplesHaveTheStatedDensity) {
+TEST(PupilMap, SamplesHaveTheStatedPdf) {
     std::mt19937_64 random(6);
     std::uniform_real_distribution<double> uniform(0.0, 1.0);
     for (const PupilMap* map : {&tessar_map(), &tilted_map()}) {
@@ -73,17 +73,17 @@ TEST(PupilMap, SamplesHaveTheStatedDensity) {
             for (int i = 0; i < 200; ++i) {
                 const double u = i % 4 == 0 ? 0.003 * uniform(random) : uniform(random);
                 const PupilSample sample = map->sample(at, position, u, 1e-6 + (1.0 - 2e-6) * uniform(random));
-                if (sample.density > 0.0) {
-                    EXPECT_NEAR(map->density(at, position, sample.point) / sample.density, 1.0, 1e-12);
+                if (sample.pdf > 0.0) {
+                    EXPECT_NEAR(map->pdf(at, position, sample.point) / sample.pdf, 1.0, 1e-12);
                 }
             }
         }
     }
 }
 
-// ∫ density = 1 where there is light: the region's share, from its area, and the disc's. Drawn evenly over the disc,
-// the mean of the density times the disc's area has the standard error that its own scatter gives; four of them.
-TEST(PupilMap, DensitiesIntegrateToOne) {
+// ∫ pdf = 1 where there is light: the region's fraction, from its area, and the disc's. Drawn evenly over the disc,
+// the mean of the pdf times the disc's area has the standard error that its own scatter gives; four of them.
+TEST(PupilMap, PdfsIntegrateToOne) {
     constexpr int kPoints = 200000;
     for (const PupilMap* map : {&tessar_map(), &tilted_map()}) {
         for (const auto& [at, position] : places()) {
@@ -97,7 +97,7 @@ TEST(PupilMap, DensitiesIntegrateToOne) {
             for (int i = 0; i < kPoints; ++i) {
                 const double u = uniform(random);
                 const Vec2d point = map->disc().warped(u, uniform(random));
-                const double value = map->density(at, position, point) * map->disc().area();
+                const double value = map->pdf(at, position, point) * map->disc().area();
                 sum += value;
                 sum_of_squares += value * value;
             }
@@ -137,8 +137,8 @@ TEST(RearDisc, HoldsEveryPath) {
                     Vec3d{rear.vertex.x, rear.vertex.y, rear.vertex_z} +
                     (on_surface.x * rear.axes[0] + (on_surface.y * rear.axes[1] + on_surface.z * rear.axes[2]));
                 EXPECT_LE(to.z, disc.plane_z + 1e-12) << lens.id;
-                const double share = (disc.plane_z - to.z) / (lens.image_z - to.z);
-                const double radius = std::hypot(to.x + share * (from.x - to.x), to.y + share * (from.y - to.y));
+                const double fraction = (disc.plane_z - to.z) / (lens.image_z - to.z);
+                const double radius = std::hypot(to.x + fraction * (from.x - to.x), to.y + fraction * (from.y - to.y));
                 EXPECT_LE(radius, disc.radius * (1.0 + 1e-12)) << lens.id << ", sensor of " << sensor_radius;
             }
         }
@@ -159,7 +159,7 @@ TEST(PupilMap, ComesBackFromItsBytes) {
                 const PupilSample a = map->sample(at, position, u, 0.4);
                 const PupilSample b = again->sample(at, position, u, 0.4);
                 EXPECT_EQ(a.point, b.point);
-                EXPECT_EQ(a.density, b.density);
+                EXPECT_EQ(a.pdf, b.pdf);
             }
         }
     }

@@ -5,15 +5,13 @@
 
 #include <cmath>
 #include <functional>
-#include <numbers>
 #include <random>
 
+#include "engine/base/angle.h"
 #include "engine/pupil/column_fit.h"
 
 namespace lensproof::pupil {
 namespace {
-
-constexpr double kPi = std::numbers::pi;
 
 struct Shape {
     std::string name;
@@ -21,7 +19,7 @@ struct Shape {
     double area;
     Vec2d inside;  // for what is thinner than a grid
     PupilSymmetry symmetry = PupilSymmetry::mirror;
-    double excess = 0.007;  // the share by which its region may be larger
+    double excess = 0.007;  // the fraction by which its region may be larger
 };
 
 bool in_disc(Vec2d p, Vec2d centre, double radius) {
@@ -32,8 +30,8 @@ bool in_disc(Vec2d p, Vec2d centre, double radius) {
 double lens_area(double a, double b, double distance) {
     const double to_chord = (distance * distance + a * a - b * b) / (2.0 * distance);
     const auto segment = [](double radius, double from_centre) {
-        const double share = from_centre / radius;
-        return radius * radius * (std::acos(share) - share * std::sqrt(1.0 - share * share));
+        const double fraction = from_centre / radius;
+        return radius * radius * (std::acos(fraction) - fraction * std::sqrt(1.0 - fraction * fraction));
     };
     return segment(a, to_chord) + segment(b, distance - to_chord);
 }

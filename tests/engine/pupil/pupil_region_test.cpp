@@ -15,9 +15,9 @@ namespace {
 template <class Lower, class Upper>
 PupilRegion region_of(PupilSymmetry symmetry, double left, double width, const Lower& lower, const Upper& upper) {
     PupilRegion region{.left = left, .width = width};
-    const PupilShares& shares = pupil_shares(symmetry);
+    const PupilFractions& fractions = pupil_fractions(symmetry);
     for (std::size_t i = 0; i < region.columns.size(); ++i) {
-        const double x = left + width * shares.at[i];
+        const double x = left + width * fractions.at[i];
         region.columns[i] = {.lower = lower(x), .upper = upper(x)};
     }
     region.sum_areas(symmetry);
@@ -58,8 +58,8 @@ BlendedRegion<1> alone(const Case& c) {
 /// The region's polygon, both halves of a mirror image, by rising azimuth.
 std::vector<Vec2d> polygon(const Case& c) {
     std::vector<Vec2d> points;
-    const PupilShares& shares = pupil_shares(c.symmetry);
-    const auto x = [&](int i) { return c.region.left + c.region.width * shares.at[i]; };
+    const PupilFractions& fractions = pupil_fractions(c.symmetry);
+    const auto x = [&](int i) { return c.region.left + c.region.width * fractions.at[i]; };
     for (int i = 0; i <= kPupilPanels; ++i) {
         points.push_back({x(i), c.region.columns[i].lower});
     }
@@ -111,9 +111,9 @@ TEST(PupilRegion, DrawsEvenly) {
         for (int i = 0; i < kGrid; ++i) {
             for (int k = 0; k < kGrid; ++k) {
                 const Vec2d at = region.sample((i + 0.5) / kGrid, (k + 0.5) / kGrid, guide);
-                constexpr double kShare = 1.0 / kGrid / kGrid;
-                drawn = {0.0, drawn.x + kShare * at.x, drawn.y + kShare * at.y, drawn.xx + kShare * at.x * at.x,
-                         drawn.yy + kShare * at.y * at.y};
+                constexpr double kFraction = 1.0 / kGrid / kGrid;
+                drawn = {0.0, drawn.x + kFraction * at.x, drawn.y + kFraction * at.y,
+                         drawn.xx + kFraction * at.x * at.x, drawn.yy + kFraction * at.y * at.y};
             }
         }
         EXPECT_NEAR(drawn.x, expected.x, 1e-4 * c.region.width) << c.name;
@@ -124,7 +124,7 @@ TEST(PupilRegion, DrawsEvenly) {
 }
 
 // Pearson's χ² of random points in the cells that 24 columns of equal width and four equal parts of each panel's height
-// make: a cell's share is that of its area, here by midpoints of 1000 lines across each. A right sampler exceeds its
+// make: a cell's fraction is that of its area, here by midpoints of 1000 lines across each. A right sampler exceeds its
 // mean, the number of cells less one, by five standard deviations once in three million times; seeds are fixed.
 TEST(PupilRegion, PointsFollowTheArea) {
     constexpr int kColumns = 24;
@@ -138,19 +138,19 @@ TEST(PupilRegion, PointsFollowTheArea) {
         const double width = is_mirror ? 2.0 * c.region.width : c.region.width;
         const std::vector<Vec2d> outline = polygon(c);
         const auto heights = [&](double x) {
-            const PupilShares& shares = pupil_shares(c.symmetry);
-            const double share = ((is_mirror ? std::abs(x) : x) - c.region.left) / c.region.width;
-            const int i = shares.panel(share);
-            const double t = (share - shares.at[i]) / (shares.at[i + 1] - shares.at[i]);
+            const PupilFractions& fractions = pupil_fractions(c.symmetry);
+            const double fraction = ((is_mirror ? std::abs(x) : x) - c.region.left) / c.region.width;
+            const int i = fractions.panel(fraction);
+            const double t = (fraction - fractions.at[i]) / (fractions.at[i + 1] - fractions.at[i]);
             const PupilColumn& a = c.region.columns[i];
             const PupilColumn& b = c.region.columns[i + 1];
             return std::pair{std::lerp(a.lower, b.lower, t), std::lerp(a.upper, b.upper, t)};
         };
-        std::vector<double> share(kColumns, 0.0);
+        std::vector<double> fraction(kColumns, 0.0);
         double sum = 0.0;
         for (int i = 0; i < 1000 * kColumns; ++i) {
             const auto [lower, upper] = heights(left + width * (i + 0.5) / (1000 * kColumns));
-            share[i / 1000] += upper - lower;
+            fraction[i / 1000] += upper - lower;
             sum += upper - lower;
         }
         std::vector<int> count(kCells, 0);
@@ -167,7 +167,7 @@ TEST(PupilRegion, PointsFollowTheArea) {
         }
         double chi2 = 0.0;
         for (int i = 0; i < kCells; ++i) {
-            const double expected = kPoints * share[i / kParts] / sum / kParts;
+            const double expected = kPoints * fraction[i / kParts] / sum / kParts;
             chi2 += std::pow(count[i] - expected, 2) / expected;
         }
         constexpr double kDegrees = kCells - 1;

@@ -57,7 +57,7 @@ struct SlicedLens {
     PupilSlices slices;
 };
 
-// Slices are the map at its wavelengths: they draw the same points with the same densities. Both are means of regions
+// Slices are the map at its wavelengths: they draw the same points with the same pdfs. Both are means of regions
 // of some 20 mm, in another order: 1e-12 mm, but where a panel's edge falls between the two roundings, or where heights
 // near 0 leave the root in the cut few digits (1e-7).
 TEST(PupilSlices, DrawWhatTheMapDraws) {
@@ -68,12 +68,12 @@ TEST(PupilSlices, DrawWhatTheMapDraws) {
         for (const Sample& s : samples(20000, kSlices, half_diagonal_mm)) {
             const PupilDraw<double> draw = lens.slices.sample(s.film, s.slice, s.u, s.v);
             const PupilSample expected = lens.map.sample(s.film, s.slice / (kSlices - 1.0), s.u, s.v);
-            ASSERT_EQ(draw.area > 0.0, expected.density > 0.0);
+            ASSERT_EQ(draw.area > 0.0, expected.pdf > 0.0);
             if (draw.area > 0.0) {
                 ++lit;
                 EXPECT_NEAR(draw.point.x, expected.point.x, 1e-6);
                 EXPECT_NEAR(draw.point.y, expected.point.y, 1e-6);
-                EXPECT_NEAR(draw.area * expected.density, 1.0, 1e-11);
+                EXPECT_NEAR(draw.area * expected.pdf, 1.0, 1e-11);
             }
         }
         EXPECT_GT(lit, 5000);
@@ -81,7 +81,7 @@ TEST(PupilSlices, DrawWhatTheMapDraws) {
 }
 
 // Drawn evenly: the map from what of the unit square is not for defence scales areas by region / (1 − δ) wherever it is
-// smooth. The density is that of the mixture, (1 − δ) / region + δ / disc, so the scale over the area stated is
+// smooth. The pdf is that of the mixture, (1 − δ) / region + δ / disc, so the scale over the area stated is
 // 1 + δ / (1 − δ) · region / disc, from 1 to 1.0031 for δ = 0.3 %. Differences over 1e-6 show it to 1e-4; they straddle
 // a panel's edge in fewer than one of a thousand places.
 TEST(PupilSlices, ScaleTheUnitSquareByTheArea) {
@@ -91,7 +91,7 @@ TEST(PupilSlices, ScaleTheUnitSquareByTheArea) {
     int uneven = 0;
     for (const Sample& s : samples(20000, kSlices, lens.sensor_radius_mm)) {
         const auto at = [&](double u, double v) { return lens.slices.sample(s.film, s.slice, u, v); };
-        const double u = 0.004 + 0.995 * s.u;  // beyond the defensive share
+        const double u = 0.004 + 0.995 * s.u;  // beyond the defensive fraction
         const double v = 0.999 * s.v;
         const PupilDraw<double> here = at(u, v);
         if (here.area > 0.0) {
@@ -101,8 +101,8 @@ TEST(PupilSlices, ScaleTheUnitSquareByTheArea) {
             const double scale =
                 ((right.x - here.point.x) * (up.y - here.point.y) - (right.y - here.point.y) * (up.x - here.point.x)) /
                 (kStep * kStep);
-            const double share = std::abs(scale) / here.area;
-            uneven += share < 1.0 - 1e-4 || share > 1.0031 + 1e-4 ? 1 : 0;
+            const double fraction = std::abs(scale) / here.area;
+            uneven += fraction < 1.0 - 1e-4 || fraction > 1.0031 + 1e-4 ? 1 : 0;
         }
     }
     EXPECT_GT(lit, 5000);
@@ -118,7 +118,7 @@ TEST(PupilSlices, AskTheMapWhereTheLensIsNotRound) {
         const PupilDraw<double> draw = slices.sample(s.film, s.slice, s.u, s.v);
         const PupilSample expected = map.sample(s.film, 0.5 * s.slice, s.u, s.v);
         EXPECT_EQ(draw.point, expected.point);
-        EXPECT_EQ(draw.area, 1.0 / expected.density);
+        EXPECT_EQ(draw.area, 1.0 / expected.pdf);
     }
 }
 

@@ -5,16 +5,14 @@
 #include <cmath>
 #include <filesystem>
 #include <functional>
-#include <limits>
 
 #include "engine/base/file.h"
+#include "engine/base/infinity.h"
 #include "engine/base/input_error.h"
 #include "tests/experiments/draw/svg_checks.h"
 
 namespace lensproof::draw {
 namespace {
-
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
 /// A lens as the plots see it: aberrations of about `size` µm at each of the fields and wavelengths.
 struct Case {
@@ -56,7 +54,7 @@ std::string field_curves(const Case& c) {
     for (const double wavelength : c.wavelengths) {
         FieldCurve curve{.wavelength_nm = wavelength};
         for (const double field : c.fields) {
-            const double v = c.has_light ? 1e-3 * c.size * field : kNan;
+            const double v = c.has_light ? 1e-3 * c.size * field : kNaN;
             curve.points.push_back({field, v, 0.5 * v, -v});
         }
         made.push_back(std::move(curve));
@@ -92,7 +90,7 @@ std::string spots(const Case& c) {
 std::string illumination(const Case& c) {
     std::vector<FieldBrightness> points;
     for (const double field : c.fields) {
-        const double v = c.has_light ? 1.0 / (1.0 + 0.01 * field) : kNan;
+        const double v = c.has_light ? 1.0 / (1.0 + 0.01 * field) : kNaN;
         points.push_back({field, v * v, v});
     }
     return illumination_svg(c.heading, points);
@@ -102,7 +100,7 @@ SquareMap square(const Case& c) {
     constexpr std::size_t kSize = 8;
     SquareMap map{.size = kSize, .half_width = 1.0};
     for (std::size_t i = 0; i < kSize * kSize; ++i) {
-        map.values.push_back(c.has_light && i % 7 != 0 ? c.size * static_cast<double>(i) / 64.0 : kNan);
+        map.values.push_back(c.has_light && i % 7 != 0 ? c.size * static_cast<double>(i) / 64.0 : kNaN);
     }
     return map;
 }
@@ -162,7 +160,7 @@ TEST(AnalysisPlots, EveryPlotIsSoundForEveryLens) {
         {"rounding", {.size = 1e-13}},
         {"huge", {.size = 1e9}},
         {"beyond all measure", {.size = 1e290}},
-        {"no number", {.size = kNan}},
+        {"no number", {.size = kNaN}},
         {"dark", {.has_light = false}},
         {"no wavelength", {.wavelengths = {}, .has_light = false}},
     };

@@ -4,17 +4,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
+#include "engine/base/infinity.h"
 #include "experiments/draw/clipping.h"
 #include "experiments/draw/palette.h"
 #include "tests/experiments/draw/svg_checks.h"
 
 namespace lensproof::draw {
 namespace {
-
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 PlotChart line_chart(std::vector<Vec2d> points) {
     return {.title = "A line",
@@ -71,10 +68,10 @@ TEST(Chart, TheDrawnCurveIsTheData) {
 TEST(Chart, ACurveBreaksWhereThereIsNoValue) {
     const auto pieces = [](const PlotChart& chart) { return count(path_data(chart_svg(chart), "curve").at(0), "M"); };
     EXPECT_EQ(pieces(line_chart({{0, 1}, {1, 2}, {2, 3}, {3, 4}})), 1U);
-    EXPECT_EQ(pieces(line_chart({{0, 1}, {1, 2}, {2, kNan}, {3, 4}, {4, 5}})), 2U);
+    EXPECT_EQ(pieces(line_chart({{0, 1}, {1, 2}, {2, kNaN}, {3, 4}, {4, 5}})), 2U);
     EXPECT_EQ(pieces(line_chart({{0, 1}, {1, 2}, {kInfinity, 3}, {3, 4}, {4, 5}})), 2U);
     // A lone point between gaps is not lost.
-    const std::string svg = chart_svg(line_chart({{0, 1}, {1, kNan}, {2, 3}, {3, kNan}}));
+    const std::string svg = chart_svg(line_chart({{0, 1}, {1, kNaN}, {2, 3}, {3, kNaN}}));
     EXPECT_EQ(count(svg, "class=\"lone\""), 2U);
 }
 
@@ -82,7 +79,7 @@ TEST(Chart, PointsThatALogarithmicAxisCannotShowAreCounted) {
     const std::string svg = chart_svg(log_chart({{1, 1e-3}, {10, 0.0}, {100, -2.0}, {1e3, 1e-6}, {1e4, 1e-7}}));
     EXPECT_NE(svg.find("2 points are not above zero"), std::string::npos);
     EXPECT_EQ(path_data(svg, "curve").size(), 1U);
-    EXPECT_EQ(chart_svg(log_chart({{1, 1}, {2, kNan}, {3, 2}})).find("not above zero"), std::string::npos);
+    EXPECT_EQ(chart_svg(log_chart({{1, 1}, {2, kNaN}, {3, 2}})).find("not above zero"), std::string::npos);
     EXPECT_NE(chart_svg(log_chart({{1, 0.0}})).find("no data"), std::string::npos);
 }
 
@@ -170,7 +167,7 @@ TEST(Chart, WordsNeverCoverEachOther) {
 }
 
 TEST(Chart, AnythingIsDrawnAndNothingBreaksTheFile) {
-    const std::vector<double> values = {0.0, 1.0, -1e9, 1e15, 1e300, -1e300, 1e-300, kNan, kInfinity, -kInfinity};
+    const std::vector<double> values = {0.0, 1.0, -1e9, 1e15, 1e300, -1e300, 1e-300, kNaN, kInfinity, -kInfinity};
     for (const double a : values) {
         for (const double b : values) {
             for (PlotChart chart : {line_chart({{a, b}, {b, a}, {1.0, 2.0}}), log_chart({{a, b}, {b, a}})}) {
@@ -225,7 +222,7 @@ TEST(Palette, LinesLookAsTheyAreNamed) {
     EXPECT_GT(channel(blue, 2), channel(blue, 0) + 100);
     EXPECT_GT(channel(green, 1), channel(green, 0) + 100);
     EXPECT_GT(channel(red, 0), channel(red, 2) + 100);
-    EXPECT_EQ(wavelength_colour(kNan), kQuiet);
+    EXPECT_EQ(wavelength_colour(kNaN), kQuiet);
     // WCAG 2's contrast of every line with white.
     for (double nm = 200.0; nm < 1500.0; nm += 7.0) {
         const auto linear = [&](std::size_t i) {

@@ -4,16 +4,14 @@
 
 #include <cmath>
 #include <fstream>
-#include <limits>
 
+#include "engine/base/infinity.h"
 #include "engine/formats/image/image.h"
 #include "experiments/draw/chart.h"
 #include "tests/experiments/draw/svg_checks.h"
 
 namespace lensproof::draw {
 namespace {
-
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
 /// RFC 4648, section 4, the other way.
 std::string from_base64(const std::string& text) {
@@ -54,7 +52,7 @@ HeatMap small_map() {
     return {.columns = 3,
             .rows = 2,
             .values = {0.0, 0.5, 1.0,  // low y
-                       kNan, 0.25, 9.0},
+                       kNaN, 0.25, 9.0},
             .x = {-3.0, 3.0},
             .y = {-2.0, 2.0},
             .range = {0.0, 1.0},
@@ -128,9 +126,9 @@ TEST(HeatMap, AxesMayReachBeyondTheMapButNotCutIt) {
 }
 
 TEST(HeatMap, AnyRangeIsDrawn) {
-    const double infinity = std::numeric_limits<double>::infinity();
+    const double infinity = kInfinity;
     for (const AxisScale scale : {AxisScale::linear, AxisScale::logarithmic}) {
-        for (const AxisRange range : {AxisRange{0.0, 0.0}, AxisRange{1.0, -1.0}, AxisRange{kNan, 1.0},
+        for (const AxisRange range : {AxisRange{0.0, 0.0}, AxisRange{1.0, -1.0}, AxisRange{kNaN, 1.0},
                                       AxisRange{0.0, 1e-300}, AxisRange{-infinity, infinity}, AxisRange{5.0, 5.0}}) {
             HeatMap map = small_map();
             map.scale = scale;
@@ -139,10 +137,10 @@ TEST(HeatMap, AnyRangeIsDrawn) {
         }
     }
     HeatMap masked = small_map();
-    masked.values.assign(6, kNan);
+    masked.values.assign(6, kNaN);
     EXPECT_NE(chart_svg(map_chart(masked)).find("no data"), std::string::npos);
     EXPECT_EQ(symmetric_range(masked.values, 0.5).high, 0.5);
-    EXPECT_EQ(symmetric_range({-3.0, kNan, 2.0}, 0.5).low, -3.0);
+    EXPECT_EQ(symmetric_range({-3.0, kNaN, 2.0}, 0.5).low, -3.0);
 }
 
 /// CIE 1976 lightness, 0 to 100, of linear sRGB.

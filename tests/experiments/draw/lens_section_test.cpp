@@ -5,10 +5,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
-#include <numbers>
 #include <optional>
 
+#include "engine/base/angle.h"
+#include "engine/base/infinity.h"
 #include "engine/base/markup.h"
 #include "engine/formats/glass/shipped_glasses.h"
 #include "engine/formats/prescription/load_lens.h"
@@ -22,10 +22,6 @@
 
 namespace lensproof::draw {
 namespace {
-
-constexpr double kDegree = std::numbers::pi / 180.0;
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 optics::Prescription shipped(const std::string& name) {
     return formats::read_prescription(formats::find_lens_file(name));
@@ -42,7 +38,7 @@ TEST(Svg, NumbersAreShortAndAlwaysFinite) {
     EXPECT_EQ(svg_number(-0.001), "0");
     EXPECT_EQ(svg_number(120.0), "120");
     EXPECT_EQ(svg_number(1e300), "10000000");
-    EXPECT_EQ(svg_number(kNan), "0");
+    EXPECT_EQ(svg_number(kNaN), "0");
     EXPECT_EQ(svg_number(-kInfinity), "0");
 }
 
@@ -185,9 +181,9 @@ TEST(LensSection, MarksTheSurfacesOfErrorsAndWarnings) {
 
 TEST(LensSection, ATableThatCannotBeTracedIsDrawnWithoutRays) {
     optics::Prescription prescription = shipped("tessar");
-    prescription.surfaces[4].radius_mm = kNan;
+    prescription.surfaces[4].radius_mm = kNaN;
     prescription.surfaces[5].thickness_mm = -3.0;
-    prescription.surfaces[6].semi_diameter_mm = kNan;
+    prescription.surfaces[6].semi_diameter_mm = kNaN;
     prescription.surfaces[1].conic = kInfinity;
     const std::string svg = lens_section_svg(prescription, nullptr, {{.code = "radius", .surface = 5}});
     EXPECT_TRUE(is_well_formed(svg));
@@ -213,7 +209,7 @@ TEST(LensSection, HostileNamesStayText) {
 
 // Whatever stands in a table: every key of every surface replaced by every kind of absurd number, traceable or not.
 TEST(LensSection, AbsurdTablesAreDrawnAllTheSame) {
-    for (const double absurd : {kNan, kInfinity, -kInfinity, 0.0, -1.0, 1e-300, 1e-3, 1e6, 1e300}) {
+    for (const double absurd : {kNaN, kInfinity, -kInfinity, 0.0, -1.0, 1e-300, 1e-3, 1e6, 1e300}) {
         for (int key = 0; key < 8; ++key) {
             optics::Prescription prescription = shipped("tessar");
             for (const std::size_t i : {1U, 3U, 7U}) {

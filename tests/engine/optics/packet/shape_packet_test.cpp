@@ -6,6 +6,7 @@
 #include <functional>
 #include <random>
 
+#include "engine/base/infinity.h"
 #include "engine/base/pack.h"
 #include "engine/optics/surface_shape.h"
 
@@ -241,7 +242,7 @@ TEST(ShapePacket, LanesThatAreNotWantedAreLeftAlone) {
     const Vec3<Numbers> origin{Numbers(2.0), Numbers(3.0), Numbers(-30.0)};
     const Vec3<Numbers> direction{Numbers(0.0), Numbers(0.28), Numbers(0.96)};
     Numbers start(30.0);
-    start.set(1, std::numeric_limits<double>::infinity());
+    start.set(1, kInfinity);
     const auto wanted = start < Numbers(1e6);
     const ShapeCrossing<Numbers> crossing = newton_intersect(shape, origin, direction, Numbers(1.0), start, wanted);
     const ShapeCrossing<double> alone =

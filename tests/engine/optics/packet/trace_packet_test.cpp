@@ -133,7 +133,7 @@ TEST(TracePacket, LeavesAloneWhatIsNotAskedFor) {
         batch.size = 21;
         trace_batch(at, batch, {.carry = Carry::geometry, .level = level});
         EXPECT_TRUE(std::ranges::all_of(batch.optical_path, [](double path) { return path == -1.0; }));
-        EXPECT_TRUE(std::ranges::all_of(batch.transmittance, [](double share) { return share == -2.0; }));
+        EXPECT_TRUE(std::ranges::all_of(batch.transmittance, [](double passed) { return passed == -2.0; }));
         for (int i = 21; i < 40; ++i) {
             EXPECT_EQ(batch.ray(i).origin, rays[static_cast<std::size_t>(i)].origin);
             EXPECT_EQ(batch.status[static_cast<std::size_t>(i)], RayStatus::missed);
@@ -168,7 +168,7 @@ Lens tessar_with(const std::string& more) {
     return formats::load_lens(file.string());
 }
 
-// Blades, coatings and turned, displaced groups, each at three wavelengths, where a coating's share differs.
+// Blades, coatings and turned, displaced groups, each at three wavelengths, where a coating's transmittance differs.
 TEST(TracePacket, TracesBladesCoatingsAndTurnedGroups) {
     for (const Lens& lens :
          {tessar_with("[stop]\nblades = 6\nrotation_deg = 10\n"),

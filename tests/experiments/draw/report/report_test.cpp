@@ -5,9 +5,9 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <limits>
 #include <string>
 
+#include "engine/base/infinity.h"
 #include "engine/base/json.h"
 #include "engine/base/markup.h"
 #include "experiments/draw/report/html_text.h"
@@ -69,7 +69,7 @@ TEST(HtmlText, JsonInAScriptReadsBackTheSame) {
 }
 
 TEST(HtmlText, JsonTakesBadBytesAndNaN) {
-    const Json json = {{"bytes", "\xff\xfe"}, {"number", std::numeric_limits<double>::quiet_NaN()}};
+    const Json json = {{"bytes", "\xff\xfe"}, {"number", kNaN}};
     EXPECT_EQ(parsed(json_for_script(json)), (Json{{"bytes", "\ufffd\ufffd"}, {"number", nullptr}}));
 }
 

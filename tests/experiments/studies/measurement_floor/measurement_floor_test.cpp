@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "calibration/geometry/fit_geometry.h"
+#include "engine/base/angle.h"
 #include "experiments/studies/measurement_floor/floor_point.h"
 #include "experiments/studies/measurement_floor/floor_report.h"
 #include "experiments/studies/measurement_floor/random_poses.h"
@@ -108,7 +109,7 @@ TEST(MeasurementFloor, PosesAreAsWished) {
         const calibration::Pose pose = draw_pose(camera, 640, 480, 200.0, wish, random);
         const Vec3d normal = cross(calibration::to_camera(pose, {1.0, 0.0}) - pose.translation_mm,
                                    calibration::to_camera(pose, {0.0, 1.0}) - pose.translation_mm);
-        EXPECT_NEAR(normal.z, std::cos(35.0 * std::acos(-1.0) / 180.0), 1e-9);
+        EXPECT_NEAR(normal.z, std::cos(radians(35.0)), 1e-9);
         const Vec2d middle = *calibration::project(camera, pose.translation_mm);
         EXPECT_NEAR(middle.x, 319.5, 0.2 * 320.0);
         EXPECT_NEAR(middle.y, 239.5, 0.2 * 240.0);

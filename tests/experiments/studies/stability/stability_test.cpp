@@ -3,10 +3,10 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <limits>
 #include <ostream>
 
 #include "engine/base/file.h"
+#include "engine/base/infinity.h"
 #include "engine/base/json.h"
 #include "experiments/studies/stability/measure_stability.h"
 #include "experiments/studies/stability/stability_report.h"
@@ -76,7 +76,7 @@ INSTANTIATE_TEST_SUITE_P(All, StabilityExtremes, testing::ValuesIn(stability_ext
 /// A tracer that is off by a micrometre, as the judge would see it.
 StabilitySweep failing_sweep() {
     StabilitySweep sweep{.extreme = stability_extremes().front(), .points = {}};
-    for (const double value : {1.0, 10.0, 100.0, std::numeric_limits<double>::infinity()}) {
+    for (const double value : {1.0, 10.0, 100.0, kInfinity}) {
         StabilityPoint point{.value = value, .rays = 2};
         point.fates = {{"ok", 2}};
         point.conditioning_mm = 1e-14;
