@@ -13,12 +13,11 @@
 namespace lensproof::calibration {
 namespace {
 
-constexpr int kSmallestArea_px = 5;
+constexpr int kSmallestSpot_px = 5;
 constexpr double kLeastCompact = 0.80;  // area over that of the ellipse with its moments: disc 1, square 0.955
 constexpr double kMostCompact = 1.15;
-constexpr double kReach = 0.25;      // of a step, around where the next spot should be
-constexpr double kMostGrowth = 1.9;  // of the area, from one spot to the next
-constexpr std::size_t kFewestSpots = 9;
+constexpr double kReach = 0.25;       // of a step, around where the next spot should be
+constexpr double kMostGrowth = 1.9;   // of the area, from one spot to the next
 constexpr double kLeastFilled = 0.4;  // of the places between the first and last columns and rows
 constexpr std::size_t kMostSeeds = 40;
 constexpr double kWallDarkness = 0.92;  // grey level of a cell's walls at most, of its own
@@ -58,7 +57,7 @@ std::vector<Blob> blobs_of(const cv::Mat& picture, bool dark, int block) {
         const double area = stats.at<int>(label, cv::CC_STAT_AREA);
         const bool is_cut = x == 0 || y == 0 || x + stats.at<int>(label, cv::CC_STAT_WIDTH) == picture.cols ||
                             y + stats.at<int>(label, cv::CC_STAT_HEIGHT) == picture.rows;
-        if (is_cut || area < kSmallestArea_px) {
+        if (is_cut || area < kSmallestSpot_px) {
             continue;
         }
         const cv::Vec3d m = moments[static_cast<std::size_t>(label)] / area;

@@ -5,6 +5,8 @@
 
 namespace lensproof::calibration {
 
+inline constexpr std::size_t kFewestSpots = 9;  // that make a lattice
+
 /// A spot of a lattice: in which column and row it stands, from 0, and its middle, px.
 struct LatticeSpot {
     int column = 0;

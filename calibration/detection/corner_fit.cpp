@@ -11,15 +11,15 @@
 namespace lensproof::calibration {
 namespace {
 
-constexpr int kCurvedFrom_px = 6;        // half window
-constexpr double kLeastContrast = 0.05;  // |b| of the window's mean light
+constexpr int kCurvedFrom_px = 6;     // half window
+constexpr double kLeastSlope = 0.05;  // |b| of the window's mean light
 constexpr double kLeastExplained =
     0.75;  // of the window's variance; noise as strong as a third of the step leaves that
 constexpr double kFirstGuard_px = 1.5;
 constexpr double kGuardBlurs = 2.0;  // standard deviations; 2 % of a marker's black reach farther
 constexpr double kMostGuard = 0.5;   // of the white between edge and marker
 constexpr double kSmallestBlur_px = 0.25;
-constexpr int kFewestPixels = 24;  // twice the unknowns
+constexpr int kFewestInWindow = 24;  // twice the unknowns
 constexpr int kMostSteps = 40;
 constexpr double kBlurReach = 4.0;  // standard deviations of the plane's blur
 
@@ -309,7 +309,7 @@ std::optional<CornerFit> fit_corner(const cv::Mat& plane, double plane_blur_px, 
     // lines, whose widths are the lattice's and not exact, a window that is not even about the crossing would move it.
     for (int round = 0; round < (has_markers || start.line_squares > 0.0 ? 2 : 1); ++round) {
         pixels = pixels_of(plane, window, mask);
-        if (pixels.size() < kFewestPixels) {
+        if (pixels.size() < kFewestInWindow) {
             return std::nullopt;
         }
         double squares = 0.0;
@@ -323,7 +323,7 @@ std::optional<CornerFit> fit_corner(const cv::Mat& plane, double plane_blur_px, 
     }
     const double moved = std::hypot(p[kX] - start.corner_px.x, p[kY] - start.corner_px.y);
     if (!settled || !(moved <= std::max(1.5, 0.5 * start.half_window)) ||
-        !(std::abs(p[kContrast]) > kLeastContrast * std::abs(p[kLevel])) || p[kBlur] > 0.5 * start.half_window ||
+        !(std::abs(p[kContrast]) > kLeastSlope * std::abs(p[kLevel])) || p[kBlur] > 0.5 * start.half_window ||
         !(unexplained < 1.0 - kLeastExplained)) {
         return std::nullopt;
     }

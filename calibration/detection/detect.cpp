@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <concepts>
 #include <functional>
 #include <opencv2/calib3d.hpp>
 #include <opencv2/imgproc.hpp>
@@ -16,6 +17,7 @@
 #include "calibration/detection/working_copy.h"
 #include "engine/base/angle.h"
 #include "engine/base/input_error.h"
+#include "engine/base/overloaded.h"
 
 namespace lensproof::calibration {
 namespace {
@@ -25,11 +27,6 @@ using Finder = std::function<bool(const cv::Mat&, Points&)>;
 
 constexpr int kSmallestSide_px = 16;
 constexpr double kSearchSide_px = 1600.0;  // larger pictures are searched at this size: corners lie well within a pixel
-
-cv::Size grid_size(const scene::Chart& chart) {
-    const scene::GridSize grid = scene::feature_grid(chart);
-    return {grid.columns, grid.rows};
-}
 
 std::string size_in_words(cv::Size size) {
     return std::to_string(size.width) + " × " + std::to_string(size.height);
@@ -191,8 +188,7 @@ std::optional<Points> numbered_as_chart(const cv::Mat& picture, const Points& po
 }
 
 // A checkerboard, which is seen as a whole or not at all.
-ChartSearch find_checkerboard(const cv::Mat& picture, const scene::Chart& chart) {
-    const cv::Size grid = grid_size(chart);
+ChartSearch find_checkerboard(const cv::Mat& picture, cv::Size grid) {
     Points points;
     if (!find_board(picture, grid, points) || points.size() != static_cast<std::size_t>(grid.area())) {
         return {.reason = "no checkerboard of " + size_in_words(grid) + " inner corners found"};
@@ -207,15 +203,28 @@ ChartSearch find_checkerboard(const cv::Mat& picture, const scene::Chart& chart)
 }
 
 ChartSearch search(const cv::Mat& picture, const scene::Chart& chart) {
+    const scene::ChartTraits known = scene::traits(chart);
+    const Overloaded find{
+        [&](const scene::SquareCorners&) {
+            return find_checkerboard(picture, {known.points.columns, known.points.rows});
+        },
+        [&](const scene::MarkedCorners&) {
+            return find_charuco(picture, std::get<scene::CharucoBoard>(chart.pattern));
+        },
+        [&](const scene::Spots& spots) { return find_lattice(picture, known.points, spots); },
+        [&](const scene::LineCrossings& lines) { return find_lattice(picture, known.points, lines); },
+        [](const scene::Unsearched&) { return ChartSearch{.reason = "not searched for"}; },
+    };
     try {
-        if (const auto* board = std::get_if<scene::CharucoBoard>(&chart.pattern)) {
-            return find_charuco(picture, *board);
-        }
-        return is_lattice(chart) ? find_lattice(picture, chart) : find_checkerboard(picture, chart);
+        return std::visit(find, known.look);
     } catch (const cv::Exception&) {
         // OpenCV's detectors assert on some pictures that merely do not show the chart.
         return {.reason = "no " + scene::kind_name(chart) + " found"};
     }
+}
+
+bool is_searched_for(const scene::PointLook& look) {
+    return std::visit([]<class Look>(const Look&) { return !std::derived_from<Look, scene::Unsearched>; }, look);
 }
 
 Detection not_found(std::string reason) {
@@ -225,12 +234,17 @@ Detection not_found(std::string reason) {
 }  // namespace
 
 bool can_detect(const scene::Chart& chart) {
-    return std::holds_alternative<scene::Checkerboard>(chart.pattern) ||
-           std::holds_alternative<scene::CharucoBoard>(chart.pattern) || is_lattice(chart);
+    return is_searched_for(scene::traits(chart).look);
 }
 
 std::string detectable_kinds() {
-    return "checkerboard, charuco, disc-grid, point-grid, slanted-edges, straight-lines";
+    std::string names;
+    for (const scene::ChartKind& kind : scene::chart_kinds()) {
+        if (is_searched_for(kind.look)) {
+            names += (names.empty() ? "" : ", ") + kind.name;
+        }
+    }
+    return names;
 }
 
 Detection detect(const formats::Image& image, const scene::Chart& chart) {
@@ -238,9 +252,9 @@ Detection detect(const formats::Image& image, const scene::Chart& chart) {
         throw InputError("a chart of kind " + scene::kind_name(chart) + " cannot be searched for: expected one of " +
                          detectable_kinds());
     }
-    const cv::Size grid = grid_size(chart);
-    if (grid.width < 3 || grid.height < 3) {
-        throw InputError("a " + scene::kind_name(chart) + " with " + size_in_words(grid) +
+    const scene::GridSize grid = scene::feature_grid(chart);
+    if (grid.columns < 3 || grid.rows < 3) {
+        throw InputError("a " + scene::kind_name(chart) + " with " + size_in_words({grid.columns, grid.rows}) +
                          " points cannot be searched for: expected at least 3 × 3");
     }
     if (image.width < kSmallestSide_px || image.height < kSmallestSide_px || image.channel_count() == 0) {

@@ -5,12 +5,11 @@
 #include "calibration/detection/numbering.h"
 #include "calibration/detection/refine.h"
 #include "engine/formats/image/image.h"
-#include "engine/scene/chart.h"
+#include "engine/scene/chart/chart.h"
 
 namespace lensproof::calibration {
 
-/// Whether `detect` knows charts of this kind: all but flat fields, astigmatism crosses and colour checkers, and
-/// Siemens stars, which have but one point.
+/// Whether `detect` knows charts of this kind, by what their points look like (engine/scene/chart/chart_traits.h).
 bool can_detect(const scene::Chart& chart);
 
 /// The names of those kinds, for messages.

@@ -3,7 +3,7 @@
 #include <opencv2/core.hpp>
 
 #include "calibration/detection/chart_search.h"
-#include "engine/scene/chart.h"
+#include "engine/scene/chart/chart.h"
 
 namespace lensproof::calibration {
 

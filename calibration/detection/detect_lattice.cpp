@@ -16,10 +16,9 @@
 namespace lensproof::calibration {
 namespace {
 
-constexpr double kLeastShare = 0.25;   // of the chart's points that have to be seen
-constexpr double kInWindow = 0.9;      // of the spots found that have to fit into the chart
-constexpr double kLineDarkness = 0.8;  // grey level of a line at most, of the ground's
-constexpr std::size_t kFewestSpots = 9;
+constexpr double kLeastFractionSeen = 0.25;  // of the chart's points that have to be seen
+constexpr double kInWindow = 0.9;            // of the spots found that have to fit into the chart
+constexpr double kLineDarkness = 0.8;        // grey level of a line at most, of the ground's
 constexpr double kCrossingBlur_px = 1.5;
 constexpr double kCrossingReach = 0.15;  // of a step, around where the cells put a crossing
 
@@ -200,35 +199,10 @@ std::vector<LatticeSpot> crossings_of(const cv::Mat& picture, const std::vector<
     return as_lattice(crossings);
 }
 
-const char* name_of_points(const scene::Chart& chart) {
-    if (std::holds_alternative<scene::DiscGrid>(chart.pattern)) {
-        return "discs";
-    }
-    if (std::holds_alternative<scene::PointGrid>(chart.pattern)) {
-        return "dots";
-    }
-    return std::holds_alternative<scene::SlantedEdges>(chart.pattern) ? "squares" : "crossings of lines";
-}
-
-}  // namespace
-
-bool is_lattice(const scene::Chart& chart) {
-    return std::holds_alternative<scene::DiscGrid>(chart.pattern) ||
-           std::holds_alternative<scene::PointGrid>(chart.pattern) ||
-           std::holds_alternative<scene::SlantedEdges>(chart.pattern) ||
-           std::holds_alternative<scene::StraightLines>(chart.pattern);
-}
-
-ChartSearch find_lattice(const cv::Mat& picture, const scene::Chart& chart) {
-    const scene::GridSize grid = scene::feature_grid(chart);
-    const bool is_lines = std::holds_alternative<scene::StraightLines>(chart.pattern);
-    const bool is_dark = !is_lines && !std::holds_alternative<scene::PointGrid>(chart.pattern);
-    std::vector<LatticeSpot> spots = find_blob_lattice(picture, is_dark, !is_lines);
-    if (is_lines) {
-        spots = crossings_of(picture, spots);
-    }
+/// What of the chart is seen, by the lattice of its points in the picture.
+ChartSearch numbered(std::vector<LatticeSpot> spots, scene::GridSize grid, const std::string& name) {
     const auto total = static_cast<std::size_t>(grid.columns) * grid.rows;
-    const std::string wanted = in_words(grid) + " " + name_of_points(chart);
+    const std::string wanted = in_words(grid) + " " + name;
     if (spots.size() < kFewestSpots) {
         return {.reason = "no grid of " + wanted + " found"};
     }
@@ -240,10 +214,10 @@ ChartSearch find_lattice(const cv::Mat& picture, const scene::Chart& chart) {
         placing = other_placing;
     }
     if (static_cast<double>(placing.inside) < kInWindow * static_cast<double>(spots.size())) {
-        return {.reason = "a grid of " + in_words(size_of(spots)) + " " + name_of_points(chart) +
-                          " found, more than the " + wanted + " of the chart"};
+        return {.reason = "a grid of " + in_words(size_of(spots)) + " " + name + " found, more than the " + wanted +
+                          " of the chart"};
     }
-    if (static_cast<double>(placing.inside) < kLeastShare * static_cast<double>(total)) {
+    if (static_cast<double>(placing.inside) < kLeastFractionSeen * static_cast<double>(total)) {
         return {.reason = "only " + std::to_string(placing.inside) + " of " + wanted + " found in rows and columns"};
     }
     const scene::GridSize seen = size_of(spots);
@@ -263,6 +237,16 @@ ChartSearch find_lattice(const cv::Mat& picture, const scene::Chart& chart) {
         }
     }
     return result;
+}
+
+}  // namespace
+
+ChartSearch find_lattice(const cv::Mat& picture, scene::GridSize grid, const scene::Spots& spots) {
+    return numbered(find_blob_lattice(picture, !spots.is_bright, true), grid, spots.name);
+}
+
+ChartSearch find_lattice(const cv::Mat& picture, scene::GridSize grid, const scene::LineCrossings& /*any width*/) {
+    return numbered(crossings_of(picture, find_blob_lattice(picture, false, false)), grid, "crossings of lines");
 }
 
 }  // namespace lensproof::calibration

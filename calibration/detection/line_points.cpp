@@ -18,9 +18,9 @@ constexpr double kBlurReach_px = 4.0;   // beyond the line
 constexpr double kPaper_px = 4.0;       // beyond that, for the ground
 constexpr double kMostReach = 0.4;      // of a pitch, to either side
 constexpr double kLeastDarkness = 0.2;  // of the light missing where the line is black
-constexpr double kFewestPixels = 12.0;
+constexpr double kShortest_px = 12.0;
 constexpr double kLargestOff_px = 2.0;
-constexpr int kRounds = 3;
+constexpr int kProfileRounds = 3;
 
 // A piece of a line: along ± half_length of its middle; `inner` to either side is the line's, up to `outer` the paper.
 struct Piece {
@@ -84,7 +84,7 @@ std::optional<Across> centroid_across(const formats::Image& image, int channel, 
         }
     });
     const Eigen::LDLT<Eigen::Matrix3d> solver(normal);
-    if (!is_seen || normal(0, 0) < kFewestPixels || !(solver.rcond() > 1e-9)) {
+    if (!is_seen || normal(0, 0) < kShortest_px || !(solver.rcond() > 1e-9)) {
         return std::nullopt;
     }
     const Row paper = solver.solve(right);
@@ -119,7 +119,7 @@ std::optional<Across> centroid_across(const formats::Image& image, int channel, 
 std::optional<LinePoint> point_on(const formats::Image& image, int channel, Piece piece) {
     std::optional<Across> found;
     double moved = 0.0;
-    for (int round = 0; round < kRounds; ++round) {
+    for (int round = 0; round < kProfileRounds; ++round) {
         found = centroid_across(image, channel, piece);
         if (!found) {
             return std::nullopt;

@@ -5,7 +5,7 @@
 #include "calibration/detection/refine.h"
 #include "engine/base/vec.h"
 #include "engine/formats/image/image.h"
-#include "engine/scene/chart.h"
+#include "engine/scene/chart/chart.h"
 
 namespace lensproof::calibration {
 

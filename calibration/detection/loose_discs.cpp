@@ -12,11 +12,11 @@
 namespace lensproof::calibration {
 namespace {
 
-constexpr double kInner = 1.25;      // radii that hold the disc and its blur
-constexpr double kOuter = 1.6;       // radii of the white that W is taken from
-constexpr double kBlur_px = 1.0;     // added to the one, and twice to the other
-constexpr double kLeastShare = 0.3;  // of the darkness of a black disc
-constexpr int kSmallestArea_px = 20;
+constexpr double kInner = 1.25;             // radii that hold the disc and its blur
+constexpr double kOuter = 1.6;              // radii of the white that W is taken from
+constexpr double kLevelBlur_px = 1.0;       // added to the one, and twice to the other
+constexpr double kLeastDiscDarkness = 0.3;  // of the darkness of a black disc
+constexpr int kSmallestDisc_px = 20;
 constexpr double kRoundness = 1.35;  // longer side of a blob's box over the shorter one
 constexpr double kFillShare = 0.65;  // of its box; π/4 of a circle or an ellipse
 
@@ -25,10 +25,10 @@ constexpr double kFillShare = 0.65;  // of its box; π/4 of a circle or an ellip
 std::optional<Vec2d> locate_disc(const formats::Image& image, int channel, const LooseDisc& expected) {
     const double radius = expected.radius_px;
     const auto spot = locate_spot(image, channel, expected.centre_px,
-                                  {.inner = kInner * radius + kBlur_px,
-                                   .outer = kOuter * radius + 2.0 * kBlur_px,
+                                  {.inner = kInner * radius + kLevelBlur_px,
+                                   .outer = kOuter * radius + 2.0 * kLevelBlur_px,
                                    .area_px = std::numbers::pi * radius * radius,
-                                   .least_share = kLeastShare});
+                                   .least_share = kLeastDiscDarkness});
     const bool is_near = spot && std::hypot(spot->centre_px.x - expected.centre_px.x,
                                             spot->centre_px.y - expected.centre_px.y) <= 0.5 * radius;
     return is_near ? std::optional(spot->centre_px) : std::nullopt;
@@ -59,7 +59,7 @@ std::vector<LooseDisc> find_loose_discs(const formats::Image& image, int channel
         const int area = boxes.at<int>(i, cv::CC_STAT_AREA);
         const bool is_round =
             std::max(width, height) <= kRoundness * std::min(width, height) && area >= kFillShare * width * height;
-        if (area >= kSmallestArea_px && is_round) {
+        if (area >= kSmallestDisc_px && is_round) {
             blobs.push_back({{middles.at<double>(i, 0), middles.at<double>(i, 1)},
                              std::sqrt(static_cast<double>(area) / std::numbers::pi)});
         }

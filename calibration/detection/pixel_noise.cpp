@@ -13,7 +13,7 @@ namespace {
 constexpr int kFarthest_px = 40;         // looked at around a point; more pixels tell no more
 constexpr double kMedianOfAbs = 0.6745;  // of a normal distribution, in standard deviations
 constexpr double kMaskNorm = 6.0;        // root of the sum of the mask's squares
-constexpr std::size_t kFewestPixels = 25;
+constexpr std::size_t kFewestSteps = 25;
 constexpr double kMostStep = 7.0;   // of the noise: five standard deviations of a difference; more is an edge
 constexpr double kFullScale = 1.0;  // integer formats end there
 
@@ -45,7 +45,7 @@ std::optional<double> response(const formats::Image& image, int channel, const R
             }
         }
     }
-    return responses.size() < kFewestPixels ? std::nullopt : std::optional(median(responses));
+    return responses.size() < kFewestSteps ? std::nullopt : std::optional(median(responses));
 }
 
 // Were the noise normal.

@@ -16,6 +16,7 @@
 namespace lensproof::calibration {
 namespace {
 
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kWindowShare = 0.4;   // half window of the distance to the nearest corner
 constexpr int kSmallestWindow_px = 2;  // half window: 5 × 5 pixels
 constexpr int kLargestWindow_px = 14;  // half window; more pixels than noise asks for, and lines bend
@@ -63,7 +64,7 @@ double norm(const Vec2d& v) {
 struct Lattice {
     Vec2d column_step;
     Vec2d row_step;
-    double nearest = std::numeric_limits<double>::infinity();
+    double nearest = kInfinity;
 };
 
 // None where no neighbour in the row, or none in the column, was found.
@@ -132,37 +133,26 @@ std::optional<Vec2d> search_corner(const cv::Mat& plane, const Vec2d& start, int
     return agree && norm(difference(second, start)) <= half_window ? std::optional(second) : std::nullopt;
 }
 
-// How far from the edges of its square a marker stands, in squares.
-double clear_squares(const scene::Chart& chart) {
-    const auto* board = std::get_if<scene::CharucoBoard>(&chart.pattern);
-    return board ? 0.5 * (1.0 - board->marker_mm / board->square_mm) : std::numeric_limits<double>::infinity();
-}
-
-// Width of the lines that cross, in pitches; 0 where squares meet.
-double line_squares(const scene::Chart& chart) {
-    const auto* lines = std::get_if<scene::StraightLines>(&chart.pattern);
-    return lines ? lines->line_mm / lines->pitch_mm : 0.0;
-}
-
 struct RefinedPoint {
     Vec2d image_px;
     std::optional<Vec2d> standard_error_px;
 };
 
 std::optional<RefinedPoint> refine_corner(const formats::Image& image, const cv::Mat& plane, int channel,
-                                          const Vec2d& start, const Lattice& lattice, const scene::Chart& chart) {
+                                          const Vec2d& start, const Lattice& lattice, const scene::PointLook& look) {
     const int half_window =
         std::clamp(static_cast<int>(kWindowShare * lattice.nearest), kSmallestWindow_px, kLargestWindow_px);
     if (!all_finite(image, channel, start, half_window) || is_near_frame(image, start)) {
         return std::nullopt;
     }
+    const auto* marked = std::get_if<scene::MarkedCorners>(&look);
+    const auto* lines = std::get_if<scene::LineCrossings>(&look);
     const CornerStart corner_start{.corner_px = start,
                                    .along_first = lattice.column_step,
                                    .along_second = lattice.row_step,
                                    .half_window = half_window,
-                                   .clear_squares = clear_squares(chart),
-                                   .line_squares = line_squares(chart)};
-    const bool is_line = corner_start.line_squares > 0.0;
+                                   .clear_squares = marked != nullptr ? marked->clear_squares : kInfinity,
+                                   .line_squares = lines != nullptr ? lines->line_pitches : 0.0};
     std::optional<RefinedPoint> corner;
     if (half_window < kFitFrom_px) {
         if (const auto found = search_corner(plane, start, half_window)) {
@@ -172,39 +162,26 @@ std::optional<RefinedPoint> refine_corner(const formats::Image& image, const cv:
         corner = {fitted->corner_px, fitted->standard_error_px};
     }
     if (!corner || is_near_frame(image, corner->image_px) ||
-        (!is_line && corner_contrast(plane, corner->image_px, lattice,
-                                     std::min(0.25, 0.7 * corner_start.clear_squares)) < kLeastContrast)) {
+        (lines == nullptr && corner_contrast(plane, corner->image_px, lattice,
+                                             std::min(0.25, 0.7 * corner_start.clear_squares)) < kLeastContrast)) {
         return std::nullopt;
     }
     return corner;
 }
 
-// The radius that holds a chart's spot, in pitches; none where its points are no spots.
-std::optional<double> spot_radius(const scene::Chart& chart) {
-    if (const auto* discs = std::get_if<scene::DiscGrid>(&chart.pattern)) {
-        return 0.5 * discs->diameter_mm / discs->pitch_mm;
-    }
-    if (const auto* points = std::get_if<scene::PointGrid>(&chart.pattern)) {
-        return 0.5 * points->dot_mm / points->pitch_mm;
-    }
-    if (const auto* edges = std::get_if<scene::SlantedEdges>(&chart.pattern)) {
-        return edges->square_mm / (std::numbers::sqrt2 * edges->pitch_mm);
-    }
-    return std::nullopt;
-}
-
 std::optional<RefinedPoint> refine_spot(const formats::Image& image, int channel, const Vec2d& start,
-                                        const Lattice& lattice, double radius, bool is_bright) {
+                                        const Lattice& lattice, const scene::Spots& look) {
+    const double radius = look.radius_pitches;
     const double determinant = lattice.column_step.x * lattice.row_step.y - lattice.column_step.y * lattice.row_step.x;
     // Far enough out for blur, and no farther: ground adds nothing but noise.
     const double step_px = std::min(norm(lattice.column_step), norm(lattice.row_step));
     const SpotWindow window{.x_unit_px = lattice.column_step,
                             .y_unit_px = lattice.row_step,
                             .inner = std::min(0.6 * radius + 0.4 * 0.5, radius + kSpotMargin_px / step_px),
-                            .outer = is_bright ? std::max(0.5 - kSpotMargin_px / step_px, 0.4) : 0.5,
+                            .outer = look.is_bright ? std::max(0.5 - kSpotMargin_px / step_px, 0.4) : 0.5,
                             .area_px = std::numbers::pi * radius * radius * std::abs(determinant),
                             .least_share = kLeastContrast,
-                            .is_bright = is_bright};
+                            .is_bright = look.is_bright};
     const auto spot = std::abs(determinant) > 1.0 ? locate_spot(image, channel, start, window) : std::optional<Spot>();
     return spot ? std::optional(RefinedPoint{spot->centre_px, spot->standard_error_px}) : std::nullopt;
 }
@@ -213,7 +190,8 @@ std::optional<RefinedPoint> refine_spot(const formats::Image& image, int channel
 
 ChartPoints refine(const formats::Image& image, int channel, const ChartPoints& approximate,
                    const scene::Chart& chart) {
-    const scene::GridSize grid = scene::feature_grid(chart);
+    const scene::ChartTraits known = scene::traits(chart);
+    const scene::GridSize grid = known.points;
     const auto expected = static_cast<std::size_t>(grid.columns) * grid.rows;
     if (approximate.image_px.size() != expected || approximate.found.size() != expected || grid.columns < 2 ||
         grid.rows < 2) {
@@ -224,10 +202,9 @@ ChartPoints refine(const formats::Image& image, int channel, const ChartPoints& 
         throw InputError("refining a " + scene::kind_name(chart) + ": the picture has no channel " +
                          std::to_string(channel));
     }
-    const std::optional<double> spot = spot_radius(chart);
-    const bool is_bright = std::holds_alternative<scene::PointGrid>(chart.pattern);
+    const auto* spots = std::get_if<scene::Spots>(&known.look);
     cv::Mat plane;
-    if (!spot) {
+    if (spots == nullptr) {
         // Edges sharper than a pixel are aliased, which biases search and fit alike; the blur takes that away.
         cv::GaussianBlur(channel_plane(image, channel), plane, {}, kBlur_px);
     }
@@ -243,8 +220,8 @@ ChartPoints refine(const formats::Image& image, int channel, const ChartPoints& 
                 continue;
             }
             const Vec2d& start = approximate.image_px[i];
-            const auto refined = spot ? refine_spot(image, channel, start, *lattice, *spot, is_bright)
-                                      : refine_corner(image, plane, channel, start, *lattice, chart);
+            const auto refined = spots != nullptr ? refine_spot(image, channel, start, *lattice, *spots)
+                                                  : refine_corner(image, plane, channel, start, *lattice, known.look);
             if (refined) {
                 result.image_px[i] = refined->image_px;
                 result.standard_error_px[i] = refined->standard_error_px;
@@ -262,14 +239,9 @@ ChartPoints refine(const formats::Image& image, int channel, const ChartPoints& 
 }
 
 double disc_diameter_mm(const scene::Chart& chart) {
-    if (const auto* discs = std::get_if<scene::DiscGrid>(&chart.pattern)) {
-        return discs->diameter_mm;
-    }
-    if (const auto* points = std::get_if<scene::PointGrid>(&chart.pattern)) {
-        return points->dot_mm;
-    }
-    const auto* edges = std::get_if<scene::SlantedEdges>(&chart.pattern);
-    return edges ? 2.0 / std::numbers::sqrt3 * edges->square_mm : 0.0;
+    const scene::PointLook look = scene::traits(chart).look;
+    const auto* spots = std::get_if<scene::Spots>(&look);
+    return spots != nullptr ? spots->moment_diameter_mm : 0.0;
 }
 
 int count_found(const ChartPoints& points) {

@@ -10,8 +10,7 @@ namespace lensproof::calibration {
 namespace {
 
 constexpr double kWhitePercentile = 0.995;
-constexpr double kLeastContrast =
-    0.02;  // of white, in linear light: less than a chart's black and white ever differ by
+constexpr double kLeastStretch = 0.02;  // of white, in linear light: less than a chart's black and white ever differ by
 
 double srgb_encode(double linear) {
     return linear <= 0.0031308 ? 12.92 * linear : 1.055 * std::pow(linear, 1.0 / 2.4) - 0.055;
@@ -42,7 +41,7 @@ cv::Mat detector_copy(const formats::Image& image) {
     }
     const float white = quantile(values, kWhitePercentile);
     const float black = quantile(values, 1.0 - kWhitePercentile);
-    if (!(white > 0.0F) || white - black < kLeastContrast * white) {
+    if (!(white > 0.0F) || white - black < kLeastStretch * white) {
         return {};
     }
     cv::Mat encoded(image.height, image.width, CV_8U);

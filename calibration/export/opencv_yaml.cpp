@@ -14,7 +14,7 @@
 namespace lensproof::calibration {
 namespace {
 
-constexpr int kFrameColumns = 49;
+constexpr int kFitColumns = 49;
 constexpr double kLargestSlope = 30.0;  // of X/Z: 88°; OpenCV's functions, fisheyes' too, divide by Z
 constexpr int kReweightings = 12;
 
@@ -242,7 +242,7 @@ std::string yaml_of(const Profile& profile, const OpencvExport& result, const Op
 
 OpencvExport opencv_export(const Profile& profile) {
     const ProfileGeometry& geometry = exported_geometry(profile);
-    const std::vector<FramePoint> frame = frame_points(profile, kFrameColumns);
+    const std::vector<FramePoint> frame = frame_points(profile, kFitColumns);
     std::vector<FramePoint> in_front;
     std::ranges::copy_if(frame, std::back_inserter(in_front),
                          [](const FramePoint& p) { return is_in_front(p.direction); });

@@ -15,7 +15,7 @@ constexpr double kDark = 0.02;
 constexpr int kMargin = 2;  // cells: an edge can cross one cell and leave a sliver in the next
 constexpr double kClippedShare = 0.01;
 constexpr float kFullScale = 1.0F;
-constexpr double kWhiteShare = 0.6;  // of a square's side, so that blur and the corners' errors stay outside
+constexpr double kWhitePart = 0.6;  // of a square's side, so that blur and the corners' errors stay outside
 constexpr int kFewestPixels = 4;
 
 bool is_clipped(const formats::Image& image, int channel) {
@@ -158,15 +158,15 @@ std::optional<LightSample> patch_sample(const formats::Image& image, int channel
         .pixel_px = at(0.5, 0.5), .value = mean.mean(), .relative_error = mean.error() / mean.mean(), .chart_mm = {}};
 }
 
-// The part of the cell between four points that is surely white, as a share of its side; 0: none.
-double white_share(const scene::Chart& chart) {
-    if (const auto* discs = std::get_if<scene::DiscGrid>(&chart.pattern)) {
+// The part of a white cell between four points that is surely white, as a fraction of its side; 0: none.
+double white_part(const scene::ChartTraits& known) {
+    const auto* spots = std::get_if<scene::Spots>(&known.look);
+    if (known.white == scene::WhiteCells::all && spots != nullptr) {
         // A centred square whose corners stay clear of the discs by 15 % of their radius.
-        const double radius = 0.5 * discs->diameter_mm / discs->pitch_mm;
-        const double share = 1.0 - 1.15 * radius * std::numbers::sqrt2;
-        return share > 0.15 ? share : 0.0;
+        const double side = 1.0 - 1.15 * spots->radius_pitches * std::numbers::sqrt2;
+        return side > 0.15 ? side : 0.0;
     }
-    return std::holds_alternative<scene::Checkerboard>(chart.pattern) ? kWhiteShare : 0.0;
+    return known.white == scene::WhiteCells::odd ? kWhitePart : 0.0;
 }
 
 }  // namespace
@@ -174,19 +174,19 @@ double white_share(const scene::Chart& chart) {
 LightGroup chart_white_samples(const formats::Image& image, int channel, const ChartPoints& points,
                                const scene::Chart& chart) {
     LightGroup group{.on_chart = true, .samples = {}};
-    const scene::GridSize grid = scene::feature_grid(chart);
+    const scene::ChartTraits known = scene::traits(chart);
+    const scene::GridSize grid = known.points;
     const std::vector<Vec2d> chart_points = scene::feature_points(chart);
     if (chart_points.empty() || points.found.size() != chart_points.size() ||
         points.image_px.size() != chart_points.size() || channel < 0 || channel >= image.channel_count()) {
         return group;
     }
-    const double share = white_share(chart);
-    const bool board = std::holds_alternative<scene::Checkerboard>(chart.pattern);
+    const double part = white_part(known);
     const bool clipped = is_clipped(image, channel);
-    for (int row = 0; row + 1 < grid.rows && share > 0.0; ++row) {
+    for (int row = 0; row + 1 < grid.rows && part > 0.0; ++row) {
         for (int column = 0; column + 1 < grid.columns; ++column) {
-            if (board && (row + column) % 2 == 0) {
-                continue;  // the first inner square lies diagonally below the black one at the top left
+            if (known.white == scene::WhiteCells::odd && (row + column) % 2 == 0) {
+                continue;
             }
             const std::size_t i = static_cast<std::size_t>(row) * grid.columns + column;
             const std::size_t around[4] = {i, i + 1, i + 1 + grid.columns, i + grid.columns};
@@ -202,7 +202,7 @@ LightGroup chart_white_samples(const formats::Image& image, int channel, const C
             Vec2d corner[4];
             for (int k = 0; k < 4; ++k) {
                 const Vec2d& p = points.image_px[around[k]];
-                corner[k] = {middle.x + share * (p.x - middle.x), middle.y + share * (p.y - middle.y)};
+                corner[k] = {middle.x + part * (p.x - middle.x), middle.y + part * (p.y - middle.y)};
             }
             if (auto sample = patch_sample(image, channel, corner, clipped)) {
                 sample->chart_mm = chart_middle;

@@ -9,7 +9,7 @@
 #include "calibration/geometry/fit_geometry.h"
 #include "calibration/profile/profile.h"
 #include "engine/formats/image/image.h"
-#include "engine/scene/chart.h"
+#include "engine/scene/chart/chart.h"
 
 namespace lensproof::calibration {
 

@@ -8,7 +8,7 @@
 #include "calibration/chromatic/chromatic_shift.h"
 #include "calibration/profile/profile.h"
 #include "engine/formats/image/image.h"
-#include "engine/scene/chart.h"
+#include "engine/scene/chart/chart.h"
 
 namespace lensproof::calibration {
 

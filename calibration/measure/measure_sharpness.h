@@ -9,7 +9,7 @@
 #include "calibration/sharpness/profile_edge.h"
 #include "calibration/sharpness/profile_star.h"
 #include "engine/formats/image/image.h"
-#include "engine/scene/chart.h"
+#include "engine/scene/chart/chart.h"
 
 namespace lensproof::calibration {
 

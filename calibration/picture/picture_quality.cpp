@@ -22,12 +22,11 @@ constexpr double kSteepestPart = 0.999;      // of the pixels are less steep
 }  // namespace
 
 std::string too_blurred(const PictureTraits& traits, const ChartPoints& points, const scene::Chart& chart) {
-    const bool has_large_fields = std::holds_alternative<scene::Checkerboard>(chart.pattern) ||
-                                  std::holds_alternative<scene::DiscGrid>(chart.pattern);
-    if (!has_large_fields || !traits.blur_px) {
+    const scene::ChartTraits known = scene::traits(chart);
+    if (known.white == scene::WhiteCells::none || !traits.blur_px) {
         return "";
     }
-    const auto columns = static_cast<std::size_t>(scene::feature_grid(chart).columns);
+    const auto columns = static_cast<std::size_t>(known.points.columns);
     std::vector<double> steps;
     for (std::size_t i = 1; i < points.image_px.size(); ++i) {
         if (i % columns != 0 && points.found[i - 1] && points.found[i]) {

@@ -5,13 +5,13 @@
 #include "calibration/detection/refine.h"
 #include "calibration/picture/picture_traits.h"
 #include "engine/formats/image/image.h"
-#include "engine/scene/chart.h"
+#include "engine/scene/chart/chart.h"
 
 namespace lensproof::calibration {
 
 /// Why a chart that was found had better be left out: its edges (from 10 % to 90 %) are a quarter of its fields wide,
-/// so that neighbours' blurs meet in a corner's window. Empty where there is no such reason, and for charts other than
-/// checkerboards and discs.
+/// so that neighbours' blurs meet in a corner's window. Empty where there is no such reason, and for charts without
+/// white fields.
 std::string too_blurred(const PictureTraits& traits, const ChartPoints& points, const scene::Chart& chart);
 
 /// Whether the white around most of the chart's points is at full scale.

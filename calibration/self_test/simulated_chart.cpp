@@ -7,7 +7,6 @@
 #include <opencv2/imgproc.hpp>
 #include <random>
 
-#include "engine/base/overloaded.h"
 #include "engine/base/parallel.h"
 #include "engine/formats/image/jpeg.h"
 
@@ -20,24 +19,6 @@ constexpr int kKnot_px = 2;         // between exact points of the map to the ch
 constexpr int kBandRows = 64;       // of pixels, made at a time
 constexpr double kBlurReach = 4.0;  // standard deviations
 constexpr int kBoardRounds = 6;     // each gains what slope and obliquity leave of the height: 0.1 and less
-
-// The width that every white or black part of a chart has at least, mm; 0 where none is stated.
-double narrowest_part_mm(const scene::Chart& chart) {
-    const Overloaded narrowest{
-        [](const scene::Checkerboard& c) { return c.square_mm; },
-        [](const scene::DiscGrid& c) { return std::min(c.diameter_mm, c.pitch_mm - c.diameter_mm); },
-        [](const scene::CharucoBoard& c) {
-            return std::min(c.marker_mm / (c.cells + 2), 0.5 * (c.square_mm - c.marker_mm));
-        },
-        [](const scene::PointGrid& c) { return std::min(c.dot_mm, c.pitch_mm - c.dot_mm); },
-        [](const scene::SlantedEdges& c) {
-            return std::min(c.square_mm, c.pitch_mm - std::numbers::sqrt2 * c.square_mm);
-        },
-        [](const scene::StraightLines& c) { return std::min(c.line_mm, c.pitch_mm - c.line_mm); },
-        [](const auto& /*other*/) { return 0.0; },
-    };
-    return std::visit(narrowest, chart.pattern);
-}
 
 // Directions are mapped knot by knot; in a cell of four knots bilinearly.
 class ChartMap {
@@ -79,7 +60,7 @@ class ChartMap {
     /// Marks the cells that no edge is near: five by five cells around are of one tone at all knots and middles, which
     /// no part of the chart that is four pixels wide slips through.
     void find_even_cells(const scene::Chart& chart) {
-        const double narrowest = narrowest_part_mm(chart);
+        const double narrowest = scene::traits(chart).narrowest_mm;
         for (int j = 0; j + 1 < rows_; ++j) {
             for (int i = 0; i + 1 < columns_; ++i) {
                 even_.at<unsigned char>(j, i) = is_one_tone(cell_at(i, j), chart, narrowest) ? 1 : 0;

@@ -11,7 +11,7 @@
 #include "calibration/geometry/camera_model.h"
 #include "calibration/geometry/planar_pose.h"
 #include "engine/formats/image/image.h"
-#include "engine/scene/chart.h"
+#include "engine/scene/chart/chart.h"
 
 namespace lensproof::calibration {
 

@@ -52,10 +52,11 @@ std::optional<EdgeRegion> region(const LocalMap& map, const Vec2d& middle, const
 // A point of the chart's grid, with what its neighbours say about the map there.
 class Grid {
   public:
-    Grid(const ChartPoints& points, const scene::Chart& chart, double pitch_mm)
-        : points_(points), size_(scene::feature_grid(chart)), pitch_mm_(pitch_mm) {}
+    Grid(const ChartPoints& points, const scene::ChartTraits& chart)
+        : points_(points), size_(chart.points), pitch_mm_(chart.pitch_mm) {}
 
     [[nodiscard]] scene::GridSize size() const { return size_; }
+    [[nodiscard]] double pitch_mm() const { return pitch_mm_; }
     [[nodiscard]] const Vec2d* at(int column, int row) const {
         if (column < 0 || row < 0 || column >= size_.columns || row >= size_.rows) {
             return nullptr;
@@ -90,13 +91,11 @@ class Grid {
     double pitch_mm_;
 };
 
-std::vector<EdgeRegion> edges_of_squares(const ChartPoints& points, const scene::Chart& chart,
-                                         const scene::SlantedEdges& squares) {
-    const double angle = radians(squares.angle_deg);
-    const double half = 0.5 * squares.square_mm;
-    const double gap = squares.pitch_mm - squares.square_mm * (std::abs(std::cos(angle)) + std::abs(std::sin(angle)));
-    const double depth = std::min(kDepthShare * squares.square_mm, kGapShare * gap);
-    const Grid grid(points, chart, squares.pitch_mm);
+std::vector<EdgeRegion> regions_of(const scene::SquareSides& sides, const Grid& grid) {
+    const double angle = radians(sides.angle_deg);
+    const double half = 0.5 * sides.side_mm;
+    const double gap = grid.pitch_mm() - sides.side_mm * (std::abs(std::cos(angle)) + std::abs(std::sin(angle)));
+    const double depth = std::min(kDepthShare * sides.side_mm, kGapShare * gap);
     std::vector<EdgeRegion> regions;
     for (int row = 0; row < grid.size().rows; ++row) {
         for (int column = 0; column < grid.size().columns; ++column) {
@@ -114,9 +113,9 @@ std::vector<EdgeRegion> edges_of_squares(const ChartPoints& points, const scene:
     return regions;
 }
 
-std::vector<EdgeRegion> edges_of_board(const ChartPoints& points, const scene::Chart& chart, double square,
-                                       double depth) {
-    const Grid grid(points, chart, square);
+std::vector<EdgeRegion> regions_of(const scene::CellSides& sides, const Grid& grid) {
+    const double square = grid.pitch_mm();
+    const double depth = std::min(kDepthShare * square, kGapShare * sides.even_mm);
     std::vector<EdgeRegion> regions;
     for (int row = 0; row < grid.size().rows; ++row) {
         for (int column = 0; column < grid.size().columns; ++column) {
@@ -141,21 +140,16 @@ std::vector<EdgeRegion> edges_of_board(const ChartPoints& points, const scene::C
     return regions;
 }
 
+std::vector<EdgeRegion> regions_of(const scene::NoEdges&, const Grid&) {
+    return {};
+}
+
 }  // namespace
 
 std::vector<EdgeRegion> chart_edges(const ChartPoints& points, const scene::Chart& chart) {
-    if (const auto* squares = std::get_if<scene::SlantedEdges>(&chart.pattern)) {
-        return edges_of_squares(points, chart, *squares);
-    }
-    if (const auto* board = std::get_if<scene::Checkerboard>(&chart.pattern)) {
-        return edges_of_board(points, chart, board->square_mm, kDepthShare * board->square_mm);
-    }
-    if (const auto* board = std::get_if<scene::CharucoBoard>(&chart.pattern)) {
-        const double margin = 0.5 * (board->square_mm - board->marker_mm);
-        return edges_of_board(points, chart, board->square_mm,
-                              std::min(kDepthShare * board->square_mm, kGapShare * margin));
-    }
-    return {};
+    const scene::ChartTraits known = scene::traits(chart);
+    const Grid grid(points, known);
+    return std::visit([&](const auto& edges) { return regions_of(edges, grid); }, known.edges);
 }
 
 }  // namespace lensproof::calibration

@@ -4,7 +4,7 @@
 
 #include "calibration/detection/refine.h"
 #include "calibration/sharpness/slanted_edge.h"
-#include "engine/scene/chart.h"
+#include "engine/scene/chart/chart.h"
 
 namespace lensproof::calibration {
 

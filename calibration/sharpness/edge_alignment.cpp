@@ -10,8 +10,8 @@
 namespace lensproof::calibration {
 namespace {
 
-constexpr double kLeastHalfLength_px = 8.0;
-constexpr double kLeastHalfWidth_px = 3.0;
+constexpr double kShortestHalfLength_px = 8.0;
+constexpr double kNarrowestHalfWidth_px = 3.0;
 constexpr double kLeastContrast = 0.1;  // (bright − dark) / (bright + dark)
 constexpr double kClippedShare = 0.01;
 constexpr double kCutNoise = 0.02;  // zeros among this share and its complement: noise cut at black
@@ -205,7 +205,7 @@ EdgeProfile edge_profile(const std::vector<EdgePixel>& pixels, double half_width
 }
 
 std::variant<AlignedEdge, EdgeRefusal> align_edge(const formats::Image& image, int channel, const EdgeRegion& region) {
-    if (!(region.half_length_px >= kLeastHalfLength_px) || !(region.half_width_px >= kLeastHalfWidth_px)) {
+    if (!(region.half_length_px >= kShortestHalfLength_px) || !(region.half_width_px >= kNarrowestHalfWidth_px)) {
         return EdgeRefusal{"is too small"};
     }
     Vec2d normal{-region.along.y, region.along.x};

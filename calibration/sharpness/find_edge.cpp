@@ -8,7 +8,7 @@ namespace lensproof::calibration {
 namespace {
 
 constexpr double kLeastGradient = 0.3;  // of the steepest; noise is flatter
-constexpr double kMostHalfWidth_px = 32.0;
+constexpr double kWidestHalfWidth_px = 32.0;
 
 struct GradientPixel {
     double x = 0.0, y = 0.0;    // its place
@@ -85,7 +85,7 @@ std::variant<EdgeRegion, EdgeRefusal> find_edge(const formats::Image& image, int
     }
     // The rectangle's middle along the edge; the width that fits over some 90 % of the edge.
     const Vec2d normal{-along.y, along.x};
-    const double half_width_there = std::min(reach(rectangle, middle, normal), kMostHalfWidth_px);
+    const double half_width_there = std::min(reach(rectangle, middle, normal), kWidestHalfWidth_px);
     const double whole = reach(rectangle, middle, along);
     EdgeRegion best;
     for (double share = 0.5; share <= 1.0; share += 0.02) {

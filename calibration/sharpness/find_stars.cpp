@@ -18,11 +18,11 @@ constexpr double kSearchSide_px = 800.0;  // larger pictures vote in a copy of t
 constexpr double kSteep = 0.2;            // of the steepest gradients
 constexpr int kMostVoters = 12000;
 constexpr int kMostCandidates = 6;
-constexpr double kNear_share = 0.03;    // of the copy's side, around a candidate that was tried
-constexpr double kRadiusStep = 1.04;    // from circle to circle
-constexpr double kFewestPixels = 1.6;   // of a sector on the smallest circle
-constexpr double kHysteresis = 0.15;    // of a circle's contrast
-constexpr double kLeastContrast = 0.1;  // (white - black) / (white + black) on a circle
+constexpr double kNear_share = 0.03;          // of the copy's side, around a candidate that was tried
+constexpr double kRadiusStep = 1.04;          // from circle to circle
+constexpr double kFewestAcrossSector = 1.6;   // of a sector on the smallest circle
+constexpr double kHysteresis = 0.15;          // of a circle's contrast
+constexpr double kLeastCircleContrast = 0.1;  // (white - black) / (white + black) on a circle
 constexpr std::size_t kFewestCircles = 3;
 constexpr std::size_t kMostCircles = 12;
 
@@ -43,7 +43,7 @@ std::vector<double> crossings(const std::vector<double>& light) {
     std::ranges::sort(sorted);
     const double black = sorted[sorted.size() / 10];
     const double white = sorted[sorted.size() - 1 - sorted.size() / 10];
-    if (!(white - black > kLeastContrast * (white + black))) {
+    if (!(white - black > kLeastCircleContrast * (white + black))) {
         return {};
     }
     const double middle = 0.5 * (white + black);
@@ -81,7 +81,7 @@ std::vector<Circle> sector_circles(const cv::Mat& plane, const Vec2d& centre, in
         std::min(std::min(centre.x, plane.cols - 1 - centre.x), std::min(centre.y, plane.rows - 1 - centre.y));
     std::vector<Circle> best;
     std::vector<Circle> run;
-    for (double radius = std::max(4.0, kFewestPixels * sectors / (2.0 * std::numbers::pi)); radius < farthest;
+    for (double radius = std::max(4.0, kFewestAcrossSector * sectors / (2.0 * std::numbers::pi)); radius < farthest;
          radius *= kRadiusStep) {
         const auto count = static_cast<std::size_t>(std::max(8.0 * sectors, 4.0 * radius));
         Circle own{radius, crossings(circle(plane, centre, radius, count))};

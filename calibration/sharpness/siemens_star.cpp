@@ -14,7 +14,7 @@ namespace lensproof::calibration {
 namespace {
 
 constexpr int kSegments = 8;
-constexpr double kClippedShare = 0.01;
+constexpr double kMostClippedOfStar = 0.01;
 constexpr double kPaperFrom = 1.06;    // of the rim, and
 constexpr double kPaperFrom_px = 3.0;  // beyond it: where the paper around the star is looked at, up to
 constexpr double kPaperTo = 1.2;       // of the rim, and
@@ -24,7 +24,7 @@ constexpr double kMostOvershoot = 0.05;                 // of an MTF above 1 at 
 constexpr double kSquareWave = 4.0 / std::numbers::pi;  // its fundamental, of its amplitude
 constexpr double kAround = 0.3;  // of the frequency, on either side, that a crossing is fitted over
 constexpr int kFewestAround = 5;
-constexpr double kLeastContrast = 0.1;
+constexpr double kLeastStarContrast = 0.1;
 constexpr double kNearest_px = 2.0;  // to the centre
 
 /// The pixels of a segment: of the star, and of the paper around it.
@@ -193,7 +193,7 @@ std::variant<StarSegment, StarRefusal> segment_of(SegmentPixels pixels, int segm
         return StarRefusal{"the star is too small, or not in the picture"};
     }
     const StarEstimate contrast = contrast_of(bins, *paper);
-    if (!(contrast.value > kLeastContrast)) {
+    if (!(contrast.value > kLeastStarContrast)) {
         return StarRefusal{"what is around the star is no lighter than its sectors in the mean"};
     }
     const double side = 45.0 * segment;
@@ -259,7 +259,7 @@ std::variant<std::array<SegmentPixels, kSegments>, StarRefusal> gather(const for
             }
         }
     }
-    if (clipped > kClippedShare * count) {
+    if (clipped > kMostClippedOfStar * count) {
         return StarRefusal{"the star is clipped at white"};
     }
     return segments;

@@ -8,7 +8,7 @@
 #include "calibration/sharpness/slanted_edge.h"
 #include "calibration/sharpness/star_map.h"
 #include "engine/formats/image/image.h"
-#include "engine/scene/chart.h"
+#include "engine/scene/chart/chart.h"
 
 namespace lensproof::calibration {
 

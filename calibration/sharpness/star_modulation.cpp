@@ -10,7 +10,7 @@ namespace lensproof::calibration {
 namespace {
 
 constexpr double kBinRatio = 1.06;    // of frequencies
-constexpr int kFewestPixels = 24;     // of a bin
+constexpr int kFewestInBin = 24;      // of a bin
 constexpr double kMostAside = 0.15;   // of a segment's width, for a bin's mean
 constexpr double kLeastSpread = 0.6;  // of the variance across the segment
 constexpr int kPixelsPerTerm = 12;    // for terms beyond the fundamental
@@ -116,9 +116,9 @@ std::vector<StarModulation> star_modulations(std::vector<StarPixel>& pixels) {
     std::vector<StarModulation> result;
     std::size_t first = 0;
     for (std::size_t i = 0; i <= pixels.size(); ++i) {
-        const bool is_full = i < pixels.size() && i - first >= kFewestPixels &&
+        const bool is_full = i < pixels.size() && i - first >= kFewestInBin &&
                              pixels[i].cycles_per_px > kBinRatio * pixels[first].cycles_per_px;
-        if (is_full || (i == pixels.size() && i - first >= kFewestPixels)) {
+        if (is_full || (i == pixels.size() && i - first >= kFewestInBin)) {
             const auto one =
                 is_whole(pixels, first, i) ? modulation_of(pixels, first, i) : std::optional<StarModulation>();
             if (one) {

@@ -4,7 +4,7 @@
 #include <optional>
 
 #include "calibration/sharpness/star_map.h"
-#include "engine/scene/chart.h"
+#include "engine/scene/chart/chart.h"
 
 namespace lensproof::calibration {
 

@@ -13,9 +13,9 @@ namespace {
 
 constexpr double kRingStep = 1.12;  // from one ring of cells to the next
 constexpr int kWedges = 24;
-constexpr int kFewestPixels = 12;
-constexpr double kLeastModulation = 0.1;                        // of a cell's mean
-constexpr double kHighest[] = {0.1, 0.2, 0.35, 0.5, 0.5, 0.5};  // cycles per pixel, by round
+constexpr int kFewestOnCircle = 12;
+constexpr double kLeastModulation = 0.1;                               // of a cell's mean
+constexpr double kHighestByRound[] = {0.1, 0.2, 0.35, 0.5, 0.5, 0.5};  // cycles per pixel, by round
 
 // Least squares of a + b cos ψ + c sin ψ in a cell.
 struct Cell {
@@ -45,7 +45,7 @@ void fit_phase(const cv::Mat& plane, const scene::SiemensStar& star, StarMap& ma
     const int x1 = std::min(plane.cols - 1, static_cast<int>(rim.centre_px.x) + reach);
     const int y0 = std::max(0, static_cast<int>(rim.centre_px.y) - reach);
     const int y1 = std::min(plane.rows - 1, static_cast<int>(rim.centre_px.y) + reach);
-    for (const double highest : kHighest) {
+    for (const double highest : kHighestByRound) {
         std::map<std::pair<int, int>, Cell> cells;
         for (int y = y0; y <= y1; ++y) {
             for (int x = x0; x <= x1; ++x) {
@@ -69,7 +69,7 @@ void fit_phase(const cv::Mat& plane, const scene::SiemensStar& star, StarMap& ma
             const double count = cell.normal(0, 0);
             const Eigen::Vector3d fit = cell.normal.ldlt().solve(cell.right);
             const double modulation = std::hypot(fit(1), fit(2));
-            if (count < kFewestPixels || !(modulation > kLeastModulation * fit(0))) {
+            if (count < kFewestOnCircle || !(modulation > kLeastModulation * fit(0))) {
                 continue;
             }
             // The chart is a − m sin(pairs θ): black from θ = 0 on.

@@ -3,7 +3,7 @@
 #include <opencv2/core.hpp>
 
 #include "calibration/sharpness/star_map.h"
-#include "engine/scene/chart.h"
+#include "engine/scene/chart/chart.h"
 
 namespace lensproof::calibration {
 

@@ -12,9 +12,8 @@ namespace lensproof::calibration {
 namespace {
 
 constexpr int kReweightings = 20;
-constexpr double kSettled = 1e-4;        // of the scale
-constexpr double kCauchyWidth = 2.385;   // in sigmas: 95 % efficient for normal residuals (Holland & Welsch 1977)
-constexpr double kRankThreshold = 1e-9;  // of the largest pivot, columns scaled to unit length
+constexpr double kSettled = 1e-4;       // of the scale
+constexpr double kCauchyWidth = 2.385;  // in sigmas: 95 % efficient for normal residuals (Holland & Welsch 1977)
 
 struct Solution {
     Eigen::VectorXd parameters;

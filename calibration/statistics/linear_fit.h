@@ -7,6 +7,8 @@
 
 namespace lensproof::calibration {
 
+inline constexpr double kRankThreshold = 1e-9;  // of the largest pivot, columns scaled to unit length
+
 /// y ≈ A p. Each row's residual has standard deviation `row_sigma` up to a common factor, which the residuals tell.
 struct LinearProblem {
     Eigen::MatrixXd a;

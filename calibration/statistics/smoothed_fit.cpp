@@ -5,15 +5,16 @@
 #include <cmath>
 #include <vector>
 
+#include "calibration/statistics/linear_fit.h"
+
 namespace lensproof::calibration {
 namespace {
 
 // λ in units that make D'D as large as A'A: from no smoothing that matters to nothing but D's null space.
 constexpr int kLeastExponent = -16;  // half decades
 constexpr int kMostExponent = 12;
-constexpr double kPerfect = 1e-12;       // a mean square this small, in squared sigmas, is rounding
-constexpr double kNoWeight = 1e-8;       // of an average
-constexpr double kRankThreshold = 1e-9;  // of the largest pivot, columns scaled to unit length
+constexpr double kPerfect = 1e-12;  // a mean square this small, in squared sigmas, is rounding
+constexpr double kNoWeight = 1e-8;  // of an average
 
 struct Data {
     Eigen::MatrixXd a;  // rows in units of their sigma

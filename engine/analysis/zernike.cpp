@@ -30,6 +30,18 @@ int noll_index(ZernikeMode mode) {
     return (first % 2 == 0) == wants_even ? first : first + 1;
 }
 
+int ansi_index(ZernikeMode mode) {
+    return (mode.n * (mode.n + 2) + mode.m) / 2;
+}
+
+ZernikeMode mode_of_ansi(int index) {
+    int n = 0;
+    while (zernike_count(n) <= index) {
+        ++n;
+    }
+    return {n, 2 * index - n * (n + 2)};
+}
+
 std::vector<double> zernike_values(int degree, Vec2d point) {
     const double r = length(point);
     const double cosine = r > 0.0 ? point.x / r : 1.0;

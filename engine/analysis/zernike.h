@@ -18,6 +18,10 @@ struct ZernikeMode {
 /// Noll's single index, from 1 (Noll, J. Opt. Soc. Am. 66, 207 (1976), table 1): even with cosines, odd with sines.
 int noll_index(ZernikeMode mode);
 
+/// The index of ANSI Z80.28 and OSA, from 0: (n (n + 2) + m) / 2.
+int ansi_index(ZernikeMode mode);
+ZernikeMode mode_of_ansi(int index);
+
 /// How many polynomials have degree up to `degree`.
 constexpr int zernike_count(int degree) {
     return (degree + 1) * (degree + 2) / 2;
@@ -44,6 +48,7 @@ struct ZernikeFit {
     double residual_rms = 0.0;  // weighted
 
     [[nodiscard]] double noll(int index) const { return coefficients.at(static_cast<std::size_t>(index) - 1); }
+    [[nodiscard]] double ansi(int index) const { return noll(noll_index(mode_of_ansi(index))); }
 };
 
 /// Weighted least squares. Over the whole disc the coefficients are the projections; over a vignetted pupil, where the

@@ -13,7 +13,7 @@ namespace lensproof::check {
 namespace {
 
 constexpr int kSteps = 200;           // across the beam, in search of its edge
-constexpr int kHalvings = 50;         // of a step
+constexpr int kEdgeHalvings = 50;     // of a step
 constexpr double kBackwards = -1e-9;  // mm: further back than rounding goes
 
 /// From the axial object point, through height `h` in the plane of the first vertex.
@@ -42,7 +42,7 @@ AxialBeam beam_through(const CheckedLens& checked, const optics::TraceLens<doubl
         }
         edge.inside = h;
     }
-    edge = bisected(edge, edge.inside > 0.0 ? kHalvings : 0, passes);
+    edge = bisected(edge, edge.inside > 0.0 ? kEdgeHalvings : 0, passes);
     beam.height = edge.inside;
     beam.limit = follow(lens, axial_ray(checked, edge.outside));
     const Vec3d outermost = follow(lens, axial_ray(checked, edge.inside)).ray.direction;

@@ -11,7 +11,7 @@ namespace lensproof::pupil {
 
 namespace {
 
-constexpr int kFirstRadii = 16;
+constexpr int kFirstFractions = 16;
 constexpr std::size_t kFirstAzimuths = 4;
 constexpr std::size_t kMostAzimuths = 16;
 // Over azimuth too there are so many regions to be traced that they may each be this much larger.
@@ -23,7 +23,7 @@ constexpr double kSmallestStep = 1.0 / 4096.0;
 // Between two nodes the middle alone is looked at, where a smooth region is missed by the most; the rest is for kinks,
 // where another rim takes over.
 constexpr double kSafety = 1.5;
-constexpr double kMargin = 0.0005;  // of a region's height, on both sides together
+constexpr double kHeightMargin = 0.0005;  // of a region's height, on both sides together
 
 enum class Axis { radius, azimuth, band };
 constexpr std::size_t kAxes = 3;
@@ -58,7 +58,7 @@ void add_margin(PupilRegion& region, PupilSymmetry symmetry) {
     for (const PupilColumn& column : region.columns) {
         height = std::max(height, column.upper - column.lower);
     }
-    grow(region, ColumnGrowth(0.5 * kMargin * height), 1.0, symmetry);
+    grow(region, ColumnGrowth(0.5 * kHeightMargin * height), 1.0, symmetry);
 }
 
 class NodeFinder {
@@ -74,8 +74,8 @@ class NodeFinder {
 
     PupilNodes find() {
         set_lenses({0, last_lens_ / 2, last_lens_});
-        for (int i = 0; i <= kFirstRadii; ++i) {
-            nodes_.fractions.push_back(static_cast<double>(i) / kFirstRadii);
+        for (int i = 0; i <= kFirstFractions; ++i) {
+            nodes_.fractions.push_back(static_cast<double>(i) / kFirstFractions);
         }
         if (std::ranges::any_of(nodes_.ends, [](double end) { return !(end > 0.0); })) {
             return {};

@@ -2,8 +2,8 @@
 #pragma once
 #include <filesystem>
 
+#include "engine/render/film/render_identity.h"
 #include "engine/render/progressive.h"
-#include "engine/render/render_identity.h"
 
 namespace lensproof::render {
 

@@ -19,7 +19,7 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-constexpr double kDarkShare = 0.01;  // of the picture's mean
+constexpr double kDarkFraction = 0.01;  // of the picture's mean
 constexpr std::uint32_t kLongestPass = 1024;
 
 /// The end of the pass that follows `done`.
@@ -109,10 +109,10 @@ class Pass {
 /// Plans passes, carries them out, and tells how far they are.
 class ProgressiveRender {
   public:
-    ProgressiveRender(RenderState& state, const MakeTileRenderer& make_renderer, const RenderGoal& goal,
+    ProgressiveRender(RenderState& state, const TileRenderer& renderer, const RenderGoal& goal,
                       const RenderControl& control)
         : state_(state),
-          make_renderer_(make_renderer),
+          renderer_(renderer),
           goal_(goal),
           control_(control),
           rects_(film_tiles(state.film.width(), state.film.height())) {}
@@ -120,7 +120,7 @@ class ProgressiveRender {
     RenderEnd run() {
         for (std::vector<std::size_t> todo = plan(); !todo.empty(); todo = plan()) {
             if (!has_begun_) {
-                done_before_ = share_done();
+                done_before_ = fraction_done();
                 has_begun_ = true;
             }
             render_pass(std::move(todo));
@@ -152,7 +152,7 @@ class ProgressiveRender {
 
     void set_targets() {
         const bool resumes = std::ranges::any_of(state_.tiles, is_unfinished);
-        const double dark = goal_.noise > 0.0 ? kDarkShare * mean_brightness(state_.film) : 0.0;
+        const double dark = goal_.noise > 0.0 ? kDarkFraction * mean_brightness(state_.film) : 0.0;
         expected_.assign(state_.tiles.size(), static_cast<double>(state_.range.end - state_.range.first));
         for (std::size_t i = 0; i < state_.tiles.size(); ++i) {
             TileProgress& tile = state_.tiles[i];
@@ -193,7 +193,7 @@ class ProgressiveRender {
             }
         };
         const auto make_worker = [&] {
-            return [&, render = make_renderer_()](int i) {
+            return [&, render = renderer_](int i) {
                 std::optional<FilmTile> tile;
                 try {
                     if (!has_to_end()) {
@@ -211,8 +211,8 @@ class ProgressiveRender {
         parallel_for_workers(pass.size(), control_.threads, make_worker, [](int) {});
     }
 
-    /// The share of the samples that are expected to be needed which have been taken.
-    [[nodiscard]] double share_done() const {
+    /// The fraction of the samples that are expected to be needed which have been taken.
+    [[nodiscard]] double fraction_done() const {
         double taken = 0.0;
         double needed = 0.0;
         for (std::size_t i = 0; i < state_.tiles.size(); ++i) {
@@ -225,10 +225,10 @@ class ProgressiveRender {
 
     [[nodiscard]] RenderReport report() const {
         const double now = seconds();
-        const double share = share_done();
-        const double in_this_run = done_before_ < 1.0 ? (share - done_before_) / (1.0 - done_before_) : 1.0;
+        const double done = fraction_done();
+        const double in_this_run = done_before_ < 1.0 ? (done - done_before_) / (1.0 - done_before_) : 1.0;
         const double rest = in_this_run > 0.0 ? now * (1.0 - in_this_run) / in_this_run : goal_.seconds;
-        return {.done = std::clamp(std::max(share, now / goal_.seconds), 0.0, 1.0),
+        return {.done = std::clamp(std::max(done, now / goal_.seconds), 0.0, 1.0),
                 .seconds = now,
                 .seconds_left = std::max(0.0, std::min(rest, goal_.seconds - now)),
                 .samples = samples_,
@@ -236,7 +236,7 @@ class ProgressiveRender {
     }
 
     RenderState& state_;
-    const MakeTileRenderer& make_renderer_;
+    const TileRenderer& renderer_;
     const RenderGoal& goal_;
     const RenderControl& control_;
     std::vector<PixelRect> rects_;
@@ -290,9 +290,20 @@ double mean_brightness(const Film& film) {
     return sum / (static_cast<double>(film.width()) * film.height());
 }
 
-RenderEnd render_progressively(RenderState& state, const MakeTileRenderer& make_renderer, const RenderGoal& goal,
+RenderEnd render_progressively(RenderState& state, const TileRenderer& renderer, const RenderGoal& goal,
                                const RenderControl& control) {
-    return ProgressiveRender(state, make_renderer, goal, control).run();
+    return ProgressiveRender(state, renderer, goal, control).run();
+}
+
+Film render_film(const Render& render, const SampleRange& range, int threads,
+                 const std::function<void(double done)>& progress) {
+    RenderState state(render.film, range);
+    RenderControl control{.threads = threads, .in_passes = false, .is_interrupted = {}, .on_progress = {}};
+    if (progress) {
+        control.on_progress = [&](const RenderState&, const RenderReport& report) { progress(report.done); };
+    }
+    render_progressively(state, render.renderer, {}, control);
+    return std::move(state.film);
 }
 
 }  // namespace lensproof::render

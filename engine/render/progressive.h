@@ -6,14 +6,9 @@
 #include <limits>
 #include <vector>
 
-#include "engine/render/film.h"
+#include "engine/render/film/film.h"
 
 namespace lensproof::render {
-
-/// Renders these samples into the tile, which has been loaded for them. What a sample gives depends on the
-/// seed, its pixel and its index alone. A renderer belongs to one thread, and may own what it needs for every tile.
-using TileRenderer = std::function<void(const TileSamples&, FilmTile&)>;
-using MakeTileRenderer = std::function<TileRenderer()>;
 
 /// Samples of each pixel that a render may take: [first, end), all of them unless something else ends it.
 struct SampleRange {
@@ -92,8 +87,18 @@ enum class RenderEnd { complete, out_of_time, interrupted };
 
 /// Goes on with a render until its goal. The state is whole at its end, too; a render that goes on from it later takes
 /// the same samples and adds them in the same order as one that was never interrupted: to the same bits.
-RenderEnd render_progressively(RenderState& state, const MakeTileRenderer& make_renderer, const RenderGoal& goal,
+RenderEnd render_progressively(RenderState& state, const TileRenderer& renderer, const RenderGoal& goal,
                                const RenderControl& control);
+
+/// A film to be rendered, and by whom.
+struct Render {
+    FilmLayout film;
+    TileRenderer renderer;
+};
+
+/// The film after these samples of every pixel; `progress` is told which part of them is done.
+Film render_film(const Render& render, const SampleRange& range, int threads = 0,
+                 const std::function<void(double done)>& progress = {});
 
 /// A tile's error as `RenderGoal::noise` has it; `dark` is the brightness that darker pixels count as.
 double tile_error(const Film& film, const PixelRect& rect, double dark);

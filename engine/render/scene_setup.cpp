@@ -3,57 +3,72 @@
 #include <fmt/format.h>
 
 #include "engine/base/file.h"
-#include "engine/scene/illuminant_key.h"
+#include "engine/scene/chart/chart_file.h"
 #include "engine/scene/scene_file.h"
+#include "engine/scene/spectra/spectrum_keys.h"
+#include "engine/spectral/spectral_sample.h"
 
 namespace lensproof::render {
 
 namespace {
 
-constexpr int kWavelengthsAtOnce = 4;  // that a path carries
-
-void read_render(TomlTable& table, SceneSetup& setup) {
-    setup.samples_per_pixel = table.integer_or("samples_per_pixel", setup.samples_per_pixel, 1, 1 << 20);
-    setup.max_bounces = table.integer_or("max_bounces", setup.max_bounces, 0, 10000);
-    read_spectral_sampling(table, setup.spectral);
-    const int count = setup.spectral.layers * setup.spectral.strata_per_layer;
-    if (count % kWavelengthsAtOnce != 0) {
-        table.fail("layers",
-                   fmt::format("{} layers of {} strata are {} wavelengths, expected a multiple of {}",
-                               setup.spectral.layers, setup.spectral.strata_per_layer, count, kWavelengthsAtOnce));
-    }
-    table.finish();
-}
-
-}  // namespace
-
-SceneSetup parse_scene_setup(const std::string& text, const std::filesystem::path& name) {
-    TomlTable top = TomlTable::parse(text, name);
-    SceneSetup setup;
+void read_scene_tables(TomlTable& top, SceneSetup& setup) {
     TomlTable camera = top.table("camera");
-    setup.view = scene::read_camera_view(camera);
-    setup.camera = read_camera_keys(camera, setup.view.focal_length_mm.has_value());
-    setup.white_balance = scene::read_illuminant(camera, "white_balance");
-    if (setup.view.focal_length_mm && !setup.camera.lens.empty()) {
-        camera.fail("focal_length_mm", "stands beside lens, expected one or the other");
-    }
-    if (setup.camera.blades && setup.view.model != scene::LensModel::exact) {
-        camera.fail("blades",
-                    fmt::format("stands beside model = \"{}\", whose pupil is round; expected the exact model",
-                                scene::name_of(setup.view.model)));
-    }
-    camera.finish();
+    setup.camera = read_placed_camera(camera);
     setup.scene = scene::read_scene(top);
     if (setup.scene.lights.empty()) {
         top.fail("lights", "there is no light, expected [[lights]]");
     }
+}
+
+void read_chart_tables(TomlTable& top, SceneSetup& setup) {
+    TomlTable camera = top.table("camera");
+    setup.camera = read_camera_settings(camera);
+    TomlTable chart = top.table("chart");
+    setup.chart = ChartView{.chart = scene::read_chart(chart), .placement = {}};
+    if (!std::holds_alternative<scene::FlatField>(setup.chart->chart.pattern)) {
+        TomlTable pose = top.table("pose");
+        setup.chart->placement = scene::read_placement(pose);
+    }
+    if (auto light = top.optional_table("light")) {
+        read_even_light(*light, setup);
+    }
+}
+
+}  // namespace
+
+void read_even_light(TomlTable& table, SceneSetup& setup) {
+    setup.camera.white_balance = scene::read_illuminant(table, "illuminant");
+    setup.chart->luminance_cd_m2 = table.number_or("luminance_cd_m2", setup.chart->luminance_cd_m2, kPositive);
+    table.finish();
+}
+
+void read_render_table(TomlTable& table, SceneSetup& setup) {
+    setup.samples_per_pixel = table.integer_or("samples_per_pixel", setup.samples_per_pixel, 1, 1 << 20);
+    if (!setup.chart) {
+        setup.max_bounces = table.integer_or("max_bounces", setup.max_bounces, 0, 10000);
+    }
+    read_spectral_sampling(table, setup.spectral);
+    const int wavelengths = setup.spectral.strata();
+    if (!setup.chart && wavelengths % spectral::kWavelengthsPerPath != 0) {
+        table.fail("layers", fmt::format("{} layers of {} strata are {} wavelengths, expected a multiple of {}",
+                                         setup.spectral.layers, setup.spectral.strata_per_layer, wavelengths,
+                                         spectral::kWavelengthsPerPath));
+    }
+    table.finish();
+}
+
+SceneSetup parse_scene_setup(const std::string& text, const std::filesystem::path& name) {
+    TomlTable top = TomlTable::parse(text, name);
+    SceneSetup setup;
+    top.has("chart") ? read_chart_tables(top, setup) : read_scene_tables(top, setup);
     if (auto render = top.optional_table("render")) {
-        read_render(*render, setup);
+        read_render_table(*render, setup);
     }
     if (auto sensor = top.optional_table("sensor")) {
         setup.sensor = read_raw_sensor(*sensor, {.response = setup.camera.response,
                                                  .exposure = setup.camera.exposure,
-                                                 .white = setup.white_balance,
+                                                 .white = setup.camera.white_balance,
                                                  .width = setup.camera.sensor.width,
                                                  .height = setup.camera.sensor.height});
     }

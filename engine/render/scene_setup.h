@@ -1,19 +1,26 @@
 // engine/render/scene_setup.h — a whole scene file: the camera and how finely it looks, and what it looks at.
 #pragma once
 #include <filesystem>
+#include <optional>
 #include <string>
 
-#include "engine/render/camera.h"
-#include "engine/render/raw_sensor.h"
+#include "engine/render/camera/camera_settings.h"
+#include "engine/render/raw/raw_sensor.h"
 #include "engine/scene/scene_description.h"
 
 namespace lensproof::render {
 
+/// A chart in an even world, lit by the light that the camera is balanced to.
+struct ChartView {
+    scene::Chart chart;
+    scene::Placement placement;       // before the camera
+    double luminance_cd_m2 = 1000.0;  // of a perfect white
+};
+
 struct SceneSetup {
-    Camera camera;  // without a lens where the view says a focal length
-    scene::CameraView view;
-    std::string white_balance = "D65";  // the illuminant in which a white surface is R = G = B
+    CameraSettings camera;
     scene::SceneDescription scene;
+    std::optional<ChartView> chart;  // in the place of the scene
     SpectralSampling spectral;
     int samples_per_pixel = 64;
     std::optional<RawSensor> sensor;  // the electronics behind the film, where a raw file is wanted
@@ -23,11 +30,19 @@ struct SceneSetup {
 /// Reads a scene file, as engine/scene/README.md documents it: [camera], [[materials]], [[objects]], [[lights]],
 /// [render] and [sensor]. Illuminants and the files that it names have to be there; lens, meshes, pictures, tables,
 /// metals and glasses are looked up by whoever builds the scene. Throws InputError naming file, line and key; besides
-/// what `read_scene` and `read_camera` refuse, a scene without a light, and a number of wavelengths that is no multiple
-/// of 4.
+/// what `read_scene` and `read_placed_camera` refuse, a scene without a light, and a number of wavelengths that is no
+/// multiple of 4.
+///
+/// With a table [chart] it is a chart's: [camera] without a place, [chart], [pose], [light] (illuminant,
+/// luminance_cd_m2), [render] (without max_bounces) and [sensor]; all but [camera] and [chart] are optional, [pose] for
+/// a flat field alone.
 SceneSetup read_scene_setup(const std::filesystem::path& file);
 
 /// The same from a text; `name` stands for the file in messages, and its folder is where files are looked for.
 SceneSetup parse_scene_setup(const std::string& text, const std::filesystem::path& name);
+
+/// Reads a chart's table [light], and a table [render] over what `setup` says.
+void read_even_light(TomlTable& table, SceneSetup& setup);
+void read_render_table(TomlTable& table, SceneSetup& setup);
 
 }  // namespace lensproof::render

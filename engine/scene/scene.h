@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "engine/scene/geometry.h"
-#include "engine/scene/light.h"
-#include "engine/scene/material.h"
+#include "engine/scene/geometry/geometry.h"
+#include "engine/scene/light/light.h"
+#include "engine/scene/material/material.h"
 #include "engine/spectral/spectral_sample.h"
 
 namespace lensproof::scene {

@@ -1,4 +1,4 @@
-// engine/scene/scene_file.h — the objects, materials and lights of a scene file, and where its camera stands.
+// engine/scene/scene_file.h — the objects, materials and lights of a scene file.
 #pragma once
 #include "engine/base/toml.h"
 #include "engine/scene/scene_description.h"
@@ -10,8 +10,5 @@ namespace lensproof::scene {
 /// that is not known or out of its bounds, a name that is used twice or not known (with the nearest one that is), a
 /// file that is missing, a transform that flattens, a light without power. `top` is not finished.
 SceneDescription read_scene(TomlTable& top);
-
-/// Reads position_mm, look_at_mm, up, model and focal_length_mm of a camera's table, and leaves its other keys.
-CameraView read_camera_view(TomlTable& camera);
 
 }  // namespace lensproof::scene

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "engine/scene/chart_file.h"
+#include "engine/scene/chart/chart_file.h"
 #include "engine/scene/scene_file_parts.h"
 
 namespace lensproof::scene {

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "engine/scene/geometry.h"
+#include "engine/scene/geometry/geometry.h"
 #include "engine/scene/scene_description.h"
 
 namespace lensproof::scene {

@@ -155,8 +155,8 @@ std::string conditions(const optics::Lens& lens, const analysis::AnalysisSetting
 void write_analysis_plots(const AnalyzeOptions& options, const optics::Prescription& prescription,
                           const optics::Lens& lens, const analysis::AnalysisSettings& settings,
                           const analysis::LensAnalysis& analysis) {
-    const draw::AnalysisCurves curves = draw::analysis_curves(lens, settings);
-    const draw::WaveCurves waves = draw::wave_curves(lens, settings, options.common.threads);
+    const analysis::RayCurves curves = analysis::ray_curves(lens, settings);
+    const analysis::WaveCurves waves = analysis::wave_curves(lens, settings, options.common.threads);
     const draw::PlotHeading heading{.lens = lens.name, .conditions = conditions(lens, settings, analysis)};
     std::map<std::string, std::string> files = draw::analysis_drawings(heading, lens.projection, curves, waves);
     optics::Prescription shown = prescription;  // as it is analysed
@@ -165,7 +165,7 @@ void write_analysis_plots(const AnalyzeOptions& options, const optics::Prescript
     files["section.svg"] = draw::lens_section_svg(shown, &lens, {}, {.fields_deg = settings.fields_deg});
     files["curves.json"] = draw::curves_json(curves, waves).dump() + "\n";
     draw::write_plots(options.plots_folder, files);
-    for (const draw::PsfMap& psf : waves.psfs) {
+    for (const analysis::PsfMap& psf : waves.psfs) {
         if (const std::optional<formats::Image> image = draw::psf_image(psf)) {
             formats::write_exr(*image, std::filesystem::path(options.plots_folder) / draw::psf_file_name(psf));
         }

@@ -9,7 +9,7 @@
 
 #include "engine/base/file.h"
 #include "engine/base/input_error.h"
-#include "engine/scene/chart_file.h"
+#include "engine/scene/chart/chart_file.h"
 #include "experiments/cli/command.h"
 #include "experiments/draw/print/chart_words.h"
 
@@ -110,12 +110,18 @@ void add_chart_command(Program& program) {
         .check(kNotNegativeOption)
         .shows_default();
     command.add_option("--dpi", options->dpi, "Pixels per inch of a PNG").check(kPositiveOption).shows_default();
-    for (const std::string& key : draw::count_keys()) {
+    const draw::ChartKeys keys = draw::printable_keys();
+    for (const std::string& key : keys.counts) {
         command.add_option(option_of(key), options->counts[key], "Columns and rows, as in 10x7").type_name("CxR");
     }
-    for (const std::string& key : draw::number_keys()) {
-        const OptionCheck& check = key == "angle_deg" ? kNumberOption : kPositiveOption;
+    const auto add_number = [&](const std::string& key, const OptionCheck& check) {
         command.add_option(option_of(key), options->numbers[key], "As in the chart's file").check(check);
+    };
+    for (const std::string& key : keys.numbers) {
+        add_number(key, kPositiveOption);
+    }
+    for (const std::string& key : keys.angles) {
+        add_number(key, kNumberOption);
     }
     command.add_option("--dictionary", options->wish.dictionary, "Of a ChArUco board's markers, such as DICT_4X4_50");
     add_common_options(command, options->common);

@@ -13,8 +13,8 @@
 #include "engine/base/json.h"
 #include "engine/formats/image/image.h"
 #include "experiments/cli/command.h"
-#include "experiments/runner/verdict.h"
-#include "experiments/studies/lens_profile.h"
+#include "experiments/findings/verdict.h"
+#include "experiments/studies/cameras/lens_profile.h"
 
 namespace lensproof::cli {
 
@@ -51,18 +51,17 @@ calibration::Profile profile_of_lens(const std::string& lens, const calibration:
                         "--pixel-pitch",
                         like.name, lens));
     }
-    const render::Camera camera{.lens = lens,
-                                .f_number = options.f_number,
-                                .focus_distance_mm = options.focus_mm,
-                                .sensor = {like.width_px, like.height_px, *like.pixel_pitch_um / 1e3},
-                                .exposure = {},
-                                .response = options.response};
-    return studies::lens_profile(
-        render::ChartCamera(camera, render::Light{}, render::SpectralSampling{}, Cache::standard()));
+    const render::CameraSettings camera{.lens = lens,
+                                        .f_number = options.f_number,
+                                        .focus_distance_mm = options.focus_mm,
+                                        .sensor = {like.width_px, like.height_px, *like.pixel_pitch_um / 1e3},
+                                        .exposure = {},
+                                        .response = options.response};
+    return studies::lens_profile(render::Camera(camera, {}, {}, Cache::standard()));
 }
 
 struct Row {
-    runner::Check check;
+    findings::Check check;
     bool limited = false;
 };
 
@@ -88,7 +87,7 @@ int report(const std::vector<Row>& rows, const Json& curves, const CompareOption
     Json json{{"a", options.a}, {"b", options.b}, {"differences", Json::list()}};
     int status = kDone;
     for (const Row& row : rows) {
-        const runner::Check& check = row.check;
+        const findings::Check& check = row.check;
         if (!std::isfinite(check.value)) {
             if (row.limited) {
                 throw InputError(
@@ -98,19 +97,19 @@ int report(const std::vector<Row>& rows, const Json& curves, const CompareOption
             }
             continue;
         }
-        const runner::Verdict verdict = check.verdict();
+        const findings::Verdict verdict = check.verdict();
         Json entry{{"quantity", check.label},
                    {"rms" + unit_key(check.unit), check.value},
                    {"standard_error" + unit_key(check.unit), check.sigma}};
         if (row.limited) {
             entry["limit" + unit_key(check.unit)] = check.limit;
-            entry["verdict"] = runner::verdict_name(verdict);
-            status = verdict == runner::Verdict::pass ? status : kCheckFailed;
+            entry["verdict"] = findings::verdict_name(verdict);
+            status = verdict == findings::Verdict::pass ? status : kCheckFailed;
         }
         json["differences"].push_back(entry);
         if (prints_text(options.common)) {
             fmt::print("{:32} rms {:.5g} ± {:.2g} {}{}\n", check.label, check.value, check.sigma, check.unit,
-                       row.limited ? fmt::format("  limit {:g}: {}", check.limit, runner::verdict_name(verdict))
+                       row.limited ? fmt::format("  limit {:g}: {}", check.limit, findings::verdict_name(verdict))
                                    : std::string());
         }
     }

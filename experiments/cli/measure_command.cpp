@@ -12,7 +12,7 @@
 #include "calibration/self_test/self_test.h"
 #include "engine/base/file.h"
 #include "engine/base/input_error.h"
-#include "engine/scene/chart_file.h"
+#include "engine/scene/chart/chart_file.h"
 #include "experiments/cli/measure_parts.h"
 
 namespace lensproof::cli {

@@ -5,7 +5,7 @@
 
 #include "calibration/photos/photo_survey.h"
 #include "calibration/profile/profile.h"
-#include "engine/scene/chart.h"
+#include "engine/scene/chart/chart.h"
 #include "experiments/cli/command.h"
 
 namespace lensproof::cli {

@@ -14,11 +14,11 @@ using Clock = std::chrono::steady_clock;
 constexpr auto kRedraw = std::chrono::milliseconds(100);
 constexpr int kBarWidth = 30;
 
+}  // namespace
+
 double seconds_since(Clock::time_point then) {
     return std::chrono::duration<double>(Clock::now() - then).count();
 }
-
-}  // namespace
 
 ProgressBar::ProgressBar(std::string label, bool quiet)
     : label_(std::move(label)), shown_(!quiet && ::isatty(STDERR_FILENO) == 1), start_(Clock::now()) {}

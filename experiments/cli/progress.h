@@ -6,6 +6,9 @@
 
 namespace lensproof::cli {
 
+/// Of wall-clock time.
+double seconds_since(std::chrono::steady_clock::time_point then);
+
 /// Draws "label [####....] 42 %, 12 s left" while work goes on; clears the line at the end of its life.
 class ProgressBar {
   public:

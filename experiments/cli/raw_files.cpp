@@ -10,8 +10,8 @@
 
 #include "engine/base/file.h"
 #include "engine/base/json.h"
-#include "engine/render/film_image.h"
-#include "engine/render/raw_sensor.h"
+#include "engine/render/film/film_image.h"
+#include "engine/render/raw/raw_sensor.h"
 
 namespace lensproof::cli {
 

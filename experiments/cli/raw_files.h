@@ -4,7 +4,7 @@
 #include <optional>
 
 #include "engine/base/json.h"
-#include "engine/render/film_exr.h"
+#include "engine/render/film/film_exr.h"
 #include "experiments/cli/command.h"
 
 namespace lensproof::cli {

@@ -11,7 +11,7 @@
 #include "engine/base/json.h"
 #include "engine/render/checkpoint.h"
 #include "engine/render/engine_version.h"
-#include "engine/render/film_image.h"
+#include "engine/render/film/film_image.h"
 #include "experiments/cli/interruption.h"
 #include "experiments/cli/progress.h"
 #include "experiments/cli/raw_files.h"
@@ -22,10 +22,6 @@ namespace {
 
 namespace fs = std::filesystem;
 using Clock = std::chrono::steady_clock;
-
-double seconds_since(Clock::time_point then) {
-    return std::chrono::duration<double>(Clock::now() - then).count();
-}
 
 /// The shard asked for; 1/1 where none is.
 Shard shard_of(const RenderJobOptions& options) {
@@ -209,7 +205,7 @@ int run_render_job(const RenderJob& job, const RenderJobOptions& options) {
     identity.push_back({"seed", fmt::format("{}", options.common.seed)});
     identity.push_back({"version", render::engine_version()});
 
-    render::RenderState state(job.film, range_of(job, options));
+    render::RenderState state(job.render.film, range_of(job, options));
     if (!options.checkpoint.empty()) {
         remove_leftovers(options.checkpoint);
         if (fs::exists(options.checkpoint)) {
@@ -222,11 +218,11 @@ int run_render_job(const RenderJob& job, const RenderJobOptions& options) {
         RenderWatch watch(options, identity);
         const render::RenderControl control{
             .threads = options.common.threads,
-            .in_passes = job.film.has_splats || !options.preview.empty() || options.time_s > 0.0,
+            .in_passes = job.render.film.has_splats || !options.preview.empty() || options.time_s > 0.0,
             .is_interrupted = [] { return Interruption::has_come(); },
             .on_progress = [&](const render::RenderState& now,
                                const render::RenderReport& report) { watch.look(now, report); }};
-        end = render::render_progressively(state, job.make_renderer, goal_of(options), control);
+        end = render::render_progressively(state, job.render.renderer, goal_of(options), control);
     }
     if (end == render::RenderEnd::interrupted) {
         return end_early(state, identity, options, files);

@@ -7,9 +7,9 @@
 #include <string>
 
 #include "engine/base/json.h"
-#include "engine/render/film_exr.h"
+#include "engine/render/film/film_exr.h"
 #include "engine/render/progressive.h"
-#include "engine/render/raw_sensor.h"
+#include "engine/render/raw/raw_sensor.h"
 #include "experiments/cli/command.h"
 #include "experiments/cli/shard.h"
 
@@ -43,8 +43,7 @@ RenderFiles render_files(const RenderJobOptions& options);
 
 /// What is rendered.
 struct RenderJob {
-    render::FilmLayout film;
-    render::MakeTileRenderer make_renderer;
+    render::Render render;
     render::RenderIdentity identity;          // "scene", "lens", "settings"; seed and version are added
     render::FilmNotes notes;                  // metadata and colours
     std::uint32_t samples = 0;                // a pixel, the scene's own

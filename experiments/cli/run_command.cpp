@@ -1,6 +1,8 @@
 // experiments/cli/run_command.cpp — `lensproof run EXPERIMENT`: end to end, to a report.
 #include <fmt/format.h>
 
+#include <functional>
+#include <map>
 #include <memory>
 
 #include "engine/base/cache.h"
@@ -10,9 +12,6 @@
 #include "experiments/cli/progress.h"
 #include "experiments/draw/report/report.h"
 #include "experiments/runner/report_content.h"
-#include "experiments/studies/measurement_floor/floor_report.h"
-#include "experiments/studies/pupil_passage/passage_report.h"
-#include "experiments/studies/stability/stability_report.h"
 
 namespace lensproof::cli {
 
@@ -44,38 +43,33 @@ class StepProgress {
     std::unique_ptr<ProgressBar> bar_;
 };
 
-void print_checks(const std::vector<runner::Check>& checks) {
+void print_checks(const std::vector<findings::Check>& checks) {
     std::string group;
-    for (const runner::Check& check : checks) {
+    for (const findings::Check& check : checks) {
         if (check.group != group) {
             group = check.group;
             fmt::print("{}\n", group);
         }
         const std::string bound =
-            check.expectation == runner::Expectation::within    ? fmt::format("{:g} ± {:g}", check.target, check.limit)
-            : check.expectation == runner::Expectation::differs ? fmt::format("> {:g}", check.limit)
-                                                                : fmt::format("≤ {:g}", check.limit);
-        fmt::print("  {:13} {:44} {:.4g} ± {:.2g} {} (wanted {})\n", runner::verdict_name(check.verdict()), check.label,
-                   check.value, check.sigma, check.unit, bound);
+            check.expectation == findings::Expectation::within ? fmt::format("{:g} ± {:g}", check.target, check.limit)
+            : check.expectation == findings::Expectation::differs ? fmt::format("> {:g}", check.limit)
+                                                                  : fmt::format("≤ {:g}", check.limit);
+        fmt::print("  {:13} {:44} {:.4g} ± {:.2g} {} (wanted {})\n", findings::verdict_name(check.verdict()),
+                   check.label, check.value, check.sigma, check.unit, bound);
     }
 }
 
-/// Writes report.json and report.html, prints the checks, and says how it went.
-int finish_report(const RunOptions& options, const std::filesystem::path& folder,
-                  const std::vector<runner::Check>& checks, const Json& report,
-                  const std::map<std::string, std::string>& pictures) {
+/// Writes profiles, pictures, report.json and report.html.
+void write_report(const std::filesystem::path& folder, const findings::Findings& found, const Json& report) {
+    for (const calibration::Profile& profile : found.profiles) {
+        calibration::write_profile(profile, folder / "profiles" / (profile.name + ".json"));
+    }
+    const std::map<std::string, std::string> pictures = runner::report_pictures(found);
     for (const auto& [name, bytes] : pictures) {
         write_file(folder / "images" / name, bytes);
     }
     write_file(folder / "report.json", report.dump(2) + "\n");
     write_file(folder / "report.html", draw::report_html(report, pictures));
-
-    write_json_result(options.common, report);
-    if (prints_text(options.common)) {
-        print_checks(checks);
-        fmt::print("{}: {}\n", runner::verdict_name(runner::overall(checks)), (folder / "report.html").string());
-    }
-    return runner::overall(checks) == runner::Verdict::pass ? kDone : kCheckFailed;
 }
 
 int run(const RunOptions& options) {
@@ -87,37 +81,19 @@ int run(const RunOptions& options) {
     check_output_name(folder / "report.html");
     check_output_name(folder / "report.json");
     check_json_name(options.common);
-    const runner::RunSettings settings{
+    const findings::RunSettings settings{
         .seed = options.common.seed, .threads = options.common.threads, .cache = Cache::standard()};
-    const auto progress = std::make_shared<StepProgress>(options.common.quiet);
-    const runner::RunProgress report_progress = [progress](const std::string& step, double done) {
-        (*progress)(step, done);
-    };
-    if (experiment.stability) {
-        const std::vector<studies::StabilitySweep> sweeps =
-            studies::run_stability(experiment, settings, report_progress);
-        return finish_report(options, folder, studies::stability_checks(sweeps),
-                             studies::stability_report_json(experiment, sweeps, settings),
-                             studies::stability_charts(sweeps));
+    StepProgress progress(options.common.quiet);
+    const findings::Findings found = runner::run_experiment(experiment, settings, std::ref(progress));
+    const Json report = runner::report_json(experiment, found, settings);
+    write_report(folder, found, report);
+    write_json_result(options.common, report);
+    const findings::Verdict verdict = findings::overall(found.checks);
+    if (prints_text(options.common)) {
+        print_checks(found.checks);
+        fmt::print("{}: {}\n", findings::verdict_name(verdict), (folder / "report.html").string());
     }
-    if (!experiment.pupil_passage.empty()) {
-        const std::vector<studies::Passage> passages =
-            studies::run_pupil_passage(experiment, settings, report_progress);
-        return finish_report(options, folder, studies::passage_checks(passages),
-                             studies::passage_report_json(experiment, passages, settings),
-                             studies::passage_drawings(passages));
-    }
-    if (experiment.measurement_floor) {
-        const studies::MeasurementFloor floor = studies::run_measurement_floor(experiment, settings, report_progress);
-        return finish_report(options, folder, floor.checks, studies::floor_report_json(experiment, floor, settings),
-                             studies::floor_charts(floor));
-    }
-    const runner::ExperimentResult result = runner::run_experiment(experiment, settings, report_progress);
-    for (const runner::Subject& subject : result.subjects) {
-        calibration::write_profile(subject.profile, folder / "profiles" / (subject.name + ".json"));
-    }
-    return finish_report(options, folder, result.checks, runner::report_json(experiment, result, settings),
-                         runner::report_pictures(result));
+    return verdict == findings::Verdict::pass ? kDone : kCheckFailed;
 }
 
 }  // namespace

@@ -4,15 +4,15 @@
 
 namespace lensproof::draw {
 
-double pixel_um(const PsfMap& psf) {
+double pixel_um(const analysis::PsfMap& psf) {
     return 2.0 * psf.intensity.half_width / static_cast<double>(psf.intensity.size);
 }
 
-std::string psf_file_name(const PsfMap& psf) {
+std::string psf_file_name(const analysis::PsfMap& psf) {
     return fmt::format("psf_{}deg.exr", psf.field_deg);
 }
 
-std::optional<formats::Image> psf_image(const PsfMap& psf) {
+std::optional<formats::Image> psf_image(const analysis::PsfMap& psf) {
     const auto size = static_cast<int>(psf.intensity.size);
     if (size == 0) {
         return std::nullopt;
@@ -31,7 +31,8 @@ std::optional<formats::Image> psf_image(const PsfMap& psf) {
 }
 
 std::map<std::string, std::string> analysis_drawings(const PlotHeading& heading, optics::Projection projection,
-                                                     const AnalysisCurves& curves, const WaveCurves& waves) {
+                                                     const analysis::RayCurves& curves,
+                                                     const analysis::WaveCurves& waves) {
     return {
         {"ray_fans.svg", ray_fans_svg(heading, curves.fans)},
         {"field_curves.svg", field_curves_svg(heading, curves.field_curves, optics::projection_formula(projection))},

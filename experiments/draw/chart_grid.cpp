@@ -11,11 +11,11 @@ namespace lensproof::draw {
 
 namespace {
 
-constexpr double kEdge = 12.0;
+constexpr double kGridEdge = 12.0;
 constexpr double kPanelGap = 10.0;
-constexpr double kTitleSize = 16.0;
-constexpr double kSmallSize = 11.5;
-constexpr double kLine = 17.0;
+constexpr double kGridTitleSize = 16.0;
+constexpr double kGridTextSize = 11.5;
+constexpr double kGridLine = 17.0;
 constexpr double kRowLabelSize = 12.5;
 
 struct GridPanel {
@@ -75,18 +75,19 @@ double draw_grid_heading(Svg& svg, const ChartGrid& grid, double top, double wid
         return static_cast<std::size_t>(std::max(8.0, width / svg_text_width("x", size)));
     };
     if (!grid.title.empty()) {
-        svg.text({kEdge, top + kTitleSize}, shortened(grid.title, letters(kTitleSize)),
-                 {.size = kTitleSize, .fill = kInk, .bold = true, .class_name = "title"});
+        svg.text({kGridEdge, top + kGridTitleSize}, shortened(grid.title, letters(kGridTitleSize)),
+                 {.size = kGridTitleSize, .fill = kInk, .bold = true, .class_name = "title"});
         top += 24.0;
     }
     if (!grid.caption.empty()) {
-        for (const std::string& line : wrapped(grid.caption, letters(kSmallSize), 4)) {
-            svg.text({kEdge, top + kSmallSize}, line, {.size = kSmallSize, .fill = kQuiet, .class_name = "caption"});
-            top += kLine;
+        for (const std::string& line : wrapped(grid.caption, letters(kGridTextSize), 4)) {
+            svg.text({kGridEdge, top + kGridTextSize}, line,
+                     {.size = kGridTextSize, .fill = kQuiet, .class_name = "caption"});
+            top += kGridLine;
         }
     }
     const std::vector<LegendEntry> entries = legend_entries(grid.panels);
-    draw_legend(svg, entries, {kEdge, top + 2.0}, width);
+    draw_legend(svg, entries, {kGridEdge, top + 2.0}, width);
     return top + 8.0 + legend_height(entries, width);
 }
 
@@ -122,20 +123,20 @@ std::string chart_grid_svg(const ChartGrid& grid) {
     const double width = std::max(kLeastWidth, label_width + offset_of(widths, columns) - kPanelGap);
 
     Svg svg(grid.title);
-    const double top = draw_grid_heading(svg, grid, kEdge, width);
+    const double top = draw_grid_heading(svg, grid, kGridEdge, width);
     for (std::size_t i = 0; i < panels.size(); ++i) {
         const std::size_t column = i % columns;
         const std::size_t row = i / columns;
-        panels[i].frame.box.x = kEdge + label_width + offset_of(widths, column) + margins.left[column];
+        panels[i].frame.box.x = kGridEdge + label_width + offset_of(widths, column) + margins.left[column];
         panels[i].frame.box.y = top + offset_of(heights, row) + margins.top[row];
         draw_chart(svg, charts[i], panels[i].frame, panels[i].look);
         if (column == 0 && row < grid.row_labels.size()) {
-            svg.text({kEdge, panels[i].frame.box.y + 0.5 * grid.frame.height + 0.35 * kRowLabelSize},
+            svg.text({kGridEdge, panels[i].frame.box.y + 0.5 * grid.frame.height + 0.35 * kRowLabelSize},
                      grid.row_labels[row],
                      {.size = kRowLabelSize, .fill = kInk, .bold = true, .class_name = "row-label"});
         }
     }
-    return svg.document(width + 2.0 * kEdge, top + offset_of(heights, heights.size()) + kEdge);
+    return svg.document(width + 2.0 * kGridEdge, top + offset_of(heights, heights.size()) + kGridEdge);
 }
 
 }  // namespace lensproof::draw

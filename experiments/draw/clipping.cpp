@@ -9,10 +9,6 @@ namespace lensproof::draw {
 
 namespace {
 
-bool is_finite(SvgPoint point) {
-    return std::isfinite(point.x) && std::isfinite(point.y);
-}
-
 SvgPoint between(SvgPoint a, SvgPoint b, double t) {
     return {a.x + t * (b.x - a.x), a.y + t * (b.y - a.y)};
 }

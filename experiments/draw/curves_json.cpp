@@ -14,17 +14,17 @@ Json points_json(const std::vector<Vec2d>& points) {
     return json;
 }
 
-Json curves_array(const std::vector<WavelengthCurve>& curves) {
+Json curves_array(const std::vector<analysis::WavelengthCurve>& curves) {
     Json json = Json::list();
-    for (const WavelengthCurve& curve : curves) {
+    for (const analysis::WavelengthCurve& curve : curves) {
         json.push_back({{"wavelength_nm", curve.wavelength_nm}, {"points", points_json(curve.points)}});
     }
     return json;
 }
 
-Json fans_json(const std::vector<FieldFans>& fields) {
+Json fans_json(const std::vector<analysis::FieldFans>& fields) {
     Json json = Json::list();
-    for (const FieldFans& field : fields) {
+    for (const analysis::FieldFans& field : fields) {
         json.push_back({{"field_deg", field.field_deg},
                         {"tangential_pupil_um", curves_array(field.tangential)},
                         {"sagittal_pupil_um", curves_array(field.sagittal)}});
@@ -32,11 +32,11 @@ Json fans_json(const std::vector<FieldFans>& fields) {
     return json;
 }
 
-Json field_curves_json(const std::vector<FieldCurve>& curves) {
+Json field_curves_json(const std::vector<analysis::FieldCurve>& curves) {
     Json json = Json::list();
-    for (const FieldCurve& curve : curves) {
+    for (const analysis::FieldCurve& curve : curves) {
         Json points = Json::list();
-        for (const FieldCurve::Point& point : curve.points) {
+        for (const analysis::FieldCurve::Point& point : curve.points) {
             points.push_back({{"field_deg", point.field_deg},
                               {"tangential_focus_mm", point.tangential_mm},
                               {"sagittal_focus_mm", point.sagittal_mm},
@@ -47,9 +47,9 @@ Json field_curves_json(const std::vector<FieldCurve>& curves) {
     return json;
 }
 
-Json spots_json(const AnalysisCurves& curves) {
+Json spots_json(const analysis::RayCurves& curves) {
     Json json = Json::list();
-    for (const FieldSpots& field : curves.spots) {
+    for (const analysis::FieldSpots& field : curves.spots) {
         Json planes = Json::list();
         for (std::size_t i = 0; i < field.spots.size(); ++i) {
             planes.push_back({{"defocus_mm", curves.defocus_mm[i]},
@@ -62,9 +62,9 @@ Json spots_json(const AnalysisCurves& curves) {
     return json;
 }
 
-Json illumination_json(const std::vector<FieldBrightness>& points) {
+Json illumination_json(const std::vector<analysis::FieldBrightness>& points) {
     Json json = Json::list();
-    for (const FieldBrightness& point : points) {
+    for (const analysis::FieldBrightness& point : points) {
         json.push_back({{"field_deg", point.field_deg},
                         {"relative_illumination", point.relative_illumination},
                         {"vignetting", point.vignetting}});
@@ -72,7 +72,7 @@ Json illumination_json(const std::vector<FieldBrightness>& points) {
     return json;
 }
 
-Json map_json(const SquareMap& map) {
+Json map_json(const analysis::SquareMap& map) {
     Json values = Json::list();
     for (const double value : map.values) {
         values.push_back(value);
@@ -80,9 +80,9 @@ Json map_json(const SquareMap& map) {
     return {{"size", map.size}, {"half_width", map.half_width}, {"values", std::move(values)}};
 }
 
-Json wavefronts_json(const std::vector<FieldWavefront>& maps) {
+Json wavefronts_json(const std::vector<analysis::FieldWavefront>& maps) {
     Json json = Json::list();
-    for (const FieldWavefront& map : maps) {
+    for (const analysis::FieldWavefront& map : maps) {
         json.push_back({{"field_deg", map.field_deg},
                         {"wavelength_nm", map.wavelength_nm},
                         {"wavefront_rms_waves", map.rms_waves},
@@ -93,9 +93,9 @@ Json wavefronts_json(const std::vector<FieldWavefront>& maps) {
     return json;
 }
 
-Json psfs_json(const std::vector<PsfMap>& maps) {
+Json psfs_json(const std::vector<analysis::PsfMap>& maps) {
     Json json = Json::list();
-    for (const PsfMap& map : maps) {
+    for (const analysis::PsfMap& map : maps) {
         json.push_back({{"field_deg", map.field_deg},
                         {"strehl", map.strehl},
                         {"pixel_um", map.intensity.size > 0 ? pixel_um(map) : Json(nullptr)},
@@ -104,9 +104,9 @@ Json psfs_json(const std::vector<PsfMap>& maps) {
     return json;
 }
 
-Json mtf_json(const std::vector<FieldMtf>& fields) {
+Json mtf_json(const std::vector<analysis::FieldMtf>& fields) {
     Json json = Json::list();
-    for (const FieldMtf& field : fields) {
+    for (const analysis::FieldMtf& field : fields) {
         json.push_back({{"field_deg", field.field_deg},
                         {"remark", field.remark},
                         {"tangential", points_json(field.tangential)},
@@ -117,9 +117,9 @@ Json mtf_json(const std::vector<FieldMtf>& fields) {
 
 }  // namespace
 
-Json curves_json(const AnalysisCurves& curves, const WaveCurves& waves) {
+Json curves_json(const analysis::RayCurves& curves, const analysis::WaveCurves& waves) {
     Json over_field = Json::list();
-    for (const FrequencyMtf& curve : waves.mtf_over_field) {
+    for (const analysis::FrequencyMtf& curve : waves.mtf_over_field) {
         over_field.push_back({{"cycles_per_mm", curve.cycles_per_mm},
                               {"tangential", points_json(curve.tangential)},
                               {"sagittal", points_json(curve.sagittal)}});

@@ -16,7 +16,7 @@ namespace {
 constexpr double kBarGap = 10.0;
 constexpr double kBarWidth = 12.0;
 constexpr double kMark = 4.0;
-constexpr double kTextSize = 11.0;
+constexpr double kScaleTextSize = 11.0;
 constexpr int kShades = 256;
 
 /// The range, or one about it where its ends do not make one.
@@ -68,7 +68,7 @@ Ticks bar_ticks(const HeatMap& map, double height) {
 double widest(const Ticks& ticks) {
     double width = 0.0;
     for (const std::string& label : ticks.labels) {
-        width = std::max(width, svg_text_width(label, kTextSize));
+        width = std::max(width, svg_text_width(label, kScaleTextSize));
     }
     return width;
 }
@@ -119,7 +119,7 @@ void draw_heat_map(Svg& svg, const HeatMap& map, const PageBox& box) {
 double colour_bar_width(const HeatMap& map, double height) {
     const Ticks ticks = bar_ticks(map, height);
     const bool has_title = !bar_title(map, ticks).empty();
-    return kBarGap + kBarWidth + kMark + 3.0 + widest(ticks) + (has_title ? 8.0 + kTextSize : 0.0) + 8.0;
+    return kBarGap + kBarWidth + kMark + 3.0 + widest(ticks) + (has_title ? 8.0 + kScaleTextSize : 0.0) + 8.0;
 }
 
 void draw_colour_bar(Svg& svg, const HeatMap& map, const PageBox& frame) {
@@ -137,12 +137,12 @@ void draw_colour_bar(Svg& svg, const HeatMap& map, const PageBox& frame) {
     for (std::size_t i = 0; i < ticks.major.size(); ++i) {
         const double y = bar.y + (1.0 - share_of(map, ticks.major[i])) * bar.height;
         svg.line({right, y}, {right + kMark, y}, {.stroke = kQuiet, .width = 0.9});
-        svg.text({right + kMark + 3.0, y + 0.35 * kTextSize}, ticks.labels[i],
-                 {.size = kTextSize, .fill = kInk, .class_name = "number"});
+        svg.text({right + kMark + 3.0, y + 0.35 * kScaleTextSize}, ticks.labels[i],
+                 {.size = kScaleTextSize, .fill = kInk, .class_name = "number"});
     }
     if (const std::string title = bar_title(map, ticks); !title.empty()) {
-        svg.text({right + kMark + 3.0 + widest(ticks) + 8.0 + 0.75 * kTextSize, bar.y + 0.5 * bar.height}, title,
-                 {.size = kTextSize,
+        svg.text({right + kMark + 3.0 + widest(ticks) + 8.0 + 0.75 * kScaleTextSize, bar.y + 0.5 * bar.height}, title,
+                 {.size = kScaleTextSize,
                   .fill = kInk,
                   .anchor = SvgAnchor::middle,
                   .rotation_deg = -90.0,

@@ -16,7 +16,7 @@ namespace lensproof::draw {
 namespace {
 
 constexpr double kMargin = 40.0;  // px
-constexpr double kTextSize = 12.0;
+constexpr double kSectionTextSize = 12.0;
 constexpr double kLeader = 14.0;  // height of a leader's slanted piece
 
 /// What is known of the whole lens: computed, with the claim in brackets where there is one.
@@ -54,10 +54,10 @@ std::string summary(const optics::Prescription& prescription, const optics::Lens
 
 /// Writes the name and what is known of the lens; returns where the page is free below.
 double draw_title(Svg& svg, const optics::Prescription& prescription, const optics::Lens* lens, double width) {
-    constexpr double kTitleSize = 17.0;
-    const auto most = static_cast<std::size_t>((width - 2.0 * kMargin) / (0.58 * kTitleSize));
+    constexpr double kSectionTitleSize = 17.0;
+    const auto most = static_cast<std::size_t>((width - 2.0 * kMargin) / (0.58 * kSectionTitleSize));
     svg.text({kMargin, 34.0}, shortened(prescription.name, most),
-             {.size = kTitleSize, .fill = kInk, .bold = true, .class_name = "title"});
+             {.size = kSectionTitleSize, .fill = kInk, .bold = true, .class_name = "title"});
     svg.text({kMargin, 54.0}, summary(prescription, lens), {.size = 12.5, .fill = kQuiet, .class_name = "summary"});
     if (lens != nullptr) {
         return 66.0;
@@ -299,8 +299,8 @@ double draw_legend(Svg& svg, const SectionView& view, const SectionGeometry& geo
     const double y = top + 18.0;
     double x = kMargin;
     const auto words = [&](const std::string& text, const char* colour = kQuiet) {
-        svg.text({x, y + 4.0}, text, {.size = kTextSize, .fill = colour});
-        x += svg_text_width(text, kTextSize) + 14.0;
+        svg.text({x, y + 4.0}, text, {.size = kSectionTextSize, .fill = colour});
+        x += svg_text_width(text, kSectionTextSize) + 14.0;
     };
     svg.open_group("legend");
     const double length_mm = round_length(kLongestBar / view.scale);
@@ -336,13 +336,13 @@ double draw_legend(Svg& svg, const SectionView& view, const SectionGeometry& geo
 /// The first findings, written out; returns the free y below.
 double draw_findings(Svg& svg, const std::vector<optics::Finding>& findings, const LensSectionOptions& options,
                      double top) {
-    constexpr double kLine = 16.0;
+    constexpr double kFindingLine = 16.0;
     if (findings.empty()) {
         return top;
     }
     const double indent = kMargin + 16.0;
     const auto most =
-        static_cast<std::size_t>(std::max(20.0, (options.width_px - indent - kMargin) / (0.52 * kTextSize)));
+        static_cast<std::size_t>(std::max(20.0, (options.width_px - indent - kMargin) / (0.52 * kSectionTextSize)));
     double y = top + 20.0;
     svg.open_group("findings");
     for (std::size_t i = 0; i < std::min(findings.size(), options.most_findings); ++i) {
@@ -351,15 +351,15 @@ double draw_findings(Svg& svg, const std::vector<optics::Finding>& findings, con
         const std::string text = (finding.surface > 0 ? fmt::format("surface {} · ", finding.surface) : std::string()) +
                                  finding.code + ": " + finding.message;
         for (const std::string& line : wrapped(text, most, 2)) {
-            svg.text({indent, y}, line, {.size = kTextSize, .fill = kInk, .class_name = "finding"});
-            y += kLine;
+            svg.text({indent, y}, line, {.size = kSectionTextSize, .fill = kInk, .class_name = "finding"});
+            y += kFindingLine;
         }
         y += 3.0;
     }
     if (findings.size() > options.most_findings) {
         svg.text({indent, y}, fmt::format("and {} more", findings.size() - options.most_findings),
-                 {.size = kTextSize, .fill = kQuiet});
-        y += kLine;
+                 {.size = kSectionTextSize, .fill = kQuiet});
+        y += kFindingLine;
     }
     svg.close_group();
     return y;

@@ -25,7 +25,7 @@ ReferenceLine zero_line(ReferenceDirection direction) {
     return {.direction = direction, .at = 0.0, .colour = "#9aa1ac", .line = CurveLine::solid};
 }
 
-ChartCurve wavelength_curve(const WavelengthCurve& curve) {
+ChartCurve wavelength_curve(const analysis::WavelengthCurve& curve) {
     return {.label = wavelength_text(curve.wavelength_nm),
             .points = curve.points,
             .colour = wavelength_colour(curve.wavelength_nm)};

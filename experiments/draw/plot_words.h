@@ -21,7 +21,7 @@ std::string wavelength_text(double wavelength_nm);
 ReferenceLine zero_line(ReferenceDirection direction);
 
 /// A curve of that wavelength's colour.
-ChartCurve wavelength_curve(const WavelengthCurve& curve);
+ChartCurve wavelength_curve(const analysis::WavelengthCurve& curve);
 
 /// An entry of the legend that no curve has: what solid and dashed mean.
 ChartCurve legend_only(const std::string& label, CurveLine line);

@@ -12,8 +12,6 @@ namespace lensproof::draw {
 
 namespace {
 
-constexpr const char* kNoLight = "no light";
-
 // Less than these is rounding, or of no use to know: such curves are shown as the straight lines that they are.
 constexpr double kLeastErrorSpan = 0.2;        // µm, of a ray fan
 constexpr double kLeastFocusSpan = 2e-3;       // mm
@@ -43,11 +41,11 @@ std::vector<Vec2d> turned(std::vector<Vec2d> points) {
 }
 
 /// The pupil from −1 to 1, and farther where a beam is.
-void hold_pupil(ChartAxis& axis, const std::vector<FieldFans>& fields) {
+void hold_pupil(ChartAxis& axis, const std::vector<analysis::FieldFans>& fields) {
     double reach = 1.0;
-    for (const FieldFans& field : fields) {
+    for (const analysis::FieldFans& field : fields) {
         for (const auto* curves : {&field.tangential, &field.sagittal}) {
-            for (const WavelengthCurve& curve : *curves) {
+            for (const analysis::WavelengthCurve& curve : *curves) {
                 for (const Vec2d point : curve.points) {
                     reach = std::isfinite(point.x) ? std::max(reach, std::abs(point.x)) : reach;
                 }
@@ -58,7 +56,8 @@ void hold_pupil(ChartAxis& axis, const std::vector<FieldFans>& fields) {
     axis.high = reach;
 }
 
-PlotChart fan_chart(const std::vector<WavelengthCurve>& curves, const std::string& pupil, const ChartAxis& pupil_axis) {
+PlotChart fan_chart(const std::vector<analysis::WavelengthCurve>& curves, const std::string& pupil,
+                    const ChartAxis& pupil_axis) {
     PlotChart chart{.x = pupil_axis,
                     .y = {.label = "Ray error", .unit = "µm", .least_span = kLeastErrorSpan, .is_symmetric = true},
                     .references = {zero_line(ReferenceDirection::horizontal), zero_line(ReferenceDirection::vertical)},
@@ -95,14 +94,14 @@ FieldCurvePanels empty_field_curves(const std::string& projection) {
 
 }  // namespace
 
-std::string ray_fans_svg(const PlotHeading& heading, const std::vector<FieldFans>& fields) {
+std::string ray_fans_svg(const PlotHeading& heading, const std::vector<analysis::FieldFans>& fields) {
     ChartGrid grid{.title = plot_title(heading, "ray fans"),
                    .caption = heading.conditions,
                    .columns = 2,
                    .frame = {300.0, fields.size() > 6 ? 96.0 : 130.0}};
     ChartAxis pupil;
     hold_pupil(pupil, fields);
-    for (const FieldFans& field : fields) {
+    for (const analysis::FieldFans& field : fields) {
         grid.panels.push_back(fan_chart(field.tangential, "Normalised pupil, y", pupil));
         grid.panels.push_back(fan_chart(field.sagittal, "Normalised pupil, x", pupil));
         grid.row_labels.push_back(field_text(field.field_deg));
@@ -114,16 +113,16 @@ std::string ray_fans_svg(const PlotHeading& heading, const std::vector<FieldFans
     return chart_grid_svg(grid);
 }
 
-std::string field_curves_svg(const PlotHeading& heading, const std::vector<FieldCurve>& curves,
+std::string field_curves_svg(const PlotHeading& heading, const std::vector<analysis::FieldCurve>& curves,
                              const std::string& projection) {
     FieldCurvePanels panels = empty_field_curves(projection);
-    for (const FieldCurve& curve : curves) {
-        std::vector<FieldCurve::Point> points = curve.points;
-        std::ranges::stable_sort(points, {}, &FieldCurve::Point::field_deg);
-        WavelengthCurve tangential{.wavelength_nm = curve.wavelength_nm};
-        WavelengthCurve sagittal = tangential;
-        WavelengthCurve distortion = tangential;
-        for (const FieldCurve::Point& point : points) {
+    for (const analysis::FieldCurve& curve : curves) {
+        std::vector<analysis::FieldCurve::Point> points = curve.points;
+        std::ranges::stable_sort(points, {}, &analysis::FieldCurve::Point::field_deg);
+        analysis::WavelengthCurve tangential{.wavelength_nm = curve.wavelength_nm};
+        analysis::WavelengthCurve sagittal = tangential;
+        analysis::WavelengthCurve distortion = tangential;
+        for (const analysis::FieldCurve::Point& point : points) {
             tangential.points.push_back({point.tangential_mm, point.field_deg});
             sagittal.points.push_back({point.sagittal_mm, point.field_deg});
             distortion.points.push_back({point.distortion_percent, point.field_deg});
@@ -145,7 +144,8 @@ std::string field_curves_svg(const PlotHeading& heading, const std::vector<Field
                            .frame = {300.0, 360.0}});
 }
 
-std::string longitudinal_aberration_svg(const PlotHeading& heading, const std::vector<WavelengthCurve>& zones) {
+std::string longitudinal_aberration_svg(const PlotHeading& heading,
+                                        const std::vector<analysis::WavelengthCurve>& zones) {
     PlotChart chart{.title = plot_title(heading, "longitudinal aberration"),
                     .caption = heading.conditions,
                     .x = {.label = "Axis crossing from the image plane",
@@ -155,7 +155,7 @@ std::string longitudinal_aberration_svg(const PlotHeading& heading, const std::v
                     .y = {.label = "Pupil zone", .low = 0.0, .high = 1.0},
                     .references = {zero_line(ReferenceDirection::vertical)},
                     .empty_message = kNoLight};
-    for (const WavelengthCurve& zone : zones) {
+    for (const analysis::WavelengthCurve& zone : zones) {
         ChartCurve curve = wavelength_curve(zone);
         curve.points = turned(in_order(std::move(curve.points)));
         chart.curves.push_back(std::move(curve));
@@ -163,7 +163,7 @@ std::string longitudinal_aberration_svg(const PlotHeading& heading, const std::v
     return chart_svg(chart, {600.0, 540.0});
 }
 
-std::string lateral_colour_svg(const PlotHeading& heading, const std::vector<WavelengthCurve>& curves,
+std::string lateral_colour_svg(const PlotHeading& heading, const std::vector<analysis::WavelengthCurve>& curves,
                                const std::vector<Vec2d>& airy_radius) {
     PlotChart chart{.title = plot_title(heading, "lateral colour"),
                     .caption = heading.conditions,
@@ -182,7 +182,7 @@ std::string lateral_colour_svg(const PlotHeading& heading, const std::vector<Wav
     for (auto point = edge.rbegin(); point != edge.rend(); ++point) {
         band.outline.push_back({-point->y, point->x});
     }
-    for (const WavelengthCurve& colour : curves) {
+    for (const analysis::WavelengthCurve& colour : curves) {
         ChartCurve curve = wavelength_curve(colour);
         curve.points = turned(in_order(std::move(curve.points)));
         chart.curves.push_back(std::move(curve));
@@ -194,7 +194,7 @@ std::string lateral_colour_svg(const PlotHeading& heading, const std::vector<Wav
     return chart_svg(chart, {480.0, 540.0});
 }
 
-std::string illumination_svg(const PlotHeading& heading, const std::vector<FieldBrightness>& points) {
+std::string illumination_svg(const PlotHeading& heading, const std::vector<analysis::FieldBrightness>& points) {
     PlotChart chart{.title = plot_title(heading, "relative illumination"),
                     .caption = heading.conditions,
                     .x = field_axis(),
@@ -203,7 +203,7 @@ std::string illumination_svg(const PlotHeading& heading, const std::vector<Field
     ChartCurve illumination{.label = "relative illumination", .colour = series_colour(0), .width = 2.0};
     ChartCurve vignetting{
         .label = "beam's cross-section (vignetting)", .colour = series_colour(1), .line = CurveLine::dashed};
-    for (const FieldBrightness& point : points) {
+    for (const analysis::FieldBrightness& point : points) {
         illumination.points.push_back({point.field_deg, point.relative_illumination});
         vignetting.points.push_back({point.field_deg, point.vignetting});
     }

@@ -15,10 +15,6 @@ std::string attribute(std::string_view name, std::string_view value) {
     return " " + std::string(name) + "=\"" + std::string(value) + "\"";
 }
 
-bool is_finite(SvgPoint point) {
-    return std::isfinite(point.x) && std::isfinite(point.y);
-}
-
 /// "M1 2 3 4", with a Z where it is closed; nothing for fewer than two points.
 std::string path_data(const std::vector<SvgPoint>& points, bool closed) {
     std::string data;
@@ -147,7 +143,7 @@ void Svg::rectangle(SvgPoint corner, double width, double height, const SvgStyle
 }
 
 void Svg::picture(const PageBox& box, std::string_view png, std::string_view description) {
-    if (is_finite({box.x, box.y}) && box.width > 0.0 && box.height > 0.0) {
+    if (is_finite(SvgPoint{box.x, box.y}) && box.width > 0.0 && box.height > 0.0) {
         body_ += "<image" + attribute("x", svg_number(box.x)) + attribute("y", svg_number(box.y)) +
                  attribute("width", svg_number(box.width)) + attribute("height", svg_number(box.height)) +
                  attribute("preserveAspectRatio", "none") +

@@ -1,6 +1,7 @@
 // experiments/draw/svg.h — a drawing as SVG text: paths, lines, discs, words and groups, and nothing that a file could
 // smuggle in.
 #pragma once
+#include <cmath>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -12,6 +13,10 @@ struct SvgPoint {
     double x = 0.0;
     double y = 0.0;
 };
+
+inline bool is_finite(SvgPoint point) {
+    return std::isfinite(point.x) && std::isfinite(point.y);
+}
 
 /// A rectangle of the drawing by its upper left corner.
 struct PageBox {

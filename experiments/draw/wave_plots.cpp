@@ -14,10 +14,9 @@ namespace lensproof::draw {
 
 namespace {
 
-constexpr const char* kNoLight = "no light";
 constexpr double kMapSide = 200.0;  // px
 
-HeatMap square_heat_map(const SquareMap& map) {
+HeatMap square_heat_map(const analysis::SquareMap& map) {
     return {.columns = map.size,
             .rows = map.size,
             .values = map.values,
@@ -38,7 +37,7 @@ std::string why_empty(const std::string& remark) {
 }
 
 /// The square in the middle that holds all pixels above a hundredth of the peak, and a margin.
-SquareMap bright_middle(const SquareMap& map) {
+analysis::SquareMap bright_middle(const analysis::SquareMap& map) {
     const double least = 0.01 * largest(map.values);
     const auto middle = static_cast<double>(map.size - 1) / 2.0;
     double reach = 4.0;  // px
@@ -51,7 +50,7 @@ SquareMap bright_middle(const SquareMap& map) {
         }
     }
     const auto cut = static_cast<std::size_t>(std::max(0.0, std::floor(middle - 1.25 * reach)));
-    SquareMap part{.size = map.size - 2 * cut};
+    analysis::SquareMap part{.size = map.size - 2 * cut};
     part.half_width = map.half_width * static_cast<double>(part.size) / static_cast<double>(map.size);
     for (std::size_t row = cut; row < map.size - cut; ++row) {
         const auto start = map.values.begin() + static_cast<std::ptrdiff_t>(row * map.size + cut);
@@ -60,11 +59,11 @@ SquareMap bright_middle(const SquareMap& map) {
     return part;
 }
 
-bool is_map(const SquareMap& map) {
+bool is_map(const analysis::SquareMap& map) {
     return map.size > 0 && map.values.size() == map.size * map.size;
 }
 
-PlotChart psf_chart(const PsfMap& field, bool is_log) {
+PlotChart psf_chart(const analysis::PsfMap& field, bool is_log) {
     PlotChart chart{.title = field_text(field.field_deg) + (is_log ? ", logarithmic" : ", linear"),
                     .x = {.label = "x", .unit = "µm"},
                     .y = {.label = "y", .unit = "µm"},
@@ -96,17 +95,17 @@ void add_pair(PlotChart& chart, const std::string& label, const std::string& col
 
 }  // namespace
 
-std::string wavefront_svg(const PlotHeading& heading, const std::vector<FieldWavefront>& fields) {
+std::string wavefront_svg(const PlotHeading& heading, const std::vector<analysis::FieldWavefront>& fields) {
     ChartGrid grid{.title = plot_title(heading, "wavefront"),
                    .caption = heading.conditions,
                    .columns = std::min<std::size_t>(3, std::max<std::size_t>(fields.size(), 1)),
                    .frame = {kMapSide, kMapSide}};
     double reach = 1.0;
-    for (const FieldWavefront& field : fields) {
+    for (const analysis::FieldWavefront& field : fields) {
         reach = is_map(field.opd_waves) ? std::max(reach, field.opd_waves.half_width) : reach;
     }
     constexpr double kLeastWaves = 1e-3;
-    for (const FieldWavefront& field : fields) {
+    for (const analysis::FieldWavefront& field : fields) {
         PlotChart chart{.title = field_text(field.field_deg),
                         .x = {.label = "Pupil x", .low = -reach, .high = reach},
                         .y = {.label = "Pupil y", .low = -reach, .high = reach},
@@ -128,21 +127,21 @@ std::string wavefront_svg(const PlotHeading& heading, const std::vector<FieldWav
     return chart_grid_svg(grid);
 }
 
-std::string psf_svg(const PlotHeading& heading, const std::vector<PsfMap>& fields) {
+std::string psf_svg(const PlotHeading& heading, const std::vector<analysis::PsfMap>& fields) {
     ChartGrid grid{.title = plot_title(heading, "point spread function"),
                    .caption = heading.conditions,
                    .columns = 2,
                    .shares_x = false,
                    .shares_y = false,
                    .frame = {kMapSide, kMapSide}};
-    for (const PsfMap& field : fields) {
+    for (const analysis::PsfMap& field : fields) {
         grid.panels.push_back(psf_chart(field, false));
         grid.panels.push_back(psf_chart(field, true));
     }
     return chart_grid_svg(grid);
 }
 
-std::string mtf_svg(const PlotHeading& heading, const std::vector<FieldMtf>& fields,
+std::string mtf_svg(const PlotHeading& heading, const std::vector<analysis::FieldMtf>& fields,
                     const std::vector<Vec2d>& diffraction_limit, const std::string& kind) {
     PlotChart chart{.title = plot_title(heading, "modulation transfer" + (kind.empty() ? "" : ", " + kind)),
                     .caption = heading.conditions,
@@ -165,7 +164,7 @@ std::string mtf_svg(const PlotHeading& heading, const std::vector<FieldMtf>& fie
     return chart_svg(chart, {760.0, 480.0});
 }
 
-std::string mtf_field_svg(const PlotHeading& heading, const std::vector<FrequencyMtf>& frequencies) {
+std::string mtf_field_svg(const PlotHeading& heading, const std::vector<analysis::FrequencyMtf>& frequencies) {
     PlotChart chart{.title = plot_title(heading, "modulation against field"),
                     .caption = heading.conditions,
                     .x = {.label = "Field angle", .unit = "°", .least_span = 1.0, .holds_zero = true},
@@ -173,7 +172,7 @@ std::string mtf_field_svg(const PlotHeading& heading, const std::vector<Frequenc
                     .empty_message = kNoLight};
     chart.curves = {legend_only("tangential", CurveLine::solid), legend_only("sagittal", CurveLine::dashed)};
     for (std::size_t i = 0; i < frequencies.size(); ++i) {
-        const FrequencyMtf& frequency = frequencies[i];
+        const analysis::FrequencyMtf& frequency = frequencies[i];
         add_pair(chart, short_number(frequency.cycles_per_mm) + " cycles/mm", ordered_colour(i, frequencies.size()),
                  in_order(frequency.tangential), in_order(frequency.sagittal));
     }

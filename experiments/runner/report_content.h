@@ -1,22 +1,19 @@
-// experiments/runner/report_content.h — an experiment's result as the report's JSON, in the schema of
-// experiments/draw/report/report.h.
+// experiments/runner/report_content.h — an experiment's findings as the report's JSON, in the schema of
+// experiments/draw/report/report.h, and as its pictures.
 #pragma once
 #include <map>
 #include <string>
 
 #include "engine/base/json.h"
-#include "experiments/runner/run_experiment.h"
+#include "experiments/runner/experiment.h"
 
 namespace lensproof::runner {
 
-Json check_json(const Check& check);
+/// With program, version, commit, settings, and the inputs with their hashes. A study's tables stand under keys of
+/// their own.
+Json report_json(const Experiment& experiment, const findings::Findings& found, const findings::RunSettings& settings);
 
-/// Program, version, commit, settings, and the inputs with their hashes.
-Json provenance_json(std::vector<std::filesystem::path> inputs, const RunSettings& settings);
-
-Json report_json(const Experiment& experiment, const ExperimentResult& result, const RunSettings& settings);
-
-/// The pictures' bytes by the names that the JSON uses.
-std::map<std::string, std::string> report_pictures(const ExperimentResult& result);
+/// The pictures' bytes by the names that the JSON uses. Maps of all subjects have one range of colours.
+std::map<std::string, std::string> report_pictures(const findings::Findings& found);
 
 }  // namespace lensproof::runner

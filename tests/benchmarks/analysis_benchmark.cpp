@@ -4,9 +4,9 @@
 
 #include "engine/analysis/field_curves.h"
 #include "engine/analysis/lens_analysis.h"
+#include "engine/analysis/ray_curves.h"
 #include "engine/formats/prescription/load_lens.h"
 #include "engine/spectral/wavelengths.h"
-#include "experiments/draw/analysis_curves.h"
 #include "tests/benchmarks/benchmarks.h"
 
 namespace lensproof {
@@ -33,7 +33,7 @@ void analyze_curves(benchmark::State& state, const std::string& name) {
     const optics::Lens lens = formats::load_lens(name);
     const analysis::AnalysisSettings settings = usual_settings(lens);
     while (state.KeepRunning()) {
-        benchmark::DoNotOptimize(draw::analysis_curves(lens, settings));
+        benchmark::DoNotOptimize(analysis::ray_curves(lens, settings));
     }
 }
 

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "engine/scene/texture.h"
+#include "engine/scene/spectra/texture.h"
 #include "tests/benchmarks/benchmarks.h"
 #include "tests/engine/scene/bsdf/bsdf_cases.h"
 

@@ -5,10 +5,9 @@
 
 #include "engine/formats/prescription/load_lens.h"
 #include "engine/optics/focus.h"
-#include "engine/render/camera_paths.h"
-#include "engine/render/chart_render.h"
+#include "engine/render/camera/lens_paths.h"
+#include "engine/render/integrators/chart_tracer.h"
 #include "engine/render/sampling/sampler.h"
-#include "engine/scene/pose.h"
 #include "engine/spectral/wavelengths.h"
 #include "tests/benchmarks/benchmarks.h"
 
@@ -66,9 +65,10 @@ class PathScene {
           in_double_(optics::at_wavelengths<double>(lens_, wavelengths())),
           in_float_(optics::at_wavelengths<float>(lens_, wavelengths())),
           sensor_{.width = 40, .height = 30, .pixel_pitch_mm = setting.half_diagonal_mm / 25.0},
-          pose_(scene::place({.distance_mm = setting.focus_distance_mm})),
-          chart_{.pattern =
-                     scene::DiscGrid{12, 9, 0.05 * setting.focus_distance_mm, 0.025 * setting.focus_distance_mm}},
+          chart_{.chart = {.pattern = scene::DiscGrid{12, 9, 0.05 * setting.focus_distance_mm,
+                                                      0.025 * setting.focus_distance_mm}},
+                 .pose = scene::place({.distance_mm = setting.focus_distance_mm}),
+                 .white_radiance = {}},
           pupil_(in_double_.at(), lens_.is_rotationally_symmetric, setting.half_diagonal_mm),
           slices_(pupil_, in_double_.wavelengths()) {}
 
@@ -86,16 +86,12 @@ class PathScene {
     }
 
     template <class T>
-    [[nodiscard]] render::CameraPathSource<T> source() const {
-        return {.sensor = sensor_, .lens = &lens<T>(), .pupil = &slices_, .seed = 0};
+    [[nodiscard]] render::LensPaths<T> paths(optics::SimdLevel level) const {
+        return {{.sensor = sensor_}, lens<T>(), slices_, level};
     }
 
     /// Work as a scene makes it: what the ray sees of a chart.
-    template <class T>
-    [[nodiscard]] double look_up(const Ray<T>& ray) const {
-        const auto in_double = [](const Vec3<T>& v) { return Vec3d{v.x, v.y, v.z}; };
-        return render::seen_reflectance(chart_, pose_, {in_double(ray.origin), in_double(ray.direction)});
-    }
+    [[nodiscard]] double look_up(const Ray<double>& ray) const { return render::meet_chart(chart_, ray).reflectance; }
 
   private:
     static std::vector<double> wavelengths() { return spectral::WavelengthStrata{400.0, 700.0, 64}.midpoints(); }
@@ -104,8 +100,7 @@ class PathScene {
     optics::SpectralLens<double> in_double_;
     optics::SpectralLens<float> in_float_;
     render::Sensor sensor_;
-    scene::RigidMotion pose_;
-    scene::Chart chart_;
+    render::EvenChart chart_;
     pupil::PupilMap pupil_;
     pupil::PupilSlices slices_;
 };
@@ -162,17 +157,17 @@ void time_one_by_one(benchmark::State& state, const Setting& setting, Consumer c
 template <class T>
 void time_buffers(benchmark::State& state, const Setting& setting, optics::SimdLevel level, Consumer consumer) {
     const PathScene scene(setting);
-    const render::CameraPathSource<T> source = scene.source<T>();
-    render::CameraPathProducer<T> producer(source, level);
-    render::CameraPathBuffer<T> paths;
+    render::LensPaths<T> producer = scene.paths<T>(level);
+    render::CameraPathBuffer paths;
     std::int64_t valid = 0;
     while (state.KeepRunning()) {
         valid = 0;
         producer.start({.pixels = scene.pixels(), .samples = kSamples});
         while (producer.fill(paths)) {
             valid += paths.size;
-            for (int i = 0; consumer == Consumer::chart && i < paths.size; ++i) {
-                benchmark::DoNotOptimize(paths.weight[static_cast<std::size_t>(i)] * scene.look_up(paths.ray(i)));
+            const auto looked_up = consumer == Consumer::chart ? static_cast<std::size_t>(paths.size) : 0;
+            for (std::size_t i = 0; i < looked_up; ++i) {
+                benchmark::DoNotOptimize(paths.weight[i] * scene.look_up(paths.ray(i)));
             }
             benchmark::ClobberMemory();
         }

@@ -3,7 +3,7 @@
 #include "calibration/detection/refine.h"
 #include "engine/formats/prescription/load_lens.h"
 #include "engine/optics/chief_ray.h"
-#include "engine/scene/chart.h"
+#include "engine/scene/chart/chart.h"
 #include "tests/benchmarks/benchmarks.h"
 
 namespace lensproof {

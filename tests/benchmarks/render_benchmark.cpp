@@ -4,7 +4,8 @@
 #include <vector>
 
 #include "engine/pupil/pupil_map.h"
-#include "engine/render/camera.h"
+#include "engine/render/integrators/chart_tracer.h"
+#include "engine/render/progressive.h"
 #include "engine/render/sampling/sampler.h"
 #include "tests/benchmarks/benchmarks.h"
 
@@ -26,7 +27,7 @@ const std::vector<Setting>& settings() {
     return all;
 }
 
-render::Camera camera_for(const Setting& setting) {
+render::CameraSettings camera_for(const Setting& setting) {
     constexpr int kWidth = 32;
     constexpr int kHeight = 24;
     return {.lens = setting.lens,
@@ -39,10 +40,12 @@ render::Camera camera_for(const Setting& setting) {
 
 void time_render(benchmark::State& state, const Setting& setting, const scene::Chart& chart) {
     constexpr int kSamples = 64;
-    const render::ChartCamera camera(camera_for(setting), render::Light{}, render::SpectralSampling{});
-    const scene::Placement placement{.distance_mm = setting.focus_distance_mm};
+    const render::Camera camera(camera_for(setting), {}, {}, {});
+    const render::World world = render::even_chart(chart, {.distance_mm = setting.focus_distance_mm}, 1000.0, camera);
+    const render::View view{.world = &world, .camera = &camera, .film = camera.film()};
     while (state.KeepRunning()) {
-        benchmark::DoNotOptimize(camera.render(chart, placement, {.samples_per_pixel = kSamples, .threads = 1}));
+        benchmark::DoNotOptimize(render::render_film({.film = view.film, .renderer = render::ChartTracer(view)},
+                                                     {.first = 0, .end = kSamples}, 1));
     }
     const render::Sensor& sensor = camera.sensor();
     state.counters["paths/s"] = benchmark::Counter(

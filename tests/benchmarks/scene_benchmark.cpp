@@ -2,11 +2,8 @@
 
 #include <memory>
 
-#include "engine/formats/prescription/load_lens.h"
-#include "engine/optics/focus.h"
-#include "engine/render/light_tracer.h"
-#include "engine/render/scene_render.h"
-#include "engine/scene/scene_description.h"
+#include "engine/render/integrators/path_tracer.h"
+#include "engine/render/progressive.h"
 #include "tests/benchmarks/benchmarks.h"
 
 namespace lensproof {
@@ -42,48 +39,17 @@ scene::Scene wall_sphere_and_lamp(const spectral::SpectralGrid& grid) {
     return scene;
 }
 
-/// A scene and everything that its views need.
-struct Stage {
-    spectral::SpectralGrid grid = spectral::spectral_grid(400.0, 700.0, 64);
-    optics::Lens lens =
-        optics::focused_at(optics::with_f_number(formats::load_lens("double-gauss-tronnier"), 2.0), 2000.0);
-    optics::SpectralLens<double> traced = optics::at_wavelengths<double>(lens, grid.strata.midpoints());
-    pupil::PupilMap pupil{traced.at(), true, kSensor.half_diagonal_mm()};
-    pupil::PupilSlices slices{pupil, grid.size()};
-    scene::Scene scene = wall_sphere_and_lamp(grid);
-
-    [[nodiscard]] render::SceneView view(const render::SceneCamera& camera) const {
-        return {.scene = &scene,
-                .camera = &camera,
-                .camera_to_world = scene::camera_to_world({}),
-                .sensor = kSensor,
-                .film = {.width = kWidth,
-                         .height = kHeight,
-                         .layer_nm = spectral::WavelengthStrata{400.0, 700.0, 8}.midpoints(),
-                         .rgb_weights = std::vector<Vec3d>(64, Vec3d{1.0, 1.0, 1.0}),
-                         .band_nm = 300.0},
-                .albedo_weights = {},
-                .paths = kPaths,
-                .seed = 0};
-    }
-};
-
-render::SceneCamera camera_of(const Stage& stage, scene::LensModel model) {
-    if (model == scene::LensModel::exact) {
-        return render::ExactCamera{&stage.traced, &stage.slices};
-    }
-    std::vector<render::GaussianCamera> at;
-    for (const double nm : stage.grid.strata.midpoints()) {
-        at.push_back(render::gaussian_camera(stage.lens, model, nm));
-    }
-    return at;
-}
-
-void time_camera_paths(benchmark::State& state, scene::LensModel model) {
-    const Stage stage;
-    const render::SceneCamera camera = camera_of(stage, model);
-    const render::SceneView view = stage.view(camera);
-    const render::TileRenderer render = render::scene_renderer(view);
+void time_camera_paths(benchmark::State& state, render::LensModel model) {
+    const render::Camera camera({.lens = "double-gauss-tronnier",
+                                 .f_number = 2.0,
+                                 .focus_distance_mm = 2000.0,
+                                 .sensor = kSensor,
+                                 .response = "cie-1931",
+                                 .model = model},
+                                {.layers = 8, .strata_per_layer = 8}, {}, {});
+    const render::World world = wall_sphere_and_lamp(camera.grid());
+    const render::View view{.world = &world, .camera = &camera, .film = camera.film(), .paths = kPaths};
+    const render::TileRenderer render = render::PathTracer(view);
     render::Film film(view.film);
     render::FilmTile tile(film.layout());
     const auto tiles = render::film_tiles(kWidth, kHeight);
@@ -109,9 +75,10 @@ void time_camera_paths(benchmark::State& state, scene::LensModel model) {
 }  // namespace
 
 void register_scene_benchmarks() {
-    for (const std::string& model : scene::lens_model_names()) {
-        benchmark::RegisterBenchmark(("scene/" + model).c_str(), [model](benchmark::State& state) {
-            time_camera_paths(state, scene::lens_model_named(model));
+    using enum render::LensModel;
+    for (const render::LensModel model : {exact, paraxial, thin_lens, pinhole}) {
+        benchmark::RegisterBenchmark(("scene/" + render::name_of(model)).c_str(), [model](benchmark::State& state) {
+            time_camera_paths(state, model);
         })->Unit(benchmark::kMillisecond);
     }
 }

@@ -10,7 +10,7 @@
 #include "calibration/geometry/planar_pose.h"
 #include "calibration/self_test/simulated_chart.h"
 #include "engine/formats/image/image.h"
-#include "engine/scene/chart.h"
+#include "engine/scene/chart/chart.h"
 
 namespace lensproof::calibration::synthetic {
 

@@ -5,7 +5,7 @@
 
 #include "tests/cli/program.h"
 
-namespace lensproof {
+namespace lensproof::analyze_command_test {
 namespace {
 
 using Json = nlohmann::json;
@@ -177,4 +177,4 @@ TEST(Analyze, RefusesWhatMakesNoSense) {
 }
 
 }  // namespace
-}  // namespace lensproof
+}  // namespace lensproof::analyze_command_test

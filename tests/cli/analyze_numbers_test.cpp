@@ -9,7 +9,7 @@
 #include "tests/cli/program.h"
 #include "tests/cli/reference_numbers.h"
 
-namespace lensproof {
+namespace lensproof::analyze_numbers_test {
 
 namespace {
 
@@ -152,4 +152,4 @@ INSTANTIATE_TEST_SUITE_P(Lens, AnalyzeNumbers, testing::ValuesIn(kNumberedLenses
 
 }  // namespace
 
-}  // namespace lensproof
+}  // namespace lensproof::analyze_numbers_test

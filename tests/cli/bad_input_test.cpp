@@ -8,7 +8,7 @@
 
 #include "tests/cli/program.h"
 
-namespace lensproof {
+namespace lensproof::bad_input_test {
 
 namespace {
 
@@ -302,4 +302,4 @@ TEST(BadOutput, IsRefusedBeforeTheWork) {
 
 }  // namespace
 
-}  // namespace lensproof
+}  // namespace lensproof::bad_input_test

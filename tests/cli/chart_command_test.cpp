@@ -5,7 +5,7 @@
 
 #include "tests/cli/program.h"
 
-namespace lensproof {
+namespace lensproof::chart_command_test {
 
 namespace {
 
@@ -65,4 +65,4 @@ TEST(ChartCommand, RefusesWhatCannotBePrinted) {
 
 }  // namespace
 
-}  // namespace lensproof
+}  // namespace lensproof::chart_command_test

@@ -5,7 +5,7 @@
 
 #include "tests/cli/program.h"
 
-namespace lensproof {
+namespace lensproof::check_test {
 namespace {
 
 using Json = nlohmann::json;
@@ -116,4 +116,4 @@ TEST(Check, AZoomIsCheckedAtOnePositionOrAtAll) {
 }
 
 }  // namespace
-}  // namespace lensproof
+}  // namespace lensproof::check_test

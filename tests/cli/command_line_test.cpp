@@ -10,7 +10,7 @@
 
 #include "tests/cli/program.h"
 
-namespace lensproof {
+namespace lensproof::command_line_test {
 
 namespace {
 
@@ -369,4 +369,4 @@ TEST(Run, WritesItsReportAndItsProfileReadsBack) {
 
 }  // namespace
 
-}  // namespace lensproof
+}  // namespace lensproof::command_line_test

@@ -6,7 +6,7 @@
 
 #include "tests/cli/program.h"
 
-namespace lensproof {
+namespace lensproof::convert_command_test {
 
 namespace {
 
@@ -112,4 +112,4 @@ TEST(Convert, RefusesWhatItCannotReadOrWrite) {
 
 }  // namespace
 
-}  // namespace lensproof
+}  // namespace lensproof::convert_command_test

@@ -10,7 +10,7 @@
 #include "tests/calibration/synthetic.h"
 #include "tests/cli/program.h"
 
-namespace lensproof {
+namespace lensproof::photo_folder_test {
 
 namespace {
 
@@ -204,4 +204,4 @@ TEST(PhotoFolder, WhereNoPictureDoesEachReasonIsGiven) {
 }
 
 }  // namespace
-}  // namespace lensproof
+}  // namespace lensproof::photo_folder_test

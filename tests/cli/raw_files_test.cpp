@@ -6,7 +6,7 @@
 
 #include "tests/cli/program.h"
 
-namespace lensproof {
+namespace lensproof::raw_files_test {
 
 namespace {
 
@@ -109,4 +109,4 @@ TEST(RawFiles, AreRefusedWithFileLineAndKey) {
 
 }  // namespace
 
-}  // namespace lensproof
+}  // namespace lensproof::raw_files_test

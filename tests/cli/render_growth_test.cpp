@@ -9,7 +9,7 @@
 
 #include "tests/cli/program.h"
 
-namespace lensproof {
+namespace lensproof::render_growth_test {
 
 namespace {
 
@@ -224,4 +224,4 @@ TEST(RenderGrowth, RefusesACheckpointOfAnotherRender) {
 }
 
 }  // namespace
-}  // namespace lensproof
+}  // namespace lensproof::render_growth_test

@@ -6,7 +6,7 @@
 
 #include "tests/cli/program.h"
 
-namespace lensproof {
+namespace lensproof::render_scene_test {
 
 namespace {
 
@@ -171,4 +171,4 @@ TEST(RenderScene, KnowsTheFilesThatASceneNames) {
 
 }  // namespace
 
-}  // namespace lensproof
+}  // namespace lensproof::render_scene_test

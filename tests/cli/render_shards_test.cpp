@@ -5,7 +5,7 @@
 
 #include "tests/cli/program.h"
 
-namespace lensproof {
+namespace lensproof::render_shards_test {
 
 namespace {
 
@@ -130,4 +130,4 @@ TEST(Shard, IsNamedByItsNumbersWhereNoNameIsGiven) {
 }
 
 }  // namespace
-}  // namespace lensproof
+}  // namespace lensproof::render_shards_test

@@ -8,7 +8,7 @@
 #include "tests/cli/program.h"
 #include "tests/cli/trace_table.h"
 
-namespace lensproof {
+namespace lensproof::trace_float_test {
 
 namespace {
 
@@ -112,4 +112,4 @@ TEST(TraceInFloat, AnErrorOverItsBoundIsNoFailure) {
 
 }  // namespace
 
-}  // namespace lensproof
+}  // namespace lensproof::trace_float_test

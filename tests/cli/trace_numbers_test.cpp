@@ -9,7 +9,7 @@
 #include "tests/cli/program.h"
 #include "tests/cli/reference_numbers.h"
 
-namespace lensproof {
+namespace lensproof::trace_numbers_test {
 
 namespace {
 
@@ -148,4 +148,4 @@ INSTANTIATE_TEST_SUITE_P(Lens, TraceNumbers, testing::ValuesIn(kNumberedLenses),
 
 }  // namespace
 
-}  // namespace lensproof
+}  // namespace lensproof::trace_numbers_test

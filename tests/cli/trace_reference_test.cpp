@@ -14,7 +14,7 @@
 #include "tests/cli/trace_table.h"
 #include "tests/places.h"
 
-namespace lensproof {
+namespace lensproof::trace_reference_test {
 
 namespace {
 
@@ -198,4 +198,4 @@ INSTANTIATE_TEST_SUITE_P(Tessar, TraceReference,
 
 }  // namespace
 
-}  // namespace lensproof
+}  // namespace lensproof::trace_reference_test

@@ -6,7 +6,7 @@
 #include "engine/check/checker.h"
 #include "engine/formats/glass/shipped_glasses.h"
 #include "engine/optics/lens.h"
-#include "engine/scene/geometry.h"
+#include "engine/scene/geometry/geometry.h"
 #include "engine/scene/scene_shapes.h"
 
 namespace lensproof {
@@ -35,7 +35,7 @@ void use(const render::SceneSetup& setup) {
     try {
         scene::SceneShapes shapes = scene::load_shapes(setup.scene);
         const scene::SceneGeometry geometry(std::move(shapes.shapes), std::move(shapes.objects));
-        const scene::RigidMotion camera = scene::camera_to_world(setup.view);
+        const scene::RigidMotion camera = render::camera_to_world(setup.camera);
         scene::intersect(geometry, camera.translation, scene::rotate(camera, {0.0, 0.0, 1.0}), 0.0, 1e12);
     } catch (const InputError&) {
         return;  // refused, as a render would

@@ -17,7 +17,7 @@
 #include "engine/optics/chief_ray.h"
 #include "engine/optics/lens.h"
 
-namespace lensproof {
+namespace lensproof::analysis_field_reference_test {
 namespace {
 
 class FieldReference : public testing::TestWithParam<const char*> {
@@ -266,4 +266,4 @@ INSTANTIATE_TEST_SUITE_P(Tessar, FieldReference, testing::Values("const", "catal
                          [](const auto& suite) { return std::string(suite.param); });
 
 }  // namespace
-}  // namespace lensproof
+}  // namespace lensproof::analysis_field_reference_test

@@ -6,7 +6,7 @@
 
 #include "tests/validation/studio.h"
 
-namespace lensproof {
+namespace lensproof::both_paths_test {
 namespace {
 
 const spectral::SpectralGrid kGrid = spectral::spectral_grid(420.0, 680.0, 16);
@@ -83,8 +83,8 @@ TEST(BothPaths, MakeTheImageWhereWavelengthsPart) {
 }
 
 TEST(BothPaths, MakeTheImageOfIdealCameras) {
-    for (const scene::LensModel model :
-         {scene::LensModel::pinhole, scene::LensModel::thin_lens, scene::LensModel::paraxial}) {
+    for (const render::LensModel model :
+         {render::LensModel::pinhole, render::LensModel::thin_lens, render::LensModel::paraxial}) {
         SceneParts parts = matt_scene();
         Studio::Setup setup = double_gauss();
         setup.model = model;
@@ -149,4 +149,4 @@ TEST(BothPaths, AreNoNoisierThanTheBetter) {
 }
 
 }  // namespace
-}  // namespace lensproof
+}  // namespace lensproof::both_paths_test

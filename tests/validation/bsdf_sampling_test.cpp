@@ -7,7 +7,7 @@
 
 #include "tests/engine/scene/bsdf/bsdf_cases.h"
 
-namespace lensproof {
+namespace lensproof::bsdf_sampling_test {
 namespace {
 
 using std::numbers::pi;
@@ -145,4 +145,4 @@ TEST(Bsdf, DrawsDirectionsAsItsDensitySays) {
 }
 
 }  // namespace
-}  // namespace lensproof
+}  // namespace lensproof::bsdf_sampling_test

@@ -7,7 +7,7 @@
 #include "engine/scene/bsdf/fresnel.h"
 #include "tests/engine/scene/bsdf/bsdf_cases.h"
 
-namespace lensproof {
+namespace lensproof::bsdf_scattering_test {
 namespace {
 
 using std::numbers::pi;
@@ -286,4 +286,4 @@ TEST(RoughSurfaces, GreyVarnishIsSaundersons) {
 }
 
 }  // namespace
-}  // namespace lensproof
+}  // namespace lensproof::bsdf_scattering_test

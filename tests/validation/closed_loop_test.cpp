@@ -1,26 +1,32 @@
 // The whole chain against the lens's own rays: render a chart, measure it as a photo, compare with traced curves.
 // Renders are of the demo's scenes at half their resolution, which keeps them quick; limits in pixels are therefore of
 // larger pixels.
-#include "experiments/studies/closed_loop.h"
+#include "experiments/studies/cameras/closed_loop.h"
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "calibration/profile/curve_difference.h"
 #include "engine/base/file.h"
-#include "experiments/runner/run_experiment.h"
+#include "experiments/studies/cameras/simulations.h"
 
-namespace lensproof {
+namespace lensproof::closed_loop_test {
 namespace {
 
 /// One simulation of the demo, at half its resolution.
-runner::Experiment half_resolution(const std::string& name) {
-    runner::Experiment half = runner::read_experiment(data_root() / "experiments" / "first_light.toml");
-    half.photos.clear();
-    half.comparisons.clear();
-    std::erase_if(half.simulations, [&](const runner::Simulation& s) { return s.name != name; });
-    render::Sensor& sensor = half.simulations.at(0).scene.camera.sensor;
+studies::Simulation half_resolution(const std::string& name) {
+    findings::ExperimentFile file{.top = TomlTable::read(data_root() / "experiments" / "first_light.toml")};
+    const std::vector<studies::Simulation> simulations = studies::simulations_of(file);
+    studies::Simulation half = *std::ranges::find(simulations, name, &studies::Simulation::name);
+    render::Sensor& sensor = half.scene.camera.sensor;
     sensor = {sensor.width / 2, sensor.height / 2, 2.0 * sensor.pixel_pitch_mm};
     return half;
+}
+
+studies::MeasuredCamera measured(const studies::Simulation& simulation) {
+    const render::Camera camera(simulation.scene.camera, simulation.scene.spectral, {}, {});
+    return studies::measure_simulation(simulation, camera, {.self_test = false}, [](const std::string&, double) {});
 }
 
 /// Of the largest difference from seed to seed: with half as many pixels the fisheye's is 0.18 ± 0.025 px over eight of
@@ -30,33 +36,31 @@ constexpr double kScatterPx = 0.025;
 class ClosedLoop : public testing::TestWithParam<const char*> {};
 
 TEST_P(ClosedLoop, MeasurementFindsWhatTheRaysSay) {
-    runner::Experiment half = half_resolution(GetParam());
+    studies::Simulation half = half_resolution(GetParam());
     // Squares keep enough pixels for a corner fit.
-    auto& board = std::get<scene::Checkerboard>(half.simulations[0].scene.chart.pattern);
+    auto& board = std::get<scene::Checkerboard>(half.scene.chart->chart.pattern);
     board = {.columns = 11, .rows = 8, .square_mm = board.square_mm * board.columns / 11.0};
 
-    const runner::ExperimentResult result =
-        runner::run_experiment(half, {.self_test = false}, [](const std::string&, double) {});
-    const runner::Subject& subject = result.subjects.at(0);
-    const runner::ClosedLoopLimits& limits = half.simulations[0].limits;
-    for (const calibration::ProfileView& view : subject.profile.views) {
+    const studies::MeasuredCamera camera = measured(half);
+    const studies::ClosedLoopLimits& limits = half.limits;
+    for (const calibration::ProfileView& view : camera.profile.views) {
         EXPECT_TRUE(view.found) << view.image;
     }
-    ASSERT_TRUE(subject.profile.geometry);
-    EXPECT_GT(subject.profile.geometry->covered_image_height, 0.7);
+    ASSERT_TRUE(camera.profile.geometry);
+    EXPECT_GT(camera.profile.geometry->covered_image_height, 0.7);
 
-    const auto radial = calibration::radial_difference_px(subject.profile, *subject.traced);
+    const auto radial = calibration::radial_difference_px(camera.profile, *camera.traced);
     ASSERT_TRUE(radial);
     EXPECT_LT(radial->rms, limits.distortion_rms_px.value());
     EXPECT_LT(radial->largest, limits.distortion_largest_px.value() + 3.0 * kScatterPx);
 
-    const auto vignetting = calibration::difference(subject.profile, *subject.traced, "vignetting_G");
+    const auto vignetting = calibration::difference(camera.profile, *camera.traced, "vignetting_G");
     ASSERT_TRUE(vignetting);
     EXPECT_GT(vignetting->curve.covered_image_height, 0.9);
     EXPECT_LT(100.0 * vignetting->largest, limits.vignetting_percent.value());
 
     for (const char* curve : {"chromatic_shift_R_px", "chromatic_shift_B_px"}) {
-        const auto shift = calibration::difference(subject.profile, *subject.traced, curve);
+        const auto shift = calibration::difference(camera.profile, *camera.traced, curve);
         ASSERT_TRUE(shift) << curve;
         EXPECT_LT(shift->largest, limits.chromatic_shift_px.value()) << curve << " at " << shift->largest_at;
     }
@@ -65,15 +69,13 @@ TEST_P(ClosedLoop, MeasurementFindsWhatTheRaysSay) {
 // Discs instead of corners: their centroids are moved by perspective, which the fit models, so the lens found is the
 // same.
 TEST(ClosedLoopDiscs, FindTheSameLens) {
-    runner::Experiment half = half_resolution("tessar");
-    runner::Simulation& simulation = half.simulations[0];
-    simulation.scene.chart.pattern = scene::DiscGrid{.columns = 13, .rows = 9, .pitch_mm = 450.0, .diameter_mm = 260.0};
+    studies::Simulation simulation = half_resolution("tessar");
+    simulation.scene.chart->chart.pattern =
+        scene::DiscGrid{.columns = 13, .rows = 9, .pitch_mm = 450.0, .diameter_mm = 260.0};
     simulation.views.resize(5);
     simulation.flat_field = false;
-    const runner::ExperimentResult result =
-        runner::run_experiment(half, {.self_test = false}, [](const std::string&, double) {});
-    const runner::Subject& subject = result.subjects.at(0);
-    const auto radial = calibration::radial_difference_px(subject.profile, *subject.traced);
+    const studies::MeasuredCamera camera = measured(simulation);
+    const auto radial = calibration::radial_difference_px(camera.profile, *camera.traced);
     ASSERT_TRUE(radial);
     EXPECT_LT(radial->rms, simulation.limits.distortion_rms_px.value());
     EXPECT_LT(radial->largest, simulation.limits.distortion_largest_px.value());
@@ -87,4 +89,4 @@ INSTANTIATE_TEST_SUITE_P(Lenses, ClosedLoop, testing::Values("tessar", "petzval"
                          });
 
 }  // namespace
-}  // namespace lensproof
+}  // namespace lensproof::closed_loop_test

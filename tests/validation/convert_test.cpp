@@ -19,7 +19,7 @@
 #include "engine/spectral/wavelengths.h"
 #include "tests/test_folder.h"
 
-namespace lensproof {
+namespace lensproof::convert_test {
 namespace {
 
 constexpr double kTolerance_mm = 1e-9;
@@ -306,4 +306,4 @@ TEST_F(Conversion, KeepsRimsAndBarrelsAsClearApertures) {
 }
 
 }  // namespace
-}  // namespace lensproof
+}  // namespace lensproof::convert_test

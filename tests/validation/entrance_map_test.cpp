@@ -24,7 +24,7 @@
 #include "engine/render/sampling/sampler.h"
 #include "tests/test_folder.h"
 
-namespace lensproof {
+namespace lensproof::entrance_map_test {
 namespace {
 
 struct Setting {
@@ -331,4 +331,4 @@ TEST(EntranceMap, WrongRegionsLoseNoLight) {
 }
 
 }  // namespace
-}  // namespace lensproof
+}  // namespace lensproof::entrance_map_test

@@ -3,37 +3,27 @@
 
 #include <cmath>
 
-#include "engine/render/camera.h"
-#include "engine/render/film_image.h"
+#include "tests/validation/rendered_scene.h"
 
-namespace lensproof {
+namespace lensproof::film_render_test {
 namespace {
 
 constexpr int kWidth = 24;
 constexpr int kHeight = 18;
 
-render::ChartCamera tessar_camera(const std::string& filter = "box") {
-    const render::Camera camera{.lens = "tessar",
-                                .f_number = 4.0,
-                                .focus_distance_mm = 10000.0,
-                                .sensor = {.width = kWidth, .height = kHeight, .pixel_pitch_mm = 1.5},
-                                .exposure = {.time_s = 0.05, .iso = 100.0},
-                                .response = "cie-1931"};
-    return {camera, render::Light{}, render::SpectralSampling{}, {}, render::PixelFilter::named(filter)};
+render::Camera tessar_camera(const std::string& filter = "box") {
+    const render::CameraSettings settings{.lens = "tessar",
+                                          .f_number = 4.0,
+                                          .focus_distance_mm = 10000.0,
+                                          .sensor = {.width = kWidth, .height = kHeight, .pixel_pitch_mm = 1.5},
+                                          .exposure = {.time_s = 0.05, .iso = 100.0},
+                                          .response = "cie-1931"};
+    return {settings, {}, render::PixelFilter::named(filter), {}};
 }
 
 const scene::Chart kFlat{.pattern = scene::FlatField{}};
 const scene::Chart kBoard{.pattern = scene::Checkerboard{8, 6, 500.0}};
 constexpr scene::Placement kFacing{.distance_mm = 10000.0};
-
-/// Samples [first, end) of the view.
-render::Film rendered(const render::ChartCamera& camera, render::SeenChart view, std::uint64_t seed,
-                      std::uint32_t first, std::uint32_t end) {
-    const render::ChartRender render(std::move(view), camera.pupil(), seed);
-    render::RenderState state(render.film(), {.first = first, .end = end});
-    render::render_progressively(state, [&] { return render.make_renderer(); }, {}, {.in_passes = false});
-    return std::move(state.film);
-}
 
 /// Mean over pixels and R, G, B of the stated variance.
 double stated_variance(const render::Film& film) {
@@ -66,12 +56,12 @@ double spread_of(const std::vector<render::Film>& films) {
 // lie between each other's, which is worth a factor of 2 to 8 in variance here (128 samples; more samples, more). 8
 // renders of 432 pixels and 3 channels scatter by 2 % in spread.
 TEST(FilmRender, StatedErrorsBoundTheSpreadOfSeeds) {
-    const render::ChartCamera camera = tessar_camera();
+    const render::Camera camera = tessar_camera();
     for (const scene::Chart& chart : {kFlat, kBoard}) {
         std::vector<render::Film> films;
         double stated = 0.0;
         for (std::uint64_t seed = 0; seed < 8; ++seed) {
-            films.push_back(rendered(camera, camera.view(chart, kFacing), seed, 0, 128));
+            films.push_back(rendered({camera, chart, kFacing}, {0, 128}, seed));
             stated += stated_variance(films.back()) / 8.0;
         }
         const double spread = spread_of(films);
@@ -82,12 +72,12 @@ TEST(FilmRender, StatedErrorsBoundTheSpreadOfSeeds) {
 
 // Three shards of whole blocks, merged, are the whole render: its values and its variances to rounding.
 TEST(FilmRender, ShardsAddUpWithTheirVariance) {
-    const render::ChartCamera camera = tessar_camera();
-    const render::SeenChart view = camera.view(kBoard, kFacing);
-    const render::Film whole = rendered(camera, view, 1, 0, 220);
-    render::Film sum = rendered(camera, view, 1, 144, 220);
-    sum.merge(rendered(camera, view, 1, 0, 64));
-    sum.merge(rendered(camera, view, 1, 64, 144));
+    const render::Camera camera = tessar_camera();
+    const SeenChart seen{camera, kBoard, kFacing};
+    const render::Film whole = rendered(seen, {0, 220}, 1);
+    render::Film sum = rendered(seen, {144, 220}, 1);
+    sum.merge(rendered(seen, {0, 64}, 1));
+    sum.merge(rendered(seen, {64, 144}, 1));
     for (int i = 0; i < kWidth * kHeight; ++i) {
         const auto [rgb, variance] = sum.estimate(i % kWidth, i / kWidth);
         const render::PixelEstimate expected = whole.estimate(i % kWidth, i / kWidth);
@@ -109,11 +99,11 @@ TEST(FilmRender, FiltersKeepTheLight) {
         }
         return std::pair(sum, variance);
     };
-    const render::ChartCamera box_camera = tessar_camera();
-    const auto [box, box_variance] = mean_green(rendered(box_camera, box_camera.view(kFlat, kFacing), 1, 0, 128));
+    const render::Camera box_camera = tessar_camera();
+    const auto [box, box_variance] = mean_green(rendered({box_camera, kFlat, kFacing}, {0, 128}, 1));
     for (const std::string& name : render::PixelFilter::known_names()) {
-        const render::ChartCamera camera = tessar_camera(name);
-        const auto [mean, variance] = mean_green(rendered(camera, camera.view(kFlat, kFacing), 2, 0, 128));
+        const render::Camera camera = tessar_camera(name);
+        const auto [mean, variance] = mean_green(rendered({camera, kFlat, kFacing}, {0, 128}, 2));
         EXPECT_NEAR(mean, box, 4.0 * std::sqrt(variance + box_variance)) << name;
         EXPECT_LT(std::sqrt(variance), 0.01 * mean) << name << ": sharp enough to show a loss";
     }
@@ -122,10 +112,8 @@ TEST(FilmRender, FiltersKeepTheLight) {
 // A board that faces the camera is everywhere as deep as it is far, its normal looks back along the axis, and its
 // albedo is that of its squares. A tilted one's normal is tilted.
 TEST(FilmRender, FeaturesAreThoseOfTheChart) {
-    const render::ChartCamera camera = tessar_camera();
-    render::SeenChart view = camera.view(kBoard, kFacing);
-    view.has_features = true;
-    const render::Film film = rendered(camera, view, 1, 0, 16);
+    const render::Camera camera = tessar_camera();
+    const render::Film film = rendered({camera, kBoard, kFacing, true}, {0, 16}, 1);
     for (int i = 0; i < kWidth * kHeight; ++i) {
         const render::PixelFeatures features = film.features(i % kWidth, i / kWidth);
         EXPECT_NEAR(features.depth_mm, 10000.0, 1e-6);
@@ -134,11 +122,10 @@ TEST(FilmRender, FeaturesAreThoseOfTheChart) {
         EXPECT_LE(features.albedo_rgb.y, 0.9 + 1e-12);
     }
     EXPECT_GT(film.coverage(kWidth / 2, kHeight / 2), 0.95) << "a path that the lens stops meets nothing";
-    render::SeenChart tilted = camera.view(kBoard, {.distance_mm = 10000.0, .tilt_deg = {0.0, 60.0, 0.0}});
-    tilted.has_features = true;
-    const render::PixelFeatures features = rendered(camera, tilted, 1, 0, 16).features(kWidth / 2, kHeight / 2);
+    const SeenChart tilted{camera, kBoard, {.distance_mm = 10000.0, .tilt_deg = {0.0, 60.0, 0.0}}, true};
+    const render::PixelFeatures features = rendered(tilted, {0, 16}, 1).features(kWidth / 2, kHeight / 2);
     EXPECT_NEAR(std::abs(features.normal.z / features.normal.x), 1.0 / std::tan(std::acos(-1.0) / 3.0), 1e-12);
 }
 
 }  // namespace
-}  // namespace lensproof
+}  // namespace lensproof::film_render_test

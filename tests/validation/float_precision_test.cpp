@@ -20,7 +20,7 @@
 #include "experiments/studies/stability/jitter.h"
 #include "tests/validation/shipped_settings.h"
 
-namespace lensproof {
+namespace lensproof::float_precision_test {
 namespace {
 
 using Random = std::mt19937_64;
@@ -332,4 +332,4 @@ TEST(FloatPrecision, IsKeptByEveryLensThatShips) {
 }
 
 }  // namespace
-}  // namespace lensproof
+}  // namespace lensproof::float_precision_test

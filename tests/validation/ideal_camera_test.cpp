@@ -1,5 +1,5 @@
 // Cameras without aberrations against the formulas that define them, and against the lens that they stand for.
-#include "engine/render/ideal_camera.h"
+#include "engine/render/camera/ideal_camera.h"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -13,7 +13,7 @@
 #include "engine/optics/paraxial.h"
 #include "engine/spectral/wavelengths.h"
 
-namespace lensproof {
+namespace lensproof::ideal_camera_test {
 namespace {
 
 struct Drawn {
@@ -23,19 +23,19 @@ struct Drawn {
 };
 
 /// Of one pixel's paths; `at_mm`: the distance in front of the first vertex at which their x is looked at.
-Drawn draw(const render::GaussianCamera& camera, const render::Sensor& sensor, std::uint32_t pixel, double at_mm) {
+Drawn draw(const render::GaussianOptics& optics, const render::Sensor& sensor, std::uint32_t pixel, double at_mm) {
     constexpr std::uint32_t kSamples = 1U << 14U;
-    const std::vector<render::GaussianCamera> cameras{camera};
-    render::IdealPathProducer producer({.sensor = sensor, .at = &cameras, .seed = 5, .filter = {}});
-    render::CameraPathBuffer<double> paths;
-    producer.start({.first_pixel = pixel, .pixels = 1, .first_sample = 0, .samples = kSamples});
+    const render::IdealCamera camera({optics});
+    render::IdealCamera::Paths drawn(camera, {.sensor = sensor, .seed = 5}, {}, render::PathCarry::hero);
+    render::CameraPathBuffer paths;
+    drawn.start({.first_pixel = pixel, .pixels = 1, .first_sample = 0, .samples = kSamples});
     Drawn found;
     double squares = 0.0;
-    while (producer.fill(paths)) {
-        for (int i = 0; i < paths.size; ++i) {
+    while (drawn.fill(paths)) {
+        for (std::size_t i = 0; i < static_cast<std::size_t>(paths.size); ++i) {
             const Ray<double> ray = paths.ray(i);
             const double x = ray.origin.x + (-at_mm - ray.origin.z) / ray.direction.z * ray.direction.x;
-            found.irradiance += paths.weight[static_cast<std::size_t>(i)] / kSamples;
+            found.irradiance += paths.weight[i] / kSamples;
             found.mean_x_at += x / kSamples;
             squares += x * x / kSamples;
         }
@@ -61,8 +61,8 @@ TEST(IdealCamera, ExposesByItsFNumber) {
     const optics::TraceLens<double> traced = optics::at_wavelength<double>(lens, spectral::kLineD);
     const double efl = optics::paraxial_data(traced).efl;
     const render::Sensor sensor = small_pixels(40.0, 401);
-    const render::GaussianCamera pinhole = render::gaussian_camera(lens, scene::LensModel::pinhole, spectral::kLineD);
-    const render::GaussianCamera thin = render::gaussian_camera(lens, scene::LensModel::thin_lens, spectral::kLineD);
+    const render::GaussianOptics pinhole = render::gaussian_optics(lens, render::LensModel::pinhole, spectral::kLineD);
+    const render::GaussianOptics thin = render::gaussian_optics(lens, render::LensModel::thin_lens, spectral::kLineD);
     const double area = kPi * std::pow(efl / 4.0 / 2.0, 2);
     for (const std::uint32_t column : {200U, 300U, 400U}) {
         const double x = sensor.position(column, 0.0).x;
@@ -79,10 +79,10 @@ TEST(IdealCamera, ExposesByItsFNumber) {
 TEST(IdealCamera, ModelsExposeAlike) {
     const optics::Lens lens = double_gauss(4.0, 1e9);
     const double exact = optics::image_bundle(optics::at_wavelength<double>(lens, spectral::kLineD), 0.0).transmitted;
-    for (const scene::LensModel model :
-         {scene::LensModel::paraxial, scene::LensModel::thin_lens, scene::LensModel::pinhole}) {
+    for (const render::LensModel model :
+         {render::LensModel::paraxial, render::LensModel::thin_lens, render::LensModel::pinhole}) {
         const double found =
-            draw(render::gaussian_camera(lens, model, spectral::kLineD), small_pixels(0.1, 1), 0, 1e6).irradiance;
+            draw(render::gaussian_optics(lens, model, spectral::kLineD), small_pixels(0.1, 1), 0, 1e6).irradiance;
         EXPECT_NEAR(found / exact, 1.0, 0.03) << static_cast<int>(model);
     }
 }
@@ -95,9 +95,10 @@ TEST(IdealCamera, ThinLensBlursByItsFormula) {
     const optics::Lens lens = double_gauss(2.0, kFocus);
     const optics::TraceLens<double> traced = optics::at_wavelength<double>(lens, spectral::kLineD);
     const optics::ParaxialData data = optics::paraxial_data(traced);
-    const render::GaussianCamera thin = render::gaussian_camera(lens, scene::LensModel::thin_lens, spectral::kLineD);
-    const render::GaussianCamera pinhole = render::gaussian_camera(lens, scene::LensModel::pinhole, spectral::kLineD);
-    const render::GaussianCamera paraxial = render::gaussian_camera(lens, scene::LensModel::paraxial, spectral::kLineD);
+    const render::GaussianOptics thin = render::gaussian_optics(lens, render::LensModel::thin_lens, spectral::kLineD);
+    const render::GaussianOptics pinhole = render::gaussian_optics(lens, render::LensModel::pinhole, spectral::kLineD);
+    const render::GaussianOptics paraxial =
+        render::gaussian_optics(lens, render::LensModel::paraxial, spectral::kLineD);
     const render::Sensor sensor = small_pixels(1e-4, 1);
     for (const double distance : {500.0, 1500.0, 2000.0, 3000.0, 20000.0}) {
         const double from_lens = distance + data.front_principal_z;
@@ -123,12 +124,12 @@ TEST(IdealCamera, LooksWhereTheLensLooks) {
     const render::Sensor sensor = small_pixels(2.001, 2001);
     const double x = sensor.position(2000.0, 0.0).x;
     EXPECT_NEAR(x, -1.0, 1e-12);
-    for (const scene::LensModel model :
-         {scene::LensModel::paraxial, scene::LensModel::thin_lens, scene::LensModel::pinhole}) {
-        const Drawn seen = draw(render::gaussian_camera(lens, model, spectral::kLineD), sensor, 2000, 1e9);
+    for (const render::LensModel model :
+         {render::LensModel::paraxial, render::LensModel::thin_lens, render::LensModel::pinhole}) {
+        const Drawn seen = draw(render::gaussian_optics(lens, model, spectral::kLineD), sensor, 2000, 1e9);
         EXPECT_NEAR(seen.mean_x_at / 1e9, 1.0 / efl, 1e-5 / efl) << static_cast<int>(model);
     }
 }
 
 }  // namespace
-}  // namespace lensproof
+}  // namespace lensproof::ideal_camera_test

@@ -17,7 +17,7 @@
 #include "engine/spectral/illuminant.h"
 #include "tests/validation/rendered_scene.h"
 
-namespace lensproof {
+namespace lensproof::lens_exposure_test {
 namespace {
 
 constexpr int kSeeds = 8;
@@ -49,7 +49,7 @@ std::vector<std::array<Measured, 4>> exposures(const render::SceneSetup& setup, 
     }
     std::vector<std::array<std::vector<double>, 4>> found(columns.size());
     for (int seed = 0; seed < kSeeds; ++seed) {
-        const render::Film film = rendered(scene, windows, samples, static_cast<std::uint64_t>(seed));
+        const render::Film film = rendered(scene.render(static_cast<std::uint64_t>(seed), false), windows, samples);
         for (std::size_t i = 0; i < columns.size(); ++i) {
             std::array<double, 4> layers{};
             film.layers(columns[i], 0, layers);
@@ -222,4 +222,4 @@ TEST(LensExposure, IdealCamerasFallOffByTheirFormulas) {
 }
 
 }  // namespace
-}  // namespace lensproof
+}  // namespace lensproof::lens_exposure_test

@@ -15,7 +15,7 @@
 #include "engine/spectral/wavelengths.h"
 #include "tests/validation/shipped_settings.h"
 
-namespace lensproof {
+namespace lensproof::lens_library_test {
 namespace {
 
 /// A shipped lens at one setting: a zoom lens is several.
@@ -200,4 +200,4 @@ TEST(LensLibrary, NamesGlassesThatHaveTheStatedFigures) {
 }
 
 }  // namespace
-}  // namespace lensproof
+}  // namespace lensproof::lens_library_test

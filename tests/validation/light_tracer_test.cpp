@@ -1,5 +1,5 @@
 // Light traced to the film from the lights, and radiance fetched from the scene by the camera: one image.
-#include "engine/render/light_tracer.h"
+#include "engine/render/integrators/light_tracer.h"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 
 #include "tests/validation/studio.h"
 
-namespace lensproof {
+namespace lensproof::light_tracer_test {
 namespace {
 
 const spectral::SpectralGrid kGrid = spectral::spectral_grid(420.0, 680.0, 16);
@@ -74,8 +74,8 @@ SceneParts lit_wall() {
 // Into ideal cameras light paths go through their pupils, whose importance is a closed form: the pinhole's, that of the
 // thin lens, and the paraxial lens's at each wavelength.
 TEST(LightTracer, MakesTheImageOfIdealCameras) {
-    for (const scene::LensModel model :
-         {scene::LensModel::pinhole, scene::LensModel::thin_lens, scene::LensModel::paraxial}) {
+    for (const render::LensModel model :
+         {render::LensModel::pinhole, render::LensModel::thin_lens, render::LensModel::paraxial}) {
         SceneParts parts = lit_wall();
         const Studio studio({.lens = "double-gauss-tronnier", .model = model, .sensor = kSensor, .grid = kGrid}, parts);
         expect_same_image(studio.by_camera(512), studio.by_lights(2000));
@@ -83,4 +83,4 @@ TEST(LightTracer, MakesTheImageOfIdealCameras) {
 }
 
 }  // namespace
-}  // namespace lensproof
+}  // namespace lensproof::light_tracer_test

@@ -18,7 +18,7 @@
 #include "engine/optics/lens.h"
 #include "engine/optics/paraxial.h"
 
-namespace lensproof {
+namespace lensproof::optics_reference_test {
 namespace {
 
 class OpticsReference : public testing::TestWithParam<const char*> {
@@ -159,4 +159,4 @@ INSTANTIATE_TEST_SUITE_P(Tessar, OpticsReference, testing::Values("const", "cata
                          [](const auto& suite) { return std::string(suite.param); });
 
 }  // namespace
-}  // namespace lensproof
+}  // namespace lensproof::optics_reference_test

@@ -1,5 +1,5 @@
 // Radiance by path tracing against closed forms: what a surface gets from lights of known shape, and furnaces.
-#include "engine/render/path_tracer.h"
+#include "engine/render/integrators/path_tracer.h"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -10,7 +10,7 @@
 #include "engine/base/angle.h"
 #include "tests/validation/small_scene.h"
 
-namespace lensproof {
+namespace lensproof::path_tracer_test {
 namespace {
 
 const spectral::SpectralGrid kGrid = spectral::spectral_grid(400.0, 700.0, 8);
@@ -208,4 +208,4 @@ TEST(PathTracer, PrismSendsEachWavelengthWhereSnellSays) {
 }
 
 }  // namespace
-}  // namespace lensproof
+}  // namespace lensproof::path_tracer_test

@@ -15,7 +15,7 @@
 #include "engine/formats/glass/shipped_glasses.h"
 #include "engine/formats/prescription/prescription_file.h"
 
-namespace lensproof {
+namespace lensproof::planted_errors_test {
 namespace {
 
 /// A prescription with one thing wrong.
@@ -408,4 +408,4 @@ TEST(PlantedErrors, AreFoundAndTheUntouchedLibraryIsClean) {
 }
 
 }  // namespace
-}  // namespace lensproof
+}  // namespace lensproof::planted_errors_test

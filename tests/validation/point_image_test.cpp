@@ -14,7 +14,7 @@
 #include "engine/optics/focus.h"
 #include "tests/validation/rendered_scene.h"
 
-namespace lensproof {
+namespace lensproof::point_image_test {
 namespace {
 
 constexpr int kSeeds = 8;
@@ -121,7 +121,7 @@ std::vector<std::vector<OfWavelengths>> render_dots(const DotRow& row, const std
     const render::PreparedScene scene(setup_of(row), {}, {});
     std::vector<std::vector<OfWavelengths>> found(windows.size());
     for (int seed = 0; seed < kSeeds; ++seed) {
-        const render::Film film = rendered(scene, windows, samples, static_cast<std::uint64_t>(seed));
+        const render::Film film = rendered(scene.render(static_cast<std::uint64_t>(seed), false), windows, samples);
         for (std::size_t i = 0; i < windows.size(); ++i) {
             found[i].push_back(moments(film, row.sensor, windows[i]));
         }
@@ -274,4 +274,4 @@ TEST(PointImage, DepthOfFieldIsThatOfTracedSpots) {
 }
 
 }  // namespace
-}  // namespace lensproof
+}  // namespace lensproof::point_image_test

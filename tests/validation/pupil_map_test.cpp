@@ -20,7 +20,7 @@
 #include "engine/render/sampling/sampler.h"
 #include "tests/test_folder.h"
 
-namespace lensproof {
+namespace lensproof::pupil_map_test {
 namespace {
 
 constexpr int kRings = 8;
@@ -379,4 +379,4 @@ TEST(PupilMap, AgreesWithQuadrature) {
 }
 
 }  // namespace
-}  // namespace lensproof
+}  // namespace lensproof::pupil_map_test

@@ -1,6 +1,6 @@
 // tests/validation/raw_sensor_test.cpp — a sensor's noise, as one measures a camera's: flat fields, their means and
 // variances, their histograms. Seeds are fixed; the limits are those that one run in a million would pass by chance.
-#include "engine/render/raw_sensor.h"
+#include "engine/render/raw/raw_sensor.h"
 
 #include <gtest/gtest.h>
 
@@ -13,7 +13,7 @@
 #include <numeric>
 #include <vector>
 
-namespace lensproof {
+namespace lensproof::raw_sensor_test {
 namespace {
 
 constexpr int kSide = 400;
@@ -202,4 +202,4 @@ TEST(RawSensor, NoiseOfPixelsAndOfSeedsIsIndependent) {
 }
 
 }  // namespace
-}  // namespace lensproof
+}  // namespace lensproof::raw_sensor_test

@@ -7,14 +7,16 @@
 #include "engine/base/file.h"
 #include "engine/formats/prescription/prescription_file.h"
 #include "engine/optics/illumination.h"
-#include "engine/render/camera.h"
+#include "engine/render/camera/lens_paths.h"
+#include "engine/render/film/film_image.h"
 #include "engine/spectral/illuminant.h"
 #include "tests/test_folder.h"
+#include "tests/validation/rendered_scene.h"
 
-namespace lensproof {
+namespace lensproof::render_test {
 namespace {
 
-render::Camera small_camera(const std::string& lens, double f_number, double width_mm, int pixels) {
+render::CameraSettings small_camera(const std::string& lens, double f_number, double width_mm, int pixels) {
     return {.lens = lens,
             .f_number = f_number,
             .focus_distance_mm = 10000.0,
@@ -49,32 +51,47 @@ Mean ring_mean(const formats::Image& image, const render::Sensor& sensor, double
     return {sum / count, std::sqrt(variance) / count};
 }
 
+/// A world of radiance 1 at every wavelength of the lens, by pupil points as `map` draws them.
+formats::Image even_world(const optics::SpectralLens<double>& lens, const pupil::PupilMap& map,
+                          const render::Sensor& sensor, std::uint32_t samples, std::uint64_t seed) {
+    const pupil::PupilSlices slices(map, lens.wavelengths());
+    render::LensPaths<double> paths({.sensor = sensor, .seed = seed}, lens, slices);
+    const auto rgb_weights = std::vector<Vec3d>(static_cast<std::size_t>(lens.wavelengths()), {1.0, 1.0, 1.0});
+    render::Film film({.width = sensor.width,
+                       .height = sensor.height,
+                       .layer_nm = {550.0},
+                       .rgb_weights = rgb_weights,
+                       .band_nm = 1.0});
+    render::FilmTile tile(film.layout());
+    film.load({.rect = {0, 0, sensor.width, sensor.height}, .first = 0, .end = samples}, tile);
+    paths.start({.pixels = static_cast<std::uint32_t>(sensor.width * sensor.height), .samples = samples});
+    render::CameraPathBuffer buffer;
+    while (paths.fill(buffer)) {
+        for (std::size_t i = 0; i < static_cast<std::size_t>(buffer.size); ++i) {
+            tile.add(buffer.pixel[i], buffer.sample[i], buffer.wavelength[i], buffer.weight[i]);
+        }
+    }
+    tile.finish();
+    film.store(tile);
+    return render::film_image(film);
+}
+
+formats::Image picture(const SeenChart& seen, std::uint32_t samples, std::uint64_t seed = 0, int threads = 0) {
+    return render::film_image(rendered(seen, {.first = 0, .end = samples}, seed, threads));
+}
+
 // Sampling the pupil by its map and sampling the whole rear element estimate the same irradiance: rings of the picture
 // agree within four standard errors of their difference (stratification makes the stated errors upper bounds), out to
 // where the fisheye's pupil is a sliver.
 TEST(ChartRender, PupilMapsMissNoLight) {
     for (const auto& [lens, f_number, width] :
          {std::tuple{"tessar", 2.8, 72.0}, std::tuple{"tessar", 8.0, 72.0}, std::tuple{"muller-fisheye", 4.0, 21.6}}) {
-        const render::Camera camera = small_camera(lens, f_number, width, 64);
-        const optics::Lens focused = render::camera_lens(camera);
-        const spectral::Illuminant light = spectral::illuminant("D65");
-        std::vector<render::WavelengthStratum> strata;
-        strata.reserve(3);
-        for (const double nm : {450.0, 550.0, 650.0}) {
-            strata.push_back({nm, optics::at_wavelength<double>(focused, nm), 1.0, Vec3d{1.0, 1.0, 1.0}});
-        }
-        const std::vector<optics::TraceLens<double>> lenses = {strata[0].lens, strata[1].lens, strata[2].lens};
-        const render::SeenChart view{.chart = {.pattern = scene::FlatField{}, .white_reflectance = 1.0},
-                                     .pose = scene::place({.distance_mm = 1000.0}),
-                                     .sensor = camera.sensor,
-                                     .strata = strata,
-                                     .stratum_width_nm = 1.0 / 3.0,
-                                     .layer_nm = {550.0}};
+        const render::CameraSettings camera = small_camera(lens, f_number, width, 64);
+        const auto lenses = optics::at_wavelengths<double>(render::camera_lens(camera), {450.0, 550.0, 650.0});
         const double edge = camera.sensor.half_diagonal_mm();
-        const formats::Image fast =
-            render::render_chart(view, pupil::PupilMap(lenses, true, edge), {.samples_per_pixel = 96, .seed = 1});
-        const formats::Image slow = render::render_chart(view, pupil::PupilMap::whole_element(lenses[0], edge),
-                                                         {.samples_per_pixel = 768, .seed = 2});
+        const formats::Image fast = even_world(lenses, pupil::PupilMap(lenses.at(), true, edge), camera.sensor, 96, 1);
+        const formats::Image slow =
+            even_world(lenses, pupil::PupilMap::whole_element(lenses.at(0), edge), camera.sensor, 768, 2);
         for (int ring = 0; ring < 8; ++ring) {
             const Mean a = ring_mean(fast, camera.sensor, edge * ring / 8, edge * (ring + 1) / 8);
             const Mean b = ring_mean(slow, camera.sensor, edge * ring / 8, edge * (ring + 1) / 8);
@@ -90,18 +107,16 @@ TEST(ChartRender, PupilMapsMissNoLight) {
 // the bundle. The spectral layer's mean over the central pixels has a standard error of about 0.1 %; 0.5 % is five of
 // them.
 TEST(ChartRender, FilmIrradianceIsRadianceTimesTheBundle) {
-    const render::Camera camera = small_camera("tessar", 4.0, 4.0, 16);
-    const render::Light light{.illuminant = "D65", .luminance_cd_m2 = 1000.0};
-    const render::ChartCamera chart_camera(camera, light, kSampling);
+    const render::Camera camera(small_camera("tessar", 4.0, 4.0, 16), kSampling, {}, {});
     const scene::Chart white{.pattern = scene::FlatField{}, .white_reflectance = 0.9};
-    const formats::Image image = chart_camera.render(white, {.distance_mm = 1000.0}, {.samples_per_pixel = 256});
+    const formats::Image image = picture({camera, white, {.distance_mm = 1000.0}}, 256);
     const spectral::Spectrum radiance = spectral::radiance_of(spectral::illuminant("D65"), 1000.0);
-    for (std::size_t layer = 0; layer < chart_camera.spectral().layer_nm.size(); ++layer) {
+    for (std::size_t layer = 0; layer < camera.film().layer_nm.size(); ++layer) {
         double expected = 0.0;
         for (int k = 0; k < 4; ++k) {
-            const render::WavelengthStratum& stratum = chart_camera.spectral().strata[4 * layer + k];
-            expected +=
-                0.9 * radiance(stratum.wavelength_nm) * optics::image_bundle(stratum.lens, 0.5).transmitted / 4.0;
+            const int stratum = 4 * static_cast<int>(layer) + k;
+            expected += 0.9 * radiance(camera.grid().strata.midpoint(stratum)) *
+                        optics::image_bundle(camera.exact().lens().at(stratum), 0.5).transmitted / 4.0;
         }
         double mean = 0.0;
         for (int v = 0; v < image.height; ++v) {
@@ -118,9 +133,9 @@ double green_through_tessar_with(const std::string& more) {
     const TestFolder folder;
     const std::filesystem::path file = folder.path() / "tessar_with.toml";
     write_file(file, read_file(formats::find_lens_file("tessar")) + more);
-    const render::ChartCamera chart_camera(small_camera(file.string(), 8.0, 4.0, 8), render::Light{}, kSampling);
+    const render::Camera camera(small_camera(file.string(), 8.0, 4.0, 8), kSampling, {}, {});
     const scene::Chart white{.pattern = scene::FlatField{}, .white_reflectance = 1.0};
-    const formats::Image image = chart_camera.render(white, {.distance_mm = 1000.0}, {.samples_per_pixel = 1024});
+    const formats::Image image = picture({camera, white, {.distance_mm = 1000.0}}, 1024);
     double sum = 0.0;
     for (int v = 0; v < image.height; ++v) {
         for (int u = 0; u < image.width; ++u) {
@@ -145,30 +160,26 @@ TEST(ChartRender, SeesBladesAndTurnedLenses) {
 // (ISO 12232); the picture's green is H / H_sat, H_sat = 78 / ISO lx·s. The lens's T is about 0.75: eight uncoated
 // surfaces.
 TEST(ChartRender, ExposureFollowsIso12232) {
-    const render::Camera camera = small_camera("tessar", 8.0, 4.0, 8);
-    const render::ChartCamera chart_camera(camera, {.illuminant = "D65", .luminance_cd_m2 = 1000.0}, kSampling);
+    const render::Camera camera(small_camera("tessar", 8.0, 4.0, 8), kSampling, {}, {});
     const scene::Chart white{.pattern = scene::FlatField{}, .white_reflectance = 1.0};
-    const formats::Image image = chart_camera.render(white, {.distance_mm = 1000.0}, {.samples_per_pixel = 256});
-    const optics::TraceLens<double>& lens = chart_camera.spectral().strata[8].lens;
-    const optics::Bundle bundle = optics::image_bundle(lens, 0.0);
+    const formats::Image image = picture({camera, white, {.distance_mm = 1000.0}}, 256);
+    const optics::Bundle bundle = optics::image_bundle(camera.exact().lens().at(8), 0.0);
     const double transmittance = bundle.transmitted / bundle.projected_solid_angle;
     EXPECT_GT(transmittance, 0.6);
     EXPECT_LT(transmittance, 0.8);
     // ∫ dΩ_projected = π / (4 N²) for a lens that obeys the sine condition; focused at 10 m it is 2 % slower, and pupil
     // aberration moves it by another few per cent.
-    const double exposure_lx_s = 1000.0 * std::numbers::pi / (4.0 * 64.0) * transmittance * camera.exposure.time_s;
+    const double exposure_lx_s =
+        1000.0 * std::numbers::pi / (4.0 * 64.0) * transmittance * camera.settings().exposure.time_s;
     EXPECT_NEAR(image.at(4, 3, 1) / (exposure_lx_s / 0.78), 1.0, 0.06);
 }
 
 // The same picture whatever the number of threads, and another one for another seed.
 TEST(ChartRender, DependsOnTheSeedAlone) {
-    const render::Camera camera = small_camera("tessar", 8.0, 36.0, 24);
-    const render::ChartCamera chart_camera(camera, render::Light{}, kSampling);
+    const render::Camera camera(small_camera("tessar", 8.0, 36.0, 24), kSampling, {}, {});
     const scene::Chart board{.pattern = scene::Checkerboard{8, 6, 500.0}};
     const auto render = [&](int threads, std::uint64_t seed) {
-        return chart_camera
-            .render(board, {.distance_mm = 10000.0}, {.samples_per_pixel = 16, .seed = seed, .threads = threads})
-            .pixels;
+        return picture({camera, board, {.distance_mm = 10000.0}}, 16, seed, threads).pixels;
     };
     EXPECT_EQ(render(1, 5), render(3, 5));
     EXPECT_NE(render(1, 5), render(1, 6));
@@ -177,12 +188,10 @@ TEST(ChartRender, DependsOnTheSeedAlone) {
 // The same picture without a cache, with an empty one, and with what the render before has left in it.
 TEST(ChartRender, DoesNotDependOnTheCache) {
     const TestFolder folder;
-    const render::Camera camera = small_camera("muller-fisheye", 8.0, 20.0, 24);
     const scene::Chart board{.pattern = scene::Checkerboard{8, 6, 500.0}};
     const auto render = [&](const Cache& cache) {
-        return render::ChartCamera(camera, render::Light{}, kSampling, cache)
-            .render(board, {.distance_mm = 10000.0}, {.samples_per_pixel = 16})
-            .pixels;
+        const render::Camera camera(small_camera("muller-fisheye", 8.0, 20.0, 24), kSampling, {}, cache);
+        return picture({camera, board, {.distance_mm = 10000.0}}, 16).pixels;
     };
     const std::vector<float> without = render({});
     const Cache cache(folder.path());
@@ -194,8 +203,7 @@ TEST(ChartRender, DoesNotDependOnTheCache) {
 // Pictures are upright: what stands at the right of the camera is at the right of the picture, what is low is low. The
 // board's top-left square is black, its top-right one (even column count) white.
 TEST(ChartRender, PicturesAreUpright) {
-    const render::Camera camera = small_camera("tessar", 8.0, 36.0, 48);
-    const render::ChartCamera chart_camera(camera, render::Light{}, kSampling);
+    const render::Camera camera(small_camera("tessar", 8.0, 36.0, 48), kSampling, {}, {});
     const scene::Chart board{.pattern = scene::Checkerboard{2, 1, 1500.0}};
     const auto mean_of = [](const formats::Image& image, int u0, int u1) {
         double sum = 0.0;
@@ -204,16 +212,14 @@ TEST(ChartRender, PicturesAreUpright) {
         }
         return sum;
     };
-    const formats::Image straight = chart_camera.render(board, {.distance_mm = 10000.0}, {.samples_per_pixel = 16});
+    const formats::Image straight = picture({camera, board, {.distance_mm = 10000.0}}, 16);
     EXPECT_LT(mean_of(straight, 6, 18), 0.2 * mean_of(straight, 30, 42));
     // Turned towards the right, the board's centre (black to its left) moves right by f tan 5° = 8.7 mm = 11.6 px.
-    const formats::Image right =
-        chart_camera.render(board, {.distance_mm = 10000.0, .towards_right_deg = 5.0}, {.samples_per_pixel = 16});
+    const formats::Image right = picture({camera, board, {.distance_mm = 10000.0, .towards_right_deg = 5.0}}, 16);
     EXPECT_LT(mean_of(right, 25, 35), 0.2 * mean_of(right, 37, 47));
-    const formats::Image down =
-        chart_camera.render(board, {.distance_mm = 10000.0, .towards_down_deg = 10.0}, {.samples_per_pixel = 16});
+    const formats::Image down = picture({camera, board, {.distance_mm = 10000.0, .towards_down_deg = 10.0}}, 16);
     EXPECT_GT(down.at(12, 2, 1), 2.0 * down.at(12, 33, 1));
 }
 
 }  // namespace
-}  // namespace lensproof
+}  // namespace lensproof::render_test

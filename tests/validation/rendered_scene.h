@@ -1,29 +1,43 @@
-// tests/validation/rendered_scene.h — parts of a scene file's picture, rendered a few times over to know their errors.
+// tests/validation/rendered_scene.h — parts of a picture, rendered a few times over to know their errors.
 #pragma once
 #include <cmath>
 #include <numeric>
 #include <span>
 #include <vector>
 
+#include "engine/render/integrators/chart_tracer.h"
 #include "engine/render/prepared_scene.h"
 
 namespace lensproof {
 
-/// The film with these windows of it rendered; no film but this one's has its seed's samples.
-inline render::Film rendered(const render::PreparedScene& scene, std::span<const render::PixelRect> windows,
-                             std::uint32_t samples, std::uint64_t seed) {
-    const render::SceneView view = scene.view(seed, false);
-    const render::TileRenderer render = render::scene_renderer(view);
-    render::Film film(view.film);
+/// The film with these windows of it rendered.
+inline render::Film rendered(const render::Render& render, std::span<const render::PixelRect> windows,
+                             std::uint32_t samples) {
+    render::Film film(render.film);
     render::FilmTile tile(film.layout());
     for (const render::PixelRect& window : windows) {
         const render::TileSamples what{.rect = window, .first = 0, .end = samples};
         film.load(what, tile);
-        render(what, tile);
+        render.renderer(what, tile);
         tile.finish();
         film.store(tile);
     }
     return film;
+}
+
+/// A chart under even light of 1000 cd/m² as a camera sees it.
+struct SeenChart {
+    const render::Camera& camera;
+    scene::Chart chart;
+    scene::Placement placement;
+    bool has_features = false;
+};
+inline render::Film rendered(const SeenChart& seen, const render::SampleRange& range, std::uint64_t seed = 0,
+                             int threads = 0) {
+    const render::World world = render::even_chart(seen.chart, seen.placement, 1000.0, seen.camera);
+    render::View view{.world = &world, .camera = &seen.camera, .film = seen.camera.film(), .paths = {}, .seed = seed};
+    view.film.has_features = seen.has_features;
+    return render::render_film({.film = view.film, .renderer = render::ChartTracer(view)}, range, threads);
 }
 
 /// A number with its standard error.

@@ -13,7 +13,7 @@
 #include "engine/spectral/sensor_response.h"
 #include "tests/test_folder.h"
 
-namespace lensproof {
+namespace lensproof::rgb_uplift_test {
 namespace {
 
 const spectral::RgbUplift& uplift() {
@@ -194,4 +194,4 @@ TEST(RgbUplift, IsKept) {
 }
 
 }  // namespace
-}  // namespace lensproof
+}  // namespace lensproof::rgb_uplift_test

@@ -12,9 +12,9 @@
 #include "engine/formats/prescription/load_lens.h"
 #include "engine/optics/focus.h"
 #include "engine/optics/illumination.h"
-#include "engine/render/camera_paths.h"
+#include "engine/render/camera/lens_paths.h"
 
-namespace lensproof {
+namespace lensproof::ring_spectrum_test {
 namespace {
 
 constexpr std::uint32_t kPixels = 2000;  // of the picture's side
@@ -47,7 +47,7 @@ RingProfile flat_field(const optics::SpectralLens<double>& lens, double half_sid
     const pupil::PupilMap map(lens.at(), true, half_side_mm * std::numbers::sqrt2);
     const pupil::PupilSlices slices(map, lens.wavelengths());
     const render::Sensor sensor{.width = kPixels, .height = kPixels, .pixel_pitch_mm = 2.0 * half_side_mm / kPixels};
-    render::CameraPathProducer<double> producer({.sensor = sensor, .lens = &lens, .pupil = &slices, .seed = 3});
+    render::LensPaths<double> producer({.sensor = sensor, .seed = 3}, lens, slices);
     producer.start({.first_pixel = 0, .pixels = kPixels * kPixels, .first_sample = 0, .samples = kSamples});
 
     const double step_mm = half_side_mm / (kReferences - 1);
@@ -68,15 +68,15 @@ RingProfile flat_field(const optics::SpectralLens<double>& lens, double half_sid
     }
     std::vector<double> sum(samples.size());
     std::vector<double> sum_of_squares(samples.size());
-    render::CameraPathBuffer<double> paths;
+    render::CameraPathBuffer paths;
     while (producer.fill(paths)) {
         for (std::size_t i = 0; i < static_cast<std::size_t>(paths.size); ++i) {
             const std::size_t ring = ring_of(paths.pixel[i]);
             const double r = std::hypot(paths.film_x[i], paths.film_y[i]);
             if (ring < kFirstRing + kRings) {
-                const double share = paths.weight[i] / expected_at(r);
-                sum[ring] += share;
-                sum_of_squares[ring] += share * share;
+                const double ratio = paths.weight[i] / expected_at(r);
+                sum[ring] += ratio;
+                sum_of_squares[ring] += ratio * ratio;
             }
         }
     }
@@ -144,4 +144,4 @@ TEST(PupilMap, ShowsNoRingsInAFlatField) {
 }
 
 }  // namespace
-}  // namespace lensproof
+}  // namespace lensproof::ring_spectrum_test

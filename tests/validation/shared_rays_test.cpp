@@ -1,5 +1,5 @@
 // Rays that four wavelengths share outside the lens, against paths that belong to one.
-#include "engine/render/shared_rays.h"
+#include "engine/render/camera/shared_rays.h"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -10,14 +10,15 @@
 #include "engine/formats/prescription/load_lens.h"
 #include "engine/optics/focus.h"
 #include "engine/optics/lens.h"
+#include "engine/render/camera/lens_paths.h"
 
-namespace lensproof {
+namespace lensproof::shared_rays_test {
 namespace {
 
 const spectral::SpectralGrid kGrid = spectral::spectral_grid(420.0, 680.0, 8);
 
-/// Film irradiance in an even world of radiance 1, a wavelength each, with standard errors; and which share of the
-/// paths' other wavelengths counted.
+/// Film irradiance in an even world of radiance 1, a wavelength each, with standard errors; and which fraction of
+/// the paths' other wavelengths counted.
 struct Sums {
     std::vector<double> mean;
     std::vector<double> error;
@@ -31,10 +32,9 @@ Sums irradiance(const std::string& name, const render::Sensor& sensor, bool is_s
     const auto traced = optics::at_wavelengths<double>(lens, kGrid.strata.midpoints());
     const pupil::PupilMap map(traced.at(), true, sensor.half_diagonal_mm());
     const pupil::PupilSlices slices(map, kGrid.size());
-    render::CameraPathProducer<double> producer(
-        {.sensor = sensor, .lens = &traced, .pupil = &slices, .seed = 3, .filter = {}});
-    render::SharedRays shared(kGrid, traced, slices, sensor);
-    render::CameraPathBuffer<double> paths;
+    render::LensPaths<double> producer({.sensor = sensor, .seed = 3}, traced, slices);
+    render::SharedRays shared(kGrid, traced, slices, sensor, true);
+    render::CameraPathBuffer paths;
     std::vector<double> sum(8);
     std::vector<double> squares(8);
     std::int64_t counted = 0;
@@ -45,15 +45,15 @@ Sums irradiance(const std::string& name, const render::Sensor& sensor, bool is_s
                     .first_sample = 0,
                     .samples = kSamples});
     while (producer.fill(paths)) {
-        const auto& weights = shared.weigh(paths);
+        shared.weigh(paths);
         for (std::size_t i = 0; i < static_cast<std::size_t>(paths.size); ++i) {
             const spectral::PathWavelengths strata = kGrid.path(paths.wavelength[i]);
             for (std::size_t m = 0; m < spectral::kWavelengthsPerPath; ++m) {
                 const double hero = m == 0 ? 4.0 * paths.weight[i] : 0.0;
-                const double value = is_shared ? static_cast<double>(weights[i][m]) : hero;
+                const double value = is_shared ? static_cast<double>(paths.weights[i][m]) : hero;
                 sum[strata.index[m]] += value;
                 squares[strata.index[m]] += value * value;
-                counted += m > 0 && weights[i][m] > 0.0F ? 1 : 0;
+                counted += m > 0 && paths.weights[i][m] > 0.0F ? 1 : 0;
                 others += m > 0 ? 1 : 0;
             }
         }
@@ -99,4 +99,4 @@ TEST(SharedRays, CountEachWavelengthAsItsOwnPathsDo) {
 }
 
 }  // namespace
-}  // namespace lensproof
+}  // namespace lensproof::shared_rays_test

@@ -5,18 +5,10 @@
 
 #include <cmath>
 #include <cstdint>
-#include <memory>
-#include <optional>
 #include <string>
-#include <vector>
 
-#include "engine/base/infinity.h"
-#include "engine/formats/prescription/load_lens.h"
-#include "engine/optics/focus.h"
-#include "engine/optics/lens.h"
-#include "engine/render/light_tracer.h"
-#include "engine/render/scene_render.h"
-#include "engine/scene/scene_description.h"
+#include "engine/render/integrators/both_paths.h"
+#include "tests/validation/rendered_scene.h"
 #include "tests/validation/small_scene.h"
 
 namespace lensproof {
@@ -28,96 +20,57 @@ class Studio {
         std::string lens;
         double f_number = 2.0;
         double focus_mm = 2000.0;
-        scene::LensModel model = scene::LensModel::exact;
+        render::LensModel model = render::LensModel::exact;
         render::Sensor sensor;
         spectral::SpectralGrid grid;
         int max_bounces = 3;
         render::PixelFilter filter;
     };
 
-    Studio(Setup setup, SceneParts& parts)
-        : setup_(std::move(setup)),
-          lens_(optics::focused_at(optics::with_f_number(formats::load_lens(setup_.lens), setup_.f_number),
-                                   setup_.focus_mm)),
-          scene_(parts.scene()) {
-        end_.camera_to_world = scene::camera_to_world({});
-        end_.sensor = setup_.sensor;
-        if (setup_.model == scene::LensModel::exact) {
-            traced_.emplace(optics::at_wavelengths<double>(lens_, setup_.grid.strata.midpoints()));
-            pupil_.emplace(traced_->at(), true, setup_.sensor.half_diagonal_mm(setup_.filter.radius_px() - 0.5));
-            slices_ = std::make_unique<pupil::PupilSlices>(*pupil_, setup_.grid.size());
-            map_.emplace(traced_->at(), true, kInfinity, pupil::PupilMapSettings{.defensive_fraction = 0.2});
-            camera_ = render::ExactCamera{&*traced_, slices_.get()};
-            end_.entrance = render::LensEntrance{
-                .lens = &*traced_, .pupil = &*pupil_, .map = &*map_, .front = pupil::front_sphere(traced_->at(0))};
-        } else {
-            std::vector<render::GaussianCamera> cameras;
-            for (const double nm : setup_.grid.strata.midpoints()) {
-                cameras.push_back(render::gaussian_camera(lens_, setup_.model, nm));
-            }
-            camera_ = std::move(cameras);
-            end_.entrance = render::IdealEntrance{&std::get<std::vector<render::GaussianCamera>>(camera_)};
-        }
+    Studio(const Setup& setup, const SceneParts& parts)
+        : world_(parts.scene()),
+          camera_({.lens = setup.lens,
+                   .f_number = setup.f_number,
+                   .focus_distance_mm = setup.focus_mm,
+                   .sensor = setup.sensor,
+                   .response = "luminance",
+                   .model = setup.model},
+                  {setup.grid.strata.min_nm, setup.grid.strata.max_nm, setup.grid.size(), 1}, setup.filter, {}, true),
+          view_{.world = &world_,
+                .camera = &camera_,
+                .film = camera_.film(),
+                .paths = {.max_bounces = setup.max_bounces},
+                .seed = 1} {
+        // R, G and B all are the mean irradiance over the band.
+        const double per_nm = 1.0 / view_.film.band_nm;
+        view_.film.rgb_weights.assign(view_.film.rgb_weights.size(), {per_nm, per_nm, per_nm});
+        view_.film.has_splats = true;
     }
     Studio(const Studio&) = delete;
     Studio& operator=(const Studio&) = delete;
 
     [[nodiscard]] render::Film by_camera(std::uint32_t samples) const {
-        return film_of(render::scene_renderer(view()), samples);
+        return film_of(render::PathTracer(view_), samples);
     }
     [[nodiscard]] render::Film by_lights(std::uint32_t samples) const {
-        return film_of(render::light_path_renderer(view(), end_), samples);
+        return film_of(render::LightTracer(view_), samples);
     }
     [[nodiscard]] render::Film by_both(std::uint32_t samples) const {
-        return film_of(render::both_paths_renderer(view(), end_), samples);
+        return film_of(render::BothPaths(view_), samples);
     }
 
-    [[nodiscard]] const scene::Scene& scene() const { return scene_; }
-    [[nodiscard]] const render::CameraEnd& end() const { return end_; }
+    [[nodiscard]] const scene::Scene& scene() const { return view_.scene(); }
+    [[nodiscard]] const render::Camera& camera() const { return camera_; }
 
   private:
-    [[nodiscard]] render::SceneView view() const {
-        // R, G and B all are the mean irradiance over the band.
-        const spectral::WavelengthStrata& strata = setup_.grid.strata;
-        const double band = strata.max_nm - strata.min_nm;
-        const auto wavelengths = static_cast<std::size_t>(strata.count);
-        return {.scene = &scene_,
-                .camera = &camera_,
-                .camera_to_world = end_.camera_to_world,
-                .sensor = setup_.sensor,
-                .film = {.width = setup_.sensor.width,
-                         .height = setup_.sensor.height,
-                         .layer_nm = strata.midpoints(),
-                         .rgb_weights = std::vector<Vec3d>(wavelengths, {1.0 / band, 1.0 / band, 1.0 / band}),
-                         .band_nm = band,
-                         .filter = setup_.filter,
-                         .has_splats = true},
-                .albedo_weights = {},
-                .paths = {.max_bounces = setup_.max_bounces},
-                .seed = 1};
+    [[nodiscard]] render::Film film_of(const render::TileRenderer& renderer, std::uint32_t samples) const {
+        const render::PixelRect all{.width = view_.film.width, .height = view_.film.height};
+        return rendered({.film = view_.film, .renderer = renderer}, {&all, 1}, samples);
     }
 
-    [[nodiscard]] render::Film film_of(const render::TileRenderer& render, std::uint32_t samples) const {
-        render::Film film(view().film);
-        render::FilmTile tile(film.layout());
-        const render::TileSamples all{
-            .rect = {0, 0, setup_.sensor.width, setup_.sensor.height}, .first = 0, .end = samples};
-        film.load(all, tile);
-        render(all, tile);
-        tile.finish();
-        film.store(tile);
-        return film;
-    }
-
-    Setup setup_;
-    optics::Lens lens_;
-    std::optional<optics::SpectralLens<double>> traced_;
-    std::optional<pupil::PupilMap> pupil_;
-    std::unique_ptr<pupil::PupilSlices> slices_;
-    std::optional<pupil::EntranceMap> map_;
-    scene::Scene scene_;
-    render::SceneCamera camera_;
-    render::CameraEnd end_;
+    render::World world_;
+    render::Camera camera_;
+    render::View view_;
 };
 
 /// How far two films are apart, for what their variances allow.

@@ -5,12 +5,12 @@
 #include <numeric>
 
 #include "engine/base/input_error.h"
-#include "engine/scene/texture.h"
+#include "engine/scene/spectra/texture.h"
 #include "engine/spectral/illuminant.h"
 #include "engine/spectral/sensor_response.h"
 #include "tests/test_folder.h"
 
-namespace lensproof {
+namespace lensproof::texture_uplift_test {
 namespace {
 
 const spectral::RgbUplift& uplift() {
@@ -134,4 +134,4 @@ TEST(TextureUplift, TexturesAreTheirPictures) {
 }
 
 }  // namespace
-}  // namespace lensproof
+}  // namespace lensproof::texture_uplift_test

@@ -20,8 +20,6 @@ namespace lensproof::formats {
 
 namespace {
 
-constexpr std::size_t kMostSurfaces = 1000;
-
 /// A column, and what it is called elsewhere.
 struct ColumnNames {
     std::string_view name;

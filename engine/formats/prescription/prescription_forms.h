@@ -9,6 +9,8 @@
 
 namespace lensproof::formats {
 
+inline constexpr int kMostSurfaces = 1000;  // in a file of any form; more is no lens
+
 /// Each takes a file's bytes; `file` names it in messages and in the prescription. See `read_prescription`.
 optics::Prescription parse_toml_prescription(const std::string& text, const std::filesystem::path& file);
 optics::Prescription parse_csv_prescription(const std::string& text, const std::filesystem::path& file);

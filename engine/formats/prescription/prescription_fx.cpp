@@ -25,7 +25,6 @@ namespace lensproof::formats {
 
 namespace {
 
-constexpr std::size_t kMostSurfaces = 1000;
 constexpr std::size_t kMostPositions = 3;   // short, mid and long
 constexpr std::size_t kMostRemarks = 1000;  // a file of nothing else says no more
 constexpr std::string_view kScale = "#!scale";

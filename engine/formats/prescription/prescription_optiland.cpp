@@ -21,8 +21,6 @@ namespace lensproof::formats {
 
 namespace {
 
-constexpr std::size_t kMostSurfaces = 1000;
-
 /// Where a surface stands in the whole lens. Optiland turns about x, then the fixed y, then the fixed z, which is about
 /// z, the turned y and the twice turned x.
 optics::Frame read_frame(const JsonNode& system) {

@@ -24,7 +24,6 @@ namespace lensproof::formats {
 
 namespace {
 
-constexpr std::size_t kMostSurfaces = 1000;
 // What lens files for renderers write where they mean a plane that is not the stop's.
 constexpr double kAlmostFlat = 1e5;
 

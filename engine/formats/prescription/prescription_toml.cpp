@@ -15,8 +15,6 @@ namespace lensproof::formats {
 
 namespace {
 
-constexpr int kMostSurfaces = 1000;
-
 /// A number as it stands, NaN and infinities included: whether it makes sense is for the checker to say.
 double stated_number(TomlTable& table, const std::string& key) {
     return table.any_number(key);

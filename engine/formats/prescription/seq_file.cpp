@@ -11,29 +11,30 @@
 #include "engine/base/text.h"
 #include "engine/formats/prescription/design_command.h"
 #include "engine/formats/prescription/design_program.h"
+#include "engine/formats/prescription/prescription_forms.h"
 #include "engine/formats/prescription/seq_statements.h"
 
 namespace lensproof::formats {
 
 namespace {
 
-constexpr int kMostSurfaces = 1000;
 constexpr int kMostZoomPositions = 100;
 
 /// Commands that bear on no ray: preferences, weights, labels, what an optimizer may vary (a letter C at the end),
 /// tolerances, listings.
-constexpr std::string_view kSilent[] = {"LEN", "GO",  "INI", "WTW", "WTF", "CCY", "CCX", "THC", "GLC", "KC",  "AC",
-                                        "BC",  "CC",  "DC",  "EC",  "FC",  "GC",  "HC",  "JC",  "XDC", "YDC", "ZDC",
-                                        "ADC", "BDC", "CDC", "SLB", "DER", "VIE", "ECH", "OUT", "LIS", "SAV", "COM",
-                                        "CWL", "CA",  "DLF", "DLT", "DLR", "DLN", "DLV", "DLS", "TIR", "IRR", "BTI",
-                                        "CYD", "SUR", "WID", "DSX", "DSY", "DSZ", "SPH", "VER", "IC",  "UID"};
+constexpr std::string_view kSeqSilent[] = {"LEN", "GO",  "INI", "WTW", "WTF", "CCY", "CCX", "THC", "GLC", "KC",  "AC",
+                                           "BC",  "CC",  "DC",  "EC",  "FC",  "GC",  "HC",  "JC",  "XDC", "YDC", "ZDC",
+                                           "ADC", "BDC", "CDC", "SLB", "DER", "VIE", "ECH", "OUT", "LIS", "SAV", "COM",
+                                           "CWL", "CA",  "DLF", "DLT", "DLR", "DLN", "DLV", "DLS", "TIR", "IRR", "BTI",
+                                           "CYD", "SUR", "WID", "DSX", "DSY", "DSZ", "SPH", "VER", "IC",  "UID"};
 
 /// Solves and pick-ups, whose outcome the file holds as the value itself.
-constexpr std::string_view kSolves[] = {"PIM", "PUY", "PIY", "HMY", "HCY", "UMY", "IMY", "UCY", "ICY", "APY", "PIK"};
+constexpr std::string_view kSeqSolves[] = {"PIM", "PUY", "PIY", "HMY", "HCY", "UMY", "IMY", "UCY", "ICY", "APY", "PIK"};
 
-constexpr std::string_view kVignettingFactors[] = {"VUX", "VLX", "VUY", "VLY"};
+constexpr std::string_view kSeqVignettingFactors[] = {"VUX", "VLX", "VUY", "VLY"};
 constexpr std::string_view kFields[] = {"XAN", "YAN", "XOB", "YOB", "XIM", "YIM", "XRI", "YRI"};
-constexpr std::string_view kApertureShapes[] = {"REX", "REY", "ELX", "ELY", "CIG", "REG", "ELG", "ADX", "ADY", "ARO"};
+constexpr std::string_view kSeqApertureShapes[] = {"REX", "REY", "ELX", "ELY", "CIG",
+                                                   "REG", "ELG", "ADX", "ADY", "ARO"};
 constexpr std::string_view kDiffraction[] = {"DIF", "HOR", "HWL", "HCT", "HCO", "HCC", "GRT", "GRO", "GRS", "HOE"};
 constexpr std::string_view kTypes[] = {"SPH", "CON", "ASP", "CYL", "YTO", "XTO"};
 constexpr std::string_view kOtherTypes[] = {"AAS", "XYP", "SPS", "SPL", "UDS", "ZRN",
@@ -164,7 +165,7 @@ class SeqReader {
         }
         constexpr std::size_t kSignificant = 3;  // letters of a command
         here_.keyword = here_.keyword.substr(0, kSignificant);
-        if (here_.keyword != "THI" && !is_among(kSilent, here_.keyword) && is_of_one_position()) {
+        if (here_.keyword != "THI" && !is_among(kSeqSilent, here_.keyword) && is_of_one_position()) {
             const int surface = file_.surfaces.empty() ? 0 : surface_named(here_.word(1)).value_or(0);
             remarks_.add_once(fmt::format("{} {}", here_.keyword, here_.word(1)), "multi-configuration",
                               optics::Severity::warning, surface,
@@ -172,7 +173,7 @@ class SeqReader {
                                           printable(here_.keyword)));
             return;
         }
-        if (!read_system() && !read_of_surface() && !is_among(kSilent, here_.keyword)) {
+        if (!read_system() && !read_of_surface() && !is_among(kSeqSilent, here_.keyword)) {
             not_understood();
         }
     }
@@ -205,7 +206,7 @@ class SeqReader {
             read_zoom();
         } else if (here_.keyword == "DEL") {
             read_deletion();
-        } else if (is_among(kVignettingFactors, here_.keyword)) {
+        } else if (is_among(kSeqVignettingFactors, here_.keyword)) {
             remarks_.at(here_, "vignetting-factors", optics::Severity::info, 0,
                         "vignetting factors are left out; rims cut the beams");
         } else if (here_.keyword == "TEM" || here_.keyword == "PRE") {
@@ -234,7 +235,7 @@ class SeqReader {
     /// "DEL S3..5" takes surfaces away; "DEL PIK", "DEL SOL" undo what is not followed here.
     void read_deletion() {
         const std::string_view what = here_.word(1);
-        if (what.starts_with("SOL") || is_among(kSolves, what.substr(0, 3))) {
+        if (what.starts_with("SOL") || is_among(kSeqSolves, what.substr(0, 3))) {
             return;
         }
         if (what.starts_with('S')) {
@@ -297,10 +298,10 @@ class SeqReader {
             surface.is_mirror = here_.word(next_) == "REFL";
         } else if (here_.keyword == "CIR" && qualifier_ != "OBS" && qualifier_ != "HOL") {
             (qualifier_ == "EDG" ? surface.edge : surface.semi_diameter) = here_.number(next_, "an aperture's radius");
-        } else if (here_.keyword == "CIR" || is_among(kApertureShapes, here_.keyword)) {
+        } else if (here_.keyword == "CIR" || is_among(kSeqApertureShapes, here_.keyword)) {
             remarks_.at(here_, "aperture-shape", optics::Severity::warning, surface_,
                         "makes the aperture no full circle about the vertex, and is left out");
-        } else if (is_among(kSolves, here_.keyword)) {
+        } else if (is_among(kSeqSolves, here_.keyword)) {
             remarks_.at(here_, "solve", optics::Severity::info, 0,
                         "what solves and pick-ups gave is taken as stated; they are not followed");
         } else if (is_among(kDiffraction, here_.keyword) || is_among(kOtherTypes, here_.keyword)) {
@@ -399,7 +400,7 @@ class SeqReader {
             for (std::size_t i = next_; i < words().size(); ++i) {
                 file_.zoom_titles.push_back(words()[i].text);
             }
-        } else if (!is_among(kSilent, command)) {
+        } else if (!is_among(kSeqSilent, command)) {
             remarks_.add_once(command, "multi-configuration", optics::Severity::warning, 0,
                               fmt::format("line {}: {} differs between the zoom positions, which is left out",
                                           here_.line, printable(command)));

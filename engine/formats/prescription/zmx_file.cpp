@@ -12,12 +12,12 @@
 #include "engine/base/text.h"
 #include "engine/formats/prescription/design_command.h"
 #include "engine/formats/prescription/design_program.h"
+#include "engine/formats/prescription/prescription_forms.h"
 
 namespace lensproof::formats {
 
 namespace {
 
-constexpr int kMostSurfaces = 1000;
 constexpr int kMostConfigurations = 100;
 constexpr int kMostWavelengths = 1000;
 constexpr int kMostParameters = 300;
@@ -25,19 +25,20 @@ constexpr std::size_t kMostOperands = 10000;
 
 /// Keywords that bear on no ray: the program's version and settings, weights, names of its data files, drawing,
 /// physical optics, polarization, tolerances, marks of what an optimizer may vary.
-constexpr std::string_view kSilent[] = {"VERS", "PFIL", "LANG", "RAIM", "PUSH", "SDMA", "OMMA", "ROPD", "PICB", "HYPR",
-                                        "DBDT", "AUTH", "FWGN", "FWGT", "WWGT", "WWGN", "POLS", "GLRS", "GSTD", "NSCD",
-                                        "COFN", "MOFF", "COMM", "HIDE", "MIRR", "SLAB", "POPS", "VPAR", "VDSZ", "VCON",
-                                        "VCUR", "TCMM", "TCED", "BLNK", "TOL",  "CONF", "SCOL", "SURO"};
+constexpr std::string_view kZmxSilent[] = {
+    "VERS", "PFIL", "LANG", "RAIM", "PUSH", "SDMA", "OMMA", "ROPD", "PICB", "HYPR", "DBDT", "AUTH", "FWGN",
+    "FWGT", "WWGT", "WWGN", "POLS", "GLRS", "GSTD", "NSCD", "COFN", "MOFF", "COMM", "HIDE", "MIRR", "SLAB",
+    "POPS", "VPAR", "VDSZ", "VCON", "VCUR", "TCMM", "TCED", "BLNK", "TOL",  "CONF", "SCOL", "SURO"};
 
 /// Solves, whose outcome the file holds as the value itself.
-constexpr std::string_view kSolves[] = {"PZUP", "PPAR", "PKUP", "MAZH", "EDGE", "TOLE", "TCOM"};
+constexpr std::string_view kZmxSolves[] = {"PZUP", "PPAR", "PKUP", "MAZH", "EDGE", "TOLE", "TCOM"};
 
 /// Apertures that are no circle about the vertex.
-constexpr std::string_view kApertureShapes[] = {"SQAP", "ELAP", "OBSC", "SQOB", "ELOB", "SPID", "UDAD", "USAP", "UDOB"};
+constexpr std::string_view kZmxApertureShapes[] = {"SQAP", "ELAP", "OBSC", "SQOB", "ELOB",
+                                                   "SPID", "UDAD", "USAP", "UDOB"};
 
 /// Vignetting factors: Zemax shrinks pupils by them where rims would cut the beams.
-constexpr std::string_view kVignettingFactors[] = {"VDXN", "VDYN", "VCXN", "VCYN", "VANN"};
+constexpr std::string_view kZmxVignettingFactors[] = {"VDXN", "VDYN", "VCXN", "VCYN", "VANN"};
 
 /// Reads one file, line by line.
 class ZmxReader {
@@ -100,14 +101,14 @@ class ZmxReader {
             (this->*known->read)();
         } else if (of_surface != std::end(kOfSurfaces) && !file_.surfaces.empty()) {
             (this->*of_surface->read)();
-        } else if (is_among(kSilent, here_.keyword)) {
+        } else if (is_among(kZmxSilent, here_.keyword)) {
             return;
-        } else if (is_among(kSolves, here_.keyword)) {
+        } else if (is_among(kZmxSolves, here_.keyword)) {
             report_solve();
-        } else if (is_among(kApertureShapes, here_.keyword)) {
+        } else if (is_among(kZmxApertureShapes, here_.keyword)) {
             remarks_.at(here_, "aperture-shape", optics::Severity::warning, surface_number(),
                         "the aperture is no full circle; the circle of the semi-diameter is taken");
-        } else if (is_among(kVignettingFactors, here_.keyword)) {
+        } else if (is_among(kZmxVignettingFactors, here_.keyword)) {
             read_vignetting();
         } else if (!file_.surfaces.empty() && !is_indented) {
             read_tail();

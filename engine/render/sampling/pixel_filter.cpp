@@ -68,8 +68,9 @@ PixelFilter PixelFilter::named(const std::string& name) {
     return {known->name, known->shape, known->radius_px};
 }
 
-PixelFilter PixelFilter::square(double share) {
-    return share < 1.0 ? PixelFilter(fmt::format("box-{}", share), flat, 0.5 * std::sqrt(share)) : PixelFilter();
+PixelFilter PixelFilter::square(double fraction) {
+    return fraction < 1.0 ? PixelFilter(fmt::format("box-{}", fraction), flat, 0.5 * std::sqrt(fraction))
+                          : PixelFilter();
 }
 
 std::vector<std::string> PixelFilter::known_names() {

@@ -28,10 +28,10 @@ class PixelFilter {
     static PixelFilter named(const std::string& name);
     static std::vector<std::string> known_names();
 
-    /// What a pixel sees whose light-sensitive part is a centred square of `share` of its area, in (0, 1], with nothing
-    /// to bring the rest of the light there: a box of side √share px. It is the sharper for it, by sinc(√share f) in
-    /// place of sinc(f) at f cycles a pixel, and aliases the more.
-    static PixelFilter square(double share);
+    /// What a pixel sees whose light-sensitive part is a centred square of a `fraction` of its area, in (0, 1], with
+    /// nothing to bring the rest of the light there: a box of side √fraction px. It is the sharper for it, by
+    /// sinc(√fraction f) in place of sinc(f) at f cycles a pixel, and aliases the more.
+    static PixelFilter square(double fraction);
 
     [[nodiscard]] const std::string& name() const { return name_; }
     [[nodiscard]] bool is_box() const { return quantile_.empty(); }
@@ -41,7 +41,7 @@ class PixelFilter {
     /// f, 1/px. The box has its lower end and not its upper one, so that each point is in one pixel.
     [[nodiscard]] double operator()(double offset_px) const;
 
-    /// An offset from the centre and f there over the density that it was drawn with: about 1, or about −1 in a
+    /// An offset from the centre and f there over the pdf that it was drawn with: about 1, or about −1 in a
     /// negative lobe times what that costs. `u` in (0, 1).
     struct Draw {
         double offset_px = 0.0;

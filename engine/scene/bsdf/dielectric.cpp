@@ -45,13 +45,13 @@ double mean_over_indices(const DielectricBsdf& bsdf, const Vec3d& wo, const Func
 }
 
 /// At one index: f |cos wi| for radiance, and the density of wi where it is drawn for that index.
-struct Scattered {
+struct ThroughFacets {
     double value = 0.0;
     double density = 0.0;
 };
 
 /// What facets refract from wi, below the surface, to wo above it (Walter et al. 2007, eq. 21).
-Scattered facet_refraction(const Roughness& roughness, const Vec3d& wo, const Vec3d& wi, double eta) {
+ThroughFacets facet_refraction(const Roughness& roughness, const Vec3d& wo, const Vec3d& wi, double eta) {
     const Vec3d across = wo + eta * wi;  // along the facet's normal (eq. 16)
     const double size = length(across);
     if (!(size > 0.0)) {
@@ -89,13 +89,13 @@ class RoughPair {
     [[nodiscard]] bool is_reflection() const { return is_reflection_; }
 
     /// `eta`: the index behind the boundary.
-    [[nodiscard]] Scattered at(double eta) const {
-        Scattered once = by_one_facet(eta);
+    [[nodiscard]] ThroughFacets at(double eta) const {
+        ThroughFacets once = by_one_facet(eta);
         return bsdf_.losses == nullptr ? once : with_several_facets(once, eta);
     }
 
   private:
-    [[nodiscard]] Scattered by_one_facet(double eta) const {
+    [[nodiscard]] ThroughFacets by_one_facet(double eta) const {
         if (is_reflection_) {
             const double reflectance = dielectric_reflectance(eta, reflection_.cos_facet);
             return {.value = reflection_.value * reflectance, .density = reflection_.density * reflectance};
@@ -103,7 +103,7 @@ class RoughPair {
         return facet_refraction(bsdf_.roughness, upwards(wo_), {wi_.x, wi_.y, -std::abs(wi_.z)}, eta);
     }
 
-    [[nodiscard]] Scattered with_several_facets(const Scattered& once, double eta) const {
+    [[nodiscard]] ThroughFacets with_several_facets(const ThroughFacets& once, double eta) const {
         const double eta_below = wo_.z > 0.0 ? eta : 1.0 / eta;
         const BoundaryLosses::Loss lost = bsdf_.losses->of(wo_, eta_below);
         const BoundaryLosses::Loss at_wi = bsdf_.losses->of(wi_, eta_below);

@@ -15,7 +15,7 @@ namespace {
 constexpr int kRootSteps = 40;    // of √μ: losses grow towards grazing
 constexpr int kAzimuthSteps = 8;  // of sin², in which α² is linear
 constexpr int kIndexSteps = 4;    // across a glass's dispersion
-constexpr double kGrazing = 1e-6;
+constexpr double kLeastCosine = 1e-6;
 
 /// μ² at a step of √μ.
 double mu2_of(int step) {
@@ -55,7 +55,7 @@ FacetLosses::FacetLosses(const Roughness& roughness, const Returned& returned)
         const double sin2_azimuth = azimuth_steps_ == 0 ? 0.0 : static_cast<double>(row) / azimuth_steps_;
         for (int i = 0; i <= kRootSteps; ++i) {
             const double root = static_cast<double>(i) / kRootSteps;
-            const Vec3d w = direction_of(std::max(kGrazing, root * root), sin2_azimuth);
+            const Vec3d w = direction_of(std::max(kLeastCosine, root * root), sin2_azimuth);
             const double share = visible_facet_mean(roughness, w, [&](const Vec3d& m) { return returned(w, m); });
             table_.push_back(static_cast<float>(std::max(0.0, 1.0 - share)));
         }

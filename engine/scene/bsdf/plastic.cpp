@@ -20,16 +20,16 @@ spectral::SpectralSample base_value(const PlasticBsdf& bsdf, double reflectance_
 }
 
 /// f |cos wi| and the density for directions above the surface.
-struct Scattered {
+struct ScatteredBack {
     spectral::SpectralSample value;
     double density = 0.0;
 };
-Scattered scattered(const PlasticBsdf& bsdf, const Vec3d& wo, const Vec3d& wi) {
+ScatteredBack scattered(const PlasticBsdf& bsdf, const Vec3d& wo, const Vec3d& wi) {
     const DielectricCoat& coat = *bsdf.coat;
     const double reflectance_o = coat.reflectance(wo.z);
     const double p_coat = coat_probability(bsdf, reflectance_o);
-    Scattered result{.value = base_value(bsdf, reflectance_o, wi.z),
-                     .density = (1.0 - p_coat) * wi.z * std::numbers::inv_pi};
+    ScatteredBack result{.value = base_value(bsdf, reflectance_o, wi.z),
+                         .density = (1.0 - p_coat) * wi.z * std::numbers::inv_pi};
     if (!coat.roughness().is_smooth()) {
         const GgxReflection facets = ggx_reflection(coat.roughness(), wo, wi);
         const double reflectance = dielectric_reflectance(coat.eta(), facets.cos_facet);
@@ -76,7 +76,7 @@ std::optional<BsdfSample> sample(const PlasticBsdf& bsdf, const Vec3d& wo, doubl
     if (!(wi.z > 0.0)) {
         return std::nullopt;
     }
-    const Scattered outcome = scattered(bsdf, from, wi);
+    const ScatteredBack outcome = scattered(bsdf, from, wi);
     return BsdfSample{.wi = on_side_of(wo, wi),
                       .weight = static_cast<float>(1.0 / outcome.density) * outcome.value,
                       .density = outcome.density};

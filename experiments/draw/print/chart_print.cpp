@@ -17,7 +17,6 @@
 #include "engine/base/overloaded.h"
 #include "engine/base/parallel.h"
 #include "engine/formats/image/page_png.h"
-#include "engine/scene/chart_outline.h"
 
 namespace lensproof::draw {
 
@@ -64,7 +63,7 @@ void set_ink(cairo_t* page, bool is_black) {
 
 /// The chart's shapes, those of one colour that follow each other in one path: between them no seam can show.
 void draw_chart(cairo_t* page, const scene::Chart& chart) {
-    const std::vector<scene::OutlineShape> shapes = scene::chart_outline(chart);
+    const scene::Outline shapes = scene::outline(chart);
     for (std::size_t i = 0; i < shapes.size(); ++i) {
         cairo_new_sub_path(page);
         add_path(page, shapes[i]);

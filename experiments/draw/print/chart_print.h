@@ -3,7 +3,7 @@
 #include <filesystem>
 #include <string>
 
-#include "engine/scene/chart.h"
+#include "engine/scene/chart/chart.h"
 
 namespace lensproof::draw {
 

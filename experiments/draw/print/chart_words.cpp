@@ -8,79 +8,11 @@
 #include <cmath>
 
 #include "engine/base/input_error.h"
+#include "engine/scene/chart/chart_keys.h"
 
 namespace lensproof::draw {
 
 namespace {
-
-/// A key with its default as a share of the pitch.
-struct Share {
-    std::string key;
-    double of_pitch = 0.0;
-};
-
-struct PrintableKind {
-    std::string name;
-    std::string count_key;  // empty: none
-    scene::GridSize count;
-    std::string pitch_key;
-    std::vector<Share> shares;
-};
-
-const std::vector<PrintableKind>& kinds() {
-    static const std::vector<PrintableKind> all = {
-        {"checkerboard", "squares", {10, 7}, "square_mm", {}},
-        {"charuco", "squares", {10, 7}, "square_mm", {{"marker_mm", 0.72}}},
-        {"disc-grid", "discs", {10, 7}, "pitch_mm", {{"diameter_mm", 0.5}}},
-        {"point-grid", "points", {10, 7}, "pitch_mm", {{"dot_mm", 0.3}}},
-        {"slanted-edges", "squares", {7, 5}, "pitch_mm", {{"square_mm", 0.6}}},
-        {"straight-lines", "lines", {13, 9}, "pitch_mm", {{"line_mm", 0.06}}},
-        {"astigmatism-crosses", "crosses", {9, 7}, "pitch_mm", {{"length_mm", 0.6}, {"line_mm", 0.02}}},
-        {"siemens-star", "", {2, 2}, "radius_mm", {}},
-        {"flat-field", "", {}, "", {}},
-    };
-    return all;
-}
-
-const PrintableKind& kind_called(const std::string& name) {
-    const auto found =
-        std::find_if(kinds().begin(), kinds().end(), [&](const auto& kind) { return kind.name == name; });
-    if (found == kinds().end()) {
-        throw InputError(fmt::format(
-            "a chart of kind {} cannot be printed{}: expected one of {}", name,
-            name == "colour-checker" ? " (what its patches reflect is measured, and no printer repeats it)" : "",
-            fmt::join(printable_kinds(), ", ")));
-    }
-    return *found;
-}
-
-/// Keys without a default that depends on the pitch.
-bool takes(const PrintableKind& kind, const std::string& key) {
-    return key == kind.pitch_key || (key == "sectors" && kind.name == "siemens-star") ||
-           (key == "angle_deg" && kind.name == "slanted-edges") ||
-           std::any_of(kind.shares.begin(), kind.shares.end(), [&](const Share& share) { return share.key == key; });
-}
-
-[[noreturn]] void refuse(const PrintableKind& kind, std::string key) {
-    std::replace(key.begin(), key.end(), '_', '-');
-    throw InputError(fmt::format("--{}: a chart of kind {} has none", key, kind.name));
-}
-
-void check_keys(const ChartWish& wish, const PrintableKind& kind) {
-    for (const auto& [key, count] : wish.counts) {
-        if (key != kind.count_key) {
-            refuse(kind, key);
-        }
-    }
-    for (const auto& [key, number] : wish.numbers) {
-        if (!takes(kind, key)) {
-            refuse(kind, key);
-        }
-    }
-    if (!wish.dictionary.empty() && kind.name != "charuco") {
-        refuse(kind, "dictionary");
-    }
-}
 
 /// The largest pitch in whole mm (below 10 mm: tenths) with which `count` cells fit on the page.
 double fitting_pitch_mm(const PrintLayout& layout, scene::GridSize count) {
@@ -94,24 +26,149 @@ double rounded(double length_mm) {
     return std::round(100.0 * length_mm) / 100.0;
 }
 
+/// A kind's keys by what they say, and their lines in a file, lengths and others.
+struct WrittenKeys {
+    std::vector<std::string> counts, pitches, lengths, wholes, angles, choices;
+    std::string length_lines, other_lines;
+};
+
+/// Writes what a kind says of its keys (engine/scene/chart/chart_keys.h), as a user wishes them or by default.
+class KeyWriter {
+  public:
+    KeyWriter(const ChartWish& wish, const PrintLayout& layout) : wish_(wish), layout_(layout) {}
+
+    [[nodiscard]] const WrittenKeys& written() const { return written_; }
+
+    void grid(const std::string& key, int& columns, int& rows, const scene::GridKey& says) {
+        const auto found = wish_.counts.find(key);
+        const scene::GridSize count = found != wish_.counts.end() ? found->second : says.printed;
+        columns = count.columns;
+        rows = count.rows;
+        written_.counts.push_back(key);
+        written_.length_lines += fmt::format("{} = [{}, {}]\n", key, columns, rows);
+    }
+    void pitch(const std::string& key, double& mm, scene::GridSize cells) {
+        mm = number(key, fitting_pitch_mm(layout_, cells), written_.pitches, written_.length_lines);
+    }
+    void length(const std::string& key, double& mm, scene::GridSize cells) {
+        mm = number(key, fitting_pitch_mm(layout_, cells), written_.lengths, written_.length_lines);
+    }
+    void part(const std::string& key, double& mm, const scene::PartKey& says) {
+        mm = number(key, rounded(says.printed_mm), written_.lengths, written_.length_lines);
+    }
+    void whole(const std::string& key, int& value, const scene::WholeKey& says) {
+        value = says.printed;
+        number(key, says.printed, written_.wholes, written_.other_lines);
+    }
+    void angle(const std::string& key, double& deg, double /*most_deg*/) {
+        deg = number(key, deg, written_.angles, written_.other_lines);
+    }
+    std::string choice(const std::string& key, const std::vector<std::string>& /*names*/, const std::string& printed) {
+        written_.choices.push_back(key);
+        written_.other_lines +=
+            fmt::format("{} = \"{}\"\n", key, wish_.dictionary.empty() ? printed : wish_.dictionary);
+        return {};
+    }
+    /// Whoever reads the file will.
+    void refuse(const std::string& /*key*/, const std::string& /*why*/) const {}
+
+  private:
+    double number(const std::string& key, double otherwise, std::vector<std::string>& keys, std::string& lines) {
+        const auto found = wish_.numbers.find(key);
+        const double value = found != wish_.numbers.end() ? found->second : otherwise;
+        keys.push_back(key);
+        lines += fmt::format("{} = {}\n", key, value);
+        return value;
+    }
+
+    const ChartWish& wish_;
+    const PrintLayout& layout_;
+    WrittenKeys written_;
+};
+
+WrittenKeys written_keys(const ChartWish& wish, const PrintLayout& layout) {
+    KeyWriter keys(wish, layout);
+    of_kind<scene::ChartPattern>(wish.kind, [&](auto& pattern) { visit_keys(pattern, keys); });
+    return keys.written();
+}
+
+bool contains(const std::vector<std::string>& keys, const std::string& key) {
+    return std::ranges::find(keys, key) != keys.end();
+}
+
+void add_new(std::vector<std::string>& to, const std::vector<std::string>& keys) {
+    for (const std::string& key : keys) {
+        if (!contains(to, key)) {
+            to.push_back(key);
+        }
+    }
+}
+
+void check_kind(const std::string& name) {
+    for (const scene::ChartKind& kind : scene::chart_kinds()) {
+        if (kind.name == name && kind.not_printed.empty()) {
+            return;
+        }
+    }
+    std::string why;
+    for (const scene::ChartKind& kind : scene::chart_kinds()) {
+        why += kind.name == name ? fmt::format(" ({})", kind.not_printed) : "";
+    }
+    throw InputError(fmt::format("a chart of kind {} cannot be printed{}: expected one of {}", name, why,
+                                 fmt::join(printable_kinds(), ", ")));
+}
+
+/// Refuses what the kind does not have.
+void check_keys(const ChartWish& wish, const WrittenKeys& keys) {
+    const auto refuse = [&](std::string key) {
+        std::ranges::replace(key, '_', '-');
+        throw InputError(fmt::format("--{}: a chart of kind {} has none", key, wish.kind));
+    };
+    for (const auto& [key, count] : wish.counts) {
+        if (!contains(keys.counts, key)) {
+            refuse(key);
+        }
+    }
+    for (const auto& [key, number] : wish.numbers) {
+        if (!contains(keys.pitches, key) && !contains(keys.lengths, key) && !contains(keys.wholes, key) &&
+            !contains(keys.angles, key)) {
+            refuse(key);
+        }
+    }
+    if (!wish.dictionary.empty() && keys.choices.empty()) {
+        refuse("dictionary");
+    }
+}
+
 }  // namespace
 
 std::vector<std::string> printable_kinds() {
     std::vector<std::string> names;
-    names.reserve(kinds().size());
-    for (const PrintableKind& kind : kinds()) {
-        names.push_back(kind.name);
+    for (const scene::ChartKind& kind : scene::chart_kinds()) {
+        if (kind.not_printed.empty()) {
+            names.push_back(kind.name);
+        }
     }
     return names;
 }
 
-std::vector<std::string> count_keys() {
-    return {"squares", "discs", "points", "crosses", "lines"};
-}
-
-std::vector<std::string> number_keys() {
-    return {"square_mm", "pitch_mm",  "marker_mm", "diameter_mm", "dot_mm",
-            "line_mm",   "length_mm", "radius_mm", "sectors",     "angle_deg"};
+ChartKeys printable_keys() {
+    ChartKeys keys;
+    for (const std::string& kind : kind_names<scene::ChartPattern>()) {
+        add_new(keys.counts, written_keys({.kind = kind}, {}).counts);
+    }
+    WrittenKeys all;
+    for (const std::string& kind : printable_kinds()) {
+        const WrittenKeys own = written_keys({.kind = kind}, {});
+        add_new(all.pitches, own.pitches);
+        add_new(all.lengths, own.lengths);
+        add_new(all.wholes, own.wholes);
+        add_new(keys.angles, own.angles);
+    }
+    for (const auto& of_sort : {all.pitches, all.lengths, all.wholes}) {
+        add_new(keys.numbers, of_sort);
+    }
+    return keys;
 }
 
 scene::GridSize parse_grid_size(const std::string& option, const std::string& text) {
@@ -129,38 +186,10 @@ scene::GridSize parse_grid_size(const std::string& option, const std::string& te
 }
 
 std::string chart_toml(const ChartWish& wish, const PrintLayout& layout) {
-    const PrintableKind& kind = kind_called(wish.kind);
-    check_keys(wish, kind);
-    std::string toml = fmt::format("[chart]\nkind = \"{}\"\n", kind.name);
-    const scene::GridSize count = wish.counts.count(kind.count_key) != 0 ? wish.counts.at(kind.count_key) : kind.count;
-    if (!kind.count_key.empty()) {
-        toml += fmt::format("{} = [{}, {}]\n", kind.count_key, count.columns, count.rows);
-    }
-    const auto wished = [&](const std::string& key, double otherwise) {
-        const auto found = wish.numbers.find(key);
-        return found != wish.numbers.end() ? found->second : otherwise;
-    };
-    double pitch_mm = 0.0;
-    if (!kind.pitch_key.empty()) {
-        pitch_mm = wished(kind.pitch_key, fitting_pitch_mm(layout, count));
-        toml += fmt::format("{} = {}\n", kind.pitch_key, pitch_mm);
-    }
-    for (const Share& share : kind.shares) {
-        toml += fmt::format("{} = {}\n", share.key, wished(share.key, rounded(share.of_pitch * pitch_mm)));
-    }
-    if (kind.name == "charuco") {
-        const int needed = count.columns * count.rows / 2;
-        const int size = needed <= 50 ? 50 : (needed <= 100 ? 100 : 250);
-        toml += fmt::format("dictionary = \"{}\"\n",
-                            wish.dictionary.empty() ? fmt::format("DICT_5X5_{}", size) : wish.dictionary);
-    }
-    if (kind.name == "siemens-star") {
-        toml += fmt::format("sectors = {}\n", wished("sectors", 72.0));
-    }
-    if (kind.name == "slanted-edges") {
-        toml += fmt::format("angle_deg = {}\n", wished("angle_deg", 5.0));
-    }
-    return toml;
+    check_kind(wish.kind);
+    const WrittenKeys keys = written_keys(wish, layout);
+    check_keys(wish, keys);
+    return fmt::format("[chart]\nkind = \"{}\"\n{}{}", wish.kind, keys.length_lines, keys.other_lines);
 }
 
 std::string chart_caption(const std::string& toml) {

@@ -1,6 +1,5 @@
 // experiments/studies/measurement_floor/floor_point.h — trials of one setting as a point of a sweep.
 #pragma once
-#include <algorithm>
 #include <string>
 #include <vector>
 
@@ -14,11 +13,5 @@ FloorPoint rms_point(double value, const std::vector<double>& errors);
 
 /// "" where all trials gave a number, else " 2 of 6 failed." — to be said wherever the number is.
 std::string failed_in_words(const FloorPoint& point);
-
-/// Whether a list asks for this one; an empty list asks for all.
-template <class T>
-bool is_wanted(const std::vector<T>& wanted, const T& one) {
-    return wanted.empty() || std::ranges::find(wanted, one) != wanted.end();
-}
 
 }  // namespace lensproof::studies

@@ -10,7 +10,7 @@
 #include "calibration/self_test/simulated_chart.h"
 #include "engine/base/infinity.h"
 #include "engine/base/parallel.h"
-#include "engine/scene/aruco.h"
+#include "engine/scene/chart/aruco.h"
 #include "experiments/studies/measurement_floor/floor_point.h"
 #include "experiments/studies/measurement_floor/measure_floor.h"
 #include "experiments/studies/measurement_floor/picture_sweeps.h"
@@ -145,8 +145,8 @@ calibration::SimulatedCamera usual_camera() {
             .threads = 1};
 }
 
-runner::Check target_check(const std::string& id, const Detector& detector, const std::string& label, double value,
-                           double sigma, double limit, const Errors& errors) {
+findings::Check target_check(const std::string& id, const Detector& detector, const std::string& label, double value,
+                             double sigma, double limit, const Errors& errors) {
     return {.id = fmt::format("{}-{}", detector.label, id),
             .group = "Points at 1 % noise",
             .subject = "noise",
@@ -155,7 +155,7 @@ runner::Check target_check(const std::string& id, const Detector& detector, cons
             .sigma = sigma,
             .unit = "px",
             .limit = limit,
-            .expectation = runner::Expectation::at_most,
+            .expectation = findings::Expectation::at_most,
             .target = 0.0,
             .explanation = fmt::format("Blur of {} px, tilts of {}°, 640 × 480 pixels; {} of {} points found.",
                                        kUsualBlur_px, kUsualTilt_deg, errors.found, errors.expected)};
@@ -176,13 +176,14 @@ std::vector<std::string> floor_detectors() {
 }
 
 MeasurementFloor measure_detectors(const FloorSettings& settings, std::uint64_t seed, int threads,
-                                   const FloorProgress& progress) {
+                                   const findings::RunProgress& progress) {
     std::vector<Detector> all = detectors();
-    std::erase_if(all, [&](const Detector& detector) { return !is_wanted(settings.detectors, detector.label); });
+    std::erase_if(all,
+                  [&](const Detector& detector) { return !findings::is_wanted(settings.detectors, detector.label); });
     std::vector<Varied> sweeps = varied();
-    std::erase_if(sweeps, [&](const Varied& what) { return !is_wanted(settings.sweeps, what.of.id); });
+    std::erase_if(sweeps, [&](const Varied& what) { return !findings::is_wanted(settings.sweeps, what.of.id); });
     for (Varied& what : sweeps) {
-        std::erase_if(what.of.values, [&](double value) { return !is_wanted(settings.values, value); });
+        std::erase_if(what.of.values, [&](double value) { return !findings::is_wanted(settings.values, value); });
     }
     struct Job {
         std::size_t sweep, detector, value;

@@ -2,12 +2,11 @@
 // pictures whose truth is known.
 #pragma once
 #include <cstdint>
-#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
 
-#include "experiments/runner/verdict.h"
+#include "experiments/findings/study.h"
 
 namespace lensproof::studies {
 
@@ -50,11 +49,8 @@ struct FloorSweep {
 
 struct MeasurementFloor {
     std::vector<FloorSweep> sweeps;
-    std::vector<runner::Check> checks;
+    std::vector<findings::Check> checks;
 };
-
-/// Reports what is being done and how much of it is.
-using FloorProgress = std::function<void(const std::string& step, double done)>;
 
 /// What detectors are swept over, and the detectors.
 std::vector<std::string> detector_sweeps();
@@ -65,17 +61,17 @@ std::vector<std::string> floor_detectors();
 ///
 /// Detectors: the error of found points against noise, blur, tilt and JPEG's quality, for each kind of chart.
 MeasurementFloor measure_detectors(const FloorSettings& settings, std::uint64_t seed, int threads,
-                                   const FloorProgress& progress);
+                                   const findings::RunProgress& progress);
 /// Quantities: the errors of chromatic shift, vignetting and MTF50 against noise, blur and JPEG's quality.
 MeasurementFloor measure_quantities(const FloorSettings& settings, std::uint64_t seed, int threads,
-                                    const FloorProgress& progress);
+                                    const findings::RunProgress& progress);
 /// Models: the error of fitted mappings against the number of photos and their coverage, for the models that one might
 /// fit to a lens, and for every model on a lens of its own family; and what the model that is chosen by itself makes of
 /// the usual set. A value's "pictures" are sets.
 MeasurementFloor measure_models(const FloorSettings& settings, std::uint64_t seed, int threads,
-                                const FloorProgress& progress);
+                                const findings::RunProgress& progress);
 /// Intervals: in how many of the trials the stated 95 % intervals hold the truth.
 MeasurementFloor measure_intervals(const FloorSettings& settings, std::uint64_t seed, int threads,
-                                   const FloorProgress& progress);
+                                   const findings::RunProgress& progress);
 
 }  // namespace lensproof::studies

@@ -145,7 +145,7 @@ std::vector<Study> studies() {
 }  // namespace
 
 MeasurementFloor measure_intervals(const FloorSettings& settings, std::uint64_t seed, int threads,
-                                   const FloorProgress& progress) {
+                                   const findings::RunProgress& progress) {
     const std::vector<Study> all = studies();
     std::vector<std::vector<Outcome>> outcomes(all.size(),
                                                std::vector<Outcome>(static_cast<std::size_t>(settings.trials)));
@@ -179,7 +179,7 @@ MeasurementFloor measure_intervals(const FloorSettings& settings, std::uint64_t 
                  .sigma = 0.0,
                  .unit = "%",
                  .limit = 2.0,
-                 .expectation = runner::Expectation::within,
+                 .expectation = findings::Expectation::within,
                  .target = 95.0,
                  .explanation = fmt::format(
                      "{} of {} trials{}. Right intervals would scatter by {:.1f} %.", held, stated,

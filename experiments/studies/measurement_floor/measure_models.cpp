@@ -224,8 +224,8 @@ std::string counted(const std::vector<std::string>& names) {
 }
 
 /// What the model that is chosen without being told makes of the usual set of photos.
-runner::Check chosen_check(const TrueLens& lens, const std::vector<double>& errors,
-                           const std::vector<std::string>& chosen) {
+findings::Check chosen_check(const TrueLens& lens, const std::vector<double>& errors,
+                             const std::vector<std::string>& chosen) {
     const FloorPoint point = rms_point(0.0, errors);
     return {.id = "mapping-" + lens.id,
             .group = "Mapping over the covered frame",
@@ -235,7 +235,7 @@ runner::Check chosen_check(const TrueLens& lens, const std::vector<double>& erro
             .sigma = point.sigma,
             .unit = "px rms",
             .limit = kMapping_px,
-            .expectation = runner::Expectation::at_most,
+            .expectation = findings::Expectation::at_most,
             .target = 0.0,
             .explanation = fmt::format("{} sets of {} photos, points known to {} px. Chosen: {}.{}", chosen.size(),
                                        kUsualPhotos, kPointNoise_px, counted(chosen), failed_in_words(point))};
@@ -255,7 +255,7 @@ void own_checks(MeasurementFloor& floor) {
                                 .sigma = point->sigma,
                                 .unit = "px rms",
                                 .limit = kMapping_px,
-                                .expectation = runner::Expectation::at_most,
+                                .expectation = findings::Expectation::at_most,
                                 .target = 0.0,
                                 .explanation = fmt::format("{} photos, points known to {} px.{}", kUsualPhotos,
                                                            kPointNoise_px, failed_in_words(*point))});
@@ -265,7 +265,7 @@ void own_checks(MeasurementFloor& floor) {
 }  // namespace
 
 MeasurementFloor measure_models(const FloorSettings& settings, std::uint64_t seed, int threads,
-                                const FloorProgress& progress) {
+                                const findings::RunProgress& progress) {
     const std::vector<TrueLens> lenses = true_lenses();
     const std::vector<Varied> sweeps = varied();
     struct Job {

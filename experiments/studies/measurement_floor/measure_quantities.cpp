@@ -211,7 +211,7 @@ std::vector<Sort> sorts() {
              {{"slanted edges", &QuantityErrors::mtf50_percent}}}};
 }
 
-runner::Check target_check(const Sort& sort, const Quantity& quantity, const FloorPoint& point) {
+findings::Check target_check(const Sort& sort, const Quantity& quantity, const FloorPoint& point) {
     return {.id = fmt::format("{}-{}", sort.id, quantity.label),
             .group = "Chromatic shift, vignetting and sharpness at 1 % noise",
             .subject = sort.id + "-noise",
@@ -220,7 +220,7 @@ runner::Check target_check(const Sort& sort, const Quantity& quantity, const Flo
             .sigma = point.sigma,
             .unit = sort.unit,
             .limit = sort.target,
-            .expectation = runner::Expectation::at_most,
+            .expectation = findings::Expectation::at_most,
             .target = 0.0,
             .explanation = fmt::format("{}; {} sets of {} views, a flat field and a grid of edges, blur of {} px.{}",
                                        sort.error, point.trials, kViews, kUsualBlur_px, failed_in_words(point))};
@@ -229,11 +229,11 @@ runner::Check target_check(const Sort& sort, const Quantity& quantity, const Flo
 }  // namespace
 
 MeasurementFloor measure_quantities(const FloorSettings& settings, std::uint64_t seed, int threads,
-                                    const FloorProgress& progress) {
+                                    const findings::RunProgress& progress) {
     std::vector<PictureSweep> sweeps = picture_sweeps();
-    std::erase_if(sweeps, [&](const PictureSweep& sweep) { return !is_wanted(settings.sweeps, sweep.id); });
+    std::erase_if(sweeps, [&](const PictureSweep& sweep) { return !findings::is_wanted(settings.sweeps, sweep.id); });
     for (PictureSweep& sweep : sweeps) {
-        std::erase_if(sweep.values, [&](double value) { return !is_wanted(settings.values, value); });
+        std::erase_if(sweep.values, [&](double value) { return !findings::is_wanted(settings.values, value); });
     }
     const int sets = settings.pictures;
     struct Job {

@@ -88,9 +88,9 @@ class PassageMeter {
         for (int ring = 0; ring < kPassageRings; ++ring) {
             const double area = (2.0 * ring + 1.0) / (kPassageRings * kPassageRings);
             for (int scramble = 0; scramble < kScrambles; ++scramble) {
-                const double share = ring_share(map, ring, scramble);
-                result.rings[static_cast<std::size_t>(ring)] += share / kScrambles;
-                means[static_cast<std::size_t>(scramble)] += area * share;
+                const double fraction = ring_fraction(map, ring, scramble);
+                result.rings[static_cast<std::size_t>(ring)] += fraction / kScrambles;
+                means[static_cast<std::size_t>(scramble)] += area * fraction;
             }
         }
         double squares = 0.0;
@@ -106,7 +106,7 @@ class PassageMeter {
     }
 
   private:
-    [[nodiscard]] double ring_share(const pupil::PupilMap& map, int ring, int scramble) const {
+    [[nodiscard]] double ring_fraction(const pupil::PupilMap& map, int ring, int scramble) const {
         const render::PixelSampler sampler(seed_, static_cast<std::uint32_t>(ring * kScrambles + scramble));
         int started = 0;
         int passed = 0;
@@ -160,12 +160,13 @@ class PassageMeter {
 
 }  // namespace
 
-Passage measure_passage(const runner::PassageSetting& setting, std::uint64_t seed) {
-    Passage passage{.setting = setting,
-                    .lens = optics::focused_at(
-                        optics::with_f_number(formats::load_lens(setting.lens), setting.f_number), kInfinity),
-                    .whole_element = {},
-                    .pupil = {}};
+Passage measure_passage(const PassageSetting& setting, std::uint64_t seed) {
+    Passage passage{
+        .setting = setting,
+        .lens = optics::focused_at(optics::with_f_number(formats::load_lens(setting.lens), setting.f_number),
+                                   std::numeric_limits<double>::infinity()),
+        .whole_element = {},
+        .pupil = {}};
     std::vector<optics::TraceLens<double>> band;
     band.reserve(kWavelengths);
     for (int i = 0; i < kWavelengths; ++i) {

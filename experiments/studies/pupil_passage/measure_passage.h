@@ -3,13 +3,24 @@
 #pragma once
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "engine/optics/lens.h"
-#include "experiments/runner/experiment.h"
 
 namespace lensproof::studies {
+
+/// A lens whose camera paths are counted.
+struct PassageSetting {
+    std::string lens;
+    double f_number = 0.0;
+    struct Published {
+        double whole_element_percent = 0.0;
+        double pupil_percent = 0.0;
+    };
+    std::optional<Published> published;
+};
 
 inline constexpr int kPassageRings = 8;  // of the image circle, of equal width
 
@@ -19,16 +30,16 @@ struct DrawnPath {
     bool passes = false;
 };
 
-/// One way of choosing paths' first points.
+/// One technique of choosing paths' first points.
 struct PassageOf {
-    std::array<double, kPassageRings> rings{};  // shares that pass
+    std::array<double, kPassageRings> rings{};  // fractions that pass
     double mean = 0.0;                          // over the image circle's area
     double error = 0.0;                         // standard, from independent scrambles of the sequence
     std::vector<DrawnPath> drawn;               // from a few heights, evenly over what is drawn from there
 };
 
 struct Passage {
-    runner::PassageSetting setting;
+    PassageSetting setting;
     optics::Lens lens;
     double circle_mm = 0.0;  // radius: where the last light of the band ends, or what is stated, if that is smaller
     PassageOf whole_element;
@@ -36,6 +47,6 @@ struct Passage {
 };
 
 /// Traces paths of wavelengths from 400 to 700 nm. Throws InputError for a lens that cannot be loaded or set so.
-Passage measure_passage(const runner::PassageSetting& setting, std::uint64_t seed);
+Passage measure_passage(const PassageSetting& setting, std::uint64_t seed);
 
 }  // namespace lensproof::studies

@@ -170,14 +170,7 @@ void measure_point(StabilityPoint& point, const StabilityCase& given, std::mt199
 
 }  // namespace
 
-bool StabilitySweep::holds() const {
-    return std::ranges::all_of(points, [](const StabilityPoint& point) {
-        const TypeResult& result = point.types[kDouble];
-        return point.is_rightly_refused && point.excess <= 1.0 && result.other_statuses == 0 && result.not_finite == 0;
-    });
-}
-
-StabilitySweep measure_stability(const Extreme& extreme, std::uint64_t seed, const StabilityProgress& progress) {
+StabilitySweep measure_stability(const Extreme& extreme, std::uint64_t seed) {
     StabilitySweep sweep{.extreme = extreme, .points = {}};
     for (std::size_t i = 0; i < extreme.values.size(); ++i) {
         std::mt19937_64 random(seed * 1000 + i);
@@ -190,9 +183,6 @@ StabilitySweep measure_stability(const Extreme& extreme, std::uint64_t seed, con
         const bool is_taken = point.value >= extreme.least_taken && point.value <= extreme.most_taken;
         point.is_rightly_refused = is_taken == point.refusal.empty();
         sweep.points.push_back(std::move(point));
-        if (progress) {
-            progress(extreme.id, static_cast<double>(i + 1) / static_cast<double>(extreme.values.size()));
-        }
     }
     return sweep;
 }

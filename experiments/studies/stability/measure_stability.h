@@ -2,7 +2,6 @@
 // hundred digits.
 #pragma once
 #include <array>
-#include <functional>
 #include <map>
 #include <string>
 #include <vector>
@@ -49,16 +48,9 @@ struct StabilityPoint {
 struct StabilitySweep {
     Extreme extreme;
     std::vector<StabilityPoint> points;
-
-    /// Whether a double kept every requirement at every value: its bound, the right status, finite numbers; and whether
-    /// the right values were refused.
-    [[nodiscard]] bool holds() const;
 };
 
-/// Reports what is being done and how much of it is.
-using StabilityProgress = std::function<void(const std::string& step, double done)>;
-
 /// Every value of `extreme`; the same seed gives the same numbers.
-StabilitySweep measure_stability(const Extreme& extreme, std::uint64_t seed, const StabilityProgress& progress = {});
+StabilitySweep measure_stability(const Extreme& extreme, std::uint64_t seed);
 
 }  // namespace lensproof::studies

@@ -7,7 +7,7 @@
 
 #include "experiments/draw/chart.h"
 #include "experiments/draw/palette.h"
-#include "experiments/studies/stability/stability_report.h"
+#include "experiments/studies/stability/stability_study.h"
 
 namespace lensproof::studies {
 
@@ -95,8 +95,8 @@ std::string trouble_text(const StabilitySweep& sweep, std::size_t type, double l
                        onset->is_conditioning ? "; within ten times what rounding the input does" : "");
 }
 
-std::vector<runner::Fact> what_happens(const StabilitySweep& sweep) {
-    std::vector<runner::Fact> facts;
+std::vector<findings::Fact> what_happens(const StabilitySweep& sweep) {
+    std::vector<findings::Fact> facts;
     for (std::size_t i = 0; i < sweep.points.size();) {
         const std::string what = outcome(sweep.points[i]);
         std::size_t last = i;

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "experiments/runner/run_experiment.h"
+#include "experiments/findings/findings.h"
 #include "experiments/studies/stability/measure_stability.h"
 
 namespace lensproof::studies {
@@ -19,6 +19,6 @@ std::string trouble_text(const StabilitySweep& sweep, std::size_t type, double l
 
 /// What the double tracer does along the sweep: a fact for each run of values with the same statuses or the same
 /// refusal.
-std::vector<runner::Fact> what_happens(const StabilitySweep& sweep);
+std::vector<findings::Fact> what_happens(const StabilitySweep& sweep);
 
 }  // namespace lensproof::studies

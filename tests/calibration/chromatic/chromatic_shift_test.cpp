@@ -5,7 +5,7 @@
 #include "engine/base/input_error.h"
 #include "tests/calibration/synthetic.h"
 
-namespace lensproof::calibration {
+namespace lensproof::calibration::chromatic_shift_test {
 namespace {
 
 constexpr std::array<double, 3> kRadial = {1.4, -0.8, 0.3};
@@ -98,4 +98,4 @@ TEST(CalibrationChromaticShift, TooFewOrUselessPairsAreRefused) {
 }
 
 }  // namespace
-}  // namespace lensproof::calibration
+}  // namespace lensproof::calibration::chromatic_shift_test

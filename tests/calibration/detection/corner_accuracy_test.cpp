@@ -8,10 +8,10 @@
 
 #include "calibration/detection/detect.h"
 #include "calibration/detection/refine.h"
-#include "engine/scene/aruco.h"
+#include "engine/scene/chart/aruco.h"
 #include "tests/calibration/shot.h"
 
-namespace lensproof::calibration {
+namespace lensproof::calibration::corner_accuracy_test {
 namespace {
 
 using namespace synthetic;
@@ -143,4 +143,4 @@ TEST(CalibrationCornerAccuracy, CornersNearTheFrameAreMeasured) {
 }
 
 }  // namespace
-}  // namespace lensproof::calibration
+}  // namespace lensproof::calibration::corner_accuracy_test

@@ -8,7 +8,7 @@
 #include "engine/base/input_error.h"
 #include "tests/calibration/synthetic.h"
 
-namespace lensproof::calibration {
+namespace lensproof::calibration::detect_test {
 namespace {
 
 using namespace synthetic;
@@ -186,4 +186,4 @@ TEST(CalibrationDetect, SpoiledCornersAreMissing) {
 }
 
 }  // namespace
-}  // namespace lensproof::calibration
+}  // namespace lensproof::calibration::detect_test

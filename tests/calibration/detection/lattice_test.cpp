@@ -2,7 +2,7 @@
 
 #include "tests/calibration/shot.h"
 
-namespace lensproof::calibration {
+namespace lensproof::calibration::lattice_test {
 namespace {
 
 using namespace synthetic;
@@ -67,4 +67,4 @@ TEST(CalibrationLattice, AnotherGridHasItsReason) {
 }
 
 }  // namespace
-}  // namespace lensproof::calibration
+}  // namespace lensproof::calibration::lattice_test

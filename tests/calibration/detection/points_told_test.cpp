@@ -3,10 +3,10 @@
 
 #include "calibration/detection/line_points.h"
 #include "calibration/profile/profile_line.h"
-#include "engine/scene/aruco.h"
+#include "engine/scene/chart/aruco.h"
 #include "tests/calibration/shot.h"
 
-namespace lensproof::calibration {
+namespace lensproof::calibration::points_told_test {
 namespace {
 
 using namespace synthetic;
@@ -134,4 +134,4 @@ TEST(CalibrationPointsTold, LinesAreStraightUnderTheTrueModelAlone) {
 }
 
 }  // namespace
-}  // namespace lensproof::calibration
+}  // namespace lensproof::calibration::points_told_test

@@ -10,7 +10,7 @@
 #include "engine/base/input_error.h"
 #include "tests/calibration/export/export_profile.h"
 
-namespace lensproof::calibration {
+namespace lensproof::calibration::lensfun_test {
 namespace {
 
 using namespace synthetic;
@@ -212,4 +212,4 @@ TEST(ExportLensfun, WithoutACameraModelThereIsNothingToWrite) {
 }
 
 }  // namespace
-}  // namespace lensproof::calibration
+}  // namespace lensproof::calibration::lensfun_test

@@ -9,7 +9,7 @@
 #include "engine/base/input_error.h"
 #include "tests/calibration/export/export_profile.h"
 
-namespace lensproof::calibration {
+namespace lensproof::calibration::opencv_yaml_test {
 namespace {
 
 using namespace synthetic;
@@ -117,4 +117,4 @@ TEST(ExportOpencv, WithoutACameraModelThereIsNothingToWrite) {
 }
 
 }  // namespace
-}  // namespace lensproof::calibration
+}  // namespace lensproof::calibration::opencv_yaml_test

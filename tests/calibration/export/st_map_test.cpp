@@ -8,7 +8,7 @@
 #include "tests/calibration/export/export_profile.h"
 #include "tests/test_folder.h"
 
-namespace lensproof::calibration {
+namespace lensproof::calibration::st_map_test {
 namespace {
 
 using namespace synthetic;
@@ -131,4 +131,4 @@ TEST(ExportStMap, ThreadsChangeNothing) {
 }
 
 }  // namespace
-}  // namespace lensproof::calibration
+}  // namespace lensproof::calibration::st_map_test

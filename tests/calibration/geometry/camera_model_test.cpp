@@ -5,7 +5,7 @@
 #include "engine/base/angle.h"
 #include "tests/calibration/synthetic.h"
 
-namespace lensproof::calibration {
+namespace lensproof::calibration::camera_model_test {
 namespace {
 
 Vec3d direction(double angle, double azimuth) {
@@ -71,4 +71,4 @@ TEST(CalibrationCameraModel, PerspectiveImagesNothingBehindTheCamera) {
 }
 
 }  // namespace
-}  // namespace lensproof::calibration
+}  // namespace lensproof::calibration::camera_model_test

@@ -7,7 +7,7 @@
 #include "calibration/detection/refine.h"
 #include "tests/places.h"
 
-namespace lensproof::calibration {
+namespace lensproof::calibration::fisheye_board_test {
 namespace {
 
 // Fifteen photos of a board of 6 × 8 inner corners that a fisheye bends: every one is found, nearly every corner
@@ -27,4 +27,4 @@ TEST(CalibrationFisheyeBoard, EveryViewIsFound) {
 }
 
 }  // namespace
-}  // namespace lensproof::calibration
+}  // namespace lensproof::calibration::fisheye_board_test

@@ -9,7 +9,7 @@
 #include "engine/base/input_error.h"
 #include "tests/calibration/synthetic.h"
 
-namespace lensproof::calibration {
+namespace lensproof::calibration::fit_geometry_test {
 namespace {
 
 using namespace synthetic;
@@ -194,4 +194,4 @@ TEST(CalibrationGeometry, DiscCentroidsAreModelled) {
 }
 
 }  // namespace
-}  // namespace lensproof::calibration
+}  // namespace lensproof::calibration::fit_geometry_test

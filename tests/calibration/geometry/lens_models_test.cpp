@@ -8,7 +8,7 @@
 #include "engine/base/angle.h"
 #include "tests/calibration/synthetic.h"
 
-namespace lensproof::calibration {
+namespace lensproof::calibration::lens_models_test {
 namespace {
 
 CameraModel model_of(const std::string& kind, const std::vector<double>& values) {
@@ -185,4 +185,4 @@ TEST(CalibrationLensModels, TheSplineIsSmoothAcrossItsKnots) {
 }
 
 }  // namespace
-}  // namespace lensproof::calibration
+}  // namespace lensproof::calibration::lens_models_test

@@ -7,7 +7,7 @@
 #include "engine/base/input_error.h"
 #include "tests/calibration/synthetic.h"
 
-namespace lensproof::calibration {
+namespace lensproof::calibration::model_choice_test {
 namespace {
 
 using namespace synthetic;
@@ -108,4 +108,4 @@ TEST(CalibrationModelChoice, ASingleViewIsSplitByItsPoints) {
 }
 
 }  // namespace
-}  // namespace lensproof::calibration
+}  // namespace lensproof::calibration::model_choice_test

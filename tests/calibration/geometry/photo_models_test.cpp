@@ -17,7 +17,7 @@
 #include "engine/formats/image/image.h"
 #include "tests/places.h"
 
-namespace lensproof::calibration {
+namespace lensproof::calibration::photo_models_test {
 namespace {
 
 const std::filesystem::path kPhotos = shared_data() / "photos";
@@ -143,4 +143,4 @@ TEST(CalibrationPhotoModels, TheFisheyeBoardAgreesWithItsManifest) {
 }
 
 }  // namespace
-}  // namespace lensproof::calibration
+}  // namespace lensproof::calibration::photo_models_test

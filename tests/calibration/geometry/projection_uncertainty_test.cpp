@@ -13,7 +13,7 @@
 #include "engine/base/angle.h"
 #include "tests/calibration/synthetic.h"
 
-namespace lensproof::calibration {
+namespace lensproof::calibration::projection_uncertainty_test {
 namespace {
 
 using namespace synthetic;
@@ -321,4 +321,4 @@ TEST(CalibrationUncertainty, ABentBoardIsFound) {
 }
 
 }  // namespace
-}  // namespace lensproof::calibration
+}  // namespace lensproof::calibration::projection_uncertainty_test

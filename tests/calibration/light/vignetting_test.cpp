@@ -7,7 +7,7 @@
 #include "engine/base/input_error.h"
 #include "tests/calibration/synthetic.h"
 
-namespace lensproof::calibration {
+namespace lensproof::calibration::vignetting_test {
 namespace {
 
 using Falloff = std::function<double(double)>;
@@ -299,4 +299,4 @@ TEST(CalibrationVignetting, TheShadingGridIsTheLightItself) {
 }
 
 }  // namespace
-}  // namespace lensproof::calibration
+}  // namespace lensproof::calibration::vignetting_test

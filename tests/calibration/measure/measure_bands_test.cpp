@@ -14,7 +14,7 @@
 #include "tests/calibration/synthetic.h"
 #include "tests/places.h"
 
-namespace lensproof::calibration {
+namespace lensproof::calibration::measure_bands_test {
 namespace {
 
 using namespace synthetic;
@@ -269,4 +269,4 @@ TEST(CalibrationBands, NarrowBandPhotographsShiftAsTheirManifestSays) {
 }
 
 }  // namespace
-}  // namespace lensproof::calibration
+}  // namespace lensproof::calibration::measure_bands_test

@@ -10,7 +10,7 @@
 #include "tests/calibration/sharpness/sharpness_edge.h"
 #include "tests/places.h"
 
-namespace lensproof::calibration {
+namespace lensproof::calibration::measure_sharpness_test {
 namespace {
 
 using namespace synthetic;
@@ -99,4 +99,4 @@ TEST(CalibrationMeasureSharpness, SampleEdgesOfAnotherProgramAgreeAmongThemselve
 }
 
 }  // namespace
-}  // namespace lensproof::calibration
+}  // namespace lensproof::calibration::measure_sharpness_test

@@ -8,7 +8,7 @@
 #include "engine/base/input_error.h"
 #include "tests/calibration/synthetic.h"
 
-namespace lensproof::calibration {
+namespace lensproof::calibration::measure_test {
 namespace {
 
 using namespace synthetic;
@@ -150,4 +150,4 @@ TEST(CalibrationMeasure, OpenCvPhotosGiveTheKnownFocalLength) {
 }
 
 }  // namespace
-}  // namespace lensproof::calibration
+}  // namespace lensproof::calibration::measure_test

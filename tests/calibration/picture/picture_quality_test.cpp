@@ -7,7 +7,7 @@
 #include "calibration/photos/photo_survey.h"
 #include "tests/calibration/export/export_profile.h"
 
-namespace lensproof::calibration {
+namespace lensproof::calibration::picture_quality_test {
 namespace {
 
 using namespace synthetic;
@@ -109,4 +109,4 @@ TEST(CorrectionSuspected, WhereTheFocalLengthIsNotTheStatedOne) {
 }
 
 }  // namespace
-}  // namespace lensproof::calibration
+}  // namespace lensproof::calibration::picture_quality_test

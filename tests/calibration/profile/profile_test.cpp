@@ -8,7 +8,7 @@
 #include "tests/calibration/synthetic.h"
 #include "tests/complaint.h"
 
-namespace lensproof::calibration {
+namespace lensproof::calibration::profile_test {
 namespace {
 
 Profile example() {
@@ -151,4 +151,4 @@ TEST(CalibrationProfile, EveryTruncationIsRefusedCleanly) {
 }
 
 }  // namespace
-}  // namespace lensproof::calibration
+}  // namespace lensproof::calibration::profile_test

@@ -9,7 +9,7 @@
 #include "calibration/picture/picture_traits.h"
 #include "tests/calibration/synthetic.h"
 
-namespace lensproof::calibration {
+namespace lensproof::calibration::self_test_test {
 namespace {
 
 using namespace synthetic;
@@ -261,4 +261,4 @@ TEST(SelfTest, ItIsSaidWhyThereIsNone) {
 }
 
 }  // namespace
-}  // namespace lensproof::calibration
+}  // namespace lensproof::calibration::self_test_test

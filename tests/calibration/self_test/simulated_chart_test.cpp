@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace lensproof::calibration {
+namespace lensproof::calibration::simulated_chart_test {
 namespace {
 
 constexpr double kFocal_px = 200.0;
@@ -182,4 +182,4 @@ TEST(SimulatedChart, WhereThereIsNoChartItIsBlack) {
 }
 
 }  // namespace
-}  // namespace lensproof::calibration
+}  // namespace lensproof::calibration::simulated_chart_test

@@ -9,7 +9,7 @@
 #include "engine/base/input_error.h"
 #include "tests/calibration/synthetic.h"
 
-namespace lensproof::calibration {
+namespace lensproof::calibration::sharpness_field_test {
 namespace {
 
 constexpr Vec2d kCentre{500.0, 400.0};
@@ -151,4 +151,4 @@ TEST(CalibrationSharpnessField, AFocusSeriesNeedsThreePositionsAboutTheFocus) {
 }
 
 }  // namespace
-}  // namespace lensproof::calibration
+}  // namespace lensproof::calibration::sharpness_field_test

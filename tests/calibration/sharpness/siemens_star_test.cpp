@@ -7,7 +7,7 @@
 #include "engine/base/input_error.h"
 #include "tests/calibration/sharpness/sharpness_edge.h"
 
-namespace lensproof::calibration {
+namespace lensproof::calibration::siemens_star_test {
 namespace {
 
 using namespace synthetic;
@@ -197,4 +197,4 @@ TEST(CalibrationSiemensStar, AProfileOfAStarIsItsSharpness) {
 }
 
 }  // namespace
-}  // namespace lensproof::calibration
+}  // namespace lensproof::calibration::siemens_star_test

@@ -4,7 +4,7 @@
 #include "engine/base/angle.h"
 #include "tests/calibration/sharpness/sharpness_edge.h"
 
-namespace lensproof::calibration {
+namespace lensproof::calibration::slanted_edge_test {
 namespace {
 
 using namespace synthetic;
@@ -229,4 +229,4 @@ TEST(CalibrationSharpnessEdge, RegionsOfAChartLieOnItsEdges) {
 }
 
 }  // namespace
-}  // namespace lensproof::calibration
+}  // namespace lensproof::calibration::slanted_edge_test

@@ -9,7 +9,7 @@
 #include "engine/base/angle.h"
 #include "engine/base/infinity.h"
 
-namespace lensproof::analysis {
+namespace lensproof::analysis::beam_outline_test {
 namespace {
 
 struct Disc {
@@ -167,4 +167,4 @@ TEST(RegionOutline, SaysWhereItIsNotStarShaped) {
 }
 
 }  // namespace
-}  // namespace lensproof::analysis
+}  // namespace lensproof::analysis::beam_outline_test

@@ -16,7 +16,7 @@
 #include "tests/engine/analysis/analysis_field.h"
 #include "tests/engine/perfect_lens.h"
 
-namespace lensproof::analysis {
+namespace lensproof::analysis::best_focus_test {
 namespace {
 
 std::vector<WeightedField> axis_of(const optics::Lens& lens) {
@@ -143,4 +143,4 @@ TEST(BestFocus, RefusesWhatHasNone) {
 }
 
 }  // namespace
-}  // namespace lensproof::analysis
+}  // namespace lensproof::analysis::best_focus_test

@@ -7,7 +7,7 @@
 #include "engine/analysis/beam_outline.h"
 #include "engine/analysis/spot.h"
 
-namespace lensproof::analysis {
+namespace lensproof::analysis::cartesian_oval_test {
 namespace {
 
 constexpr double kIndex = 1.5;
@@ -101,4 +101,4 @@ TEST(CartesianOval, ASphereInItsPlaceDoesNot) {
 }
 
 }  // namespace
-}  // namespace lensproof::analysis
+}  // namespace lensproof::analysis::cartesian_oval_test

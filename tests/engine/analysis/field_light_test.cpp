@@ -13,7 +13,7 @@
 #include "engine/optics/illumination.h"
 #include "engine/spectral/wavelengths.h"
 
-namespace lensproof::analysis {
+namespace lensproof::analysis::field_light_test {
 namespace {
 
 optics::Lens made_of(std::vector<optics::PrescribedSurface> surfaces) {
@@ -184,4 +184,4 @@ TEST(Distortion, BehindTheLens) {
 }
 
 }  // namespace
-}  // namespace lensproof::analysis
+}  // namespace lensproof::analysis::field_light_test

@@ -15,7 +15,7 @@
 #include "engine/spectral/wavelengths.h"
 #include "tests/engine/analysis/analysis_lens.h"
 
-namespace lensproof::analysis {
+namespace lensproof::analysis::first_order_test {
 namespace {
 
 // Room for some tens of roundings.
@@ -361,4 +361,4 @@ TEST(FirstOrder, DoubleAgreesWithFiftyDigits) {
 }
 
 }  // namespace
-}  // namespace lensproof::analysis
+}  // namespace lensproof::analysis::first_order_test

@@ -14,7 +14,7 @@
 #include "tests/engine/analysis/analysis_field.h"
 #include "tests/engine/perfect_lens.h"
 
-namespace lensproof::analysis {
+namespace lensproof::analysis::mtf_test {
 namespace {
 
 /// f/50, so that the sine condition holds to 1e-4; telecentric.
@@ -212,4 +212,4 @@ TEST(Mtf, SaysWhatItCannotSample) {
 }
 
 }  // namespace
-}  // namespace lensproof::analysis
+}  // namespace lensproof::analysis::mtf_test

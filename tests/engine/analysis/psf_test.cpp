@@ -14,7 +14,7 @@
 #include "tests/engine/analysis/analysis_field.h"
 #include "tests/engine/perfect_lens.h"
 
-namespace lensproof::analysis {
+namespace lensproof::analysis::psf_test {
 namespace {
 
 /// f/50: the sine condition, which a hyperboloid breaks, holds to sin²U = 1e-4, and the beam is a circle in direction
@@ -235,4 +235,4 @@ TEST(Psf, SaysWhatItCannotSample) {
 }
 
 }  // namespace
-}  // namespace lensproof::analysis
+}  // namespace lensproof::analysis::psf_test

@@ -9,7 +9,7 @@
 #include "engine/base/infinity.h"
 #include "engine/spectral/wavelengths.h"
 
-namespace lensproof::analysis {
+namespace lensproof::analysis::ray_pencil_test {
 namespace {
 
 optics::PrescribedSurface surface(double radius, double thickness, double semi_diameter, double index = 0.0) {
@@ -207,4 +207,4 @@ TEST(RayPencil, FocalLinesTurnWithTheLens) {
 }
 
 }  // namespace
-}  // namespace lensproof::analysis
+}  // namespace lensproof::analysis::ray_pencil_test

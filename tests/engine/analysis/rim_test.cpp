@@ -8,7 +8,7 @@
 #include "engine/optics/illumination.h"
 #include "engine/spectral/wavelengths.h"
 
-namespace lensproof::analysis {
+namespace lensproof::analysis::rim_test {
 namespace {
 
 /// A bare stop of radius 2 mm, 40 mm in front of the sensor.
@@ -62,4 +62,4 @@ TEST(BeamOutline, StopsOfEverySize) {
 }
 
 }  // namespace
-}  // namespace lensproof::analysis
+}  // namespace lensproof::analysis::rim_test

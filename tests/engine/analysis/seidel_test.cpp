@@ -16,7 +16,7 @@
 #include "engine/spectral/wavelengths.h"
 #include "tests/engine/analysis/analysis_lens.h"
 
-namespace lensproof::analysis {
+namespace lensproof::analysis::seidel_test {
 namespace {
 
 using Term = double SeidelTerms<double>::*;
@@ -407,4 +407,4 @@ TEST(Seidel, DoubleAgreesWithFiftyDigits) {
 }
 
 }  // namespace
-}  // namespace lensproof::analysis
+}  // namespace lensproof::analysis::seidel_test

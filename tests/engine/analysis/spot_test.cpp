@@ -14,7 +14,7 @@
 #include "engine/formats/prescription/prescription_file.h"
 #include "engine/spectral/wavelengths.h"
 
-namespace lensproof::analysis {
+namespace lensproof::analysis::spot_test {
 namespace {
 
 optics::Lens made_of(std::vector<optics::PrescribedSurface> surfaces) {
@@ -190,4 +190,4 @@ TEST(RayFan, BesideAClippedChiefRay) {
 }
 
 }  // namespace
-}  // namespace lensproof::analysis
+}  // namespace lensproof::analysis::spot_test

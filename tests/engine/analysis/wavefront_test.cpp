@@ -15,7 +15,7 @@
 #include "engine/spectral/wavelengths.h"
 #include "tests/engine/perfect_lens.h"
 
-namespace lensproof::analysis {
+namespace lensproof::analysis::wavefront_test {
 namespace {
 
 using Exact = boost::multiprecision::number<boost::multiprecision::cpp_bin_float<50>, boost::multiprecision::et_off>;
@@ -317,4 +317,4 @@ TEST(Wavefront, GoesOnWhereTheChiefRayIsClipped) {
 }
 
 }  // namespace
-}  // namespace lensproof::analysis
+}  // namespace lensproof::analysis::wavefront_test

@@ -11,7 +11,7 @@
 #include "engine/spectral/wavelengths.h"
 #include "tests/engine/perfect_lens.h"
 
-namespace lensproof::analysis {
+namespace lensproof::analysis::zernike_test {
 namespace {
 
 // Noll (1976), table 1, read row by row, and 16 to 22 by its rule.
@@ -23,6 +23,18 @@ TEST(Zernike, NollsTable) {
     for (const ZernikeMode mode : kTable) {
         ++index;
         EXPECT_EQ(noll_index(mode), index);
+    }
+}
+
+// ANSI Z80.28, table of the first fifteen.
+TEST(Zernike, AnsiTable) {
+    constexpr ZernikeMode kTable[] = {{0, 0}, {1, -1}, {1, 1},  {2, -2}, {2, 0}, {2, 2}, {3, -3}, {3, -1},
+                                      {3, 1}, {3, 3},  {4, -4}, {4, -2}, {4, 0}, {4, 2}, {4, 4}};
+    int index = 0;
+    for (const ZernikeMode mode : kTable) {
+        EXPECT_EQ(ansi_index(mode), index);
+        EXPECT_EQ(mode_of_ansi(index), mode) << index;
+        ++index;
     }
 }
 
@@ -113,7 +125,9 @@ TEST(Zernike, SeidelAberrationsHaveTheirCoefficients) {
         const auto coma = [](double x, double y) { return (x * x + y * y) * y; };
         expect_only(fit_zernike(disc_samples(coma, half), 6), {{7, 1.0 / (3.0 * std::sqrt(8.0))}, {3, 1.0 / 3.0}});
         const auto astigmatism = [](double x, double y) { return x * x - y * y; };
-        expect_only(fit_zernike(disc_samples(astigmatism, half), 6), {{6, 1.0 / std::sqrt(6.0)}});
+        const ZernikeFit found = fit_zernike(disc_samples(astigmatism, half), 6);
+        expect_only(found, {{6, 1.0 / std::sqrt(6.0)}});
+        EXPECT_EQ(found.ansi(5), found.noll(6));
     }
 }
 
@@ -145,4 +159,4 @@ TEST(Zernike, DefocusedLens) {
 }
 
 }  // namespace
-}  // namespace lensproof::analysis
+}  // namespace lensproof::analysis::zernike_test

@@ -12,7 +12,7 @@
 #include "engine/base/file.h"
 #include "tests/test_folder.h"
 
-namespace lensproof {
+namespace lensproof::cache_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -198,4 +198,4 @@ TEST(Cache, TheUsersFolderFollowsTheEnvironment) {
 }
 
 }  // namespace
-}  // namespace lensproof
+}  // namespace lensproof::cache_test

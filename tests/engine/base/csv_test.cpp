@@ -7,7 +7,7 @@
 #include "engine/base/input_error.h"
 #include "tests/complaint.h"
 
-namespace lensproof {
+namespace lensproof::csv_test {
 namespace {
 
 std::vector<CsvRow> all_rows(const std::string& text) {
@@ -105,4 +105,4 @@ TEST(Csv, EndlessLinesAreRefusedShortly) {
 }
 
 }  // namespace
-}  // namespace lensproof
+}  // namespace lensproof::csv_test

@@ -11,7 +11,7 @@
 
 #include "engine/base/json_node.h"
 
-namespace lensproof {
+namespace lensproof::json_test {
 namespace {
 
 Json example() {
@@ -93,4 +93,4 @@ TEST(Json, NodesSayWhereTheyAre) {
 }
 
 }  // namespace
-}  // namespace lensproof
+}  // namespace lensproof::json_test

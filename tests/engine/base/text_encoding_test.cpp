@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-namespace lensproof {
+namespace lensproof::text_encoding_test {
 namespace {
 
 using namespace std::string_literals;
@@ -42,4 +42,4 @@ TEST(TextEncoding, JunkIsNoError) {
 }
 
 }  // namespace
-}  // namespace lensproof
+}  // namespace lensproof::text_encoding_test

@@ -7,7 +7,7 @@
 #include "engine/formats/prescription/prescription_file.h"
 #include "tests/engine/check/checker_case.h"
 
-namespace lensproof::check {
+namespace lensproof::check::checker_rays_test {
 namespace {
 
 using P = optics::Prescription;
@@ -232,4 +232,4 @@ TEST(OrderOfSurfaces, IsNoErrorWhereTheRimsAreEstimated) {
 }
 
 }  // namespace
-}  // namespace lensproof::check
+}  // namespace lensproof::check::checker_rays_test

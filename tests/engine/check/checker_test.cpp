@@ -16,7 +16,7 @@
 #include "tests/engine/check/checker_case.h"
 #include "tests/places.h"
 
-namespace lensproof::check {
+namespace lensproof::check::checker_test {
 namespace {
 
 optics::Prescription tessar() {
@@ -437,4 +437,4 @@ TEST(Checker, TheLibraryHasNoErrors) {
 }
 
 }  // namespace
-}  // namespace lensproof::check
+}  // namespace lensproof::check::checker_test

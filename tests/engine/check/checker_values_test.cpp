@@ -7,7 +7,7 @@
 #include "engine/formats/prescription/prescription_file.h"
 #include "tests/engine/check/checker_case.h"
 
-namespace lensproof::check {
+namespace lensproof::check::checker_values_test {
 namespace {
 
 using P = optics::Prescription;
@@ -224,4 +224,4 @@ TEST(CheckerValues, ARowTypedTwiceAndATableWithoutRows) {
 }
 
 }  // namespace
-}  // namespace lensproof::check
+}  // namespace lensproof::check::checker_values_test

@@ -11,7 +11,7 @@
 #include "engine/optics/field_bundle.h"
 #include "engine/spectral/wavelengths.h"
 
-namespace lensproof::optics {
+namespace lensproof::optics::chief_ray_test {
 namespace {
 
 /// A biconvex lens whose front is the stop, or has the stop in its vertex's plane just before it.
@@ -150,4 +150,4 @@ TEST(ChiefRays, AimThroughADecentredElement) {
 }
 
 }  // namespace
-}  // namespace lensproof::optics
+}  // namespace lensproof::optics::chief_ray_test

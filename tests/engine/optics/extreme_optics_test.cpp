@@ -13,7 +13,7 @@
 #include "engine/optics/lens.h"
 #include "engine/optics/multiprecision.h"
 
-namespace lensproof::optics {
+namespace lensproof::optics::extreme_optics_test {
 namespace {
 
 using Exact = Multiprecision;
@@ -321,4 +321,4 @@ TEST(ExtremeOptics, NegativeThicknessesAreForDummies) {
 }
 
 }  // namespace
-}  // namespace lensproof::optics
+}  // namespace lensproof::optics::extreme_optics_test

@@ -11,7 +11,7 @@
 #include "engine/optics/glass_catalogue.h"
 #include "engine/spectral/wavelengths.h"
 
-namespace lensproof::optics {
+namespace lensproof::optics::glass_name_test {
 namespace {
 
 const GlassCatalogue& shipped() {
@@ -134,4 +134,4 @@ TEST(GlassName, SpellingDistanceCountsSlipsOfTheFinger) {
 }
 
 }  // namespace
-}  // namespace lensproof::optics
+}  // namespace lensproof::optics::glass_name_test

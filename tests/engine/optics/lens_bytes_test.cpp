@@ -11,7 +11,7 @@
 #include "engine/optics/lens.h"
 #include "engine/spectral/wavelengths.h"
 
-namespace lensproof::optics {
+namespace lensproof::optics::lens_bytes_test {
 namespace {
 
 std::string bytes_of(const TraceLens<double>& lens) {
@@ -80,4 +80,4 @@ TEST(LensBytes, TellEveryLensFromEveryOther) {
 }
 
 }  // namespace
-}  // namespace lensproof::optics
+}  // namespace lensproof::optics::lens_bytes_test

@@ -10,7 +10,7 @@
 #include "engine/optics/lens.h"
 #include "engine/spectral/wavelengths.h"
 
-namespace lensproof::optics {
+namespace lensproof::optics::paraxial_test {
 namespace {
 
 TraceSurface<double> surface(double curvature, double z, double before, double after, double semi_diameter = 10.0,
@@ -69,4 +69,4 @@ TEST(Lens, FocusMovesTheSensorToTheImage) {
 }
 
 }  // namespace
-}  // namespace lensproof::optics
+}  // namespace lensproof::optics::paraxial_test

@@ -13,7 +13,7 @@
 #include "engine/optics/paraxial.h"
 #include "engine/spectral/wavelengths.h"
 
-namespace lensproof::optics {
+namespace lensproof::optics::special_surface_test {
 namespace {
 
 constexpr double kUlp = std::numeric_limits<double>::epsilon();
@@ -498,4 +498,4 @@ TEST(SemiDiameter, IsEstimatedFromApertureAndField) {
 }
 
 }  // namespace
-}  // namespace lensproof::optics
+}  // namespace lensproof::optics::special_surface_test

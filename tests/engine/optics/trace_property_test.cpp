@@ -10,7 +10,7 @@
 #include "engine/optics/trace.h"
 #include "tests/engine/random_lens.h"
 
-namespace lensproof::optics {
+namespace lensproof::optics::trace_property_test {
 namespace {
 
 constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
@@ -381,4 +381,4 @@ TEST(AnyLens, SplittingAGapChangesNothing) {
 }
 
 }  // namespace
-}  // namespace lensproof::optics
+}  // namespace lensproof::optics::trace_property_test

@@ -11,7 +11,7 @@
 #include "engine/formats/prescription/load_lens.h"
 #include "engine/optics/lens.h"
 
-namespace lensproof::optics {
+namespace lensproof::optics::trace_test {
 namespace {
 
 constexpr double kUlp = std::numeric_limits<double>::epsilon();
@@ -225,4 +225,4 @@ TEST(Trace, FloatStaysCloseToDouble) {
 }
 
 }  // namespace
-}  // namespace lensproof::optics
+}  // namespace lensproof::optics::trace_test

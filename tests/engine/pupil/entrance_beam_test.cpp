@@ -13,7 +13,7 @@
 #include "engine/spectral/wavelengths.h"
 #include "tests/engine/random_lens.h"
 
-namespace lensproof::pupil {
+namespace lensproof::pupil::entrance_beam_test {
 namespace {
 
 double turned_to(double low, double high, std::mt19937_64& random) {
@@ -152,4 +152,4 @@ TEST(EntranceBeam, OffsetsAreThoseOfTheFieldBundle) {
 }
 
 }  // namespace
-}  // namespace lensproof::pupil
+}  // namespace lensproof::pupil::entrance_beam_test

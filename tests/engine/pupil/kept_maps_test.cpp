@@ -11,7 +11,7 @@
 #include "engine/spectral/wavelengths.h"
 #include "tests/test_folder.h"
 
-namespace lensproof::pupil {
+namespace lensproof::pupil::kept_maps_test {
 namespace {
 
 std::vector<optics::TraceLens<double>> tessar() {
@@ -101,4 +101,4 @@ TEST(KeptMaps, EntrancesComeBackToo) {
 }
 
 }  // namespace
-}  // namespace lensproof::pupil
+}  // namespace lensproof::pupil::kept_maps_test

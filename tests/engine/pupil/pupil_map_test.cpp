@@ -15,7 +15,7 @@
 #include "engine/optics/lens.h"
 #include "tests/test_folder.h"
 
-namespace lensproof::pupil {
+namespace lensproof::pupil::pupil_map_test {
 namespace {
 
 std::vector<optics::TraceLens<double>> band_of(const optics::Lens& lens, const std::vector<double>& wavelengths_nm) {
@@ -180,4 +180,4 @@ TEST(PupilMap, DamagedBytesAreNoMap) {
 }
 
 }  // namespace
-}  // namespace lensproof::pupil
+}  // namespace lensproof::pupil::pupil_map_test

@@ -10,7 +10,7 @@
 #include "engine/base/angle.h"
 #include "engine/pupil/column_fit.h"
 
-namespace lensproof::pupil {
+namespace lensproof::pupil::pupil_outline_test {
 namespace {
 
 struct Shape {
@@ -165,4 +165,4 @@ TEST(PupilOutline, FramesAreCentred) {
 }
 
 }  // namespace
-}  // namespace lensproof::pupil
+}  // namespace lensproof::pupil::pupil_outline_test

@@ -8,7 +8,7 @@
 #include <random>
 #include <vector>
 
-namespace lensproof::pupil {
+namespace lensproof::pupil::pupil_region_test {
 namespace {
 
 /// A region of the given width with the chains y = lower(x), y = upper(x).
@@ -249,4 +249,4 @@ TEST(PupilRegion, NoAreaIsNoTrouble) {
 }
 
 }  // namespace
-}  // namespace lensproof::pupil
+}  // namespace lensproof::pupil::pupil_region_test

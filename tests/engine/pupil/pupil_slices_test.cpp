@@ -8,7 +8,7 @@
 #include "engine/formats/prescription/load_lens.h"
 #include "engine/optics/lens.h"
 
-namespace lensproof::pupil {
+namespace lensproof::pupil::pupil_slices_test {
 namespace {
 
 std::vector<optics::TraceLens<double>> band_of(const std::string& name, int wavelengths) {
@@ -123,4 +123,4 @@ TEST(PupilSlices, AskTheMapWhereTheLensIsNotRound) {
 }
 
 }  // namespace
-}  // namespace lensproof::pupil
+}  // namespace lensproof::pupil::pupil_slices_test

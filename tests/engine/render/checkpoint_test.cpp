@@ -6,10 +6,10 @@
 
 #include "engine/base/file.h"
 #include "engine/base/input_error.h"
-#include "tests/engine/render/film_sample.h"
+#include "tests/engine/render/film/film_sample.h"
 #include "tests/test_folder.h"
 
-namespace lensproof::render {
+namespace lensproof::render::checkpoint_test {
 namespace {
 
 const RenderIdentity kIdentity = {{"scene", "abc"}, {"lens", "def"}};
@@ -21,7 +21,7 @@ class SmallRender {
 
     void go_on(RenderState& state, int most_tiles) const {
         std::atomic<int> tiles = 0;
-        render_progressively(state, [this] { return exponential_renderer(layout_, 1); }, {},
+        render_progressively(state, exponential_renderer(layout_, 1), {},
                              {.threads = 1, .is_interrupted = [&] { return ++tiles > most_tiles; }});
     }
 
@@ -78,8 +78,8 @@ TEST(Checkpoint, IsRefusedWhereDamaged) {
     RenderState fresh = render.begin(16);
     const std::string before = file_of(fresh);
     std::vector<std::string> bad = {"", "lensproof", "lensproof checkpoint\n", good + "x", good.substr(1)};
-    for (const double share : {0.0001, 0.001, 0.01, 0.1, 0.5, 0.9, 0.99999}) {
-        const auto at = static_cast<std::size_t>(share * static_cast<double>(good.size()));
+    for (const double fraction : {0.0001, 0.001, 0.01, 0.1, 0.5, 0.9, 0.99999}) {
+        const auto at = static_cast<std::size_t>(fraction * static_cast<double>(good.size()));
         bad.push_back(good.substr(0, at));
         bad.push_back(good);
         bad.back()[at] = static_cast<char>(bad.back()[at] ^ 4);
@@ -128,4 +128,4 @@ TEST(WriteWhole, LeftoversOfDeadProcessesGo) {
 }
 
 }  // namespace
-}  // namespace lensproof::render
+}  // namespace lensproof::render::checkpoint_test

@@ -8,9 +8,9 @@
 #include <stdexcept>
 #include <string>
 
-#include "tests/engine/render/film_sample.h"
+#include "tests/engine/render/film/film_sample.h"
 
-namespace lensproof::render {
+namespace lensproof::render::progressive_test {
 namespace {
 
 /// Every bit of a film's sums.
@@ -50,9 +50,7 @@ TileRenderer splatting_renderer(const FilmLayout& layout) {
 RenderState rendered(const FilmLayout& layout, const TileRenderer& renderer, std::uint32_t samples,
                      const RenderControl& control) {
     RenderState state(layout, {.first = 0, .end = samples});
-    EXPECT_EQ(render_progressively(
-                  state, [&] { return renderer; }, {}, control),
-              RenderEnd::complete);
+    EXPECT_EQ(render_progressively(state, renderer, {}, control), RenderEnd::complete);
     return state;
 }
 
@@ -92,7 +90,7 @@ TEST(Progressive, GoesOnAsIfNothingHadHappened) {
         int turns = 0;
         for (RenderEnd end = RenderEnd::interrupted; end == RenderEnd::interrupted; ++turns) {
             std::atomic<int> asked = 0;
-            end = render_progressively(state, [&] { return splatting_renderer(layout); }, {},
+            end = render_progressively(state, splatting_renderer(layout), {},
                                        {.threads = 2, .is_interrupted = [&] { return ++asked > tiles_a_turn; }});
         }
         EXPECT_GT(turns, 48 / (tiles_a_turn + 2)) << "it was interrupted";
@@ -104,7 +102,7 @@ TEST(Progressive, EndsInTimeWithWholeTiles) {
     const FilmLayout layout = plain_film(40, 40);
     RenderState state(layout, {.first = 0, .end = kMostSamples});
     const RenderEnd end =
-        render_progressively(state, [&] { return exponential_renderer(layout, 1); }, {.seconds = 0.02}, {.threads = 2});
+        render_progressively(state, exponential_renderer(layout, 1), {.seconds = 0.02}, {.threads = 2});
     EXPECT_EQ(end, RenderEnd::out_of_time);
     for (std::size_t i = 0; i < state.tiles.size(); ++i) {
         const PixelRect rect = film_tiles(40, 40)[i];
@@ -121,7 +119,7 @@ TEST(Progressive, PassesFailuresOn) {
             throw std::runtime_error("out of light");
         }
     };
-    EXPECT_THROW(render_progressively(state, [&] { return fails; }, {}, {.threads = 4}), std::runtime_error);
+    EXPECT_THROW(render_progressively(state, fails, {}, {.threads = 4}), std::runtime_error);
 }
 
 TEST(Progressive, ReportsGoForward) {
@@ -149,8 +147,7 @@ struct Judged {
 Judged judged(double noise, int side, std::uint64_t seed) {
     const FilmLayout layout = plain_film(side, side);
     RenderState state(layout, {.first = 0, .end = 4096});
-    EXPECT_EQ(render_progressively(state, [&] { return exponential_renderer(layout, seed); }, {.noise = noise},
-                                   {.threads = 2}),
+    EXPECT_EQ(render_progressively(state, exponential_renderer(layout, seed), {.noise = noise}, {.threads = 2}),
               RenderEnd::complete);
     Judged result;
     for (int y = 0; y < side; ++y) {
@@ -206,11 +203,10 @@ TEST(ProgressiveNoise, StopsInTheDark) {
         }
     };
     RenderState state(layout, {.first = 0, .end = kMostSamples});
-    EXPECT_EQ(render_progressively(state, [&] { return half_dark; }, {.noise = 0.05}, {.threads = 1}),
-              RenderEnd::complete);
+    EXPECT_EQ(render_progressively(state, half_dark, {.noise = 0.05}, {.threads = 1}), RenderEnd::complete);
     EXPECT_EQ(state.film.counts(20, 0).samples, kFewestSamplesToJudge);
     EXPECT_GT(state.film.counts(0, 0).samples, kFewestSamplesToJudge);
 }
 
 }  // namespace
-}  // namespace lensproof::render
+}  // namespace lensproof::render::progressive_test

@@ -10,7 +10,7 @@
 #include "engine/render/scene_setup.h"
 #include "engine/scene/scene_shapes.h"
 
-namespace lensproof::scene {
+namespace lensproof::scene::scene_file_test {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
@@ -78,8 +78,8 @@ TEST(SceneFile, TheExamplesAreRead) {
     };
     const render::SceneSetup box = read("cornell_box.toml");
     EXPECT_EQ(box.scene.objects.size(), 19U);
-    EXPECT_EQ(box.view.model, LensModel::pinhole);
-    EXPECT_EQ(box.view.focal_length_mm, 35.0);
+    EXPECT_EQ(box.camera.model, render::LensModel::pinhole);
+    EXPECT_EQ(box.camera.focal_length_mm, 35.0);
     EXPECT_EQ(box.scene.materials.size(), 4U);
     const auto& light = std::get<AreaLightDescription>(box.scene.lights.at(0).kind);
     EXPECT_EQ(box.scene.objects[light.object].name, "lamp");
@@ -91,7 +91,7 @@ TEST(SceneFile, TheExamplesAreRead) {
     EXPECT_EQ(std::get<Sphere>(load_shapes(room.scene).shapes.at(9)).radius_mm, 300.0);
     for (const char* name : {"bokeh_lights.toml", "cornell_box_petzval.toml", "glass_caustic.toml"}) {
         const render::SceneSetup setup = read(name);
-        EXPECT_EQ(setup.view.model, LensModel::exact) << name;
+        EXPECT_EQ(setup.camera.model, render::LensModel::exact) << name;
         EXPECT_FALSE(setup.scene.objects.empty()) << name;
         EXPECT_FALSE(setup.scene.lights.empty()) << name;
     }
@@ -126,10 +126,10 @@ TEST(SceneFile, TheCornellBoxIsClosedButForItsFront) {
 
 TEST(SceneFile, DefaultsAreAsDocumented) {
     const render::SceneSetup setup = parse(kScene);
-    EXPECT_EQ(setup.view.model, LensModel::exact);
+    EXPECT_EQ(setup.camera.model, render::LensModel::exact);
     EXPECT_EQ(setup.samples_per_pixel, 64);
     EXPECT_EQ(setup.max_bounces, 16);
-    EXPECT_EQ(setup.spectral.layers * setup.spectral.strata_per_layer, 64);
+    EXPECT_EQ(setup.spectral.strata(), 64);
     const auto& point = std::get<PointLightDescription>(setup.scene.lights[0].kind);
     EXPECT_EQ(point.illuminant, "D65");
     EXPECT_EQ(setup.scene.objects[0].to_world.translation, (Vec3d{0, 0, 900}));
@@ -138,12 +138,12 @@ TEST(SceneFile, DefaultsAreAsDocumented) {
 
 // A camera that looks along +z with y up has x to the left of the world's right-handed frame.
 TEST(SceneFile, TheCameraStandsAsItsKeysSay) {
-    const RigidMotion ahead = camera_to_world({.position_mm = {1, 2, 3}, .look_at_mm = {1, 2, 9}});
+    const RigidMotion ahead = render::camera_to_world({.position_mm = {1, 2, 3}, .look_at_mm = {1, 2, 9}});
     EXPECT_EQ(rotate(ahead, {1, 0, 0}), (Vec3d{-1, 0, 0}));
     EXPECT_EQ(rotate(ahead, {0, 1, 0}), (Vec3d{0, -1, 0}));
     EXPECT_EQ(rotate(ahead, {0, 0, 1}), (Vec3d{0, 0, 1}));
     EXPECT_EQ(ahead.translation, (Vec3d{1, 2, 3}));
-    const RigidMotion tilted = camera_to_world({.look_at_mm = {3, -4, 12}, .up = {0, 0, 1}});
+    const RigidMotion tilted = render::camera_to_world({.look_at_mm = {3, -4, 12}, .up = {0, 0, 1}});
     const Vec3d x = rotate(tilted, {1, 0, 0});
     const Vec3d y = rotate(tilted, {0, 1, 0});
     EXPECT_NEAR(length(cross(x, y) - Vec3d{3.0 / 13, -4.0 / 13, 12.0 / 13}), 0.0, 1e-15);
@@ -200,7 +200,7 @@ share = 0.25
     EXPECT_EQ(std::get<ConductorDescription>(materials[1].kind).index.name, "metal:Ag");
     const auto& brass = std::get<ConductorDescription>(materials[2].kind);
     EXPECT_EQ(std::get<double>(brass.index.n), 0.4);
-    EXPECT_EQ(brass.roughness.along_v, 0.3);
+    EXPECT_EQ(brass.roughness.alpha_y, 0.3);
     const auto& glass = std::get<DielectricDescription>(materials[3].kind);
     EXPECT_EQ(std::get<SpectrumName>(glass.index).name, "N-BK7");
     EXPECT_EQ(std::get<double>(glass.absorption_per_mm), 0.001);
@@ -387,4 +387,4 @@ TEST(NearestName, TheLeastChangeIsMeant) {
 }
 
 }  // namespace
-}  // namespace lensproof::scene
+}  // namespace lensproof::scene::scene_file_test

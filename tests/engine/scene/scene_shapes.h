@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "engine/scene/geometry.h"
+#include "engine/scene/geometry/geometry.h"
 
 namespace lensproof::scene::test {
 

@@ -7,9 +7,9 @@
 #include <string>
 
 #include "engine/base/input_error.h"
-#include "engine/scene/shapes.h"
+#include "engine/scene/geometry/shapes.h"
 
-namespace lensproof::scene {
+namespace lensproof::scene::scene_shapes_test {
 namespace {
 
 using test::at;
@@ -60,4 +60,4 @@ TEST(SceneShapes, DegenerateTrianglesAreDroppedAndCounted) {
 }
 
 }  // namespace
-}  // namespace lensproof::scene
+}  // namespace lensproof::scene::scene_shapes_test

@@ -6,7 +6,7 @@
 
 #include "engine/spectral/illuminant.h"
 
-namespace lensproof::spectral {
+namespace lensproof::spectral::colour_matching_test {
 namespace {
 
 constexpr double kHalfOfFifthDecimal = 5e-6;
@@ -92,4 +92,4 @@ TEST(ColourMatching, MaximumLuminousEfficacyFollowsFromTheSi) {
 }
 
 }  // namespace
-}  // namespace lensproof::spectral
+}  // namespace lensproof::spectral::colour_matching_test

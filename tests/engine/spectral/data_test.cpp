@@ -14,7 +14,7 @@
 #include "engine/spectral/sensor_response.h"
 #include "tests/test_folder.h"
 
-namespace lensproof::spectral {
+namespace lensproof::spectral::data_test {
 namespace {
 
 /// R at normal incidence, ((n − 1)² + k²) / ((n + 1)² + k²).
@@ -219,4 +219,4 @@ TEST(SpectralData, MeasuredCamerasDiffer) {
 }
 
 }  // namespace
-}  // namespace lensproof::spectral
+}  // namespace lensproof::spectral::data_test

@@ -10,7 +10,7 @@
 #include "engine/spectral/colour_matching.h"
 #include "engine/spectral/planck.h"
 
-namespace lensproof::spectral {
+namespace lensproof::spectral::illuminant_test {
 namespace {
 
 constexpr double kStefanBoltzmann = 5.670374419e-8;  // W·m⁻²·K⁻⁴, CODATA 2018: exact, cut after ten digits
@@ -127,4 +127,4 @@ TEST(Illuminant, UnknownNamesAreRefusedWithTheKnownOnes) {
 }
 
 }  // namespace
-}  // namespace lensproof::spectral
+}  // namespace lensproof::spectral::illuminant_test

@@ -9,7 +9,7 @@
 #include "engine/spectral/colour_matching.h"
 #include "engine/spectral/wavelengths.h"
 
-namespace lensproof::spectral {
+namespace lensproof::spectral::sensor_response_test {
 namespace {
 
 constexpr Exposure kExposure{.time_s = 0.004, .iso = 200.0};
@@ -159,4 +159,4 @@ TEST(SensorResponse, WrongInputsAreRefused) {
 }
 
 }  // namespace
-}  // namespace lensproof::spectral
+}  // namespace lensproof::spectral::sensor_response_test

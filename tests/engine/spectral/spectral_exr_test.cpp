@@ -4,7 +4,7 @@
 
 #include "engine/spectral/wavelengths.h"
 
-namespace lensproof::spectral {
+namespace lensproof::spectral::spectral_exr_test {
 namespace {
 
 /// The wavelength that `name` stands for, nm; 0 where it is no spectral channel.
@@ -57,4 +57,4 @@ TEST(SpectralExr, AttributesSayWhatTheLayersHold) {
 }
 
 }  // namespace
-}  // namespace lensproof::spectral
+}  // namespace lensproof::spectral::spectral_exr_test

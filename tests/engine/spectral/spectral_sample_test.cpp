@@ -7,7 +7,7 @@
 
 #include "engine/base/input_error.h"
 
-namespace lensproof::spectral {
+namespace lensproof::spectral::spectral_sample_test {
 namespace {
 
 // Each of the four places of a path meets every stratum once as the hero runs through them, so an estimator that takes
@@ -91,4 +91,4 @@ TEST(SpectralSample, OperatorsWorkWavelengthByWavelength) {
 }
 
 }  // namespace
-}  // namespace lensproof::spectral
+}  // namespace lensproof::spectral::spectral_sample_test

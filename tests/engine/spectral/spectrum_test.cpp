@@ -7,7 +7,7 @@
 #include "engine/base/input_error.h"
 #include "tests/complaint.h"
 
-namespace lensproof::spectral {
+namespace lensproof::spectral::spectrum_test {
 namespace {
 
 Spectrum line(double from_nm, double to_nm, double from_value, double to_value) {
@@ -96,4 +96,4 @@ TEST(SpectrumFile, AMissingFileIsAnInputError) {
 }
 
 }  // namespace
-}  // namespace lensproof::spectral
+}  // namespace lensproof::spectral::spectrum_test

@@ -6,7 +6,7 @@
 
 #include "engine/base/input_error.h"
 
-namespace lensproof::spectral {
+namespace lensproof::spectral::wavelengths_test {
 namespace {
 
 // Hydrogen's F and C are Balmer β and α: 1/λ = R_H (1/4 − 1/n²), R_H = 10967758.34 m⁻¹ (the vacuum wavelengths), and
@@ -49,4 +49,4 @@ TEST(WavelengthStrata, RefusesEmptyRanges) {
 }
 
 }  // namespace
-}  // namespace lensproof::spectral
+}  // namespace lensproof::spectral::wavelengths_test

@@ -11,7 +11,7 @@
 #include "engine/base/input_error.h"
 #include "tests/experiments/draw/svg_checks.h"
 
-namespace lensproof::draw {
+namespace lensproof::draw::analysis_plots_test {
 namespace {
 
 /// A lens as the plots see it: aberrations of about `size` µm at each of the fields and wavelengths.
@@ -23,18 +23,18 @@ struct Case {
     bool has_light = true;
 };
 
-std::vector<WavelengthCurve> curves(const Case& c, double low, double high,
-                                    const std::function<double(double)>& value) {
-    std::vector<WavelengthCurve> made;
+std::vector<analysis::WavelengthCurve> curves(const Case& c, double low, double high,
+                                              const std::function<double(double)>& value) {
+    std::vector<analysis::WavelengthCurve> made;
     for (const double wavelength : c.wavelengths) {
-        WavelengthCurve curve{.wavelength_nm = wavelength};
+        analysis::WavelengthCurve curve{.wavelength_nm = wavelength};
         for (int i = 0; i <= 16; ++i) {
             const double t = low + (high - low) * i / 16.0;
             curve.points.push_back({t, c.size * (value(t) + 1e-3 * (wavelength - 587.0) * t)});
         }
         made.push_back(std::move(curve));
     }
-    return c.has_light ? made : std::vector<WavelengthCurve>{};
+    return c.has_light ? made : std::vector<analysis::WavelengthCurve>{};
 }
 
 double cubic(double t) {
@@ -42,7 +42,7 @@ double cubic(double t) {
 }
 
 std::string fans(const Case& c) {
-    std::vector<FieldFans> fields;
+    std::vector<analysis::FieldFans> fields;
     for (const double field : c.fields) {
         fields.push_back({field, curves(c, -1.0, 1.0, cubic), curves(c, -0.8, 0.6, cubic)});
     }
@@ -50,9 +50,9 @@ std::string fans(const Case& c) {
 }
 
 std::string field_curves(const Case& c) {
-    std::vector<FieldCurve> made;
+    std::vector<analysis::FieldCurve> made;
     for (const double wavelength : c.wavelengths) {
-        FieldCurve curve{.wavelength_nm = wavelength};
+        analysis::FieldCurve curve{.wavelength_nm = wavelength};
         for (const double field : c.fields) {
             const double v = c.has_light ? 1e-3 * c.size * field : kNaN;
             curve.points.push_back({field, v, 0.5 * v, -v});
@@ -76,9 +76,9 @@ std::string lateral(const Case& c) {
 }
 
 std::string spots(const Case& c) {
-    std::vector<FieldSpots> fields;
+    std::vector<analysis::FieldSpots> fields;
     for (const double field : c.fields) {
-        FieldSpots row{.field_deg = field, .airy_radius_um = 2.0};
+        analysis::FieldSpots row{.field_deg = field, .airy_radius_um = 2.0};
         for (int i = 0; i < 3; ++i) {
             row.spots.push_back({c.size, curves(c, -1.0, 1.0, cubic)});
         }
@@ -88,7 +88,7 @@ std::string spots(const Case& c) {
 }
 
 std::string illumination(const Case& c) {
-    std::vector<FieldBrightness> points;
+    std::vector<analysis::FieldBrightness> points;
     for (const double field : c.fields) {
         const double v = c.has_light ? 1.0 / (1.0 + 0.01 * field) : kNaN;
         points.push_back({field, v * v, v});
@@ -96,9 +96,9 @@ std::string illumination(const Case& c) {
     return illumination_svg(c.heading, points);
 }
 
-SquareMap square(const Case& c) {
+analysis::SquareMap square(const Case& c) {
     constexpr std::size_t kSize = 8;
-    SquareMap map{.size = kSize, .half_width = 1.0};
+    analysis::SquareMap map{.size = kSize, .half_width = 1.0};
     for (std::size_t i = 0; i < kSize * kSize; ++i) {
         map.values.push_back(c.has_light && i % 7 != 0 ? c.size * static_cast<double>(i) / 64.0 : kNaN);
     }
@@ -106,7 +106,7 @@ SquareMap square(const Case& c) {
 }
 
 std::string wavefronts(const Case& c) {
-    std::vector<FieldWavefront> fields;
+    std::vector<analysis::FieldWavefront> fields;
     for (const double field : c.fields) {
         fields.push_back({field, c.wavelengths.front(), square(c), 0.1 * c.size, c.size});
     }
@@ -114,7 +114,7 @@ std::string wavefronts(const Case& c) {
 }
 
 std::string psfs(const Case& c) {
-    std::vector<PsfMap> fields;
+    std::vector<analysis::PsfMap> fields;
     for (const double field : c.fields) {
         fields.push_back({field, square(c), 0.8});
     }
@@ -130,7 +130,7 @@ std::vector<Vec2d> falling(const Case& c, double to) {
 }
 
 std::string mtf(const Case& c) {
-    std::vector<FieldMtf> fields;
+    std::vector<analysis::FieldMtf> fields;
     for (const double field : c.fields) {
         fields.push_back({field, falling(c, 100.0), falling(c, 90.0)});
     }
@@ -188,11 +188,11 @@ TEST(AnalysisPlots, AFieldWithoutLightSaysSo) {
 // Where light arrives and a plot is missing all the same, it says why.
 TEST(AnalysisPlots, AMissingPlotSaysWhy) {
     const std::string why = "too steep for the grid";
-    FieldWavefront wavefront;
+    analysis::FieldWavefront wavefront;
     wavefront.remark = why;
-    PsfMap psf;
+    analysis::PsfMap psf;
     psf.remark = why;
-    FieldMtf modulation;
+    analysis::FieldMtf modulation;
     modulation.remark = why;
     for (const std::string& svg :
          {wavefront_svg({}, {wavefront}), psf_svg({}, {psf}), mtf_svg({}, {modulation}, {{0.0, 1.0}, {100.0, 0.5}})}) {
@@ -214,7 +214,7 @@ TEST(AnalysisPlots, NothingAtAllIsDrawnToo) {
 
 // The distance of two dots over the length of the scale bar is that of the rays over what the bar says.
 TEST(AnalysisPlots, SpotsAreToTheScaleOfTheBar) {
-    const FieldSpots field{.field_deg = 0.0, .spots = {{5.0, {{587.6, {{-30.0, 0.0}, {40.0, 0.0}}}}}}};
+    const analysis::FieldSpots field{.field_deg = 0.0, .spots = {{5.0, {{587.6, {{-30.0, 0.0}, {40.0, 0.0}}}}}}};
     const std::string svg = spots_svg({}, {0.0}, {field});
     double left = 0.0;
     double right = 0.0;
@@ -248,4 +248,4 @@ TEST(AnalysisPlots, FilesAreWrittenIntoANewFolder) {
 }
 
 }  // namespace
-}  // namespace lensproof::draw
+}  // namespace lensproof::draw::analysis_plots_test

@@ -10,7 +10,7 @@
 #include "experiments/draw/palette.h"
 #include "tests/experiments/draw/svg_checks.h"
 
-namespace lensproof::draw {
+namespace lensproof::draw::chart_test {
 namespace {
 
 PlotChart line_chart(std::vector<Vec2d> points) {
@@ -234,4 +234,4 @@ TEST(Palette, LinesLookAsTheyAreNamed) {
 }
 
 }  // namespace
-}  // namespace lensproof::draw
+}  // namespace lensproof::draw::chart_test

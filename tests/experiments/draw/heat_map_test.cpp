@@ -10,7 +10,7 @@
 #include "experiments/draw/chart.h"
 #include "tests/experiments/draw/svg_checks.h"
 
-namespace lensproof::draw {
+namespace lensproof::draw::heat_map_test {
 namespace {
 
 /// RFC 4648, section 4, the other way.
@@ -178,4 +178,4 @@ TEST(ColourMap, EqualStepsLookEqual) {
 }
 
 }  // namespace
-}  // namespace lensproof::draw
+}  // namespace lensproof::draw::heat_map_test

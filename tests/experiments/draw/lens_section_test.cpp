@@ -20,7 +20,7 @@
 #include "experiments/draw/svg.h"
 #include "tests/experiments/draw/svg_checks.h"
 
-namespace lensproof::draw {
+namespace lensproof::draw::lens_section_test {
 namespace {
 
 optics::Prescription shipped(const std::string& name) {
@@ -274,4 +274,4 @@ TEST(LensSection, EmptyAndVeryLongTablesAreDrawn) {
 }
 
 }  // namespace
-}  // namespace lensproof::draw
+}  // namespace lensproof::draw::lens_section_test

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <set>
 
-namespace lensproof::draw {
+namespace lensproof::draw::ticks_test {
 namespace {
 
 /// The number a label stands for.
@@ -117,4 +117,4 @@ TEST(Ticks, NumbersReadAsInPrint) {
 }
 
 }  // namespace
-}  // namespace lensproof::draw
+}  // namespace lensproof::draw::ticks_test

@@ -11,7 +11,7 @@
 #include "engine/spectral/wavelengths.h"
 #include "tests/complaint.h"
 
-namespace lensproof::formats {
+namespace lensproof::formats::glass_file_test {
 namespace {
 
 // SCHOTT's own record of N-BK7 (catalogue of 2017-01-20), shortened.
@@ -378,4 +378,4 @@ TEST(GlassTable, ReadsEveryFormulaAndMinds) {
 }
 
 }  // namespace
-}  // namespace lensproof::formats
+}  // namespace lensproof::formats::glass_file_test

@@ -12,7 +12,7 @@
 #include "engine/optics/glass_catalogue.h"
 #include "engine/spectral/wavelengths.h"
 
-namespace lensproof::formats {
+namespace lensproof::formats::shipped_glasses_test {
 namespace {
 
 const optics::GlassCatalogue& shipped() {
@@ -231,4 +231,4 @@ TEST(NormalLine, TheExpectedErrorCoversNineteenOfTwenty) {
 }
 
 }  // namespace
-}  // namespace lensproof::formats
+}  // namespace lensproof::formats::shipped_glasses_test

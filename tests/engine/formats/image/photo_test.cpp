@@ -14,7 +14,7 @@
 #include "engine/formats/image/jpeg.h"
 #include "tests/test_folder.h"
 
-namespace lensproof::formats {
+namespace lensproof::formats::photo_test {
 namespace {
 
 // An 8-bit file, one byte a channel, by the library that cameras' files are read with.
@@ -280,4 +280,4 @@ TEST(Photo, SaysTheQualityThatAJpegWasWrittenWith) {
 }
 
 }  // namespace
-}  // namespace lensproof::formats
+}  // namespace lensproof::formats::photo_test

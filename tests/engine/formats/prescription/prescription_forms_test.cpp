@@ -9,7 +9,7 @@
 #include "engine/base/input_error.h"
 #include "tests/complaint.h"
 
-namespace lensproof::formats {
+namespace lensproof::formats::prescription_forms_test {
 namespace {
 
 using Parse = optics::Prescription (*)(const std::string&, const std::filesystem::path&);
@@ -413,4 +413,4 @@ TEST(EveryReader, BearsNoiseAndCutFiles) {
 }
 
 }  // namespace
-}  // namespace lensproof::formats
+}  // namespace lensproof::formats::prescription_forms_test

@@ -13,7 +13,7 @@
 #include "tests/engine/formats/prescription/has_finding.h"
 #include "tests/engine/formats/prescription/same_rays.h"
 
-namespace lensproof::formats {
+namespace lensproof::formats::prescription_seq_test {
 namespace {
 
 optics::Prescription parse(const std::string& text) {
@@ -246,4 +246,4 @@ TEST(Seq, HostileFilesAreRefusedByLine) {
 }
 
 }  // namespace
-}  // namespace lensproof::formats
+}  // namespace lensproof::formats::prescription_seq_test

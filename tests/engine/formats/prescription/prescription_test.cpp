@@ -10,7 +10,7 @@
 #include "engine/optics/lens.h"
 #include "tests/test_folder.h"
 
-namespace lensproof::formats {
+namespace lensproof::formats::prescription_test {
 namespace {
 
 class PrescriptionFile : public testing::Test {
@@ -103,4 +103,4 @@ TEST(Projections, AgreeNearTheAxisAndHoldBeyondNinetyDegrees) {
 }
 
 }  // namespace
-}  // namespace lensproof::formats
+}  // namespace lensproof::formats::prescription_test

@@ -11,7 +11,7 @@
 #include "engine/formats/prescription/prescription_forms.h"
 #include "tests/test_folder.h"
 
-namespace lensproof::formats {
+namespace lensproof::formats::prescription_writer_test {
 namespace {
 
 /// A prescription that uses everything there is.
@@ -218,4 +218,4 @@ TEST(WritePrescription, NamesTheFormsThatItCanWrite) {
 }
 
 }  // namespace
-}  // namespace lensproof::formats
+}  // namespace lensproof::formats::prescription_writer_test

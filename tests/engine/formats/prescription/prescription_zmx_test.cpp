@@ -15,7 +15,7 @@
 #include "tests/engine/formats/prescription/has_finding.h"
 #include "tests/engine/formats/prescription/same_rays.h"
 
-namespace lensproof::formats {
+namespace lensproof::formats::prescription_zmx_test {
 namespace {
 
 constexpr double kUlp = std::numeric_limits<double>::epsilon();
@@ -339,4 +339,4 @@ TEST(Zmx, SaysWhatItCannotWrite) {
 }
 
 }  // namespace
-}  // namespace lensproof::formats
+}  // namespace lensproof::formats::prescription_zmx_test

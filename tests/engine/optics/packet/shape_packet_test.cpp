@@ -10,7 +10,7 @@
 #include "engine/base/pack.h"
 #include "engine/optics/surface_shape.h"
 
-namespace lensproof::optics {
+namespace lensproof::optics::shape_packet_test {
 namespace {
 
 using Random = std::mt19937_64;
@@ -255,4 +255,4 @@ TEST(ShapePacket, LanesThatAreNotWantedAreLeftAlone) {
 }
 
 }  // namespace
-}  // namespace lensproof::optics
+}  // namespace lensproof::optics::shape_packet_test

@@ -16,7 +16,7 @@
 #include "engine/optics/packet/trace_batch.h"
 #include "tests/test_folder.h"
 
-namespace lensproof::optics {
+namespace lensproof::optics::trace_packet_test {
 namespace {
 
 /// Rays towards the front of `lens` from all sides, so that some pass, some are clipped, miss or are reflected.
@@ -196,4 +196,4 @@ TEST(TracePacket, TracesWhatIsNoSphere) {
 }
 
 }  // namespace
-}  // namespace lensproof::optics
+}  // namespace lensproof::optics::trace_packet_test

@@ -6,7 +6,7 @@
 
 #include "engine/base/input_error.h"
 
-namespace lensproof::render {
+namespace lensproof::render::pixel_filter_test {
 namespace {
 
 constexpr int kSteps = 256 * 1024;  // a multiple of the parts that draws are even within
@@ -56,4 +56,4 @@ TEST(PixelFilter, HasTheShapesThatItsNamesSay) {
 }
 
 }  // namespace
-}  // namespace lensproof::render
+}  // namespace lensproof::render::pixel_filter_test

@@ -5,7 +5,7 @@
 #include <array>
 #include <utility>
 
-namespace lensproof::render {
+namespace lensproof::render::sampler_test {
 namespace {
 
 // Sobol's sequence is a (0,1)-sequence in each dimension: 2^k points put exactly one into each of 2^k equal intervals,
@@ -81,4 +81,4 @@ TEST(Sampler, IsUnbiasedOverPixels) {
 }
 
 }  // namespace
-}  // namespace lensproof::render
+}  // namespace lensproof::render::sampler_test

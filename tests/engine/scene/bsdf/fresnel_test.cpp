@@ -8,7 +8,7 @@
 
 #include "tests/engine/scene/bsdf/bsdf_cases.h"
 
-namespace lensproof::scene {
+namespace lensproof::scene::fresnel_test {
 namespace {
 
 constexpr auto kRadiance = Transport::radiance;
@@ -179,4 +179,4 @@ TEST(Bsdf, KnowsWhereLightsNeedNotBeSampled) {
 }
 
 }  // namespace
-}  // namespace lensproof::scene
+}  // namespace lensproof::scene::fresnel_test

@@ -12,11 +12,11 @@
 #include "engine/base/file.h"
 #include "engine/base/input_error.h"
 #include "engine/formats/image/image.h"
-#include "engine/scene/chart_file.h"
+#include "engine/scene/chart/chart_file.h"
 #include "experiments/draw/print/chart_words.h"
 #include "tests/test_folder.h"
 
-namespace lensproof::draw {
+namespace lensproof::draw::chart_print_test {
 namespace {
 
 scene::Chart chart_of(const std::string& toml) {
@@ -216,4 +216,4 @@ TEST(ChartPrint, WhatCannotBePrintedIsRefused) {
 }
 
 }  // namespace
-}  // namespace lensproof::draw
+}  // namespace lensproof::draw::chart_print_test

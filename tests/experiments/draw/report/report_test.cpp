@@ -12,7 +12,7 @@
 #include "engine/base/markup.h"
 #include "experiments/draw/report/html_text.h"
 
-namespace lensproof::draw {
+namespace lensproof::draw::report_test {
 namespace {
 constexpr char kAttack[] = "</script><img src=x onerror=alert(1)>\"'&{{data}}";
 
@@ -204,4 +204,4 @@ TEST(Report, TheSameReportGivesTheSameBytes) {
 }
 
 }  // namespace
-}  // namespace lensproof::draw
+}  // namespace lensproof::draw::report_test

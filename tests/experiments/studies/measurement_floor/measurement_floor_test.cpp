@@ -7,10 +7,10 @@
 #include "calibration/geometry/fit_geometry.h"
 #include "engine/base/angle.h"
 #include "experiments/studies/measurement_floor/floor_point.h"
-#include "experiments/studies/measurement_floor/floor_report.h"
+#include "experiments/studies/measurement_floor/floor_study.h"
 #include "experiments/studies/measurement_floor/random_poses.h"
 
-namespace lensproof::studies {
+namespace lensproof::studies::measurement_floor_test {
 namespace {
 
 constexpr auto kQuiet = [](const std::string&, double) {};
@@ -43,7 +43,7 @@ TEST(MeasurementFloor, PointsErrAsMuchAsTheirPictureIsNoisy) {
     EXPECT_NEAR(error_at(4.0) / error_at(2.0), 2.0, 0.6);
     ASSERT_EQ(floor.checks.size(), 2U);
     EXPECT_EQ(floor.checks[0].value, error_at(1.0));
-    EXPECT_EQ(runner::overall(floor.checks), runner::Verdict::pass);
+    EXPECT_EQ(findings::overall(floor.checks), findings::Verdict::pass);
 }
 
 // One set of pictures at 1 % noise: shift, vignetting and MTF50 are all measured, keep what is asked, and are not
@@ -78,9 +78,8 @@ TEST(MeasurementFloor, WhatFailedIsCounted) {
     EXPECT_EQ(none.failed, 1);
     EXPECT_TRUE(std::isnan(rms_point(2.0, {3.0}).sigma));
 
-    MeasurementFloor floor;
-    floor.sweeps = {{.id = "photos", .unit = "px", .curves = {{"spline", {point}}}}};
-    EXPECT_NE(floor_charts(floor).at("photos.svg").find("Failed: spline: 2 of 4 at 2 px"), std::string::npos);
+    const findings::Subject subject = sweep_subject({.id = "photos", .unit = "px", .curves = {{"spline", {point}}}});
+    EXPECT_NE(subject.pictures.at(0).bytes.find("Failed: spline: 2 of 4 at 2 px"), std::string::npos);
 }
 
 TEST(MeasurementFloor, ThreadsChangeNothing) {
@@ -95,7 +94,7 @@ TEST(MeasurementFloor, ThreadsChangeNothing) {
 TEST(MeasurementFloor, StatedIntervalsHoldTheTruth) {
     const MeasurementFloor floor = measure_intervals({.trials = 40}, 1, 0, kQuiet);
     EXPECT_EQ(floor.checks.size(), 10U);
-    for (const runner::Check& check : floor.checks) {
+    for (const findings::Check& check : floor.checks) {
         EXPECT_GE(check.value, 81.0) << check.label;
     }
 }
@@ -122,13 +121,11 @@ TEST(MeasurementFloor, PosesAreAsWished) {
 TEST(MeasurementFloor, ASweepIsAPicture) {
     FloorSweep sweep{.id = "noise", .title = "Points against noise", .unit = "%", .error_unit = "px"};
     sweep.curves = {{"checkerboard", {{0.0, 0.004, 0.001, 100.0}, {4.0, std::nan(""), 0.0, 0.0}}}};
-    MeasurementFloor floor;
-    floor.sweeps = {sweep};
-    const auto charts = floor_charts(floor);
-    ASSERT_TRUE(charts.contains("noise.svg"));
-    EXPECT_NE(charts.at("noise.svg").find("Points against noise"), std::string::npos);
-    EXPECT_EQ(charts.at("noise.svg").find("nan"), std::string::npos);
+    const findings::Picture chart = sweep_subject(sweep).pictures.at(0);
+    EXPECT_EQ(chart.name, "noise.svg");
+    EXPECT_NE(chart.bytes.find("Points against noise"), std::string::npos);
+    EXPECT_EQ(chart.bytes.find("nan"), std::string::npos);
 }
 
 }  // namespace
-}  // namespace lensproof::studies
+}  // namespace lensproof::studies::measurement_floor_test

@@ -4,21 +4,19 @@
 #include <cmath>
 #include <numbers>
 
-#include "engine/base/file.h"
 #include "engine/base/input_error.h"
 #include "engine/optics/illumination.h"
 #include "engine/pupil/rear_disc.h"
-#include "experiments/studies/pupil_passage/passage_report.h"
-#include "tests/test_folder.h"
+#include "experiments/studies/pupil_passage/passage_study.h"
 
-namespace lensproof::studies {
+namespace lensproof::studies::pupil_passage_test {
 
 namespace {
 
-runner::PassageSetting fisheye() {
+PassageSetting fisheye() {
     return {.lens = "muller-fisheye",
             .f_number = 8.0,
-            .published = runner::PassageSetting::Published{.whole_element_percent = 10.0, .pupil_percent = 82.0}};
+            .published = PassageSetting::Published{.whole_element_percent = 10.0, .pupil_percent = 82.0}};
 }
 
 // On the axis the paths that pass fill a disc: that of the cone whose projected solid angle is known by quadrature. In
@@ -45,44 +43,31 @@ TEST(PupilPassage, OfTheWholeElementIsTheShareOfItsDisc) {
 }
 
 TEST(PupilPassage, IsReported) {
-    runner::Experiment experiment;
-    experiment.title = "passage";
-    experiment.file = "passage.toml";
     const std::vector<Passage> passages{measure_passage(fisheye(), 0)};
-    const std::vector<runner::Check> checks = passage_checks(passages);
-    ASSERT_EQ(checks.size(), 3U);
-    EXPECT_EQ(runner::overall(checks), runner::Verdict::pass);
-    EXPECT_NEAR(checks[0].value, 100.0 * (1.0 - passages[0].pupil.mean), 1e-12);
-    EXPECT_EQ(checks[2].limit, 18.0);
-    const TestFolder folder;
-    experiment.file = folder.path() / "passage.toml";
-    write_file(experiment.file, "title = \"passage\"\n");
-    const auto report = passage_report_json(experiment, passages, {});
-    EXPECT_EQ(report["verdict"], "PASS");
-    EXPECT_EQ(report["passages"][0]["pupil_rings_percent"].size(), 8U);
-    EXPECT_EQ(report["passages"][0]["published_percent"]["pupil"], 82.0);
-    const auto drawings = passage_drawings(passages);
-    const std::string name = report["subjects"][0]["pictures"][0]["name"].text();
-    ASSERT_TRUE(drawings.contains(name));
-    EXPECT_NE(drawings.at(name).find("Points of the pupil of each pixel"), std::string::npos);
-    EXPECT_NE(drawings.at(name).find("ray blocked"), std::string::npos);
+    const findings::Findings found = passage_findings(passages);
+    ASSERT_EQ(found.checks.size(), 3U);
+    EXPECT_EQ(findings::overall(found.checks), findings::Verdict::pass);
+    EXPECT_NEAR(found.checks[0].value, 100.0 * (1.0 - passages[0].pupil.mean), 1e-12);
+    EXPECT_EQ(found.checks[2].limit, 18.0);
+    const auto& [key, table] = found.tables.at(0);
+    EXPECT_EQ(key, "passages");
+    EXPECT_EQ(table[0]["pupil_rings_percent"].size(), 8U);
+    EXPECT_EQ(table[0]["published_percent"]["pupil"], 82.0);
+    const std::string& drawing = found.subjects.at(0).pictures.at(0).bytes;
+    EXPECT_NE(drawing.find("Points of the pupil of each pixel"), std::string::npos);
+    EXPECT_NE(drawing.find("ray blocked"), std::string::npos);
 }
 
 TEST(PupilPassage, ReadsItsExperiment) {
-    const TestFolder folder;
-    const auto file = folder.path() / "e.toml";
-    write_file(file, "title = \"t\"\n[[pupil_passage]]\nlens = \"tessar\"\nf_number = 4.0\n");
-    const runner::Experiment experiment = runner::read_experiment(file);
-    ASSERT_EQ(experiment.pupil_passage.size(), 1U);
-    EXPECT_FALSE(experiment.pupil_passage[0].published);
-    write_file(file,
-               "title = \"t\"\n[[pupil_passage]]\nlens = \"tessar\"\nf_number = 4.0\n"
-               "published_percent = { pupil = 120.0, whole_element = 1.0 }\n");
-    EXPECT_THROW(runner::read_experiment(file), InputError);
-    write_file(file, "title = \"t\"\n[[pupil_passage]]\nlens = \"tessar\"\nf_stop = 4.0\n");
-    EXPECT_THROW(runner::read_experiment(file), InputError);
+    const auto read = [](const std::string& rest) {
+        TomlTable table = TomlTable::parse("lens = \"tessar\"\n" + rest, "e.toml");
+        return read_passage_setting(table);
+    };
+    EXPECT_FALSE(read("f_number = 4.0\n").published);
+    EXPECT_THROW(read("f_number = 4.0\npublished_percent = { pupil = 120.0, whole_element = 1.0 }\n"), InputError);
+    EXPECT_THROW(read("f_stop = 4.0\n"), InputError);
 }
 
 }  // namespace
 
-}  // namespace lensproof::studies
+}  // namespace lensproof::studies::pupil_passage_test

@@ -5,12 +5,8 @@
 #include <algorithm>
 #include <ostream>
 
-#include "engine/base/file.h"
-#include "engine/base/infinity.h"
-#include "engine/base/json.h"
 #include "experiments/studies/stability/measure_stability.h"
-#include "experiments/studies/stability/stability_report.h"
-#include "tests/test_folder.h"
+#include "experiments/studies/stability/stability_study.h"
 
 namespace lensproof::studies {
 
@@ -48,7 +44,7 @@ class StabilityExtremes : public testing::TestWithParam<Extreme> {};
 // scalars.
 TEST_P(StabilityExtremes, ADoubleHoldsItsBound) {
     const StabilitySweep sweep = measure_stability(reduced(GetParam()), 7);
-    EXPECT_TRUE(sweep.holds());
+    EXPECT_EQ(findings::overall(stability_checks({sweep})), findings::Verdict::pass);
     int traced = 0;
     for (const StabilityPoint& point : sweep.points) {
         SCOPED_TRACE(point.value);
@@ -91,8 +87,7 @@ StabilitySweep failing_sweep() {
 
 TEST(StabilityReport, AnErrorOverItsBoundFails) {
     const std::vector<StabilitySweep> sweeps{failing_sweep()};
-    EXPECT_FALSE(sweeps.front().holds());
-    EXPECT_EQ(runner::overall(stability_checks(sweeps)), runner::Verdict::fail);
+    EXPECT_EQ(findings::overall(stability_checks(sweeps)), findings::Verdict::fail);
     const std::optional<Onset> onset = onset_of_trouble(sweeps.front(), kDouble);
     ASSERT_TRUE(onset);
     EXPECT_EQ(onset->from, 10.0);
@@ -108,11 +103,9 @@ TEST(StabilityReport, AWrongStatusOrANaNFails) {
         for (StabilityPoint& point : sweep.points) {
             point.excess = 0.0;
         }
-        EXPECT_TRUE(sweep.holds());
-        EXPECT_EQ(runner::overall(stability_checks({sweep})), runner::Verdict::pass);
+        EXPECT_EQ(findings::overall(stability_checks({sweep})), findings::Verdict::pass);
         (is_status ? sweep.points[1].types[kDouble].other_statuses : sweep.points[1].types[kDouble].not_finite) = 1;
-        EXPECT_FALSE(sweep.holds());
-        EXPECT_EQ(runner::overall(stability_checks({sweep})), runner::Verdict::fail);
+        EXPECT_EQ(findings::overall(stability_checks({sweep})), findings::Verdict::fail);
     }
 }
 
@@ -122,25 +115,24 @@ TEST(StabilityReport, ARefusalThatIsNotMeantFails) {
         point.excess = 0.0;
     }
     sweep.points.back().is_rightly_refused = false;
-    EXPECT_FALSE(sweep.holds());
-    EXPECT_EQ(runner::overall(stability_checks({sweep})), runner::Verdict::fail);
+    EXPECT_EQ(findings::overall(stability_checks({sweep})), findings::Verdict::fail);
 }
 
 TEST(StabilityReport, SaysWhatTheProgramDoes) {
     const std::vector<StabilitySweep> sweeps{failing_sweep()};
-    const TestFolder folder;
-    const std::filesystem::path file = folder.path() / "stability.toml";
-    write_file(file, "title = 'T'\n");
-    const Json report = stability_report_json(
-        {.file = file, .title = "T", .summary = "S", .stability = runner::StabilityExperiment{}}, sweeps, {});
-    EXPECT_EQ(report["verdict"], "FAIL");
-    const auto& extreme = report["extremes"][0];
-    EXPECT_EQ(extreme["points"][3]["value"], "inf");
-    EXPECT_EQ(extreme["points"][4]["refusal"], "radius_mm is too small");
-    EXPECT_EQ(extreme["points"][0]["statuses"]["ok"], 2);
-    EXPECT_EQ(extreme["onset"]["double"]["from"], 10.0);
-    EXPECT_TRUE(extreme["onset"]["float"].is_null());
-    const std::string facts = report["subjects"][0]["facts"].dump();
+    const findings::Findings found = stability_findings(sweeps);
+    EXPECT_EQ(findings::overall(found.checks), findings::Verdict::fail);
+    const auto& [key, extremes] = found.tables.at(0);
+    EXPECT_EQ(key, "extremes");
+    EXPECT_EQ(extremes[0]["points"][3]["value"], "inf");
+    EXPECT_EQ(extremes[0]["points"][4]["refusal"], "radius_mm is too small");
+    EXPECT_EQ(extremes[0]["points"][0]["statuses"]["ok"], 2);
+    EXPECT_EQ(extremes[0]["onset"]["double"]["from"], 10.0);
+    EXPECT_TRUE(extremes[0]["onset"]["float"].is_null());
+    std::string facts;
+    for (const findings::Fact& fact : found.subjects.at(0).facts) {
+        facts += fact.label + ": " + fact.value + "\n";
+    }
     EXPECT_NE(facts.find("refused: radius_mm is too small"), std::string::npos) << facts;
     EXPECT_NE(facts.find("over 1e-09 mm at 10 mm … 100 mm"), std::string::npos) << facts;
     EXPECT_NE(stability_chart(sweeps.front()).find("<svg"), std::string::npos);

@@ -1,0 +1,63 @@
+#include "engine/render/camera/camera_paths.h"
+
+#include <algorithm>
+#include <stdexcept>
+#include <utility>
+
+namespace lensproof::render {
+
+CameraPathBuffer::CameraPathBuffer(int most) : capacity(most) {
+    if (most < 1) {
+        throw std::invalid_argument("a buffer of camera paths holds one at least");
+    }
+    const auto resize = [most](auto&... columns) { (columns.resize(static_cast<std::size_t>(most)), ...); };
+    resize(pixel, sample, wavelength, film_x, film_y, weight);
+    resize(origin.x, origin.y, origin.z, direction.x, direction.y, direction.z);
+}
+
+void CameraPathBuffer::leave_heroes_alone() {
+    weights.resize(static_cast<std::size_t>(size));
+    for (std::size_t i = 0; i < weights.size(); ++i) {
+        weights[i] = {hero_weight(i)};
+    }
+}
+
+FilmSamples::FilmSamples(FilmSampling film, int wavelengths, std::optional<optics::SimdLevel> level)
+    : sampling_{.sensor = film.sensor, .seed = film.seed, .wavelengths = wavelengths},
+      filter_(std::move(film.filter)),
+      kernels_(&path_kernels<double>(level)) {}
+
+void FilmSamples::start(const CameraPathRange& range) {
+    cursor_ = {.pixel = range.first_pixel, .sample = 0, .first_sample = range.first_sample, .samples = range.samples};
+    end_pixel_ = range.first_pixel + (range.samples > 0 ? range.pixels : 0);
+}
+
+void FilmSamples::draw(int room) {
+    const int whole = room < optics::kMostLanes ? room : room / optics::kMostLanes * optics::kMostLanes;
+    const std::uint64_t left = std::uint64_t{end_pixel_ - cursor_.pixel} * cursor_.samples - cursor_.sample;
+    const auto count = static_cast<int>(std::min<std::uint64_t>(left, std::min(whole, kPathChunk)));
+    kernels_->draw_samples(sampling_, count, cursor_, starts_);
+    draw_from_filter();
+}
+
+void FilmSamples::draw_from_filter() {
+    if (filter_.is_box()) {
+        std::fill_n(starts_.filter_weight.begin(), starts_.size, 1.0);
+        return;
+    }
+    const Sensor& sensor = sampling_.sensor;
+    const auto width = static_cast<std::uint32_t>(sensor.width);
+    for (std::size_t i = 0; i < static_cast<std::size_t>(starts_.size); ++i) {
+        const std::uint32_t row = starts_.pixel[i] / width;
+        const std::uint32_t column = starts_.pixel[i] - row * width;
+        const Vec2d centre = sensor.position(column, row);
+        const PixelFilter::Draw across = filter_.draw((centre.x - starts_.film_x[i]) / sensor.pixel_pitch_mm + 0.5);
+        const PixelFilter::Draw down = filter_.draw((starts_.film_y[i] - centre.y) / sensor.pixel_pitch_mm + 0.5);
+        const Vec2d drawn = sensor.position(column + across.offset_px, row + down.offset_px);
+        starts_.film_x[i] = drawn.x;
+        starts_.film_y[i] = drawn.y;
+        starts_.filter_weight[i] = across.weight * down.weight;
+    }
+}
+
+}  // namespace lensproof::render

@@ -1,0 +1,164 @@
+#include "engine/render/camera/camera_settings.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "engine/formats/prescription/load_lens.h"
+#include "engine/optics/focus.h"
+#include "engine/optics/packet/spectral_lens.h"
+#include "engine/scene/scene_file_parts.h"
+#include "engine/scene/spectra/spectrum_keys.h"
+
+namespace lensproof::render {
+
+namespace {
+
+constexpr Bounds kSensorSide{.min = 0.0, .max = 1e4, .min_excluded = true};
+constexpr double kMostPixels = 200e6;
+
+Sensor read_sensor(TomlTable& table) {
+    const std::vector<double> size = table.numbers("sensor_mm", 2, kSensorSide);
+    const std::vector<double> pixels = table.numbers("pixels", 2, {.min = 1.0, .max = 1e5});
+    const Sensor sensor{.width = static_cast<int>(pixels[0]),
+                        .height = static_cast<int>(pixels[1]),
+                        .pixel_pitch_mm = size[0] / pixels[0]};
+    if (sensor.width != pixels[0] || sensor.height != pixels[1] || pixels[0] * pixels[1] > kMostPixels) {
+        table.fail("pixels", fmt::format("is [{}, {}], expected two whole numbers, {:.0f} million pixels at most",
+                                         pixels[0], pixels[1], kMostPixels / 1e6));
+    }
+    if (std::abs(size[1] / pixels[1] / sensor.pixel_pitch_mm - 1.0) > 1e-6) {
+        table.fail("pixels", fmt::format("makes pixels of {} × {} mm with sensor_mm, expected square ones",
+                                         sensor.pixel_pitch_mm, size[1] / pixels[1]));
+    }
+    return sensor;
+}
+
+std::optional<optics::PolygonStop> read_blades(TomlTable& table) {
+    if (table.has("blades")) {
+        return optics::PolygonStop{.blades = table.integer("blades", 3, 64),
+                                   .curvature = table.number_or("blade_curvature", 0.0, {.min = 0.0, .max = 1.0}),
+                                   .rotation_deg = table.number_or("blade_rotation_deg", 0.0)};
+    }
+    for (const char* key : {"blade_curvature", "blade_rotation_deg"}) {
+        if (table.has(key)) {
+            table.fail(key, "stands without blades, expected their number too");
+        }
+    }
+    return std::nullopt;
+}
+
+/// What stands between lens and film.
+void read_exposure(TomlTable& table, CameraSettings& camera) {
+    camera.zoom = table.text_or("zoom", "");
+    camera.blades = read_blades(table);
+    camera.f_number = table.number("f_number", {.min = 0.1, .max = 1000.0});
+    camera.focus_distance_mm = table.infinity("focus_distance_mm") > 0 ? std::numeric_limits<double>::infinity()
+                                                                       : table.number("focus_distance_mm", kPositive);
+    camera.sensor = read_sensor(table);
+    camera.exposure.time_s = table.number("shutter_s", kPositive);
+    camera.exposure.iso = table.number("iso", kPositive);
+    camera.response = table.choice("response", spectral::known_sensors());
+}
+
+void read_place(TomlTable& table, CameraSettings& camera) {
+    camera.position_mm = read_vector(table, "position_mm");
+    camera.look_at_mm = read_vector(table, "look_at_mm");
+    camera.up = table.has("up") ? read_direction(table, "up") : camera.up;
+    const Vec3d forwards = camera.look_at_mm - camera.position_mm;
+    if (!(length(forwards) > 1e-9)) {
+        table.fail("look_at_mm", "is where the camera stands, expected another place");
+    }
+    constexpr double kSmallestSine = 1e-6;
+    if (length(cross(normalized(forwards), camera.up)) < kSmallestSine) {
+        table.fail(table.has("up") ? "up" : "look_at_mm", "the camera looks along up, expected another direction");
+    }
+}
+
+/// The model, and a focal length that stands in the place of a lens.
+void read_model(TomlTable& table, CameraSettings& camera) {
+    if (table.has("model")) {
+        const std::vector<std::string>& names = lens_model_names();
+        camera.model = static_cast<LensModel>(std::ranges::find(names, table.choice("model", names)) - names.begin());
+    }
+    camera.focal_length_mm = table.optional_number("focal_length_mm", kPositive);
+    if (camera.focal_length_mm && (camera.model == LensModel::exact || camera.model == LensModel::paraxial)) {
+        table.fail("focal_length_mm", "is for the models thin-lens and pinhole; here the lens says it");
+    }
+}
+
+}  // namespace
+
+const std::vector<std::string>& lens_model_names() {
+    static const std::vector<std::string> names = {"exact", "paraxial", "thin-lens", "pinhole"};
+    return names;
+}
+
+const std::string& name_of(LensModel model) {
+    return lens_model_names()[static_cast<std::size_t>(model)];
+}
+
+scene::RigidMotion camera_to_world(const CameraSettings& camera) {
+    const Vec3d z = normalized(camera.look_at_mm - camera.position_mm);
+    const Vec3d x = normalized(cross(z, camera.up));
+    const Vec3d y = cross(z, x);
+    return {.rotation_rows = {Vec3d{x.x, y.x, z.x}, Vec3d{x.y, y.y, z.y}, Vec3d{x.z, y.z, z.z}},
+            .translation = camera.position_mm};
+}
+
+CameraSettings read_camera_settings(TomlTable& table) {
+    CameraSettings camera;
+    camera.lens = table.text("lens");
+    read_exposure(table, camera);
+    table.finish();
+    return camera;
+}
+
+CameraSettings read_placed_camera(TomlTable& table) {
+    CameraSettings camera;
+    read_place(table, camera);
+    read_model(table, camera);
+    camera.lens = camera.focal_length_mm ? table.text_or("lens", "") : table.text("lens");
+    read_exposure(table, camera);
+    camera.white_balance = scene::read_illuminant(table, "white_balance");
+    if (camera.focal_length_mm && !camera.lens.empty()) {
+        table.fail("focal_length_mm", "stands beside lens, expected one or the other");
+    }
+    if (camera.blades && camera.model != LensModel::exact) {
+        table.fail("blades", fmt::format("stands beside model = \"{}\", whose pupil is round; expected the exact model",
+                                         name_of(camera.model)));
+    }
+    table.finish();
+    return camera;
+}
+
+optics::Lens camera_lens(const CameraSettings& camera) {
+    optics::Lens lens = formats::load_lens(camera.lens, {.zoom = camera.zoom});
+    if (camera.blades) {
+        lens.stop_mask = optics::StopMask(*camera.blades);
+    }
+    return optics::focused_at(optics::with_f_number(std::move(lens), camera.f_number), camera.focus_distance_mm);
+}
+
+void read_spectral_sampling(TomlTable& table, SpectralSampling& sampling) {
+    if (table.has("wavelengths_nm")) {
+        const std::vector<double> range = table.numbers("wavelengths_nm", 2, {.min = 100.0, .max = 20000.0});
+        sampling.min_nm = range[0];
+        sampling.max_nm = range[1];
+        if (!(range[0] < range[1])) {
+            table.fail("wavelengths_nm", fmt::format("is [{}, {}], expected the shorter first", range[0], range[1]));
+        }
+    }
+    sampling.layers = table.integer_or("layers", sampling.layers, 1, 1000);
+    sampling.strata_per_layer = table.integer_or("strata_per_layer", sampling.strata_per_layer, 1, 100);
+    constexpr int kMost = optics::SpectralLens<double>::kMostWavelengths;
+    if (sampling.strata() > kMost) {
+        table.fail("layers", fmt::format("{} layers of {} strata are {} wavelengths, expected {} at most",
+                                         sampling.layers, sampling.strata_per_layer, sampling.strata(), kMost));
+    }
+}
+
+}  // namespace lensproof::render

@@ -1,0 +1,78 @@
+// engine/render/camera/camera_settings.h — a camera and its spectral sampling as files state them.
+#pragma once
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "engine/base/toml.h"
+#include "engine/optics/lens.h"
+#include "engine/render/film/sensor.h"
+#include "engine/scene/chart/pose.h"
+#include "engine/spectral/sensor_response.h"
+
+namespace lensproof::render {
+
+/// What stands for the lens. All are made from a lens and its settings, expose alike, and so can be compared:
+///
+///   exact       the lens itself, surface by surface
+///   paraxial    its Gaussian optics at each wavelength: pupils, principal planes, axial and lateral colour of first
+///               order; no other aberration, no rims but the stop
+///   thin-lens   focal length and entrance pupil of the reference line, at the front principal plane
+///   pinhole     the thin lens's centre alone, with the light of its whole opening: no blur
+///
+/// The last three pass what the lens passes along its axis.
+enum class LensModel { exact, paraxial, thin_lens, pinhole };
+
+/// "exact", "paraxial", "thin-lens", "pinhole", in the order of the enumeration.
+const std::vector<std::string>& lens_model_names();
+const std::string& name_of(LensModel model);
+
+struct CameraSettings {
+    std::string lens;  // a file, or the name of a lens that ships; empty where a focal length stands for it
+    std::string zoom;  // the position's name or number; empty: the first
+    /// Blades in place of what shape the lens's stop has, in the circle that the f-number says.
+    std::optional<optics::PolygonStop> blades;
+    double f_number = 0.0;
+    double focus_distance_mm = 0.0;  // from the first vertex; may be infinite
+    Sensor sensor;
+    spectral::Exposure exposure;
+    std::string response;
+    std::string white_balance = "D65";  // the illuminant in which a white surface is R = G = B
+    LensModel model = LensModel::exact;
+    std::optional<double> focal_length_mm;  // of a thin lens or a pinhole that stands for no lens
+
+    // Where it stands in the world.
+    Vec3d position_mm;  // of the vertex of the lens's first surface
+    Vec3d look_at_mm{0, 0, 1};
+    Vec3d up{0, 1, 0};
+};
+
+/// X_world = R · X_camera + t. The camera frame is that of pose.h.
+scene::RigidMotion camera_to_world(const CameraSettings& camera);
+
+/// Reads a camera's table: lens, zoom (optional), blades with blade_curvature and blade_rotation_deg (optional),
+/// f_number, focus_distance_mm (inf allowed), sensor_mm = [w, h], pixels = [w, h], shutter_s, iso, response. Throws
+/// InputError naming file, line and key; pixels have to be square.
+CameraSettings read_camera_settings(TomlTable& table);
+
+/// The same of a camera that stands in a world: position_mm, look_at_mm, and up, model, focal_length_mm in the place of
+/// a lens, white_balance (optional).
+CameraSettings read_placed_camera(TomlTable& table);
+
+/// The camera's lens, which it has to have: loaded, given its blades, stopped down and focused.
+optics::Lens camera_lens(const CameraSettings& camera);
+
+/// How a render samples wavelengths: `layers` spectral layers of equal width, each made of `strata_per_layer` strata.
+struct SpectralSampling {
+    double min_nm = 400.0;
+    double max_nm = 700.0;
+    int layers = 32;  // with two strata each, as many as the default samples: each sample then has its own wavelength
+    int strata_per_layer = 2;
+
+    [[nodiscard]] int strata() const { return layers * strata_per_layer; }
+};
+
+/// Reads wavelengths_nm = [from, to], layers and strata_per_layer, all optional, over what `sampling` says.
+void read_spectral_sampling(TomlTable& table, SpectralSampling& sampling);
+
+}  // namespace lensproof::render

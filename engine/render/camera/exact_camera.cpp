@@ -1,0 +1,110 @@
+#include "engine/render/camera/exact_camera.h"
+
+#include <cmath>
+
+#include "engine/base/infinity.h"
+#include "engine/pupil/kept_maps.h"
+
+namespace lensproof::render {
+
+ExactCamera::ExactCamera(const optics::Lens& lens, const std::vector<double>& wavelengths_nm, double film_radius_mm,
+                         const Cache& cache, bool meets_light_paths)
+    : lens_(optics::at_wavelengths<double>(lens, wavelengths_nm)),
+      pupil_(pupil::kept_pupil_map(cache, lens_.at(), lens.is_rotationally_symmetric, film_radius_mm)),
+      slices_(pupil_, lens_.wavelengths()),
+      front_(pupil::front_sphere(lens_.at().front())) {
+    if (meets_light_paths) {
+        // Drawn over the whole front in a fifth of all cases, since the map is that of far light.
+        entrance_ = pupil::kept_entrance_map(cache, lens_.at(), lens.is_rotationally_symmetric, kInfinity,
+                                             {.defensive_fraction = 0.2});
+    }
+}
+
+ExactCamera::Paths::Paths(const ExactCamera& camera, const FilmSampling& film, const spectral::SpectralGrid& grid,
+                          PathCarry carry)
+    : paths_(film, camera.lens_, camera.slices_),
+      shared_(grid, camera.lens_, camera.slices_, film.sensor, film.filter.is_box()),
+      carry_(carry),
+      is_shared_(film.filter.is_box()) {}
+
+bool ExactCamera::Paths::fill(CameraPathBuffer& buffer) {
+    const bool is_filled = paths_.fill(buffer);
+    if (carry_ == PathCarry::wavelengths_and_pdfs || (carry_ == PathCarry::wavelengths && is_shared_)) {
+        shared_.weigh(buffer);
+    }
+    if (carry_ != PathCarry::hero && !is_shared_) {
+        buffer.leave_heroes_alone();
+    }
+    return is_filled;
+}
+
+/// The beam of an origin; from straight behind the lens beams have no frame.
+std::optional<pupil::EntranceBeam> ExactCamera::beam_of(const LightOrigin& from) const {
+    const auto beam =
+        from.is_far ? std::optional(pupil::beam_along(front_, from.at)) : pupil::beam_from(front_, from.at);
+    return beam && beam->axis.direction.z > -1.0 ? beam : std::nullopt;
+}
+
+double ExactCamera::band_position(std::uint16_t wavelength) const {
+    return static_cast<double>(wavelength) / (lens_.wavelengths() - 1);
+}
+
+PathPdf ExactCamera::beam_pdf(const pupil::EntranceBeam& beam, Vec2d offset,
+                              const spectral::PathWavelengths& path) const {
+    const pupil::EntranceBeam far_beam = entrance_->beam(beam.axis.direction);
+    const double mm2 = std::isfinite(beam.distance) ? 1.0 / beam.solid_angle_per_mm2(offset) : 1.0;
+    return over_heroes(
+        [&](std::size_t i) { return mm2 * entrance_->pdf(far_beam, band_position(path.index[i]), offset); });
+}
+
+FilmImportance ExactCamera::importance(const Sensor& sensor, const Ray<double>& ray,
+                                       const spectral::PathWavelengths& path) const {
+    FilmImportance found;
+    for (std::size_t i = 0; i < spectral::kWavelengthsPerPath; ++i) {
+        const optics::TraceLens<double>& at = lens_.at(path.index[i]);
+        const optics::TracedRay<double> traced = optics::trace<optics::Direction::forward>(at, ray);
+        if (traced.status == optics::RayStatus::ok) {
+            const FilmMeeting film = meet_film(pupil_, at.image_z, band_position(path.index[i]), traced.ray);
+            found.at_px[i] = sensor.pixel(film.point);
+            found.transmittance[i] = traced.transmittance;
+            found.pdf[i] = film.pdf;
+        }
+    }
+    return found;
+}
+
+std::optional<LensSample> ExactCamera::sample(const LightOrigin& from, const spectral::PathWavelengths& path, double u,
+                                              double v) const {
+    const auto beam = beam_of(from);
+    if (!beam) {
+        return {};
+    }
+    const pupil::EntranceSample drawn =
+        entrance_->sample(entrance_->beam(beam->axis.direction), band_position(path.index[0]), u, v);
+    if (!(drawn.pdf > 0.0)) {
+        return {};
+    }
+    const Ray<double> ray = beam->ray(drawn.offset);
+    LensSample in{.ray = ray,
+                  .direction = ray.direction,
+                  .end = from.is_far
+                             ? ray.origin
+                             : from.at + std::hypot(beam->distance, drawn.offset.x, drawn.offset.y) * ray.direction,
+                  .pdf = beam_pdf(*beam, drawn.offset, path)};
+    return in.pdf.hero > 0.0 ? std::optional(in) : std::nullopt;
+}
+
+PathPdf ExactCamera::pdf(const LightOrigin& from, const Ray<double>& outwards,
+                         const spectral::PathWavelengths& path) const {
+    const auto beam = beam_of(from);
+    if (!beam) {
+        return {};
+    }
+    // Where the ray crosses the beam's plane, from its end at the lens, which is near.
+    const Vec3d start = outwards.origin - front_.centre;
+    const double along = dot(start, beam->axis.direction) / dot(outwards.direction, beam->axis.direction);
+    const Vec3d crossing = start - along * outwards.direction;
+    return beam_pdf(*beam, {dot(crossing, beam->across[0]), dot(crossing, beam->across[1])}, path);
+}
+
+}  // namespace lensproof::render

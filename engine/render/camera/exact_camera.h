@@ -1,0 +1,66 @@
+// engine/render/camera/exact_camera.h — a camera whose every ray is traced through its lens, surface by surface.
+#pragma once
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "engine/base/cache.h"
+#include "engine/pupil/entrance_map.h"
+#include "engine/pupil/pupil_slices.h"
+#include "engine/render/camera/film_importance.h"
+#include "engine/render/camera/lens_paths.h"
+#include "engine/render/camera/shared_rays.h"
+
+namespace lensproof::render {
+
+/// A lens, a stratum of the grid each, with maps of where light passes it. It answers what camera.h asks, in lens
+/// space: rays are drawn over the lens's front (EntranceMap) and traced forward, each wavelength by itself.
+class ExactCamera {
+  public:
+    /// Of film points within `film_radius_mm` of the axis. `meets_light_paths`: else `sample` and `pdf` must not be
+    /// asked. `cache`: for the maps; the same come from any.
+    ExactCamera(const optics::Lens& lens, const std::vector<double>& wavelengths_nm, double film_radius_mm,
+                const Cache& cache, bool meets_light_paths);
+    ExactCamera(const ExactCamera&) = delete;  // slices refer to the map
+    ExactCamera& operator=(const ExactCamera&) = delete;
+
+    class Paths {
+      public:
+        Paths(const ExactCamera& camera, const FilmSampling& film, const spectral::SpectralGrid& grid, PathCarry carry);
+
+        void start(const CameraPathRange& range) { paths_.start(range); }
+        bool fill(CameraPathBuffer& buffer);
+        [[nodiscard]] std::int64_t started() const { return paths_.started(); }
+
+      private:
+        LensPaths<double> paths_;
+        SharedRays shared_;
+        PathCarry carry_;
+        bool is_shared_;  // wider filters than the box draw film points unevenly: the hero stays alone
+    };
+
+    [[nodiscard]] FilmImportance importance(const Sensor& sensor, const Ray<double>& ray,
+                                            const spectral::PathWavelengths& path) const;
+    [[nodiscard]] std::optional<LensSample> sample(const LightOrigin& from, const spectral::PathWavelengths& path,
+                                                   double u, double v) const;
+    [[nodiscard]] PathPdf pdf(const LightOrigin& from, const Ray<double>& outwards,
+                              const spectral::PathWavelengths& path) const;
+
+    [[nodiscard]] const optics::SpectralLens<double>& lens() const { return lens_; }
+
+  private:
+    [[nodiscard]] std::optional<pupil::EntranceBeam> beam_of(const LightOrigin& from) const;
+    [[nodiscard]] double band_position(std::uint16_t wavelength) const;
+    [[nodiscard]] PathPdf beam_pdf(const pupil::EntranceBeam& beam, Vec2d offset,
+                                   const spectral::PathWavelengths& path) const;
+
+    optics::SpectralLens<double> lens_;
+    pupil::PupilMap pupil_;
+    pupil::PupilSlices slices_;
+    /// For far light, with a large defensive fraction: where near points' light enters lies a little beside its
+    /// regions.
+    std::optional<pupil::EntranceMap> entrance_;
+    pupil::BoundingSphere front_;
+};
+
+}  // namespace lensproof::render

@@ -1,0 +1,109 @@
+// engine/render/camera/packet/path_kernel.h — the loops that camera paths start with, for compilers to vectorise.
+//
+// Only the files path_kernel_*.cpp include this. Each is compiled for its own instructions, so what it defines must not
+// be shared with code for other machines: everything here is a template over the packs' Abi, and inlined.
+#pragma once
+#include <algorithm>
+#include <numeric>
+
+#include "engine/base/pack.h"
+#include "engine/render/camera/packet/path_kernels.h"
+#include "engine/render/sampling/sampler.h"
+
+namespace lensproof::render {
+
+/// The next samples of one pixel.
+template <class Abi>
+void draw_in_pixel(Sensor sensor, std::uint64_t seed, const PathCursor& cursor, int first, int count,
+                   PathStarts& starts) {
+    const std::uint32_t first_sample = cursor.first_sample + cursor.sample;
+    double* film_x = starts.film_x.data() + first;
+    double* film_y = starts.film_y.data() + first;
+    PixelSampler(seed, cursor.pixel)
+        .points(first_sample, static_cast<std::uint32_t>(count),
+                {film_x, film_y, starts.pupil_u.data() + first, starts.pupil_v.data() + first,
+                 starts.wavelength_number.data() + first});
+    const auto width = static_cast<std::uint32_t>(sensor.width);
+    const std::uint32_t row = cursor.pixel / width;
+    const std::uint32_t column = cursor.pixel - row * width;
+    const double u = static_cast<double>(column) - 0.5;
+    const double v = static_cast<double>(row) - 0.5;
+    for (int i = 0; i < count; ++i) {
+        film_x[i] = sensor.position(u + film_x[i], 0.0).x;
+    }
+    for (int i = 0; i < count; ++i) {
+        film_y[i] = sensor.position(0.0, v + film_y[i]).y;
+    }
+    std::fill_n(starts.pixel.data() + first, count, cursor.pixel);
+    std::iota(starts.sample.data() + first, starts.sample.data() + first + count, first_sample);
+}
+
+template <class Abi>
+[[gnu::flatten]] void draw_samples(const PathSampling& sampling, int count, PathCursor& cursor, PathStarts& starts) {
+    starts.size = count;
+    for (int done = 0; done < count;) {
+        const auto left_in_pixel =
+            static_cast<int>(std::min(cursor.samples - cursor.sample, std::uint32_t{kPathChunk}));
+        const int run = std::min(count - done, left_in_pixel);
+        draw_in_pixel<Abi>(sampling.sensor, sampling.seed, cursor, done, run, starts);
+        done += run;
+        cursor.sample += static_cast<std::uint32_t>(run);
+        if (cursor.sample == cursor.samples) {
+            cursor.sample = 0;
+            ++cursor.pixel;
+        }
+    }
+    for (int i = 0; i < count; ++i) {
+        starts.wavelength[static_cast<std::size_t>(i)] = static_cast<std::uint16_t>(
+            static_cast<int>(starts.wavelength_number[static_cast<std::size_t>(i)] * sampling.wavelengths));
+    }
+}
+
+template <class Abi>
+[[gnu::flatten]] void draw_pupil_points(const pupil::PupilSliceTables& slices, PathStarts& starts) {
+    using Numbers = Pack<double, Abi>;
+    const Numbers defensive_fraction(slices.defensive_fraction);
+    for (int i = 0; i < starts.size; i += Numbers::kLanes) {
+        const pupil::PupilSlice<Numbers> slice(
+            slices, Numbers::load(starts.wavelength.data() + i),
+            {Numbers::load(starts.film_x.data() + i), Numbers::load(starts.film_y.data() + i)});
+        const Numbers u = Numbers::load(starts.pupil_u.data() + i);
+        const pupil::PupilDraw<Numbers> draw = slice.sample(u, Numbers::load(starts.pupil_v.data() + i));
+        draw.point.x.store(starts.pupil_x.data() + i);
+        draw.point.y.store(starts.pupil_y.data() + i);
+        select(u < defensive_fraction, Numbers(-1.0), draw.area).store(starts.pupil_area.data() + i);
+    }
+}
+
+template <class Abi, class T>
+[[gnu::flatten]] void aim_rays(double film_z, double pupil_z, PathStarts& starts, optics::RayBatch<T>& rays) {
+    using Numbers = Pack<double, Abi>;
+    const Numbers z(film_z);
+    const Numbers to_pupil_z(pupil_z - film_z);
+    for (int i = 0; i < starts.size; i += Numbers::kLanes) {
+        const Numbers x = Numbers::load(starts.film_x.data() + i);
+        const Numbers y = Numbers::load(starts.film_y.data() + i);
+        const Vec3<Numbers> to_pupil{Numbers::load(starts.pupil_x.data() + i) - x,
+                                     Numbers::load(starts.pupil_y.data() + i) - y, to_pupil_z};
+        const Numbers per_distance2 = Numbers(1.0) / dot(to_pupil, to_pupil);
+        const Vec3<Numbers> direction = sqrt(per_distance2) * to_pupil;
+        const Numbers etendue = direction.z * direction.z * per_distance2 * Numbers::load(starts.pupil_area.data() + i);
+        etendue.store(starts.etendue.data() + i);
+        x.store(rays.origin.x.data() + i);
+        y.store(rays.origin.y.data() + i);
+        z.store(rays.origin.z.data() + i);
+        direction.x.store(rays.direction.x.data() + i);
+        direction.y.store(rays.direction.y.data() + i);
+        direction.z.store(rays.direction.z.data() + i);
+    }
+    std::copy_n(starts.wavelength.data(), starts.size, rays.wavelength.data());
+    rays.size = starts.size;
+}
+
+template <class Abi>
+LevelPathKernels path_kernels_of() {
+    return {.in_float = {draw_samples<Abi>, draw_pupil_points<Abi>, aim_rays<Abi, float>},
+            .in_double = {draw_samples<Abi>, draw_pupil_points<Abi>, aim_rays<Abi, double>}};
+}
+
+}  // namespace lensproof::render

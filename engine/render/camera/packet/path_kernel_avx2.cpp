@@ -1,0 +1,9 @@
+#include "engine/render/camera/packet/path_kernel.h"
+
+namespace lensproof::render {
+
+LevelPathKernels avx2_path_kernels() {
+    return path_kernels_of<std::experimental::simd_abi::native<double>>();
+}
+
+}  // namespace lensproof::render

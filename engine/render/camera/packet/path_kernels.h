@@ -1,0 +1,39 @@
+// engine/render/camera/packet/path_kernels.h — the loops that camera paths start with, one of each for each width of
+// packets.
+#pragma once
+#include <cstdint>
+#include <optional>
+
+#include "engine/optics/packet/trace_batch.h"
+#include "engine/pupil/pupil_slice.h"
+#include "engine/render/camera/packet/path_chunk.h"
+
+namespace lensproof::render {
+
+/// The loops of one level; all levels yield the same bits.
+template <class T>
+struct PathKernels {
+    /// Draws `count` samples: pixel, sample, film point, wavelength, numbers for the pupil. Moves the cursor.
+    void (*draw_samples)(const PathSampling& sampling, int count, PathCursor& cursor, PathStarts& starts);
+
+    /// Points of the pupil and their areas; of those that are drawn in defence it leaves −1 as area.
+    void (*draw_pupil_points)(const pupil::PupilSliceTables& slices, PathStarts& starts);
+
+    /// From film and pupil points the rays and their etendue.
+    void (*aim_rays)(double film_z, double pupil_z, PathStarts& starts, optics::RayBatch<T>& rays);
+};
+
+/// Those of a level, or of the widest; throws as `LoopsByLevel` does.
+template <class T>
+const PathKernels<T>& path_kernels(std::optional<optics::SimdLevel> level);
+
+struct LevelPathKernels {
+    PathKernels<float> in_float;
+    PathKernels<double> in_double;
+};
+LevelPathKernels scalar_path_kernels();
+LevelPathKernels baseline_path_kernels();
+LevelPathKernels avx2_path_kernels();    // x86-64 alone
+LevelPathKernels avx512_path_kernels();  // x86-64 alone
+
+}  // namespace lensproof::render

@@ -1,0 +1,60 @@
+// engine/render/camera/shared_rays.h — what a path outside the lens counts at each of its wavelengths.
+#pragma once
+#include "engine/optics/packet/trace_batch.h"
+#include "engine/pupil/pupil_slices.h"
+#include "engine/render/camera/camera_paths.h"
+#include "engine/spectral/spectral_sample.h"
+
+namespace lensproof::render {
+
+/// Where a ray behind the lens (lens space) meets the film, and the pdf with which camera paths of a wavelength, by its
+/// position in the map's band, draw it: per etendue, 1/(mm² sr), times a pixel's area.
+struct FilmMeeting {
+    Vec2d point;
+    double pdf = 0.0;
+};
+FilmMeeting meet_film(const pupil::PupilMap& pupil, double film_z, double band_position, const Ray<double>& behind);
+
+/// Camera paths are drawn for their hero; outside the lens the ray serves the other wavelengths too, each of which
+/// reaches it by its own path through the glass, from its own point on the film. Of the four techniques "draw the ray
+/// as wavelength m's hero, in this pixel" each could have drawn the ray with a pdf p_m of its own, 0 where its film
+/// point lies outside the pixel. Weighed by the balance heuristic (Veach & Guibas 1995; Wilkie et al. 2014, eq. 8),
+/// wavelength j counts
+///
+///     w_j = τ_j / (¼ Σ_m p_m)   if its film point lies in the pixel, else 0;
+///
+/// pdfs are per etendue, which is the same on both sides of the lens. Nothing crosses a pixel's border: what a
+/// wavelength brings elsewhere, that pixel's own paths bring. A lens whose colours part by more than a pixel leaves the
+/// hero alone, with w = 4 τ / p.
+class SharedRays {
+  public:
+    /// Lens and pupil outlive it. `lens` at the strata of `grid`. `is_box`: pixels are the filter, as w needs it; else
+    /// the pixel of a path is the one that its film point lies in, and w is for its pdfs alone.
+    SharedRays(const spectral::SpectralGrid& grid, const optics::SpectralLens<double>& lens,
+               const pupil::PupilSlices& pupil, const Sensor& sensor, bool is_box)
+        : grid_(grid),
+          lens_(&lens),
+          pupil_(&pupil),
+          sensor_(sensor),
+          is_box_(is_box),
+          rays_(kBlock * spectral::kWavelengthsPerPath) {}
+
+    /// Writes w of its four wavelengths to every path of the buffer, and the pdfs that it was drawn with: ¼ Σ_m p_m,
+    /// and p of the hero.
+    void weigh(CameraPathBuffer& paths);
+
+  private:
+    static constexpr int kBlock = 64;  // paths; their rays stay in the first-level cache
+
+    void trace(const CameraPathBuffer& paths, int first, int count);
+    [[nodiscard]] Vec2d pixel_of(const CameraPathBuffer& paths, std::size_t path) const;
+
+    spectral::SpectralGrid grid_;
+    const optics::SpectralLens<double>* lens_;
+    const pupil::PupilSlices* pupil_;
+    Sensor sensor_;
+    bool is_box_;
+    optics::RayBatch<double> rays_;
+};
+
+}  // namespace lensproof::render

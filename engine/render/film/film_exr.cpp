@@ -1,0 +1,389 @@
+#include "engine/render/film/film_exr.h"
+
+#include <OpenImageIO/imageio.h>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <cstring>
+#include <functional>
+#include <stdexcept>
+#include <utility>
+
+#include "engine/base/file.h"
+#include "engine/base/input_error.h"
+#include "engine/spectral/spectral_exr.h"
+
+namespace lensproof::render {
+
+namespace {
+
+constexpr int kRowsAtOnce = 64;
+constexpr double kMostPixels = 200e6;
+constexpr const char* kIdentityPrefix = "lensproof:identity:";
+constexpr const char* kLightPaths = "lensproof:lightPaths";
+constexpr const char* kLeftOut = "lensproof:leftOut";
+
+const std::vector<std::string> kRgb = {"R", "G", "B"};
+const std::vector<std::string> kVariance = {"variance.R", "variance.G", "variance.B"};
+const std::vector<std::string> kCounts = {"blocks", "samples"};  // in the order that files keep
+const std::vector<std::string> kFeatures = {"Z",        "albedo.R", "albedo.G", "albedo.B",
+                                            "normal.X", "normal.Y", "normal.Z", "coverage"};
+
+std::vector<std::string> joined(std::vector<std::string> names, const std::vector<std::string>& more) {
+    names.insert(names.end(), more.begin(), more.end());
+    return names;
+}
+
+std::vector<std::string> spectral_names(const std::vector<double>& layer_nm) {
+    std::vector<std::string> names;
+    std::ranges::transform(layer_nm, std::back_inserter(names), spectral::spectral_channel_name);
+    return names;
+}
+
+void append(std::vector<float>& values, const Vec3d& v) {
+    for (const double value : {v.x, v.y, v.z}) {
+        values.push_back(static_cast<float>(value));
+    }
+}
+
+void append(std::vector<float>& values, std::span<const double> more) {
+    std::ranges::transform(more, std::back_inserter(values), [](double value) { return static_cast<float>(value); });
+}
+
+/// A part of the file: its channels, and what a pixel has in them.
+struct Part {
+    std::string name;
+    std::vector<std::string> channels;
+    std::function<void(int x, int y, std::vector<float>& values)> append_pixel;  // none: counts of samples
+};
+
+std::vector<Part> parts_of(const Film& film) {
+    const std::vector<std::string> spectral = spectral_names(film.layout().layer_nm);
+    std::vector<double> layers(film.layout().layer_nm.size());
+    std::vector<Part> parts;
+    parts.push_back(
+        {"rgb", kRgb, [&film](int x, int y, std::vector<float>& values) { append(values, film.estimate(x, y).rgb); }});
+    parts.push_back({"spectral", spectral, [&film, layers](int x, int y, std::vector<float>& values) mutable {
+                         film.layers(x, y, layers);
+                         append(values, std::span<const double>(layers));
+                     }});
+    parts.push_back({"variance", kVariance, [&film](int x, int y, std::vector<float>& values) {
+                         append(values, film.estimate(x, y).variance);
+                     }});
+    parts.push_back({"samples", kCounts, {}});
+    if (film.layout().has_features) {
+        parts.push_back({"features", kFeatures, [&film](int x, int y, std::vector<float>& values) {
+                             const PixelFeatures features = film.features(x, y);
+                             values.push_back(static_cast<float>(features.depth_mm));
+                             append(values, features.albedo_rgb);
+                             append(values, features.normal);
+                             values.push_back(static_cast<float>(film.coverage(x, y)));
+                         }});
+    }
+    if (film.layout().has_splats) {
+        parts.push_back({"light", joined(joined(kRgb, kVariance), spectral),
+                         [&film, layers](int x, int y, std::vector<float>& values) mutable {
+                             const auto [rgb, variance] = film.light_estimate(x, y);
+                             append(values, rgb);
+                             append(values, variance);
+                             film.light_layers(x, y, layers);
+                             append(values, std::span<const double>(layers));
+                         }});
+    }
+    return parts;
+}
+
+OIIO::ImageSpec spec_of(const Part& part, const Film& film, const FilmNotes& notes) {
+    OIIO::ImageSpec spec(film.width(), film.height(), static_cast<int>(part.channels.size()),
+                         part.append_pixel ? OIIO::TypeDesc::FLOAT : OIIO::TypeDesc::UINT32);
+    spec.channelnames = part.channels;
+    spec.attribute("oiio:subimagename", part.name);
+    spec.attribute("compression", "zip:1");  // what noise is left takes no less room at higher levels, but longer
+    spec.attribute("oiio:ColorSpace", "linear");
+    spec.attribute("DateTime",
+                   "1970:01:01 00:00:00");  // else the library writes the clock's: the same render, other bytes
+    if (notes.colours) {                    // of the first part, but what parts may share they have to
+        const spectral::RgbSpace& space = *notes.colours;
+        std::vector<float> chromaticities;
+        for (const Vec2d& point : {space.red, space.green, space.blue, space.white}) {
+            chromaticities.push_back(static_cast<float>(point.x));
+            chromaticities.push_back(static_cast<float>(point.y));
+        }
+        spec.attribute("chromaticities", OIIO::TypeDesc(OIIO::TypeDesc::FLOAT, 8), chromaticities.data());
+    }
+    if (part.name == "spectral" || part.name == "light") {
+        for (const auto& [name, value] : spectral::spectral_attributes(spectral::kFilmIrradianceUnits)) {
+            spec.attribute(name, value);
+        }
+    }
+    if (part.name == "rgb") {
+        for (const auto& [name, value] : notes.metadata) {
+            spec.attribute(name, value);
+        }
+        for (const IdentityPart& of : notes.identity) {
+            spec.attribute(kIdentityPrefix + of.name, of.value);
+        }
+        if (film.layout().has_splats) {
+            spec.attribute(kLightPaths, fmt::format("{}", film.light_paths()));
+        }
+        if (film.left_out() > 0) {
+            spec.attribute(kLeftOut, fmt::format("{}", film.left_out()));
+        }
+    }
+    return spec;
+}
+
+/// Rows of a part, one after the other.
+bool write_rows(OIIO::ImageOutput& output, const Part& part, const Film& film) {
+    std::vector<float> values;
+    std::vector<std::uint32_t> counts;
+    for (int y = 0; y < film.height(); y += kRowsAtOnce) {
+        const int end = std::min(film.height(), y + kRowsAtOnce);
+        values.clear();
+        counts.clear();
+        for (int row = y; row < end; ++row) {
+            for (int x = 0; x < film.width(); ++x) {
+                if (part.append_pixel) {
+                    part.append_pixel(x, row, values);
+                } else {
+                    counts.push_back(film.counts(x, row).blocks);
+                    counts.push_back(film.counts(x, row).samples);
+                }
+            }
+        }
+        const bool is_written = part.append_pixel
+                                    ? output.write_scanlines(y, end, 0, OIIO::TypeDesc::FLOAT, values.data())
+                                    : output.write_scanlines(y, end, 0, OIIO::TypeDesc::UINT32, counts.data());
+        if (!is_written) {
+            return false;
+        }
+    }
+    return true;
+}
+
+bool write_parts(OIIO::ImageOutput& output, const std::string& name, const std::vector<Part>& parts,
+                 const std::vector<OIIO::ImageSpec>& specs, const Film& film) {
+    bool is_written = output.open(name, static_cast<int>(specs.size()), specs.data());
+    for (std::size_t i = 0; is_written && i < parts.size(); ++i) {
+        is_written = (i == 0 || output.open(name, specs[i], OIIO::ImageOutput::AppendSubimage)) &&
+                     write_rows(output, parts[i], film);
+    }
+    return is_written && output.close();
+}
+
+/// Reads the parts of a film's file.
+class FilmReader {
+  public:
+    explicit FilmReader(const std::filesystem::path& file) : file_(file) {
+        check_readable(file);
+        input_ = OIIO::ImageInput::open(file.string());
+        if (!input_ || std::strcmp(input_->format_name(), "openexr") != 0) {
+            OIIO::geterror();
+            fail("not an OpenEXR file that can be read");
+        }
+    }
+
+    FilmNotes read_notes() { return notes_of(seek("rgb")); }
+
+    FilmFile read() {
+        const OIIO::ImageSpec first = seek("rgb");
+        FilmNotes notes = notes_of(first);
+        FilmLayout layout{.width = first.width,
+                          .height = first.height,
+                          .layer_nm = layers_of(seek("spectral")),
+                          .rgb_weights = {},
+                          .has_splats = find("light").has_value(),
+                          .has_features = find("features").has_value()};
+        layout.rgb_weights.resize(layout.layer_nm.size());
+        Film film(std::move(layout));
+        film.set_light_paths(count_in(first, kLightPaths));
+        film.set_left_out(count_in(first, kLeftOut));
+        for (int y = 0; y < film.height(); y += kRowsAtOnce) {
+            read_rows(film, y, std::min(film.height(), y + kRowsAtOnce));
+        }
+        return {.film = std::move(film), .notes = std::move(notes)};
+    }
+
+  private:
+    [[noreturn]] void fail(const std::string& what) const {
+        throw InputError(fmt::format("{}: {}, expected a picture that lensproof rendered", file_.string(), what));
+    }
+
+    std::optional<int> find(const std::string& part) {
+        for (int i = 0; input_->seek_subimage(i, 0); ++i) {
+            if (input_->spec().get_string_attribute("oiio:subimagename") == part) {
+                return i;
+            }
+        }
+        input_->geterror();
+        return std::nullopt;
+    }
+
+    OIIO::ImageSpec seek(const std::string& part) {
+        const std::optional<int> found = find(part);
+        if (!found) {
+            fail(fmt::format("has no part \"{}\"", part));
+        }
+        input_->seek_subimage(*found, 0);
+        const OIIO::ImageSpec& spec = input_->spec();
+        if (size_ == std::pair(0, 0)) {
+            size_ = {spec.width, spec.height};
+        }
+        if (spec.width < 1 || spec.height < 1 || spec.x != 0 || spec.y != 0 ||
+            static_cast<double>(spec.width) * spec.height > kMostPixels ||
+            size_ != std::pair(spec.width, spec.height)) {
+            fail(fmt::format("part \"{}\" has {} × {} pixels", part, spec.width, spec.height));
+        }
+        return spec;
+    }
+
+    [[nodiscard]] static std::uint64_t count_in(const OIIO::ImageSpec& spec, const char* name) {
+        const std::string text = spec.get_string_attribute(name, "0");
+        std::uint64_t count = 0;
+        std::from_chars(text.data(), text.data() + text.size(), count);
+        return count;
+    }
+
+    [[nodiscard]] static FilmNotes notes_of(const OIIO::ImageSpec& spec) {
+        FilmNotes notes;
+        const std::string prefix = kIdentityPrefix;
+        for (const auto& attribute : spec.extra_attribs) {
+            const std::string name = attribute.name().string();
+            if (name.starts_with(prefix)) {
+                notes.identity.push_back({name.substr(prefix.size()), attribute.get_string()});
+            } else if (name.starts_with("lensproof:") && name != kLightPaths && name != kLeftOut) {
+                notes.metadata[name] = attribute.get_string();
+            }
+        }
+        std::array<float, 8> xy{};
+        if (spec.getattribute("chromaticities", OIIO::TypeDesc(OIIO::TypeDesc::FLOAT, 8), xy.data())) {
+            notes.colours = {{xy[0], xy[1]}, {xy[2], xy[3]}, {xy[4], xy[5]}, {xy[6], xy[7]}};
+        }
+        return notes;
+    }
+
+    [[nodiscard]] std::vector<double> layers_of(const OIIO::ImageSpec& spec) const {
+        std::vector<double> layer_nm;
+        for (const std::string& name : spec.channelnames) {
+            const std::optional<spectral::SpectralChannel> channel = spectral::parse_spectral_channel(name);
+            if (!channel || channel->layer != "S0") {
+                fail(fmt::format("has a spectral layer \"{}\"", name));
+            }
+            layer_nm.push_back(channel->wavelength_nm);
+        }
+        std::ranges::sort(layer_nm);
+        return layer_nm;
+    }
+
+    /// Rows of the channels called `names`, pixel by pixel.
+    std::vector<float> rows(const std::string& part, const std::vector<std::string>& names, int y, int end) {
+        const OIIO::ImageSpec spec = seek(part);
+        std::vector<float> all(static_cast<std::size_t>(spec.width) * (end - y) * spec.nchannels);
+        if (!input_->read_scanlines(*find(part), 0, y, end, 0, 0, spec.nchannels, OIIO::TypeDesc::FLOAT, all.data())) {
+            fail(fmt::format("part \"{}\" is damaged ({})", part, input_->geterror()));
+        }
+        std::vector<float> wanted(static_cast<std::size_t>(spec.width) * (end - y) * names.size());
+        for (std::size_t k = 0; k < names.size(); ++k) {
+            const int channel = spec.channelindex(names[k]);
+            if (channel < 0) {
+                fail(fmt::format("part \"{}\" has no channel \"{}\"", part, names[k]));
+            }
+            for (std::size_t i = 0; i * names.size() < wanted.size(); ++i) {
+                wanted[i * names.size() + k] = all[i * spec.nchannels + static_cast<std::size_t>(channel)];
+            }
+        }
+        return wanted;
+    }
+
+    std::vector<PixelCounts> count_rows(int y, int end) {
+        const OIIO::ImageSpec spec = seek("samples");
+        std::vector<std::uint32_t> numbers(static_cast<std::size_t>(spec.width) * (end - y) * kCounts.size());
+        if (spec.channelnames != kCounts || !input_->read_scanlines(*find("samples"), 0, y, end, 0, 0, spec.nchannels,
+                                                                    OIIO::TypeDesc::UINT32, numbers.data())) {
+            fail(fmt::format("part \"samples\" is damaged ({})", input_->geterror()));
+        }
+        std::vector<PixelCounts> counts;
+        for (std::size_t i = 0; i < numbers.size(); i += 2) {
+            counts.push_back({.samples = numbers[i + 1], .blocks = numbers[i]});
+        }
+        return counts;
+    }
+
+    void read_rows(Film& film, int y, int end) {
+        const FilmLayout& layout = film.layout();
+        const std::vector<std::string> spectral = spectral_names(layout.layer_nm);
+        const std::size_t layers = spectral.size();
+        const std::vector<PixelCounts> counts = count_rows(y, end);
+        const std::vector<float> rgb = rows("rgb", kRgb, y, end);
+        const std::vector<float> variance = rows("variance", kVariance, y, end);
+        const std::vector<float> spectrum = rows("spectral", spectral, y, end);
+        const std::vector<float> features =
+            layout.has_features ? rows("features", kFeatures, y, end) : std::vector<float>();
+        const std::vector<float> light =
+            layout.has_splats ? rows("light", joined(joined(kRgb, kVariance), spectral), y, end) : std::vector<float>();
+        std::vector<double> camera_layers(layers);
+        std::vector<double> light_layers(layers);
+        const auto vector_at = [](const std::vector<float>& values, std::size_t at) {
+            return Vec3d{values[at], values[at + 1], values[at + 2]};
+        };
+        for (std::size_t i = 0; i < counts.size(); ++i) {
+            Film::PixelContent content{.counts = counts[i],
+                                       .camera = {vector_at(rgb, 3 * i), vector_at(variance, 3 * i)},
+                                       .camera_layers = camera_layers,
+                                       .light_layers = light_layers};
+            for (std::size_t k = 0; k < layers; ++k) {
+                camera_layers[k] = spectrum[i * layers + k];
+            }
+            if (layout.has_features) {
+                content.features = {.depth_mm = features[8 * i],
+                                    .albedo_rgb = vector_at(features, 8 * i + 1),
+                                    .normal = vector_at(features, 8 * i + 4)};
+                content.coverage = features[8 * i + 7];
+            }
+            if (layout.has_splats) {
+                const std::size_t first = i * (6 + layers);
+                content.light = {vector_at(light, first), vector_at(light, first + 3)};
+                content.camera = {content.camera.rgb - content.light.rgb,
+                                  content.camera.variance - content.light.variance};
+                for (std::size_t k = 0; k < layers; ++k) {
+                    light_layers[k] = light[first + 6 + k];
+                    camera_layers[k] -= light_layers[k];
+                }
+            }
+            const auto width = static_cast<std::size_t>(film.width());
+            film.set_pixel(static_cast<int>(i % width), y + static_cast<int>(i / width), content);
+        }
+    }
+
+    std::filesystem::path file_;
+    std::unique_ptr<OIIO::ImageInput> input_;
+    std::pair<int, int> size_{0, 0};
+};
+
+}  // namespace
+
+void write_film_exr(const Film& film, const FilmNotes& notes, const std::filesystem::path& file) {
+    const std::vector<Part> parts = parts_of(film);
+    std::vector<OIIO::ImageSpec> specs;
+    std::ranges::transform(parts, std::back_inserter(specs),
+                           [&](const Part& part) { return spec_of(part, film, notes); });
+    write_whole(file, [&](const std::filesystem::path& temporary) {
+        const auto output = OIIO::ImageOutput::create(temporary.string());
+        if (!output || !write_parts(*output, temporary.string(), parts, specs, film)) {
+            throw std::runtime_error(fmt::format("{}: cannot be written: {}", file.string(),
+                                                 output ? output->geterror() : OIIO::geterror()));
+        }
+    });
+}
+
+FilmFile read_film_exr(const std::filesystem::path& file) {
+    return FilmReader(file).read();
+}
+
+FilmNotes read_film_notes(const std::filesystem::path& file) {
+    return FilmReader(file).read_notes();
+}
+
+}  // namespace lensproof::render

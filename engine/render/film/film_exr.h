@@ -1,0 +1,45 @@
+// engine/render/film/film_exr.h — a film as a multi-part OpenEXR file, and back.
+#pragma once
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <string>
+
+#include "engine/render/film/film.h"
+#include "engine/render/film/render_identity.h"
+#include "engine/spectral/sensor_response.h"
+
+namespace lensproof::render {
+
+/// What a file says besides its pixels.
+struct FilmNotes {
+    RenderIdentity identity;                      // attributes "lensproof:identity:NAME"
+    std::map<std::string, std::string> metadata;  // further attributes of the first part
+    std::optional<spectral::RgbSpace> colours;  // of R, G, B: the attribute "chromaticities"; nothing: the sensor's own
+};
+
+/// Writes the film; whole or not at all, the same bytes for the same film and notes. Parts, each of 32-bit floats:
+///
+/// - rgb: R, G, B, linear, 1 = saturation. First, so that whoever takes the file for a picture gets it.
+/// - spectral: one channel a layer, in the layout of spectral_exr.h: film irradiance, W·m⁻²·nm⁻¹.
+/// - variance: variance.R, variance.G, variance.B, of the pixel's value (`PixelEstimate`).
+/// - samples: how many camera paths each pixel has had, and in how many blocks; unsigned integers.
+/// - features: Z (mm), albedo.R, …, normal.X, …, coverage (`Film::features`); where the film has them.
+/// - light: R, G, B, variance.R, …, and spectral layers, what of all these came by light paths, whose number is the
+///   attribute "lensproof:lightPaths"; where the film has them.
+///
+/// The attribute "lensproof:leftOut" says how many samples were left out (`Film::left_out`), where any were.
+void write_film_exr(const Film& film, const FilmNotes& notes, const std::filesystem::path& file);
+
+/// A film from its file, so that films add up: sums from means, variances and counts; of floats, so to 1e-7. Its layout
+/// knows sizes and layers but no strata. Throws InputError naming the file where it is not one of the above.
+struct FilmFile {
+    Film film;
+    FilmNotes notes;
+};
+FilmFile read_film_exr(const std::filesystem::path& file);
+
+/// Only what such a file says besides its pixels.
+FilmNotes read_film_notes(const std::filesystem::path& file);
+
+}  // namespace lensproof::render

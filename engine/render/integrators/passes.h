@@ -1,0 +1,24 @@
+// engine/render/integrators/passes.h — the integrators, by name.
+#pragma once
+#include <string>
+#include <vector>
+
+#include "engine/render/integrators/view.h"
+
+namespace lensproof::render {
+
+/// What makes a film of a world. Each pass is a file in this folder and a line in passes.cpp.
+struct Pass {
+    std::string name;         // as `render --paths` has it
+    std::string description;  // what of it stands among a render's settings
+    bool has_splats = false;  // light lands anywhere: the film keeps it, the camera meets light paths
+    TileRenderer (*renderer)(const View& view) = nullptr;
+};
+
+/// Of scenes: "camera", "light" and "both"; of charts under even light: "chart".
+const std::vector<Pass>& passes();
+
+/// Throws std::out_of_range for a name that is none of them.
+const Pass& pass_named(const std::string& name);
+
+}  // namespace lensproof::render

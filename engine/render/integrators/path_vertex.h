@@ -1,0 +1,90 @@
+// engine/render/integrators/path_vertex.h — what paths from either end have in common.
+#pragma once
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <optional>
+
+#include "engine/base/basis.h"
+#include "engine/render/sampling/path_sampler.h"
+#include "engine/scene/scene.h"
+
+namespace lensproof::render {
+
+struct PathSettings {
+    int max_bounces = 8;  // scatterings on a path; 0 shows lights alone
+    /// From this bounce on, paths are ended at random by how little they still carry ("Russian roulette", Arvo & Kirk,
+    /// SIGGRAPH 1990); those that go on carry more for it.
+    int roulette_from = 3;
+};
+
+/// A surface point on a path, with its scattering at the path's wavelengths.
+struct PathVertex {
+    scene::SurfaceHit hit;
+    Basis frame;           // z: the shading normal
+    Vec3d wo;              // local, towards where the path comes from
+    double cos_backwards;  // |cos| of that about the geometric normal
+    scene::Bsdf bsdf;
+
+    /// `backwards`: world, unit length, towards where the path comes from. The scene outlives the vertex.
+    PathVertex(const scene::SurfaceHit& at, const Vec3d& backwards, const scene::Scene& scene,
+               const spectral::PathWavelengths& path)
+        : hit(at),
+          frame(at.shading_normal, at.tangent),
+          wo(frame.to_local(backwards)),
+          cos_backwards(std::abs(dot(backwards, at.geometric_normal))),
+          bsdf(scene::bsdf_at(scene.materials[at.material], at.uv, path)) {}
+
+    /// Whether a direction lies on the same side of the surface by its shading normal as by its geometry: where they
+    /// differ light would leak through.
+    [[nodiscard]] bool is_consistent(const Vec3d& world, const Vec3d& local) const {
+        return dot(world, hit.geometric_normal) * local.z > 0.0;
+    }
+
+    /// The ray that goes on from here.
+    [[nodiscard]] Ray<double> ray(const Vec3d& onwards) const { return {scene::ray_origin(hit, onwards), onwards}; }
+
+    /// A direction that the path goes on in.
+    struct Turn {
+        scene::BsdfSample bsdf;
+        Vec3d onwards;  // world
+    };
+    /// Draws one by the first three of these numbers. Nothing where the path ends.
+    [[nodiscard]] std::optional<Turn> turn(const std::array<double, PathSampler::kNumbers>& numbers,
+                                           scene::Transport transport) const {
+        const auto scattered = scene::sample(bsdf, wo, numbers[0], numbers[1], numbers[2], transport);
+        if (!scattered) {
+            return {};
+        }
+        const Vec3d onwards = frame.to_world(scattered->wi);
+        return is_consistent(onwards, scattered->wi) ? std::optional(Turn{*scattered, onwards}) : std::nullopt;
+    }
+};
+
+/// The transmittance of the body that light has come through to its surface from inside; 1 through the open.
+inline spectral::SpectralSample body_transmittance(const scene::Scene& scene, const scene::SurfaceHit& hit,
+                                                   const Vec3d& direction, const spectral::PathWavelengths& path) {
+    if (scene.absorption.empty() || dot(hit.geometric_normal, direction) <= 0.0 || !scene.absorption[hit.material]) {
+        return spectral::SpectralSample(1.0F);
+    }
+    const auto distance_mm = static_cast<float>(hit.distance_mm);
+    return spectral::for_each_wavelength([&](float per_mm) { return std::exp(-per_mm * distance_mm); },
+                                         (*scene.absorption[hit.material])(path));
+}
+
+/// Whether a path that carries `carries`, having started with 1, goes on after a bounce; scales what does.
+inline bool survives_roulette(const PathSettings& settings, int bounce, double number,
+                              spectral::SpectralSample& carries) {
+    const float largest = spectral::max_value(carries);
+    if (!(largest > 0.0F)) {
+        return false;
+    }
+    if (bounce < settings.roulette_from || largest >= 1.0F) {
+        return true;
+    }
+    const float survival = std::max(largest, 0.05F);
+    carries *= 1.0F / survival;
+    return number < survival;
+}
+
+}  // namespace lensproof::render

@@ -1,0 +1,45 @@
+// engine/render/integrators/tile_paths.h — the camera paths of a tile's samples, one after the other.
+#pragma once
+#include <cstddef>
+#include <cstdint>
+
+#include "engine/render/camera/camera.h"
+#include "engine/render/film/film.h"
+
+namespace lensproof::render {
+
+class TilePaths {
+  public:
+    TilePaths(const Camera& camera, std::uint64_t seed, PathCarry carry)
+        : width_(static_cast<std::uint32_t>(camera.sensor().width)), paths_(camera.paths(seed, carry)) {}
+
+    /// Calls add(paths, path, pixel) for each path of these samples, `path` being its place in the buffer `paths` and
+    /// `pixel` its pixel's in the tile; counts rays in the tile.
+    template <class Add>
+    void for_each(const TileSamples& samples, FilmTile& tile, const Add& add) {
+        const PixelRect& rect = samples.rect;
+        const std::int64_t started_before = paths_.started();
+        for (int y = rect.y; y < rect.y + rect.height; ++y) {
+            const std::uint32_t first_pixel =
+                static_cast<std::uint32_t>(y) * width_ + static_cast<std::uint32_t>(rect.x);
+            paths_.start({.first_pixel = first_pixel,
+                          .pixels = static_cast<std::uint32_t>(rect.width),
+                          .first_sample = samples.first,
+                          .samples = samples.end - samples.first});
+            const std::size_t first_of_row = tile.pixel(rect.x, y);
+            while (paths_.fill(buffer_)) {
+                for (std::size_t i = 0; i < static_cast<std::size_t>(buffer_.size); ++i) {
+                    add(buffer_, i, first_of_row + (buffer_.pixel[i] - first_pixel));
+                }
+            }
+        }
+        tile.count_rays(static_cast<std::uint64_t>(paths_.started() - started_before));
+    }
+
+  private:
+    std::uint32_t width_;
+    CameraPaths paths_;
+    CameraPathBuffer buffer_;
+};
+
+}  // namespace lensproof::render

@@ -1,0 +1,41 @@
+// engine/render/integrators/view.h — what an integrator renders.
+#pragma once
+#include <cstdint>
+#include <variant>
+#include <vector>
+
+#include "engine/render/camera/camera.h"
+#include "engine/render/film/film.h"
+#include "engine/render/integrators/path_vertex.h"
+#include "engine/scene/chart/chart.h"
+#include "engine/scene/chart/pose.h"
+#include "engine/scene/scene.h"
+
+namespace lensproof::render {
+
+/// A flat chart under even light. The world around it is as white as its white, in every direction.
+struct EvenChart {
+    scene::Chart chart;
+    scene::RigidMotion pose;             // of the chart, in the camera's frame
+    std::vector<double> white_radiance;  // of a perfect white diffuser in its light, W·m⁻²·sr⁻¹·nm⁻¹, a stratum each
+};
+
+using World = std::variant<scene::Scene, EvenChart>;
+
+/// What is seen, by what, and what the film keeps of it. Held by pointer: both outlive the render.
+struct View {
+    const World* world = nullptr;
+    const Camera* camera = nullptr;
+    FilmLayout film;
+    PathSettings paths;
+    std::uint64_t seed = 0;
+
+    [[nodiscard]] const scene::Scene& scene() const { return std::get<scene::Scene>(*world); }
+    [[nodiscard]] const EvenChart& chart() const { return std::get<EvenChart>(*world); }
+};
+
+/// Whether an integrator's paths make the image by themselves, or with those from the other end, one to each of these
+/// of each pixel, each counted by its MIS weight (mis_weight.h).
+enum class Combination { alone, weighed };
+
+}  // namespace lensproof::render

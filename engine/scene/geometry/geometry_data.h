@@ -1,0 +1,55 @@
+// engine/scene/geometry/geometry_data.h — what a SceneGeometry holds, for those who build and ask it.
+#pragma once
+#include <algorithm>
+#include <cmath>
+
+#include "engine/scene/geometry/embree.h"
+#include "engine/scene/geometry/geometry.h"
+#include "engine/scene/geometry/shape_hit.h"
+
+namespace lensproof::scene {
+
+/// What float's rounding does to a coordinate on its way through Embree, generously: it only costs a few candidates
+/// more.
+inline constexpr double kFloatRoundings = 64.0 * 0x1p-24;
+
+inline double reach(const Box& box) {
+    return std::max(largest_coordinate(box.low), largest_coordinate(box.high));
+}
+
+/// An object with all that a hit on it takes.
+struct PlacedObject {
+    SceneObject object;
+    ObjectPlace place;
+    const Shape* shape = nullptr;
+    Box bounds;
+};
+
+struct SceneGeometry::Data {
+    std::vector<Shape> shapes;
+    std::vector<int> uses;  // of each shape, by objects
+    std::vector<PlacedObject> objects;
+    std::vector<std::uint32_t> analytic;     // the spheres and quads among them, the primitives of one Embree geometry
+    bool tests_analytic_one_by_one = false;  // a handful is sooner tested so than found by Embree
+    bool has_embree_geometry = false;
+    std::vector<std::string> remarks;
+    Box bounds;
+    double mesh_reach_mm = 0.0;  // of the farthest vertex, in the world
+    embree::Device device;
+    std::vector<embree::Scene> instanced;  // of a shape that is instanced, by the shape's index
+    embree::Scene scene;
+
+    [[nodiscard]] const TriangleMesh& mesh(std::uint32_t object) const {
+        return std::get<TriangleMesh>(*objects[object].shape);
+    }
+};
+
+// What Embree calls back. The first two for a triangle, or for a sphere or quad whose box Embree's ray has met.
+void judge_triangle(const RTCFilterFunctionNArguments* arguments);
+void intersect_analytic(const RTCIntersectFunctionNArguments* arguments);
+void occlude_analytic(const RTCOccludedFunctionNArguments* arguments);
+/// An object's box in floats, wide enough for what rounding does to Embree's ray from within some ten times the scene's
+/// reach; from farther away an object's rim frays by a few floats.
+void bound_analytic(const RTCBoundsFunctionArguments* arguments);
+
+}  // namespace lensproof::scene

@@ -1,0 +1,44 @@
+// engine/scene/geometry/mesh_file.h — triangle meshes from the files of modelling programs, by Assimp.
+#pragma once
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "engine/scene/geometry/shapes.h"
+
+namespace lensproof::scene {
+
+enum class MeshNormals {
+    file,    // as the file gives them; flat where it gives none
+    flat,    // every triangle its own
+    smooth,  // averaged over the triangles at a vertex that meet at less than the crease angle
+};
+
+struct MeshOptions {
+    /// mm in a unit of the file. Without: 1000 for glTF, whose unit is the metre, and 1 for OBJ and PLY, which have
+    /// none.
+    std::optional<double> mm_per_unit;
+    /// The part of the file that is meant, by the name of a node or a mesh (an object or a group of OBJ); empty: all of
+    /// it.
+    std::string part;
+    MeshNormals normals = MeshNormals::file;
+    double crease_deg = 30.0;
+};
+
+struct MeshFile {
+    TriangleMesh mesh;                 // all that is meant, as one, in mm
+    std::vector<std::string> remarks;  // what of the file is not used, a sentence each
+};
+
+/// Reads a glTF (.gltf, .glb), OBJ or PLY file: its triangles, and its polygons cut into triangles, each where the
+/// file's tree of nodes places it. uvs have v upwards whatever the form. Materials, lines, points, cameras, lights and
+/// animations are left out, and named in the remarks.
+///
+/// Throws InputError naming the file: missing, another extension, damaged or truncated where the form lets one see it,
+/// larger than 256 MiB (PLY), no triangles, no such part, more than 2³¹ vertices. A triangle of glTF whose
+/// indices lead beyond its vertices is left out by Assimp, without a word. The mesh still has to be repaired, as
+/// `SceneGeometry` does.
+MeshFile read_mesh(const std::filesystem::path& file, const MeshOptions& options = {});
+
+}  // namespace lensproof::scene

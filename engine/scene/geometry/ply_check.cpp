@@ -1,0 +1,203 @@
+#include "engine/scene/geometry/ply_check.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "engine/base/input_error.h"
+#include "engine/base/text.h"
+
+namespace lensproof::scene {
+
+namespace {
+
+enum class PlyForm { ascii, little_endian, big_endian };
+
+struct PlyProperty {
+    int bytes = 0;        // of a value
+    int count_bytes = 0;  // of the number before a list's values; 0 where there is one value
+};
+
+struct PlyElement {
+    std::string name;
+    double count = 0.0;
+    std::vector<PlyProperty> properties;
+};
+
+struct PlyHeader {
+    PlyForm form = PlyForm::ascii;
+    std::vector<PlyElement> elements;
+    std::size_t size = 0;  // of the header, up to the first byte of the first element
+};
+
+class PlyCheck {
+  public:
+    PlyCheck(std::string_view content, const std::filesystem::path& file) : content_(content), file_(file.string()) {}
+
+    void run() {
+        const PlyHeader header = read_header();
+        rest_ = content_.substr(header.size);
+        for (const PlyElement& element : header.elements) {
+            if (header.form == PlyForm::ascii) {
+                check_lines(element);
+            } else {
+                check_bytes(element, header.form);
+            }
+        }
+    }
+
+  private:
+    [[noreturn]] void refuse(const std::string& reason) const {
+        throw InputError(fmt::format("{}: cannot be read as ply: {}", file_, reason));
+    }
+
+    /// The next line of the header or of an ASCII file, without its end; nothing at the end of the file.
+    static std::optional<std::string_view> take_line(std::string_view& rest) {
+        const std::size_t end = rest.find_first_of("\r\n");
+        if (rest.empty()) {
+            return std::nullopt;
+        }
+        const std::string_view line = rest.substr(0, end);
+        const bool is_crlf = end != std::string_view::npos && rest.substr(end, 2) == "\r\n";
+        rest.remove_prefix(end == std::string_view::npos ? rest.size() : end + (is_crlf ? 2 : 1));
+        return line;
+    }
+
+    int size_of(std::string_view type) const {
+        static const std::map<std::string_view, int> kSizes = {
+            {"char", 1},  {"uchar", 1},   {"int8", 1},   {"uint8", 1},  {"short", 2}, {"ushort", 2},
+            {"int16", 2}, {"uint16", 2},  {"int", 4},    {"uint", 4},   {"int32", 4}, {"uint32", 4},
+            {"float", 4}, {"float32", 4}, {"double", 8}, {"float64", 8}};
+        const auto found = kSizes.find(type);
+        if (found == kSizes.end()) {
+            refuse(fmt::format("its header has a property of type '{}'", printable(type)));
+        }
+        return found->second;
+    }
+
+    PlyForm form_of(std::string_view word) const {
+        if (word == "ascii") {
+            return PlyForm::ascii;
+        }
+        if (word != "binary_little_endian" && word != "binary_big_endian") {
+            refuse(fmt::format("its format is '{}'", printable(word)));
+        }
+        return word == "binary_little_endian" ? PlyForm::little_endian : PlyForm::big_endian;
+    }
+
+    PlyElement element_of(const std::vector<std::string_view>& words) const {
+        const std::optional<double> count = parse_number(words[2]);
+        if (!count || !(*count >= 0.0) || *count != std::floor(*count)) {
+            refuse(fmt::format("its header promises '{}' of {}", printable(words[2]), printable(words[1])));
+        }
+        return {.name = printable(words[1]), .count = *count};
+    }
+
+    PlyHeader read_header() const {
+        PlyHeader header;
+        std::string_view rest = content_;
+        if (take_line(rest) != "ply") {
+            refuse("it does not begin with 'ply'");
+        }
+        while (const auto line = take_line(rest)) {
+            const std::vector<std::string_view> words = words_of(*line);
+            if (words.empty() || words[0] == "comment" || words[0] == "obj_info") {
+                continue;
+            }
+            if (words[0] == "end_header") {
+                header.size = content_.size() - rest.size();
+                return header;
+            }
+            if (words[0] == "format" && words.size() == 3) {
+                header.form = form_of(words[1]);
+            } else if (words[0] == "element" && words.size() == 3) {
+                header.elements.push_back(element_of(words));
+            } else if (words[0] == "property" && words.size() == 3 && !header.elements.empty()) {
+                header.elements.back().properties.push_back({.bytes = size_of(words[1])});
+            } else if (words[0] == "property" && words.size() == 5 && words[1] == "list" && !header.elements.empty()) {
+                header.elements.back().properties.push_back(
+                    {.bytes = size_of(words[3]), .count_bytes = size_of(words[2])});
+            } else {
+                refuse(fmt::format("its header says '{}'", printable(*line)));
+            }
+        }
+        refuse("its header does not end");
+    }
+
+    [[noreturn]] void refuse_end(const PlyElement& element, double at) const {
+        refuse(fmt::format("it ends within the {} {} of {}", element.name, at, element.count));
+    }
+
+    void check_lines(const PlyElement& element) {
+        for (double i = 0; i < element.count; ++i) {
+            const auto line = take_line(rest_);
+            if (!line) {
+                refuse_end(element, i);
+            }
+            const std::vector<std::string_view> words = words_of(*line);
+            std::size_t needed = 0;
+            for (const PlyProperty& property : element.properties) {
+                const auto count = needed < words.size() ? parse_number(words[needed]) : std::nullopt;
+                if (!count || (property.count_bytes > 0 && !(*count >= 0.0 && *count <= kLongestList))) {
+                    refuse(fmt::format("the {} {} is '{}'", element.name, i, printable(*line)));
+                }
+                needed += property.count_bytes > 0 ? 1 + static_cast<std::size_t>(*count) : 1;
+            }
+            if (needed > words.size()) {
+                refuse(fmt::format("the {} {} is '{}'", element.name, i, printable(*line)));
+            }
+        }
+    }
+
+    void check_bytes(const PlyElement& element, PlyForm form) {
+        for (double i = 0; i < element.count; ++i) {
+            std::size_t taken = 0;
+            for (const PlyProperty& property : element.properties) {
+                std::size_t values = 1;
+                if (property.count_bytes > 0) {
+                    if (taken + property.count_bytes > rest_.size()) {
+                        refuse_end(element, i);
+                    }
+                    values = whole_number(rest_.substr(taken, property.count_bytes), form);
+                    taken += property.count_bytes;
+                }
+                if (values > (rest_.size() - std::min(taken, rest_.size())) / property.bytes) {
+                    refuse_end(element, i);
+                }
+                taken += values * property.bytes;
+            }
+            if (taken == 0) {
+                return;  // an element without properties, of which any number is there
+            }
+            rest_.remove_prefix(taken);
+        }
+    }
+
+    static std::size_t whole_number(std::string_view bytes, PlyForm form) {
+        std::size_t value = 0;
+        for (std::size_t i = 0; i < bytes.size(); ++i) {
+            const std::size_t at = form == PlyForm::big_endian ? i : bytes.size() - 1 - i;
+            value = value << 8 | static_cast<unsigned char>(bytes[at]);
+        }
+        return value;
+    }
+
+    static constexpr double kLongestList = 1e6;
+
+    std::string_view content_;
+    std::string file_;
+    std::string_view rest_;
+};
+
+}  // namespace
+
+void check_ply(std::string_view content, const std::filesystem::path& file) {
+    PlyCheck(content, file).run();
+}
+
+}  // namespace lensproof::scene

@@ -1,0 +1,173 @@
+#include "engine/scene/geometry/shape_hit.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+namespace lensproof::scene {
+
+namespace {
+
+/// `v` without its part along the unit vector `normal`, of unit length; any direction at right angles where none is
+/// left (Duff et al., "Building an orthonormal basis, revisited", JCGT 6, 2017).
+Vec3d tangent_along(const Vec3d& v, const Vec3d& normal) {
+    const Vec3d across = v - dot(v, normal) * normal;
+    const double squared = dot(across, across);
+    if (squared > 1e-16 * dot(v, v)) {
+        return (1.0 / std::sqrt(squared)) * across;
+    }
+    const double sign = std::copysign(1.0, normal.z);
+    const double a = -1.0 / (sign + normal.z);
+    return {1.0 + sign * normal.x * normal.x * a, sign * normal.x * normal.y * a, -sign * normal.x};
+}
+
+/// The derivative of the point by u where the triangle has uvs that allow one, else its first edge.
+Vec3d u_direction(const std::array<Vec3d, 3>& p, const std::array<Vec2<float>, 3>& uv) {
+    const Vec2d a{double(uv[1].x) - uv[0].x, double(uv[1].y) - uv[0].y};
+    const Vec2d b{double(uv[2].x) - uv[0].x, double(uv[2].y) - uv[0].y};
+    const double area = a.x * b.y - a.y * b.x;
+    const Vec3d along = b.y * (p[1] - p[0]) - a.y * (p[2] - p[0]);
+    return area == 0.0 || !(dot(along, along) > 0.0) ? p[1] - p[0] : std::copysign(1.0, area) * along;
+}
+
+}  // namespace
+
+Stretch mapped(const AffineMap& map, const Stretch& ray) {
+    return {
+        .origin = map_point(map, ray.origin), .direction = map.linear * ray.direction, .from = ray.from, .to = ray.to};
+}
+
+std::optional<Meeting> meet(const Sphere& sphere, const AffineMap& to_local, const Stretch& world_ray) {
+    const Stretch ray = mapped(to_local, world_ray);
+    const double squared = dot(ray.direction, ray.direction);
+    const double nearest = -dot(ray.origin, ray.direction) / squared;
+    const Vec3d p = ray.origin + nearest * ray.direction;
+    const double left = sphere.radius_mm * sphere.radius_mm - dot(p, p);
+    if (!(left >= 0.0)) {
+        return std::nullopt;
+    }
+    const double half_chord = std::sqrt(left / squared);
+    // The root that is nearer to the origin by Vieta's product of both: their difference would cancel on the sphere.
+    const double far = nearest + std::copysign(half_chord, nearest);
+    const double distance = length(ray.origin);
+    const double product = (distance - sphere.radius_mm) * (distance + sphere.radius_mm) / squared;
+    const double near = far != 0.0 ? product / far : 0.0;
+    for (const double at : {std::min(near, far), std::max(near, far)}) {
+        if (at > ray.from && at < ray.to) {
+            return Meeting{.at = at};
+        }
+    }
+    return std::nullopt;
+}
+
+std::optional<Meeting> meet(const Quad& quad, const AffineMap& to_local, const Stretch& ray) {
+    // Of most rays the height above the plane alone says that they miss.
+    const double height = dot(to_local.linear[2], ray.origin) + to_local.translation.z;
+    const double at = -height / dot(to_local.linear[2], ray.direction);
+    if (!(at > ray.from && at < ray.to)) {
+        return std::nullopt;
+    }
+    const Vec3d point = ray.origin + at * ray.direction;
+    const double x = dot(to_local.linear[0], point) + to_local.translation.x;
+    const double y = dot(to_local.linear[1], point) + to_local.translation.y;
+    const bool is_inside = std::abs(x) <= 0.5 * quad.width_mm && std::abs(y) <= 0.5 * quad.height_mm;
+    return is_inside ? std::optional(Meeting{.at = at, .b1 = x, .b2 = y}) : std::nullopt;
+}
+
+std::optional<Meeting> meet(const std::array<Vec3d, 3>& triangle, double float_b1, double float_b2, double near,
+                            const Stretch& ray) {
+    // Möller and Trumbore, "Fast, minimum storage ray/triangle intersection", 1997.
+    const Vec3d e1 = triangle[1] - triangle[0];
+    const Vec3d e2 = triangle[2] - triangle[0];
+    const Vec3d from_first = ray.origin - triangle[0];
+    const Vec3d across = cross(ray.direction, e2);
+    const Vec3d q = cross(from_first, e1);
+    const double scale = 1.0 / dot(e1, across);
+    Meeting meeting{
+        .at = scale * dot(e2, q), .b1 = scale * dot(from_first, across), .b2 = scale * dot(ray.direction, q)};
+    if (!(meeting.b1 >= 0.0 && meeting.b2 >= 0.0 && meeting.b1 + meeting.b2 <= 1.0)) {
+        const double b1 = std::max(float_b1, 0.0);
+        const double b2 = std::max(float_b2, 0.0);
+        const double sum = std::max(b1 + b2, 1.0);
+        meeting.b1 = b1 / sum;
+        meeting.b2 = b2 / sum;
+        meeting.at =
+            dot(meeting.b1 * e1 + meeting.b2 * e2 - from_first, ray.direction) / dot(ray.direction, ray.direction);
+        if (!(meeting.at > near)) {
+            return std::nullopt;
+        }
+    }
+    return meeting.at > ray.from && meeting.at < ray.to ? std::optional(meeting) : std::nullopt;
+}
+
+std::array<Vec3d, 3> corners(const TriangleMesh& mesh, std::uint32_t triangle) {
+    const auto& [a, b, c] = mesh.triangles[triangle];
+    return {converted<double>(mesh.positions[a]), converted<double>(mesh.positions[b]),
+            converted<double>(mesh.positions[c])};
+}
+
+ShapePoint shape_point(const TriangleMesh& mesh, std::uint32_t triangle, double b1, double b2) {
+    const std::array<Vec3d, 3> p = corners(mesh, triangle);
+    const auto& [i0, i1, i2] = mesh.triangles[triangle];
+    const Vec3d e1 = p[1] - p[0];
+    const Vec3d e2 = p[2] - p[0];
+    const Vec3d area = cross(e1, e2);
+    ShapePoint at{.point = p[0] + b1 * e1 + b2 * e2, .geometric_normal = normalized(area), .uv = {b1, b2}};
+    at.shading_normal = at.geometric_normal;
+    at.sharpness = std::sqrt(dot(e1, e1) * dot(e2, e2) / dot(area, area));
+    const double b0 = 1.0 - b1 - b2;
+    if (!mesh.normals.empty()) {
+        const Vec3d mean = b0 * converted<double>(mesh.normals[i0]) + b1 * converted<double>(mesh.normals[i1]) +
+                           b2 * converted<double>(mesh.normals[i2]);
+        if (dot(mean, at.geometric_normal) > 0.0) {
+            at.shading_normal = normalized(mean);
+        }
+    }
+    Vec3d along = e1;
+    if (!mesh.uvs.empty()) {
+        const std::array<Vec2<float>, 3> uv = {mesh.uvs[i0], mesh.uvs[i1], mesh.uvs[i2]};
+        at.uv = {b0 * uv[0].x + b1 * uv[1].x + b2 * uv[2].x, b0 * uv[0].y + b1 * uv[1].y + b2 * uv[2].y};
+        along = u_direction(p, uv);
+    }
+    at.tangent = tangent_along(along, at.shading_normal);
+    return at;
+}
+
+ShapePoint shape_point(const Sphere& sphere, const Vec3d& towards) {
+    const Vec3d n = normalized(towards);
+    const double turn = std::atan2(n.y, n.x) / (2.0 * std::numbers::pi);
+    // From the pole's distance as well: an arc sine alone loses half its digits there.
+    const double elevation = std::atan2(n.z, std::sqrt(n.x * n.x + n.y * n.y)) / std::numbers::pi;
+    return {.point = sphere.radius_mm * n,
+            .geometric_normal = n,
+            .shading_normal = n,
+            .tangent = tangent_along({-n.y, n.x, 0.0}, n),
+            .uv = {turn < 0.0 ? turn + 1.0 : turn, 0.5 + elevation}};
+}
+
+ShapePoint shape_point(const Quad& quad, double x, double y) {
+    const double inside_x = std::clamp(x, -0.5 * quad.width_mm, 0.5 * quad.width_mm);
+    const double inside_y = std::clamp(y, -0.5 * quad.height_mm, 0.5 * quad.height_mm);
+    return {.point = {inside_x, inside_y, 0.0},
+            .geometric_normal = {0, 0, 1},
+            .shading_normal = {0, 0, 1},
+            .tangent = {1, 0, 0},
+            .uv = {inside_x / quad.width_mm + 0.5, inside_y / quad.height_mm + 0.5}};
+}
+
+SurfaceHit world_hit(const ObjectPlace& place, const ShapePoint& at) {
+    SurfaceHit hit{.point = map_point(place.to_world, at.point), .uv = at.uv};
+    const Matrix3& back = place.to_local.linear;  // normals are carried by its transpose
+    hit.geometric_normal = normalized(transposed_times(back, at.geometric_normal));
+    const bool is_flat = at.shading_normal == at.geometric_normal;
+    hit.shading_normal = is_flat ? hit.geometric_normal : normalized(transposed_times(back, at.shading_normal));
+    hit.tangent = tangent_along(place.to_world.linear * at.tangent, hit.shading_normal);
+    // A point passes some ten operations on its way into the shape's frame and back, each with the rounding of the
+    // largest number involved; a map that stretches unevenly carries an error along one direction to another.
+    constexpr double kRoundings = 32.0 * std::numeric_limits<double>::epsilon();
+    hit.error_mm = kRoundings * at.sharpness * place.stretch_ratio * (largest_coordinate(hit.point) + place.reach_mm);
+    return hit;
+}
+
+}  // namespace lensproof::scene

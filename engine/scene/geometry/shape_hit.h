@@ -1,0 +1,77 @@
+// engine/scene/geometry/shape_hit.h — single shapes met by a ray, in double.
+#pragma once
+#include <cstdint>
+#include <optional>
+
+#include "engine/base/affine.h"
+#include "engine/scene/geometry/geometry.h"
+#include "engine/scene/geometry/shapes.h"
+
+namespace lensproof::scene {
+
+/// A ray in some frame and the open stretch of it that is asked for, in units of `direction`'s length, which an affine
+/// map changes while the parameter stays.
+struct Stretch {
+    Vec3d origin;
+    Vec3d direction;
+    double from = 0.0;
+    double to = 0.0;
+};
+
+Stretch mapped(const AffineMap& map, const Stretch& ray);
+
+/// Where along the ray, and where on the surface: a triangle's barycentric coordinates of its second and third vertex,
+/// a quad's x and y; nothing of use for a sphere.
+struct Meeting {
+    double at = 0.0;
+    double b1 = 0.0;
+    double b2 = 0.0;
+};
+
+/// The first meeting on the stretch with a shape that `to_local` carries into its own frame. The sphere's roots are
+/// taken about the ray's nearest point to the centre, so that nothing cancels for a small sphere far away (Haines et
+/// al., Ray Tracing Gems, ch. 7).
+std::optional<Meeting> meet(const Sphere& sphere, const AffineMap& to_local, const Stretch& ray);
+std::optional<Meeting> meet(const Quad& quad, const AffineMap& to_local, const Stretch& ray);
+
+/// The triangle that Embree's float ray has met at barycentric coordinates (float_b1, float_b2).
+///
+/// Its plane is met again in double. Where that lies outside the triangle, the true ray has gone by its edge within
+/// float's rounding, and Embree has found this triangle instead of its neighbour: the point that Embree names is taken,
+/// so that closed meshes stay closed; but not within float's rounding of the origin, `near`, where it could be the
+/// surface that the ray is just leaving.
+std::optional<Meeting> meet(const std::array<Vec3d, 3>& triangle, double float_b1, double float_b2, double near,
+                            const Stretch& ray);
+
+/// The triangle's vertices.
+std::array<Vec3d, 3> corners(const TriangleMesh& mesh, std::uint32_t triangle);
+
+/// A surface's point with all that belongs to it, in the shape's own frame; `uv`, normals and tangent as in
+/// `SurfaceHit`.
+struct ShapePoint {
+    Vec3d point;
+    Vec3d geometric_normal;
+    Vec3d shading_normal;
+    Vec3d tangent;
+    Vec2d uv;
+    double sharpness = 1.0;  // of a triangle: how much more than its size rounding moves its plane, 1 / sin of a corner
+};
+
+ShapePoint shape_point(const TriangleMesh& mesh, std::uint32_t triangle, double b1, double b2);
+/// `towards` is any point but the centre: its radius leads to the one meant.
+ShapePoint shape_point(const Sphere& sphere, const Vec3d& towards);
+/// (x, y) on the quad, mm.
+ShapePoint shape_point(const Quad& quad, double x, double y);
+
+/// Where an object stands: its map, the way back, and what rounding does on both.
+struct ObjectPlace {
+    AffineMap to_world;
+    AffineMap to_local;
+    double stretch_ratio = 1.0;  // of the largest principal stretch to the smallest
+    double reach_mm = 0.0;       // of a coordinate that the map handles: the shape's, in the world, and the translation
+};
+
+/// The point in the world, a hit without a distance, material, object and primitive.
+SurfaceHit world_hit(const ObjectPlace& place, const ShapePoint& at);
+
+}  // namespace lensproof::scene

@@ -1,0 +1,93 @@
+#include "engine/scene/geometry/surface_sampler.h"
+
+#include <algorithm>
+#include <boost/math/special_functions/ellint_rg.hpp>
+#include <cmath>
+#include <numbers>
+
+#include "engine/scene/geometry/geometry_data.h"
+
+namespace lensproof::scene {
+
+namespace {
+
+constexpr double kPi = std::numbers::pi;
+
+/// R_G is the symmetric elliptic integral (DLMF 19.33.1).
+double ellipsoid_area(const Vec3d& semi_axes) {
+    const double a = semi_axes.x * semi_axes.x;
+    const double b = semi_axes.y * semi_axes.y;
+    const double c = semi_axes.z * semi_axes.z;
+    return 4.0 * kPi * boost::math::ellint_rg(a * b, a * c, b * c);
+}
+
+/// By how much the map stretches an area whose outward normal becomes the unit vector `world_normal`.
+double area_stretch(const Matrix3& linear, const Vec3d& world_normal) {
+    return std::abs(determinant(linear)) / length(transposed_times(linear, world_normal));
+}
+
+Vec3d sphere_direction(double u1, double u2) {
+    const double z = 1.0 - 2.0 * u1;
+    const double across = std::sqrt(std::max(0.0, 1.0 - z * z));
+    return {across * std::cos(2.0 * kPi * u2), across * std::sin(2.0 * kPi * u2), z};
+}
+
+ShapePoint mesh_point(const TriangleMesh& mesh, std::uint32_t triangle, double u1, double u2) {
+    const double root = std::sqrt(u1);
+    return shape_point(mesh, triangle, root * (1.0 - u2), root * u2);
+}
+
+}  // namespace
+
+SurfaceSampler::SurfaceSampler(const SceneGeometry& scene, std::uint32_t object) : scene_(&scene), object_(object) {
+    const PlacedObject& placed = scene.data().objects[object];
+    const Matrix3& m = placed.place.to_world.linear;
+    if (const auto* sphere = std::get_if<Sphere>(placed.shape)) {
+        area_mm2_ = ellipsoid_area(sphere->radius_mm * principal_stretches(m));
+    } else if (const auto* quad = std::get_if<Quad>(placed.shape)) {
+        area_mm2_ = quad->width_mm * quad->height_mm * length(cross(m * Vec3d{1, 0, 0}, m * Vec3d{0, 1, 0}));
+    } else {
+        const auto& mesh = std::get<TriangleMesh>(*placed.shape);
+        for (std::uint32_t i = 0; i < mesh.triangles.size(); ++i) {
+            const std::array<Vec3d, 3> p = corners(mesh, i);
+            area_mm2_ += 0.5 * length(cross(m * (p[1] - p[0]), m * (p[2] - p[0])));
+            areas_to_mm2_.push_back(area_mm2_);
+        }
+    }
+}
+
+SurfaceSample SurfaceSampler::sample(double u1, double u2) const {
+    const PlacedObject& placed = scene_->data().objects[object_];
+    std::uint32_t primitive = 0;
+    ShapePoint at;
+    if (const auto* sphere = std::get_if<Sphere>(placed.shape)) {
+        at = shape_point(*sphere, sphere_direction(u1, u2));
+    } else if (const auto* quad = std::get_if<Quad>(placed.shape)) {
+        at = shape_point(*quad, (u1 - 0.5) * quad->width_mm, (u2 - 0.5) * quad->height_mm);
+    } else {
+        const double sought = u1 * area_mm2_;
+        const auto chosen = std::min(std::ranges::upper_bound(areas_to_mm2_, sought), areas_to_mm2_.end() - 1);
+        const double before = chosen == areas_to_mm2_.begin() ? 0.0 : *(chosen - 1);
+        primitive = static_cast<std::uint32_t>(chosen - areas_to_mm2_.begin());
+        const double rest = std::clamp((sought - before) / (*chosen - before), 0.0, 1.0);
+        at = mesh_point(std::get<TriangleMesh>(*placed.shape), primitive, rest, u2);
+    }
+    const SurfaceHit hit = world_hit(placed.place, at);
+    return {.point = hit.point,
+            .geometric_normal = hit.geometric_normal,
+            .uv = hit.uv,
+            .density_per_mm2 = density_per_mm2(hit),
+            .primitive = primitive,
+            .error_mm = hit.error_mm};
+}
+
+double SurfaceSampler::density_per_mm2(const SurfaceHit& hit) const {
+    const PlacedObject& placed = scene_->data().objects[object_];
+    if (const auto* sphere = std::get_if<Sphere>(placed.shape)) {
+        const double stretch = area_stretch(placed.place.to_world.linear, hit.geometric_normal);
+        return 1.0 / (4.0 * kPi * sphere->radius_mm * sphere->radius_mm * stretch);
+    }
+    return 1.0 / area_mm2_;
+}
+
+}  // namespace lensproof::scene

@@ -1,0 +1,121 @@
+// engine/scene/light/light.h — the lights of a scene, and how paths find them from either end.
+#pragma once
+#include <concepts>
+#include <cstdint>
+#include <optional>
+#include <variant>
+#include <vector>
+
+#include "engine/scene/light/area_light.h"
+#include "engine/scene/light/environment_light.h"
+#include "engine/scene/light/light_sample.h"
+#include "engine/scene/light/point_light.h"
+#include "engine/scene/light/spot_light.h"
+#include "engine/scene/light/sun_light.h"
+
+namespace lensproof::scene {
+
+/// A light is a surface (`AreaLight`), at a point or at infinity.
+using LightSource = std::variant<AreaLight, PointLight, SpotLight, SunLight, ConstantLight, EnvironmentLight>;
+
+/// An intensity, and no radiance: `falloff` of it in a direction, none outside a cone in which `draw` draws evenly.
+/// `power`: W·nm⁻¹, the mean over the grid.
+template <class Light>
+concept LightAtPoint = requires(const Light& light, const Vec3d& direction) {
+    { light.position } -> std::convertible_to<Vec3d>;
+    { light.falloff(direction) } -> std::same_as<double>;
+    { light.draw(0.0, 0.0) } -> std::same_as<Vec3d>;
+    { light.cone_sr() } -> std::same_as<double>;
+    { light.power() } -> std::same_as<double>;
+};
+
+/// Radiance from directions, which `draw` draws as the light has them, with the pdf that `seen` tells. `irradiance`:
+/// W·m⁻²·nm⁻¹ of all of it, each direction on what faces it, the mean over the grid.
+template <class Light>
+concept LightAtInfinity = requires(const Light& light, const Vec3d& direction, const spectral::PathWavelengths& path) {
+    { light.draw(path, 0.0, 0.0) } -> std::same_as<SkySample>;
+    { light.seen(direction, path) } -> std::same_as<SkySample>;
+    { light.irradiance() } -> std::same_as<double>;
+};
+
+/// All lights of a scene, each drawn as often as its fraction of the power that they send into the scene.
+class Lights {
+  public:
+    Lights() = default;
+    /// `scene` has to outlive it. Objects in the scene carry at most one area light.
+    Lights(const SceneGeometry& scene, std::vector<LightSource> lights);
+
+    [[nodiscard]] bool is_empty() const { return lights_.empty(); }
+    [[nodiscard]] std::size_t size() const { return lights_.size(); }
+
+    /// Draws a light and a point of it as `point` sees them. Nothing where that light does not reach the point.
+    [[nodiscard]] std::optional<LightSample> sample(const Vec3d& point, const spectral::PathWavelengths& path,
+                                                    double u_light, double u1, double u2) const;
+
+    /// What a surface that a ray has met radiates towards where the ray comes from, and the density with which
+    /// `sample` would have drawn that direction from `from`.
+    struct Emission {
+        spectral::SpectralSample radiance;
+        double density = 0.0;          // per solid angle, choice of the light included
+        double start_density = 0.0;    // with which `start` draws this point or direction (LightStart)
+        double leaving_density = 0.0;  // per etendue, 1/(mm² sr): of `start` and `leave` together
+    };
+    [[nodiscard]] Emission emitted(const SurfaceHit& hit, const Vec3d& from, const Vec3d& direction,
+                                   const spectral::PathWavelengths& path) const;
+
+    /// The same for a ray that leaves the scene: visits what each of the lights at infinity has in that direction.
+    template <class Visit>
+    void visit_infinity(const Vec3d& direction, const spectral::PathWavelengths& path, const Visit& visit) const {
+        for (const std::uint32_t index : at_infinity_) {
+            if (const Emission found = at_infinity(lights_[index], direction, path);
+                !spectral::is_black(found.radiance)) {
+                visit(found);
+            }
+        }
+    }
+
+    /// Draws where a light path begins. There has to be a light.
+    [[nodiscard]] LightStart start(const spectral::PathWavelengths& path, double u_light, double u1, double u2) const;
+
+    /// What a start that is not at infinity sends in a direction: W·sr⁻¹·nm⁻¹.
+    [[nodiscard]] spectral::SpectralSample intensity(const LightStart& start, const Vec3d& direction) const;
+
+    /// Draws the direction that a path goes on in; of light from infinity, where it crosses the scene.
+    [[nodiscard]] EmittedRay leave(const LightStart& start, double u1, double u2) const;
+
+    /// Of the way from a start to a surface point that it shines on.
+    [[nodiscard]] LightWay way(const LightStart& start, const Vec3d& to) const;
+
+    /// How far from a point all of the scene lies behind, whatever the direction.
+    [[nodiscard]] double beyond_mm(const Vec3d& point) const {
+        return length(point - centre_) + 2.0 * radius_mm_ + 1.0;
+    }
+
+    /// W·nm⁻¹, the mean over the grid, that all lights send into the scene: what the choice goes by.
+    [[nodiscard]] double power() const { return power_; }
+
+  private:
+    struct Entry {
+        LightSource light;
+        std::optional<ShiningSurface> surface;  // of an area light
+        double probability = 0.0;
+    };
+    struct Chosen {
+        const Entry* entry;
+        double rest;  // of the number that chose it, uniform again
+    };
+    [[nodiscard]] Chosen choose(double u) const;
+    [[nodiscard]] Emission at_infinity(const Entry& entry, const Vec3d& direction,
+                                       const spectral::PathWavelengths& path) const;
+
+    std::vector<Entry> lights_;
+    std::vector<double> cumulative_;          // of the probabilities
+    std::vector<std::int32_t> of_object_;     // the area light of each object, or −1
+    std::vector<std::uint32_t> at_infinity_;  // indices
+    Vec3d centre_;                            // of a sphere around the scene
+    double radius_mm_ = 0.0;
+    double crossing_density_ = 0.0;  // 1/mm²: of light paths from infinity over the disc in front of the scene
+    double power_ = 0.0;
+};
+
+}  // namespace lensproof::scene

@@ -1,0 +1,51 @@
+// engine/scene/material/mix_material.h — materials side by side.
+#pragma once
+#include <variant>
+#include <vector>
+
+#include "engine/scene/bsdf/mix.h"
+#include "engine/scene/material/conductor_material.h"
+#include "engine/scene/material/dielectric_material.h"
+#include "engine/scene/material/diffuse_material.h"
+#include "engine/scene/material/plastic_material.h"
+
+namespace lensproof::scene {
+
+using SimpleMaterial = std::variant<DiffuseMaterial, ConductorMaterial, DielectricMaterial, PlasticMaterial>;
+
+/// Up to kMostMixed materials side by side.
+struct MixMaterial {
+    /// A material's share is the product of its factors, each a number or one less that number.
+    struct Factor {
+        ScalarTexture share;
+        bool is_complement = false;
+    };
+    struct Part {
+        SimpleMaterial material;
+        std::vector<Factor> factors;
+    };
+    std::vector<Part> parts;
+};
+
+/// `second` in a share of `share` (0 to 1), else `first`; both may be mixes themselves. What either emits is left out.
+/// Throws InputError where more than kMostMixed materials come together.
+MixMaterial mixed(const Material& first, const Material& second, const ScalarTexture& share);
+
+MixBsdf at_point(const MixMaterial& material, const Vec2d& uv, const spectral::PathWavelengths& path);
+
+/// `share` of the second of two materials, the rest of the first; both indices of `SceneDescription::materials`, below
+/// the mixture's own.
+struct MixDescription {
+    static constexpr KindNames<> kNames{"mix"};
+    std::size_t first = 0;
+    std::size_t second = 0;
+    double share = 0.5;
+};
+
+void read_keys(MixDescription& mix, TomlTable& table, const NameIndex& earlier);
+
+void visit_spectra(const MixDescription& /*of others*/, const auto& /*visit*/) {}
+
+MixMaterial make_material(const MixDescription& mix, const MaterialMaker& maker);
+
+}  // namespace lensproof::scene

@@ -1,0 +1,194 @@
+#include "engine/scene/spectra/texture.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "engine/base/input_error.h"
+#include "engine/spectral/colour_checker.h"
+
+namespace lensproof::scene {
+
+namespace {
+
+/// Two neighbouring pixels along an axis, and how far from the first to the second.
+struct Neighbours {
+    std::size_t first = 0;
+    std::size_t second = 0;
+    float fraction = 0.0F;
+};
+
+/// `at` in [0, 1] across `count` pixels.
+Neighbours neighbours(double at, int count, Wrap wrap) {
+    if (!std::isfinite(at)) {
+        return {};
+    }
+    const double inside = wrap == Wrap::repeat ? at - std::floor(at) : std::clamp(at, 0.0, 1.0);
+    const double pixel = inside * count - 0.5;
+    const double floor = std::floor(pixel);
+    const auto wrapped = [&](int index) {
+        const int within = wrap == Wrap::repeat ? (index + count) % count : std::clamp(index, 0, count - 1);
+        return static_cast<std::size_t>(within);
+    };
+    const int first = static_cast<int>(floor);
+    return {.first = wrapped(first), .second = wrapped(first + 1), .fraction = static_cast<float>(pixel - floor)};
+}
+
+/// The mean of `value(texel index)` over the four nearest pixels, weighed bilinearly.
+template <class Value>
+auto bilinear(const TexelGrid& grid, const Vec2d& uv, const Value& value) {
+    const Neighbours x = neighbours(uv.x, grid.width, grid.wrap_u);
+    const Neighbours y = neighbours(1.0 - uv.y, grid.height, grid.wrap_v);
+    const auto row = [&](std::size_t j) {
+        const std::size_t start = j * static_cast<std::size_t>(grid.width);
+        return (1.0F - x.fraction) * value(start + x.first) + x.fraction * value(start + x.second);
+    };
+    return (1.0F - y.fraction) * row(y.first) + y.fraction * row(y.second);
+}
+
+spectral::SpectralSample look_up(const spectral::GridSpectrum& spectrum, const Vec2d&,
+                                 const spectral::PathWavelengths& path) {
+    return spectrum(path);
+}
+
+spectral::SpectralSample look_up(const ImageTexture& image, const Vec2d& uv, const spectral::PathWavelengths& path) {
+    const spectral::SpectralSample abscissa = image.abscissa(path);
+    const Vec2d at{image.repeats.x * uv.x, image.repeats.y * uv.y};
+    const spectral::SpectralSample value = bilinear(image.grid, at, [&](std::size_t index) {
+        const ImageTexture::Texel& texel = image.texel[index];
+        return texel.scale * spectral::for_each_wavelength([&](float t) { return texel.shape.at(t); }, abscissa);
+    });
+    return value * image.white(path);
+}
+
+spectral::SpectralSample look_up(const ChartTexture& chart, const Vec2d& uv, const spectral::PathWavelengths& path) {
+    const Vec2d at{(uv.x - 0.5) * chart.width_mm, (0.5 - uv.y) * chart.height_mm};
+    if (!chart.patches.empty()) {
+        const std::optional<int> patch = patch_at(std::get<ColourChecker>(chart.share.pattern), at.x, at.y);
+        return patch ? chart.patches[static_cast<std::size_t>(*patch)](path) : chart.black(path);
+    }
+    const auto share = static_cast<float>(reflectance(chart.share, at.x, at.y));
+    return share * chart.white(path) + (1.0F - share) * chart.black(path);
+}
+
+double look_up(double everywhere, const Vec2d&) {
+    return everywhere;
+}
+
+double look_up(const ScalarImage& image, const Vec2d& uv) {
+    return bilinear(image.grid, uv, [&](std::size_t index) { return image.texel[index]; });
+}
+
+/// The channels that give red, green and blue.
+std::array<int, 3> rgb_channels(const formats::Image& image, const std::filesystem::path& file) {
+    const std::array<int, 3> rgb{formats::find_channel(image, "R"), formats::find_channel(image, "G"),
+                                 formats::find_channel(image, "B")};
+    const int grey = formats::find_channel(image, "Y");
+    const bool has_rgb = std::all_of(rgb.begin(), rgb.end(), [](int channel) { return channel >= 0; });
+    if (image.width < 1 || image.height < 1 || (!has_rgb && grey < 0)) {
+        throw InputError(fmt::format("{}: a picture of {} × {} pixels with channels {}, expected R, G and B, or Y",
+                                     file.string(), image.width, image.height, fmt::join(image.channels, ", ")));
+    }
+    return has_rgb ? rgb : std::array<int, 3>{grey, grey, grey};
+}
+
+/// The texture whose texels are `texel_of(rgb)`.
+template <class TexelOf>
+ImageTexture image_texture(const formats::Image& image, const std::filesystem::path& file, const TexelGrid& texels,
+                           const spectral::SpectralGrid& grid, const TexelOf& texel_of) {
+    const auto [r, g, b] = rgb_channels(image, file);
+    ImageTexture texture{.grid = texels,
+                         .texel = {},
+                         .abscissa = spectral::tabulated(grid, spectral::sigmoid_abscissa),
+                         .white = spectral::constant_spectrum(1.0, grid)};
+    texture.texel.reserve(static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height));
+    for (int y = 0; y < image.height; ++y) {
+        for (int x = 0; x < image.width; ++x) {
+            texture.texel.push_back(texel_of(Vec3d{image.at(x, y, r), image.at(x, y, g), image.at(x, y, b)}));
+        }
+    }
+    return texture;
+}
+
+}  // namespace
+
+spectral::SpectralSample value_at(const Texture& texture, const Vec2d& uv, const spectral::PathWavelengths& path) {
+    return std::visit([&](const auto& kind) { return look_up(kind, uv, path); }, texture);
+}
+
+double value_at(const ScalarTexture& texture, const Vec2d& uv) {
+    return std::visit([&](const auto& kind) { return look_up(kind, uv); }, texture);
+}
+
+ImageTexture reflectance_texture(const formats::Image& image, const std::filesystem::path& file, Wrap wrap,
+                                 const spectral::SpectralGrid& grid, const spectral::RgbUplift& uplift) {
+    return image_texture(image, file, {image.width, image.height, wrap, wrap}, grid,
+                         [&](const Vec3d& rgb) { return ImageTexture::Texel{.shape = uplift.reflectance(rgb)}; });
+}
+
+ImageTexture reflectance_texture(const std::filesystem::path& file, Wrap wrap, const spectral::SpectralGrid& grid,
+                                 const spectral::RgbUplift& uplift) {
+    return reflectance_texture(formats::read_image(file), file, wrap, grid, uplift);
+}
+
+ImageTexture emission_texture(const formats::Image& image, const std::filesystem::path& file, Wrap wrap_u, Wrap wrap_v,
+                              const spectral::Spectrum& white, const spectral::SpectralGrid& grid,
+                              const spectral::RgbUplift& uplift) {
+    ImageTexture texture =
+        image_texture(image, file, {image.width, image.height, wrap_u, wrap_v}, grid, [&](const Vec3d& rgb) {
+            const spectral::UpliftedLight light = spectral::uplifted_light(uplift, rgb);
+            return ImageTexture::Texel{.shape = light.shape, .scale = static_cast<float>(light.scale)};
+        });
+    texture.white = spectral::stratum_means(white, grid);
+    return texture;
+}
+
+spectral::GridSpectrum rgb_reflectance(const Vec3d& rgb, const spectral::SpectralGrid& grid,
+                                       const spectral::RgbUplift& uplift) {
+    return spectral::tabulated(grid, spectral::fitted_reflectance(uplift, spectral::rgb_of_reflectance(), rgb));
+}
+
+spectral::GridSpectrum rgb_emission(const Vec3d& rgb, const spectral::Spectrum& white,
+                                    const spectral::SpectralGrid& grid, const spectral::RgbUplift& uplift) {
+    const spectral::UpliftedLight light = spectral::uplifted_light(uplift, rgb);
+    const spectral::GridSpectrum shape = spectral::tabulated(grid, light.shape);
+    spectral::GridSpectrum emission = spectral::stratum_means(white, grid);
+    for (std::size_t i = 0; i < emission.value.size(); ++i) {
+        emission.value[i] *= static_cast<float>(light.scale * shape.value[i]);
+    }
+    return emission;
+}
+
+ChartTexture chart_texture(const Chart& chart, double width_mm, double height_mm, const spectral::SpectralGrid& grid) {
+    ChartTexture texture{.share = chart,
+                         .width_mm = width_mm,
+                         .height_mm = height_mm,
+                         .white = spectral::constant_spectrum(chart.white_reflectance, grid),
+                         .black = spectral::constant_spectrum(chart.black_reflectance, grid),
+                         .patches = {}};
+    if (std::holds_alternative<ColourChecker>(chart.pattern)) {
+        for (const spectral::ColourPatch& patch : spectral::colour_checker()) {
+            texture.patches.push_back(spectral::at_midpoints(patch.reflectance, grid));
+        }
+    }
+    texture.share.white_reflectance = 1.0;
+    texture.share.black_reflectance = 0.0;
+    return texture;
+}
+
+ScalarImage scalar_texture(const std::filesystem::path& file, Wrap wrap) {
+    const formats::Image image = formats::read_image(file);
+    const int channel = rgb_channels(image, file)[0];
+    ScalarImage texture{.grid = {image.width, image.height, wrap, wrap}, .texel = {}};
+    for (int y = 0; y < image.height; ++y) {
+        for (int x = 0; x < image.width; ++x) {
+            const float value = image.at(x, y, channel);
+            texture.texel.push_back(value > 0.0F ? std::min(value, 1.0F) : 0.0F);  // NaN too is 0
+        }
+    }
+    return texture;
+}
+
+}  // namespace lensproof::scene

@@ -1,0 +1,101 @@
+// engine/scene/spectra/texture.h — what varies over a surface: spectra, and the shares of a mix.
+//
+// (u, v) covers a texture once from 0 to 1: u runs to the right and v up, so that (0, 1) is a picture's top left
+// corner.
+#pragma once
+#include <filesystem>
+#include <optional>
+#include <variant>
+#include <vector>
+
+#include "engine/base/vec.h"
+#include "engine/formats/image/image.h"
+#include "engine/scene/chart/chart.h"
+#include "engine/spectral/rgb_uplift.h"
+#include "engine/spectral/spectral_sample.h"
+
+namespace lensproof::scene {
+
+/// What lies beyond a picture's edge: the picture again, or its edge's pixels for ever.
+enum class Wrap { repeat, clamp };
+
+/// A picture's size and how it goes on, to look up between its pixels' centres.
+struct TexelGrid {
+    int width = 0;
+    int height = 0;
+    Wrap wrap_u = Wrap::repeat;
+    Wrap wrap_v = Wrap::repeat;
+};
+
+/// A picture whose pixels are spectra: `scale` · `shape` · `white`; between pixels bilinear, wavelength by wavelength.
+struct ImageTexture {
+    struct Texel {
+        spectral::SigmoidSpectrum shape;
+        float scale = 1.0F;
+    };
+    TexelGrid grid;
+    Vec2d repeats{1.0, 1.0};          // how often the picture covers the surface along u and v
+    std::vector<Texel> texel;         // rows from the top
+    spectral::GridSpectrum abscissa;  // sigmoid_abscissa of the wavelengths
+    spectral::GridSpectrum white;     // 1 for reflectances
+};
+
+/// A chart on a surface of width_mm × height_mm, its centre in the middle: `black`, `white`, or what the chart says
+/// between them; a colour checker's patches as they were measured.
+struct ChartTexture {
+    Chart share;  // of white_reflectance 1 and black_reflectance 0
+    double width_mm = 0.0;
+    double height_mm = 0.0;
+    spectral::GridSpectrum white;
+    spectral::GridSpectrum black;
+    std::vector<spectral::GridSpectrum> patches;  // of a colour checker, row by row from the top left; else none
+};
+
+/// A spectrum over a surface; a GridSpectrum is the same everywhere.
+using Texture = std::variant<spectral::GridSpectrum, ImageTexture, ChartTexture>;
+
+spectral::SpectralSample value_at(const Texture& texture, const Vec2d& uv, const spectral::PathWavelengths& path);
+
+/// A picture's channels R, G, B, or Y, as reflectances of these colours under D65. Throws InputError naming `file`
+/// where there are no such channels.
+ImageTexture reflectance_texture(const formats::Image& image, const std::filesystem::path& file, Wrap wrap,
+                                 const spectral::SpectralGrid& grid, const spectral::RgbUplift& uplift);
+
+/// A picture file in the same way. Throws InputError for a file that is missing, or as read_image says.
+ImageTexture reflectance_texture(const std::filesystem::path& file, Wrap wrap, const spectral::SpectralGrid& grid,
+                                 const spectral::RgbUplift& uplift);
+
+/// A picture as light: where it is (1, 1, 1) it is `white`, a spectral radiance or whatever the owner means, and
+/// otherwise as bright and of the colour that its RGB say. Brightness has no limit.
+ImageTexture emission_texture(const formats::Image& image, const std::filesystem::path& file, Wrap wrap_u, Wrap wrap_v,
+                              const spectral::Spectrum& white, const spectral::SpectralGrid& grid,
+                              const spectral::RgbUplift& uplift);
+
+/// The smooth reflectance of colour `rgb` (linear sRGB, under D65), exactly: a fit of its own. Out of [0, 1]: the
+/// nearest inside.
+spectral::GridSpectrum rgb_reflectance(const Vec3d& rgb, const spectral::SpectralGrid& grid,
+                                       const spectral::RgbUplift& uplift);
+
+/// The light of colour `rgb` (≥ 0, unbounded) against `white`, of which (1, 1, 1) is the whole.
+spectral::GridSpectrum rgb_emission(const Vec3d& rgb, const spectral::Spectrum& white,
+                                    const spectral::SpectralGrid& grid, const spectral::RgbUplift& uplift);
+
+/// `chart` with its own two reflectances, alike at all wavelengths, and its patches, if it has such, by
+/// engine/spectral/colour_checker.h.
+ChartTexture chart_texture(const Chart& chart, double width_mm, double height_mm, const spectral::SpectralGrid& grid);
+
+/// A picture of plain numbers.
+struct ScalarImage {
+    TexelGrid grid;
+    std::vector<float> texel;  // rows from the top
+};
+
+/// A number over a surface; a double is the same everywhere.
+using ScalarTexture = std::variant<double, ScalarImage>;
+
+double value_at(const ScalarTexture& texture, const Vec2d& uv);
+
+/// A picture file's channel Y, or else R, linear and held to [0, 1]. Throws InputError as reflectance_texture does.
+ScalarImage scalar_texture(const std::filesystem::path& file, Wrap wrap);
+
+}  // namespace lensproof::scene

@@ -1,0 +1,41 @@
+// experiments/draw/frame_map.h — a quantity over a camera's frame, and beside it the points that it was found from.
+#pragma once
+#include <string>
+#include <vector>
+
+#include "engine/base/vec.h"
+#include "experiments/draw/ticks.h"
+
+namespace lensproof::draw {
+
+/// Values at knots that stand evenly over the frame, from edge to edge, row by row from the top. Pixels as in
+/// engine/formats/image/image.h, y down.
+struct FrameMap {
+    std::string title{};
+    std::string heading{};  // over the colours
+    std::string label{};    // of the colours
+    std::string unit{};
+    int width_px = 0;
+    int height_px = 0;
+    int columns = 0;  // of knots, at least 2, as of rows
+    int rows = 0;
+    std::vector<double> values{};  // NaN: none there
+    std::vector<bool> covered{};   // whether the knot lies in the points' hull
+    std::vector<Vec2d> points{};
+    std::vector<Vec2d> hull{};  // convex
+};
+
+/// Pieces of 45° lines `step` apart that lie in the frame of `width` × `height` pixels and outside a convex polygon
+/// (either sense; fewer than three corners: nothing is outside it). Two points each.
+std::vector<std::vector<Vec2d>> hatching_outside(const std::vector<Vec2d>& polygon, double width, double height,
+                                                 double step);
+
+/// The maps' values, smallest to largest inside the points' hulls and ten times that at most: one range for all
+/// drawings, so that colours compare. 0.001 to 1 where there is no value.
+AxisRange common_range(const std::vector<const FrameMap*>& maps);
+
+/// As SVG: left the values as colours, logarithmic over `range`, right the points in `colour` (CSS); in both the hull
+/// as an outline, and what lies outside it, where the values are extrapolated, hatched.
+std::string frame_map_svg(const FrameMap& map, const AxisRange& range, const std::string& colour);
+
+}  // namespace lensproof::draw

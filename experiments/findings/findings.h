@@ -1,0 +1,89 @@
+// experiments/findings/findings.h — what a study found: what is judged, drawn and written, whatever the study.
+#pragma once
+#include <array>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "calibration/profile/profile.h"
+#include "engine/base/json.h"
+#include "experiments/draw/frame_map.h"
+#include "experiments/findings/verdict.h"
+
+namespace lensproof::findings {
+
+struct Fact {
+    std::string label;
+    std::string value;
+};
+
+/// A picture or a drawing of a subject.
+struct Picture {
+    std::string name;  // of its file, "tessar/view-1.png"; SVG where it ends so, else PNG
+    std::string caption;
+    Json width{};  // px of what was measured, of which the file may be a smaller copy; of a drawing, its own units
+    Json height{};
+    std::string bytes{};  // empty: it is named and not shown
+    /// Detected points, and measured − model there: x, y, dx, dy in px, as in engine/formats/image/image.h.
+    std::optional<std::vector<std::array<double, 4>>> points = std::nullopt;
+};
+
+/// One of the things that a study looks at: a camera, an extreme, a lens, a sweep.
+struct Subject {
+    std::string id;
+    std::string kind;
+    std::string label;
+    std::vector<Fact> facts{};
+    std::optional<std::pair<double, double>> focal_length_px = std::nullopt;  // and its standard error
+    std::vector<Picture> pictures{};
+};
+
+/// A curve of a subject over the image height.
+struct Series {
+    std::string label;
+    std::string subject;
+    std::string style;  // "measured", "reference" or "difference"
+    calibration::Curve curve;
+    std::optional<double> floor = std::nullopt;  // the method's own error
+};
+
+/// Curves over the image height in one frame. One without a series is not drawn, but keeps its place among the others.
+struct Plot {
+    std::string id;
+    std::string title;
+    std::string subtitle;
+    std::string y_label;
+    std::string y_unit;
+    std::optional<double> limit = std::nullopt;  // a band ± limit
+    std::vector<Series> series{};
+};
+
+/// A quantity over the frame of a subject's pictures.
+struct Map {
+    std::string name;  // of its file
+    std::string subject;
+    std::string caption;
+    draw::FrameMap frame;
+};
+
+/// What subjects are together where a report's page is not told otherwise (experiments/draw/report/report.h).
+inline constexpr const char* kUsualSubjects = "Renders and photos";
+
+struct Findings {
+    std::vector<Check> checks{};
+    bool counts_checks = false;    // the report's summary says how many of them hold
+    std::string subjects_title{};  // what the subjects are together
+    std::vector<Subject> subjects{};
+    std::vector<Plot> plots{};
+    std::vector<Map> maps{};
+    std::vector<std::pair<std::string, Json>> tables{};  // numbers for programs, by their key in report.json
+    std::vector<calibration::Profile> profiles{};        // of measured cameras, each named as its subject's id
+    std::vector<std::filesystem::path> inputs{};         // files that they depend on
+};
+
+/// Adds `more` to `all`. Plots of the same id become one, with the tighter limit.
+void append(Findings& all, Findings more);
+
+}  // namespace lensproof::findings

@@ -1,0 +1,18 @@
+#include "experiments/findings/study.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+namespace lensproof::findings {
+
+std::vector<std::string> names_of(TomlTable& table, const std::string& key, const std::vector<std::string>& known) {
+    std::vector<std::string> names = table.has(key) ? table.texts(key) : std::vector<std::string>{};
+    for (const std::string& name : names) {
+        if (std::ranges::find(known, name) == known.end()) {
+            table.fail(key, fmt::format("names \"{}\", expected one of {}", name, fmt::join(known, ", ")));
+        }
+    }
+    return names;
+}
+
+}  // namespace lensproof::findings

@@ -1,0 +1,49 @@
+// experiments/findings/study.h — what a study is: a table of an experiment's file, carried out to findings.
+#pragma once
+#include <algorithm>
+#include <cstdint>
+#include <functional>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "engine/base/cache.h"
+#include "engine/base/toml.h"
+#include "experiments/findings/findings.h"
+
+namespace lensproof::findings {
+
+struct RunSettings {
+    std::uint64_t seed = 0;
+    int threads = 0;        // 0: as many as the machine has
+    Cache cache{};          // for what is found by tracing lenses
+    bool self_test = true;  // each measurement says its own floor (calibration/self_test/self_test.h)
+};
+
+/// Reports what is being done ("tessar, view 2 of 6") and how much of it is.
+using RunProgress = std::function<void(const std::string& step, double done)>;
+
+/// Carries a study out. The same settings give the same findings, whatever the number of threads; `before` are those of
+/// the studies that stand before it in the list (experiments/runner/experiment.cpp).
+using Study = std::function<Findings(const RunSettings& settings, const RunProgress& progress, const Findings& before)>;
+
+/// An experiment's file while its studies read it.
+struct ExperimentFile {
+    TomlTable top;
+    std::set<std::string> cameras{};  // those that are to be measured, for others to refer to
+};
+
+/// Takes a study's tables from the file; an empty function where there are none. Throws InputError naming file, line
+/// and key, and where something that the study needs is missing.
+using StudyReader = Study (*)(ExperimentFile& file);
+
+/// The names that the table lists under `key`, each of which is among `known`; none where it has no such key.
+std::vector<std::string> names_of(TomlTable& table, const std::string& key, const std::vector<std::string>& known);
+
+/// Whether a list asks for this one; an empty list asks for all.
+template <class T>
+bool is_wanted(const std::vector<T>& wanted, const T& one) {
+    return wanted.empty() || std::ranges::find(wanted, one) != wanted.end();
+}
+
+}  // namespace lensproof::findings

@@ -1,0 +1,120 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "experiments/studies/cameras/measured_camera.h"
+
+namespace lensproof::studies {
+
+namespace {
+
+/// What is added belongs to the plot begun last.
+class CameraPlots {
+  public:
+    CameraPlots(const MeasuredCamera& camera, const ClosedLoopLimits& limits) : camera_(camera), limits_(limits) {}
+
+    std::vector<findings::Plot> all() {
+        const bool is_fisheye =
+            camera_.profile.geometry && !calibration::is_perspective(camera_.profile.geometry->model);
+        begin({"distortion", "Distortion", "against f·tan θ, f being the slope on the axis", "distortion", "%"});
+        if (!is_fisheye) {
+            add_measured("distortion_percent");
+        }
+        begin({"distortion-fisheye", "Distortion of fisheyes", "against f·θ, f being the slope on the axis",
+               "distortion", "%"});
+        if (is_fisheye) {
+            add_measured("distortion_equidistant_percent");
+        }
+        begin({"distortion-difference", "Image position: measured minus traced",
+               "radial distance of the image of one direction", "difference", "px", limits_.distortion_largest_px});
+        add_difference("radial_px");
+
+        begin({"vignetting", "Vignetting", "light relative to the axis, green (grey photos: their one channel)",
+               "relative illumination", "EV"});
+        const auto& curves = camera_.profile.curves;
+        const bool is_grey = curves.contains("vignetting_Y_ev") && !curves.contains("vignetting_G_ev");
+        add_measured(is_grey ? "vignetting_Y_ev" : "vignetting_G_ev");
+        begin({"vignetting-difference", "Vignetting: measured minus traced",
+               "relative illumination, as a share of the axis", "difference", "%", limits_.vignetting_percent});
+        add_difference("vignetting_G", 100.0);
+
+        for (const auto& [channel, colour] : {std::pair{"R", "red"}, std::pair{"B", "blue"}}) {
+            const std::string curve = fmt::format("chromatic_shift_{}_px", channel);
+            begin({fmt::format("chromatic-{}", colour), fmt::format("Chromatic shift of {}", colour),
+                   fmt::format("radial position of {} minus green", colour), "shift", "px"});
+            add_measured(curve);
+            begin({fmt::format("chromatic-{}-difference", colour),
+                   fmt::format("Chromatic shift of {}: measured minus traced", colour), "", "difference", "px",
+                   limits_.chromatic_shift_px});
+            add_difference(curve);
+        }
+
+        begin({"sharpness", "Sharpness", "MTF50 along the radius (tangential) and across (sagittal), green", "MTF50",
+               "cycles/px"});
+        add_both_directions("mtf50", "");
+        begin({"field-curvature", "Field curvature", "where the focus has to stand for the sharpest picture, green",
+               "focus", "mm"});
+        add_both_directions("best_focus", "_mm");
+        return std::move(plots_);
+    }
+
+  private:
+    void begin(findings::Plot plot) { plots_.push_back(std::move(plot)); }
+
+    void add(const std::string& label, const char* style, const calibration::Curve& curve,
+             std::optional<double> floor) {
+        plots_.back().series.push_back(
+            {.label = label, .subject = camera_.subject.id, .style = style, .curve = curve, .floor = floor});
+    }
+
+    /// And what is traced of it.
+    void add_measured(const std::string& curve, const std::string& suffix = "") {
+        const std::string label = camera_.subject.id + suffix;
+        const auto found = camera_.profile.curves.find(curve);
+        if (found != camera_.profile.curves.end()) {
+            add(label, "measured", found->second, rms_floor(camera_.profile, curve));
+        }
+        if (camera_.traced && camera_.traced->curves.contains(curve)) {
+            add(label + ", traced", "reference", camera_.traced->curves.at(curve), std::nullopt);
+        }
+    }
+
+    /// Measured minus traced, times `scale`.
+    void add_difference(const std::string& curve, double scale = 1.0) {
+        auto difference = camera_.traced ? difference_in(curve, camera_.profile, *camera_.traced) : std::nullopt;
+        if (!difference) {
+            return;
+        }
+        calibration::Curve& scaled = difference->curve;
+        for (std::vector<double>* values : {&scaled.value, &scaled.lower_95, &scaled.upper_95}) {
+            std::ranges::transform(*values, values->begin(), [&](double value) { return scale * value; });
+        }
+        std::optional<double> floor = rms_floor(camera_.profile, curve);
+        if (floor) {
+            *floor *= scale;
+        }
+        add(camera_.subject.id, "difference", scaled, floor);
+    }
+
+    /// Tangential and sagittal, in green (grey photos: their one channel): `prefix`, direction, channel, `suffix`.
+    void add_both_directions(const std::string& prefix, const std::string& suffix) {
+        for (const char* direction : {"tangential", "sagittal"}) {
+            for (const char* channel : {"G", "Y"}) {
+                add_measured(fmt::format("{}_{}_{}{}", prefix, direction, channel, suffix),
+                             fmt::format(", {}", direction));
+            }
+        }
+    }
+
+    const MeasuredCamera& camera_;
+    const ClosedLoopLimits& limits_;
+    std::vector<findings::Plot> plots_;
+};
+
+}  // namespace
+
+std::vector<findings::Plot> camera_plots(const MeasuredCamera& camera, const ClosedLoopLimits& limits) {
+    return CameraPlots(camera, limits).all();
+}
+
+}  // namespace lensproof::studies

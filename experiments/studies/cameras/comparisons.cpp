@@ -1,0 +1,147 @@
+#include "experiments/studies/cameras/comparisons.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "experiments/studies/cameras/measured_camera.h"
+
+namespace lensproof::studies {
+
+namespace {
+
+/// Curves that two subjects may have in common: calibration/profile/profile.h's, and positions in pixels.
+const std::vector<std::string> kComparedCurves = {"radial_px",
+                                                  "field_angle_deg",
+                                                  "distortion_percent",
+                                                  "distortion_equidistant_percent",
+                                                  "vignetting_R",
+                                                  "vignetting_G",
+                                                  "vignetting_B",
+                                                  "vignetting_Y",
+                                                  "vignetting_R_ev",
+                                                  "vignetting_G_ev",
+                                                  "vignetting_B_ev",
+                                                  "vignetting_Y_ev",
+                                                  "chromatic_shift_R_px",
+                                                  "chromatic_shift_B_px"};
+
+struct Comparison {
+    std::string of;
+    std::string with;
+    std::string curve;
+    std::optional<double> limit;
+    findings::Expectation expectation = findings::Expectation::at_most;
+};
+
+Comparison read_one(TomlTable& table, const std::set<std::string>& cameras) {
+    Comparison comparison;
+    for (const auto& [key, name] : {std::pair{"of", &comparison.of}, std::pair{"with", &comparison.with}}) {
+        *name = table.text(key);
+        if (!cameras.contains(*name)) {
+            table.fail(key,
+                       fmt::format("is \"{}\", which is neither a simulation nor a photo set of this file", *name));
+        }
+    }
+    comparison.curve = table.choice("curve", kComparedCurves);
+    comparison.limit = table.optional_number("limit", kPositive);
+    if (table.has("expect")) {
+        comparison.expectation = table.choice("expect", {"agrees", "differs"}) == "agrees"
+                                     ? findings::Expectation::at_most
+                                     : findings::Expectation::differs;
+    }
+    table.finish();
+    return comparison;
+}
+
+/// What a curve shows, in words.
+std::string curve_title(const std::string& curve) {
+    if (curve == "radial_px") {
+        return "image position";
+    }
+    std::string title = curve.substr(0, curve.rfind('_'));
+    std::ranges::replace(title, '_', ' ');
+    return title;
+}
+
+findings::Check make_check(const Comparison& comparison, const std::optional<calibration::CurveDifference>& difference,
+                           std::optional<double> floor) {
+    findings::Check check{
+        .id = fmt::format("{}-{}-{}", comparison.of, comparison.with, comparison.curve),
+        .group = "Simulated lenses against the photographed one",
+        .subject = comparison.of,
+        .label = fmt::format("{} against {}: {}, rms", comparison.of, comparison.with, curve_title(comparison.curve)),
+        .value = std::nan(""),
+        .unit = comparison.curve.ends_with("_percent") ? "%"
+                : comparison.curve.ends_with("_ev")    ? "EV"
+                                                       : "px",
+        .limit = *comparison.limit,
+        .expectation = comparison.expectation,
+        .explanation = "The curve was not measured in both.",
+        .floor = floor};
+    if (difference) {
+        check.value = difference->rms;
+        check.sigma = difference->rms_sigma;
+        check.explanation =
+            fmt::format("Over image heights from 0 to {:.2f} of the half-diagonal, where both are covered. {}",
+                        difference->curve.covered_image_height,
+                        comparison.expectation == findings::Expectation::differs
+                            ? "A negative control: these are different lenses, and have to be told apart."
+                            : "");
+    }
+    return check;
+}
+
+findings::Findings compare_all(const std::vector<Comparison>& comparisons,
+                               const std::vector<calibration::Profile>& profiles) {
+    findings::Findings found;
+    findings::Plot plot{.id = "comparisons",
+                        .title = "Lenses against each other",
+                        .subtitle = "distortion, difference of the measured curves",
+                        .y_label = "difference",
+                        .y_unit = "%"};
+    for (const Comparison& comparison : comparisons) {
+        const auto profile = [&](const std::string& name) -> const calibration::Profile& {
+            return *std::ranges::find(profiles, name, &calibration::Profile::name);
+        };
+        const calibration::Profile& of = profile(comparison.of);
+        const calibration::Profile& with = profile(comparison.with);
+        const auto difference = difference_in(comparison.curve, of, with);
+        // Neither measurement knows of the other's error.
+        const std::optional<double> one = rms_floor(of, comparison.curve);
+        const std::optional<double> other = rms_floor(with, comparison.curve);
+        const std::optional<double> floor = one && other ? std::optional(std::hypot(*one, *other)) : std::nullopt;
+        if (comparison.limit) {
+            found.checks.push_back(make_check(comparison, difference, floor));
+        }
+        if (difference && comparison.curve.ends_with("_percent")) {
+            plot.series.push_back({.label = comparison.of + " − " + comparison.with,
+                                   .subject = comparison.of,
+                                   .style = "difference",
+                                   .curve = difference->curve,
+                                   .floor = floor});
+            plot.limit = comparison.limit;
+        }
+    }
+    found.plots = {std::move(plot)};
+    return found;
+}
+
+}  // namespace
+
+findings::Study read_comparisons(findings::ExperimentFile& file) {
+    std::vector<Comparison> comparisons;
+    for (TomlTable& table : file.top.tables("comparisons")) {
+        comparisons.push_back(read_one(table, file.cameras));
+    }
+    if (comparisons.empty()) {
+        return {};
+    }
+    return [comparisons = std::move(comparisons)](const findings::RunSettings&, const findings::RunProgress&,
+                                                  const findings::Findings& before) {
+        return compare_all(comparisons, before.profiles);
+    };
+}
+
+}  // namespace lensproof::studies

@@ -1,0 +1,186 @@
+#include "experiments/studies/cameras/measured_camera.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <limits>
+
+#include "calibration/geometry/projection_uncertainty.h"
+
+namespace lensproof::studies {
+
+namespace {
+
+constexpr int kShownWidth = 480;  // px, at most: a report holds many pictures
+
+/// A smaller copy for the report: means of whole blocks of pixels.
+formats::Image shrunk(const formats::Image& image) {
+    const int factor = std::max(1, (image.width + kShownWidth - 1) / kShownWidth);
+    formats::Image small =
+        formats::make_image(std::max(1, image.width / factor), std::max(1, image.height / factor), image.channels);
+    for (int y = 0; y < small.height; ++y) {
+        for (int x = 0; x < small.width; ++x) {
+            for (int c = 0; c < image.channel_count(); ++c) {
+                float sum = 0.0F;
+                for (int dy = 0; dy < factor; ++dy) {
+                    for (int dx = 0; dx < factor; ++dx) {
+                        sum += image.at(x * factor + dx, y * factor + dy, c);
+                    }
+                }
+                small.at(x, y, c) = sum / static_cast<float>(factor * factor);
+            }
+        }
+    }
+    return small;
+}
+
+std::vector<Vec2d> points_used(const calibration::Profile& profile) {
+    std::vector<Vec2d> points;
+    for (const calibration::ProfileView& view : profile.views) {
+        for (const calibration::ProfilePoint& point : view.points) {
+            if (point.used) {
+                points.push_back(point.image_px);
+            }
+        }
+    }
+    return points;
+}
+
+/// "0.004 px at the best place, at most 0.012 px inside the points' hull (71 % of the frame), 0.3 px in a corner".
+std::string in_words(const calibration::Profile& profile) {
+    const calibration::UncertaintyMap& map = *profile.geometry->uncertainty;
+    double best = std::numeric_limits<double>::infinity();
+    double covered = 0.0;
+    double anywhere = 0.0;
+    std::size_t inside = 0;
+    std::size_t imaged = 0;
+    for (std::size_t i = 0; i < map.far_px.size(); ++i) {
+        inside += map.covered[i] ? 1 : 0;
+        if (map.far_px[i]) {
+            ++imaged;
+            best = std::min(best, *map.far_px[i]);
+            anywhere = std::max(anywhere, *map.far_px[i]);
+            covered = map.covered[i] ? std::max(covered, *map.far_px[i]) : covered;
+        }
+    }
+    if (imaged == 0) {
+        return "nothing in the frame is imaged by the model";
+    }
+    return fmt::format(
+        "A far point is imaged to {:.2g} px (1 σ) at the best place, to {:.2g} px inside the hull of the points "
+        "({:.0f} % of the frame), and to {:.2g} px at the worst place of the frame. Noise alone: what the model cannot "
+        "express is not in it.",
+        best, covered, 100.0 * static_cast<double>(inside) / static_cast<double>(map.covered.size()), anywhere);
+}
+
+}  // namespace
+
+std::string read_camera_name(TomlTable& table, findings::ExperimentFile& file) {
+    std::string name = table.text("name");
+    // Names become files' names.
+    const bool plain = std::ranges::all_of(
+        name, [](unsigned char letter) { return std::isalnum(letter) != 0 || letter == '-' || letter == '_'; });
+    if (name.empty() || !plain) {
+        table.fail("name", fmt::format("is \"{}\", expected letters, digits, - and _", name));
+    }
+    if (!file.cameras.insert(name).second) {
+        table.fail("name", "stands in the file twice");
+    }
+    return name;
+}
+
+std::optional<calibration::ModelKind> read_model(TomlTable& table) {
+    if (!table.has("model")) {
+        return std::nullopt;
+    }
+    std::vector<std::string> names = calibration::model_kind_names();
+    names.emplace_back("auto");
+    return calibration::model_kind(table.choice("model", names));
+}
+
+findings::Picture shown_picture(const std::string& name, const std::string& caption, const formats::Image& image) {
+    return {.name = name,
+            .caption = caption,
+            .width = image.width,
+            .height = image.height,
+            .bytes = formats::encode_png(shrunk(image))};
+}
+
+void add_view(findings::Picture& picture, const calibration::ProfileView& view) {
+    picture.points.emplace();
+    for (const calibration::ProfilePoint& point : view.points) {
+        picture.points->push_back({point.image_px.x, point.image_px.y, point.residual_px.x, point.residual_px.y});
+    }
+    if (!view.found) {
+        picture.caption += fmt::format(" (left out: {})", view.reason);
+    }
+}
+
+void add_profile_facts(MeasuredCamera& camera) {
+    const calibration::Profile& profile = camera.profile;
+    std::vector<findings::Fact>& facts = camera.subject.facts;
+    if (profile.geometry) {
+        const calibration::ProfileGeometry& geometry = *profile.geometry;
+        facts.push_back({"camera model", calibration::kind_name(geometry.model)});
+        if (profile.pixel_pitch_um) {
+            facts.push_back({"focal length",
+                             fmt::format("{:.4f} ± {:.4f} mm",
+                                         calibration::focal_length_px(geometry.model) * *profile.pixel_pitch_um / 1e3,
+                                         geometry.standard_error(0) * *profile.pixel_pitch_um / 1e3)});
+        }
+        facts.push_back({"reprojection rms", fmt::format("{:.4f} px", geometry.reprojection_rms_px)});
+        facts.push_back({"points, views", fmt::format("{}, {}", geometry.points_used, geometry.views_used)});
+        facts.push_back({"covered image height", fmt::format("{:.3f}", geometry.covered_image_height)});
+    }
+    if (profile.self_test) {
+        facts.push_back({"floor of the measurement", calibration::describe_floor(*profile.self_test)});
+    }
+    for (const auto& [what, why] : profile.not_measured) {
+        facts.push_back({what + " not measured", why});
+    }
+}
+
+findings::Findings camera_findings(MeasuredCamera camera, const ClosedLoopLimits& limits) {
+    findings::Findings found{.counts_checks = true, .subjects_title = findings::kUsualSubjects};
+    if (const auto& geometry = camera.profile.geometry) {
+        camera.subject.focal_length_px = {calibration::focal_length_px(geometry->model), geometry->standard_error(0)};
+        if (geometry->uncertainty) {
+            found.maps = {certainty_map(camera.profile, camera.subject.label)};
+        }
+    }
+    found.plots = camera_plots(camera, limits);
+    found.subjects = {std::move(camera.subject)};
+    found.profiles = {std::move(camera.profile)};
+    return found;
+}
+
+findings::Map certainty_map(const calibration::Profile& profile, const std::string& label) {
+    const calibration::UncertaintyMap& knots = *profile.geometry->uncertainty;
+    const std::vector<Vec2d> points = points_used(profile);
+    draw::FrameMap frame{.title = fmt::format("{}, {}", profile.name, label),
+                         .heading = "How sure the projection is",
+                         .label = "projection uncertainty, 1 σ",
+                         .unit = "px",
+                         .width_px = profile.width_px,
+                         .height_px = profile.height_px,
+                         .columns = knots.columns,
+                         .rows = knots.rows,
+                         .covered = knots.covered,
+                         .points = points,
+                         .hull = calibration::convex_hull(points)};
+    std::ranges::transform(knots.far_px, std::back_inserter(frame.values), [](const std::optional<double>& px) {
+        return px.value_or(std::numeric_limits<double>::quiet_NaN());
+    });
+    return {.name = profile.name + "/certainty.svg",
+            .subject = profile.name,
+            .caption = in_words(profile),
+            .frame = std::move(frame)};
+}
+
+std::optional<double> rms_floor(const calibration::Profile& profile, const std::string& curve) {
+    const calibration::CurveFloor* floor = calibration::floor_of(profile.self_test, curve);
+    return floor != nullptr ? std::optional(floor->rms) : std::nullopt;
+}
+
+}  // namespace lensproof::studies

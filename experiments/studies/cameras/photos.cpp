@@ -1,0 +1,194 @@
+#include "experiments/studies/cameras/photos.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+
+#include "calibration/photos/photo_survey.h"
+#include "calibration/self_test/self_test.h"
+#include "engine/base/input_error.h"
+#include "experiments/studies/cameras/measured_camera.h"
+#include "experiments/studies/cameras/photo_set.h"
+
+namespace lensproof::studies {
+
+namespace {
+
+/// What is known about a photographed camera from elsewhere.
+struct PhotoExpectations {
+    std::optional<double> focal_length_px;
+    double focal_length_within_percent = 0.0;
+    std::string focal_length_source;
+    std::optional<double> reprojection_rms_px;
+};
+
+struct Photos {
+    std::string name;
+    std::filesystem::path manifest;
+    PhotoSet set;
+    std::optional<calibration::ModelKind> model;
+    PhotoExpectations expected;
+};
+
+Photos read_one(TomlTable& table, findings::ExperimentFile& file) {
+    Photos photos;
+    photos.name = read_camera_name(table, file);
+    photos.manifest = table.file().parent_path() / table.text("manifest");
+    photos.model = read_model(table);
+    if (auto expected = table.optional_table("expected")) {
+        if (expected->has("focal_length_px")) {
+            photos.expected.focal_length_px = expected->number("focal_length_px", kPositive);
+            photos.expected.focal_length_within_percent = expected->number("focal_length_within_percent", kPositive);
+            photos.expected.focal_length_source = expected->text("focal_length_source");
+        }
+        photos.expected.reprojection_rms_px = expected->optional_number("reprojection_rms_px", kPositive);
+        expected->finish();
+    }
+    table.finish();
+    photos.set = read_photo_set(photos.manifest);
+    return photos;
+}
+
+/// A picture that cannot be read is named and not shown.
+findings::Picture shown_photo(const calibration::Picture& picture, const std::string& name) {
+    const std::string caption = std::filesystem::path(picture.name).filename().string();
+    try {
+        return shown_picture(name, caption, picture.load());
+    } catch (const InputError&) {
+        return {.name = name, .caption = caption, .width = 0, .height = 0};
+    }
+}
+
+/// What was left out and why, what is to be known of the others, and signs of corrections.
+void add_account(MeasuredCamera& camera) {
+    const calibration::Profile& profile = camera.profile;
+    std::vector<findings::Fact>& facts = camera.subject.facts;
+    const auto used =
+        std::ranges::count_if(profile.pictures, [](const calibration::PictureAccount& p) { return p.used; });
+    facts.push_back({"pictures used", fmt::format("{} of {}", used, profile.pictures.size())});
+    int turned = 0;
+    for (const calibration::PictureAccount& picture : profile.pictures) {
+        turned += picture.orientation != 1 ? 1 : 0;
+        if (!picture.used || !picture.reason.empty()) {
+            const std::string file = std::filesystem::path(picture.image).filename().string();
+            facts.push_back({file + (picture.used ? "" : ", left out"), picture.reason});
+        }
+    }
+    if (turned > 0) {
+        facts.push_back(
+            {"EXIF orientation", fmt::format("of {} pictures, not applied: the sensor's rows count", turned)});
+    }
+    for (const std::string& suspicion : profile.source.suspicions) {
+        facts.push_back({"correction suspected", suspicion});
+    }
+}
+
+MeasuredCamera measure_photos(const Photos& photos, bool self_test, const findings::RunProgress& progress) {
+    const PhotoSet& set = photos.set;
+    MeasuredCamera camera{
+        .subject = {.id = photos.name, .kind = "photos", .label = set.name}, .profile = {}, .traced = {}};
+    std::vector<findings::Picture>& pictures = camera.subject.pictures;
+    calibration::MeasureInput input{.name = photos.name,
+                                    .pictures = {},
+                                    .chart = set.chart,
+                                    .model = photos.model,
+                                    .geometry = {},
+                                    .source = {.kind = "photo", .images = {}, .camera = set.camera, .lens = set.lens},
+                                    .pixel_pitch_um = set.pixel_pitch_um};
+    calibration::take_survey(input, calibration::survey_photos(set.photos, set.flat_fields, std::nullopt));
+    for (std::size_t i = 0; i < set.focus_positions_mm.size(); ++i) {
+        input.focus_position_mm[set.photos[i].string()] = set.focus_positions_mm[i];
+    }
+    for (const calibration::Picture& picture : input.pictures) {
+        const std::filesystem::path file = picture.name;
+        progress(fmt::format("{}, {}", photos.name, file.filename().string()), 0.0);
+        pictures.push_back(shown_photo(
+            picture, fmt::format("{}/{:02}-{}.png", photos.name, pictures.size() + 1, file.stem().string())));
+    }
+    progress(photos.name + ", measuring", 0.0);
+    camera.profile = calibration::measure_surveyed(input);
+    if (self_test) {
+        calibration::add_self_test(camera.profile, input);
+    }
+    for (std::size_t i = 0, view = 0; i < pictures.size(); ++i) {
+        if (input.pictures[i].role == calibration::PictureRole::chart) {
+            add_view(pictures[i], camera.profile.views.at(view++));
+        }
+    }
+    const calibration::ProfileSource& source = camera.profile.source;
+    camera.subject.facts = {
+        {"camera", source.camera}, {"lens", source.lens}, {"licence", set.licence}, {"from", set.source}};
+    add_account(camera);
+    add_profile_facts(camera);
+    return camera;
+}
+
+std::vector<findings::Check> photo_checks(const MeasuredCamera& camera, const PhotoExpectations& expected) {
+    const auto& [subject, profile, traced] = camera;
+    std::vector<findings::Check> checks;
+    if (!profile.geometry) {
+        return checks;
+    }
+    const calibration::ProfileGeometry& geometry = *profile.geometry;
+    const std::optional<calibration::SelfTest>& test = profile.self_test;
+    const std::string group = subject.label + ": against independent calibrations";
+    if (expected.focal_length_px) {
+        checks.push_back({.id = subject.id + "-focal-length",
+                          .group = group,
+                          .subject = subject.id,
+                          .label = "focal length",
+                          .value = calibration::focal_length_px(geometry.model),
+                          .sigma = geometry.standard_error(0),
+                          .unit = "px",
+                          .limit = *expected.focal_length_px * expected.focal_length_within_percent / 100.0,
+                          .expectation = findings::Expectation::within,
+                          .target = *expected.focal_length_px,
+                          .explanation = fmt::format("Within {} % of {} px: {}.", expected.focal_length_within_percent,
+                                                     *expected.focal_length_px, expected.focal_length_source),
+                          .floor = test ? test->focal_length_px : std::nullopt});
+    }
+    if (expected.reprojection_rms_px) {
+        checks.push_back(
+            {.id = subject.id + "-reprojection-rms",
+             .group = group,
+             .subject = subject.id,
+             .label = "reprojection error, rms",
+             .value = geometry.reprojection_rms_px,
+             // An rms of 2N residuals is known to 1 / √(4N) of itself.
+             .sigma = geometry.reprojection_rms_px / std::sqrt(4.0 * geometry.points_used),
+             .unit = "px",
+             .limit = *expected.reprojection_rms_px,
+             .explanation = fmt::format("Over {} corners in {} photos.", geometry.points_used, geometry.views_used),
+             .floor = test ? test->reprojection_rms_px : std::nullopt});
+    }
+    return checks;
+}
+
+}  // namespace
+
+findings::Study read_photos(findings::ExperimentFile& file) {
+    std::vector<Photos> all;
+    for (TomlTable& table : file.top.tables("photos")) {
+        all.push_back(read_one(table, file));
+    }
+    if (all.empty()) {
+        return {};
+    }
+    return [all = std::move(all)](const findings::RunSettings& settings, const findings::RunProgress& progress,
+                                  const findings::Findings&) {
+        findings::Findings found;
+        for (const Photos& photos : all) {
+            MeasuredCamera camera = measure_photos(photos, settings.self_test, progress);
+            findings::append(found, {.checks = photo_checks(camera, photos.expected)});
+            findings::append(found, camera_findings(std::move(camera)));
+            found.inputs.push_back(photos.manifest);
+            std::ranges::copy(photos.set.photos, std::back_inserter(found.inputs));
+            std::ranges::copy(photos.set.flat_fields, std::back_inserter(found.inputs));
+        }
+        return found;
+    };
+}
+
+}  // namespace lensproof::studies

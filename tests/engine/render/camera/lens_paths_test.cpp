@@ -1,0 +1,207 @@
+#include "engine/render/camera/lens_paths.h"
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <vector>
+
+#include "engine/formats/prescription/load_lens.h"
+#include "engine/optics/convert_lens.h"
+#include "engine/optics/lens.h"
+#include "engine/render/sampling/sampler.h"
+
+namespace lensproof::render::lens_paths_test {
+namespace {
+
+constexpr std::uint64_t kSeed = 17;
+const std::vector<double> kWavelengths = {430.0, 490.0, 550.0, 610.0, 670.0};
+
+/// A camera whose corners lie outside its image circle, so that some pixels lose a part of their paths and some all.
+template <class T>
+struct TestCamera {
+    explicit TestCamera(const std::string& name, double half_diagonal_mm, bool by_radius = true)
+        : lens(optics::at_wavelengths<T>(formats::load_lens(name), kWavelengths)),
+          in_double(optics::at_wavelengths<double>(formats::load_lens(name), kWavelengths)),
+          pupil(in_double.at(), by_radius, half_diagonal_mm),
+          slices(pupil, lens.wavelengths()),
+          film{.sensor = {.width = 8, .height = 6, .pixel_pitch_mm = half_diagonal_mm / 5.0}, .seed = kSeed} {}
+
+    optics::SpectralLens<T> lens;
+    optics::SpectralLens<double> in_double;
+    pupil::PupilMap pupil;
+    pupil::PupilSlices slices;
+    FilmSampling film;
+};
+
+struct Path {
+    std::uint32_t pixel = 0;
+    std::uint32_t sample = 0;
+    int wavelength = 0;
+    Vec2d film;
+    double weight = 0.0;
+    Ray<double> exit;
+    friend bool operator==(const Path& a, const Path& b) {
+        return a.pixel == b.pixel && a.sample == b.sample && a.wavelength == b.wavelength && a.film == b.film &&
+               a.weight == b.weight && a.exit.origin == b.exit.origin && a.exit.direction == b.exit.direction;
+    }
+};
+
+struct Paths {
+    std::vector<Path> valid;
+    std::int64_t started = 0;
+};
+
+/// What passes the lens of a range of samples, worked out path by path.
+template <class T>
+Paths one_by_one(const TestCamera<T>& camera, const CameraPathRange& range) {
+    const Sensor& sensor = camera.film.sensor;
+    const double film_z = camera.lens.at(0).image_z;
+    Paths found;
+    for (std::uint32_t pixel = range.first_pixel; pixel < range.first_pixel + range.pixels; ++pixel) {
+        const PixelSampler sampler(kSeed, pixel);
+        const std::uint32_t row = pixel / 8;
+        for (std::uint32_t sample = range.first_sample; sample < range.first_sample + range.samples; ++sample) {
+            const auto xi = sampler.point(sample);
+            const int wavelength = static_cast<int>(xi[4] * static_cast<double>(kWavelengths.size()));
+            const Vec2d film = sensor.position(pixel % 8 - 0.5 + xi[0], row - 0.5 + xi[1]);
+            const pupil::PupilDraw<double> in_pupil = camera.slices.sample(film, wavelength, xi[2], xi[3]);
+            if (!(in_pupil.area > 0.0)) {
+                continue;
+            }
+            ++found.started;
+            const Vec3d to_pupil{in_pupil.point.x - film.x, in_pupil.point.y - film.y, camera.pupil.plane_z() - film_z};
+            const double per_distance2 = 1.0 / dot(to_pupil, to_pupil);
+            const Vec3d direction = std::sqrt(per_distance2) * to_pupil;
+            const Ray<T> start{optics::convert_vector<T>(Vec3d{film.x, film.y, film_z}),
+                               optics::convert_vector<T>(direction)};
+            const optics::TracedRay<T> traced =
+                optics::trace<optics::Direction::reverse>(camera.lens.at(wavelength), start);
+            if (traced.status == optics::RayStatus::ok) {
+                const double etendue = direction.z * direction.z * per_distance2 * in_pupil.area;
+                found.valid.push_back({pixel,
+                                       sample,
+                                       wavelength,
+                                       film,
+                                       traced.transmittance * static_cast<T>(etendue),
+                                       {optics::convert_vector<double>(traced.ray.origin),
+                                        optics::convert_vector<double>(traced.ray.direction)}});
+            }
+        }
+    }
+    return found;
+}
+
+template <class T>
+Paths through_buffers(const TestCamera<T>& camera, const CameraPathRange& range, int capacity,
+                      optics::SimdLevel level) {
+    LensPaths<T> paths(camera.film, camera.lens, camera.slices, level);
+    CameraPathBuffer buffer(capacity);
+    Paths found;
+    paths.start(range);
+    while (paths.fill(buffer)) {
+        EXPECT_GT(buffer.size, 0);
+        EXPECT_LE(buffer.size, capacity);
+        for (std::size_t i = 0; i < static_cast<std::size_t>(buffer.size); ++i) {
+            found.valid.push_back({buffer.pixel[i],
+                                   buffer.sample[i],
+                                   buffer.wavelength[i],
+                                   {buffer.film_x[i], buffer.film_y[i]},
+                                   buffer.weight[i],
+                                   buffer.ray(i)});
+        }
+    }
+    EXPECT_FALSE(paths.fill(buffer)) << "the end stays the end";
+    found.started = paths.started();
+    return found;
+}
+
+/// Tells which path is another rather than all.
+void expect_same(const Paths& found, const Paths& expected, const std::string& where) {
+    EXPECT_EQ(found.started, expected.started) << where;
+    ASSERT_EQ(found.valid.size(), expected.valid.size()) << where;
+    for (std::size_t i = 0; i < found.valid.size(); ++i) {
+        ASSERT_TRUE(found.valid[i] == expected.valid[i])
+            << where << ", path " << i << ": pixel " << expected.valid[i].pixel << ", sample "
+            << expected.valid[i].sample;
+    }
+}
+
+template <class T>
+class LensPathsIn : public testing::Test {};
+using Numbers = testing::Types<float, double>;
+TYPED_TEST_SUITE(LensPathsIn, Numbers);
+
+// Every path has the bits of the plain manner of making it, and its place in the order, whatever the packets' width and
+// the buffer's capacity, smaller than a pixel's samples or larger; those that the lens stops are left out and nothing
+// else.
+TYPED_TEST(LensPathsIn, HaveTheBitsOfOneByOneInOrder) {
+    for (const auto& [name, half_diagonal_mm] : {std::pair{"tessar", 70.0}, {"muller-fisheye", 16.0}}) {
+        const TestCamera<TypeParam> camera(name, half_diagonal_mm);
+        const CameraPathRange all{.first_pixel = 0, .pixels = 48, .first_sample = 0, .samples = 37};
+        const Paths expected = one_by_one(camera, all);
+        EXPECT_LT(expected.started, 48 * 37) << "some of the film gets no light";
+        EXPECT_LT(expected.valid.size(), static_cast<std::size_t>(expected.started)) << "the lens stops some paths";
+        EXPECT_GT(expected.valid.size(), 48U * 37U / 3U) << "and passes many";
+        for (const optics::SimdLevel level : optics::available_simd_levels()) {
+            for (const int capacity : {1, 5, 16, 100, 4096}) {
+                expect_same(through_buffers(camera, all, capacity, level), expected,
+                            fmt::format("{}, {}, capacity {}", name, optics::simd_name(level), capacity));
+            }
+        }
+    }
+}
+
+// A path does not depend on the range that it was asked for in.
+TYPED_TEST(LensPathsIn, DoNotDependOnTheRange) {
+    const TestCamera<TypeParam> camera("tessar", 70.0);
+    const CameraPathRange part{.first_pixel = 19, .pixels = 5, .first_sample = 250, .samples = 12};
+    expect_same(through_buffers(camera, part, 64, optics::available_simd_levels().back()), one_by_one(camera, part),
+                "part");
+}
+
+// A lens that is not known to be round has no tables of pupils for packets.
+TYPED_TEST(LensPathsIn, HaveTheSameBitsWherePupilsAreDrawnOneByOne) {
+    const TestCamera<TypeParam> camera("tessar", 30.0, false);
+    const CameraPathRange part{.first_pixel = 0, .pixels = 48, .first_sample = 0, .samples = 3};
+    ASSERT_EQ(camera.slices.tables(), nullptr);
+    expect_same(through_buffers(camera, part, 64, optics::available_simd_levels().back()), one_by_one(camera, part),
+                "turned");
+}
+
+// The top left pixel lies outside the fisheye's image circle: the few paths that the map starts there in defence all
+// end in the lens.
+TYPED_TEST(LensPathsIn, MayAllBeStopped) {
+    const TestCamera<TypeParam> camera("muller-fisheye", 40.0);
+    const CameraPathRange corner{.pixels = 1, .samples = 4000};
+    const Paths paths = through_buffers(camera, corner, 64, optics::available_simd_levels().back());
+    EXPECT_TRUE(paths.valid.empty());
+    EXPECT_GT(paths.started, 0);
+}
+
+TYPED_TEST(LensPathsIn, OfNoSamplesOrPixelsAreNone) {
+    const TestCamera<TypeParam> camera("tessar", 70.0);
+    const optics::SimdLevel level = optics::available_simd_levels().back();
+    EXPECT_TRUE(through_buffers(camera, {.pixels = 48, .samples = 0}, 64, level).valid.empty());
+    EXPECT_TRUE(through_buffers(camera, {.pixels = 0, .samples = 16}, 64, level).valid.empty());
+}
+
+TYPED_TEST(LensPathsIn, BeginAnewWithARange) {
+    const TestCamera<TypeParam> camera("tessar", 70.0);
+    LensPaths<TypeParam> paths(camera.film, camera.lens, camera.slices);
+    CameraPathBuffer buffer(20);
+    paths.start({.first_pixel = 20, .pixels = 8, .samples = 50});
+    EXPECT_TRUE(paths.fill(buffer));
+    paths.start({.first_pixel = 27, .pixels = 1, .samples = 1});
+    EXPECT_TRUE(paths.fill(buffer));
+    EXPECT_EQ(buffer.size, 1);
+    EXPECT_EQ(buffer.pixel[0], 27U);
+    EXPECT_FALSE(paths.fill(buffer));
+}
+
+TEST(CameraPathBuffer, HasRoomForOnePathAtLeast) {
+    EXPECT_THROW(CameraPathBuffer(0), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace lensproof::render::lens_paths_test

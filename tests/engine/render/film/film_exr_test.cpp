@@ -1,0 +1,150 @@
+#include "engine/render/film/film_exr.h"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+
+#include "engine/base/file.h"
+#include "engine/base/input_error.h"
+#include "engine/formats/image/image.h"
+#include "tests/engine/render/film/film_sample.h"
+#include "tests/test_folder.h"
+
+namespace lensproof::render::film_exr_test {
+namespace {
+
+// Single precision: half an ulp of a mean is 6e-8 of it, and a few of these come together.
+constexpr double kFloat = 3e-7;
+
+const FilmNotes kNotes = {.identity = {{"scene", "abc"}, {"seed", "7"}},
+                          .metadata = {{"lensproof:lens", "a lens"}, {"lensproof:shard", "1/2"}},
+                          .colours = spectral::RgbSpace{{0.64, 0.33}, {0.3, 0.6}, {0.15, 0.06}, {0.3127, 0.329}}};
+
+/// Samples [first, end) of a film of 70 × 33 pixels with everything that a film may have.
+Film full_film(std::uint32_t first, std::uint32_t end) {
+    FilmLayout layout = plain_film(70, 33, 4);
+    layout.has_splats = true;
+    layout.has_features = true;
+    Film film(layout);
+    FilmTile tile(layout);
+    film.load({.rect = {0, 0, 70, 33}, .first = first, .end = end}, tile);
+    for (std::uint32_t pixel = 0; pixel < 70 * 33; ++pixel) {
+        for (std::uint32_t i = first; i < end; ++i) {
+            if (pixel == 0) {
+                tile.add(pixel, i, 0, std::numeric_limits<double>::quiet_NaN());  // is left out
+            }
+            tile.add(pixel, i, i % 4, exponential_number(1, pixel, i));
+            tile.add_features(pixel,
+                              {.depth_mm = 1000.0 + i, .albedo_rgb = {0.5, 0.2, 0.1}, .normal = {0.6, 0.0, -0.8}});
+        }
+        const float light = static_cast<float>(exponential_number(2, pixel, first));
+        const std::uint32_t row = pixel / 70;
+        tile.begin_light_path();
+        tile.splat(all_at(pixel % 70, row), std::array<std::uint16_t, 4>{0, 1, 2, 3},
+                   std::array<float, 4>{light, light, 0.0F, light});
+    }
+    for (std::uint32_t i = 0; i < 100 * (end - first); ++i) {
+        tile.begin_light_path();  // which brings nothing
+    }
+    tile.finish();
+    film.store(tile);
+    return film;
+}
+
+void expect_near(const Vec3d& a, const Vec3d& b, double relative) {
+    EXPECT_NEAR(a.x, b.x, relative * std::abs(b.x));
+    EXPECT_NEAR(a.y, b.y, relative * std::abs(b.y));
+    EXPECT_NEAR(a.z, b.z, relative * std::abs(b.z));
+}
+
+/// Values to `relative`; variances to a hundredth of that of the mean's square, below which they say nothing, too.
+void expect_same(const Film& a, const Film& b, double relative) {
+    std::vector<double> layers_a(4);
+    std::vector<double> layers_b(4);
+    for (int y = 0; y < b.height(); ++y) {
+        for (int x = 0; x < b.width(); ++x) {
+            expect_near(a.estimate(x, y).rgb, b.estimate(x, y).rgb, relative);
+            expect_near(a.light_estimate(x, y).rgb, b.light_estimate(x, y).rgb, relative);
+            expect_near(a.light_estimate(x, y).variance, b.light_estimate(x, y).variance, relative);
+            EXPECT_EQ(a.counts(x, y).samples, b.counts(x, y).samples);
+            EXPECT_EQ(a.counts(x, y).blocks, b.counts(x, y).blocks);
+            EXPECT_NEAR(a.features(x, y).depth_mm, b.features(x, y).depth_mm, relative * 1000.0);
+            expect_near(a.features(x, y).albedo_rgb, b.features(x, y).albedo_rgb, relative);
+            expect_near(a.features(x, y).normal, b.features(x, y).normal, relative);
+            a.layers(x, y, layers_a);
+            b.layers(x, y, layers_b);
+            for (std::size_t k = 0; k < 4; ++k) {
+                EXPECT_NEAR(layers_a[k], layers_b[k], relative * layers_b[k]);
+            }
+        }
+    }
+    EXPECT_EQ(a.light_paths(), b.light_paths());
+    EXPECT_EQ(a.left_out(), b.left_out());
+    EXPECT_GT(a.left_out(), 0U);
+}
+
+TEST(FilmExr, HoldsAFilm) {
+    const TestFolder folder;
+    const Film film = full_film(0, 50);
+    write_film_exr(film, kNotes, folder.path() / "a.exr");
+    write_film_exr(film, kNotes, folder.path() / "b.exr");
+    EXPECT_EQ(read_file(folder.path() / "a.exr"), read_file(folder.path() / "b.exr"));
+    const auto [read, notes] = read_film_exr(folder.path() / "a.exr");
+    expect_same(read, film, kFloat);
+    EXPECT_EQ(notes.identity, kNotes.identity);
+    EXPECT_EQ(notes.metadata, kNotes.metadata);
+    ASSERT_TRUE(notes.colours);
+    EXPECT_FLOAT_EQ(static_cast<float>(notes.colours->white.y), 0.329F);
+    for (int x = 0; x < 70; ++x) {  // the camera's share comes as a difference of floats
+        expect_near(read.estimate(x, 5).variance, film.estimate(x, 5).variance, 10 * kFloat);
+    }
+}
+
+// Whoever takes it for a picture gets its R, G and B.
+TEST(FilmExr, IsAPictureToo) {
+    const TestFolder folder;
+    const Film film = full_film(0, 20);
+    write_film_exr(film, kNotes, folder.path() / "a.exr");
+    const formats::Image image = formats::read_image(folder.path() / "a.exr");
+    EXPECT_EQ(image.channels, (std::vector<std::string>{"R", "G", "B"}));
+    EXPECT_EQ(image.at(69, 32, 2), static_cast<float>(film.estimate(69, 32).rgb.z));
+    EXPECT_EQ(image.metadata.at("lensproof:lens"), "a lens");
+}
+
+// Files of parts add up to the whole to 1e-6, variances included: both are of the same blocks.
+TEST(FilmExr, PartsAddUpToTheWhole) {
+    const TestFolder folder;
+    const auto through_file = [&](const Film& film) {
+        write_film_exr(film, kNotes, folder.path() / "part.exr");
+        return read_film_exr(folder.path() / "part.exr").film;
+    };
+    Film sum = through_file(full_film(48, 96));
+    sum.merge(through_file(full_film(0, 16)));
+    sum.merge(through_file(full_film(16, 48)));
+    Film whole = full_film(0, 16);
+    whole.merge(full_film(16, 48));
+    whole.merge(full_film(48, 96));
+    expect_same(sum, whole, 1e-6);
+    for (int x = 0; x < 70; ++x) {
+        expect_near(sum.estimate(x, 7).variance, whole.estimate(x, 7).variance, 1e-5);
+    }
+}
+
+TEST(FilmExr, RefusesWhatItDidNotWrite) {
+    const TestFolder folder;
+    const std::filesystem::path file = folder.path() / "a.exr";
+    EXPECT_THROW(read_film_exr(file), InputError);
+    formats::write_exr(formats::make_image(4, 3, {"R", "G", "B"}), file);
+    EXPECT_THROW(read_film_exr(file), InputError);
+    formats::write_png(formats::make_image(4, 3, {"R", "G", "B"}), folder.path() / "a.png");
+    EXPECT_THROW(read_film_exr(folder.path() / "a.png"), InputError);
+    write_film_exr(full_film(0, 20), kNotes, file);
+    const std::string good = read_file(file);
+    for (const double fraction : {0.01, 0.1, 0.5, 0.9}) {
+        write_file(file, good.substr(0, static_cast<std::size_t>(fraction * static_cast<double>(good.size()))));
+        EXPECT_THROW(read_film_exr(file), InputError) << fraction;
+    }
+}
+
+}  // namespace
+}  // namespace lensproof::render::film_exr_test

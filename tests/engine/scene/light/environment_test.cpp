@@ -1,0 +1,91 @@
+// Pictures of the sky as light.
+#include "engine/scene/light/environment.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "engine/base/input_error.h"
+#include "engine/render/sampling/sampler.h"
+
+namespace lensproof::scene::environment_test {
+namespace {
+
+constexpr double kPi = std::numbers::pi;
+const spectral::SpectralGrid kGrid = spectral::spectral_grid(400.0, 700.0, 8);
+
+/// A picture of one grey a pixel, as light of radiance 1 where it is 1.
+ImageTexture grey_picture(int width, int height, const std::vector<float>& values) {
+    ImageTexture picture{.grid = {width, height, Wrap::repeat, Wrap::clamp},
+                         .texel = {},
+                         .abscissa = spectral::tabulated(kGrid, spectral::sigmoid_abscissa),
+                         .white = spectral::constant_spectrum(1.0, kGrid)};
+    const spectral::SigmoidSpectrum half{};  // 1/2 everywhere
+    for (const float value : values) {
+        picture.texel.push_back({.shape = half, .scale = value / half.at(0.0F)});
+    }
+    return picture;
+}
+
+// The picture's middle column shows +x, what is left of it lies counter-clockwise, and the top row lies upwards.
+TEST(Environment, StandsAsItSays) {
+    const ImageTexture picture = grey_picture(4, 2, {1, 2, 3, 4, 5, 6, 7, 8});
+    const spectral::PathWavelengths path = kGrid.path(0);
+    const auto seen = [&](const Environment& sky, double azimuth_deg, double height_deg) {
+        const double a = azimuth_deg * kPi / 180.0;
+        const double h = height_deg * kPi / 180.0;
+        return sky.radiance({std::cos(h) * std::cos(a), std::cos(h) * std::sin(a), std::sin(h)}, path)[0];
+    };
+    const Environment sky(picture, {0.0, 0.0, 1.0}, 0.0);
+    // The pixels' centres: 45° to either side of the middle and of the edge, 45° up and down.
+    EXPECT_NEAR(seen(sky, 45.0, 45.0), 2.0, 1e-5);
+    EXPECT_NEAR(seen(sky, -45.0, 45.0), 3.0, 1e-5);
+    EXPECT_NEAR(seen(sky, 135.0, 45.0), 1.0, 1e-5);
+    EXPECT_NEAR(seen(sky, -135.0, -45.0), 8.0, 1e-5);
+    const Environment turned(picture, {0.0, 0.0, 1.0}, 90.0);
+    EXPECT_NEAR(seen(turned, 135.0, 45.0), 2.0, 1e-5);
+}
+
+// Directions are drawn with the density that is stated: a weighted mean over them gives the integral of any function,
+// here the sky's irradiance from above and its whole flux, which a sum over fine cells gives too; 1e-3 by the sequence.
+TEST(Environment, DrawsWithItsDensity) {
+    std::vector<float> values(std::size_t{16} * 8, 0.1F);
+    values[3 * 16 + 5] = 100.0F;
+    const Environment sky(grey_picture(16, 8, values), {0.0, 0.0, 1.0}, 0.0);
+    const spectral::PathWavelengths path = kGrid.path(0);
+    constexpr int kDraws = 1 << 16;
+    double all = 0.0;
+    double from_above = 0.0;
+    const render::PixelSampler sampler(1, 0);
+    for (int i = 0; i < kDraws; ++i) {
+        const auto u = sampler.point(static_cast<std::uint32_t>(i));
+        const Environment::Draw draw = sky.draw(u[0], u[1]);
+        ASSERT_NEAR(sky.density(draw.direction), draw.density, 1e-6 * draw.density);
+        const double share = sky.radiance(draw.direction, path)[0] / draw.density / kDraws;
+        all += share;
+        from_above += share * std::max(0.0, draw.direction.z);
+    }
+    double expected = 0.0;
+    double expected_above = 0.0;
+    constexpr int kSteps = 800;
+    for (int i = 0; i < kSteps; ++i) {
+        const double polar = kPi * (i + 0.5) / kSteps;
+        for (int k = 0; k < 2 * kSteps; ++k) {
+            const double turn = kPi * (k + 0.5) / kSteps;
+            const Vec3d direction{std::sin(polar) * std::cos(turn), std::sin(polar) * std::sin(turn), std::cos(polar)};
+            const double cell = std::sin(polar) * kPi / kSteps * kPi / kSteps;
+            expected += cell * sky.radiance(direction, path)[0];
+            expected_above += cell * sky.radiance(direction, path)[0] * std::max(0.0, direction.z);
+        }
+    }
+    EXPECT_NEAR(all, expected, 1e-3 * expected);
+    EXPECT_NEAR(from_above, expected_above, 1e-3 * expected_above);
+}
+
+TEST(Environment, RefusesABlackPicture) {
+    EXPECT_THROW(Environment(grey_picture(2, 2, {0, 0, 0, 0}), {0.0, 0.0, 1.0}, 0.0), InputError);
+}
+
+}  // namespace
+}  // namespace lensproof::scene::environment_test

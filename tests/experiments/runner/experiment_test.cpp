@@ -1,0 +1,77 @@
+// Studies of any kind in one file, and their findings in one report.
+#include "experiments/runner/experiment.h"
+
+#include <gtest/gtest.h>
+
+#include "engine/base/file.h"
+#include "engine/base/input_error.h"
+#include "experiments/runner/report_content.h"
+#include "tests/test_folder.h"
+
+namespace lensproof::runner::experiment_test {
+namespace {
+
+using findings::Findings;
+
+const std::string kPassage = "[[pupil_passage]]\nlens = \"tessar\"\nf_number = 4.0\n";
+
+TEST(Experiment, HoldsStudiesOfAnyKind) {
+    const TestFolder folder;
+    const auto file = folder.path() / "e.toml";
+    const auto studies_of = [&](const std::string& tables) {
+        write_file(file, "title = \"t\"\n" + tables);
+        return read_experiment(file).studies.size();
+    };
+    EXPECT_EQ(studies_of(kPassage), 1U);
+    EXPECT_EQ(studies_of("[stability]\nextremes = [\"field\"]\n[measurement_floor]\n" + kPassage + kPassage), 3U);
+    EXPECT_THROW(studies_of("[stabilitty]\n" + kPassage), InputError);
+    try {
+        studies_of("");
+        ADD_FAILURE() << "an experiment without a study";
+    } catch (const InputError& error) {
+        EXPECT_NE(std::string(error.what()).find("neither [[simulations]] nor [[photos]] nor [stability]"),
+                  std::string::npos)
+            << error.what();
+    }
+}
+
+// Two cameras' curves go into one plot, with the tighter limit; each study's subjects and tables stand after those of
+// the study before it, which it may look at.
+TEST(Experiment, FindingsGoIntoOneReport) {
+    const TestFolder folder;
+    const auto file = folder.path() / "e.toml";
+    write_file(file, "");
+    const auto camera = [](const std::string& name, double limit) {
+        return Findings{.checks = {{.id = name, .value = 1.0, .limit = 2.0}},
+                        .counts_checks = true,
+                        .subjects_title = findings::kUsualSubjects,
+                        .subjects = {{.id = name, .kind = "photos", .label = name}},
+                        .plots = {{.id = "distortion", .limit = limit, .series = {{.label = name}}}}};
+    };
+    const Experiment experiment{.file = file,
+                                .title = "T",
+                                .summary = "S",
+                                .studies = {[&](const auto&, const auto&, const Findings&) { return camera("a", 0.5); },
+                                            [&](const auto&, const auto&, const Findings& before) {
+                                                EXPECT_EQ(before.subjects.size(), 1U);
+                                                return camera("b", 0.2);
+                                            },
+                                            [](const auto&, const auto&, const Findings&) {
+                                                return Findings{
+                                                    .subjects_title = "Extremes",
+                                                    .subjects = {{.id = "field", .kind = "rays", .label = "Field"}},
+                                                    .tables = {{"extremes", Json::list({1, 2})}}};
+                                            }}};
+    const Findings found = run_experiment(experiment, {}, [](const std::string&, double) {});
+    const Json report = report_json(experiment, found, {});
+    EXPECT_EQ(report["summary"], "S 2 of 2 checks hold.");
+    EXPECT_EQ(report["subjects_title"], "Renders and photos, Extremes");
+    EXPECT_EQ(report["subjects"].size(), 3U);
+    ASSERT_EQ(report["plots"].size(), 1U);
+    EXPECT_EQ(report["plots"][0]["series"].size(), 2U);
+    EXPECT_EQ(report["plots"][0]["limit"], 0.2);
+    EXPECT_EQ(report["extremes"].size(), 2U);
+}
+
+}  // namespace
+}  // namespace lensproof::runner::experiment_test
