@@ -1,0 +1,136 @@
+"""The plan of the house: house_test.py CHECKOUT
+
+- No circle of folders: the folders of engine/, calibration/ and experiments/ include each other in one direction only.
+  (Which of them a folder may include at all, the build holds: .ci/rooms.cmake.)
+- A namespace a room: what lies in engine/ROOM or experiments/ROOM is in lensproof::ROOM, in calibration/ in
+  lensproof::calibration, in engine/base in lensproof itself. Folders within a room share its namespace.
+- Tests mirror the sources: a folder below tests/engine, tests/calibration and tests/experiments is a folder there.
+- No name is defined twice: two files that define the same type, or a function of the same name and parameters, in one
+  namespace are linked into one program, which is undefined behaviour that no linker tells. universal-ctags finds the
+  definitions; without it this part is skipped, exit status 77.
+
+Each check is tried first on a small house where it has to find something.
+"""
+import collections, json, pathlib, re, shutil, subprocess, sys, tempfile
+
+SKIPPED = 77
+HOUSES = ("engine", "calibration", "experiments")
+
+
+def sources(home, houses=HOUSES):
+    return sorted(file for house in houses for file in (home / house).rglob("*") if file.suffix in (".h", ".cpp"))
+
+
+def included_folders(home):
+    """{folder: {folder that it includes: one file that does}}"""
+    graph = collections.defaultdict(dict)
+    for file in sources(home):
+        folder = file.parent.relative_to(home).as_posix()
+        for included in re.findall(r'^\s*#\s*include\s*"([^"]+)"', file.read_text(), re.MULTILINE):
+            other = pathlib.PurePosixPath(included).parent.as_posix()
+            if other not in (folder, "."):
+                graph[folder].setdefault(other, f"{file.relative_to(home)} includes {included}")
+    return graph
+
+
+def circles(home):
+    graph = included_folders(home)
+    done, path = set(), []
+
+    def visit(folder):
+        if folder in path:
+            circle = path[path.index(folder):] + [folder]
+            return ["folders in a circle: " + "; ".join(graph[a][b] for a, b in zip(circle, circle[1:]))]
+        if folder in done:
+            return []
+        path.append(folder)
+        found = [fault for other in sorted(graph.get(folder, ())) for fault in visit(other)]
+        path.pop()
+        done.add(folder)
+        return found
+
+    return [fault for folder in sorted(graph) for fault in visit(folder)]
+
+
+def namespace_of(folder):
+    room = folder.parts[0] if folder.parts[0] == "calibration" else folder.parts[1]
+    return "lensproof" if room == "base" else f"lensproof::{room}"
+
+
+def misplaced(home):
+    faults = []
+    for file in sources(home):
+        expected = namespace_of(file.parent.relative_to(home))
+        opened = re.findall(r"^namespace (lensproof\S*) {", file.read_text(), re.MULTILINE)
+        faults += [f"{file.relative_to(home)} opens namespace {name}, expected {expected}"
+                   for name in opened if name != expected and not name.startswith(expected + "::")]
+        if not opened and file.name != "main.cpp":
+            faults.append(f"{file.relative_to(home)} opens no namespace, expected {expected}")
+    return faults
+
+
+def unmirrored(home):
+    return [f"tests/{folder} mirrors no folder {folder}"
+            for folder in sorted({file.parent.relative_to(home / "tests") for file in sources(home / "tests")})
+            if not (home / folder).is_dir()]
+
+
+def defined_twice(home):
+    found = subprocess.run(
+        ["ctags", "--languages=C++", "--langmap=C++:.h.cpp", "--kinds-C++=csugtf", "--fields=+KSZ",
+         "--output-format=json", "-o", "-", *map(str, sources(home, HOUSES + ("tests",)))], check=True, capture_output=True, text=True)
+    places = collections.defaultdict(set)
+    for line in found.stdout.splitlines():
+        tag = json.loads(line)
+        scope = tag.get("scope", "")
+        # What is unnamed is a file's own; so are the members of types, which their types stand for.
+        if "__anon" in scope + tag["name"] or tag.get("scopeKind", "namespace") != "namespace" or tag["name"] == "main":
+            continue
+        is_function = tag["kind"] == "function"
+        parameters = re.sub(r"\b\w+(?=[,)])|\s", "", tag.get("signature", "")) if is_function else ""
+        if not (is_function and re.search(r"\btemplate\b|\bstatic\b", tag.get("pattern", ""))):
+            places[f"{scope}::{tag['name']}{parameters}"].add(str(pathlib.Path(tag["path"]).relative_to(home)))
+    return [f"{name} is defined in {' and in '.join(sorted(files))}"
+            for name, files in sorted(places.items()) if len(files) > 1]
+
+
+def planted(check, files, found):
+    """That the check finds what is to be found in a house of these files."""
+    with tempfile.TemporaryDirectory() as folder:
+        home = pathlib.Path(folder)
+        for name, text in files.items():
+            (home / name).parent.mkdir(parents=True, exist_ok=True)
+            (home / name).write_text(text)
+        faults = check(home)
+    if len(faults) != 1 or found not in faults[0]:
+        sys.exit(f"{check.__name__} does not find what was planted, \"{found}\": {faults}")
+
+
+def main():
+    home = pathlib.Path(sys.argv[1]).resolve()
+    planted(circles, {"engine/optics/lens.h": '#include "engine/scene/light.h"\n',
+                      "engine/scene/light.h": '#include "engine/render/film.h"\n',
+                      "engine/render/film.h": '#include "engine/optics/lens.h"\n'}, "film.h includes engine/optics/lens.h")
+    planted(misplaced, {"engine/optics/lens.h": "namespace lensproof::scene {\n"}, "expected lensproof::optics")
+    planted(unmirrored, {"engine/optics/lens.h": "", "tests/engine/io/lens_test.cpp": ""}, "tests/engine/io")
+    faults = circles(home) + misplaced(home) + unmirrored(home)
+    has_ctags = shutil.which("ctags") and "Universal" in subprocess.run(
+        ["ctags", "--version"], capture_output=True, text=True).stdout
+    if has_ctags:
+        for one, other in (("struct Spot {};", "class Spot { int x; };"),
+                           ("int sum(int a, double b) { return a; }", "int sum(int x, double y) { return x; }")):
+            planted(defined_twice, {"engine/optics/a.cpp": "namespace lensproof {\n" + one + "\n}\n",
+                                    "engine/optics/b.cpp": "namespace lensproof {\n" + other + "\n}\n",
+                                    "engine/scene/c.cpp": "namespace lensproof {\nnamespace {\n" + one + "\n}\n}\n"},
+                    "engine/optics/a.cpp and in engine/optics/b.cpp")
+        faults += defined_twice(home)
+    print("\n".join(faults) or f"{len(sources(home))} sources, {len(included_folders(home))} folders: nothing found")
+    if faults:
+        sys.exit(1)
+    if not has_ctags:
+        print("skipped: names that are defined twice, because universal-ctags is not installed")
+        sys.exit(SKIPPED)
+
+
+if __name__ == "__main__":
+    main()
