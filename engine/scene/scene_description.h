@@ -46,7 +46,6 @@ struct ObjectDescription {
     std::string where;
 };
 
-
 struct SceneDescription {
     std::vector<MaterialDescription> materials;
     std::vector<ObjectDescription> objects;

@@ -1,4 +1,4 @@
-// tests/cli/analyze_numberstest.cpp — the command `analyze` against seven lenses computed with 50 digits.
+// tests/cli/analyze_numbers_test.cpp — the command `analyze` against seven lenses computed with 50 digits.
 //
 // tests/validation/reference_numbers/README.md says how the numbers were made and what each one means.
 #include <gtest/gtest.h>

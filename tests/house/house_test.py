@@ -4,6 +4,7 @@
   (Which of them a folder may include at all, the build holds: .ci/rooms.cmake.)
 - A namespace a room: what lies in engine/ROOM or experiments/ROOM is in lensproof::ROOM, in calibration/ in
   lensproof::calibration, in engine/base in lensproof itself. Folders within a room share its namespace.
+- engine/README.md's table of the rooms says what engine/CMakeLists.txt does.
 - Tests mirror the sources: a folder below tests/engine, tests/calibration and tests/experiments is a folder there.
 - No name is defined twice: two files that define the same type, or a function of the same name and parameters, in one
   namespace are linked into one program, which is undefined behaviour that no linker tells. universal-ctags finds the
@@ -69,6 +70,17 @@ def misplaced(home):
     return faults
 
 
+def mistold(home):
+    told = re.findall(r"^\| `(\S+)` \| .* \| ?((?:`\S+` ?)*)\|$", (home / "engine/README.md").read_text(), re.MULTILINE)
+    told = {room: re.findall(r"`(\S+)`", uses) for room, uses in told}
+    built = {}
+    for room, words in re.findall(r"lensproof_room\(engine/(\S+)([^)]*)\)", (home / "engine/CMakeLists.txt").read_text()):
+        uses = re.search(r"USES((?:\s+engine/\S+)*)", words)
+        built[room] = re.findall(r"engine/(\S+)", uses[1]) if uses else []
+    return [f"engine/README.md says that {room} uses {told.get(room)}, engine/CMakeLists.txt {uses}"
+            for room, uses in built.items() if told.get(room) != uses]
+
+
 def unmirrored(home):
     return [f"tests/{folder} mirrors no folder {folder}"
             for folder in sorted({file.parent.relative_to(home / "tests") for file in sources(home / "tests")})
@@ -112,8 +124,10 @@ def main():
                       "engine/scene/light.h": '#include "engine/render/film.h"\n',
                       "engine/render/film.h": '#include "engine/optics/lens.h"\n'}, "film.h includes engine/optics/lens.h")
     planted(misplaced, {"engine/optics/lens.h": "namespace lensproof::scene {\n"}, "expected lensproof::optics")
+    planted(mistold, {"engine/CMakeLists.txt": "lensproof_room(engine/optics USES engine/base\n  engine/scene LINKS x)\n",
+                      "engine/README.md": "| `optics` | lenses | `base` |\n"}, "optics uses ['base']")
     planted(unmirrored, {"engine/optics/lens.h": "", "tests/engine/io/lens_test.cpp": ""}, "tests/engine/io")
-    faults = circles(home) + misplaced(home) + unmirrored(home)
+    faults = circles(home) + misplaced(home) + mistold(home) + unmirrored(home)
     has_ctags = shutil.which("ctags") and "Universal" in subprocess.run(
         ["ctags", "--version"], capture_output=True, text=True).stdout
     if has_ctags:

@@ -1,4 +1,4 @@
-// engine/formats/image/stored_picture.h — a picture's file as OpenImageIO gives it, for the readers of engine/io.
+// engine/formats/image/stored_picture.h — a picture's file as OpenImageIO gives it, for this room's readers.
 #pragma once
 #include <OpenImageIO/imageio.h>
 

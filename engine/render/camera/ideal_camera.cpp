@@ -94,8 +94,8 @@ PathPdf pupil_pdf(const std::vector<GaussianOptics>& at, const LightOrigin& from
 
 IdealCamera::Paths::Paths(const IdealCamera& camera, const FilmSampling& film, const spectral::SpectralGrid& grid,
                           PathCarry carry)
-    : camera_(&camera),
-      samples_(film, static_cast<int>(camera.at_.size())),
+    : samples_(film, static_cast<int>(camera.at_.size())),
+      camera_(&camera),
       sensor_(film.sensor),
       grid_(grid),
       carry_(carry),

@@ -36,13 +36,13 @@ class IdealCamera {
         void append(const PathStarts& starts, std::size_t sample, CameraPathBuffer& buffer) const;
         void weigh(CameraPathBuffer& buffer) const;
 
-        const IdealCamera* camera_;
         FilmSamples samples_;
+        const IdealCamera* camera_;
+        std::int64_t started_ = 0;
         Sensor sensor_;
         spectral::SpectralGrid grid_;
         PathCarry carry_;
         bool is_achromatic_;  // colours take the same paths, so that one carries all wavelengths
-        std::int64_t started_ = 0;
     };
 
     [[nodiscard]] FilmImportance importance(const Sensor& sensor, const Ray<double>& ray,

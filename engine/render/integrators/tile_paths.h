@@ -11,7 +11,7 @@ namespace lensproof::render {
 class TilePaths {
   public:
     TilePaths(const Camera& camera, std::uint64_t seed, PathCarry carry)
-        : width_(static_cast<std::uint32_t>(camera.sensor().width)), paths_(camera.paths(seed, carry)) {}
+        : paths_(camera.paths(seed, carry)), width_(static_cast<std::uint32_t>(camera.sensor().width)) {}
 
     /// Calls add(paths, path, pixel) for each path of these samples, `path` being its place in the buffer `paths` and
     /// `pixel` its pixel's in the tile; counts rays in the tile.
@@ -37,9 +37,9 @@ class TilePaths {
     }
 
   private:
-    std::uint32_t width_;
     CameraPaths paths_;
     CameraPathBuffer buffer_;
+    std::uint32_t width_;
 };
 
 }  // namespace lensproof::render

@@ -88,11 +88,13 @@ inline Outline outline(const CharucoBoard& board) {
     const double cell = board.marker_mm / (board.cells + 2);
     auto marker = board.markers.begin();
     for (int i = 0; i < board.columns * board.rows; ++i) {
-        if ((i % board.columns + i / board.columns) % 2 == 0) {
+        const int across = i % board.columns;
+        const int down = i / board.columns;
+        if ((across + down) % 2 == 0) {
             continue;
         }
-        const Vec2d centre{(i % board.columns + 0.5 - 0.5 * board.columns) * board.square_mm,
-                           (i / board.columns + 0.5 - 0.5 * board.rows) * board.square_mm};
+        const Vec2d centre{(across + 0.5 - 0.5 * board.columns) * board.square_mm,
+                           (down + 0.5 - 0.5 * board.rows) * board.square_mm};
         outline.push_back(rectangle({centre.x - half, centre.y - half}, {centre.x + half, centre.y + half}));
         for (int row = 0; row < board.cells; ++row) {
             for (int column = 0; column < board.cells; ++column) {

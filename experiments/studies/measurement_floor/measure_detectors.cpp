@@ -63,15 +63,15 @@ std::vector<Detector> detectors() {
     return all;
 }
 
-/// What is varied in a sweep, and how it enters the simulation.
-struct Varied {
+/// What is varied_pictures in a sweep, and how it enters the simulation.
+struct VariedPictures {
     PictureSweep of;
     double tilt_share = 0.0;  // 1: the value is the tilt
 };
 
 /// Those of pictures, and the chart's tilt.
-std::vector<Varied> varied() {
-    std::vector<Varied> all;
+std::vector<VariedPictures> varied_pictures() {
+    std::vector<VariedPictures> all;
     for (const PictureSweep& sweep : picture_sweeps()) {
         all.push_back({.of = sweep});
     }
@@ -132,7 +132,7 @@ Errors look(const Detector& detector, const calibration::SimulatedCamera& camera
     return errors;
 }
 
-calibration::SimulatedCamera usual_camera() {
+calibration::SimulatedCamera chart_camera() {
     return {.model = calibration::BrownConrady{{820.0, 318.5, 243.0, -0.24, 0.09, -0.01, 0.0008, -0.0005}},
             .width_px = 640,
             .height_px = 480,
@@ -165,7 +165,8 @@ findings::Check target_check(const std::string& id, const Detector& detector, co
 
 std::vector<std::string> detector_sweeps() {
     std::vector<std::string> ids;
-    std::ranges::transform(varied(), std::back_inserter(ids), [](const Varied& what) { return what.of.id; });
+    std::ranges::transform(varied_pictures(), std::back_inserter(ids),
+                           [](const VariedPictures& what) { return what.of.id; });
     return ids;
 }
 
@@ -180,9 +181,10 @@ MeasurementFloor measure_detectors(const FloorSettings& settings, std::uint64_t 
     std::vector<Detector> all = detectors();
     std::erase_if(all,
                   [&](const Detector& detector) { return !findings::is_wanted(settings.detectors, detector.label); });
-    std::vector<Varied> sweeps = varied();
-    std::erase_if(sweeps, [&](const Varied& what) { return !findings::is_wanted(settings.sweeps, what.of.id); });
-    for (Varied& what : sweeps) {
+    std::vector<VariedPictures> sweeps = varied_pictures();
+    std::erase_if(sweeps,
+                  [&](const VariedPictures& what) { return !findings::is_wanted(settings.sweeps, what.of.id); });
+    for (VariedPictures& what : sweeps) {
         std::erase_if(what.of.values, [&](double value) { return !findings::is_wanted(settings.values, value); });
     }
     struct Job {
@@ -205,8 +207,8 @@ MeasurementFloor measure_detectors(const FloorSettings& settings, std::uint64_t 
         count, threads,
         [&](int i) {
             const Job& job = jobs[static_cast<std::size_t>(i)];
-            calibration::SimulatedCamera camera = usual_camera();
-            const Varied& what = sweeps[job.sweep];
+            calibration::SimulatedCamera camera = chart_camera();
+            const VariedPictures& what = sweeps[job.sweep];
             const double value = what.of.values[job.value];
             what.of.apply(value, camera);
             const PoseWish wish{.tilt_deg = std::lerp(kUsualTilt_deg, value, what.tilt_share)};
@@ -218,7 +220,7 @@ MeasurementFloor measure_detectors(const FloorSettings& settings, std::uint64_t 
 
     MeasurementFloor floor;
     std::size_t next = 0;
-    for (const Varied& what : sweeps) {
+    for (const VariedPictures& what : sweeps) {
         FloorSweep sweep{.id = what.of.id,
                          .title = "Points against " + what.of.name,
                          .setting = fmt::format("else {} % noise, a blur of {} px, tilts of {}°, no JPEG",

@@ -20,10 +20,7 @@ namespace lensproof::studies {
 
 namespace {
 
-constexpr int kWidth = 640;
-constexpr int kHeight = 480;
-constexpr double kHalfDiagonal = 400.0;
-constexpr double kPointNoise_px = 0.02;                        // what points are asked to be known to
+constexpr double kTrialNoise_px = 0.02;                        // what points are asked to be known to
 constexpr std::array<double, 3> kHeights = {0.25, 0.5, 0.75};  // image heights at which curves are judged
 
 calibration::BrownConrady true_camera() {
@@ -31,7 +28,7 @@ calibration::BrownConrady true_camera() {
 }
 
 /// Whether intervals held the truth, counted, by what they are of; each trial its own.
-struct Quantity {
+struct Stated {
     std::string id;
     std::string label;
 };
@@ -41,8 +38,8 @@ int holds(const std::optional<calibration::Banded>& stated, double truth) {
     return !stated ? -1 : stated->lower_95 <= truth && truth <= stated->upper_95 ? 1 : 0;
 }
 
-std::vector<Quantity> at_heights(const std::string& id, const std::string& label) {
-    std::vector<Quantity> quantities;
+std::vector<Stated> at_heights(const std::string& id, const std::string& label) {
+    std::vector<Stated> quantities;
     quantities.reserve(kHeights.size());
     for (const double height : kHeights) {
         quantities.push_back(
@@ -56,7 +53,7 @@ Outcome geometry_trial(std::uint32_t seed) {
     std::mt19937 random(seed);
     const calibration::BrownConrady camera = true_camera();
     const std::vector<calibration::ChartView> views =
-        draw_views({.model = camera, .width_px = kWidth, .height_px = kHeight, .noise_px = kPointNoise_px}, 8,
+        draw_views({.model = camera, .width_px = kWidth, .height_px = kHeight, .noise_px = kTrialNoise_px}, 8,
                    {.tilt_deg = 30.0, .largest_roll_deg = 20.0, .fill = 0.8, .reach = 0.4}, random);
     const calibration::GeometryFit fit =
         calibration::fit_geometry(views, kWidth, kHeight, {.model = calibration::ModelKind::brown_conrady});
@@ -71,7 +68,7 @@ Outcome geometry_trial(std::uint32_t seed) {
     return held;
 }
 
-double true_vignetting(double height) {
+double trial_vignetting(double height) {
     return std::pow(std::cos(0.5 * height), 4.0) * (1.0 - 0.05 * std::pow(height, 6.0));
 }
 
@@ -80,7 +77,7 @@ Outcome vignetting_trial(std::uint32_t seed) {
     calibration::SimulatedCamera camera{.model = calibration::BrownConrady{{400.0, 159.5, 119.5}},
                                         .width_px = kWidth / 2,
                                         .height_px = kHeight / 2,
-                                        .channels = {{.name = "Y", .vignetting = true_vignetting}},
+                                        .channels = {{.name = "Y", .vignetting = trial_vignetting}},
                                         .white = 0.7,
                                         .blur_px = 0.0,
                                         .read_noise = 0.007,
@@ -92,7 +89,7 @@ Outcome vignetting_trial(std::uint32_t seed) {
         {calibration::flat_field_samples(image, 0)}, calibration::centre_px(camera.model), kHalfDiagonal / 2.0);
     Outcome held;
     for (const double height : kHeights) {
-        held.push_back(holds(calibration::sample(fit.ratio, height), true_vignetting(height)));
+        held.push_back(holds(calibration::sample(fit.ratio, height), trial_vignetting(height)));
     }
     return held;
 }
@@ -108,7 +105,7 @@ Outcome chromatic_trial(std::uint32_t seed) {
         const Vec2d q{(green.x - centre.x) / kHalfDiagonal, (green.y - centre.y) / kHalfDiagonal};
         const double height = std::hypot(q.x, q.y);
         const double scale = shift(height) / height;
-        const auto noise = [&] { return kPointNoise_px * normal(random); };
+        const auto noise = [&] { return kTrialNoise_px * normal(random); };
         pairs.push_back({{green.x + noise(), green.y + noise()},
                          {green.x + scale * q.x + noise(), green.y + scale * q.y + noise()}});
     }
@@ -130,12 +127,12 @@ Outcome outcome_of(Outcome (*trial)(std::uint32_t seed), std::size_t quantities,
 }
 
 struct Study {
-    std::vector<Quantity> quantities;
+    std::vector<Stated> quantities;
     Outcome (*trial)(std::uint32_t seed);
 };
 
 std::vector<Study> studies() {
-    std::vector<Quantity> geometry = at_heights("field-angle", "field angle");
+    std::vector<Stated> geometry = at_heights("field-angle", "field angle");
     geometry.insert(geometry.begin(), {"focal-length", "focal length"});
     return {{std::move(geometry), geometry_trial},
             {at_heights("vignetting", "vignetting"), vignetting_trial},

@@ -20,8 +20,6 @@ namespace lensproof::studies {
 
 namespace {
 
-constexpr int kWidth = 640;
-constexpr int kHeight = 480;
 constexpr int kUsualPhotos = 12;
 // What fits of a corner leave at 1 % noise, and half as much again (the points' own sweep: 0.0064 px). Where points are
 // known to no more than the 0.02 px that is asked of them, twelve photos leave the mapping at 0.023 to 0.031 px (sets

@@ -28,9 +28,6 @@ namespace lensproof::studies {
 
 namespace {
 
-constexpr int kWidth = 640;
-constexpr int kHeight = 480;
-constexpr double kHalfDiagonal = 400.0;
 constexpr int kViews = 2;  // of the chart, in a set
 // The board nearly fills the picture, so that its outermost points lie near the corners.
 constexpr PoseWish kWish{.tilt_deg = 3.0, .largest_roll_deg = 1.0, .fill = 0.94, .reach = 0.02};
@@ -174,7 +171,7 @@ QuantityErrors errors_of_set(const calibration::SimulatedCamera& camera, std::ui
 }
 
 /// A curve of a sweep.
-struct Quantity {
+struct JudgedQuantity {
     std::string label;
     double QuantityErrors::*error;
 };
@@ -186,7 +183,7 @@ struct Sort {
     std::string error;
     std::string unit;
     double target;
-    std::vector<Quantity> quantities;
+    std::vector<JudgedQuantity> quantities;
 };
 
 std::vector<Sort> sorts() {
@@ -211,7 +208,7 @@ std::vector<Sort> sorts() {
              {{"slanted edges", &QuantityErrors::mtf50_percent}}}};
 }
 
-findings::Check target_check(const Sort& sort, const Quantity& quantity, const FloorPoint& point) {
+findings::Check target_check(const Sort& sort, const JudgedQuantity& quantity, const FloorPoint& point) {
     return {.id = fmt::format("{}-{}", sort.id, quantity.label),
             .group = "Chromatic shift, vignetting and sharpness at 1 % noise",
             .subject = sort.id + "-noise",
@@ -275,7 +272,7 @@ MeasurementFloor measure_quantities(const FloorSettings& settings, std::uint64_t
                 .error_unit = sort.unit,
                 .curves = {},
                 .target = sort.target};
-            for (const Quantity& quantity : sort.quantities) {
+            for (const JudgedQuantity& quantity : sort.quantities) {
                 FloorCurve curve{.label = quantity.label, .points = {}};
                 std::size_t next = first;
                 for (const double value : what.values) {

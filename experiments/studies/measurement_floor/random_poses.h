@@ -11,6 +11,11 @@
 
 namespace lensproof::studies {
 
+// The simulated cameras' pictures, px.
+inline constexpr int kWidth = 640;
+inline constexpr int kHeight = 480;
+inline constexpr double kHalfDiagonal = 400.0;
+
 /// Numbers in [0, 1) from the generator's own bits; std::uniform_real_distribution differs between libraries.
 inline double uniform(std::mt19937& random) {
     return static_cast<double>(random()) / 4294967296.0;
