@@ -1,4 +1,4 @@
-// engine/base/affine.h — affine maps, which place shapes in a scene.
+// engine/base/affine.h — affine maps, which place shapes, charts and cameras in a scene.
 #pragma once
 #include <algorithm>
 #include <array>
@@ -44,6 +44,11 @@ struct AffineMap {
 
 inline Vec3d map_point(const AffineMap& map, const Vec3d& point) {
     return map.linear * point + map.translation;
+}
+
+/// The point that a rigid motion, whose `linear` is a rotation, takes to `point`.
+inline Vec3d point_before(const AffineMap& motion, const Vec3d& point) {
+    return transposed_times(motion.linear, point - motion.translation);
 }
 
 /// What `after` does to the outcome of `first`.

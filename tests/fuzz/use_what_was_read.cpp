@@ -35,8 +35,8 @@ void use(const render::SceneSetup& setup) {
     try {
         scene::SceneShapes shapes = scene::load_shapes(setup.scene);
         const scene::SceneGeometry geometry(std::move(shapes.shapes), std::move(shapes.objects));
-        const scene::RigidMotion camera = render::camera_to_world(setup.camera);
-        scene::intersect(geometry, camera.translation, scene::rotate(camera, {0.0, 0.0, 1.0}), 0.0, 1e12);
+        const AffineMap camera = render::camera_to_world(setup.camera);
+        scene::intersect(geometry, camera.translation, camera.linear * Vec3d{0.0, 0.0, 1.0}, 0.0, 1e12);
     } catch (const InputError&) {
         return;  // refused, as a render would
     }

@@ -84,7 +84,7 @@ FilmImportance Camera::importance(const Ray<double>& ray, const spectral::PathWa
 }
 
 LightOrigin Camera::in_lens_space(const LightOrigin& from) const {
-    return {scene::camera_to_lens(from.is_far ? scene::rotate_back(pose_, from.at) : scene::moved_back(pose_, from.at)),
+    return {scene::camera_to_lens(from.is_far ? transposed_times(pose_.linear, from.at) : point_before(pose_, from.at)),
             from.is_far};
 }
 
@@ -93,8 +93,8 @@ std::optional<LensSample> Camera::sample(const LightOrigin& from, const spectral
     const LightOrigin origin = in_lens_space(from);
     auto in = std::visit([&](const auto& optics) { return optics.sample(origin, path, u, v); }, optics_);
     if (in) {
-        in->direction = scene::rotate(pose_, scene::camera_to_lens(in->direction));
-        in->end = scene::moved(pose_, scene::camera_to_lens(in->end));
+        in->direction = pose_.linear * scene::camera_to_lens(in->direction);
+        in->end = map_point(pose_, scene::camera_to_lens(in->end));
     }
     return in;
 }

@@ -89,10 +89,10 @@ class Camera {
     /// Of the exact model alone.
     [[nodiscard]] const ExactCamera& exact() const { return std::get<ExactCamera>(optics_); }
     /// From the frame of pose.h to the world; and a ray from lens space there.
-    [[nodiscard]] const scene::RigidMotion& pose() const { return pose_; }
+    [[nodiscard]] const AffineMap& pose() const { return pose_; }
     [[nodiscard]] Ray<double> to_world(const Ray<double>& ray) const {
-        return {scene::moved(pose_, scene::camera_to_lens(ray.origin)),
-                scene::rotate(pose_, scene::camera_to_lens(ray.direction))};
+        return {map_point(pose_, scene::camera_to_lens(ray.origin)),
+                pose_.linear * scene::camera_to_lens(ray.direction)};
     }
     [[nodiscard]] const spectral::SpectralGrid& grid() const { return grid_; }
     /// Says so where wavelengths were clamped to the range of the lens's glasses; else empty.
@@ -118,7 +118,7 @@ class Camera {
     [[nodiscard]] LightOrigin in_lens_space(const LightOrigin& from) const;
 
     CameraSettings settings_;
-    scene::RigidMotion pose_;
+    AffineMap pose_;
     std::optional<optics::Lens> lens_;
     std::string clamp_note_;
     spectral::SpectralGrid grid_;

@@ -101,11 +101,11 @@ const std::string& name_of(LensModel model) {
     return lens_model_names()[static_cast<std::size_t>(model)];
 }
 
-scene::RigidMotion camera_to_world(const CameraSettings& camera) {
+AffineMap camera_to_world(const CameraSettings& camera) {
     const Vec3d z = normalized(camera.look_at_mm - camera.position_mm);
     const Vec3d x = normalized(cross(z, camera.up));
     const Vec3d y = cross(z, x);
-    return {.rotation_rows = {Vec3d{x.x, y.x, z.x}, Vec3d{x.y, y.y, z.y}, Vec3d{x.z, y.z, z.z}},
+    return {.linear = {Vec3d{x.x, y.x, z.x}, Vec3d{x.y, y.y, z.y}, Vec3d{x.z, y.z, z.z}},
             .translation = camera.position_mm};
 }
 

@@ -48,7 +48,7 @@ struct CameraSettings {
 };
 
 /// X_world = R · X_camera + t. The camera frame is that of pose.h.
-scene::RigidMotion camera_to_world(const CameraSettings& camera);
+AffineMap camera_to_world(const CameraSettings& camera);
 
 /// Reads a camera's table: lens, zoom (optional), blades with blade_curvature and blade_rotation_deg (optional),
 /// f_number, focus_distance_mm (inf allowed), sensor_mm = [w, h], pixels = [w, h], shutter_s, iso, response. Throws

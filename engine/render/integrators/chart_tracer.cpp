@@ -11,9 +11,9 @@ namespace lensproof::render {
 namespace {
 
 PixelFeatures features_of(const EvenChart& chart, const ChartMeeting& at) {
-    return {.depth_mm = scene::moved(chart.pose, {at.x_mm, at.y_mm, 0.0}).z,
+    return {.depth_mm = map_point(chart.pose, {at.x_mm, at.y_mm, 0.0}).z,
             .albedo_rgb = {at.reflectance, at.reflectance, at.reflectance},
-            .normal = scene::rotate(chart.pose, {0.0, 0.0, at.is_before ? 1.0 : -1.0})};
+            .normal = chart.pose.linear * Vec3d{0.0, 0.0, at.is_before ? 1.0 : -1.0}};
 }
 
 }  // namespace
@@ -32,8 +32,8 @@ EvenChart even_chart(const scene::Chart& chart, const scene::Placement& placemen
 }
 
 ChartMeeting meet_chart(const EvenChart& chart, const Ray<double>& outwards) {
-    const Vec3d origin = scene::moved_back(chart.pose, scene::camera_to_lens(outwards.origin));
-    const Vec3d direction = scene::rotate_back(chart.pose, scene::camera_to_lens(outwards.direction));
+    const Vec3d origin = point_before(chart.pose, scene::camera_to_lens(outwards.origin));
+    const Vec3d direction = transposed_times(chart.pose.linear, scene::camera_to_lens(outwards.direction));
     const double distance = -origin.z / direction.z;
     ChartMeeting meeting{.x_mm = origin.x + distance * direction.x,
                          .y_mm = origin.y + distance * direction.y,

@@ -185,9 +185,9 @@ void PathTracer::add_features(std::size_t pixel, const spectral::PathWavelengths
     for (std::size_t i = 0; i < spectral::kWavelengthsPerPath; ++i) {
         albedo = albedo + (first.albedo[i] / double{spectral::kWavelengthsPerPath}) * albedo_weights_[strata.index[i]];
     }
-    tile.add_features(pixel, {.depth_mm = scene::moved_back(view_.camera->pose(), first.point).z,
+    tile.add_features(pixel, {.depth_mm = point_before(view_.camera->pose(), first.point).z,
                               .albedo_rgb = albedo,
-                              .normal = scene::rotate_back(view_.camera->pose(), first.normal)});
+                              .normal = transposed_times(view_.camera->pose().linear, first.normal)});
 }
 
 }  // namespace lensproof::render

@@ -16,7 +16,7 @@ namespace lensproof::render {
 /// A flat chart under even light. The world around it is as white as its white, in every direction.
 struct EvenChart {
     scene::Chart chart;
-    scene::RigidMotion pose;             // of the chart, in the camera's frame
+    AffineMap pose;                      // of the chart, in the camera's frame
     std::vector<double> white_radiance;  // of a perfect white diffuser in its light, W·m⁻²·sr⁻¹·nm⁻¹, a stratum each
 };
 

@@ -138,14 +138,14 @@ TEST(SceneFile, DefaultsAreAsDocumented) {
 
 // A camera that looks along +z with y up has x to the left of the world's right-handed frame.
 TEST(SceneFile, TheCameraStandsAsItsKeysSay) {
-    const RigidMotion ahead = render::camera_to_world({.position_mm = {1, 2, 3}, .look_at_mm = {1, 2, 9}});
-    EXPECT_EQ(rotate(ahead, {1, 0, 0}), (Vec3d{-1, 0, 0}));
-    EXPECT_EQ(rotate(ahead, {0, 1, 0}), (Vec3d{0, -1, 0}));
-    EXPECT_EQ(rotate(ahead, {0, 0, 1}), (Vec3d{0, 0, 1}));
+    const AffineMap ahead = render::camera_to_world({.position_mm = {1, 2, 3}, .look_at_mm = {1, 2, 9}});
+    EXPECT_EQ((ahead.linear * Vec3d{1, 0, 0}), (Vec3d{-1, 0, 0}));
+    EXPECT_EQ((ahead.linear * Vec3d{0, 1, 0}), (Vec3d{0, -1, 0}));
+    EXPECT_EQ((ahead.linear * Vec3d{0, 0, 1}), (Vec3d{0, 0, 1}));
     EXPECT_EQ(ahead.translation, (Vec3d{1, 2, 3}));
-    const RigidMotion tilted = render::camera_to_world({.look_at_mm = {3, -4, 12}, .up = {0, 0, 1}});
-    const Vec3d x = rotate(tilted, {1, 0, 0});
-    const Vec3d y = rotate(tilted, {0, 1, 0});
+    const AffineMap tilted = render::camera_to_world({.look_at_mm = {3, -4, 12}, .up = {0, 0, 1}});
+    const Vec3d x = tilted.linear * Vec3d{1, 0, 0};
+    const Vec3d y = tilted.linear * Vec3d{0, 1, 0};
     EXPECT_NEAR(length(cross(x, y) - Vec3d{3.0 / 13, -4.0 / 13, 12.0 / 13}), 0.0, 1e-15);
     EXPECT_NEAR(x.z, 0.0, 1e-15);
     EXPECT_LT(y.z, 0.0);
