@@ -6,7 +6,6 @@
 #include "tests/cli/program.h"
 
 namespace lensproof::analyze_command_test {
-namespace {
 
 using Json = nlohmann::json;
 
@@ -176,5 +175,4 @@ TEST(Analyze, RefusesWhatMakesNoSense) {
     EXPECT_EQ(place.names(), std::vector<std::string>{"not-a-folder"});
 }
 
-}  // namespace
 }  // namespace lensproof::analyze_command_test

@@ -11,8 +11,6 @@
 
 namespace lensproof::analyze_numbers_test {
 
-namespace {
-
 using Json = nlohmann::json;
 
 constexpr double kFirstOrder = 1e-10;         // relative; Seidel sums: of the largest surface's
@@ -149,7 +147,5 @@ TEST_P(AnalyzeNumbers, Fields) {
 
 INSTANTIATE_TEST_SUITE_P(Lens, AnalyzeNumbers, testing::ValuesIn(kNumberedLenses),
                          [](const auto& lens) { return test_name(lens.param); });
-
-}  // namespace
 
 }  // namespace lensproof::analyze_numbers_test

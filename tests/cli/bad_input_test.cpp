@@ -10,8 +10,6 @@
 
 namespace lensproof::bad_input_test {
 
-namespace {
-
 constexpr const char* kRayHeader = "id,x_mm,y_mm,z_mm,dx,dy,dz,wavelength_nm\n";
 constexpr const char* kAxialRay = "a,0,1,-10,0,0,1,587.5618\n";
 
@@ -299,7 +297,5 @@ TEST(BadOutput, IsRefusedBeforeTheWork) {
     }
     expect_refused(place, {"render", "scene.toml", "-o", "beside.exr"}, {"beside.png"});
 }
-
-}  // namespace
 
 }  // namespace lensproof::bad_input_test

@@ -7,8 +7,6 @@
 
 namespace lensproof::chart_command_test {
 
-namespace {
-
 using Json = nlohmann::json;
 
 // A4 across is 297 × 210 mm: at 50 dpi 585 × 413 pixels (PNG, ISO 15948, 11.2.2: width and height at byte 16).
@@ -62,7 +60,5 @@ TEST(ChartCommand, RefusesWhatCannotBePrinted) {
     expect_refused(place, {"chart", "checkerboard", "--dpi", "100000", "-o", "board.png"}, {"--dpi", "pixels"});
     expect_refused(place, {"chart", "checkerboard", "--squares", "ten"}, {"--squares", "ten"});
 }
-
-}  // namespace
 
 }  // namespace lensproof::chart_command_test

@@ -6,7 +6,6 @@
 #include "tests/cli/program.h"
 
 namespace lensproof::check_test {
-namespace {
 
 using Json = nlohmann::json;
 
@@ -115,5 +114,4 @@ TEST(Check, AZoomIsCheckedAtOnePositionOrAtAll) {
     EXPECT_EQ(place.run({"check", "canon-zoom-70-200", "--zoom", "9"}).status, 2);
 }
 
-}  // namespace
 }  // namespace lensproof::check_test

@@ -12,8 +12,6 @@
 
 namespace lensproof::command_line_test {
 
-namespace {
-
 using Json = nlohmann::json;
 
 constexpr const char* kRayHeader = "id,x_mm,y_mm,z_mm,dx,dy,dz,wavelength_nm\n";
@@ -366,7 +364,5 @@ TEST(Run, WritesItsReportAndItsProfileReadsBack) {
             << limit_option << " cannot be held against nothing";
     }
 }
-
-}  // namespace
 
 }  // namespace lensproof::command_line_test

@@ -8,8 +8,6 @@
 
 namespace lensproof::convert_command_test {
 
-namespace {
-
 using Json = nlohmann::json;
 
 constexpr const char* kRays =
@@ -109,7 +107,5 @@ TEST(Convert, RefusesWhatItCannotReadOrWrite) {
     }
     EXPECT_EQ(place.names(), before);
 }
-
-}  // namespace
 
 }  // namespace lensproof::convert_command_test

@@ -12,8 +12,6 @@
 
 namespace lensproof::photo_folder_test {
 
-namespace {
-
 using Json = nlohmann::json;
 using namespace calibration::synthetic;
 
@@ -203,5 +201,4 @@ TEST(PhotoFolder, WhereNoPictureDoesEachReasonIsGiven) {
     expect_refused(place, {"measure", "photos", "--chart", "board.toml", "--transfer", "gamma:x"}, {"--transfer"});
 }
 
-}  // namespace
 }  // namespace lensproof::photo_folder_test

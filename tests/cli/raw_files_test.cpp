@@ -8,8 +8,6 @@
 
 namespace lensproof::raw_files_test {
 
-namespace {
-
 std::string sensor_table(const std::string& pattern = "RGGB") {
     return "\n[sensor]\npattern = \"" + pattern +
            "\"\nfull_well_electrons = 30000\nread_noise_electrons = 4\nbits = 14\n";
@@ -106,7 +104,5 @@ TEST(RawFiles, AreRefusedWithFileLineAndKey) {
     EXPECT_EQ(place.run({"render", "good.toml"}).status, 2);
     EXPECT_FALSE(place.has("good.exr")) << "said before long work";
 }
-
-}  // namespace
 
 }  // namespace lensproof::raw_files_test

@@ -11,8 +11,6 @@
 
 namespace lensproof::render_growth_test {
 
-namespace {
-
 using Json = nlohmann::json;
 
 /// 64 × 48 pixels, 12 tiles; 2500 samples a pixel take about half a second of a core.
@@ -223,5 +221,4 @@ TEST(RenderGrowth, RefusesACheckpointOfAnotherRender) {
     expect_refused(place, with_more({}), {"state", "damaged"});
 }
 
-}  // namespace
 }  // namespace lensproof::render_growth_test

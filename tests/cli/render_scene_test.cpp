@@ -8,8 +8,6 @@
 
 namespace lensproof::render_scene_test {
 
-namespace {
-
 /// A lamp over a floor, seen by `camera` lines; `more` is added.
 std::string lamp_over_floor(const std::string& camera, const std::string& more = "") {
     return fmt::format(R"([camera]
@@ -168,7 +166,5 @@ TEST(RenderScene, KnowsTheFilesThatASceneNames) {
     const Outcome other = place.run({"render", "scene.toml", "--checkpoint", "c", "--spp", "64", "-o", "a.exr"});
     EXPECT_EQ(other.status, 2) << other.err;
 }
-
-}  // namespace
 
 }  // namespace lensproof::render_scene_test

@@ -7,8 +7,6 @@
 
 namespace lensproof::render_shards_test {
 
-namespace {
-
 using Json = nlohmann::json;
 
 /// A place with the scene's three shards, part1.exr to part3.exr, and whole.exr.
@@ -129,5 +127,4 @@ TEST(Shard, IsNamedByItsNumbersWhereNoNameIsGiven) {
     EXPECT_TRUE(place.has("scene.shard-2-of-3.exr"));
 }
 
-}  // namespace
 }  // namespace lensproof::render_shards_test

@@ -10,8 +10,6 @@
 
 namespace lensproof::trace_float_test {
 
-namespace {
-
 using Json = nlohmann::json;
 
 constexpr double kTessarMm = 119.451;  // from its first vertex to the image plane
@@ -109,7 +107,5 @@ TEST(TraceInFloat, AnErrorOverItsBoundIsNoFailure) {
     const Json error = Json::parse(outcome.out)["float_error"];
     EXPECT_GT(error["all_points"]["largest_um"], error["bound_um"]);
 }
-
-}  // namespace
 
 }  // namespace lensproof::trace_float_test

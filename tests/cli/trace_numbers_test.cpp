@@ -11,8 +11,6 @@
 
 namespace lensproof::trace_numbers_test {
 
-namespace {
-
 using Json = nlohmann::json;
 
 /// A rounding of a number as large as the way from the ray's origin, mm.
@@ -145,7 +143,5 @@ TEST_P(TraceNumbers, FansErrFromTheChiefRay) {
 
 INSTANTIATE_TEST_SUITE_P(Lens, TraceNumbers, testing::ValuesIn(kNumberedLenses),
                          [](const auto& lens) { return test_name(lens.param); });
-
-}  // namespace
 
 }  // namespace lensproof::trace_numbers_test

@@ -16,8 +16,6 @@
 
 namespace lensproof::trace_reference_test {
 
-namespace {
-
 using Json = nlohmann::json;
 constexpr double kPointTolerance_mm = 1e-9;
 constexpr double kDirectionTolerance = 1e-12;
@@ -195,7 +193,5 @@ INSTANTIATE_TEST_SUITE_P(Tessar, TraceReference,
                              return std::string(file.param).find("const") == std::string::npos ? "CatalogueGlass"
                                                                                                : "ConstantIndices";
                          });
-
-}  // namespace
 
 }  // namespace lensproof::trace_reference_test

@@ -18,7 +18,6 @@
 #include "engine/optics/lens.h"
 
 namespace lensproof::analysis_field_reference_test {
-namespace {
 
 class FieldReference : public testing::TestWithParam<const char*> {
   protected:
@@ -265,5 +264,4 @@ TEST_P(FieldReference, AstigmaticFoci) {
 INSTANTIATE_TEST_SUITE_P(Tessar, FieldReference, testing::Values("const", "catalog"),
                          [](const auto& suite) { return std::string(suite.param); });
 
-}  // namespace
 }  // namespace lensproof::analysis_field_reference_test

@@ -7,7 +7,6 @@
 #include "tests/validation/studio.h"
 
 namespace lensproof::both_paths_test {
-namespace {
 
 const spectral::SpectralGrid kGrid = spectral::spectral_grid(420.0, 680.0, 16);
 const render::Sensor kSensor{.width = 9, .height = 6, .pixel_pitch_mm = 4.0};
@@ -148,5 +147,4 @@ TEST(BothPaths, AreNoNoisierThanTheBetter) {
     EXPECT_LT(variance_of(both), 1.14 * 1.23 * (std::min(camera, light) + slack));
 }
 
-}  // namespace
 }  // namespace lensproof::both_paths_test

@@ -8,7 +8,6 @@
 #include "tests/engine/scene/bsdf/bsdf_cases.h"
 
 namespace lensproof::bsdf_sampling_test {
-namespace {
 
 using std::numbers::pi;
 
@@ -144,5 +143,4 @@ TEST(Bsdf, DrawsDirectionsAsItsDensitySays) {
     }
 }
 
-}  // namespace
 }  // namespace lensproof::bsdf_sampling_test

@@ -8,7 +8,6 @@
 #include "tests/engine/scene/bsdf/bsdf_cases.h"
 
 namespace lensproof::bsdf_scattering_test {
-namespace {
 
 using std::numbers::pi;
 
@@ -285,5 +284,4 @@ TEST(RoughSurfaces, GreyVarnishIsSaundersons) {
     }
 }
 
-}  // namespace
 }  // namespace lensproof::bsdf_scattering_test

@@ -12,7 +12,6 @@
 #include "experiments/studies/cameras/simulations.h"
 
 namespace lensproof::closed_loop_test {
-namespace {
 
 /// One simulation of the demo, at half its resolution.
 studies::Simulation half_resolution(const std::string& name) {
@@ -88,5 +87,4 @@ INSTANTIATE_TEST_SUITE_P(Lenses, ClosedLoop, testing::Values("tessar", "petzval"
                              return name;
                          });
 
-}  // namespace
 }  // namespace lensproof::closed_loop_test

@@ -20,7 +20,6 @@
 #include "tests/test_folder.h"
 
 namespace lensproof::convert_test {
-namespace {
 
 constexpr double kTolerance_mm = 1e-9;
 const std::vector<std::string> kForms = {".toml", ".csv", ".zmx", ".dat"};
@@ -305,5 +304,4 @@ TEST_F(Conversion, KeepsRimsAndBarrelsAsClearApertures) {
     }
 }
 
-}  // namespace
 }  // namespace lensproof::convert_test

@@ -25,7 +25,6 @@
 #include "tests/test_folder.h"
 
 namespace lensproof::entrance_map_test {
-namespace {
 
 struct Setting {
     std::string lens;
@@ -330,5 +329,4 @@ TEST(EntranceMap, WrongRegionsLoseNoLight) {
     }
 }
 
-}  // namespace
 }  // namespace lensproof::entrance_map_test

@@ -6,7 +6,6 @@
 #include "tests/validation/rendered_scene.h"
 
 namespace lensproof::film_render_test {
-namespace {
 
 constexpr int kWidth = 24;
 constexpr int kHeight = 18;
@@ -127,5 +126,4 @@ TEST(FilmRender, FeaturesAreThoseOfTheChart) {
     EXPECT_NEAR(std::abs(features.normal.z / features.normal.x), 1.0 / std::tan(std::acos(-1.0) / 3.0), 1e-12);
 }
 
-}  // namespace
 }  // namespace lensproof::film_render_test

@@ -21,7 +21,6 @@
 #include "tests/validation/shipped_settings.h"
 
 namespace lensproof::float_precision_test {
-namespace {
 
 using Random = std::mt19937_64;
 
@@ -331,5 +330,4 @@ TEST(FloatPrecision, IsKeptByEveryLensThatShips) {
     EXPECT_GT(over_bound, 0);  // or the judge of such rays has not been asked
 }
 
-}  // namespace
 }  // namespace lensproof::float_precision_test

@@ -14,7 +14,6 @@
 #include "engine/spectral/wavelengths.h"
 
 namespace lensproof::ideal_camera_test {
-namespace {
 
 struct Drawn {
     double irradiance = 0.0;  // in a world of radiance 1
@@ -131,5 +130,4 @@ TEST(IdealCamera, LooksWhereTheLensLooks) {
     }
 }
 
-}  // namespace
 }  // namespace lensproof::ideal_camera_test

@@ -18,7 +18,6 @@
 #include "tests/validation/rendered_scene.h"
 
 namespace lensproof::lens_exposure_test {
-namespace {
 
 constexpr int kSeeds = 8;
 constexpr double kLuminance = 1000.0;
@@ -221,5 +220,4 @@ TEST(LensExposure, IdealCamerasFallOffByTheirFormulas) {
     }
 }
 
-}  // namespace
 }  // namespace lensproof::lens_exposure_test

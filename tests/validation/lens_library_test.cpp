@@ -16,7 +16,6 @@
 #include "tests/validation/shipped_settings.h"
 
 namespace lensproof::lens_library_test {
-namespace {
 
 /// A shipped lens at one setting: a zoom lens is several.
 struct Setting {
@@ -199,5 +198,4 @@ TEST(LensLibrary, NamesGlassesThatHaveTheStatedFigures) {
     }
 }
 
-}  // namespace
 }  // namespace lensproof::lens_library_test

@@ -8,7 +8,6 @@
 #include "tests/validation/studio.h"
 
 namespace lensproof::light_tracer_test {
-namespace {
 
 const spectral::SpectralGrid kGrid = spectral::spectral_grid(420.0, 680.0, 16);
 const render::Sensor kSensor{.width = 9, .height = 6, .pixel_pitch_mm = 4.0};
@@ -82,5 +81,4 @@ TEST(LightTracer, MakesTheImageOfIdealCameras) {
     }
 }
 
-}  // namespace
 }  // namespace lensproof::light_tracer_test

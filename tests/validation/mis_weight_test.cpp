@@ -10,7 +10,6 @@
 #include "tests/validation/studio.h"
 
 namespace lensproof::mis_weight_test {
-namespace {
 
 const spectral::SpectralGrid kGrid = spectral::spectral_grid(420.0, 680.0, 16);
 const render::Sensor kSensor{.width = 60, .height = 40, .pixel_pitch_mm = 0.6};
@@ -277,5 +276,4 @@ TEST(MisWeight, WeightsOfAPathSumToOne) {
     }
 }
 
-}  // namespace
 }  // namespace lensproof::mis_weight_test

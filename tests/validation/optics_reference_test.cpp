@@ -19,7 +19,6 @@
 #include "engine/optics/paraxial.h"
 
 namespace lensproof::optics_reference_test {
-namespace {
 
 class OpticsReference : public testing::TestWithParam<const char*> {
   protected:
@@ -158,5 +157,4 @@ TEST_P(OpticsReference, ProjectedSolidAngle) {
 INSTANTIATE_TEST_SUITE_P(Tessar, OpticsReference, testing::Values("const", "catalog"),
                          [](const auto& suite) { return std::string(suite.param); });
 
-}  // namespace
 }  // namespace lensproof::optics_reference_test

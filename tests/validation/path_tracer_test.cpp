@@ -11,7 +11,6 @@
 #include "tests/validation/small_scene.h"
 
 namespace lensproof::path_tracer_test {
-namespace {
 
 const spectral::SpectralGrid kGrid = spectral::spectral_grid(400.0, 700.0, 8);
 
@@ -207,5 +206,4 @@ TEST(PathTracer, PrismSendsEachWavelengthWhereSnellSays) {
     }
 }
 
-}  // namespace
 }  // namespace lensproof::path_tracer_test

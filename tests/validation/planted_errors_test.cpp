@@ -16,7 +16,6 @@
 #include "engine/formats/prescription/prescription_file.h"
 
 namespace lensproof::planted_errors_test {
-namespace {
 
 /// A prescription with one thing wrong.
 struct Corruption {
@@ -407,5 +406,4 @@ TEST(PlantedErrors, AreFoundAndTheUntouchedLibraryIsClean) {
     EXPECT_LE(false_errors, 0.02 * lenses);
 }
 
-}  // namespace
 }  // namespace lensproof::planted_errors_test

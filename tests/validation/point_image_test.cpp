@@ -15,7 +15,6 @@
 #include "tests/validation/rendered_scene.h"
 
 namespace lensproof::point_image_test {
-namespace {
 
 constexpr int kSeeds = 8;
 const std::vector<double> kWavelengths{456.25, 518.75, 581.25, 643.75};  // the middles of four layers over 425 … 675 nm
@@ -273,5 +272,4 @@ TEST(PointImage, DepthOfFieldIsThatOfTracedSpots) {
     }
 }
 
-}  // namespace
 }  // namespace lensproof::point_image_test

@@ -21,7 +21,6 @@
 #include "tests/test_folder.h"
 
 namespace lensproof::pupil_map_test {
-namespace {
 
 constexpr int kRings = 8;
 constexpr int kWavelengths = 16;  // the centres of as many strata from 400 to 700 nm
@@ -378,5 +377,4 @@ TEST(PupilMap, AgreesWithQuadrature) {
     }
 }
 
-}  // namespace
 }  // namespace lensproof::pupil_map_test

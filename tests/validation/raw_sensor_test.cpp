@@ -14,7 +14,6 @@
 #include <vector>
 
 namespace lensproof::raw_sensor_test {
-namespace {
 
 constexpr int kSide = 400;
 constexpr double kCount = kSide * kSide;
@@ -201,5 +200,4 @@ TEST(RawSensor, NoiseOfPixelsAndOfSeedsIsIndependent) {
     }
 }
 
-}  // namespace
 }  // namespace lensproof::raw_sensor_test

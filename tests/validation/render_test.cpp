@@ -14,7 +14,6 @@
 #include "tests/validation/rendered_scene.h"
 
 namespace lensproof::render_test {
-namespace {
 
 render::CameraSettings small_camera(const std::string& lens, double f_number, double width_mm, int pixels) {
     return {.lens = lens,
@@ -221,5 +220,4 @@ TEST(ChartRender, PicturesAreUpright) {
     EXPECT_GT(down.at(12, 2, 1), 2.0 * down.at(12, 33, 1));
 }
 
-}  // namespace
 }  // namespace lensproof::render_test

@@ -14,7 +14,6 @@
 #include "tests/test_folder.h"
 
 namespace lensproof::rgb_uplift_test {
-namespace {
 
 const spectral::RgbUplift& uplift() {
     static const spectral::RgbUplift table;
@@ -193,5 +192,4 @@ TEST(RgbUplift, IsKept) {
     EXPECT_EQ(spectral::kept_rgb_uplift(cache).serialized(), made) << "made again";
 }
 
-}  // namespace
 }  // namespace lensproof::rgb_uplift_test

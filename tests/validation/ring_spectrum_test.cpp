@@ -15,7 +15,6 @@
 #include "engine/render/camera/lens_paths.h"
 
 namespace lensproof::ring_spectrum_test {
-namespace {
 
 constexpr std::uint32_t kPixels = 2000;  // of the picture's side
 constexpr int kRings = 900;  // a pixel wide each, from 50 pixels on: farther in there are few paths to a ring
@@ -143,5 +142,4 @@ TEST(PupilMap, ShowsNoRingsInAFlatField) {
     }
 }
 
-}  // namespace
 }  // namespace lensproof::ring_spectrum_test

@@ -13,7 +13,6 @@
 #include "engine/render/camera/lens_paths.h"
 
 namespace lensproof::shared_rays_test {
-namespace {
 
 const spectral::SpectralGrid kGrid = spectral::spectral_grid(420.0, 680.0, 8);
 
@@ -98,5 +97,4 @@ TEST(SharedRays, CountEachWavelengthAsItsOwnPathsDo) {
     }
 }
 
-}  // namespace
 }  // namespace lensproof::shared_rays_test

@@ -11,7 +11,6 @@
 #include "tests/test_folder.h"
 
 namespace lensproof::texture_uplift_test {
-namespace {
 
 const spectral::RgbUplift& uplift() {
     static const spectral::RgbUplift table;
@@ -133,5 +132,4 @@ TEST(TextureUplift, TexturesAreTheirPictures) {
     missing_and_colourless_pictures_are_named();
 }
 
-}  // namespace
 }  // namespace lensproof::texture_uplift_test

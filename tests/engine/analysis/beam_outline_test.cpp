@@ -10,7 +10,6 @@
 #include "engine/base/infinity.h"
 
 namespace lensproof::analysis::beam_outline_test {
-namespace {
 
 struct Disc {
     Vec2d centre;
@@ -166,5 +165,4 @@ TEST(RegionOutline, SaysWhereItIsNotStarShaped) {
     EXPECT_FALSE(optics::region_outline(annulus, {.start = {0.0, 1.5}, .reach = 7.0}).is_star_shaped);
 }
 
-}  // namespace
 }  // namespace lensproof::analysis::beam_outline_test

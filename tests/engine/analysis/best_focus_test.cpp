@@ -17,7 +17,6 @@
 #include "tests/engine/perfect_lens.h"
 
 namespace lensproof::analysis::best_focus_test {
-namespace {
 
 std::vector<WeightedField> axis_of(const optics::Lens& lens) {
     return {{field_of(lens, 0.0)}};
@@ -142,5 +141,4 @@ TEST(BestFocus, RefusesWhatHasNone) {
     EXPECT_THROW(with_image_shift(lens, -200.0), InputError);
 }
 
-}  // namespace
 }  // namespace lensproof::analysis::best_focus_test

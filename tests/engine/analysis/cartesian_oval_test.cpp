@@ -8,7 +8,6 @@
 #include "engine/analysis/spot.h"
 
 namespace lensproof::analysis::cartesian_oval_test {
-namespace {
 
 constexpr double kIndex = 1.5;
 constexpr double kObject = 100.0;  // in front of the vertex, mm
@@ -100,5 +99,4 @@ TEST(CartesianOval, ASphereInItsPlaceDoesNot) {
     EXPECT_GT(spot_size(spot_rays(lens, bundle, beam_outline(lens, bundle), 12)).rms, 1e-3);
 }
 
-}  // namespace
 }  // namespace lensproof::analysis::cartesian_oval_test

@@ -14,7 +14,6 @@
 #include "engine/spectral/wavelengths.h"
 
 namespace lensproof::analysis::field_light_test {
-namespace {
 
 optics::Lens made_of(std::vector<optics::PrescribedSurface> surfaces) {
     optics::Prescription prescription;
@@ -183,5 +182,4 @@ TEST(Distortion, BehindTheLens) {
     }
 }
 
-}  // namespace
 }  // namespace lensproof::analysis::field_light_test

@@ -16,7 +16,6 @@
 #include "tests/engine/analysis/analysis_lens.h"
 
 namespace lensproof::analysis::first_order_test {
-namespace {
 
 // Room for some tens of roundings.
 constexpr double kRounding = 1e-14;
@@ -360,5 +359,4 @@ TEST(FirstOrder, DoubleAgreesWithFiftyDigits) {
     }
 }
 
-}  // namespace
 }  // namespace lensproof::analysis::first_order_test

@@ -15,7 +15,6 @@
 #include "tests/engine/perfect_lens.h"
 
 namespace lensproof::analysis::mtf_test {
-namespace {
 
 /// f/50, so that the sine condition holds to 1e-4; telecentric.
 PolychromaticField slow_field(double defocus) {
@@ -211,5 +210,4 @@ TEST(Mtf, SaysWhatItCannotSample) {
     EXPECT_THROW(geometric_mtf(wide, frequencies, {.azimuths = 0}), InputError);
 }
 
-}  // namespace
 }  // namespace lensproof::analysis::mtf_test

@@ -15,7 +15,6 @@
 #include "tests/engine/perfect_lens.h"
 
 namespace lensproof::analysis::psf_test {
-namespace {
 
 /// f/50: the sine condition, which a hyperboloid breaks, holds to sin²U = 1e-4, and the beam is a circle in direction
 /// cosines.
@@ -234,5 +233,4 @@ TEST(Psf, SaysWhatItCannotSample) {
     EXPECT_EQ(huygens_psf(field_of(closed, 0.0), {}).status, PupilStatus::no_light);
 }
 
-}  // namespace
 }  // namespace lensproof::analysis::psf_test

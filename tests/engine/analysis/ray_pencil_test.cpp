@@ -10,7 +10,6 @@
 #include "engine/spectral/wavelengths.h"
 
 namespace lensproof::analysis::ray_pencil_test {
-namespace {
 
 optics::PrescribedSurface surface(double radius, double thickness, double semi_diameter, double index = 0.0) {
     optics::PrescribedSurface made{.radius_mm = radius, .thickness_mm = thickness, .semi_diameter_mm = semi_diameter};
@@ -206,5 +205,4 @@ TEST(RayPencil, FocalLinesTurnWithTheLens) {
     }
 }
 
-}  // namespace
 }  // namespace lensproof::analysis::ray_pencil_test

@@ -9,7 +9,6 @@
 #include "engine/spectral/wavelengths.h"
 
 namespace lensproof::analysis::rim_test {
-namespace {
 
 /// A bare stop of radius 2 mm, 40 mm in front of the sensor.
 optics::Prescription bare_stop(optics::StopShape shape) {
@@ -61,5 +60,4 @@ TEST(BeamOutline, StopsOfEverySize) {
     EXPECT_TRUE(optics::image_outline(traced, {}).is_empty());
 }
 
-}  // namespace
 }  // namespace lensproof::analysis::rim_test

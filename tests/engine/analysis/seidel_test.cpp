@@ -17,7 +17,6 @@
 #include "tests/engine/analysis/analysis_lens.h"
 
 namespace lensproof::analysis::seidel_test {
-namespace {
 
 using Term = double SeidelTerms<double>::*;
 using Terms = SeidelTerms<double>;
@@ -406,5 +405,4 @@ TEST(Seidel, DoubleAgreesWithFiftyDigits) {
     }
 }
 
-}  // namespace
 }  // namespace lensproof::analysis::seidel_test

@@ -15,7 +15,6 @@
 #include "engine/spectral/wavelengths.h"
 
 namespace lensproof::analysis::spot_test {
-namespace {
 
 optics::Lens made_of(std::vector<optics::PrescribedSurface> surfaces) {
     optics::Prescription prescription;
@@ -189,5 +188,4 @@ TEST(RayFan, BesideAClippedChiefRay) {
     EXPECT_TRUE(ray_fan(subject.traced, subject.bundle, subject.outline, FanPlane::sagittal, {}, 11).empty());
 }
 
-}  // namespace
 }  // namespace lensproof::analysis::spot_test

@@ -16,7 +16,6 @@
 #include "tests/engine/perfect_lens.h"
 
 namespace lensproof::analysis::wavefront_test {
-namespace {
 
 using Exact = boost::multiprecision::number<boost::multiprecision::cpp_bin_float<50>, boost::multiprecision::et_off>;
 
@@ -316,5 +315,4 @@ TEST(Wavefront, GoesOnWhereTheChiefRayIsClipped) {
     EXPECT_GT(wavefront_errors(front).rms, 0.0);
 }
 
-}  // namespace
 }  // namespace lensproof::analysis::wavefront_test

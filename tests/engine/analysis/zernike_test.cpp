@@ -12,7 +12,6 @@
 #include "tests/engine/perfect_lens.h"
 
 namespace lensproof::analysis::zernike_test {
-namespace {
 
 // Noll (1976), table 1, read row by row, and 16 to 22 by its rule.
 TEST(Zernike, NollsTable) {
@@ -158,5 +157,4 @@ TEST(Zernike, DefocusedLens) {
     EXPECT_LT(fit.residual_rms, 1e-9);
 }
 
-}  // namespace
 }  // namespace lensproof::analysis::zernike_test

@@ -13,7 +13,6 @@
 #include "tests/test_folder.h"
 
 namespace lensproof::cache_test {
-namespace {
 
 namespace fs = std::filesystem;
 
@@ -197,5 +196,4 @@ TEST(Cache, TheUsersFolderFollowsTheEnvironment) {
     EXPECT_EQ(folder(), "");
 }
 
-}  // namespace
 }  // namespace lensproof::cache_test

@@ -8,7 +8,6 @@
 #include "tests/complaint.h"
 
 namespace lensproof::csv_test {
-namespace {
 
 std::vector<CsvRow> all_rows(const std::string& text) {
     CsvTable table = CsvTable::parse(text, "t.csv");
@@ -104,5 +103,4 @@ TEST(Csv, EndlessLinesAreRefusedShortly) {
     EXPECT_LT(complaint_about_a("a\n" + std::string(5'000'001, '"')).size(), 400U);
 }
 
-}  // namespace
 }  // namespace lensproof::csv_test

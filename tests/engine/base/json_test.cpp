@@ -12,7 +12,6 @@
 #include "engine/base/json_node.h"
 
 namespace lensproof::json_test {
-namespace {
 
 Json example() {
     Json json{{"whole", -3},
@@ -92,5 +91,4 @@ TEST(Json, NodesSayWhereTheyAre) {
               "deep.json: more than 64 brackets inside one another");
 }
 
-}  // namespace
 }  // namespace lensproof::json_test

@@ -4,7 +4,6 @@
 #include <gtest/gtest.h>
 
 namespace lensproof::text_encoding_test {
-namespace {
 
 using namespace std::string_literals;
 
@@ -41,5 +40,4 @@ TEST(TextEncoding, JunkIsNoError) {
     EXPECT_EQ(to_utf16("\xC2"), "\xFF\xFE?\0"s);
 }
 
-}  // namespace
 }  // namespace lensproof::text_encoding_test

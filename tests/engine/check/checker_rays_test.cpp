@@ -8,7 +8,6 @@
 #include "tests/engine/check/checker_case.h"
 
 namespace lensproof::check::checker_rays_test {
-namespace {
 
 using P = optics::Prescription;
 
@@ -231,5 +230,4 @@ TEST(OrderOfSurfaces, IsNoErrorWhereTheRimsAreEstimated) {
     EXPECT_TRUE(report.ok()) << said(report);
 }
 
-}  // namespace
 }  // namespace lensproof::check::checker_rays_test

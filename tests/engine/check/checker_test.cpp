@@ -17,7 +17,6 @@
 #include "tests/places.h"
 
 namespace lensproof::check::checker_test {
-namespace {
 
 optics::Prescription tessar() {
     return formats::read_prescription(formats::find_lens_file("tessar"));
@@ -436,5 +435,4 @@ TEST(Checker, TheLibraryHasNoErrors) {
     }
 }
 
-}  // namespace
 }  // namespace lensproof::check::checker_test

@@ -8,7 +8,6 @@
 #include "tests/engine/check/checker_case.h"
 
 namespace lensproof::check::checker_values_test {
-namespace {
 
 using P = optics::Prescription;
 
@@ -223,5 +222,4 @@ TEST(CheckerValues, ARowTypedTwiceAndATableWithoutRows) {
     expect_planted(half_ball(), [](P& p) { p.surfaces.clear(); }, {"no-surface", optics::Severity::error, 0});
 }
 
-}  // namespace
 }  // namespace lensproof::check::checker_values_test

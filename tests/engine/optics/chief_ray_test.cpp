@@ -12,7 +12,6 @@
 #include "engine/spectral/wavelengths.h"
 
 namespace lensproof::optics::chief_ray_test {
-namespace {
 
 /// A biconvex lens whose front is the stop, or has the stop in its vertex's plane just before it.
 Prescription singlet(bool front_is_stop) {
@@ -149,5 +148,4 @@ TEST(ChiefRays, AimThroughADecentredElement) {
     }
 }
 
-}  // namespace
 }  // namespace lensproof::optics::chief_ray_test

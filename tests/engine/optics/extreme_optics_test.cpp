@@ -14,7 +14,6 @@
 #include "engine/optics/multiprecision.h"
 
 namespace lensproof::optics::extreme_optics_test {
-namespace {
 
 using Exact = Multiprecision;
 
@@ -320,5 +319,4 @@ TEST(ExtremeOptics, NegativeThicknessesAreForDummies) {
     EXPECT_THROW(lens_with(1e11, 1.0, 1.0), InputError);
 }
 
-}  // namespace
 }  // namespace lensproof::optics::extreme_optics_test

@@ -12,7 +12,6 @@
 #include "engine/spectral/wavelengths.h"
 
 namespace lensproof::optics::glass_name_test {
-namespace {
 
 const GlassCatalogue& shipped() {
     static const GlassCatalogue catalogue = formats::shipped_glasses();
@@ -133,5 +132,4 @@ TEST(GlassName, SpellingDistanceCountsSlipsOfTheFinger) {
     EXPECT_EQ(spelling_distance("SF11", "SF57"), 2);
 }
 
-}  // namespace
 }  // namespace lensproof::optics::glass_name_test

@@ -12,7 +12,6 @@
 #include "engine/spectral/wavelengths.h"
 
 namespace lensproof::optics::lens_bytes_test {
-namespace {
 
 std::string bytes_of(const TraceLens<double>& lens) {
     std::string bytes;
@@ -79,5 +78,4 @@ TEST(LensBytes, TellEveryLensFromEveryOther) {
     EXPECT_EQ(bytes_of(with_everything()), bytes_of(with_everything()));
 }
 
-}  // namespace
 }  // namespace lensproof::optics::lens_bytes_test

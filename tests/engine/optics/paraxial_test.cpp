@@ -11,7 +11,6 @@
 #include "engine/spectral/wavelengths.h"
 
 namespace lensproof::optics::paraxial_test {
-namespace {
 
 TraceSurface<double> surface(double curvature, double z, double before, double after, double semi_diameter = 10.0,
                              bool is_stop = false) {
@@ -68,5 +67,4 @@ TEST(Lens, FocusMovesTheSensorToTheImage) {
     EXPECT_THROW(focused_at(formats::load_lens("tessar"), 50.0), InputError);
 }
 
-}  // namespace
 }  // namespace lensproof::optics::paraxial_test

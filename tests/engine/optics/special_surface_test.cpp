@@ -14,7 +14,6 @@
 #include "engine/spectral/wavelengths.h"
 
 namespace lensproof::optics::special_surface_test {
-namespace {
 
 constexpr double kUlp = std::numeric_limits<double>::epsilon();
 constexpr double kWavelength = 587.5618;
@@ -497,5 +496,4 @@ TEST(SemiDiameter, IsEstimatedFromApertureAndField) {
     EXPECT_NEAR(lens.surfaces[1].semi_diameter, 5.0 + 20.0 * std::tan(radians(10.0)), 1e-12);
 }
 
-}  // namespace
 }  // namespace lensproof::optics::special_surface_test

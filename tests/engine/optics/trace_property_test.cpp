@@ -11,7 +11,6 @@
 #include "tests/engine/random_lens.h"
 
 namespace lensproof::optics::trace_property_test {
-namespace {
 
 constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
 constexpr double kAnyWavelength = 587.5618;  // the indices are constants
@@ -380,5 +379,4 @@ TEST(AnyLens, SplittingAGapChangesNothing) {
     });
 }
 
-}  // namespace
 }  // namespace lensproof::optics::trace_property_test

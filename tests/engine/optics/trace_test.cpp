@@ -12,7 +12,6 @@
 #include "engine/optics/lens.h"
 
 namespace lensproof::optics::trace_test {
-namespace {
 
 constexpr double kUlp = std::numeric_limits<double>::epsilon();
 
@@ -224,5 +223,4 @@ TEST(Trace, FloatStaysCloseToDouble) {
     EXPECT_LT(worst, 120.0 * 0x1p-24 * 16);
 }
 
-}  // namespace
 }  // namespace lensproof::optics::trace_test

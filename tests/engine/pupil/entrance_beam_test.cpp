@@ -14,7 +14,6 @@
 #include "tests/engine/random_lens.h"
 
 namespace lensproof::pupil::entrance_beam_test {
-namespace {
 
 double turned_to(double low, double high, std::mt19937_64& random) {
     return std::uniform_real_distribution(low, high)(random);
@@ -151,5 +150,4 @@ TEST(EntranceBeam, OffsetsAreThoseOfTheFieldBundle) {
     }
 }
 
-}  // namespace
 }  // namespace lensproof::pupil::entrance_beam_test

@@ -12,7 +12,6 @@
 #include "tests/test_folder.h"
 
 namespace lensproof::pupil::kept_maps_test {
-namespace {
 
 std::vector<optics::TraceLens<double>> tessar() {
     return {optics::at_wavelength<double>(formats::load_lens("tessar"), spectral::kLineD)};
@@ -100,5 +99,4 @@ TEST(KeptMaps, EntrancesComeBackToo) {
     }
 }
 
-}  // namespace
 }  // namespace lensproof::pupil::kept_maps_test

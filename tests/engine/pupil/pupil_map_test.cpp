@@ -16,7 +16,6 @@
 #include "tests/test_folder.h"
 
 namespace lensproof::pupil::pupil_map_test {
-namespace {
 
 std::vector<optics::TraceLens<double>> band_of(const optics::Lens& lens, const std::vector<double>& wavelengths_nm) {
     std::vector<optics::TraceLens<double>> band;
@@ -179,5 +178,4 @@ TEST(PupilMap, DamagedBytesAreNoMap) {
     }
 }
 
-}  // namespace
 }  // namespace lensproof::pupil::pupil_map_test

@@ -11,7 +11,6 @@
 #include "engine/pupil/column_fit.h"
 
 namespace lensproof::pupil::pupil_outline_test {
-namespace {
 
 struct Shape {
     std::string name;
@@ -164,5 +163,4 @@ TEST(PupilOutline, FramesAreCentred) {
     EXPECT_LT(BlendedRegion<1>({&region}, {1.0}, eye.symmetry).area(), 1.007 * eye.area);
 }
 
-}  // namespace
 }  // namespace lensproof::pupil::pupil_outline_test

@@ -9,7 +9,6 @@
 #include <vector>
 
 namespace lensproof::pupil::pupil_region_test {
-namespace {
 
 /// A region of the given width with the chains y = lower(x), y = upper(x).
 template <class Lower, class Upper>
@@ -248,5 +247,4 @@ TEST(PupilRegion, NoAreaIsNoTrouble) {
     }
 }
 
-}  // namespace
 }  // namespace lensproof::pupil::pupil_region_test

@@ -9,7 +9,6 @@
 #include "engine/optics/lens.h"
 
 namespace lensproof::pupil::pupil_slices_test {
-namespace {
 
 std::vector<optics::TraceLens<double>> band_of(const std::string& name, int wavelengths) {
     const optics::Lens lens = formats::load_lens(name);
@@ -122,5 +121,4 @@ TEST(PupilSlices, AskTheMapWhereTheLensIsNotRound) {
     }
 }
 
-}  // namespace
 }  // namespace lensproof::pupil::pupil_slices_test

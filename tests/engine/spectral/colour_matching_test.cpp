@@ -7,7 +7,6 @@
 #include "engine/spectral/illuminant.h"
 
 namespace lensproof::spectral::colour_matching_test {
-namespace {
 
 constexpr double kHalfOfFifthDecimal = 5e-6;
 
@@ -91,5 +90,4 @@ TEST(ColourMatching, MaximumLuminousEfficacyFollowsFromTheSi) {
     EXPECT_NEAR(683.0 * v(555.0) / v(555.016), kMaximumLuminousEfficacy, 5e-4);
 }
 
-}  // namespace
 }  // namespace lensproof::spectral::colour_matching_test

@@ -15,7 +15,6 @@
 #include "tests/test_folder.h"
 
 namespace lensproof::spectral::data_test {
-namespace {
 
 /// R at normal incidence, ((n − 1)² + k²) / ((n + 1)² + k²).
 double reflectance(const ComplexIndex& metal, double wavelength_nm) {
@@ -218,5 +217,4 @@ TEST(SpectralData, MeasuredCamerasDiffer) {
     EXPECT_GT(sigma.weights(401.0).z, 0.0);
 }
 
-}  // namespace
 }  // namespace lensproof::spectral::data_test

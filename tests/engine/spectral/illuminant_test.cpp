@@ -11,7 +11,6 @@
 #include "engine/spectral/planck.h"
 
 namespace lensproof::spectral::illuminant_test {
-namespace {
 
 constexpr double kStefanBoltzmann = 5.670374419e-8;  // W·m⁻²·K⁻⁴, CODATA 2018: exact, cut after ten digits
 constexpr double kWien = 2.897771955e6;              // nm·K, CODATA 2018: exact, cut after ten digits
@@ -126,5 +125,4 @@ TEST(Illuminant, UnknownNamesAreRefusedWithTheKnownOnes) {
     }
 }
 
-}  // namespace
 }  // namespace lensproof::spectral::illuminant_test

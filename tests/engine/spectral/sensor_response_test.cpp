@@ -10,7 +10,6 @@
 #include "engine/spectral/wavelengths.h"
 
 namespace lensproof::spectral::sensor_response_test {
-namespace {
 
 constexpr Exposure kExposure{.time_s = 0.004, .iso = 200.0};
 
@@ -158,5 +157,4 @@ TEST(SensorResponse, WrongInputsAreRefused) {
     }
 }
 
-}  // namespace
 }  // namespace lensproof::spectral::sensor_response_test

@@ -5,7 +5,6 @@
 #include "engine/spectral/wavelengths.h"
 
 namespace lensproof::spectral::spectral_exr_test {
-namespace {
 
 /// The wavelength that `name` stands for, nm; 0 where it is no spectral channel.
 double wavelength_in(std::string_view name) {
@@ -56,5 +55,4 @@ TEST(SpectralExr, AttributesSayWhatTheLayersHold) {
     EXPECT_EQ(attributes.at("emissiveUnits"), "W.m^-2.nm^-1");
 }
 
-}  // namespace
 }  // namespace lensproof::spectral::spectral_exr_test

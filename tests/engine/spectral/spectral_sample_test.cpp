@@ -8,7 +8,6 @@
 #include "engine/base/input_error.h"
 
 namespace lensproof::spectral::spectral_sample_test {
-namespace {
 
 // Each of the four places of a path meets every stratum once as the hero runs through them, so an estimator that takes
 // each place at face value counts every wavelength equally; and no path carries a wavelength twice.
@@ -90,5 +89,4 @@ TEST(SpectralSample, OperatorsWorkWavelengthByWavelength) {
     EXPECT_FALSE(is_black(SpectralSample({0.0F, 0.0F, 0.0F, 1.0F})));
 }
 
-}  // namespace
 }  // namespace lensproof::spectral::spectral_sample_test

@@ -8,7 +8,6 @@
 #include "tests/complaint.h"
 
 namespace lensproof::spectral::spectrum_test {
-namespace {
 
 Spectrum line(double from_nm, double to_nm, double from_value, double to_value) {
     return {.wavelength_nm = {from_nm, to_nm}, .value = {from_value, to_value}};
@@ -95,5 +94,4 @@ TEST(SpectrumFile, AMissingFileIsAnInputError) {
     EXPECT_THROW(read_spectra(spectral_data("no-such-table.csv"), {"a"}), InputError);
 }
 
-}  // namespace
 }  // namespace lensproof::spectral::spectrum_test

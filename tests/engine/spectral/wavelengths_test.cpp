@@ -7,7 +7,6 @@
 #include "engine/base/input_error.h"
 
 namespace lensproof::spectral::wavelengths_test {
-namespace {
 
 // Hydrogen's F and C are Balmer β and α: 1/λ = R_H (1/4 − 1/n²), R_H = 10967758.34 m⁻¹ (the vacuum wavelengths), and
 // standard air divides by n = 1.000279 (F) and 1.000276 (C) (Ciddor 1996). Fine structure splits these
@@ -48,5 +47,4 @@ TEST(WavelengthStrata, RefusesEmptyRanges) {
     EXPECT_THROW(wavelength_strata(400.0, INFINITY, 3), InputError);
 }
 
-}  // namespace
 }  // namespace lensproof::spectral::wavelengths_test

@@ -7,7 +7,6 @@
 #include "calibration/profile/curve_difference.h"
 
 namespace lensproof::findings::verdict_test {
-namespace {
 
 Check check(double value, double sigma, double limit, Expectation expectation, double target = 0.0) {
     Check made;
@@ -104,5 +103,4 @@ TEST(CurveDifference, AnglesTurnIntoPixels) {
     EXPECT_GT(d->curve.value[20], 0.0);
 }
 
-}  // namespace
 }  // namespace lensproof::findings::verdict_test

@@ -9,7 +9,6 @@
 #include "tests/test_folder.h"
 
 namespace lensproof::runner::experiment_test {
-namespace {
 
 using findings::Findings;
 
@@ -73,5 +72,4 @@ TEST(Experiment, FindingsGoIntoOneReport) {
     EXPECT_EQ(report["extremes"].size(), 2U);
 }
 
-}  // namespace
 }  // namespace lensproof::runner::experiment_test

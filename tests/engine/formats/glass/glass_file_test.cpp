@@ -12,7 +12,6 @@
 #include "tests/complaint.h"
 
 namespace lensproof::formats::glass_file_test {
-namespace {
 
 // SCHOTT's own record of N-BK7 (catalogue of 2017-01-20), shortened.
 constexpr const char* kBk7 =
@@ -377,5 +376,4 @@ TEST(GlassTable, ReadsEveryFormulaAndMinds) {
     EXPECT_THROW(read_glass_file("no-such.txt"), InputError);
 }
 
-}  // namespace
 }  // namespace lensproof::formats::glass_file_test

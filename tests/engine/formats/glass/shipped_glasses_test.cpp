@@ -13,7 +13,6 @@
 #include "engine/spectral/wavelengths.h"
 
 namespace lensproof::formats::shipped_glasses_test {
-namespace {
 
 const optics::GlassCatalogue& shipped() {
     static const optics::GlassCatalogue catalogue = shipped_glasses();
@@ -230,5 +229,4 @@ TEST(NormalLine, TheExpectedErrorCoversNineteenOfTwenty) {
     EXPECT_EQ(optics::normal_line_error(shipped().glasses(), 1.5168, 64.17, 1e5).glasses, 0);
 }
 
-}  // namespace
 }  // namespace lensproof::formats::shipped_glasses_test

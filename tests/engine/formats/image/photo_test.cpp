@@ -15,7 +15,6 @@
 #include "tests/test_folder.h"
 
 namespace lensproof::formats::photo_test {
-namespace {
 
 // An 8-bit file, one byte a channel, by the library that cameras' files are read with.
 std::filesystem::path write_bytes(const std::filesystem::path& file, int width, int height, int channels,
@@ -279,5 +278,4 @@ TEST(Photo, SaysTheQualityThatAJpegWasWrittenWith) {
     EXPECT_FALSE(jpeg_quality("\x89PNG"));
 }
 
-}  // namespace
 }  // namespace lensproof::formats::photo_test

@@ -10,7 +10,6 @@
 #include "tests/complaint.h"
 
 namespace lensproof::formats::prescription_forms_test {
-namespace {
 
 using Parse = optics::Prescription (*)(const std::string&, const std::filesystem::path&);
 
@@ -412,5 +411,4 @@ TEST(EveryReader, BearsNoiseAndCutFiles) {
     }
 }
 
-}  // namespace
 }  // namespace lensproof::formats::prescription_forms_test

@@ -14,7 +14,6 @@
 #include "tests/engine/formats/prescription/same_rays.h"
 
 namespace lensproof::formats::prescription_seq_test {
-namespace {
 
 optics::Prescription parse(const std::string& text) {
     return parse_seq(text, "test.seq");
@@ -245,5 +244,4 @@ TEST(Seq, HostileFilesAreRefusedByLine) {
     EXPECT_NE(complaint(many).find("S1000"), std::string::npos);
 }
 
-}  // namespace
 }  // namespace lensproof::formats::prescription_seq_test

@@ -11,7 +11,6 @@
 #include "tests/test_folder.h"
 
 namespace lensproof::formats::prescription_test {
-namespace {
 
 class PrescriptionFile : public testing::Test {
   protected:
@@ -102,5 +101,4 @@ TEST(Projections, AgreeNearTheAxisAndHoldBeyondNinetyDegrees) {
     EXPECT_DOUBLE_EQ(optics::projected_radius(optics::Projection::equisolid, 2.0), 2.0 * std::sin(1.0));
 }
 
-}  // namespace
 }  // namespace lensproof::formats::prescription_test

@@ -12,7 +12,6 @@
 #include "tests/test_folder.h"
 
 namespace lensproof::formats::prescription_writer_test {
-namespace {
 
 /// A prescription that uses everything there is.
 optics::Prescription everything() {
@@ -217,5 +216,4 @@ TEST(WritePrescription, NamesTheFormsThatItCanWrite) {
     }
 }
 
-}  // namespace
 }  // namespace lensproof::formats::prescription_writer_test

@@ -16,7 +16,6 @@
 #include "tests/engine/formats/prescription/same_rays.h"
 
 namespace lensproof::formats::prescription_zmx_test {
-namespace {
 
 constexpr double kUlp = std::numeric_limits<double>::epsilon();
 
@@ -338,5 +337,4 @@ TEST(Zmx, SaysWhatItCannotWrite) {
     }
 }
 
-}  // namespace
 }  // namespace lensproof::formats::prescription_zmx_test

@@ -11,7 +11,6 @@
 #include "engine/optics/surface_shape.h"
 
 namespace lensproof::optics::shape_packet_test {
-namespace {
 
 using Random = std::mt19937_64;
 
@@ -254,5 +253,4 @@ TEST(ShapePacket, LanesThatAreNotWantedAreLeftAlone) {
     }
 }
 
-}  // namespace
 }  // namespace lensproof::optics::shape_packet_test

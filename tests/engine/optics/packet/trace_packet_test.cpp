@@ -17,7 +17,6 @@
 #include "tests/test_folder.h"
 
 namespace lensproof::optics::trace_packet_test {
-namespace {
 
 /// Rays towards the front of `lens` from all sides, so that some pass, some are clipped, miss or are reflected.
 std::vector<Ray<double>> rays_at(const Lens& lens, int count, double steepest) {
@@ -195,5 +194,4 @@ TEST(TracePacket, TracesWhatIsNoSphere) {
     EXPECT_GT(fates[static_cast<std::size_t>(RayStatus::ok)], 20);
 }
 
-}  // namespace
 }  // namespace lensproof::optics::trace_packet_test

@@ -5,7 +5,6 @@
 #include "experiments/studies/cameras/measured_camera.h"
 
 namespace lensproof::studies::certainty_map_test {
-namespace {
 
 /// Three columns and two rows; the point at the lower right is outside the hull, that at the upper right not imaged.
 calibration::Profile small_profile() {
@@ -49,5 +48,4 @@ TEST(CertaintyMap, SaysWhatItShows) {
     EXPECT_NE(page.find(map.caption), std::string::npos);
 }
 
-}  // namespace
 }  // namespace lensproof::studies::certainty_map_test

@@ -11,7 +11,6 @@
 #include "experiments/studies/measurement_floor/random_poses.h"
 
 namespace lensproof::studies::measurement_floor_test {
-namespace {
 
 constexpr auto kQuiet = [](const std::string&, double) {};
 
@@ -127,5 +126,4 @@ TEST(MeasurementFloor, ASweepIsAPicture) {
     EXPECT_EQ(chart.bytes.find("nan"), std::string::npos);
 }
 
-}  // namespace
 }  // namespace lensproof::studies::measurement_floor_test

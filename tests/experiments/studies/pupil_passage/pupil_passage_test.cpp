@@ -11,8 +11,6 @@
 
 namespace lensproof::studies::pupil_passage_test {
 
-namespace {
-
 PassageSetting fisheye() {
     return {.lens = "muller-fisheye",
             .f_number = 8.0,
@@ -67,7 +65,5 @@ TEST(PupilPassage, ReadsItsExperiment) {
     EXPECT_THROW(read("f_number = 4.0\npublished_percent = { pupil = 120.0, whole_element = 1.0 }\n"), InputError);
     EXPECT_THROW(read("f_stop = 4.0\n"), InputError);
 }
-
-}  // namespace
 
 }  // namespace lensproof::studies::pupil_passage_test
