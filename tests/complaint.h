@@ -1,6 +1,9 @@
-// tests/complaint.h — what an input is refused with.
+// tests/complaint.h — what an input is refused with, and whether that says what it has to.
 #pragma once
+#include <gtest/gtest.h>
+
 #include <string>
+#include <string_view>
 
 #include "engine/base/input_error.h"
 
@@ -15,6 +18,12 @@ std::string complaint_about(const Use& use) {
         return error.what();
     }
     return "";
+}
+
+/// Whether the text holds `words`. A test that expects it shows both where they are not as expected.
+inline testing::AssertionResult says(const std::string& text, std::string_view words) {
+    const bool holds = text.find(words) != std::string::npos;
+    return testing::AssertionResult(holds) << '"' << words << (holds ? "\" in: " : "\" is not in: ") << text;
 }
 
 }  // namespace lensproof

@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "tests/cli/program.h"
+#include "tests/complaint.h"
 
 namespace lensproof::chart_command_test {
 
@@ -28,7 +29,7 @@ TEST(ChartCommand, WritesAPageAndItsDescription) {
     EXPECT_EQ(number(16), 585);
     EXPECT_EQ(number(20), 413);
     for (const char* part : {"[chart]", "kind = \"checkerboard\"", "squares = [10, 7]", "square_mm = 25"}) {
-        EXPECT_NE(place.content("board.toml").find(part), std::string::npos) << part;
+        EXPECT_TRUE(says(place.content("board.toml"), part));
     }
 }
 

@@ -9,6 +9,7 @@
 #include <sstream>
 
 #include "tests/cli/program.h"
+#include "tests/complaint.h"
 
 namespace lensproof::command_line_test {
 
@@ -42,11 +43,11 @@ TEST(Help, ListsEveryCommandAndShowsAnExampleOfEach) {
     EXPECT_EQ(all.status, 0);
     for (const std::string& command : kCommands) {
         SCOPED_TRACE(command);
-        EXPECT_NE(all.out.find("\n  " + command + " "), std::string::npos);
+        EXPECT_TRUE(says(all.out, "\n  " + command + " "));
         const Outcome one = place.run({command, "--help"});
         EXPECT_EQ(one.status, 0);
         EXPECT_EQ(one.err, "");
-        EXPECT_NE(one.out.find("Example: lensproof " + command), std::string::npos);
+        EXPECT_TRUE(says(one.out, "Example: lensproof " + command));
     }
 }
 
@@ -74,10 +75,10 @@ TEST(Glasses, ShowsTheSheetOfAGlassAsItsMakerDoes) {
     EXPECT_EQ(sheet["lines"].size(), 13U);
     EXPECT_NEAR(sheet["P_gF"].get<double>(), 0.5349, 1e-4);
     EXPECT_GT(sheet["internal_transmittance"].size(), 20U);
-    EXPECT_NE(place.run({"glasses", "N-BK7"}).out.find("1.516800"), std::string::npos);
+    EXPECT_TRUE(says(place.run({"glasses", "N-BK7"}).out, "1.516800"));
     const Outcome unknown = place.run({"glasses", "N-LLF7"});
     EXPECT_EQ(unknown.status, 2);
-    EXPECT_NE(unknown.err.find("perhaps LLF7 (SCHOTT)"), std::string::npos) << unknown.err;
+    EXPECT_TRUE(says(unknown.err, "perhaps LLF7 (SCHOTT)"));
 }
 
 TEST(Glasses, ThatTheUserBringsComeFirst) {
@@ -92,7 +93,7 @@ TEST(Glasses, ThatTheUserBringsComeFirst) {
     for (const char* file : {"bad.agf", "missing.agf", "rays.txt", "rays.csv"}) {
         const Outcome refused = place.run({"glasses", "--glass-catalogue", file});
         EXPECT_EQ(refused.status, 2) << file;
-        EXPECT_NE(refused.err.find(file), std::string::npos) << refused.err;
+        EXPECT_TRUE(says(refused.err, file));
     }
 }
 
@@ -130,10 +131,10 @@ TEST(StandardOutput, ThatCannotBeWrittenIsStatus3) {
         SCOPED_TRACE(arguments.front());
         const Outcome full = place.run(arguments, Stream::full_disk);
         EXPECT_EQ(full.status, 3);
-        EXPECT_NE(full.err.find("No space left"), std::string::npos) << full.err;
+        EXPECT_TRUE(says(full.err, "No space left"));
         const Outcome closed = place.run(arguments, Stream::closed);
         EXPECT_EQ(closed.status, 3);
-        EXPECT_NE(closed.err.find("standard output"), std::string::npos) << closed.err;
+        EXPECT_TRUE(says(closed.err, "standard output"));
         EXPECT_EQ(place.run(arguments, Stream::closed, Stream::closed).status, 3);
     }
 }
@@ -161,7 +162,7 @@ TEST(Output, ToAFullDiskIsStatus3) {
     ASSERT_EQ(::stat("/dev/full", &before), 0);
     const Outcome outcome = place.run({"trace", "tessar", "--rays", "rays.csv", "-o", "/dev/full"});
     EXPECT_EQ(outcome.status, 3);
-    EXPECT_NE(outcome.err.find("/dev/full"), std::string::npos) << outcome.err;
+    EXPECT_TRUE(says(outcome.err, "/dev/full"));
     struct stat after {};
     ASSERT_EQ(::stat("/dev/full", &after), 0);
     EXPECT_EQ(after.st_rdev, before.st_rdev) << "the device is still a device";
@@ -296,7 +297,7 @@ TEST(Render, SaysWhereWavelengthsWereClampedToTheGlasses) {
     place.file("scene.toml", with(small_scene(), "layers = 4", "layers = 4\nwavelengths_nm = [300, 1000]"));
     const Outcome outcome = place.run({"render", "scene.toml", "-o", "out.exr"});
     EXPECT_EQ(outcome.status, 0);
-    EXPECT_NE(outcome.err.find("400 to 700 nm"), std::string::npos) << outcome.err;
+    EXPECT_TRUE(says(outcome.err, "400 to 700 nm"));
 }
 
 TEST(Render, OfASinglePixelIsAPicture) {
@@ -353,8 +354,8 @@ TEST(Run, WritesItsReportAndItsProfileReadsBack) {
         place.file("broken.json", content);
         const Outcome outcome = place.run({"compare", "broken.json", profile});
         EXPECT_EQ(outcome.status, 2);
-        EXPECT_NE(outcome.err.find("broken.json"), std::string::npos) << outcome.err;
-        EXPECT_NE(outcome.err.find(word), std::string::npos) << outcome.err;
+        EXPECT_TRUE(says(outcome.err, "broken.json"));
+        EXPECT_TRUE(says(outcome.err, word));
     }
     edited = parsed;
     edited["curves"] = Json::object();

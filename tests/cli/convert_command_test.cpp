@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "tests/cli/program.h"
+#include "tests/complaint.h"
 
 namespace lensproof::convert_command_test {
 
@@ -47,16 +48,16 @@ TEST(Convert, WarnsOfWhatTheFormCannotSayAndIsDone) {
     const Workplace place;
     const Outcome outcome = place.run({"convert", "petzval", "p.dat", "--json", "-"});
     EXPECT_EQ(outcome.status, 0);
-    EXPECT_NE(outcome.err.find("warning: surface 1: of B270 its index"), std::string::npos) << outcome.err;
+    EXPECT_TRUE(says(outcome.err, "warning: surface 1: of B270 its index"));
     const Json said = Json::parse(outcome.out);
     EXPECT_EQ(said["out"], "p.dat");
-    EXPECT_NE(said["in"].get<std::string>().find("petzval.toml"), std::string::npos);
+    EXPECT_TRUE(says(said["in"].get<std::string>(), "petzval.toml"));
     EXPECT_TRUE(said["remarks"].empty());
     const bool names_dispersion = std::ranges::any_of(said["lost"], [](const Json& lost) {
         return lost["code"] == "lost-dispersion" && lost["severity"] == "warning" && lost["surface"] == 1;
     });
     EXPECT_TRUE(names_dispersion) << said["lost"];
-    EXPECT_NE(place.content("p.dat").find("\n0\t25.3\t0\t36\n"), std::string::npos) << "a diameter, and 0 for air";
+    EXPECT_TRUE(says(place.content("p.dat"), "\n0\t25.3\t0\t36\n")) << "a diameter, and 0 for air";
 }
 
 TEST(Convert, SaysWhatTheReaderDidNotUnderstand) {
@@ -66,24 +67,23 @@ TEST(Convert, SaysWhatTheReaderDidNotUnderstand) {
     EXPECT_EQ(outcome.status, 0);
     const nlohmann::json remark = nlohmann::json::parse(place.content("a.json"))["remarks"][0];
     EXPECT_TRUE(remark["surface"].is_null()) << "it is of the lens as a whole: " << remark;
-    EXPECT_NE(outcome.err.find("warning: the line \"!wobble 3\" is not understood (a.fx)"), std::string::npos)
-        << outcome.err;
+    EXPECT_TRUE(says(outcome.err, "warning: the line \"!wobble 3\" is not understood (a.fx)"));
 }
 
 TEST(Convert, TakesOneZoomPosition) {
     const Workplace place;
     place.file("zoom.toml", kZoom);
     EXPECT_EQ(place.run({"convert", "zoom.toml", "tele.csv", "--zoom", "tele"}).err, "");
-    EXPECT_NE(place.content("tele.csv").find("2,-50,9.5,"), std::string::npos) << place.content("tele.csv");
+    EXPECT_TRUE(says(place.content("tele.csv"), "2,-50,9.5,"));
     const Outcome first = place.run({"convert", "zoom.toml", "first.csv"});
     EXPECT_EQ(first.status, 0);
-    EXPECT_NE(first.err.find("\"wide\""), std::string::npos) << first.err;
-    EXPECT_NE(place.content("first.csv").find("2,-50,3,"), std::string::npos);
+    EXPECT_TRUE(says(first.err, "\"wide\""));
+    EXPECT_TRUE(says(place.content("first.csv"), "2,-50,3,"));
     EXPECT_EQ(place.run({"convert", "zoom.toml", "both.toml"}).err, "");
-    EXPECT_NE(place.content("both.toml").find("[[zoom]]\nname = \"tele\""), std::string::npos);
+    EXPECT_TRUE(says(place.content("both.toml"), "[[zoom]]\nname = \"tele\""));
     const Outcome refused = place.run({"convert", "zoom.toml", "x.csv", "--zoom", "macro"});
     EXPECT_EQ(refused.status, 2);
-    EXPECT_NE(refused.err.find("wide, tele"), std::string::npos) << refused.err;
+    EXPECT_TRUE(says(refused.err, "wide, tele"));
     EXPECT_FALSE(place.has("x.csv"));
 }
 
@@ -103,7 +103,7 @@ TEST(Convert, RefusesWhatItCannotReadOrWrite) {
         SCOPED_TRACE(word);
         const Outcome outcome = place.run(all);
         EXPECT_EQ(outcome.status, 2) << outcome.err;
-        EXPECT_NE(outcome.err.find(word), std::string::npos) << outcome.err;
+        EXPECT_TRUE(says(outcome.err, word));
     }
     EXPECT_EQ(place.names(), before);
 }

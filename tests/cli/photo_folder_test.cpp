@@ -9,6 +9,7 @@
 
 #include "tests/calibration/synthetic.h"
 #include "tests/cli/program.h"
+#include "tests/complaint.h"
 
 namespace lensproof::photo_folder_test {
 
@@ -123,8 +124,8 @@ TEST(PhotoFolder, MeasuresWithAnAccountOfWhatWasLeftOut) {
     const Outcome outcome =
         place.run({"measure", "photos", "--chart", "board.toml", "--no-self-test", "-o", "profile.json"});
     ASSERT_EQ(outcome.status, 0) << outcome.err;
-    EXPECT_NE(outcome.out.find("5 of 11 pictures used"), std::string::npos) << outcome.out;
-    EXPECT_NE(outcome.out.find("left out  photos/IMG_6.jpg"), std::string::npos);
+    EXPECT_TRUE(says(outcome.out, "5 of 11 pictures used"));
+    EXPECT_TRUE(says(outcome.out, "left out  photos/IMG_6.jpg"));
 
     const Json profile = Json::parse(place.content("profile.json"));
     ASSERT_EQ(profile["pictures"].size(), 11u);
@@ -143,7 +144,7 @@ TEST(PhotoFolder, MeasuresWithAnAccountOfWhatWasLeftOut) {
     for (const auto& [file, reason] : left_out) {
         const Json& account = account_of(profile, file);
         EXPECT_FALSE(account["used"]) << file;
-        EXPECT_NE(account["reason"].get<std::string>().find(reason), std::string::npos) << account;
+        EXPECT_TRUE(says(account["reason"].get<std::string>(), reason)) << account;
     }
     // Synthetic truth: f 820 px, centre (318.5, 243). JPEG of quality 95 and 0.4 % noise leave corners right to some
     // 0.03 px, which five views of 54 corners turn into 0.3 px of f and c; 1.5 px is five times that, and a portrait
@@ -179,7 +180,7 @@ TEST(PhotoFolder, AnExperimentsReportHasTheSameAccount) {
     const std::string facts = report["subjects"][0]["facts"].dump();
     for (const char* part : {"3 of 6", "Phone maker Phone 7", "no checkerboard", "cut off", "8 mm, most of the others",
                              "not applied: the sensor's rows count"}) {
-        EXPECT_NE(facts.find(part), std::string::npos) << part << ": " << facts;
+        EXPECT_TRUE(says(facts, part));
     }
     EXPECT_EQ(report["subjects"][0]["pictures"].size(), 6u);
     EXPECT_EQ(report["maps"].size(), 1u);

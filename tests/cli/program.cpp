@@ -12,6 +12,7 @@
 #include <iterator>
 #include <stdexcept>
 
+#include "tests/complaint.h"
 #include "tests/places.h"
 
 namespace lensproof {
@@ -144,7 +145,7 @@ void expect_refused(const Workplace& place, const std::vector<std::string>& argu
     EXPECT_EQ(std::ranges::count(outcome.err, '\n'), outcome.err.find("\nTry: ") == std::string::npos ? 1 : 2)
         << outcome.err;
     for (const std::string& word : words) {
-        EXPECT_NE(outcome.err.find(word), std::string::npos) << "no \"" << word << "\" in: " << outcome.err;
+        EXPECT_TRUE(says(outcome.err, word));
     }
     EXPECT_EQ(place.names(), before);
 }

@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "tests/cli/program.h"
+#include "tests/complaint.h"
 
 namespace lensproof::raw_files_test {
 
@@ -28,8 +29,8 @@ TEST(RawFiles, StandBesideTheFilmThatStaysWithoutNoise) {
     const std::string raw = place.content("camera.raw.png");
     // A PNG's header: width, height, 16 bits, grey.
     EXPECT_EQ(raw.substr(16, 10), std::string("\0\0\0\x08\0\0\0\x06\x10\0", 10));
-    EXPECT_NE(raw.find("lensproof:pattern"), std::string::npos);
-    EXPECT_NE(raw.find("lensproof:blackLevel"), std::string::npos);
+    EXPECT_TRUE(says(raw, "lensproof:pattern"));
+    EXPECT_TRUE(says(raw, "lensproof:blackLevel"));
     EXPECT_EQ(place.content("camera.demosaiced.png").substr(24, 2), "\x10\x02") << "16 bits, RGB";
 }
 
@@ -56,7 +57,7 @@ TEST(RawFiles, AreSaidToHoldTheRendersNoiseToo) {
     };
     EXPECT_GT(ratio(coarse), 0.3);
     EXPECT_LT(ratio(fine), 0.4 * ratio(coarse));
-    EXPECT_NE(coarse.err.find("the render's own noise is"), std::string::npos) << coarse.err;
+    EXPECT_TRUE(says(coarse.err, "the render's own noise is"));
 }
 
 // A shard's light is a part's; the whole's raw comes with the whole.
@@ -84,8 +85,7 @@ TEST(RawFiles, FollowFromAPixelsFill) {
     EXPECT_NE(place.content("full.png"), place.content("part.png")) << "the film itself is sharper";
     const Outcome filtered = place.run({"render", "full.toml", "--filter", "gaussian"});
     EXPECT_EQ(filtered.status, 2);
-    EXPECT_NE(filtered.err.find("--filter is \"gaussian\", but full.toml has a table [sensor]"), std::string::npos)
-        << filtered.err;
+    EXPECT_TRUE(says(filtered.err, "--filter is \"gaussian\", but full.toml has a table [sensor]"));
 }
 
 TEST(RawFiles, AreRefusedWithFileLineAndKey) {
@@ -96,8 +96,7 @@ TEST(RawFiles, AreRefusedWithFileLineAndKey) {
         std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(text.find("pattern =")), '\n');
     const Outcome outcome = place.run({"render", "scene.toml"});
     EXPECT_EQ(outcome.status, 2);
-    EXPECT_NE(outcome.err.find("scene.toml:" + std::to_string(line + 1) + ": sensor.pattern"), std::string::npos)
-        << outcome.err;
+    EXPECT_TRUE(says(outcome.err, "scene.toml:" + std::to_string(line + 1) + ": sensor.pattern"));
     EXPECT_EQ(place.names().size(), 1U) << "nothing was written";
     place.file("good.toml", small_scene() + sensor_table());
     place.file("good.raw.png/in_the_way", "");

@@ -8,6 +8,7 @@
 #include <thread>
 
 #include "tests/cli/program.h"
+#include "tests/complaint.h"
 
 namespace lensproof::render_growth_test {
 
@@ -62,7 +63,7 @@ TEST(RenderGrowth, SurvivesKill9WithEveryByte) {
     EXPECT_EQ(place.content("killed.exr"), place.content("whole.exr"));
     EXPECT_EQ(place.content("killed.png"), place.content("whole.png"));
     for (const std::string& name : place.names()) {
-        EXPECT_EQ(name.find(".part"), std::string::npos) << name << ": what killed processes left is gone";
+        EXPECT_FALSE(says(name, ".part")) << name << ": what killed processes left is gone";
     }
 }
 
@@ -138,7 +139,7 @@ TEST(RenderGrowth, ShowsItselfWhileItGrows) {
     EXPECT_FALSE(program.has_ended());
     const std::string png = place.content("now.png");
     EXPECT_TRUE(png.starts_with("\x89PNG")) << "it begins";
-    EXPECT_NE(png.find("IEND"), std::string::npos) << "and ends";
+    EXPECT_TRUE(says(png, "IEND")) << "and ends";
     EXPECT_FALSE(place.has("out.exr"));
 }
 
@@ -153,7 +154,7 @@ TEST(RenderGrowth, FiltersPixelsAsAsked) {
     EXPECT_NE(place.content("box.exr"), place.content("gaussian.exr"));
     EXPECT_EQ(place.run({"compare", "box.exr", "mitchell.exr", "--rms-limit", "0.3"}).status, 0);
     EXPECT_EQ(place.run({"compare", "box.exr", "mitchell.exr", "--rms-limit", "1e-6"}).status, 1);
-    EXPECT_NE(place.content("box.exr").find("albedo.R"), std::string::npos);
+    EXPECT_TRUE(says(place.content("box.exr"), "albedo.R"));
 }
 
 TEST(RenderGrowth, RefusesOptionsThatMakeNoSense) {

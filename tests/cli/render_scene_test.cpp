@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "tests/cli/program.h"
+#include "tests/complaint.h"
 
 namespace lensproof::render_scene_test {
 
@@ -120,9 +121,9 @@ TEST(RenderScene, SaysWhatItLeftOut) {
                                              "[[lights]]\nkind = \"environment\"\nradiance = \"bright.csv\"\n"));
     const Outcome outcome = place.run({"render", "scene.toml", "--paths", "both", "-o", "a.exr", "--json", "-"});
     EXPECT_EQ(outcome.status, 0);
-    EXPECT_NE(outcome.err.find("left out"), std::string::npos) << outcome.err;
+    EXPECT_TRUE(says(outcome.err, "left out"));
     EXPECT_GT(nlohmann::json::parse(outcome.out)["samples_left_out"], 0);
-    EXPECT_NE(place.content("a.exr").find("lensproof:leftOut"), std::string::npos);
+    EXPECT_TRUE(says(place.content("a.exr"), "lensproof:leftOut"));
 }
 
 TEST(RenderScene, RefusesWhatItCannotRender) {

@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "tests/cli/program.h"
+#include "tests/complaint.h"
 
 namespace lensproof::render_shards_test {
 
@@ -116,8 +117,7 @@ surfaces = [
     EXPECT_EQ(place.run({"render", "scene.toml", "--shard", "2/2", "-o", "b.exr"}).status, 0);
     const Outcome outcome = place.run({"merge", "a.exr", "b.exr", "-o", "sum.exr"});
     EXPECT_EQ(outcome.status, 2);
-    EXPECT_NE(outcome.err.find("b.exr: is of another render than a.exr: its lens is"), std::string::npos)
-        << outcome.err;
+    EXPECT_TRUE(says(outcome.err, "b.exr: is of another render than a.exr: its lens is"));
 }
 
 TEST(Shard, IsNamedByItsNumbersWhereNoNameIsGiven) {

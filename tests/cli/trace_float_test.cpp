@@ -7,6 +7,7 @@
 
 #include "tests/cli/program.h"
 #include "tests/cli/trace_table.h"
+#include "tests/complaint.h"
 
 namespace lensproof::trace_float_test {
 
@@ -91,7 +92,7 @@ TEST(TraceInFloat, SaysSoOnStandardErrorUnlessQuiet) {
     place.file("rays.csv", rays(false));
     const Outcome loud = trace_in(place, "float", false, {"-o", "out.csv"});
     EXPECT_EQ(loud.status, 0);
-    EXPECT_NE(loud.err.find("float against double"), std::string::npos) << loud.err;
+    EXPECT_TRUE(says(loud.err, "float against double"));
     EXPECT_EQ(loud.out, "");
     EXPECT_EQ(trace_in(place, "float", false, {"-o", "out.csv", "--quiet"}).err, "");
     EXPECT_EQ(trace_in(place, "double", false, {"-o", "out.csv"}).err, "");

@@ -6,6 +6,7 @@
 #include "engine/base/file.h"
 #include "engine/base/input_error.h"
 #include "experiments/runner/report_content.h"
+#include "tests/complaint.h"
 #include "tests/test_folder.h"
 
 namespace lensproof::runner::experiment_test {
@@ -28,9 +29,7 @@ TEST(Experiment, HoldsStudiesOfAnyKind) {
         studies_of("");
         ADD_FAILURE() << "an experiment without a study";
     } catch (const InputError& error) {
-        EXPECT_NE(std::string(error.what()).find("neither [[simulations]] nor [[photos]] nor [stability]"),
-                  std::string::npos)
-            << error.what();
+        EXPECT_TRUE(says(error.what(), "neither [[simulations]] nor [[photos]] nor [stability]")) << error.what();
     }
 }
 

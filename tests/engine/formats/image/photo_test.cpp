@@ -12,6 +12,7 @@
 #include "engine/base/file.h"
 #include "engine/base/input_error.h"
 #include "engine/formats/image/jpeg.h"
+#include "tests/complaint.h"
 #include "tests/test_folder.h"
 
 namespace lensproof::formats::photo_test {
@@ -142,7 +143,7 @@ TEST(Photo, NotesAreRead) {
     EXPECT_EQ(header.notes.pixel_pitch_um, 4.0);
     EXPECT_EQ(header.notes.crop_factor(), 1.5);
     ASSERT_EQ(header.suspicions.size(), 1u);
-    EXPECT_NE(header.suspicions[0].find("CustomRendered"), std::string::npos);
+    EXPECT_TRUE(says(header.suspicions[0], "CustomRendered"));
 }
 
 // A DNG's entries, least significant byte first.

@@ -3,6 +3,7 @@
 
 #include "experiments/draw/report/report.h"
 #include "experiments/studies/cameras/measured_camera.h"
+#include "tests/complaint.h"
 
 namespace lensproof::studies::certainty_map_test {
 
@@ -38,14 +39,14 @@ TEST(CertaintyMap, SaysWhatItShows) {
     const std::string svg = draw::frame_map_svg(map.frame, range, "#0072b2");
     for (const char* part :
          {"0.01 px (1 σ) at the best place", "0.04 px inside the hull", "67 % of the frame", "7 px at"}) {
-        EXPECT_NE(map.caption.find(part), std::string::npos) << part << ": " << map.caption;
+        EXPECT_TRUE(says(map.caption, part));
     }
-    EXPECT_NE(svg.find("From 4 points"), std::string::npos);  // the outlier is none of them
-    EXPECT_EQ(svg.find("nan"), std::string::npos);
+    EXPECT_TRUE(says(svg, "From 4 points"));  // the outlier is none of them
+    EXPECT_FALSE(says(svg, "nan"));
     const std::string page =
         draw::report_html({{"maps", {{{"name", "a.svg"}, {"caption", map.caption}}}}}, {{"a.svg", svg}});
-    EXPECT_NE(page.find("src=\"data:image/svg+xml;base64,"), std::string::npos);
-    EXPECT_NE(page.find(map.caption), std::string::npos);
+    EXPECT_TRUE(says(page, "src=\"data:image/svg+xml;base64,"));
+    EXPECT_TRUE(says(page, map.caption));
 }
 
 }  // namespace lensproof::studies::certainty_map_test

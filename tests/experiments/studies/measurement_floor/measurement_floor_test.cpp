@@ -9,6 +9,7 @@
 #include "experiments/studies/measurement_floor/floor_point.h"
 #include "experiments/studies/measurement_floor/floor_study.h"
 #include "experiments/studies/measurement_floor/random_poses.h"
+#include "tests/complaint.h"
 
 namespace lensproof::studies::measurement_floor_test {
 
@@ -78,7 +79,7 @@ TEST(MeasurementFloor, WhatFailedIsCounted) {
     EXPECT_TRUE(std::isnan(rms_point(2.0, {3.0}).sigma));
 
     const findings::Subject subject = sweep_subject({.id = "photos", .unit = "px", .curves = {{"spline", {point}}}});
-    EXPECT_NE(subject.pictures.at(0).bytes.find("Failed: spline: 2 of 4 at 2 px"), std::string::npos);
+    EXPECT_TRUE(says(subject.pictures.at(0).bytes, "Failed: spline: 2 of 4 at 2 px"));
 }
 
 TEST(MeasurementFloor, ThreadsChangeNothing) {
@@ -122,8 +123,8 @@ TEST(MeasurementFloor, ASweepIsAPicture) {
     sweep.curves = {{"checkerboard", {{0.0, 0.004, 0.001, 100.0}, {4.0, std::nan(""), 0.0, 0.0}}}};
     const findings::Picture chart = sweep_subject(sweep).pictures.at(0);
     EXPECT_EQ(chart.name, "noise.svg");
-    EXPECT_NE(chart.bytes.find("Points against noise"), std::string::npos);
-    EXPECT_EQ(chart.bytes.find("nan"), std::string::npos);
+    EXPECT_TRUE(says(chart.bytes, "Points against noise"));
+    EXPECT_FALSE(says(chart.bytes, "nan"));
 }
 
 }  // namespace lensproof::studies::measurement_floor_test

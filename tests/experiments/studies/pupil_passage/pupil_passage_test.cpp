@@ -8,6 +8,7 @@
 #include "engine/optics/illumination.h"
 #include "engine/pupil/rear_disc.h"
 #include "experiments/studies/pupil_passage/passage_study.h"
+#include "tests/complaint.h"
 
 namespace lensproof::studies::pupil_passage_test {
 
@@ -52,8 +53,8 @@ TEST(PupilPassage, IsReported) {
     EXPECT_EQ(table[0]["pupil_rings_percent"].size(), 8U);
     EXPECT_EQ(table[0]["published_percent"]["pupil"], 82.0);
     const std::string& drawing = found.subjects.at(0).pictures.at(0).bytes;
-    EXPECT_NE(drawing.find("Points of the pupil of each pixel"), std::string::npos);
-    EXPECT_NE(drawing.find("ray blocked"), std::string::npos);
+    EXPECT_TRUE(says(drawing, "Points of the pupil of each pixel"));
+    EXPECT_TRUE(says(drawing, "ray blocked"));
 }
 
 TEST(PupilPassage, ReadsItsExperiment) {
