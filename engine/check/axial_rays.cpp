@@ -27,28 +27,19 @@ constexpr double kAxialColour = 0.015;
 void check_beam(const CheckedLens& checked, const AxialBeam& beam, Findings& findings) {
     const double paraxial = paraxial_beam(checked).height;
     if (beam.height <= 0.0) {
-        findings.push_back({.code = "marginal-ray",
-                            .severity = optics::Severity::error,
-                            .surface = beam.limit.surface + 1,
-                            .message = fmt::format("not even a ray near the axis passes: {}", words(beam.limit)),
-                            .value = 0.0,
-                            .limit = paraxial,
-                            .unit = "mm"});
+        findings.push_back({"marginal-ray", error, beam.limit.surface + 1,
+                            fmt::format("not even a ray near the axis passes: {}", words(beam.limit)), 0.0, paraxial,
+                            "mm"});
         return;
     }
     const bool is_broken = beam.limit.status == optics::RayStatus::missed ||
                            beam.limit.status == optics::RayStatus::total_internal_reflection || beam.limit.is_backwards;
     if (is_broken) {
         findings.push_back(
-            {.code = "marginal-ray",
-             .severity = beam.height < kShortBeam * paraxial ? optics::Severity::error : optics::Severity::warning,
-             .surface = beam.limit.surface + 1,
-             .message = fmt::format("the axial beam ends {:.4g} mm from the axis, where the stop would "
-                                    "let {:.4g} mm pass: {}",
-                                    beam.height, paraxial, words(beam.limit)),
-             .value = beam.height,
-             .limit = paraxial,
-             .unit = "mm"});
+            {"marginal-ray", beam.height < kShortBeam * paraxial ? error : warning, beam.limit.surface + 1,
+             fmt::format("the axial beam ends {:.4g} mm from the axis, where the stop would let {:.4g} mm pass: {}",
+                         beam.height, paraxial, words(beam.limit)),
+             beam.height, paraxial, "mm"});
         return;
     }
     if (beam.limit.status != optics::RayStatus::clipped) {
@@ -57,16 +48,11 @@ void check_beam(const CheckedLens& checked, const AxialBeam& beam, Findings& fin
     const double of_stop = stop_limited_beam(checked).height;
     const double real_f_number = 0.5 / std::max(1e-12, beam.exit_sine);
     if (beam.height < kRimLimits * of_stop) {
-        findings.push_back(
-            {.code = "stop-not-limiting",
-             .severity = optics::Severity::warning,
-             .surface = beam.limit.surface + 1,
-             .message = fmt::format("its rim cuts the axial beam to {:.4g} mm, where the stop lets "
-                                    "{:.4g} mm pass: f/{:.2f} by real rays, f/{:.2f} by the stop",
-                                    beam.height, of_stop, real_f_number, paraxial_beam(checked).f_number),
-             .value = beam.height,
-             .limit = of_stop,
-             .unit = "mm"});
+        findings.push_back({"stop-not-limiting", warning, beam.limit.surface + 1,
+                            fmt::format("its rim cuts the axial beam to {:.4g} mm, where the stop lets {:.4g} mm pass: "
+                                        "f/{:.2f} by real rays, f/{:.2f} by the stop",
+                                        beam.height, of_stop, real_f_number, paraxial_beam(checked).f_number),
+                            beam.height, of_stop, "mm"});
     }
 }
 
@@ -77,12 +63,10 @@ void report_real_f_number(const CheckedLens& checked, const AxialBeam& beam, Fin
     const double paraxial = paraxial_beam(checked).f_number;
     constexpr double kWorthSaying = 0.02;
     if (beam.height > 0.0 && std::isfinite(real) && std::abs(real / paraxial - 1.0) > kWorthSaying) {
-        findings.push_back({.code = "real-f-number",
-                            .severity = optics::Severity::info,
-                            .message = fmt::format("the axial beam's real f-number is {:.3f}, the paraxial one {:.3f}",
-                                                   real, paraxial),
-                            .value = real,
-                            .limit = paraxial});
+        findings.push_back(
+            {"real-f-number", info, 0,
+             fmt::format("the axial beam's real f-number is {:.3f}, the paraxial one {:.3f}", real, paraxial), real,
+             paraxial});
     }
 }
 
@@ -93,14 +77,11 @@ void check_blur(const CheckedLens& checked, const AxialBeam& beam, Findings& fin
     }
     const double blur = axial_blur(checked, beam.height) / std::abs(checked.focus->efl);
     if (blur > kBlur) {
-        findings.push_back({.code = "blur",
-                            .severity = optics::Severity::warning,
-                            .message = fmt::format("the axial beam does not come to a focus: at its best its rays lie "
-                                                   "{:.2g} % of the focal length apart (rms)",
-                                                   100.0 * blur),
-                            .value = 100.0 * blur,
-                            .limit = 100.0 * kBlur,
-                            .unit = "%"});
+        findings.push_back({"blur", warning, 0,
+                            fmt::format("the axial beam does not come to a focus: at its best its rays lie {:.2g} % of "
+                                        "the focal length apart (rms)",
+                                        100.0 * blur),
+                            100.0 * blur, 100.0 * kBlur, "%"});
     }
 }
 
@@ -123,14 +104,11 @@ void check_axial_colour(const CheckedLens& checked, Findings& findings) {
     };
     const double apart = (focus_at(spectral::kLineF) - focus_at(spectral::kLineC)) / checked.focus->efl;
     if (std::abs(apart) > kAxialColour) {
-        findings.push_back({.code = "axial-colour",
-                            .severity = optics::Severity::warning,
-                            .message = fmt::format("blue (F) and red (C) focus {:.2g} % of the focal length apart: not "
-                                                   "a colour-corrected lens, or a glass is wrong",
-                                                   100.0 * apart),
-                            .value = 100.0 * apart,
-                            .limit = 100.0 * kAxialColour,
-                            .unit = "%"});
+        findings.push_back({"axial-colour", warning, 0,
+                            fmt::format("blue (F) and red (C) focus {:.2g} % of the focal length apart: not a "
+                                        "colour-corrected lens, or a glass is wrong",
+                                        100.0 * apart),
+                            100.0 * apart, 100.0 * kAxialColour, "%"});
     }
 }
 

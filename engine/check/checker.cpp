@@ -12,7 +12,7 @@ namespace lensproof::check {
 namespace {
 
 bool is_error(const optics::Finding& finding) {
-    return finding.severity == optics::Severity::error;
+    return finding.severity == error;
 }
 
 /// What could not be judged for want of a lens that rays can be traced through.
@@ -21,11 +21,10 @@ void report_untraced(const CheckedLens& checked, Findings& findings) {
         return;
     }
     const bool is_explained = std::ranges::any_of(findings, is_error);
-    findings.push_back({.code = is_explained ? "not-judged" : "not-traceable",
-                        .severity = is_explained ? optics::Severity::info : optics::Severity::error,
-                        .message = (is_explained ? "no ray was traced, so nothing is said about rays: "
-                                                 : "the lens cannot be traced: ") +
-                                   checked.why_not_traced});
+    findings.push_back(
+        {is_explained ? "not-judged" : "not-traceable", is_explained ? info : error, 0,
+         (is_explained ? "no ray was traced, so nothing is said about rays: " : "the lens cannot be traced: ") +
+             checked.why_not_traced});
 }
 
 /// What rays could be traced for and are not: the axial beam and the field are followed in lenses of revolution only,
@@ -37,17 +36,14 @@ void report_rays_not_asked(const CheckedLens& checked, Findings& findings) {
     const double object = checked.prescription.object_distance_mm;
     const bool claims_field = checked.claims.half_field_deg || checked.claims.image_circle_mm;
     if (!checked.prescription.is_rotationally_symmetric()) {
-        findings.push_back({.code = "not-judged",
-                            .severity = optics::Severity::info,
-                            .message = "a surface is tilted, shifted or toroidal, so no ray was traced: nothing is "
-                                       "said about the axial beam, its focus and colour, nor about the field"});
+        findings.push_back({"not-judged", info, 0,
+                            "a surface is tilted, shifted or toroidal, so no ray was traced: nothing is said about the "
+                            "axial beam, its focus and colour, nor about the field"});
     } else if (std::isfinite(object) && claims_field) {
-        findings.push_back(
-            {.code = "not-judged",
-             .severity = optics::Severity::info,
-             .message = fmt::format("the table is set to an object {} mm away, and the field is judged from infinity "
-                                    "only: nothing is said about the stated field and image circle",
-                                    object)});
+        findings.push_back({"not-judged", info, 0,
+                            fmt::format("the table is set to an object {} mm away, and the field is judged from "
+                                        "infinity only: nothing is said about the stated field and image circle",
+                                        object)});
     }
 }
 
@@ -105,17 +101,13 @@ CheckReport check_prescription(const optics::Prescription& prescription, const o
                                const optics::GlassCatalogue& glasses, const CheckSettings& settings) {
     CheckReport report{.findings = prescription.remarks, .computed = {}};
     if (prescription.surfaces.empty()) {
-        report.findings.push_back({.code = "no-surface",
-                                   .severity = optics::Severity::error,
-                                   .message = "the prescription holds no surface"});
+        report.findings.push_back({"no-surface", error, 0, "the prescription holds no surface"});
         return report;
     }
     if (std::ranges::any_of(report.findings, is_error)) {
         // Numbers of another lens than the file's would only mislead.
-        report.findings.push_back({.code = "not-judged",
-                                   .severity = optics::Severity::info,
-                                   .message = "the file holds surfaces that are not traced here, so the rest is not "
-                                              "judged"});
+        report.findings.push_back(
+            {"not-judged", info, 0, "the file holds surfaces that are not traced here, so the rest is not judged"});
         return report;
     }
     const std::size_t count = std::max<std::size_t>(1, prescription.zoom.size());

@@ -5,6 +5,8 @@
 
 namespace lensproof::check {
 
+using enum optics::Severity;
+
 /// Row by row: numbers, stop, thicknesses, semi-diameters.
 void check_table(const CheckedLens& checked, Findings& findings);
 

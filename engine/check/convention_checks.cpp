@@ -33,12 +33,7 @@ constexpr double kTwiceTo = 2.2;
 constexpr double kFastest = 0.5;  // f-number: n sin u' cannot exceed 1 in air
 
 void warn(Findings& findings, const char* code, int surface, std::string message, double value, double limit) {
-    findings.push_back({.code = code,
-                        .severity = optics::Severity::warning,
-                        .surface = surface,
-                        .message = std::move(message),
-                        .value = value,
-                        .limit = limit});
+    findings.push_back({code, warning, surface, std::move(message), value, limit});
 }
 
 void check_lens_units(const CheckedLens& checked, Findings& findings) {

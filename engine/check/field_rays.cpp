@@ -83,29 +83,20 @@ std::optional<optics::ChiefRay> check_chief_ray(const CheckedLens& checked, doub
     if (past_rims) {
         const RayFate fate = follow(*checked.traced, past_rims->front);
         const double reached = rays.largest_field() / kDegree;
-        findings.push_back({.code = "chief-ray",
-                            .severity = optics::Severity::warning,
-                            .surface = fate.surface + 1,
-                            .message = fmt::format("the chief ray of the stated field of {:.2f}° does not pass: {}; it "
-                                                   "does up to {:.2f}°",
-                                                   field / kDegree, words(fate), reached),
-                            .value = reached,
-                            .limit = field / kDegree,
-                            .unit = "deg"});
+        findings.push_back(
+            {"chief-ray", warning, fate.surface + 1,
+             fmt::format("the chief ray of the stated field of {:.2f}° does not pass: {}; it does up to {:.2f}°",
+                         field / kDegree, words(fate), reached),
+             reached, field / kDegree, "deg"});
         return past_rims;
     }
     const RayFate fate = first_failure(checked);
     const double reached = std::max(0.0, rays_past_rims.largest_field()) / kDegree;
     findings.push_back(
-        {.code = "chief-ray",
-         .severity = optics::Severity::error,
-         .surface = fate.passes() ? 0 : fate.surface + 1,
-         .message = fmt::format("no chief ray reaches the stated field of {:.2f}°, even past the rims: "
-                                "beyond {:.2f}°, {}",
-                                field / kDegree, reached, fate.passes() ? "none arrives from there" : words(fate)),
-         .value = reached,
-         .limit = field / kDegree,
-         .unit = "deg"});
+        {"chief-ray", error, fate.passes() ? 0 : fate.surface + 1,
+         fmt::format("no chief ray reaches the stated field of {:.2f}°, even past the rims: beyond {:.2f}°, {}",
+                     field / kDegree, reached, fate.passes() ? "none arrives from there" : words(fate)),
+         reached, field / kDegree, "deg"});
     return std::nullopt;
 }
 
@@ -166,23 +157,19 @@ void check_vignetting(const CheckedLens& checked, double field, double axial, do
     if (transmitted >= kLeastTransmitted) {
         return;
     }
-    optics::Severity severity = optics::Severity::warning;
+    optics::Severity severity = warning;
     if (!(transmitted > 0.0)) {
         const double within = kRoundedField * field;
         const std::optional<optics::ChiefRay> chief =
             optics::ChiefRays(lens_in_focus(checked, false), checked.settings.wavelength_nm).at_field(within);
         const bool is_dark = !chief || !(field_beam(checked, within, *chief, axial).area > 0.0);
-        severity = is_dark ? optics::Severity::error : optics::Severity::warning;
+        severity = is_dark ? error : warning;
     }
     findings.push_back(
-        {.code = "vignetting",
-         .severity = severity,
-         .message =
-             fmt::format("the rims leave {} of the axial beam at the stated field of {:.2f}°",
-                         transmitted > 0.0 ? fmt::format("{:.1f} %", 100.0 * transmitted) : "nothing", field / kDegree),
-         .value = 100.0 * transmitted,
-         .limit = transmitted > 0.0 ? 100.0 * kLeastTransmitted : 0.0,
-         .unit = "%"});
+        {"vignetting", severity, 0,
+         fmt::format("the rims leave {} of the axial beam at the stated field of {:.2f}°",
+                     transmitted > 0.0 ? fmt::format("{:.1f} %", 100.0 * transmitted) : "nothing", field / kDegree),
+         100.0 * transmitted, transmitted > 0.0 ? 100.0 * kLeastTransmitted : 0.0, "%"});
 }
 
 /// Rule 33, and the order of surfaces.
@@ -198,26 +185,18 @@ void check_beam(const CheckedLens& checked, double field, const std::optional<op
         // Rims that were estimated are no claim of the table's.
         const int there = beam.backwards_surface;
         const bool is_estimated = checked.is_estimated[there] || (there > 0 && checked.is_estimated[there - 1]);
-        findings.push_back({.code = "order-of-surfaces",
-                            .severity = is_estimated ? optics::Severity::warning : optics::Severity::error,
-                            .surface = there + 1,
-                            .message = fmt::format("rays of the stated field of {:.2f}° pass every rim, but would "
-                                                   "have to run backwards to meet surface {}",
-                                                   field / kDegree, there + 1),
-                            .value = 100.0 * beam.backwards / (beam.area + beam.backwards),
-                            .limit = 100.0 * kBackwardsFraction,
-                            .unit = "%"});
+        findings.push_back({"order-of-surfaces", is_estimated ? warning : error, there + 1,
+                            fmt::format("rays of the stated field of {:.2f}° pass every rim, but would have to run "
+                                        "backwards to meet surface {}",
+                                        field / kDegree, there + 1),
+                            100.0 * beam.backwards / (beam.area + beam.backwards), 100.0 * kBackwardsFraction, "%"});
     }
     const double incidence = beam.largest_incidence / kDegree;
     if (incidence > kSteepIncidence) {
         const bool grazing = incidence > kGrazingIncidence;
-        findings.push_back({.code = "incidence-angle",
-                            .severity = grazing ? optics::Severity::warning : optics::Severity::info,
-                            .surface = beam.steepest_surface + 1,
-                            .message = fmt::format("rays of the stated field meet it at up to {:.1f}°", incidence),
-                            .value = incidence,
-                            .limit = grazing ? kGrazingIncidence : kSteepIncidence,
-                            .unit = "deg"});
+        findings.push_back({"incidence-angle", grazing ? warning : info, beam.steepest_surface + 1,
+                            fmt::format("rays of the stated field meet it at up to {:.1f}°", incidence), incidence,
+                            grazing ? kGrazingIncidence : kSteepIncidence, "deg"});
     }
 }
 
@@ -226,14 +205,12 @@ void check_distortion(const CheckedLens& checked, double field, double image_hei
     const optics::Projection projection = checked.prescription.projection;
     const bool is_rectilinear = projection == optics::Projection::rectilinear;
     if (is_rectilinear && field > kWidestRectilinear * kDegree) {
-        findings.push_back({.code = "distortion",
-                            .severity = optics::Severity::warning,
-                            .message = fmt::format("a half field of {:.2f}° is none of a rectilinear lens: is it a "
-                                                   "fisheye, or is the full field stated?",
-                                                   field / kDegree),
-                            .value = field / kDegree,
-                            .limit = kWidestRectilinear,
-                            .unit = "deg"});
+        findings.push_back(
+            {"distortion", warning, 0,
+             fmt::format(
+                 "a half field of {:.2f}° is none of a rectilinear lens: is it a fisheye, or is the full field stated?",
+                 field / kDegree),
+             field / kDegree, kWidestRectilinear, "deg"});
         return;
     }
     const double ideal = checked.focus->efl * optics::projected_radius(projection, field);
@@ -241,14 +218,10 @@ void check_distortion(const CheckedLens& checked, double field, double image_hei
     const double limit = is_rectilinear ? kDistortion : kFisheyeDistortion;
     if (std::abs(off) > limit) {
         findings.push_back(
-            {.code = "distortion",
-             .severity = optics::Severity::warning,
-             .message = fmt::format("the chief ray of {:.2f}° lands {:.4g} mm from the axis, {:+.1f} % "
-                                    "off the {} projection",
-                                    field / kDegree, image_height, 100.0 * off, optics::projection_name(projection)),
-             .value = 100.0 * off,
-             .limit = 100.0 * limit,
-             .unit = "%"});
+            {"distortion", warning, 0,
+             fmt::format("the chief ray of {:.2f}° lands {:.4g} mm from the axis, {:+.1f} % off the {} projection",
+                         field / kDegree, image_height, 100.0 * off, optics::projection_name(projection)),
+             100.0 * off, 100.0 * limit, "%"});
     }
 }
 
@@ -270,13 +243,10 @@ void check_image_circle(const CheckedLens& checked, std::optional<double> image_
         what = "all that the rims let pass";
     }
     if (is_off) {
-        findings.push_back({.code = "image-circle",
-                            .severity = optics::Severity::warning,
-                            .message = fmt::format("{} fills an image circle of {:.4g} mm, {:.4g} mm is stated", what,
-                                                   2.0 * *image_height, circle),
-                            .value = 2.0 * *image_height,
-                            .limit = circle,
-                            .unit = "mm"});
+        findings.push_back({"image-circle", warning, 0,
+                            fmt::format("{} fills an image circle of {:.4g} mm, {:.4g} mm is stated", what,
+                                        2.0 * *image_height, circle),
+                            2.0 * *image_height, circle, "mm"});
     }
 }
 

@@ -13,16 +13,17 @@ namespace lensproof::check {
 namespace {
 
 // Rules 19 and 20: what rounding of radii and indices explains in published tables is below the warnings.
-constexpr double kFocalLengthError = 0.01;
-constexpr double kFocalLengthWarning = 0.003;
-constexpr double kBackFocusError = 0.01;  // of the focal length
-constexpr double kBackFocusWarning = 5e-4;
-constexpr double kFNumberError = 0.10;  // rule 22
-constexpr double kFNumberWarning = 0.05;
-constexpr double kTrackWarning = 0.005;    // rule 30
-constexpr double kPetzvalWarning = 1.0;    // focal lengths, rule 31
-constexpr double kInvariantError = 1e-12;  // relative, rule 32
-constexpr double kNoPower = 1e6;           // focal lengths longer than this many lens lengths are none
+struct Limits {
+    double error;
+    double warning;
+};
+constexpr Limits kFocalLength{.error = 0.01, .warning = 0.003};
+constexpr Limits kBackFocus{.error = 0.01, .warning = 5e-4};  // of the focal length
+constexpr Limits kFNumber{.error = 0.10, .warning = 0.05};    // rule 22
+constexpr Limits kTrack{.error = 1e9, .warning = 0.005};      // rule 30
+constexpr double kPetzvalWarning = 1.0;                       // focal lengths, rule 31
+constexpr double kInvariantError = 1e-12;                     // relative, rule 32
+constexpr double kNoPower = 1e6;  // focal lengths longer than this many lens lengths are none
 
 double lens_length(const CheckedLens& checked) {
     double length = 0.0;
@@ -36,61 +37,40 @@ double lens_length(const CheckedLens& checked) {
 void check_power(const CheckedLens& checked, Findings& findings) {
     const Focus& focus = *checked.focus;
     if (!std::isfinite(focus.efl) || std::abs(focus.efl) > kNoPower * std::max(1.0, lens_length(checked))) {
-        findings.push_back({.code = "no-power",
-                            .severity = optics::Severity::error,
-                            .message = "the lens has no power: it images nothing",
-                            .value = focus.efl,
-                            .limit = 0.0,
-                            .unit = "mm"});
+        findings.push_back({"no-power", error, 0, "the lens has no power: it images nothing", focus.efl, 0.0, "mm"});
         return;
     }
     if (focus.efl < 0.0) {
-        findings.push_back({.code = "negative-power",
-                            .severity = optics::Severity::error,
-                            .message = fmt::format("the focal length is {:.4f} mm: a diverging lens, which images "
-                                                   "nothing on a sensor",
-                                                   focus.efl),
-                            .value = focus.efl,
-                            .limit = 0.0,
-                            .unit = "mm"});
+        findings.push_back(
+            {"negative-power", error, 0,
+             fmt::format("the focal length is {:.4f} mm: a diverging lens, which images nothing on a sensor",
+                         focus.efl),
+             focus.efl, 0.0, "mm"});
     } else if (focus.image_distance <= 0.0) {
-        findings.push_back({.code = "image-in-front",
-                            .severity = optics::Severity::warning,
-                            .surface = checked.size(),
-                            .message = fmt::format("the image lies {:.3f} mm in front of the last surface, where no "
-                                                   "sensor can stand",
-                                                   -focus.image_distance),
-                            .value = focus.image_distance,
-                            .limit = 0.0,
-                            .unit = "mm"});
+        findings.push_back(
+            {"image-in-front", warning, checked.size(),
+             fmt::format("the image lies {:.3f} mm in front of the last surface, where no sensor can stand",
+                         -focus.image_distance),
+             focus.image_distance, 0.0, "mm"});
     }
 }
 
 /// A measured length against a stated one; `scale` is what the limits are fractions of.
 struct Comparison {
-    const char* code;
-    std::string what;
     double computed;
     double stated;
     double scale;
-    double error;
-    double warning;
-    int surface = 0;
 };
 
-void compare(const Comparison& c, Findings& findings) {
+void compare(Findings& findings, const char* code, std::string_view what, const Comparison& c, const Limits& limits,
+             int surface = 0) {
     const double off = std::abs(c.computed - c.stated) / std::abs(c.scale);
-    if (!(off > c.warning)) {
-        return;
+    if (off > limits.warning) {
+        findings.push_back({code, off > limits.error ? error : warning, surface,
+                            fmt::format("{} is {:.6g} by the table, {:.6g} as stated: off by {:.3g} %", what,
+                                        c.computed, c.stated, 100.0 * off),
+                            100.0 * off, 100.0 * (off > limits.error ? limits.error : limits.warning), "%"});
     }
-    findings.push_back({.code = c.code,
-                        .severity = off > c.error ? optics::Severity::error : optics::Severity::warning,
-                        .surface = c.surface,
-                        .message = fmt::format("{} is {:.6g} by the table, {:.6g} as stated: off by {:.3g} %", c.what,
-                                               c.computed, c.stated, 100.0 * off),
-                        .value = 100.0 * off,
-                        .limit = 100.0 * (off > c.error ? c.error : c.warning),
-                        .unit = "%"});
 }
 
 /// Rules 19 and 20. The last thickness is a claim too: where the sensor stands.
@@ -98,53 +78,27 @@ void check_focal_lengths(const CheckedLens& checked, Findings& findings) {
     const Focus& focus = *checked.focus;
     const optics::StatedData& claims = checked.claims;
     if (claims.efl_mm) {
-        compare({.code = "focal-length",
-                 .what = "the focal length (mm)",
-                 .computed = focus.efl,
-                 .stated = *claims.efl_mm,
-                 .scale = *claims.efl_mm,
-                 .error = kFocalLengthError,
-                 .warning = kFocalLengthWarning},
-                findings);
+        compare(findings, "focal-length", "the focal length (mm)", {focus.efl, *claims.efl_mm, *claims.efl_mm},
+                kFocalLength);
     }
     const double scale = claims.efl_mm.value_or(focus.efl);
     if (claims.bfl_mm) {
-        compare({.code = "back-focus",
-                 .what = "the back focus (mm)",
-                 .computed = focus.bfl,
-                 .stated = *claims.bfl_mm,
-                 .scale = scale,
-                 .error = kBackFocusError,
-                 .warning = kBackFocusWarning},
-                findings);
+        compare(findings, "back-focus", "the back focus (mm)", {focus.bfl, *claims.bfl_mm, scale}, kBackFocus);
     }
     const double last = checked.row(checked.size() - 1).thickness_mm;
     const bool repeats = claims.bfl_mm && std::abs(*claims.bfl_mm - last) < 1e-9;
     if (last > 0.0 && !repeats) {
-        compare({.code = "back-focus",
-                 .what = "the image's distance from the last surface (mm, last thickness)",
-                 .computed = focus.image_distance,
-                 .stated = last,
-                 .scale = scale,
-                 .error = kBackFocusError,
-                 .warning = kBackFocusWarning,
-                 .surface = checked.size()},
-                findings);
+        compare(findings, "back-focus", "the image's distance from the last surface (mm, last thickness)",
+                {focus.image_distance, last, scale}, kBackFocus, checked.size());
     }
 }
 
 /// Rule 30.
 void check_track(const CheckedLens& checked, Findings& findings) {
     const double last = checked.row(checked.size() - 1).thickness_mm;
-    if (checked.claims.total_track_mm && last > 0.0) {
-        compare({.code = "total-track",
-                 .what = "the length from first vertex to sensor (mm)",
-                 .computed = lens_length(checked) + last,
-                 .stated = *checked.claims.total_track_mm,
-                 .scale = *checked.claims.total_track_mm,
-                 .error = 1e9,
-                 .warning = kTrackWarning},
-                findings);
+    if (const std::optional<double>& track = checked.claims.total_track_mm; track && last > 0.0) {
+        compare(findings, "total-track", "the length from first vertex to sensor (mm)",
+                {lens_length(checked) + last, *track, *track}, kTrack);
     }
 }
 
@@ -159,14 +113,11 @@ void check_petzval(const CheckedLens& checked, Findings& findings) {
     const double radius = 1.0 / sum;
     const double relative = std::abs(radius / checked.focus->efl);
     if (relative < kPetzvalWarning) {
-        findings.push_back({.code = "petzval-radius",
-                            .severity = optics::Severity::warning,
-                            .message = fmt::format("the Petzval radius is {:.4g} mm, {:.2f} focal lengths: the field "
-                                                   "is curved more strongly than a single element's",
-                                                   radius, relative),
-                            .value = radius,
-                            .limit = kPetzvalWarning * checked.focus->efl,
-                            .unit = "mm"});
+        findings.push_back({"petzval-radius", warning, 0,
+                            fmt::format("the Petzval radius is {:.4g} mm, {:.2f} focal lengths: the field is curved "
+                                        "more strongly than a single element's",
+                                        radius, relative),
+                            radius, kPetzvalWarning * checked.focus->efl, "mm"});
     }
 }
 
@@ -176,28 +127,16 @@ void check_aperture(const CheckedLens& checked, Findings& findings) {
     if (!std::isfinite(data.f_number) || checked.assumed_stop) {
         return;
     }
-    const bool stop_is_stated = !checked.is_estimated[checked.lens->stop_index()];
-    if (checked.claims.f_number && stop_is_stated) {
-        compare({.code = "f-number",
-                 .what = "the f-number",
-                 .computed = data.f_number,
-                 .stated = *checked.claims.f_number,
-                 .scale = *checked.claims.f_number,
-                 .error = kFNumberError,
-                 .warning = kFNumberWarning,
-                 .surface = checked.lens->stop_index() + 1},
-                findings);
+    const int stop = checked.lens->stop_index();
+    if (checked.is_estimated[stop]) {
+        return;
     }
-    if (checked.claims.entrance_pupil_diameter_mm && stop_is_stated) {
-        compare({.code = "entrance-pupil",
-                 .what = "the entrance pupil's diameter (mm)",
-                 .computed = data.entrance_pupil_diameter,
-                 .stated = *checked.claims.entrance_pupil_diameter_mm,
-                 .scale = *checked.claims.entrance_pupil_diameter_mm,
-                 .error = kFNumberError,
-                 .warning = kFNumberWarning,
-                 .surface = checked.lens->stop_index() + 1},
-                findings);
+    if (const std::optional<double>& f_number = checked.claims.f_number) {
+        compare(findings, "f-number", "the f-number", {data.f_number, *f_number, *f_number}, kFNumber, stop + 1);
+    }
+    if (const std::optional<double>& diameter = checked.claims.entrance_pupil_diameter_mm) {
+        compare(findings, "entrance-pupil", "the entrance pupil's diameter (mm)",
+                {data.entrance_pupil_diameter, *diameter, *diameter}, kFNumber, stop + 1);
     }
 }
 
@@ -219,13 +158,10 @@ void check_invariant(const CheckedLens& checked, Findings& findings) {
         }
         const double scale = std::abs(first) + std::abs(second) + std::abs(expected);
         if (!(std::abs(invariant - expected) <= kInvariantError * scale)) {
-            findings.push_back({.code = "lagrange-invariant",
-                                .severity = optics::Severity::error,
-                                .surface = i + 1,
-                                .message = "the Lagrange invariant changes here: the table's numbers are too extreme "
-                                           "to compute with",
-                                .value = std::abs(invariant - expected) / scale,
-                                .limit = kInvariantError});
+            findings.push_back(
+                {"lagrange-invariant", error, i + 1,
+                 "the Lagrange invariant changes here: the table's numbers are too extreme to compute with",
+                 std::abs(invariant - expected) / scale, kInvariantError});
             return;
         }
         const double gap = checked.row(i).thickness_mm;
@@ -241,15 +177,10 @@ void check_sensor_place(const CheckedLens& checked, Findings& findings) {
     const double rim = sag_at(checked.row(last), checked.semi_diameters[last]);
     if (distance > 0.0 && rim > distance) {
         findings.push_back(
-            {.code = "sensor-inside-lens",
-             .severity = checked.is_estimated[last] ? optics::Severity::warning : optics::Severity::error,
-             .surface = last + 1,
-             .message = fmt::format("the last surface's rim reaches {:.3f} mm behind its vertex, the "
-                                    "sensor stands at {:.3f} mm",
-                                    rim, distance),
-             .value = distance - rim,
-             .limit = 0.0,
-             .unit = "mm"});
+            {"sensor-inside-lens", checked.is_estimated[last] ? warning : error, last + 1,
+             fmt::format("the last surface's rim reaches {:.3f} mm behind its vertex, the sensor stands at {:.3f} mm",
+                         rim, distance),
+             distance - rim, 0.0, "mm"});
     }
 }
 

@@ -46,7 +46,7 @@ struct Space {
     [[nodiscard]] bool is_estimated() const { return checked.is_estimated[i] || checked.is_estimated[i + 1]; }
     /// What an unstated semi-diameter implies is no more than worth a look.
     [[nodiscard]] optics::Severity at_most(optics::Severity severity) const {
-        return is_estimated() ? std::min(severity, optics::Severity::warning) : severity;
+        return is_estimated() ? std::min(severity, warning) : severity;
     }
     [[nodiscard]] int surface() const { return i + 1; }
 };
@@ -97,23 +97,15 @@ void check_steepness(const CheckedLens& checked, int i, Findings& findings) {
     const optics::PrescribedSurface& row = checked.row(i);
     const double steepness = std::abs(checked.semi_diameters[i] * row.curvature());
     if (steepness > kSteepest && steepness < 1.0) {
-        findings.push_back(
-            {.code = "steep-surface",
-             .severity = optics::Severity::warning,
-             .surface = i + 1,
-             .message = fmt::format("its radius is only {:.2f} of its diameter: hard to make", 0.5 / steepness),
-             .value = steepness,
-             .limit = kSteepest});
+        findings.push_back({"steep-surface", warning, i + 1,
+                            fmt::format("its radius is only {:.2f} of its diameter: hard to make", 0.5 / steepness),
+                            steepness, kSteepest});
     }
     const double depth = std::abs(sag_at(row, checked.semi_diameters[i]));
     if (!row.is_flat() && !row.is_asphere() && depth < kFlattestSag) {
-        findings.push_back({.code = "nearly-flat",
-                            .severity = optics::Severity::info,
-                            .surface = i + 1,
-                            .message = fmt::format("it is only {:.3f} mm deep at its rim: would a flat do?", depth),
-                            .value = depth,
-                            .limit = kFlattestSag,
-                            .unit = "mm"});
+        findings.push_back({"nearly-flat", info, i + 1,
+                            fmt::format("it is only {:.3f} mm deep at its rim: would a flat do?", depth), depth,
+                            kFlattestSag, "mm"});
     }
 }
 
@@ -129,29 +121,23 @@ void check_edge(const Space& space, Findings& findings) {
     const double reach = std::max(space.front_reach, space.rear_reach);
     const double least = std::max(kThinnestEdge, kThinnestRelativeEdge * 2.0 * reach);
     const auto report = [&](optics::Severity severity, double value, double limit, std::string message) {
-        findings.push_back({.code = "edge-thickness",
-                            .severity = severity,
-                            .surface = space.surface(),
-                            .message = std::move(message),
-                            .value = value,
-                            .limit = limit,
-                            .unit = "mm"});
+        findings.push_back({"edge-thickness", severity, space.surface(), std::move(message), value, limit, "mm"});
     };
     if (edge < 0.0) {
         const bool is_possible = cuts_no_glass(space);
-        report(is_possible ? optics::Severity::warning : space.at_most(optics::Severity::error), edge, 0.0,
+        report(is_possible ? warning : space.at_most(error), edge, 0.0,
                fmt::format("its glass would be {:.3f} mm thick at the edge, each surface taken to its own "
                            "semi-diameter: {}",
                            edge,
                            is_possible ? "are these semi-diameters of light, not of glass?"
                                        : "the two surfaces meet inside their apertures"));
     } else if (blank_edge < kThinnestBlankEdge) {
-        report(optics::Severity::warning, blank_edge, kThinnestBlankEdge,
+        report(warning, blank_edge, kThinnestBlankEdge,
                fmt::format("its glass is {:.3f} mm thick at the edge of a blank 1 mm wider than the clear aperture: it "
                            "chips",
                            blank_edge));
     } else if (edge < least) {
-        report(optics::Severity::info, edge, least, fmt::format("its glass is only {:.3f} mm thick at the edge", edge));
+        report(info, edge, least, fmt::format("its glass is only {:.3f} mm thick at the edge", edge));
     }
 }
 
@@ -163,15 +149,10 @@ void check_centre(const Space& space, Findings& findings) {
     const double thickness = space.front.thickness_mm;
     if (thickness > 0.0 && thickness < least) {
         const bool is_thin = thickness < std::max(kThinnestCentre, kThinRelativeCentre * diameter);
-        findings.push_back({.code = "centre-thickness",
-                            .severity = is_thin ? optics::Severity::warning : optics::Severity::info,
-                            .surface = space.surface(),
-                            .message = fmt::format("its glass is only {} mm thick in the middle for a diameter of "
-                                                   "{:.3g} mm",
-                                                   thickness, diameter),
-                            .value = thickness,
-                            .limit = least,
-                            .unit = "mm"});
+        findings.push_back({"centre-thickness", is_thin ? warning : info, space.surface(),
+                            fmt::format("its glass is only {} mm thick in the middle for a diameter of {:.3g} mm",
+                                        thickness, diameter),
+                            thickness, least, "mm"});
     }
 }
 
@@ -184,24 +165,15 @@ void check_crossing(const Space& space, Findings& findings) {
     const bool touches = narrowest < 0.0 || (narrowest == 0.0 && where > 0.0);
     const bool is_explained = is_plane || narrowest_up_to(space, certain_reach(space)).separation >= 0.0;
     if (touches && space.front.thickness_mm > 0.0) {
-        findings.push_back(
-            {.code = "surfaces-cross",
-             .severity = is_explained ? optics::Severity::warning : space.at_most(optics::Severity::error),
-             .surface = space.surface(),
-             .message = fmt::format("it runs {:.3f} mm into surface {}, {:.3g} mm from the axis{}", -narrowest,
-                                    space.surface() + 1, where, is_plane ? " (a plane without glass)" : ""),
-             .value = narrowest,
-             .limit = 0.0,
-             .unit = "mm"});
+        findings.push_back({"surfaces-cross", is_explained ? warning : space.at_most(error), space.surface(),
+                            fmt::format("it runs {:.3f} mm into surface {}, {:.3g} mm from the axis{}", -narrowest,
+                                        space.surface() + 1, where, is_plane ? " (a plane without glass)" : ""),
+                            narrowest, 0.0, "mm"});
     } else if (!is_glass && !is_plane && narrowest > 0.0 && narrowest < kNarrowestGap) {
-        findings.push_back({.code = "air-gap",
-                            .severity = optics::Severity::warning,
-                            .surface = space.surface(),
-                            .message = fmt::format("only {:.3f} mm of air to surface {}, {:.3g} mm from the axis",
-                                                   narrowest, space.surface() + 1, where),
-                            .value = narrowest,
-                            .limit = kNarrowestGap,
-                            .unit = "mm"});
+        findings.push_back({"air-gap", warning, space.surface(),
+                            fmt::format("only {:.3f} mm of air to surface {}, {:.3g} mm from the axis", narrowest,
+                                        space.surface() + 1, where),
+                            narrowest, kNarrowestGap, "mm"});
     }
 }
 
@@ -215,14 +187,10 @@ void check_rims(const Space& space, Findings& findings) {
     const bool overlap =
         separation < 0.0 && *space.front.rim_mm > space.rear_reach && *space.rear.rim_mm > space.front_reach;
     if (overlap) {
-        findings.push_back({.code = "rims-overlap",
-                            .severity = optics::Severity::warning,
-                            .surface = space.surface(),
-                            .message = fmt::format("its rim and that of surface {} overlap by {:.3f} mm",
-                                                   space.surface() + 1, -separation),
-                            .value = separation,
-                            .limit = 0.0,
-                            .unit = "mm"});
+        findings.push_back(
+            {"rims-overlap", warning, space.surface(),
+             fmt::format("its rim and that of surface {} overlap by {:.3f} mm", space.surface() + 1, -separation),
+             separation, 0.0, "mm"});
     }
 }
 
@@ -241,10 +209,8 @@ void check_cement(const Space& space, Findings& findings) {
             optics::abbe_number(checked.media[i]->formula) == optics::abbe_number(checked.media[i - 1]->formula);
         if (is_glass_before && checked.is_dummy(i) && same_dispersion && !space.front.is_stop &&
             !space.front.is_flat()) {
-            findings.push_back({.code = "no-index-step",
-                                .severity = optics::Severity::warning,
-                                .surface = i + 1,
-                                .message = "the glasses on both sides of it are the same: it does nothing"});
+            findings.push_back(
+                {"no-index-step", warning, i + 1, "the glasses on both sides of it are the same: it does nothing"});
         }
         return;
     }
@@ -259,14 +225,10 @@ void check_cement(const Space& space, Findings& findings) {
     const bool other_radius = front != rear;
     const bool other_height = std::abs(space.front_reach - space.rear_reach) > kCementHeights * space.front_reach;
     if (other_radius || other_height) {
-        findings.push_back({.code = "cemented-surfaces",
-                            .severity = optics::Severity::warning,
-                            .surface = i + 1,
-                            .message = fmt::format("it looks cemented to surface {}, but their {} differ", i + 2,
-                                                   other_radius ? "radii" : "semi-diameters"),
-                            .value = other_radius ? 1.0 / front - 1.0 / rear : space.front_reach - space.rear_reach,
-                            .limit = 0.0,
-                            .unit = "mm"});
+        findings.push_back({"cemented-surfaces", warning, i + 1,
+                            fmt::format("it looks cemented to surface {}, but their {} differ", i + 2,
+                                        other_radius ? "radii" : "semi-diameters"),
+                            other_radius ? 1.0 / front - 1.0 / rear : space.front_reach - space.rear_reach, 0.0, "mm"});
     }
 }
 
@@ -279,14 +241,10 @@ void check_centring(const Space& space, Findings& findings) {
         (space.i == 0 || !space.checked.is_glass_behind(space.i - 1)) && !space.checked.is_glass_behind(space.i + 1);
     const double angle = std::abs(slope(space.front, space.front_reach) - slope(space.rear, space.rear_reach));
     if (is_single && std::tan(angle) < kSelfCentring && angle < 1.0) {
-        findings.push_back({.code = "centring",
-                            .severity = optics::Severity::info,
-                            .surface = space.surface(),
-                            .message = fmt::format("the element does not centre itself between bell chucks (Karow's Z "
-                                                   "is {:.2f})",
-                                                   std::tan(angle)),
-                            .value = std::tan(angle),
-                            .limit = kSelfCentring});
+        findings.push_back({"centring", info, space.surface(),
+                            fmt::format("the element does not centre itself between bell chucks (Karow's Z is {:.2f})",
+                                        std::tan(angle)),
+                            std::tan(angle), kSelfCentring});
     }
 }
 
@@ -308,15 +266,11 @@ void check_asphere(const CheckedLens& checked, int i, Findings& findings) {
             // Of a conic: z is real up to (1 + k) c² r² = 1.
             const double end =
                 std::min(r, 1.0 / (std::abs(row.curvature()) * std::sqrt(std::max(0.0, 1.0 + row.conic))));
-            findings.push_back({.code = "asphere-ends",
-                                .severity = row.is_asphere() ? optics::Severity::error : optics::Severity::warning,
-                                .surface = i + 1,
-                                .message = fmt::format("its conic ends {:.4g} mm from the axis, inside its "
-                                                       "semi-diameter of {:.4g} mm",
-                                                       end, reach),
-                                .value = end,
-                                .limit = reach,
-                                .unit = "mm"});
+            findings.push_back(
+                {"asphere-ends", row.is_asphere() ? error : warning, i + 1,
+                 fmt::format("its conic ends {:.4g} mm from the axis, inside its semi-diameter of {:.4g} mm", end,
+                             reach),
+                 end, reach, "mm"});
             return;
         }
         const double slope = slope_at(r);
@@ -328,15 +282,12 @@ void check_asphere(const CheckedLens& checked, int i, Findings& findings) {
         } else if (std::abs(slope) > kNoticeable && std::abs(steepest) > kNoticeable) {
             const double turned_at =
                 bisected({rising_to, r}, kHalvings, [&](double at) { return slope_at(at) * steepest > 0.0; }).outside;
-            findings.push_back({.code = "asphere-turns-over",
-                                .severity = optics::Severity::warning,
-                                .surface = i + 1,
-                                .message = fmt::format("it turns over inside its aperture: its slope changes sign "
-                                                       "{:.4g} mm from the axis, of {:.4g} mm",
-                                                       turned_at, reach),
-                                .value = turned_at,
-                                .limit = reach,
-                                .unit = "mm"});
+            findings.push_back(
+                {"asphere-turns-over", warning, i + 1,
+                 fmt::format(
+                     "it turns over inside its aperture: its slope changes sign {:.4g} mm from the axis, of {:.4g} mm",
+                     turned_at, reach),
+                 turned_at, reach, "mm"});
             return;
         }
     }

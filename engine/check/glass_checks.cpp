@@ -39,29 +39,17 @@ void check_index_range(const CheckedLens& checked, int i, Findings& findings) {
     const double index = checked.table.index[i];
     const std::string is = fmt::format("the index behind it is {:.6g}", index);
     if (index < 1.0) {
-        findings.push_back({.code = "index-range",
-                            .severity = optics::Severity::error,
-                            .surface = i + 1,
-                            .message = is + ": below that of air",
-                            .value = index,
-                            .limit = 1.0});
+        findings.push_back({"index-range", error, i + 1, is + ": below that of air", index, 1.0});
     } else if (index < kLowestIndex || index > kHighestIndex) {
-        findings.push_back({.code = "index-range",
-                            .severity = optics::Severity::warning,
-                            .surface = i + 1,
-                            .message = is + ": no glass has it",
-                            .value = index,
-                            .limit = index < kLowestIndex ? kLowestIndex : kHighestIndex});
+        findings.push_back({"index-range", warning, i + 1, is + ": no glass has it", index,
+                            index < kLowestIndex ? kLowestIndex : kHighestIndex});
     }
     const optics::StatedMedium& medium = checked.row(i).medium;
     const double V_d = medium.V_d.value_or(60.0);
     if (V_d <= 0.0 || V_d < kLowestAbbe || V_d > kHighestAbbe) {
-        findings.push_back({.code = "abbe-range",
-                            .severity = V_d <= 0.0 ? optics::Severity::error : optics::Severity::warning,
-                            .surface = i + 1,
-                            .message = fmt::format("an Abbe number of {} behind it: no glass has it", V_d),
-                            .value = V_d,
-                            .limit = V_d < kLowestAbbe ? kLowestAbbe : kHighestAbbe});
+        findings.push_back({"abbe-range", V_d <= 0.0 ? error : warning, i + 1,
+                            fmt::format("an Abbe number of {} behind it: no glass has it", V_d), V_d,
+                            V_d < kLowestAbbe ? kLowestAbbe : kHighestAbbe});
     }
     const optics::DispersionFormula& formula = checked.media[i]->formula;
     const double n_F = optics::refractive_index(formula, spectral::kLineF);
@@ -69,14 +57,11 @@ void check_index_range(const CheckedLens& checked, int i, Findings& findings) {
     const double n_C = optics::refractive_index(formula, spectral::kLineC);
     const bool has_dispersion = n_F != n_C;
     if (has_dispersion && !(n_F > n_d && n_d > n_C)) {
-        findings.push_back({.code = "dispersion-order",
-                            .severity = optics::Severity::warning,
-                            .surface = i + 1,
-                            .message = fmt::format("its index does not fall from blue to red: {:.5f} at F, {:.5f} at "
-                                                   "d, {:.5f} at C",
-                                                   n_F, n_d, n_C),
-                            .value = n_F - n_C,
-                            .limit = 0.0});
+        findings.push_back(
+            {"dispersion-order", warning, i + 1,
+             fmt::format("its index does not fall from blue to red: {:.5f} at F, {:.5f} at d, {:.5f} at C", n_F, n_d,
+                         n_C),
+             n_F - n_C, 0.0});
     }
 }
 
@@ -90,29 +75,24 @@ void check_figures(const CheckedLens& checked, int i, const optics::Glass& glass
         const bool has_three_decimals = std::abs(*medium.n_d * 1e3 - std::round(*medium.n_d * 1e3)) < 1e-6;
         if (off > kIndexWarning) {
             const bool rounded = has_three_decimals && off <= kIndexRounding;
-            findings.push_back({.code = "glass-index",
-                                .severity = off > kIndexError ? optics::Severity::error
-                                            : rounded         ? optics::Severity::info
-                                                              : optics::Severity::warning,
-                                .surface = i + 1,
-                                .message = fmt::format("n_d = {} is stated beside {}, which has {:.5f}{}", *medium.n_d,
-                                                       medium.glass, n_d, rounded ? ": rounded" : ""),
-                                .value = off,
-                                .limit = off > kIndexError ? kIndexError : kIndexWarning});
+            findings.push_back({"glass-index",
+                                off > kIndexError ? error
+                                : rounded         ? info
+                                                  : warning,
+                                i + 1,
+                                fmt::format("n_d = {} is stated beside {}, which has {:.5f}{}", *medium.n_d,
+                                            medium.glass, n_d, rounded ? ": rounded" : ""),
+                                off, off > kIndexError ? kIndexError : kIndexWarning});
         }
     }
     if (medium.V_d && std::isfinite(*medium.V_d)) {
         const double V_d = optics::abbe_number(glass.formula);
         const double off = std::abs(*medium.V_d / V_d - 1.0);
         if (off > kAbbeWarning) {
-            findings.push_back({.code = "glass-abbe",
-                                .severity = off > kAbbeError ? optics::Severity::error : optics::Severity::warning,
-                                .surface = i + 1,
-                                .message = fmt::format("V_d = {} is stated beside {}, which has {:.2f}", *medium.V_d,
-                                                       medium.glass, V_d),
-                                .value = 100.0 * off,
-                                .limit = 100.0 * (off > kAbbeError ? kAbbeError : kAbbeWarning),
-                                .unit = "%"});
+            findings.push_back(
+                {"glass-abbe", off > kAbbeError ? error : warning, i + 1,
+                 fmt::format("V_d = {} is stated beside {}, which has {:.2f}", *medium.V_d, medium.glass, V_d),
+                 100.0 * off, 100.0 * (off > kAbbeError ? kAbbeError : kAbbeWarning), "%"});
         }
     }
 }
@@ -126,27 +106,20 @@ void check_name(const CheckedLens& checked, int i, Findings& findings) {
     const optics::GlassMatch match = resolve(checked, medium.glass);
     if (match.glass) {
         if (match.how == optics::GlassMatch::How::spelled_differently) {
-            findings.push_back({.code = "glass-spelling",
-                                .severity = optics::Severity::info,
-                                .surface = i + 1,
-                                .message = fmt::format("the glass {} is taken for {} {}", medium.glass,
-                                                       match.glass->catalogue, match.glass->name)});
+            findings.push_back({"glass-spelling", info, i + 1,
+                                fmt::format("the glass {} is taken for {} {}", medium.glass, match.glass->catalogue,
+                                            match.glass->name)});
         }
         if (!match.also_in.empty()) {
             findings.push_back(
-                {.code = "glass-ambiguous",
-                 .severity = optics::Severity::info,
-                 .surface = i + 1,
-                 .message = fmt::format("the glass {} is taken for that of {}; a glass of this name, with another "
-                                        "formula, is in {}, too",
-                                        medium.glass, match.glass->catalogue, fmt::join(match.also_in, ", "))});
+                {"glass-ambiguous", info, i + 1,
+                 fmt::format(
+                     "the glass {} is taken for that of {}; a glass of this name, with another formula, is in {}, too",
+                     medium.glass, match.glass->catalogue, fmt::join(match.also_in, ", "))});
         }
         if (match.glass->status == "obsolete") {
-            findings.push_back(
-                {.code = "glass-obsolete",
-                 .severity = optics::Severity::info,
-                 .surface = i + 1,
-                 .message = fmt::format("{} {} is no longer made", match.glass->catalogue, match.glass->name)});
+            findings.push_back({"glass-obsolete", info, i + 1,
+                                fmt::format("{} {} is no longer made", match.glass->catalogue, match.glass->name)});
         }
         check_figures(checked, i, *match.glass, findings);
         return;
@@ -156,10 +129,7 @@ void check_name(const CheckedLens& checked, int i, Findings& findings) {
     if (medium.n_d) {
         message += fmt::format("; traced with the n_d = {} beside it", *medium.n_d);
     }
-    findings.push_back({.code = "glass-unknown",
-                        .severity = medium.n_d ? optics::Severity::warning : optics::Severity::error,
-                        .surface = i + 1,
-                        .message = message});
+    findings.push_back({"glass-unknown", medium.n_d ? warning : error, i + 1, message});
 }
 
 /// Whether the table gives the glass behind a surface by figures alone.
@@ -178,12 +148,10 @@ void check_achromatic(const CheckedLens& checked, Findings& findings) {
         }
     }
     if (!surfaces.empty()) {
-        findings.push_back({.code = "no-dispersion",
-                            .severity = optics::Severity::warning,
-                            .surface = surfaces.front(),
-                            .message = fmt::format("no Abbe number and no known name for the glass behind surface{} "
-                                                   "{}: a spectral render sees one colour there",
-                                                   surfaces.size() > 1 ? "s" : "", fmt::join(surfaces, ", "))});
+        findings.push_back({"no-dispersion", warning, surfaces.front(),
+                            fmt::format("no Abbe number and no known name for the glass behind surface{} {}: a "
+                                        "spectral render sees one colour there",
+                                        surfaces.size() > 1 ? "s" : "", fmt::join(surfaces, ", "))});
     }
 }
 
@@ -204,9 +172,9 @@ void report_normal_line(const CheckedLens& checked, Findings& findings) {
         }
         surfaces.push_back(i + 1);
         // In a render, the model errs most in the blue.
-        const double error = error_at(i, kRenderFrom);
-        if (error >= worst_error) {
-            worst_error = error;
+        const double off = error_at(i, kRenderFrom);
+        if (off >= worst_error) {
+            worst_error = off;
             worst = i;
         }
     }
@@ -221,13 +189,11 @@ void report_normal_line(const CheckedLens& checked, Findings& findings) {
     for (const double wavelength : {optics::kNormalLineMinNm, kRenderFrom, kRenderTo, optics::kNormalLineMaxNm}) {
         errors.push_back(fmt::format("{:.1e} at {} nm", error_at(worst, wavelength), wavelength));
     }
-    findings.push_back({.code = "normal-line",
-                        .severity = optics::Severity::info,
-                        .surface = worst + 1,
-                        .message = fmt::format("given by n_d and V_d alone{}: its dispersion is modelled, with an "
-                                               "error in n of up to {} (95 % of the real glasses nearby)",
-                                               others, fmt::join(errors, ", ")),
-                        .value = worst_error});
+    findings.push_back({"normal-line", info, worst + 1,
+                        fmt::format("given by n_d and V_d alone{}: its dispersion is modelled, with an error in n of "
+                                    "up to {} (95 % of the real glasses nearby)",
+                                    others, fmt::join(errors, ", ")),
+                        worst_error});
 }
 
 /// Rule 17. Without an index at the wavelength that is asked for, nothing can be computed; without one elsewhere, some
@@ -248,28 +214,21 @@ void check_wavelengths(const CheckedLens& checked, int i, Findings& findings) {
         return;
     }
     const bool nothing_computed = *outside == asked;
-    findings.push_back({.code = "wavelength-range",
-                        .severity = nothing_computed ? optics::Severity::error : optics::Severity::warning,
-                        .surface = i + 1,
-                        .message = fmt::format("{} nm is outside the range of {}, {} to {} nm{}", *outside, glass.name,
-                                               glass.min_wavelength_nm, glass.max_wavelength_nm,
-                                               nothing_computed ? ": nothing is computed there" : ""),
-                        .value = *outside,
-                        .limit = *outside < glass.min_wavelength_nm ? glass.min_wavelength_nm : glass.max_wavelength_nm,
-                        .unit = "nm"});
+    findings.push_back(
+        {"wavelength-range", nothing_computed ? error : warning, i + 1,
+         fmt::format("{} nm is outside the range of {}, {} to {} nm{}", *outside, glass.name, glass.min_wavelength_nm,
+                     glass.max_wavelength_nm, nothing_computed ? ": nothing is computed there" : ""),
+         *outside, *outside < glass.min_wavelength_nm ? glass.min_wavelength_nm : glass.max_wavelength_nm, "nm"});
 }
 
 /// Rule 18.
 void check_last_medium(const CheckedLens& checked, Findings& findings) {
     const int last = checked.size() - 1;
     if (!checked.row(last).medium.is_air() && checked.table.index[last] != 1.0) {
-        findings.push_back({.code = "last-medium",
-                            .severity = optics::Severity::warning,
-                            .surface = last + 1,
-                            .message = fmt::format("the last surface is followed by {}, not by air: is a row missing?",
-                                                   medium_in_words(checked.row(last).medium)),
-                            .value = checked.table.index[last],
-                            .limit = 1.0});
+        findings.push_back({"last-medium", warning, last + 1,
+                            fmt::format("the last surface is followed by {}, not by air: is a row missing?",
+                                        medium_in_words(checked.row(last).medium)),
+                            checked.table.index[last], 1.0});
     }
 }
 

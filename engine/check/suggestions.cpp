@@ -180,16 +180,11 @@ bool suggest_last_thickness(const CheckedLens& checked, Findings& findings) {
         }
     }
     if (best) {
-        findings.push_back(
-            {.code = "suggestion",
-             .severity = optics::Severity::info,
-             .surface = checked.size(),
-             .message = fmt::format("thickness {} in place of {} behind it ({}) would put the sensor into "
-                                    "the image, within {:.2g} % of the focal length",
-                                    best->value, given, best->slip, 100.0 * miss(best->value)),
-             .value = 100.0 * miss(best->value),
-             .limit = 100.0 * kRounding,
-             .unit = "%"});
+        findings.push_back({"suggestion", info, checked.size(),
+                            fmt::format("thickness {} in place of {} behind it ({}) would put the sensor into the "
+                                        "image, within {:.2g} % of the focal length",
+                                        best->value, given, best->slip, 100.0 * miss(best->value)),
+                            100.0 * miss(best->value), 100.0 * kRounding, "%"});
     }
     return best.has_value();
 }
@@ -210,14 +205,10 @@ void suggest_changes(const CheckedLens& checked, Findings& findings) {
         if (is_possible(checked, trial)) {
             ++reported;
             findings.push_back(
-                {.code = "suggestion",
-                 .severity = optics::Severity::info,
-                 .surface = trial.surface + 1,
-                 .message = fmt::format("{} would bring the stated focal length and back focus back, within {:.2g} %",
-                                        trial.message, 100.0 * trial.residual),
-                 .value = 100.0 * trial.residual,
-                 .limit = 100.0 * Restoration::kRestored,
-                 .unit = "%"});
+                {"suggestion", info, trial.surface + 1,
+                 fmt::format("{} would bring the stated focal length and back focus back, within {:.2g} %",
+                             trial.message, 100.0 * trial.residual),
+                 100.0 * trial.residual, 100.0 * Restoration::kRestored, "%"});
         }
     }
 }

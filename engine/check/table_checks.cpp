@@ -21,20 +21,13 @@ constexpr double kUsualLength = 1e4;  // mm: beyond 10 m, glass or aperture is a
 
 void add(Findings& findings, const char* code, optics::Severity severity, int surface, std::string message,
          double value = kNaN, double limit = kNaN, const char* unit = "") {
-    findings.push_back({.code = code,
-                        .severity = severity,
-                        .surface = surface,
-                        .message = std::move(message),
-                        .value = value,
-                        .limit = limit,
-                        .unit = unit});
+    findings.push_back({code, severity, surface, std::move(message), value, limit, unit});
 }
 
 /// Rule 2: no NaN anywhere, no infinite thickness, aperture or index; an infinite radius is a flat.
 void check_finite(const optics::PrescribedSurface& row, int surface, Findings& findings) {
     const auto complain = [&](const char* what, double value) {
-        add(findings, "not-finite", optics::Severity::error, surface,
-            fmt::format("the {} is {}, no number", what, value), value);
+        add(findings, "not-finite", error, surface, fmt::format("the {} is {}, no number", what, value), value);
     };
     if (std::isnan(row.radius_mm)) {
         complain("radius", row.radius_mm);
@@ -75,9 +68,9 @@ void check_flat_spelling(const CheckedLens& checked, int i, Findings& findings) 
                                  ? std::min(kFlatRadiusInFocalLengths * std::abs(checked.focus->efl), kFlatRadius)
                                  : kFlatRadius;
     if (row.radius_mm == 0.0 && !row.is_stop) {
-        add(findings, "flat-radius", optics::Severity::info, i + 1, "a radius of 0 is taken for flat", 0.0);
+        add(findings, "flat-radius", info, i + 1, "a radius of 0 is taken for flat", 0.0);
     } else if (std::isfinite(row.radius_mm) && std::abs(row.radius_mm) >= flat_from) {
-        add(findings, "flat-radius", optics::Severity::info, i + 1,
+        add(findings, "flat-radius", info, i + 1,
             fmt::format("a radius of {} mm is as good as flat; written so to mean it?", row.radius_mm), row.radius_mm,
             flat_from, "mm");
     }
@@ -87,20 +80,19 @@ void check_flat_spelling(const CheckedLens& checked, int i, Findings& findings) 
 void check_extremes(const optics::PrescribedSurface& row, int surface, Findings& findings) {
     const auto judge = [&](const char* what, double length) {
         if (std::isfinite(length) && length > kUsualLength) {
-            add(findings, "extreme-value",
-                length > kLargestLength ? optics::Severity::error : optics::Severity::warning, surface,
+            add(findings, "extreme-value", length > kLargestLength ? error : warning, surface,
                 fmt::format("the {} is {} mm: more than 10 m", what, length), length, kUsualLength, "mm");
         }
     };
     if (!row.is_flat() && std::isfinite(row.radius_mm) && std::abs(row.radius_mm) < kSmallestRadius) {
-        add(findings, "extreme-value", optics::Severity::error, surface,
+        add(findings, "extreme-value", error, surface,
             fmt::format("a radius of {} mm is smaller than a micrometre", row.radius_mm), row.radius_mm,
             kSmallestRadius, "mm");
     }
     judge("thickness behind it", row.thickness_mm);
     judge("semi-diameter", row.semi_diameter_mm.value_or(0.0));
     if (std::isfinite(row.conic) && std::abs(row.conic) > kLargestConic) {
-        add(findings, "extreme-value", optics::Severity::warning, surface,
+        add(findings, "extreme-value", warning, surface,
             fmt::format("a conic constant of {} is beyond any that is ground", row.conic), row.conic, kLargestConic);
     }
 }
@@ -110,7 +102,7 @@ void check_thickness_sign(const CheckedLens& checked, int i, Findings& findings)
     const double thickness = checked.row(i).thickness_mm;
     const bool is_last = i + 1 == checked.size();
     if (thickness < 0.0) {
-        add(findings, "negative-thickness", optics::Severity::error, i + 1,
+        add(findings, "negative-thickness", error, i + 1,
             is_last ? fmt::format("the sensor stands {} mm in front of the last surface", -thickness)
                     : fmt::format("the next surface stands {} mm in front of this one", -thickness),
             thickness, 0.0, "mm");
@@ -120,15 +112,14 @@ void check_thickness_sign(const CheckedLens& checked, int i, Findings& findings)
         return;
     }
     if (is_last) {
-        add(findings, "no-image-distance", optics::Severity::info, i + 1,
+        add(findings, "no-image-distance", info, i + 1,
             "the last thickness is 0: the table does not say where the sensor stands", 0.0, 0.0, "mm");
     } else if (checked.is_dummy(i) || checked.is_dummy(i + 1)) {
         return;  // a plane that says a place within a medium takes no room
     } else if (checked.is_glass_behind(i)) {
-        add(findings, "zero-thickness", optics::Severity::error, i + 1, "the glass behind it has no thickness", 0.0,
-            0.0, "mm");
+        add(findings, "zero-thickness", error, i + 1, "the glass behind it has no thickness", 0.0, 0.0, "mm");
     } else if (checked.row(i).curvature() != checked.row(i + 1).curvature()) {
-        add(findings, "zero-thickness", optics::Severity::warning, i + 1,
+        add(findings, "zero-thickness", warning, i + 1,
             "it touches the next surface, though neither is a dummy and they are not curved alike", 0.0, 0.0, "mm");
     }
 }
@@ -137,20 +128,20 @@ void check_thickness_sign(const CheckedLens& checked, int i, Findings& findings)
 void check_semi_diameter(const CheckedLens& checked, int i, Findings& findings) {
     const optics::PrescribedSurface& row = checked.row(i);
     if (!row.semi_diameter_mm && !row.rim_mm) {
-        add(findings, "semi-diameter-missing", optics::Severity::info, i + 1,
+        add(findings, "semi-diameter-missing", info, i + 1,
             "no semi-diameter is stated: marginal and chief ray set it");
         return;
     }
     const double semi_diameter = checked.semi_diameters[i];
     if (semi_diameter <= 0.0) {
-        add(findings, "semi-diameter-not-positive", optics::Severity::error, i + 1,
+        add(findings, "semi-diameter-not-positive", error, i + 1,
             fmt::format("a semi-diameter of {} mm lets no light pass", semi_diameter), semi_diameter, 0.0, "mm");
         return;
     }
     // Of a conic: z is real up to (1 + k) c² r² = 1.
     const double equator = 1.0 / (std::abs(row.curvature()) * std::sqrt(std::max(0.0, 1.0 + row.conic)));
     if (semi_diameter >= equator) {
-        add(findings, "semi-diameter-beyond-sphere", optics::Severity::error, i + 1,
+        add(findings, "semi-diameter-beyond-sphere", error, i + 1,
             fmt::format("its semi-diameter of {} mm is not below its radius of {:.6g} mm: such a surface does not "
                         "exist. A diameter in place of a semi-diameter?",
                         semi_diameter, equator),
@@ -171,18 +162,16 @@ void check_stop(const CheckedLens& checked, Findings& findings) {
             ? fmt::format("; rays are judged as though surface {} were it, the narrowest", *checked.assumed_stop + 1)
             : "";
     if (stops.empty()) {
-        add(findings, "stop-missing", optics::Severity::error, 0, "no surface is marked as the aperture stop" + assumed,
-            0, 1);
+        add(findings, "stop-missing", error, 0, "no surface is marked as the aperture stop" + assumed, 0, 1);
     } else if (stops.size() > 1) {
-        add(findings, "stop-doubled", optics::Severity::error, stops[1],
+        add(findings, "stop-doubled", error, stops[1],
             fmt::format("surface {} is marked as the aperture stop already{}", stops[0], assumed),
             static_cast<double>(stops.size()), 1);
     } else if (checked.size() > 1 && stops[0] == checked.size()) {
-        add(findings, "stop-position", optics::Severity::warning, stops[0],
+        add(findings, "stop-position", warning, stops[0],
             "the aperture stop is the last surface: a lens with its stop behind it, or the image plane listed?");
     } else if (checked.size() > 1 && stops[0] == 1) {
-        add(findings, "stop-position",
-            checked.row(0).thickness_mm > 0.0 ? optics::Severity::info : optics::Severity::warning, 1,
+        add(findings, "stop-position", checked.row(0).thickness_mm > 0.0 ? info : warning, 1,
             "the aperture stop is the first surface: a lens with its stop in front, or the object plane listed?");
     }
 }
@@ -195,8 +184,7 @@ void check_duplicate(const CheckedLens& checked, int i, Findings& findings) {
                       row.semi_diameter_mm == next.semi_diameter_mm && row.asphere == next.asphere &&
                       row.medium.glass == next.medium.glass && row.medium.n_d == next.medium.n_d;
     if (same) {
-        add(findings, "duplicate-surface", optics::Severity::warning, i + 2,
-            "it repeats the surface before it to the digit");
+        add(findings, "duplicate-surface", warning, i + 2, "it repeats the surface before it to the digit");
     }
 }
 

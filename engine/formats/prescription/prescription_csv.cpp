@@ -85,7 +85,7 @@ class CsvPrescription {
   private:
     void remark(const std::string& code, int surface, const std::string& message,
                 optics::Severity severity = optics::Severity::warning) {
-        prescription_.remarks.push_back({.code = code, .severity = severity, .surface = surface, .message = message});
+        prescription_.remarks.push_back({code, severity, surface, message});
     }
 
     std::string find(const ColumnNames& names) {

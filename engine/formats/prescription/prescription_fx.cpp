@@ -66,7 +66,7 @@ class FxTable {
         if (lens_.remarks.size() == kMostRemarks) {
             return;
         }
-        lens_.remarks.push_back({.code = code, .severity = severity, .surface = surface, .message = message});
+        lens_.remarks.push_back({code, severity, surface, message});
     }
 
     [[noreturn]] void fail(std::string_view found, std::string_view expected) const {

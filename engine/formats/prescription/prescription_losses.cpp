@@ -11,7 +11,7 @@
 namespace lensproof::formats {
 
 optics::Finding lost(const std::string& code, optics::Severity severity, int surface, const std::string& message) {
-    return {.code = code, .severity = severity, .surface = surface, .message = message};
+    return {code, severity, surface, message};
 }
 
 optics::Prescription single_position(const optics::Prescription& prescription,

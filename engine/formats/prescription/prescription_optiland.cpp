@@ -89,7 +89,7 @@ class OptilandLens {
   private:
     void remark(const std::string& code, int surface, const std::string& message,
                 optics::Severity severity = optics::Severity::warning) {
-        lens_.remarks.push_back({.code = code, .severity = severity, .surface = surface, .message = message});
+        lens_.remarks.push_back({code, severity, surface, message});
     }
 
     void name_unknown_keys(const JsonNode& value, int surface, const std::set<std::string>& known) {

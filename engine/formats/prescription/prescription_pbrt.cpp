@@ -69,7 +69,7 @@ class PbrtLens {
 
   private:
     void remark(const std::string& code, optics::Severity severity, int surface, const std::string& message) {
-        lens_.remarks.push_back({.code = code, .severity = severity, .surface = surface, .message = message});
+        lens_.remarks.push_back({code, severity, surface, message});
     }
 
     void add_row(const std::vector<double>& numbers, const std::string& where) {

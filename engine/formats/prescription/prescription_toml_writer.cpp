@@ -176,7 +176,7 @@ class Writer {
     void line(const std::string& key, const std::string& value) { text_ += fmt::format("{} = {}\n", key, value); }
 
     void lose(const std::string& code, int surface, const std::string& message) {
-        lost_.push_back({.code = code, .severity = optics::Severity::warning, .surface = surface, .message = message});
+        lost_.push_back({code, optics::Severity::warning, surface, message});
     }
 
     void write_head() {

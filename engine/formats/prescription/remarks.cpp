@@ -7,8 +7,7 @@
 namespace lensproof::formats {
 
 void Remarks::add(std::string code, optics::Severity severity, int surface, std::string message) {
-    findings_.push_back(
-        {.code = std::move(code), .severity = severity, .surface = surface, .message = std::move(message)});
+    findings_.push_back({std::move(code), severity, surface, std::move(message)});
 }
 
 void Remarks::add_once(const std::string& key, std::string code, optics::Severity severity, int surface,
@@ -48,9 +47,8 @@ std::vector<optics::Finding> Remarks::renumbered(const std::vector<int>& row_of)
         finding.surface = finding.surface >= 0 && number < row_of.size() ? row_of[number] : 0;
     }
     if (unsaid_ > 0) {
-        findings.push_back({.code = "not-understood",
-                            .severity = optics::Severity::warning,
-                            .message = fmt::format("{} further lines are not understood and left out", unsaid_)});
+        findings.push_back({"not-understood", optics::Severity::warning, 0,
+                            fmt::format("{} further lines are not understood and left out", unsaid_)});
     }
     return findings;
 }
