@@ -22,8 +22,7 @@ struct PerfectLens {
 
     [[nodiscard]] optics::Lens lens() const {
         optics::PrescribedSurface stop{.thickness_mm = stop_distance, .semi_diameter_mm = beam_radius, .is_stop = true};
-        optics::PrescribedSurface flat{.thickness_mm = thickness, .semi_diameter_mm = 40.0};
-        flat.medium.n_d = index;
+        optics::PrescribedSurface flat{.thickness_mm = thickness, .semi_diameter_mm = 40.0, .medium = {.n_d = index}};
         optics::PrescribedSurface rear{.radius_mm = -focal_length * (index - 1.0),
                                        .conic = -index * index,
                                        .thickness_mm = focal_length + defocus,

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "engine/base/infinity.h"
-#include "engine/optics/trace.h"
+#include "engine/optics/lens.h"
 
 namespace lensproof::analysis {
 
@@ -43,6 +43,13 @@ optics::TraceLens<T> lens_of(const std::vector<Row>& rows, double index_before =
         lens.image_z += T(row.thickness);
     }
     return lens;
+}
+
+/// The lens of these surfaces, whose media are stated by their indices.
+inline optics::Lens made_of(std::vector<optics::PrescribedSurface> surfaces) {
+    optics::Prescription prescription;
+    prescription.surfaces = std::move(surfaces);
+    return optics::make_lens(prescription, {});
 }
 
 }  // namespace lensproof::analysis

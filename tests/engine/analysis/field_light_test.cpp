@@ -12,14 +12,9 @@
 #include "engine/formats/prescription/load_lens.h"
 #include "engine/optics/illumination.h"
 #include "engine/spectral/wavelengths.h"
+#include "tests/engine/analysis/analysis_lens.h"
 
 namespace lensproof::analysis::field_light_test {
-
-optics::Lens made_of(std::vector<optics::PrescribedSurface> surfaces) {
-    optics::Prescription prescription;
-    prescription.surfaces = std::move(surfaces);
-    return optics::make_lens(prescription, optics::GlassCatalogue{});
-}
 
 optics::Lens bare_stop(double radius, double distance) {
     return made_of({{.thickness_mm = distance, .semi_diameter_mm = radius, .is_stop = true}});
@@ -29,10 +24,9 @@ optics::Lens bare_stop(double radius, double distance) {
 constexpr double kBall = 10.0;
 constexpr double kIndex = 1.5;
 optics::Lens ball(double stop, double image) {
-    optics::PrescribedSurface front{.radius_mm = kBall, .thickness_mm = kBall, .semi_diameter_mm = 9.99};
-    optics::PrescribedSurface middle{.thickness_mm = kBall, .semi_diameter_mm = stop, .is_stop = true};
-    front.medium.n_d = middle.medium.n_d = kIndex;
-    return made_of({front, middle, {.radius_mm = -kBall, .thickness_mm = image - kBall, .semi_diameter_mm = 9.99}});
+    return made_of({{.radius_mm = kBall, .thickness_mm = kBall, .semi_diameter_mm = 9.99, .medium = {.n_d = kIndex}},
+                    {.thickness_mm = kBall, .semi_diameter_mm = stop, .medium = {.n_d = kIndex}, .is_stop = true},
+                    {.radius_mm = -kBall, .thickness_mm = image - kBall, .semi_diameter_mm = 9.99}});
 }
 
 // The projected solid angle of a disc of radius a in a parallel plane at h, seen from r beside its axis, is π times the
@@ -114,13 +108,13 @@ TEST(FieldLight, TurnedLensSeesTheTurnedBeam) {
     constexpr double kTilt = radians(5.0);
     const auto light = [](std::array<double, 3> tilt_deg, double field) {
         optics::Prescription prescription;
-        optics::PrescribedSurface front{.radius_mm = 40.0, .thickness_mm = 5.0, .semi_diameter_mm = 9.0};
-        front.medium.n_d = 1.6;
+        optics::PrescribedSurface front{
+            .radius_mm = 40.0, .thickness_mm = 5.0, .semi_diameter_mm = 9.0, .medium = {.n_d = 1.6}};
         prescription.surfaces = {front,
                                  {.radius_mm = 300.0, .thickness_mm = 6.0, .semi_diameter_mm = 9.0},
                                  {.thickness_mm = 60.0, .semi_diameter_mm = 7.0, .is_stop = true}};
         prescription.groups = {{.first = 1, .last = 3, .misalignment = {.tilt_deg = tilt_deg}}};
-        const ColourOfLens d(optics::make_lens(prescription, optics::GlassCatalogue{}), spectral::kLineD);
+        const ColourOfLens d(optics::make_lens(prescription, {}), spectral::kLineD);
         const optics::FieldBundle bundle = optics::field_bundle(d.chief_rays, field).value();
         return field_light(d.lens, bundle, bundle.chief.image_point);
     };

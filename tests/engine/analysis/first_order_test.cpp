@@ -28,20 +28,29 @@ optics::TraceLens<double> shipped(const char* name) {
     return optics::at_wavelength<double>(formats::load_lens(name), spectral::kLineD);
 }
 
-// Hecht, Optics, §6.1: efl n R / (2 (n − 1)); both principal points at the centre. Two surfaces of power (n − 1) / R
-// give a Petzval radius of −n R / (2 (n − 1)), which is −efl.
+// Hecht, Optics, §6.1: efl n R / (2 (n − 1)); bfl = efl − R; both principal points at the centre. Two surfaces of power
+// (n − 1) / R give a Petzval radius of −n R / (2 (n − 1)), which is −efl.
 TEST(FirstOrder, BallLens) {
     constexpr double n = 1.5;
     constexpr double R = 10.0;
-    const optics::ParaxialData data = optics::paraxial_data(lens_of<double>(
-        {{.radius = R, .thickness = R, .index = n}, {.thickness = R, .index = n, .is_stop = true}, {.radius = -R}}));
+    const optics::ParaxialData data =
+        optics::paraxial_data(lens_of<double>({{.radius = R, .thickness = R, .index = n},
+                                               {.thickness = R, .index = n, .semi_diameter = 2.0, .is_stop = true},
+                                               {.radius = -R}}));
     const double efl = n * R / (2 * (n - 1));
     expect_relative(data.efl, efl, kRounding);
+    expect_relative(data.bfl, efl - R, 2 * kRounding);
+    expect_relative(data.ffl, -(efl - R), 2 * kRounding);
     expect_relative(data.front_principal_z, R, kRounding);
     expect_relative(data.rear_principal_z, -R, kRounding);
     EXPECT_EQ(data.front_nodal_z, data.front_principal_z);
     EXPECT_EQ(data.rear_nodal_z, data.rear_principal_z);
     expect_relative(data.petzval_radius, -efl, kRounding);
+    // Symmetric about its middle, a centre of curvature: both pupils stand there, magnified n times.
+    expect_relative(data.entrance_pupil_z, R, 10 * kRounding);
+    expect_relative(data.exit_pupil_z, -R, 10 * kRounding);
+    expect_relative(data.entrance_pupil_diameter, 4.0 * n, 10 * kRounding);
+    expect_relative(data.exit_pupil_diameter, 4.0 * n, 10 * kRounding);
 }
 
 // Thick lenses (Hecht, Optics, §6.1): 1/f = (n − 1) (1/R1 − 1/R2 + (n − 1) d / (n R1 R2)), principal points at
@@ -199,6 +208,7 @@ TEST(FirstOrder, ConjugatesHangTogether) {
         const double pupil_magnification = data.exit_pupil_diameter / data.entrance_pupil_diameter;
         for (const double distance : {1e-3, 300.0, 1e4, 1e8, 1e15}) {
             const optics::Conjugates conjugates = optics::paraxial_conjugates(lens, distance);
+            EXPECT_EQ(optics::paraxial_image_distance(lens, distance), conjugates.image_distance);
             const double x = -distance - data.ffl;
             expect_relative(conjugates.magnification, data.efl / x, 1e-12);
             EXPECT_NEAR(conjugates.image_distance - data.bfl, -data.efl * data.efl / x,
@@ -209,6 +219,7 @@ TEST(FirstOrder, ConjugatesHangTogether) {
                             0.5 * std::abs(conjugates.magnification) / conjugates.working_f_number, 1e-12);
         }
         const optics::Conjugates at_infinity = optics::paraxial_conjugates(lens, kInfinity);
+        expect_relative(at_infinity.image_distance, data.bfl, 1e-14);
         expect_relative(at_infinity.working_f_number, data.f_number, 1e-13);
         EXPECT_EQ(at_infinity.magnification, 0.0);
         EXPECT_EQ(at_infinity.object_numerical_aperture, 0.0);
@@ -276,23 +287,14 @@ TEST(FirstOrder, CountsVertexCurvatureAndDistancesFromVertices) {
 // The same from a prescription: of a toroid the curvature in y–z, wherever an r² term is in it.
 TEST(FirstOrder, CountsAToroidInYZ) {
     const auto data = [](double radius, double a2, std::optional<double> radius_x) {
-        optics::PrescribedSurface front;
-        front.radius_mm = radius;
-        front.asphere[0] = a2;
-        front.radius_x_mm = radius_x;
-        front.thickness_mm = 5.0;
-        front.semi_diameter_mm = 10.0;
-        front.medium.n_d = 1.5;
-        optics::PrescribedSurface rear = front;
-        rear.medium = {};
-        rear.radius_mm = kInfinity;
-        rear.asphere[0] = 0.0;
-        rear.radius_x_mm.reset();
-        rear.is_stop = true;
-        optics::Prescription prescription;
-        prescription.surfaces = {front, rear};
-        return optics::paraxial_data(
-            optics::at_wavelength<double>(optics::make_lens(prescription, optics::GlassCatalogue{}), spectral::kLineD));
+        const optics::PrescribedSurface front{.radius_mm = radius,
+                                              .asphere = {a2},
+                                              .radius_x_mm = radius_x,
+                                              .thickness_mm = 5.0,
+                                              .semi_diameter_mm = 10.0,
+                                              .medium = {.n_d = 1.5}};
+        const optics::PrescribedSurface rear{.thickness_mm = 5.0, .semi_diameter_mm = 10.0, .is_stop = true};
+        return optics::paraxial_data(optics::at_wavelength<double>(made_of({front, rear}), spectral::kLineD));
     };
     EXPECT_EQ(data(50.0, 0.0, std::nullopt).efl, 100.0);
     EXPECT_EQ(data(50.0, 0.0, 20.0).efl, 100.0);

@@ -8,6 +8,7 @@
 #include "engine/base/angle.h"
 #include "engine/base/infinity.h"
 #include "engine/spectral/wavelengths.h"
+#include "tests/engine/analysis/analysis_lens.h"
 
 namespace lensproof::analysis::ray_pencil_test {
 
@@ -23,12 +24,6 @@ optics::PrescribedSurface stop(double thickness, double semi_diameter) {
     return {.thickness_mm = thickness, .semi_diameter_mm = semi_diameter, .is_stop = true};
 }
 
-optics::Lens made_of(std::vector<optics::PrescribedSurface> surfaces) {
-    optics::Prescription prescription;
-    prescription.surfaces = std::move(surfaces);
-    return optics::make_lens(prescription, optics::GlassCatalogue{});
-}
-
 AstigmaticFoci foci_at(const optics::Lens& lens, double field, double object_distance = kInfinity) {
     const optics::ChiefRays rays(lens, spectral::kLineD);
     const std::optional<optics::FieldBundle> bundle = optics::field_bundle(rays, field, object_distance);
@@ -42,10 +37,9 @@ TEST(RayPencil, BallLensHasOneFocusInEveryDirection) {
     constexpr double kRadius = 10.0;
     constexpr double kIndex = 1.5;
     constexpr double kFocal = kIndex * kRadius / (2.0 * (kIndex - 1.0));
-    std::vector<optics::PrescribedSurface> ball = {surface(kRadius, kRadius, 9.9, kIndex), stop(kRadius, 2.0),
-                                                   surface(-kRadius, 5.0, 9.9)};
-    ball[1].medium.n_d = kIndex;
-    const optics::Lens lens = made_of(ball);
+    optics::PrescribedSurface middle = stop(kRadius, 2.0);
+    middle.medium.n_d = kIndex;
+    const optics::Lens lens = made_of({surface(kRadius, kRadius, 9.9, kIndex), middle, surface(-kRadius, 5.0, 9.9)});
     for (const double field : {0.0, 0.3, 0.9, 1.3}) {
         const AstigmaticFoci foci = foci_at(lens, field);
         const double expected = kRadius + kFocal * std::cos(field) - lens.image_z;
@@ -167,7 +161,7 @@ TEST(RayPencil, MovesAsCloseRealRaysDo) {
             prescription.surfaces[0].misalignment = {.decentre_mm = {0.2, -0.1}, .tilt_deg = {1.5, 0.5, 10.0}};
             prescription.surfaces[4].misalignment = {.decentre_mm = {-0.3, 0.2}, .tilt_deg = {-2.0, 1.0, 25.0}};
         }
-        const optics::Lens lens = optics::make_lens(prescription, optics::GlassCatalogue{});
+        const optics::Lens lens = optics::make_lens(prescription, {});
         const optics::ChiefRays rays(lens, spectral::kLineD);
         for (const double field : {0.0, 10.0 * kDegree}) {
             const optics::FieldBundle bundle = optics::field_bundle(rays, field).value();
@@ -193,7 +187,7 @@ TEST(RayPencil, FocalLinesTurnWithTheLens) {
         prescription.surfaces = {stop(2.0, 3.0), surface(50.0, 4.0, 15.0, 1.6), surface(-60.0, 40.0, 15.0)};
         prescription.surfaces[1].radius_x_mm = 40.0;
         prescription.surfaces[1].misalignment.tilt_deg = {0.0, 0.0, degrees};
-        return foci_at(optics::make_lens(prescription, optics::GlassCatalogue{}), 0.0);
+        return foci_at(optics::make_lens(prescription, {}), 0.0);
     };
     const AstigmaticFoci straight = turned(0.0);
     EXPECT_GT(std::abs(straight.tangential - straight.sagittal), 1.0);

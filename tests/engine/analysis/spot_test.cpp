@@ -13,14 +13,9 @@
 #include "engine/formats/prescription/load_lens.h"
 #include "engine/formats/prescription/prescription_file.h"
 #include "engine/spectral/wavelengths.h"
+#include "tests/engine/analysis/analysis_lens.h"
 
 namespace lensproof::analysis::spot_test {
-
-optics::Lens made_of(std::vector<optics::PrescribedSurface> surfaces) {
-    optics::Prescription prescription;
-    prescription.surfaces = std::move(surfaces);
-    return optics::make_lens(prescription, optics::GlassCatalogue{});
-}
 
 struct Subject {
     optics::Lens lens;
@@ -50,9 +45,11 @@ constexpr double kRadius = 30.0;
 constexpr double kFocus = kIndex * kRadius / (kIndex - 1.0);  // 80 mm behind the vertex
 optics::Lens ellipsoid(double defocus) {
     constexpr double kThickness = 50.0;
-    optics::PrescribedSurface front{
-        .radius_mm = kRadius, .conic = -1.0 / (kIndex * kIndex), .thickness_mm = kThickness, .semi_diameter_mm = 12.0};
-    front.medium.n_d = kIndex;
+    optics::PrescribedSurface front{.radius_mm = kRadius,
+                                    .conic = -1.0 / (kIndex * kIndex),
+                                    .thickness_mm = kThickness,
+                                    .semi_diameter_mm = 12.0,
+                                    .medium = {.n_d = kIndex}};
     const optics::PrescribedSurface rear{
         .radius_mm = kFocus - kThickness, .thickness_mm = kFocus - kThickness + defocus, .semi_diameter_mm = 15.0};
     return made_of({{.semi_diameter_mm = 10.0, .is_stop = true}, front, rear});

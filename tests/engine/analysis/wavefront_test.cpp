@@ -12,6 +12,7 @@
 #include "engine/base/angle.h"
 #include "engine/base/infinity.h"
 #include "engine/formats/prescription/load_lens.h"
+#include "engine/optics/convert_lens.h"
 #include "engine/spectral/wavelengths.h"
 #include "tests/engine/perfect_lens.h"
 
@@ -119,40 +120,23 @@ TEST(Wavefront, GradientIsTheTransverseAberration) {
     }
 }
 
-/// Of a lens of centred spheres.
-optics::TraceLens<Exact> in_50_digits(const optics::TraceLens<double>& lens) {
-    EXPECT_TRUE(lens.specials.empty());
-    optics::TraceLens<Exact> exact{.surfaces = {}, .image_z = lens.image_z};
-    for (const optics::TraceSurface<double>& s : lens.surfaces) {
-        optics::TraceSurface<Exact> wide = optics::make_trace_surface<Exact>(s.curvature, s.vertex_z, Exact(1),
-                                                                             s.index_before, s.index_after, s.is_stop);
-        wide.semi_diameter_squared = s.semi_diameter_squared;
-        exact.surfaces.push_back(wide);
-    }
-    return exact;
-}
-
-Vec3<Exact> widened(const Vec3d& v) {
-    return {v.x, v.y, v.z};
-}
-
 /// [object → sphere], in 50 digits, for the ray of a given offset, from the object point (or the plane wavefront)
 /// itself: the sphere's near point by the quadratic equation.
 Exact exact_path(const optics::TraceLens<Exact>& lens, const optics::FieldBundle& bundle, const ReferenceSphere& sphere,
                  Vec2d offset) {
-    const Vec3<Exact> along = normalized(widened(bundle.chief.front.direction));
+    const Vec3<Exact> along = normalized(optics::convert_vector<Exact>(bundle.chief.front.direction));
     const Vec3<Exact> across{Exact(offset.x), Exact(offset.y) * along.z, -Exact(offset.y) * along.y};
-    const Vec3<Exact> through = widened(bundle.chief.front.origin) + across;
+    const Vec3<Exact> through = optics::convert_vector<Exact>(bundle.chief.front.origin) + across;
     Ray<Exact> ray{through, along};
     if (bundle.is_near()) {
         const Exact distance = (Exact(bundle.object_distance) + Exact(bundle.chief.front.origin.z)) / Exact(along.z);
-        ray.origin = widened(bundle.chief.front.origin) - distance * along;
+        ray.origin = optics::convert_vector<Exact>(bundle.chief.front.origin) - distance * along;
         ray.direction = normalized(through - ray.origin);
     }
     const optics::TracedRay<Exact> traced =
         optics::trace_through<optics::Direction::forward, optics::Rims::follow, false>(
             lens, ray, [](const optics::SurfaceEvent<Exact>&) {});
-    const Vec3<Exact> from_centre = traced.ray.origin - widened(sphere.centre);
+    const Vec3<Exact> from_centre = traced.ray.origin - optics::convert_vector<Exact>(sphere.centre);
     const Exact radius = Exact(1) / Exact(sphere.curvature);
     const Exact b = dot(from_centre, traced.ray.direction);
     const Exact root = sqrt(b * b - dot(from_centre, from_centre) + radius * radius);
@@ -164,7 +148,7 @@ TEST(Wavefront, HoldsDigitsForFarObjects) {
     for (const char* name : {"tessar", "double-gauss-tronnier", "muller-fisheye"}) {
         const optics::Lens lens = formats::load_lens(name);
         const optics::TraceLens<double> traced = optics::at_wavelength<double>(lens, spectral::kLineD);
-        const optics::TraceLens<Exact> exact = in_50_digits(traced);
+        const optics::TraceLens<Exact> exact = optics::convert_lens<Exact>(traced);
         const double beam = std::string(name) == "muller-fisheye" ? 0.6 : 5.0;
         for (const double distance : {1e3, 1e8, 1e15, kInfinity}) {
             for (const double field : {0.0, 1e-9, 14.0, 70.0}) {

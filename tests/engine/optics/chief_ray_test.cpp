@@ -15,8 +15,7 @@ namespace lensproof::optics::chief_ray_test {
 
 /// A biconvex lens whose front is the stop, or has the stop in its vertex's plane just before it.
 Prescription singlet(bool front_is_stop) {
-    PrescribedSurface front{.radius_mm = 60.0, .thickness_mm = 8.0, .semi_diameter_mm = 5.0};
-    front.medium.n_d = 1.6;
+    PrescribedSurface front{.radius_mm = 60.0, .thickness_mm = 8.0, .semi_diameter_mm = 5.0, .medium = {.n_d = 1.6}};
     front.is_stop = front_is_stop;
     const PrescribedSurface rear{.radius_mm = -80.0, .thickness_mm = 55.0, .semi_diameter_mm = 20.0};
     Prescription prescription;

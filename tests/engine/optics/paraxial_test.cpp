@@ -12,41 +12,6 @@
 
 namespace lensproof::optics::paraxial_test {
 
-TraceSurface<double> surface(double curvature, double z, double before, double after, double semi_diameter = 10.0,
-                             bool is_stop = false) {
-    return make_trace_surface(curvature, z, semi_diameter, before, after, is_stop);
-}
-
-// A ball lens with the stop at its middle: efl = n R / (2 (n − 1)), bfl = efl − R (Hecht, Optics, §6.1).
-TEST(Paraxial, BallLens) {
-    constexpr double n = 1.5;
-    constexpr double R = 10.0;
-    const TraceLens<double> ball{
-        {surface(1 / R, 0, 1, n), surface(0, R, n, n, 2.0, true), surface(-1 / R, 2 * R, n, 1)}, 30.0};
-    const ParaxialData data = paraxial_data(ball);
-    const double efl = n * R / (2 * (n - 1));
-    EXPECT_NEAR(data.efl, efl, 1e-13);
-    EXPECT_NEAR(data.bfl, efl - R, 1e-13);
-    EXPECT_NEAR(data.ffl, -(efl - R), 1e-13);
-    // Symmetric about its middle, a centre of curvature: both pupils stand there, magnified n times.
-    EXPECT_NEAR(data.entrance_pupil_z, R, 1e-12);
-    EXPECT_NEAR(data.exit_pupil_z, -R, 1e-12);
-    EXPECT_NEAR(data.entrance_pupil_diameter, 4.0 * n, 1e-12);
-    EXPECT_NEAR(data.exit_pupil_diameter, 4.0 * n, 1e-12);
-}
-
-// Newton: object and image distances from the focal points multiply to efl².
-TEST(Paraxial, ConjugatesObeyNewton) {
-    const TraceLens<double> tessar = at_wavelength<double>(formats::load_lens("tessar"), spectral::kLineD);
-    const ParaxialData data = paraxial_data(tessar);
-    for (const double distance : {200.0, 1000.0, 1e4, 1e7}) {
-        const double x = distance + data.ffl;
-        const double x_image = paraxial_image_distance(tessar, distance) - data.bfl;
-        EXPECT_NEAR(x * x_image, data.efl * data.efl, 1e-9 * distance);
-    }
-    EXPECT_NEAR(paraxial_image_distance(tessar, INFINITY), data.bfl, 1e-12);
-}
-
 // Published numbers: the Brendel Tessar's back focus is listed as 79.831 mm, its focal length as 100.
 TEST(Paraxial, TessarHasItsPublishedFocus) {
     const ParaxialData data = paraxial_data(at_wavelength<double>(formats::load_lens("tessar"), spectral::kLineD));
