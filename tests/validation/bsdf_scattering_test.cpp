@@ -6,6 +6,7 @@
 
 #include "engine/scene/bsdf/fresnel.h"
 #include "tests/engine/scene/bsdf/bsdf_cases.h"
+#include "tests/validation/measured.h"
 
 namespace lensproof::bsdf_scattering_test {
 
@@ -13,23 +14,14 @@ using std::numbers::pi;
 
 constexpr double kViews[] = {0.95, 0.6, 0.15, -0.9, -0.4};
 
-/// The mean weight of samples, and its standard error.
-struct Estimate {
-    double mean = 0.0;
-    double error = 0.0;
-};
-Estimate returned_light(const scene::Bsdf& bsdf, const Vec3d& wo, std::size_t wavelength, scene::Uniform& uniform) {
-    constexpr int kSamples = 40000;
-    double sum = 0.0;
-    double squares = 0.0;
-    for (int i = 0; i < kSamples; ++i) {
+/// The mean weight of samples.
+Measured returned_light(const scene::Bsdf& bsdf, const Vec3d& wo, std::size_t wavelength, scene::Uniform& uniform) {
+    std::vector<double> weights(40000);
+    std::ranges::generate(weights, [&] {
         const auto drawn = scene::sample(bsdf, wo, uniform(), uniform(), uniform(), scene::Transport::importance);
-        const double weight = drawn ? drawn->weight[wavelength] : 0.0;
-        sum += weight;
-        squares += weight * weight;
-    }
-    const double mean = sum / kSamples;
-    return {.mean = mean, .error = std::sqrt(std::max(0.0, squares / kSamples - mean * mean) / kSamples)};
+        return drawn ? drawn->weight[wavelength] : 0.0;
+    });
+    return mean_of(weights);
 }
 
 /// Λ of Smith's masking for GGX, as a textbook has it (Heitz 2014, eq. 72 with 80).
@@ -107,10 +99,10 @@ TEST(RoughSurfaces, MetalLosesWhatFallsOnOtherFacets) {
             .n = spectral::SpectralSample(0.0F), .k = spectral::SpectralSample(3.0F), .roughness = r};
         for (const double mu : {0.95, 0.6, 0.15}) {
             const Vec3d wo = scene::direction(mu, 0.7);
-            const Estimate returned = returned_light(metal, wo, 0, uniform);
+            const Measured returned = returned_light(metal, wo, 0, uniform);
             const double expected = single_reflections(r, wo, [](double) { return 1.0; });
-            EXPECT_NEAR(returned.mean, expected, 5.0 * returned.error + kQuadrature) << r.alpha_x << " " << mu;
-            EXPECT_LE(returned.mean, 1.0 + 1e-6);
+            EXPECT_NEAR(returned.value, expected, 5.0 * returned.error + kQuadrature) << r.alpha_x << " " << mu;
+            EXPECT_LE(returned.value, 1.0 + 1e-6);
         }
     }
 }
@@ -123,8 +115,8 @@ TEST(RoughSurfaces, RoughestMetalReturnsOneLessLnTwo) {
     const scene::Bsdf metal =
         scene::ConductorBsdf{.n = spectral::SpectralSample(0.0F), .k = spectral::SpectralSample(3.0F), .roughness = r};
     const Vec3d head_on{0.0, 0.0, 1.0};
-    const Estimate returned = returned_light(metal, head_on, 0, uniform);
-    EXPECT_NEAR(returned.mean, 1.0 - std::numbers::ln2, 5.0 * returned.error);
+    const Measured returned = returned_light(metal, head_on, 0, uniform);
+    EXPECT_NEAR(returned.value, 1.0 - std::numbers::ln2, 5.0 * returned.error);
     EXPECT_NEAR(scene::FacetLosses::of_mirrors(r).at(head_on), std::numbers::ln2, 1e-3);
 }
 
@@ -145,9 +137,9 @@ TEST(RoughSurfaces, GlassKeepsEachWavelengthsLight) {
                     single_reflections(r, wo,
                                        [&](double cosine) { return scene::dielectric_reflectance(eta, cosine); }) +
                     single_refractions(r, wo, eta);
-                const Estimate returned = returned_light(glass, scene::direction(mu, 0.7), c, uniform);
-                EXPECT_NEAR(returned.mean, expected, 5.0 * returned.error + kQuadrature) << mu << " " << indices[c];
-                EXPECT_LE(returned.mean, 1.0 + 5.0 * returned.error);
+                const Measured returned = returned_light(glass, scene::direction(mu, 0.7), c, uniform);
+                EXPECT_NEAR(returned.value, expected, 5.0 * returned.error + kQuadrature) << mu << " " << indices[c];
+                EXPECT_LE(returned.value, 1.0 + 5.0 * returned.error);
             }
         }
     }
@@ -168,8 +160,8 @@ TEST(RoughSurfaces, PerfectMetalLosesNothing) {
             .given_back = spectral::SpectralSample(static_cast<float>(scene::given_back(1.0, losses.mean())))};
         for (const double mu : {0.99, 0.6, 0.15, 0.02}) {
             for (const double phi : {0.0, 0.7, 1.4}) {
-                const Estimate returned = returned_light(metal, scene::direction(mu, phi), 0, uniform);
-                EXPECT_NEAR(returned.mean, 1.0, 5.0 * returned.error + 2e-3) << r.alpha_x << " " << mu << " " << phi;
+                const Measured returned = returned_light(metal, scene::direction(mu, phi), 0, uniform);
+                EXPECT_NEAR(returned.value, 1.0, 5.0 * returned.error + 2e-3) << r.alpha_x << " " << mu << " " << phi;
             }
         }
     }
@@ -186,8 +178,8 @@ TEST(RoughSurfaces, GlassLosesNothing) {
         const scene::Bsdf glass = scene::DielectricBsdf{.eta = indices, .roughness = r, .losses = &losses};
         for (const double mu : {0.99, 0.5, 0.05, -0.95, -0.7, -0.1}) {
             for (const std::size_t c : {0U, 2U}) {
-                const Estimate returned = returned_light(glass, scene::direction(mu, 0.5), c, uniform);
-                EXPECT_NEAR(returned.mean, 1.0, 5.0 * returned.error + 2e-3) << r.alpha_x << " " << mu << " " << c;
+                const Measured returned = returned_light(glass, scene::direction(mu, 0.5), c, uniform);
+                EXPECT_NEAR(returned.value, 1.0, 5.0 * returned.error + 2e-3) << r.alpha_x << " " << mu << " " << c;
             }
         }
     }
@@ -258,12 +250,13 @@ TEST(RoughSurfaces, WhiteVarnishLosesNothing) {
         const scene::Bsdf black = scene::plastic_bsdf(spectral::SpectralSample(0.0F), coat);
         for (const double mu : {0.95, 0.6, 0.15, 0.03}) {
             const Vec3d wo = scene::direction(mu, 0.7);
-            const Estimate all = returned_light(white, wo, 0, uniform);
-            EXPECT_NEAR(all.mean, 1.0, 5.0 * all.error + (alpha == 0.0 ? 1e-6 : 1e-3)) << alpha << " " << mu;
+            const Measured all = returned_light(white, wo, 0, uniform);
+            EXPECT_NEAR(all.value, 1.0, 5.0 * all.error + (alpha == 0.0 ? 1e-6 : 1e-3)) << alpha << " " << mu;
             const auto fresnel = [](double cosine) { return scene::dielectric_reflectance(1.5, cosine); };
             const double top = alpha == 0.0 ? fresnel(mu) : single_reflections({alpha, alpha}, wo, fresnel);
-            const Estimate gloss = returned_light(black, wo, 0, uniform);
-            EXPECT_NEAR(gloss.mean, top, 5.0 * gloss.error + (alpha == 0.0 ? 1e-6 : kQuadrature)) << alpha << " " << mu;
+            const Measured gloss = returned_light(black, wo, 0, uniform);
+            EXPECT_NEAR(gloss.value, top, 5.0 * gloss.error + (alpha == 0.0 ? 1e-6 : kQuadrature))
+                << alpha << " " << mu;
             EXPECT_NEAR(coat.reflectance(mu), top, alpha == 0.0 ? 1e-15 : 1e-3 + kQuadrature) << alpha << " " << mu;
         }
     }
@@ -276,11 +269,11 @@ TEST(RoughSurfaces, GreyVarnishIsSaundersons) {
     const double below = varnish.mean_reflectance_below();
     for (const float rho : {0.2F, 0.5F, 0.9F}) {
         const Vec3d wo = scene::direction(0.8, 0.7);
-        const Estimate returned =
+        const Measured returned =
             returned_light(scene::plastic_bsdf(spectral::SpectralSample(rho), varnish), wo, 2, uniform);
         const double top = scene::dielectric_reflectance(1.5, 0.8);
         const double expected = top + (1.0 - top) * rho * (1.0 - below) / (1.0 - rho * below);
-        EXPECT_NEAR(returned.mean, expected, 5.0 * returned.error + 1e-6) << rho;
+        EXPECT_NEAR(returned.value, expected, 5.0 * returned.error + 1e-6) << rho;
     }
 }
 

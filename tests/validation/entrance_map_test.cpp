@@ -23,6 +23,7 @@
 #include "engine/pupil/pupil_map.h"
 #include "engine/render/sampling/sampler.h"
 #include "tests/test_folder.h"
+#include "tests/validation/measured.h"
 
 namespace lensproof::entrance_map_test {
 
@@ -59,27 +60,18 @@ Band band_of(const Setting& setting) {
     return band_of(optics::with_f_number(formats::load_lens(setting.lens), setting.f_number));
 }
 
-struct Estimate {
-    double mean = 0.0;
-    double sigma = 0.0;  // of the mean
-};
-
 /// The mean of f over the unit cube, from 16 independently scrambled Sobol sequences, whose scatter tells its error.
 template <class F>
-Estimate estimate(int samples_each, const F& f) {
+Measured estimate(int samples_each, const F& f) {
     constexpr int kSequences = 16;
-    double sum = 0.0;
-    double squares = 0.0;
-    for (std::uint32_t sequence = 0; sequence < kSequences; ++sequence) {
-        const render::PixelSampler sampler(1, sequence);
-        double mean = 0.0;
+    std::array<double, kSequences> means{};
+    for (std::size_t sequence = 0; sequence < kSequences; ++sequence) {
+        const render::PixelSampler sampler(1, static_cast<std::uint32_t>(sequence));
         for (int i = 0; i < samples_each; ++i) {
-            mean += f(sampler.point(static_cast<std::uint32_t>(i))) / samples_each;
+            means[sequence] += f(sampler.point(static_cast<std::uint32_t>(i))) / samples_each;
         }
-        sum += mean / kSequences;
-        squares += mean * mean / kSequences;
     }
-    return {sum, std::sqrt(std::max(0.0, squares - sum * sum) / (kSequences - 1))};
+    return mean_of(means);
 }
 
 /// What of a ray's light leaves the lens.
@@ -135,14 +127,14 @@ TEST(EntranceMap, SendsTheBeamsFlux) {
         }
         for (const double angle : angles) {
             const pupil::EntranceBeam beam = map.beam(way_at(angle));
-            const Estimate flux = estimate(1 << 13, [&](const auto& xi) {
+            const Measured flux = estimate(1 << 13, [&](const auto& xi) {
                 return passing(band.seen(), map.sample(beam, Band::kPosition, xi[0], xi[1]));
             });
             const double expected = flux_by_quadrature(band.seen(), optics::field_bundle(chief_rays, angle).value());
             const std::string where = name + " f/" + std::to_string(f_number) + " at " + std::to_string(angle);
             EXPECT_GT(expected, 0.0) << where;
-            EXPECT_LT(flux.sigma, 2e-4 * expected) << where;
-            EXPECT_NEAR(flux.mean, expected, 5.0 * flux.sigma + 1e-6 * expected) << where;
+            EXPECT_LT(flux.error, 2e-4 * expected) << where;
+            EXPECT_NEAR(flux.value, expected, 5.0 * flux.error + 1e-6 * expected) << where;
         }
     }
 }
@@ -162,11 +154,11 @@ TEST(EntranceMap, SendsWhatTheWholeElementSends) {
                     return passing(band.seen(), of.sample(beam, Band::kPosition, xi[0], xi[1]));
                 });
             };
-            const Estimate flux = flux_of(map, 1 << 13);
-            const Estimate baseline = flux_of(whole, 1 << 15);
-            EXPECT_NEAR(flux.mean, baseline.mean, 5.0 * std::hypot(flux.sigma, baseline.sigma)) << setting.lens;
+            const Measured flux = flux_of(map, 1 << 13);
+            const Measured baseline = flux_of(whole, 1 << 15);
+            EXPECT_NEAR(flux.value, baseline.value, 5.0 * std::hypot(flux.error, baseline.error)) << setting.lens;
             if (map.region_area(map.beam(way), Band::kPosition) > 0.05 * kPi * std::pow(whole.beam(way).radius, 2)) {
-                EXPECT_LT(baseline.sigma, 1e-3 * baseline.mean) << setting.lens << " at " << share;
+                EXPECT_LT(baseline.error, 1e-3 * baseline.value) << setting.lens << " at " << share;
             }
         }
     }
@@ -229,7 +221,7 @@ TEST(EntranceMap, EtendueIsTheSensors) {
         const optics::TraceLens<double>& lens = band.seen();
         const pupil::EntranceMap entrance(band.at, true);
         const double end = entrance.largest_angle();
-        const Estimate entering = estimate(1 << 14, [&](const auto& xi) {
+        const Measured entering = estimate(1 << 14, [&](const auto& xi) {
             const double solid_angle = 2.0 * kPi * (1.0 - std::cos(end));
             const pupil::EntranceBeam beam = entrance.beam(way_at(std::acos(1.0 - xi[2] * (1.0 - std::cos(end)))));
             const pupil::EntranceSample sample = entrance.sample(beam, Band::kPosition, xi[0], xi[1]);
@@ -238,7 +230,7 @@ TEST(EntranceMap, EtendueIsTheSensors) {
         });
         const pupil::PupilMap pupil(band.at, true, sensor_radius);
         EXPECT_EQ(pupil.region_area({0.0, 0.99 * sensor_radius}, Band::kPosition), 0.0) << "the sensor holds all light";
-        const Estimate arriving = estimate(1 << 14, [&](const auto& xi) {
+        const Measured arriving = estimate(1 << 14, [&](const auto& xi) {
             const Vec3d from{0.0, sensor_radius * std::sqrt(xi[2]), lens.image_z};
             const pupil::PupilSample drawn = pupil.sample({from.x, from.y}, Band::kPosition, xi[0], xi[1]);
             const Vec3d way = Vec3d{drawn.point.x, drawn.point.y, pupil.plane_z()} - from;
@@ -249,9 +241,9 @@ TEST(EntranceMap, EtendueIsTheSensors) {
             const double cosine2 = ray.direction.z * ray.direction.z;
             return passes ? kPi * sensor_radius * sensor_radius * cosine2 / (distance2 * drawn.pdf) : 0.0;
         });
-        const double sigma = std::hypot(entering.sigma, arriving.sigma);
-        EXPECT_LT(sigma, 5e-4 * arriving.mean) << setting.lens;
-        EXPECT_NEAR(entering.mean, arriving.mean, 5.0 * sigma) << setting.lens;
+        const double sigma = std::hypot(entering.error, arriving.error);
+        EXPECT_LT(sigma, 5e-4 * arriving.value) << setting.lens;
+        EXPECT_NEAR(entering.value, arriving.value, 5.0 * sigma) << setting.lens;
     }
 }
 
@@ -274,12 +266,12 @@ TEST(EntranceMap, SendsANearPointsFlux) {
         const pupil::EntranceBeam beam =
             pupil::beam_from(pupil::front_sphere(band.seen()), bundle.object_point()).value();
         const pupil::EntranceMap map(band.at, true, beam.distance);
-        const Estimate flux = estimate(1 << 13, [&](const auto& xi) {
+        const Measured flux = estimate(1 << 13, [&](const auto& xi) {
             const pupil::EntranceSample sample = map.sample(beam, Band::kPosition, xi[0], xi[1]);
             return beam.solid_angle_per_mm2(sample.offset) * passing(band.seen(), sample);
         });
-        EXPECT_LT(flux.sigma, 3e-4 * expected) << setting.lens;
-        EXPECT_NEAR(flux.mean, expected, 5.0 * flux.sigma + 1e-6 * expected) << setting.lens;
+        EXPECT_LT(flux.error, 3e-4 * expected) << setting.lens;
+        EXPECT_NEAR(flux.value, expected, 5.0 * flux.error + 1e-6 * expected) << setting.lens;
     }
 }
 
@@ -303,10 +295,10 @@ TEST(EntranceMap, KnowsLensesThatAreNotRound) {
                 return passing(band.seen(), from.sample(beam, Band::kPosition, xi[0], xi[1]));
             });
         };
-        const Estimate baseline = flux_of(1 << 14, whole);
-        const Estimate by_map = flux_of(1 << 13, map);
-        EXPECT_LT(baseline.sigma, 1e-3 * baseline.mean);
-        EXPECT_NEAR(by_map.mean, baseline.mean, 5.0 * std::hypot(baseline.sigma, by_map.sigma)) << azimuth;
+        const Measured baseline = flux_of(1 << 14, whole);
+        const Measured by_map = flux_of(1 << 13, map);
+        EXPECT_LT(baseline.error, 1e-3 * baseline.value);
+        EXPECT_NEAR(by_map.value, baseline.value, 5.0 * std::hypot(baseline.error, by_map.error)) << azimuth;
         EXPECT_LT(map.region_area(beam, Band::kPosition), outline_area(band, beam) / 0.9) << azimuth;
     }
 }
@@ -319,12 +311,12 @@ TEST(EntranceMap, WrongRegionsLoseNoLight) {
     const optics::ChiefRays chief_rays = wide.chief_rays();
     for (const double angle : {0.0, 0.2, 0.4}) {
         const pupil::EntranceBeam beam = narrow.beam(way_at(angle));
-        const Estimate flux = estimate(1 << 13, [&](const auto& xi) {
+        const Measured flux = estimate(1 << 13, [&](const auto& xi) {
             return passing(wide.seen(), narrow.sample(beam, Band::kPosition, xi[0], xi[1]));
         });
         const double expected = flux_by_quadrature(wide.seen(), optics::field_bundle(chief_rays, angle).value());
-        EXPECT_LT(flux.sigma, 2e-3 * expected);
-        EXPECT_NEAR(flux.mean, expected, 5.0 * flux.sigma) << angle;
+        EXPECT_LT(flux.error, 2e-3 * expected);
+        EXPECT_NEAR(flux.value, expected, 5.0 * flux.error) << angle;
         EXPECT_LT(narrow.region_area(beam, Band::kPosition), 0.7 * expected) << "too small for it";
     }
 }

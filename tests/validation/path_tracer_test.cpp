@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "engine/base/angle.h"
+#include "tests/validation/measured.h"
 #include "tests/validation/small_scene.h"
 
 namespace lensproof::path_tracer_test {
@@ -18,31 +19,21 @@ AffineMap at(double x, double y, double z) {
     return {.linear = kIdentity3, .translation = {x, y, z}};
 }
 
-struct Estimate {
-    double mean = 0.0;
-    double error = 0.0;  // standard
-};
-
 /// The mean over many paths along one ray, all wavelengths.
-Estimate radiance(const scene::Scene& scene, const Ray<double>& ray, int paths,
+Measured radiance(const scene::Scene& scene, const Ray<double>& ray, int paths,
                   const render::PathSettings& settings = {}) {
-    double sum = 0.0;
-    double squares = 0.0;
+    std::vector<double> values;
     for (int i = 0; i < paths; ++i) {
         render::PathSampler numbers(7, 0, static_cast<std::uint32_t>(i));
-        const double found =
-            spectral::mean(render::trace_path(scene, ray, kGrid.path(i % kGrid.size()), settings, numbers).radiance);
-        sum += found;
-        squares += found * found;
+        values.push_back(
+            spectral::mean(render::trace_path(scene, ray, kGrid.path(i % kGrid.size()), settings, numbers).radiance));
     }
-    const double n = paths;
-    const double mean = sum / n;
-    return {mean, std::sqrt(std::max(0.0, squares / n - mean * mean) / (n - 1.0))};
+    return mean_of(values);
 }
 
 /// Four standard errors as if samples were independent, which stratified ones stay well within; and float's rounding.
-void expect_estimate(const Estimate& found, double expected) {
-    EXPECT_NEAR(found.mean, expected, 4.0 * found.error + 1e-6 * expected);
+void expect_estimate(const Measured& found, double expected) {
+    EXPECT_NEAR(found.value, expected, 4.0 * found.error + 1e-6 * expected);
     EXPECT_LT(found.error, 0.01 * expected);
 }
 
@@ -86,7 +77,7 @@ TEST(PathTracer, PointSpotAndSunKeepTheirLaws) {
         SceneParts parts(kGrid);
         parts.add(scene::Quad{1000.0, 1000.0}, {}, 0.5);
         parts.lights.push_back(light);
-        return radiance(parts.scene(), kDownwards, 256).mean;
+        return radiance(parts.scene(), kDownwards, 256).value;
     };
     const Vec3d above{400.0, 0.0, 300.0};  // so that cos θ = 3/5 and d = 0.5 m
     const double of_point = 0.5 / kPi * 2.0 * (height_m / 0.5) / (0.5 * 0.5);
@@ -115,12 +106,12 @@ TEST(PathTracer, GlowingRoomSumsItsBounces) {
     for (const int bounces : {0, 1, 2, 3}) {
         expected += power;
         power *= 0.6;
-        const Estimate found =
+        const Measured found =
             radiance(scene, {{10.0, 20.0, 30.0}, normalized(Vec3d{1.0, 2.0, -0.5})}, 4096, {.max_bounces = bounces});
-        EXPECT_NEAR(found.mean, expected, 4.0 * found.error + 1e-5) << bounces;
+        EXPECT_NEAR(found.value, expected, 4.0 * found.error + 1e-5) << bounces;
     }
     // Roulette ends paths early and makes up for it.
-    const Estimate all =
+    const Measured all =
         radiance(scene, {{10.0, 20.0, 30.0}, {0.0, 0.0, 1.0}}, 16384, {.max_bounces = 200, .roulette_from = 1});
     expect_estimate(all, 1.0 / (1.0 - 0.6));
 }
@@ -134,8 +125,8 @@ TEST(PathTracer, WhiteVanishesInAnEvenSky) {
     parts.lights.emplace_back(scene::ConstantLight{spectral::constant_spectrum(5.0, kGrid)});
     const scene::Scene scene = parts.scene();
     for (const double x : {0.0, 15.0, 25.0, 35.0}) {
-        const Estimate found = radiance(scene, {{x, 3.0, 200.0}, {0.0, 0.0, -1.0}}, 4096, {.max_bounces = 500});
-        EXPECT_NEAR(found.mean, 5.0, 4.0 * found.error + 5e-5) << x;
+        const Measured found = radiance(scene, {{x, 3.0, 200.0}, {0.0, 0.0, -1.0}}, 4096, {.max_bounces = 500});
+        EXPECT_NEAR(found.value, 5.0, 4.0 * found.error + 5e-5) << x;
     }
 }
 
@@ -144,7 +135,7 @@ TEST(PathTracer, SkyIsSeenBesideALampInAnEmptyScene) {
     SceneParts parts(kGrid);
     parts.lights.emplace_back(scene::ConstantLight{spectral::constant_spectrum(5.0, kGrid)});
     parts.lights.emplace_back(scene::PointLight{{0.0, 0.0, 0.0}, spectral::constant_spectrum(1.0, kGrid)});
-    EXPECT_EQ(radiance(parts.scene(), kDownwards, 16).mean, 5.0);
+    EXPECT_EQ(radiance(parts.scene(), kDownwards, 16).value, 5.0);
 }
 
 // --- Dispersion ---

@@ -19,6 +19,7 @@
 #include "engine/optics/packet/trace_batch.h"
 #include "engine/render/sampling/sampler.h"
 #include "tests/test_folder.h"
+#include "tests/validation/measured.h"
 
 namespace lensproof::pupil_map_test {
 
@@ -114,22 +115,6 @@ Vec2d in_ring(double circle_mm, int ring, double u, double v) {
 
 // --- Unbiased ---
 
-struct Estimate {
-    double value = 0.0;
-    double error = 0.0;  // standard, from independent scrambles
-};
-
-Estimate mean_of(const std::vector<double>& values) {
-    const auto n = static_cast<double>(values.size());
-    double sum = 0.0;
-    double squares = 0.0;
-    for (const double value : values) {
-        sum += value / n;
-        squares += value * value / n;
-    }
-    return {sum, std::sqrt((squares - sum * sum) / (n - 1.0))};
-}
-
 /// A ring's mean film irradiance by a map's points, on one azimuth of a lens that is round. As `film_irradiance` has it
 /// for one path; in batches, since the whole element's needs many.
 class RingIrradiance {
@@ -137,7 +122,7 @@ class RingIrradiance {
     RingIrradiance(const Mapped& lens, int ring, int wavelength)
         : lens_(&lens), traced_({lens.band[wavelength]}), ring_(ring), wavelength_(wavelength) {}
 
-    Estimate operator()(const pupil::PupilMap& map, int points) {
+    Measured operator()(const pupil::PupilMap& map, int points) {
         constexpr int kScrambles = 16;
         std::vector<double> values;
         values.reserve(kScrambles);
@@ -211,8 +196,8 @@ TEST(PupilMap, LosesNoLight) {
         for (const int wavelength : {0, kWavelengths / 2, kWavelengths - 1}) {
             for (int ring = 0; ring < kRings; ++ring) {
                 RingIrradiance irradiance(lens, ring, wavelength);
-                const Estimate by_map = irradiance(lens.map, 1 << 17);
-                Estimate by_whole;
+                const Measured by_map = irradiance(lens.map, 1 << 17);
+                Measured by_whole;
                 double error = kInfinity;
                 for (int points = 1 << 16; points <= kMostPoints && error > kGoal;
                      points *= error > 4 * kGoal ? 16 : 4) {

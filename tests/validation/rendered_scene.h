@@ -1,12 +1,11 @@
 // tests/validation/rendered_scene.h — parts of a picture, rendered a few times over to know their errors.
 #pragma once
-#include <cmath>
-#include <numeric>
 #include <span>
 #include <vector>
 
 #include "engine/render/integrators/chart_tracer.h"
 #include "engine/render/prepared_scene.h"
+#include "tests/validation/measured.h"
 
 namespace lensproof {
 
@@ -38,23 +37,6 @@ inline render::Film rendered(const SeenChart& seen, const render::SampleRange& r
     render::View view{.world = &world, .camera = &seen.camera, .film = seen.camera.film(), .paths = {}, .seed = seed};
     view.film.has_features = seen.has_features;
     return render::render_film({.film = view.film, .renderer = render::ChartTracer(view)}, range, threads);
-}
-
-/// A number with its standard error.
-struct Measured {
-    double value = 0.0;
-    double error = 0.0;
-};
-
-/// Of independent values.
-inline Measured mean_of(std::span<const double> values) {
-    const auto count = static_cast<double>(values.size());
-    const double mean = std::accumulate(values.begin(), values.end(), 0.0) / count;
-    double squares = 0.0;
-    for (const double value : values) {
-        squares += (value - mean) * (value - mean);
-    }
-    return {mean, std::sqrt(squares / (count * (count - 1.0)))};
 }
 
 }  // namespace lensproof
