@@ -9,14 +9,9 @@ namespace lensproof::analyze_command_test {
 
 using Json = nlohmann::json;
 
-Json analysis(const std::vector<std::string>& arguments) {
-    const Workplace place;
-    std::vector<std::string> words{"analyze"};
-    words.insert(words.end(), arguments.begin(), arguments.end());
-    words.insert(words.end(), {"--json", "-"});
-    const Outcome outcome = place.run(words);
-    EXPECT_EQ(outcome.status, 0) << outcome.err;
-    return Json::parse(outcome.out);
+Json analysis(std::vector<std::string> arguments) {
+    arguments.insert(arguments.begin(), "analyze");
+    return Workplace().json(arguments);
 }
 
 TEST(Analyze, TheJsonHasEveryKeyOfTheContract) {
@@ -88,10 +83,8 @@ TEST(Analyze, FocusingGroupsMoveToTheObject) {
     const Outcome copied = place.run({"convert", "tessar", "tessar.toml"});
     ASSERT_EQ(copied.status, 0) << copied.err;
     place.file("focusing.toml", place.content("tessar.toml") + "\n[[focus]]\nsurfaces = [1, 8]\n");
-    const Outcome outcome = place.run(
-        {"analyze", "focusing.toml", "--focus", "1000", "--fields", "0", "--wavelengths", "587.5618", "--json", "-"});
-    ASSERT_EQ(outcome.status, 0) << outcome.err;
-    const Json near = Json::parse(outcome.out);
+    const Json near =
+        place.json({"analyze", "focusing.toml", "--focus", "1000", "--fields", "0", "--wavelengths", "587.5618"});
     const Json far = analysis({"tessar", "--fields", "0", "--wavelengths", "587.5618"});
     const auto defocus = [](const Json& json) {
         return json["paraxial"]["image_distance_mm"].get<double>() - json["paraxial"]["image_plane_mm"].get<double>();

@@ -29,11 +29,8 @@ std::string list(const std::vector<double>& values) {
 
 /// What the command says of a lens at fields and at all of the reference's wavelengths.
 Json analysis(const std::string& lens, const Json& numbers, const std::vector<double>& fields_deg) {
-    const Workplace place;
-    const Outcome outcome = place.run({"analyze", numbered_lens(lens), "--fields", list(fields_deg), "--wavelengths",
-                                       list(numbers["wavelengths_nm"]), "--json", "-"});
-    EXPECT_EQ(outcome.status, 0) << outcome.err;
-    return Json::parse(outcome.out, nullptr, false);
+    return Workplace().json({"analyze", numbered_lens(lens), "--fields", list(fields_deg), "--wavelengths",
+                             list(numbers["wavelengths_nm"])});
 }
 
 /// The number under a key; fails the test where there is none.

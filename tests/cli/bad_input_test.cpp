@@ -7,22 +7,9 @@
 #include <tuple>
 
 #include "tests/cli/program.h"
+#include "tests/cli/trace_table.h"
 
 namespace lensproof::bad_input_test {
-
-constexpr const char* kRayHeader = "id,x_mm,y_mm,z_mm,dx,dy,dz,wavelength_nm\n";
-constexpr const char* kAxialRay = "a,0,1,-10,0,0,1,587.5618\n";
-
-/// A biconvex singlet in the project's form; line 5 is its first surface.
-constexpr const char* kSinglet = R"(name = "singlet"
-source = "made up for a test"
-
-surfaces = [
-  { radius_mm =  50.0, thickness_mm =  5.0, glass = "BK7", semi_diameter_mm = 10.0 },
-  { radius_mm = -50.0, thickness_mm =  5.0,                semi_diameter_mm = 10.0 },
-  { stop = true,       thickness_mm = 40.0,                semi_diameter_mm =  8.0 },
-]
-)";
 
 constexpr const char* kChart = R"([chart]
 kind = "checkerboard"
@@ -43,13 +30,25 @@ std::string grey_picture(int width, int height) {
            std::string(static_cast<std::size_t>(3 * width * height), '\x80');
 }
 
-/// One edit to a good file, and what the message has to say of it.
+/// One edit to a good file, and what the message has to say of it beside the file's name.
 struct BadEdit {
     const char* what;
     std::string from;
     std::string to;
     std::vector<std::string> words;
 };
+
+/// That the command refuses `file` by each of the edits to its text.
+void expect_edits_refused(const Workplace& place, const std::vector<std::string>& command, const std::string& file,
+                          const std::string& text, const std::vector<BadEdit>& edits) {
+    for (const BadEdit& edit : edits) {
+        SCOPED_TRACE(edit.what);
+        place.file(file, with(text, edit.from, edit.to));
+        std::vector<std::string> words = edit.words;
+        words.push_back(file);
+        expect_refused(place, command, words);
+    }
+}
 
 TEST(BadCommandLine, NamesTheOption) {
     const Workplace place;
@@ -172,13 +171,7 @@ TEST(BadLens, NamesTheLineTheKeyAndWhatItHolds) {
         {"cut off", "]\n", "", {"not TOML"}},
         {"a key twice", "name = ", "name = 'x'\nname = ", {":2:", "not TOML"}},
     };
-    for (const BadEdit& edit : edits) {
-        SCOPED_TRACE(edit.what);
-        place.file("lens.toml", with(kSinglet, edit.from, edit.to));
-        std::vector<std::string> words = edit.words;
-        words.emplace_back("lens.toml");
-        expect_refused(place, {"trace", "lens.toml", "--rays", "rays.csv"}, words);
-    }
+    expect_edits_refused(place, {"trace", "lens.toml", "--rays", "rays.csv"}, "lens.toml", kSinglet, edits);
     expect_refused(place, {"trace", "nonesuch", "--rays", "rays.csv"}, {"nonesuch", "tessar"});
 }
 
@@ -197,13 +190,7 @@ TEST(BadScene, NamesTheLineTheKeyAndWhatItHolds) {
         {"no samples", "samples_per_pixel = 4", "samples_per_pixel = 0", {":20:", "samples_per_pixel", "0"}},
         {"no glass passes", "layers = 4", "wavelengths_nm = [1000, 1100]", {"1000"}},
     };
-    for (const BadEdit& edit : edits) {
-        SCOPED_TRACE(edit.what);
-        place.file("scene.toml", with(small_scene(), edit.from, edit.to));
-        std::vector<std::string> words = edit.words;
-        words.emplace_back("scene.toml");
-        expect_refused(place, {"render", "scene.toml", "-o", "out.exr"}, words);
-    }
+    expect_edits_refused(place, {"render", "scene.toml", "-o", "out.exr"}, "scene.toml", small_scene(), edits);
 }
 
 TEST(BadPicture, IsNamed) {
@@ -235,14 +222,10 @@ TEST(BadPicture, IsNamed) {
 
 TEST(BadChart, IsRefusedBeforeAnyPictureIsRead) {
     const Workplace place;
-    for (const auto& [from, to, word] :
-         std::vector<std::tuple<std::string, std::string, std::string>>{{"[12, 9]", "[0, 0]", "squares"},
-                                                                        {"\"checkerboard\"", "\"mona lisa\"", "kind"},
-                                                                        {"[chart]", "[charts]", "chart"}}) {
-        SCOPED_TRACE(to);
-        place.file("chart.toml", with(kChart, from, to));
-        expect_refused(place, {"measure", "missing.png", "--chart", "chart.toml"}, {"chart.toml:", word});
-    }
+    expect_edits_refused(place, {"measure", "missing.png", "--chart", "chart.toml"}, "chart.toml", kChart,
+                         {{"no squares", "[12, 9]", "[0, 0]", {"chart.toml:", "squares"}},
+                          {"no chart's kind", "\"checkerboard\"", "\"mona lisa\"", {"chart.toml:", "kind"}},
+                          {"unknown table", "[chart]", "[charts]", {"chart.toml:", "chart"}}});
 }
 
 /// The scene above as an experiment of one view.

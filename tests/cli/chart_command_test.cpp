@@ -13,10 +13,8 @@ using Json = nlohmann::json;
 // A4 across is 297 × 210 mm: at 50 dpi 585 × 413 pixels (PNG, ISO 15948, 11.2.2: width and height at byte 16).
 TEST(ChartCommand, WritesAPageAndItsDescription) {
     const Workplace place;
-    const Outcome outcome = place.run({"chart", "checkerboard", "--squares", "10x7", "--square-mm", "25", "--dpi", "50",
-                                       "-o", "board.png", "--json", "-"});
-    ASSERT_EQ(outcome.status, 0) << outcome.err;
-    const Json json = Json::parse(outcome.out);
+    const Json json = place.json(
+        {"chart", "checkerboard", "--squares", "10x7", "--square-mm", "25", "--dpi", "50", "-o", "board.png"});
     EXPECT_EQ(json.at("file"), "board.png");
     EXPECT_EQ(json.at("description"), "board.toml");
     EXPECT_EQ(json.at("pattern_mm"), Json({250.0, 175.0}));

@@ -18,9 +18,7 @@ constexpr const char* kSinglet =
 
 TEST(Check, AGoodLensIsOkAndItsJsonHasEveryKey) {
     const Workplace place;
-    const Outcome outcome = place.run({"check", "tessar", "petzval", "--json", "-"});
-    EXPECT_EQ(outcome.status, 0) << outcome.err;
-    const Json lenses = Json::parse(outcome.out)["lenses"];
+    const Json lenses = place.json({"check", "tessar", "petzval"})["lenses"];
     ASSERT_EQ(lenses.size(), 2U);
     EXPECT_EQ(lenses[0]["lens"], "tessar");
     EXPECT_TRUE(lenses[0]["ok"].get<bool>());
@@ -49,10 +47,7 @@ TEST(Check, AnErrorIsStatusOneAndAnUnreadableFileStatusTwo) {
         EXPECT_EQ(outcome.err, "");
     }
     // Nothing is said about the good one before the bad one ends the command.
-    const Outcome outcome = place.run({"check", "tessar", "no-table.toml"});
-    EXPECT_EQ(outcome.status, 2);
-    EXPECT_EQ(outcome.out, "");
-    EXPECT_TRUE(says(outcome.err, "no-table.toml"));
+    expect_refused(place, {"check", "tessar", "no-table.toml"}, {"no-table.toml"});
 }
 
 TEST(Check, WhatIsStatedIsHeldAgainstTheTable) {
@@ -64,9 +59,8 @@ TEST(Check, WhatIsStatedIsHeldAgainstTheTable) {
     EXPECT_EQ(off.status, 1);
     EXPECT_TRUE(says(off.out, "focal-length"));
     for (const char* unusable : {"efl=51", "efl_mm", "efl_mm=long", "f_number=-2", "efl_mm=nan"}) {
-        const Outcome outcome = place.run({"check", "singlet.toml", "--stated", unusable});
-        EXPECT_EQ(outcome.status, 2) << unusable;
-        EXPECT_TRUE(says(outcome.err, "expected"));
+        SCOPED_TRACE(unusable);
+        expect_refused(place, {"check", "singlet.toml", "--stated", unusable}, {"expected"});
     }
 }
 

@@ -6,35 +6,20 @@
 #include <cmath>
 #include <map>
 #include <nlohmann/json.hpp>
-#include <sstream>
 
 #include "tests/cli/program.h"
+#include "tests/cli/trace_table.h"
 #include "tests/complaint.h"
 
 namespace lensproof::command_line_test {
 
 using Json = nlohmann::json;
 
-constexpr const char* kRayHeader = "id,x_mm,y_mm,z_mm,dx,dy,dz,wavelength_nm\n";
-constexpr const char* kAxialRay = "a,0,1,-10,0,0,1,587.5618\n";
 const std::vector<std::string> kCommands = {"check",   "convert", "trace", "render", "merge",  "measure",
                                             "compare", "export",  "run",   "lenses", "glasses"};
 
 std::string rays_text() {
     return std::string(kRayHeader) + kAxialRay + "b,0,19,-10,0,0,1,486.1327\nc,0,40,-10,0,0,1,587.5618\n";
-}
-
-std::vector<std::vector<std::string>> cells_of(const std::string& csv) {
-    std::vector<std::vector<std::string>> rows;
-    std::istringstream lines(csv);
-    for (std::string line; std::getline(lines, line);) {
-        std::istringstream stream(line);
-        rows.emplace_back();
-        for (std::string cell; std::getline(stream, cell, ',');) {
-            rows.back().push_back(cell);
-        }
-    }
-    return rows;
 }
 
 TEST(Help, ListsEveryCommandAndShowsAnExampleOfEach) {
@@ -53,7 +38,7 @@ TEST(Help, ListsEveryCommandAndShowsAnExampleOfEach) {
 
 TEST(Lists, NameWhatShipsWithItsSource) {
     const Workplace place;
-    const Json lenses = Json::parse(place.run({"lenses", "--json", "-"}).out)["lenses"];
+    const Json lenses = place.json({"lenses"})["lenses"];
     std::vector<std::string> names;
     for (const Json& lens : lenses) {
         names.push_back(lens["lens"]);
@@ -62,7 +47,7 @@ TEST(Lists, NameWhatShipsWithItsSource) {
     for (const char* name : {"muller-fisheye", "petzval", "tessar"}) {
         EXPECT_NE(std::ranges::find(names, name), names.end()) << name;
     }
-    const Json glasses = Json::parse(place.run({"glasses", "--json", "-"}).out)["glasses"];
+    const Json glasses = place.json({"glasses"})["glasses"];
     for (const Json& glass : glasses) {
         EXPECT_FALSE(glass["source"].get<std::string>().empty()) << glass;
     }
@@ -70,7 +55,7 @@ TEST(Lists, NameWhatShipsWithItsSource) {
 
 TEST(Glasses, ShowsTheSheetOfAGlassAsItsMakerDoes) {
     const Workplace place;
-    const Json sheet = Json::parse(place.run({"glasses", "NBK7_SCHOTT", "--json", "-"}).out)["glasses"][0];
+    const Json sheet = place.json({"glasses", "NBK7_SCHOTT"})["glasses"][0];
     EXPECT_EQ(sheet["glass"], "N-BK7");
     EXPECT_EQ(sheet["lines"].size(), 13U);
     EXPECT_NEAR(sheet["P_gF"].get<double>(), 0.5349, 1e-4);
@@ -86,7 +71,7 @@ TEST(Glasses, ThatTheUserBringsComeFirst) {
     place.file("mine.csv", "glass,formula,coefficients,min_nm,max_nm\nBK7,constant,1.5,400,700\n");
     place.file("bad.agf", "NM\n");
     place.file("rays.csv", rays_text());
-    const Json own = Json::parse(place.run({"glasses", "BK7", "--glass-catalogue", "mine.csv", "--json", "-"}).out);
+    const Json own = place.json({"glasses", "BK7", "--glass-catalogue", "mine.csv"});
     EXPECT_EQ(own["glasses"][0]["n_d"], 1.5);
     EXPECT_EQ(own["glasses"][0]["also_in"][0], "SCHOTT");
     EXPECT_EQ(place.run({"trace", "tessar", "--rays", "rays.csv", "--glass-catalogue", "mine.csv"}).status, 0);
@@ -252,7 +237,7 @@ TEST(Trace, HasTheSameRowsInEveryPrecisionAndInJson) {
     const auto exact = in("extended");
     const auto doubles = in("double");
     const auto floats = in("float");
-    const Json rows = Json::parse(place.run({"trace", "tessar", "--rays", "rays.csv", "--json", "-"}).out)["rows"];
+    const Json rows = place.json({"trace", "tessar", "--rays", "rays.csv"})["rows"];
     ASSERT_EQ(doubles.size(), exact.size());
     ASSERT_EQ(floats.size(), exact.size());
     ASSERT_EQ(rows.size() + 1, exact.size());
@@ -352,10 +337,7 @@ TEST(Run, WritesItsReportAndItsProfileReadsBack) {
                                                           {edited.dump(), "image_size_px"}}) {
         SCOPED_TRACE(word);
         place.file("broken.json", content);
-        const Outcome outcome = place.run({"compare", "broken.json", profile});
-        EXPECT_EQ(outcome.status, 2);
-        EXPECT_TRUE(says(outcome.err, "broken.json"));
-        EXPECT_TRUE(says(outcome.err, word));
+        expect_refused(place, {"compare", "broken.json", profile}, {"broken.json", word});
     }
     edited = parsed;
     edited["curves"] = Json::object();

@@ -135,6 +135,13 @@ Outcome Workplace::run(const std::vector<std::string>& arguments, Stream out, St
     return run_program(arguments, folder_.path(), out, err);
 }
 
+nlohmann::json Workplace::json(std::vector<std::string> arguments) const {
+    arguments.insert(arguments.end(), {"--json", "-"});
+    const Outcome outcome = run(arguments);
+    EXPECT_EQ(outcome.status, 0) << outcome.err;
+    return nlohmann::json::parse(outcome.out, nullptr, false);
+}
+
 void expect_refused(const Workplace& place, const std::vector<std::string>& arguments,
                     const std::vector<std::string>& words) {
     const std::vector<std::string> before = place.names();

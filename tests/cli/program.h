@@ -1,6 +1,7 @@
 // tests/cli/program.h — runs the program `lensproof` and keeps what it said.
 #pragma once
 #include <filesystem>
+#include <nlohmann/json.hpp>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -56,6 +57,8 @@ class Workplace {
     /// Runs the program here.
     [[nodiscard]] Outcome run(const std::vector<std::string>& arguments, Stream out = Stream::captured,
                               Stream err = Stream::captured) const;
+    /// What the program says here where it is asked for JSON, and has to end well.
+    [[nodiscard]] nlohmann::json json(std::vector<std::string> arguments) const;
 
   private:
     TestFolder folder_;
@@ -71,5 +74,16 @@ std::string with(std::string text, const std::string& from, const std::string& t
 
 /// A scene of 8 × 6 pixels that renders in no time: a checkerboard through the Tessar.
 std::string small_scene();
+
+/// A biconvex singlet in the project's form; line 5 is its first surface.
+constexpr const char* kSinglet = R"(name = "singlet"
+source = "made up for a test"
+
+surfaces = [
+  { radius_mm =  50.0, thickness_mm =  5.0, glass = "BK7", semi_diameter_mm = 10.0 },
+  { radius_mm = -50.0, thickness_mm =  5.0,                semi_diameter_mm = 10.0 },
+  { stop = true,       thickness_mm = 40.0,                semi_diameter_mm =  8.0 },
+]
+)";
 
 }  // namespace lensproof

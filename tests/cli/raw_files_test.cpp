@@ -20,9 +20,7 @@ TEST(RawFiles, StandBesideTheFilmThatStaysWithoutNoise) {
     place.file("camera.toml", small_scene() + sensor_table());
     ASSERT_EQ(place.run({"render", "film.toml", "--quiet"}).status, 0);
     EXPECT_FALSE(place.has("film.raw.png"));
-    const Outcome outcome = place.run({"render", "camera.toml", "--quiet", "--json", "-"});
-    ASSERT_EQ(outcome.status, 0) << outcome.err;
-    const auto json = nlohmann::json::parse(outcome.out);
+    const auto json = place.json({"render", "camera.toml", "--quiet"});
     EXPECT_EQ(json["raw"], "camera.raw.png");
     EXPECT_EQ(json["demosaiced"], "camera.demosaiced.png");
     EXPECT_EQ(place.content("camera.png"), place.content("film.png"));
@@ -69,9 +67,7 @@ TEST(RawFiles, ComeOfAMergedWholeAndNotOfItsParts) {
     EXPECT_FALSE(place.has("1.raw.png"));
     ASSERT_EQ(place.run({"merge", "1.exr", "-o", "part.exr", "--partial"}).status, 0);
     EXPECT_FALSE(place.has("part.raw.png"));
-    const Outcome merged = place.run({"merge", "1.exr", "2.exr", "-o", "whole.exr", "--json", "-"});
-    ASSERT_EQ(merged.status, 0) << merged.err;
-    EXPECT_EQ(nlohmann::json::parse(merged.out)["raw"], "whole.raw.png");
+    EXPECT_EQ(place.json({"merge", "1.exr", "2.exr", "-o", "whole.exr"})["raw"], "whole.raw.png");
     EXPECT_TRUE(place.has("whole.raw.png"));
     EXPECT_TRUE(place.has("whole.demosaiced.png"));
 }
@@ -83,9 +79,8 @@ TEST(RawFiles, FollowFromAPixelsFill) {
     ASSERT_EQ(place.run({"render", "full.toml"}).status, 0);
     ASSERT_EQ(place.run({"render", "part.toml"}).status, 0);
     EXPECT_NE(place.content("full.png"), place.content("part.png")) << "the film itself is sharper";
-    const Outcome filtered = place.run({"render", "full.toml", "--filter", "gaussian"});
-    EXPECT_EQ(filtered.status, 2);
-    EXPECT_TRUE(says(filtered.err, "--filter is \"gaussian\", but full.toml has a table [sensor]"));
+    expect_refused(place, {"render", "full.toml", "--filter", "gaussian"},
+                   {"--filter is \"gaussian\", but full.toml has a table [sensor]"});
 }
 
 TEST(RawFiles, AreRefusedWithFileLineAndKey) {
@@ -94,10 +89,7 @@ TEST(RawFiles, AreRefusedWithFileLineAndKey) {
     const std::string text = small_scene() + sensor_table("RGBG");
     const auto line =
         std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(text.find("pattern =")), '\n');
-    const Outcome outcome = place.run({"render", "scene.toml"});
-    EXPECT_EQ(outcome.status, 2);
-    EXPECT_TRUE(says(outcome.err, "scene.toml:" + std::to_string(line + 1) + ": sensor.pattern"));
-    EXPECT_EQ(place.names().size(), 1U) << "nothing was written";
+    expect_refused(place, {"render", "scene.toml"}, {"scene.toml:" + std::to_string(line + 1) + ": sensor.pattern"});
     place.file("good.toml", small_scene() + sensor_table());
     place.file("good.raw.png/in_the_way", "");
     EXPECT_EQ(place.run({"render", "good.toml"}).status, 2);

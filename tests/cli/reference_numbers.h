@@ -25,11 +25,6 @@ inline std::string numbered_lens(const std::string& lens) {
     return std::filesystem::exists(own) ? own : lens;
 }
 
-/// Three numbers of a list, from the one at `first`.
-inline Triple triple(const nlohmann::json& list, std::size_t first = 0) {
-    return {list[first], list[first + 1], list[first + 2]};
-}
-
 /// A test's name for a lens.
 inline std::string test_name(std::string lens) {
     std::erase(lens, '-');

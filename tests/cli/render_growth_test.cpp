@@ -23,10 +23,8 @@ constexpr const char* kSamples = "2500";
 
 /// The machine-readable result of a render that went well.
 Json rendered(const Workplace& place, std::vector<std::string> arguments) {
-    arguments.insert(arguments.begin(), {"render", "scene.toml", "--json", "-"});
-    const Outcome outcome = place.run(arguments);
-    EXPECT_EQ(outcome.status, 0) << outcome.err;
-    return outcome.status == 0 ? Json::parse(outcome.out) : Json();
+    arguments.insert(arguments.begin(), {"render", "scene.toml"});
+    return place.json(arguments);
 }
 
 /// Waits until `file` is there, or the program has ended.

@@ -90,10 +90,8 @@ TEST(RenderScene, GrowsByBothPaths) {
     const Workplace place;
     place.file("scene.toml", lamp_over_floor(kLens));
     const auto render = [&](std::vector<std::string> more) {
-        more.insert(more.begin(), {"render", "scene.toml", "--paths", "both", "--json", "-"});
-        const Outcome outcome = place.run(more);
-        EXPECT_EQ(outcome.status, 0) << outcome.err;
-        return nlohmann::json::parse(outcome.out);
+        more.insert(more.begin(), {"render", "scene.toml", "--paths", "both"});
+        return place.json(more);
     };
     render({"--spp", "64", "-o", "whole.exr"});
     render({"--spp", "16", "--checkpoint", "state", "-o", "grown.exr"});

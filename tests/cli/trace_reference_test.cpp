@@ -20,10 +20,6 @@ using Json = nlohmann::json;
 constexpr double kPointTolerance_mm = 1e-9;
 constexpr double kDirectionTolerance = 1e-12;
 
-Triple triple(const Json& list) {
-    return {list[0], list[1], list[2]};
-}
-
 /// Surfaces are counted from 1; nothing where the ray passes every rim.
 Json first_clipped(const std::vector<TraceRow>& rows) {
     for (const TraceRow& row : rows) {

@@ -5,6 +5,8 @@
 #include <array>
 #include <charconv>
 #include <map>
+#include <nlohmann/json.hpp>
+#include <ranges>
 #include <sstream>
 #include <string>
 #include <vector>
@@ -14,6 +16,22 @@ namespace lensproof {
 using Triple = std::array<double, 3>;
 
 inline constexpr const char* kRayHeader = "id,x_mm,y_mm,z_mm,dx,dy,dz,wavelength_nm\n";
+
+inline constexpr const char* kAxialRay = "a,0,1,-10,0,0,1,587.5618\n";
+
+/// The cells of a table's lines.
+inline std::vector<std::vector<std::string>> cells_of(const std::string& csv) {
+    std::vector<std::vector<std::string>> rows;
+    std::istringstream lines(csv);
+    for (std::string line; std::getline(lines, line);) {
+        std::istringstream stream(line);
+        rows.emplace_back();
+        for (std::string cell; std::getline(stream, cell, ',');) {
+            rows.back().push_back(cell);
+        }
+    }
+    return rows;
+}
 
 /// One row of the command's answer.
 struct TraceRow {
@@ -25,6 +43,11 @@ struct TraceRow {
 };
 
 using TraceRows = std::map<std::string, std::vector<TraceRow>>;  // by the ray's id
+
+/// Three numbers of a list, from the one at `first`.
+inline Triple triple(const nlohmann::json& list, std::size_t first = 0) {
+    return {list[first], list[first + 1], list[first + 2]};
+}
 
 /// The shortest text that reads back as the same double.
 inline std::string exact(double value) {
@@ -46,18 +69,11 @@ inline std::string ray_line(const std::string& id, const Triple& origin, const T
 
 inline TraceRows read_trace_rows(const std::string& csv) {
     TraceRows rows;
-    std::istringstream lines(csv);
-    std::string line;
-    std::getline(lines, line);
-    EXPECT_EQ(line, "id,surface,x_mm,y_mm,z_mm,dx,dy,dz,optical_path_mm,transmittance,status");
-    while (std::getline(lines, line)) {
-        std::vector<std::string> cells;
-        std::istringstream stream(line);
-        for (std::string cell; std::getline(stream, cell, ',');) {
-            cells.push_back(cell);
-        }
+    EXPECT_TRUE(csv.starts_with("id,surface,x_mm,y_mm,z_mm,dx,dy,dz,optical_path_mm,transmittance,status\n")) << csv;
+    std::vector<std::vector<std::string>> table = cells_of(csv);
+    for (const std::vector<std::string>& cells : table | std::views::drop(1)) {
         if (cells.size() != 11) {
-            ADD_FAILURE() << line;
+            ADD_FAILURE() << cells.size() << " cells";
             continue;
         }
         const auto number = [&](std::size_t i) { return std::stod(cells[i]); };
