@@ -20,14 +20,10 @@ constexpr double kWavelength = 587.5618;
 constexpr double kFlat = kInfinity;
 
 PrescribedSurface row(double radius_mm, double thickness_mm, double n_d = 1.0, double semi_diameter_mm = 50.0) {
-    PrescribedSurface surface;
-    surface.radius_mm = radius_mm;
-    surface.thickness_mm = thickness_mm;
-    surface.semi_diameter_mm = semi_diameter_mm;
-    if (n_d != 1.0) {
-        surface.medium.n_d = n_d;
-    }
-    return surface;
+    return {.radius_mm = radius_mm,
+            .thickness_mm = thickness_mm,
+            .semi_diameter_mm = semi_diameter_mm,
+            .medium = n_d == 1.0 ? StatedMedium{} : StatedMedium{.n_d = n_d}};
 }
 
 PrescribedSurface stop_row(double thickness_mm, double semi_diameter_mm = 50.0) {
@@ -37,14 +33,21 @@ PrescribedSurface stop_row(double thickness_mm, double semi_diameter_mm = 50.0) 
 }
 
 Prescription prescription_of(std::vector<PrescribedSurface> surfaces) {
-    Prescription prescription;
-    prescription.name = "test";
-    prescription.surfaces = std::move(surfaces);
-    return prescription;
+    return {.name = "test", .surfaces = std::move(surfaces)};
 }
 
 TraceLens<double> traceable(const Prescription& prescription) {
     return at_wavelength<double>(make_lens(prescription, GlassCatalogue{}), kWavelength);
+}
+
+/// Glass of that front, and a stop behind it.
+TraceLens<double> glass_behind(const PrescribedSurface& front, double rear_radius_mm = kFlat) {
+    return traceable(prescription_of({front, row(rear_radius_mm, 2.0), stop_row(50.0)}));
+}
+
+/// A biconvex lens with a stop behind it.
+Prescription biconvex(double n_d = 1.6, double stop_semi_diameter_mm = 20.0) {
+    return prescription_of({row(40.0, 6.0, n_d), row(-60.0, 3.0), stop_row(50.0, stop_semi_diameter_mm)});
 }
 
 /// Rays from all around: heights up to `height`, slopes up to `slope`, from z = −20.
@@ -120,11 +123,9 @@ TEST(Asphere, NewtonFindsWhatTheQuadraticFinds) {
     conic.conic = -1.0;
     PrescribedSurface polynomial = row(kFlat, 6.0, 1.7);
     polynomial.asphere[0] = 0.5 / R;
-    const auto lens = [](const PrescribedSurface& front) {
-        return traceable(prescription_of({front, row(-80.0, 2.0), stop_row(50.0)}));
-    };
-    expect_same_rays(lens(conic), lens(polynomial), rays(15.0, 0.8), 1e-12);
-    EXPECT_NEAR(paraxial_data(lens(conic)).efl, paraxial_data(lens(polynomial)).efl, 1e-12);
+    expect_same_rays(glass_behind(conic, -80.0), glass_behind(polynomial, -80.0), rays(15.0, 0.8), 1e-12);
+    EXPECT_NEAR(paraxial_data(glass_behind(conic, -80.0)).efl, paraxial_data(glass_behind(polynomial, -80.0)).efl,
+                1e-12);
 }
 
 // The sphere's own series, r² / 2R + r⁴ / 8R³ + …, to r²⁰: what is left out is below (r/2R)²² R.
@@ -136,10 +137,7 @@ TEST(Asphere, SeriesOfASphereIsTheSphere) {
         series.asphere[i] = coefficient;
         coefficient *= (2.0 * i + 1.0) / (2.0 * i + 4.0) / (R * R);
     }
-    const auto lens = [](const PrescribedSurface& front) {
-        return traceable(prescription_of({front, row(-80.0, 2.0), stop_row(50.0)}));
-    };
-    expect_same_rays(lens(row(R, 6.0, 1.6)), lens(series), rays(8.0, 0.3), 1e-11);
+    expect_same_rays(glass_behind(row(R, 6.0, 1.6), -80.0), glass_behind(series, -80.0), rays(8.0, 0.3), 1e-11);
 }
 
 // Terms that cancel: their sum is known to an ulp of the largest, 200 mm here, while the surface departs from its base
@@ -152,7 +150,7 @@ TEST(Asphere, TermsThatCancelAreMetAllTheSame) {
     for (int i = 0; i < 9; ++i) {
         front.asphere[i + 1] = 2.8 * kBinomials[i] / std::pow(r2, i + 2);
     }
-    const TraceLens<double> lens = traceable(prescription_of({front, row(kFlat, 2.0), stop_row(50.0)}));
+    const TraceLens<double> lens = glass_behind(front);
     int missed = 0;
     for (const Ray<double>& ray : rays(7.0, 0.4, 2000)) {
         missed += trace<Direction::forward, Rims::follow>(lens, ray).status == RayStatus::missed ? 1 : 0;
@@ -164,8 +162,7 @@ TEST(Asphere, PointsLieOnTheSurfaceAndBackTheRayReturns) {
     PrescribedSurface front = row(28.0, 8.0, 1.7, 14.0);
     front.conic = -0.7;
     front.asphere = {0.0, 2e-5, -3e-8, 4e-11, -1e-13};
-    const Prescription prescription = prescription_of({front, row(-60.0, 2.0), stop_row(50.0)});
-    const TraceLens<double> lens = traceable(prescription);
+    const TraceLens<double> lens = glass_behind(front, -60.0);
     const SurfaceShape<double>& shape = lens.specials.front().shape;
     for (const Ray<double>& ray : rays(9.0, 0.5)) {
         Vec3d met{};
@@ -189,7 +186,7 @@ TEST(Asphere, PointsLieOnTheSurfaceAndBackTheRayReturns) {
 TEST(Asphere, MissesAreStatuses) {
     PrescribedSurface front = row(10.0, 8.0, 1.7, 14.0);
     front.asphere[1] = 1e-6;
-    const TraceLens<double> lens = traceable(prescription_of({front, row(kFlat, 2.0), stop_row(50.0)}));
+    const TraceLens<double> lens = glass_behind(front);
     for (const Ray<double>& ray : rays(30.0, 5.0, 2000)) {
         const TracedRay<double> out = trace<Direction::forward, Rims::follow>(lens, ray);
         EXPECT_TRUE(std::isfinite(out.ray.origin.x + out.ray.origin.y + out.ray.origin.z + out.optical_path));
@@ -199,12 +196,9 @@ TEST(Asphere, MissesAreStatuses) {
 // Equal radii in both sections make the toroid a sphere; an infinite one makes it a cylinder, which is a sphere to rays
 // in y–z and a plate to rays in x–z.
 TEST(Toroid, IsASphereOrACylinderAtItsEnds) {
-    const auto lens = [](const PrescribedSurface& front) {
-        return traceable(prescription_of({front, row(kFlat, 2.0), stop_row(50.0)}));
-    };
     PrescribedSurface toroid = row(35.0, 6.0, 1.6);
     toroid.radius_x_mm = 35.0;
-    expect_same_rays(lens(row(35.0, 6.0, 1.6)), lens(toroid), rays(15.0, 0.5), 1e-12);
+    expect_same_rays(glass_behind(row(35.0, 6.0, 1.6)), glass_behind(toroid), rays(15.0, 0.5), 1e-12);
 
     PrescribedSurface cylinder = row(35.0, 6.0, 1.6);
     cylinder.radius_x_mm = kFlat;
@@ -218,13 +212,13 @@ TEST(Toroid, IsASphereOrACylinderAtItsEnds) {
         sagittal[i] = in_plane(meridional[i], 1.0, 0.0);
         meridional[i] = in_plane(meridional[i], 0.0, 1.0);
     }
-    expect_same_rays(lens(row(35.0, 6.0, 1.6)), lens(cylinder), meridional, 1e-12);
-    expect_same_rays(lens(row(kFlat, 6.0, 1.6)), lens(cylinder), sagittal, 1e-12);
+    expect_same_rays(glass_behind(row(35.0, 6.0, 1.6)), glass_behind(cylinder), meridional, 1e-12);
+    expect_same_rays(glass_behind(row(kFlat, 6.0, 1.6)), glass_behind(cylinder), sagittal, 1e-12);
 }
 
 // Turning a whole lens about a point is turning the ray the other way.
 TEST(Misalignment, TurningTheLensIsTurningTheRay) {
-    Prescription straight = prescription_of({row(40.0, 6.0, 1.6), row(-60.0, 3.0), stop_row(50.0, 20.0)});
+    Prescription straight = biconvex();
     Prescription turned = straight;
     constexpr double kTilt = 7.0;
     constexpr double kPivot = 4.0;
@@ -255,7 +249,7 @@ TEST(Misalignment, TurningTheLensIsTurningTheRay) {
 // A surface's own tilt about its vertex is that of a group of one.
 TEST(Misalignment, OfOneSurfaceIsThatOfItsGroup) {
     const Misalignment misalignment{.decentre_mm = {0.5, 1.0}, .tilt_deg = {3.0, -4.0, 20.0}};
-    Prescription own = prescription_of({row(40.0, 6.0, 1.6), row(-60.0, 3.0), stop_row(50.0, 20.0)});
+    Prescription own = biconvex();
     Prescription grouped = own;
     own.surfaces[1].misalignment = misalignment;
     grouped.groups = {{.first = 2, .last = 2, .misalignment = misalignment}};
@@ -340,7 +334,7 @@ TEST(Coating, PassesTheSameBothWays) {
 }
 
 TEST(Coating, IsTracedFromThePrescriptionBothWays) {
-    Prescription prescription = prescription_of({row(40.0, 6.0, 1.6), row(-60.0, 3.0), stop_row(50.0, 20.0)});
+    Prescription prescription = biconvex();
     prescription.coatings["v"] = std::vector<CoatingLayer>{{std::sqrt(1.6), kWavelength / 4.0 / std::sqrt(1.6)}};
     prescription.coatings["stated"] = std::vector<WavelengthValue>{{500.0, 0.01}, {700.0, 0.03}};
     prescription.surfaces[0].coating = "v";
@@ -390,7 +384,7 @@ TEST(StopMask, PolygonsFillTheirPartOfTheCircle) {
 }
 
 TEST(StopMask, EndsRaysInTheTracerAsStopped) {
-    Prescription prescription = prescription_of({row(40.0, 6.0, 1.6), row(-60.0, 3.0), stop_row(50.0, 5.0)});
+    Prescription prescription = biconvex(1.6, 5.0);
     prescription.stop_shape = PolygonStop{.blades = 4, .rotation_deg = 0.0};  // |x| + |y| ≤ 5
     const TraceLens<double> lens = traceable(prescription);
     // From the stop outwards and back: along x the corner lies at 5 mm, along the diagonal the edge at 5/√2.
@@ -405,7 +399,7 @@ TEST(StopMask, EndsRaysInTheTracerAsStopped) {
 }
 
 TEST(Barrel, CutsAtBothEndsOfItsSpace) {
-    Prescription prescription = prescription_of({row(40.0, 6.0, 1.6), row(-60.0, 3.0), stop_row(50.0, 20.0)});
+    Prescription prescription = biconvex();
     prescription.surfaces[1].barrel_mm = 7.0;
     const Lens lens = make_lens(prescription, GlassCatalogue{});
     EXPECT_EQ(lens.surfaces[0].semi_diameter, 50.0);
@@ -434,7 +428,7 @@ TEST(FocusGroup, MovesUntilTheImageIsSharp) {
 }
 
 TEST(ZoomPosition, ReplacesGapsStopAndClaims) {
-    Prescription prescription = prescription_of({row(40.0, 6.0, 1.6), row(-60.0, 3.0), stop_row(50.0, 20.0)});
+    Prescription prescription = biconvex();
     prescription.stated.efl_mm = 50.0;
     prescription.stated.f_number = 4.0;
     prescription.zoom = {{.name = "wide"}, {.name = "long", .gaps_mm = {{2, 9.0}}, .stop_semi_diameter_mm = 8.0}};
@@ -455,7 +449,7 @@ TEST(ZoomPosition, ReplacesGapsStopAndClaims) {
 // catalogue's index, relative to it, is that much higher against vacuum. And the wavelength in air is 0.163 nm shorter,
 // which by N-BK7's dn/dλ of −4.18e-5 / nm adds 4.5e-6 of 1.5168. Both are known to 1e-7.
 TEST(Medium, InVacuumIsTheCataloguesTimesThatOfAir) {
-    Prescription prescription = prescription_of({row(40.0, 6.0), row(-60.0, 3.0), stop_row(50.0, 20.0)});
+    Prescription prescription = biconvex(1.0);
     prescription.surfaces[0].medium.glass = "N-BK7";
     const auto index = [&] {
         return at_wavelength<double>(make_lens(prescription, formats::shipped_glasses()), kWavelength);
@@ -470,7 +464,7 @@ TEST(Medium, InVacuumIsTheCataloguesTimesThatOfAir) {
 
 // A table of indices counts before the name and the figures beside it, and ends where it ends.
 TEST(Medium, TableOfIndicesIsMetAtItsWavelengths) {
-    Prescription prescription = prescription_of({row(40.0, 6.0), row(-60.0, 3.0), stop_row(50.0, 20.0)});
+    Prescription prescription = biconvex(1.0);
     prescription.surfaces[0].medium = {.n_d = 1.9, .indices = {{486.1, 1.63}, {587.6, 1.62}, {656.3, 1.616}}};
     const Lens lens = make_lens(prescription, GlassCatalogue{});
     EXPECT_DOUBLE_EQ(at_wavelength<double>(lens, 587.6).surfaces[0].index_after, 1.62);

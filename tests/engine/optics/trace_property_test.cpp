@@ -2,11 +2,13 @@
 // splitting a gap changes nothing. Held against lenses that nobody designed (tests/engine/random_lens.h).
 #include <gtest/gtest.h>
 
+#include <Eigen/LU>
 #include <cmath>
 #include <limits>
 #include <numbers>
 
 #include "engine/base/infinity.h"
+#include "engine/optics/convert_lens.h"
 #include "engine/optics/trace.h"
 #include "tests/engine/random_lens.h"
 
@@ -20,11 +22,6 @@ constexpr int kRaysOfALens = 60;
 template <class T>
 TraceLens<T> traced_lens(const Prescription& prescription) {
     return at_wavelength<T>(make_lens(prescription, GlassCatalogue()), kAnyWavelength);
-}
-
-template <class T>
-Vec3<T> converted(const Vec3d& v) {
-    return {static_cast<T>(v.x), static_cast<T>(v.y), static_cast<T>(v.z)};
 }
 
 /// A random ray from the plane z = −30 to somewhere on the first surface's opening.
@@ -174,28 +171,6 @@ long double invariant(const Phase& a, const Phase& b) {
     return a[0] * b[2] - a[2] * b[0] + a[1] * b[3] - a[3] * b[1];
 }
 
-/// The determinant of a 4 × 4 matrix by elimination.
-long double determinant(std::array<Phase, 4> m) {
-    long double product = 1.0L;
-    for (std::size_t k = 0; k < 4; ++k) {
-        const auto pivot =
-            std::max_element(m.begin() + static_cast<std::ptrdiff_t>(k), m.end(),
-                             [&](const Phase& a, const Phase& b) { return std::abs(a[k]) < std::abs(b[k]); });
-        if (pivot != m.begin() + static_cast<std::ptrdiff_t>(k)) {
-            std::swap(*pivot, m[k]);
-            product = -product;
-        }
-        product *= m[k][k];
-        for (std::size_t i = k + 1; i < 4; ++i) {
-            const long double factor = m[i][k] / m[k][k];
-            for (std::size_t j = k; j < 4; ++j) {
-                m[i][j] -= factor * m[k][j];
-            }
-        }
-    }
-    return product;
-}
-
 // Étendue dx dy d(nL) d(nM) is the same in front of a lens and behind it, around every real ray: the Jacobian has
 // determinant 1. More than that, it is symplectic: the Lagrange invariant of any two rays close to a third is
 // conserved, of which the paraxial one is the case on the axis (Welford, Aberrations of Optical Systems, §5.5; Born &
@@ -208,8 +183,9 @@ TEST(AnyLens, EtendueAndLagrangeInvariantsAreConservedAroundRealRays) {
         }
         const TraceLens<long double> lens = traced_lens<long double>(prescription);
         const auto [columns, largest, error] =
-            jacobian(lens, {converted<long double>(ray.origin), converted<long double>(ray.direction)});
-        EXPECT_NEAR(determinant(columns), 1.0L, 4.0L * error * largest);
+            jacobian(lens, {convert_vector<long double>(ray.origin), convert_vector<long double>(ray.direction)});
+        EXPECT_NEAR(Eigen::Map<const Eigen::Matrix4<long double>>(columns[0].data()).determinant(), 1.0L,
+                    4.0L * error * largest);
         for (std::size_t a = 0; a < 4; ++a) {
             for (std::size_t b = a + 1; b < 4; ++b) {
                 EXPECT_NEAR(invariant(columns[a], columns[b]), b == a + 2 ? 1.0L : 0.0L, 8.0L * error * largest);
