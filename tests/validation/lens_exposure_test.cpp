@@ -9,7 +9,6 @@
 
 #include "engine/analysis/lens_analysis.h"
 #include "engine/base/angle.h"
-#include "engine/base/input_error.h"
 #include "engine/formats/prescription/load_lens.h"
 #include "engine/optics/chief_ray.h"
 #include "engine/optics/focus.h"
@@ -175,14 +174,7 @@ TEST(LensExposure, BladesLeaveTheirPolygonsShare) {
 }
 
 TEST(LensExposure, BladesWithoutALensOrANumberAreRefused) {
-    const auto message = [](const std::string& camera) -> std::string {
-        try {
-            setup_of(camera, "");
-        } catch (const InputError& error) {
-            return error.what();
-        }
-        return "";
-    };
+    const auto message = [](const std::string& camera) { return complaint_about([&] { setup_of(camera, ""); }); };
     EXPECT_TRUE(says(message(kDoubleGauss + "\nmodel = \"thin-lens\"\nblades = 7"), "thin-lens"));
     EXPECT_TRUE(says(message(kDoubleGauss + "\nblade_rotation_deg = 7"), "blade_rotation_deg"));
     EXPECT_TRUE(says(message(kDoubleGauss + "\nblades = 2"), "blades"));

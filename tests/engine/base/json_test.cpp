@@ -10,6 +10,7 @@
 #include <tuple>
 
 #include "engine/base/json_node.h"
+#include "tests/complaint.h"
 
 namespace lensproof::json_test {
 
@@ -72,22 +73,14 @@ TEST(Json, AsksForWhatIsNotThereInVain) {
 
 TEST(Json, NodesSayWhereTheyAre) {
     const JsonNode top = JsonNode::parse(R"({"a": {"b": [1, "x", null]}})", "file.json");
-    const auto complaint = [&](const auto& ask) -> std::string {
-        try {
-            ask(top);
-        } catch (const InputError& error) {
-            return error.what();
-        }
-        return "";
-    };
-    EXPECT_EQ(complaint([](const JsonNode& node) { std::ignore = node.at("a").at("b").numbers(); }),
+    EXPECT_EQ(complaint_about([&] { std::ignore = top.at("a").at("b").numbers(); }),
               "file.json: a.b[1] is \"x\": expected a finite number");
-    EXPECT_EQ(complaint([](const JsonNode& node) { std::ignore = node.at("a").at("c"); }),
+    EXPECT_EQ(complaint_about([&] { std::ignore = top.at("a").at("c"); }),
               "file.json: a.c is missing, and expected there");
-    EXPECT_EQ(complaint([](const JsonNode& node) { std::ignore = node.at("a").elements(); }),
+    EXPECT_EQ(complaint_about([&] { std::ignore = top.at("a").elements(); }),
               "file.json: a is {\"b\":[1,\"x\",null]}: expected a list");
-    EXPECT_EQ(complaint([](const JsonNode&) { JsonNode::parse("{", "file.json"); }), "file.json: not JSON at byte 2");
-    EXPECT_EQ(complaint([](const JsonNode&) { JsonNode::parse(std::string(100000, '['), "deep.json"); }),
+    EXPECT_EQ(complaint_about([] { JsonNode::parse("{", "file.json"); }), "file.json: not JSON at byte 2");
+    EXPECT_EQ(complaint_about([] { JsonNode::parse(std::string(100000, '['), "deep.json"); }),
               "deep.json: more than 64 brackets inside one another");
 }
 

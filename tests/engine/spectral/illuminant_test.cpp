@@ -9,6 +9,7 @@
 #include "engine/base/input_error.h"
 #include "engine/spectral/colour_matching.h"
 #include "engine/spectral/planck.h"
+#include "tests/complaint.h"
 
 namespace lensproof::spectral::illuminant_test {
 
@@ -115,14 +116,9 @@ TEST(Illuminant, UnknownNamesAreRefusedWithTheKnownOnes) {
                              "blackbody:-3", "blackbody:499", "blackbody:1e6", "blackbody:nan", "blackbody:inf"}) {
         EXPECT_THROW(illuminant(name), InputError) << name;
     }
-    try {
-        illuminant("D75");
-    } catch (const InputError& error) {
-        EXPECT_STREQ(
-            error.what(),
-            "illuminant 'D75' is not known: expected one of D65, D50, A, F1, F2, F3, F4, F5, F6, F7, F8, F9, F10, "
-            "F11, F12, E, blackbody:<kelvin>");
-    }
+    EXPECT_EQ(complaint_about([] { illuminant("D75"); }),
+              "illuminant 'D75' is not known: expected one of D65, D50, A, F1, F2, F3, F4, F5, F6, F7, F8, F9, F10, "
+              "F11, F12, E, blackbody:<kelvin>");
 }
 
 }  // namespace lensproof::spectral::illuminant_test

@@ -8,6 +8,7 @@
 #include "engine/base/input_error.h"
 #include "engine/spectral/colour_matching.h"
 #include "engine/spectral/wavelengths.h"
+#include "tests/complaint.h"
 
 namespace lensproof::spectral::sensor_response_test {
 
@@ -146,15 +147,9 @@ TEST(SensorResponse, WrongInputsAreRefused) {
     EXPECT_THROW(sensor_response("camera", {.time_s = 1.0, .iso = -1.0}, d65), InputError);
     const Illuminant red{.name = "laser", .relative = {.wavelength_nm = {720.0, 740.0}, .value = {1.0, 1.0}}};
     EXPECT_THROW(sensor_response("monochrome", kExposure, red), InputError);
-    try {
-        sensor_response("film", kExposure, d65);
-        FAIL();
-    } catch (const InputError& error) {
-        EXPECT_STREQ(
-            error.what(),
-            "sensor 'film' is not known: expected one of cie-1931, camera, camera-sigma-sd1-merrill, luminance, "
-            "monochrome");
-    }
+    EXPECT_EQ(complaint_about([&] { sensor_response("film", kExposure, d65); }),
+              "sensor 'film' is not known: expected one of cie-1931, camera, camera-sigma-sd1-merrill, luminance, "
+              "monochrome");
 }
 
 }  // namespace lensproof::spectral::sensor_response_test

@@ -25,12 +25,8 @@ TEST(Experiment, HoldsStudiesOfAnyKind) {
     EXPECT_EQ(studies_of(kPassage), 1U);
     EXPECT_EQ(studies_of("[stability]\nextremes = [\"field\"]\n[measurement_floor]\n" + kPassage + kPassage), 3U);
     EXPECT_THROW(studies_of("[stabilitty]\n" + kPassage), InputError);
-    try {
-        studies_of("");
-        ADD_FAILURE() << "an experiment without a study";
-    } catch (const InputError& error) {
-        EXPECT_TRUE(says(error.what(), "neither [[simulations]] nor [[photos]] nor [stability]")) << error.what();
-    }
+    EXPECT_TRUE(
+        says(complaint_about([&] { studies_of(""); }), "neither [[simulations]] nor [[photos]] nor [stability]"));
 }
 
 // Two cameras' curves go into one plot, with the tighter limit; each study's subjects and tables stand after those of

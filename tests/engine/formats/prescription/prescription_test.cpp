@@ -4,7 +4,6 @@
 #include <filesystem>
 
 #include "engine/base/file.h"
-#include "engine/base/input_error.h"
 #include "engine/formats/prescription/load_lens.h"
 #include "engine/formats/prescription/prescription_file.h"
 #include "engine/optics/lens.h"
@@ -23,12 +22,7 @@ class PrescriptionFile : public testing::Test {
 
     /// The complaint about a lens file, or "" when there is none.
     static std::string complaint(const std::filesystem::path& file) {
-        try {
-            load_lens(file.string());
-        } catch (const InputError& error) {
-            return error.what();
-        }
-        return "";
+        return complaint_about([&] { load_lens(file.string()); });
     }
 
     TestFolder folder_;
