@@ -228,6 +228,16 @@ class Corruptor {
         }
     }
 
+    void corrupt_semi_diameters(const std::string& kind, double factor) {
+        plant(kind, 0, "", [&](optics::Prescription& p) {
+            for (optics::PrescribedSurface& surface : p.surfaces) {
+                if (surface.semi_diameter_mm) {
+                    *surface.semi_diameter_mm *= factor;
+                }
+            }
+        });
+    }
+
     void corrupt_lens() {
         for (const double factor : {1.0 / 25.4, 0.1}) {
             plant("all lengths in inches or cm", 0, "", [&](optics::Prescription& p) {
@@ -255,21 +265,9 @@ class Corruptor {
                 }
                 p.zoom.clear();
             });
-            plant("all semi-diameters in inches or cm", 0, "", [&](optics::Prescription& p) {
-                for (optics::PrescribedSurface& surface : p.surfaces) {
-                    if (surface.semi_diameter_mm) {
-                        *surface.semi_diameter_mm *= factor;
-                    }
-                }
-            });
+            corrupt_semi_diameters("all semi-diameters in inches or cm", factor);
         }
-        plant("all diameters for semi-diameters", 0, "", [&](optics::Prescription& p) {
-            for (optics::PrescribedSurface& surface : p.surfaces) {
-                if (surface.semi_diameter_mm) {
-                    *surface.semi_diameter_mm *= 2.0;
-                }
-            }
-        });
+        corrupt_semi_diameters("all diameters for semi-diameters", 2.0);
         plant("list reversed", 0, "", [&](optics::Prescription& p) {
             for (int i = 0; i < size(); ++i) {
                 const int from = size() - 1 - i;

@@ -71,8 +71,8 @@ inline void expect_planted(optics::Prescription good, const std::function<void(o
 inline optics::Prescription half_ball(double stop_semi_diameter = 1.0) {
     optics::Prescription lens;
     lens.surfaces.resize(2);
-    lens.surfaces[0] = {.thickness_mm = 10.0, .semi_diameter_mm = stop_semi_diameter, .is_stop = true};
-    lens.surfaces[0].medium.n_d = 1.5;
+    lens.surfaces[0] = {
+        .thickness_mm = 10.0, .semi_diameter_mm = stop_semi_diameter, .medium = {.n_d = 1.5}, .is_stop = true};
     lens.surfaces[1] = {.radius_mm = -10.0, .thickness_mm = 20.0, .semi_diameter_mm = 9.5};
     return lens;
 }

@@ -66,8 +66,7 @@ TEST(CheckerRays, ANearObjectsBeamIsHeldAgainstTheStopsFromThere) {
 TEST(CheckerRays, AStopInsideASurfacesSagTurnsNoRayBack) {
     optics::Prescription lens;
     lens.surfaces.resize(3);
-    lens.surfaces[0] = {.radius_mm = 15.0, .thickness_mm = 3.0, .semi_diameter_mm = 7.0};
-    lens.surfaces[0].medium.n_d = 1.5;
+    lens.surfaces[0] = {.radius_mm = 15.0, .thickness_mm = 3.0, .semi_diameter_mm = 7.0, .medium = {.n_d = 1.5}};
     lens.surfaces[1] = {.radius_mm = 20.0, .thickness_mm = 2.0, .semi_diameter_mm = 7.0};
     lens.surfaces[2] = {.thickness_mm = 0.0, .semi_diameter_mm = 6.0, .is_stop = true};
     const auto close_up = [](P& p) { p.surfaces[1].thickness_mm = 0.3; };
@@ -176,8 +175,7 @@ TEST(CheckerRays, TheBallsImageCircle) {
 TEST(CheckerRays, SurfacesInTheWrongOrderAtTheField) {
     optics::Prescription lens;
     lens.surfaces.resize(3);
-    lens.surfaces[0] = {.radius_mm = 20.0, .thickness_mm = 4.0, .semi_diameter_mm = 11.0};
-    lens.surfaces[0].medium.n_d = 1.5;
+    lens.surfaces[0] = {.radius_mm = 20.0, .thickness_mm = 4.0, .semi_diameter_mm = 11.0, .medium = {.n_d = 1.5}};
     lens.surfaces[1] = {.thickness_mm = 5.0, .semi_diameter_mm = 11.0};
     lens.surfaces[2] = {.thickness_mm = 0.0, .semi_diameter_mm = 0.3, .is_stop = true};
     expect_planted(at_field(lens, 40.0), [](P& p) { p.surfaces[0].thickness_mm = 1.0; },

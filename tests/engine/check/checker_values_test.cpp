@@ -78,8 +78,7 @@ TEST(CheckerValues, AnAsphereTurnsOverWhereItsSlopeIsZero) {
 TEST(CheckerValues, AThickLensHasAShortPetzvalRadius) {
     optics::Prescription thick;
     thick.surfaces.resize(3);
-    thick.surfaces[0] = {.radius_mm = 10.0, .thickness_mm = 15.0, .semi_diameter_mm = 4.0};
-    thick.surfaces[0].medium.n_d = 1.5;
+    thick.surfaces[0] = {.radius_mm = 10.0, .thickness_mm = 15.0, .semi_diameter_mm = 4.0, .medium = {.n_d = 1.5}};
     thick.surfaces[1] = {.radius_mm = -10.0, .thickness_mm = 1.0, .semi_diameter_mm = 4.0};
     thick.surfaces[2] = {.semi_diameter_mm = 0.5, .is_stop = true};
     expect_planted(thick, [](P& p) { p.surfaces[0].thickness_mm = 25.0; },
@@ -91,8 +90,7 @@ TEST(CheckerValues, AThickLensHasAShortPetzvalRadius) {
 TEST(CheckerValues, TheLagrangeInvariantIsLostWhereNumbersAreTooFarApart) {
     optics::Prescription afocal;
     afocal.surfaces.resize(3);
-    afocal.surfaces[0] = {.radius_mm = 10.0, .semi_diameter_mm = 1.0};
-    afocal.surfaces[0].medium.n_d = 1.5;
+    afocal.surfaces[0] = {.radius_mm = 10.0, .semi_diameter_mm = 1.0, .medium = {.n_d = 1.5}};
     afocal.surfaces[1] = {.thickness_mm = 1.0, .semi_diameter_mm = 1.0};
     afocal.surfaces[2] = {.semi_diameter_mm = 1.0, .is_stop = true};
     const auto lengthen = [](P& p, double gap) {
@@ -139,7 +137,7 @@ TEST(CheckerValues, AReversedTableWouldMeetItsClaims) {
 
 TEST(CheckerValues, OtherSpellingsAndGlassesNoLongerMadeAreNamed) {
     optics::Prescription lens = half_ball();
-    lens.surfaces[0].medium = {.glass = "N-BK7", .n_d = {}, .V_d = {}, .indices = {}};
+    lens.surfaces[0].medium = {.glass = "N-BK7"};
     expect_planted(lens, [](P& p) { p.surfaces[0].medium.glass = "N BK 7"; },
                    {"glass-spelling", optics::Severity::info, 1});
     expect_planted(lens, [](P& p) { p.surfaces[0].medium.glass = "BK7"; },
@@ -150,7 +148,7 @@ TEST(CheckerValues, OtherSpellingsAndGlassesNoLongerMadeAreNamed) {
 TEST(CheckerValues, AShortTableOfIndicesIsNamedByItsFirstGap) {
     optics::Prescription lens = half_ball();
     const std::vector<optics::WavelengthValue> whole = {{400, 1.51}, {587.5618, 1.5}, {700, 1.495}};
-    lens.surfaces[0].medium = {.glass = "", .n_d = {}, .V_d = {}, .indices = whole};
+    lens.surfaces[0].medium = {.indices = whole};
     expect_planted(lens, [](P& p) { p.surfaces[0].medium.indices[0].wavelength_nm = 450; },
                    {"wavelength-range", optics::Severity::warning, 1, 400.0, 0.0, 450.0});
 }
