@@ -9,7 +9,7 @@
 #include <nlohmann/json.hpp>
 #include <tuple>
 
-#include "engine/base/json_node.h"
+#include "engine/base/json_archive.h"
 #include "tests/complaint.h"
 
 namespace lensproof::json_test {
@@ -82,6 +82,47 @@ TEST(Json, NodesSayWhereTheyAre) {
     EXPECT_EQ(complaint_about([] { JsonNode::parse("{", "file.json"); }), "file.json: not JSON at byte 2");
     EXPECT_EQ(complaint_about([] { JsonNode::parse(std::string(100000, '['), "deep.json"); }),
               "deep.json: more than 64 brackets inside one another");
+}
+
+struct Leaf {
+    double x = 0.0;
+    std::optional<int> count;
+};
+
+struct Tree {
+    std::string name;
+    bool late = true;
+    std::map<std::string, std::vector<Leaf>> leaves;
+    std::vector<double> matrix;
+};
+
+void fields(JsonArchive& json, Leaf& leaf, double scale) {
+    json.field("x", leaf.x).optional("count", leaf.count).derived("scaled", scale * leaf.x);
+}
+void fields(JsonArchive& json, Tree& tree) {
+    json.constant("schema", 2, "2")
+        .field("name", tree.name)
+        .added("late", tree.late)
+        .optional("leaves", tree.leaves, 10.0)
+        .rows("matrix", tree.matrix, 2, 2, "two rows");
+}
+
+// One description writes and reads: what is written is read back to the same bytes, a value that an older file lacks
+// keeps its own, and what is damaged is named by its place.
+TEST(JsonArchive, DescribesATypeOnce) {
+    const Tree tree{"oak", false, {{"a", {{0.5, 3}, {0.25, {}}}}}, {1, 2, 3, 4}};
+    const std::string text = to_json(tree).dump();
+    EXPECT_EQ(text, R"({"schema":2,"name":"oak","late":false,"leaves":{"a":[{"x":0.5,"count":3,"scaled":5.0},)"
+                    R"({"x":0.25,"scaled":2.5}]},"matrix":[[1.0,2.0],[3.0,4.0]]})");
+    const auto read = [](const std::string& file) { return from_json<Tree>(JsonNode::parse(file, "f")); };
+    EXPECT_EQ(to_json(read(text)).dump(), text);
+    EXPECT_TRUE(read(R"({"schema":2,"name":"","matrix":[[0,0],[0,0]]})").late);
+    const auto complaint = [&](const std::string& file) { return complaint_about([&] { read(file); }); };
+    EXPECT_EQ(complaint(R"({"schema":1})"), "f: schema is 1: expected 2");
+    EXPECT_EQ(complaint(R"({"schema":2,"name":""})"), "f: matrix is missing, and expected there");
+    EXPECT_EQ(complaint(R"({"schema":2,"name":"","leaves":{"a":[{"x":"1"}]}})"),
+              "f: leaves.a[0].x is \"1\": expected a finite number");
+    EXPECT_EQ(complaint(R"({"schema":2,"name":"","matrix":[[0,0]]})"), "f: matrix is [[0,0]]: expected two rows");
 }
 
 }  // namespace lensproof::json_test
