@@ -4,17 +4,13 @@
 #include "calibration/geometry/board_shape.h"
 #include "calibration/geometry/model_choice.h"
 #include "calibration/geometry/projection_uncertainty.h"
-#include "engine/base/json_node.h"
+#include "engine/base/json_archive.h"
 
 namespace lensproof::calibration {
 
-Json to_json(const BoardShape& board);
-Json to_json(const UncertaintyMap& map);
-Json to_json(const ModelChoice& choice);
-
-// Each reads what `to_json` wrote, or throws InputError.
-BoardShape parse_board_shape(const JsonNode& node);
-UncertaintyMap parse_uncertainty_map(const JsonNode& node);
-ModelChoice parse_model_choice(const JsonNode& node);
+void fields(JsonArchive& json, BoardShape& board);
+void fields(JsonArchive& json, UncertaintyMap& map);
+void fields(JsonArchive& json, ModelCandidate& candidate);
+void fields(JsonArchive& json, ModelChoice& choice);
 
 }  // namespace lensproof::calibration

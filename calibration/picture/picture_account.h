@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "engine/base/json_node.h"
+#include "engine/base/json_archive.h"
 #include "engine/formats/image/photo.h"
 
 namespace lensproof::calibration {
@@ -19,10 +19,7 @@ struct PictureAccount {
     friend bool operator==(const PictureAccount&, const PictureAccount&) = default;
 };
 
-Json to_json(const formats::CameraNotes& notes);
-formats::CameraNotes parse_camera_notes(const JsonNode& node);
-
-Json to_json(const PictureAccount& account);
-PictureAccount parse_picture_account(const JsonNode& node);
+void fields(JsonArchive& json, formats::CameraNotes& notes);
+void fields(JsonArchive& json, PictureAccount& account);
 
 }  // namespace lensproof::calibration

@@ -8,7 +8,6 @@
 
 #include "calibration/detection/pixel_noise.h"
 #include "calibration/statistics/order_statistics.h"
-#include "engine/base/json.h"
 
 namespace lensproof::calibration {
 namespace {
@@ -86,29 +85,12 @@ std::optional<PictureTraits> picture_traits(const formats::Image& image, int cha
     return traits;
 }
 
-Json to_json(const PictureTraits& traits) {
-    Json json{{"white", traits.white}, {"black", traits.black}, {"noise", traits.noise}};
-    if (traits.blur_px) {
-        json["blur_px"] = *traits.blur_px;
-    }
-    if (traits.light_gradient_per_mm) {
-        json["light_gradient_per_mm"] = {traits.light_gradient_per_mm->x, traits.light_gradient_per_mm->y};
-    }
-    return json;
-}
-
-PictureTraits parse_traits(const JsonNode& node) {
-    PictureTraits traits{.white = node.at("white").number(),
-                         .black = node.at("black").number(),
-                         .noise = node.at("noise").number(),
-                         .blur_px = {}};
-    if (node.has("blur_px")) {
-        traits.blur_px = node.at("blur_px").number();
-    }
-    if (node.has("light_gradient_per_mm")) {
-        traits.light_gradient_per_mm = node.at("light_gradient_per_mm").pair();
-    }
-    return traits;
+void fields(JsonArchive& json, PictureTraits& traits) {
+    json.field("white", traits.white)
+        .field("black", traits.black)
+        .field("noise", traits.noise)
+        .optional("blur_px", traits.blur_px)
+        .optional("light_gradient_per_mm", traits.light_gradient_per_mm);
 }
 
 }  // namespace lensproof::calibration

@@ -3,7 +3,7 @@
 #include <optional>
 
 #include "calibration/detection/refine.h"
-#include "engine/base/json_node.h"
+#include "engine/base/json_archive.h"
 #include "engine/formats/image/image.h"
 
 namespace lensproof::calibration {
@@ -32,9 +32,6 @@ struct PictureTraits {
 /// None when no point was found.
 std::optional<PictureTraits> picture_traits(const formats::Image& image, int channel, const ChartPoints& points);
 
-Json to_json(const PictureTraits& traits);
-
-/// What the above wrote. Throws InputError as JsonNode does.
-PictureTraits parse_traits(const JsonNode& node);
+void fields(JsonArchive& json, PictureTraits& traits);
 
 }  // namespace lensproof::calibration

@@ -20,7 +20,7 @@
 #include "calibration/sharpness/profile_edge.h"
 #include "calibration/sharpness/profile_star.h"
 #include "calibration/statistics/curve.h"
-#include "engine/base/json.h"
+#include "engine/base/json_archive.h"
 
 namespace lensproof::calibration {
 
@@ -131,10 +131,9 @@ double half_diagonal_px(const Profile& profile);
 
 /// The profile as JSON (a stretch_y that was held at 0 is not written), schema "lensproof-profile/1"; numbers are
 /// written so that reading returns the same bits.
-Json to_json(const Profile& profile);
+void fields(JsonArchive& json, Profile& profile);
 
-/// Reads what `to_json` wrote. Unknown keys are ignored. Throws InputError naming `file`, the key, what was found and
-/// what is expected.
+/// Reads what `to_json` wrote. Throws InputError naming `file`, the key, what was found and what is expected.
 Profile parse_profile(std::string_view text, const std::string& file);
 
 Profile read_profile(const std::filesystem::path& file);

@@ -4,8 +4,6 @@
 #include <cmath>
 #include <optional>
 
-#include "engine/base/json.h"
-
 namespace lensproof::calibration {
 namespace {
 constexpr std::size_t kFewestPoints = 8;
@@ -59,26 +57,13 @@ std::vector<ProfileLine> straightness(const std::vector<LinePoints>& lines, cons
     return result;
 }
 
-Json to_json(const ProfileLine& line) {
-    return {{"along", line.is_column ? "column" : "row"},
-            {"index", line.index},
-            {"points", line.points},
-            {"rms_px", line.rms_px},
-            {"rms_standard_error_px", line.rms_standard_error_px},
-            {"noise_px", line.noise_px}};
-}
-
-ProfileLine parse_line(const JsonNode& node) {
-    const std::string along = node.at("along").text();
-    if (along != "column" && along != "row") {
-        throw node.at("along").error("\"column\" or \"row\"");
-    }
-    return {.is_column = along == "column",
-            .index = node.at("index").count(),
-            .points = node.at("points").count(),
-            .rms_px = node.at("rms_px").number(),
-            .rms_standard_error_px = node.at("rms_standard_error_px").number(),
-            .noise_px = node.at("noise_px").number()};
+void fields(JsonArchive& json, ProfileLine& line) {
+    json.one_of("along", line.is_column, {"row", "column"}, "\"column\" or \"row\"")
+        .field("index", line.index)
+        .field("points", line.points)
+        .field("rms_px", line.rms_px)
+        .field("rms_standard_error_px", line.rms_standard_error_px)
+        .field("noise_px", line.noise_px);
 }
 
 }  // namespace lensproof::calibration

@@ -4,7 +4,7 @@
 
 #include "calibration/detection/line_points.h"
 #include "calibration/geometry/camera_model.h"
-#include "engine/base/json_node.h"
+#include "engine/base/json_archive.h"
 
 namespace lensproof::calibration {
 
@@ -24,10 +24,7 @@ struct ProfileLine {
 /// Of lines with at least eight points whose directions the model knows; others are left out.
 std::vector<ProfileLine> straightness(const std::vector<LinePoints>& lines, const CameraModel& model);
 
-/// `along`: "column" or "row", `index`, `points`, `rms_px`, `rms_standard_error_px`, `noise_px`.
-Json to_json(const ProfileLine& line);
-
-/// Throws InputError as JsonNode says.
-ProfileLine parse_line(const JsonNode& node);
+/// `along`: "column" or "row"; the rest as above.
+void fields(JsonArchive& json, ProfileLine& line);
 
 }  // namespace lensproof::calibration

@@ -6,8 +6,6 @@
 #include <cmath>
 #include <string_view>
 
-#include "engine/base/json.h"
-
 namespace lensproof::calibration {
 
 const CurveFloor* floor_of(const std::optional<SelfTest>& test, const std::string& curve) {
@@ -41,45 +39,18 @@ std::string describe_floor(const SelfTest& test) {
     return text;
 }
 
-Json to_json(const SelfTest& test) {
-    Json json{{"pictures", test.pictures},
-              {"points", test.points},
-              {"point_rms_px", test.point_rms_px},
-              {"point_bias_px", test.point_bias_px},
-              {"curves", Json::object()}};
-    if (test.reprojection_rms_px) {
-        json["reprojection_rms_px"] = *test.reprojection_rms_px;
-    }
-    if (test.focal_length_px) {
-        json["focal_length_px"] = *test.focal_length_px;
-    }
-    for (const auto& [name, floor] : test.curves) {
-        json["curves"][name] = {
-            {"rms", floor.rms}, {"largest", floor.largest}, {"largest_at_image_height", floor.largest_at}};
-    }
-    return json;
+void fields(JsonArchive& json, CurveFloor& floor) {
+    json.field("rms", floor.rms).field("largest", floor.largest).field("largest_at_image_height", floor.largest_at);
 }
 
-SelfTest parse_self_test(const JsonNode& node) {
-    SelfTest test{.point_rms_px = node.at("point_rms_px").number(),
-                  .point_bias_px = node.at("point_bias_px").number(),
-                  .points = node.at("points").count(),
-                  .pictures = node.at("pictures").count(),
-                  .curves = {}};
-    for (const auto& [name, value] : {std::pair("reprojection_rms_px", &test.reprojection_rms_px),
-                                      std::pair("focal_length_px", &test.focal_length_px)}) {
-        if (node.has(name)) {
-            *value = node.at(name).number();
-        }
-    }
-    const JsonNode curves = node.at("curves");
-    for (const std::string& name : curves.keys()) {
-        const JsonNode floor = curves.at(name);
-        test.curves[name] = {.rms = floor.at("rms").number(),
-                             .largest = floor.at("largest").number(),
-                             .largest_at = floor.at("largest_at_image_height").number()};
-    }
-    return test;
+void fields(JsonArchive& json, SelfTest& test) {
+    json.field("pictures", test.pictures)
+        .field("points", test.points)
+        .field("point_rms_px", test.point_rms_px)
+        .field("point_bias_px", test.point_bias_px)
+        .field("curves", test.curves)
+        .optional("reprojection_rms_px", test.reprojection_rms_px)
+        .optional("focal_length_px", test.focal_length_px);
 }
 
 }  // namespace lensproof::calibration

@@ -4,7 +4,7 @@
 #include <optional>
 #include <string>
 
-#include "engine/base/json_node.h"
+#include "engine/base/json_archive.h"
 
 namespace lensproof::calibration {
 
@@ -41,9 +41,7 @@ const CurveFloor* floor_of(const std::optional<SelfTest>& test, const std::strin
 /// the last two the largest of any channel.
 std::string describe_floor(const SelfTest& test);
 
-Json to_json(const SelfTest& test);
-
-/// What the above wrote. Throws InputError as JsonNode does.
-SelfTest parse_self_test(const JsonNode& node);
+void fields(JsonArchive& json, CurveFloor& floor);
+void fields(JsonArchive& json, SelfTest& test);
 
 }  // namespace lensproof::calibration

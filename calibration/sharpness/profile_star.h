@@ -4,7 +4,7 @@
 #include <string>
 
 #include "calibration/sharpness/siemens_star.h"
-#include "engine/base/json_node.h"
+#include "engine/base/json_archive.h"
 
 namespace lensproof::calibration {
 
@@ -18,9 +18,7 @@ struct ProfileStar {
 /// +y), `side_deg` (where it lies, seen from the centre), `contrast` and `contrast_standard_error` ((white − black) /
 /// (white + black) of the sectors), MTF50 and MTF10 as edges have them (calibration/sharpness/profile_edge.h), and
 /// `curve`: `cycles_per_px`, `mtf`, `standard_error`.
-Json to_json(const ProfileStar& star, std::optional<double> pixel_pitch_um);
-
-/// Throws InputError as JsonNode says.
-ProfileStar parse_star(const JsonNode& node);
+void fields(JsonArchive& json, ProfileStar& star, const std::optional<double>& pixel_pitch_um);
+void fields(JsonArchive& json, StarSegment& segment, const std::optional<double>& pixel_pitch_um);
 
 }  // namespace lensproof::calibration

@@ -67,7 +67,7 @@ void write_and_print(const MeasureOptions& options, const calibration::Profile& 
     if (!options.output.empty()) {
         calibration::write_profile(profile, options.output);
     }
-    write_json_result(options.common, calibration::to_json(profile));
+    write_json_result(options.common, lensproof::to_json(profile));
     if (prints_text(options.common)) {
         print_profile(profile);
     }

@@ -87,12 +87,12 @@ TEST(CalibrationModelChoice, TheSameViewsGiveTheSameChoiceAndItsJsonReadsBack) {
     EXPECT_EQ(a.choice, b.choice);
     EXPECT_EQ(parameters(a.fit.model), parameters(b.fit.model));
     const auto json = to_json(a.choice);
-    EXPECT_EQ(parse_model_choice(JsonNode::parse(json.dump(), "memory")), a.choice);
+    EXPECT_EQ(from_json<ModelChoice>(JsonNode::parse(json.dump(), "memory")), a.choice);
     const auto map = to_json(uncertainty_map(a.fit, views, kWidth, kHeight));
-    EXPECT_EQ(to_json(parse_uncertainty_map(JsonNode::parse(map.dump(), "memory"))), map);
+    EXPECT_EQ(to_json(from_json<UncertaintyMap>(JsonNode::parse(map.dump(), "memory"))), map);
     auto damaged = json;
     damaged["chosen"] = 99;
-    EXPECT_THROW(parse_model_choice(JsonNode::parse(damaged.dump(), "memory")), InputError);
+    EXPECT_THROW(from_json<ModelChoice>(JsonNode::parse(damaged.dump(), "memory")), InputError);
 }
 
 // One tilted view still has a held-out error: of its own points.
