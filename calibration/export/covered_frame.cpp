@@ -17,9 +17,9 @@ double covered_radius_px(const Profile& profile) {
 
 const ProfileGeometry& exported_geometry(const Profile& profile) {
     if (!profile.geometry || !(profile.geometry->covered_image_height > 0.0)) {
-        const auto reason = profile.not_measured.find("geometry");
+        const std::string reason = why_not_measured(profile, part::kGeometry, "");
         throw InputError(profile.name + ": the profile has no camera model" +
-                         (reason == profile.not_measured.end() ? "" : " (" + reason->second + ")") +
+                         (reason.empty() ? "" : " (" + reason + ")") +
                          ": expected one measured from pictures of a chart");
     }
     return *profile.geometry;

@@ -211,15 +211,15 @@ struct ChannelShift {
 };
 
 std::optional<ChannelShift> fit_shift(const Profile& profile, const std::string& channel, bool linear, double unit_px) {
-    const auto found = profile.curves.find("chromatic_shift_" + channel + "_px");
-    if (found == profile.curves.end()) {
+    const Curve* found = find_curve(profile, kQuantities.chromatic_shift.key(channel));
+    if (found == nullptr) {
         return std::nullopt;
     }
     std::vector<Sample> samples;
-    for (std::size_t i = 0; i < found->second.image_height.size(); ++i) {
-        const double height = found->second.image_height[i];
-        if (height > 0.0 && height <= found->second.covered_image_height) {
-            samples.push_back({height * half_diagonal_px(profile) / unit_px, found->second.value[i], 1.0});
+    for (std::size_t i = 0; i < found->image_height.size(); ++i) {
+        const double height = found->image_height[i];
+        if (height > 0.0 && height <= found->covered_image_height) {
+            samples.push_back({height * half_diagonal_px(profile) / unit_px, found->value[i], 1.0});
         }
     }
     const auto polynomial = fit_powers(samples, linear ? std::vector{1} : std::vector{1, 2, 3});
@@ -243,9 +243,8 @@ std::string tca_element(const Profile& profile, const LensfunOptions& options, d
     };
     const auto [red_line, blue_line] = fit(true);
     if (!red_line || !blue_line) {
-        const auto why = profile.not_measured.find("chromatic_shift");
         notes.push_back("no chromatic shift: " +
-                        (why == profile.not_measured.end() ? "the profile has none of red and blue" : why->second));
+                        why_not_measured(profile, part::kChromaticShift, "the profile has none of red and blue"));
         return "";
     }
     const double linear_error = std::max(red_line->largest_difference_px, blue_line->largest_difference_px);
@@ -268,14 +267,10 @@ std::string vignetting_element(const Profile& profile, const LensfunOptions& opt
                                std::vector<std::string>& notes) {
     const Curve* curve = nullptr;
     for (const char* channel : {"G", "Y", "R", "B"}) {
-        const auto found = profile.curves.find(std::string("vignetting_") + channel);
-        if (!curve && found != profile.curves.end()) {
-            curve = &found->second;
-        }
+        curve = curve ? curve : find_curve(profile, kQuantities.vignetting.key(channel));
     }
     if (!curve) {
-        const auto why = profile.not_measured.find("vignetting");
-        notes.push_back("no vignetting: " + (why == profile.not_measured.end() ? "the profile has none" : why->second));
+        notes.push_back("no vignetting: " + why_not_measured(profile, part::kVignetting, "the profile has none"));
         return "";
     }
     if (!options.f_number) {

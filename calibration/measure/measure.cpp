@@ -62,9 +62,9 @@ void add_geometry(Profile& profile, const Observations& seen, const GeometryFit&
                 {measured.chart_mm[i], measured.image_px[i], r.measured_minus_model_px, r.used, errors[i]});
         }
     }
-    profile.curves["field_angle_deg"] = field_angle_curve(geometry, half_diagonal);
-    profile.curves["distortion_percent"] = rectilinear_distortion_curve(geometry, half_diagonal);
-    profile.curves["distortion_equidistant_percent"] = equidistant_distortion_curve(geometry, half_diagonal);
+    profile.curves[kQuantities.field_angle.key()] = field_angle_curve(geometry, half_diagonal);
+    profile.curves[kQuantities.distortion.key()] = rectilinear_distortion_curve(geometry, half_diagonal);
+    profile.curves[kQuantities.equidistant_distortion.key()] = equidistant_distortion_curve(geometry, half_diagonal);
 }
 
 void add_vignetting(Profile& profile, const Observations& seen, const Vec2d& centre) {
@@ -74,16 +74,16 @@ void add_vignetting(Profile& profile, const Observations& seen, const Vec2d& cen
             Vignetting vignetting = fit_vignetting(samples, centre, half_diagonal_px(profile));
             profile.vignetting_models[channel] = fit_vignetting_models(vignetting);
             profile.shading[channel] = shading_grid(vignetting, seen.width, seen.height);
-            FittedTerms& terms = profile.terms["vignetting_" + channel];
+            FittedTerms& terms = profile.terms[kVignettingTerms(channel)];
             for (std::size_t i = 0; i < vignetting.coefficients.size(); ++i) {
                 terms.names.push_back("spline_" + std::to_string(i));
             }
             terms.values = std::move(vignetting.coefficients);
             terms.covariance = std::move(vignetting.covariance);
-            profile.curves["vignetting_" + channel] = std::move(vignetting.ratio);
-            profile.curves["vignetting_" + channel + "_ev"] = std::move(vignetting.ev);
+            profile.curves[kQuantities.vignetting.key(channel)] = std::move(vignetting.ratio);
+            profile.curves[kQuantities.vignetting_ev.key(channel)] = std::move(vignetting.ev);
         } catch (const InputError& e) {
-            profile.not_measured["vignetting"] = e.what();
+            profile.not_measured[part::kVignetting] = e.what();
         }
     }
 }
@@ -95,7 +95,7 @@ void add_light_gradients(Profile& profile, const Observations& seen, const Vec2d
         if (white == seen.reference_whites.end()) {
             continue;
         }
-        const auto curve = profile.curves.find("vignetting_" + white->second.first);
+        const auto curve = profile.curves.find(kQuantities.vignetting.key(white->second.first));
         if (curve != profile.curves.end()) {
             const auto& [channel, index] = white->second;
             profile.views[v].traits->light_gradient_per_mm =
@@ -106,18 +106,18 @@ void add_light_gradients(Profile& profile, const Observations& seen, const Vec2d
 
 void add_chromatic_shifts(Profile& profile, const Observations& seen, const Vec2d& centre) {
     if (seen.grey) {
-        profile.not_measured["chromatic_shift"] = "the pictures are grey";
+        profile.not_measured[part::kChromaticShift] = "the pictures are grey";
         return;
     }
     if (seen.chromatic_pairs.empty()) {
-        profile.not_measured["chromatic_shift"] = "no chart was found in a picture in colour";
+        profile.not_measured[part::kChromaticShift] = "no chart was found in a picture in colour";
         return;
     }
     for (const auto& [channel, pairs] : seen.chromatic_pairs) {
         try {
             add_chromatic_shift(profile, channel_label(channel), pairs, centre);
         } catch (const InputError& e) {
-            profile.not_measured["chromatic_shift"] = e.what();
+            profile.not_measured[part::kChromaticShift] = e.what();
         }
     }
 }
@@ -150,9 +150,9 @@ Profile measure(const MeasureInput& input) {
 
     Vec2d centre{(seen.width - 1) / 2.0, (seen.height - 1) / 2.0};
     if (seen.chart_views.empty()) {
-        profile.not_measured["geometry"] = shows_star(input)     ? "a Siemens star has but one point"
-                                           : input.edges.empty() ? "there are flat fields only"
-                                                                 : "there is no chart";
+        profile.not_measured[part::kGeometry] = shows_star(input)     ? "a Siemens star has but one point"
+                                                : input.edges.empty() ? "there are flat fields only"
+                                                                      : "there is no chart";
     } else {
         Geometry geometry = fit(input, seen);
         centre = centre_px(geometry.fit.model);

@@ -21,7 +21,7 @@ std::string in_nm(double wavelength_nm) {
     return (text.back() == '.' ? text.substr(0, text.size() - 1) : text) + "nm";
 }
 
-// A way to find the points of the reference picture again in another one: none where a point is not there.
+// Finds the points of the reference picture again in another one: none where a point is not there.
 using Locator = std::function<std::vector<std::optional<Vec2d>>(const formats::Image&)>;
 
 struct ReferencePoints {
@@ -123,12 +123,12 @@ void add_chromatic_shift(Profile& profile, const std::string& label, const std::
     ChromaticShift shift = fit_chromatic_shift(pairs, centre_px, half_diagonal_px(profile));
     const auto& [c1, c3, c5] = shift.radial_px;
     const auto& [s1, s3] = shift.tangential_px;
-    profile.terms["chromatic_shift_" + label] = {
+    profile.terms[kShiftTerms(label)] = {
         .names = {"c1_px", "c3_px", "c5_px", "s1_px", "s3_px", "translation_x_px", "translation_y_px"},
         .values = {c1, c3, c5, s1, s3, shift.translation_px.x, shift.translation_px.y},
         .covariance = {shift.covariance.begin(), shift.covariance.end()}};
-    profile.curves["chromatic_shift_" + label + "_px"] = std::move(shift.radial);
-    profile.curves["chromatic_shift_tangential_" + label + "_px"] = std::move(shift.tangential);
+    profile.curves[kQuantities.chromatic_shift.key(label)] = std::move(shift.radial);
+    profile.curves[kQuantities.tangential_shift.key(label)] = std::move(shift.tangential);
 }
 
 Profile measure_bands(const BandInput& input) {
@@ -141,7 +141,7 @@ Profile measure_bands(const BandInput& input) {
     profile.width_px = image.width;
     profile.height_px = image.height;
     profile.pixel_pitch_um = input.pixel_pitch_um;
-    profile.not_measured["geometry"] = "the pictures are bands of one view";
+    profile.not_measured[part::kGeometry] = "the pictures are bands of one view";
     const ReferencePoints points = input.chart ? chart_points(image, reference.name, *input.chart) : disc_points(image);
     const Vec2d centre = input.centre_px.value_or(Vec2d{0.5 * (image.width - 1), 0.5 * (image.height - 1)});
     for (const BandPicture& band : input.bands) {
@@ -164,7 +164,7 @@ Profile measure_bands(const BandInput& input) {
         }
         try {
             add_chromatic_shift(profile, in_nm(band.wavelength_nm), pairs, centre);
-            profile.terms["chromatic_shift_mean_" + in_nm(band.wavelength_nm)] = mean_shift(pairs, centre);
+            profile.terms[kMeanShiftTerms(in_nm(band.wavelength_nm))] = mean_shift(pairs, centre);
         } catch (const InputError& e) {
             throw InputError(band.name + ": " + e.what());
         }

@@ -33,19 +33,18 @@ struct BandInput {
     std::optional<double> pixel_pitch_um;
 };
 
-/// For each band but the reference's, here 450 nm, the curves "chromatic_shift_450nm_px" (radial) and
-/// "chromatic_shift_tangential_450nm_px", and the terms "chromatic_shift_450nm"
-/// (calibration/chromatic/chromatic_shift.h).
+/// For each band but the reference's the curves of the chromatic shift (radial and tangential) and the terms behind
+/// them (calibration/chromatic/chromatic_shift.h); the channel is the wavelength, "450nm".
 ///
 /// Of a crop that does not hold the optical centre, the model's terms trade against each other, above all radial
-/// terms against the translation; there the means over the points, "chromatic_shift_mean_450nm", are what is known.
+/// terms against the translation; there the means over the points (kMeanShiftTerms) are what is known.
 ///
 /// A disc's centroid moves with perspective by as much in every band, so it drops out of the difference.
 /// Throws InputError for fewer than two bands, bands of the same wavelength, none at the reference's, pictures of
 /// different sizes, and where too few points are found in common.
 Profile measure_bands(const BandInput& input);
 
-/// Adds the curves and terms of one channel's pairs to a profile: "chromatic_shift_LABEL_px" and so on.
+/// Adds the curves and terms of one channel's pairs to a profile.
 /// Throws InputError as `fit_chromatic_shift` does.
 void add_chromatic_shift(Profile& profile, const std::string& label, const std::vector<ChromaticPair>& pairs,
                          const Vec2d& centre_px);

@@ -77,25 +77,26 @@ std::vector<FocusedEdges> by_position(const SharpnessObservations& seen, const s
 
 void add_field(Profile& profile, const std::string& channel, const std::vector<EdgeMtf>& edges, const Vec2d& centre) {
     SharpnessField field = fit_sharpness_field(edges, centre, half_diagonal_px(profile));
-    for (const auto& [name, curve] : {std::pair("mtf50_tangential_", &field.tangential_cycles_per_px),
-                                      std::pair("mtf50_sagittal_", &field.sagittal_cycles_per_px)}) {
+    const auto add = [&](const Quantity& per_px, const Quantity& per_millimetre, Curve& curve) {
         if (profile.pixel_pitch_um) {
-            profile.curves[name + channel + "_cycles_per_mm"] = per_mm(*curve, *profile.pixel_pitch_um);
+            profile.curves[per_millimetre.key(channel)] = per_mm(curve, *profile.pixel_pitch_um);
         }
-        profile.curves[name + channel] = std::move(*curve);
-    }
-    profile.curves["mtf50_tangential_over_sagittal_" + channel] = std::move(field.tangential_over_sagittal);
-    profile.terms["sharpness_" + channel] = {.names = std::move(field.names),
-                                             .values = std::move(field.coefficients),
-                                             .covariance = std::move(field.covariance)};
+        profile.curves[per_px.key(channel)] = std::move(curve);
+    };
+    add(kQuantities.tangential_mtf50, kQuantities.tangential_mtf50_per_mm, field.tangential_cycles_per_px);
+    add(kQuantities.sagittal_mtf50, kQuantities.sagittal_mtf50_per_mm, field.sagittal_cycles_per_px);
+    profile.curves[kQuantities.astigmatism.key(channel)] = std::move(field.tangential_over_sagittal);
+    profile.terms[kSharpnessTerms(channel)] = {.names = std::move(field.names),
+                                               .values = std::move(field.coefficients),
+                                               .covariance = std::move(field.covariance)};
 }
 
 void add_best_focus(Profile& profile, const std::string& channel, const std::vector<FocusedEdges>& series,
                     const Vec2d& centre) {
     BestFocus focus = fit_best_focus(series, centre, half_diagonal_px(profile));
-    profile.curves["best_focus_tangential_" + channel + "_mm"] = std::move(focus.tangential_mm);
-    profile.curves["best_focus_sagittal_" + channel + "_mm"] = std::move(focus.sagittal_mm);
-    profile.terms["best_focus_" + channel] = {
+    profile.curves[kQuantities.tangential_focus.key(channel)] = std::move(focus.tangential_mm);
+    profile.curves[kQuantities.sagittal_focus.key(channel)] = std::move(focus.sagittal_mm);
+    profile.terms[kBestFocusTerms(channel)] = {
         .names = {"axis_position_mm"},
         .values = {focus.axis_position_mm},
         .covariance = {focus.axis_standard_error_mm * focus.axis_standard_error_mm}};
@@ -190,13 +191,13 @@ void add_sharpness(Profile& profile, const SharpnessObservations& seen, const Ve
                 add_best_focus(profile, channel, series, centre_px);
             }
         } catch (const InputError& e) {
-            profile.not_measured["field_curvature"] = e.what();
+            profile.not_measured[part::kFieldCurvature] = e.what();
         }
         try {
             add_field(profile, channel, edges, centre_px);
         } catch (const InputError& e) {
             const std::string refused = listed(seen.refusals);
-            profile.not_measured["sharpness_over_the_field"] = e.what() + (refused.empty() ? "" : " (" + refused + ")");
+            profile.not_measured[part::kSharpness] = e.what() + (refused.empty() ? "" : " (" + refused + ")");
         }
         std::vector<ProfileEdge>& kept = profile.sharpness[channel];
         kept = listed_edges;

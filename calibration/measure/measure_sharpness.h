@@ -35,11 +35,10 @@ void observe_edges(SharpnessObservations& seen, const formats::Image& image, int
 void observe_stars(SharpnessObservations& seen, const formats::Image& image, int channel, const std::string& name,
                    const scene::SiemensStar& star);
 
-/// Adds to the profile: the stars; the edges; of each channel C with enough edges the curves "mtf50_tangential_C" and
-/// "mtf50_sagittal_C" in cycles per pixel (and "…_cycles_per_mm" where the pixel pitch is known) and
-/// "mtf50_tangential_over_sagittal_C"; with focus positions also "best_focus_tangential_C_mm" and
-/// "best_focus_sagittal_C_mm". The field is that of the pictures in `seen` together; of a focus series, that of the
-/// position at which the edges are sharpest. Whole MTF curves are kept of channels with at most 200 edges.
+/// Adds to the profile: the stars; the edges; of each channel with enough edges the curves of MTF50 in cycles per pixel
+/// (per mm too where the pixel pitch is known) and their ratio; with focus positions also those of the best focus. The
+/// field is that of the pictures in `seen` together; of a focus series, that of the position at which the edges are
+/// sharpest. Whole MTF curves are kept of channels with at most 200 edges.
 void add_sharpness(Profile& profile, const SharpnessObservations& seen, const Vec2d& centre_px);
 
 }  // namespace lensproof::calibration

@@ -246,12 +246,12 @@ std::vector<std::string> suspicions_of(const Profile& profile) {
         return signs;
     }
     const double covered = profile.geometry->covered_image_height;
-    const auto at_edge = [&](const char* name) -> std::optional<Banded> {
-        const auto found = profile.curves.find(name);
-        return found == profile.curves.end() ? std::nullopt : sample(found->second, covered);
+    const auto at_edge = [&](const Quantity& quantity) {
+        const Curve* found = find_curve(profile, quantity.key());
+        return found == nullptr ? std::nullopt : sample(*found, covered);
     };
-    const auto angle = at_edge("field_angle_deg");
-    const auto distortion = at_edge("distortion_percent");
+    const auto angle = at_edge(kQuantities.field_angle);
+    const auto distortion = at_edge(kQuantities.distortion);
     if (angle && distortion && angle->value > kWide_deg) {
         const double error = (distortion->upper_95 - distortion->lower_95) / 2.0;
         if (std::abs(distortion->value) < std::max(error, kNoDistortion_percent) && error < 1.0) {

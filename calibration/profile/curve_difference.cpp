@@ -57,20 +57,21 @@ std::optional<CurveDifference> difference(const Curve& a, const Curve& b) {
 }
 
 std::optional<CurveDifference> difference(const Profile& a, const Profile& b, const std::string& curve) {
-    const auto in_a = a.curves.find(curve);
-    const auto in_b = b.curves.find(curve);
-    if (in_a == a.curves.end() || in_b == b.curves.end()) {
-        return std::nullopt;
+    if (curve == kQuantities.image_position.key()) {
+        return radial_difference_px(a, b);
     }
-    return difference(in_a->second, in_b->second);
+    const Curve* in_a = find_curve(a, curve);
+    const Curve* in_b = find_curve(b, curve);
+    return in_a != nullptr && in_b != nullptr ? difference(*in_a, *in_b) : std::nullopt;
 }
 
 std::optional<CurveDifference> radial_difference_px(const Profile& a, const Profile& b) {
-    std::optional<CurveDifference> angles = difference(a, b, "field_angle_deg");
+    const std::string angle = kQuantities.field_angle.key();
+    std::optional<CurveDifference> angles = difference(a, b, angle);
     if (!angles) {
         return std::nullopt;
     }
-    const Curve& reference = b.curves.at("field_angle_deg");
+    const Curve& reference = b.curves.at(angle);
     const std::vector<double>& heights = angles->curve.image_height;
     CurveDifference radii;
     for (std::size_t i = 0; i < heights.size(); ++i) {

@@ -22,11 +22,12 @@ struct CurveDifference {
 /// is shared.
 std::optional<CurveDifference> difference(const Curve& a, const Curve& b);
 
-/// The difference of two profiles' curves of that name; nothing where one lacks it.
-std::optional<CurveDifference> difference(const Profile& a, const Profile& b, const std::string& curve);
-
 /// How far apart (px) the two profiles of the same camera image the same direction: r_a(θ) − r_b(θ) over image height.
 /// From the field angles at equal height, Δr = −(θ_a − θ_b) / (dθ/dr), which is exact to first order in the difference.
 std::optional<CurveDifference> radial_difference_px(const Profile& a, const Profile& b);
+
+/// The difference of two profiles' curves of that key, and of kQuantities.image_position the above; nothing where one
+/// lacks it.
+std::optional<CurveDifference> difference(const Profile& a, const Profile& b, const std::string& curve);
 
 }  // namespace lensproof::calibration

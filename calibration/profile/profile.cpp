@@ -12,4 +12,14 @@ double half_diagonal_px(const Profile& profile) {
     return 0.5 * std::hypot(profile.width_px, profile.height_px);
 }
 
+const Curve* find_curve(const Profile& profile, const std::string& key) {
+    const auto found = profile.curves.find(key);
+    return found == profile.curves.end() ? nullptr : &found->second;
+}
+
+std::string why_not_measured(const Profile& profile, const char* part, const std::string& otherwise) {
+    const auto found = profile.not_measured.find(part);
+    return found == profile.not_measured.end() ? otherwise : found->second;
+}
+
 }  // namespace lensproof::calibration

@@ -16,6 +16,7 @@
 #include "calibration/picture/picture_account.h"
 #include "calibration/picture/picture_traits.h"
 #include "calibration/profile/profile_line.h"
+#include "calibration/profile/quantity.h"
 #include "calibration/profile/self_test_result.h"
 #include "calibration/sharpness/profile_edge.h"
 #include "calibration/sharpness/profile_star.h"
@@ -91,12 +92,9 @@ struct FittedTerms {
     friend bool operator==(const FittedTerms&, const FittedTerms&) = default;
 };
 
-/// Curves by name: "field_angle_deg", "distortion_percent" (against f tan θ), "distortion_equidistant_percent"
-/// (against f θ), and for a channel C "vignetting_C" (ratio to the axis), "vignetting_C_ev", "chromatic_shift_C_px"
-/// (radial) and "chromatic_shift_tangential_C_px" (a spectral layer's C is its wavelength, "450nm"), and those of
-/// sharpness and focus (calibration/measure/measure_sharpness.h). What could not be measured is absent there and has
-/// its reason in `not_measured`, under "geometry", "vignetting", "chromatic_shift", "sharpness_over_the_field" or
-/// "field_curvature"; a self-test that was asked for and could not be made under "self_test".
+/// Curves, the terms of the fits behind them, and what could not be measured are called as
+/// calibration/profile/quantity.h says. What could not be measured is absent, and has its reason in `not_measured`; so
+/// has a self-test that was asked for and could not be made.
 struct Profile {
     std::string name;
     ProfileSource source;
@@ -109,10 +107,6 @@ struct Profile {
     std::vector<PictureAccount> pictures;
     std::vector<ProfileView> views;  // the pictures in which a chart was looked for
     std::map<std::string, Curve> curves;
-    /// Behind the curves, by the curve's name without its unit: "chromatic_shift_C"
-    /// (calibration/chromatic/chromatic_shift.h) and "vignetting_C" (the spline of ln V,
-    /// calibration/light/vignetting.h), "sharpness_C" (of 1/MTF50², px²) and "best_focus_C"
-    /// (calibration/sharpness/sharpness_field.h).
     std::map<std::string, FittedTerms> terms;
     /// The edges measured, by channel (JSON key "sharpness", calibration/sharpness/profile_edge.h).
     std::map<std::string, std::vector<ProfileEdge>> sharpness;
@@ -128,6 +122,12 @@ struct Profile {
 
 /// Half the picture's diagonal, px: the unit of image heights.
 double half_diagonal_px(const Profile& profile);
+
+/// The curve of that key; null where there is none.
+const Curve* find_curve(const Profile& profile, const std::string& key);
+
+/// Why that part (calibration/profile/quantity.h) was not measured; `otherwise` where the profile does not say.
+std::string why_not_measured(const Profile& profile, const char* part, const std::string& otherwise);
 
 /// The profile as JSON (a stretch_y that was held at 0 is not written), schema "lensproof-profile/1"; numbers are
 /// written so that reading returns the same bits.

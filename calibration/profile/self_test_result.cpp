@@ -4,7 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <string_view>
+
+#include "calibration/profile/quantity.h"
 
 namespace lensproof::calibration {
 
@@ -18,22 +19,22 @@ const CurveFloor* floor_of(const std::optional<SelfTest>& test, const std::strin
 
 std::string describe_floor(const SelfTest& test) {
     std::string text = fmt::format("points {:.3f} px", test.point_rms_px);
-    if (const auto radial = test.curves.find("radial_px"); radial != test.curves.end()) {
-        text += fmt::format(", image position {:.3f} px rms", radial->second.rms);
+    if (const CurveFloor* radial = floor_of(test, kQuantities.image_position.key())) {
+        text += fmt::format(", image position {:.3f} px rms", radial->rms);
     }
-    const auto largest = [&](std::string_view prefix, std::string_view suffix) {
+    const auto largest = [&](const Quantity& quantity) {
         std::optional<double> most;
         for (const auto& [name, floor] : test.curves) {
-            if (name.starts_with(prefix) && name.ends_with(suffix)) {
+            if (quantity.key.channel_in(name)) {
                 most = std::max(most.value_or(0.0), floor.largest);
             }
         }
         return most;
     };
-    if (const auto ev = largest("vignetting_", "_ev")) {
+    if (const auto ev = largest(kQuantities.vignetting_ev)) {
         text += fmt::format(", vignetting {:.2f} %", 100.0 * (std::exp2(*ev) - 1.0));
     }
-    if (const auto shift = largest("chromatic_shift_", "_px")) {
+    if (const auto shift = largest(kQuantities.chromatic_shift)) {
         text += fmt::format(", chromatic shift {:.3f} px", *shift);
     }
     return text;

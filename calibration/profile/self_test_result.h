@@ -29,8 +29,8 @@ struct SelfTest {
     /// The simulated measurement's own reprojection error (as ProfileGeometry's), and how far its focal length is off.
     std::optional<double> reprojection_rms_px = std::nullopt;
     std::optional<double> focal_length_px = std::nullopt;
-    /// By the curve's name as in Profile::curves; beside them "radial_px", how far apart the two fits image a
-    /// direction. None of sharpness: the simulated blur is one Gaussian and not the lens's.
+    /// By the curve's key (calibration/profile/quantity.h), the image position among them. None of sharpness: the
+    /// simulated blur is one Gaussian and not the lens's.
     std::map<std::string, CurveFloor> curves;
 };
 

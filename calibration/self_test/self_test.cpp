@@ -18,11 +18,11 @@ constexpr double kUsualBlur_px = 0.5;
 // The curve between its samples, and straight on beyond them: held at its end it would have a kink that the measured
 // lens has not, which smooth fits round off.
 std::function<double(double)> function_of(const Profile& profile, const std::string& name, double otherwise) {
-    const auto found = profile.curves.find(name);
-    if (found == profile.curves.end() || found->second.value.size() < 2) {
+    const Curve* found = find_curve(profile, name);
+    if (found == nullptr || found->value.size() < 2) {
         return [otherwise](double) { return otherwise; };
     }
-    return [curve = found->second](double height) {
+    return [curve = *found](double height) {
         const std::vector<double>& at = curve.image_height;
         const double inside = std::clamp(height, at.front(), at.back());
         const std::size_t last = at.size() - 1;
@@ -56,8 +56,8 @@ SimulatedCamera camera_of(const Profile& profile, const PictureTraits& traits, s
     }
     for (const std::string& name : profile.channels) {
         camera.channels.push_back({.name = name,
-                                   .radial_shift_px = function_of(profile, "chromatic_shift_" + name + "_px", 0.0),
-                                   .vignetting = function_of(profile, "vignetting_" + name, 1.0)});
+                                   .radial_shift_px = function_of(profile, kQuantities.chromatic_shift.key(name), 0.0),
+                                   .vignetting = function_of(profile, kQuantities.vignetting.key(name), 1.0)});
     }
     if (traits.blur_px) {
         camera.blur_px = std::sqrt(std::max(*traits.blur_px * *traits.blur_px - kPixelBox_px2, 0.0));
@@ -116,10 +116,6 @@ std::vector<Picture> simulated_pictures(const MeasureInput& input, const Profile
     return pictures;
 }
 
-CurveFloor floor_of(const CurveDifference& difference) {
-    return {.rms = difference.rms, .largest = difference.largest, .largest_at = difference.largest_at};
-}
-
 void add_points(SelfTest& result, const MeasureInput& input, const Profile& truth, const Profile& again) {
     std::map<std::string, Pose> poses;
     for (const ProfileView& view : truth.views) {
@@ -146,12 +142,6 @@ void add_points(SelfTest& result, const MeasureInput& input, const Profile& trut
     }
 }
 
-// Whether the simulated pictures have the curve that was measured: their blur is one Gaussian, which has another MTF
-// and is the same all over the picture.
-bool is_simulated(const std::string& curve) {
-    return !curve.starts_with("mtf50_") && !curve.starts_with("best_focus_");
-}
-
 }  // namespace
 
 SelfTest self_test(const MeasureInput& input, const Profile& profile) {
@@ -168,13 +158,15 @@ SelfTest self_test(const MeasureInput& input, const Profile& profile) {
     result.reprojection_rms_px = again.geometry->reprojection_rms_px;
     result.focal_length_px =
         std::abs(focal_length_px(again.geometry->model) - focal_length_px(profile.geometry->model));
-    if (const auto radial = radial_difference_px(again, profile)) {
-        result.curves["radial_px"] = floor_of(*radial);
-    }
+    const auto add = [&](const std::string& curve) {
+        if (const auto apart = difference(again, profile, curve)) {
+            result.curves[curve] = {.rms = apart->rms, .largest = apart->largest, .largest_at = apart->largest_at};
+        }
+    };
+    add(kQuantities.image_position.key());
     for (const auto& [name, curve] : profile.curves) {
-        const auto apart = is_simulated(name) ? difference(again, profile, name) : std::nullopt;
-        if (apart) {
-            result.curves[name] = floor_of(*apart);
+        if (const auto known = quantity_of(name); !known || !known->quantity.of_blur) {
+            add(name);
         }
     }
     return result;
@@ -182,13 +174,13 @@ SelfTest self_test(const MeasureInput& input, const Profile& profile) {
 
 void add_self_test(Profile& profile, const MeasureInput& input) {
     if (!profile.geometry) {
-        profile.not_measured["self_test"] = "without a geometry there is nothing to simulate";
+        profile.not_measured[part::kSelfTest] = "without a geometry there is nothing to simulate";
         return;
     }
     try {
         profile.self_test = self_test(input, profile);
     } catch (const InputError& e) {
-        profile.not_measured["self_test"] = e.what();
+        profile.not_measured[part::kSelfTest] = e.what();
     }
 }
 

@@ -63,24 +63,21 @@ calibration::Profile profile_of_lens(const std::string& lens, const calibration:
 struct Row {
     findings::Check check;
     bool limited = false;
+    std::string key_suffix;  // of JSON keys of numbers in the check's unit
 };
 
-Row make_row(const std::string& label, const std::string& unit,
+Row make_row(const std::string& label, const calibration::Unit& unit,
              const std::optional<calibration::CurveDifference>& difference, double limit) {
     Row row;
     row.limited = limit > 0.0;
     row.check.id = label;
     row.check.label = label;
-    row.check.unit = unit;
+    row.check.unit = unit.symbol;
+    row.key_suffix = unit.suffix;
     row.check.limit = limit;
     row.check.value = difference ? difference->rms : std::nan("");
     row.check.sigma = difference ? difference->rms_sigma : 0.0;
     return row;
-}
-
-/// The JSON key of a number in this unit, as the contract spells units.
-std::string unit_key(const std::string& unit) {
-    return unit == "%" ? "_percent" : unit == "EV" ? "_ev" : unit == "px" ? "_px" : "";
 }
 
 int report(const std::vector<Row>& rows, const Json& curves, const CompareOptions& options) {
@@ -99,10 +96,10 @@ int report(const std::vector<Row>& rows, const Json& curves, const CompareOption
         }
         const findings::Verdict verdict = check.verdict();
         Json entry{{"quantity", check.label},
-                   {"rms" + unit_key(check.unit), check.value},
-                   {"standard_error" + unit_key(check.unit), check.sigma}};
+                   {"rms" + row.key_suffix, check.value},
+                   {"standard_error" + row.key_suffix, check.sigma}};
         if (row.limited) {
-            entry["limit" + unit_key(check.unit)] = check.limit;
+            entry["limit" + row.key_suffix] = check.limit;
             entry["verdict"] = findings::verdict_name(verdict);
             status = verdict == findings::Verdict::pass ? status : kCheckFailed;
         }
@@ -123,7 +120,7 @@ int report(const std::vector<Row>& rows, const Json& curves, const CompareOption
 int compare_profiles(const calibration::Profile& a, const calibration::Profile& b, const CompareOptions& options) {
     std::vector<Row> rows;
     Json curves;
-    const auto add = [&](const std::string& name, const std::string& unit,
+    const auto add = [&](const std::string& name, const calibration::Unit& unit,
                          const std::optional<calibration::CurveDifference>& found, double limit) {
         rows.push_back(make_row(name, unit, found, limit));
         if (found) {
@@ -139,27 +136,28 @@ int compare_profiles(const calibration::Profile& a, const calibration::Profile& 
     };
     const bool same_camera =
         a.width_px == b.width_px && a.height_px == b.height_px && a.pixel_pitch_um == b.pixel_pitch_um;
-    add("image position", "px", same_camera ? calibration::radial_difference_px(a, b) : std::nullopt,
-        options.position_limit_px);
-    add("distortion_percent", "%", calibration::difference(a, b, "distortion_percent"),
+    using calibration::kQuantities;
+    add(kQuantities.image_position.title(), kQuantities.image_position.unit,
+        same_camera ? calibration::radial_difference_px(a, b) : std::nullopt, options.position_limit_px);
+    const std::string distortion = kQuantities.distortion.key();
+    add(distortion, kQuantities.distortion.unit, calibration::difference(a, b, distortion),
         options.distortion_limit_percent);
     // A channel that one of the two lacks is no failure, as long as another can be held against the limit.
-    const auto add_channels = [&](const std::string& before, const std::vector<std::string>& channels,
-                                  const std::string& after, const std::string& unit, double limit) {
+    const auto add_channels = [&](const calibration::Quantity& quantity, double limit) {
         bool any_found = false;
-        for (const std::string& channel : channels) {
-            const std::string name = fmt::format("{}{}{}", before, channel, after);
+        for (const char channel : quantity.channels) {
+            const std::string name = quantity.key({&channel, 1});
             const auto found = calibration::difference(a, b, name);
-            add(name, unit, found, found ? limit : 0.0);
+            add(name, quantity.unit, found, found ? limit : 0.0);
             any_found = any_found || found;
         }
         if (!any_found && limit > 0.0) {
-            throw InputError(fmt::format("{} and {}: no common {}…{} to hold against its limit", options.a, options.b,
-                                         before, after));
+            throw InputError(fmt::format("{} and {}: no common {} to hold against its limit", options.a, options.b,
+                                         quantity.key("…")));
         }
     };
-    add_channels("vignetting_", {"R", "G", "B", "Y"}, "_ev", "EV", options.vignetting_limit_ev);
-    add_channels("chromatic_shift_", {"R", "B"}, "_px", "px", options.chromatic_limit_px);
+    add_channels(kQuantities.vignetting_ev, options.vignetting_limit_ev);
+    add_channels(kQuantities.chromatic_shift, options.chromatic_limit_px);
     if (std::ranges::none_of(rows, [](const Row& row) { return std::isfinite(row.check.value); })) {
         throw InputError(
             fmt::format("{} and {}: they have no curve in common, expected profiles of pictures in which "

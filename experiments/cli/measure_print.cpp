@@ -10,17 +10,20 @@ namespace lensproof::cli {
 
 namespace {
 
-void print_curve(const calibration::Profile& profile, const std::string& name, const char* label, const char* unit) {
-    const auto found = profile.curves.find(name);
-    if (found == profile.curves.end()) {
+using calibration::kQuantities;
+
+void print_curve(const calibration::Profile& profile, const calibration::Quantity& quantity,
+                 std::string_view channel = "") {
+    const calibration::Curve* found = find_curve(profile, quantity.key(channel));
+    if (found == nullptr) {
         return;
     }
-    const calibration::Curve& curve = found->second;
+    const calibration::Curve& curve = *found;
     const double height =  // some curves are extrapolated beyond what was covered, some end before it
         curve.image_height.empty() ? 0.0 : std::min(curve.covered_image_height, curve.image_height.back());
     if (const std::optional<calibration::Banded> end = calibration::sample(curve, height)) {
-        fmt::print("{:22} {:9.4f} ± {:.4f} {} at image height {:.2f}\n", label, end->value,
-                   (end->upper_95 - end->lower_95) / (2.0 * calibration::k95), unit, height);
+        fmt::print("{:22} {:9.4f} ± {:.4f} {} at image height {:.2f}\n", quantity.title(channel), end->value,
+                   (end->upper_95 - end->lower_95) / (2.0 * calibration::k95), quantity.unit.symbol, height);
     }
 }
 
@@ -60,12 +63,10 @@ void print_sharpness(const calibration::Profile& profile) {
         for (std::size_t i = 0; i < edges.size() && edges.size() < few; ++i) {
             print_edge(channel, edges[i]);
         }
-        for (const char* direction : {"tangential", "sagittal"}) {
-            print_curve(profile, fmt::format("mtf50_{}_{}", direction, channel),
-                        fmt::format("MTF50 {} {}", direction, channel).c_str(), "cycles/px");
-            print_curve(profile, fmt::format("best_focus_{}_{}_mm", direction, channel),
-                        fmt::format("focus {} {}", direction, channel).c_str(), "mm");
-        }
+        print_curve(profile, kQuantities.tangential_mtf50, channel);
+        print_curve(profile, kQuantities.tangential_focus, channel);
+        print_curve(profile, kQuantities.sagittal_mtf50, channel);
+        print_curve(profile, kQuantities.sagittal_focus, channel);
     }
 }
 
@@ -122,10 +123,9 @@ void print_profile(const calibration::Profile& profile) {
     if (profile.geometry && profile.geometry->choice) {
         fmt::print("chosen because: {}\n", profile.geometry->choice->why);
     }
-    print_curve(profile, "distortion_percent", "distortion", "%");
-    for (const char* channel : {"R", "G", "B", "Y"}) {
-        print_curve(profile, fmt::format("vignetting_{}_ev", channel), fmt::format("vignetting {}", channel).c_str(),
-                    "EV");
+    print_curve(profile, kQuantities.distortion);
+    for (const char channel : kQuantities.vignetting_ev.channels) {
+        print_curve(profile, kQuantities.vignetting_ev, {&channel, 1});
     }
     for (const auto& [channel, models] : profile.vignetting_models) {
         if (!models.empty()) {
@@ -133,17 +133,16 @@ void print_profile(const calibration::Profile& profile) {
         }
     }
     for (const auto& [name, terms] : profile.terms) {
-        for (std::size_t i = 0; i < terms.names.size() && name.starts_with("chromatic_shift_mean_"); ++i) {
-            fmt::print("{:22} {:9.4f} ± {:.4f} px, {} of all points\n",
-                       "shift " + name.substr(std::string("chromatic_shift_mean_").size()), terms.values[i],
+        const auto channel = calibration::kMeanShiftTerms.channel_in(name);
+        for (std::size_t i = 0; channel && i < terms.names.size(); ++i) {
+            fmt::print("{:22} {:9.4f} ± {:.4f} px, {} of all points\n", "shift " + *channel, terms.values[i],
                        std::sqrt(terms.covariance[i * (terms.names.size() + 1)]), terms.names[i]);
         }
     }
     for (const auto& [name, curve] : profile.curves) {
-        if (const std::string kind = "chromatic_shift_"; name.starts_with(kind)) {
-            std::string label = name.substr(kind.size(), name.size() - kind.size() - std::string("_px").size());
-            std::replace(label.begin(), label.end(), '_', ' ');
-            print_curve(profile, name, fmt::format("chromatic shift {}", label).c_str(), "px");
+        if (kQuantities.chromatic_shift.key.channel_in(name)) {  // along the radius, and across
+            const auto shift = calibration::quantity_of(name);
+            print_curve(profile, shift->quantity, shift->channel);
         }
     }
     if (profile.self_test) {

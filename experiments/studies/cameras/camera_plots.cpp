@@ -8,6 +8,8 @@ namespace lensproof::studies {
 
 namespace {
 
+using calibration::kQuantities;
+
 /// What is added belongs to the plot begun last.
 class CameraPlots {
   public:
@@ -18,28 +20,29 @@ class CameraPlots {
             camera_.profile.geometry && !calibration::is_perspective(camera_.profile.geometry->model);
         begin({"distortion", "Distortion", "against f·tan θ, f being the slope on the axis", "distortion", "%"});
         if (!is_fisheye) {
-            add_measured("distortion_percent");
+            add_measured(kQuantities.distortion.key());
         }
         begin({"distortion-fisheye", "Distortion of fisheyes", "against f·θ, f being the slope on the axis",
                "distortion", "%"});
         if (is_fisheye) {
-            add_measured("distortion_equidistant_percent");
+            add_measured(kQuantities.equidistant_distortion.key());
         }
         begin({"distortion-difference", "Image position: measured minus traced",
                "radial distance of the image of one direction", "difference", "px", limits_.distortion_largest_px});
-        add_difference("radial_px");
+        add_difference(kQuantities.image_position.key());
 
         begin({"vignetting", "Vignetting", "light relative to the axis, green (grey photos: their one channel)",
                "relative illumination", "EV"});
         const auto& curves = camera_.profile.curves;
-        const bool is_grey = curves.contains("vignetting_Y_ev") && !curves.contains("vignetting_G_ev");
-        add_measured(is_grey ? "vignetting_Y_ev" : "vignetting_G_ev");
+        const std::string green = kQuantities.vignetting_ev.key("G");
+        const std::string grey = kQuantities.vignetting_ev.key("Y");
+        add_measured(curves.contains(grey) && !curves.contains(green) ? grey : green);
         begin({"vignetting-difference", "Vignetting: measured minus traced",
                "relative illumination, as a share of the axis", "difference", "%", limits_.vignetting_percent});
-        add_difference("vignetting_G", 100.0);
+        add_difference(kQuantities.vignetting.key("G"), 100.0);
 
         for (const auto& [channel, colour] : {std::pair{"R", "red"}, std::pair{"B", "blue"}}) {
-            const std::string curve = fmt::format("chromatic_shift_{}_px", channel);
+            const std::string curve = kQuantities.chromatic_shift.key(channel);
             begin({fmt::format("chromatic-{}", colour), fmt::format("Chromatic shift of {}", colour),
                    fmt::format("radial position of {} minus green", colour), "shift", "px"});
             add_measured(curve);
@@ -51,10 +54,10 @@ class CameraPlots {
 
         begin({"sharpness", "Sharpness", "MTF50 along the radius (tangential) and across (sagittal), green", "MTF50",
                "cycles/px"});
-        add_both_directions("mtf50", "");
+        add_both_directions(kQuantities.tangential_mtf50, kQuantities.sagittal_mtf50);
         begin({"field-curvature", "Field curvature", "where the focus has to stand for the sharpest picture, green",
                "focus", "mm"});
-        add_both_directions("best_focus", "_mm");
+        add_both_directions(kQuantities.tangential_focus, kQuantities.sagittal_focus);
         return std::move(plots_);
     }
 
@@ -70,18 +73,18 @@ class CameraPlots {
     /// And what is traced of it.
     void add_measured(const std::string& curve, const std::string& suffix = "") {
         const std::string label = camera_.subject.id + suffix;
-        const auto found = camera_.profile.curves.find(curve);
-        if (found != camera_.profile.curves.end()) {
-            add(label, "measured", found->second, rms_floor(camera_.profile, curve));
+        if (const calibration::Curve* found = find_curve(camera_.profile, curve)) {
+            add(label, "measured", *found, rms_floor(camera_.profile, curve));
         }
-        if (camera_.traced && camera_.traced->curves.contains(curve)) {
-            add(label + ", traced", "reference", camera_.traced->curves.at(curve), std::nullopt);
+        if (const calibration::Curve* found = camera_.traced ? find_curve(*camera_.traced, curve) : nullptr) {
+            add(label + ", traced", "reference", *found, std::nullopt);
         }
     }
 
     /// Measured minus traced, times `scale`.
     void add_difference(const std::string& curve, double scale = 1.0) {
-        auto difference = camera_.traced ? difference_in(curve, camera_.profile, *camera_.traced) : std::nullopt;
+        auto difference =
+            camera_.traced ? calibration::difference(camera_.profile, *camera_.traced, curve) : std::nullopt;
         if (!difference) {
             return;
         }
@@ -96,13 +99,13 @@ class CameraPlots {
         add(camera_.subject.id, "difference", scaled, floor);
     }
 
-    /// Tangential and sagittal, in green (grey photos: their one channel): `prefix`, direction, channel, `suffix`.
-    void add_both_directions(const std::string& prefix, const std::string& suffix) {
-        for (const char* direction : {"tangential", "sagittal"}) {
-            for (const char* channel : {"G", "Y"}) {
-                add_measured(fmt::format("{}_{}_{}{}", prefix, direction, channel, suffix),
-                             fmt::format(", {}", direction));
-            }
+    /// In green (grey photos: their one channel).
+    void add_both_directions(const calibration::Quantity& tangential, const calibration::Quantity& sagittal) {
+        for (const char* channel : {"G", "Y"}) {
+            add_measured(tangential.key(channel), ", tangential");
+        }
+        for (const char* channel : {"G", "Y"}) {
+            add_measured(sagittal.key(channel), ", sagittal");
         }
     }
 

@@ -18,10 +18,6 @@ struct ClosedLoopLimits {
     std::optional<double> chromatic_shift_px;  // red and blue against green, largest over the covered heights
 };
 
-/// `a` minus `b` in that curve of calibration/profile/profile.h, or in "radial_px", where they image a direction.
-std::optional<calibration::CurveDifference> difference_in(const std::string& curve, const calibration::Profile& a,
-                                                          const calibration::Profile& b);
-
 /// The checks that `limits` ask for. A curve that was not measured makes its check inconclusive.
 std::vector<findings::Check> closed_loop_checks(const std::string& subject, const std::string& label,
                                                 const calibration::Profile& measured,

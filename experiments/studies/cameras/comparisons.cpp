@@ -11,22 +11,6 @@ namespace lensproof::studies {
 
 namespace {
 
-/// Curves that two subjects may have in common: calibration/profile/profile.h's, and positions in pixels.
-const std::vector<std::string> kComparedCurves = {"radial_px",
-                                                  "field_angle_deg",
-                                                  "distortion_percent",
-                                                  "distortion_equidistant_percent",
-                                                  "vignetting_R",
-                                                  "vignetting_G",
-                                                  "vignetting_B",
-                                                  "vignetting_Y",
-                                                  "vignetting_R_ev",
-                                                  "vignetting_G_ev",
-                                                  "vignetting_B_ev",
-                                                  "vignetting_Y_ev",
-                                                  "chromatic_shift_R_px",
-                                                  "chromatic_shift_B_px"};
-
 struct Comparison {
     std::string of;
     std::string with;
@@ -44,7 +28,7 @@ Comparison read_one(TomlTable& table, const std::set<std::string>& cameras) {
                        fmt::format("is \"{}\", which is neither a simulation nor a photo set of this file", *name));
         }
     }
-    comparison.curve = table.choice("curve", kComparedCurves);
+    comparison.curve = table.choice("curve", calibration::compared_curves());
     comparison.limit = table.optional_number("limit", kPositive);
     if (table.has("expect")) {
         comparison.expectation = table.choice("expect", {"agrees", "differs"}) == "agrees"
@@ -55,31 +39,25 @@ Comparison read_one(TomlTable& table, const std::set<std::string>& cameras) {
     return comparison;
 }
 
-/// What a curve shows, in words.
-std::string curve_title(const std::string& curve) {
-    if (curve == "radial_px") {
-        return "image position";
-    }
-    std::string title = curve.substr(0, curve.rfind('_'));
-    std::ranges::replace(title, '_', ' ');
-    return title;
+bool is_distortion(const std::string& curve) {
+    return curve == calibration::kQuantities.distortion.key() ||
+           curve == calibration::kQuantities.equidistant_distortion.key();
 }
 
 findings::Check make_check(const Comparison& comparison, const std::optional<calibration::CurveDifference>& difference,
                            std::optional<double> floor) {
-    findings::Check check{
-        .id = fmt::format("{}-{}-{}", comparison.of, comparison.with, comparison.curve),
-        .group = "Simulated lenses against the photographed one",
-        .subject = comparison.of,
-        .label = fmt::format("{} against {}: {}, rms", comparison.of, comparison.with, curve_title(comparison.curve)),
-        .value = std::nan(""),
-        .unit = comparison.curve.ends_with("_percent") ? "%"
-                : comparison.curve.ends_with("_ev")    ? "EV"
-                                                       : "px",
-        .limit = *comparison.limit,
-        .expectation = comparison.expectation,
-        .explanation = "The curve was not measured in both.",
-        .floor = floor};
+    const calibration::ChannelQuantity curve = *calibration::quantity_of(comparison.curve);
+    findings::Check check{.id = fmt::format("{}-{}-{}", comparison.of, comparison.with, comparison.curve),
+                          .group = "Simulated lenses against the photographed one",
+                          .subject = comparison.of,
+                          .label = fmt::format("{} against {}: {}, rms", comparison.of, comparison.with,
+                                               curve.quantity.title(curve.channel)),
+                          .value = std::nan(""),
+                          .unit = curve.quantity.unit.symbol,
+                          .limit = *comparison.limit,
+                          .expectation = comparison.expectation,
+                          .explanation = "The curve was not measured in both.",
+                          .floor = floor};
     if (difference) {
         check.value = difference->rms;
         check.sigma = difference->rms_sigma;
@@ -107,7 +85,7 @@ findings::Findings compare_all(const std::vector<Comparison>& comparisons,
         };
         const calibration::Profile& of = profile(comparison.of);
         const calibration::Profile& with = profile(comparison.with);
-        const auto difference = difference_in(comparison.curve, of, with);
+        const auto difference = calibration::difference(of, with, comparison.curve);
         // Neither measurement knows of the other's error.
         const std::optional<double> one = rms_floor(of, comparison.curve);
         const std::optional<double> other = rms_floor(with, comparison.curve);
@@ -115,7 +93,7 @@ findings::Findings compare_all(const std::vector<Comparison>& comparisons,
         if (comparison.limit) {
             found.checks.push_back(make_check(comparison, difference, floor));
         }
-        if (difference && comparison.curve.ends_with("_percent")) {
+        if (difference && is_distortion(comparison.curve)) {
             plot.series.push_back({.label = comparison.of + " − " + comparison.with,
                                    .subject = comparison.of,
                                    .style = "difference",

@@ -17,6 +17,8 @@ namespace lensproof::studies {
 
 namespace {
 
+using calibration::kQuantities;
+
 constexpr std::array<const char*, 3> kChannels = {"R", "G", "B"};
 constexpr int kGreen = 1;
 
@@ -127,15 +129,15 @@ void add_geometry(const render::Camera& camera, double half_diagonal_mm, calibra
             break;
         }
         const double angle = row->field_angle;
-        append_exact(profile.curves["field_angle_deg"], x, angle / kDegree);
+        append_exact(profile.curves[kQuantities.field_angle.key()], x, angle / kDegree);
         if (angle < 89.0 * kDegree) {
-            append_exact(profile.curves["distortion_percent"], x,
+            append_exact(profile.curves[kQuantities.distortion.key()], x,
                          x > 0.0 ? 100.0 * (r / (focal * std::tan(angle)) - 1.0) : 0.0);
         }
-        append_exact(profile.curves["distortion_equidistant_percent"], x,
+        append_exact(profile.curves[kQuantities.equidistant_distortion.key()], x,
                      x > 0.0 ? 100.0 * (r / (focal * angle) - 1.0) : 0.0);
         for (const int c : {0, 2}) {
-            append_exact(profile.curves[std::string("chromatic_shift_") + kChannels[c] + "_px"], x,
+            append_exact(profile.curves[kQuantities.chromatic_shift.key(kChannels[c])], x,
                          (row->height[c] - row->height[kGreen]) / pitch_mm);
         }
     }
@@ -153,9 +155,8 @@ void add_vignetting(const render::Camera& camera, double half_diagonal_mm, calib
         for (std::size_t c = 0; c < 3; ++c) {
             const double ratio = light[i][c] / light[0][c];
             if (ratio > 0.0) {
-                append_exact(profile.curves[std::string("vignetting_") + kChannels[c]], heights[i], ratio);
-                append_exact(profile.curves[std::string("vignetting_") + kChannels[c] + "_ev"], heights[i],
-                             std::log2(ratio));
+                append_exact(profile.curves[kQuantities.vignetting.key(kChannels[c])], heights[i], ratio);
+                append_exact(profile.curves[kQuantities.vignetting_ev.key(kChannels[c])], heights[i], std::log2(ratio));
             }
         }
     }
