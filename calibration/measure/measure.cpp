@@ -1,5 +1,6 @@
 #include "calibration/measure/measure.h"
 
+#include <algorithm>
 #include <map>
 #include <utility>
 
@@ -21,55 +22,73 @@ struct Geometry {
     std::optional<ModelChoice> choice;
 };
 
-Geometry fit(const MeasureInput& input, const Observations& seen) {
+std::vector<ChartView> charts_in(const Observations& seen) {
+    std::vector<ChartView> charts;
+    for (const PictureObservation& picture : seen.pictures) {
+        if (picture.shows_chart()) {
+            charts.push_back(picture.points);
+        }
+    }
+    return charts;
+}
+
+Geometry fit(const MeasureInput& input, const Observations& seen, const std::vector<ChartView>& charts) {
     GeometryOptions options = input.geometry;
     options.disc_diameter_mm = disc_diameter_mm(input.chart);
     if (input.model) {
         options.model = *input.model;
-        return {fit_geometry(seen.chart_views, seen.width, seen.height, options), std::nullopt};
+        return {fit_geometry(charts, seen.width, seen.height, options), std::nullopt};
     }
-    ChosenGeometry chosen = choose_model(seen.chart_views, seen.width, seen.height, options);
+    ChosenGeometry chosen = choose_model(charts, seen.width, seen.height, options);
     return {std::move(chosen.fit), std::move(chosen.choice)};
 }
 
-void add_geometry(Profile& profile, const Observations& seen, const GeometryFit& geometry) {
+void add_geometry(Profile& profile, Observations& seen, const std::vector<ChartView>& charts,
+                  const GeometryFit& geometry) {
     const double half_diagonal = half_diagonal_px(profile);
-    profile.geometry =
-        ProfileGeometry{.model = geometry.model,
-                        .covariance = geometry.covariance,
-                        .view_standard_error = geometry.view_standard_error,
-                        .reprojection_rms_px = geometry.rms_px,
-                        .views_used = static_cast<int>(geometry.views.size()),
-                        .points_used = geometry.points_used,
-                        .covered_image_height = geometry.covered_radius_px / half_diagonal,
-                        .board = geometry.board,
-                        .uncertainty = uncertainty_map(geometry, seen.chart_views, seen.width, seen.height),
-                        .choice = std::nullopt};
-    std::size_t next = 0;
-    for (ProfileView& view : profile.views) {
-        if (!view.found) {
+    profile.geometry = ProfileGeometry{.model = geometry.model,
+                                       .covariance = geometry.covariance,
+                                       .view_standard_error = geometry.view_standard_error,
+                                       .reprojection_rms_px = geometry.rms_px,
+                                       .views_used = static_cast<int>(geometry.views.size()),
+                                       .points_used = geometry.points_used,
+                                       .covered_image_height = geometry.covered_radius_px / half_diagonal,
+                                       .board = geometry.board,
+                                       .uncertainty = uncertainty_map(geometry, charts, seen.width, seen.height),
+                                       .choice = std::nullopt};
+    auto fitted = geometry.views.begin();
+    for (PictureObservation& picture : seen.pictures) {
+        if (!picture.shows_chart()) {
             continue;
         }
-        const ChartView& measured = seen.chart_views[next];
-        const FittedView& fitted = geometry.views[next];
-        const std::vector<std::optional<Vec2d>>& errors = seen.point_errors_px[next];
-        view.lines = straightness(seen.lines[next], geometry.model);
-        ++next;
-        view.pose = fitted.pose;
-        for (const PointResidual& r : fitted.residuals) {
+        picture.view->lines = straightness(picture.lines, geometry.model);
+        picture.view->pose = fitted->pose;
+        for (const PointResidual& r : fitted->residuals) {
             const auto i = static_cast<std::size_t>(r.index);
-            view.points.push_back(
-                {measured.chart_mm[i], measured.image_px[i], r.measured_minus_model_px, r.used, errors[i]});
+            picture.view->points.push_back({picture.points.chart_mm[i], picture.points.image_px[i],
+                                            r.measured_minus_model_px, r.used, picture.point_errors_px[i]});
         }
+        ++fitted;
     }
     profile.curves[kQuantities.field_angle.key()] = field_angle_curve(geometry, half_diagonal);
     profile.curves[kQuantities.distortion.key()] = rectilinear_distortion_curve(geometry, half_diagonal);
     profile.curves[kQuantities.equidistant_distortion.key()] = equidistant_distortion_curve(geometry, half_diagonal);
 }
 
+// By channel, of the flat fields where there are any, else of the charts' white.
+std::map<std::string, std::vector<LightGroup>> light_in(const Observations& seen) {
+    std::map<std::string, std::vector<LightGroup>> flat_fields;
+    std::map<std::string, std::vector<LightGroup>> whites;
+    for (const PictureObservation& picture : seen.pictures) {
+        for (const auto& [channel, group] : picture.light) {
+            (picture.view ? whites : flat_fields)[channel].push_back(group);
+        }
+    }
+    return flat_fields.empty() ? whites : flat_fields;
+}
+
 void add_vignetting(Profile& profile, const Observations& seen, const Vec2d& centre) {
-    const auto& groups = seen.flat_fields.empty() ? seen.whites : seen.flat_fields;
-    for (const auto& [channel, samples] : groups) {
+    for (const auto& [channel, samples] : light_in(seen)) {
         try {
             Vignetting vignetting = fit_vignetting(samples, centre, half_diagonal_px(profile));
             profile.vignetting_models[channel] = fit_vignetting_models(vignetting);
@@ -89,17 +108,13 @@ void add_vignetting(Profile& profile, const Observations& seen, const Vec2d& cen
 }
 
 // What the charts' white shows of the lamps, now that the vignetting is known.
-void add_light_gradients(Profile& profile, const Observations& seen, const Vec2d& centre) {
-    for (std::size_t v = 0; v < profile.views.size(); ++v) {
-        const auto white = seen.reference_whites.find(v);
-        if (white == seen.reference_whites.end()) {
-            continue;
-        }
-        const auto curve = profile.curves.find(kQuantities.vignetting.key(white->second.first));
-        if (curve != profile.curves.end()) {
-            const auto& [channel, index] = white->second;
-            profile.views[v].traits->light_gradient_per_mm =
-                light_gradient_per_mm(seen.whites.at(channel)[index], curve->second, centre, half_diagonal_px(profile));
+void add_light_gradients(const Profile& profile, Observations& seen, const Vec2d& centre) {
+    for (PictureObservation& picture : seen.pictures) {
+        const auto white = picture.light.find(picture.reference_channel);
+        const Curve* vignetting = find_curve(profile, kQuantities.vignetting.key(picture.reference_channel));
+        if (picture.shows_chart() && white != picture.light.end() && vignetting != nullptr) {
+            picture.view->traits->light_gradient_per_mm =
+                light_gradient_per_mm(white->second, *vignetting, centre, half_diagonal_px(profile));
         }
     }
 }
@@ -109,11 +124,17 @@ void add_chromatic_shifts(Profile& profile, const Observations& seen, const Vec2
         profile.not_measured[part::kChromaticShift] = "the pictures are grey";
         return;
     }
-    if (seen.chromatic_pairs.empty()) {
+    std::map<std::string, std::vector<ChromaticPair>> pairs_in;  // by channel
+    for (const PictureObservation& picture : seen.pictures) {
+        for (const auto& [channel, pairs] : picture.chromatic_pairs) {
+            pairs_in[channel].insert(pairs_in[channel].end(), pairs.begin(), pairs.end());
+        }
+    }
+    if (pairs_in.empty()) {
         profile.not_measured[part::kChromaticShift] = "no chart was found in a picture in colour";
         return;
     }
-    for (const auto& [channel, pairs] : seen.chromatic_pairs) {
+    for (const auto& [channel, pairs] : pairs_in) {
         try {
             add_chromatic_shift(profile, channel_label(channel), pairs, centre);
         } catch (const InputError& e) {
@@ -128,10 +149,11 @@ Profile measure(const MeasureInput& input) {
     if (input.pictures.empty()) {
         throw InputError("measuring " + input.name + ": no pictures given: expected at least one");
     }
-    const Observations seen = observe(input);
-    const bool has_light_or_edges =
-        !seen.flat_fields.empty() || !seen.sharpness.edges.empty() || !seen.sharpness.stars.empty();
-    if (seen.chart_views.empty() && (!seen.views.empty() || !has_light_or_edges)) {
+    Observations seen = observe(input);
+    const std::vector<ChartView> charts = charts_in(seen);
+    const bool is_lit = std::ranges::any_of(seen.pictures, [](const auto& picture) { return !picture.light.empty(); });
+    const bool is_sharp = !seen.sharpness.edges.empty() || !seen.sharpness.stars.empty();
+    if (charts.empty() && (looks_for_charts(seen) || !(is_lit || is_sharp))) {
         throw none_usable(input, seen);
     }
     Profile profile;
@@ -145,24 +167,28 @@ Profile measure(const MeasureInput& input) {
     profile.height_px = seen.height;
     profile.channels = seen.channels;
     profile.pixel_pitch_um = input.pixel_pitch_um;
-    profile.views = seen.views;
-    profile.pictures = seen.pictures;
 
     Vec2d centre{(seen.width - 1) / 2.0, (seen.height - 1) / 2.0};
-    if (seen.chart_views.empty()) {
+    if (charts.empty()) {
         profile.not_measured[part::kGeometry] = shows_star(input)     ? "a Siemens star has but one point"
                                                 : input.edges.empty() ? "there are flat fields only"
                                                                       : "there is no chart";
     } else {
-        Geometry geometry = fit(input, seen);
+        Geometry geometry = fit(input, seen, charts);
         centre = centre_px(geometry.fit.model);
-        add_geometry(profile, seen, geometry.fit);
+        add_geometry(profile, seen, charts, geometry.fit);
         profile.geometry->choice = std::move(geometry.choice);
     }
     add_sharpness(profile, seen.sharpness, centre);
     add_vignetting(profile, seen, centre);
     add_light_gradients(profile, seen, centre);
     add_chromatic_shifts(profile, seen, centre);
+    for (PictureObservation& picture : seen.pictures) {
+        profile.pictures.push_back(std::move(picture.account));
+        if (picture.view) {
+            profile.views.push_back(std::move(*picture.view));
+        }
+    }
     return profile;
 }
 

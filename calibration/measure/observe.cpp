@@ -12,7 +12,7 @@
 namespace lensproof::calibration {
 namespace {
 
-constexpr double kLeastFoundShare = 0.6;  // of the points detected; with fewer the detection itself is doubtful
+constexpr double kLeastFoundFraction = 0.6;  // of the points detected; with fewer the detection itself is doubtful
 
 std::string describe(const scene::Chart& chart) {
     const scene::GridSize grid = scene::feature_grid(chart);
@@ -60,18 +60,53 @@ bool all_channels_alike(const formats::Image& image) {
 std::string too_few(const ChartPoints& refined, const ChartPoints& detected) {
     const int count = count_found(refined);
     const int seen = count_found(detected);
-    return count >= kLeastFoundShare * seen
+    return count >= kLeastFoundFraction * seen
                ? ""
                : "only " + std::to_string(count) + " of " + std::to_string(seen) +
                      " points seen could be measured: too little contrast, clipped, or not this chart";
 }
 
-// What the profile keeps of a picture in which a chart was looked for; adds to `account`.
-void observe_chart(Observations& seen, const formats::Image& image, const Picture& picture, const scene::Chart& chart,
-                   PictureAccount& account) {
-    const std::string& name = picture.name;
-    ProfileView view{.image = name, .found = false, .reason = {}, .traits = {}, .pose = {}, .points = {}};
+// What the fits keep of a chart that was found: its points, and what each channel shows there.
+void observe_channels(Observations& seen, PictureObservation& own, const formats::Image& image, const Picture& picture,
+                      const scene::Chart& chart, const ChartPoints& points) {
+    const int reference = reference_channel(image);
     const std::vector<Vec2d> features = scene::feature_points(chart);
+    own.reference_channel = image.channels[reference];
+    own.lines = line_points(image, reference, points, chart);
+    own.points.name = picture.name;
+    for (std::size_t i = 0; i < features.size(); ++i) {
+        if (points.found[i]) {
+            own.points.chart_mm.push_back(features[i]);
+            own.points.image_px.push_back(points.image_px[i]);
+            own.point_errors_px.push_back(points.standard_error_px[i]);
+        }
+    }
+    const bool grey = all_channels_alike(image);
+    for (int channel = 0; channel < image.channel_count(); ++channel) {
+        const std::string& channel_name = image.channels[channel];
+        if (picture.use_light) {
+            own.light[channel_name] = chart_white_samples(image, channel, points, chart);
+        }
+        if (channel == reference || !grey) {
+            observe_chart_edges(seen.sharpness, image, channel, picture.name, points, chart);
+        }
+        if (channel == reference || grey) {
+            continue;
+        }
+        const ChartPoints other = refine(image, channel, points, chart);
+        for (std::size_t i = 0; i < features.size(); ++i) {
+            if (points.found[i] && other.found[i]) {
+                own.chromatic_pairs[channel_name].push_back({points.image_px[i], other.image_px[i]});
+            }
+        }
+    }
+}
+
+void observe_chart(Observations& seen, PictureObservation& own, const formats::Image& image, const Picture& picture,
+                   const scene::Chart& chart) {
+    ProfileView& view = own.view.emplace();
+    PictureAccount& account = own.account;
+    view.image = picture.name;
     const Detection detection = detect(image, chart);
     const int reference = reference_channel(image);
     const ChartPoints points = detection.found() ? refine(image, reference, detection.points, chart) : ChartPoints{};
@@ -87,49 +122,17 @@ void observe_chart(Observations& seen, const formats::Image& image, const Pictur
     view.found = view.reason.empty();
     account.used = view.found;
     account.reason = view.found ? picture.remark : view.reason;
-    if (view.found && view.traits && is_white_clipped(*view.traits)) {
+    if (!view.found) {
+        return;
+    }
+    if (view.traits && is_white_clipped(*view.traits)) {
         account.reason += std::string(account.reason.empty() ? "" : "; ") +
                           "over-exposed: the chart's white is clipped, so it says nothing of vignetting";
     }
-    if (view.found) {
-        view.numbering = numbering_key(detection.numbering);
-        const std::string open = numbering_in_words(detection.numbering);
-        account.reason += (account.reason.empty() || open.empty() ? "" : "; ") + open;
-        std::vector<std::optional<Vec2d>>& errors = seen.point_errors_px.emplace_back();
-        seen.lines.push_back(line_points(image, reference, points, chart));
-        ChartView own{.name = name, .chart_mm = {}, .image_px = {}};
-        for (std::size_t i = 0; i < features.size(); ++i) {
-            if (points.found[i]) {
-                own.chart_mm.push_back(features[i]);
-                own.image_px.push_back(points.image_px[i]);
-                errors.push_back(points.standard_error_px[i]);
-            }
-        }
-        seen.chart_views.push_back(std::move(own));
-        const bool grey = all_channels_alike(image);
-        for (int channel = 0; channel < image.channel_count(); ++channel) {
-            const std::string& channel_name = image.channels[channel];
-            if (picture.use_light) {
-                if (channel == reference) {
-                    seen.reference_whites[seen.views.size()] = {channel_name, seen.whites[channel_name].size()};
-                }
-                seen.whites[channel_name].push_back(chart_white_samples(image, channel, points, chart));
-            }
-            if (channel == reference || !grey) {
-                observe_chart_edges(seen.sharpness, image, channel, picture.name, points, chart);
-            }
-            if (channel == reference || grey) {
-                continue;
-            }
-            const ChartPoints other = refine(image, channel, points, chart);
-            for (std::size_t i = 0; i < features.size(); ++i) {
-                if (points.found[i] && other.found[i]) {
-                    seen.chromatic_pairs[channel_name].push_back({points.image_px[i], other.image_px[i]});
-                }
-            }
-        }
-    }
-    seen.views.push_back(std::move(view));
+    view.numbering = numbering_key(detection.numbering);
+    const std::string open = numbering_in_words(detection.numbering);
+    account.reason += (account.reason.empty() || open.empty() ? "" : "; ") + open;
+    observe_channels(seen, own, image, picture, chart, points);
 }
 
 // The picture, checked against those before it. Throws InputError for one that is not to be used.
@@ -168,12 +171,15 @@ std::vector<int> channels_that_differ(const formats::Image& image) {
     return channels;
 }
 
-void observe_picture(Observations& seen, const Picture& picture, const MeasureInput& input, PictureAccount& account) {
+void observe_picture(Observations& seen, PictureObservation& own, const Picture& picture, const MeasureInput& input) {
     const formats::Image image = load(seen, picture);
-    const auto [same, is_new] = seen.names_by_pixels.emplace(hash_of_pixels(image), picture.name);
-    if (!is_new) {
-        throw InputError("the same picture as " + same->second);
+    const std::string hash = hash_of_pixels(image);
+    const auto same = std::ranges::find(seen.pictures, hash, &PictureObservation::pixels_hash);
+    if (same != seen.pictures.end()) {
+        throw InputError("the same picture as " + same->account.image);
     }
+    own.pixels_hash = hash;
+    PictureAccount& account = own.account;
     seen.width = image.width;
     seen.height = image.height;
     seen.channels = image.channels;
@@ -188,7 +194,7 @@ void observe_picture(Observations& seen, const Picture& picture, const MeasureIn
         return;
     }
     if (picture.role == PictureRole::chart) {
-        observe_chart(seen, image, picture, input.chart, account);
+        observe_chart(seen, own, image, picture, input.chart);
         return;
     }
     if (picture.role == PictureRole::edges) {
@@ -199,7 +205,7 @@ void observe_picture(Observations& seen, const Picture& picture, const MeasureIn
         return;
     }
     for (int channel = 0; channel < image.channel_count() && picture.use_light; ++channel) {
-        seen.flat_fields[image.channels[channel]].push_back(flat_field_samples(image, channel));
+        own.light[image.channels[channel]] = flat_field_samples(image, channel);
     }
     account.used = picture.use_light;
     account.reason = picture.remark;
@@ -211,30 +217,31 @@ bool shows_star(const MeasureInput& input) {
     return std::holds_alternative<scene::SiemensStar>(input.chart.pattern);
 }
 
+bool looks_for_charts(const Observations& seen) {
+    return std::ranges::any_of(seen.pictures, [](const auto& picture) { return picture.view.has_value(); });
+}
+
 Observations observe(const MeasureInput& input) {
     Observations seen;
     seen.sharpness.focus_position_mm = input.focus_position_mm;
     for (const Picture& picture : input.pictures) {
         const bool is_chart = picture.role == PictureRole::chart && !shows_star(input);
-        PictureAccount account{.image = picture.name,
-                               .role = role_name(picture.role),
-                               .used = false,
-                               .reason = {},
-                               .orientation = picture.orientation};
+        PictureObservation own;
+        own.account = {.image = picture.name,
+                       .role = role_name(picture.role),
+                       .used = false,
+                       .reason = {},
+                       .orientation = picture.orientation};
         try {
-            observe_picture(seen, picture, input, account);
+            observe_picture(seen, own, picture, input);
         } catch (const InputError& e) {
-            account.reason = without_name(e.what(), picture.name);
+            own.account.reason = without_name(e.what(), picture.name);
             if (is_chart) {
-                seen.views.push_back({.image = picture.name,
-                                      .found = false,
-                                      .reason = account.reason,
-                                      .traits = {},
-                                      .pose = {},
-                                      .points = {}});
+                own.view = ProfileView{
+                    .image = picture.name, .reason = own.account.reason, .traits = {}, .pose = {}, .points = {}};
             }
         }
-        seen.pictures.push_back(std::move(account));
+        seen.pictures.push_back(std::move(own));
     }
     return seen;
 }
@@ -242,14 +249,14 @@ Observations observe(const MeasureInput& input) {
 InputError none_usable(const MeasureInput& input, const Observations& seen) {
     constexpr std::size_t kMostNamed = 8;
     const std::size_t count = seen.pictures.size();
-    const std::string what = !seen.views.empty()   ? "no " + describe(input.chart) + " found in any"
-                             : shows_star(input)   ? "no Siemens star measured in any"
-                             : input.edges.empty() ? "no flat field"
-                                                   : "no edge";
+    const std::string what = looks_for_charts(seen) ? "no " + describe(input.chart) + " found in any"
+                             : shows_star(input)    ? "no Siemens star measured in any"
+                             : input.edges.empty()  ? "no flat field"
+                                                    : "no edge";
     std::string text =
         input.name + ": " + what + " of " + std::to_string(count) + (count == 1 ? " picture" : " pictures");
     for (std::size_t i = 0; i < std::min(count, kMostNamed); ++i) {
-        text += (i == 0 ? ": " : "; ") + seen.pictures[i].image + ": " + seen.pictures[i].reason;
+        text += (i == 0 ? ": " : "; ") + seen.pictures[i].account.image + ": " + seen.pictures[i].account.reason;
     }
     return InputError(text + (count > kMostNamed ? "; …" : ""));
 }

@@ -3,7 +3,6 @@
 #include <map>
 #include <optional>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "calibration/chromatic/chromatic_shift.h"
@@ -15,22 +14,27 @@
 
 namespace lensproof::calibration {
 
-/// What is kept of the pictures once they are gone.
+/// What is kept of a picture once it is gone.
+struct PictureObservation {
+    PictureAccount account;
+    std::string pixels_hash;                            // empty where it could not be loaded
+    std::optional<ProfileView> view;                    // where a chart was looked for, and of one that was found:
+    ChartView points;                                   // the features seen,
+    std::vector<std::optional<Vec2d>> point_errors_px;  // their standard errors,
+    std::vector<LinePoints> lines;                      // the points of lines,
+    std::string reference_channel;                      // the channel that geometry is measured in,
+    std::map<std::string, std::vector<ChromaticPair>> chromatic_pairs;  // and by channel where it shows them
+    std::map<std::string, LightGroup> light;  // by channel, of the chart's white or of a flat field
+
+    [[nodiscard]] bool shows_chart() const { return view && view->found; }
+};
+
 struct Observations {
     int width = 0;
     int height = 0;
     std::vector<std::string> channels;
     bool grey = true;  // every picture has one channel, or all channels alike
-    std::vector<PictureAccount> pictures;
-    std::map<std::string, std::string> names_by_pixels;  // the pictures in use, by their pixels' hash
-    std::vector<ProfileView> views;
-    std::vector<ChartView> chart_views;                                  // of the views found,
-    std::vector<std::vector<std::optional<Vec2d>>> point_errors_px;      // their points' standard errors,
-    std::vector<std::vector<LinePoints>> lines;                          // and the points of lines
-    std::map<std::string, std::vector<ChromaticPair>> chromatic_pairs;   // by channel
-    std::map<std::string, std::vector<LightGroup>> flat_fields, whites;  // by channel
-    /// By view: the channel that geometry is measured in, and where among its `whites` the view's stands.
-    std::map<std::size_t, std::pair<std::string, std::size_t>> reference_whites;
+    std::vector<PictureObservation> pictures;
     SharpnessObservations sharpness;
 };
 
@@ -40,6 +44,9 @@ Observations observe(const MeasureInput& input);
 
 /// That no picture does, and why each does not.
 InputError none_usable(const MeasureInput& input, const Observations& seen);
+
+/// Whether a chart was looked for in any picture.
+bool looks_for_charts(const Observations& seen);
 
 /// Whether the chart is a Siemens star, which has no points to measure a camera by.
 bool shows_star(const MeasureInput& input);
