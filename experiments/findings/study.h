@@ -30,7 +30,12 @@ using Study = std::function<Findings(const RunSettings& settings, const RunProgr
 /// An experiment's file while its studies read it.
 struct ExperimentFile {
     TomlTable top;
-    std::set<std::string> cameras{};  // those that are to be measured, for others to refer to
+    std::set<std::string> cameras{};   // those that are to be measured, for others to refer to
+    std::set<std::string> subjects{};  // the ids of all that is reported
+
+    /// Takes an id that `key` makes: files are named by it, and curves and checks refer to it. Throws InputError where
+    /// another table has it.
+    void add_subject(const TomlTable& table, const std::string& key, const std::string& id);
 };
 
 /// Takes a study's tables from the file; an empty function where there are none. Throws InputError naming file, line

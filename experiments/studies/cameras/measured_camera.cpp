@@ -87,6 +87,7 @@ std::string read_camera_name(TomlTable& table, findings::ExperimentFile& file) {
     if (!file.cameras.insert(name).second) {
         table.fail("name", "stands in the file twice");
     }
+    file.add_subject(table, "name", name);
     return name;
 }
 

@@ -15,8 +15,8 @@ constexpr double kWidth = 900.0;
 constexpr double kMargin = 24.0;
 constexpr double kTitle = 26.0;
 
-std::string id_of(const Passage& passage) {
-    return fmt::format("{}-f{}", passage.setting.lens, passage.setting.f_number);
+std::string id_of(const PassageSetting& setting) {
+    return fmt::format("{}-f{}", setting.lens, setting.f_number);
 }
 
 std::string label_of(const Passage& passage) {
@@ -25,9 +25,9 @@ std::string label_of(const Passage& passage) {
 
 findings::Check lost_at_most(const Passage& passage, const std::string& what, const std::string& label, double lost,
                              double sigma, double limit, const std::string& explanation) {
-    return {.id = id_of(passage) + "-" + what,
+    return {.id = id_of(passage.setting) + "-" + what,
             .group = label_of(passage),
-            .subject = id_of(passage),
+            .subject = id_of(passage.setting),
             .label = label,
             .value = 100.0 * lost,
             .sigma = 100.0 * sigma,
@@ -83,7 +83,7 @@ findings::Picture section_drawing(const Passage& passage) {
     draw(0, "Points of the whole rear element", passage.whole_element);
     draw(1, "Points of the pupil of each pixel", passage.pupil);
     const double height = kMargin + 2.0 * panel;
-    return {.name = id_of(passage) + ".svg",
+    return {.name = id_of(passage.setting) + ".svg",
             .caption =
                 "Paths from four heights on the sensor (right) through the section; those that a rim stops "
                 "end there",
@@ -116,7 +116,7 @@ Json passage_json(const Passage& passage) {
 findings::Subject subject_of(const Passage& passage) {
     const auto percent = [](double fraction) { return fmt::format("{:.1f} %", 100.0 * fraction); };
     findings::Subject subject{
-        .id = id_of(passage),
+        .id = id_of(passage.setting),
         .kind = "lens",
         .label = label_of(passage),
         .facts = {{"paths that leave the front, whole rear element", percent(passage.whole_element.mean)},
@@ -184,6 +184,7 @@ findings::Study read_pupil_passage(findings::ExperimentFile& file) {
     std::vector<PassageSetting> wanted;
     for (TomlTable& table : file.top.tables("pupil_passage")) {
         wanted.push_back(read_passage_setting(table));
+        file.add_subject(table, "lens", id_of(wanted.back()));
     }
     if (wanted.empty()) {
         return {};

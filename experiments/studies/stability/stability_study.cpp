@@ -195,6 +195,9 @@ findings::Study read_stability(findings::ExperimentFile& file) {
     const std::vector<std::string> wanted = findings::names_of(*table, "extremes", ids);
     table->finish();
     std::erase_if(extremes, [&](const Extreme& extreme) { return !findings::is_wanted(wanted, extreme.id); });
+    for (const Extreme& extreme : extremes) {
+        file.add_subject(*table, "extremes", extreme.id);
+    }
     return [extremes = std::move(extremes)](const findings::RunSettings& settings,
                                             const findings::RunProgress& progress, const findings::Findings&) {
         std::vector<StabilitySweep> sweeps(extremes.size());

@@ -23,10 +23,24 @@ TEST(Experiment, HoldsStudiesOfAnyKind) {
         return read_experiment(file).studies.size();
     };
     EXPECT_EQ(studies_of(kPassage), 1U);
-    EXPECT_EQ(studies_of("[stability]\nextremes = [\"field\"]\n[measurement_floor]\n" + kPassage + kPassage), 3U);
+    EXPECT_EQ(studies_of("[stability]\nextremes = [\"field\"]\n[measurement_floor]\n" + kPassage +
+                         "[[pupil_passage]]\nlens = \"tessar\"\nf_number = 8.0\n"),
+              3U);
     EXPECT_THROW(studies_of("[stabilitty]\n" + kPassage), InputError);
     EXPECT_TRUE(
         says(complaint_about([&] { studies_of(""); }), "neither [[simulations]] nor [[photos]] nor [stability]"));
+}
+
+// A subject's id names files, and checks refer to it: no two tables may make the same.
+TEST(Experiment, SubjectsHaveIdsOfTheirOwn) {
+    const TestFolder folder;
+    const auto file = folder.path() / "e.toml";
+    const auto complaint = [&](const std::string& tables) {
+        write_file(file, "title = \"t\"\n" + tables);
+        return complaint_about([&] { read_experiment(file); });
+    };
+    EXPECT_NE(complaint(kPassage + kPassage).find("lens: makes a second subject \"tessar-f4\""), std::string::npos)
+        << complaint(kPassage + kPassage);
 }
 
 // Two cameras' curves go into one plot, with the tighter limit; each study's subjects and tables stand after those of
