@@ -238,12 +238,12 @@ std::vector<LatticeSpot> upright(const std::vector<Blob>& blobs, const std::map<
 std::vector<LatticeSpot> find_blob_lattice(const cv::Mat& picture, bool dark, bool is_fine) {
     std::vector<LatticeSpot> best;
     cv::Mat smooth;
-    cv::GaussianBlur(picture, smooth, {}, 1.0);           // noise makes spots too
-    for (const double share : {0.3, 0.15, 0.06, 0.02}) {  // blocks of these shares of the picture's side
-        if (!is_fine && share < 0.1) {
+    cv::GaussianBlur(picture, smooth, {}, 1.0);              // noise makes spots too
+    for (const double fraction : {0.3, 0.15, 0.06, 0.02}) {  // blocks of these fractions of the picture's side
+        if (!is_fine && fraction < 0.1) {
             break;
         }
-        const int block = std::max(7, 2 * static_cast<int>(0.5 * share * std::max(picture.cols, picture.rows)) + 1);
+        const int block = std::max(7, 2 * static_cast<int>(0.5 * fraction * std::max(picture.cols, picture.rows)) + 1);
         std::vector<Blob> blobs = blobs_of(smooth, dark, block);
         if (!is_fine) {
             std::erase_if(blobs, [&](const Blob& blob) { return !is_walled(smooth, blob); });

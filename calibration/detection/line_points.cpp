@@ -13,7 +13,7 @@ namespace {
 
 constexpr double kRamp_px = 2.0;        // over which a piece's ends fade, on either side
 constexpr int kPieces = 3;              // of a line between two crossings
-constexpr double kCrossing = 0.2;       // of the way between crossings, on either side, where the other line is
+constexpr double kCrossing = 0.2;       // of the distance between crossings, on either side, where the other line is
 constexpr double kBlurReach_px = 4.0;   // beyond the line
 constexpr double kPaper_px = 4.0;       // beyond that, for the ground
 constexpr double kMostReach = 0.4;      // of a pitch, to either side
@@ -89,13 +89,13 @@ std::optional<Across> centroid_across(const formats::Image& image, int channel, 
     }
     const Row paper = solver.solve(right);
     // The window ends softly, so that the pixels' grid does not show through.
-    const auto share_at = [&](double t, double s) {
+    const auto fraction_at = [&](double t, double s) {
         return smooth_end((piece.half_length - std::abs(t)) / kRamp_px) * smooth_end(piece.inner - std::abs(s));
     };
     double mass = 0.0;
     double moment = 0.0;
     each(image, channel, piece, [&](double t, double s, double light) {
-        const double missing = share_at(t, s) * (paper.dot(Row(1.0, t, s)) - light);
+        const double missing = fraction_at(t, s) * (paper.dot(Row(1.0, t, s)) - light);
         mass += missing;
         moment += missing * s;
     });
@@ -107,7 +107,7 @@ std::optional<Across> centroid_across(const formats::Image& image, int channel, 
     double squares = 0.0;
     Row by_paper = Row::Zero();
     each(image, channel, piece, [&](double t, double s, double /*light*/) {
-        const double weight = share_at(t, s) * (s - result.off) / mass;
+        const double weight = fraction_at(t, s) * (s - result.off) / mass;
         squares += weight * weight;
         by_paper += weight * Row(1.0, t, s);
     });
@@ -171,8 +171,8 @@ std::vector<LinePoints> line_points(const formats::Image& image, int channel, co
                         .outer = std::min(inner + kPaper_px, kMostReach * length),
                         .width = width};
             for (int j = 0; j < kPieces; ++j) {
-                const double share = kCrossing + (1.0 - 2.0 * kCrossing) * (j + 0.5) / kPieces;
-                piece.middle = {std::lerp(from->x, to->x, share), std::lerp(from->y, to->y, share)};
+                const double fraction = kCrossing + (1.0 - 2.0 * kCrossing) * (j + 0.5) / kPieces;
+                piece.middle = {std::lerp(from->x, to->x, fraction), std::lerp(from->y, to->y, fraction)};
                 if (const auto point = point_on(image, channel, piece)) {
                     line.points.push_back({point->image_px, noise * point->standard_error_px});
                 }

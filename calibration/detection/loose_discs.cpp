@@ -28,7 +28,7 @@ std::optional<Vec2d> locate_disc(const formats::Image& image, int channel, const
                                   {.inner = kInner * radius + kLevelBlur_px,
                                    .outer = kOuter * radius + 2.0 * kLevelBlur_px,
                                    .area_px = std::numbers::pi * radius * radius,
-                                   .least_share = kLeastDiscDarkness});
+                                   .least_fraction = kLeastDiscDarkness});
     const bool is_near = spot && std::hypot(spot->centre_px.x - expected.centre_px.x,
                                             spot->centre_px.y - expected.centre_px.y) <= 0.5 * radius;
     return is_near ? std::optional(spot->centre_px) : std::nullopt;

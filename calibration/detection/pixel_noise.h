@@ -7,8 +7,8 @@
 
 namespace lensproof::calibration {
 
-/// How far around a point its neighbourhood reaches: half the way to the nearest other point that was found, and no
-/// more than tells anything more, px.
+/// How far around a point its neighbourhood reaches: half the distance to the nearest other point that was found, and
+/// no more than tells anything more, px.
 int neighbourhood_px(const ChartPoints& points, std::size_t i);
 
 /// The standard deviation of a pixel's noise, the median over the points found; 0 where there are none.

@@ -101,12 +101,12 @@ std::optional<Lattice> lattice_at(const ChartPoints& points, scene::GridSize gri
 }
 
 // (white − black) / (white + black) of the four squares that meet in a corner, sampled on their diagonals.
-double corner_contrast(const cv::Mat& plane, const Vec2d& corner, const Lattice& lattice, double share) {
+double corner_contrast(const cv::Mat& plane, const Vec2d& corner, const Lattice& lattice, double fraction) {
     double diagonal[2] = {0.0, 0.0};
     for (const int i : {-1, 1}) {
         for (const int j : {-1, 1}) {
-            const double x = corner.x + share * (i * lattice.column_step.x + j * lattice.row_step.x);
-            const double y = corner.y + share * (i * lattice.column_step.y + j * lattice.row_step.y);
+            const double x = corner.x + fraction * (i * lattice.column_step.x + j * lattice.row_step.x);
+            const double y = corner.y + fraction * (i * lattice.column_step.y + j * lattice.row_step.y);
             const int px = std::clamp(static_cast<int>(std::lround(x)), 0, plane.cols - 1);
             const int py = std::clamp(static_cast<int>(std::lround(y)), 0, plane.rows - 1);
             diagonal[i == j ? 0 : 1] += plane.at<float>(py, px);
@@ -180,7 +180,7 @@ std::optional<RefinedPoint> refine_spot(const formats::Image& image, int channel
                             .inner = std::min(0.6 * radius + 0.4 * 0.5, radius + kSpotMargin_px / step_px),
                             .outer = look.is_bright ? std::max(0.5 - kSpotMargin_px / step_px, 0.4) : 0.5,
                             .area_px = std::numbers::pi * radius * radius * std::abs(determinant),
-                            .least_share = kLeastContrast,
+                            .least_fraction = kLeastContrast,
                             .is_bright = look.is_bright};
     const auto spot = std::abs(determinant) > 1.0 ? locate_spot(image, channel, start, window) : std::optional<Spot>();
     return spot ? std::optional(RefinedPoint{spot->centre_px, spot->standard_error_px}) : std::nullopt;

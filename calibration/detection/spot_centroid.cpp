@@ -8,7 +8,7 @@ namespace lensproof::calibration {
 namespace {
 
 constexpr int kRounds = 6;
-constexpr double kMostShare = 1.5;     // of a dark spot; a bright one may outshine its ground by any factor
+constexpr double kMostFraction = 1.5;  // of a dark spot; a bright one may outshine its ground by any factor
 constexpr double kFewestGround = 6.0;  // pixels
 
 using Row = Eigen::Vector3d;
@@ -91,22 +91,22 @@ std::optional<Spot> centroid(const formats::Image& image, int channel, const Vec
                                     std::hypot(window.y_unit_px.x, window.y_unit_px.y));
     // Of a dark spot by the light that falls on it, which the ground shows; black ground shows that too noisily.
     const auto scale_at = [&](double level) { return window.is_bright ? -ground->plane(0) : level; };
-    const auto share_at = [&](double distance) {
+    const auto fraction_at = [&](double distance) {
         return std::clamp((window.inner - distance) * unit_px + 0.5, 0.0, 1.0);
     };
     double mass = 0.0;
     Vec2d moment;
     around.each([&](double dx, double dy, double light, double distance) {
         const double level = ground->plane.dot(Row(1.0, dx, dy));
-        const double share = share_at(distance);
-        if (level > 0.0 && share > 0.0) {
-            const double contrast = share * (level - light) / scale_at(level);
+        const double fraction = fraction_at(distance);
+        if (level > 0.0 && fraction > 0.0) {
+            const double contrast = fraction * (level - light) / scale_at(level);
             mass += contrast;
             moment = {moment.x + contrast * dx, moment.y + contrast * dy};
         }
     });
     const double whole = mass / window.area_px;
-    if (!(whole > window.least_share) || (!window.is_bright && whole > kMostShare)) {
+    if (!(whole > window.least_fraction) || (!window.is_bright && whole > kMostFraction)) {
         return std::nullopt;
     }
     const Vec2d off{moment.x / mass, moment.y / mass};
@@ -117,9 +117,9 @@ std::optional<Spot> centroid(const formats::Image& image, int channel, const Vec
     around.each([&](double dx, double dy, double light, double distance) {
         const Row row(1.0, dx, dy);
         const double level = ground->plane.dot(row);
-        const double share = share_at(distance);
-        if (level > 0.0 && share > 0.0) {
-            const double weight = share / (scale_at(level) * mass);
+        const double fraction = fraction_at(distance);
+        if (level > 0.0 && fraction > 0.0) {
+            const double weight = fraction / (scale_at(level) * mass);
             squares.x += weight * weight * (dx - off.x) * (dx - off.x);
             squares.y += weight * weight * (dy - off.y) * (dy - off.y);
             const double by_level = window.is_bright ? weight : weight * light / level;

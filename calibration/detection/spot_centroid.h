@@ -12,10 +12,10 @@ namespace lensproof::calibration {
 struct SpotWindow {
     Vec2d x_unit_px{1.0, 0.0};
     Vec2d y_unit_px{0.0, 1.0};
-    double inner = 0.0;        // the spot and its blur end here; a pixel at this rim counts by its share inside
-    double outer = 0.0;        // light from inner to outer is the ground's
-    double area_px = 0.0;      // of the spot
-    double least_share = 0.1;  // of the darkness (or brightness) that black (or the ground's double) would have
+    double inner = 0.0;           // the spot and its blur end here; a pixel at this rim counts by its fraction inside
+    double outer = 0.0;           // light from inner to outer is the ground's
+    double area_px = 0.0;         // of the spot
+    double least_fraction = 0.1;  // of the darkness (or brightness) that black (or the ground's double) would have
     bool is_bright = false;
 };
 

@@ -14,7 +14,7 @@ struct StMapOptions {
     /// What the undistorted picture is: this projection at the profile's own focal length (on the axis) and principal
     /// point, its frame as large as the picture's.
     optics::Projection undistorted = optics::Projection::rectilinear;
-    /// How far the undistorted picture may reach beyond its frame on each side, as a share of the frame's width and
+    /// How far the undistorted picture may reach beyond its frame on each side, as a fraction of the frame's width and
     /// height. What would lie farther out is cut.
     double most_overscan = 0.5;
     int threads = 0;  // 0: one a core

@@ -24,7 +24,7 @@ struct ViewNormal {
 };
 
 // What a view adds to the normal equations of the shared parameters that are free, its pose eliminated.
-struct ViewShare {
+struct ViewPart {
     Eigen::MatrixXd normal;
     Eigen::VectorXd gradient;
 };
@@ -86,7 +86,7 @@ std::optional<Eigen::MatrixXd> inverse_of(const Eigen::MatrixXd& normal, const E
 }
 
 // How far the solution moves when each view is left out: δ = (N − N_v)⁻¹ g_v, the least squares' own step.
-std::optional<Eigen::MatrixXd> jackknife(const std::vector<ViewShare>& views, const Eigen::MatrixXd& reduced,
+std::optional<Eigen::MatrixXd> jackknife(const std::vector<ViewPart>& views, const Eigen::MatrixXd& reduced,
                                          const Eigen::VectorXd& size) {
     Eigen::MatrixXd steps(reduced.rows(), static_cast<Eigen::Index>(views.size()));
     for (std::size_t v = 0; v < views.size(); ++v) {
@@ -115,7 +115,7 @@ std::optional<BundleInformation> information(const PointBundle& bundle, const Bu
     Eigen::MatrixXd reduced = Eigen::MatrixXd::Zero(n, n);
     BundleInformation result;
     result.shared = count;
-    std::vector<ViewShare> shares;
+    std::vector<ViewPart> parts;
     for (std::size_t v = 0; v < bundle.views.size(); ++v) {
         const ViewNormal own = view_normal(bundle, state, intrinsics, v);
         const Eigen::Matrix<double, 6, 1> size = own.pose.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
@@ -125,9 +125,9 @@ std::optional<BundleInformation> information(const PointBundle& bundle, const Bu
         const Eigen::MatrixXd own_mixed = own.mixed(free, Eigen::all);
         const Eigen::MatrixXd own_shared = own.shared(free, free);
         normal += own_shared;
-        shares.push_back({own_shared - own_mixed * inverse * own_mixed.transpose(),
-                          own.shared_gradient(free) - own_mixed * inverse * own.pose_gradient});
-        reduced += shares.back().normal;
+        parts.push_back({own_shared - own_mixed * inverse * own_mixed.transpose(),
+                         own.shared_gradient(free) - own_mixed * inverse * own.pose_gradient});
+        reduced += parts.back().normal;
         BundleInformation::View view;
         Eigen::Map<Matrix6>(view.pose_covariance.data()) = inverse;
         view.pose_follows.resize(static_cast<std::size_t>(6) * count);
@@ -145,7 +145,7 @@ std::optional<BundleInformation> information(const PointBundle& bundle, const Bu
         return std::nullopt;
     }
     covariance(free, free) = *inverse;
-    if (const auto scatter = shares.size() >= kFewestViews ? jackknife(shares, reduced, size) : std::nullopt) {
+    if (const auto scatter = parts.size() >= kFewestViews ? jackknife(parts, reduced, size) : std::nullopt) {
         result.view_covariance.assign(result.shared_covariance.size(), 0.0);
         Eigen::Map<RowMajor>(result.view_covariance.data(), count, count)(free, free) = *scatter;
     }

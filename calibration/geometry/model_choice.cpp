@@ -172,12 +172,12 @@ class Choice {
         std::vector<Vec2d> points;
         for (const double x : {0.0, width_ - 1.0}) {
             for (const double y : {0.0, height_ - 1.0}) {
-                double share = 1.0;
+                double fraction = 1.0;
                 const auto at = [&] {
-                    return Vec2d{centre.x + share * (x - centre.x), centre.y + share * (y - centre.y)};
+                    return Vec2d{centre.x + fraction * (x - centre.x), centre.y + fraction * (y - centre.y)};
                 };
-                while (share > 0.1 && !unproject(model, at())) {
-                    share -= 0.02;
+                while (fraction > 0.1 && !unproject(model, at())) {
+                    fraction -= 0.02;
                 }
                 points.push_back(at());
             }

@@ -184,8 +184,8 @@ Blocks blocks_of(const std::vector<ShadingSample>& samples) {
         high = {std::max(high.x, sample.pixel_px.x), std::max(high.y, sample.pixel_px.y)};
     }
     const auto index = [](double value, double least, double most) {
-        const double share = most > least ? (value - least) / (most - least) : 0.0;
-        return std::min(static_cast<int>(share * kBlockSide), kBlockSide - 1);
+        const double fraction = most > least ? (value - least) / (most - least) : 0.0;
+        return std::min(static_cast<int>(fraction * kBlockSide), kBlockSide - 1);
     };
     Blocks blocks;
     for (const ShadingSample& sample : samples) {

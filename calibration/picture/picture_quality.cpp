@@ -12,7 +12,7 @@ namespace lensproof::calibration {
 namespace {
 
 constexpr double kEdgeWidth = 2.563;  // from 10 % to 90 % of a Gaussian's edge, in its standard deviations
-constexpr double kWidestEdge_share = 0.25;
+constexpr double kWidestEdge_fraction = 0.25;
 constexpr float kFullScale = 0.998F;         // 8-bit 255, and half a step below it in the light
 constexpr double kMostClipped = 0.3;         // of a picture
 constexpr double kDarkest = 0.02;            // of full scale, what the brightest parts should reach
@@ -35,12 +35,12 @@ std::string too_blurred(const PictureTraits& traits, const ChartPoints& points, 
         }
     }
     const double width_px = kEdgeWidth * *traits.blur_px;
-    const double share = steps.empty() ? 0.0 : width_px / median(steps);
-    if (share <= kWidestEdge_share) {
+    const double fraction = steps.empty() ? 0.0 : width_px / median(steps);
+    if (fraction <= kWidestEdge_fraction) {
         return "";
     }
     return fmt::format("blurred: edges are {:.1f} px wide, {:.0f} % of the distance between the chart's points",
-                       width_px, 100.0 * share);
+                       width_px, 100.0 * fraction);
 }
 
 bool is_white_clipped(const PictureTraits& traits) {

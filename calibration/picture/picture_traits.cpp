@@ -75,8 +75,8 @@ std::optional<PictureTraits> picture_traits(const formats::Image& image, int cha
     for (const Window& window : windows) {
         const double contrast = window.white - window.black;
         if (contrast > kAboveNoise * traits.noise && window.steepest > kAboveNoise * traits.noise) {
-            const double share = std::min(window.steepest / contrast, 1.0 - 1e-6);
-            blurs.push_back(1.0 / (std::numbers::sqrt2 * boost::math::erf_inv(share)));
+            const double steepest_of_contrast = std::min(window.steepest / contrast, 1.0 - 1e-6);
+            blurs.push_back(1.0 / (std::numbers::sqrt2 * boost::math::erf_inv(steepest_of_contrast)));
         }
     }
     if (2 * blurs.size() > windows.size()) {

@@ -22,11 +22,10 @@ struct PictureTraits {
     std::optional<Vec2d> light_gradient_per_mm = std::nullopt;
 };
 
-/// Tones are the 5th and the 95th percentile of the pixels nearer to a point than half the way to the next one. Noise
-/// is `pixel_noise` (calibration/detection/pixel_noise.h). Blur follows from the
-/// steepest pixels there: across an edge of a Gaussian's blur σ between tones that are C apart, two pixels that are 2
-/// px apart differ by up to C erf(1 / √2 σ). Noise and blur
-/// are within a quarter for σ from 0.4 to 2.5 px and points 30 px apart
+/// Tones are the 5th and the 95th percentile of the pixels nearer to a point than half the distance to the next one.
+/// Noise is `pixel_noise` (calibration/detection/pixel_noise.h). Blur follows from the steepest pixels there: across an
+/// edge of a Gaussian's blur σ between tones that are C apart, two pixels that are 2 px apart differ by up to C erf(1 /
+/// √2 σ). Noise and blur are within a quarter for σ from 0.4 to 2.5 px and points 30 px apart
 /// (tests/calibration/self_test/self_test_test.cpp).
 ///
 /// None when no point was found.

@@ -14,7 +14,7 @@ constexpr double kShortestHalfLength_px = 8.0;
 constexpr double kNarrowestHalfWidth_px = 3.0;
 constexpr double kLeastContrast = 0.1;  // (bright − dark) / (bright + dark)
 constexpr double kClippedShare = 0.01;
-constexpr double kCutNoise = 0.02;  // zeros among this share and its complement: noise cut at black
+constexpr double kCutNoise = 0.02;  // zeros among this fraction and its complement: noise cut at black
 constexpr double kAlignmentBin_px = 0.5;
 constexpr int kIterations = 20;
 constexpr double kSettled_px = 1e-4;
@@ -187,8 +187,8 @@ EdgeProfile edge_profile(const std::vector<EdgePixel>& pixels, double half_width
         place[k] /= profile.count[k];
         for (std::size_t i = before ? *before + 1 : 0; i < k; ++i) {
             const std::size_t from = before.value_or(k);
-            const double share = before ? static_cast<double>(i - from) / static_cast<double>(k - from) : 0.0;
-            profile.mean[i] = std::lerp(profile.mean[from], profile.mean[k], share);
+            const double fraction = before ? static_cast<double>(i - from) / static_cast<double>(k - from) : 0.0;
+            profile.mean[i] = std::lerp(profile.mean[from], profile.mean[k], fraction);
         }
         before = k;
     }

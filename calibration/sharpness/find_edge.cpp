@@ -88,8 +88,8 @@ std::variant<EdgeRegion, EdgeRefusal> find_edge(const formats::Image& image, int
     const double half_width_there = std::min(reach(rectangle, middle, normal), kWidestHalfWidth_px);
     const double whole = reach(rectangle, middle, along);
     EdgeRegion best;
-    for (double share = 0.5; share <= 1.0; share += 0.02) {
-        const double half_length = share * whole;
+    for (double fraction = 0.5; fraction <= 1.0; fraction += 0.02) {
+        const double half_length = fraction * whole;
         double half_width = half_width_there;
         for (const double end : {-half_length, half_length}) {
             half_width =

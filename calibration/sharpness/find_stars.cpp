@@ -18,7 +18,7 @@ constexpr double kSearchSide_px = 800.0;  // larger pictures vote in a copy of t
 constexpr double kSteep = 0.2;            // of the steepest gradients
 constexpr int kMostVoters = 12000;
 constexpr int kMostCandidates = 6;
-constexpr double kNear_share = 0.03;          // of the copy's side, around a candidate that was tried
+constexpr double kNear_fraction = 0.03;       // of the copy's side, around a candidate that was tried
 constexpr double kRadiusStep = 1.04;          // from circle to circle
 constexpr double kFewestAcrossSector = 1.6;   // of a sector on the smallest circle
 constexpr double kHysteresis = 0.15;          // of a circle's contrast
@@ -245,7 +245,7 @@ std::variant<std::vector<StarMap>, StarRefusal> find_stars(const formats::Image&
             break;
         }
         auto found = star_around(plane, {(peak.x + 0.5) * scale_x - 0.5, (peak.y + 0.5) * scale_y - 0.5}, star);
-        double covered = kNear_share * std::max(sum.cols, sum.rows);
+        double covered = kNear_fraction * std::max(sum.cols, sum.rows);
         if (const auto* map = std::get_if<StarMap>(&found)) {
             stars.push_back(*map);
             covered = map->radius_px / scale_x;

@@ -18,10 +18,10 @@ constexpr int kMostPairs = 4;
 constexpr double kOutlierSigmas = 5.0;
 constexpr double kRowsPerParameter = 3.0;
 constexpr double kLeastRelativeError = 0.005;  // of 1/MTF50²: prints are no better
-constexpr double kLeastShareOfBest = 1.0 / 3.0;
+constexpr double kLeastFractionOfBest = 1.0 / 3.0;
 constexpr double kLeastVertexSigmas = 3.0;  // of the parabola's opening
 
-// An edge as a row: image height, share of the tangential blur, and 1/MTF50² with its error.
+// An edge as a row: image height, fraction of the tangential blur, and 1/MTF50² with its error.
 struct BlurRow {
     double height = 0.0;
     double tangential = 0.0;  // cos² φ
@@ -238,7 +238,7 @@ std::vector<BlurRow> near_focus(const std::vector<BlurRow>& rows) {
     }
     std::vector<BlurRow> kept;
     for (const BlurRow& row : rows) {
-        if (row.value <= least[band(row)] / (kLeastShareOfBest * kLeastShareOfBest)) {
+        if (row.value <= least[band(row)] / (kLeastFractionOfBest * kLeastFractionOfBest)) {
             kept.push_back(row);
         }
     }

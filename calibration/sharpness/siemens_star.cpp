@@ -76,9 +76,9 @@ std::optional<Paper> paper_of(const std::vector<StarPixel>& pixels) {
     std::ranges::sort(means);
     const std::size_t middle = means.size() / 2;
     paper.light.value = means.size() % 2 == 1 ? means[middle] : 0.5 * (means[middle - 1] + means[middle]);
-    const double share = std::sqrt(0.5 * std::numbers::pi) / static_cast<double>(means.size());  // a median's error
+    const double weight = std::sqrt(0.5 * std::numbers::pi) / static_cast<double>(means.size());  // a median's error
     for (std::size_t i = 0; i < sum.size(); ++i) {
-        paper.light.of_wedge[i] = count[i] > 0.0 ? share * (sum[i] / count[i] - paper.light.value) : 0.0;
+        paper.light.of_wedge[i] = count[i] > 0.0 ? weight * (sum[i] / count[i] - paper.light.value) : 0.0;
     }
     return paper;
 }
@@ -98,9 +98,9 @@ StarEstimate contrast_of(const std::vector<StarModulation>& bins, const Paper& p
     StarEstimate level;
     for (std::size_t i = 0; i < bins.size(); ++i) {
         const double r = bins[i].radius_px / paper.radius_px;
-        const double share = r * r * at_paper.dot(rows[i]);
-        level.value += share * bins[i].level.value;
-        add(level.of_wedge, share, bins[i].level.of_wedge);
+        const double weight = r * r * at_paper.dot(rows[i]);
+        level.value += weight * bins[i].level.value;
+        add(level.of_wedge, weight, bins[i].level.of_wedge);
     }
     StarEstimate contrast{.value = paper.light.value / level.value - 1.0, .of_wedge = {}};
     add(contrast.of_wedge, 1.0 / level.value, paper.light.of_wedge);
@@ -136,7 +136,7 @@ std::optional<MtfFrequency> falls_to(const std::vector<MtfBin>& bins, double lev
         return std::nullopt;
     }
     double at = 0.5 * (bins[below - 1].cycles_per_px + bins[below].cycles_per_px);
-    Eigen::VectorXd shares;
+    Eigen::VectorXd weights;
     std::vector<std::size_t> around;
     double slope = 0.0;
     for (int step = 0; step < 8; ++step) {
@@ -160,12 +160,12 @@ std::optional<MtfFrequency> falls_to(const std::vector<MtfBin>& bins, double lev
             x.push_back(bins[i].cycles_per_px);
             weight.push_back(1.0);
         }
-        shares = quadratic_weights(x, weight, at, false);
+        weights = quadratic_weights(x, weight, at, false);
         const Eigen::VectorXd slopes = quadratic_weights(x, weight, at, true);
         double value = 0.0;
         slope = 0.0;
         for (std::size_t k = 0; k < around.size(); ++k) {
-            value += shares(static_cast<Eigen::Index>(k)) * bins[around[k]].mtf.value;
+            value += weights(static_cast<Eigen::Index>(k)) * bins[around[k]].mtf.value;
             slope += slopes(static_cast<Eigen::Index>(k)) * bins[around[k]].mtf.value;
         }
         if (!(slope < 0.0)) {
@@ -175,7 +175,7 @@ std::optional<MtfFrequency> falls_to(const std::vector<MtfBin>& bins, double lev
     }
     StarWedges total{};
     for (std::size_t k = 0; k < around.size(); ++k) {
-        add(total, shares(static_cast<Eigen::Index>(k)) / slope, bins[around[k]].mtf.of_wedge);
+        add(total, weights(static_cast<Eigen::Index>(k)) / slope, bins[around[k]].mtf.of_wedge);
     }
     const double error = std::sqrt(variance(total));
     const double half = student_95(kStarWedges - 1.0) * error;

@@ -152,8 +152,9 @@ SegmentResiduals segment_residuals(const AlignedEdge& edge, const std::vector<Ed
     std::vector<std::vector<int>> pixels(count, std::vector<int>(bins, 0));
     for (std::size_t i = 0; i < even.size(); ++i) {
         const EdgePixel& p = even[i];
-        const double share = 0.5 * (1.0 + p.along / edge.half_length_px);
-        const std::size_t segment = std::min(count - 1, static_cast<std::size_t>(share * static_cast<double>(count)));
+        const double fraction = 0.5 * (1.0 + p.along / edge.half_length_px);
+        const std::size_t segment =
+            std::min(count - 1, static_cast<std::size_t>(fraction * static_cast<double>(count)));
         if (const int bin = profile.bin(p.distance); bin >= 0) {
             const auto k = static_cast<std::size_t>(bin);
             const double expected = profile.mean[k] + profile.slope(k) * (p.distance - profile.middle(k));
@@ -171,12 +172,12 @@ SegmentResiduals segment_residuals(const AlignedEdge& edge, const std::vector<Ed
             }
         }
     }
-    // A bin's mean follows its own pixels, a segment's residuals are too small by its share of them (Bell & McCaffrey
-    // 2002). At a few degrees one segment can hold a quarter of a bin.
+    // A bin's mean follows its own pixels, a segment's residuals are too small by its fraction of them (Bell &
+    // McCaffrey 2002). At a few degrees one segment can hold a quarter of a bin.
     for (std::size_t s = 0; s < count; ++s) {
         for (std::size_t k = 0; k < bins; ++k) {
-            const double share = static_cast<double>(pixels[s][k]) / profile.count[k];
-            result.of_bin[s][k] /= std::sqrt(std::max(1.0 - share, kLeastFreedom));
+            const double fraction = static_cast<double>(pixels[s][k]) / profile.count[k];
+            result.of_bin[s][k] /= std::sqrt(std::max(1.0 - fraction, kLeastFreedom));
         }
     }
     return result;

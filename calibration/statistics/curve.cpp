@@ -29,8 +29,8 @@ std::optional<Banded> sample(const Curve& curve, double image_height) {
     const auto upper = std::lower_bound(heights.begin(), heights.end(), image_height) - heights.begin();
     const auto lower = std::max<std::ptrdiff_t>(upper - 1, 0);
     const double span = heights[upper] - heights[lower];
-    const double share = span > 0.0 ? (image_height - heights[lower]) / span : 0.0;
-    const auto between = [&](const std::vector<double>& v) { return std::lerp(v[lower], v[upper], share); };
+    const double fraction = span > 0.0 ? (image_height - heights[lower]) / span : 0.0;
+    const auto between = [&](const std::vector<double>& v) { return std::lerp(v[lower], v[upper], fraction); };
     return Banded{between(curve.value), between(curve.lower_95), between(curve.upper_95)};
 }
 

@@ -66,7 +66,7 @@ std::vector<Detector> detectors() {
 /// What is varied_pictures in a sweep, and how it enters the simulation.
 struct VariedPictures {
     PictureSweep of;
-    double tilt_share = 0.0;  // 1: the value is the tilt
+    double tilt_fraction = 0.0;  // 1: the value is the tilt
 };
 
 /// Those of pictures, and the chart's tilt.
@@ -81,7 +81,7 @@ std::vector<VariedPictures> varied_pictures() {
                             .unit = "°",
                             .values = {0.0, 15.0, 30.0, 45.0, 55.0},
                             .apply = [](double, calibration::SimulatedCamera&) {}};
-    all.insert(all.begin() + 2, {.of = tilt, .tilt_share = 1.0});
+    all.insert(all.begin() + 2, {.of = tilt, .tilt_fraction = 1.0});
     return all;
 }
 
@@ -211,7 +211,7 @@ MeasurementFloor measure_detectors(const FloorSettings& settings, std::uint64_t 
             const VariedPictures& what = sweeps[job.sweep];
             const double value = what.of.values[job.value];
             what.of.apply(value, camera);
-            const PoseWish wish{.tilt_deg = std::lerp(kUsualTilt_deg, value, what.tilt_share)};
+            const PoseWish wish{.tilt_deg = std::lerp(kUsualTilt_deg, value, what.tilt_fraction)};
             // The same poses and noise at every value and for every chart, so that curves differ by these alone.
             const auto own = static_cast<std::uint32_t>(seed * 1000U + static_cast<std::uint64_t>(job.picture));
             results[static_cast<std::size_t>(i)] = look(all[job.detector], camera, wish, own);

@@ -50,9 +50,9 @@ StabilityCase tangent_case(double x, std::mt19937_64& random) {
     return {lens_of({{.radius = kRadius, .thickness = 12.0, .n = kIndex}, {.thickness = 1.0}}), rays};
 }
 
-StabilityCase hemisphere_case(double share, std::mt19937_64& random) {
-    return plano({.radius = kRadius, .thickness = 12.0, .n = kIndex, .semi_diameter = share * kRadius},
-                 random_rays(share * kRadius, 0.5, random));
+StabilityCase hemisphere_case(double fraction, std::mt19937_64& random) {
+    return plano({.radius = kRadius, .thickness = 12.0, .n = kIndex, .semi_diameter = fraction * kRadius},
+                 random_rays(fraction * kRadius, 0.5, random));
 }
 
 StabilityCase conic_case(double conic, std::mt19937_64& random) {

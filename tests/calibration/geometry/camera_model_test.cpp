@@ -33,12 +33,12 @@ TEST(CalibrationCameraModel, UnprojectInvertsProject) {
     const double last_angle[] = {35.0 * kDegree, 110.0 * kDegree};
     for (int m = 0; m < 2; ++m) {
         for (double azimuth = 0.0; azimuth < 6.2; azimuth += 0.7) {
-            for (double share = 0.0; share <= 1.0; share += 0.05) {
-                const Vec3d ray = direction(share * last_angle[m], azimuth);
+            for (double fraction = 0.0; fraction <= 1.0; fraction += 0.05) {
+                const Vec3d ray = direction(fraction * last_angle[m], azimuth);
                 const auto pixel = project(models[m], ray);
                 ASSERT_TRUE(pixel);
                 const auto back = unproject(models[m], *pixel);
-                ASSERT_TRUE(back) << kind_name(models[m]) << " at " << share * last_angle[m] / kDegree;
+                ASSERT_TRUE(back) << kind_name(models[m]) << " at " << fraction * last_angle[m] / kDegree;
                 EXPECT_LT(length(*back - ray), 1e-11);
             }
         }

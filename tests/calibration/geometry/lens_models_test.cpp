@@ -66,12 +66,12 @@ TEST(CalibrationLensModels, UnprojectInvertsProject) {
     }
     for (const Case& c : cases) {
         for (double azimuth = 0.0; azimuth < 6.2; azimuth += 0.9) {
-            for (double share = 0.0; share <= 1.0; share += 0.05) {
-                const Vec3d ray = direction(share * c.last_angle, azimuth);
+            for (double fraction = 0.0; fraction <= 1.0; fraction += 0.05) {
+                const Vec3d ray = direction(fraction * c.last_angle, azimuth);
                 const auto pixel = project(c.model, 7.0 * ray);
-                ASSERT_TRUE(pixel) << kind_name(c.model) << " at " << share * c.last_angle / kDegree;
+                ASSERT_TRUE(pixel) << kind_name(c.model) << " at " << fraction * c.last_angle / kDegree;
                 const auto back = unproject(c.model, *pixel);
-                ASSERT_TRUE(back) << kind_name(c.model) << " at " << share * c.last_angle / kDegree;
+                ASSERT_TRUE(back) << kind_name(c.model) << " at " << fraction * c.last_angle / kDegree;
                 EXPECT_LT(length(*back - ray), 1e-11) << kind_name(c.model);
             }
         }

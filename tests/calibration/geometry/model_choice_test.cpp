@@ -56,7 +56,7 @@ TEST(CalibrationModelChoice, AFisheyeIsNotTakenForAPerspectiveCamera) {
     const ChosenGeometry chosen = choose_model(views, kWidth, kHeight, {});
     EXPECT_FALSE(is_perspective(chosen.fit.model) && kind(chosen.fit.model) != ModelKind::division);
     const ModelCandidate& taken = chosen.choice.candidates[static_cast<std::size_t>(chosen.choice.chosen)];
-    // Noise of both coordinates, 0.05 √2, and the pose's share of it (6 of 108 numbers).
+    // Noise of both coordinates, 0.05 √2, and the pose's part of it (6 of 108 numbers).
     EXPECT_NEAR(taken.held_out_rms_px, 0.05 * std::sqrt(2.0), 0.006);
     const ModelCandidate& brown = candidate(chosen.choice, "brown-conrady with 2 radial terms");
     EXPECT_GT(brown.refused.empty() ? brown.held_out_rms_px : 1.0, 1.5 * taken.held_out_rms_px);
