@@ -23,6 +23,7 @@ constexpr double kMajorMark = 5.0;
 constexpr double kMinorMark = 2.5;
 constexpr double kNumberGap = 3.0;  // between a mark and its number
 constexpr double kLine = 16.0;      // of text, px
+constexpr double kHatchStep = 7.0;  // along x
 
 std::size_t letters_in(double width, double size) {
     return static_cast<std::size_t>(std::max(8.0, std::floor(width / svg_text_width("x", size))));
@@ -55,8 +56,8 @@ std::vector<const ReferenceLine*> labelled(const PlotChart& chart, const ChartFr
     std::vector<const ReferenceLine*> found;
     const ResolvedAxis& axis = direction == ReferenceDirection::vertical ? frame.x : frame.y;
     for (const ReferenceLine& line : chart.references) {
-        const double share = axis.share(line.at);
-        if (line.direction == direction && !line.label.empty() && share >= 0.0 && share <= 1.0) {
+        const double fraction = axis.fraction(line.at);
+        if (line.direction == direction && !line.label.empty() && fraction >= 0.0 && fraction <= 1.0) {
             found.push_back(&line);
         }
     }
@@ -65,31 +66,34 @@ std::vector<const ReferenceLine*> labelled(const PlotChart& chart, const ChartFr
 
 constexpr std::size_t kMostReferenceLetters = 26;
 
+/// Across the frame where an axis has that fraction: downwards, to the right.
+std::vector<SvgPoint> across(const PageBox& box, bool is_x, double fraction) {
+    const double x = box.x + fraction * box.width;
+    const double y = box.y + (1.0 - fraction) * box.height;
+    return is_x ? std::vector<SvgPoint>{{x, box.y}, {x, box.y + box.height}}
+                : std::vector<SvgPoint>{{box.x, y}, {box.x + box.width, y}};
+}
+
+/// Where a mark and its number stand: on the lower or left edge.
+SvgPoint on_edge(const PageBox& box, bool is_x, double fraction) {
+    return across(box, is_x, fraction)[is_x ? 1 : 0];
+}
+
 void draw_mark_lines(Svg& svg, const ChartFrame& frame, bool is_x) {
     const ResolvedAxis& axis = is_x ? frame.x : frame.y;
-    const PageBox& box = frame.box;
     std::vector<std::vector<SvgPoint>> lines;
     for (const double value : axis.ticks.major) {
-        const double share = axis.share(value);
-        const double x = box.x + share * box.width;
-        const double y = box.y + (1.0 - share) * box.height;
-        lines.push_back(is_x ? std::vector<SvgPoint>{{x, box.y}, {x, box.y + box.height}}
-                             : std::vector<SvgPoint>{{box.x, y}, {box.x + box.width, y}});
+        lines.push_back(across(frame.box, is_x, axis.fraction(value)));
     }
     svg.paths(lines, {.stroke = kGridLine, .width = 1.0, .class_name = "grid"});
 }
 
 void draw_marks(Svg& svg, const ChartFrame& frame, bool is_x) {
     const ResolvedAxis& axis = is_x ? frame.x : frame.y;
-    const PageBox& box = frame.box;
     std::vector<std::vector<SvgPoint>> lines;
     const auto add = [&](double value, double length) {
-        const double share = axis.share(value);
-        const double x = box.x + share * box.width;
-        const double y = box.y + (1.0 - share) * box.height;
-        const double bottom = box.y + box.height;
-        lines.push_back(is_x ? std::vector<SvgPoint>{{x, bottom}, {x, bottom + length}}
-                             : std::vector<SvgPoint>{{box.x, y}, {box.x - length, y}});
+        const SvgPoint edge = on_edge(frame.box, is_x, axis.fraction(value));
+        lines.push_back({edge, is_x ? SvgPoint{edge.x, edge.y + length} : SvgPoint{edge.x - length, edge.y}});
     };
     for (const double value : axis.ticks.major) {
         add(value, kMajorMark);
@@ -102,18 +106,15 @@ void draw_marks(Svg& svg, const ChartFrame& frame, bool is_x) {
 
 void draw_numbers(Svg& svg, const ChartFrame& frame, bool is_x) {
     const ResolvedAxis& axis = is_x ? frame.x : frame.y;
-    const PageBox& box = frame.box;
     for (std::size_t i = 0; i < axis.ticks.major.size(); ++i) {
-        const double share = axis.share(axis.ticks.major[i]);
-        if (is_x) {
-            svg.text({box.x + share * box.width, box.y + box.height + kMajorMark + kNumberGap + 0.8 * kTickTextSize},
-                     axis.ticks.labels[i],
-                     {.size = kTickTextSize, .fill = kInk, .anchor = SvgAnchor::middle, .class_name = "number"});
-        } else {
-            svg.text({box.x - kMajorMark - kNumberGap, box.y + (1.0 - share) * box.height + 0.35 * kTickTextSize},
-                     axis.ticks.labels[i],
-                     {.size = kTickTextSize, .fill = kInk, .anchor = SvgAnchor::end, .class_name = "number"});
-        }
+        SvgPoint at = on_edge(frame.box, is_x, axis.fraction(axis.ticks.major[i]));
+        at.x -= is_x ? 0.0 : kMajorMark + kNumberGap;
+        at.y += is_x ? kMajorMark + kNumberGap + 0.8 * kTickTextSize : 0.35 * kTickTextSize;
+        svg.text(at, axis.ticks.labels[i],
+                 {.size = kTickTextSize,
+                  .fill = kInk,
+                  .anchor = is_x ? SvgAnchor::middle : SvgAnchor::end,
+                  .class_name = "number"});
     }
 }
 
@@ -136,22 +137,17 @@ void draw_axis_titles(Svg& svg, const PlotChart& chart, const ChartFrame& frame,
 }
 
 void draw_references(Svg& svg, const PlotChart& chart, const ChartFrame& frame) {
-    const PageBox& box = frame.box;
     for (const ReferenceLine& line : chart.references) {
         const bool is_vertical = line.direction == ReferenceDirection::vertical;
-        const double share = (is_vertical ? frame.x : frame.y).share(line.at);
-        if (!(share >= 0.0 && share <= 1.0)) {
+        const double fraction = (is_vertical ? frame.x : frame.y).fraction(line.at);
+        if (!(fraction >= 0.0 && fraction <= 1.0)) {
             continue;
         }
-        const double x = box.x + share * box.width;
-        const double y = box.y + (1.0 - share) * box.height;
-        svg.line(is_vertical ? SvgPoint{x, box.y} : SvgPoint{box.x, y},
-                 is_vertical ? SvgPoint{x, box.y + box.height} : SvgPoint{box.x + box.width, y},
-                 {.stroke = line.colour,
-                  .width = 1.0,
-                  .dashes = dash_pattern(line.line),
-                  .class_name = "reference",
-                  .description = line.label});
+        svg.path(across(frame.box, is_vertical, fraction), {.stroke = line.colour,
+                                                            .width = 1.0,
+                                                            .dashes = dash_pattern(line.line),
+                                                            .class_name = "reference",
+                                                            .description = line.label});
     }
 }
 
@@ -161,7 +157,7 @@ void draw_reference_labels(Svg& svg, const PlotChart& chart, const ChartFrame& f
     std::vector<PlacedLabel> wishes;
     wishes.reserve(vertical.size());
     for (const ReferenceLine* line : vertical) {
-        wishes.push_back({box.x + frame.x.share(line->at) * box.width,
+        wishes.push_back({box.x + frame.x.fraction(line->at) * box.width,
                           svg_text_width(shortened(line->label, kMostReferenceLetters), kSmallSize) + 8.0});
     }
     std::vector<double> places = spread_labels(wishes, box.x - 20.0, box.x + box.width + 20.0);
@@ -172,7 +168,7 @@ void draw_reference_labels(Svg& svg, const PlotChart& chart, const ChartFrame& f
     const auto horizontal = labelled(chart, frame, ReferenceDirection::horizontal);
     wishes.clear();
     for (const ReferenceLine* line : horizontal) {
-        wishes.push_back({box.y + (1.0 - frame.y.share(line->at)) * box.height, kLine});
+        wishes.push_back({box.y + (1.0 - frame.y.fraction(line->at)) * box.height, kLine});
     }
     places = spread_labels(wishes, box.y, box.y + box.height);
     for (std::size_t i = 0; i < horizontal.size(); ++i) {
@@ -196,6 +192,7 @@ void draw_curve(Svg& svg, const ChartCurve& curve, const ChartFrame& frame) {
         svg.paths(pieces, {.stroke = curve.colour,
                            .width = curve.width,
                            .dashes = dash_pattern(curve.line),
+                           .opacity = curve.opacity,
                            .class_name = "curve",
                            .description = curve.label});
         if (curve.marker == CurveMarker::none) {  // a point between two gaps has no line to be seen by
@@ -209,6 +206,17 @@ void draw_curve(Svg& svg, const ChartCurve& curve, const ChartFrame& frame) {
     std::vector<SvgPoint> visible;
     std::ranges::copy_if(page, std::back_inserter(visible), [&](SvgPoint p) { return is_inside(frame.box, p); });
     draw_markers(svg, visible, curve.marker, curve.marker_size, curve.colour);
+}
+
+void draw_area(Svg& svg, const ChartArea& area, const ChartFrame& frame) {
+    const std::vector<SvgPoint> outline = clipped_polygon(on_page(frame, area.outline), frame.box);
+    if (area.is_hatched) {
+        svg.paths(hatching({outline}, kHatchStep),
+                  {.stroke = area.colour, .width = 0.8, .opacity = area.opacity, .class_name = "hatch"});
+    } else {
+        svg.path(outline,
+                 {.fill = area.colour, .opacity = area.opacity, .class_name = "area", .description = area.label}, true);
+    }
 }
 
 /// The map as an axis that runs downwards has it: its lowest row at the top.
@@ -230,13 +238,21 @@ void draw_data(Svg& svg, const PlotChart& chart, const ChartFrame& frame) {
         svg.rectangle({frame.box.x, frame.box.y}, frame.box.width, frame.box.height, {.fill = kMaskColour});
         draw_heat_map(svg, map, {corner.x, corner.y, opposite.x - corner.x, opposite.y - corner.y});
     }
+    const auto in_group = [&](const std::string& group, const auto& draw) {
+        if (!group.empty()) {
+            svg.open_group(group);
+        }
+        draw();
+        if (!group.empty()) {
+            svg.close_group();
+        }
+    };
     for (const ChartArea& area : chart.areas) {
-        svg.path(clipped_polygon(on_page(frame, area.outline), frame.box),
-                 {.fill = area.colour, .opacity = area.opacity, .class_name = "area", .description = area.label}, true);
+        in_group(area.group, [&] { draw_area(svg, area, frame); });
     }
     draw_references(svg, chart, frame);
     for (const ChartCurve& curve : chart.curves) {
-        draw_curve(svg, curve, frame);
+        in_group(curve.group, [&] { draw_curve(svg, curve, frame); });
     }
 }
 
@@ -271,11 +287,7 @@ void draw_heading(Svg& svg, const PlotChart& chart, const ChartFrame& frame, con
 }  // namespace
 
 SvgPoint ChartFrame::to_page(Vec2d value) const {
-    return {box.x + x.share(value.x) * box.width, box.y + (1.0 - y.share(value.y)) * box.height};
-}
-
-Vec2d ChartFrame::to_value(SvgPoint point) const {
-    return {x.value((point.x - box.x) / box.width), y.value(1.0 - (point.y - box.y) / box.height)};
+    return {box.x + x.fraction(value.x) * box.width, box.y + (1.0 - y.fraction(value.y)) * box.height};
 }
 
 ChartFrame chart_frame(const PlotChart& chart, const PageBox& frame) {
@@ -315,26 +327,31 @@ void draw_chart(Svg& svg, const PlotChart& chart, const ChartFrame& frame, const
             draw_mark_lines(svg, frame, true);
             draw_mark_lines(svg, frame, false);
         }
+        if (look.has_viewport) {
+            svg.open_viewport("data", box);
+        }
         draw_data(svg, chart, frame);
+        if (look.has_viewport) {
+            svg.close_viewport();
+        }
         draw_reference_labels(svg, chart, frame);
     }
     svg.rectangle({box.x, box.y}, box.width, box.height, {.stroke = kQuiet, .width = 0.9, .class_name = "frame"});
-    const auto has_marks = [&](const ChartAxis& axis) { return !is_empty(chart) || (axis.low && axis.high); };
-    if (has_marks(chart.x)) {
-        draw_marks(svg, frame, true);
+    PanelLook shown = look;
+    for (const bool is_x : {true, false}) {
+        const ChartAxis& axis = is_x ? chart.x : chart.y;
+        if (!is_empty(chart) || (axis.low && axis.high)) {
+            draw_marks(svg, frame, is_x);
+        } else {
+            (is_x ? shown.has_x_numbers : shown.has_y_numbers) = false;
+        }
     }
-    if (has_marks(chart.y)) {
-        draw_marks(svg, frame, false);
+    for (const bool is_x : {true, false}) {
+        if (is_x ? shown.has_x_numbers : shown.has_y_numbers) {
+            draw_numbers(svg, frame, is_x);
+        }
     }
-    if (look.has_x_numbers && has_marks(chart.x)) {
-        draw_numbers(svg, frame, true);
-    }
-    if (look.has_y_numbers && has_marks(chart.y)) {
-        draw_numbers(svg, frame, false);
-    }
-    draw_axis_titles(svg, chart, frame,
-                     {.has_x_numbers = look.has_x_numbers && has_marks(chart.x),
-                      .has_y_numbers = look.has_y_numbers && has_marks(chart.y)});
+    draw_axis_titles(svg, chart, frame, shown);
     if (chart.map && look.has_colour_bar && !is_empty(chart)) {
         draw_colour_bar(svg, *chart.map, box);
     }
@@ -346,20 +363,25 @@ void draw_chart(Svg& svg, const PlotChart& chart, const ChartFrame& frame, const
     svg.close_group();
 }
 
-std::string chart_svg(const PlotChart& chart, ChartSize size) {
-    constexpr double kEdge = 10.0;
+ChartFrame fitted_frame(const PlotChart& chart, ChartSize size, const PanelLook& look, double edge) {
     constexpr double kLeast = 60.0;
-    const PanelLook look;
     // Numbers decide the margins, the margins the frame, and the frame the numbers: twice settles it in practice, and
     // the height of the page yields where it does not.
     PageBox box{0.0, 0.0, size.width - 100.0, size.height - 100.0};
     for (int pass = 0; pass < 2; ++pass) {
         const PanelMargins margins = panel_margins(chart, chart_frame(chart, box), look);
-        box = {kEdge + margins.left, kEdge + margins.top,
-               std::max(kLeast, size.width - 2.0 * kEdge - margins.left - margins.right),
-               std::max(kLeast, size.height - 2.0 * kEdge - margins.top - margins.bottom)};
+        box = {edge + margins.left, edge + margins.top,
+               std::max(kLeast, size.width - 2.0 * edge - margins.left - margins.right),
+               std::max(kLeast, size.height - 2.0 * edge - margins.top - margins.bottom)};
     }
-    const ChartFrame frame = chart_frame(chart, box);
+    return chart_frame(chart, box);
+}
+
+std::string chart_svg(const PlotChart& chart, ChartSize size) {
+    constexpr double kEdge = 10.0;
+    const PanelLook look;
+    const ChartFrame frame = fitted_frame(chart, size, look, kEdge);
+    const PageBox& box = frame.box;
     const PanelMargins margins = panel_margins(chart, frame, look);
     Svg svg(chart.title);
     draw_chart(svg, chart, frame, look);

@@ -38,6 +38,9 @@ struct ChartCurve {
     CurveMarker marker = CurveMarker::none;
     double width = 1.6;        // px
     double marker_size = 5.0;  // px across
+    double opacity = 1.0;
+    bool sets_y_range = true;  // an open y axis holds it
+    std::string group{};       // the class of a group around it, for a page's script; empty: none
 };
 
 /// An area with a colour: a band around a curve, a tolerance.
@@ -46,6 +49,9 @@ struct ChartArea {
     std::vector<Vec2d> outline{};  // a polygon that is closed by itself
     std::string colour = "#8a909b";
     double opacity = 0.18;
+    bool is_hatched = false;   // lines at 45° instead of a ground: what is not sure
+    bool sets_y_range = true;  // as a curve's
+    std::string group{};
 };
 
 enum class ReferenceDirection { vertical, horizontal };
@@ -81,8 +87,7 @@ struct ResolvedAxis {
     Ticks ticks{};
 
     /// 0 at `low`, 1 at `high`; NaN for what a logarithmic axis cannot show.
-    [[nodiscard]] double share(double value) const;
-    [[nodiscard]] double value(double share) const;
+    [[nodiscard]] double fraction(double value) const;
 };
 
 /// Where the data of a chart are on the page.
@@ -92,7 +97,6 @@ struct ChartFrame {
     ResolvedAxis y{};
 
     [[nodiscard]] SvgPoint to_page(Vec2d value) const;
-    [[nodiscard]] Vec2d to_value(SvgPoint point) const;
 };
 
 /// One chart in a file of its own, `size` px wide and high, with the legend between title and frame. Any text is shown
@@ -125,6 +129,7 @@ struct PanelLook {
     bool has_y_numbers = true;
     bool has_legend = true;
     bool has_colour_bar = true;
+    bool has_viewport = false;  // the data stand in a viewport of the class "data", for a page's script to narrow
 };
 
 /// The space (px) that a chart needs around its frame.
@@ -137,6 +142,8 @@ struct PanelMargins {
 /// The frame of `chart` in a box of that place and size, and the margins that it leaves.
 ChartFrame chart_frame(const PlotChart& chart, const PageBox& frame);
 PanelMargins panel_margins(const PlotChart& chart, const ChartFrame& frame, const PanelLook& look);
+/// The frame of `chart` on a page of that size, as large as its margins and `edge` px around them leave it.
+ChartFrame fitted_frame(const PlotChart& chart, ChartSize size, const PanelLook& look, double edge);
 void draw_chart(Svg& svg, const PlotChart& chart, const ChartFrame& frame, const PanelLook& look);
 
 /// One range that holds the data of all charts, put into their axes where they leave it open.

@@ -32,12 +32,17 @@ bool is_within(const ChartAxis& axis, double value) {
     return value >= std::min(a, b) && value <= std::max(a, b);
 }
 
-void for_each_point(const PlotChart& chart, const std::function<void(Vec2d)>& visit) {
+/// `for_y_range`: only what sets the range of an open y axis.
+void for_each_point(const PlotChart& chart, bool for_y_range, const std::function<void(Vec2d)>& visit) {
     for (const ChartCurve& curve : chart.curves) {
-        std::ranges::for_each(curve.points, visit);
+        if (curve.sets_y_range || !for_y_range) {
+            std::ranges::for_each(curve.points, visit);
+        }
     }
     for (const ChartArea& area : chart.areas) {
-        std::ranges::for_each(area.outline, visit);
+        if (area.sets_y_range || !for_y_range) {
+            std::ranges::for_each(area.outline, visit);
+        }
     }
 }
 
@@ -45,7 +50,7 @@ Extent extent_along(const PlotChart& chart, bool along_x) {
     const ChartAxis& axis = along_x ? chart.x : chart.y;
     const ChartAxis& other = along_x ? chart.y : chart.x;
     Extent extent;
-    for_each_point(chart, [&](Vec2d point) {
+    for_each_point(chart, !along_x, [&](Vec2d point) {
         if (can_show(chart, point) && is_within(other, along_x ? point.y : point.x)) {
             extent.hold(along_x ? point.x : point.y);
         }
@@ -157,7 +162,7 @@ bool numbers_keep_clear(const ResolvedAxis& axis, double length, bool is_horizon
     constexpr double kLineHeight = 1.45 * kTickTextSize;
     for (std::size_t i = 0; i + 1 < axis.ticks.major.size(); ++i) {
         const double distance =
-            std::abs(axis.share(axis.ticks.major[i + 1]) - axis.share(axis.ticks.major[i])) * length;
+            std::abs(axis.fraction(axis.ticks.major[i + 1]) - axis.fraction(axis.ticks.major[i])) * length;
         const double needed = is_horizontal ? kGap + 0.5 * (svg_text_width(axis.ticks.labels[i], kTickTextSize) +
                                                             svg_text_width(axis.ticks.labels[i + 1], kTickTextSize))
                                             : kLineHeight;
@@ -248,20 +253,16 @@ std::size_t count_not_positive(const PlotChart& chart) {
 
 bool is_empty(const PlotChart& chart) {
     bool found = false;
-    for_each_point(chart, [&](Vec2d point) { found = found || can_show(chart, point); });
+    for_each_point(chart, false, [&](Vec2d point) { found = found || can_show(chart, point); });
     const bool has_map = chart.map && std::ranges::any_of(chart.map->values, [](double v) { return std::isfinite(v); });
     return !found && !has_map;
 }
 
-double ResolvedAxis::share(double value) const {
+double ResolvedAxis::fraction(double value) const {
     if (!can_show(scale, value)) {
         return kNaN;
     }
     return scale == AxisScale::linear ? (value - low) / (high - low) : std::log(value / low) / std::log(high / low);
-}
-
-double ResolvedAxis::value(double at) const {
-    return scale == AxisScale::linear ? low + at * (high - low) : low * std::pow(high / low, at);
 }
 
 ResolvedAxes resolve_axes(const PlotChart& chart, double width, double height) {

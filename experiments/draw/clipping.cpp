@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <optional>
 #include <utility>
 
@@ -65,6 +66,35 @@ std::vector<std::vector<SvgPoint>> clipped_line(const std::vector<SvgPoint>& poi
             add_segment(pieces, points[i], points[i + 1], box, continues);
         } else if (!has_before && is_inside(box, points[i])) {
             pieces.push_back({points[i]});
+        }
+    }
+    return pieces;
+}
+
+std::vector<std::vector<SvgPoint>> hatching(const std::vector<std::vector<SvgPoint>>& outlines, double step,
+                                            double start) {
+    std::map<double, std::vector<SvgPoint>> crossings;  // by the line's number
+    for (const std::vector<SvgPoint>& outline : outlines) {
+        for (std::size_t i = 0; i < outline.size(); ++i) {
+            SvgPoint a = outline[i];
+            SvgPoint b = outline[(i + 1) % outline.size()];
+            if (a.x + a.y > b.x + b.y) {
+                std::swap(a, b);
+            }
+            const double low = (a.x + a.y - start) / step;
+            const double high = (b.x + b.y - start) / step;
+            for (double line = std::ceil(low); line < high; line += 1.0) {
+                crossings[line].push_back(between(a, b, (line - low) / (high - low)));
+            }
+        }
+    }
+    std::vector<std::vector<SvgPoint>> pieces;
+    for (auto& [line, points] : crossings) {
+        std::ranges::sort(points, {}, &SvgPoint::x);
+        for (std::size_t i = 0; i + 1 < points.size(); i += 2) {
+            if (points[i].x < points[i + 1].x) {
+                pieces.push_back({points[i], points[i + 1]});
+            }
         }
     }
     return pieces;

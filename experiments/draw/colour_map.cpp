@@ -46,8 +46,8 @@ int srgb_byte(double linear) {
 
 }  // namespace
 
-Vec3d map_colour(ColourMap map, double share) {
-    const double t = std::clamp(std::isfinite(share) ? share : 0.0, 0.0, 1.0);
+Vec3d map_colour(ColourMap map, double fraction) {
+    const double t = std::clamp(std::isfinite(fraction) ? fraction : 0.0, 0.0, 1.0);
     if (map == ColourMap::sequential) {
         return strongest(0.17 + 0.76 * t, 0.15, 305.0 - 197.0 * t);
     }
@@ -55,8 +55,8 @@ Vec3d map_colour(ColourMap map, double share) {
     return strongest(0.97 - 0.53 * away, 0.21 * away, t < 0.5 ? 255.0 : 30.0);
 }
 
-std::string map_colour_text(ColourMap map, double share) {
-    const Vec3d rgb = map_colour(map, share);
+std::string map_colour_text(ColourMap map, double fraction) {
+    const Vec3d rgb = map_colour(map, fraction);
     return fmt::format("#{:02x}{:02x}{:02x}", srgb_byte(rgb.x), srgb_byte(rgb.y), srgb_byte(rgb.z));
 }
 

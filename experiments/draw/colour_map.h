@@ -11,14 +11,14 @@ enum class ColourMap {
     diverging,   // from blue over nearly white, in the middle, to red
 };
 
-/// The colour at `share` (0 to 1) of a map, linear sRGB from 0 to 1.
+/// The colour at `fraction` (0 to 1) of a map, linear sRGB from 0 to 1.
 ///
 /// Maps are computed in OKLab (Ottosson, "A perceptual color space for image processing", 2020), so that equal steps of
 /// the number look equal: lightness runs straight, the hue turns evenly (or is one on either side of the middle), and
 /// the chroma is as strong as sRGB allows up to a limit.
-Vec3d map_colour(ColourMap map, double share);
+Vec3d map_colour(ColourMap map, double fraction);
 
 /// The same as "#rrggbb".
-std::string map_colour_text(ColourMap map, double share);
+std::string map_colour_text(ColourMap map, double fraction);
 
 }  // namespace lensproof::draw

@@ -4,16 +4,16 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
+#include "engine/base/infinity.h"
 #include "experiments/draw/chart.h"
+#include "experiments/draw/clipping.h"
 #include "experiments/draw/palette.h"
 
 namespace lensproof::draw {
 
 namespace {
 
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr double kFrameWidth = 380.0;      // of each drawing, of the page
 constexpr std::size_t kFineColumns = 190;  // of the colours
 constexpr const char* kHullColour = "#b5003c";
@@ -57,26 +57,23 @@ HeatMap heat_map(const FrameMap& knots, const AxisRange& range) {
     return map;
 }
 
-/// The part of the line x + y = sum (both in units of the frame) inside a convex polygon, by x; none where it misses.
-std::optional<AxisRange> crossing(const std::vector<Vec2d>& polygon, double sum) {
-    AxisRange inside{std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()};
-    for (std::size_t i = 0; i < polygon.size(); ++i) {
-        const Vec2d a = polygon[i];
-        const Vec2d b = polygon[(i + 1) % polygon.size()];
-        const double from = a.x + a.y - sum;
-        const double to = b.x + b.y - sum;
-        if (from * to <= 0.0 && from != to) {
-            const double x = std::lerp(a.x, b.x, from / (from - to));
-            inside = {std::min(inside.low, x), std::max(inside.high, x)};
-        }
+/// Where the values are extrapolated, if there is a hull at all.
+ChartCurve hatching_outside(const FrameMap& map, const std::string& colour) {
+    const double right = map.width_px - 0.5;
+    const double bottom = map.height_px - 0.5;
+    ChartCurve curve{.colour = colour, .width = 0.8};
+    std::vector<SvgPoint> hull;
+    for (const Vec2d& point : map.hull) {
+        hull.push_back({point.x, point.y});
     }
-    return inside.low < inside.high ? std::optional(inside) : std::nullopt;
-}
-
-ChartCurve hatching(const std::vector<Vec2d>& hull, double width, double height, const std::string& colour) {
-    ChartCurve curve{.label = "", .points = {}, .colour = colour, .width = 0.8};
-    for (const std::vector<Vec2d>& piece : hatching_outside(hull, width, height, width / 45.0)) {
-        curve.points.insert(curve.points.end(), piece.begin(), piece.end());
+    if (hull.size() < 3) {
+        return curve;
+    }
+    const std::vector<SvgPoint> frame = {{-0.5, -0.5}, {right, -0.5}, {right, bottom}, {-0.5, bottom}};
+    for (const std::vector<SvgPoint>& line : hatching({frame, hull}, map.width_px / 45.0, -1.0)) {
+        for (const SvgPoint& end : line) {
+            curve.points.push_back({end.x, end.y});
+        }
         curve.points.push_back({kNaN, kNaN});
     }
     return curve;
@@ -100,31 +97,8 @@ PlotChart empty_frame(const FrameMap& map, const std::string& title) {
 
 }  // namespace
 
-std::vector<std::vector<Vec2d>> hatching_outside(const std::vector<Vec2d>& polygon, double width, double height,
-                                                 double step) {
-    std::vector<std::vector<Vec2d>> pieces;
-    if (polygon.size() < 3 || !(step > 0.0)) {
-        return pieces;
-    }
-    const double low = -0.5;
-    for (double sum = 2.0 * low + step; sum < width + height + 2.0 * low; sum += step) {
-        const AxisRange all{std::max(low, sum - (height + low)), std::min(width + low, sum - low)};
-        const auto add = [&](double from, double to) {
-            if (to > from) {
-                pieces.push_back({{from, sum - from}, {to, sum - to}});
-            }
-        };
-        const std::optional<AxisRange> inside = crossing(polygon, sum);
-        add(all.low, inside ? std::min(inside->low, all.high) : all.high);
-        if (inside) {
-            add(std::max(inside->high, all.low), all.high);
-        }
-    }
-    return pieces;
-}
-
 AxisRange common_range(const std::vector<const FrameMap*>& maps) {
-    AxisRange range{std::numeric_limits<double>::infinity(), 0.0};
+    AxisRange range{kInfinity, 0.0};
     for (const FrameMap* map : maps) {
         for (std::size_t i = 0; i < map->values.size(); ++i) {
             if (map->covered[i] && map->values[i] > 0.0) {
@@ -140,9 +114,9 @@ std::string frame_map_svg(const FrameMap& map, const AxisRange& range, const std
     const double height = map.height_px;
     PlotChart values = empty_frame(map, map.heading);
     values.map = heat_map(map, range);
-    values.curves = {hatching(map.hull, width, height, kHatchOnColours), outline(map.hull)};
+    values.curves = {hatching_outside(map, kHatchOnColours), outline(map.hull)};
     PlotChart coverage = empty_frame(map, fmt::format("From {} points", map.points.size()));
-    coverage.curves = {hatching(map.hull, width, height, kHatchOnPaper),
+    coverage.curves = {hatching_outside(map, kHatchOnPaper),
                        outline(map.hull),
                        {.label = "points used",
                         .points = map.points,

@@ -25,11 +25,6 @@ struct FrameMap {
     std::vector<Vec2d> hull{};  // convex
 };
 
-/// Pieces of 45° lines `step` apart that lie in the frame of `width` × `height` pixels and outside a convex polygon
-/// (either sense; fewer than three corners: nothing is outside it). Two points each.
-std::vector<std::vector<Vec2d>> hatching_outside(const std::vector<Vec2d>& polygon, double width, double height,
-                                                 double step);
-
 /// The maps' values, smallest to largest inside the points' hulls and ten times that at most: one range for all
 /// drawings, so that colours compare. 0.001 to 1 where there is no value.
 AxisRange common_range(const std::vector<const FrameMap*>& maps);

@@ -35,7 +35,7 @@ AxisRange usable_range(const HeatMap& map) {
 }
 
 /// Where a value stands in the range, 0 to 1.
-double share_of(const HeatMap& map, double value) {
+double fraction_of(const HeatMap& map, double value) {
     const AxisRange range = usable_range(map);
     if (map.scale == AxisScale::linear) {
         return (value - range.low) / (range.high - range.low);
@@ -107,10 +107,10 @@ void draw_heat_map(Svg& svg, const HeatMap& map, const PageBox& box) {
             // A picture's rows run downwards.
             const auto row = static_cast<std::size_t>(height - 1 - y);
             const double value = map.values[row * map.columns + static_cast<std::size_t>(x)];
-            const double share = std::clamp(share_of(map, value), 0.0, 1.0);
+            const double fraction = std::clamp(fraction_of(map, value), 0.0, 1.0);
             set_pixel(
                 image, x, y,
-                std::isfinite(value) ? table[static_cast<std::size_t>(std::lround(share * (kShades - 1)))] : kPaper);
+                std::isfinite(value) ? table[static_cast<std::size_t>(std::lround(fraction * (kShades - 1)))] : kPaper);
         }
     }
     svg.picture(box, formats::encode_png(image), map.label);
@@ -135,7 +135,7 @@ void draw_colour_bar(Svg& svg, const HeatMap& map, const PageBox& frame) {
     const Ticks ticks = bar_ticks(map, frame.height);
     const double right = bar.x + bar.width;
     for (std::size_t i = 0; i < ticks.major.size(); ++i) {
-        const double y = bar.y + (1.0 - share_of(map, ticks.major[i])) * bar.height;
+        const double y = bar.y + (1.0 - fraction_of(map, ticks.major[i])) * bar.height;
         svg.line({right, y}, {right + kMark, y}, {.stroke = kQuiet, .width = 0.9});
         svg.text({right + kMark + 3.0, y + 0.35 * kScaleTextSize}, ticks.labels[i],
                  {.size = kScaleTextSize, .fill = kInk, .class_name = "number"});

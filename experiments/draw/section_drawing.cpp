@@ -4,6 +4,8 @@
 
 #include <cmath>
 
+#include "experiments/draw/clipping.h"
+
 namespace lensproof::draw {
 
 namespace {
@@ -20,8 +22,8 @@ void draw_axis(Svg& svg, const SectionView& view) {
 /// The tint's strength rises with the index, from 0.4 at n_d = 1.4 to 1 at 2.
 double tint_strength(double n_d) {
     constexpr double kUnknownIndex = 0.3;
-    const double share = std::isfinite(n_d) ? std::clamp((n_d - 1.4) / 0.6, 0.0, 1.0) : kUnknownIndex;
-    return 0.4 + 0.6 * share;
+    const double fraction = std::isfinite(n_d) ? std::clamp((n_d - 1.4) / 0.6, 0.0, 1.0) : kUnknownIndex;
+    return 0.4 + 0.6 * fraction;
 }
 
 void draw_glass(Svg& svg, const SectionView& view, const SectionElement& element) {
@@ -192,24 +194,13 @@ SectionBox glass_box(const SectionGeometry& geometry) {
     return box;
 }
 
-// Liang & Barsky, ACM Trans. Graphics 3(1), 1984.
 SectionLine clipped_to(const SectionBox& box, SectionPoint a, SectionPoint b) {
-    double from = 0.0;
-    double to = 1.0;
-    const auto cut = [&](double start, double way, double low, double high) {
-        if (way == 0.0) {
-            return start >= low && start <= high;
-        }
-        from = std::max(from, std::min((low - start) / way, (high - start) / way));
-        to = std::min(to, std::max((low - start) / way, (high - start) / way));
-        return from <= to;
-    };
-    const double dz = b.z - a.z;
-    const double dy = b.y - a.y;
-    if (!cut(a.z, dz, box.z_min, box.z_max) || !cut(a.y, dy, box.y_min, box.y_max)) {
-        return {};
+    SectionLine inside;
+    for (const auto& piece :
+         clipped_line({{a.z, a.y}, {b.z, b.y}}, {box.z_min, box.y_min, box.width(), box.height()})) {
+        inside = {{piece.front().x, piece.front().y}, {piece.back().x, piece.back().y}};
     }
-    return {{a.z + from * dz, a.y + from * dy}, {a.z + to * dz, a.y + to * dy}};
+    return inside;
 }
 
 void draw_section(Svg& svg, const SectionView& view, const SectionGeometry& geometry, const SectionRays& rays,

@@ -15,6 +15,11 @@ std::string attribute(std::string_view name, std::string_view value) {
     return " " + std::string(name) + "=\"" + std::string(value) + "\"";
 }
 
+std::string box_attributes(const PageBox& box) {
+    return attribute("x", svg_number(box.x)) + attribute("y", svg_number(box.y)) +
+           attribute("width", svg_number(box.width)) + attribute("height", svg_number(box.height));
+}
+
 /// "M1 2 3 4", with a Z where it is closed; nothing for fewer than two points.
 std::string path_data(const std::vector<SvgPoint>& points, bool closed) {
     std::string data;
@@ -107,14 +112,6 @@ void Svg::finish_element(std::string_view name, const SvgStyle& style) {
                  : "><title>" + escape_markup(style.description) + "</title></" + std::string(name) + ">\n";
 }
 
-void Svg::path(const std::vector<SvgPoint>& points, const SvgStyle& style, bool closed) {
-    const std::string data = path_data(points, closed);
-    if (!data.empty()) {
-        body_ += "<path" + attribute("d", data);
-        finish_element("path", style);
-    }
-}
-
 void Svg::paths(const std::vector<std::vector<SvgPoint>>& pieces, const SvgStyle& style, bool closed) {
     std::string data;
     for (const std::vector<SvgPoint>& piece : pieces) {
@@ -136,17 +133,14 @@ void Svg::circle(SvgPoint centre, double radius, const SvgStyle& style) {
 
 void Svg::rectangle(SvgPoint corner, double width, double height, const SvgStyle& style) {
     if (is_finite(corner) && width > 0.0 && height > 0.0) {
-        body_ += "<rect" + attribute("x", svg_number(corner.x)) + attribute("y", svg_number(corner.y)) +
-                 attribute("width", svg_number(width)) + attribute("height", svg_number(height));
+        body_ += "<rect" + box_attributes({corner.x, corner.y, width, height});
         finish_element("rect", style);
     }
 }
 
 void Svg::picture(const PageBox& box, std::string_view png, std::string_view description) {
     if (is_finite(SvgPoint{box.x, box.y}) && box.width > 0.0 && box.height > 0.0) {
-        body_ += "<image" + attribute("x", svg_number(box.x)) + attribute("y", svg_number(box.y)) +
-                 attribute("width", svg_number(box.width)) + attribute("height", svg_number(box.height)) +
-                 attribute("preserveAspectRatio", "none") +
+        body_ += "<image" + box_attributes(box) + attribute("preserveAspectRatio", "none") +
                  attribute("style", "image-rendering:optimizeSpeed;image-rendering:pixelated") +
                  attribute("href", "data:image/png;base64," + base64(png));
         finish_element("image", {.description = std::string(description)});
@@ -181,6 +175,24 @@ void Svg::open_group(std::string_view class_name) {
 
 void Svg::close_group() {
     body_ += "</g>\n";
+}
+
+void Svg::open_viewport(std::string_view class_name, const PageBox& box) {
+    body_ += "<svg" + attribute("class", escape_markup(class_name)) + box_attributes(box) +
+             attribute("viewBox", svg_number(box.x) + " " + svg_number(box.y) + " " + svg_number(box.width) + " " +
+                                      svg_number(box.height)) +
+             attribute("preserveAspectRatio", "none") + ">\n";
+}
+
+void Svg::close_viewport() {
+    body_ += "</svg>\n";
+}
+
+std::string Svg::element(double width, double height, std::string_view attributes) const {
+    const std::string w = svg_number(width);
+    const std::string h = svg_number(height);
+    return "<svg" + attribute("width", w) + attribute("height", h) + attribute("viewBox", "0 0 " + w + " " + h) + " " +
+           std::string(attributes) + ">\n" + body_ + "</svg>\n";
 }
 
 std::string Svg::document(double width, double height) const {

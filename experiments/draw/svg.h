@@ -69,9 +69,11 @@ double svg_text_width(std::string_view text, double size);
 class Svg {
   public:
     /// `title` names the drawing for screen readers and viewers; any text.
-    explicit Svg(std::string_view title);
+    explicit Svg(std::string_view title = {});
 
-    void path(const std::vector<SvgPoint>& points, const SvgStyle& style, bool closed = false);
+    void path(const std::vector<SvgPoint>& points, const SvgStyle& style, bool closed = false) {
+        paths({points}, style, closed);
+    }
     /// Several open or closed paths of one style as one element: a curve with gaps, or the marks of a scatter plot.
     void paths(const std::vector<std::vector<SvgPoint>>& pieces, const SvgStyle& style, bool closed = false);
     void line(SvgPoint from, SvgPoint to, const SvgStyle& style) { path({from, to}, style); }
@@ -82,9 +84,15 @@ class Svg {
     void text(SvgPoint at, std::string_view words, const SvgTextStyle& style = {});
     void open_group(std::string_view class_name);
     void close_group();
+    /// What is drawn till the viewport is closed is cut off at `box`. Its coordinates are the drawing's, until a script
+    /// narrows its viewBox.
+    void open_viewport(std::string_view class_name, const PageBox& box);
+    void close_viewport();
 
     /// The file, on a white ground of that size.
     [[nodiscard]] std::string document(double width, double height) const;
+    /// The same without a ground, as an element of a page that says the rest; `attributes` is markup.
+    [[nodiscard]] std::string element(double width, double height, std::string_view attributes) const;
 
   private:
     void finish_element(std::string_view name, const SvgStyle& style);
