@@ -195,27 +195,29 @@ def readouts(browser):
 
 
 def ticks(browser):
-    return browser.js("[...document.querySelectorAll('[data-plot=distortion] .tick')].map((t) => t.textContent).join()")
+    return browser.js("[...document.querySelectorAll('[data-plot=distortion] .wide-canvas .number')]"
+                      ".filter((t) => t.checkVisibility()).map((t) => t.textContent).join()")
 
 
 def test_curves(browser):
-    expect(browser.js("document.querySelectorAll('[data-plot=distortion] path.line').length") >= 4, "curves are drawn")
+    curves = "[data-plot=distortion] .wide-canvas"
+    expect(browser.js(f"document.querySelectorAll('{curves} path.curve').length") >= 4, "curves are drawn")
     expect(browser.js("document.querySelector('#curves .maps img').naturalWidth") == 320, "a map stands beside them")
-    expect(browser.js("document.querySelector('[data-plot=distortion] path.line.measured').getTotalLength()") > 200,
+    expect(browser.js(f"document.querySelector('{curves} .series-0 path.curve').getTotalLength()") > 200,
            "a curve has length")
-    expect(browser.js("document.querySelectorAll('[data-plot=distortion] path.band').length") == 1,
+    expect(browser.js(f"document.querySelectorAll('{curves} .series-0 path.area').length") == 1,
            "the 95 % band is drawn")
-    expect(browser.js("document.querySelectorAll('[data-plot=distortion] path.own-error').length") == 2,
+    expect(browser.js(f"document.querySelectorAll('{curves} .series-0 path[stroke-dasharray]').length") == 2,
            "the method's own error is drawn on either side of its curve")
     expect("own error ±0.03" in browser.js("document.querySelector('[data-plot=distortion] .legend').textContent"),
            "and said")
-    expect(browser.js("document.querySelectorAll('[data-plot=distortion] .beyond').length") == 1,
+    expect(browser.js(f"document.querySelectorAll('{curves} .series-0 path.hatch').length") == 1,
            "the extrapolated part stands apart")
-    left, top, width, height = box(browser, "[data-plot=distortion] .canvas")
+    left, top, width, height = box(browser, curves)
     browser.mouse("mouseMoved", left + width * 0.3, top + height / 2)
     values = readouts(browser)
     expect(values[0].endswith("± 0.020\u00a0%"), f"hovering gives a value ± half the band: {values}")
-    expect(browser.js("document.querySelectorAll('[data-plot=distortion] .point').length") == 2,
+    expect(browser.js(f"document.querySelectorAll('{curves} .point').length") == 2,
            "a dot on each curve that is defined there")
     browser.mouse("mouseMoved", 2, 2)
     expect(readouts(browser) == ["", "", ""], "leaving clears the readout")
@@ -236,7 +238,7 @@ def test_curves(browser):
         browser.mouse("mouseReleased", left + width * 0.4, top + height * 0.5, button="left", clickCount=clicks)
     expect(ticks(browser) == before, "a double click resets")
 
-    browser.js("document.querySelector('[data-plot=distortion] .canvas').focus()")
+    browser.js(f"document.querySelector('{curves}').focus()")
     browser.key("ArrowRight")
     expect(readouts(browser)[0] != "", "an arrow key reads values")
     expect("measured" in browser.js("document.querySelector('[data-plot=distortion] [aria-live]').textContent"),
@@ -247,11 +249,9 @@ def test_curves(browser):
     browser.js("document.querySelector('[aria-label=\"Reset zoom: Distortion\"]').click()")
     expect(ticks(browser) == before, "the reset button resets")
     browser.js("document.querySelector('[data-plot=distortion] .legend input').click()")
-    expect(browser.js("document.querySelectorAll('[data-plot=distortion] [data-series=\"0\"]').length") == 0,
+    expect(browser.js(f"[...document.querySelectorAll('{curves} .series-0')].every((g) => getComputedStyle(g).display == 'none')"),
            "the legend hides a curve")
     browser.js("document.querySelector('[data-plot=distortion] .legend input').click()")
-    browser.js("document.querySelector('[data-plot=distortion] details').open = true")
-    browser.js("new Promise((done) => setTimeout(done, 100))")
     expect(browser.js("document.querySelectorAll('[data-plot=distortion] details td').length") >= 9,
            "the values are listed")
 
@@ -288,6 +288,16 @@ def test_pictures(browser):
            "a click enlarges the picture with its overlay")
     browser.js("document.querySelector('dialog button').click()")
     expect(not browser.js("document.querySelector('dialog').open"), "and it closes")
+
+
+def test_without_script(browser):
+    expect(browser.js("document.querySelector('[data-plot=distortion] .series-0 path.curve').getTotalLength()") > 200,
+           "without script: the curves are there")
+    expect(browser.js("document.querySelector('[data-plot=distortion] details').textContent").count("±") >= 6,
+           "without script: and their values")
+    expect(browser.js("document.querySelectorAll('td.scale > svg').length") == 7, "without script: and the scales")
+    expect(browser.js("[...document.querySelectorAll('.plot button, .plot input')].every((b) => !b.checkVisibility())"),
+           "without script: nothing that would not work")
 
 
 def main():
@@ -328,6 +338,7 @@ def main():
             browser.open(os.path.join(folder, "usual.html"), script=False)
             browser.screenshot(os.path.join(folder, "no-script.png"))
             expect(browser.complaints() == [], "without script: no complaint")
+            test_without_script(browser)
         finally:
             browser.close()
     print(f"{len(failures)} failures" if failures else "all good")

@@ -1,71 +1,75 @@
 #include "experiments/draw/report/html_text.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
-#include <array>
-#include <charconv>
 #include <cmath>
 
-#include "engine/base/json.h"
+#include "engine/base/markup.h"
+#include "experiments/draw/ticks.h"
 
 namespace lensproof::draw {
-namespace {
-
-// to_chars, not printf: the page has the same bytes in every locale.
-std::string decimal(double value, std::chars_format format, int precision) {
-    std::array<char, 400> buffer{};  // the longest fixed double has 309 digits before the point
-    const auto end = std::to_chars(buffer.data(), buffer.data() + buffer.size(), value, format, precision).ptr;
-    return {buffer.data(), end};
-}
-
-std::string with_true_minus(const std::string& digits) {
-    return !digits.empty() && digits.front() == '-' ? "\u2212" + digits.substr(1) : digits;
-}
-
-}  // namespace
 
 std::string json_for_script(const Json& json) {
     const std::string plain = json.dump();
     std::string out;
     out.reserve(plain.size());
     for (const char c : plain) {  // these three stand only inside strings, where an escape means the same character
-        switch (c) {
-            case '<':
-                out += "\\u003c";
-                break;
-            case '>':
-                out += "\\u003e";
-                break;
-            case '&':
-                out += "\\u0026";
-                break;
-            default:
-                out += c;
-        }
+        out += c == '<' || c == '>' || c == '&' ? fmt::format("\\u{:04x}", c) : std::string(1, c);
     }
     return out;
 }
 
+std::optional<double> as_number(const Json& value) {
+    if (!value.is_number() || !std::isfinite(value.number())) return std::nullopt;
+    return value.number();
+}
+
+std::string as_text(const Json& value) {
+    if (value.is_text()) return value.text();
+    if (value.is_null()) return "";
+    if (value.is_number() && !value.is_whole()) return number_text(value.number());
+    return value.dump();
+}
+
+std::string text(const Json& object, const char* key) {
+    return escape_markup(as_text(object[key]));
+}
+
+std::string with_unit(const std::string& number, const std::string& unit) {
+    return unit.empty() || unit == "°" ? number + unit : number + "\u00a0" + unit;
+}
+
+std::optional<std::size_t> subject_colour(const Json& report, const Json& id) {
+    const Json::List& subjects = report["subjects"].elements();
+    for (std::size_t i = 0; i < subjects.size() && id.is_text(); ++i) {
+        if (subjects[i]["id"] == id) return i % kSubjectColours;
+    }
+    return std::nullopt;
+}
+
+std::string verdict_class(const Json& object) {
+    const std::string word = as_text(object["verdict"]);
+    return word == "PASS" ? "pass" : word == "FAIL" ? "fail" : "inconclusive";
+}
+
 std::string number_text(double value) {
     if (!std::isfinite(value)) return "—";
-    return with_true_minus(decimal(value == 0 ? 0.0 : value, std::chars_format::general, 6));
+    return (value < 0 ? "\u2212" : "") + fmt::format("{:.6g}", std::abs(value));
 }
 
 std::string floor_text(double value) {
-    return std::isfinite(value) ? decimal(value, std::chars_format::general, 2) : "—";
+    return std::isfinite(value) ? fmt::format("{:.2g}", value) : "—";
 }
 
 std::string measurement_text(double value, std::optional<double> sigma) {
     if (!std::isfinite(value) || !sigma || !std::isfinite(*sigma) || *sigma <= 0) return number_text(value);
     // The second significant digit of sigma as it will be printed: 0.0996 rounds to 0.10, not to 0.100.
-    const std::string two_digits = decimal(*sigma, std::chars_format::scientific, 1);
-    const int exponent = std::stoi(two_digits.substr(two_digits.find('e') + 1));
-    const int places = 1 - exponent;
+    const std::string two_digits = fmt::format("{:.1e}", *sigma);
+    const int places = 1 - std::stoi(two_digits.substr(two_digits.find('e') + 1));
     if (places > 12 || places < -6) return number_text(value) + " ± " + number_text(*sigma);
     const int shown = std::max(places, 0);
-    const std::string digits = decimal(value, std::chars_format::fixed, shown);
-    const bool is_zero = digits.find_first_of("123456789") == std::string::npos;  // no "-0.00"
-    return with_true_minus(is_zero ? decimal(0.0, std::chars_format::fixed, shown) : digits) + " ± " +
-           decimal(*sigma, std::chars_format::fixed, shown);
+    return decimal_text(value, shown) + " ± " + decimal_text(*sigma, shown);
 }
 
 }  // namespace lensproof::draw

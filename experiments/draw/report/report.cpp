@@ -9,6 +9,8 @@
 
 #include "engine/base/infinity.h"
 #include "engine/base/markup.h"
+#include "experiments/draw/report/check_scale.h"
+#include "experiments/draw/report/curves.h"
 #include "experiments/draw/report/html_text.h"
 
 namespace lensproof::draw {
@@ -17,37 +19,7 @@ constexpr char kTemplate[] = {
 #include "report_template.inc"
 };
 
-constexpr std::size_t kSubjectColours = 7;  // .s0 … .s6 in the template
-
-// ---- Reading a report that may lack anything -----------------------------------------------------------------------
-
-std::optional<double> as_number(const Json& value) {
-    if (!value.is_number() || !std::isfinite(value.number())) return std::nullopt;
-    return value.number();
-}
-
-std::string as_text(const Json& value) {
-    if (value.is_text()) return value.text();
-    if (value.is_null()) return "";
-    if (value.is_number() && !value.is_whole()) return number_text(value.number());
-    return value.dump();
-}
-
-std::string text(const Json& object, const char* key) {
-    return escape_markup(as_text(object[key]));
-}
-
-std::string with_unit(const std::string& number, const std::string& unit) {
-    return unit.empty() || unit == "°" ? number + unit : number + "\u00a0" + unit;  // 21°, but 5 % and 3 px
-}
-
 // ---- Verdicts and checks ---------------------------------------------------------------------------------------
-
-/// The class that gives shape and colour. A word this page does not know is no pass.
-std::string verdict_class(const Json& object) {
-    const std::string word = as_text(object["verdict"]);
-    return word == "PASS" ? "pass" : word == "FAIL" ? "fail" : "inconclusive";
-}
 
 std::string verdict_html(const Json& object) {
     const std::string kind = verdict_class(object);
@@ -88,31 +60,20 @@ std::string limit_html(const Json& check) {
     return escape_markup(expect) + " " + amount;
 }
 
-/// "s2" for the third subject, "" for an id that no subject has.
-std::string subject_colour(const Json& report, const Json& id) {
-    const Json::List& subjects = report["subjects"].elements();
-    for (std::size_t i = 0; i < subjects.size() && id.is_text(); ++i) {
-        if (subjects[i]["id"] == id) return std::string("s").append(std::to_string(i % kSubjectColours));
-    }
-    return "";
-}
-
 struct Group {
     std::string name;
     std::vector<const Json*> checks;
-    std::vector<std::size_t> places;  // in the report's list, for the script
 };
 
 /// In the order in which a group is first named.
 std::vector<Group> groups_of(const Json::List& checks) {
     std::vector<Group> groups;
     std::map<std::string, std::size_t> place_of;
-    for (std::size_t i = 0; i < checks.size(); ++i) {
-        const std::string name = as_text(checks[i]["group"]);
+    for (const Json& check : checks) {
+        const std::string name = as_text(check["group"]);
         const auto [at, is_new] = place_of.try_emplace(name, groups.size());
-        if (is_new) groups.push_back({name, {}, {}});
-        groups[at->second].checks.push_back(&checks[i]);
-        groups[at->second].places.push_back(i);
+        if (is_new) groups.push_back({name, {}});
+        groups[at->second].checks.push_back(&check);
     }
     return groups;
 }
@@ -123,7 +84,7 @@ std::string floor_cell(const Json& check) {
 }
 
 /// `has_floors`: the table has the column.
-std::string check_row(const Json& check, std::size_t place, bool has_floors) {
+std::string check_row(const Json& check, bool has_floors) {
     const double value = as_number(check["value"]).value_or(kNaN);
     const std::string measured = measurement_text(value, as_number(check["sigma"]));
     const std::string why = text(check, "explanation");
@@ -133,8 +94,8 @@ std::string check_row(const Json& check, std::size_t place, bool has_floors) {
            "\"><th scope=\"row\"><span class=\"name\">" + text(check, "label") + "</span>" +
            (why.empty() ? "" : "<span class=\"why\">" + why + "</span>") + "</th><td class=\"value\">" +
            with_unit(measured, std::isfinite(value) ? text(check, "unit") : "") + "</td>" +
-           (has_floors ? floor_cell(check) : "") + "<td class=\"scale\" data-check=\"" + std::to_string(place) +
-           "\"></td><td class=\"limit\">" + limit_html(check) + "</td><td class=\"result\">" + verdict_html(check) +
+           (has_floors ? floor_cell(check) : "") + "<td class=\"scale\">" + check_scale_html(check) +
+           "</td><td class=\"limit\">" + limit_html(check) + "</td><td class=\"result\">" + verdict_html(check) +
            "</td></tr>\n";
 }
 
@@ -150,17 +111,23 @@ std::string checks_html(const Json& report) {
         "<th scope=\"col\" class=\"scale\">Against its limit</th>"
         "<th scope=\"col\">Limit</th><th scope=\"col\">Verdict</th></tr></thead>\n";
     for (const Group& group : groups_of(checks)) {
-        const std::string colour = subject_colour(report, (*group.checks.front())["subject"]);
+        const auto colour = subject_colour(report, (*group.checks.front())["subject"]);
         out += "<tbody><tr class=\"group\"><th scope=\"rowgroup\" colspan=\"" + std::string(has_floors ? "6" : "5") +
                "\">";
-        if (!colour.empty()) out += "<i class=\"swatch " + colour + "\" aria-hidden=\"true\"></i>";
+        if (colour) out += "<i class=\"swatch s" + std::to_string(*colour) + "\" aria-hidden=\"true\"></i>";
         out += escape_markup(group.name.empty() ? "Checks" : group.name) + " <small>" + tally(group.checks) +
                "</small></th></tr>\n";
-        for (std::size_t i = 0; i < group.checks.size(); ++i)
-            out += check_row(*group.checks[i], group.places[i], has_floors);
+        for (const Json* check : group.checks) out += check_row(*check, has_floors);
         out += "</tbody>\n";
     }
-    return out + "</table>\n";
+    return out +
+           "</table>\n<p class=\"note\">Shaded: where the check holds. Heavy line: its limit. Whisker: the value's 95 "
+           "% "
+           "interval. Arrow: beyond the scale. " +
+           (has_floors ? "Bar below: the method's own error, from measuring simulated pictures of the same views; a "
+                         "difference inside it may be the method's. "
+                       : "") +
+           "</p>\n";
 }
 
 std::string tally_html(const Json& report) {
@@ -323,6 +290,7 @@ std::string report_html(const Json& report, const std::map<std::string, std::str
                                                 {"verdict", verdict_html(report)},
                                                 {"tally", tally_html(report)},
                                                 {"checks", checks_html(report)},
+                                                {"curves", curves_html(report)},
                                                 {"maps", maps_html(report, png_bytes_by_name)},
                                                 {"subjects", subjects_html(report, png_bytes_by_name)},
                                                 {"provenance", provenance_html(report)},

@@ -9,7 +9,8 @@
 namespace lensproof::draw {
 
 /// The page for `report`, with the pictures inside it. Without JavaScript it still shows the answer, the table of
-/// checks, the facts, the pictures and the provenance; the script adds the scales, the curves and the overlays.
+/// checks, the curves, the facts, the pictures and the provenance; the script zooms and reads the curves and draws the
+/// residuals, whose magnification is the reader's.
 ///
 /// `png_bytes_by_name` holds the files' bytes under the `name` that a picture in `report` has. A name that is missing
 /// leaves a labelled gap; a picture that neither a subject nor a map names is left out. Names in .svg are SVG.

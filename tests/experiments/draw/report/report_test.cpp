@@ -145,6 +145,36 @@ TEST(Report, TheTableOfChecksNeedsNoScript) {
     EXPECT_TRUE(has(page, "1 of 1 pass"));
 }
 
+TEST(Report, TheCurvesNeedNoScript) {
+    const Json plot = {{"id", "shift"},
+                       {"title", "Shift"},
+                       {"y_label", "difference"},
+                       {"y_unit", "px"},
+                       {"limit", 0.5},
+                       {"series",
+                        {{{"label", "lens"},
+                          {"subject", "b"},
+                          {"x", Json::list({0, 1, 2, 3, 4})},
+                          {"y", Json::list({0, 0.1, nullptr, 0.3, 0.5})},
+                          {"lower", Json::list({-0.1, 0, nullptr, 0.2, 0.4})},
+                          {"upper", Json::list({0.1, 0.2, nullptr, 0.4, 0.6})},
+                          {"floor", 0.01},
+                          {"covered_to", 3.5}}}}};
+    const std::string page = report_html({{"subjects", {{{"id", "a"}}, {{"id", "b"}}}}, {"plots", {plot}}}, {});
+    const std::string chart = page.substr(page.find("<svg class=\"data\""));
+    EXPECT_EQ(count(page, "<svg class=\"data\""), 2u);  // for a wide and a narrow column
+    EXPECT_TRUE(has(chart, "<g class=\"series-0\">"));
+    EXPECT_TRUE(has(chart, "stroke=\"var(--c1)\""));  // the second subject's
+    EXPECT_TRUE(has(chart, "class=\"hatch\""));
+    EXPECT_TRUE(has(page, "limit ±0.5\u00a0px"));
+    EXPECT_TRUE(has(page, "data to 3.5"));
+    EXPECT_TRUE(has(page, "<th scope=\"row\">1</th><td>0.10 ± 0.10</td>"));
+    for (const char* x : {"1.5", "2", "2.5"}) {  // the gap
+        EXPECT_TRUE(has(page, "<th scope=\"row\">" + std::string(x) + "</th><td>—</td>")) << x;
+    }
+    EXPECT_TRUE(has(page, "<th scope=\"row\">4</th><td>0.50 ± 0.10 (extrapolated)</td>"));
+}
+
 TEST(Report, TheMethodsOwnErrorStandsBesideTheValueWhereItIsKnown) {
     const std::string page = report_html(one_check({{"floor", 0.00561}}), {});
     EXPECT_TRUE(has(page, "<td class=\"floor\">0.0056\u00a0px</td>"));
