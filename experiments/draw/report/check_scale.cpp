@@ -14,12 +14,11 @@ namespace lensproof::draw {
 namespace {
 constexpr double kZ95 = 1.959964;  // half of a 95 % interval in standard errors
 
-/// The scale's two ends, where the check holds, and where there is no difference.
+/// The scale's two ends, where the check holds (from, to: a finite end is a limit), and where there is no difference.
 struct Scale {
     double low;
     double high;
     std::vector<std::pair<double, double>> holds;
-    std::vector<double> limits;
     double zero = 0.0;
 
     /// Percent of the width; what lies beyond an end is there.
@@ -35,20 +34,12 @@ Scale scale_of(const Json& check, double limit) {
     const double high = target + limit;
     const double reach = limit != 0.0 ? std::abs(limit) : value != 0.0 ? std::abs(value) : 1.0;
     const std::string expect = as_text(check["expect"]);
-    if (expect == "within") {
-        return {target - 1.5 * reach, target + 1.5 * reach, {{low, high}}, {low, high}, target};
-    }
+    if (expect == "within") return {target - 1.5 * reach, target + 1.5 * reach, {{low, high}}, target};
     if (expect == "differs") {
-        return {
-            target - 3.0 * reach, target + 3.0 * reach, {{-kInfinity, low}, {high, kInfinity}}, {low, high}, target};
+        return {target - 3.0 * reach, target + 3.0 * reach, {{-kInfinity, low}, {high, kInfinity}}, target};
     }
-    if (expect == "at least") {
-        return {limit > 0.0 ? 0.0 : limit - reach, limit + 2.0 * reach, {{limit, kInfinity}}, {limit}};
-    }
-    return {limit > 0.0 ? 0.0 : limit - 2.0 * reach,
-            limit + (limit > 0.0 ? 0.5 : 1.0) * reach,
-            {{-kInfinity, limit}},
-            {limit}};
+    if (expect == "at least") return {limit > 0.0 ? 0.0 : limit - reach, limit + 2.0 * reach, {{limit, kInfinity}}};
+    return {limit > 0.0 ? 0.0 : limit - 2.0 * reach, limit + (limit > 0.0 ? 0.5 : 1.0) * reach, {{-kInfinity, limit}}};
 }
 
 std::string line(const char* kind, double from, double to, double top, double bottom) {
@@ -85,7 +76,9 @@ std::string check_scale_html(const Json& check) {
                       line("track", 0.0, 100.0, kMiddle, kMiddle);
     for (const auto& [from, to] : scale.holds) out += rectangle("allowed", scale.at(from), scale.at(to), 4.0, 14.0);
     if (scale.zero > scale.low && scale.zero < scale.high) out += bar("zero", scale.zero, 4.0);
-    for (const double x : scale.limits) out += bar("limit-line", x, 9.0);
+    for (const auto& [from, to] : scale.holds) {
+        for (const double end : {from, to}) out += std::isfinite(end) ? bar("limit-line", end, 9.0) : "";
+    }
     const double own = as_number(check["floor"]).value_or(0.0);
     if (own > 0.0) {  // from no difference on: what lies in it may be the method's
         const double from = scale.zero - (as_text(check["expect"]) == "within" ? own : 0.0);
