@@ -38,19 +38,19 @@ bool ProgressBar::is_due() {
 }
 
 void ProgressBar::update(double done) {
-    const double share = std::clamp(done, 0.0, 1.0);
-    update(share, share > 0.0 ? seconds_since(start_) * (1.0 - share) / share : 0.0, "");
+    const double fraction = std::clamp(done, 0.0, 1.0);
+    update(fraction, fraction > 0.0 ? seconds_since(start_) * (1.0 - fraction) / fraction : 0.0, "");
 }
 
 void ProgressBar::update(double done, double seconds_left, const std::string& note) {
     if (!is_due()) {
         return;
     }
-    const double share = std::clamp(done, 0.0, 1.0);
-    const int full = static_cast<int>(share * kBarWidth);
+    const double fraction = std::clamp(done, 0.0, 1.0);
+    const int full = static_cast<int>(fraction * kBarWidth);
     const std::string line =
         fmt::format("\r{} [{:#<{}}{:.<{}}] {:3.0f} %, {}{:.0f} s left\033[K", label_, "", full, "", kBarWidth - full,
-                    100.0 * share, note.empty() ? "" : note + ", ", seconds_left);
+                    100.0 * fraction, note.empty() ? "" : note + ", ", seconds_left);
     std::fputs(line.c_str(), stderr);
     std::fflush(stderr);
 }

@@ -12,7 +12,7 @@ struct PlacedLabel {
 
 /// Where the labels' middles come to lie between `left` and `right`, in the order of the x that they wish, none
 /// covering another: each group of labels that are in one another's way is centred on what it wishes (the
-/// pool-adjacent- violators way). Labels that are wider in all than the row overlap evenly.
+/// pool-adjacent-violators algorithm). Labels that are wider in all than the row overlap evenly.
 std::vector<double> spread_labels(const std::vector<PlacedLabel>& labels, double left, double right);
 
 }  // namespace lensproof::draw

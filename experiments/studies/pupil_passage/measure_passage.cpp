@@ -126,7 +126,7 @@ class PassageMeter {
     }
 
     /// Paths from a height on the sensor to points that are even over what the map draws from in the section: where its
-    /// density is more than that of the defensive share alone.
+    /// density is more than that of the defensive fraction alone.
     void draw(const pupil::PupilMap& map, double height, std::vector<DrawnPath>& drawn) const {
         const int wavelength = kWavelengths / 2;
         const optics::TraceLens<double>& lens = band_[static_cast<std::size_t>(wavelength)];

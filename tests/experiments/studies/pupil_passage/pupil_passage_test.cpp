@@ -19,15 +19,15 @@ PassageSetting fisheye() {
 }
 
 // On the axis the paths that pass fill a disc: that of the cone whose projected solid angle is known by quadrature. In
-// the innermost ring, 1/8 of the circle wide, that share changes by the vignetting there, 8 %.
+// the innermost ring, 1/8 of the circle wide, that fraction changes by the vignetting there, 8 %.
 TEST(PupilPassage, OfTheWholeElementIsTheShareOfItsDisc) {
     const Passage passage = measure_passage(fisheye(), 0);
     const optics::TraceLens<double> lens = optics::at_wavelength<double>(passage.lens, 550.0);
     const pupil::RearDisc disc = pupil::rear_disc(lens, passage.circle_mm);
     const double sine2 = optics::image_bundle(lens, 0.0).projected_solid_angle / std::numbers::pi;
     const double radius = (lens.image_z - disc.plane_z) * std::sqrt(sine2 / (1.0 - sine2));
-    const double share = radius * radius / (disc.radius * disc.radius);
-    EXPECT_NEAR(passage.whole_element.rings[0] / share, 1.0, 0.08);
+    const double fraction = radius * radius / (disc.radius * disc.radius);
+    EXPECT_NEAR(passage.whole_element.rings[0] / fraction, 1.0, 0.08);
     EXPECT_GT(passage.pupil.mean, 0.97);
     EXPECT_LT(passage.whole_element.mean, 0.25);
     // What is drawn from each of four heights: some blocked, some not; of the pupil's all but the outermost pass.
