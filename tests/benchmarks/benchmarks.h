@@ -24,7 +24,7 @@ void register_camera_path_benchmarks();
 /// with each camera model, the exact one being the double Gauss at f/2. Counters: paths per second, rays a path.
 void register_scene_benchmarks();
 
-/// bsdf/SURFACE/sample: a direction drawn; bsdf/SURFACE/evaluate: value and density of a given one; texture/KIND: one
+/// bsdf/SURFACE/sample: a direction drawn; bsdf/SURFACE/evaluate: value and pdf of a given one; texture/KIND: one
 /// look-up at a path's four wavelengths.
 void register_bsdf_benchmarks();
 

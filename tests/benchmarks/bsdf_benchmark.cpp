@@ -40,14 +40,14 @@ void draw(benchmark::State& state, const scene::Bsdf& bsdf) {
     }
 }
 
-/// What a light's sample asks for: the value, and the density for its weight.
+/// What a light's sample asks for: the value, and the pdf for its weight.
 void judge(benchmark::State& state, const scene::Bsdf& bsdf) {
     const std::vector<Query> all = queries();
     std::size_t i = 0;
     while (state.KeepRunning()) {
         const Query& q = all[i++ % kQueries];
         benchmark::DoNotOptimize(scene::evaluate(bsdf, q.wo, q.wi, scene::Transport::radiance));
-        benchmark::DoNotOptimize(scene::density(bsdf, q.wo, q.wi, scene::Transport::radiance));
+        benchmark::DoNotOptimize(scene::pdf(bsdf, q.wo, q.wi, scene::Transport::radiance));
     }
 }
 

@@ -18,7 +18,7 @@ const scene::BsdfTables& tables() {
 
 constexpr double kViews[] = {0.95, 0.6, 0.15, -0.9, -0.4};
 
-// A sample weighs f |cos| / density, and its density is what `density` says: to the rounding of floats, of which each
+// A sample weighs f |cos| / pdf, and its pdf is what `pdf` says: to the rounding of floats, of which each
 // value takes some ten.
 TEST(Bsdf, SamplesWeighTheirValueOverTheirDensity) {
     scene::Uniform uniform(1);
@@ -29,11 +29,11 @@ TEST(Bsdf, SamplesWeighTheirValueOverTheirDensity) {
             if (!drawn || drawn->is_delta) {
                 continue;
             }
-            ASSERT_GT(drawn->density, 0.0) << name;
+            ASSERT_GT(drawn->pdf, 0.0) << name;
             EXPECT_NEAR(length(drawn->wi), 1.0, 1e-12) << name;
-            const double again = scene::density(bsdf, wo, drawn->wi, scene::Transport::radiance);
+            const double again = scene::pdf(bsdf, wo, drawn->wi, scene::Transport::radiance);
             // The facet is found again from the directions, to 1e-15 of its slope over α² and their sum's length.
-            EXPECT_NEAR(drawn->density, again, 1e-9 * again) << name;
+            EXPECT_NEAR(drawn->pdf, again, 1e-9 * again) << name;
             const spectral::SpectralSample value = scene::evaluate(bsdf, wo, drawn->wi, scene::Transport::radiance);
             for (std::size_t c = 0; c < spectral::kWavelengthsPerPath; ++c) {
                 EXPECT_NEAR(drawn->weight[c], value[c] / again, 2e-6 * drawn->weight[c]) << name;
@@ -80,7 +80,7 @@ int cell_of(const Vec3d& w) {
     return ring * kSectors + sector;
 }
 
-/// ∫ density over each cell.
+/// ∫ pdf over each cell.
 std::vector<double> cell_probabilities(const scene::Bsdf& bsdf, const Vec3d& wo) {
     using Gauss = boost::math::quadrature::gauss<double, 20>;
     std::vector<double> probability;
@@ -92,7 +92,7 @@ std::vector<double> cell_probabilities(const scene::Bsdf& bsdf, const Vec3d& wo)
             [&](double mu) {
                 return Gauss::integrate(
                     [&](double phi) {
-                        return scene::density(bsdf, wo, scene::direction(mu, phi), scene::Transport::radiance);
+                        return scene::pdf(bsdf, wo, scene::direction(mu, phi), scene::Transport::radiance);
                     },
                     from_phi, from_phi + 2.0 * pi / kSectors);
             },
@@ -101,7 +101,7 @@ std::vector<double> cell_probabilities(const scene::Bsdf& bsdf, const Vec3d& wo)
     return probability;
 }
 
-// Pearson's test of what `sample` draws against the integral of what `density` says, over the sphere and one further
+// Pearson's test of what `sample` draws against the integral of what `pdf` says, over the sphere and one further
 // cell for deltas and lost light. Cells that expect below 8 are pooled. A right sampler fails once in 10⁶ such tests;
 // quadrature, whose error is below 1e-3 of a cell even at the edge where total reflection sets in, adds to χ² at most
 // N · 1e-6, nothing.

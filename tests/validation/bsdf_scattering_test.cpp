@@ -201,7 +201,7 @@ TEST(RoughSurfaces, LossesAreWhatTheoryLeaves) {
 }
 
 // At grazing angles, at the finest and the coarsest roughness, everything stays finite, and no weight exceeds what one
-// of four wavelengths can: 4 of its own density, and 1/η² for radiance that leaves the denser side.
+// of four wavelengths can: 4 of its own pdf, and 1/η² for radiance that leaves the denser side.
 TEST(RoughSurfaces, StayFiniteAtGrazing) {
     scene::Uniform uniform(10);
     for (const double alpha : {scene::kLeastAlpha, 0.01, 1.0}) {
@@ -226,7 +226,7 @@ TEST(RoughSurfaces, StayFiniteAtGrazing) {
                 const auto drawn =
                     scene::sample(surface, wo, uniform(), uniform(), uniform(), scene::Transport::radiance);
                 if (drawn) {
-                    EXPECT_TRUE(std::isfinite(drawn->density) && drawn->density > 0.0) << alpha << " " << mu;
+                    EXPECT_TRUE(std::isfinite(drawn->pdf) && drawn->pdf > 0.0) << alpha << " " << mu;
                     for (const float weight : drawn->weight.value) {
                         EXPECT_TRUE(weight >= 0.0F && weight <= 4.0F * 1.8F * 1.8F * 1.01F) << weight << " " << alpha;
                     }

@@ -85,9 +85,9 @@ render::PathTurn turn_at(const render::PathVertex& vertex, const Vec3d& onwards,
     }
     const Vec3d wi = vertex.frame.to_local(onwards);
     return is_camera ? render::camera_turn(vertex, onwards, wi,
-                                           scene::density(vertex.bsdf, vertex.wo, wi, scene::Transport::radiance))
+                                           scene::pdf(vertex.bsdf, vertex.wo, wi, scene::Transport::radiance))
                      : render::light_turn(vertex, onwards, wi,
-                                          scene::density(vertex.bsdf, vertex.wo, wi, scene::Transport::importance));
+                                          scene::pdf(vertex.bsdf, vertex.wo, wi, scene::Transport::importance));
 }
 
 /// Whether light goes along the path.
@@ -139,8 +139,8 @@ std::optional<End> end_of(const scene::Scene& scene, const scene::SurfaceHit& la
         end.start.point = on_light->point;
         end.start.normal = on_light->geometric_normal;
     }
-    end.start.density = end.hit.start_density;
-    return end.hit.density > 0.0 ? std::optional(end) : std::nullopt;
+    end.start.pdf = end.hit.start_pdf;
+    return end.hit.pdf > 0.0 ? std::optional(end) : std::nullopt;
 }
 
 Weights weights_of(const Studio& studio, const Path& path, const End& end, const spectral::PathWavelengths& strata,
@@ -170,11 +170,11 @@ Weights weights_of(const Studio& studio, const Path& path, const End& end, const
         camera.turn(turn);
         backwards = -1.0 * onwards;
     }
-    weights.hit = end.hit.density > 0.0 ? camera.of_hit(end.hit, end.cosine) : 0.0;
+    weights.hit = end.hit.pdf > 0.0 ? camera.of_hit(end.hit, end.cosine) : 0.0;
 
     // From the light.
     render::LightMisWeight light;
-    light.leave(scene.lights.way(end.start, path.points.back().point));
+    light.leave(scene.lights.first_segment(end.start, path.points.back().point));
     backwards = end.sample.direction;
     for (std::size_t i = n; i-- > 0;) {
         const render::PathVertex vertex(path.points[i], backwards, scene, strata);

@@ -96,7 +96,7 @@ Mapped mapped(const Setting& setting) {
 }
 
 /// The path from the sensor through a point of the pupil, and its share of the film irradiance in a world of radiance
-/// 1, before the density: τ cos⁴θ / Z² = τ cos²θ / way² (Kolb et al. 1995, eq. 4). 0 where it does not leave the front.
+/// 1, before the pdf: τ cos⁴θ / Z² = τ cos²θ / way² (Kolb et al. 1995, eq. 4). 0 where it does not leave the front.
 double film_irradiance(const optics::TraceLens<double>& lens, Vec2d at, Vec2d pupil_point, double plane_z) {
     const Vec3d from{at.x, at.y, lens.image_z};
     const Vec3d way = Vec3d{pupil_point.x, pupil_point.y, plane_z} - from;
@@ -179,7 +179,7 @@ class RingIrradiance {
     int ring_;
     int wavelength_;
     std::array<std::array<double, kBatch>, render::PixelSampler::kDimensions> numbers_{};
-    std::array<double, kBatch> weights_{};  // cos²θ / way² over the density
+    std::array<double, kBatch> weights_{};  // cos²θ / way² over the pdf
     optics::RayBatch<double> rays_{kBatch};
 };
 

@@ -27,7 +27,7 @@ PathPdf over_heroes(const PdfOf& pdf_of) {
     return pdf;
 }
 
-/// Where light comes from on its way into a camera: a point (mm) or, from far off, the direction (of unit length) that
+/// Where light comes from on its path into a camera: a point (mm) or, from far off, the direction (of unit length) that
 /// it travels in.
 struct LightOrigin {
     Vec3d at;

@@ -56,7 +56,7 @@ std::optional<FrontRay> ray_through(const GaussianOptics& optics, const LightOri
                     .slope = {optics.s_h * h.x + optics.s_s * s.x, optics.s_h * h.y + optics.s_s * s.y}};
 }
 
-/// Before the camera, on the way to it.
+/// Before the camera, on the path to it.
 bool is_before(const GaussianOptics& optics, const LightOrigin& from) {
     return from.is_far ? from.at.z > 0.0 : from.at.z < optics.object_z;
 }

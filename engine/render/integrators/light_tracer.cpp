@@ -54,7 +54,7 @@ class LightWalk {
                 return;
             }
             if (bounce == 1 && is_weighed_) {
-                weight_.leave(scene_.lights.way(start, hit->point));
+                weight_.leave(scene_.lights.first_segment(start, hit->point));
             }
             if (!scene::is_delta(vertex.bsdf)) {
                 join_from_surface(vertex, light.power * throughput);
@@ -76,7 +76,7 @@ class LightWalk {
             }
             if (is_weighed_) {
                 weight_.turn(scattered.is_delta ? PathTurn{.is_delta = true}
-                                                : light_turn(vertex, onwards, scattered.wi, scattered.density));
+                                                : light_turn(vertex, onwards, scattered.wi, scattered.pdf));
             }
             if (!survives_roulette(settings_, bounce, numbers[3], throughput)) {
                 return;

@@ -4,7 +4,7 @@
 //
 //   hit     a camera path scatters at each of its points and runs into the light,
 //   sample  a camera path reaches x_n and samples the light from there (next-event estimation),
-//   join    a light path scatters its way to x_1 and is joined to the camera.
+//   join    a light path scatters until x_1 and is joined to the camera.
 //
 // Each is counted with its MIS weight by the power heuristic, p² / (p_hit² + p_sample² + p_join²) with its own pdf p
 // (Veach & Guibas, SIGGRAPH 1995, β = 2; one path a technique), so that the weights sum to one and each path counts
@@ -48,14 +48,14 @@ struct PathTurn {
 /// `to_light`.
 inline PathTurn camera_turn(const PathVertex& vertex, const Vec3d& onwards, const Vec3d& wi, double to_light) {
     return {.to_light = to_light,
-            .to_camera = scene::density(vertex.bsdf, wi, vertex.wo, scene::Transport::importance),
+            .to_camera = scene::pdf(vertex.bsdf, wi, vertex.wo, scene::Transport::importance),
             .cos_light = std::abs(dot(onwards, vertex.hit.geometric_normal)),
             .cos_camera = vertex.cos_backwards};
 }
 
 /// The same of a light path, whose own pdf is `to_camera`.
 inline PathTurn light_turn(const PathVertex& vertex, const Vec3d& onwards, const Vec3d& wi, double to_camera) {
-    return {.to_light = scene::density(vertex.bsdf, wi, vertex.wo, scene::Transport::radiance),
+    return {.to_light = scene::pdf(vertex.bsdf, wi, vertex.wo, scene::Transport::radiance),
             .to_camera = to_camera,
             .cos_light = vertex.cos_backwards,
             .cos_camera = std::abs(dot(onwards, vertex.hit.geometric_normal))};
@@ -89,13 +89,13 @@ class CameraMisWeight {
 
     /// Of light that the path ran into, at `cosine` from its normal (1 of light from far off).
     [[nodiscard]] double of_hit(const scene::Lights::Emission& light, double cosine) const {
-        const double joined = entrance() * (is_first_ ? light.start_density / cosine : light.leaving_density);
-        return power_heuristic(light.density * sampled_, by_light_ * joined);
+        const double joined = entrance() * (is_first_ ? light.start_pdf / cosine : light.leaving_pdf);
+        return power_heuristic(light.pdf * sampled_, by_light_ * joined);
     }
 
     /// Of light that was sampled, through the turn `at`.
     [[nodiscard]] double of_sample(const scene::LightSample& light, const PathTurn& at) const {
-        const double hit = light.density > 0.0 ? at.to_light / light.density : 0.0;
+        const double hit = light.pdf > 0.0 ? at.to_light / light.pdf : 0.0;
         const double joined = by_light_ * entrance() * arrives(at) * at.cos_light * light.leaving_per_sample;
         return power_heuristic(hit, joined);
     }
@@ -116,9 +116,9 @@ class CameraMisWeight {
 class LightMisWeight {
   public:
     /// Of the light, when the first surface is found.
-    void leave(const scene::LightWay& way) {
-        hit_ = way.hit_per_leaving;
-        sampled_ = way.sample_per_leaving;
+    void leave(const scene::FirstSegment& segment) {
+        hit_ = segment.hit_per_leaving;
+        sampled_ = segment.sample_per_leaving;
     }
 
     void turn(const PathTurn& at) {
@@ -138,7 +138,7 @@ class LightMisWeight {
     }
 
     /// The same for light that goes straight from its source to the camera, at `cosine` from its normal (1 from far).
-    [[nodiscard]] static double others(const scene::LightStart& start, double cosine) { return cosine / start.density; }
+    [[nodiscard]] static double others(const scene::LightStart& start, double cosine) { return cosine / start.pdf; }
 
     [[nodiscard]] static double weight(double others, double drawn_per_entrance) {
         return power_heuristic(others * drawn_per_entrance, 0.0);

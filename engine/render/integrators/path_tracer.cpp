@@ -81,7 +81,7 @@ class PathWalk {
     /// Only as much of a turn as weights need.
     [[nodiscard]] PathTurn turn_at(const PathVertex& vertex, const PathVertex::Turn& turn) const {
         return turn.bsdf.is_delta ? PathTurn{.is_delta = true}
-                                  : turn_at(vertex, turn.onwards, turn.bsdf.wi, turn.bsdf.density);
+                                  : turn_at(vertex, turn.onwards, turn.bsdf.wi, turn.bsdf.pdf);
     }
     [[nodiscard]] PathTurn turn_at(const PathVertex& vertex, const Vec3d& onwards, const Vec3d& wi,
                                    double to_light) const {
@@ -115,7 +115,7 @@ class PathWalk {
             return;
         }
         const double to_light =
-            light->density > 0.0 ? scene::density(vertex.bsdf, vertex.wo, wi, scene::Transport::radiance) : 0.0;
+            light->pdf > 0.0 ? scene::pdf(vertex.bsdf, vertex.wo, wi, scene::Transport::radiance) : 0.0;
         const PathTurn turn = turn_at(vertex, light->direction, wi, to_light);
         add(static_cast<float>(weight_.of_sample(*light, turn)) * (throughput * scattering * light->value));
     }

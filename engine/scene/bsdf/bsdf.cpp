@@ -46,7 +46,7 @@ spectral::SpectralSample normal_albedo(const PlasticBsdf& bsdf) {
 spectral::SpectralSample normal_albedo(const MixBsdf& bsdf) {
     spectral::SpectralSample sum;
     for (std::size_t i = 0; i < bsdf.count; ++i) {
-        sum += static_cast<float>(bsdf.share[i]) *
+        sum += static_cast<float>(bsdf.fraction[i]) *
                std::visit([](const auto& part) { return normal_albedo(part); }, bsdf.part[i]);
     }
     return sum;
@@ -58,8 +58,8 @@ spectral::SpectralSample evaluate(const Bsdf& bsdf, const Vec3d& wo, const Vec3d
     return std::visit([&](const auto& model) { return evaluate(model, wo, wi, transport); }, bsdf);
 }
 
-double density(const Bsdf& bsdf, const Vec3d& wo, const Vec3d& wi, Transport transport) {
-    return std::visit([&](const auto& model) { return density(model, wo, wi, transport); }, bsdf);
+double pdf(const Bsdf& bsdf, const Vec3d& wo, const Vec3d& wi, Transport transport) {
+    return std::visit([&](const auto& model) { return pdf(model, wo, wi, transport); }, bsdf);
 }
 
 std::optional<BsdfSample> sample(const Bsdf& bsdf, const Vec3d& wo, double u_lobe, double u1, double u2,

@@ -20,9 +20,9 @@ using Bsdf = std::variant<DiffuseBsdf, ConductorBsdf, DielectricBsdf, PlasticBsd
 /// importance's f(wi, wo).
 spectral::SpectralSample evaluate(const Bsdf& bsdf, const Vec3d& wo, const Vec3d& wi, Transport transport);
 
-/// The density per solid angle at which `sample` draws `wi`, one for all of the path's wavelengths. It integrates to 1
+/// The pdf per solid angle at which `sample` draws `wi`, one for all of the path's wavelengths. It integrates to 1
 /// less the probability of a delta and of no direction at all.
-double density(const Bsdf& bsdf, const Vec3d& wo, const Vec3d& wi, Transport transport);
+double pdf(const Bsdf& bsdf, const Vec3d& wo, const Vec3d& wi, Transport transport);
 
 /// Draws `wi` from u_lobe, u1, u2, independent and uniform in (0, 1). Nothing where light ends: the weight is then 0.
 std::optional<BsdfSample> sample(const Bsdf& bsdf, const Vec3d& wo, double u_lobe, double u1, double u2,
@@ -31,7 +31,7 @@ std::optional<BsdfSample> sample(const Bsdf& bsdf, const Vec3d& wo, double u_lob
 /// Whether `evaluate` is 0 for every pair of directions: lights need not be sampled there.
 bool is_delta(const Bsdf& bsdf);
 
-/// The share of light from straight above that leaves the surface again, reflected or passed, as if facets lost
+/// The fraction of light from straight above that leaves the surface again, reflected or passed, as if facets lost
 /// nothing: the albedo layer that denoisers ask for.
 spectral::SpectralSample normal_albedo(const Bsdf& bsdf);
 

@@ -15,15 +15,15 @@ class DielectricCoat {
     [[nodiscard]] double eta() const { return eta_; }
     [[nodiscard]] const Roughness& roughness() const { return roughness_; }
 
-    /// E(μ): the share of light from a direction of cosine `mu` in (0, 1] that the top of the coat reflects, by single
-    /// reflections at facets where it is rough; tabulated then, within 1e-3.
+    /// E(μ): the fraction of light from a direction of cosine `mu` in (0, 1] that the top of the coat reflects, by
+    /// single reflections at facets where it is rough; tabulated then, within 1e-3.
     [[nodiscard]] double reflectance(double mu) const;
 
     /// 2 ∫ E(μ) μ dμ: of light that comes evenly from the whole hemisphere.
     [[nodiscard]] double mean_reflectance() const { return mean_reflectance_; }
 
-    /// The share of evenly spread light from below that the coat throws back down: 1 − (1 − mean_reflectance) / η², as
-    /// in equilibrium as much passes up as down and radiance below is η² times that above.
+    /// The fraction of evenly spread light from below that the coat throws back down: 1 − (1 − mean_reflectance) / η²,
+    /// as in equilibrium as much passes up as down and radiance below is η² times that above.
     [[nodiscard]] double mean_reflectance_below() const;
 
   private:

@@ -16,9 +16,9 @@ double several_probability(const ConductorBsdf& bsdf, const Vec3d& wo) {
 
 // For directions above the surface.
 
-double density_above(const ConductorBsdf& bsdf, const Vec3d& wo, const Vec3d& wi, const GgxReflection& facets) {
+double pdf_above(const ConductorBsdf& bsdf, const Vec3d& wo, const Vec3d& wi, const GgxReflection& facets) {
     const double p_several = several_probability(bsdf, wo);
-    return (1.0 - p_several) * facets.density + (p_several > 0.0 ? p_several * bsdf.losses->density(wi) : 0.0);
+    return (1.0 - p_several) * facets.pdf + (p_several > 0.0 ? p_several * bsdf.losses->pdf(wi) : 0.0);
 }
 
 spectral::SpectralSample value_above(const ConductorBsdf& bsdf, const Vec3d& wo, const Vec3d& wi,
@@ -59,13 +59,13 @@ spectral::SpectralSample evaluate(const ConductorBsdf& bsdf, const Vec3d& wo, co
     return value_above(bsdf, from, to, ggx_reflection(bsdf.roughness, from, to));
 }
 
-double density(const ConductorBsdf& bsdf, const Vec3d& wo, const Vec3d& wi, Transport) {
+double pdf(const ConductorBsdf& bsdf, const Vec3d& wo, const Vec3d& wi, Transport) {
     if (!is_possible(bsdf, wo, wi)) {
         return 0.0;
     }
     const Vec3d from = upwards(wo);
     const Vec3d to = upwards(wi);
-    return density_above(bsdf, from, to, ggx_reflection(bsdf.roughness, from, to));
+    return pdf_above(bsdf, from, to, ggx_reflection(bsdf.roughness, from, to));
 }
 
 std::optional<BsdfSample> sample(const ConductorBsdf& bsdf, const Vec3d& wo, double u_lobe, double u1, double u2,
@@ -86,10 +86,10 @@ std::optional<BsdfSample> sample(const ConductorBsdf& bsdf, const Vec3d& wo, dou
         return std::nullopt;
     }
     const GgxReflection facets = ggx_reflection(bsdf.roughness, from, wi);
-    const double drawn_with = density_above(bsdf, from, wi, facets);
+    const double drawn_with = pdf_above(bsdf, from, wi, facets);
     return BsdfSample{.wi = on_side_of(wo, wi),
                       .weight = static_cast<float>(1.0 / drawn_with) * value_above(bsdf, from, wi, facets),
-                      .density = drawn_with};
+                      .pdf = drawn_with};
 }
 
 }  // namespace lensproof::scene

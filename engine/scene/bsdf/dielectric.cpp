@@ -44,10 +44,10 @@ double mean_over_indices(const DielectricBsdf& bsdf, const Vec3d& wo, const Func
     return sum / static_cast<double>(count);
 }
 
-/// At one index: f |cos wi| for radiance, and the density of wi where it is drawn for that index.
+/// At one index: f |cos wi| for radiance, and the pdf of wi where it is drawn for that index.
 struct ThroughFacets {
     double value = 0.0;
-    double density = 0.0;
+    double pdf = 0.0;
 };
 
 /// What facets refract from wi, below the surface, to wo above it (Walter et al. 2007, eq. 21).
@@ -66,12 +66,13 @@ ThroughFacets facet_refraction(const Roughness& roughness, const Vec3d& wo, cons
     const double passing = 1.0 - dielectric_reflectance(eta, std::min(cos_o, 1.0));
     const double seen = passing * ggx_facets(roughness, m) * ggx_visible_per_cos(roughness, wo) * cos_o * cos_i /
                         (size * size);  // size = |wo·m + η wi·m|
-    return {.value = seen * ggx_visible_per_cos(roughness, upwards(wi)) * -wi.z, .density = seen * eta * eta};
+    return {.value = seen * ggx_visible_per_cos(roughness, upwards(wi)) * -wi.z, .pdf = seen * eta * eta};
 }
 
 /// What leaves on the other side of the light that meets several facets. With L and L' the two sides' mean losses and η
-/// the index beyond, f is reciprocal where the shares that pass are as η² L' to L; the ones that add up to 1 are these.
-double passing_share(const BoundaryLosses::Loss& lost, double eta) {
+/// the index beyond, f is reciprocal where the fractions that pass are as η² L' to L; the ones that add up to 1 are
+/// these.
+double transmitted_fraction(const BoundaryLosses::Loss& lost, double eta) {
     const double beyond = eta * eta * lost.mean_beyond;
     return beyond > 0.0 ? beyond / (lost.mean + beyond) : 0.0;
 }
@@ -98,7 +99,7 @@ class RoughPair {
     [[nodiscard]] ThroughFacets by_one_facet(double eta) const {
         if (is_reflection_) {
             const double reflectance = dielectric_reflectance(eta, reflection_.cos_facet);
-            return {.value = reflection_.value * reflectance, .density = reflection_.density * reflectance};
+            return {.value = reflection_.value * reflectance, .pdf = reflection_.pdf * reflectance};
         }
         return facet_refraction(bsdf_.roughness, upwards(wo_), {wi_.x, wi_.y, -std::abs(wi_.z)}, eta);
     }
@@ -107,14 +108,14 @@ class RoughPair {
         const double eta_below = wo_.z > 0.0 ? eta : 1.0 / eta;
         const BoundaryLosses::Loss lost = bsdf_.losses->of(wo_, eta_below);
         const BoundaryLosses::Loss at_wi = bsdf_.losses->of(wi_, eta_below);
-        const double passing = passing_share(lost, eta);
-        const double share = is_reflection_ ? 1.0 - passing : passing;
-        const double several = lost.at_direction * share;
+        const double passing = transmitted_fraction(lost, eta);
+        const double fraction = is_reflection_ ? 1.0 - passing : passing;
+        const double several = lost.at_direction * fraction;
         const double returned =
             at_wi.mean > 0.0 ? several * at_wi.at_direction / at_wi.mean * std::abs(wi_.z) * std::numbers::inv_pi : 0.0;
-        const double drawn = bsdf_.losses->nearest(wi_.z > 0.0, eta_below).density(upwards(wi_));
+        const double drawn = bsdf_.losses->nearest(wi_.z > 0.0, eta_below).pdf(upwards(wi_));
         return {.value = once.value + (is_reflection_ ? returned : returned / (eta * eta)),
-                .density = (1.0 - lost.at_direction) * once.density + several * drawn};
+                .pdf = (1.0 - lost.at_direction) * once.pdf + several * drawn};
     }
 
     const DielectricBsdf& bsdf_;
@@ -163,7 +164,7 @@ std::optional<BsdfSample> sample_smooth(const DielectricBsdf& bsdf, const Vec3d&
 Vec3d direction_after_several(const DielectricBsdf& bsdf, const Vec3d& wo, double eta, double u_pass, double u1,
                               double u2) {
     const double eta_below = wo.z > 0.0 ? eta : 1.0 / eta;
-    const bool passes = u_pass < passing_share(bsdf.losses->of(wo, eta_below), eta);
+    const bool passes = u_pass < transmitted_fraction(bsdf.losses->of(wo, eta_below), eta);
     const bool is_above = (wo.z > 0.0) != passes;
     const Vec3d upward = bsdf.losses->nearest(is_above, eta_below).sample(u1, u2);
     return {upward.x, upward.y, is_above ? upward.z : -upward.z};
@@ -215,12 +216,12 @@ spectral::SpectralSample evaluate(const DielectricBsdf& bsdf, const Vec3d& wo, c
     return for_each_index(bsdf, wo, [&](double eta) { return pair.at(eta).value * (spreads ? 1.0 : eta * eta); });
 }
 
-double density(const DielectricBsdf& bsdf, const Vec3d& wo, const Vec3d& wi, Transport) {
+double pdf(const DielectricBsdf& bsdf, const Vec3d& wo, const Vec3d& wi, Transport) {
     if (is_delta(bsdf) || wo.z == 0.0 || wi.z == 0.0) {
         return 0.0;
     }
     const RoughPair pair(bsdf, wo, wi);
-    return mean_over_indices(bsdf, wo, [&](double eta) { return pair.at(eta).density; });
+    return mean_over_indices(bsdf, wo, [&](double eta) { return pair.at(eta).pdf; });
 }
 
 std::optional<BsdfSample> sample(const DielectricBsdf& bsdf, const Vec3d& wo, double u_lobe, double u1, double u2,
@@ -235,13 +236,13 @@ std::optional<BsdfSample> sample(const DielectricBsdf& bsdf, const Vec3d& wo, do
     if (!wi) {
         return std::nullopt;
     }
-    const double drawn_with = density(bsdf, wo, *wi, transport);
+    const double drawn_with = pdf(bsdf, wo, *wi, transport);
     if (!(drawn_with > 0.0)) {
         return std::nullopt;
     }
     return BsdfSample{.wi = *wi,
                       .weight = static_cast<float>(1.0 / drawn_with) * evaluate(bsdf, wo, *wi, transport),
-                      .density = drawn_with};
+                      .pdf = drawn_with};
 }
 
 }  // namespace lensproof::scene

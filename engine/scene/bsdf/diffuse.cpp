@@ -5,10 +5,10 @@
 namespace lensproof::scene {
 
 spectral::SpectralSample evaluate(const DiffuseBsdf& bsdf, const Vec3d& wo, const Vec3d& wi, Transport transport) {
-    return static_cast<float>(density(bsdf, wo, wi, transport)) * bsdf.albedo;
+    return static_cast<float>(pdf(bsdf, wo, wi, transport)) * bsdf.albedo;
 }
 
-double density(const DiffuseBsdf&, const Vec3d& wo, const Vec3d& wi, Transport) {
+double pdf(const DiffuseBsdf&, const Vec3d& wo, const Vec3d& wi, Transport) {
     return on_same_side(wo, wi) ? std::abs(wi.z) * std::numbers::inv_pi : 0.0;
 }
 
@@ -17,7 +17,7 @@ std::optional<BsdfSample> sample(const DiffuseBsdf& bsdf, const Vec3d& wo, doubl
     if (wo.z == 0.0 || upward.z == 0.0) {
         return std::nullopt;
     }
-    return BsdfSample{.wi = on_side_of(wo, upward), .weight = bsdf.albedo, .density = upward.z * std::numbers::inv_pi};
+    return BsdfSample{.wi = on_side_of(wo, upward), .weight = bsdf.albedo, .pdf = upward.z * std::numbers::inv_pi};
 }
 
 }  // namespace lensproof::scene

@@ -23,7 +23,7 @@ inline Vec3d on_side_of(const Vec3d& side, const Vec3d& upward) {
     return {upward.x, upward.y, std::copysign(upward.z, side.z)};
 }
 
-/// A direction of z > 0 with the density z / π per solid angle, from u1, u2 in (0, 1): a point of the unit disc, lifted
+/// A direction of z > 0 with the pdf z / π per solid angle, from u1, u2 in (0, 1): a point of the unit disc, lifted
 /// onto the hemisphere (Malley).
 inline Vec3d cosine_direction(double u1, double u2) {
     const double radius = std::sqrt(u1);

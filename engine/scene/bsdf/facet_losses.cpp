@@ -30,13 +30,13 @@ Vec3d direction_of(double mu, double sin2_azimuth) {
 
 /// What facets of reflectance R(cos) reflect past the others.
 template <class Reflectance>
-double reflected_share(const Roughness& roughness, const Vec3d& w, const Vec3d& m, const Reflectance& reflectance) {
+double reflected_fraction(const Roughness& roughness, const Vec3d& w, const Vec3d& m, const Reflectance& reflectance) {
     const Vec3d onwards = reflected(w, m);
     return onwards.z > 0.0 ? reflectance(std::min(dot(w, m), 1.0)) * ggx_reflection_weight(roughness, w, onwards) : 0.0;
 }
 
 /// What a facet refracts past the others on the far side.
-double refracted_share(const Roughness& roughness, const Vec3d& w, const Vec3d& m, double eta) {
+double refracted_fraction(const Roughness& roughness, const Vec3d& w, const Vec3d& m, double eta) {
     const double cosine = std::min(dot(w, m), 1.0);
     const auto onwards = optics::refract(-1.0 * w, -1.0 * m, cosine, 1.0 / eta);
     if (!onwards.transmitted || !(onwards.direction.z < 0.0)) {
@@ -56,8 +56,8 @@ FacetLosses::FacetLosses(const Roughness& roughness, const Returned& returned)
         for (int i = 0; i <= kRootSteps; ++i) {
             const double root = static_cast<double>(i) / kRootSteps;
             const Vec3d w = direction_of(std::max(kLeastCosine, root * root), sin2_azimuth);
-            const double share = visible_facet_mean(roughness, w, [&](const Vec3d& m) { return returned(w, m); });
-            table_.push_back(static_cast<float>(std::max(0.0, 1.0 - share)));
+            const double fraction = visible_facet_mean(roughness, w, [&](const Vec3d& m) { return returned(w, m); });
+            table_.push_back(static_cast<float>(std::max(0.0, 1.0 - fraction)));
         }
     }
     // Over √μ in panels, a polynomial in each; over azimuths evenly.
@@ -83,14 +83,14 @@ FacetLosses::FacetLosses(const Roughness& roughness, const Returned& returned)
 
 FacetLosses FacetLosses::of_mirrors(const Roughness& roughness) {
     return {roughness, [&](const Vec3d& w, const Vec3d& m) {
-                return reflected_share(roughness, w, m, [](double) { return 1.0; });
+                return reflected_fraction(roughness, w, m, [](double) { return 1.0; });
             }};
 }
 
 FacetLosses FacetLosses::of_boundary(const Roughness& roughness, double eta) {
     return {roughness, [&](const Vec3d& w, const Vec3d& m) {
                 const auto fresnel = [&](double cosine) { return dielectric_reflectance(eta, cosine); };
-                return reflected_share(roughness, w, m, fresnel) + refracted_share(roughness, w, m, eta);
+                return reflected_fraction(roughness, w, m, fresnel) + refracted_fraction(roughness, w, m, eta);
             }};
 }
 
@@ -129,7 +129,7 @@ Vec3d FacetLosses::sample(double u1, double u2) const {
     return {sine * std::cos(angle), sine * std::sin(angle), mu};
 }
 
-double FacetLosses::density(const Vec3d& w) const {
+double FacetLosses::pdf(const Vec3d& w) const {
     const int panel = std::min(static_cast<int>(std::sqrt(w.z) * kRootSteps), kRootSteps - 1);
     const auto index = static_cast<std::size_t>(panel);
     const double probability = cumulative_[index + 1] - cumulative_[index];

@@ -27,10 +27,10 @@ class FacetLosses {
     /// L = (1 / π) ∫ l(w) w.z dw, of the table to 1e-4 of itself.
     [[nodiscard]] double mean() const { return mean_; }
 
-    /// A direction above the surface, about as l(w) w.z, from u1, u2 in (0, 1), and the density per solid angle at
+    /// A direction above the surface, about as l(w) w.z, from u1, u2 in (0, 1), and the pdf per solid angle at
     /// which it comes.
     [[nodiscard]] Vec3d sample(double u1, double u2) const;
-    [[nodiscard]] double density(const Vec3d& w) const;
+    [[nodiscard]] double pdf(const Vec3d& w) const;
 
   private:
     template <class Returned>

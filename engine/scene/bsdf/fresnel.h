@@ -1,4 +1,4 @@
-// engine/scene/bsdf/fresnel.h — the share of unpolarised light that a smooth boundary reflects.
+// engine/scene/bsdf/fresnel.h — the fraction of unpolarised light that a smooth boundary reflects.
 #pragma once
 #include <cmath>
 

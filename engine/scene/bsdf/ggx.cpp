@@ -47,12 +47,12 @@ Vec3d ggx_visible_normal(const Roughness& roughness, const Vec3d& wo, double u1,
 
 GgxReflection ggx_reflection(const Roughness& roughness, const Vec3d& wo, const Vec3d& wi) {
     const Vec3d m = normalized(wo + wi);
-    // G₂ = 1 / (1 + Λ(wo) + Λ(wi)), value = D G₂ / (4 wo.z), density = D_visible / (4 wo·m), without their poles.
+    // G₂ = 1 / (1 + Λ(wo) + Λ(wi)), value = D G₂ / (4 wo.z), pdf = D_visible / (4 wo·m), without their poles.
     const double length_o = stretched_length(roughness, wo);
     const double length_i = stretched_length(roughness, wi);
     const double half_facets = 0.5 * ggx_facets(roughness, m);
     return {.value = half_facets * wi.z / (length_o * wi.z + length_i * wo.z),
-            .density = half_facets / (wo.z + length_o),
+            .pdf = half_facets / (wo.z + length_o),
             .cos_facet = std::min(dot(wo, m), 1.0)};
 }
 

@@ -25,22 +25,23 @@ Roughness resolvable(const Roughness& stated);
 /// D(m), 1/sr: facets of normal m, as area per area of the surface and solid angle. ∫ D(m) m.z dm = 1.
 double ggx_facets(const Roughness& roughness, const Vec3d& m);
 
-/// G₁(w) / w.z = 2 / (w.z + √(w.z² + α_x² w.x² + α_y² w.y²)), G₁ being the share of w's view that facets do not mask.
+/// G₁(w) / w.z = 2 / (w.z + √(w.z² + α_x² w.x² + α_y² w.y²)), G₁ being the fraction of w's view that facets do not
+/// mask.
 double ggx_visible_per_cos(const Roughness& roughness, const Vec3d& w);
 
-/// A facet's normal as seen from `wo`, drawn with the density G₁(wo) (wo·m) D(m) / wo.z, from u1, u2 in (0, 1):
+/// A facet's normal as seen from `wo`, drawn with the pdf G₁(wo) (wo·m) D(m) / wo.z, from u1, u2 in (0, 1):
 /// J. Dupuy, A. Benyoub, "Sampling Visible GGX Normals with Spherical Caps", HPG 2023.
 Vec3d ggx_visible_normal(const Roughness& roughness, const Vec3d& wo, double u1, double u2);
 
 /// What single reflections at facets send from wi to wo, of facets that mirror everything.
 struct GgxReflection {
-    double value = 0.0;    // f |cos wi|, 1/sr, with masking and shadowing correlated by height (Heitz 2014, eq. 99)
-    double density = 0.0;  // of wi, where m is drawn by ggx_visible_normal
+    double value = 0.0;  // f |cos wi|, 1/sr, with masking and shadowing correlated by height (Heitz 2014, eq. 99)
+    double pdf = 0.0;    // of wi, where m is drawn by ggx_visible_normal
     double cos_facet = 0.0;
 };
 GgxReflection ggx_reflection(const Roughness& roughness, const Vec3d& wo, const Vec3d& wi);
 
-/// G₂ / G₁(wo): value / density of the above.
+/// G₂ / G₁(wo): value / pdf of the above.
 double ggx_reflection_weight(const Roughness& roughness, const Vec3d& wo, const Vec3d& wi);
 
 /// `w` mirrored by a facet of normal m.

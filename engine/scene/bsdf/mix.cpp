@@ -7,17 +7,17 @@ namespace lensproof::scene {
 spectral::SpectralSample evaluate(const MixBsdf& bsdf, const Vec3d& wo, const Vec3d& wi, Transport transport) {
     spectral::SpectralSample sum;
     for (std::size_t i = 0; i < bsdf.count; ++i) {
-        sum += static_cast<float>(bsdf.share[i]) *
+        sum += static_cast<float>(bsdf.fraction[i]) *
                std::visit([&](const auto& part) { return evaluate(part, wo, wi, transport); }, bsdf.part[i]);
     }
     return sum;
 }
 
-double density(const MixBsdf& bsdf, const Vec3d& wo, const Vec3d& wi, Transport transport) {
+double pdf(const MixBsdf& bsdf, const Vec3d& wo, const Vec3d& wi, Transport transport) {
     double sum = 0.0;
     for (std::size_t i = 0; i < bsdf.count; ++i) {
-        sum += bsdf.share[i] *
-               std::visit([&](const auto& part) { return density(part, wo, wi, transport); }, bsdf.part[i]);
+        sum +=
+            bsdf.fraction[i] * std::visit([&](const auto& part) { return pdf(part, wo, wi, transport); }, bsdf.part[i]);
     }
     return sum;
 }
@@ -26,16 +26,16 @@ std::optional<BsdfSample> sample(const MixBsdf& bsdf, const Vec3d& wo, double u_
                                  Transport transport) {
     std::size_t drawn = 0;
     double below = 0.0;
-    while (drawn + 1 < bsdf.count && u_lobe >= below + bsdf.share[drawn]) {
-        below += bsdf.share[drawn++];
+    while (drawn + 1 < bsdf.count && u_lobe >= below + bsdf.fraction[drawn]) {
+        below += bsdf.fraction[drawn++];
     }
-    const double u_part = std::clamp((u_lobe - below) / bsdf.share[drawn], 0.0, 1.0);
+    const double u_part = std::clamp((u_lobe - below) / bsdf.fraction[drawn], 0.0, 1.0);
     std::optional<BsdfSample> result =
         std::visit([&](const auto& part) { return sample(part, wo, u_part, u1, u2, transport); }, bsdf.part[drawn]);
-    // A delta's share is as large as its probability.
+    // A delta's fraction is as large as its probability.
     if (result && !result->is_delta) {
-        result->density = density(bsdf, wo, result->wi, transport);
-        result->weight = static_cast<float>(1.0 / result->density) * evaluate(bsdf, wo, result->wi, transport);
+        result->pdf = pdf(bsdf, wo, result->wi, transport);
+        result->weight = static_cast<float>(1.0 / result->pdf) * evaluate(bsdf, wo, result->wi, transport);
     }
     return result;
 }

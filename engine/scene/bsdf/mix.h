@@ -16,16 +16,16 @@ using SimpleBsdf = std::variant<DiffuseBsdf, ConductorBsdf, DielectricBsdf, Plas
 /// How many surfaces a mix may have.
 inline constexpr std::size_t kMostMixed = 4;
 
-/// f = Σ share · f_part over the first `count` parts; the shares sum to 1.
+/// f = Σ fraction · f_part over the first `count` parts; the fractions sum to 1.
 struct MixBsdf {
     std::size_t count = 0;
     std::array<SimpleBsdf, kMostMixed> part;
-    std::array<double, kMostMixed> share{};
+    std::array<double, kMostMixed> fraction{};
 };
 
 // As in bsdf.h.
 spectral::SpectralSample evaluate(const MixBsdf& bsdf, const Vec3d& wo, const Vec3d& wi, Transport transport);
-double density(const MixBsdf& bsdf, const Vec3d& wo, const Vec3d& wi, Transport transport);
+double pdf(const MixBsdf& bsdf, const Vec3d& wo, const Vec3d& wi, Transport transport);
 std::optional<BsdfSample> sample(const MixBsdf& bsdf, const Vec3d& wo, double u_lobe, double u1, double u2,
                                  Transport transport);
 

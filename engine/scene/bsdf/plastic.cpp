@@ -19,22 +19,22 @@ spectral::SpectralSample base_value(const PlasticBsdf& bsdf, double reflectance_
     return static_cast<float>(in_and_out * mu_i * std::numbers::inv_pi) * bsdf.base;
 }
 
-/// f |cos wi| and the density for directions above the surface.
+/// f |cos wi| and the pdf for directions above the surface.
 struct ScatteredBack {
     spectral::SpectralSample value;
-    double density = 0.0;
+    double pdf = 0.0;
 };
 ScatteredBack scattered(const PlasticBsdf& bsdf, const Vec3d& wo, const Vec3d& wi) {
     const DielectricCoat& coat = *bsdf.coat;
     const double reflectance_o = coat.reflectance(wo.z);
     const double p_coat = coat_probability(bsdf, reflectance_o);
     ScatteredBack result{.value = base_value(bsdf, reflectance_o, wi.z),
-                         .density = (1.0 - p_coat) * wi.z * std::numbers::inv_pi};
+                         .pdf = (1.0 - p_coat) * wi.z * std::numbers::inv_pi};
     if (!coat.roughness().is_smooth()) {
         const GgxReflection facets = ggx_reflection(coat.roughness(), wo, wi);
         const double reflectance = dielectric_reflectance(coat.eta(), facets.cos_facet);
         result.value += spectral::SpectralSample(static_cast<float>(facets.value * reflectance));
-        result.density += p_coat * facets.density;
+        result.pdf += p_coat * facets.pdf;
     }
     return result;
 }
@@ -53,8 +53,8 @@ spectral::SpectralSample evaluate(const PlasticBsdf& bsdf, const Vec3d& wo, cons
     return on_same_side(wo, wi) ? scattered(bsdf, upwards(wo), upwards(wi)).value : spectral::SpectralSample();
 }
 
-double density(const PlasticBsdf& bsdf, const Vec3d& wo, const Vec3d& wi, Transport) {
-    return on_same_side(wo, wi) ? scattered(bsdf, upwards(wo), upwards(wi)).density : 0.0;
+double pdf(const PlasticBsdf& bsdf, const Vec3d& wo, const Vec3d& wi, Transport) {
+    return on_same_side(wo, wi) ? scattered(bsdf, upwards(wo), upwards(wi)).pdf : 0.0;
 }
 
 std::optional<BsdfSample> sample(const PlasticBsdf& bsdf, const Vec3d& wo, double u_lobe, double u1, double u2,
@@ -77,9 +77,8 @@ std::optional<BsdfSample> sample(const PlasticBsdf& bsdf, const Vec3d& wo, doubl
         return std::nullopt;
     }
     const ScatteredBack outcome = scattered(bsdf, from, wi);
-    return BsdfSample{.wi = on_side_of(wo, wi),
-                      .weight = static_cast<float>(1.0 / outcome.density) * outcome.value,
-                      .density = outcome.density};
+    return BsdfSample{
+        .wi = on_side_of(wo, wi), .weight = static_cast<float>(1.0 / outcome.pdf) * outcome.value, .pdf = outcome.pdf};
 }
 
 }  // namespace lensproof::scene

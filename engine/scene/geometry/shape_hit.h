@@ -63,7 +63,7 @@ ShapePoint shape_point(const Sphere& sphere, const Vec3d& towards);
 /// (x, y) on the quad, mm.
 ShapePoint shape_point(const Quad& quad, double x, double y);
 
-/// Where an object stands: its map, the way back, and what rounding does on both.
+/// Where an object stands: its map, the one back, and what rounding does on both.
 struct ObjectPlace {
     AffineMap to_world;
     AffineMap to_local;

@@ -76,12 +76,12 @@ SurfaceSample SurfaceSampler::sample(double u1, double u2) const {
     return {.point = hit.point,
             .geometric_normal = hit.geometric_normal,
             .uv = hit.uv,
-            .density_per_mm2 = density_per_mm2(hit),
+            .pdf_per_mm2 = pdf_per_mm2(hit),
             .primitive = primitive,
             .error_mm = hit.error_mm};
 }
 
-double SurfaceSampler::density_per_mm2(const SurfaceHit& hit) const {
+double SurfaceSampler::pdf_per_mm2(const SurfaceHit& hit) const {
     const PlacedObject& placed = scene_->data().objects[object_];
     if (const auto* sphere = std::get_if<Sphere>(placed.shape)) {
         const double stretch = area_stretch(placed.place.to_world.linear, hit.geometric_normal);

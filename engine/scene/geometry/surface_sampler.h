@@ -12,13 +12,13 @@ struct SurfaceSample {
     Vec3d point;
     Vec3d geometric_normal;  // outward
     Vec2d uv;
-    double density_per_mm2 = 0.0;  // of having drawn this point
+    double pdf_per_mm2 = 0.0;  // of having drawn this point
     std::uint32_t primitive = 0;
     double error_mm = 0.0;  // as `SurfaceHit::error_mm`: to be given to `ray_origin`
 };
 
 /// Draws points of one object. Even on meshes and quads under any map, and on spheres that stay spheres; on a sphere
-/// that its map makes an ellipsoid, even on the sphere, with the density that this has on the ellipsoid.
+/// that its map makes an ellipsoid, even on the sphere, with the pdf that this has on the ellipsoid.
 class SurfaceSampler {
   public:
     /// `scene` has to outlive the sampler.
@@ -27,8 +27,8 @@ class SurfaceSampler {
     /// From two numbers in [0, 1), which evenly spread points keep spread: of a mesh, the first chooses the triangle by
     /// its area and what is left of it the place.
     [[nodiscard]] SurfaceSample sample(double u1, double u2) const;
-    /// The density with which `sample` draws a point of this object that a ray has met, per mm².
-    [[nodiscard]] double density_per_mm2(const SurfaceHit& hit) const;
+    /// The pdf with which `sample` draws a point of this object that a ray has met, per mm².
+    [[nodiscard]] double pdf_per_mm2(const SurfaceHit& hit) const;
     [[nodiscard]] double area_mm2() const { return area_mm2_; }
 
   private:

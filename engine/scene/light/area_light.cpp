@@ -51,7 +51,7 @@ std::optional<LightSample> ShiningSurface::sample(const AreaLight& light, const 
         return LightSample{.direction = direction,
                            .end = point + (along - depth - clear) * direction,
                            .value = scaled(radiance, 1.0 / pdf),
-                           .density = pdf,
+                           .pdf = pdf,
                            .leaving_per_sample = light.leaving_pdf(1.0 / sampler_.area_mm2()) / pdf};
     }
     const SurfaceSample on_light = sampler_.sample(u1, u2);
@@ -62,13 +62,13 @@ std::optional<LightSample> ShiningSurface::sample(const AreaLight& light, const 
     if (!(distance2 > 0.0) || cosine == 0.0 || (cosine < 0.0 && !light.is_two_sided)) {
         return {};
     }
-    const double pdf = on_light.density_per_mm2 * distance2 / std::abs(cosine);
+    const double pdf = on_light.pdf_per_mm2 * distance2 / std::abs(cosine);
     return LightSample{
         .direction = direction,
         .end = ray_origin(on_light.point, on_light.geometric_normal, on_light.error_mm, -1.0 * direction),
         .value = scaled(radiance, 1.0 / pdf),
-        .density = pdf,
-        .leaving_per_sample = light.leaving_pdf(on_light.density_per_mm2) / pdf};
+        .pdf = pdf,
+        .leaving_per_sample = light.leaving_pdf(on_light.pdf_per_mm2) / pdf};
 }
 
 double ShiningSurface::pdf(const Vec3d& at, double per_mm2, const Vec3d& from, double cosine) const {

@@ -111,7 +111,7 @@ spectral::SpectralSample Environment::radiance(const Vec3d& direction, const spe
     return value_at(picture_, uv_of(direction), path);
 }
 
-double Environment::density_in_picture(std::size_t pixel, std::size_t row) const {
+double Environment::pdf_in_picture(std::size_t pixel, std::size_t row) const {
     const auto width = static_cast<std::size_t>(picture_.grid.width);
     const auto begin = pixels_.begin() + static_cast<std::ptrdiff_t>(row * width);
     return width_of(rows_.begin(), row) * width_of(begin, pixel) * static_cast<double>(width * rows_.size());
@@ -128,17 +128,17 @@ Environment::Draw Environment::draw(double u1, double u2) const {
     const double sine = std::sin(polar);
     const Vec3d local{sine * std::cos(turn), sine * std::sin(turn), std::cos(polar)};
     return {frame_.to_world(local),
-            sine > 0.0 ? density_in_picture(pixel.index, row.index) / (2.0 * kPi * kPi * sine) : 0.0};
+            sine > 0.0 ? pdf_in_picture(pixel.index, row.index) / (2.0 * kPi * kPi * sine) : 0.0};
 }
 
-double Environment::density(const Vec3d& direction) const {
+double Environment::pdf(const Vec3d& direction) const {
     const Vec2d uv = uv_of(direction);
     const auto index_of = [](double at, int count) {
         return static_cast<std::size_t>(std::clamp(static_cast<int>(at * count), 0, count - 1));
     };
     const std::size_t row = index_of(1.0 - uv.y, picture_.grid.height);
     const double sine = length(cross(direction, frame_.z));
-    return sine > 0.0 ? density_in_picture(index_of(uv.x, picture_.grid.width), row) / (2.0 * kPi * kPi * sine) : 0.0;
+    return sine > 0.0 ? pdf_in_picture(index_of(uv.x, picture_.grid.width), row) / (2.0 * kPi * kPi * sine) : 0.0;
 }
 
 }  // namespace lensproof::scene

@@ -25,10 +25,10 @@ class Environment {
     /// within it (Pharr, Jakob & Humphreys, Physically Based Rendering, 4th ed., §12.5).
     struct Draw {
         Vec3d direction;
-        double density = 0.0;  // per solid angle
+        double pdf = 0.0;  // per solid angle
     };
     [[nodiscard]] Draw draw(double u1, double u2) const;
-    [[nodiscard]] double density(const Vec3d& direction) const;
+    [[nodiscard]] double pdf(const Vec3d& direction) const;
 
     /// ∫ of the mean radiance over the grid and all directions, W·m⁻²·nm⁻¹.
     [[nodiscard]] double mean_power() const { return mean_power_; }
@@ -37,7 +37,7 @@ class Environment {
     [[nodiscard]] Vec2d uv_of(const Vec3d& direction) const;
     [[nodiscard]] double brightness(int x, int y) const;
     /// Per uv area, of the pixel at uv.
-    [[nodiscard]] double density_in_picture(std::size_t pixel, std::size_t row) const;
+    [[nodiscard]] double pdf_in_picture(std::size_t pixel, std::size_t row) const;
 
     ImageTexture picture_;
     Basis frame_;

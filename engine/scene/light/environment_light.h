@@ -35,10 +35,10 @@ struct EnvironmentLight {
     [[nodiscard]] double irradiance() const { return map->mean_power(); }
     [[nodiscard]] SkySample draw(const spectral::PathWavelengths& path, double u1, double u2) const {
         const Environment::Draw drawn = map->draw(u1, u2);
-        return {drawn.direction, map->radiance(drawn.direction, path), drawn.density};
+        return {drawn.direction, map->radiance(drawn.direction, path), drawn.pdf};
     }
     [[nodiscard]] SkySample seen(const Vec3d& direction, const spectral::PathWavelengths& path) const {
-        return {direction, map->radiance(direction, path), map->density(direction)};
+        return {direction, map->radiance(direction, path), map->pdf(direction)};
     }
 };
 

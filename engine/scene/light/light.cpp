@@ -45,7 +45,7 @@ Lights::Lights(const SceneGeometry& scene, std::vector<LightSource> lights) : of
     centre_ = 0.5 * (box.low + box.high);
     radius_mm_ = 0.5 * length(box.high - box.low);
     const double cross_section = kPi * radius_mm_ * radius_mm_ * kSquareMetresPerSquareMm;
-    crossing_density_ = radius_mm_ > 0.0 ? 1.0 / (kPi * radius_mm_ * radius_mm_) : 0.0;
+    crossing_pdf_ = radius_mm_ > 0.0 ? 1.0 / (kPi * radius_mm_ * radius_mm_) : 0.0;
     std::vector<double> powers;
     for (LightSource& light : lights) {
         std::optional<ShiningSurface> surface;
@@ -98,13 +98,13 @@ std::optional<LightSample> Lights::sample(const Vec3d& point, const spectral::Pa
                                   return LightSample{.direction = drawn.direction,
                                                      .end = point + beyond_mm(point) * drawn.direction,
                                                      .value = scaled(drawn.radiance, 1.0 / drawn.pdf),
-                                                     .density = drawn.pdf,
-                                                     .leaving_per_sample = crossing_density_};
+                                                     .pdf = drawn.pdf,
+                                                     .leaving_per_sample = crossing_pdf_};
                               }},
                    entry.light);
     if (found) {
         found->value = scaled(found->value, 1.0 / entry.probability);
-        found->density *= entry.probability;
+        found->pdf *= entry.probability;
     }
     return found;
 }
@@ -121,11 +121,11 @@ Lights::Emission Lights::emitted(const SurfaceHit& hit, const Vec3d& from, const
     if (cosine == 0.0 || (cosine < 0.0 && !area.is_two_sided)) {
         return {};
     }
-    const double per_mm2 = entry.surface->sampler().density_per_mm2(hit);
+    const double per_mm2 = entry.surface->sampler().pdf_per_mm2(hit);
     return {.radiance = area.radiance(path),
-            .density = entry.probability * entry.surface->pdf(hit.point, per_mm2, from, cosine),
-            .start_density = entry.probability * per_mm2 / area.sides(),
-            .leaving_density = entry.probability * area.leaving_pdf(per_mm2)};
+            .pdf = entry.probability * entry.surface->pdf(hit.point, per_mm2, from, cosine),
+            .start_pdf = entry.probability * per_mm2 / area.sides(),
+            .leaving_pdf = entry.probability * area.leaving_pdf(per_mm2)};
 }
 
 Lights::Emission Lights::at_infinity(const Entry& entry, const Vec3d& direction,
@@ -135,8 +135,7 @@ Lights::Emission Lights::at_infinity(const Entry& entry, const Vec3d& direction,
                               [](const auto& /*nearer*/) { return SkySample(); }},
                    entry.light);
     const double pdf = entry.probability * seen.pdf;
-    return {
-        .radiance = seen.radiance, .density = pdf, .start_density = pdf, .leaving_density = pdf * crossing_density_};
+    return {.radiance = seen.radiance, .pdf = pdf, .start_pdf = pdf, .leaving_pdf = pdf * crossing_pdf_};
 }
 
 LightStart Lights::start(const spectral::PathWavelengths& path, double u_light, double u1, double u2) const {
@@ -150,8 +149,8 @@ LightStart Lights::start(const spectral::PathWavelengths& path, double u_light, 
                               start.normal = is_back ? -1.0 * drawn.geometric_normal : drawn.geometric_normal;
                               start.error_mm = drawn.error_mm;
                               start.value = scaled(area.radiance(path),
-                                                   area.sides() * kSquareMetresPerSquareMm / drawn.density_per_mm2);
-                              start.density = drawn.density_per_mm2 / area.sides();
+                                                   area.sides() * kSquareMetresPerSquareMm / drawn.pdf_per_mm2);
+                              start.pdf = drawn.pdf_per_mm2 / area.sides();
                           },
                           [&](const LightAtPoint auto& light) {
                               start.point = light.position;
@@ -162,20 +161,20 @@ LightStart Lights::start(const spectral::PathWavelengths& path, double u_light, 
                               start.is_at_infinity = true;
                               start.direction = -1.0 * drawn.direction;
                               start.value = scaled(drawn.radiance, drawn.pdf > 0.0 ? 1.0 / drawn.pdf : 0.0);
-                              start.density = drawn.pdf;
+                              start.pdf = drawn.pdf;
                           }},
                chosen->light);
     start.value = scaled(start.value, 1.0 / chosen->probability);
-    start.density *= chosen->probability;
+    start.pdf *= chosen->probability;
     return start;
 }
 
-LightWay Lights::way(const LightStart& start, const Vec3d& to) const {
+FirstSegment Lights::first_segment(const LightStart& start, const Vec3d& to) const {
     const Entry& entry = lights_[start.light];
     const Vec3d along = to - start.point;
-    return std::visit(Overloaded{[&](const AreaLight& area) -> LightWay {
-                                     const double leaving = start.density / kPi;
-                                     const double per_mm2 = start.density * area.sides();
+    return std::visit(Overloaded{[&](const AreaLight& area) -> FirstSegment {
+                                     const double leaving = start.pdf / kPi;
+                                     const double per_mm2 = start.pdf * area.sides();
                                      const double cosine = dot(start.normal, normalized(along));
                                      const double pdf = entry.surface->pdf(start.point, per_mm2, to, cosine);
                                      // The start's own holds the choice of the light, a cone's does not.
@@ -183,12 +182,12 @@ LightWay Lights::way(const LightStart& start, const Vec3d& to) const {
                                          entry.surface->is_seen_as_cone(to) ? entry.probability * pdf : pdf;
                                      return {.hit_per_leaving = 1.0 / leaving, .sample_per_leaving = sampled / leaving};
                                  },
-                                 [&](const LightAtPoint auto& light) -> LightWay {
+                                 [&](const LightAtPoint auto& light) -> FirstSegment {
                                      return {.sample_per_leaving = light.cone_sr() * dot(along, along)};
                                  },
-                                 [&](const LightAtInfinity auto& /*sky*/) -> LightWay {
-                                     return {.hit_per_leaving = 1.0 / (start.density * crossing_density_),
-                                             .sample_per_leaving = 1.0 / crossing_density_};
+                                 [&](const LightAtInfinity auto& /*sky*/) -> FirstSegment {
+                                     return {.hit_per_leaving = 1.0 / (start.pdf * crossing_pdf_),
+                                             .sample_per_leaving = 1.0 / crossing_pdf_};
                                  }},
                       entry.light);
 }
@@ -205,7 +204,7 @@ EmittedRay Lights::leave(const LightStart& start, double u1, double u2) const {
     return std::visit(
         Overloaded{
             [&](const AreaLight&) -> EmittedRay {
-                // With the density cos / π.
+                // With the pdf cos / π.
                 const Vec3d direction = Basis(start.normal).to_world(cosine_direction(u1, u2));
                 return {{ray_origin(start.point, start.normal, start.error_mm, direction), direction},
                         scaled(start.value, kPi)};
@@ -216,7 +215,7 @@ EmittedRay Lights::leave(const LightStart& start, double u1, double u2) const {
                         scaled(scaled(start.value, light.falloff(direction)), light.cone_sr())};
             },
             [&](const LightAtInfinity auto& /*sky*/) -> EmittedRay {
-                // It crosses a disc in front of the scene, at right angles to its way.
+                // It crosses a disc in front of the scene, at right angles to its direction.
                 const Vec2d at = in_disc(u1, u2);
                 const Vec3d origin = centre_ + radius_mm_ * Basis(-1.0 * start.direction).to_world({at.x, at.y, 1.0});
                 const double area = kPi * radius_mm_ * radius_mm_ * kSquareMetresPerSquareMm;

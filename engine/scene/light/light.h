@@ -52,13 +52,13 @@ class Lights {
     [[nodiscard]] std::optional<LightSample> sample(const Vec3d& point, const spectral::PathWavelengths& path,
                                                     double u_light, double u1, double u2) const;
 
-    /// What a surface that a ray has met radiates towards where the ray comes from, and the density with which
+    /// What a surface that a ray has met radiates towards where the ray comes from, and the pdf with which
     /// `sample` would have drawn that direction from `from`.
     struct Emission {
         spectral::SpectralSample radiance;
-        double density = 0.0;          // per solid angle, choice of the light included
-        double start_density = 0.0;    // with which `start` draws this point or direction (LightStart)
-        double leaving_density = 0.0;  // per etendue, 1/(mm² sr): of `start` and `leave` together
+        double pdf = 0.0;          // per solid angle, choice of the light included
+        double start_pdf = 0.0;    // with which `start` draws this point or direction (LightStart)
+        double leaving_pdf = 0.0;  // per etendue, 1/(mm² sr): of `start` and `leave` together
     };
     [[nodiscard]] Emission emitted(const SurfaceHit& hit, const Vec3d& from, const Vec3d& direction,
                                    const spectral::PathWavelengths& path) const;
@@ -83,8 +83,8 @@ class Lights {
     /// Draws the direction that a path goes on in; of light from infinity, where it crosses the scene.
     [[nodiscard]] EmittedRay leave(const LightStart& start, double u1, double u2) const;
 
-    /// Of the way from a start to a surface point that it shines on.
-    [[nodiscard]] LightWay way(const LightStart& start, const Vec3d& to) const;
+    /// From a start to a surface point that it shines on.
+    [[nodiscard]] FirstSegment first_segment(const LightStart& start, const Vec3d& to) const;
 
     /// How far from a point all of the scene lies behind, whatever the direction.
     [[nodiscard]] double beyond_mm(const Vec3d& point) const {
@@ -114,7 +114,7 @@ class Lights {
     std::vector<std::uint32_t> at_infinity_;  // indices
     Vec3d centre_;                            // of a sphere around the scene
     double radius_mm_ = 0.0;
-    double crossing_density_ = 0.0;  // 1/mm²: of light paths from infinity over the disc in front of the scene
+    double crossing_pdf_ = 0.0;  // 1/mm²: of light paths from infinity over the disc in front of the scene
     double power_ = 0.0;
 };
 

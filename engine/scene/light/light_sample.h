@@ -16,10 +16,10 @@ namespace lensproof::scene {
 /// Light that reaches a point: what next-event estimation adds, if nothing stands in the way.
 struct LightSample {
     Vec3d direction;                 // from the point to the light, unit length
-    Vec3d end;                       // the way is free if nothing stands between the point and this
-    spectral::SpectralSample value;  // radiance over density, or irradiance on a surface that faces a delta light
-    double density = 0.0;            // per solid angle at the point, choice of the light included; 0 for a delta
-    /// The density per etendue with which a light path would leave along this way, over that of this sample, 1/mm².
+    Vec3d end;                       // the path is free if nothing stands between the point and this
+    spectral::SpectralSample value;  // radiance over pdf, or irradiance on a surface that faces a delta light
+    double pdf = 0.0;                // per solid angle at the point, choice of the light included; 0 for a delta
+    /// The pdf per etendue with which a light path would leave along this path, over that of this sample, 1/mm².
     double leaving_per_sample = 0.0;
 };
 
@@ -31,29 +31,28 @@ struct LightStart {
     Vec3d direction;        // of light from infinity, unit length
     Vec3d normal;           // of a surface, on the side that shines here; else zeros
     double error_mm = 0.0;  // for `ray_origin`
-    /// Over the density of having drawn the start. Of a surface radiance · m², of a point intensity, W·sr⁻¹·nm⁻¹; of
+    /// Over the pdf of having drawn the start. Of a surface radiance · m², of a point intensity, W·sr⁻¹·nm⁻¹; of
     /// light from infinity radiance · sr, the irradiance across it.
     spectral::SpectralSample value;
     /// With which it was drawn, choice of the light included: per mm² of a surface, per solid angle of directions from
     /// infinity; 0 of a point.
-    double density = 0.0;
+    double pdf = 0.0;
 
     /// Of a point light or a spot, which has an intensity and no radiance.
-    [[nodiscard]] bool is_point() const { return density == 0.0; }
+    [[nodiscard]] bool is_point() const { return pdf == 0.0; }
 };
 
-/// The way of light from a start to a surface point, and how likely each kind of path is to take it.
-struct LightWay {
-    double hit_per_leaving = 0.0;  // mm² sr: 1 over the density per etendue with which light paths leave along it; 0
-                                   // of a point, which no path runs into
-    double sample_per_leaving = 0.0;  // mm²: the density with which the surface point samples it, over the same
+/// A light path from its start to the first surface point, and how likely each technique is to take it.
+struct FirstSegment {
+    double hit_per_leaving = 0.0;     // mm² sr: 1 over the pdf per etendue with which light paths leave along it; 0
+                                      // of a point, which no path runs into
+    double sample_per_leaving = 0.0;  // mm²: the pdf with which the surface point samples it, over the same
 };
 
 /// A ray of light as it leaves a source.
 struct EmittedRay {
     Ray<double> ray;
-    spectral::SpectralSample
-        power;  // W·nm⁻¹: what the source sends out, over the density of having drawn this ray of it
+    spectral::SpectralSample power;  // W·nm⁻¹: what the source sends out, over the pdf of having drawn this ray of it
 };
 
 /// A direction towards a light at infinity, what comes from there, and the pdf with which the light draws it.

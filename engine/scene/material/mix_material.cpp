@@ -12,13 +12,13 @@ namespace lensproof::scene {
 
 namespace {
 
-double share_at(const MixMaterial::Part& part, const Vec2d& uv) {
-    double share = 1.0;
+double fraction_at(const MixMaterial::Part& part, const Vec2d& uv) {
+    double fraction = 1.0;
     for (const MixMaterial::Factor& factor : part.factors) {
-        const double value = value_at(factor.share, uv);
-        share *= factor.is_complement ? 1.0 - value : value;
+        const double value = value_at(factor.fraction, uv);
+        fraction *= factor.is_complement ? 1.0 - value : value;
     }
-    return share;
+    return fraction;
 }
 
 std::vector<MixMaterial::Part> parts_of(const Material& material) {
@@ -30,11 +30,11 @@ std::vector<MixMaterial::Part> parts_of(const Material& material) {
 
 }  // namespace
 
-MixMaterial mixed(const Material& first, const Material& second, const ScalarTexture& share) {
+MixMaterial mixed(const Material& first, const Material& second, const ScalarTexture& fraction) {
     MixMaterial mix;
     for (const bool is_complement : {true, false}) {
         for (MixMaterial::Part& part : parts_of(is_complement ? first : second)) {
-            part.factors.push_back({.share = share, .is_complement = is_complement});
+            part.factors.push_back({.fraction = fraction, .is_complement = is_complement});
             mix.parts.push_back(std::move(part));
         }
     }
@@ -47,9 +47,9 @@ MixMaterial mixed(const Material& first, const Material& second, const ScalarTex
 MixBsdf at_point(const MixMaterial& material, const Vec2d& uv, const spectral::PathWavelengths& path) {
     MixBsdf mix;
     for (const MixMaterial::Part& part : material.parts) {
-        const double share = share_at(part, uv);
-        if (share > 0.0) {
-            mix.share[mix.count] = share;
+        const double fraction = fraction_at(part, uv);
+        if (fraction > 0.0) {
+            mix.fraction[mix.count] = fraction;
             mix.part[mix.count] =
                 std::visit([&](const auto& simple) -> SimpleBsdf { return at_point(simple, uv, path); }, part.material);
             ++mix.count;
@@ -65,11 +65,11 @@ void read_keys(MixDescription& mix, TomlTable& table, const NameIndex& earlier) 
     }
     mix.first = earlier.find(table, "of", of[0]);
     mix.second = earlier.find(table, "of", of[1]);
-    mix.share = table.number_or("share", mix.share, kUpToOne);
+    mix.fraction = table.number_or("share", mix.fraction, kUpToOne);
 }
 
 MixMaterial make_material(const MixDescription& mix, const MaterialMaker& maker) {
-    return mixed(maker.earlier[mix.first], maker.earlier[mix.second], mix.share);
+    return mixed(maker.earlier[mix.first], maker.earlier[mix.second], mix.fraction);
 }
 
 }  // namespace lensproof::scene

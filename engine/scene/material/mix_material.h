@@ -15,9 +15,9 @@ using SimpleMaterial = std::variant<DiffuseMaterial, ConductorMaterial, Dielectr
 
 /// Up to kMostMixed materials side by side.
 struct MixMaterial {
-    /// A material's share is the product of its factors, each a number or one less that number.
+    /// A material's fraction is the product of its factors, each a number or one less that number.
     struct Factor {
-        ScalarTexture share;
+        ScalarTexture fraction;
         bool is_complement = false;
     };
     struct Part {
@@ -27,19 +27,19 @@ struct MixMaterial {
     std::vector<Part> parts;
 };
 
-/// `second` in a share of `share` (0 to 1), else `first`; both may be mixes themselves. What either emits is left out.
+/// `fraction` (0 to 1) of `second`, the rest of `first`; both may be mixes themselves. What either emits is left out.
 /// Throws InputError where more than kMostMixed materials come together.
-MixMaterial mixed(const Material& first, const Material& second, const ScalarTexture& share);
+MixMaterial mixed(const Material& first, const Material& second, const ScalarTexture& fraction);
 
 MixBsdf at_point(const MixMaterial& material, const Vec2d& uv, const spectral::PathWavelengths& path);
 
-/// `share` of the second of two materials, the rest of the first; both indices of `SceneDescription::materials`, below
-/// the mixture's own.
+/// `fraction` of the second of two materials, the rest of the first; both indices of `SceneDescription::materials`,
+/// below the mixture's own.
 struct MixDescription {
     static constexpr KindNames<> kNames{"mix"};
     std::size_t first = 0;
     std::size_t second = 0;
-    double share = 0.5;
+    double fraction = 0.5;
 };
 
 void read_keys(MixDescription& mix, TomlTable& table, const NameIndex& earlier);

@@ -63,14 +63,14 @@ spectral::SpectralSample look_up(const ImageTexture& image, const Vec2d& uv, con
     return value * image.white(path);
 }
 
-spectral::SpectralSample look_up(const ChartTexture& chart, const Vec2d& uv, const spectral::PathWavelengths& path) {
-    const Vec2d at{(uv.x - 0.5) * chart.width_mm, (0.5 - uv.y) * chart.height_mm};
-    if (!chart.patches.empty()) {
-        const std::optional<int> patch = patch_at(std::get<ColourChecker>(chart.share.pattern), at.x, at.y);
-        return patch ? chart.patches[static_cast<std::size_t>(*patch)](path) : chart.black(path);
+spectral::SpectralSample look_up(const ChartTexture& texture, const Vec2d& uv, const spectral::PathWavelengths& path) {
+    const Vec2d at{(uv.x - 0.5) * texture.width_mm, (0.5 - uv.y) * texture.height_mm};
+    if (!texture.patches.empty()) {
+        const std::optional<int> patch = patch_at(std::get<ColourChecker>(texture.chart.pattern), at.x, at.y);
+        return patch ? texture.patches[static_cast<std::size_t>(*patch)](path) : texture.black(path);
     }
-    const auto share = static_cast<float>(reflectance(chart.share, at.x, at.y));
-    return share * chart.white(path) + (1.0F - share) * chart.black(path);
+    const auto white = static_cast<float>(reflectance(texture.chart, at.x, at.y));
+    return white * texture.white(path) + (1.0F - white) * texture.black(path);
 }
 
 double look_up(double everywhere, const Vec2d&) {
@@ -162,7 +162,7 @@ spectral::GridSpectrum rgb_emission(const Vec3d& rgb, const spectral::Spectrum& 
 }
 
 ChartTexture chart_texture(const Chart& chart, double width_mm, double height_mm, const spectral::SpectralGrid& grid) {
-    ChartTexture texture{.share = chart,
+    ChartTexture texture{.chart = chart,
                          .width_mm = width_mm,
                          .height_mm = height_mm,
                          .white = spectral::constant_spectrum(chart.white_reflectance, grid),
@@ -173,8 +173,8 @@ ChartTexture chart_texture(const Chart& chart, double width_mm, double height_mm
             texture.patches.push_back(spectral::at_midpoints(patch.reflectance, grid));
         }
     }
-    texture.share.white_reflectance = 1.0;
-    texture.share.black_reflectance = 0.0;
+    texture.chart.white_reflectance = 1.0;
+    texture.chart.black_reflectance = 0.0;
     return texture;
 }
 

@@ -1,4 +1,4 @@
-// engine/scene/spectra/texture.h — what varies over a surface: spectra, and the shares of a mix.
+// engine/scene/spectra/texture.h — what varies over a surface: spectra, and the fractions of a mix.
 //
 // (u, v) covers a texture once from 0 to 1: u runs to the right and v up, so that (0, 1) is a picture's top left
 // corner.
@@ -43,7 +43,7 @@ struct ImageTexture {
 /// A chart on a surface of width_mm × height_mm, its centre in the middle: `black`, `white`, or what the chart says
 /// between them; a colour checker's patches as they were measured.
 struct ChartTexture {
-    Chart share;  // of white_reflectance 1 and black_reflectance 0
+    Chart chart;  // of white_reflectance 1 and black_reflectance 0: its reflectance is the fraction of white
     double width_mm = 0.0;
     double height_mm = 0.0;
     spectral::GridSpectrum white;
@@ -61,7 +61,7 @@ spectral::SpectralSample value_at(const Texture& texture, const Vec2d& uv, const
 ImageTexture reflectance_texture(const formats::Image& image, const std::filesystem::path& file, Wrap wrap,
                                  const spectral::SpectralGrid& grid, const spectral::RgbUplift& uplift);
 
-/// A picture file in the same way. Throws InputError for a file that is missing, or as read_image says.
+/// The same of a picture file. Throws InputError for a file that is missing, or as read_image says.
 ImageTexture reflectance_texture(const std::filesystem::path& file, Wrap wrap, const spectral::SpectralGrid& grid,
                                  const spectral::RgbUplift& uplift);
 

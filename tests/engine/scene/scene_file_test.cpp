@@ -208,7 +208,7 @@ share = 0.25
     const auto& mix = std::get<MixDescription>(materials[5].kind);
     EXPECT_EQ(mix.first, 4U);
     EXPECT_EQ(mix.second, 1U);
-    EXPECT_EQ(mix.share, 0.25);
+    EXPECT_EQ(mix.fraction, 0.25);
 }
 
 TEST(SceneFile, MaterialsThatMakeNoSenseAreRefused) {

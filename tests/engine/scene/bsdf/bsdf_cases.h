@@ -49,7 +49,7 @@ struct BsdfTables {
     BoundaryLosses prism_losses{frosted, 1.5, 1.6};
 };
 
-/// Rough and diffuse surfaces: each with a density over directions. `tables` must outlive them.
+/// Rough and diffuse surfaces: each with a pdf over directions. `tables` must outlive them.
 inline std::vector<BsdfCase> broad_cases(const BsdfTables& tables) {
     const spectral::SpectralSample albedo({0.9F, 0.5F, 0.2F, 0.05F});
     const DiffuseBsdf diffuse{.albedo = albedo};
@@ -72,7 +72,7 @@ inline std::vector<BsdfCase> broad_cases(const BsdfTables& tables) {
     MixBsdf mix;
     mix.count = 3;
     mix.part = {diffuse, brushed, lossless_glass};
-    mix.share = {0.25, 0.25, 0.5};
+    mix.fraction = {0.25, 0.25, 0.5};
     return {{"diffuse", diffuse},
             {"metal", metal},
             {"brushed metal", brushed},

@@ -154,7 +154,7 @@ TEST(DielectricCoat, MeanReflectanceIsDuntleys) {
     EXPECT_NEAR(DielectricCoat(1.5, 0.0).mean_reflectance_below(), 0.596, 5e-4);
 }
 
-// What has no density is said to be a delta, parts of a mix included.
+// What has no pdf is said to be a delta, parts of a mix included.
 TEST(Bsdf, KnowsWhereLightsNeedNotBeSampled) {
     const BsdfTables tables;
     for (const auto& [name, bsdf] : broad_cases(tables)) {
@@ -165,7 +165,7 @@ TEST(Bsdf, KnowsWhereLightsNeedNotBeSampled) {
     MixBsdf mix;
     mix.count = 2;
     mix.part = {glass, mirror};
-    mix.share = {0.5, 0.5};
+    mix.fraction = {0.5, 0.5};
     EXPECT_TRUE(is_delta(Bsdf(glass)));
     EXPECT_TRUE(is_delta(Bsdf(mirror)));
     EXPECT_TRUE(is_delta(Bsdf(mix)));

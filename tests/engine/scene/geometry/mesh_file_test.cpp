@@ -296,12 +296,12 @@ TEST_F(MeshFileTest, CutFilesAreRefusedOrWhole) {
                                                            {"box.gltf", box_gltf(R"("uri": "box.bin", )")},
                                                            {"box.glb", box_glb()}};
     for (const auto& [name, content] : samples) {
-        for (int share = 1; share < 50; ++share) {
-            const fs::path file = write("cut_" + name, content.substr(0, content.size() * share / 50));
+        for (int part = 1; part < 50; ++part) {
+            const fs::path file = write("cut_" + name, content.substr(0, content.size() * part / 50));
             try {
                 const SceneGeometry scene = test::scene_of(read_mesh(file).mesh);
                 intersect(scene, {1, 1, 9}, {0, 0, -1}, 0.0, 20.0);
-                EXPECT_EQ(name, "box.obj") << share << "/50";
+                EXPECT_EQ(name, "box.obj") << part << "/50";
             } catch (const InputError& error) {
                 EXPECT_NE(std::string(error.what()).find("cut_" + name), std::string::npos) << error.what();
             }

@@ -17,20 +17,20 @@ using test::scaled;
 
 constexpr double kPi = std::numbers::pi;
 
-/// ∫ f dA over the object, by drawing points on a grid in the unit square: f over the density, on average.
+/// ∫ f dA over the object, by drawing points on a grid in the unit square: f over the pdf, on average.
 template <class F>
 double integral(const SurfaceSampler& sampler, int columns, int rows, const F& f) {
     double sum = 0.0;
     for (int i = 0; i < columns; ++i) {
         for (int k = 0; k < rows; ++k) {
             const SurfaceSample drawn = sampler.sample((i + 0.5) / columns, (k + 0.5) / rows);
-            sum += f(drawn) / drawn.density_per_mm2;
+            sum += f(drawn) / drawn.pdf_per_mm2;
         }
     }
     return sum / columns / rows;
 }
 
-// Areas that are known: of the whole, by the sampler's word and by what the densities add up to.
+// Areas that are known: of the whole, by the sampler's word and by what the pdfs add up to.
 TEST(SurfaceSampler, AreasAreThoseOfTheWorld) {
     const SceneGeometry scene({Sphere{3.0}, Quad{4.0, 2.0}, box_mesh(1.5F)},
                               {{.shape = 0, .to_world = at({5, 0, 0}, scaled(2, 2, 2))},
@@ -47,7 +47,7 @@ TEST(SurfaceSampler, AreasAreThoseOfTheWorld) {
 }
 
 // The ellipsoid's area against the classical formula for one of revolution (prolate and oblate), and against the sum of
-// the densities, which a midpoint rule of 400² nodes makes good to 1e-4.
+// the pdfs, which a midpoint rule of 400² nodes makes good to 1e-4.
 TEST(SurfaceSampler, AnEllipsoidHasItsArea) {
     for (const double c : {0.25, 4.0}) {
         const SceneGeometry scene = test::scene_of(Sphere{1.0}, at({1, 2, 3}, product(about_x(40.0), scaled(1, 1, c))));
@@ -80,7 +80,7 @@ TEST(SurfaceSampler, ClosedSurfacesEncloseTheirVolume) {
     }
 }
 
-// A ray aimed at a drawn point meets it: there, on that triangle, with that normal, uv and density.
+// A ray aimed at a drawn point meets it: there, on that triangle, with that normal, uv and pdf.
 TEST(SurfaceSampler, DrawnPointsAreWhatRaysMeet) {
     const AffineMap map = at({0, 0, 50}, product(about_x(30.0), scaled(1, 2, 0.7)));
     const SceneGeometry scene({Sphere{3.0}, Quad{4.0, 2.0}, icosphere(2.0, 2)},
@@ -101,7 +101,7 @@ TEST(SurfaceSampler, DrawnPointsAreWhatRaysMeet) {
             EXPECT_EQ(hit->primitive, drawn.primitive);
             EXPECT_NEAR(length(hit->point - drawn.point), 0.0, 1e-12);
             EXPECT_NEAR(hit->uv.x, drawn.uv.x, 1e-12);
-            EXPECT_NEAR(sampler.density_per_mm2(*hit) / drawn.density_per_mm2, 1.0, 1e-10);
+            EXPECT_NEAR(sampler.pdf_per_mm2(*hit) / drawn.pdf_per_mm2, 1.0, 1e-10);
         }
     }
 }

@@ -47,7 +47,7 @@ TEST(Environment, StandsAsItSays) {
     EXPECT_NEAR(seen(turned, 135.0, 45.0), 2.0, 1e-5);
 }
 
-// Directions are drawn with the density that is stated: a weighted mean over them gives the integral of any function,
+// Directions are drawn with the pdf that is stated: a weighted mean over them gives the integral of any function,
 // here the sky's irradiance from above and its whole flux, which a sum over fine cells gives too; 1e-3 by the sequence.
 TEST(Environment, DrawsWithItsDensity) {
     std::vector<float> values(std::size_t{16} * 8, 0.1F);
@@ -61,10 +61,10 @@ TEST(Environment, DrawsWithItsDensity) {
     for (int i = 0; i < kDraws; ++i) {
         const auto u = sampler.point(static_cast<std::uint32_t>(i));
         const Environment::Draw draw = sky.draw(u[0], u[1]);
-        ASSERT_NEAR(sky.density(draw.direction), draw.density, 1e-6 * draw.density);
-        const double share = sky.radiance(draw.direction, path)[0] / draw.density / kDraws;
-        all += share;
-        from_above += share * std::max(0.0, draw.direction.z);
+        ASSERT_NEAR(sky.pdf(draw.direction), draw.pdf, 1e-6 * draw.pdf);
+        const double fraction = sky.radiance(draw.direction, path)[0] / draw.pdf / kDraws;
+        all += fraction;
+        from_above += fraction * std::max(0.0, draw.direction.z);
     }
     double expected = 0.0;
     double expected_above = 0.0;

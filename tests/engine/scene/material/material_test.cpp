@@ -66,7 +66,7 @@ TEST(Material, MixesShareTheSurface) {
     const auto& mix = std::get<MixBsdf>(there);
     ASSERT_EQ(mix.count, 4U);
     for (std::size_t i = 0; i < mix.count; ++i) {
-        sum += mix.share[i];
+        sum += mix.fraction[i];
     }
     EXPECT_NEAR(sum, 1.0, 1e-15);
     const double mean = 0.5 * (0.25 * 0.2) + 0.5 * (0.4 * 0.5 + 0.6 * 1.0);
