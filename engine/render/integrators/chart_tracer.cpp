@@ -1,7 +1,6 @@
 #include "engine/render/integrators/chart_tracer.h"
 
 #include <algorithm>
-#include <cmath>
 #include <iterator>
 
 #include "engine/spectral/illuminant.h"
@@ -29,19 +28,6 @@ std::vector<double> white_radiance(const Camera& camera, double luminance_cd_m2)
 EvenChart even_chart(const scene::Chart& chart, const scene::Placement& placement, double luminance_cd_m2,
                      const Camera& camera) {
     return {.chart = chart, .pose = scene::place(placement), .white_radiance = white_radiance(camera, luminance_cd_m2)};
-}
-
-ChartMeeting meet_chart(const EvenChart& chart, const Ray<double>& outwards) {
-    const Vec3d origin = point_before(chart.pose, scene::camera_to_lens(outwards.origin));
-    const Vec3d direction = transposed_times(chart.pose.linear, scene::camera_to_lens(outwards.direction));
-    const double distance = -origin.z / direction.z;
-    ChartMeeting meeting{.x_mm = origin.x + distance * direction.x,
-                         .y_mm = origin.y + distance * direction.y,
-                         .is_before = origin.z > 0.0,
-                         .exists = distance > 0.0 && std::isfinite(distance)};
-    meeting.reflectance =
-        meeting.exists ? scene::reflectance(chart.chart, meeting.x_mm, meeting.y_mm) : chart.chart.white_reflectance;
-    return meeting;
 }
 
 void ChartTracer::operator()(const TileSamples& samples, FilmTile& tile) {

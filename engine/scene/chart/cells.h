@@ -23,7 +23,7 @@ struct Cell {
 
 /// Called for every camera path, as all of a chart's `is_black` is: whole numbers by conversion, which needs no
 /// function call on any machine.
-inline Cell cell_at(GridSize grid, double pitch_mm, double x_mm, double y_mm) {
+[[gnu::always_inline]] inline Cell cell_at(GridSize grid, double pitch_mm, double x_mm, double y_mm) {
     const double x = x_mm / pitch_mm + 0.5 * grid.columns;
     const double y = y_mm / pitch_mm + 0.5 * grid.rows;
     if (!(x >= 0.0 && x < grid.columns && y >= 0.0 && y < grid.rows)) {
