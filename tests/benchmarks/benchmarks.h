@@ -4,7 +4,7 @@
 
 namespace lensproof {
 
-/// trace/LENS/WAY/RIMS/TYPE: a bundle that fills the lens, over 70 % of its field, ray by ray.
+/// trace/LENS/DIRECTION/RIMS/TYPE: a bundle that fills the lens, over 70 % of its field, ray by ray.
 /// batch/LENS/TYPE/LEVEL/WHAT: the same rays in batches, at every SIMD level of the machine; `geometry` alone, with
 /// `fresnel` losses, and with 64 wavelengths side by side. batch/LENS/plain and …/plain_fresnel are what these are
 /// judged by: the same physics in a scalar loop over doubles. Counters: rays and ray-surfaces per second.
@@ -16,7 +16,7 @@ void register_render_benchmarks();
 
 /// sampler/points/…: 64 points of a pixel, one by one, and in columns with their film positions (counter: points per
 /// second). camera_paths/LENS/…: a picture's paths from the film out of the lens, one by one through the scalar tracer,
-/// and in buffers at one lane and at the widest level in double and float; …/chart looks each up on a chart besides.
+/// and in buffers at one lane and at the widest level; …/chart looks each up on a chart besides.
 /// Counters: valid paths per second, seconds a valid path, and passage.
 void register_camera_path_benchmarks();
 

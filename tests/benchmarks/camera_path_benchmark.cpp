@@ -36,7 +36,7 @@ void time_points_in_columns(benchmark::State& state, optics::SimdLevel level) {
     const auto starts = std::make_unique<render::PathStarts>();
     render::PathCursor cursor{.samples = kSamples};
     while (state.KeepRunning()) {
-        render::path_kernels<double>(level).draw_samples(sampling, kSamples, cursor, *starts);
+        render::path_kernels(level).draw_samples(sampling, kSamples, cursor, *starts);
         benchmark::DoNotOptimize(*starts);
     }
     state.counters["points/s"] =
@@ -60,45 +60,32 @@ constexpr Setting kSettings[] = {
 class PathScene {
   public:
     explicit PathScene(const Setting& setting)
-        : lens_(optics::focused_at(optics::with_f_number(formats::load_lens(setting.lens), setting.f_number),
-                                   setting.focus_distance_mm)),
-          in_double_(optics::at_wavelengths<double>(lens_, wavelengths())),
-          in_float_(optics::at_wavelengths<float>(lens_, wavelengths())),
+        : lens_(optics::at_wavelengths<double>(
+              optics::focused_at(optics::with_f_number(formats::load_lens(setting.lens), setting.f_number),
+                                 setting.focus_distance_mm),
+              spectral::WavelengthStrata{400.0, 700.0, 64}.midpoints())),
           sensor_{.width = 40, .height = 30, .pixel_pitch_mm = setting.half_diagonal_mm / 25.0},
           chart_{.chart = {.pattern = scene::DiscGrid{12, 9, 0.05 * setting.focus_distance_mm,
                                                       0.025 * setting.focus_distance_mm}},
                  .pose = scene::place({.distance_mm = setting.focus_distance_mm}),
                  .white_radiance = {}},
-          pupil_(in_double_.at(), lens_.is_rotationally_symmetric, setting.half_diagonal_mm),
-          slices_(pupil_, in_double_.wavelengths()) {}
+          pupil_(lens_.at(), true, setting.half_diagonal_mm),
+          slices_(pupil_, lens_.wavelengths()) {}
 
     [[nodiscard]] std::uint32_t pixels() const { return 40 * 30; }
     [[nodiscard]] const render::Sensor& sensor() const { return sensor_; }
     [[nodiscard]] const pupil::PupilMap& pupil() const { return pupil_; }
 
-    template <class T>
-    [[nodiscard]] const optics::SpectralLens<T>& lens() const {
-        if constexpr (std::is_same_v<T, float>) {
-            return in_float_;
-        } else {
-            return in_double_;
-        }
-    }
-
-    template <class T>
-    [[nodiscard]] render::LensPaths<T> paths(optics::SimdLevel level) const {
-        return {{.sensor = sensor_}, lens<T>(), slices_, level};
+    [[nodiscard]] const optics::SpectralLens<double>& lens() const { return lens_; }
+    [[nodiscard]] render::LensPaths paths(optics::SimdLevel level) const {
+        return {{.sensor = sensor_}, lens_, slices_, level};
     }
 
     /// Work as a scene makes it: what the ray sees of a chart.
     [[nodiscard]] double look_up(const Ray<double>& ray) const { return render::meet_chart(chart_, ray).reflectance; }
 
   private:
-    static std::vector<double> wavelengths() { return spectral::WavelengthStrata{400.0, 700.0, 64}.midpoints(); }
-
-    optics::Lens lens_;
-    optics::SpectralLens<double> in_double_;
-    optics::SpectralLens<float> in_float_;
+    optics::SpectralLens<double> lens_;
     render::Sensor sensor_;
     render::EvenChart chart_;
     pupil::PupilMap pupil_;
@@ -130,7 +117,7 @@ void time_one_by_one(benchmark::State& state, const Setting& setting, Consumer c
             for (std::uint32_t sample = 0; sample < kSamples; ++sample) {
                 const auto xi = sampler.point(sample);
                 const int wavelength = static_cast<int>(xi[4] * 64);
-                const optics::TraceLens<double>& lens = scene.lens<double>().at(wavelength);
+                const optics::TraceLens<double>& lens = scene.lens().at(wavelength);
                 const Vec2d at = scene.sensor().position(pixel % 40 - 0.5 + xi[0], row - 0.5 + xi[1]);
                 const pupil::PupilSample in_pupil = pupil.sample(at, wavelength / 63.0, xi[2], xi[3]);
                 if (!(in_pupil.pdf > 0.0)) {
@@ -138,9 +125,9 @@ void time_one_by_one(benchmark::State& state, const Setting& setting, Consumer c
                 }
                 ++started;
                 const Vec3d film{at.x, at.y, lens.image_z};
-                const Vec3d way = Vec3d{in_pupil.point.x, in_pupil.point.y, pupil.plane_z()} - film;
-                const double distance2 = dot(way, way);
-                const Ray<double> ray{film, (1.0 / std::sqrt(distance2)) * way};
+                const Vec3d to_pupil = Vec3d{in_pupil.point.x, in_pupil.point.y, pupil.plane_z()} - film;
+                const double distance2 = dot(to_pupil, to_pupil);
+                const Ray<double> ray{film, (1.0 / std::sqrt(distance2)) * to_pupil};
                 const optics::TracedRay<double> traced = optics::trace<optics::Direction::reverse>(lens, ray);
                 if (traced.status == optics::RayStatus::ok) {
                     ++valid;
@@ -154,10 +141,9 @@ void time_one_by_one(benchmark::State& state, const Setting& setting, Consumer c
     count_paths(state, valid, started);
 }
 
-template <class T>
 void time_buffers(benchmark::State& state, const Setting& setting, optics::SimdLevel level, Consumer consumer) {
     const PathScene scene(setting);
-    render::LensPaths<T> producer = scene.paths<T>(level);
+    render::LensPaths producer = scene.paths(level);
     render::CameraPathBuffer paths;
     std::int64_t valid = 0;
     while (state.KeepRunning()) {
@@ -178,26 +164,26 @@ void time_buffers(benchmark::State& state, const Setting& setting, optics::SimdL
 /// What a start without a cache costs: the map and its tables.
 void time_set_up(benchmark::State& state, const Setting& setting) {
     const PathScene scene(setting);
-    const std::vector<optics::TraceLens<double>>& band = scene.lens<double>().at();
+    const std::vector<optics::TraceLens<double>>& band = scene.lens().at();
     while (state.KeepRunning()) {
         const pupil::PupilMap map(band, true, setting.half_diagonal_mm);
-        benchmark::DoNotOptimize(pupil::PupilSlices(map, scene.lens<double>().wavelengths()).tables());
+        benchmark::DoNotOptimize(pupil::PupilSlices(map, scene.lens().wavelengths()).tables());
     }
 }
 
 void register_camera_paths(const Setting& setting, Consumer consumer) {
     const optics::SimdLevel widest = optics::available_simd_levels().back();
-    const auto add = [&](const char* way, auto run) {
+    const auto add = [&](const char* technique, auto run) {
         benchmark::RegisterBenchmark(
-            fmt::format("camera_paths/{}/{}{}", setting.lens, way, consumer == Consumer::chart ? "/chart" : "").c_str(),
+            fmt::format("camera_paths/{}/{}{}", setting.lens, technique, consumer == Consumer::chart ? "/chart" : "")
+                .c_str(),
             run)
             ->Unit(benchmark::kMillisecond);
     };
     add("one_by_one", [=](benchmark::State& state) { time_one_by_one(state, setting, consumer); });
     add("buffers/scalar",
-        [=](benchmark::State& state) { time_buffers<double>(state, setting, optics::SimdLevel::scalar, consumer); });
-    add("buffers/double", [=](benchmark::State& state) { time_buffers<double>(state, setting, widest, consumer); });
-    add("buffers/float", [=](benchmark::State& state) { time_buffers<float>(state, setting, widest, consumer); });
+        [=](benchmark::State& state) { time_buffers(state, setting, optics::SimdLevel::scalar, consumer); });
+    add("buffers/double", [=](benchmark::State& state) { time_buffers(state, setting, widest, consumer); });
 }
 
 }  // namespace

@@ -54,7 +54,7 @@ Mean ring_mean(const formats::Image& image, const render::Sensor& sensor, double
 formats::Image even_world(const optics::SpectralLens<double>& lens, const pupil::PupilMap& map,
                           const render::Sensor& sensor, std::uint32_t samples, std::uint64_t seed) {
     const pupil::PupilSlices slices(map, lens.wavelengths());
-    render::LensPaths<double> paths({.sensor = sensor, .seed = seed}, lens, slices);
+    render::LensPaths paths({.sensor = sensor, .seed = seed}, lens, slices);
     const auto rgb_weights = std::vector<Vec3d>(static_cast<std::size_t>(lens.wavelengths()), {1.0, 1.0, 1.0});
     render::Film film({.width = sensor.width,
                        .height = sensor.height,

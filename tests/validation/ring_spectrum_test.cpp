@@ -46,7 +46,7 @@ RingProfile flat_field(const optics::SpectralLens<double>& lens, double half_sid
     const pupil::PupilMap map(lens.at(), true, half_side_mm * std::numbers::sqrt2);
     const pupil::PupilSlices slices(map, lens.wavelengths());
     const render::Sensor sensor{.width = kPixels, .height = kPixels, .pixel_pitch_mm = 2.0 * half_side_mm / kPixels};
-    render::LensPaths<double> producer({.sensor = sensor, .seed = 3}, lens, slices);
+    render::LensPaths producer({.sensor = sensor, .seed = 3}, lens, slices);
     producer.start({.first_pixel = 0, .pixels = kPixels * kPixels, .first_sample = 0, .samples = kSamples});
 
     const double step_mm = half_side_mm / (kReferences - 1);

@@ -31,7 +31,7 @@ Sums irradiance(const std::string& name, const render::Sensor& sensor, bool is_s
     const auto traced = optics::at_wavelengths<double>(lens, kGrid.strata.midpoints());
     const pupil::PupilMap map(traced.at(), true, sensor.half_diagonal_mm());
     const pupil::PupilSlices slices(map, kGrid.size());
-    render::LensPaths<double> producer({.sensor = sensor, .seed = 3}, traced, slices);
+    render::LensPaths producer({.sensor = sensor, .seed = 3}, traced, slices);
     render::SharedRays shared(kGrid, traced, slices, sensor, true);
     render::CameraPathBuffer paths;
     std::vector<double> sum(8);

@@ -25,7 +25,7 @@ void CameraPathBuffer::leave_heroes_alone() {
 FilmSamples::FilmSamples(FilmSampling film, int wavelengths, std::optional<optics::SimdLevel> level)
     : sampling_{.sensor = film.sensor, .seed = film.seed, .wavelengths = wavelengths},
       filter_(std::move(film.filter)),
-      kernels_(&path_kernels<double>(level)) {}
+      kernels_(&path_kernels(level)) {}
 
 void FilmSamples::start(const CameraPathRange& range) {
     cursor_ = {.pixel = range.first_pixel, .sample = 0, .first_sample = range.first_sample, .samples = range.samples};

@@ -109,7 +109,7 @@ class FilmSamples {
 
     PathSampling sampling_;
     PixelFilter filter_;
-    const PathKernels<double>* kernels_;
+    const PathKernels* kernels_;
     PathCursor cursor_;
     std::uint32_t end_pixel_ = 0;
     PathStarts starts_{};

@@ -33,7 +33,7 @@ class ExactCamera {
         [[nodiscard]] std::int64_t started() const { return paths_.started(); }
 
       private:
-        LensPaths<double> paths_;
+        LensPaths paths_;
         SharedRays shared_;
         PathCarry carry_;
         bool is_shared_;  // wider filters than the box draw film points unevenly: the hero stays alone

@@ -30,8 +30,7 @@ struct Survivors {
     }
 };
 
-template <class T>
-Survivors find_survivors(const PathStarts& starts, const optics::RayBatch<T>& rays) {
+Survivors find_survivors(const PathStarts& starts, const optics::RayBatch<double>& rays) {
     Survivors survivors;
     for (std::size_t i = 0; i < static_cast<std::size_t>(rays.size); ++i) {
         survivors.path[static_cast<std::size_t>(survivors.count)] = static_cast<std::uint16_t>(i);
@@ -42,18 +41,16 @@ Survivors find_survivors(const PathStarts& starts, const optics::RayBatch<T>& ra
 
 }  // namespace
 
-template <class T>
-LensPaths<T>::LensPaths(FilmSampling film, const optics::SpectralLens<T>& lens, const pupil::PupilSlices& pupil,
-                        std::optional<optics::SimdLevel> level)
+LensPaths::LensPaths(FilmSampling film, const optics::SpectralLens<double>& lens, const pupil::PupilSlices& pupil,
+                     std::optional<optics::SimdLevel> level)
     : samples_(std::move(film), lens.wavelengths(), level),
       lens_(&lens),
       pupil_(&pupil),
-      kernels_(&path_kernels<T>(level)),
+      kernels_(&path_kernels(level)),
       tracing_{.carry = optics::Carry::transmittance, .level = level},
       rays_(kPathChunk) {}
 
-template <class T>
-bool LensPaths<T>::fill(CameraPathBuffer& buffer) {
+bool LensPaths::fill(CameraPathBuffer& buffer) {
     return samples_.fill(buffer, [&](PathStarts& starts) {
         const int lit = draw_pupil_points(starts);
         started_ += lit;
@@ -68,8 +65,7 @@ bool LensPaths<T>::fill(CameraPathBuffer& buffer) {
     });
 }
 
-template <class T>
-int LensPaths<T>::draw_pupil_points(PathStarts& starts) const {
+int LensPaths::draw_pupil_points(PathStarts& starts) const {
     const pupil::PupilSliceTables* tables = pupil_->tables();
     if (tables != nullptr) {
         kernels_->draw_pupil_points(*tables, starts);
@@ -84,10 +80,9 @@ int LensPaths<T>::draw_pupil_points(PathStarts& starts) const {
     return lit;
 }
 
-template <class T>
-void LensPaths<T>::move_survivors(const PathStarts& starts, CameraPathBuffer& buffer) {
+void LensPaths::move_survivors(const PathStarts& starts, CameraPathBuffer& buffer) {
     for (std::size_t i = 0; i < static_cast<std::size_t>(rays_.size); ++i) {
-        rays_.transmittance[i] *= static_cast<T>(starts.etendue[i]);
+        rays_.transmittance[i] *= starts.etendue[i];
     }
     const Survivors survivors = find_survivors(starts, rays_);
     const auto append = [&](const auto& from, auto& to) { survivors.copy(from.data(), to.data() + buffer.size); };
@@ -105,8 +100,5 @@ void LensPaths<T>::move_survivors(const PathStarts& starts, CameraPathBuffer& bu
     append(rays_.direction.z, buffer.direction.z);
     buffer.size += survivors.count;
 }
-
-template class LensPaths<float>;
-template class LensPaths<double>;
 
 }  // namespace lensproof::render

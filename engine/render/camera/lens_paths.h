@@ -9,13 +9,12 @@
 
 namespace lensproof::render {
 
-/// Fills buffers with the paths of a range. For one thread; a copy is for another. T: what the lens is traced in.
-template <class T>
+/// Fills buffers with the paths of a range. For one thread; a copy is for another.
 class LensPaths {
   public:
     /// `lens` at the wavelengths that samples spread evenly over, `pupil` at those too; both outlive this. `level`:
     /// that of `trace_batch`.
-    LensPaths(FilmSampling film, const optics::SpectralLens<T>& lens, const pupil::PupilSlices& pupil,
+    LensPaths(FilmSampling film, const optics::SpectralLens<double>& lens, const pupil::PupilSlices& pupil,
               std::optional<optics::SimdLevel> level = {});
 
     /// As `FilmSamples` has them.
@@ -32,15 +31,12 @@ class LensPaths {
     void move_survivors(const PathStarts& starts, CameraPathBuffer& buffer);
 
     FilmSamples samples_;
-    const optics::SpectralLens<T>* lens_;
+    const optics::SpectralLens<double>* lens_;
     const pupil::PupilSlices* pupil_;
-    const PathKernels<T>* kernels_;
+    const PathKernels* kernels_;
     optics::BatchSettings tracing_;
-    optics::RayBatch<T> rays_;
+    optics::RayBatch<double> rays_;
     std::int64_t started_ = 0;
 };
-
-extern template class LensPaths<float>;
-extern template class LensPaths<double>;
 
 }  // namespace lensproof::render

@@ -75,8 +75,8 @@ template <class Abi>
     }
 }
 
-template <class Abi, class T>
-[[gnu::flatten]] void aim_rays(double film_z, double pupil_z, PathStarts& starts, optics::RayBatch<T>& rays) {
+template <class Abi>
+[[gnu::flatten]] void aim_rays(double film_z, double pupil_z, PathStarts& starts, optics::RayBatch<double>& rays) {
     using Numbers = Pack<double, Abi>;
     const Numbers z(film_z);
     const Numbers to_pupil_z(pupil_z - film_z);
@@ -101,9 +101,8 @@ template <class Abi, class T>
 }
 
 template <class Abi>
-LevelPathKernels path_kernels_of() {
-    return {.in_float = {draw_samples<Abi>, draw_pupil_points<Abi>, aim_rays<Abi, float>},
-            .in_double = {draw_samples<Abi>, draw_pupil_points<Abi>, aim_rays<Abi, double>}};
+PathKernels path_kernels_of() {
+    return {draw_samples<Abi>, draw_pupil_points<Abi>, aim_rays<Abi>};
 }
 
 }  // namespace lensproof::render

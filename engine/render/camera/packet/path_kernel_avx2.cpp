@@ -2,7 +2,7 @@
 
 namespace lensproof::render {
 
-LevelPathKernels avx2_path_kernels() {
+PathKernels avx2_path_kernels() {
     return path_kernels_of<std::experimental::simd_abi::native<double>>();
 }
 

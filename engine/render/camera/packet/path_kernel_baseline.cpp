@@ -2,7 +2,7 @@
 
 namespace lensproof::render {
 
-LevelPathKernels baseline_path_kernels() {
+PathKernels baseline_path_kernels() {
     return path_kernels_of<std::experimental::simd_abi::native<double>>();
 }
 

@@ -2,7 +2,7 @@
 
 namespace lensproof::render {
 
-LevelPathKernels scalar_path_kernels() {
+PathKernels scalar_path_kernels() {
     return path_kernels_of<std::experimental::simd_abi::scalar>();
 }
 

@@ -11,7 +11,6 @@
 namespace lensproof::render {
 
 /// The loops of one level; all levels yield the same bits.
-template <class T>
 struct PathKernels {
     /// Draws `count` samples: pixel, sample, film point, wavelength, numbers for the pupil. Moves the cursor.
     void (*draw_samples)(const PathSampling& sampling, int count, PathCursor& cursor, PathStarts& starts);
@@ -20,20 +19,15 @@ struct PathKernels {
     void (*draw_pupil_points)(const pupil::PupilSliceTables& slices, PathStarts& starts);
 
     /// From film and pupil points the rays and their etendue.
-    void (*aim_rays)(double film_z, double pupil_z, PathStarts& starts, optics::RayBatch<T>& rays);
+    void (*aim_rays)(double film_z, double pupil_z, PathStarts& starts, optics::RayBatch<double>& rays);
 };
 
 /// Those of a level, or of the widest; throws as `LoopsByLevel` does.
-template <class T>
-const PathKernels<T>& path_kernels(std::optional<optics::SimdLevel> level);
+const PathKernels& path_kernels(std::optional<optics::SimdLevel> level);
 
-struct LevelPathKernels {
-    PathKernels<float> in_float;
-    PathKernels<double> in_double;
-};
-LevelPathKernels scalar_path_kernels();
-LevelPathKernels baseline_path_kernels();
-LevelPathKernels avx2_path_kernels();    // x86-64 alone
-LevelPathKernels avx512_path_kernels();  // x86-64 alone
+PathKernels scalar_path_kernels();
+PathKernels baseline_path_kernels();
+PathKernels avx2_path_kernels();    // x86-64 alone
+PathKernels avx512_path_kernels();  // x86-64 alone
 
 }  // namespace lensproof::render

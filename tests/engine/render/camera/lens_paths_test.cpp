@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "engine/formats/prescription/load_lens.h"
-#include "engine/optics/convert_lens.h"
 #include "engine/optics/lens.h"
 #include "engine/render/sampling/sampler.h"
 
@@ -18,17 +17,14 @@ constexpr std::uint64_t kSeed = 17;
 const std::vector<double> kWavelengths = {430.0, 490.0, 550.0, 610.0, 670.0};
 
 /// A camera whose corners lie outside its image circle, so that some pixels lose a part of their paths and some all.
-template <class T>
 struct TestCamera {
     explicit TestCamera(const std::string& name, double half_diagonal_mm, bool by_radius = true)
-        : lens(optics::at_wavelengths<T>(formats::load_lens(name), kWavelengths)),
-          in_double(optics::at_wavelengths<double>(formats::load_lens(name), kWavelengths)),
-          pupil(in_double.at(), by_radius, half_diagonal_mm),
+        : lens(optics::at_wavelengths<double>(formats::load_lens(name), kWavelengths)),
+          pupil(lens.at(), by_radius, half_diagonal_mm),
           slices(pupil, lens.wavelengths()),
           film{.sensor = {.width = 8, .height = 6, .pixel_pitch_mm = half_diagonal_mm / 5.0}, .seed = kSeed} {}
 
-    optics::SpectralLens<T> lens;
-    optics::SpectralLens<double> in_double;
+    optics::SpectralLens<double> lens;
     pupil::PupilMap pupil;
     pupil::PupilSlices slices;
     FilmSampling film;
@@ -53,8 +49,7 @@ struct Paths {
 };
 
 /// What passes the lens of a range of samples, worked out path by path.
-template <class T>
-Paths one_by_one(const TestCamera<T>& camera, const CameraPathRange& range) {
+Paths one_by_one(const TestCamera& camera, const CameraPathRange& range) {
     const Sensor& sensor = camera.film.sensor;
     const double film_z = camera.lens.at(0).image_z;
     Paths found;
@@ -73,29 +68,19 @@ Paths one_by_one(const TestCamera<T>& camera, const CameraPathRange& range) {
             const Vec3d to_pupil{in_pupil.point.x - film.x, in_pupil.point.y - film.y, camera.pupil.plane_z() - film_z};
             const double per_distance2 = 1.0 / dot(to_pupil, to_pupil);
             const Vec3d direction = std::sqrt(per_distance2) * to_pupil;
-            const Ray<T> start{optics::convert_vector<T>(Vec3d{film.x, film.y, film_z}),
-                               optics::convert_vector<T>(direction)};
-            const optics::TracedRay<T> traced =
-                optics::trace<optics::Direction::reverse>(camera.lens.at(wavelength), start);
+            const optics::TracedRay<double> traced = optics::trace<optics::Direction::reverse>(
+                camera.lens.at(wavelength), {{film.x, film.y, film_z}, direction});
             if (traced.status == optics::RayStatus::ok) {
                 const double etendue = direction.z * direction.z * per_distance2 * in_pupil.area;
-                found.valid.push_back({pixel,
-                                       sample,
-                                       wavelength,
-                                       film,
-                                       traced.transmittance * static_cast<T>(etendue),
-                                       {optics::convert_vector<double>(traced.ray.origin),
-                                        optics::convert_vector<double>(traced.ray.direction)}});
+                found.valid.push_back({pixel, sample, wavelength, film, traced.transmittance * etendue, traced.ray});
             }
         }
     }
     return found;
 }
 
-template <class T>
-Paths through_buffers(const TestCamera<T>& camera, const CameraPathRange& range, int capacity,
-                      optics::SimdLevel level) {
-    LensPaths<T> paths(camera.film, camera.lens, camera.slices, level);
+Paths through_buffers(const TestCamera& camera, const CameraPathRange& range, int capacity, optics::SimdLevel level) {
+    LensPaths paths(camera.film, camera.lens, camera.slices, level);
     CameraPathBuffer buffer(capacity);
     Paths found;
     paths.start(range);
@@ -127,17 +112,12 @@ void expect_same(const Paths& found, const Paths& expected, const std::string& w
     }
 }
 
-template <class T>
-class LensPathsIn : public testing::Test {};
-using Numbers = testing::Types<float, double>;
-TYPED_TEST_SUITE(LensPathsIn, Numbers);
-
 // Every path has the bits of the plain manner of making it, and its place in the order, whatever the packets' width and
 // the buffer's capacity, smaller than a pixel's samples or larger; those that the lens stops are left out and nothing
 // else.
-TYPED_TEST(LensPathsIn, HaveTheBitsOfOneByOneInOrder) {
+TEST(LensPaths, HaveTheBitsOfOneByOneInOrder) {
     for (const auto& [name, half_diagonal_mm] : {std::pair{"tessar", 70.0}, {"muller-fisheye", 16.0}}) {
-        const TestCamera<TypeParam> camera(name, half_diagonal_mm);
+        const TestCamera camera(name, half_diagonal_mm);
         const CameraPathRange all{.first_pixel = 0, .pixels = 48, .first_sample = 0, .samples = 37};
         const Paths expected = one_by_one(camera, all);
         EXPECT_LT(expected.started, 48 * 37) << "some of the film gets no light";
@@ -153,16 +133,16 @@ TYPED_TEST(LensPathsIn, HaveTheBitsOfOneByOneInOrder) {
 }
 
 // A path does not depend on the range that it was asked for in.
-TYPED_TEST(LensPathsIn, DoNotDependOnTheRange) {
-    const TestCamera<TypeParam> camera("tessar", 70.0);
+TEST(LensPaths, DoNotDependOnTheRange) {
+    const TestCamera camera("tessar", 70.0);
     const CameraPathRange part{.first_pixel = 19, .pixels = 5, .first_sample = 250, .samples = 12};
     expect_same(through_buffers(camera, part, 64, optics::available_simd_levels().back()), one_by_one(camera, part),
                 "part");
 }
 
 // A lens that is not known to be round has no tables of pupils for packets.
-TYPED_TEST(LensPathsIn, HaveTheSameBitsWherePupilsAreDrawnOneByOne) {
-    const TestCamera<TypeParam> camera("tessar", 30.0, false);
+TEST(LensPaths, HaveTheSameBitsWherePupilsAreDrawnOneByOne) {
+    const TestCamera camera("tessar", 30.0, false);
     const CameraPathRange part{.first_pixel = 0, .pixels = 48, .first_sample = 0, .samples = 3};
     ASSERT_EQ(camera.slices.tables(), nullptr);
     expect_same(through_buffers(camera, part, 64, optics::available_simd_levels().back()), one_by_one(camera, part),
@@ -171,24 +151,24 @@ TYPED_TEST(LensPathsIn, HaveTheSameBitsWherePupilsAreDrawnOneByOne) {
 
 // The top left pixel lies outside the fisheye's image circle: the few paths that the map starts there in defence all
 // end in the lens.
-TYPED_TEST(LensPathsIn, MayAllBeStopped) {
-    const TestCamera<TypeParam> camera("muller-fisheye", 40.0);
+TEST(LensPaths, MayAllBeStopped) {
+    const TestCamera camera("muller-fisheye", 40.0);
     const CameraPathRange corner{.pixels = 1, .samples = 4000};
     const Paths paths = through_buffers(camera, corner, 64, optics::available_simd_levels().back());
     EXPECT_TRUE(paths.valid.empty());
     EXPECT_GT(paths.started, 0);
 }
 
-TYPED_TEST(LensPathsIn, OfNoSamplesOrPixelsAreNone) {
-    const TestCamera<TypeParam> camera("tessar", 70.0);
+TEST(LensPaths, OfNoSamplesOrPixelsAreNone) {
+    const TestCamera camera("tessar", 70.0);
     const optics::SimdLevel level = optics::available_simd_levels().back();
     EXPECT_TRUE(through_buffers(camera, {.pixels = 48, .samples = 0}, 64, level).valid.empty());
     EXPECT_TRUE(through_buffers(camera, {.pixels = 0, .samples = 16}, 64, level).valid.empty());
 }
 
-TYPED_TEST(LensPathsIn, BeginAnewWithARange) {
-    const TestCamera<TypeParam> camera("tessar", 70.0);
-    LensPaths<TypeParam> paths(camera.film, camera.lens, camera.slices);
+TEST(LensPaths, BeginAnewWithARange) {
+    const TestCamera camera("tessar", 70.0);
+    LensPaths paths(camera.film, camera.lens, camera.slices);
     CameraPathBuffer buffer(20);
     paths.start({.first_pixel = 20, .pixels = 8, .samples = 50});
     EXPECT_TRUE(paths.fill(buffer));
