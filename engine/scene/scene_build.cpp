@@ -72,7 +72,7 @@ class SceneBuilder {
 
     /// Returns the material's index.
     std::uint32_t add_own(DiffuseMaterial material) {
-        materials_.push_back({.surface = std::move(material), .radiance = {}});
+        materials_.push_back({std::move(material)});
         absorption_.emplace_back();
         return static_cast<std::uint32_t>(materials_.size() - 1);
     }

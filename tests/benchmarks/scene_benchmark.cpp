@@ -30,10 +30,8 @@ scene::Scene wall_sphere_and_lamp(const spectral::SpectralGrid& grid) {
     const scene::Chart checks{.pattern = scene::Checkerboard{.columns = 40, .rows = 40, .square_mm = 100.0},
                               .white_reflectance = 0.9,
                               .black_reflectance = 0.04};
-    scene.materials.push_back(
-        {.surface = scene::DiffuseMaterial{scene::chart_texture(checks, 4000.0, 4000.0, grid)}, .radiance = {}});
-    scene.materials.push_back(
-        {.surface = scene::DiffuseMaterial{spectral::constant_spectrum(0.5, grid)}, .radiance = {}});
+    scene.materials.push_back({scene::DiffuseMaterial{scene::chart_texture(checks, 4000.0, 4000.0, grid)}});
+    scene.materials.push_back({scene::DiffuseMaterial{spectral::constant_spectrum(0.5, grid)}});
     scene.lights = scene::Lights(*scene.geometry,
                                  {scene::AreaLight{.object = 2, .radiance = spectral::constant_spectrum(20.0, grid)}});
     return scene;

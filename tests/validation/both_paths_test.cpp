@@ -29,9 +29,8 @@ SceneParts matt_scene() {
 
 scene::Material glass() {
     // Cauchy's formula with numbers like those of a dense flint: the wavelengths part.
-    return {.surface = scene::dielectric_material(
-                spectral::tabulated(kGrid, [](double nm) { return 1.70 + 13000.0 / (nm * nm); }), {}),
-            .radiance = {}};
+    return {scene::dielectric_material(spectral::tabulated(kGrid, [](double nm) { return 1.70 + 13000.0 / (nm * nm); }),
+                                       {})};
 }
 
 /// A glass ball throws a caustic on a matt wall, and a mirror shows both: camera paths find what glass gathers by
@@ -42,10 +41,9 @@ SceneParts caustic_scene() {
     parts.add(scene::Sphere{150.0}, {.linear = kIdentity3, .translation = {-150.0, 420.0, 2000.0}}, glass());
     parts.add(scene::Quad{900.0, 900.0},
               {.linear = product(about_y(70.0), about_x(180.0)), .translation = {450.0, 0.0, 2000.0}},
-              scene::Material{.surface = scene::ConductorMaterial{.n = spectral::constant_spectrum(0.1, kGrid),
-                                                                  .k = spectral::constant_spectrum(4.0, kGrid),
-                                                                  .roughness = {}},
-                              .radiance = {}});
+              scene::Material{scene::ConductorMaterial{.n = spectral::constant_spectrum(0.1, kGrid),
+                                                       .k = spectral::constant_spectrum(4.0, kGrid),
+                                                       .roughness = {}}});
     const std::uint32_t lamp =
         parts.add(scene::Sphere{60.0}, {.linear = kIdentity3, .translation = {-150.0, 1000.0, 1500.0}}, 0.0);
     parts.lights.emplace_back(scene::AreaLight{.object = lamp, .radiance = spectral::constant_spectrum(200.0, kGrid)});
@@ -125,10 +123,10 @@ TEST(BothPaths, BringCausticsAndMirrorsTogether) {
 
 // With q_i = n_i p_i, a combination's second moment is Σ ∫ w_i² f² / q_i, at least ∫ f² / Σ q, which any combination's
 // variance V falls short of by Σ μ_i² / n_i ≤ μ² / min n_i. With the power heuristic the integrand is Σ q³ / (Σ q²)²
-// f², of three ways at most 1.23 times f² / Σ q (largest at q = (1, ¼, ¼)). So its variance is at most 1.23 (V + μ² /
-// n) for every V, each kind of path alone among them, of n camera paths and more light paths a pixel. Stated variances
-// of 512 samples are those of 32 blocks, and scatter by √(2/31) = 25 % a pixel, over 54 pixels by 3.5 %; four of these
-// come on top.
+// f², of three techniques at most 1.23 times f² / Σ q (largest at q = (1, ¼, ¼)). So its variance is at most 1.23 (V +
+// μ² / n) for every V, each kind of path alone among them, of n camera paths and more light paths a pixel. Stated
+// variances of 512 samples are those of 32 blocks, and scatter by √(2/31) = 25 % a pixel, over 54 pixels by 3.5 %; four
+// of these come on top.
 TEST(BothPaths, AreNoNoisierThanTheBetter) {
     SceneParts parts = matt_scene();
     const Studio studio(double_gauss(), parts);

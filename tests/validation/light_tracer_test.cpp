@@ -46,11 +46,10 @@ TEST(LightTracer, MakesTheCamerasImageUnderTheSky) {
 TEST(LightTracer, MakesTheCamerasImageOfRoughGlass) {
     SceneParts parts(kGrid);
     parts.add(scene::Quad{4000.0, 4000.0}, {.linear = about_x(180.0), .translation = {0.0, 0.0, 2300.0}}, 0.7);
-    parts.add(scene::Sphere{250.0}, {.linear = kIdentity3, .translation = {0.0, 0.0, 1900.0}},
-              scene::Material{
-                  .surface = scene::DielectricMaterial{.eta = spectral::constant_spectrum(1.5, kGrid),
-                                                       .roughness = scene::Roughness{.alpha_x = 0.4, .alpha_y = 0.4}},
-                  .radiance = {}});
+    parts.add(
+        scene::Sphere{250.0}, {.linear = kIdentity3, .translation = {0.0, 0.0, 1900.0}},
+        scene::Material{scene::DielectricMaterial{.eta = spectral::constant_spectrum(1.5, kGrid),
+                                                  .roughness = scene::Roughness{.alpha_x = 0.4, .alpha_y = 0.4}}});
     const std::uint32_t lamp =
         parts.add(scene::Quad{900.0, 900.0}, {.linear = about_x(90.0), .translation = {0.0, 900.0, 1500.0}}, 0.0);
     parts.lights.emplace_back(scene::AreaLight{.object = lamp, .radiance = spectral::constant_spectrum(20.0, kGrid)});

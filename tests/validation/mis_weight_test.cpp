@@ -195,16 +195,13 @@ Weights weights_of(const Studio& studio, const Path& path, const End& end, const
 
 /// Rough metal, a mirror, rough glass, whose tables are made once.
 struct Surfaces {
-    scene::Material metal{
-        .surface = scene::conductor_material(spectral::constant_spectrum(0.2, kGrid),
-                                             spectral::constant_spectrum(3.0, kGrid), {.alpha_x = 0.3, .alpha_y = 0.3}),
-        .radiance = {}};
-    scene::Material mirror{.surface = scene::conductor_material(spectral::constant_spectrum(0.2, kGrid),
-                                                                spectral::constant_spectrum(3.0, kGrid), {}),
-                           .radiance = {}};
-    scene::Material glass{.surface = scene::dielectric_material(spectral::constant_spectrum(1.5, kGrid),
-                                                                {.alpha_x = 0.4, .alpha_y = 0.4}),
-                          .radiance = {}};
+    scene::Material metal{scene::conductor_material(spectral::constant_spectrum(0.2, kGrid),
+                                                    spectral::constant_spectrum(3.0, kGrid),
+                                                    {.alpha_x = 0.3, .alpha_y = 0.3})};
+    scene::Material mirror{scene::conductor_material(spectral::constant_spectrum(0.2, kGrid),
+                                                     spectral::constant_spectrum(3.0, kGrid), {})};
+    scene::Material glass{
+        scene::dielectric_material(spectral::constant_spectrum(1.5, kGrid), {.alpha_x = 0.4, .alpha_y = 0.4})};
 };
 
 /// A room of matt, rough and mirroring things, under one light.

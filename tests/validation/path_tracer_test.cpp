@@ -160,7 +160,7 @@ TEST(PathTracer, PrismSendsEachWavelengthWhereSnellSays) {
     for (const double nm : kGrid.strata.midpoints()) {
         eta.value.push_back(static_cast<float>(index_at(nm)));
     }
-    const scene::Material glass{.surface = scene::DielectricMaterial{.eta = eta, .roughness = {}}, .radiance = {}};
+    const scene::Material glass{scene::DielectricMaterial{.eta = eta, .roughness = {}}};
     // Light comes down along −z: the first face looks up, the second down, turned by the apex about y.
     parts.add(scene::Quad{20.0, 20.0}, at(0.0, 0.0, 5.0), glass);
     AffineMap second;

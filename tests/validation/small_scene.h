@@ -26,8 +26,7 @@ class SceneParts {
     /// A diffuse one.
     std::uint32_t add(scene::Shape shape, const AffineMap& to_world, double albedo) {
         return add(std::move(shape), to_world,
-                   scene::Material{.surface = scene::DiffuseMaterial{spectral::constant_spectrum(albedo, grid_)},
-                                   .radiance = {}});
+                   scene::Material{scene::DiffuseMaterial{spectral::constant_spectrum(albedo, grid_)}});
     }
 
     [[nodiscard]] scene::Scene scene() const {

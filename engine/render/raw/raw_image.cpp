@@ -60,10 +60,6 @@ cv::Mat demosaiced(const RawImage& raw, const Bayer& bayer, int scale) {
 
 }  // namespace
 
-bool is_bayer_pattern(const std::string& pattern) {
-    return find_pattern(pattern) != nullptr;
-}
-
 int mosaic_channel(const std::string& pattern, int x, int y) {
     const char colour = pattern[static_cast<std::size_t>(2 * (y % 2) + x % 2)];
     return colour == 'R' ? 0 : colour == 'G' ? 1 : 2;

@@ -25,9 +25,6 @@ struct RawImage {
     Demosaicing demosaicing = Demosaicing::bilinear;
 };
 
-/// Whether a pattern's name is one of the four of Bayer.
-bool is_bayer_pattern(const std::string& pattern);
-
 /// The channel, 0 to 2 for R, G, B, that pixel (x, y) measures behind a pattern.
 int mosaic_channel(const std::string& pattern, int x, int y);
 

@@ -34,12 +34,6 @@ struct Quad {
 
 using Shape = std::variant<TriangleMesh, Sphere, Quad>;
 
-/// A point of a quad in a chart's coordinates: from the centre to the right and down, as one sees it who stands before
-/// the front; mm of the quad's own.
-inline Vec2d chart_position_mm(const Quad& quad, const Vec2d& uv) {
-    return {(uv.x - 0.5) * quad.width_mm, (0.5 - uv.y) * quad.height_mm};
-}
-
 template <class To, class From>
 Vec3<To> converted(const Vec3<From>& v) {
     return {static_cast<To>(v.x), static_cast<To>(v.y), static_cast<To>(v.z)};

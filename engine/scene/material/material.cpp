@@ -10,8 +10,4 @@ Bsdf bsdf_at(const Material& material, const Vec2d& uv, const spectral::PathWave
                       material.surface);
 }
 
-spectral::SpectralSample radiance_at(const Material& material, const Vec2d& uv, const spectral::PathWavelengths& path) {
-    return material.radiance ? value_at(*material.radiance, uv, path) : spectral::SpectralSample();
-}
-
 }  // namespace lensproof::scene

@@ -1,6 +1,5 @@
 // engine/scene/material/material.h — what surfaces are made of, and how it scatters at one point.
 #pragma once
-#include <optional>
 #include <variant>
 
 #include "engine/scene/bsdf/bsdf.h"
@@ -10,13 +9,9 @@ namespace lensproof::scene {
 
 struct Material {
     std::variant<SimpleMaterial, MixMaterial> surface;
-    std::optional<Texture> radiance;  // of light that it sends out on its outer side, W·m⁻²·sr⁻¹·nm⁻¹
 };
 
 /// How the material scatters at texture coordinates `uv`, at a path's wavelengths. The material must outlive it.
 Bsdf bsdf_at(const Material& material, const Vec2d& uv, const spectral::PathWavelengths& path);
-
-/// Its `radiance` there; black where it does not emit.
-spectral::SpectralSample radiance_at(const Material& material, const Vec2d& uv, const spectral::PathWavelengths& path);
 
 }  // namespace lensproof::scene

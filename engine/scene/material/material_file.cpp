@@ -29,8 +29,7 @@ std::vector<MaterialDescription> read_materials(TomlTable& top, NameIndex& names
 }
 
 Material make_material(const MaterialDescription& material, const MaterialMaker& maker) {
-    return std::visit([&](const auto& kind) { return Material{.surface = make_material(kind, maker), .radiance = {}}; },
-                      material.kind);
+    return std::visit([&](const auto& kind) { return Material{make_material(kind, maker)}; }, material.kind);
 }
 
 std::optional<spectral::GridSpectrum> absorption(const MaterialDescription& material, SceneSpectra& spectra) {

@@ -12,29 +12,20 @@ namespace lensproof::scene {
 
 namespace {
 
-double fraction_at(const MixMaterial::Part& part, const Vec2d& uv) {
-    double fraction = 1.0;
-    for (const MixMaterial::Factor& factor : part.factors) {
-        const double value = value_at(factor.fraction, uv);
-        fraction *= factor.is_complement ? 1.0 - value : value;
-    }
-    return fraction;
-}
-
 std::vector<MixMaterial::Part> parts_of(const Material& material) {
     if (const auto* mix = std::get_if<MixMaterial>(&material.surface)) {
         return mix->parts;
     }
-    return {MixMaterial::Part{.material = std::get<SimpleMaterial>(material.surface), .factors = {}}};
+    return {MixMaterial::Part{.material = std::get<SimpleMaterial>(material.surface)}};
 }
 
 }  // namespace
 
-MixMaterial mixed(const Material& first, const Material& second, const ScalarTexture& fraction) {
+MixMaterial mixed(const Material& first, const Material& second, double fraction) {
     MixMaterial mix;
-    for (const bool is_complement : {true, false}) {
-        for (MixMaterial::Part& part : parts_of(is_complement ? first : second)) {
-            part.factors.push_back({.fraction = fraction, .is_complement = is_complement});
+    for (const auto& [material, of_it] : {std::pair(&first, 1.0 - fraction), {&second, fraction}}) {
+        for (MixMaterial::Part& part : parts_of(*material)) {
+            part.fraction *= of_it;
             mix.parts.push_back(std::move(part));
         }
     }
@@ -47,9 +38,8 @@ MixMaterial mixed(const Material& first, const Material& second, const ScalarTex
 MixBsdf at_point(const MixMaterial& material, const Vec2d& uv, const spectral::PathWavelengths& path) {
     MixBsdf mix;
     for (const MixMaterial::Part& part : material.parts) {
-        const double fraction = fraction_at(part, uv);
-        if (fraction > 0.0) {
-            mix.fraction[mix.count] = fraction;
+        if (part.fraction > 0.0) {
+            mix.fraction[mix.count] = part.fraction;
             mix.part[mix.count] =
                 std::visit([&](const auto& simple) -> SimpleBsdf { return at_point(simple, uv, path); }, part.material);
             ++mix.count;

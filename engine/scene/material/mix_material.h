@@ -15,21 +15,16 @@ using SimpleMaterial = std::variant<DiffuseMaterial, ConductorMaterial, Dielectr
 
 /// Up to kMostMixed materials side by side.
 struct MixMaterial {
-    /// A material's fraction is the product of its factors, each a number or one less that number.
-    struct Factor {
-        ScalarTexture fraction;
-        bool is_complement = false;
-    };
     struct Part {
         SimpleMaterial material;
-        std::vector<Factor> factors;
+        double fraction = 1.0;
     };
     std::vector<Part> parts;
 };
 
-/// `fraction` (0 to 1) of `second`, the rest of `first`; both may be mixes themselves. What either emits is left out.
+/// `fraction` (0 to 1) of `second`, the rest of `first`; both may be mixes themselves.
 /// Throws InputError where more than kMostMixed materials come together.
-MixMaterial mixed(const Material& first, const Material& second, const ScalarTexture& fraction);
+MixMaterial mixed(const Material& first, const Material& second, double fraction);
 
 MixBsdf at_point(const MixMaterial& material, const Vec2d& uv, const spectral::PathWavelengths& path);
 

@@ -73,14 +73,6 @@ spectral::SpectralSample look_up(const ChartTexture& texture, const Vec2d& uv, c
     return white * texture.white(path) + (1.0F - white) * texture.black(path);
 }
 
-double look_up(double everywhere, const Vec2d&) {
-    return everywhere;
-}
-
-double look_up(const ScalarImage& image, const Vec2d& uv) {
-    return bilinear(image.grid, uv, [&](std::size_t index) { return image.texel[index]; });
-}
-
 /// The channels that give red, green and blue.
 std::array<int, 3> rgb_channels(const formats::Image& image, const std::filesystem::path& file) {
     const std::array<int, 3> rgb{formats::find_channel(image, "R"), formats::find_channel(image, "G"),
@@ -118,10 +110,6 @@ spectral::SpectralSample value_at(const Texture& texture, const Vec2d& uv, const
     return std::visit([&](const auto& kind) { return look_up(kind, uv, path); }, texture);
 }
 
-double value_at(const ScalarTexture& texture, const Vec2d& uv) {
-    return std::visit([&](const auto& kind) { return look_up(kind, uv); }, texture);
-}
-
 ImageTexture reflectance_texture(const formats::Image& image, const std::filesystem::path& file, Wrap wrap,
                                  const spectral::SpectralGrid& grid, const spectral::RgbUplift& uplift) {
     return image_texture(image, file, {image.width, image.height, wrap, wrap}, grid,
@@ -150,17 +138,6 @@ spectral::GridSpectrum rgb_reflectance(const Vec3d& rgb, const spectral::Spectra
     return spectral::tabulated(grid, spectral::fitted_reflectance(uplift, spectral::rgb_of_reflectance(), rgb));
 }
 
-spectral::GridSpectrum rgb_emission(const Vec3d& rgb, const spectral::Spectrum& white,
-                                    const spectral::SpectralGrid& grid, const spectral::RgbUplift& uplift) {
-    const spectral::UpliftedLight light = spectral::uplifted_light(uplift, rgb);
-    const spectral::GridSpectrum shape = spectral::tabulated(grid, light.shape);
-    spectral::GridSpectrum emission = spectral::stratum_means(white, grid);
-    for (std::size_t i = 0; i < emission.value.size(); ++i) {
-        emission.value[i] *= static_cast<float>(light.scale * shape.value[i]);
-    }
-    return emission;
-}
-
 ChartTexture chart_texture(const Chart& chart, double width_mm, double height_mm, const spectral::SpectralGrid& grid) {
     ChartTexture texture{.chart = chart,
                          .width_mm = width_mm,
@@ -175,19 +152,6 @@ ChartTexture chart_texture(const Chart& chart, double width_mm, double height_mm
     }
     texture.chart.white_reflectance = 1.0;
     texture.chart.black_reflectance = 0.0;
-    return texture;
-}
-
-ScalarImage scalar_texture(const std::filesystem::path& file, Wrap wrap) {
-    const formats::Image image = formats::read_image(file);
-    const int channel = rgb_channels(image, file)[0];
-    ScalarImage texture{.grid = {image.width, image.height, wrap, wrap}, .texel = {}};
-    for (int y = 0; y < image.height; ++y) {
-        for (int x = 0; x < image.width; ++x) {
-            const float value = image.at(x, y, channel);
-            texture.texel.push_back(value > 0.0F ? std::min(value, 1.0F) : 0.0F);  // NaN too is 0
-        }
-    }
     return texture;
 }
 

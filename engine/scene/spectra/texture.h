@@ -1,4 +1,4 @@
-// engine/scene/spectra/texture.h — what varies over a surface: spectra, and the fractions of a mix.
+// engine/scene/spectra/texture.h — what varies over a surface.
 //
 // (u, v) covers a texture once from 0 to 1: u runs to the right and v up, so that (0, 1) is a picture's top left
 // corner.
@@ -76,26 +76,8 @@ ImageTexture emission_texture(const formats::Image& image, const std::filesystem
 spectral::GridSpectrum rgb_reflectance(const Vec3d& rgb, const spectral::SpectralGrid& grid,
                                        const spectral::RgbUplift& uplift);
 
-/// The light of colour `rgb` (≥ 0, unbounded) against `white`, of which (1, 1, 1) is the whole.
-spectral::GridSpectrum rgb_emission(const Vec3d& rgb, const spectral::Spectrum& white,
-                                    const spectral::SpectralGrid& grid, const spectral::RgbUplift& uplift);
-
 /// `chart` with its own two reflectances, alike at all wavelengths, and its patches, if it has such, by
 /// engine/spectral/colour_checker.h.
 ChartTexture chart_texture(const Chart& chart, double width_mm, double height_mm, const spectral::SpectralGrid& grid);
-
-/// A picture of plain numbers.
-struct ScalarImage {
-    TexelGrid grid;
-    std::vector<float> texel;  // rows from the top
-};
-
-/// A number over a surface; a double is the same everywhere.
-using ScalarTexture = std::variant<double, ScalarImage>;
-
-double value_at(const ScalarTexture& texture, const Vec2d& uv);
-
-/// A picture file's channel Y, or else R, linear and held to [0, 1]. Throws InputError as reflectance_texture does.
-ScalarImage scalar_texture(const std::filesystem::path& file, Wrap wrap);
 
 }  // namespace lensproof::scene

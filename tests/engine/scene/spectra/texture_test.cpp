@@ -5,11 +5,8 @@
 #include <cmath>
 #include <limits>
 
-#include "engine/base/file.h"
-#include "engine/base/input_error.h"
 #include "engine/spectral/colour_checker.h"
 #include "tests/engine/scene/bsdf/bsdf_cases.h"
-#include "tests/test_folder.h"
 
 namespace lensproof::scene::texture_test {
 namespace {
@@ -18,14 +15,16 @@ spectral::SpectralGrid grid() {
     return spectral::spectral_grid(400.0, 700.0, 16);
 }
 
-/// 3 × 2 pixels: 0.1, 0.2, 0.3 above 0.4, 0.5, 0.6.
-ScalarImage numbers(Wrap wrap) {
-    return {.grid = {.width = 3, .height = 2, .wrap_u = wrap, .wrap_v = wrap},
-            .texel = {0.1F, 0.2F, 0.3F, 0.4F, 0.5F, 0.6F}};
-}
-
+/// Of 3 × 2 grey pixels: 0.1, 0.2, 0.3 above 0.4, 0.5, 0.6.
 double at(Wrap wrap, double u, double v) {
-    return value_at(ScalarTexture(numbers(wrap)), {u, v});
+    ImageTexture image{.grid = {.width = 3, .height = 2, .wrap_u = wrap, .wrap_v = wrap},
+                       .texel = {},
+                       .abscissa = spectral::constant_spectrum(0.0, grid()),
+                       .white = spectral::constant_spectrum(1.0, grid())};
+    for (const float grey : {0.1F, 0.2F, 0.3F, 0.4F, 0.5F, 0.6F}) {
+        image.texel.push_back({.shape = {}, .scale = 2.0F * grey});  // of a shape that is ½ everywhere
+    }
+    return value_at(image, {u, v}, grid().path(0))[0];
 }
 
 constexpr double kFloatRounding = 0x1p-23;
@@ -95,43 +94,6 @@ TEST(Texture, ColourCheckersPatchesAreAsMeasured) {
     for (const Vec2d frame : {Vec2d{0.0, 0.0}, {1.0, 1.0}, {1.0 / 6.0, 0.4}, {0.4, 0.25}, {-3.0, 0.5}, {0.5, 7.0}}) {
         EXPECT_EQ(value_at(texture, frame, path), spectral::SpectralSample(0.04F));
     }
-}
-
-// Masks are plain numbers: a grey picture's, linear, held to [0, 1].
-TEST(Texture, MasksAreReadAsNumbers) {
-    const TestFolder folder;
-    const auto file = folder.path() / "mask.exr";
-    formats::Image image = formats::make_image(2, 1, {"Y"});
-    image.at(0, 0, 0) = 0.25F;
-    image.at(1, 0, 0) = 7.0F;
-    formats::write_exr(image, file);
-    const ScalarTexture mask = scalar_texture(file, Wrap::clamp);
-    EXPECT_EQ(value_at(mask, {0.25, 0.5}), 0.25);
-    EXPECT_EQ(value_at(mask, {0.75, 0.5}), 1.0);
-    EXPECT_EQ(value_at(ScalarTexture(0.3), {0.75, 0.5}), 0.3);
-}
-
-// A picture that is not there, or has no colours, is named with what is expected.
-TEST(Texture, MissingAndColourlessPicturesAreNamed) {
-    const TestFolder folder;
-    const auto missing = folder.path() / "no-such-picture.png";
-    try {
-        scalar_texture(missing, Wrap::repeat);
-        FAIL();
-    } catch (const InputError& error) {
-        EXPECT_NE(std::string(error.what()).find("no-such-picture.png"), std::string::npos) << error.what();
-    }
-    const auto spectral = folder.path() / "spectral.exr";
-    formats::write_exr(formats::make_image(2, 2, {"S0.550,000000nm", "S0.600,000000nm"}), spectral);
-    try {
-        scalar_texture(spectral, Wrap::repeat);
-        FAIL();
-    } catch (const InputError& error) {
-        EXPECT_NE(std::string(error.what()).find("spectral.exr"), std::string::npos) << error.what();
-        EXPECT_NE(std::string(error.what()).find("expected R, G and B, or Y"), std::string::npos) << error.what();
-    }
-    write_file(folder.path() / "text.png", "no picture");
-    EXPECT_THROW(scalar_texture(folder.path() / "text.png", Wrap::repeat), InputError);
 }
 
 }  // namespace
