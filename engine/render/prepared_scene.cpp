@@ -29,14 +29,11 @@ World PreparedScene::make_world(const SceneSetup& setup, const Cache& cache) {
 }
 
 Render PreparedScene::render(std::uint64_t seed, bool has_features) const {
-    View view{.world = &world_,
-              .camera = &camera_,
-              .film = camera_.film(),
-              .paths = {.max_bounces = max_bounces_},
-              .seed = seed};
-    view.film.has_splats = pass_->has_splats;
-    view.film.has_features = has_features;
-    return {.film = view.film, .renderer = pass_->renderer(view)};
+    return pass_->render({.world = &world_,
+                          .camera = &camera_,
+                          .seed = seed,
+                          .has_features = has_features,
+                          .paths = {.max_bounces = max_bounces_}});
 }
 
 std::map<std::string, std::string> PreparedScene::metadata() const {

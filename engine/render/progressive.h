@@ -90,12 +90,6 @@ enum class RenderEnd { complete, out_of_time, interrupted };
 RenderEnd render_progressively(RenderState& state, const TileRenderer& renderer, const RenderGoal& goal,
                                const RenderControl& control);
 
-/// A film to be rendered, and by whom.
-struct Render {
-    FilmLayout film;
-    TileRenderer renderer;
-};
-
 /// The film after these samples of every pixel; `progress` is told which part of them is done.
 Film render_film(const Render& render, const SampleRange& range, int threads = 0,
                  const std::function<void(double done)>& progress = {});

@@ -5,6 +5,7 @@
 
 #include "engine/pupil/pupil_map.h"
 #include "engine/render/integrators/chart_tracer.h"
+#include "engine/render/integrators/passes.h"
 #include "engine/render/progressive.h"
 #include "engine/render/sampling/sampler.h"
 #include "tests/benchmarks/benchmarks.h"
@@ -42,10 +43,10 @@ void time_render(benchmark::State& state, const Setting& setting, const scene::C
     constexpr int kSamples = 64;
     const render::Camera camera(camera_for(setting), {}, {}, {});
     const render::World world = render::even_chart(chart, {.distance_mm = setting.focus_distance_mm}, 1000.0, camera);
-    const render::View view{.world = &world, .camera = &camera, .film = camera.film()};
+    const render::View view{.world = &world, .camera = &camera};
     while (state.KeepRunning()) {
-        benchmark::DoNotOptimize(render::render_film({.film = view.film, .renderer = render::ChartTracer(view)},
-                                                     {.first = 0, .end = kSamples}, 1));
+        benchmark::DoNotOptimize(
+            render::render_film(render::pass_named("chart").render(view), {.first = 0, .end = kSamples}, 1));
     }
     const render::Sensor& sensor = camera.sensor();
     state.counters["paths/s"] = benchmark::Counter(

@@ -1,10 +1,9 @@
 #include <benchmark/benchmark.h>
 
-#include <memory>
-
-#include "engine/render/integrators/path_tracer.h"
+#include "engine/render/integrators/passes.h"
 #include "engine/render/progressive.h"
 #include "tests/benchmarks/benchmarks.h"
+#include "tests/validation/small_scene.h"
 
 namespace lensproof {
 
@@ -16,25 +15,17 @@ constexpr render::Sensor kSensor{.width = kWidth, .height = kHeight, .pixel_pitc
 constexpr render::PathSettings kPaths{.max_bounces = 5};
 
 scene::Scene wall_sphere_and_lamp(const spectral::SpectralGrid& grid) {
-    const AffineMap towards_camera{.linear = about_x(180.0), .translation = {0.0, 0.0, 2000.0}};
-    std::vector<scene::Shape> shapes{scene::Quad{4000.0, 4000.0}, scene::Sphere{200.0}, scene::Quad{500.0, 500.0}};
-    std::vector<scene::SceneObject> objects{
-        {.shape = 0, .to_world = towards_camera, .material = 0},
-        {.shape = 1, .to_world = {.linear = kIdentity3, .translation = {150.0, 0.0, 1700.0}}, .material = 1},
-        {.shape = 2, .to_world = {.linear = about_x(90.0), .translation = {0.0, 800.0, 1500.0}}, .material = 1}};
-    scene::Scene scene{.grid = grid,
-                       .geometry = std::make_unique<scene::SceneGeometry>(std::move(shapes), std::move(objects)),
-                       .materials = {},
-                       .absorption = {},
-                       .lights = {}};
     const scene::Chart checks{.pattern = scene::Checkerboard{.columns = 40, .rows = 40, .square_mm = 100.0},
                               .white_reflectance = 0.9,
                               .black_reflectance = 0.04};
-    scene.materials.push_back({scene::DiffuseMaterial{scene::chart_texture(checks, 4000.0, 4000.0, grid)}});
-    scene.materials.push_back({scene::DiffuseMaterial{spectral::constant_spectrum(0.5, grid)}});
-    scene.lights = scene::Lights(*scene.geometry,
-                                 {scene::AreaLight{.object = 2, .radiance = spectral::constant_spectrum(20.0, grid)}});
-    return scene;
+    SceneParts parts(grid);
+    parts.add(scene::Quad{4000.0, 4000.0}, {.linear = about_x(180.0), .translation = {0.0, 0.0, 2000.0}},
+              {scene::DiffuseMaterial{scene::chart_texture(checks, 4000.0, 4000.0, grid)}});
+    parts.add(scene::Sphere{200.0}, {.linear = kIdentity3, .translation = {150.0, 0.0, 1700.0}}, 0.5);
+    const std::uint32_t lamp =
+        parts.add(scene::Quad{500.0, 500.0}, {.linear = about_x(90.0), .translation = {0.0, 800.0, 1500.0}}, 0.5);
+    parts.lights.emplace_back(scene::AreaLight{.object = lamp, .radiance = spectral::constant_spectrum(20.0, grid)});
+    return parts.scene();
 }
 
 void time_camera_paths(benchmark::State& state, render::LensModel model) {
@@ -46,9 +37,9 @@ void time_camera_paths(benchmark::State& state, render::LensModel model) {
                                  .model = model},
                                 {.layers = 8, .strata_per_layer = 8}, {}, {});
     const render::World world = wall_sphere_and_lamp(camera.grid());
-    const render::View view{.world = &world, .camera = &camera, .film = camera.film(), .paths = kPaths};
-    const render::TileRenderer render = render::PathTracer(view);
-    render::Film film(view.film);
+    const render::Render render =
+        render::pass_named("camera").render({.world = &world, .camera = &camera, .paths = kPaths});
+    render::Film film(render.film);
     render::FilmTile tile(film.layout());
     const auto tiles = render::film_tiles(kWidth, kHeight);
     std::uint32_t sample = 0;
@@ -58,7 +49,7 @@ void time_camera_paths(benchmark::State& state, render::LensModel model) {
         for (const render::PixelRect& rect : tiles) {
             const render::TileSamples samples{rect, sample, sample + kSamples};
             film.load(samples, tile);
-            render(samples, tile);
+            render.renderer(samples, tile);
             tile.finish();
             film.store(tile);
             rays += tile.rays();

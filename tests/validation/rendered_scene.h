@@ -34,9 +34,8 @@ struct SeenChart {
 inline render::Film rendered(const SeenChart& seen, const render::SampleRange& range, std::uint64_t seed = 0,
                              int threads = 0) {
     const render::World world = render::even_chart(seen.chart, seen.placement, 1000.0, seen.camera);
-    render::View view{.world = &world, .camera = &seen.camera, .film = seen.camera.film(), .paths = {}, .seed = seed};
-    view.film.has_features = seen.has_features;
-    return render::render_film({.film = view.film, .renderer = render::ChartTracer(view)}, range, threads);
+    const render::View view{.world = &world, .camera = &seen.camera, .seed = seed, .has_features = seen.has_features};
+    return render::render_film(render::pass_named("chart").render(view), range, threads);
 }
 
 }  // namespace lensproof

@@ -1,20 +1,13 @@
 // Rays that four wavelengths share outside the lens, against paths that belong to one.
-#include "engine/render/camera/shared_rays.h"
-
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <vector>
 
-#include "engine/formats/prescription/load_lens.h"
-#include "engine/optics/focus.h"
-#include "engine/optics/lens.h"
-#include "engine/render/camera/lens_paths.h"
+#include "engine/render/camera/camera.h"
 
 namespace lensproof::shared_rays_test {
-
-const spectral::SpectralGrid kGrid = spectral::spectral_grid(420.0, 680.0, 8);
 
 /// Film irradiance in an even world of radiance 1, a wavelength each, with standard errors; and which fraction of
 /// the paths' other wavelengths counted.
@@ -27,12 +20,10 @@ struct Sums {
 /// Of a row of pixels, from their paths by heroes alone or by shared rays.
 Sums irradiance(const std::string& name, const render::Sensor& sensor, bool is_shared) {
     constexpr std::uint32_t kSamples = 1U << 14U;
-    const optics::Lens lens = optics::focused_at(optics::with_f_number(formats::load_lens(name), 4.0), 1e6);
-    const auto traced = optics::at_wavelengths<double>(lens, kGrid.strata.midpoints());
-    const pupil::PupilMap map(traced.at(), true, sensor.half_diagonal_mm());
-    const pupil::PupilSlices slices(map, kGrid.size());
-    render::LensPaths producer({.sensor = sensor, .seed = 3}, traced, slices);
-    render::SharedRays shared(kGrid, traced, slices, sensor, true);
+    const render::Camera camera(
+        {.lens = name, .f_number = 4.0, .focus_distance_mm = 1e6, .sensor = sensor, .response = "luminance"},
+        {.min_nm = 420.0, .max_nm = 680.0, .layers = 8, .strata_per_layer = 1}, {}, {});
+    render::CameraPaths producer = camera.paths(3, render::PathCarry::wavelengths);
     render::CameraPathBuffer paths;
     std::vector<double> sum(8);
     std::vector<double> squares(8);
@@ -44,9 +35,8 @@ Sums irradiance(const std::string& name, const render::Sensor& sensor, bool is_s
                     .first_sample = 0,
                     .samples = kSamples});
     while (producer.fill(paths)) {
-        shared.weigh(paths);
         for (std::size_t i = 0; i < static_cast<std::size_t>(paths.size); ++i) {
-            const spectral::PathWavelengths strata = kGrid.path(paths.wavelength[i]);
+            const spectral::PathWavelengths strata = camera.grid().path(paths.wavelength[i]);
             for (std::size_t m = 0; m < spectral::kWavelengthsPerPath; ++m) {
                 const double hero = m == 0 ? 4.0 * paths.weight[i] : 0.0;
                 const double value = is_shared ? static_cast<double>(paths.weights[i][m]) : hero;

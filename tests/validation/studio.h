@@ -7,7 +7,6 @@
 #include <cstdint>
 #include <string>
 
-#include "engine/render/integrators/both_paths.h"
 #include "tests/validation/rendered_scene.h"
 #include "tests/validation/small_scene.h"
 
@@ -36,36 +35,25 @@ class Studio {
                    .response = "luminance",
                    .model = setup.model},
                   {setup.grid.strata.min_nm, setup.grid.strata.max_nm, setup.grid.size(), 1}, setup.filter, {}, true),
-          view_{.world = &world_,
-                .camera = &camera_,
-                .film = camera_.film(),
-                .paths = {.max_bounces = setup.max_bounces},
-                .seed = 1} {
-        // R, G and B all are the mean irradiance over the band.
-        const double per_nm = 1.0 / view_.film.band_nm;
-        view_.film.rgb_weights.assign(view_.film.rgb_weights.size(), {per_nm, per_nm, per_nm});
-        view_.film.has_splats = true;
-    }
+          view_{.world = &world_, .camera = &camera_, .seed = 1, .paths = {.max_bounces = setup.max_bounces}} {}
     Studio(const Studio&) = delete;
     Studio& operator=(const Studio&) = delete;
 
-    [[nodiscard]] render::Film by_camera(std::uint32_t samples) const {
-        return film_of(render::PathTracer(view_), samples);
-    }
-    [[nodiscard]] render::Film by_lights(std::uint32_t samples) const {
-        return film_of(render::LightTracer(view_), samples);
-    }
-    [[nodiscard]] render::Film by_both(std::uint32_t samples) const {
-        return film_of(render::BothPaths(view_), samples);
-    }
+    [[nodiscard]] render::Film by_camera(std::uint32_t samples) const { return film_of("camera", samples); }
+    [[nodiscard]] render::Film by_lights(std::uint32_t samples) const { return film_of("light", samples); }
+    [[nodiscard]] render::Film by_both(std::uint32_t samples) const { return film_of("both", samples); }
 
     [[nodiscard]] const scene::Scene& scene() const { return view_.scene(); }
     [[nodiscard]] const render::Camera& camera() const { return camera_; }
 
   private:
-    [[nodiscard]] render::Film film_of(const render::TileRenderer& renderer, std::uint32_t samples) const {
-        const render::PixelRect all{.width = view_.film.width, .height = view_.film.height};
-        return rendered({.film = view_.film, .renderer = renderer}, {&all, 1}, samples);
+    [[nodiscard]] render::Film film_of(const char* pass, std::uint32_t samples) const {
+        render::Render render = render::pass_named(pass).render(view_);
+        // R, G and B all are the mean irradiance over the band.
+        const double per_nm = 1.0 / render.film.band_nm;
+        render.film.rgb_weights.assign(render.film.rgb_weights.size(), {per_nm, per_nm, per_nm});
+        const render::PixelRect all{.width = render.film.width, .height = render.film.height};
+        return rendered(render, {&all, 1}, samples);
     }
 
     render::World world_;

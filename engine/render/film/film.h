@@ -183,6 +183,12 @@ class FilmTile {
 /// for another.
 using TileRenderer = std::function<void(const TileSamples&, FilmTile&)>;
 
+/// A film to be rendered, and by whom.
+struct Render {
+    FilmLayout film;
+    TileRenderer renderer;
+};
+
 /// What samples say of a pixel, and the variance of that.
 ///
 /// The variance of n samples' mean m is estimated from the means m_b of its M blocks of n_b samples:

@@ -37,7 +37,7 @@ void ChartTracer::operator()(const TileSamples& samples, FilmTile& tile) {
         const ChartMeeting at = meet_chart(chart, paths.ray(path));
         const double radiance = at.reflectance * chart.white_radiance[stratum];
         tile.add(pixel, paths.sample[path], stratum, radiance * paths.weight[path]);
-        if (view_.film.has_features && at.exists) {
+        if (view_.has_features && at.exists) {
             tile.add_features(pixel, features_of(chart, at));
         }
     });

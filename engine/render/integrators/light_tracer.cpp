@@ -205,7 +205,7 @@ void LightTracer::operator()(const TileSamples& samples, FilmTile& tile) const {
     const spectral::SpectralGrid& grid = view_.camera->grid();
     for (int y = rect.y; y < rect.y + rect.height; ++y) {
         for (int x = rect.x; x < rect.x + rect.width; ++x) {
-            const auto pixel = static_cast<std::uint32_t>(y * view_.film.width + x);
+            const auto pixel = static_cast<std::uint32_t>(y * view_.camera->sensor().width + x);
             for (std::uint32_t sample = samples.first; sample < samples.end; ++sample) {
                 PathSampler numbers(seed_, pixel, sample);
                 const spectral::PathWavelengths strata = grid.path(static_cast<int>(numbers.next()[0] * grid.size()));

@@ -17,6 +17,13 @@ TileRenderer renderer_by(const View& view) {
 
 }  // namespace
 
+Render Pass::render(const View& view) const {
+    Render render{.film = view.camera->film(), .renderer = renderer(view)};
+    render.film.has_splats = has_splats;
+    render.film.has_features = view.has_features;
+    return render;
+}
+
 const std::vector<Pass>& passes() {
     static const std::vector<Pass> all = {
         {"camera", "", false, renderer_by<PathTracer>},

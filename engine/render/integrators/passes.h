@@ -13,6 +13,9 @@ struct Pass {
     std::string description;  // what of it stands among a render's settings
     bool has_splats = false;  // light lands anywhere: the film keeps it, the camera meets light paths
     TileRenderer (*renderer)(const View& view) = nullptr;
+
+    /// The camera's film, with what the pass puts there.
+    [[nodiscard]] Render render(const View& view) const;
 };
 
 /// Of scenes: "camera", "light" and "both"; of charts under even light: "chart".

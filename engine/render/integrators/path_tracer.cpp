@@ -149,7 +149,7 @@ PathTracer::PathTracer(const View& view, Combination combination)
     : view_(view),
       is_weighed_(combination == Combination::weighed),
       paths_(*view.camera, view.seed, is_weighed_ ? PathCarry::wavelengths_and_pdfs : PathCarry::wavelengths) {
-    if (view.film.has_features) {
+    if (view.has_features) {
         albedo_weights_ = view.camera->albedo_weights();
     }
 }
@@ -174,7 +174,7 @@ void PathTracer::add_path(const CameraPathBuffer& paths, std::size_t path, std::
     }
     irradiance[0] += paths.hero_weight(path) * found.hero_radiance;
     tile.add(pixel, paths.sample[path], strata.index, irradiance);
-    if (view_.film.has_features && found.first) {
+    if (view_.has_features && found.first) {
         add_features(pixel, strata, *found.first, tile);
     }
 }

@@ -22,13 +22,13 @@ struct EvenChart {
 
 using World = std::variant<scene::Scene, EvenChart>;
 
-/// What is seen, by what, and what the film keeps of it. Held by pointer: both outlive the render.
+/// What is seen, and by what. Held by pointer: both outlive the render.
 struct View {
     const World* world = nullptr;
     const Camera* camera = nullptr;
-    FilmLayout film;
-    PathSettings paths;
     std::uint64_t seed = 0;
+    bool has_features = false;  // the film keeps depth, albedo and normals too
+    PathSettings paths;
 
     [[nodiscard]] const scene::Scene& scene() const { return std::get<scene::Scene>(*world); }
     [[nodiscard]] const EvenChart& chart() const { return std::get<EvenChart>(*world); }

@@ -15,6 +15,7 @@
 #include "engine/optics/paraxial.h"
 #include "engine/render/film/film_image.h"
 #include "engine/render/integrators/chart_tracer.h"
+#include "engine/render/integrators/passes.h"
 #include "engine/render/progressive.h"
 #include "engine/scene/chart/chart_file.h"
 #include "engine/spectral/wavelengths.h"
@@ -161,11 +162,9 @@ MeasuredCamera measure_simulation(const Simulation& simulation, const render::Ca
             render::even_chart(chart, placement, simulation.scene.chart->luminance_cd_m2, camera);
         const render::View view{.world = &world,
                                 .camera = &camera,
-                                .film = camera.film(),
-                                .paths = {},
                                 .seed = settings.seed + pictures.size()};  // views do not share their noise
         const render::Film film =
-            render::render_film({.film = view.film, .renderer = render::ChartTracer(view)},
+            render::render_film(render::pass_named("chart").render(view),
                                 {.first = 0, .end = static_cast<std::uint32_t>(samples_per_pixel)}, settings.threads,
                                 [&](double done) { progress(simulation.name + step, done); });
         formats::Image image = colours_only(render::film_image(film));
