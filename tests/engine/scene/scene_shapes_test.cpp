@@ -2,12 +2,11 @@
 
 #include <gtest/gtest.h>
 
-#include <functional>
 #include <limits>
 #include <string>
 
-#include "engine/base/input_error.h"
 #include "engine/scene/geometry/shapes.h"
+#include "tests/complaint.h"
 
 namespace lensproof::scene::scene_shapes_test {
 namespace {
@@ -17,18 +16,9 @@ using test::box_mesh;
 using test::scaled;
 using test::scene_of;
 
-std::string message_of(const std::function<void()>& action) {
-    try {
-        action();
-    } catch (const InputError& error) {
-        return error.what();
-    }
-    return "nothing was refused";
-}
-
 TEST(SceneShapes, UnusableMeshesAreRefusedByName) {
     const TriangleMesh good = box_mesh(1.0F);
-    const auto refusal = [](const TriangleMesh& mesh) { return message_of([&] { scene_of(mesh); }); };
+    const auto refusal = [](const TriangleMesh& mesh) { return complaint_about([&] { scene_of(mesh); }); };
     TriangleMesh mesh = good;
     mesh.positions[5].y = std::numeric_limits<float>::quiet_NaN();
     EXPECT_NE(refusal(mesh).find("box: vertex 5 is (1, nan, 1)"), std::string::npos) << refusal(mesh);
@@ -44,9 +34,10 @@ TEST(SceneShapes, UnusableMeshesAreRefusedByName) {
     mesh = good;
     mesh.triangles = {{0, 1, 1}};
     EXPECT_NE(refusal(mesh).find("no triangle that has an area"), std::string::npos) << refusal(mesh);
-    EXPECT_NE(message_of([] { scene_of(Sphere{0.0}); }).find("no size"), std::string::npos);
-    EXPECT_NE(message_of([] { scene_of(Sphere{1.0}, at({}, scaled(1, 1, 0))); }).find("flattens"), std::string::npos);
-    EXPECT_NE(message_of([] { scene_of(Sphere{1.0}, at({2e12, 0, 0})); }).find("as far out"), std::string::npos);
+    EXPECT_NE(complaint_about([] { scene_of(Sphere{0.0}); }).find("no size"), std::string::npos);
+    EXPECT_NE(complaint_about([] { scene_of(Sphere{1.0}, at({}, scaled(1, 1, 0))); }).find("flattens"),
+              std::string::npos);
+    EXPECT_NE(complaint_about([] { scene_of(Sphere{1.0}, at({2e12, 0, 0})); }).find("as far out"), std::string::npos);
 }
 
 TEST(SceneShapes, DegenerateTrianglesAreDroppedAndCounted) {

@@ -21,34 +21,28 @@ const FilmNotes kNotes = {.identity = {{"scene", "abc"}, {"seed", "7"}},
                           .colours = spectral::RgbSpace{{0.64, 0.33}, {0.3, 0.6}, {0.15, 0.06}, {0.3127, 0.329}}};
 
 /// Samples [first, end) of a film of 70 × 33 pixels with everything that a film may have.
-Film full_film(std::uint32_t first, std::uint32_t end) {
-    FilmLayout layout = plain_film(70, 33, 4);
-    layout.has_splats = true;
-    layout.has_features = true;
-    Film film(layout);
-    FilmTile tile(layout);
-    film.load({.rect = {0, 0, 70, 33}, .first = first, .end = end}, tile);
-    for (std::uint32_t pixel = 0; pixel < 70 * 33; ++pixel) {
-        for (std::uint32_t i = first; i < end; ++i) {
-            if (pixel == 0) {
-                tile.add(pixel, i, 0, std::numeric_limits<double>::quiet_NaN());  // is left out
+Film filled(std::uint32_t first, std::uint32_t end) {
+    const FilmLayout layout = full_film(70, 33, 4);
+    return film_of(layout, {.rect = {0, 0, 70, 33}, .first = first, .end = end}, [&](FilmTile& tile) {
+        for (std::uint32_t pixel = 0; pixel < 70 * 33; ++pixel) {
+            for (std::uint32_t i = first; i < end; ++i) {
+                if (pixel == 0) {
+                    tile.add(pixel, i, 0, std::numeric_limits<double>::quiet_NaN());  // is left out
+                }
+                tile.add(pixel, i, i % 4, exponential_number(1, pixel, i));
+                tile.add_features(pixel,
+                                  {.depth_mm = 1000.0 + i, .albedo_rgb = {0.5, 0.2, 0.1}, .normal = {0.6, 0.0, -0.8}});
             }
-            tile.add(pixel, i, i % 4, exponential_number(1, pixel, i));
-            tile.add_features(pixel,
-                              {.depth_mm = 1000.0 + i, .albedo_rgb = {0.5, 0.2, 0.1}, .normal = {0.6, 0.0, -0.8}});
+            const float light = static_cast<float>(exponential_number(2, pixel, first));
+            const std::uint32_t row = pixel / 70;
+            tile.begin_light_path();
+            tile.splat(all_at(pixel % 70, row), std::array<std::uint16_t, 4>{0, 1, 2, 3},
+                       std::array<float, 4>{light, light, 0.0F, light});
         }
-        const float light = static_cast<float>(exponential_number(2, pixel, first));
-        const std::uint32_t row = pixel / 70;
-        tile.begin_light_path();
-        tile.splat(all_at(pixel % 70, row), std::array<std::uint16_t, 4>{0, 1, 2, 3},
-                   std::array<float, 4>{light, light, 0.0F, light});
-    }
-    for (std::uint32_t i = 0; i < 100 * (end - first); ++i) {
-        tile.begin_light_path();  // which brings nothing
-    }
-    tile.finish();
-    film.store(tile);
-    return film;
+        for (std::uint32_t i = 0; i < 100 * (end - first); ++i) {
+            tile.begin_light_path();  // which brings nothing
+        }
+    });
 }
 
 void expect_near(const Vec3d& a, const Vec3d& b, double relative) {
@@ -85,7 +79,7 @@ void expect_same(const Film& a, const Film& b, double relative) {
 
 TEST(FilmExr, HoldsAFilm) {
     const TestFolder folder;
-    const Film film = full_film(0, 50);
+    const Film film = filled(0, 50);
     write_film_exr(film, kNotes, folder.path() / "a.exr");
     write_film_exr(film, kNotes, folder.path() / "b.exr");
     EXPECT_EQ(read_file(folder.path() / "a.exr"), read_file(folder.path() / "b.exr"));
@@ -95,7 +89,7 @@ TEST(FilmExr, HoldsAFilm) {
     EXPECT_EQ(notes.metadata, kNotes.metadata);
     ASSERT_TRUE(notes.colours);
     EXPECT_FLOAT_EQ(static_cast<float>(notes.colours->white.y), 0.329F);
-    for (int x = 0; x < 70; ++x) {  // the camera's share comes as a difference of floats
+    for (int x = 0; x < 70; ++x) {  // the camera's part comes as a difference of floats
         expect_near(read.estimate(x, 5).variance, film.estimate(x, 5).variance, 10 * kFloat);
     }
 }
@@ -103,7 +97,7 @@ TEST(FilmExr, HoldsAFilm) {
 // Whoever takes it for a picture gets its R, G and B.
 TEST(FilmExr, IsAPictureToo) {
     const TestFolder folder;
-    const Film film = full_film(0, 20);
+    const Film film = filled(0, 20);
     write_film_exr(film, kNotes, folder.path() / "a.exr");
     const formats::Image image = formats::read_image(folder.path() / "a.exr");
     EXPECT_EQ(image.channels, (std::vector<std::string>{"R", "G", "B"}));
@@ -118,12 +112,12 @@ TEST(FilmExr, PartsAddUpToTheWhole) {
         write_film_exr(film, kNotes, folder.path() / "part.exr");
         return read_film_exr(folder.path() / "part.exr").film;
     };
-    Film sum = through_file(full_film(48, 96));
-    sum.merge(through_file(full_film(0, 16)));
-    sum.merge(through_file(full_film(16, 48)));
-    Film whole = full_film(0, 16);
-    whole.merge(full_film(16, 48));
-    whole.merge(full_film(48, 96));
+    Film sum = through_file(filled(48, 96));
+    sum.merge(through_file(filled(0, 16)));
+    sum.merge(through_file(filled(16, 48)));
+    Film whole = filled(0, 16);
+    whole.merge(filled(16, 48));
+    whole.merge(filled(48, 96));
     expect_same(sum, whole, 1e-6);
     for (int x = 0; x < 70; ++x) {
         expect_near(sum.estimate(x, 7).variance, whole.estimate(x, 7).variance, 1e-5);
@@ -138,7 +132,7 @@ TEST(FilmExr, RefusesWhatItDidNotWrite) {
     EXPECT_THROW(read_film_exr(file), InputError);
     formats::write_png(formats::make_image(4, 3, {"R", "G", "B"}), folder.path() / "a.png");
     EXPECT_THROW(read_film_exr(folder.path() / "a.png"), InputError);
-    write_film_exr(full_film(0, 20), kNotes, file);
+    write_film_exr(filled(0, 20), kNotes, file);
     const std::string good = read_file(file);
     for (const double fraction : {0.01, 0.1, 0.5, 0.9}) {
         write_file(file, good.substr(0, static_cast<std::size_t>(fraction * static_cast<double>(good.size()))));

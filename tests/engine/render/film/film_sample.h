@@ -19,6 +19,14 @@ inline FilmLayout plain_film(int width, int height, int layers = 1) {
     return layout;
 }
 
+/// The same with everything that a film may have.
+inline FilmLayout full_film(int width, int height, int layers) {
+    FilmLayout layout = plain_film(width, height, layers);
+    layout.has_splats = true;
+    layout.has_features = true;
+    return layout;
+}
+
 /// A splat's points, the same at each wavelength.
 inline std::array<Vec2d, 4> all_at(double x_px, double y_px) {
     return {{{x_px, y_px}, {x_px, y_px}, {x_px, y_px}, {x_px, y_px}}};
@@ -50,17 +58,23 @@ inline TileRenderer exponential_renderer(const FilmLayout& layout, std::uint64_t
     };
 }
 
-/// That field, after samples [first, end) of every pixel.
-inline Film exponential_film(int side, std::uint64_t seed, std::uint32_t first, std::uint32_t end) {
-    const FilmLayout layout = plain_film(side, side);
+/// A film with these samples, which add(tile) takes.
+template <class Add>
+Film film_of(const FilmLayout& layout, const TileSamples& samples, const Add& add) {
     Film film(layout);
     FilmTile tile(layout);
-    const TileSamples samples{.rect = {0, 0, side, side}, .first = first, .end = end};
     film.load(samples, tile);
-    exponential_renderer(layout, seed)(samples, tile);
+    add(tile);
     tile.finish();
     film.store(tile);
     return film;
+}
+
+/// That field, after samples [first, end) of every pixel.
+inline Film exponential_film(int side, std::uint64_t seed, std::uint32_t first, std::uint32_t end) {
+    const FilmLayout layout = plain_film(side, side);
+    const TileSamples samples{.rect = {0, 0, side, side}, .first = first, .end = end};
+    return film_of(layout, samples, [&](FilmTile& tile) { exponential_renderer(layout, seed)(samples, tile); });
 }
 
 }  // namespace lensproof::render

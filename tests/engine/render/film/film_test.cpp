@@ -27,9 +27,7 @@ std::size_t bytes_of(const Film& film) {
 
 // With 8 spectral bins, camera and light paths and every feature: below 300 bytes a pixel, and no more than said.
 TEST(Film, TakesLessThan300BytesAPixelWithEightBins) {
-    FilmLayout layout = plain_film(10, 7, 8);
-    layout.has_splats = true;
-    layout.has_features = true;
+    const FilmLayout layout = full_film(10, 7, 8);
     EXPECT_LT(film_bytes_per_pixel(layout), 300U);
     EXPECT_EQ(bytes_of(Film(layout)), 70 * film_bytes_per_pixel(layout));
 }
@@ -40,14 +38,11 @@ TEST(Film, WeighsSamplesByTheirStratum) {
     FilmLayout layout = plain_film(2, 1, 2);
     layout.rgb_weights = {{1.0, 0.0, 0.0}, {0.0, 1.0, 0.0}, {0.0, 0.0, 1.0}, {1.0, 1.0, 1.0}};
     layout.band_nm = 100.0;
-    Film film(layout);
-    FilmTile tile(layout);
-    film.load({.rect = {1, 0, 1, 1}, .first = 0, .end = 4}, tile);
-    tile.add(0, 0, 0, 4.0);
-    tile.add(0, 1, 1, 8.0);
-    tile.add(0, 3, 3, 2.0);  // of the third sample there is nothing to tell
-    tile.finish();
-    film.store(tile);
+    const Film film = film_of(layout, {.rect = {1, 0, 1, 1}, .first = 0, .end = 4}, [&](FilmTile& tile) {
+        tile.add(0, 0, 0, 4.0);
+        tile.add(0, 1, 1, 8.0);
+        tile.add(0, 3, 3, 2.0);  // of the third sample there is nothing to tell
+    });
     EXPECT_EQ(film.estimate(1, 0).rgb, (Vec3d{150.0, 250.0, 50.0}));
     std::array<double, 2> layers{};
     film.layers(1, 0, layers);
@@ -62,12 +57,10 @@ TEST(Film, TakesFourWavelengthsAsOneSample) {
     layout.rgb_weights = {{1.0, 0.0, 0.0}, {0.0, 2.0, 0.0}, {0.0, 0.0, 4.0}, {1.0, 1.0, 1.0}};
     const std::array<std::uint16_t, 4> strata = {2, 3, 0, 1};
     const std::array<float, 4> irradiance = {1.0F, 2.0F, 3.0F, 5.0F};
-    Film film(layout);
-    FilmTile tile(layout);
-    film.load({.rect = {0, 0, 1, 1}, .first = 15, .end = 17}, tile);  // a block each
-    tile.add(0, 15, strata, irradiance);
-    tile.finish();
-    film.store(tile);
+    const Film film =
+        film_of(layout, {.rect = {0, 0, 1, 1}, .first = 15, .end = 17}, [&](FilmTile& tile) {  // a block each
+            tile.add(0, 15, strata, irradiance);
+        });
     // R = (3 + 2) / 4, G = (2 · 5 + 2) / 4, B = (4 · 1 + 2) / 4 in one of two samples, nothing in the other.
     EXPECT_EQ(film.estimate(0, 0).rgb, (Vec3d{0.625, 1.5, 0.75}));
     // Of x and 0 the variance of the mean is x² / 4.
@@ -153,13 +146,7 @@ Film with_splats(const std::string& filter, const std::function<void(FilmTile&)>
     FilmLayout layout = plain_film(9, 9, 4);
     layout.has_splats = true;
     layout.filter = PixelFilter::named(filter);
-    Film film(layout);
-    FilmTile tile(layout);
-    film.load({.rect = {3, 3, 2, 2}, .first = 0, .end = 1}, tile);
-    add(tile);
-    tile.finish();
-    film.store(tile);
-    return film;
+    return film_of(layout, {.rect = {3, 3, 2, 2}, .first = 0, .end = 1}, add);
 }
 
 constexpr std::array<std::uint16_t, 4> kStrata = {0, 1, 2, 3};
@@ -218,19 +205,16 @@ TEST(Film, FiltersCameraAndLightPathsAlike) {
             }
         });
         const FilmLayout layout = plain_film(9, 1);
-        Film camera(layout);
-        FilmTile tile(layout);
         const std::uint32_t samples = 4000;
-        camera.load({.rect = {0, 0, 9, 1}, .first = 0, .end = samples}, tile);
-        for (std::uint32_t pixel = 0; pixel < 9; ++pixel) {
-            for (std::uint32_t i = 0; i < samples; ++i) {
-                const PixelFilter::Draw across = filter.draw(even_number(2, pixel, i));
-                const double down = filter.draw(even_number(3, pixel, i)).weight;
-                tile.add(pixel, i, 0, irradiance(pixel + across.offset_px) * across.weight * down);
+        const Film camera = film_of(layout, {.rect = {0, 0, 9, 1}, .first = 0, .end = samples}, [&](FilmTile& tile) {
+            for (std::uint32_t pixel = 0; pixel < 9; ++pixel) {
+                for (std::uint32_t i = 0; i < samples; ++i) {
+                    const PixelFilter::Draw across = filter.draw(even_number(2, pixel, i));
+                    const double down = filter.draw(even_number(3, pixel, i)).weight;
+                    tile.add(pixel, i, 0, irradiance(pixel + across.offset_px) * across.weight * down);
+                }
             }
-        }
-        tile.finish();
-        camera.store(tile);
+        });
         for (int u = 0; u < 9; ++u) {
             const double expected = 1.0 + 0.25 * ((u - 4.0) * (u - 4.0) + variance);
             for (const auto& [technique, estimate] :
@@ -264,22 +248,17 @@ TEST(Film, TakesALightPathsSplatsTogether) {
 TEST(Film, LeavesOutWhatIsNoFiniteNumber) {
     const float nan = std::numeric_limits<float>::quiet_NaN();
     const float inf = std::numeric_limits<float>::infinity();
-    FilmLayout layout = plain_film(1, 1, 4);
-    layout.has_splats = true;
-    layout.has_features = true;
-    Film film(layout);
-    FilmTile tile(layout);
-    film.load({.rect = {0, 0, 1, 1}, .first = 0, .end = 4}, tile);
-    tile.add(0, 0, kStrata, kOnes);
-    tile.add(0, 1, kStrata, std::array<float, 4>{1.0F, nan, 1.0F, 1.0F});
-    tile.add(0, 2, 1, -inf);
-    tile.add_features(0, {.depth_mm = nan, .albedo_rgb = {}, .normal = {}});
-    tile.begin_light_path();
-    tile.splat(all_at(0.0, 0.0), kStrata, std::array<float, 4>{inf, 1.0F, 1.0F, 1.0F});
-    tile.splat(all_at(nan, 0.0), kStrata, kOnes);
-    tile.splat(all_at(0.0, 0.0), kStrata, kOnes);
-    tile.finish();
-    film.store(tile);
+    const FilmLayout layout = full_film(1, 1, 4);
+    const Film film = film_of(layout, {.rect = {0, 0, 1, 1}, .first = 0, .end = 4}, [&](FilmTile& tile) {
+        tile.add(0, 0, kStrata, kOnes);
+        tile.add(0, 1, kStrata, std::array<float, 4>{1.0F, nan, 1.0F, 1.0F});
+        tile.add(0, 2, 1, -inf);
+        tile.add_features(0, {.depth_mm = nan, .albedo_rgb = {}, .normal = {}});
+        tile.begin_light_path();
+        tile.splat(all_at(0.0, 0.0), kStrata, std::array<float, 4>{inf, 1.0F, 1.0F, 1.0F});
+        tile.splat(all_at(nan, 0.0), kStrata, kOnes);
+        tile.splat(all_at(0.0, 0.0), kStrata, kOnes);
+    });
     EXPECT_EQ(film.left_out(), 5U);
     EXPECT_EQ(film.camera_estimate(0, 0).rgb.x, 0.25);
     EXPECT_EQ(film.light_estimate(0, 0).rgb.x, 1.0);
@@ -293,13 +272,10 @@ TEST(Film, LeavesOutWhatIsNoFiniteNumber) {
 TEST(Film, KeepsFeaturesAsMeans) {
     FilmLayout layout = plain_film(1, 1);
     layout.has_features = true;
-    Film film(layout);
-    FilmTile tile(layout);
-    film.load({.rect = {0, 0, 1, 1}, .first = 0, .end = 4}, tile);
-    tile.add_features(0, {.depth_mm = 100.0, .albedo_rgb = {0.5, 0.25, 1.0}, .normal = {0.0, 0.0, -1.0}});
-    tile.add_features(0, {.depth_mm = 300.0, .albedo_rgb = {0.5, 0.25, 0.0}, .normal = {0.0, -1.0, 0.0}});
-    tile.finish();
-    film.store(tile);
+    const Film film = film_of(layout, {.rect = {0, 0, 1, 1}, .first = 0, .end = 4}, [&](FilmTile& tile) {
+        tile.add_features(0, {.depth_mm = 100.0, .albedo_rgb = {0.5, 0.25, 1.0}, .normal = {0.0, 0.0, -1.0}});
+        tile.add_features(0, {.depth_mm = 300.0, .albedo_rgb = {0.5, 0.25, 0.0}, .normal = {0.0, -1.0, 0.0}});
+    });
     EXPECT_EQ(film.coverage(0, 0), 0.5);
     EXPECT_EQ(film.features(0, 0).depth_mm, 200.0);
     EXPECT_EQ(film.features(0, 0).albedo_rgb, (Vec3d{0.25, 0.125, 0.25}));

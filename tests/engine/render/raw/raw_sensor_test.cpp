@@ -13,6 +13,7 @@
 
 #include "engine/base/input_error.h"
 #include "engine/spectral/illuminant.h"
+#include "tests/complaint.h"
 
 namespace lensproof::render::raw_sensor_test {
 namespace {
@@ -33,12 +34,7 @@ RawSensor read(const std::string& text, const RawCamera& behind = camera()) {
 }
 
 std::string complaint(const std::string& text, const RawCamera& behind = camera()) {
-    try {
-        read(text, behind);
-    } catch (const InputError& error) {
-        return error.what();
-    }
-    return "none";
+    return complaint_about([&] { read(text, behind); });
 }
 
 /// A film whose channels are what `value` says.
@@ -123,7 +119,7 @@ TEST(RawSensor, NamesWhatItCannotUse) {
     RawCamera thin = camera();
     thin.width = 1;
     expect(complaint(kTable, thin), "1", "1 × 16 pixels");
-    EXPECT_EQ(complaint(none, camera("luminance")), "none");
+    EXPECT_EQ(complaint(none, camera("luminance")), "");
 }
 
 // The colours stand where the pattern's letters say: light of one colour alone fills those pixels and no others. 10⁹

@@ -8,9 +8,9 @@
 #include <cmath>
 #include <numbers>
 
-#include "engine/base/input_error.h"
 #include "engine/scene/chart/aruco.h"
 #include "engine/scene/chart/chart_file.h"
+#include "tests/complaint.h"
 
 namespace lensproof::scene::chart_test {
 namespace {
@@ -34,8 +34,9 @@ const char* const kCharts[] = {
     "kind = 'straight-lines'\nlines = [7, 5]\npitch_mm = 30\nline_mm = 2",
 };
 
-/// The share of black in the pattern's own rectangle, by `side`² points in the cells of a grid that lies askew to it.
-double black_share(const Chart& chart, int side = 1201) {
+/// The fraction of black in the pattern's own rectangle, by `side`² points in the cells of a grid that lies askew to
+/// it.
+double black_fraction(const Chart& chart, int side = 1201) {
     const Vec2d size = pattern_size_mm(chart);
     int black = 0;
     for (int i = 0; i < side; ++i) {
@@ -63,7 +64,7 @@ TEST(SceneChart, PatternsBlackenTheirShapesAreas) {
     };
     for (std::size_t i = 0; i < std::size(kCharts); ++i) {
         if (expected[i] >= 0.0) {
-            EXPECT_NEAR(black_share(chart_of(kCharts[i])), expected[i], 1.5e-3) << kCharts[i];
+            EXPECT_NEAR(black_fraction(chart_of(kCharts[i])), expected[i], 1.5e-3) << kCharts[i];
         }
     }
 }
@@ -77,7 +78,7 @@ TEST(SceneChart, ACharucoBoardShowsItsMarkers) {
         cells += 20 + 16 - std::popcount(markers[static_cast<std::size_t>(i)]);
     }
     const double cell_mm = 22.0 / 6.0;
-    EXPECT_NEAR(black_share(chart), (18 * 900 + cells * cell_mm * cell_mm) / (35 * 900), 1e-3);
+    EXPECT_NEAR(black_fraction(chart), (18 * 900 + cells * cell_mm * cell_mm) / (35 * 900), 1e-3);
     // Marker 0 of DICT_4X4_50 is 1011 0101 0011 0010; it stands in the second square of the first row.
     const char* const rows[] = {"000000", "010110", "001010", "000110", "000100", "000000"};
     const double left = -3.5 * 30 + 30 + 4;
@@ -211,14 +212,7 @@ TEST(SceneChart, KindsSurviveTheirFiles) {
 }
 
 TEST(SceneChart, WhatDoesNotFitIsRefusedByKey) {
-    const auto refusal = [](const std::string& text) -> std::string {
-        try {
-            chart_of(text);
-        } catch (const InputError& error) {
-            return error.what();
-        }
-        return "nothing was refused";
-    };
+    const auto refusal = [](const std::string& text) { return complaint_about([&] { chart_of(text); }); };
     const auto expect = [&](const std::string& text, const std::string& said) {
         EXPECT_NE(refusal(text).find(said), std::string::npos) << refusal(text);
     };

@@ -5,11 +5,10 @@
 
 #include <cstring>
 #include <filesystem>
-#include <functional>
 
 #include "engine/base/file.h"
-#include "engine/base/input_error.h"
 #include "engine/scene/geometry/surface_sampler.h"
+#include "tests/complaint.h"
 #include "tests/engine/scene/scene_shapes.h"
 
 namespace lensproof::scene::mesh_file_test {
@@ -157,15 +156,6 @@ Measured measured(const TriangleMesh& mesh) {
     return result;
 }
 
-std::string message_of(const std::function<void()>& action) {
-    try {
-        action();
-    } catch (const InputError& error) {
-        return error.what();
-    }
-    return "nothing was refused";
-}
-
 // One box in four forms: 24 mm³, 52 mm², with the scale of each form's unit.
 TEST_F(MeshFileTest, EveryFormHoldsTheSameBox) {
     const auto expect_box = [](const MeshFile& read, double unit_mm, const Vec3d& corner) {
@@ -200,7 +190,7 @@ TEST_F(MeshFileTest, PartsAreFoundByName) {
         EXPECT_EQ(top.mesh.normals[i], (Vec3<float>{0, 0, 1}));
     }
     EXPECT_EQ(read_mesh(write("box.glb", box_glb()), {.part = "inner"}).mesh.triangles.size(), 12U);
-    const std::string refusal = message_of([&] { read_mesh(obj, {.part = "lid"}); });
+    const std::string refusal = complaint_about([&] { read_mesh(obj, {.part = "lid"}); });
     EXPECT_NE(refusal.find("no triangles in a part 'lid'"), std::string::npos) << refusal;
     EXPECT_NE(refusal.find("sides, top"), std::string::npos) << refusal;
 }
@@ -244,7 +234,7 @@ TEST_F(MeshFileTest, WhatIsNotUsedIsNamed) {
 TEST_F(MeshFileTest, UnusableFilesAreRefusedByName) {
     const auto refusal = [&](const std::string& name, const std::string& content) {
         const fs::path file = write(name, content);
-        return message_of([&] { test::scene_of(read_mesh(file).mesh); });
+        return complaint_about([&] { test::scene_of(read_mesh(file).mesh); });
     };
     const auto expect_named = [&](const std::string& name, const std::string& content, const std::string& reason = "") {
         const std::string said = refusal(name, content);
@@ -282,8 +272,8 @@ TEST_F(MeshFileTest, UnusableFilesAreRefusedByName) {
     expect_named("indices.gltf", with(gltf, R"("count": 36)", R"("count": 360000000)"));
     expect_named("offset.gltf", with(gltf, R"("byteOffset": 96)", R"("byteOffset": 160)"));
     expect_named("loop.gltf", with(gltf, R"("children": [1])", R"("children": [0])"));
-    EXPECT_NE(message_of([] { read_mesh("no/such.obj"); }).find("no/such.obj: no such file"), std::string::npos);
-    EXPECT_NE(message_of([] { read_mesh(testing::TempDir()); }).find("is a folder"), std::string::npos);
+    EXPECT_NE(complaint_about([] { read_mesh("no/such.obj"); }).find("no/such.obj: no such file"), std::string::npos);
+    EXPECT_NE(complaint_about([] { read_mesh(testing::TempDir()); }).find("is a folder"), std::string::npos);
 }
 
 // Cut anywhere, a file is refused by name or is a mesh that can be traced; nothing else happens. Binary forms, and
