@@ -73,12 +73,12 @@ class RatioReporter : public benchmark::ConsoleReporter {
     void print_buffered_speed_ups() const {
         fmt::print("\nCamera paths: times as fast as one by one\n");
         for (const auto& [name, seconds] : seconds_) {
-            const std::size_t way = name.find("/buffers/");
-            if (!name.starts_with("camera_paths/") || way == std::string::npos) {
+            const std::size_t at = name.find("/buffers/");
+            if (!name.starts_with("camera_paths/") || at == std::string::npos) {
                 continue;
             }
             const auto alone =
-                seconds_.find(name.substr(0, way) + "/one_by_one" + (name.ends_with("/chart") ? "/chart" : ""));
+                seconds_.find(name.substr(0, at) + "/one_by_one" + (name.ends_with("/chart") ? "/chart" : ""));
             if (alone != seconds_.end()) {
                 fmt::print("  {:<60} {:6.2f}\n", name.substr(name.find('/') + 1), alone->second / seconds);
             }

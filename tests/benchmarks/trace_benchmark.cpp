@@ -20,7 +20,7 @@ constexpr std::size_t kRays = 512;  // few enough to stay in the second-level ca
 
 /// Rays from the sensor that pass the whole lens, reverse, or the same light forward. Every one passes, so that each
 /// tracing takes all surfaces.
-std::vector<Ray<double>> passing_rays(const optics::Lens& lens, optics::Direction way) {
+std::vector<Ray<double>> passing_rays(const optics::Lens& lens, optics::Direction direction) {
     const optics::TraceLens<double> traced_lens = optics::at_wavelength<double>(lens, kWavelengthNm);
     const optics::ChiefRays chief_rays(lens, kWavelengthNm);
     const double height = std::abs(chief_rays.at_field(0.7 * chief_rays.largest_field()).value().image_height);
@@ -36,7 +36,7 @@ std::vector<Ray<double>> passing_rays(const optics::Lens& lens, optics::Directio
         const Ray<double> inwards{out.ray.origin + 10.0 * out.ray.direction, -1.0 * out.ray.direction};
         if (out.status == optics::RayStatus::ok &&
             optics::trace(traced_lens, inwards).status == optics::RayStatus::ok) {
-            rays.push_back(way == optics::Direction::reverse ? outwards : inwards);
+            rays.push_back(direction == optics::Direction::reverse ? outwards : inwards);
         }
     }
     return rays;
@@ -86,14 +86,14 @@ std::vector<Ray<T>> in_precision(const std::vector<Ray<double>>& rays) {
     return result;
 }
 
-template <optics::Direction way, optics::Rims rims, class T>
+template <optics::Direction direction, optics::Rims rims, class T>
 void time_trace(benchmark::State& state, const std::string& name) {
     const optics::Lens lens = formats::load_lens(name);
     const optics::TraceLens<T> traced_lens = optics::at_wavelength<T>(lens, kWavelengthNm);
-    const std::vector<Ray<T>> rays = in_precision<T>(passing_rays(lens, way));
+    const std::vector<Ray<T>> rays = in_precision<T>(passing_rays(lens, direction));
     while (state.KeepRunning()) {
         for (const Ray<T>& ray : rays) {
-            benchmark::DoNotOptimize(optics::trace<way, rims>(traced_lens, ray));
+            benchmark::DoNotOptimize(optics::trace<direction, rims>(traced_lens, ray));
         }
     }
     count(state, lens.surfaces.size());
@@ -108,12 +108,12 @@ void time_plain_loop(benchmark::State& state, const std::string& name) {
     while (state.KeepRunning()) {
         for (const Ray<double>& ray : rays) {
             Vec3d origin = ray.origin;
-            Vec3d way = ray.direction;
+            Vec3d along = ray.direction;
             double transmittance = 1.0;
             for (auto surface = traced_lens.surfaces.rbegin(); surface != traced_lens.surfaces.rend(); ++surface) {
                 const double c = surface->curvature;
                 const Vec3d from_vertex{origin.x, origin.y, origin.z - surface->vertex_z};
-                const optics::Intersection<double> met = optics::intersect(from_vertex, way, c, -1.0);
+                const optics::Intersection<double> met = optics::intersect(from_vertex, along, c, -1.0);
                 if (!met.hit ||
                     met.point.x * met.point.x + met.point.y * met.point.y > surface->semi_diameter_squared) {
                     break;
@@ -121,31 +121,31 @@ void time_plain_loop(benchmark::State& state, const std::string& name) {
                 origin = {met.point.x, met.point.y, met.point.z + surface->vertex_z};
                 const Vec3d normal{c * met.point.x, c * met.point.y, c * met.point.z - 1.0};
                 const optics::Refraction<double> bent =
-                    optics::refract(way, normal, met.cos_incidence, met.sin2_incidence, surface->reverse_ratio);
+                    optics::refract(along, normal, met.cos_incidence, met.sin2_incidence, surface->reverse_ratio);
                 if (!bent.transmitted) {
                     break;
                 }
-                way = bent.direction;
+                along = bent.direction;
                 if (with_fresnel) {
                     transmittance *= optics::fresnel_transmittance(surface->index_after, surface->index_before,
                                                                    met.cos_incidence, bent.cos_refraction);
                 }
             }
             benchmark::DoNotOptimize(origin);
-            benchmark::DoNotOptimize(way);
+            benchmark::DoNotOptimize(along);
             benchmark::DoNotOptimize(transmittance);
         }
     }
     count(state, lens.surfaces.size());
 }
 
-template <optics::Direction way, optics::Rims rims, class T>
+template <optics::Direction direction, optics::Rims rims, class T>
 void register_one(const std::string& lens) {
-    const std::string name = "trace/" + lens + (way == optics::Direction::forward ? "/forward" : "/reverse") +
+    const std::string name = "trace/" + lens + (direction == optics::Direction::forward ? "/forward" : "/reverse") +
                              (rims == optics::Rims::clip ? "/clip" : "/follow") +
                              (std::is_same_v<T, double> ? "/double" : "/float");
     benchmark::RegisterBenchmark(name.c_str(),
-                                 [lens](benchmark::State& state) { time_trace<way, rims, T>(state, lens); });
+                                 [lens](benchmark::State& state) { time_trace<direction, rims, T>(state, lens); });
 }
 
 template <class T>

@@ -80,7 +80,7 @@ double passing(const optics::TraceLens<double>& lens, const Ray<double>& ray) {
     return traced.status == optics::RayStatus::ok ? traced.transmittance : 0.0;
 }
 
-Vec3d way_at(double field_angle) {
+Vec3d direction_at(double field_angle) {
     return {0.0, std::sin(field_angle), std::cos(field_angle)};
 }
 
@@ -126,7 +126,7 @@ TEST(EntranceMap, SendsTheBeamsFlux) {
             angles.push_back(radians(100.0));
         }
         for (const double angle : angles) {
-            const pupil::EntranceBeam beam = map.beam(way_at(angle));
+            const pupil::EntranceBeam beam = map.beam(direction_at(angle));
             const Measured flux = estimate(1 << 13, [&](const auto& xi) {
                 return passing(band.seen(), map.sample(beam, Band::kPosition, xi[0], xi[1]));
             });
@@ -146,10 +146,10 @@ TEST(EntranceMap, SendsWhatTheWholeElementSends) {
         const Band band = band_of(setting);
         const pupil::EntranceMap map(band.at, true);
         const pupil::EntranceMap whole = pupil::EntranceMap::whole_element(band.seen());
-        for (const double share : {0.21, 0.83}) {
-            const Vec3d way = way_at(share * map.largest_angle());
+        for (const double fraction : {0.21, 0.83}) {
+            const Vec3d direction = direction_at(fraction * map.largest_angle());
             const auto flux_of = [&](const pupil::EntranceMap& of, int samples_each) {
-                const pupil::EntranceBeam beam = of.beam(way);
+                const pupil::EntranceBeam beam = of.beam(direction);
                 return estimate(samples_each, [&](const auto& xi) {
                     return passing(band.seen(), of.sample(beam, Band::kPosition, xi[0], xi[1]));
                 });
@@ -157,8 +157,9 @@ TEST(EntranceMap, SendsWhatTheWholeElementSends) {
             const Measured flux = flux_of(map, 1 << 13);
             const Measured baseline = flux_of(whole, 1 << 15);
             EXPECT_NEAR(flux.value, baseline.value, 5.0 * std::hypot(flux.error, baseline.error)) << setting.lens;
-            if (map.region_area(map.beam(way), Band::kPosition) > 0.05 * kPi * std::pow(whole.beam(way).radius, 2)) {
-                EXPECT_LT(baseline.error, 1e-3 * baseline.value) << setting.lens << " at " << share;
+            if (map.region_area(map.beam(direction), Band::kPosition) >
+                0.05 * kPi * std::pow(whole.beam(direction).radius, 2)) {
+                EXPECT_LT(baseline.error, 1e-3 * baseline.value) << setting.lens << " at " << fraction;
             }
         }
     }
@@ -223,7 +224,8 @@ TEST(EntranceMap, EtendueIsTheSensors) {
         const double end = entrance.largest_angle();
         const Measured entering = estimate(1 << 14, [&](const auto& xi) {
             const double solid_angle = 2.0 * kPi * (1.0 - std::cos(end));
-            const pupil::EntranceBeam beam = entrance.beam(way_at(std::acos(1.0 - xi[2] * (1.0 - std::cos(end)))));
+            const pupil::EntranceBeam beam =
+                entrance.beam(direction_at(std::acos(1.0 - xi[2] * (1.0 - std::cos(end)))));
             const pupil::EntranceSample sample = entrance.sample(beam, Band::kPosition, xi[0], xi[1]);
             const bool passes = sample.pdf > 0.0 && optics::trace(lens, sample.ray).status == optics::RayStatus::ok;
             return passes ? solid_angle / sample.pdf : 0.0;
@@ -233,9 +235,9 @@ TEST(EntranceMap, EtendueIsTheSensors) {
         const Measured arriving = estimate(1 << 14, [&](const auto& xi) {
             const Vec3d from{0.0, sensor_radius * std::sqrt(xi[2]), lens.image_z};
             const pupil::PupilSample drawn = pupil.sample({from.x, from.y}, Band::kPosition, xi[0], xi[1]);
-            const Vec3d way = Vec3d{drawn.point.x, drawn.point.y, pupil.plane_z()} - from;
-            const double distance2 = dot(way, way);
-            const Ray<double> ray{from, (1.0 / std::sqrt(distance2)) * way};
+            const Vec3d to_pupil = Vec3d{drawn.point.x, drawn.point.y, pupil.plane_z()} - from;
+            const double distance2 = dot(to_pupil, to_pupil);
+            const Ray<double> ray{from, (1.0 / std::sqrt(distance2)) * to_pupil};
             const bool passes =
                 drawn.pdf > 0.0 && optics::trace<optics::Direction::reverse>(lens, ray).status == optics::RayStatus::ok;
             const double cosine2 = ray.direction.z * ray.direction.z;
@@ -288,8 +290,9 @@ TEST(EntranceMap, KnowsLensesThatAreNotRound) {
     const pupil::EntranceMap whole = pupil::EntranceMap::whole_element(band.seen());
     for (const double azimuth : {0.0, 1.0, 2.5, 4.0, 5.9}) {
         const double angle = 0.3 * map.largest_angle();
-        const Vec3d way{std::sin(angle) * std::sin(azimuth), std::sin(angle) * std::cos(azimuth), std::cos(angle)};
-        const pupil::EntranceBeam beam = map.beam(way);
+        const Vec3d direction{std::sin(angle) * std::sin(azimuth), std::sin(angle) * std::cos(azimuth),
+                              std::cos(angle)};
+        const pupil::EntranceBeam beam = map.beam(direction);
         const auto flux_of = [&](int samples_each, const pupil::EntranceMap& from) {
             return estimate(samples_each, [&](const auto& xi) {
                 return passing(band.seen(), from.sample(beam, Band::kPosition, xi[0], xi[1]));
@@ -310,7 +313,7 @@ TEST(EntranceMap, WrongRegionsLoseNoLight) {
                                     {.defensive_fraction = 0.5});
     const optics::ChiefRays chief_rays = wide.chief_rays();
     for (const double angle : {0.0, 0.2, 0.4}) {
-        const pupil::EntranceBeam beam = narrow.beam(way_at(angle));
+        const pupil::EntranceBeam beam = narrow.beam(direction_at(angle));
         const Measured flux = estimate(1 << 13, [&](const auto& xi) {
             return passing(wide.seen(), narrow.sample(beam, Band::kPosition, xi[0], xi[1]));
         });

@@ -75,8 +75,8 @@ Pencil camera_pencil(const Setting& setting, Random& random) {
     return {towards, rear.semi_diameter, optics::Direction::reverse};
 }
 
-/// From a direction of the field: around the way of a camera ray that passes, turned round, from as far in front of the
-/// first surface as the lens is long.
+/// From a direction of the field: around the direction of a camera ray that passes, turned round, from as far in front
+/// of the first surface as the lens is long.
 Pencil scene_pencil(const Setting& setting, Random& random) {
     optics::TracedRay<double> camera_ray;
     do {
@@ -84,10 +84,10 @@ Pencil scene_pencil(const Setting& setting, Random& random) {
         camera_ray =
             optics::trace<optics::Direction::reverse>(setting.in_double, camera.ray(in_disc(random, camera.radius_mm)));
     } while (camera_ray.status != optics::RayStatus::ok);
-    const Vec3d way = -1.0 * camera_ray.ray.direction;
-    const Vec3d start = camera_ray.ray.origin - setting.lens.image_z * way;
-    const auto beside = [start, way, across = optics::across_axes(way)](Vec2d p) {
-        return Ray<double>{start + p.x * across[0] + p.y * across[1], way};
+    const Vec3d direction = -1.0 * camera_ray.ray.direction;
+    const Vec3d start = camera_ray.ray.origin - setting.lens.image_z * direction;
+    const auto beside = [start, direction, across = optics::across_axes(direction)](Vec2d p) {
+        return Ray<double>{start + p.x * across[0] + p.y * across[1], direction};
     };
     return {beside, setting.pupil_diameter_mm, optics::Direction::forward};
 }
@@ -151,7 +151,7 @@ double from_rim_um(const Setting& setting, const Pencil& pencil, Vec2d p, int su
     return 1e3 * mm;
 }
 
-/// The fate of the two that comes first on the way: the other ray went on from there.
+/// The fate of the two that comes first along the light: the other ray went on from there.
 optics::RayFate first_end(const optics::RayInFloat& ray, optics::Direction direction) {
     // A surface is asked whether it is met, then for its rim, then for total reflection.
     const auto when = [direction](const optics::RayFate& fate) {
@@ -184,7 +184,7 @@ bool is_at_a_change(const Setting& setting, const Pencil& pencil, Vec2d p, Rando
     return false;
 }
 
-/// What one way of the light through a lens showed.
+/// What one direction of the light through a lens showed.
 struct Row {
     optics::FloatError error;      // of the rays that pass in both
     int over_bound = 0;            // of those
@@ -234,8 +234,8 @@ class Measurement {
     /// a surface beyond, they graze it.
     void look_along_edge(Vec2d inside, Vec2d outside) {
         const Vec2d start = inside;
-        const auto between = [](Vec2d a, Vec2d b, double share) {
-            return Vec2d{a.x + share * (b.x - a.x), a.y + share * (b.y - a.y)};
+        const auto between = [](Vec2d a, Vec2d b, double fraction) {
+            return Vec2d{a.x + fraction * (b.x - a.x), a.y + fraction * (b.y - a.y)};
         };
         constexpr int kHalvings = 50;
         for (int i = 0; i < kHalvings; ++i) {

@@ -68,9 +68,10 @@ double height_mm(int column) {
     return std::abs(kSensor.position(column, 0.0).x);
 }
 
-/// Eight standard errors of eight seeds, which one of 10 000 numbers exceeds (Student's t), and a share of the number.
-void expect_measured(const Measured& found, double expected, double share) {
-    EXPECT_NEAR(found.value, expected, 8.0 * found.error + share * expected);
+/// Eight standard errors of eight seeds, which one of 10 000 numbers exceeds (Student's t), and a fraction of the
+/// number.
+void expect_measured(const Measured& found, double expected, double fraction) {
+    EXPECT_NEAR(found.value, expected, 8.0 * found.error + fraction * expected);
     EXPECT_LT(found.error, 0.004 * expected);
 }
 
@@ -168,8 +169,8 @@ TEST(LensExposure, BladesLeaveTheirPolygonsShare) {
     const auto round = exposures(setup_of(camera, ""), {210}, 4096)[0][2];
     const auto bladed = exposures(setup_of(camera + "blades = 7\nblade_rotation_deg = 10", ""), {210}, 4096)[0][2];
     const auto curved = exposures(setup_of(camera + "blades = 7\nblade_curvature = 1.0", ""), {210}, 4096)[0][2];
-    const double share = 7.0 / (2.0 * kPi) * std::sin(2.0 * kPi / 7.0);
-    expect_measured(bladed, share * round.value, 2e-3);
+    const double fraction = 7.0 / (2.0 * kPi) * std::sin(2.0 * kPi / 7.0);
+    expect_measured(bladed, fraction * round.value, 2e-3);
     expect_measured(curved, round.value, 2e-3);
 }
 

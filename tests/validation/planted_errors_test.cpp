@@ -395,9 +395,9 @@ TEST(PlantedErrors, AreFoundAndTheUntouchedLibraryIsClean) {
         false_errors, lenses);
     double sum_over_kinds = 0.0;
     for (const auto& [kind, tally] : tallies) {
-        const double share = static_cast<double>(tally.found_of_measurable) / tally.measurable;
-        EXPECT_GE(share, 0.90) << kind;
-        sum_over_kinds += share;
+        const double fraction = static_cast<double>(tally.found_of_measurable) / tally.measurable;
+        EXPECT_GE(fraction, 0.90) << kind;
+        sum_over_kinds += fraction;
     }
     EXPECT_GE(sum_over_kinds / static_cast<double>(tallies.size()), 0.95);
     EXPECT_GE(total.found_of_measurable, 0.95 * total.measurable);

@@ -241,8 +241,9 @@ void expect_moments(const std::vector<OfWavelengths>& of_seeds, std::size_t wave
 // A double Gauss at f/2.8 is focused on 2 m; dots before and behind that blur to discs of a third of a millimetre,
 // lemons at the picture's edge, where rims cut them. Their variances along both axes are those of the spots that are
 // traced from the dots' own distance. Spots count all rays alike; the renderer lets those through the lens's edge
-// lose up to a percent more, which makes variances smaller by a share of that: hence half a percent. With eight seeds
-// one of 10 000 numbers is off by eight of its standard errors (Student's t). Twelve times as many samples agree to 0.3
+// lose up to a percent more, which makes variances smaller by a fraction of that: hence half a percent. With eight
+// seeds one of 10 000 numbers is off by eight of its standard errors (Student's t). Twelve times as many samples agree
+// to 0.3
 // %.
 TEST(PointImage, DepthOfFieldIsThatOfTracedSpots) {
     DotRow row{.lens = "double-gauss-lowenthal",

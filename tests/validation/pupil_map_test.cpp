@@ -95,15 +95,16 @@ Mapped mapped(const Setting& setting) {
     return {std::move(band), circle, std::move(map), std::move(whole)};
 }
 
-/// The path from the sensor through a point of the pupil, and its share of the film irradiance in a world of radiance
-/// 1, before the pdf: τ cos⁴θ / Z² = τ cos²θ / way² (Kolb et al. 1995, eq. 4). 0 where it does not leave the front.
+/// The path from the sensor through a point of the pupil, and its part of the film irradiance in a world of radiance
+/// 1, before the pdf: τ cos⁴θ / Z² = τ cos²θ / |to_pupil|² (Kolb et al. 1995, eq. 4). 0 where it does not leave the
+/// front.
 double film_irradiance(const optics::TraceLens<double>& lens, Vec2d at, Vec2d pupil_point, double plane_z) {
     const Vec3d from{at.x, at.y, lens.image_z};
-    const Vec3d way = Vec3d{pupil_point.x, pupil_point.y, plane_z} - from;
-    const Ray<double> ray{from, normalized(way)};
+    const Vec3d to_pupil = Vec3d{pupil_point.x, pupil_point.y, plane_z} - from;
+    const Ray<double> ray{from, normalized(to_pupil)};
     const optics::TracedRay<double> traced = optics::trace<optics::Direction::reverse>(lens, ray);
     return traced.status == optics::RayStatus::ok
-               ? traced.transmittance * ray.direction.z * ray.direction.z / dot(way, way)
+               ? traced.transmittance * ray.direction.z * ray.direction.z / dot(to_pupil, to_pupil)
                : 0.0;
 }
 
@@ -166,10 +167,11 @@ class RingIrradiance {
             const pupil::PupilSample sample = map.sample(at, position(wavelength_), u[i], v[i]);
             if (sample.pdf > 0.0) {
                 const Vec3d from{at.x, at.y, lens_->band[wavelength_].image_z};
-                const Vec3d way = Vec3d{sample.point.x, sample.point.y, map.plane_z()} - from;
-                const double squared = dot(way, way);
-                weights_[static_cast<std::size_t>(rays_.size)] = way.z * way.z / (squared * squared * sample.pdf);
-                rays_.set(rays_.size++, {from, normalized(way)});
+                const Vec3d to_pupil = Vec3d{sample.point.x, sample.point.y, map.plane_z()} - from;
+                const double squared = dot(to_pupil, to_pupil);
+                weights_[static_cast<std::size_t>(rays_.size)] =
+                    to_pupil.z * to_pupil.z / (squared * squared * sample.pdf);
+                rays_.set(rays_.size++, {from, normalized(to_pupil)});
             }
         }
     }
@@ -179,7 +181,7 @@ class RingIrradiance {
     int ring_;
     int wavelength_;
     std::array<std::array<double, kBatch>, render::PixelSampler::kDimensions> numbers_{};
-    std::array<double, kBatch> weights_{};  // cos²θ / way² over the pdf
+    std::array<double, kBatch> weights_{};  // cos²θ / |to_pupil|² over the pdf
     optics::RayBatch<double> rays_{kBatch};
 };
 
@@ -216,9 +218,9 @@ TEST(PupilMap, LosesNoLight) {
 // --- Passage ---
 
 struct Passage {
-    double share = 0.0;  // of the paths started, the mean over the image circle's area
-    double least = 1.0;  // of the rings
-    double whole = 0.0;  // of the whole element's paths
+    double passage = 0.0;  // of the paths started, the mean over the image circle's area
+    double least = 1.0;    // of the rings
+    double whole = 0.0;    // of the whole element's paths
 };
 
 /// Paths that leave the front over paths started, ring by ring, every wavelength alike.
@@ -244,9 +246,9 @@ Passage passage(const Mapped& lens) {
             passed_whole += passes(lens.whole.sample(at, position(wavelength), xi[2], xi[3]).point);
         }
         const double area = (2.0 * ring + 1.0) / (kRings * kRings);
-        const double share = static_cast<double>(passed) / std::max(1, started);
-        result.share += area * share;
-        result.least = std::min(result.least, share);
+        const double passing = static_cast<double>(passed) / std::max(1, started);
+        result.passage += area * passing;
+        result.least = std::min(result.least, passing);
         result.whole += area * passed_whole / kPaths;
     }
     return result;
@@ -274,7 +276,7 @@ double missed_share(const Mapped& lens) {
         Vec2d upper{-kInfinity, -kInfinity};
         for (std::uint32_t k = 0; k < 256; ++k) {
             const auto eta = points.point(k);
-            const double u = 0.004 + 0.995 * eta[0];  // beyond the defensive share
+            const double u = 0.004 + 0.995 * eta[0];  // beyond the defensive fraction
             const Vec2d p = lens.map.sample(at, position(wavelength), u, eta[1]).point;
             lower = {std::min(lower.x, p.x), std::min(lower.y, p.y)};
             upper = {std::max(upper.x, p.x), std::max(upper.y, p.y)};
@@ -300,8 +302,8 @@ struct Bound {
 
 // Nearly every path that the map starts leaves the front. Round stops: 97 % over the image circle and 90 % in each
 // ring. Seven blades of curvature 0 leave 7 sin(2π/7) / 2π = 87.1 % of the circle that is drawn from, until rims cut
-// it: 84 %. Tilted lenses have coarser maps (pupil_nodes.cpp): 95 % and 88 %. The share of the light that lies outside
-// the regions is 0 for most and was 7e-6 at worst; 1e-4 would double the noise that the regions save.
+// it: 84 %. Tilted lenses have coarser maps (pupil_nodes.cpp): 95 % and 88 %. The fraction of the light that lies
+// outside the regions is 0 for most and was 7e-6 at worst; 1e-4 would double the noise that the regions save.
 TEST(PupilMap, NearlyAllPathsPass) {
     const std::vector<Bound> bounds = {
         {{"muller-fisheye", 4.0}, 0.97, 0.9},
@@ -327,9 +329,9 @@ TEST(PupilMap, NearlyAllPathsPass) {
         const Mapped lens = mapped(bound.setting);
         const Passage found = passage(lens);
         const double missed = missed_share(lens);
-        fmt::print("{:44} {:8.4f} {:8.4f} {:8.4f} {:8.1e} {:6}\n", name_of(bound.setting), found.share, found.least,
+        fmt::print("{:44} {:8.4f} {:8.4f} {:8.4f} {:8.1e} {:6}\n", name_of(bound.setting), found.passage, found.least,
                    found.whole, missed, lens.map.size());
-        EXPECT_GT(found.share, bound.passage) << name_of(bound.setting);
+        EXPECT_GT(found.passage, bound.passage) << name_of(bound.setting);
         EXPECT_GT(found.least, bound.ring) << name_of(bound.setting);
         EXPECT_LT(missed, 1e-4) << name_of(bound.setting);
     }

@@ -90,7 +90,7 @@ TEST(RawSensor, HasThePhotonTransferCurveOfItsGainAndReadNoise) {
             wxx += weight * x * x;
             wxy += weight * x * found.variance;
         }
-        // A weighted line's own standard errors; those of the means are 1/gain of their share and less, left out.
+        // A weighted line's own standard errors; those of the means are 1/gain of their part and less, left out.
         const double determinant = w * wxx - wx * wx;
         const double slope = (w * wxy - wx * wy) / determinant;
         const double intercept = (wxx * wy - wx * wxy) / determinant;
@@ -162,8 +162,8 @@ TEST(RawSensor, IsLinearToSaturationAndThenWhite) {
     }
     const std::vector<std::uint16_t> at_white = flat_field(sensor, 1.0, 22);
     // Those that round to white: half, and what lies within half of a step of 1.26 electrons, 0.0018 σ-wide shares.
-    const double share = static_cast<double>(std::ranges::count(at_white, 16383)) / kCount;
-    EXPECT_NEAR(share, 0.5, kSigmas * 0.5 / kSide + 0.004);
+    const double fraction = static_cast<double>(std::ranges::count(at_white, 16383)) / kCount;
+    EXPECT_NEAR(fraction, 0.5, kSigmas * 0.5 / kSide + 0.004);
     const std::vector<std::uint16_t> beyond = flat_field(sensor, 2.0, 23);
     EXPECT_EQ(std::ranges::count(beyond, 16383), static_cast<std::ptrdiff_t>(beyond.size()));
 }

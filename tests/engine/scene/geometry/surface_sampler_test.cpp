@@ -73,8 +73,8 @@ TEST(SurfaceSampler, ClosedSurfacesEncloseTheirVolume) {
             integral(sampler, 9000, 16, [](const SurfaceSample& s) { return dot(s.point, s.geometric_normal) / 3.0; });
         const double unbalanced =
             integral(sampler, 9000, 16, [](const SurfaceSample& s) { return s.geometric_normal.x; });
-        // The box's planes are flat, so that only the share of points on each counts: 9000 strips over twelve triangles
-        // up to 6 mm from the origin.
+        // The box's planes are flat, so that only the fraction of points on each counts: 9000 strips over twelve
+        // triangles up to 6 mm from the origin.
         EXPECT_NEAR(volume, volumes[object], 1e-3 * 6.0 * sampler.area_mm2() / 3.0);
         EXPECT_NEAR(unbalanced, 0.0, 1e-3 * sampler.area_mm2());
     }
