@@ -6,7 +6,6 @@
 #include "tests/calibration/synthetic.h"
 
 namespace lensproof::calibration::chromatic_shift_test {
-namespace {
 
 constexpr std::array<double, 3> kRadial = {1.4, -0.8, 0.3};
 constexpr std::array<double, 2> kTangential = {0.2, -0.1};
@@ -97,5 +96,4 @@ TEST(CalibrationChromaticShift, TooFewOrUselessPairsAreRefused) {
         InputError);
 }
 
-}  // namespace
 }  // namespace lensproof::calibration::chromatic_shift_test

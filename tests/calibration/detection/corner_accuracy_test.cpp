@@ -12,7 +12,6 @@
 #include "tests/calibration/shot.h"
 
 namespace lensproof::calibration::corner_accuracy_test {
-namespace {
 
 using namespace synthetic;
 
@@ -142,5 +141,4 @@ TEST(CalibrationCornerAccuracy, CornersNearTheFrameAreMeasured) {
     EXPECT_NEAR(points.image_px[0].y, whole.truth_px[0].y, 0.04);
 }
 
-}  // namespace
 }  // namespace lensproof::calibration::corner_accuracy_test

@@ -9,7 +9,6 @@
 #include "tests/calibration/synthetic.h"
 
 namespace lensproof::calibration::detect_test {
-namespace {
 
 using namespace synthetic;
 
@@ -177,5 +176,4 @@ TEST(CalibrationDetect, SpoiledCornersAreMissing) {
     EXPECT_THROW(refine(image, 3, {points, all}, kBoard), InputError);
 }
 
-}  // namespace
 }  // namespace lensproof::calibration::detect_test

@@ -3,7 +3,6 @@
 #include "tests/calibration/shot.h"
 
 namespace lensproof::calibration::lattice_test {
-namespace {
 
 using namespace synthetic;
 
@@ -66,5 +65,4 @@ TEST(CalibrationLattice, AnotherGridHasItsReason) {
               "only 63 of 30 × 20 discs found in rows and columns");
 }
 
-}  // namespace
 }  // namespace lensproof::calibration::lattice_test

@@ -7,7 +7,6 @@
 #include "tests/calibration/shot.h"
 
 namespace lensproof::calibration::points_told_test {
-namespace {
 
 using namespace synthetic;
 
@@ -133,5 +132,4 @@ TEST(CalibrationPointsTold, LinesAreStraightUnderTheTrueModelAlone) {
     EXPECT_GT(chi(0.0), 200.0);
 }
 
-}  // namespace
 }  // namespace lensproof::calibration::points_told_test

@@ -11,7 +11,6 @@
 #include "tests/calibration/export/export_profile.h"
 
 namespace lensproof::calibration::lensfun_test {
-namespace {
 
 using namespace synthetic;
 
@@ -211,5 +210,4 @@ TEST(ExportLensfun, WithoutACameraModelThereIsNothingToWrite) {
     EXPECT_THROW(lensfun_export(profile, options()), InputError);
 }
 
-}  // namespace
 }  // namespace lensproof::calibration::lensfun_test

@@ -10,7 +10,6 @@
 #include "tests/calibration/export/export_profile.h"
 
 namespace lensproof::calibration::opencv_yaml_test {
-namespace {
 
 using namespace synthetic;
 
@@ -116,5 +115,4 @@ TEST(ExportOpencv, WithoutACameraModelThereIsNothingToWrite) {
     EXPECT_THROW(opencv_export(profile), InputError);
 }
 
-}  // namespace
 }  // namespace lensproof::calibration::opencv_yaml_test

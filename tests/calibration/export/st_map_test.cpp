@@ -9,7 +9,6 @@
 #include "tests/test_folder.h"
 
 namespace lensproof::calibration::st_map_test {
-namespace {
 
 using namespace synthetic;
 
@@ -130,5 +129,4 @@ TEST(ExportStMap, ThreadsChangeNothing) {
               st_maps(profile, {.threads = 3}).undistort.image.pixels);
 }
 
-}  // namespace
 }  // namespace lensproof::calibration::st_map_test

@@ -6,7 +6,6 @@
 #include "tests/calibration/synthetic.h"
 
 namespace lensproof::calibration::camera_model_test {
-namespace {
 
 Vec3d direction(double angle, double azimuth) {
     return {std::sin(angle) * std::cos(azimuth), std::sin(angle) * std::sin(azimuth), std::cos(angle)};
@@ -70,5 +69,4 @@ TEST(CalibrationCameraModel, PerspectiveImagesNothingBehindTheCamera) {
     EXPECT_TRUE(project(CameraModel(synthetic::fisheye_camera()), {1.0, 0.0, -0.2}));
 }
 
-}  // namespace
 }  // namespace lensproof::calibration::camera_model_test

@@ -8,7 +8,6 @@
 #include "tests/places.h"
 
 namespace lensproof::calibration::fisheye_board_test {
-namespace {
 
 // Fifteen photos of a board of 6 × 8 inner corners that a fisheye bends: every one is found, nearly every corner
 // fitted.
@@ -26,5 +25,4 @@ TEST(CalibrationFisheyeBoard, EveryViewIsFound) {
     }
 }
 
-}  // namespace
 }  // namespace lensproof::calibration::fisheye_board_test

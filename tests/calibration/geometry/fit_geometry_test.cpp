@@ -10,7 +10,6 @@
 #include "tests/calibration/synthetic.h"
 
 namespace lensproof::calibration::fit_geometry_test {
-namespace {
 
 using namespace synthetic;
 
@@ -193,5 +192,4 @@ TEST(CalibrationGeometry, DiscCentroidsAreModelled) {
     EXPECT_GT(ignored.rms_px, 10.0 * modelled.rms_px);
 }
 
-}  // namespace
 }  // namespace lensproof::calibration::fit_geometry_test

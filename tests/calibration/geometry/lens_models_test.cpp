@@ -9,7 +9,6 @@
 #include "tests/calibration/synthetic.h"
 
 namespace lensproof::calibration::lens_models_test {
-namespace {
 
 CameraModel model_of(const std::string& kind, const std::vector<double>& values) {
     return with_parameters(empty_model(model_kind(kind).value()), values);
@@ -184,5 +183,4 @@ TEST(CalibrationLensModels, TheSplineIsSmoothAcrossItsKnots) {
     }
 }
 
-}  // namespace
 }  // namespace lensproof::calibration::lens_models_test

@@ -8,7 +8,6 @@
 #include "tests/calibration/synthetic.h"
 
 namespace lensproof::calibration::model_choice_test {
-namespace {
 
 using namespace synthetic;
 
@@ -107,5 +106,4 @@ TEST(CalibrationModelChoice, ASingleViewIsSplitByItsPoints) {
     EXPECT_FALSE(taken.halves_px);
 }
 
-}  // namespace
 }  // namespace lensproof::calibration::model_choice_test

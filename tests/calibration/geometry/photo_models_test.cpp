@@ -18,7 +18,6 @@
 #include "tests/places.h"
 
 namespace lensproof::calibration::photo_models_test {
-namespace {
 
 const std::filesystem::path kPhotos = shared_data() / "photos";
 
@@ -142,5 +141,4 @@ TEST(CalibrationPhotoModels, TheFisheyeBoardAgreesWithItsManifest) {
     EXPECT_LT(cross_validate(views, 1032, 778, options, fit).held_out_rms_px, 0.90);
 }
 
-}  // namespace
 }  // namespace lensproof::calibration::photo_models_test

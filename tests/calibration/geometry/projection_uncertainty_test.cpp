@@ -14,7 +14,6 @@
 #include "tests/calibration/synthetic.h"
 
 namespace lensproof::calibration::projection_uncertainty_test {
-namespace {
 
 using namespace synthetic;
 
@@ -320,5 +319,4 @@ TEST(CalibrationUncertainty, ABentBoardIsFound) {
     EXPECT_GT(flat.rms_px, 3.0 * fit.rms_px);
 }
 
-}  // namespace
 }  // namespace lensproof::calibration::projection_uncertainty_test

@@ -8,7 +8,6 @@
 #include "tests/calibration/synthetic.h"
 
 namespace lensproof::calibration::vignetting_test {
-namespace {
 
 using Falloff = std::function<double(double)>;
 
@@ -298,5 +297,4 @@ TEST(CalibrationVignetting, TheShadingGridIsTheLightItself) {
     EXPECT_GE(within, 103);
 }
 
-}  // namespace
 }  // namespace lensproof::calibration::vignetting_test

@@ -15,7 +15,6 @@
 #include "tests/places.h"
 
 namespace lensproof::calibration::measure_bands_test {
-namespace {
 
 using namespace synthetic;
 namespace fs = std::filesystem;
@@ -268,5 +267,4 @@ TEST(CalibrationBands, NarrowBandPhotographsShiftAsTheirManifestSays) {
     }
 }
 
-}  // namespace
 }  // namespace lensproof::calibration::measure_bands_test

@@ -11,7 +11,6 @@
 #include "tests/places.h"
 
 namespace lensproof::calibration::measure_sharpness_test {
-namespace {
 
 using namespace synthetic;
 namespace fs = std::filesystem;
@@ -98,5 +97,4 @@ TEST(CalibrationMeasureSharpness, SampleEdgesOfAnotherProgramAgreeAmongThemselve
     EXPECT_NEAR(grey.sharpness.at("Y")[0].edge.mtf50->cycles_per_px / green, 1.0, 0.08);
 }
 
-}  // namespace
 }  // namespace lensproof::calibration::measure_sharpness_test

@@ -9,7 +9,6 @@
 #include "tests/calibration/synthetic.h"
 
 namespace lensproof::calibration::measure_test {
-namespace {
 
 using namespace synthetic;
 
@@ -149,5 +148,4 @@ TEST(CalibrationMeasure, OpenCvPhotosGiveTheKnownFocalLength) {
     EXPECT_EQ(profile.not_measured.at("chromatic_shift"), "the pictures are grey");
 }
 
-}  // namespace
 }  // namespace lensproof::calibration::measure_test

@@ -8,7 +8,6 @@
 #include "tests/calibration/export/export_profile.h"
 
 namespace lensproof::calibration::picture_quality_test {
-namespace {
 
 using namespace synthetic;
 
@@ -108,5 +107,4 @@ TEST(CorrectionSuspected, WhereTheFocalLengthIsNotTheStatedOne) {
     EXPECT_NE(suspicions_of(profile)[0].find("44.3 mm"), std::string::npos);
 }
 
-}  // namespace
 }  // namespace lensproof::calibration::picture_quality_test

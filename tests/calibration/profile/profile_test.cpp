@@ -9,7 +9,6 @@
 #include "tests/complaint.h"
 
 namespace lensproof::calibration::profile_test {
-namespace {
 
 Profile example() {
     Profile profile;
@@ -150,5 +149,4 @@ TEST(CalibrationProfile, EveryTruncationIsRefusedCleanly) {
     }
 }
 
-}  // namespace
 }  // namespace lensproof::calibration::profile_test

@@ -4,7 +4,6 @@
 #include <gtest/gtest.h>
 
 namespace lensproof::calibration::quantity_test {
-namespace {
 
 // A channel's name stands within the key, and the longer of two keys that fit is meant.
 TEST(CalibrationQuantity, AKeySaysItsQuantityAndItsChannel) {
@@ -35,5 +34,4 @@ TEST(CalibrationQuantity, EveryComparedCurveHasATitleAndAUnit) {
     }
 }
 
-}  // namespace
 }  // namespace lensproof::calibration::quantity_test

@@ -10,7 +10,6 @@
 #include "tests/calibration/synthetic.h"
 
 namespace lensproof::calibration::self_test_test {
-namespace {
 
 using namespace synthetic;
 
@@ -260,5 +259,4 @@ TEST(SelfTest, ItIsSaidWhyThereIsNone) {
     EXPECT_TRUE(profile.not_measured.contains("self_test"));
 }
 
-}  // namespace
 }  // namespace lensproof::calibration::self_test_test

@@ -6,7 +6,6 @@
 #include <numbers>
 
 namespace lensproof::calibration::simulated_chart_test {
-namespace {
 
 constexpr double kFocal_px = 200.0;
 constexpr double kDistance_mm = 1000.0;
@@ -181,5 +180,4 @@ TEST(SimulatedChart, WhereThereIsNoChartItIsBlack) {
     }
 }
 
-}  // namespace
 }  // namespace lensproof::calibration::simulated_chart_test

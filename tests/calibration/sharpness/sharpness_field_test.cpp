@@ -10,7 +10,6 @@
 #include "tests/calibration/synthetic.h"
 
 namespace lensproof::calibration::sharpness_field_test {
-namespace {
 
 constexpr Vec2d kCentre{500.0, 400.0};
 constexpr double kHalfDiagonal = 640.0;
@@ -150,5 +149,4 @@ TEST(CalibrationSharpnessField, AFocusSeriesNeedsThreePositionsAboutTheFocus) {
     EXPECT_THROW(fit_best_focus(unmoved, kCentre, kHalfDiagonal), InputError);
 }
 
-}  // namespace
 }  // namespace lensproof::calibration::sharpness_field_test

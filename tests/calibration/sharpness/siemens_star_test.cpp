@@ -8,7 +8,6 @@
 #include "tests/calibration/sharpness/sharpness_edge.h"
 
 namespace lensproof::calibration::siemens_star_test {
-namespace {
 
 using namespace synthetic;
 
@@ -196,5 +195,4 @@ TEST(CalibrationSiemensStar, AProfileOfAStarIsItsSharpness) {
     EXPECT_THROW(measure(input), InputError);
 }
 
-}  // namespace
 }  // namespace lensproof::calibration::siemens_star_test

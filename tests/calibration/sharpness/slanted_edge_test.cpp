@@ -5,7 +5,6 @@
 #include "tests/calibration/sharpness/sharpness_edge.h"
 
 namespace lensproof::calibration::slanted_edge_test {
-namespace {
 
 using namespace synthetic;
 
@@ -228,5 +227,4 @@ TEST(CalibrationSharpnessEdge, RegionsOfAChartLieOnItsEdges) {
     EXPECT_TRUE(chart_edges({.image_px = std::vector<Vec2d>(12), .found = std::vector<bool>(12, true)}, discs).empty());
 }
 
-}  // namespace
 }  // namespace lensproof::calibration::slanted_edge_test

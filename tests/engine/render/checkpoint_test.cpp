@@ -10,7 +10,6 @@
 #include "tests/test_folder.h"
 
 namespace lensproof::render::checkpoint_test {
-namespace {
 
 const RenderIdentity kIdentity = {{"scene", "abc"}, {"lens", "def"}};
 
@@ -114,5 +113,4 @@ TEST(WriteWhole, LeftoversOfDeadProcessesGo) {
     }
 }
 
-}  // namespace
 }  // namespace lensproof::render::checkpoint_test

@@ -11,7 +11,6 @@
 #include "tests/engine/render/film/film_sample.h"
 
 namespace lensproof::render::progressive_test {
-namespace {
 
 /// Every bit of a film's sums.
 std::string bits(const Film& film) {
@@ -208,5 +207,4 @@ TEST(ProgressiveNoise, StopsInTheDark) {
     EXPECT_GT(state.film.counts(0, 0).samples, kFewestSamplesToJudge);
 }
 
-}  // namespace
 }  // namespace lensproof::render::progressive_test

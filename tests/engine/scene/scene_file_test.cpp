@@ -11,7 +11,6 @@
 #include "engine/scene/scene_shapes.h"
 
 namespace lensproof::scene::scene_file_test {
-namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
@@ -386,5 +385,4 @@ TEST(NearestName, TheLeastChangeIsMeant) {
     EXPECT_EQ(name_hint("plaster", {}), "");
 }
 
-}  // namespace
 }  // namespace lensproof::scene::scene_file_test

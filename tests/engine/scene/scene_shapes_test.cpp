@@ -9,7 +9,6 @@
 #include "tests/complaint.h"
 
 namespace lensproof::scene::scene_shapes_test {
-namespace {
 
 using test::at;
 using test::box_mesh;
@@ -50,5 +49,4 @@ TEST(SceneShapes, DegenerateTrianglesAreDroppedAndCounted) {
     EXPECT_EQ(std::get<TriangleMesh>(scene.shape(0)).triangles.size(), 12U);
 }
 
-}  // namespace
 }  // namespace lensproof::scene::scene_shapes_test

@@ -12,7 +12,6 @@
 #include "tests/experiments/draw/svg_checks.h"
 
 namespace lensproof::draw::analysis_plots_test {
-namespace {
 
 /// A lens as the plots see it: aberrations of about `size` µm at each of the fields and wavelengths.
 struct Case {
@@ -247,5 +246,4 @@ TEST(AnalysisPlots, FilesAreWrittenIntoANewFolder) {
     std::filesystem::remove_all(folder.parent_path());
 }
 
-}  // namespace
 }  // namespace lensproof::draw::analysis_plots_test

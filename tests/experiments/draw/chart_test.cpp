@@ -11,7 +11,6 @@
 #include "tests/experiments/draw/svg_checks.h"
 
 namespace lensproof::draw::chart_test {
-namespace {
 
 PlotChart line_chart(std::vector<Vec2d> points) {
     return {.title = "A line",
@@ -252,5 +251,4 @@ TEST(Palette, LinesLookAsTheyAreNamed) {
     }
 }
 
-}  // namespace
 }  // namespace lensproof::draw::chart_test

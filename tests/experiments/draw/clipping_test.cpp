@@ -6,7 +6,6 @@
 #include <cmath>
 
 namespace lensproof::draw::clipping_test {
-namespace {
 
 const std::vector<SvgPoint> kFrame = {{0.0, 0.0}, {100.0, 0.0}, {100.0, 80.0}, {0.0, 80.0}};
 const std::vector<SvgPoint> kDiamond = {{50.0, 10.0}, {90.0, 40.0}, {50.0, 70.0}, {10.0, 40.0}};
@@ -47,5 +46,4 @@ TEST(Hatching, TheSenseOfAHoleDoesNotMatter) {
     EXPECT_TRUE(hatching({}, 3.0).empty());
 }
 
-}  // namespace
 }  // namespace lensproof::draw::clipping_test

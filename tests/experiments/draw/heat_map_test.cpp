@@ -11,7 +11,6 @@
 #include "tests/experiments/draw/svg_checks.h"
 
 namespace lensproof::draw::heat_map_test {
-namespace {
 
 /// RFC 4648, section 4, the other way.
 std::string from_base64(const std::string& text) {
@@ -177,5 +176,4 @@ TEST(ColourMap, EqualStepsLookEqual) {
     }
 }
 
-}  // namespace
 }  // namespace lensproof::draw::heat_map_test

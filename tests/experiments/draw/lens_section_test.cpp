@@ -21,7 +21,6 @@
 #include "tests/experiments/draw/svg_checks.h"
 
 namespace lensproof::draw::lens_section_test {
-namespace {
 
 optics::Prescription shipped(const std::string& name) {
     return formats::read_prescription(formats::find_lens_file(name));
@@ -273,5 +272,4 @@ TEST(LensSection, EmptyAndVeryLongTablesAreDrawn) {
     EXPECT_LT(svg.size(), 5'000'000U);
 }
 
-}  // namespace
 }  // namespace lensproof::draw::lens_section_test

@@ -7,7 +7,6 @@
 #include <set>
 
 namespace lensproof::draw::ticks_test {
-namespace {
 
 /// The number a label stands for.
 double read(const std::string& label) {
@@ -116,5 +115,4 @@ TEST(Ticks, NumbersReadAsInPrint) {
     EXPECT_EQ(short_number(NAN), "—");
 }
 
-}  // namespace
 }  // namespace lensproof::draw::ticks_test

@@ -11,7 +11,6 @@
 #include "engine/render/sampling/sampler.h"
 
 namespace lensproof::render::lens_paths_test {
-namespace {
 
 constexpr std::uint64_t kSeed = 17;
 const std::vector<double> kWavelengths = {430.0, 490.0, 550.0, 610.0, 670.0};
@@ -183,5 +182,4 @@ TEST(CameraPathBuffer, HasRoomForOnePathAtLeast) {
     EXPECT_THROW(CameraPathBuffer(0), std::invalid_argument);
 }
 
-}  // namespace
 }  // namespace lensproof::render::lens_paths_test

@@ -11,7 +11,6 @@
 #include "tests/test_folder.h"
 
 namespace lensproof::render::film_exr_test {
-namespace {
 
 // Single precision: half an ulp of a mean is 6e-8 of it, and a few of these come together.
 constexpr double kFloat = 3e-7;
@@ -140,5 +139,4 @@ TEST(FilmExr, RefusesWhatItDidNotWrite) {
     }
 }
 
-}  // namespace
 }  // namespace lensproof::render::film_exr_test

@@ -11,7 +11,6 @@
 #include "tests/engine/render/film/film_sample.h"
 
 namespace lensproof::render::film_test {
-namespace {
 
 constexpr double kRounding = 1e-14;  // of some dozens of additions of numbers of size 1
 
@@ -282,5 +281,4 @@ TEST(Film, KeepsFeaturesAsMeans) {
     EXPECT_EQ(film.features(0, 0).normal, (Vec3d{0.0, -0.25, -0.25}));
 }
 
-}  // namespace
 }  // namespace lensproof::render::film_test

@@ -16,7 +16,6 @@
 #include "tests/complaint.h"
 
 namespace lensproof::render::raw_sensor_test {
-namespace {
 
 constexpr std::array<const char*, 4> kPatterns = {"RGGB", "BGGR", "GRBG", "GBRG"};
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
@@ -345,5 +344,4 @@ TEST(RawSensor, FillFactorIsTheSquareRootOfTheSideOfWhatAPixelSees) {
     }
 }
 
-}  // namespace
 }  // namespace lensproof::render::raw_sensor_test

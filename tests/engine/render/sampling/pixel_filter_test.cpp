@@ -7,7 +7,6 @@
 #include "engine/base/input_error.h"
 
 namespace lensproof::render::pixel_filter_test {
-namespace {
 
 constexpr int kSteps = 256 * 1024;  // a multiple of the parts that draws are even within
 
@@ -55,5 +54,4 @@ TEST(PixelFilter, HasTheShapesThatItsNamesSay) {
     EXPECT_THROW(PixelFilter::named("lanczos"), InputError);
 }
 
-}  // namespace
 }  // namespace lensproof::render::pixel_filter_test

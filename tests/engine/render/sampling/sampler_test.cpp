@@ -6,7 +6,6 @@
 #include <utility>
 
 namespace lensproof::render::sampler_test {
-namespace {
 
 // Sobol's sequence is a (0,1)-sequence in each dimension: 2^k points put exactly one into each of 2^k equal intervals,
 // and Owen's scramble keeps that.
@@ -80,5 +79,4 @@ TEST(Sampler, IsUnbiasedOverPixels) {
     }
 }
 
-}  // namespace
 }  // namespace lensproof::render::sampler_test

@@ -9,7 +9,6 @@
 #include "tests/engine/scene/bsdf/bsdf_cases.h"
 
 namespace lensproof::scene::fresnel_test {
-namespace {
 
 constexpr auto kRadiance = Transport::radiance;
 constexpr double kFloatRounding = 0x1p-24;
@@ -178,5 +177,4 @@ TEST(Bsdf, KnowsWhereLightsNeedNotBeSampled) {
     EXPECT_NEAR(coated[0], 1.0, 2 * kFloatRounding);
 }
 
-}  // namespace
 }  // namespace lensproof::scene::fresnel_test

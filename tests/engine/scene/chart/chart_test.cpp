@@ -13,7 +13,6 @@
 #include "tests/complaint.h"
 
 namespace lensproof::scene::chart_test {
-namespace {
 
 constexpr double kPi = std::numbers::pi;
 
@@ -230,5 +229,4 @@ TEST(SceneChart, WhatDoesNotFitIsRefusedByKey) {
     expect("kind = 'chess'", "kind: is \"chess\"");
 }
 
-}  // namespace
 }  // namespace lensproof::scene::chart_test

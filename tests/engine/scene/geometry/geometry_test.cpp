@@ -8,7 +8,6 @@
 #include "tests/engine/scene/scene_shapes.h"
 
 namespace lensproof::scene::geometry_test {
-namespace {
 
 using test::at;
 using test::box_mesh;
@@ -374,5 +373,4 @@ TEST(SceneGeometry, NothingIsMetByRaysThatAreNone) {
     EXPECT_EQ(empty.bounds().high, (Vec3d{}));
 }
 
-}  // namespace
 }  // namespace lensproof::scene::geometry_test

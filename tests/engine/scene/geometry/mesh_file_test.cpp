@@ -12,7 +12,6 @@
 #include "tests/engine/scene/scene_shapes.h"
 
 namespace lensproof::scene::mesh_file_test {
-namespace {
 
 namespace fs = std::filesystem;
 
@@ -299,5 +298,4 @@ TEST_F(MeshFileTest, CutFilesAreRefusedOrWhole) {
     }
 }
 
-}  // namespace
 }  // namespace lensproof::scene::mesh_file_test

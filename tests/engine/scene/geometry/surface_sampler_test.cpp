@@ -8,7 +8,6 @@
 #include "tests/engine/scene/scene_shapes.h"
 
 namespace lensproof::scene::surface_sampler_test {
-namespace {
 
 using test::at;
 using test::box_mesh;
@@ -106,5 +105,4 @@ TEST(SurfaceSampler, DrawnPointsAreWhatRaysMeet) {
     }
 }
 
-}  // namespace
 }  // namespace lensproof::scene::surface_sampler_test

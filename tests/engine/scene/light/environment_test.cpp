@@ -10,7 +10,6 @@
 #include "engine/render/sampling/sampler.h"
 
 namespace lensproof::scene::environment_test {
-namespace {
 
 constexpr double kPi = std::numbers::pi;
 const spectral::SpectralGrid kGrid = spectral::spectral_grid(400.0, 700.0, 8);
@@ -87,5 +86,4 @@ TEST(Environment, RefusesABlackPicture) {
     EXPECT_THROW(Environment(grey_picture(2, 2, {0, 0, 0, 0}), {0.0, 0.0, 1.0}, 0.0), InputError);
 }
 
-}  // namespace
 }  // namespace lensproof::scene::environment_test

@@ -7,7 +7,6 @@
 #include "tests/engine/scene/bsdf/bsdf_cases.h"
 
 namespace lensproof::scene::material_test {
-namespace {
 
 spectral::SpectralGrid grid() {
     return spectral::spectral_grid(400.0, 700.0, 16);
@@ -80,5 +79,4 @@ TEST(Material, OfNoFractionIsLeftOut) {
     }
 }
 
-}  // namespace
 }  // namespace lensproof::scene::material_test

@@ -9,7 +9,6 @@
 #include "tests/engine/scene/bsdf/bsdf_cases.h"
 
 namespace lensproof::scene::texture_test {
-namespace {
 
 spectral::SpectralGrid grid() {
     return spectral::spectral_grid(400.0, 700.0, 16);
@@ -96,5 +95,4 @@ TEST(Texture, ColourCheckersPatchesAreAsMeasured) {
     }
 }
 
-}  // namespace
 }  // namespace lensproof::scene::texture_test

@@ -17,7 +17,6 @@
 #include "tests/test_folder.h"
 
 namespace lensproof::draw::chart_print_test {
-namespace {
 
 scene::Chart chart_of(const std::string& toml) {
     TomlTable top = TomlTable::parse(toml, "chart.toml");
@@ -215,5 +214,4 @@ TEST(ChartPrint, WhatCannotBePrintedIsRefused) {
     }
 }
 
-}  // namespace
 }  // namespace lensproof::draw::chart_print_test

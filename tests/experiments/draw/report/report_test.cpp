@@ -13,7 +13,6 @@
 #include "experiments/draw/report/html_text.h"
 
 namespace lensproof::draw::report_test {
-namespace {
 constexpr char kAttack[] = "</script><img src=x onerror=alert(1)>\"'&{{data}}";
 
 std::size_t count(const std::string& text, const std::string& part) {
@@ -233,5 +232,4 @@ TEST(Report, TheSameReportGivesTheSameBytes) {
     EXPECT_EQ(report_html(one_check(Json::object()), {}), report_html(one_check(Json::object()), {}));
 }
 
-}  // namespace
 }  // namespace lensproof::draw::report_test
