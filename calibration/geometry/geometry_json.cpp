@@ -47,7 +47,7 @@ void fields(JsonArchive& json, ModelCandidate& candidate) {
         .optional("radial_terms", candidate.radial_terms)
         .field("parameters", candidate.parameters)
         .optional("refused", candidate.refused);
-    if (candidate.refused.empty()) {
+    if (json.reading() ? json.lacks("refused") : candidate.refused.empty()) {
         json.field("rms_px", candidate.rms_px)
             .field("held_out_rms_px", candidate.held_out_rms_px)
             .field("halves_difference_px", candidate.halves_px)

@@ -5,8 +5,8 @@
 
 namespace lensproof::calibration {
 
-/// `name`, `parameters` (each `value` and `standard_error`), `covariance` (row by
-/// row), `relative_rms`, `held_out_relative_rms`, `aicc`, `verdict` (why it was chosen, or why not, in words).
+/// `name`, `parameters` (each `value` and `standard_error`), `covariance` (row by row), `relative_rms`,
+/// `held_out_relative_rms`, `aicc`, `verdict` (why it was chosen, or why not, in words).
 void fields(JsonArchive& json, VignettingModel& model);
 
 /// `columns`, `rows` (both 11), and row by row from the top left `mean`, `standard_error` and `samples`; where there

@@ -129,8 +129,8 @@ const Curve* find_curve(const Profile& profile, const std::string& key);
 /// Why that part (calibration/profile/quantity.h) was not measured; `otherwise` where the profile does not say.
 std::string why_not_measured(const Profile& profile, const char* part, const std::string& otherwise);
 
-/// The profile as JSON (a stretch_y that was held at 0 is not written), schema "lensproof-profile/1"; numbers are
-/// written so that reading returns the same bits.
+/// The profile's JSON, to write and to read: schema "lensproof-profile/1". A stretch_y that was held at 0 is not
+/// written; numbers are written so that reading returns the same bits.
 void fields(JsonArchive& json, Profile& profile);
 
 /// Reads what `to_json` wrote. Throws InputError naming `file`, the key, what was found and what is expected.

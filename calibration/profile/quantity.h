@@ -35,8 +35,8 @@ struct Quantity {
     ChannelText key;    // in Profile::curves
     ChannelText title;  // for people
     Unit unit;
-    std::string_view channels = "";  // those in which lenses are compared
-    bool of_blur = false;            // simulated pictures, whose blur is one Gaussian, say nothing of it
+    std::string_view channels{};  // those in which lenses are compared
+    bool of_blur = false;         // simulated pictures, whose blur is one Gaussian, say nothing of it
 };
 
 /// Every one of them; a channel that is a spectral layer is called by its wavelength, "450nm".

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <iterator>
 
 namespace lensproof {
 
@@ -54,11 +55,13 @@ JsonArchive& JsonArchive::rows(std::string_view key, std::vector<double>& values
         }
         return *this;
     }
-    const std::vector<JsonNode> read = node_->at(std::string(key)).elements();
-    expect(key, read.size() == count, in_words);
+    const std::vector<JsonNode> elements = node_->at(std::string(key)).elements();
+    expect(key, elements.size() == count, in_words);
+    std::vector<std::vector<double>> read;  // all of it before the matrix is made: `count` is the file's own word
+    std::ranges::transform(elements, std::back_inserter(read), [&](const JsonNode& row) { return row.numbers(count); });
     values.assign(stride * stride, 0.0);
     for (std::size_t i = 0; i < count; ++i) {
-        std::ranges::copy(read[i].numbers(count), values.begin() + static_cast<std::ptrdiff_t>(i * stride));
+        std::ranges::copy(read[i], values.begin() + static_cast<std::ptrdiff_t>(i * stride));
     }
     return *this;
 }

@@ -107,12 +107,6 @@ Vec3d JsonNode::triple() const {
     return {v[0], v[1], v[2]};
 }
 
-std::vector<std::string> JsonNode::texts() const {
-    std::vector<std::string> texts;
-    std::ranges::transform(elements(), std::back_inserter(texts), &JsonNode::text);
-    return texts;
-}
-
 std::vector<std::string> JsonNode::keys() const {
     if (!value_->is_object()) {
         throw error("an object");

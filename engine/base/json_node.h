@@ -35,7 +35,6 @@ class JsonNode {
     [[nodiscard]] std::vector<double> numbers(std::size_t count) const;
     [[nodiscard]] Vec2d pair() const;
     [[nodiscard]] Vec3d triple() const;
-    [[nodiscard]] std::vector<std::string> texts() const;
     [[nodiscard]] std::vector<std::string> keys() const;
 
   private:

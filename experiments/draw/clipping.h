@@ -14,7 +14,8 @@ std::vector<std::vector<SvgPoint>> clipped_line(const std::vector<SvgPoint>& poi
 std::vector<SvgPoint> clipped_polygon(const std::vector<SvgPoint>& points, const PageBox& box);
 
 /// The lines at 45° (y falls as x rises) inside closed outlines, two points each: x + y is `start` and whole steps from
-/// there. An outline in another is a hole, whichever sense they have.
+/// there. An outline in another is a hole, whichever sense they have. Outlines are clipped before, since the lines are
+/// as many as steps fit into them.
 std::vector<std::vector<SvgPoint>> hatching(const std::vector<std::vector<SvgPoint>>& outlines, double step,
                                             double start = 0.0);
 

@@ -31,7 +31,7 @@ using Study = std::function<Findings(const RunSettings& settings, const RunProgr
 struct ExperimentFile {
     TomlTable top;
     std::set<std::string> cameras{};   // those that are to be measured, for others to refer to
-    std::set<std::string> subjects{};  // the ids of all that is reported
+    std::set<std::string> subjects{};  // the ids of what will be reported, as far as the file says them
 
     /// Takes an id that `key` makes: files are named by it, and curves and checks refer to it. Throws InputError where
     /// another table has it.

@@ -139,7 +139,7 @@ nlohmann::json Workplace::json(std::vector<std::string> arguments) const {
     arguments.insert(arguments.end(), {"--json", "-"});
     const Outcome outcome = run(arguments);
     EXPECT_EQ(outcome.status, 0) << outcome.err;
-    return nlohmann::json::parse(outcome.out, nullptr, false);
+    return outcome.status == 0 ? nlohmann::json::parse(outcome.out, nullptr, false) : nlohmann::json();
 }
 
 void expect_refused(const Workplace& place, const std::vector<std::string>& arguments,

@@ -129,6 +129,8 @@ TEST_P(OpticsReference, VignettingAndRelativeIllumination) {
     }
     const std::vector<analysis::IlluminationPoint> curve = analysis::illumination_curve(d, d, fields);
     ASSERT_EQ(curve.size(), fields.size());
+    ASSERT_GT(fields.size(), 10U);
+    ASSERT_EQ(data_["relative_illumination"]["rows"].size(), fields.size());
     for (std::size_t i = 0; i < fields.size(); ++i) {
         const auto& beam = data_["vignetting"]["rows"][i];
         const auto& image = data_["relative_illumination"]["rows"][i];

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 #include <map>
 #include <optional>
 #include <vector>
@@ -134,7 +135,9 @@ void add_series(PlotChart& chart, const Series& series) {
     add_bands(chart, series, covered, true);
     const auto points_of = [](const std::vector<Sample>& samples, double scale, double offset) {
         std::vector<Vec2d> points;
-        for (const Sample& s : samples) points.push_back({s.x, std::isfinite(s.y) ? scale * s.y + offset : kNaN});
+        std::ranges::transform(samples, std::back_inserter(points), [&](const Sample& s) -> Vec2d {
+            return {s.x, std::isfinite(s.y) ? scale * s.y + offset : kNaN};
+        });
         return points;
     };
     ChartCurve line = series.line();

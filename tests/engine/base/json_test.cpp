@@ -123,6 +123,8 @@ TEST(JsonArchive, DescribesATypeOnce) {
     EXPECT_EQ(complaint(R"({"schema":2,"name":"","leaves":{"a":[{"x":"1"}]}})"),
               "f: leaves.a[0].x is \"1\": expected a finite number");
     EXPECT_EQ(complaint(R"({"schema":2,"name":"","matrix":[[0,0]]})"), "f: matrix is [[0,0]]: expected two rows");
+    EXPECT_EQ(complaint(R"({"schema":2,"name":"","matrix":[[],[]]})"),
+              "f: matrix[0] is []: expected a list of 2 numbers");
 }
 
 }  // namespace lensproof::json_test

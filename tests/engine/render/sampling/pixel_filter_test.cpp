@@ -23,8 +23,7 @@ TEST(PixelFilter, HasIntegralOneAndDrawsFollowIt) {
             second_moment += x * x * filter(x) * step;
         }
         EXPECT_NEAR(integral, 1.0, 1e-6) << name;
-        // Weighted draws, evenly over their number, have the same moments: whatever the pdf that they are drawn
-        // with.
+        // Weighted draws, evenly over their number, have the same moments, whatever pdf they are drawn with.
         double weight = 0.0;
         double first_drawn = 0.0;
         double second_drawn = 0.0;

@@ -110,7 +110,25 @@ TEST(Report, HostileTextStaysText) {
                             {"pictures",
                              {{{"name", "missing" + std::string(kAttack)}, {"caption", kAttack}},
                               {{"name", kAttack}, {"caption", kAttack}}}}}}},
-                         {"plots", {{{"title", kAttack}}}},
+                         {"plots",
+                          {{{"title", kAttack},
+                            {"id", kAttack},
+                            {"subtitle", kAttack},
+                            {"x_label", kAttack},
+                            {"y_label", kAttack},
+                            {"x_unit", kAttack},
+                            {"y_unit", kAttack},
+                            {"limit", 1.0},
+                            {"series",
+                             {{{"label", kAttack},
+                               {"subject", kAttack},
+                               {"style", kAttack},
+                               {"x", Json::list({0, 1, 2})},
+                               {"y", Json::list({0, 1, 2})},
+                               {"lower", Json::list({0, 0.5, 1})},
+                               {"upper", Json::list({0.5, 1.5, 3})},
+                               {"covered_to", 1.0},
+                               {"floor", 0.1}}}}}}},
                          {"provenance",
                           {{kAttack, kAttack},
                            {"inputs", {{{"file", kAttack}, {kAttack, kAttack}}}},
@@ -172,6 +190,27 @@ TEST(Report, TheCurvesNeedNoScript) {
         EXPECT_TRUE(has(page, "<th scope=\"row\">" + std::string(x) + "</th><td>—</td>")) << x;
     }
     EXPECT_TRUE(has(page, "<th scope=\"row\">4</th><td>0.50 ± 0.10 (extrapolated)</td>"));
+}
+
+// Whatever the numbers are, the drawing's own are numbers.
+TEST(Report, CurvesOfAnyNumbersAreDrawings) {
+    const auto plot = [](const Json& x, const Json& y, const Json& limit) -> Json {
+        return {{"limit", limit}, {"series", {{{"x", x}, {"y", y}, {"covered_to", 0.5}, {"floor", limit}}}}};
+    };
+    const Json one_to_three = Json::list({1, 2, 3});
+    const Json nothing = Json::list({nullptr, nullptr, nullptr});
+    const Json huge = Json::list({-1e300, 0, 1e300});
+    const Json plots =
+        Json::list({Json{{"series", Json::list()}}, plot(one_to_three, nothing, nullptr), plot(nothing, nothing, 1.0),
+                    plot(one_to_three, huge, 1e308), plot(huge, one_to_three, 1e-308)});
+    const std::string page = report_html({{"plots", plots}}, {});
+    EXPECT_EQ(count(page, "<figure class=\"plot\""), plots.size());
+    for (const std::string attribute : {"data-view=\"", "data-frame=\"", " d=\"", " points=\""}) {
+        for (std::size_t at = page.find(attribute); at != page.npos; at = page.find(attribute, at + 1)) {
+            const std::size_t from = at + attribute.size();
+            EXPECT_EQ(page.substr(from, page.find('"', from) - from).find('n'), page.npos) << "nan or inf";
+        }
+    }
 }
 
 TEST(Report, TheMethodsOwnErrorStandsBesideTheValueWhereItIsKnown) {
