@@ -9,6 +9,8 @@ namespace lensproof::calibration {
 
 /// A text with the place of a channel in it, "vignetting_{}_ev", or with none.
 struct ChannelText {
+    constexpr ChannelText(const char* text) : pattern(text) {}
+
     std::string_view pattern;
 
     [[nodiscard]] bool has_channel() const { return pattern.find("{}") != std::string_view::npos; }
