@@ -6,7 +6,6 @@
 #include <charconv>
 #include <map>
 #include <nlohmann/json.hpp>
-#include <ranges>
 #include <sstream>
 #include <string>
 #include <vector>
@@ -70,8 +69,9 @@ inline std::string ray_line(const std::string& id, const Triple& origin, const T
 inline TraceRows read_trace_rows(const std::string& csv) {
     TraceRows rows;
     EXPECT_TRUE(csv.starts_with("id,surface,x_mm,y_mm,z_mm,dx,dy,dz,optical_path_mm,transmittance,status\n")) << csv;
-    std::vector<std::vector<std::string>> table = cells_of(csv);
-    for (const std::vector<std::string>& cells : table | std::views::drop(1)) {
+    const std::vector<std::vector<std::string>> table = cells_of(csv);
+    for (std::size_t row = 1; row < table.size(); ++row) {
+        const std::vector<std::string>& cells = table[row];
         if (cells.size() != 11) {
             ADD_FAILURE() << cells.size() << " cells";
             continue;
