@@ -9,12 +9,9 @@
 
 namespace lensproof::calibration {
 
-const CurveFloor* floor_of(const std::optional<SelfTest>& test, const std::string& curve) {
-    if (!test) {
-        return nullptr;
-    }
-    const auto found = test->curves.find(curve);
-    return found == test->curves.end() ? nullptr : &found->second;
+const CurveFloor* floor_of(const SelfTest& test, const std::string& curve) {
+    const auto found = test.curves.find(curve);
+    return found == test.curves.end() ? nullptr : &found->second;
 }
 
 std::string describe_floor(const SelfTest& test) {

@@ -34,8 +34,8 @@ struct SelfTest {
     std::map<std::string, CurveFloor> curves;
 };
 
-/// The floor of that curve; null where there is none.
-const CurveFloor* floor_of(const std::optional<SelfTest>& test, const std::string& curve);
+/// The floor of that curve, which lives as long as the test; null where there is none.
+const CurveFloor* floor_of(const SelfTest& test, const std::string& curve);
 
 /// One line for people: "points 0.012 px, image position 0.004 px rms, vignetting 0.05 %, chromatic shift 0.006 px",
 /// the last two the largest of any channel.

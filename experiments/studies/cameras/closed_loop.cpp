@@ -21,7 +21,9 @@ struct Limited {
 findings::Check make_check(const Limited& limited, const calibration::Profile& measured,
                            const calibration::Profile& traced, double limit) {
     findings::Check check{.id = limited.id, .label = limited.label, .unit = limited.unit, .limit = limit};
-    if (const calibration::CurveFloor* floor = calibration::floor_of(measured.self_test, limited.curve)) {
+    const calibration::CurveFloor* floor =
+        measured.self_test ? calibration::floor_of(*measured.self_test, limited.curve) : nullptr;
+    if (floor != nullptr) {
         check.floor = limited.scale * (limited.use_rms ? floor->rms : floor->largest);
     }
     const auto difference = calibration::difference(measured, traced, limited.curve);

@@ -180,7 +180,8 @@ findings::Map certainty_map(const calibration::Profile& profile, const std::stri
 }
 
 std::optional<double> rms_floor(const calibration::Profile& profile, const std::string& curve) {
-    const calibration::CurveFloor* floor = calibration::floor_of(profile.self_test, curve);
+    const calibration::CurveFloor* floor =
+        profile.self_test ? calibration::floor_of(*profile.self_test, curve) : nullptr;
     return floor != nullptr ? std::optional(floor->rms) : std::nullopt;
 }
 
