@@ -24,14 +24,20 @@ namespace avx512 {
 using Doubles = std::experimental::simd<double, std::experimental::simd_abi::native<double>>;
 using Floats = std::experimental::simd<float, std::experimental::simd_abi::native<float>>;
 
+// The address as what such an instruction takes, whatever its alignment.
+template <typename Register>
+const Register* any_address(const void* address) {
+    return static_cast<const Register*>(address);
+}
+
 inline __m256i eight(const std::int32_t* index) {
-    return _mm256_loadu_si256(reinterpret_cast<const __m256i*>(index));
+    return _mm256_loadu_si256(any_address<__m256i>(index));
 }
 inline __m256i eight(const std::uint16_t* index) {
-    return _mm256_cvtepu16_epi32(_mm_loadu_si128(reinterpret_cast<const __m128i*>(index)));
+    return _mm256_cvtepu16_epi32(_mm_loadu_si128(any_address<__m128i>(index)));
 }
 inline __m512i sixteen(const std::uint16_t* index) {
-    return _mm512_cvtepu16_epi32(_mm256_loadu_si256(reinterpret_cast<const __m256i*>(index)));
+    return _mm512_cvtepu16_epi32(_mm256_loadu_si256(any_address<__m256i>(index)));
 }
 
 }  // namespace avx512
@@ -52,7 +58,7 @@ inline avx512::Doubles gathered(const std::int32_t* table, const std::int32_t* i
 template <>
 inline avx512::Doubles gathered(const std::uint8_t* table, const std::int32_t* index) {
     const __m256i four_bytes =
-        _mm256_i32gather_epi32(reinterpret_cast<const std::int32_t*>(table), avx512::eight(index), 1);
+        _mm256_i32gather_epi32(avx512::any_address<std::int32_t>(table), avx512::eight(index), 1);
     return avx512::Doubles(
         static_cast<__m512d>(_mm512_cvtepi32_pd(_mm256_and_si256(four_bytes, _mm256_set1_epi32(0xff)))));
 }
