@@ -44,23 +44,16 @@ Gains gains_of(const formats::Image& raw, MosaicPattern pattern) {
     return {gain[0], gain[1], gain[2]};
 }
 
-}  // namespace
-
-std::optional<MosaicPattern> mosaic_pattern(std::string_view name) {
-    const auto found = std::find(kNames.begin(), kNames.end(), name);
-    return found != kNames.end() ? std::optional(static_cast<MosaicPattern>(found - kNames.begin())) : std::nullopt;
-}
-
-formats::Image mosaic_plane(const formats::Image& raw, MosaicPattern pattern) {
+void check(const formats::Image& raw) {
     if (raw.channel_count() != 1 || raw.width < 4 || raw.height < 4) {
         throw InputError("a mosaic of " + std::to_string(raw.width) + " × " + std::to_string(raw.height) + " with " +
                          std::to_string(raw.channel_count()) +
                          " channels: expected one channel and at least 4 × 4 pixels");
     }
-    const Gains gains = gains_of(raw, pattern);
-    if (!(gains.red + gains.green + gains.blue > 0.0)) {
-        throw InputError("a mosaic without light: expected a picture");
-    }
+}
+
+// The sites with a gain times it; the others the mean of those around them.
+formats::Image filled(const formats::Image& raw, MosaicPattern pattern, const Gains& gains) {
     formats::Image plane = formats::make_image(raw.width, raw.height, {"Y"});
     for (int y = 0; y < raw.height; ++y) {
         for (int x = 0; x < raw.width; ++x) {
@@ -83,6 +76,38 @@ formats::Image mosaic_plane(const formats::Image& raw, MosaicPattern pattern) {
         }
     }
     return plane;
+}
+
+}  // namespace
+
+std::optional<MosaicPattern> mosaic_pattern(std::string_view name) {
+    const auto found = std::find(kNames.begin(), kNames.end(), name);
+    return found != kNames.end() ? std::optional(static_cast<MosaicPattern>(found - kNames.begin())) : std::nullopt;
+}
+
+formats::Image mosaic_plane(const formats::Image& raw, MosaicPattern pattern) {
+    check(raw);
+    const Gains gains = gains_of(raw, pattern);
+    if (!(gains.red + gains.green + gains.blue > 0.0)) {
+        throw InputError("a mosaic without light: expected a picture");
+    }
+    return filled(raw, pattern, gains);
+}
+
+std::vector<MosaicColour> mosaic_colours(const formats::Image& raw, MosaicPattern pattern) {
+    check(raw);
+    const Gains gains = gains_of(raw, pattern);
+    std::string colours = "rgb";
+    // The least gain is the strongest colour's.
+    std::ranges::stable_sort(colours, {}, [&](char c) { return gains.of(c); });
+    std::vector<MosaicColour> result;
+    for (const char c : colours) {
+        if (gains.of(c) > 0.0) {
+            const Gains alone{.red = c == 'r' ? 1.0 : 0.0, .green = c == 'g' ? 1.0 : 0.0, .blue = c == 'b' ? 1.0 : 0.0};
+            result.push_back({c, filled(raw, pattern, alone)});
+        }
+    }
+    return result;
 }
 
 }  // namespace lensproof::calibration

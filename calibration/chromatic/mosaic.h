@@ -2,6 +2,7 @@
 #pragma once
 #include <optional>
 #include <string_view>
+#include <vector>
 
 #include "engine/formats/image/image.h"
 
@@ -21,5 +22,15 @@ std::optional<MosaicPattern> mosaic_pattern(std::string_view name);
 /// weighted by the inverse of the squared distance. That mean is symmetric about the site, so no edge or centroid
 /// moves. Throws InputError for a picture of more than one channel or below 4 × 4 pixels, or without light.
 formats::Image mosaic_plane(const formats::Image& raw, MosaicPattern pattern);
+
+/// The same of the sites of one colour alone, whose others take the mean of its sites around them.
+struct MosaicColour {
+    char colour = 'g';  // 'r', 'g' or 'b'
+    formats::Image plane;
+};
+
+/// The colours that `mosaic_plane` takes as they are, the strongest first. A filter that also passes light far from its
+/// band makes them differ by more than a factor: each sees the lens's shift at the light that it sees.
+std::vector<MosaicColour> mosaic_colours(const formats::Image& raw, MosaicPattern pattern);
 
 }  // namespace lensproof::calibration

@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <memory>
 
 namespace lensproof::calibration {
 namespace {
@@ -94,13 +95,19 @@ double solve(const PointBundle& bundle, BundleState& state, const Held& held, do
     if (held.heights) {
         problem.SetParameterBlockConstant(state.heights.data());
     }
+    std::vector<std::unique_ptr<ceres::LossFunction>> losses;
     for (std::size_t v = 0; v < bundle.views.size(); ++v) {
+        ceres::LossFunction* loss = cauchy_scale_px > 0.0 ? &cauchy : nullptr;
+        if (bundle.views[v].weight != 1.0) {
+            losses.push_back(
+                std::make_unique<ceres::ScaledLoss>(loss, bundle.views[v].weight, ceres::DO_NOT_TAKE_OWNERSHIP));
+            loss = losses.back().get();
+        }
         for (std::size_t i = 0; i < bundle.used[v].size(); ++i) {
             if (bundle.used[v][i]) {
                 problem.AddResidualBlock(
-                    reprojection_cost(kind(state.model), feature(bundle, v, i), bundle.frame).release(),
-                    cauchy_scale_px > 0.0 ? &cauchy : nullptr, intrinsics.data(), state.poses[v].data(),
-                    state.heights.data());
+                    reprojection_cost(kind(state.model), feature(bundle, v, i), bundle.frame).release(), loss,
+                    intrinsics.data(), state.poses[v].data(), state.heights.data());
             }
         }
     }

@@ -14,6 +14,7 @@ struct ChartView {
     std::string name;  // for messages
     std::vector<Vec2d> chart_mm;
     std::vector<Vec2d> image_px;
+    double weight = 1.0;  // of its squared residuals
 };
 
 /// What was measured.
@@ -43,9 +44,9 @@ struct Held {
     bool heights = true;
 };
 
-/// Brings `state` to the least sum of squared residuals of the points used (Levenberg and Marquardt, by Ceres), and
-/// returns half that sum; infinity when nothing usable was found. With `cauchy_scale_px` > 0 the squares beyond about
-/// that length are weighted down by Cauchy's loss.
+/// Brings `state` to the least sum of weighted squared residuals of the points used (Levenberg and Marquardt, by
+/// Ceres), and returns half that sum; infinity when nothing usable was found. With `cauchy_scale_px` > 0 the squares
+/// beyond about that length are weighted down by Cauchy's loss.
 double solve(const PointBundle& bundle, BundleState& state, const Held& held, double cauchy_scale_px = 0.0);
 
 /// Measured minus predicted; none where the model images nothing.

@@ -2,6 +2,7 @@
 
 #include <Eigen/Dense>
 #include <algorithm>
+#include <cmath>
 
 #include "calibration/geometry/bundle.h"
 
@@ -52,11 +53,14 @@ ViewNormal view_normal(const PointBundle& bundle, const BundleState& state, cons
         if (!cost->Evaluate(blocks, values, jacobians)) {
             continue;
         }
+        const double root_weight = std::sqrt(points.weight);
         by_shared << by_intrinsics, by_heights;
+        by_shared *= root_weight;
+        by_pose *= root_weight;
         normal.shared += by_shared.transpose() * by_shared;
         normal.mixed += by_shared.transpose() * by_pose;
         normal.pose += by_pose.transpose() * by_pose;
-        const Eigen::Map<const Eigen::Vector2d> residual(values);
+        const Eigen::Vector2d residual = root_weight * Eigen::Map<const Eigen::Vector2d>(values);
         normal.shared_gradient += by_shared.transpose() * residual;
         normal.pose_gradient += by_pose.transpose() * residual;
     }

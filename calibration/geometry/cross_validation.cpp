@@ -62,7 +62,7 @@ double held_out_error(const ChartView& view, const PoseParameters& start, const 
         const Vec2d r = residual(bundle, state, 0, i).value_or(view.image_px[i]);
         sum += r.x * r.x + r.y * r.y;
     }
-    return sum / static_cast<double>(view.image_px.size());
+    return view.weight * sum / static_cast<double>(view.image_px.size());
 }
 
 std::vector<Vec2d> grid(int width, int height) {

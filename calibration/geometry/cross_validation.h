@@ -18,8 +18,8 @@ struct HalvesDifference {
 /// What was left out is predicted by intrinsics (and board) from the rest; its own points tell the pose alone.
 struct CrossValidation {
     int folds = 0;                            // each view is in one; a single view is split by its points
-    double held_out_rms_px = 0.0;             // root of the mean of dx² + dy²
-    std::vector<double> held_out_squared_px;  // mean of dx² + dy², by view (of those with four points or more)
+    double held_out_rms_px = 0.0;             // root of the mean of the weighted dx² + dy²
+    std::vector<double> held_out_squared_px;  // weighted mean of dx² + dy², by view (of four points or more)
     std::optional<HalvesDifference> halves;   // none for fewer than four views, or where a half determines no camera
 };
 

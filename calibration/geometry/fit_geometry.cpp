@@ -15,6 +15,8 @@ namespace {
 
 constexpr double kSmallestOutlier_px = 0.1;  // no point this close is ever an outlier
 constexpr int kOutlierRounds = 3;
+constexpr double kOutliersByView = 0.1;  // of a view's points, and
+constexpr double kSpreadByView = 2.0;    // its robust spread against that of all: the view is off, not some points
 constexpr double kHeavyTails = 1.5;      // of the plain standard deviation over the robust one, 1 for normal noise
 constexpr double kUndetermined = 0.05;   // a relative standard error above this is no measurement
 constexpr double kLeastSigma_px = 0.01;  // no detector is better; judges views whose residuals happen to be tiny
@@ -53,8 +55,8 @@ class Fit {
     GeometryFit run_from(const BundleState& start) {
         check_counts();
         BundleState state = start;
-        if (kind(start.model) != options_.model) {
-            state.model = start_model(start);
+        state.model = kind(start.model) == options_.model ? without_held_terms(start.model) : start_model(start);
+        if (kind(start.model) != options_.model || parameters(state.model) != parameters(start.model)) {
             Held all_but_terms = held();
             all_but_terms.poses = true;
             all_but_terms.heights = true;
@@ -113,6 +115,21 @@ class Fit {
         }
     }
 
+    // A term that is not fitted is 0, whatever the start has there.
+    [[nodiscard]] CameraModel without_held_terms(const CameraModel& model) const {
+        std::vector<double> values = parameters(model);
+        const ModelTerms terms = model_terms(model);
+        std::vector<int> distorting = terms.radial;
+        distorting.insert(distorting.end(), terms.tangential.begin(), terms.tangential.end());
+        distorting.push_back(static_cast<int>(values.size()) - 1);  // the stretch
+        for (const int i : held().intrinsics) {
+            if (std::ranges::find(distorting, i) != distorting.end()) {
+                values[static_cast<std::size_t>(i)] = 0.0;
+            }
+        }
+        return with_parameters(model, values);
+    }
+
     // The model to fit, without distortion, with the start's first three parameters and its own constants.
     [[nodiscard]] CameraModel start_model(const BundleState& start) const {
         const CameraModel model = empty_model(options_.model);
@@ -127,7 +144,7 @@ class Fit {
                 values[i] = largest_angle(start);
             }
         }
-        return with_parameters(model, values);
+        return without_held_terms(with_parameters(model, values));
     }
 
     // The angle from the axis of the outermost feature.
@@ -180,14 +197,15 @@ class Fit {
         std::vector<double> magnitudes;
         double sum = 0.0;
         for (std::size_t v = 0; v < bundle_.views.size(); ++v) {
+            const double root_weight = std::sqrt(bundle_.views[v].weight);
             for (std::size_t i = 0; i < bundle_.used[v].size(); ++i) {
                 if (!bundle_.used[v][i]) {
                     continue;
                 }
                 if (const auto r = residual(bundle_, state, v, i)) {
-                    magnitudes.push_back(std::abs(r->x));
-                    magnitudes.push_back(std::abs(r->y));
-                    sum += r->x * r->x + r->y * r->y;
+                    magnitudes.push_back(root_weight * std::abs(r->x));
+                    magnitudes.push_back(root_weight * std::abs(r->y));
+                    sum += bundle_.views[v].weight * (r->x * r->x + r->y * r->y);
                 }
             }
         }
@@ -212,13 +230,47 @@ class Fit {
         return changed;
     }
 
+    // The robust spread of all points of a view, used or not.
+    [[nodiscard]] double spread_of(const BundleState& state, std::size_t view) const {
+        std::vector<double> magnitudes;
+        for (std::size_t i = 0; i < bundle_.used[view].size(); ++i) {
+            if (const auto r = residual(bundle_, state, view, i)) {
+                magnitudes.push_back(std::abs(r->x));
+                magnitudes.push_back(std::abs(r->y));
+            }
+        }
+        return magnitudes.empty() ? 0.0 : kSigmaPerMedian * median(magnitudes);
+    }
+
+    // What a view's squared residuals count, `limit` being where a point becomes an outlier.
+    [[nodiscard]] double weight_of(const BundleState& state, std::size_t view, double usual, double limit) const {
+        const auto beyond = [&](std::size_t i) {
+            const auto r = residual(bundle_, state, view, i);
+            return !r || std::hypot(r->x, r->y) > limit;
+        };
+        double outliers = 0.0;
+        for (std::size_t i = 0; i < bundle_.used[view].size(); ++i) {
+            outliers += beyond(i) ? 1.0 : 0.0;
+        }
+        const double own = spread_of(state, view);
+        const bool is_off = outliers >= kOutliersByView * static_cast<double>(bundle_.used[view].size()) &&
+                            own >= kSpreadByView * usual && usual > 0.0;
+        return is_off ? std::pow(usual / own, 2) : 1.0;
+    }
+
     bool mark_outliers(const BundleState& state) {
-        const double limit = std::max(options_.outlier_sigmas * spread(state).robust, kSmallestOutlier_px);
+        const double usual = spread(state).robust;
+        const double limit = std::max(options_.outlier_sigmas * usual, kSmallestOutlier_px);
         bool changed = false;
         for (std::size_t v = 0; v < bundle_.views.size(); ++v) {
+            // One view has no others to disagree with.
+            double& weight = bundle_.views[v].weight;
+            const double now = bundle_.views.size() > 1 ? weight_of(state, v, usual, limit) : 1.0;
+            changed = changed || std::abs(now - weight) > 0.05 * weight;
+            weight = now;
             for (std::size_t i = 0; i < bundle_.used[v].size(); ++i) {
                 const auto r = residual(bundle_, state, v, i);
-                const bool use = r && std::hypot(r->x, r->y) <= limit;
+                const bool use = r && std::hypot(r->x, r->y) * std::sqrt(weight) <= limit;
                 changed = changed || use != bundle_.used[v][i];
                 bundle_.used[v][i] = use;
             }
@@ -258,13 +310,17 @@ class Fit {
         }
     }
 
-    // Poses and residuals; returns the sum of the squares used.
-    double add_views(const BundleState& state, GeometryFit& fit) const {
+    // Poses, residuals and what they come to.
+    void add_views(const BundleState& state, GeometryFit& fit) const {
         const Vec2d centre = centre_px(state.model);
         double sum = 0.0;
+        double weighted = 0.0;
         for (std::size_t v = 0; v < bundle_.views.size(); ++v) {
-            FittedView view{
-                .pose = to_pose(state.poses[v]), .residuals = {}, .pose_covariance = {}, .pose_follows = {}};
+            FittedView view{.pose = to_pose(state.poses[v]),
+                            .residuals = {},
+                            .weight = bundle_.views[v].weight,
+                            .pose_covariance = {},
+                            .pose_follows = {}};
             for (std::size_t i = 0; i < bundle_.used[v].size(); ++i) {
                 const auto r = residual(bundle_, state, v, i);
                 if (!r) {
@@ -272,7 +328,9 @@ class Fit {
                 }
                 view.residuals.push_back({static_cast<int>(i), *r, bundle_.used[v][i]});
                 if (bundle_.used[v][i]) {
-                    sum += r->x * r->x + r->y * r->y;
+                    const double square = r->x * r->x + r->y * r->y;
+                    sum += square;
+                    weighted += view.weight * square;
                     const Vec2d& pixel = bundle_.views[v].image_px[i];
                     fit.covered_radius_px =
                         std::max(fit.covered_radius_px, std::hypot(pixel.x - centre.x, pixel.y - centre.y));
@@ -280,16 +338,15 @@ class Fit {
             }
             fit.views.push_back(std::move(view));
         }
-        return sum;
+        fit.points_used = count_used(bundle_);
+        fit.rms_px = std::sqrt(sum / fit.points_used);
+        fit.sigma_px = std::sqrt(weighted / (2 * fit.points_used - unknown_count()));
     }
 
     [[nodiscard]] GeometryFit result(const BundleState& state) const {
         GeometryFit fit;
         fit.model = state.model;
-        const double sum = add_views(state, fit);
-        fit.points_used = count_used(bundle_);
-        fit.rms_px = std::sqrt(sum / fit.points_used);
-        fit.sigma_px = std::sqrt(sum / (2 * fit.points_used - unknown_count()));
+        add_views(state, fit);
         const auto unit = information(bundle_, state, held());
         if (!unit) {
             throw undetermined("at least one parameter");

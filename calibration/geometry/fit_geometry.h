@@ -30,8 +30,11 @@ struct GeometryOptions {
     /// Fits how far the chart is from flat (board_shape.h), one shape for all views.
     bool fit_board_shape = false;
     /// Points farther from the fit than this many standard deviations (estimated robustly) are left out. Where there
-    /// are any, the fit goes through Cauchy's loss first, so that they do not pull at what they are judged by. 0: plain
-    /// least squares over all points.
+    /// are any, the fit goes through Cauchy's loss first, so that they do not pull at what they are judged by. Outliers
+    /// that come by the view (a tenth of its points and more, and the view's own residuals at least twice the others')
+    /// are no accidents of single points, and leaving out those beyond a limit would keep what pulls the same way
+    /// within it: such a view keeps its points, and all of them count by the inverse square of their own spread. 0:
+    /// plain least squares over all points.
     double outlier_sigmas = 6.0;
 };
 
@@ -44,6 +47,8 @@ struct PointResidual {
 struct FittedView {
     Pose pose;
     std::vector<PointResidual> residuals;
+    /// Of its squared residuals, 1 but for a view that disagrees as a whole (GeometryOptions::outlier_sigmas).
+    double weight = 1.0;
     /// See BundleInformation::View; the covariance is that of the measured residuals.
     std::array<double, 36> pose_covariance{};
     std::vector<double> pose_follows;
@@ -63,7 +68,7 @@ struct GeometryFit {
     /// The covariance of the intrinsics and the board's heights together, row by row.
     std::vector<double> shared_covariance;
     std::vector<FittedView> views;
-    double sigma_px = 0.0;  // standard deviation of one coordinate of one point
+    double sigma_px = 0.0;  // standard deviation of one coordinate of one point in a view of weight 1
     double rms_px = 0.0;    // root of the mean of dx² + dy² over the points used (OpenCV's reprojection error)
     int points_used = 0;
     double covered_radius_px = 0.0;  // the farthest point used, from the principal point

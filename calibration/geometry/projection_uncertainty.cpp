@@ -143,7 +143,8 @@ std::optional<double> projection_uncertainty_px(const GeometryFit& fit, const Ve
 std::vector<ChartView> used_points(const std::vector<ChartView>& views, const GeometryFit& fit) {
     std::vector<ChartView> result;
     for (std::size_t v = 0; v < views.size(); ++v) {
-        ChartView& view = result.emplace_back(ChartView{.name = views[v].name, .chart_mm = {}, .image_px = {}});
+        ChartView& view = result.emplace_back(
+            ChartView{.name = views[v].name, .chart_mm = {}, .image_px = {}, .weight = fit.views[v].weight});
         for (const PointResidual& r : fit.views[v].residuals) {
             if (r.used) {
                 view.chart_mm.push_back(views[v].chart_mm[static_cast<std::size_t>(r.index)]);
@@ -174,6 +175,10 @@ std::vector<bool> covered_pixels(const std::vector<ChartView>& views, const std:
         inside.push_back(cv::pointPolygonTest(hull, at, false) >= 0.0);
     }
     return inside;
+}
+
+double unknown_place_px(int width_px, int height_px) {
+    return 0.05 * 0.5 * std::hypot(width_px, height_px);
 }
 
 UncertaintyMap uncertainty_map(const GeometryFit& fit, const std::vector<ChartView>& views, int width_px, int height_px,

@@ -1,6 +1,9 @@
 #include "calibration/measure/measure.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <utility>
 
@@ -73,6 +76,29 @@ void add_geometry(Profile& profile, Observations& seen, const std::vector<ChartV
     profile.curves[kQuantities.field_angle.key()] = field_angle_curve(geometry, half_diagonal);
     profile.curves[kQuantities.distortion.key()] = rectilinear_distortion_curve(geometry, half_diagonal);
     profile.curves[kQuantities.equidistant_distortion.key()] = equidistant_distortion_curve(geometry, half_diagonal);
+}
+
+// What nobody may overlook of a fit that was made.
+void add_warnings(Profile& profile, const std::vector<ChartView>& charts, const GeometryFit& geometry) {
+    const double unknown = unknown_place_px(profile.width_px, profile.height_px);
+    double worst = 0.0;
+    for (const std::optional<double>& uncertainty : profile.geometry->uncertainty->far_px) {
+        worst = std::max(worst, uncertainty.value_or(0.0));
+    }
+    if (worst > unknown) {
+        profile.warnings.push_back(fmt::format(
+            "the pictures do not say what the camera does in all of the frame: a place is known to ± {:.3g} px "
+            "at worst; add views of the chart that reach into the corners, tilted by 20° or more",
+            worst));
+    }
+    for (std::size_t v = 0; v < charts.size(); ++v) {
+        if (geometry.views[v].weight < 1.0) {
+            profile.warnings.push_back(
+                fmt::format("{} disagrees with the other pictures as a whole: its points scatter {:.1f} times as much, "
+                            "and each counts {:.2g} of another's (a chart that moved or bent, or a wrong shape?)",
+                            charts[v].name, 1.0 / std::sqrt(geometry.views[v].weight), geometry.views[v].weight));
+        }
+    }
 }
 
 // By channel, of the flat fields where there are any, else of the charts' white.
@@ -177,6 +203,7 @@ Profile measure(const MeasureInput& input) {
         Geometry geometry = fit(input, seen, charts);
         centre = centre_px(geometry.fit.model);
         add_geometry(profile, seen, charts, geometry.fit);
+        add_warnings(profile, charts, geometry.fit);
         profile.geometry->choice = std::move(geometry.choice);
     }
     add_sharpness(profile, seen.sharpness, centre);

@@ -1,5 +1,7 @@
 #include "calibration/measure/measure_bands.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -13,6 +15,9 @@
 
 namespace lensproof::calibration {
 namespace {
+
+constexpr double kColoursApart_px = 0.05;
+constexpr std::size_t kFewestPairs = 5;
 
 // "450" or "450.5": as few digits as tell a hundredth of a nanometre.
 std::string in_nm(double wavelength_nm) {
@@ -90,6 +95,53 @@ FittedTerms mean_shift(const std::vector<ChromaticPair>& pairs, const Vec2d& cen
     return terms;
 }
 
+// By how much two sets of the same points lie apart in the mean, along the radius or across: the larger of the two, and
+// its standard error. 0 where there are too few.
+struct Apart {
+    double mean_px = 0.0;
+    double standard_error_px = 0.0;
+
+    [[nodiscard]] bool matters() const { return mean_px > kColoursApart_px && mean_px > 3.0 * standard_error_px; }
+};
+
+Apart apart(const std::vector<std::optional<Vec2d>>& a, const std::vector<std::optional<Vec2d>>& b,
+            const Vec2d& centre) {
+    std::vector<ChromaticPair> pairs;
+    for (std::size_t i = 0; i < a.size(); ++i) {
+        if (a[i] && b[i]) {
+            pairs.push_back({*a[i], *b[i]});
+        }
+    }
+    if (pairs.size() < kFewestPairs) {
+        return {};
+    }
+    const FittedTerms terms = mean_shift(pairs, centre);
+    const std::size_t k = std::abs(terms.values[1]) > std::abs(terms.values[0]) ? 1 : 0;
+    return {std::abs(terms.values[k]), std::sqrt(terms.covariance[3 * k])};
+}
+
+std::string name_of(char colour) {
+    return colour == 'r' ? "red" : colour == 'g' ? "green" : "blue";
+}
+
+// The picture to measure by: all colours mixed where they agree, else the strongest alone, which the profile then says.
+const formats::Image& trusted(const BandPlanes& planes, const std::string& name, const Locator& locate,
+                              const Vec2d& centre, Profile& profile) {
+    for (std::size_t i = 1; i < planes.colours.size(); ++i) {
+        const MosaicColour& strongest = planes.colours.front();
+        const MosaicColour& other = planes.colours[i];
+        const Apart by = apart(locate(strongest.plane), locate(other.plane), centre);
+        if (by.matters()) {
+            profile.warnings.push_back(fmt::format(
+                "{}: measured by the {} pixels alone, the strongest: the {} ones are {:.2f} ± {:.2f} px off "
+                "in the mean, so that they see other light",
+                name, name_of(strongest.colour), name_of(other.colour), by.mean_px, by.standard_error_px));
+            return strongest.plane;
+        }
+    }
+    return planes.image;
+}
+
 const BandPicture& reference_of(const BandInput& input) {
     if (input.bands.size() < 2) {
         throw InputError("bands: " + std::to_string(input.bands.size()) + " pictures, expected at least two");
@@ -133,29 +185,38 @@ void add_chromatic_shift(Profile& profile, const std::string& label, const std::
 
 Profile measure_bands(const BandInput& input) {
     const BandPicture& reference = reference_of(input);
-    const formats::Image image = reference.load();
+    const BandPlanes planes = reference.load();
     Profile profile;
     profile.name = input.name;
     profile.source = input.source;
     profile.source.images.clear();
-    profile.width_px = image.width;
-    profile.height_px = image.height;
+    profile.width_px = planes.image.width;
+    profile.height_px = planes.image.height;
     profile.pixel_pitch_um = input.pixel_pitch_um;
     profile.not_measured[part::kGeometry] = "the pictures are bands of one view";
-    const ReferencePoints points = input.chart ? chart_points(image, reference.name, *input.chart) : disc_points(image);
-    const Vec2d centre = input.centre_px.value_or(Vec2d{0.5 * (image.width - 1), 0.5 * (image.height - 1)});
+    const Vec2d centre =
+        input.centre_px.value_or(Vec2d{0.5 * (planes.image.width - 1), 0.5 * (planes.image.height - 1)});
+    const auto points_of = [&](const formats::Image& image) {
+        return input.chart ? chart_points(image, reference.name, *input.chart) : disc_points(image);
+    };
+    ReferencePoints points = points_of(planes.image);
+    const formats::Image& image = trusted(planes, reference.name, points.locate, centre, profile);
+    if (&image != &planes.image) {
+        points = points_of(image);
+    }
     for (const BandPicture& band : input.bands) {
         profile.source.images.push_back(band.name);
         if (&band == &reference) {
             continue;
         }
-        const formats::Image other = band.load();
+        const BandPlanes other_planes = band.load();
+        const formats::Image& other = other_planes.image;
         if (other.width != image.width || other.height != image.height) {
             throw InputError(band.name + ": the picture is " + std::to_string(other.width) + " × " +
                              std::to_string(other.height) + " pixels: expected " + std::to_string(image.width) + " × " +
                              std::to_string(image.height) + " like " + reference.name);
         }
-        const auto places = points.locate(other);
+        const auto places = points.locate(trusted(other_planes, band.name, points.locate, centre, profile));
         std::vector<ChromaticPair> pairs;
         for (std::size_t i = 0; i < places.size(); ++i) {
             if (places[i]) {

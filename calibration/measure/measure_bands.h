@@ -6,18 +6,25 @@
 #include <vector>
 
 #include "calibration/chromatic/chromatic_shift.h"
+#include "calibration/chromatic/mosaic.h"
 #include "calibration/profile/profile.h"
 #include "engine/formats/image/image.h"
 #include "engine/scene/chart/chart.h"
 
 namespace lensproof::calibration {
 
+/// A picture as it is measured.
+struct BandPlanes {
+    formats::Image image;  // linear light, of one channel or of several that are alike
+    /// Of a raw mosaic the colours that were mixed for it.
+    std::vector<MosaicColour> colours = {};
+};
+
 /// A picture taken in a narrow band.
 struct BandPicture {
     double wavelength_nm = 0.0;
     std::string name;
-    std::function<formats::Image()>
-        load;  // linear light, of one channel or of several that are alike; may throw InputError
+    std::function<BandPlanes()> load;  // may throw InputError
 };
 
 /// Camera, chart and focus are the same in every picture.
@@ -38,6 +45,9 @@ struct BandInput {
 ///
 /// Of a crop that does not hold the optical centre, the model's terms trade against each other, above all radial
 /// terms against the translation; there the means over the points (kMeanShiftTerms) are what is known.
+///
+/// Colours of a mosaic that do not agree where things are, by 0.05 px and three standard errors in the mean, are not
+/// mixed: the strongest is measured by, alone, and a warning of the profile says so.
 ///
 /// A disc's centroid moves with perspective by as much in every band, so it drops out of the difference.
 /// Throws InputError for fewer than two bands, bands of the same wavelength, none at the reference's, pictures of

@@ -117,6 +117,8 @@ struct Profile {
     std::map<std::string, std::vector<VignettingModel>> vignetting_models;
     std::map<std::string, ShadingGrid> shading;
     std::map<std::string, std::string> not_measured;
+    /// What a reader has to know before the numbers, in words (JSON key "warnings"; without it where there is nothing).
+    std::vector<std::string> warnings = {};
     std::optional<SelfTest> self_test;
 };
 

@@ -144,7 +144,8 @@ void fields(JsonArchive& json, Profile& profile) {
     const std::optional<double>& pitch = profile.pixel_pitch_um;
     json.constant("schema", std::string(kProfileSchema), fmt::format("\"{}\"", kProfileSchema))
         .field("name", profile.name)
-        .field("source", profile.source);
+        .field("source", profile.source)
+        .optional("warnings", profile.warnings);
     size_fields(json, profile);
     json.added("channels", profile.channels)
         .added("pixel_pitch_um", profile.pixel_pitch_um)

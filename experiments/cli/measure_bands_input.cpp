@@ -24,12 +24,12 @@ double parse_wavelength(const std::string& text) {
 }
 
 // A raw mosaic holds the sensor's own, linear values, unless it is said otherwise.
-formats::Image read_mosaic(const std::string& file, calibration::MosaicPattern pattern,
-                           const std::optional<formats::TransferCurve>& curve) {
+calibration::BandPlanes read_mosaic(const std::string& file, calibration::MosaicPattern pattern,
+                                    const std::optional<formats::TransferCurve>& curve) {
     const formats::Image image =
         formats::read_photo(file, curve.value_or(formats::TransferCurve{.kind = formats::TransferKind::linear}));
     try {
-        return calibration::mosaic_plane(image, pattern);
+        return {calibration::mosaic_plane(image, pattern), calibration::mosaic_colours(image, pattern)};
     } catch (const InputError& e) {
         throw InputError(fmt::format("{}: {}", file, e.what()));
     }
@@ -55,7 +55,7 @@ calibration::Profile run_bands(const MeasureOptions& options, const calibration:
         const auto pattern = calibration::mosaic_pattern(options.mosaic);
         input.bands.push_back({.wavelength_nm = parse_wavelength(band.substr(0, sign)), .name = file, .load = [=] {
                                    return pattern ? read_mosaic(file, *pattern, curve)
-                                                  : formats::read_photo(file, curve);
+                                                  : calibration::BandPlanes{formats::read_photo(file, curve)};
                                }});
     }
     if (!options.chart.empty()) {

@@ -96,6 +96,9 @@ void print_account(const calibration::Profile& profile) {
 }  // namespace
 
 void print_profile(const calibration::Profile& profile) {
+    for (const std::string& warning : profile.warnings) {
+        fmt::print("warning: {}\n", warning);
+    }
     print_account(profile);
     if (profile.geometry) {
         const calibration::ProfileGeometry& geometry = *profile.geometry;

@@ -1,5 +1,6 @@
 // Pictures and views of charts through a known camera, for the tests of calibration/.
 #pragma once
+#include <array>
 #include <cmath>
 #include <functional>
 #include <random>
@@ -62,6 +63,29 @@ inline std::vector<Pose> tilted_poses(double distance_mm, double tilt_rad, doubl
     }
     poses.push_back({{0.02, -0.03, 0.0}, {0.0, 0.0, distance_mm}});
     return poses;
+}
+
+/// The chart's axes in the camera's frame.
+inline std::array<Vec3d, 3> axes(const Pose& pose) {
+    const Vec3d x = to_camera(pose, {1.0, 0.0}) - pose.translation_mm;
+    const Vec3d y = to_camera(pose, {0.0, 1.0}) - pose.translation_mm;
+    return {x, y, cross(x, y)};
+}
+
+/// Where a fit images a point that stays where it is on every chart: the mean of what the views say of it.
+inline Vec2d imaged_again(const std::vector<Pose>& before, const GeometryFit& fit, const Vec3d& point, bool infinite) {
+    Vec3d mean;
+    for (std::size_t v = 0; v < before.size(); ++v) {
+        const Vec3d arm = infinite ? point : point - before[v].translation_mm;
+        const auto old_axes = axes(before[v]);
+        const auto new_axes = axes(fit.views[v].pose);
+        Vec3d moved = infinite ? Vec3d{} : fit.views[v].pose.translation_mm;
+        for (std::size_t k = 0; k < 3; ++k) {
+            moved = moved + dot(arm, old_axes[k]) * new_axes[k];
+        }
+        mean = mean + (1.0 / static_cast<double>(before.size())) * moved;
+    }
+    return project(fit.model, mean).value();
 }
 
 /// Heights of n² samples in a pixel, from its middle, px: a golden-ratio lattice, so that along both axes they lie in

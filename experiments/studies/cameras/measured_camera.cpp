@@ -121,6 +121,9 @@ void add_view(findings::Picture& picture, const calibration::ProfileView& view) 
 void add_profile_facts(MeasuredCamera& camera) {
     const calibration::Profile& profile = camera.profile;
     std::vector<findings::Fact>& facts = camera.subject.facts;
+    for (const std::string& warning : profile.warnings) {
+        facts.push_back({"warning", warning});
+    }
     if (profile.geometry) {
         const calibration::ProfileGeometry& geometry = *profile.geometry;
         facts.push_back({"camera model", calibration::kind_name(geometry.model)});

@@ -107,6 +107,22 @@ TEST(CalibrationMeasure, FlatFieldsAloneGiveVignettingAlone) {
     EXPECT_EQ(profile.not_measured.at("chromatic_shift"), "the pictures are grey");
 }
 
+// A board in the middle of the frame, and a model that can do anything outside: the profile says so, in its first
+// warning. With the board all over the frame there is nothing to warn of.
+TEST(CalibrationMeasure, AProfileThatDoesNotKnowTheCornersSaysSo) {
+    for (const bool is_central : {true, false}) {
+        std::vector<Picture> pictures;
+        for (const Pose& pose : is_central ? tilted_poses(2400.0, 0.5, 40.0) : tilted_poses(520.0, 0.35, 60.0)) {
+            const auto seed = static_cast<unsigned>(pictures.size());
+            pictures.push_back(
+                {"view" + std::to_string(seed), PictureRole::chart, [=] { return colour_picture(pose, seed); }});
+        }
+        const Profile profile = measure(input_with(std::move(pictures)));
+        ASSERT_EQ(profile.warnings.size(), is_central ? 1u : 0u);
+        EXPECT_TRUE(!is_central || profile.warnings[0].find("add views") != std::string::npos);
+    }
+}
+
 TEST(CalibrationMeasure, UnusableSetsAreRefused) {
     const auto blank = [](int width) {
         return Picture{"blank" + std::to_string(width), PictureRole::chart,
