@@ -26,6 +26,7 @@ constexpr Ratio kRatios[] = {
     {"disc grid / flat field, Tessar", "render/tessar/disc-grid", "render/tessar/flat-field"},
     {"fisheye / Tessar, flat field", "render/muller-fisheye/flat-field", "render/tessar/flat-field"},
     {"scene: exact lens / pinhole", "scene/exact", "scene/pinhole"},
+    {"scene: environment map / even sky", "scene/sky/map", "scene/sky/even"},
     {"analysis: curves / table", "analyze/westrogon-24/curves", "analyze/westrogon-24/table"},
     {"analysis: fisheye / Tessar, table", "analyze/muller-fisheye/table", "analyze/tessar/table"},
     {"rough metal / diffuse, sample", "bsdf/metal/sample", "bsdf/diffuse/sample"},

@@ -21,7 +21,8 @@ void register_render_benchmarks();
 void register_camera_path_benchmarks();
 
 /// scene/MODEL: camera paths of up to five bounces through a scene of a checkered wall, a sphere and an area light,
-/// with each camera model, the exact one being the double Gauss at f/2. Counters: paths per second, rays a path.
+/// with each camera model, the exact one being the double Gauss at f/2; scene/sky/…: the same in the open, under an
+/// even sky and under a map of 4096 × 2048 pixels. Counters: paths per second, rays a path.
 void register_scene_benchmarks();
 
 /// bsdf/SURFACE/sample: a direction drawn; bsdf/SURFACE/evaluate: value and pdf of a given one; texture/KIND: one

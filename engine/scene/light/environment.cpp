@@ -41,9 +41,21 @@ struct Step {
     double fraction = 0.0;
 };
 
+/// Looked for from where an even picture has it, outwards: bisecting a large map from its ends would miss the cache at
+/// each step.
 template <class Sums>
 Step step_at(Sums first, Sums last, double u) {
-    const Sums found = std::min(std::upper_bound(first, last, u), last - 1);
+    constexpr std::ptrdiff_t kCacheLine = 8;  // of doubles
+    const std::ptrdiff_t count = last - first;
+    std::ptrdiff_t low = std::min(static_cast<std::ptrdiff_t>(u * static_cast<double>(count)), count - 1);
+    std::ptrdiff_t high = low + 1;
+    for (std::ptrdiff_t reach = kCacheLine; low > 0 && first[low - 1] > u; reach *= 2) {
+        low = std::max(low - reach, std::ptrdiff_t{0});
+    }
+    for (std::ptrdiff_t reach = kCacheLine; high < count && !(first[high - 1] > u); reach *= 2) {
+        high = std::min(high + reach, count);
+    }
+    const Sums found = std::min(std::upper_bound(first + low, first + high, u), last - 1);
     const double before = found == first ? 0.0 : *(found - 1);
     return {static_cast<std::size_t>(found - first), std::clamp((u - before) / (*found - before), 0.0, 1.0)};
 }
@@ -51,6 +63,34 @@ Step step_at(Sums first, Sums last, double u) {
 template <class Sums>
 double width_of(Sums first, std::size_t index) {
     return index == 0 ? first[0] : first[index] - first[index - 1];
+}
+
+/// Of each pixel, over the grid's wavelengths.
+std::vector<double> mean_radiances(const ImageTexture& picture) {
+    std::vector<double> means;
+    means.reserve(picture.texel.size());
+    for (const ImageTexture::Texel& texel : picture.texel) {
+        double sum = 0.0;
+        for (std::size_t i = 0; i < picture.white.value.size(); ++i) {
+            sum += texel.scale * texel.shape.at(picture.abscissa.value[i]) * picture.white.value[i];
+        }
+        means.push_back(sum / static_cast<double>(picture.white.value.size()));
+    }
+    return means;
+}
+
+/// The largest of a pixel and its neighbours, so that no place is darker in the choice than what bilinear look-ups
+/// make of it there.
+double brightest_around(const std::vector<double>& means, const TexelGrid& grid, int x, int y) {
+    double brightest = 0.0;
+    for (int dy = -1; dy <= 1; ++dy) {
+        for (int dx = -1; dx <= 1; ++dx) {
+            const auto row = static_cast<std::size_t>(std::clamp(y + dy, 0, grid.height - 1));
+            const auto column = static_cast<std::size_t>((x + dx + grid.width) % grid.width);
+            brightest = std::max(brightest, means[row * static_cast<std::size_t>(grid.width) + column]);
+        }
+    }
+    return brightest;
 }
 
 }  // namespace
@@ -61,11 +101,12 @@ Environment::Environment(ImageTexture picture, const Vec3d& up, double rotate_de
     const auto height = static_cast<std::size_t>(picture_.grid.height);
     pixels_.resize(width * height);
     rows_.resize(height);
+    const std::vector<double> means = mean_radiances(picture_);
     for (std::size_t y = 0; y < height; ++y) {
         const double sine = std::sin(kPi * (static_cast<double>(y) + 0.5) / static_cast<double>(height));
         double sum = 0.0;
         for (std::size_t x = 0; x < width; ++x) {
-            const double bright = brightness(static_cast<int>(x), static_cast<int>(y));
+            const double bright = brightest_around(means, picture_.grid, static_cast<int>(x), static_cast<int>(y));
             pixels_[y * width + x] = bright;
             sum += bright;
         }
@@ -78,26 +119,6 @@ Environment::Environment(ImageTexture picture, const Vec3d& up, double rotate_de
     if (!(mean_power_ > 0.0)) {
         throw InputError("the environment's picture is black");
     }
-}
-
-/// The largest of a pixel and its neighbours, so that no place is darker in the choice than what bilinear look-ups
-/// make of it there.
-double Environment::brightness(int x, int y) const {
-    const auto& [width, height, wrap_u, wrap_v] = picture_.grid;
-    double brightest = 0.0;
-    for (int dy = -1; dy <= 1; ++dy) {
-        for (int dx = -1; dx <= 1; ++dx) {
-            const auto row = static_cast<std::size_t>(std::clamp(y + dy, 0, height - 1));
-            const auto column = static_cast<std::size_t>((x + dx + width) % width);
-            const ImageTexture::Texel& texel = picture_.texel[row * static_cast<std::size_t>(width) + column];
-            double sum = 0.0;
-            for (std::size_t i = 0; i < picture_.white.value.size(); ++i) {
-                sum += texel.scale * texel.shape.at(picture_.abscissa.value[i]) * picture_.white.value[i];
-            }
-            brightest = std::max(brightest, sum / static_cast<double>(picture_.white.value.size()));
-        }
-    }
-    return brightest;
 }
 
 Vec2d Environment::uv_of(const Vec3d& direction) const {

@@ -35,7 +35,6 @@ class Environment {
 
   private:
     [[nodiscard]] Vec2d uv_of(const Vec3d& direction) const;
-    [[nodiscard]] double brightness(int x, int y) const;
     /// Per uv area, of the pixel at uv.
     [[nodiscard]] double pdf_in_picture(std::size_t pixel, std::size_t row) const;
 

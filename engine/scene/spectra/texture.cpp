@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <utility>
 
 #include "engine/base/input_error.h"
@@ -48,22 +49,12 @@ auto bilinear(const TexelGrid& grid, const Vec2d& uv, const Value& value) {
     return (1.0F - y.fraction) * row(y.first) + y.fraction * row(y.second);
 }
 
-spectral::SpectralSample look_up(const spectral::GridSpectrum& spectrum, const Vec2d&,
-                                 const spectral::PathWavelengths& path) {
+spectral::SpectralSample value_at(const spectral::GridSpectrum& spectrum, const Vec2d&,
+                                  const spectral::PathWavelengths& path) {
     return spectrum(path);
 }
 
-spectral::SpectralSample look_up(const ImageTexture& image, const Vec2d& uv, const spectral::PathWavelengths& path) {
-    const spectral::SpectralSample abscissa = image.abscissa(path);
-    const Vec2d at{image.repeats.x * uv.x, image.repeats.y * uv.y};
-    const spectral::SpectralSample value = bilinear(image.grid, at, [&](std::size_t index) {
-        const ImageTexture::Texel& texel = image.texel[index];
-        return texel.scale * spectral::for_each_wavelength([&](float t) { return texel.shape.at(t); }, abscissa);
-    });
-    return value * image.white(path);
-}
-
-spectral::SpectralSample look_up(const ChartTexture& texture, const Vec2d& uv, const spectral::PathWavelengths& path) {
+spectral::SpectralSample value_at(const ChartTexture& texture, const Vec2d& uv, const spectral::PathWavelengths& path) {
     const Vec2d at{(uv.x - 0.5) * texture.width_mm, (0.5 - uv.y) * texture.height_mm};
     if (!texture.patches.empty()) {
         const std::optional<int> patch = patch_at(std::get<ColourChecker>(texture.chart.pattern), at.x, at.y);
@@ -106,8 +97,18 @@ ImageTexture image_texture(const formats::Image& image, const std::filesystem::p
 
 }  // namespace
 
+spectral::SpectralSample value_at(const ImageTexture& image, const Vec2d& uv, const spectral::PathWavelengths& path) {
+    const spectral::SpectralSample abscissa = image.abscissa(path);
+    const Vec2d at{image.repeats.x * uv.x, image.repeats.y * uv.y};
+    const spectral::SpectralSample value = bilinear(image.grid, at, [&](std::size_t index) {
+        const ImageTexture::Texel& texel = image.texel[index];
+        return texel.scale * spectral::for_each_wavelength([&](float t) { return texel.shape.at(t); }, abscissa);
+    });
+    return value * image.white(path);
+}
+
 spectral::SpectralSample value_at(const Texture& texture, const Vec2d& uv, const spectral::PathWavelengths& path) {
-    return std::visit([&](const auto& kind) { return look_up(kind, uv, path); }, texture);
+    return std::visit([&](const auto& kind) { return value_at(kind, uv, path); }, texture.kind_);
 }
 
 ImageTexture reflectance_texture(const formats::Image& image, const std::filesystem::path& file, Wrap wrap,

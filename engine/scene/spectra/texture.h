@@ -4,7 +4,7 @@
 // corner.
 #pragma once
 #include <filesystem>
-#include <optional>
+#include <utility>
 #include <variant>
 #include <vector>
 
@@ -51,10 +51,24 @@ struct ChartTexture {
     std::vector<spectral::GridSpectrum> patches;  // of a colour checker, row by row from the top left; else none
 };
 
-/// A spectrum over a surface; a GridSpectrum is the same everywhere.
-using Texture = std::variant<spectral::GridSpectrum, ImageTexture, ChartTexture>;
+/// A spectrum over a surface; a GridSpectrum is the same everywhere. What it is made of is moved into it: a picture
+/// that is looked up by itself must not be copied into a Texture on the way.
+class Texture {
+  public:
+    Texture() = default;
+    Texture(spectral::GridSpectrum&& even) : kind_(std::move(even)) {}
+    Texture(ImageTexture&& picture) : kind_(std::move(picture)) {}
+    Texture(ChartTexture&& chart) : kind_(std::move(chart)) {}
+
+    friend spectral::SpectralSample value_at(const Texture& texture, const Vec2d& uv,
+                                             const spectral::PathWavelengths& path);
+
+  private:
+    std::variant<spectral::GridSpectrum, ImageTexture, ChartTexture> kind_;
+};
 
 spectral::SpectralSample value_at(const Texture& texture, const Vec2d& uv, const spectral::PathWavelengths& path);
+spectral::SpectralSample value_at(const ImageTexture& image, const Vec2d& uv, const spectral::PathWavelengths& path);
 
 /// A picture's channels R, G, B, or Y, as reflectances of these colours under D65. Throws InputError naming `file`
 /// where there are no such channels.

@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <limits>
+#include <type_traits>
 
 #include "engine/spectral/colour_checker.h"
 #include "tests/engine/scene/bsdf/bsdf_cases.h"
@@ -13,6 +14,11 @@ namespace lensproof::scene::texture_test {
 spectral::SpectralGrid grid() {
     return spectral::spectral_grid(400.0, 700.0, 16);
 }
+
+// A picture that is only looked at is never copied into a Texture.
+static_assert(!std::is_convertible_v<const ImageTexture&, Texture> && !std::is_convertible_v<ImageTexture&, Texture>);
+static_assert(!std::is_convertible_v<const ChartTexture&, Texture> && !std::is_convertible_v<ChartTexture&, Texture>);
+static_assert(!std::is_constructible_v<Texture, const spectral::GridSpectrum&>);
 
 /// Of 3 × 2 grey pixels: 0.1, 0.2, 0.3 above 0.4, 0.5, 0.6.
 double at(Wrap wrap, double u, double v) {
