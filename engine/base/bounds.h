@@ -14,7 +14,7 @@ struct Bounds {
     [[nodiscard]] bool hold(double value) const {
         return value >= min && value <= max && !(min_excluded && value == min);
     }
-    /// In words, to stand behind "expected": "a positive number".
+    /// In words, to stand behind "expected": "a finite number above 0".
     [[nodiscard]] std::string expectation() const;
 };
 

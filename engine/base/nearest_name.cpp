@@ -8,7 +8,7 @@
 
 namespace lensproof {
 
-int spelling_distance(std::string_view a, std::string_view b, bool with_swaps) {
+int spelling_distance(std::string_view a, std::string_view b) {
     // Rows of the usual table (Damerau 1964, neighbours swapped once): two above the current one.
     std::vector<int> before(b.size() + 1);
     std::vector<int> above(b.size() + 1);
@@ -21,7 +21,7 @@ int spelling_distance(std::string_view a, std::string_view b, bool with_swaps) {
         for (std::size_t j = 1; j <= b.size(); ++j) {
             const int change = a[i - 1] == b[j - 1] ? 0 : 1;
             row[j] = std::min({above[j] + 1, row[j - 1] + 1, above[j - 1] + change});
-            if (with_swaps && i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1]) {
+            if (i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1]) {
                 row[j] = std::min(row[j], before[j - 2] + 1);
             }
         }
@@ -38,7 +38,7 @@ std::string name_hint(const std::string& name, const std::vector<std::string>& k
     int least = static_cast<int>(kLongest);
     for (const std::string& candidate : known) {
         if (name.size() <= kLongest && candidate.size() <= kLongest) {
-            const int letters = spelling_distance(name, candidate, false);
+            const int letters = spelling_distance(name, candidate);
             if (letters < least && letters <= std::max(1, static_cast<int>(candidate.size() / 3))) {
                 least = letters;
                 nearest = &candidate;

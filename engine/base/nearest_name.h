@@ -6,11 +6,11 @@
 
 namespace lensproof {
 
-/// How many letters have to be changed, added, dropped or, unless without swaps, swapped with their neighbour (each at
+/// How many letters have to be changed, added, dropped or swapped with their neighbour (each at
 /// most once) to make `a` into `b` (Damerau 1964; Levenshtein 1966).
-int spelling_distance(std::string_view a, std::string_view b, bool with_swaps = true);
+int spelling_distance(std::string_view a, std::string_view b);
 
-/// "; did you mean \"white\"?" for the known name with the fewest letters to change, add or drop, where those are at
+/// "; did you mean \"white\"?" for the known name with the fewest letters to change, add, drop or swap, if these are at
 /// most a third of its letters, and at least one; else, of ten names at most, "; known are: white, red"; else nothing.
 std::string name_hint(const std::string& name, const std::vector<std::string>& known);
 

@@ -79,7 +79,7 @@ void require_traceable(const Prescription& prescription) {
                                           {"rim_mm", row.rim_mm},
                                           {"barrel_mm", row.barrel_mm}}) {
             require(!length || (*length > 0.0 && *length <= kLargestLength), row, key, length.value_or(0.0),
-                    "a positive length");
+                    "a length above 0, up to 1e7 mm");
         }
         require(!row.medium.n_d || (*row.medium.n_d >= 1.0 && *row.medium.n_d <= 5.0), row, "n_d",
                 row.medium.n_d.value_or(0.0), "a refractive index from 1 to 5");

@@ -255,6 +255,7 @@ void add_analyze_command(Program& program) {
         .check(in_range(1, 1000))
         .shows_default();
     const Option best_focus =
+        .check(kNumberOption)
         command
             .add_option("--best-focus", options->best_focus,
                         "Move the image plane to the best image of all fields and wavelengths together: paraxial, "

@@ -3,13 +3,16 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <cstdint>
 #include <cstdlib>
+#include <iterator>
 #include <optional>
 
 #include "engine/base/input_error.h"
+#include "engine/base/nearest_name.h"
 #include "engine/base/text.h"
 
 namespace lensproof::cli {
@@ -42,6 +45,45 @@ std::string complain_unless_number(const std::string& text) {
     const std::optional<double> value = parse_number(text);
     const bool good = value && std::isfinite(*value);
     return good ? "" : fmt::format("\"{}\", expected a number", printable(text));
+}
+
+/// The first argument that neither the program nor the command that it names has a use for, which may be a misspelt
+/// name; nothing where there is none.
+std::optional<std::string> complaint_about_stranger(const CLI::App& program) {
+    const auto asked = program.get_subcommands();
+    const bool is_before_command = asked.empty() || !program.remaining().empty();
+    const CLI::App& app = is_before_command ? program : *asked.front();
+    const std::vector<std::string> strangers = app.remaining();
+    if (strangers.empty()) {
+        return std::nullopt;
+    }
+    const std::string& first = strangers.front();
+    std::vector<std::string> known;
+    if (first.starts_with("-")) {
+        for (const CLI::Option* const has : app.get_options()) {
+            std::ranges::transform(has->get_lnames(), std::back_inserter(known),
+                                   [](const std::string& name) { return "--" + name; });
+        }
+        const std::string name = first.substr(0, first.find('='));
+        return fmt::format("\"{}\" is no option of {}{}", printable(name), app.get_name(), name_hint(name, known));
+    }
+    if (!is_before_command) {
+        return fmt::format("\"{}\" is more than {} takes", printable(first), app.get_name());
+    }
+    std::ranges::transform(program.get_subcommands({}), std::back_inserter(known), &CLI::App::get_name);
+    return fmt::format("\"{}\" is no command{}", printable(first), name_hint(first, known));
+}
+
+/// In words that name what is wrong. Whatever lacks is told after what is too much: a misspelt name is both.
+std::string complaint(const CLI::App& program, const CLI::ParseError& error) {
+    const bool asks_too_much = dynamic_cast<const CLI::ExtrasError*>(&error) != nullptr;
+    const bool lacks = dynamic_cast<const CLI::RequiredError*>(&error) != nullptr;
+    if (asks_too_much || lacks) {
+        if (const std::optional<std::string> stranger = complaint_about_stranger(program)) {
+            return *stranger;
+        }
+    }
+    return lacks && program.get_subcommands().empty() ? "expected a command" : error.what();
 }
 
 }  // namespace
@@ -156,7 +198,7 @@ int Program::run(int argc, char** argv) {
         return app_->exit(success);  // --help, --version
     } catch (const CLI::ParseError& error) {
         const auto asked = app_->get_subcommands();
-        throw InputError(fmt::format("{}\nTry: {} {}--help", error.what(), name_,
+        throw InputError(fmt::format("{}\nTry: {} {}--help", complaint(*app_, error), name_,
                                      asked.empty() ? "" : asked.front()->get_name() + " "));
     }
     return status_;

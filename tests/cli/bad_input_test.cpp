@@ -53,7 +53,7 @@ void expect_edits_refused(const Workplace& place, const std::vector<std::string>
 TEST(BadCommandLine, NamesTheOption) {
     const Workplace place;
     const std::vector<std::pair<std::vector<std::string>, std::string>> cases = {
-        {{}, "subcommand"},
+        {{}, "expected a command"},
         {{"trace", "tessar", "--rays"}, "--rays"},
         {{"trace", "tessar", "--rays", "r.csv", "--precision", "half"}, "--precision"},
         {{"lenses", "--json"}, "--json"},
@@ -62,10 +62,30 @@ TEST(BadCommandLine, NamesTheOption) {
         {{"render", "scene.toml", "--samples", "0"}, "--samples"},
         {{"measure", "a.png"}, "--chart"},
         {{"compare", "a.json", "b.json", "--position-limit", "nan"}, "--position-limit"},
+        {{"analyze", "tessar", "--image-distance", ""}, "--image-distance"},
     };
     for (const auto& [arguments, word] : cases) {
         SCOPED_TRACE(word);
         expect_refused(place, arguments, {word});
+    }
+}
+
+TEST(BadCommandLine, NamesWhatIsUnknownAndWhatIsNearest) {
+    const Workplace place;
+    const std::vector<std::pair<std::vector<std::string>, std::vector<std::string>>> cases = {
+        {{"chekc", "tessar"}, {"\"chekc\" is no command", "did you mean \"check\"?", "Try: lensproof --help"}},
+        {{"analyse", "tessar", "--json", "-"}, {"\"analyse\"", "\"analyze\"?"}},
+        {{"frobnicate"}, {"\"frobnicate\" is no command"}},
+        {{"--json", "-", "check", "tessar"}, {"\"--json\" is no option of lensproof", "known are: --help, --version"}},
+        {{"--verison"}, {"\"--verison\" is no option of lensproof", "\"--version\"?"}},
+        {{"analyze", "tessar", "--fnumber", "3"},
+         {"\"--fnumber\" is no option of analyze", "\"--f-number\"?", "lensproof analyze --help"}},
+        {{"analyze", "--ring=4"}, {"\"--ring\"", "\"--rings\"?"}},
+        {{"analyze", "tessar", "petzval"}, {"\"petzval\" is more than analyze takes"}},
+    };
+    for (const auto& [arguments, words] : cases) {
+        SCOPED_TRACE(testing::PrintToString(arguments));
+        expect_refused(place, arguments, words);
     }
 }
 
@@ -162,6 +182,10 @@ TEST(BadLens, NamesTheLineTheKeyAndWhatItHolds) {
     const std::vector<BadEdit> edits = {
         {"negative rim", "semi_diameter_mm = 10.0", "semi_diameter_mm = -10.0", {":5:", "semi_diameter_mm", "-10"}},
         {"no rim's number", "semi_diameter_mm = 10.0", "semi_diameter_mm = nan", {":5:", "semi_diameter_mm", "nan"}},
+        {"a rim like a planet",
+         "semi_diameter_mm = 10.0",
+         "semi_diameter_mm = 1e9",
+         {":5:", "semi_diameter_mm", "1e7"}},
         {"negative thickness", "thickness_mm =  5.0", "thickness_mm = -5.0", {":5:", "thickness_mm", "-5"}},
         {"no radius", "radius_mm =  50.0", "radius_mm = nan", {":5:", "radius_mm", "nan", "inf"}},
         {"unknown glass", "BK7", "UNOBTAINIUM", {":5:", "glass", "UNOBTAINIUM", "lensproof glasses"}},

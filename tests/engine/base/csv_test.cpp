@@ -83,7 +83,7 @@ TEST(Csv, ComplaintsNameLineColumnFoundAndExpected) {
 TEST(Csv, BoundsAreNamed) {
     const CsvRow row = all_rows("a\n-1\n").front();
     EXPECT_EQ(complaint_about([&] { return row.number("a", kPositive); }),
-              "t.csv:2: a is \"-1\", expected a positive number");
+              "t.csv:2: a is \"-1\", expected a finite number above 0");
     EXPECT_EQ(complaint_about([&] { return row.number("a", kPositive, "a thickness in mm"); }),
               "t.csv:2: a is \"-1\", expected a thickness in mm");
 }
