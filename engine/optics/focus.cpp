@@ -10,7 +10,6 @@
 #include "engine/base/infinity.h"
 #include "engine/base/input_error.h"
 #include "engine/optics/paraxial.h"
-#include "engine/spectral/wavelengths.h"
 
 namespace lensproof::optics {
 
@@ -70,8 +69,8 @@ Lens focused_by_groups(const Lens& lens, double object_distance_mm) {
 
 }  // namespace
 
-Lens with_f_number(Lens lens, double f_number) {
-    const double widest = paraxial_data(at_wavelength<double>(lens, spectral::kLineD)).f_number;
+Lens with_f_number(Lens lens, double f_number, double wavelength_nm) {
+    const double widest = paraxial_data(at_wavelength<double>(lens, wavelength_nm)).f_number;
     LensSurface& stop = lens.surfaces[lens.stop_index()];
     // Published f-numbers are rounded: f/2.8 is asked of a lens that opens to f/2.83.
     constexpr double kRounding = 0.02;

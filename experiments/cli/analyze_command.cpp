@@ -73,7 +73,7 @@ optics::Lens prepared_lens(const AnalyzeOptions& options, const optics::Prescrip
     optics::Lens lens =
         optics::make_lens(formats::with_stop_picture(prescription), glasses, parse_indices(options.indices));
     if (options.f_number) {
-        lens = optics::with_f_number(std::move(lens), *options.f_number);
+        lens = optics::with_f_number(std::move(lens), *options.f_number, reference_wavelength_nm);
     }
     if (!lens.focus_groups.empty() && !options.focus.empty()) {
         lens = optics::focused_at(std::move(lens), distance);
@@ -244,7 +244,9 @@ void add_analyze_command(Program& program) {
                     "groups move to it; a lens without any stays as it is, and --best-focus or --image-distance "
                     "moves the image plane")
         .type_name("infinity|MM");
-    command.add_option("--f-number", options->f_number, "Close the stop to this paraxial f-number")
+    command
+        .add_option("--f-number", options->f_number,
+                    "Close the stop to this paraxial f-number, at the reference wavelength")
         .check(kPositiveOption)
         .type_name("N");
     command

@@ -22,6 +22,8 @@ TEST(Paraxial, TessarHasItsPublishedFocus) {
 TEST(Lens, FNumberSetsTheStop) {
     const Lens lens = with_f_number(formats::load_lens("tessar"), 8.0);
     EXPECT_NEAR(paraxial_data(at_wavelength<double>(lens, spectral::kLineD)).f_number, 8.0, 1e-12);
+    const Lens in_the_blue = with_f_number(formats::load_lens("tessar"), 8.0, 450.0);
+    EXPECT_NEAR(paraxial_data(at_wavelength<double>(in_the_blue, 450.0)).f_number, 8.0, 1e-12);
     EXPECT_THROW(with_f_number(formats::load_lens("tessar"), 1.4), InputError);
 }
 
