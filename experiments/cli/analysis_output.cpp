@@ -162,8 +162,8 @@ std::string fields_text(const std::vector<analysis::FieldAnalysis>& fields) {
 
 }  // namespace
 
-Json analysis_json(const optics::Lens& lens, const analysis::AnalysisSettings& settings,
-                   const analysis::LensAnalysis& analysis) {
+Json analysis_json(const optics::Lens& lens, const std::vector<optics::Finding>& findings,
+                   const analysis::AnalysisSettings& settings, const analysis::LensAnalysis& analysis) {
     Json json{{"lens", lens.id},
               {"name", lens.name},
               {"reference_wavelength_nm", settings.reference_wavelength_nm},
@@ -183,10 +183,14 @@ Json analysis_json(const optics::Lens& lens, const analysis::AnalysisSettings& s
     return json;
 }
 
-std::string analysis_text(const optics::Lens& lens, const analysis::AnalysisSettings& settings,
-                          const analysis::LensAnalysis& analysis) {
-    std::string text =
-        fmt::format("{}\nAt {} nm, object at {}:\n", lens.name, settings.reference_wavelength_nm,
+std::string analysis_text(const optics::Lens& lens, const std::vector<optics::Finding>& findings,
+                          const analysis::AnalysisSettings& settings, const analysis::LensAnalysis& analysis) {
+    std::string text = lens.name + "\n";
+    for (const optics::Finding& finding : findings) {
+        text += finding_text(finding);
+    }
+    text +=
+        fmt::format("At {} nm, object at {}:\n", settings.reference_wavelength_nm,
                     std::isinf(settings.object_distance) ? "infinity" : fmt::format("{} mm", settings.object_distance));
     text += paraxial_text(lens, analysis);
     const double largest = analysis::largest_field_deg(settings);
@@ -200,3 +204,7 @@ std::string analysis_text(const optics::Lens& lens, const analysis::AnalysisSett
 }
 
 }  // namespace lensproof::cli
+              {"findings", Json::list()},
+    for (const optics::Finding& finding : findings) {
+        json["findings"].push_back(finding_json(finding));
+    }

@@ -15,6 +15,7 @@
 #include "engine/base/file.h"
 #include "engine/base/input_error.h"
 #include "engine/base/text.h"
+#include "engine/check/checker.h"
 #include "engine/formats/prescription/load_lens.h"
 #include "engine/formats/prescription/prescription_file.h"
 #include "engine/optics/chief_ray.h"
@@ -66,10 +67,8 @@ double object_distance(const std::string& option, const optics::Prescription& pr
 }
 
 /// The lens as it is analysed: zoomed, stopped down, focused, its sensor in place.
-optics::Lens prepared_lens(const AnalyzeOptions& options, const optics::Prescription& prescription, double distance,
-                           double reference_wavelength_nm) {
-    const optics::GlassCatalogue glasses =
-        formats::with_own_catalogues(read_glass_catalogues(options.glass_catalogues), prescription);
+optics::Lens prepared_lens(const AnalyzeOptions& options, const optics::Prescription& prescription,
+                           const optics::GlassCatalogue& glasses, double distance, double reference_wavelength_nm) {
     optics::Lens lens =
         optics::make_lens(formats::with_stop_picture(prescription), glasses, parse_indices(options.indices));
     if (options.f_number) {
@@ -191,8 +190,12 @@ int run_analyze(const AnalyzeOptions& options) {
     settings.reference_wavelength_nm = options.reference_wavelength_nm.value_or(settings.wavelengths_nm.front());
     settings.object_distance = object_distance(options.focus, prescription);
     settings.rings = options.rings;
+    const optics::GlassCatalogue glasses =
+        formats::with_own_catalogues(read_glass_catalogues(options.glass_catalogues), prescription);
     optics::Lens lens =
-        prepared_lens(options, prescription, settings.object_distance, settings.reference_wavelength_nm);
+        prepared_lens(options, prescription, glasses, settings.object_distance, settings.reference_wavelength_nm);
+    const std::vector<optics::Finding> findings =
+        check::unknown_glasses(prescription, glasses, parse_indices(options.indices));
     settings.fields_deg = fields_of(options, lens, settings.reference_wavelength_nm);
     if (!options.best_focus.empty()) {
         const double shift = best_focus_shift(options, lens, settings);
@@ -203,9 +206,9 @@ int run_analyze(const AnalyzeOptions& options) {
         write_analysis_plots(options, prescription, lens, settings, analysis);
     }
     if (prints_text(options.common)) {
-        fmt::print("{}", analysis_text(lens, settings, analysis));
+        fmt::print("{}", analysis_text(lens, findings, settings, analysis));
     }
-    write_json_result(options.common, analysis_json(lens, settings, analysis));
+    write_json_result(options.common, analysis_json(lens, findings, settings, analysis));
     return kDone;
 }
 
@@ -252,12 +255,12 @@ void add_analyze_command(Program& program) {
     command
         .add_option("--image-distance", options->image_distance_mm,
                     "Image plane behind the last vertex (default: the prescription's)")
+        .check(kNumberOption)
         .type_name("MM");
     command.add_option("--rings", options->rings, "Rings of rays over a beam, for spots and wavefronts")
         .check(in_range(1, 1000))
         .shows_default();
     const Option best_focus =
-        .check(kNumberOption)
         command
             .add_option("--best-focus", options->best_focus,
                         "Move the image plane to the best image of all fields and wavelengths together: paraxial, "

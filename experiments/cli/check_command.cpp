@@ -128,9 +128,7 @@ void print_report(const std::string& lens, const check::CheckReport& report) {
     }
     fmt::print("\n");
     for (const optics::Finding& finding : report.findings) {
-        const std::string where = finding.surface > 0 ? fmt::format("surface {}", finding.surface) : "lens";
-        fmt::print("  {:7} {:10} {}: {}\n", optics::severity_name(finding.severity), where, finding.code,
-                   finding.message);
+        fmt::print("{}", finding_text(finding));
     }
 }
 

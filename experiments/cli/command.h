@@ -51,6 +51,9 @@ void write_json_result(const CommonOptions& options, const Json& result);
 /// Every key is there; what does not apply is null: the surface of a finding about the lens as a whole, say.
 Json finding_json(const optics::Finding& finding);
 
+/// "  warning surface 3  glass-unknown: …", a line.
+std::string finding_text(const optics::Finding& finding);
+
 /// Whether a person-readable result may go to standard output (not when the JSON goes there).
 bool prints_text(const CommonOptions& options);
 
