@@ -100,6 +100,12 @@ LensAnalysis analyze_lens(const optics::Lens& lens, const AnalysisSettings& sett
     analysis.seidel = seidel_sums(reference.lens, optics::at_wavelength<double>(lens, *shortest),
                                   optics::at_wavelength<double>(lens, *longest), largest_field, from_front);
     analysis.lagrange_invariant = optics::lagrange_invariant(reference.lens, largest_field);
+    if (const auto marginal = optics::paraxial_marginal_ray(reference.lens, from_front)) {
+        analysis.marginal_ray = ray_at_surfaces(reference.lens, *marginal);
+    }
+    if (const auto chief = optics::paraxial_chief_ray(reference.lens, largest_field)) {
+        analysis.chief_ray = ray_at_surfaces(reference.lens, *chief);
+    }
     for (const double field : settings.fields_deg) {
         const auto bundle = optics::field_bundle(reference.chief_rays, field * kDegree, settings.object_distance);
         for (const AnalysedColour& colour : colours) {

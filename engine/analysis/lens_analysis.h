@@ -3,6 +3,7 @@
 #include <optional>
 #include <vector>
 
+#include "engine/analysis/paraxial_rays.h"
 #include "engine/analysis/polychromatic_field.h"
 #include "engine/analysis/seidel.h"
 #include "engine/analysis/working_f_number.h"
@@ -51,6 +52,8 @@ struct LensAnalysis {
     optics::Conjugates conjugates;               // of the settings' object
     double real_working_f_number = 0.0;          // infinite where no axial light passes
     std::optional<double> lagrange_invariant;    // for the largest field, as the sums; nothing at and beyond 90°
+    std::vector<RayAtSurface> marginal_ray;      // of the object; empty where there is none
+    std::vector<RayAtSurface> chief_ray;         // of the largest field likewise
     std::optional<SeidelSums<double>> seidel;    // colour from the longest to the shortest wavelength
     std::vector<FieldAnalysis> fields;           // by field, and for each by wavelength
 };

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "engine/base/json.h"
 #include "experiments/cli/command.h"
@@ -33,6 +34,24 @@ Json paraxial_json(const optics::ParaxialData& data) {
             {"petzval_radius_mm", data.petzval_radius}};
 }
 
+Json ray_surfaces_json(const optics::Lens& lens, const analysis::LensAnalysis& analysis) {
+    Json surfaces = Json::list();
+    for (std::size_t i = 0; i < lens.surfaces.size(); ++i) {
+        Json row{{"surface", i + 1}};
+        for (const auto& [name, ray] :
+             {std::pair{"marginal_ray_", &analysis.marginal_ray}, {"chief_ray_", &analysis.chief_ray}}) {
+            const auto value = [&, rays = ray](double analysis::RayAtSurface::*member) {
+                return rays->empty() ? Json(nullptr) : Json((*rays)[i].*member + 0.0);
+            };
+            row[std::string(name) + "height_mm"] = value(&analysis::RayAtSurface::height);
+            row[std::string(name) + "slope"] = value(&analysis::RayAtSurface::slope);
+            row[std::string(name) + "incidence"] = value(&analysis::RayAtSurface::incidence);
+        }
+        surfaces.push_back(std::move(row));
+    }
+    return surfaces;
+}
+
 Json reference_json(const optics::Lens& lens, const analysis::LensAnalysis& analysis) {
     Json json = paraxial_json(analysis.reference_paraxial);
     json["total_track_mm"] = lens.image_z - lens.surfaces.front().vertex_z;
@@ -42,6 +61,7 @@ Json reference_json(const optics::Lens& lens, const analysis::LensAnalysis& anal
     json["magnification"] = analysis.conjugates.magnification;
     json["working_f_number"] = analysis.conjugates.working_f_number;
     json["real_working_f_number"] = analysis.real_working_f_number;
+    json["surfaces"] = ray_surfaces_json(lens, analysis);
     return json;
 }
 
@@ -122,6 +142,24 @@ std::string paraxial_text(const optics::Lens& lens, const analysis::LensAnalysis
     return text;
 }
 
+std::string ray_surfaces_text(const optics::Lens& lens, const analysis::LensAnalysis& analysis) {
+    std::string text = fmt::format("  {:>7}{:>36}{:>36}\n  {:>7}", "", "marginal ray", "chief ray", "surface");
+    for (int ray = 0; ray < 2; ++ray) {
+        text += fmt::format("{:>12}{:>12}{:>12}", "height mm", "slope", "incidence");
+    }
+    for (std::size_t i = 0; i < lens.surfaces.size(); ++i) {
+        text += fmt::format("\n  {:>7}", i + 1);
+        for (const std::vector<analysis::RayAtSurface>* ray : {&analysis.marginal_ray, &analysis.chief_ray}) {
+            const auto column = [&](double analysis::RayAtSurface::*member) {
+                return cell(ray->empty() ? std::nullopt : std::optional((*ray)[i].*member), 12, 6);
+            };
+            text += column(&analysis::RayAtSurface::height) + column(&analysis::RayAtSurface::slope) +
+                    column(&analysis::RayAtSurface::incidence);
+        }
+    }
+    return text + "\n";
+}
+
 std::string seidel_text(const analysis::SeidelSums<double>& sums) {
     std::string text = fmt::format("  {:>7}{:>12}{:>12}{:>12}{:>12}{:>12}{:>12}{:>12}\n", "surface", "S1", "S2", "S3",
                                    "S4", "S5", "C1", "C2");
@@ -169,10 +207,14 @@ Json analysis_json(const optics::Lens& lens, const std::vector<optics::Finding>&
               {"reference_wavelength_nm", settings.reference_wavelength_nm},
               {"object_distance_mm", settings.object_distance},
               {"projection", optics::projection_name(lens.projection)},
+              {"findings", Json::list()},
               {"paraxial", reference_json(lens, analysis)},
               {"seidel", seidel_json(analysis.seidel)},
               {"fields", Json::list()},
               {"wavelengths", Json::list()}};
+    for (const optics::Finding& finding : findings) {
+        json["findings"].push_back(finding_json(finding));
+    }
     for (const analysis::FieldAnalysis& row : analysis.fields) {
         json["fields"].push_back(field_json(row));
     }
@@ -194,6 +236,8 @@ std::string analysis_text(const optics::Lens& lens, const std::vector<optics::Fi
                     std::isinf(settings.object_distance) ? "infinity" : fmt::format("{} mm", settings.object_distance));
     text += paraxial_text(lens, analysis);
     const double largest = analysis::largest_field_deg(settings);
+    text += fmt::format("Paraxial rays, the chief ray for {:.4g} deg, slopes behind the surfaces:\n", largest) +
+            ray_surfaces_text(lens, analysis);
     if (analysis.seidel) {
         text += fmt::format("Seidel sums for {:.4g} deg, mm:\n", largest) + seidel_text(*analysis.seidel);
     } else {
@@ -204,7 +248,3 @@ std::string analysis_text(const optics::Lens& lens, const std::vector<optics::Fi
 }
 
 }  // namespace lensproof::cli
-              {"findings", Json::list()},
-    for (const optics::Finding& finding : findings) {
-        json["findings"].push_back(finding_json(finding));
-    }

@@ -1,6 +1,7 @@
 // tests/cli/analyze_command_test.cpp — `lensproof analyze` as a user meets it: its JSON, its plots, what it refuses.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 
 #include "tests/cli/program.h"
@@ -43,6 +44,54 @@ TEST(Analyze, TheJsonHasEveryKeyOfTheContract) {
     EXPECT_EQ(json["fields"][4]["status"], "clipped");  // 30.1° is beyond the field
 }
 
+// What is asked for is what is reported, to rounding.
+TEST(Analyze, TheFNumberIsThatAtTheReferenceWavelength) {
+    for (const char* reference_nm : {"450", "550", "700"}) {
+        const Json json =
+            analysis({"tessar", "--f-number", "5", "--reference-wavelength", reference_nm, "--fields", "0"});
+        EXPECT_NEAR(json["paraxial"]["f_number"].get<double>(), 5.0, 1e-12);
+    }
+}
+
+// 50 digits give the ray through the stop's edge and that through its centre at 24° (as in
+// tests/engine/analysis/paraxial_rays_test.cpp).
+TEST(Analyze, FollowsTheParaxialRaysFromSurfaceToSurface) {
+    const Json surfaces = analysis({"tessar", "--fields", "24"})["paraxial"]["surfaces"];
+    ASSERT_EQ(surfaces.size(), 8U);
+    const Json& last = surfaces[7];
+    EXPECT_EQ(last["surface"], 8);
+    EXPECT_NEAR(last["marginal_ray_height_mm"].get<double>(), 14.627617159472427, 1e-10);
+    EXPECT_NEAR(last["marginal_ray_slope"].get<double>(), -0.18323287175259023, 1e-10);
+    EXPECT_NEAR(last["chief_ray_height_mm"].get<double>(), 11.734793844646871, 1e-10);
+    EXPECT_NEAR(last["chief_ray_slope"].get<double>(), 0.4108009180565909, 1e-10);
+    EXPECT_NEAR(surfaces[0]["marginal_ray_incidence"].get<double>(), 0.4264824248005844, 1e-10);
+    EXPECT_NEAR(surfaces[0]["chief_ray_incidence"].get<double>(), 0.3018679409957831, 1e-10);
+    const std::string text = Workplace().run({"analyze", "tessar", "--fields", "24"}).out;
+    for (const char* number : {"14.627617", "-0.183233", "11.734794", "0.410801"}) {
+        EXPECT_NE(text.find(number), std::string::npos) << number;
+    }
+}
+
+// An unknown glass that stands beside its figures is traced by them, and the analysis says so.
+TEST(Analyze, SaysWhichGlassIsTracedByItsFiguresAlone) {
+    const Workplace place;
+    place.file("known.toml", kSinglet);
+    place.file("unknown.toml", with(kSinglet, "\"BK7\"", "\"XBK77\", n_d = 1.517, V_d = 64.2"));
+    EXPECT_EQ(place.json({"analyze", "known.toml"})["findings"], Json::array());
+    const Json findings = place.json({"analyze", "unknown.toml"})["findings"];
+    ASSERT_EQ(findings.size(), 1U);
+    EXPECT_EQ(findings[0]["code"], "glass-unknown");
+    EXPECT_EQ(findings[0]["severity"], "warning");
+    EXPECT_EQ(findings[0]["surface"], 1);
+    const Json checked = Json::parse(place.run({"check", "unknown.toml", "--json", "-"}).out)["lenses"][0]["findings"];
+    EXPECT_NE(std::find(checked.begin(), checked.end(), findings[0]), checked.end()) << "in check's own words";
+    const std::string text = place.run({"analyze", "unknown.toml"}).out;
+    for (const char* word : {"XBK77", "surface 1", "n_d = 1.517 and V_d = 64.2"}) {
+        EXPECT_NE(text.find(word), std::string::npos) << text;
+    }
+    EXPECT_EQ(place.json({"analyze", "unknown.toml", "--index", "XBK77=1.5"})["findings"], Json::array());
+}
+
 TEST(Analyze, BeyondTheFieldThereIsNothing) {
     const Json json = analysis({"petzval", "--fields", "85", "--wavelengths", "587.5618"});
     const Json& row = json["fields"][0];
@@ -56,6 +105,8 @@ TEST(Analyze, AFisheyeGoesBeyondNinetyDegrees) {
     const Json json = analysis({"fisheye-220", "--fields", "0,90,105", "--wavelengths", "587.5618"});
     EXPECT_TRUE(json["seidel"].is_null());
     EXPECT_TRUE(json["paraxial"]["lagrange_invariant_mm"].is_null());
+    EXPECT_TRUE(json["paraxial"]["surfaces"][0]["chief_ray_slope"].is_null());
+    EXPECT_TRUE(json["paraxial"]["surfaces"][0]["marginal_ray_slope"].is_number());
     for (const Json& row : json["fields"]) {
         EXPECT_EQ(row["status"], "ok");
         EXPECT_GT(row["relative_illumination"].get<double>(), 0.1);
