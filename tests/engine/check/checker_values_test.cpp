@@ -110,6 +110,51 @@ TEST(CheckerValues, TheRimReachesPastASensorTooNear) {
                    {"sensor-inside-lens", optics::Severity::error, 8, 3.0 - sphere_sag(20.0, 16.5)});
 }
 
+// A plate of 1.4 mm and n = 1.5168 sets the image back by (1 − 1/n) t = 0.477 mm (Born & Wolf 4.4); in the table, it
+// makes the same lens meet the same distance.
+TEST(CheckerValues, ABackFocusTooLongByAThirdOfAPlateIsACoverGlass) {
+    constexpr double kPlate = 1.4;
+    constexpr double kIndex = 1.5168;
+    const auto further = [](double millimetres) {
+        optics::Prescription lens = half_ball();
+        lens.stated.efl_mm = 20.0;
+        lens.surfaces.back().thickness_mm += millimetres;
+        return lens;
+    };
+    const double set_back = (1.0 - 1.0 / kIndex) * kPlate;
+    const CheckReport left_out = checked(further(set_back));
+    const optics::Finding* finding = find(left_out, "back-focus");
+    ASSERT_NE(finding, nullptr) << said(left_out);
+    EXPECT_EQ(finding->severity, optics::Severity::info);
+    EXPECT_TRUE(says(finding->message, "a cover glass of 1.4 mm would explain it")) << finding->message;
+
+    optics::Prescription listed = further(set_back);
+    listed.surfaces.back().thickness_mm -= 5.0 + kPlate;
+    listed.surfaces.push_back({.thickness_mm = kPlate, .semi_diameter_mm = 9.0, .medium = {.n_d = kIndex}});
+    listed.surfaces.push_back({.thickness_mm = 5.0, .semi_diameter_mm = 9.0});
+    EXPECT_EQ(find(checked(listed), "back-focus"), nullptr) << said(checked(listed));
+
+    // A guess where no focal length says that the lens is as meant; no word where it is not, where the sensor stands
+    // too near, where no sensor's glass is so thick, or where a digit explains it: 20.5 read for 20.05.
+    optics::Prescription unclaimed = further(set_back);
+    unclaimed.stated = {};
+    ASSERT_NE(find(checked(unclaimed), "back-focus"), nullptr);
+    EXPECT_EQ(find(checked(unclaimed), "back-focus")->severity, optics::Severity::warning);
+    EXPECT_TRUE(says(find(checked(unclaimed), "back-focus")->message, "cover glass"));
+    optics::Prescription misstated = further(set_back);
+    misstated.stated.efl_mm = 20.5;
+    optics::Prescription swapped = further(0.5);
+    swapped.surfaces.back().thickness_mm = 20.5;
+    swapped.surfaces[1].radius_mm = -10.025;  // f = 20.05 mm
+    swapped.stated.efl_mm = 20.05;
+    for (const optics::Prescription& lens : {misstated, swapped, further(-set_back), further(4.0 * set_back)}) {
+        const CheckReport report = checked(lens);
+        ASSERT_NE(find(report, "back-focus"), nullptr);
+        EXPECT_EQ(find(report, "back-focus")->severity, optics::Severity::error) << said(report);
+        EXPECT_FALSE(says(find(report, "back-focus")->message, "cover glass"));
+    }
+}
+
 // The Tessar's thicknesses add up to 119.451 mm.
 TEST(CheckerValues, TheTrackIsTheSumOfTheThicknesses) {
     optics::Prescription lens = tessar();
