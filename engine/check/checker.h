@@ -14,6 +14,7 @@ struct CheckSettings {
     double wavelength_nm = spectral::kLineD;   // of the first-order data and of the rays
     optics::IndexOverrides indices;            // constant indices in place of glasses
     std::optional<std::size_t> zoom_position;  // counted from 0; without one, every position is checked
+    bool manufacture = false;                  // whether customs of manufacture are held against the lens, too
 };
 
 /// The lens's first-order data at one zoom position, which has no name where the lens does not zoom.

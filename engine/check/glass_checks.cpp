@@ -22,9 +22,10 @@ constexpr double kIndexRounding = 5.1e-4;
 constexpr double kIndexWarning = 2e-4;
 constexpr double kAbbeError = 0.05;  // relative
 constexpr double kAbbeWarning = 0.01;
-// Rule 17: what renders take by default.
+// Rule 17: what renders take by default, of which patents that list indices give no more than the lines g to C.
 constexpr double kRenderFrom = 400.0;
 constexpr double kRenderTo = 700.0;
+constexpr double kListedLines[] = {spectral::kLineG, spectral::kLineC};
 
 optics::GlassMatch resolve(const CheckedLens& checked, const std::string& name) {
     return checked.known_glasses->resolve(name, checked.prescription.preferred_makers);
@@ -148,16 +149,18 @@ bool is_given_by_figures(const CheckedLens& checked, int i) {
     return checked.is_glass_behind(i) && !is_named && medium.n_d && medium.indices.empty();
 }
 
-/// Rule 16.
+/// Rule 16. A table that gives no glass's dispersion is silent about colour; one that leaves some out has a gap.
 void check_achromatic(const CheckedLens& checked, Findings& findings) {
     std::vector<int> surfaces;
+    std::size_t glasses = 0;
     for (int i = 0; i < checked.size(); ++i) {
         if (is_given_by_figures(checked, i) && !checked.row(i).medium.V_d) {
             surfaces.push_back(i + 1);
         }
+        glasses += checked.is_glass_behind(i) ? 1 : 0;
     }
     if (!surfaces.empty()) {
-        findings.push_back({"no-dispersion", warning, surfaces.front(),
+        findings.push_back({"no-dispersion", surfaces.size() < glasses ? warning : info, surfaces.front(),
                             fmt::format("no Abbe number and no known name for the glass behind surface{} {}: a "
                                         "spectral render sees one colour there",
                                         surfaces.size() > 1 ? "s" : "", fmt::join(surfaces, ", "))});
@@ -223,8 +226,14 @@ void check_wavelengths(const CheckedLens& checked, int i, Findings& findings) {
         return;
     }
     const bool nothing_computed = *outside == asked;
+    const bool is_usual = outside >= wavelengths.end() - 2 &&  // of what renders take
+                          std::ranges::all_of(kListedLines, [&](double line) { return optics::covers(glass, line); });
     findings.push_back(
-        {"wavelength-range", nothing_computed ? error : warning, i + 1,
+        {"wavelength-range",
+         nothing_computed ? error
+         : is_usual       ? info
+                          : warning,
+         i + 1,
          fmt::format("{} nm is outside the range of {}, {} to {} nm{}", *outside, glass.name, glass.min_wavelength_nm,
                      glass.max_wavelength_nm, nothing_computed ? ": nothing is computed there" : ""),
          *outside, *outside < glass.min_wavelength_nm ? glass.min_wavelength_nm : glass.max_wavelength_nm, "nm"});

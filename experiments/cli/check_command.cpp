@@ -28,6 +28,7 @@ struct CheckOptions {
     std::vector<std::string> indices;
     double wavelength_nm = spectral::kLineD;
     std::string zoom;
+    bool manufacture = false;
     std::string plot_file;
     std::vector<std::string> glass_catalogues;
 };
@@ -163,7 +164,10 @@ int run_check(const CheckOptions& options) {
     std::vector<check::CheckSettings> settings;
     for (const std::string& lens : options.lenses) {
         prescriptions.push_back(formats::read_prescription(formats::find_lens_file(lens)));
-        settings.push_back({.wavelength_nm = options.wavelength_nm, .indices = indices, .zoom_position = {}});
+        settings.push_back({.wavelength_nm = options.wavelength_nm,
+                            .indices = indices,
+                            .zoom_position = {},
+                            .manufacture = options.manufacture});
         if (!options.zoom.empty()) {
             settings.back().zoom_position = optics::find_zoom_position(prescriptions.back(), options.zoom);
         }
@@ -206,6 +210,9 @@ void add_check_command(Program& program) {
         .shows_default();
     command.add_option("--zoom", options->zoom, "Check this zoom position alone (default: every one)")
         .type_name("NAME|N");
+    command.add_flag("--manufacture", options->manufacture,
+                     "Hold customs of manufacture against them, too, as infos: steep and nearly flat surfaces, thin "
+                     "centres and edges, narrow air gaps, centring");
     command.add_option("--plot", options->plot_file, "Draw the lens's section, with what was found marked")
         .type_name("OUT.svg");
     add_glass_catalogue_option(command, options->glass_catalogues);

@@ -1,6 +1,7 @@
 // tests/cli/check_test.cpp — `lensproof check` as a user meets it: statuses, JSON, claims, the drawing.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 
 #include "tests/cli/program.h"
@@ -107,6 +108,20 @@ TEST(Check, AZoomIsCheckedAtOnePositionOrAtAll) {
     const Json last = Json::parse(place.run({"check", "canon-zoom-70-200", "--zoom", "3", "--json", "-"}).out);
     EXPECT_EQ(last["lenses"][0]["computed"], all["zoom"][2]);
     EXPECT_EQ(place.run({"check", "canon-zoom-70-200", "--zoom", "9"}).status, 2);
+}
+
+TEST(Check, SpeaksOfManufactureWhenAskedTo) {
+    const Workplace place;
+    const auto infos = [](const Json& report, const char* code) {
+        return std::ranges::count_if(report["lenses"][0]["findings"], [&](const Json& finding) {
+            return finding["code"] == code && finding["severity"] == "info";
+        });
+    };
+    const Json report = Json::parse(place.run({"check", "biotar", "--json", "-"}).out);
+    const Json customs = Json::parse(place.run({"check", "biotar", "--manufacture", "--json", "-"}).out);
+    EXPECT_EQ(infos(report, "steep-surface"), 0);
+    EXPECT_GT(infos(customs, "steep-surface"), 0);
+    EXPECT_EQ(report["lenses"][0]["computed"], customs["lenses"][0]["computed"]);
 }
 
 }  // namespace lensproof::check_test

@@ -13,9 +13,10 @@
 
 namespace lensproof::check {
 
-inline CheckReport checked(const optics::Prescription& prescription, const optics::StatedData& claims = {}) {
+inline CheckReport checked(const optics::Prescription& prescription, const optics::StatedData& claims = {},
+                           const CheckSettings& settings = {}) {
     static const optics::GlassCatalogue shipped = formats::shipped_glasses();
-    return check_prescription(prescription, claims, shipped);
+    return check_prescription(prescription, claims, shipped, settings);
 }
 
 /// The first finding of that code, at that surface where one is given; else null.

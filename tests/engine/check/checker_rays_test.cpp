@@ -70,7 +70,7 @@ TEST(CheckerRays, AStopInsideASurfacesSagTurnsNoRayBack) {
     lens.surfaces[1] = {.radius_mm = 20.0, .thickness_mm = 2.0, .semi_diameter_mm = 7.0};
     lens.surfaces[2] = {.thickness_mm = 0.0, .semi_diameter_mm = 6.0, .is_stop = true};
     const auto close_up = [](P& p) { p.surfaces[1].thickness_mm = 0.3; };
-    expect_planted(at_field(lens, 10.0), close_up, {"surfaces-cross", optics::Severity::warning, 2});
+    expect_planted(at_field(lens, 10.0), close_up, {"surfaces-cross", optics::Severity::info, 2});
     optics::Prescription closed_up = at_field(lens, 10.0);
     close_up(closed_up);
     const CheckReport report = checked(closed_up);
@@ -108,7 +108,7 @@ TEST(CheckerRays, TheHalfBallsBlur) {
     }
     const double blur = std::sqrt((yy - yt * yt / tt) / weights);
     expect_planted(half_ball(1.0), [=](P& p) { p.surfaces[0].semi_diameter_mm = kRadius; },
-                   {"blur", optics::Severity::warning, 0, 100.0 * blur / 20.0, 0.005 * 100.0 * blur / 20.0, 0.25});
+                   {"blur", optics::Severity::warning, 0, 100.0 * blur / 20.0, 0.005 * 100.0 * blur / 20.0, 0.08});
 }
 
 // Of a single element f_F − f_C = −f (n_F − n_C)(n_d − 1) / ((n_F − 1)(n_C − 1)), which is −f / V but for terms of
@@ -124,16 +124,16 @@ TEST(CheckerRays, ASingleElementsColourIsOneOverV) {
 TEST(CheckerRays, AFlatFrontIsMetAtTheFieldsAngle) {
     expect_planted(at_field(half_ball(), 55.0), field(65.0),
                    {"incidence-angle", optics::Severity::info, 1, 65.0, 1e-6, 60.0});
-    expect_planted(at_field(half_ball(), 55.0), field(78.0),
-                   {"incidence-angle", optics::Severity::warning, 1, 78.0, 1e-6, 75.0});
+    expect_planted(at_field(half_ball(), 55.0), field(82.0),
+                   {"incidence-angle", optics::Severity::warning, 1, 82.0, 1e-6, 80.0});
 }
 
 // A hole in the front surface looks narrower by cos θ. It is counted in cells of a sixtieth of its radius, of which it
 // cuts some hundreds; half of them are counted, so no more than one part in fifty is off.
 TEST(CheckerRays, AStopInFrontVignettesWithTheCosine) {
-    const double open_percent = 100.0 * std::cos(75.0 * kDegree);
-    expect_planted(at_field(half_ball(), 65.0), field(75.0),
-                   {"vignetting", optics::Severity::warning, 0, open_percent, 0.02 * open_percent, 30.0});
+    const double open_percent = 100.0 * std::cos(80.0 * kDegree);
+    expect_planted(at_field(half_ball(), 65.0), field(80.0),
+                   {"vignetting", optics::Severity::warning, 0, open_percent, 0.02 * open_percent, 20.0});
 }
 
 // The chief ray leaves the front at asin(sin θ / n) and goes straight on to the sensor, f + R = 30 mm behind.

@@ -1,0 +1,138 @@
+// A warning that every lens draws says nothing. Of lenses known to be good at most 15 % may draw a warning, and at most
+// 3 % an error.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <string>
+
+#include "engine/base/csv.h"
+#include "engine/formats/prescription/prescription_file.h"
+#include "tests/complaint.h"
+#include "tests/engine/check/checker_case.h"
+#include "tests/places.h"
+
+namespace lensproof::check::checker_population_test {
+
+struct Tally {
+    int lenses = 0;
+    int warned = 0;
+    int wrong = 0;
+    std::string said;
+
+    void add(const std::string& name, const CheckReport& report) {
+        bool is_warned = false;
+        for (const optics::Finding& finding : report.findings) {
+            is_warned = is_warned || finding.severity == optics::Severity::warning;
+            if (finding.severity != optics::Severity::info) {
+                said += name + " " + finding.code + ": " + finding.message + "\n";
+            }
+        }
+        ++lenses;
+        warned += is_warned ? 1 : 0;
+        wrong += report.ok() ? 0 : 1;
+    }
+};
+
+void expect_few(const Tally& tally) {
+    EXPECT_LE(tally.warned, 0.15 * tally.lenses) << tally.said;
+    EXPECT_LE(tally.wrong, 0.03 * tally.lenses) << tally.said;
+}
+
+/// Patents whose lens reproduces the distortion of the photographed product, and the focal length that an independent
+/// tracer found in each. Empty where the data are not beside the checkout.
+std::map<std::string, double> products() {
+    const std::filesystem::path pairs = shared_data() / "matched" / "pairs.csv";
+    std::map<std::string, double> focal_lengths;
+    if (std::filesystem::exists(pairs)) {
+        CsvTable table = CsvTable::read(pairs);
+        while (const std::optional<CsvRow> row = table.next()) {
+            focal_lengths[row->text("prescription")] = row->number("efl_mm");
+        }
+    }
+    return focal_lengths;
+}
+
+optics::Prescription product(const std::string& name) {
+    return formats::read_prescription(shared_data() / "matched" / "prescriptions" / (name + ".csv"));
+}
+
+/// Whether the file holds terms of surfaces that are not traced here.
+bool is_read_whole(const optics::Prescription& lens) {
+    return std::ranges::none_of(
+        lens.remarks, [](const optics::Finding& remark) { return remark.severity == optics::Severity::error; });
+}
+
+TEST(CheckerPopulation, FewShippedLensesDrawAWarning) {
+    Tally tally;
+    for (const std::string& name : formats::shipped_lens_names()) {
+        tally.add(name, checked(formats::read_prescription(formats::find_lens_file(name))));
+    }
+    expect_few(tally);
+}
+
+TEST(CheckerPopulation, FewProductsDrawAWarning) {
+    Tally tally;
+    for (const auto& [name, focal_length] : products()) {
+        if (const optics::Prescription lens = product(name); is_read_whole(lens)) {
+            tally.add(name, checked(lens, {.efl_mm = focal_length}));
+        }
+    }
+    if (tally.lenses == 0) {
+        GTEST_SKIP() << "no patents of products here";
+    }
+    EXPECT_GE(tally.lenses, 40);
+    expect_few(tally);
+}
+
+// The same, and further ones, by their tables alone.
+TEST(CheckerPopulation, FewPatentsDrawAWarningWhereNothingIsStated) {
+    const std::filesystem::path folder = shared_data() / "matched" / "prescriptions";
+    if (!std::filesystem::exists(folder)) {
+        GTEST_SKIP() << "no patents of products here";
+    }
+    Tally tally;
+    for (const auto& entry : std::filesystem::directory_iterator(folder)) {
+        if (const optics::Prescription lens = formats::read_prescription(entry.path()); is_read_whole(lens)) {
+            tally.add(entry.path().stem().string(), checked(lens));
+        }
+    }
+    EXPECT_GE(tally.lenses, 45);
+    expect_few(tally);
+}
+
+// Two patents count the sensor's cover glass in the last distance and leave it out of the table.
+TEST(CheckerPopulation, CoverGlassesThatPatentsLeaveOutAreNamed) {
+    const std::map<std::string, double> focal_lengths = products();
+    if (focal_lengths.empty()) {
+        GTEST_SKIP() << "no patents of products here";
+    }
+    for (const auto& [name, thickness] : {std::pair{"ricohgr3x", "1.4 mm"}, std::pair{"nikonz135f18", "1.6 mm"}}) {
+        const CheckReport report = checked(product(name), {.efl_mm = focal_lengths.at(name)});
+        const optics::Finding* finding = find(report, "back-focus");
+        ASSERT_NE(finding, nullptr) << name;
+        EXPECT_EQ(finding->severity, optics::Severity::info) << name;
+        EXPECT_TRUE(says(finding->message, std::string("a cover glass of ") + thickness)) << finding->message;
+    }
+}
+
+// Customs of manufacture add infos, and change nothing else.
+TEST(CheckerPopulation, ManufactureAddsInfosAlone) {
+    int more = 0;
+    for (const std::string& name : formats::shipped_lens_names()) {
+        const optics::Prescription lens = formats::read_prescription(formats::find_lens_file(name));
+        Tally without;
+        Tally with;
+        const CheckReport report = checked(lens);
+        const CheckReport customs = checked(lens, {}, {.indices = {}, .zoom_position = {}, .manufacture = true});
+        without.add(name, report);
+        with.add(name, customs);
+        EXPECT_EQ(without.said, with.said);
+        more += customs.findings.size() > report.findings.size() ? 1 : 0;
+    }
+    EXPECT_GT(more, 20);
+}
+
+}  // namespace lensproof::check::checker_population_test
