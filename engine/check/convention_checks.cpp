@@ -30,7 +30,8 @@ constexpr double kNormalisedTo = 1.1;
 // Rule 24.
 constexpr double kTwiceFrom = 1.8;
 constexpr double kTwiceTo = 2.2;
-constexpr double kFastest = 0.5;  // f-number: n sin u' cannot exceed 1 in air
+constexpr double kFastest = 0.5;   // f-number: n sin u' cannot exceed 1 in air
+constexpr double kSlowest = 16.0;  // the slowest of 119 tables, the Gyogyotto, has f/8
 
 void warn(Findings& findings, const char* code, int surface, std::string message, double value, double limit) {
     findings.push_back({code, warning, surface, std::move(message), value, limit});
@@ -194,13 +195,25 @@ void check_one_diameter(const CheckedLens& checked, int i, Findings& findings) {
     }
 }
 
-void check_fastest(const CheckedLens& checked, Findings& findings) {
-    if (checked.paraxial && std::abs(checked.paraxial->f_number) < kFastest && !checked.assumed_stop) {
-        warn(findings, "f-number", checked.lens->stop_index() + 1,
+/// What no lens's speed is.
+void check_speed(const CheckedLens& checked, Findings& findings) {
+    if (!checked.paraxial || checked.assumed_stop) {
+        return;
+    }
+    const double f_number = std::abs(checked.paraxial->f_number);
+    const int stop = checked.lens->stop_index() + 1;
+    if (f_number < kFastest) {
+        warn(findings, "f-number", stop,
              fmt::format("the table's f-number is {:.3f}, and none below 0.5 images sharply: diameters in place of "
                          "semi-diameters?",
-                         checked.paraxial->f_number),
-             checked.paraxial->f_number, kFastest);
+                         f_number),
+             f_number, kFastest);
+    } else if (f_number > kSlowest && std::isfinite(f_number)) {
+        warn(findings, "f-number", stop,
+             fmt::format("the table's f-number is {:.3g}, slower than any lens is wide open: semi-diameters in inches "
+                         "or cm?",
+                         f_number),
+             f_number, kSlowest);
     }
 }
 
@@ -237,7 +250,7 @@ void check_order(const CheckedLens& checked, const Restoration& restoration, Fin
 
 void check_conventions(const CheckedLens& checked, Findings& findings) {
     check_all_diameters(checked, findings);
-    check_fastest(checked, findings);
+    check_speed(checked, findings);
     for (int i = 0; i < checked.size(); ++i) {
         check_one_diameter(checked, i, findings);
     }

@@ -149,6 +149,12 @@ std::vector<Defect> defects_of_the_tessar() {
              p.surfaces[3].semi_diameter_mm = 90;
          },
          "f-number", warning, 4},
+        {"slower than f/16",
+         [](P& p) {
+             p.stated = {};
+             p.surfaces[3].semi_diameter_mm = 2;
+         },
+         "f-number", warning, 4},
         {"a radius in inches", [](P& p) { p.surfaces[0].radius_mm /= 25.4; }, "units", warning, 1},
         {"a gap in cm", [](P& p) { p.surfaces[5].thickness_mm /= 10; }, "units", warning, 6},
         {"f = 1",
