@@ -9,11 +9,14 @@
 #include <map>
 #include <set>
 
+#include "engine/base/csv.h"
 #include "engine/base/infinity.h"
 #include "engine/check/checked_lens.h"
+#include "engine/check/rays.h"
 #include "engine/check/sag.h"
 #include "engine/formats/glass/shipped_glasses.h"
 #include "engine/formats/prescription/prescription_file.h"
+#include "tests/places.h"
 
 namespace lensproof::planted_errors_test {
 
@@ -31,6 +34,11 @@ const std::map<std::string, std::set<std::string>> kRightNames = {
     {"radius: digits swapped", {"focal-length", "back-focus"}},
     {"radius: decimal point lost", {"focal-length", "back-focus", "extreme-value"}},
     {"radius: in inches or cm", {"focal-length", "back-focus", "units"}},
+    {"radius: asphere's sign turned", {"blur", "marginal-ray", "asphere-turns-over", "asphere-ends"}},
+    {"rows swapped", {"focal-length", "back-focus", "negative-power", "no-power", "blur"}},
+    {"thickness: decimal point lost", {"focal-length", "back-focus"}},
+    {"thickness: doubled", {"focal-length", "back-focus"}},
+    {"index: digits swapped", {"focal-length", "back-focus", "index-range"}},
     {"thickness: digits swapped", {"focal-length", "back-focus"}},
     {"thickness: negative", {"negative-thickness"}},
     {"thickness: in inches or cm", {"focal-length", "back-focus", "units"}},
@@ -40,7 +48,7 @@ const std::map<std::string, std::set<std::string>> kRightNames = {
     {"all semi-diameters in inches or cm", {"units", "f-number"}},
     {"all diameters for semi-diameters", {"diameters", "f-number"}},
     {"one diameter for a semi-diameter",
-     {"diameters", "edge-thickness", "surfaces-cross", "semi-diameter-beyond-sphere", "steep-surface", "f-number"}},
+     {"diameters", "edge-thickness", "surfaces-cross", "semi-diameter-beyond-sphere", "f-number"}},
     {"glass: the nearest", {"focal-length", "back-focus", "glass-index", "glass-abbe", "axial-colour"}},
     {"glass: another of the lens", {"focal-length", "back-focus", "glass-index", "glass-abbe", "axial-colour"}},
     {"glass: far away", {"focal-length", "back-focus", "glass-index", "glass-abbe", "axial-colour"}},
@@ -51,8 +59,10 @@ const std::map<std::string, std::set<std::string>> kRightNames = {
     {"list reversed", {"reversed", "focal-length", "back-focus"}},
 };
 
-bool is_judged_by_focus(const std::string& kind) {
-    return kRightNames.at(kind).contains("back-focus") || kRightNames.at(kind).contains("focal-length");
+/// Whether such a slip is one where it changes images; others are wrong whatever they change.
+bool is_judged_by_images(const std::string& kind) {
+    const std::set<std::string>& names = kRightNames.at(kind);
+    return names.contains("back-focus") || names.contains("focal-length") || names.contains("blur");
 }
 
 std::string digits_of(double value) {
@@ -123,6 +133,16 @@ class Corruptor {
         set("radius: in inches or cm", radius / 25.4);
         set("radius: in inches or cm", radius / 10.0);
         set("not a number", kNaN);
+        for (std::size_t k = 0; k < row(i).asphere.size(); ++k) {
+            if (const double term = row(i).asphere[k]; term != 0.0) {
+                plant("radius: asphere's sign turned", i + 1, "",
+                      [&](optics::Prescription& p) { p.surfaces[i].asphere[k] = -term; });
+            }
+        }
+        if (i + 1 < size()) {
+            plant("rows swapped", i + 1, "",
+                  [&](optics::Prescription& p) { std::swap(p.surfaces[i], p.surfaces[i + 1]); });
+        }
     }
 
     void corrupt_thickness(int i) {
@@ -138,6 +158,11 @@ class Corruptor {
         for (const double value : swapped(thickness)) {
             set("thickness: digits swapped", value);
         }
+        const std::string text = digits_of(thickness);
+        if (const std::size_t point = text.find('.'); point != std::string::npos) {
+            set("thickness: decimal point lost", number(std::string(text).erase(point, 1)));
+        }
+        set("thickness: doubled", 2.0 * thickness);
         set("thickness: negative", -thickness);
         set("thickness: in inches or cm", thickness / 25.4);
         set("thickness: in inches or cm", thickness / 10.0);
@@ -203,6 +228,12 @@ class Corruptor {
                 plant("glass: another of the lens", i + 1, "",
                       [&](optics::Prescription& p) { p.surfaces[i].medium = other.medium; });
                 break;
+            }
+        }
+        if (row(i).medium.n_d && row(i).medium.glass.empty()) {
+            for (const double value : swapped(*row(i).medium.n_d)) {
+                plant("index: digits swapped", i + 1, digits_of(*row(i).medium.n_d),
+                      [&](optics::Prescription& p) { p.surfaces[i].medium.n_d = value; });
             }
         }
         plant("glass: unknown name", i + 1, "", [&](optics::Prescription& p) {
@@ -316,24 +347,79 @@ std::set<std::string> new_codes(const Keys& untouched, const Keys& corrupted) {
     return codes;
 }
 
-/// Below the rounding of published tables: a change of the focus by less than 0.1 % of the focal length is no error
-/// that anyone could see in a table.
-bool is_measurable(const check::CheckReport& untouched, const check::CheckReport& corrupted) {
-    if (untouched.computed.empty() || corrupted.computed.empty()) {
-        return true;
+/// A lens that is known to be good.
+struct GoodLens {
+    std::string name;
+    optics::Prescription prescription;
+    optics::StatedData claims;
+    std::size_t every = 1;  // of its corruptions, how many are planted: each, each second, …
+};
+
+/// What ships, and beside the checkout, where they are there, patents of photographed products with the focal length
+/// that an independent tracer found.
+std::vector<GoodLens> good_lenses() {
+    std::vector<GoodLens> lenses;
+    for (const std::string& name : formats::shipped_lens_names()) {
+        lenses.push_back({name, formats::read_prescription(formats::find_lens_file(name)), {}, 2});
     }
-    const optics::ParaxialData& before = untouched.computed.front().paraxial;
-    const optics::ParaxialData& after = corrupted.computed.front().paraxial;
-    const double limit = 1e-3 * std::abs(before.efl);
-    return !(std::abs(after.efl - before.efl) < limit && std::abs(after.bfl - before.bfl) < limit);
+    const std::filesystem::path matched = shared_data() / "matched";
+    if (!std::filesystem::exists(matched / "pairs.csv")) {
+        return lenses;
+    }
+    std::map<std::string, double> focal_lengths;
+    CsvTable pairs = CsvTable::read(matched / "pairs.csv");
+    while (const std::optional<CsvRow> row = pairs.next()) {
+        focal_lengths[row->text("prescription")] = row->number("efl_mm");
+    }
+    for (const auto& [name, focal_length] : focal_lengths) {
+        const optics::Prescription product = formats::read_prescription(matched / "prescriptions" / (name + ".csv"));
+        if (std::ranges::none_of(product.remarks, [](const optics::Finding& remark) {
+                return remark.severity == optics::Severity::error;  // surfaces that are not traced here
+            })) {
+            lenses.push_back({name, product, {.efl_mm = focal_length}, 7});
+        }
+    }
+    return lenses;
 }
 
-/// Of one kind. What is named and restored is counted among the measurable.
+/// What an image shows of a lens: its scale, where it lies, and how sharp it can be.
+struct Imaging {
+    std::optional<check::Focus> focus;
+    double blur = 0.0;  // mm, rms on the axis at the best focus; NaN where no ray passes
+};
+
+Imaging imaging_of(const GoodLens& good, const optics::Prescription& prescription,
+                   const optics::GlassCatalogue& glasses) {
+    const check::CheckedLens checked =
+        check::make_checked_lens(optics::at_zoom_position(prescription, 0), good.claims, glasses, {});
+    Imaging imaging{.focus = checked.focus, .blur = kNaN};
+    if (checked.traced && checked.focus) {
+        const double height = check::axial_beam(checked).height;
+        imaging.blur = height > 0.0 ? check::axial_blur(checked, height) : kNaN;
+    }
+    return imaging;
+}
+
+/// Whether a change can be seen in images: in their scale, by 1 %; in where they lie, by 0.2 % of the focal length,
+/// which at f/2.8 blurs by the customary circle of confusion, 1/1500 of it; or in the sharpest of them, by a blur of
+/// that radius.
+bool matters(const Imaging& before, const Imaging& after) {
+    if (!before.focus || !after.focus || std::isnan(before.blur) || std::isnan(after.blur)) {
+        return true;
+    }
+    const double f = std::abs(before.focus->efl);
+    const bool is_same = std::abs(after.focus->efl - before.focus->efl) < 0.01 * f &&
+                         std::abs(after.focus->bfl - before.focus->bfl) < 0.002 * f &&
+                         std::abs(after.blur - before.blur) < f / 3000.0;
+    return !is_same;
+}
+
+/// Of one kind. What is named and restored is counted among those that matter.
 struct Tally {
     int planted = 0;
-    int measurable = 0;
+    int mattering = 0;
     int found_of_all = 0;
-    int found_of_measurable = 0;
+    int found_of_mattering = 0;
     int named_rightly = 0;
     int restored = 0;
 };
@@ -342,20 +428,23 @@ TEST(PlantedErrors, AreFoundAndTheUntouchedLibraryIsClean) {
     const optics::GlassCatalogue glasses = formats::shipped_glasses();
     std::map<std::string, Tally> tallies;
     Tally total;
-    int lenses = 0;
+    std::size_t lenses = 0;
     int false_errors = 0;
     const bool verbose = std::getenv("LENSPROOF_LIST_MISSED") != nullptr;
-    for (const std::string& name : formats::shipped_lens_names()) {
-        const optics::Prescription good = formats::read_prescription(formats::find_lens_file(name));
-        const check::CheckReport untouched = check::check_prescription(good, {}, glasses);
+    for (const GoodLens& lens : good_lenses()) {
+        const optics::Prescription& good = lens.prescription;
+        const std::string& name = lens.name;
+        const check::CheckReport untouched = check::check_prescription(good, lens.claims, glasses);
+        const Imaging imaging = imaging_of(lens, good, glasses);
         ++lenses;
         false_errors += untouched.ok() ? 0 : 1;
         const Corruptor corruptor(good, glasses);
-        for (const Corruption& corruption : corruptor.all()) {
-            const check::CheckReport report = check::check_prescription(corruption.prescription, {}, glasses);
+        for (std::size_t at = lenses % lens.every; at < corruptor.all().size(); at += lens.every) {
+            const Corruption& corruption = corruptor.all()[at];
+            const check::CheckReport report = check::check_prescription(corruption.prescription, lens.claims, glasses);
             const std::set<std::string> codes = new_codes(keys_of(untouched), keys_of(report));
-            const bool measurable =
-                !is_judged_by_focus(corruption.kind) || is_measurable(untouched, report) || corruption.surface == 0;
+            const bool mattering = !is_judged_by_images(corruption.kind) || corruption.surface == 0 ||
+                                   matters(imaging, imaging_of(lens, corruption.prescription, glasses));
             const bool named = std::ranges::any_of(
                 codes, [&](const std::string& code) { return kRightNames.at(corruption.kind).contains(code); });
             const bool restored = std::ranges::any_of(report.findings, [&](const optics::Finding& finding) {
@@ -365,13 +454,13 @@ TEST(PlantedErrors, AreFoundAndTheUntouchedLibraryIsClean) {
             });
             for (Tally* tally : {&tallies[corruption.kind], &total}) {
                 ++tally->planted;
-                tally->measurable += measurable ? 1 : 0;
+                tally->mattering += mattering ? 1 : 0;
                 tally->found_of_all += codes.empty() ? 0 : 1;
-                tally->found_of_measurable += measurable && !codes.empty() ? 1 : 0;
-                tally->named_rightly += measurable && named ? 1 : 0;
-                tally->restored += measurable && restored ? 1 : 0;
+                tally->found_of_mattering += mattering && !codes.empty() ? 1 : 0;
+                tally->named_rightly += mattering && named ? 1 : 0;
+                tally->restored += mattering && restored ? 1 : 0;
             }
-            if (verbose && measurable && codes.empty()) {
+            if (verbose && mattering && codes.empty()) {
                 fmt::print("missed: {} surface {} {} (was {})\n", name, corruption.surface, corruption.kind,
                            corruption.was);
             }
@@ -379,8 +468,8 @@ TEST(PlantedErrors, AreFoundAndTheUntouchedLibraryIsClean) {
     }
     const auto print = [](const std::string& kind, const Tally& t) {
         fmt::print("{:36} {:6} {:6.1f} % {:6} {:6.1f} % {:6.1f} % {:6.1f} %\n", kind, t.planted,
-                   100.0 * t.found_of_all / t.planted, t.measurable, 100.0 * t.found_of_measurable / t.measurable,
-                   100.0 * t.named_rightly / t.measurable, 100.0 * t.restored / t.measurable);
+                   100.0 * t.found_of_all / t.planted, t.mattering, 100.0 * t.found_of_mattering / t.mattering,
+                   100.0 * t.named_rightly / t.mattering, 100.0 * t.restored / t.mattering);
     };
     fmt::print("{:36} {:>6} {:>8} {:>6} {:>8} {:>8} {:>8}\n", "planted in " + std::to_string(lenses) + " lenses", "all",
                "found", "*", "found*", "named*", "undone*");
@@ -389,19 +478,24 @@ TEST(PlantedErrors, AreFoundAndTheUntouchedLibraryIsClean) {
     }
     print("total", total);
     fmt::print(
-        "*: without those that move neither focal length nor back focus by 0.1 % of the focal length.\n"
+        "*: without those that leave the focal length within 1 %, the back focus within 0.2 % of it and the best blur\n"
+        "within 1/3000 of it.\n"
         "named: by a finding that is about such a slip; undone: a suggestion gives the right number back.\n"
         "untouched: {} of {} lenses with an error\n",
         false_errors, lenses);
     double sum_over_kinds = 0.0;
     for (const auto& [kind, tally] : tallies) {
-        const double fraction = static_cast<double>(tally.found_of_measurable) / tally.measurable;
-        EXPECT_GE(fraction, 0.90) << kind;
+        ASSERT_GT(tally.mattering, 0) << kind;
+        const double fraction = static_cast<double>(tally.found_of_mattering) / tally.mattering;
+        constexpr int kEnough = 20;  // below, one that is missed weighs more than a twentieth
+        if (tally.mattering >= kEnough) {
+            EXPECT_GE(fraction, 0.85) << kind;
+        }
         sum_over_kinds += fraction;
     }
     EXPECT_GE(sum_over_kinds / static_cast<double>(tallies.size()), 0.95);
-    EXPECT_GE(total.found_of_measurable, 0.95 * total.measurable);
-    EXPECT_LE(false_errors, 0.02 * lenses);
+    EXPECT_GE(total.found_of_mattering, 0.98 * total.mattering);
+    EXPECT_LE(false_errors, 0.02 * static_cast<double>(lenses));
 }
 
 }  // namespace lensproof::planted_errors_test
