@@ -42,9 +42,9 @@ void check_finite(const optics::PrescribedSurface& row, int surface, Findings& f
     if (!std::isfinite(row.conic)) {
         complain("conic constant", row.conic);
     }
-    for (const double term : row.asphere) {
-        if (!std::isfinite(term)) {
-            complain("aspheric coefficient", term);
+    for (int power = 1; power <= optics::kHighestPower; ++power) {
+        if (!std::isfinite(row.term(power))) {
+            complain("aspheric coefficient", row.term(power));
         }
     }
     for (const auto& [what, length] : {std::pair{"semi-diameter", row.semi_diameter_mm},
@@ -95,6 +95,12 @@ void check_extremes(const optics::PrescribedSurface& row, int surface, Findings&
     if (std::isfinite(row.conic) && std::abs(row.conic) > kLargestConic) {
         add(findings, "extreme-value", warning, surface,
             fmt::format("a conic constant of {} is beyond any that is ground", row.conic), row.conic, kLargestConic);
+    }
+    if (std::isfinite(row.term(1)) && row.term(1) != 0.0) {
+        add(findings, "pointed-surface", warning, surface,
+            fmt::format("its A1 of {} makes it a cone at the vertex: focal length and the like leave that out",
+                        row.term(1)),
+            row.term(1), 0.0);
     }
 }
 
@@ -186,7 +192,8 @@ void check_duplicate(const CheckedLens& checked, int i, Findings& findings) {
     const optics::PrescribedSurface& next = checked.row(i + 1);
     const bool same = !row.is_flat() && row.radius_mm == next.radius_mm && row.thickness_mm == next.thickness_mm &&
                       row.semi_diameter_mm == next.semi_diameter_mm && row.asphere == next.asphere &&
-                      row.medium.glass == next.medium.glass && row.medium.n_d == next.medium.n_d;
+                      row.odd_asphere == next.odd_asphere && row.medium.glass == next.medium.glass &&
+                      row.medium.n_d == next.medium.n_d;
     if (same) {
         add(findings, "duplicate-surface", warning, i + 2, "it repeats the surface before it to the digit");
     }

@@ -27,10 +27,12 @@ SpecialSurface<To> convert_special(const SpecialSurface<From>& from) {
     to.shape = {.curvature = static_cast<To>(from.shape.curvature),
                 .conic = static_cast<To>(from.shape.conic),
                 .terms = from.shape.terms,
+                .odd_terms = from.shape.odd_terms,
                 .is_toroid = from.shape.is_toroid,
                 .curvature_x = static_cast<To>(from.shape.curvature_x)};
-    std::ranges::transform(from.shape.asphere, to.shape.asphere.begin(),
-                           [](const From& term) { return static_cast<To>(term); });
+    const auto convert_term = [](const From& term) { return static_cast<To>(term); };
+    std::ranges::transform(from.shape.asphere, to.shape.asphere.begin(), convert_term);
+    std::ranges::transform(from.shape.odd_asphere, to.shape.odd_asphere.begin(), convert_term);
     to.vertex = {static_cast<To>(from.vertex.x), static_cast<To>(from.vertex.y)};
     std::ranges::transform(from.axes, to.axes.begin(), convert_vector<To, From>);
     for (const auto& layer : from.coating.layers) {

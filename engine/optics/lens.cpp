@@ -68,8 +68,9 @@ void require_traceable(const Prescription& prescription) {
         require(row.is_flat() || (std::isfinite(row.radius_mm) && std::abs(row.radius_mm) >= kSmallestRadius), row,
                 "radius_mm", row.radius_mm, "a radius of at least 0.001 mm; a flat surface has inf, or no radius_mm");
         require(std::isfinite(row.conic), row, "conic", row.conic, "a conic constant");
-        for (const double term : row.asphere) {
-            require(std::isfinite(term), row, "A2 … A20", term, "aspheric coefficients");
+        for (int power = 1; power <= kHighestPower; ++power) {
+            require(std::isfinite(row.term(power)), row, fmt::format("A{}", power).c_str(), row.term(power),
+                    "an aspheric coefficient");
         }
         require(!row.radius_x_mm || (!std::isnan(*row.radius_x_mm) && *row.radius_x_mm != 0.0), row, "radius_x_mm",
                 row.radius_x_mm.value_or(0.0), "a radius in mm, or inf for a cylinder");
@@ -199,11 +200,12 @@ SurfaceShape<double> prescribed_shape(const PrescribedSurface& row) {
     SurfaceShape<double> shape{.curvature = row.curvature(),
                                .conic = row.conic,
                                .asphere = row.asphere,
+                               .odd_asphere = row.odd_asphere,
                                .is_toroid = row.radius_x_mm.has_value(),
                                .curvature_x = row.radius_x_mm ? 1.0 / *row.radius_x_mm : 0.0};
-    for (int term = 0; term < kAsphereTerms; ++term) {
-        if (row.asphere[term] != 0.0) {
-            shape.terms = term + 1;
+    for (int power = 1; power <= kHighestPower; ++power) {
+        if (row.term(power) != 0.0) {
+            (power % 2 == 0 ? shape.terms : shape.odd_terms) = (power + 1) / 2;
         }
     }
     return shape;

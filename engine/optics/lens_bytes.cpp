@@ -10,8 +10,15 @@ namespace {
 // here.
 
 void append_shape(std::string& bytes, const SurfaceShape<double>& shape) {
-    const auto& [curvature, conic, asphere, terms, is_toroid, curvature_x] = shape;
-    append_bytes(bytes, curvature, conic, terms, is_toroid, curvature_x);
+    const auto& [curvature, conic, asphere, terms, odd_asphere, odd_terms, is_toroid, curvature_x] = shape;
+    append_bytes(bytes, curvature, conic);
+    if (odd_terms > 0) {  // their count is negative, as that of the even ones never is
+        append_bytes(bytes, -odd_terms);
+        for (const double coefficient : odd_asphere) {
+            append_bytes(bytes, coefficient);
+        }
+    }
+    append_bytes(bytes, terms, is_toroid, curvature_x);
     for (const double coefficient : asphere) {
         append_bytes(bytes, coefficient);
     }

@@ -39,8 +39,9 @@ struct StatedMedium {
     bool operator==(const StatedMedium&) const = default;
 };
 
-/// Coefficients of r², r⁴, … r²⁰: the even asphere's departure from its conic, mm^(1−2i).
+/// Coefficients of r², r⁴, … r²⁰, or of r, r³, … r¹⁹: an asphere's departure from its conic; that of r^j in mm^(1−j).
 inline constexpr int kAsphereTerms = 10;
+inline constexpr int kHighestPower = 2 * kAsphereTerms;
 using AsphereTerms = std::array<double, kAsphereTerms>;
 
 /// A rotation by `tilt_deg` about x, then about the turned y, then about the twice turned z, each by the right-hand
@@ -57,7 +58,8 @@ struct Misalignment {
 struct PrescribedSurface {
     double radius_mm = kInfinity;  // infinite or 0: flat
     double conic = 0.0;            // 0 a sphere, −1 a paraboloid
-    AsphereTerms asphere{};
+    AsphereTerms asphere{};        // of even powers
+    AsphereTerms odd_asphere{};
     std::optional<double> radius_x_mm;  // a toroid: the curve in y–z turned about an axis at this distance; inf: a
                                         // cylinder
     double thickness_mm = 0.0;          // to the next surface; for the last one: to the sensor
@@ -72,7 +74,11 @@ struct PrescribedSurface {
 
     [[nodiscard]] bool is_flat() const { return radius_mm == 0.0 || std::isinf(radius_mm); }
     [[nodiscard]] double curvature() const { return is_flat() ? 0.0 : 1.0 / radius_mm; }  // 1/mm
-    [[nodiscard]] bool is_asphere() const { return asphere != AsphereTerms{}; }
+    /// The coefficient of r^power, 1 to kHighestPower.
+    [[nodiscard]] double& term(int power) { return (power % 2 == 0 ? asphere : odd_asphere)[(power - 1) / 2]; }
+    [[nodiscard]] double term(int power) const { return (power % 2 == 0 ? asphere : odd_asphere)[(power - 1) / 2]; }
+    [[nodiscard]] bool has_odd_terms() const { return odd_asphere != AsphereTerms{}; }
+    [[nodiscard]] bool is_asphere() const { return asphere != AsphereTerms{} || has_odd_terms(); }
     bool operator==(const PrescribedSurface&) const = default;
 };
 

@@ -15,7 +15,8 @@ struct SurfaceDerivatives {
     std::array<Vec3<T>, 3> hessian;  // rows
 };
 
-/// g''(y) of the profile, with respect to r² twice.
+/// The profile's second derivative, with respect to r² twice. Those of A_1 and A_3 grow without bound towards the vertex;
+/// there odd terms are left out, as r² times that of A_3 vanishes.
 template <class T>
 T sag_bend(const SurfaceShape<T>& shape, const T& r2) {
     using std::sqrt;
@@ -27,6 +28,13 @@ T sag_bend(const SurfaceShape<T>& shape, const T& r2) {
     for (int i = 1; i < shape.terms; ++i) {
         bend += T(i + 1) * T(i) * shape.asphere[i] * power;
         power *= r2;
+    }
+    if (shape.odd_terms > 0 && r2 > T(0)) {
+        power = T(1) / (r2 * sqrt(r2));  // r^(j − 4)
+        for (int i = 0; i < shape.odd_terms; ++i) {
+            bend += (T(i) * T(i) - T(0.25)) * shape.odd_asphere[i] * power;
+            power *= r2;
+        }
     }
     return bend;
 }

@@ -1,4 +1,4 @@
-// engine/optics/surface_shape.h — conics, even aspheres, toroids and cylinders: sag, and where a ray meets them.
+// engine/optics/surface_shape.h — conics, aspheres, toroids and cylinders: sag, and where a ray meets them.
 #pragma once
 #include <array>
 #include <cmath>
@@ -9,21 +9,26 @@
 
 namespace lensproof::optics {
 
-/// A surface that is no sphere. In y–z it is the even asphere
-///     g(y) = c y² / (1 + √(1 − (1 + k) c² y²)) + Σ A_2i y^2i,   i = 1 … 10
+/// A surface that is no sphere. In y–z it is the asphere
+///     g(y) = c y² / (1 + √(1 − (1 + k) c² y²)) + Σ A_j |y|^j,   j = 1 … 20
 /// (Welford, Aberrations of Optical Systems, §4.5), turned about the axis, or, for a toroid, about the line parallel to
 /// y through (0, 0, 1 / c_x): curvature c_x in x–z, 0 for a cylinder. Lengths in mm, the vertex is the origin.
+///
+/// Even and odd powers stand apart, for most aspheres have none of the latter. A_1 makes a cone, whose tip has no
+/// normal: the axis is taken there. A_3 bends nothing at the vertex, but the third derivative jumps.
 template <class T>
 struct SurfaceShape {
     T curvature = T(0);
     T conic = T(0);
-    std::array<T, 10> asphere{};
-    int terms = 0;  // how many of them may differ from 0
+    std::array<T, 10> asphere{};      // A_2, A_4, … A_20
+    int terms = 0;                    // how many of them may differ from 0
+    std::array<T, 10> odd_asphere{};  // A_1, A_3, … A_19
+    int odd_terms = 0;
     bool is_toroid = false;
     T curvature_x = T(0);  // of a toroid
 
     /// Whether a quadratic gives the intersection.
-    [[nodiscard]] bool is_conic() const { return terms == 0 && !is_toroid; }
+    [[nodiscard]] bool is_conic() const { return terms == 0 && odd_terms == 0 && !is_toroid; }
 };
 
 /// The profile at r² and its derivative dg/d(r²). Beyond the equator of an ellipsoid, where there is no sag, `defined`
@@ -38,6 +43,23 @@ struct SagProfile {
     T largest_term;  // of the sum, without its sign: its rounding is an ulp of this
     MaskOf<T> defined;
 };
+
+/// Adds Σ A_j r^j of the odd j to a profile.
+template <class Scalar, class T>
+void add_odd_terms(const SurfaceShape<Scalar>& shape, const T& r2, SagProfile<T>& profile) {
+    using std::abs;
+    using std::sqrt;
+    const auto off_axis = r2 > T(0);
+    const T r = sqrt(select(off_axis, r2, T(1)));
+    T power = select(off_axis, T(1) / r, T(0));  // r^(j − 2)
+    for (int i = 0; i < shape.odd_terms; ++i) {
+        profile.slope = profile.slope + T((Scalar(i) + Scalar(0.5)) * shape.odd_asphere[i]) * power;
+        power = i == 0 ? select(off_axis, r, T(0)) : power * r2;
+        const T term = T(shape.odd_asphere[i]) * power;
+        profile.sag = profile.sag + term;
+        profile.largest_term = select(profile.largest_term < abs(term), abs(term), profile.largest_term);
+    }
+}
 
 template <class Scalar, class T>
 inline SagProfile<T> sag_profile(const SurfaceShape<Scalar>& shape, const T& r2) {
@@ -58,7 +80,11 @@ inline SagProfile<T> sag_profile(const SurfaceShape<Scalar>& shape, const T& r2)
         sag = sag + term;
         largest_term = select(largest_term < abs(term), abs(term), largest_term);
     }
-    return {sag, slope, largest_term, defined};
+    SagProfile<T> profile{sag, slope, largest_term, defined};
+    if (shape.odd_terms > 0) {
+        add_odd_terms(shape, r2, profile);
+    }
+    return profile;
 }
 
 /// The surface as the zero of F, which rises towards +z, with its gradient.

@@ -44,9 +44,12 @@ std::vector<PlacedSurface> placed_by_table(const optics::Prescription& prescript
         surface.semi_diameter = usable(row.semi_diameter_mm).value_or(usable(row.rim_mm).value_or(fallback));
         surface.is_stop = row.is_stop;
         surface.shape = {.curvature = surface.curvature, .conic = std::isfinite(row.conic) ? row.conic : 0.0};
-        if (std::ranges::all_of(row.asphere, [](double term) { return std::isfinite(term); })) {
+        const auto is_finite = [](double term) { return std::isfinite(term); };
+        if (std::ranges::all_of(row.asphere, is_finite) && std::ranges::all_of(row.odd_asphere, is_finite)) {
             surface.shape.asphere = row.asphere;
             surface.shape.terms = row.is_asphere() ? optics::kAsphereTerms : 0;
+            surface.shape.odd_asphere = row.odd_asphere;
+            surface.shape.odd_terms = row.has_odd_terms() ? optics::kAsphereTerms : 0;
         }
         here.is_exact = has_radius && (!row.semi_diameter_mm || usable(row.semi_diameter_mm));
         z += std::abs(row.thickness_mm) <= kLargest ? row.thickness_mm : 0.0;

@@ -35,8 +35,9 @@ class Jitter {
             special.shape.curvature = moved(special.shape.curvature);
             special.shape.curvature_x = moved(special.shape.curvature_x);
             special.shape.conic = moved(special.shape.conic);
-            std::ranges::transform(special.shape.asphere, special.shape.asphere.begin(),
-                                   [this](const T& term) { return moved(term); });
+            for (auto* terms : {&special.shape.asphere, &special.shape.odd_asphere}) {
+                std::ranges::transform(*terms, terms->begin(), [this](const T& term) { return moved(term); });
+            }
             special.vertex = {moved(special.vertex.x), moved(special.vertex.y)};
             std::ranges::transform(special.axes, special.axes.begin(),
                                    [this](const Vec3<T>& axis) { return moved(axis); });

@@ -53,6 +53,12 @@ TEST(LensBytes, TellEveryLensFromEveryOther) {
         [](auto& lens) { nudge(lens.specials[0].shape.asphere[0]); },
         [](auto& lens) { nudge(lens.specials[0].shape.asphere[9]); },
         [](auto& lens) { lens.specials[0].shape.terms = 1; },
+        [](auto& lens) { lens.specials[0].shape.odd_terms = 1; },
+        [](auto& lens) { lens.specials[0].shape.odd_terms = 2; },
+        [](auto& lens) {
+            lens.specials[0].shape.odd_terms = 2;
+            nudge(lens.specials[0].shape.odd_asphere[1]);
+        },
         [](auto& lens) { lens.specials[0].shape.is_toroid = true; },
         [](auto& lens) { nudge(lens.specials[0].shape.curvature_x); },
         [](auto& lens) { nudge(lens.specials[0].vertex.x); },

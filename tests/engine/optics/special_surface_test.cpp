@@ -8,9 +8,12 @@
 #include "engine/base/angle.h"
 #include "engine/base/infinity.h"
 #include "engine/formats/glass/shipped_glasses.h"
+#include "engine/optics/convert_lens.h"
 #include "engine/optics/focus.h"
 #include "engine/optics/lens.h"
+#include "engine/optics/multiprecision.h"
 #include "engine/optics/paraxial.h"
+#include "engine/optics/surface_curvature.h"
 #include "engine/spectral/wavelengths.h"
 
 namespace lensproof::optics::special_surface_test {
@@ -180,6 +183,94 @@ TEST(Asphere, PointsLieOnTheSurfaceAndBackTheRayReturns) {
             EXPECT_LT(length(back.ray.direction + ray.direction), 1e-12);
         }
     }
+}
+
+// A cone of glass turns every ray along the axis by the same angle, asin(n sin α) − α towards the axis, α the angle
+// between its faces (McLeod, "The axicon", J. Opt. Soc. Am. 44, 592, 1954). Its first-order data are a plate's.
+TEST(OddAsphere, ConeTurnsRaysByOneAngle) {
+    constexpr double n = 1.5;
+    const double alpha = 12.0 * kDegree;
+    PrescribedSurface cone = row(kFlat, 40.0);
+    cone.term(1) = -std::tan(alpha);
+    const TraceLens<double> lens = traceable(prescription_of({stop_row(1.0), row(kFlat, 8.0, n), cone}));
+    for (const double height : {1e-9, 0.001, 1.0, 5.0, 20.0}) {
+        const TracedRay<double> out = trace(lens, Ray<double>{{0.6 * height, 0.8 * height, -5.0}, {0.0, 0.0, 1.0}});
+        ASSERT_EQ(out.status, RayStatus::ok) << height;
+        const double turned = std::asin(n * std::sin(alpha)) - alpha;
+        EXPECT_NEAR(out.ray.direction.x, -0.6 * std::sin(turned), 8 * kUlp) << height;
+        EXPECT_NEAR(out.ray.direction.y, -0.8 * std::sin(turned), 8 * kUlp) << height;
+    }
+    const TracedRay<double> at_tip = trace(lens, Ray<double>{{0.0, 0.0, -5.0}, {0.0, 0.0, 1.0}});
+    EXPECT_EQ(at_tip.status, RayStatus::ok);
+    EXPECT_EQ(at_tip.ray.direction, (Vec3d{0.0, 0.0, 1.0}));
+    EXPECT_TRUE(std::isinf(paraxial_data(lens).efl));
+}
+
+/// Every power from r to r²⁰, up to 0.1 mm each at 9 mm.
+PrescribedSurface every_power() {
+    PrescribedSurface front = row(28.0, 8.0, 1.7, 14.0);
+    front.conic = -0.7;
+    for (int power = 1; power <= kHighestPower; ++power) {
+        front.term(power) = (power % 3 == 0 ? -0.1 : 0.07) / std::pow(9.0, power);
+    }
+    return front;
+}
+
+/// The sag by powers, in a hundred digits.
+Multiprecision sag_by_powers(const PrescribedSurface& row, const Multiprecision& x, const Multiprecision& y) {
+    const Multiprecision c = row.curvature();
+    const Multiprecision r = sqrt(x * x + y * y);
+    Multiprecision z = c * r * r / (1 + sqrt(1 - (1 + Multiprecision(row.conic)) * c * c * r * r));
+    for (int power = 1; power <= kHighestPower; ++power) {
+        z += row.term(power) * pow(r, power);
+    }
+    return z;
+}
+
+// Against differences of the sag in a hundred digits: by 1e-25 mm, whose remainder is some 1e-50. The profile's 30
+// operations on numbers up to 2 mm.
+TEST(OddAsphere, SlopesAndCurvaturesAreThoseOfTheSag) {
+    const PrescribedSurface front = every_power();
+    const SurfaceShape<double> shape = prescribed_shape(front);
+    const Multiprecision h("1e-25");
+    for (const double x : {0.0, 1e-3, -0.4, 3.0, 8.0}) {
+        for (const double y : {1e-4, 0.3, -4.0}) {
+            const auto at = [&](int i, int k) { return sag_by_powers(front, x + i * h, y + k * h); };
+            const double z = static_cast<double>(at(0, 0));
+            EXPECT_NEAR(sag(shape, x, y), z, 30 * kUlp);
+            const SurfaceDerivatives<double> derivatives = surface_derivatives(shape, {x, y, z});
+            const auto& [gradient, hessian] = derivatives;
+            // The cone's part of a curvature is A1 / r in one direction, and in the other that cancels.
+            const double largest = 1.0 + front.term(1) / std::hypot(x, y);
+            const auto expect = [&](double found, const Multiprecision& difference) {
+                EXPECT_NEAR(found, static_cast<double>(difference), 30 * kUlp * largest);
+            };
+            expect(-gradient.x, (at(1, 0) - at(-1, 0)) / (2 * h));
+            expect(-gradient.y, (at(0, 1) - at(0, -1)) / (2 * h));
+            expect(-hessian[0].x, (at(1, 0) - 2 * at(0, 0) + at(-1, 0)) / (h * h));
+            expect(-hessian[1].y, (at(0, 1) - 2 * at(0, 0) + at(0, -1)) / (h * h));
+            expect(-hessian[0].y, (at(1, 1) - at(1, -1) - at(-1, 1) + at(-1, -1)) / (4 * h * h));
+        }
+    }
+}
+
+// Rays in double and in a hundred digits, whose sag is held to powers of r in the test above.
+TEST(OddAsphere, RaysAreThoseOfAHundredDigits) {
+    const TraceLens<double> lens = glass_behind(every_power(), -60.0);
+    const TraceLens<Multiprecision> exact = convert_lens<Multiprecision>(lens);
+    int passed = 0;
+    for (const Ray<double>& ray : rays(7.0, 0.4)) {
+        const TracedRay<double> out = trace(lens, ray);
+        const TracedRay<Multiprecision> as_exact = trace(exact, convert_ray<Multiprecision>(ray));
+        ASSERT_EQ(out.status, as_exact.status);
+        if (out.status == RayStatus::ok) {
+            ++passed;
+            EXPECT_LT(length(out.ray.origin - convert_vector<double>(as_exact.ray.origin)), 1e-12);
+            EXPECT_LT(length(out.ray.direction - convert_vector<double>(as_exact.ray.direction)), 1e-13);
+            EXPECT_NEAR(out.optical_path, static_cast<double>(as_exact.optical_path), 1e-12);
+        }
+    }
+    EXPECT_GT(passed, 100);
 }
 
 // A ray past the equator of the conic, or towards a part that turns away, has a status and finite numbers.

@@ -100,10 +100,12 @@ SurfaceShape<Scalar> in_precision(const SurfaceShape<double>& shape) {
     SurfaceShape<Scalar> to{.curvature = static_cast<Scalar>(shape.curvature),
                             .conic = static_cast<Scalar>(shape.conic),
                             .terms = shape.terms,
+                            .odd_terms = shape.odd_terms,
                             .is_toroid = shape.is_toroid,
                             .curvature_x = static_cast<Scalar>(shape.curvature_x)};
     for (std::size_t i = 0; i < to.asphere.size(); ++i) {
         to.asphere[i] = static_cast<Scalar>(shape.asphere[i]);
+        to.odd_asphere[i] = static_cast<Scalar>(shape.odd_asphere[i]);
     }
     return to;
 }
@@ -208,6 +210,15 @@ SurfaceShape<double> asphere_shape(Random& random, int i, double height_mm) {
     return shape;
 }
 
+SurfaceShape<double> odd_asphere_shape(Random& random, int i, double height_mm) {
+    SurfaceShape<double> shape = asphere_shape(random, i, height_mm);
+    shape.odd_terms = 1 + i % 10;
+    for (int k = i % 3 == 0 ? 0 : 1; k < shape.odd_terms; ++k) {
+        shape.odd_asphere[static_cast<std::size_t>(k)] = height_mm * unit(random) / std::pow(14.0, 2 * k + 1);
+    }
+    return shape;
+}
+
 TEST(ShapePacket, OfConics) {
     compare(conic_shape);
 }
@@ -219,6 +230,13 @@ TEST(ShapePacket, OfMildAspheres) {
 // Terms of 8 mm turn the surface over within the reach of the rays: Newton's method oversteps, and has to start again.
 TEST(ShapePacket, OfAspheresThatTurnOver) {
     const Seen seen = compare([](Random& random, int i) { return asphere_shape(random, i, 8.0); });
+    EXPECT_GT(seen.later_starts, 300);
+    EXPECT_GT(seen.halvings, 100);
+}
+
+TEST(ShapePacket, OfOddAspheresAndCones) {
+    compare([](Random& random, int i) { return odd_asphere_shape(random, i, 0.05); });
+    const Seen seen = compare([](Random& random, int i) { return odd_asphere_shape(random, i, 8.0); });
     EXPECT_GT(seen.later_starts, 300);
     EXPECT_GT(seen.halvings, 100);
 }

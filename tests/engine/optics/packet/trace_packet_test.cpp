@@ -190,8 +190,12 @@ TEST(TracePacket, TracesWhatIsNoSphere) {
     special.vertex = {0.0, 0.3};
     at.specials.push_back(special);
     at.surfaces[2].special = 0;
-    const Fates fates = compare<Direction::forward>({at}, rays_at(lens, 400, 0.6));
-    EXPECT_GT(fates[static_cast<std::size_t>(RayStatus::ok)], 20);
+    for (const int odd_terms : {0, 2}) {
+        at.specials[0].shape.odd_asphere = {1e-3, -2e-5};
+        at.specials[0].shape.odd_terms = odd_terms;
+        const Fates fates = compare<Direction::forward>({at}, rays_at(lens, 400, 0.6));
+        EXPECT_GT(fates[static_cast<std::size_t>(RayStatus::ok)], 20);
+    }
 }
 
 }  // namespace lensproof::optics::trace_packet_test
