@@ -146,10 +146,14 @@ TEST_F(Conversion, KeepsConicsAndAspheresWhereThereAreColumns) {
     optics::Prescription lens = plain();
     lens.surfaces[1].conic = -0.73;
     lens.surfaces[3].asphere = {1e-5, -3.3e-6, 2.1e-8, 0.0, 1e-13};
-    expect_form_keeps(lens, ".toml", {});
-    expect_form_keeps(lens, ".csv", {});
-    expect_form_keeps(lens, ".zmx", {});
-    expect_form_keeps(lens, ".dat", {"lost-asphere"});
+    for (const optics::AsphereTerms& odd :
+         {optics::AsphereTerms{}, {1e-4, -2e-5, 3e-7}, {0.0, -2e-5, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1e-21}}) {
+        lens.surfaces[3].odd_asphere = odd;
+        expect_form_keeps(lens, ".toml", {});
+        expect_form_keeps(lens, ".csv", {});
+        expect_form_keeps(lens, ".zmx", {});
+        expect_form_keeps(lens, ".dat", {"lost-asphere"});
+    }
 }
 
 TEST_F(Conversion, WarnsOfWhatTablesCannotSay) {

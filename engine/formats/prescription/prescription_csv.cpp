@@ -1,4 +1,4 @@
-// The plain table: surface,radius_mm,thickness_mm,n_d,V_d,semi_aperture_mm,kind, and where wanted glass, conic, A2 …
+// The plain table: surface,radius_mm,thickness_mm,n_d,V_d,semi_aperture_mm,kind, and where wanted glass, conic, A1 …
 // A20 and n_C, n_F, n_g. Tables elsewhere name the same columns R, d, nd, vd, K and so on; those are read too.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -208,19 +208,19 @@ class CsvPrescription {
     }
 
     void read_terms(const CsvRow& row, int number, optics::PrescribedSurface& surface) {
-        std::vector<std::string> odd;
+        std::vector<std::string> left_out;
         for (const auto& [column, power] : columns_.terms) {
             const double term = stated(row, column, "an aspheric coefficient").value_or(0.0);
-            if (power % 2 == 0 && power <= 2 * optics::kAsphereTerms) {
-                surface.asphere[power / 2 - 1] = term;
+            if (power <= optics::kHighestPower) {
+                surface.term(power) = term;
             } else if (term != 0.0) {
-                odd.push_back(fmt::format("{} = {}", column, term));
+                left_out.push_back(fmt::format("{} = {}", column, term));
             }
         }
-        if (!odd.empty()) {
+        if (!left_out.empty()) {
             remark("asphere-term-not-read", number,
-                   fmt::format("the aspheric terms {} are left out: even powers up to r²⁰ are carried",
-                               fmt::join(odd, ", ")),
+                   fmt::format("the aspheric terms {} are left out: powers up to r^{} are carried",
+                               fmt::join(left_out, ", "), optics::kHighestPower),
                    optics::Severity::error);
         }
     }

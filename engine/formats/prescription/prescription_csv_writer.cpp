@@ -64,15 +64,15 @@ struct Needs {
     bool glass = false;
     bool lines = false;
     bool conic = false;
-    std::array<bool, optics::kAsphereTerms> terms{};
+    std::array<bool, optics::kHighestPower + 1> terms{};  // by their power of r
 
     explicit Needs(const optics::Prescription& prescription) {
         for (const optics::PrescribedSurface& row : prescription.surfaces) {
             glass = glass || !row.medium.glass.empty();
             lines = lines || fits_line_columns(row.medium);
             conic = conic || row.conic != 0.0;
-            for (int term = 0; term < optics::kAsphereTerms; ++term) {
-                terms[term] = terms[term] || row.asphere[term] != 0.0;
+            for (int power = 1; power <= optics::kHighestPower; ++power) {
+                terms[power] = terms[power] || row.term(power) != 0.0;
             }
         }
     }
@@ -82,8 +82,8 @@ struct Needs {
         text += glass ? ",glass" : "";
         text += lines ? ",n_C,n_F,n_g" : "";
         text += conic ? ",conic" : "";
-        for (int term = 0; term < optics::kAsphereTerms; ++term) {
-            text += terms[term] ? fmt::format(",A{}", 2 * (term + 1)) : "";
+        for (int power = 1; power <= optics::kHighestPower; ++power) {
+            text += terms[power] ? fmt::format(",A{}", power) : "";
         }
         return text + "\n";
     }
@@ -98,8 +98,8 @@ struct Needs {
             }
         }
         text += conic ? fmt::format(",{}", row.conic) : "";
-        for (int term = 0; term < optics::kAsphereTerms; ++term) {
-            text += terms[term] ? fmt::format(",{}", row.asphere[term]) : "";
+        for (int power = 1; power <= optics::kHighestPower; ++power) {
+            text += terms[power] ? fmt::format(",{}", row.term(power)) : "";
         }
         return text;
     }

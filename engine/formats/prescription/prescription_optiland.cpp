@@ -125,13 +125,13 @@ class OptilandLens {
         if (type == "Plane" || type == "StandardGeometry") {
             return;
         }
-        if (type == "EvenAsphere") {
-            read_terms(geometry, "coefficients", number, surface);
+        if (type == "EvenAsphere" || type == "OddAsphere") {
+            read_terms(geometry, "coefficients", type == "OddAsphere" ? 1 : 2, number, surface);
         } else if (type == "ToroidalGeometry") {
             surface.radius_mm = number_or(geometry, "radius_y", kInfinity);
             surface.radius_x_mm = number_or(geometry, "radius_x", kInfinity);
             surface.conic = number_or(geometry, "conic_yz", 0.0);
-            read_terms(geometry, "coeffs_poly_y", number, surface);
+            read_terms(geometry, "coeffs_poly_y", 2, number, surface);
         } else {
             surface.radius_mm = number_or(geometry, "radius_y", surface.radius_mm);
             surface.conic = number_or(geometry, "conic_y", surface.conic);
@@ -142,18 +142,22 @@ class OptilandLens {
         }
     }
 
-    void read_terms(const JsonNode& geometry, const std::string& key, int number, optics::PrescribedSurface& surface) {
+    /// Coefficients of r^step, r^(2 step), …
+    void read_terms(const JsonNode& geometry, const std::string& key, int step, int number,
+                    optics::PrescribedSurface& surface) {
         if (!geometry.has(key)) {
             return;
         }
         const std::vector<JsonNode> terms = geometry.at(key).elements();
-        for (std::size_t term = 0; term < terms.size(); ++term) {
-            const double coefficient = any_number(terms[term]);
-            if (term < optics::kAsphereTerms) {
-                surface.asphere[term] = coefficient;
+        for (std::size_t i = 0; i < terms.size(); ++i) {
+            const double coefficient = any_number(terms[i]);
+            const std::size_t power = static_cast<std::size_t>(step) * (i + 1);
+            if (power <= optics::kHighestPower) {
+                surface.term(static_cast<int>(power)) = coefficient;
             } else if (coefficient != 0.0) {
                 remark("asphere-term-not-read", number,
-                       fmt::format("the term of r^{} is left out: even powers up to r²⁰ are carried", 2 * term + 2),
+                       fmt::format("the term of r^{} is left out: powers up to r^{} are carried", power,
+                                   optics::kHighestPower),
                        optics::Severity::error);
             }
         }

@@ -73,6 +73,27 @@ optics::StatedMedium read_medium(const SeqFile& file, const std::string& glass, 
     return medium;
 }
 
+/// The odd polynomial: C1 the conic constant, C2 … C31 the coefficients of (r / R)^1 … (r / R)^30, C33 the radius R,
+/// for which 0 says 1 (CODE V Lens System Setup Reference Manual, "Odd polynomial").
+void read_odd_polynomial(optics::PrescribedSurface& row, const SeqSurface& surface, int number, double unit_mm,
+                         Remarks& remarks) {
+    const auto stated = surface.special_values.find(kSeqNormalizingRadius);
+    const double radius = stated == surface.special_values.end() || stated->second == 0.0 ? 1.0 : stated->second;
+    for (const auto& [index, value] : surface.special_values) {
+        const int power = index - 1;
+        if (index == 1) {
+            row.conic = value;
+        } else if (power >= 1 && power <= optics::kHighestPower) {
+            row.term(power) = value * std::pow(unit_mm, 1 - power) / std::pow(radius, power);
+        } else if (index != kSeqNormalizingRadius && value != 0.0) {
+            remarks.add("surface-type", optics::Severity::error, number,
+                        fmt::format("line {}, surface {} of the file: the coefficient C{} = {} of the odd polynomial "
+                                    "is left out: powers to r^{} are known",
+                                    surface.line, number, index, value, optics::kHighestPower));
+        }
+    }
+}
+
 optics::PrescribedSurface read_row(const SeqFile& file, int number, const std::filesystem::path& path,
                                    Remarks& remarks) {
     const SeqSurface& surface = file.surfaces[number];
@@ -94,6 +115,9 @@ optics::PrescribedSurface read_row(const SeqFile& file, int number, const std::f
     row.conic = surface.conic;
     for (int term = 0; term < optics::kAsphereTerms; ++term) {
         row.asphere[term] = surface.asphere[term] * std::pow(unit, 1 - 2 * (term + 1));
+    }
+    if (surface.special == "ODD") {
+        read_odd_polynomial(row, surface, number, unit, remarks);
     }
     row.thickness_mm = surface.thickness * unit;
     row.semi_diameter_mm = length(surface.semi_diameter);

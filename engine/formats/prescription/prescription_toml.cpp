@@ -74,10 +74,6 @@ optics::StatedMedium read_medium(TomlTable& row) {
     return medium;
 }
 
-std::string asphere_key(int term) {
-    return fmt::format("A{}", 2 * (term + 1));
-}
-
 optics::PrescribedSurface read_surface(TomlTable& row) {
     optics::PrescribedSurface surface;
     surface.where = row.where();
@@ -86,8 +82,8 @@ optics::PrescribedSurface read_surface(TomlTable& row) {
         surface.radius_mm = stated_number(row, "radius_mm");
     }
     surface.conic = optional_stated_number(row, "conic").value_or(0.0);
-    for (int term = 0; term < optics::kAsphereTerms; ++term) {
-        surface.asphere[term] = optional_stated_number(row, asphere_key(term)).value_or(0.0);
+    for (int power = 1; power <= optics::kHighestPower; ++power) {
+        surface.term(power) = optional_stated_number(row, fmt::format("A{}", power)).value_or(0.0);
     }
     surface.radius_x_mm = optional_stated_number(row, "radius_x_mm");
     surface.thickness_mm = stated_number(row, "thickness_mm");

@@ -233,9 +233,8 @@ class Writer {
         Rows table(prescription_.surfaces.size());
         table.add(radius_cells());
         add_numbers(table, "conic", [&](const Row& row) { return unless_zero(row.conic); });
-        for (int term = 0; term < optics::kAsphereTerms; ++term) {
-            add_numbers(table, fmt::format("A{}", 2 * (term + 1)),
-                        [&](const Row& row) { return unless_zero(row.asphere[term]); });
+        for (int power = 1; power <= optics::kHighestPower; ++power) {
+            add_numbers(table, fmt::format("A{}", power), [&](const Row& row) { return unless_zero(row.term(power)); });
         }
         add_numbers(table, "radius_x_mm", [](const Row& row) { return row.radius_x_mm; });
         add_numbers(table, "thickness_mm", [](const Row& row) { return Stated(row.thickness_mm); });

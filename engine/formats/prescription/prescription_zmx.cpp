@@ -28,19 +28,19 @@ void surface_type_error(Remarks& remarks, const ZmxSurface& surface, int number,
                      fmt::format("line {}, surface {} of the file: {}", surface.line, number, what));
 }
 
-/// Sets the coefficient of r^power, for which there is a place where the power is even and at most 20.
+/// Sets the coefficient of r^power, for which there is a place up to the highest power.
 void set_term(optics::PrescribedSurface& row, int power, double coefficient, double unit_mm, const ZmxSurface& surface,
               int number, Remarks& remarks) {
     if (coefficient == 0.0) {
         return;
     }
-    if (power % 2 != 0 || power > 2 * optics::kAsphereTerms) {
+    if (power > optics::kHighestPower) {
         surface_type_error(remarks, surface, number,
-                           fmt::format("the {} has a term {} r^{}, which is left out: even powers to r^{} are known",
-                                       surface.type, coefficient, power, 2 * optics::kAsphereTerms));
+                           fmt::format("the {} has a term {} r^{}, which is left out: powers to r^{} are known",
+                                       surface.type, coefficient, power, optics::kHighestPower));
         return;
     }
-    row.asphere[power / 2 - 1] = in_mm(coefficient, power, unit_mm);
+    row.term(power) = in_mm(coefficient, power, unit_mm);
 }
 
 /// The shape beyond the conic. OpticStudio's help, "Even Asphere", "Odd Asphere", "Extended Asphere", "Extended Odd

@@ -191,15 +191,18 @@ class ZmxWriter {
     }
 
     void write_surface(const optics::PrescribedSurface& row, int number, double thickness) {
-        constexpr int kEvenAsphereTerms = 8;  // to r^16; beyond, the extended asphere, to r^480
+        constexpr int kPlainTerms = 8;  // of the even and of the odd asphere; the extended ones have 240
         constexpr int kToroidTerms = 7;
+        const bool is_odd = !row.radius_x_mm && row.has_odd_terms();
+        const int step = is_odd ? 1 : 2;  // from one term's power of r to the next
         int terms = 0;
-        for (int i = 0; i < optics::kAsphereTerms; ++i) {
-            terms = row.asphere[i] != 0.0 ? i + 1 : terms;
+        for (int power = step; power <= optics::kHighestPower; power += step) {
+            terms = row.term(power) != 0.0 ? power / step : terms;
         }
-        const bool is_extended = !row.radius_x_mm && terms > kEvenAsphereTerms;
-        begin_surface(row.radius_x_mm ? "TOROIDAL"
-                                      : (is_extended ? "XASPHERE" : (terms > 0 ? "EVENASPH" : "STANDARD")));
+        const bool is_extended = !row.radius_x_mm && terms > kPlainTerms;
+        const char* asphere =
+            is_odd ? (is_extended ? "XOSPHERE" : "ODDASPHE") : (is_extended ? "XASPHERE" : "EVENASPH");
+        begin_surface(row.radius_x_mm ? "TOROIDAL" : (terms > 0 ? asphere : "STANDARD"));
         if (row.is_stop) {
             line("  STOP");
         }
@@ -212,15 +215,18 @@ class ZmxWriter {
             if (terms > kToroidTerms) {
                 lose("lost-asphere", number, fmt::format("a toroid's terms beyond y^{}", 2 * kToroidTerms));
             }
+            if (row.has_odd_terms()) {
+                lose("lost-asphere", number, "a toroid's odd terms");
+            }
         } else if (is_extended) {
             line("  XDAT 1 {} 0 0 1.0 0.0 0 \"\"", terms);
             line("  XDAT 2 1.0 0 0 1.0 0.0 0 \"\"");
             for (int i = 0; i < terms; ++i) {
-                line("  XDAT {} {} 0 0 1.0 0.0 0 \"\"", i + 3, row.asphere[i]);
+                line("  XDAT {} {} 0 0 1.0 0.0 0 \"\"", i + 3, row.term(step * (i + 1)));
             }
         } else {
             for (int i = 0; i < terms; ++i) {
-                line("  PARM {} {}", i + 1, row.asphere[i]);
+                line("  PARM {} {}", i + 1, row.term(step * (i + 1)));
             }
         }
         line("  DISZ {}", zmx_number(thickness));

@@ -26,7 +26,7 @@ constexpr std::string_view kSeqSilent[] = {"LEN", "GO",  "INI", "WTW", "WTF", "C
                                            "BC",  "CC",  "DC",  "EC",  "FC",  "GC",  "HC",  "JC",  "XDC", "YDC", "ZDC",
                                            "ADC", "BDC", "CDC", "SLB", "DER", "VIE", "ECH", "OUT", "LIS", "SAV", "COM",
                                            "CWL", "CA",  "DLF", "DLT", "DLR", "DLN", "DLV", "DLS", "TIR", "IRR", "BTI",
-                                           "CYD", "SUR", "WID", "DSX", "DSY", "DSZ", "SPH", "VER", "IC",  "UID"};
+                                           "CYD", "SUR", "WID", "DSX", "DSY", "DSZ", "SPH", "VER", "IC",  "UID", "SCC"};
 
 /// Solves and pick-ups, whose outcome the file holds as the value itself.
 constexpr std::string_view kSeqSolves[] = {"PIM", "PUY", "PIY", "HMY", "HCY", "UMY", "IMY", "UCY", "ICY", "APY", "PIK"};
@@ -37,8 +37,7 @@ constexpr std::string_view kSeqApertureShapes[] = {"REX", "REY", "ELX", "ELY", "
                                                    "REG", "ELG", "ADX", "ADY", "ARO"};
 constexpr std::string_view kDiffraction[] = {"DIF", "HOR", "HWL", "HCT", "HCO", "HCC", "GRT", "GRO", "GRS", "HOE"};
 constexpr std::string_view kTypes[] = {"SPH", "CON", "ASP", "CYL", "YTO", "XTO"};
-constexpr std::string_view kOtherTypes[] = {"AAS", "XYP", "SPS", "SPL", "UDS", "ZRN",
-                                            "QBF", "QCN", "NSS", "GRN", "LEM"};
+constexpr std::string_view kOtherTypes[] = {"AAS", "XYP", "SPL", "UDS", "ZRN", "QBF", "QCN", "NSS", "GRN", "LEM"};
 constexpr std::string_view kAsphereTermNames = "ABCDEFGHJ";  // of r⁴, r⁶, … r²⁰
 
 class SeqReader {
@@ -285,7 +284,7 @@ class SeqReader {
         }
         take_qualifiers();
         SeqSurface& surface = file_.surfaces[surface_];
-        if (read_shape(surface) || read_decentre(surface)) {
+        if (read_shape(surface) || read_special(surface) || read_decentre(surface)) {
             return true;
         }
         if (here_.keyword == "STO") {
@@ -336,6 +335,42 @@ class SeqReader {
         } else {
             return false;
         }
+        return true;
+    }
+
+    /// "SPS ODD 0.0", whose number is the normalizing radius, then "SCO K -1", "SCO AR3 1e-4", or by the coefficients'
+    /// numbers "SCO C1 -1", "SCO C4 1e-4".
+    bool read_special(SeqSurface& surface) {
+        if (here_.keyword == "SPS") {
+            surface.special = here_.word(next_).substr(0, 3);
+            if (surface.special != "ODD") {
+                remarks_.at(here_, "surface-type", optics::Severity::error, surface_,
+                            fmt::format("the special surface {} is not known; it is taken as a conic",
+                                        printable(surface.special)));
+            } else if (next_ + 1 < words().size()) {
+                surface.special_values[kSeqNormalizingRadius] = here_.number(next_ + 1, "a normalizing radius");
+            }
+            return true;
+        }
+        if (here_.keyword != "SCO" || surface.special.empty()) {
+            return false;
+        }
+        if (surface.special != "ODD") {
+            return true;
+        }
+        constexpr int kMostCoefficients = 100;
+        const std::string_view name = here_.word(next_);
+        const auto numbered = [&](std::string_view prefix) {
+            const std::optional<double> number =
+                name.starts_with(prefix) ? parse_number(name.substr(prefix.size())) : std::nullopt;
+            return number ? whole_number_within(*number, 0, kMostCoefficients) : 0;
+        };
+        const int power = numbered("AR");
+        const int number = name == "K" ? 1 : power > 0 ? power + 1 : numbered("C");
+        if (number == 0) {
+            here_.fail(name, "K, AR1 … AR30 or C1 … C33");
+        }
+        surface.special_values[number] = here_.number(next_ + 1, "a coefficient");
         return true;
     }
 

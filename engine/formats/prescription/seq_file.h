@@ -22,6 +22,9 @@ enum class SeqDecentre {
     bend      // BEN: it acts a second time behind the surface
 };
 
+/// Which of its coefficients a special surface's normalizing radius is (CODE V, "Special surfaces", "Odd polynomial").
+inline constexpr int kSeqNormalizingRadius = 33;
+
 /// An S line with what follows it. Lengths in the file's unit.
 struct SeqSurface {
     int line = 0;
@@ -34,6 +37,8 @@ struct SeqSurface {
     bool is_mirror = false;
     double conic = 0.0;
     std::array<double, optics::kAsphereTerms> asphere{};  // of r², r⁴, … r²⁰; the form has no first
+    std::string special;                                  // SPS: the kind of a special surface
+    std::map<int, double> special_values;                 // SCO C1, C2, …
     std::optional<double> semi_diameter;                  // CIR
     std::optional<double> edge;                           // CIR EDG
     std::array<double, 3> decentre{};                     // XDE, YDE, ZDE

@@ -58,7 +58,7 @@ TEST(CsvTable, TakesNumbersAsTheyAre) {
     EXPECT_TRUE(lens.remarks.empty());
 }
 
-TEST(CsvTable, ReadsGlassConicAndEvenTermsAndNamesTheOthers) {
+TEST(CsvTable, ReadsGlassConicAndTermsAndNamesWhatItDoesNotCarry) {
     const optics::Prescription lens =
         parse_csv_prescription(kHeader +
                                    ",glass,conic,A2,A4,A5,A20,A22,mood\n"
@@ -72,8 +72,9 @@ TEST(CsvTable, ReadsGlassConicAndEvenTermsAndNamesTheOthers) {
     EXPECT_EQ(first.asphere[0], 1e-3);
     EXPECT_EQ(first.asphere[1], 1e-5);
     EXPECT_EQ(first.asphere[9], 1e-22);
+    EXPECT_EQ(first.odd_asphere, (optics::AsphereTerms{0.0, 0.0, 2e-6}));
     EXPECT_EQ(lens.surfaces[2].medium.n_d, 1.4) << "a stop keeps the medium that it states";
-    expect_remark(lens, "asphere-term-not-read", 1, "A5 = 2e-06, A22 = 3");
+    expect_remark(lens, "asphere-term-not-read", 1, "A22 = 3");
     EXPECT_EQ(find_remark(lens, "asphere-term-not-read", 1)->severity, optics::Severity::error) << "another surface";
     EXPECT_EQ(find_remark(lens, "asphere-term-not-read", 3), nullptr) << "0 is no term";
     expect_remark(lens, "column-not-read", 0, "mood");
@@ -323,6 +324,16 @@ std::string replaced(std::string text, const std::string& from, const std::strin
     const std::size_t at = text.find(from);
     EXPECT_NE(at, std::string::npos) << from;
     return at == std::string::npos ? text : text.replace(at, from.size(), to);
+}
+
+// Optiland's odd asphere has a coefficient for every power, from r (optiland/geometries/odd_asphere.py).
+TEST(Optiland, ReadsOddAspheres) {
+    const optics::Prescription lens = parse_optiland(replaced(kOptiland, "EvenAsphere", "OddAsphere"), "a.json");
+    const optics::PrescribedSurface& surface = lens.surfaces[1];
+    EXPECT_EQ(surface.term(1), 1e-5);
+    EXPECT_EQ(surface.term(2), 1e-6);
+    EXPECT_EQ(surface.term(3), 2e-9);
+    EXPECT_EQ(find_remark(lens, "shape-not-read", 2), nullptr);
 }
 
 TEST(Optiland, NamesWhatItDoesNotUnderstand) {

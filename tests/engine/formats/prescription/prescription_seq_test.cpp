@@ -116,6 +116,26 @@ TEST(Seq, ReadsShapesAndUnits) {
     EXPECT_NEAR(rows[3].misalignment.tilt_deg[2], 90.0, 1e-13);
 }
 
+// CODE V's odd polynomial: its conic constant and its terms by name or by number, normalized by a radius or not.
+TEST(Seq, ReadsOddPolynomials) {
+    const optics::Prescription lens = parse(
+        "RDM;LEN\nDIM I\nSO 0 1e11\nS 2 0.1 NBK7_SCHOTT\n STO\n SPS ODD 0.0\n SCO K -1; SCO AR3 0.25\n SCO AR20 2\n"
+        "S 4 1\n SPS ODD 10\n SCC AR4 0\nSCO S2 C5 3; SCO C33 2\nSI 0 0\n");
+    const auto& rows = lens.surfaces;
+    ASSERT_EQ(rows.size(), 2U);
+    EXPECT_EQ(rows[0].conic, -1.0);
+    EXPECT_DOUBLE_EQ(rows[0].term(3), 0.25 / std::pow(25.4, 2));
+    EXPECT_DOUBLE_EQ(rows[0].term(20), 2 / std::pow(25.4, 19));
+    EXPECT_DOUBLE_EQ(rows[1].term(4), 3 / std::pow(2, 4) / std::pow(25.4, 3));
+    EXPECT_FALSE(has_finding(lens, "surface-type", ""));
+    const std::string head = "RDM;LEN\nSO 0 1e13\nS 10 1 517642\n STO\n";
+    EXPECT_TRUE(has_finding(parse(head + "SPS ODD; SCO AR21 1e-9\nS 20 5\nSI 0 0\n"), "surface-type",
+                            "C22 = 1e-09 of the odd polynomial is left out"));
+    EXPECT_TRUE(has_finding(parse(head + "SPS XYP; SCO Y2 1e-9\nS 20 5\nSI 0 0\n"), "surface-type", "XYP"));
+    EXPECT_TRUE(says(complaint(head + "SPS ODD; SCO Q 1\nSI 0 0\n"), "test.seq:5: SCO is \"Q\", expected K, AR1"));
+    EXPECT_TRUE(says(complaint(head + "SPS ODD; SCO AR3\nSI 0 0\n"), "expected a coefficient"));
+}
+
 TEST(Seq, ReadsEveryWayToStateAGlass) {
     const optics::Prescription lens = parse(
         "RDM;LEN\nPRV\n PWL 650.0 587.6 &\n 486.1\n 'E48' 1.5286 1.53116&\n  1.5378\nEND\nSO 0 1e13\n"

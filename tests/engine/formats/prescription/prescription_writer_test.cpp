@@ -43,6 +43,7 @@ optics::Prescription everything() {
     front.radius_mm = 0.1 + 0.2;
     front.conic = -1.5;
     front.asphere = {1e-300, -2.5e-6, 0.0, 1.0 / 7.0, 0.0, 0.0, 0.0, 0.0, 0.0, 3e-21};
+    front.odd_asphere = {0.0, 3e-5, 0.0, 1.0 / 3.0, 0.0, 0.0, 0.0, 0.0, 0.0, -7e-20};
     front.radius_x_mm = -44.0;
     front.thickness_mm = 5e-5;
     front.semi_diameter_mm = 12.0;

@@ -189,6 +189,33 @@ TEST(Zmx, NamesWhatItDoesNotUnderstand) {
     }));
 }
 
+// The terms of the odd asphere are of r, r², …, those of the extended ones of (r / R), (r / R)², … or of their squares,
+// with the number of terms and R before them (OpticStudio's help).
+TEST(Zmx, ReadsOddAndExtendedAspheres) {
+    const optics::Prescription lens =
+        parse(kHead + kObject +
+              surf(1,
+                   "  STOP\r\n  TYPE ODDASPHE\r\n  CURV 0.02\r\n  PARM 1 1e-3\r\n  PARM 3 2e-5\r\n  PARM 8 -3e-9\r\n"
+                   "  DISZ 2\r\n  GLAS N-BK7 0 0 1.5 40\r\n") +
+              surf(2,
+                   "  TYPE XOSPHERE\r\n  CURV 0.0\r\n  XDAT 1 5\r\n  XDAT 2 10\r\n  XDAT 5 0.4\r\n  XDAT 7 -0.1\r\n"
+                   "  DISZ 3\r\n") +
+              surf(3, "  TYPE XASPHERE\r\n  XDAT 1 2\r\n  XDAT 2 10\r\n  XDAT 4 0.4\r\n  DISZ 3\r\n") +
+              surf(4, "  DISZ 0\r\n"));
+    const auto& rows = lens.surfaces;
+    EXPECT_EQ(rows.at(0).odd_asphere, (optics::AsphereTerms{1e-3, 2e-5}));
+    EXPECT_EQ(rows.at(0).asphere, (optics::AsphereTerms{0.0, 0.0, 0.0, -3e-9}));
+    EXPECT_DOUBLE_EQ(rows.at(1).term(3), 4e-4);
+    EXPECT_DOUBLE_EQ(rows.at(1).term(5), -1e-6);
+    EXPECT_DOUBLE_EQ(rows.at(2).term(4), 4e-5);
+    EXPECT_FALSE(rows.at(2).has_odd_terms());
+    EXPECT_FALSE(has_finding(lens, "surface-type", ""));
+    const optics::Prescription beyond =
+        parse(kHead + kObject + surf(1, "  STOP\r\n  TYPE XOSPHERE\r\n  XDAT 23 1e-9\r\n  DISZ 2\r\n") +
+              surf(2, "  DISZ 0\r\n"));
+    EXPECT_TRUE(has_finding(beyond, "surface-type", "a term 1e-09 r^21, which is left out: powers to r^20"));
+}
+
 TEST(Zmx, NamesTermsThatAnEvenAsphereHasNot) {
     const optics::Prescription lens =
         parse(kHead + "FTYP 4 0 1 1\r\nYFLN 20\r\n" + kObject +
