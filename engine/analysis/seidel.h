@@ -51,7 +51,7 @@ struct SeidelSums {
 ///     Δ(u/n) = A Δ(1/n²) − y c Δ(1/n),  Δ(1/n) = −(n' − n) / (n n'),
 /// so that a small step of index keeps its digits and none gives exactly 0. A surface whose sag is that of the sphere
 /// of its vertex curvature plus G r⁴ + O(r⁶) adds 8 G Δn (y⁴, y³ ȳ, y² ȳ², 0, y ȳ³). A toroid counts as its profile in
-/// y–z turned about the axis; tilts and decentres are left out.
+/// y–z turned about the axis; tilts and decentres are left out, and so are odd aspheric terms: r³ is of no third order.
 ///
 /// The theory takes the field by its tangent, which grows without bound: for a fisheye the sums say little long before
 /// 90°. Nothing where there is no paraxial chief or marginal ray (paraxial.h): at and beyond 90°, with the entrance

@@ -70,7 +70,12 @@ Json terms_json(const analysis::SeidelTerms<double>& terms) {
             {"s5", terms.s5}, {"c1", terms.c1}, {"c2", terms.c2}};
 }
 
-Json seidel_json(const std::optional<analysis::SeidelSums<double>>& sums) {
+/// Third-order theory has no place for an odd power of r.
+bool has_odd_terms(const optics::Lens& lens) {
+    return std::ranges::any_of(lens.surfaces, [](const auto& surface) { return surface.shape.odd_terms > 0; });
+}
+
+Json seidel_json(const optics::Lens& lens, const std::optional<analysis::SeidelSums<double>>& sums) {
     if (!sums) {
         return nullptr;
     }
@@ -83,7 +88,11 @@ Json seidel_json(const std::optional<analysis::SeidelSums<double>>& sums) {
         }
         surfaces.push_back(std::move(row));
     }
-    return {{"surfaces", std::move(surfaces)}, {"total", terms_json(sums->total)}};
+    Json json{{"surfaces", std::move(surfaces)}, {"total", terms_json(sums->total)}};
+    if (has_odd_terms(lens)) {
+        json["without_odd_terms"] = true;
+    }
+    return json;
 }
 
 Json field_json(const analysis::FieldAnalysis& row) {
@@ -209,7 +218,7 @@ Json analysis_json(const optics::Lens& lens, const std::vector<optics::Finding>&
               {"projection", optics::projection_name(lens.projection)},
               {"findings", Json::list()},
               {"paraxial", reference_json(lens, analysis)},
-              {"seidel", seidel_json(analysis.seidel)},
+              {"seidel", seidel_json(lens, analysis.seidel)},
               {"fields", Json::list()},
               {"wavelengths", Json::list()}};
     for (const optics::Finding& finding : findings) {
@@ -239,7 +248,9 @@ std::string analysis_text(const optics::Lens& lens, const std::vector<optics::Fi
     text += fmt::format("Paraxial rays, the chief ray for {:.4g} deg, slopes behind the surfaces:\n", largest) +
             ray_surfaces_text(lens, analysis);
     if (analysis.seidel) {
-        text += fmt::format("Seidel sums for {:.4g} deg, mm:\n", largest) + seidel_text(*analysis.seidel);
+        text += fmt::format("Seidel sums for {:.4g} deg, mm{}:\n", largest,
+                            has_odd_terms(lens) ? ", without the odd aspheric terms" : "") +
+                seidel_text(*analysis.seidel);
     } else {
         text += fmt::format("No Seidel sums: paraxial rays have no field of {:.4g} deg\n", largest);
     }
