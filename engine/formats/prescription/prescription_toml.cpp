@@ -5,10 +5,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 
 #include "engine/base/infinity.h"
 #include "engine/base/text.h"
 #include "engine/base/toml.h"
+#include "engine/formats/prescription/forbes_asphere.h"
 #include "engine/formats/prescription/prescription_forms.h"
 
 namespace lensproof::formats {
@@ -74,6 +76,23 @@ optics::StatedMedium read_medium(TomlTable& row) {
     return medium;
 }
 
+/// Adds Forbes's departure from the conic, which the powers of r then hold.
+void read_qcon(TomlTable& row, optics::AsphereTerms& terms) {
+    if (!row.has("Qcon")) {
+        if (row.has("Q_radius_mm")) {
+            row.fail("Q_radius_mm", "stands without Qcon");
+        }
+        return;
+    }
+    const std::vector<double> a = row.numbers("Qcon", 0);
+    if (a.size() > kQconTerms) {
+        row.fail("Qcon", fmt::format("holds {} coefficients, expected up to {}, which make the terms to r^{}", a.size(),
+                                     kQconTerms, optics::kHighestPower));
+    }
+    const optics::AsphereTerms powers = powers_of_qcon(a, row.number("Q_radius_mm", kPositive));
+    std::ranges::transform(terms, powers, terms.begin(), std::plus());
+}
+
 optics::PrescribedSurface read_surface(TomlTable& row) {
     optics::PrescribedSurface surface;
     surface.where = row.where();
@@ -85,6 +104,7 @@ optics::PrescribedSurface read_surface(TomlTable& row) {
     for (int power = 1; power <= optics::kHighestPower; ++power) {
         surface.term(power) = optional_stated_number(row, fmt::format("A{}", power)).value_or(0.0);
     }
+    read_qcon(row, surface.asphere);
     surface.radius_x_mm = optional_stated_number(row, "radius_x_mm");
     surface.thickness_mm = stated_number(row, "thickness_mm");
     surface.semi_diameter_mm = optional_stated_number(row, "semi_diameter_mm");
