@@ -56,8 +56,9 @@ def profile(r2, c, k, asphere):
     root = np.sqrt(np.maximum(1 - (1 + k) * c * c * r2, 1e-300))
     g, g1 = c * r2 / (1 + root), c / (2 * root)
     for power, a in asphere:
-        g = g + a * r2 ** (power // 2)
-        g1 = g1 + power // 2 * a * r2 ** (power // 2 - 1)
+        i = power / 2 if power % 2 else power // 2
+        g = g + a * r2 ** i
+        g1 = g1 + i * a * r2 ** (i - 1)
     return g, g1
 
 

@@ -29,11 +29,12 @@ def profile(surface, r2):
         return None
     root = mp.sqrt(under)
     g, g1, g2 = c * r2 / (1 + root), c / (2 * root), (1 + k) * c ** 3 / (4 * root ** 3)
+    r = mp.sqrt(r2)
     for power, a in surface.asphere:
-        i = power // 2
-        g += a * r2 ** i
-        g1 += i * a * r2 ** (i - 1)
-        g2 += i * (i - 1) * a * r2 ** (i - 2) if i > 1 else 0
+        i = mpf(power) / 2
+        g += a * r ** power
+        g1 += i * a * r ** (power - 2) if r > 0 or power >= 2 else 0
+        g2 += i * (i - 1) * a * r ** (power - 4) if r > 0 or power >= 4 else 0  # of r³ times r² it is 0 on the axis
     return g, g1, g2
 
 

@@ -10,7 +10,7 @@ GLASS_FILES = ("schott", "schott-obsolete", "ohara", "hoya", "hikari", "cdgm", "
 
 @dataclass
 class Surface:
-    """z = c r² / (1 + √(1 − (1 + k) c² r²)) + Σ A_2i r^2i about its vertex; numbers are mpf, lengths mm."""
+    """z = c r² / (1 + √(1 − (1 + k) c² r²)) + Σ A_j r^j about its vertex; numbers are mpf, lengths mm."""
     c: mpf
     k: mpf
     asphere: list  # of (power of r, coefficient)
@@ -91,7 +91,7 @@ def read_lens(file, glass_folder):
         surfaces.append(Surface(
             c=mpf(0) if radius == 0 or mp.isinf(radius) else 1 / radius,
             k=mpf(row.get("conic", 0)),
-            asphere=[(p, mpf(row[f"A{p}"])) for p in range(2, 22, 2) if f"A{p}" in row],
+            asphere=[(p, mpf(row[f"A{p}"])) for p in range(1, 21) if f"A{p}" in row],
             z=z, semi=mpf(row["semi_diameter_mm"]), is_stop=row.get("stop", False),
             medium=medium_behind(row, glasses)))
         z += mpf(row["thickness_mm"])
