@@ -15,8 +15,8 @@ struct SurfaceDerivatives {
     std::array<Vec3<T>, 3> hessian;  // rows
 };
 
-/// The profile's second derivative, with respect to r² twice. Those of A_1 and A_3 grow without bound towards the vertex;
-/// there odd terms are left out, as r² times that of A_3 vanishes.
+/// The profile's second derivative, with respect to r² twice. Those of A_1 and A_3 grow without bound towards the
+/// vertex; there odd terms are left out, as r² times that of A_3 vanishes.
 template <class T>
 T sag_bend(const SurfaceShape<T>& shape, const T& r2) {
     using std::sqrt;

@@ -234,8 +234,8 @@ TEST(CalibrationUncertainty, WhereNoPointsAreTheMapSaysSo) {
     EXPECT_GT(map.far_px[0].value(), 10.0 * map.far_px[middle].value());
 }
 
-// One board of five bent by up to 2 px at 0.05 px noise: most of its points are outliers, and those that are not pull the
-// same way. The view keeps three quarters of its points and more, and loses its weight instead, so that the focal
+// One board of five bent by up to 2 px at 0.05 px noise: most of its points are outliers, and those that are not pull
+// the same way. The view keeps three quarters of its points and more, and loses its weight instead, so that the focal
 // length's error stays the stated one: the bent view adds no more than its weight, (0.05 / 1)², of a pull of 1 px. The
 // rms of 60 normalized errors is 1 ± 9 %; 30 % are three of that.
 TEST(CalibrationUncertainty, AViewThatDisagreesLosesItsWeight) {
