@@ -44,7 +44,7 @@ Gains gains_of(const formats::Image& raw, MosaicPattern pattern) {
     return {gain[0], gain[1], gain[2]};
 }
 
-void check(const formats::Image& raw) {
+void require_mosaic(const formats::Image& raw) {
     if (raw.channel_count() != 1 || raw.width < 4 || raw.height < 4) {
         throw InputError("a mosaic of " + std::to_string(raw.width) + " × " + std::to_string(raw.height) + " with " +
                          std::to_string(raw.channel_count()) +
@@ -86,7 +86,7 @@ std::optional<MosaicPattern> mosaic_pattern(std::string_view name) {
 }
 
 formats::Image mosaic_plane(const formats::Image& raw, MosaicPattern pattern) {
-    check(raw);
+    require_mosaic(raw);
     const Gains gains = gains_of(raw, pattern);
     if (!(gains.red + gains.green + gains.blue > 0.0)) {
         throw InputError("a mosaic without light: expected a picture");
@@ -95,7 +95,7 @@ formats::Image mosaic_plane(const formats::Image& raw, MosaicPattern pattern) {
 }
 
 std::vector<MosaicColour> mosaic_colours(const formats::Image& raw, MosaicPattern pattern) {
-    check(raw);
+    require_mosaic(raw);
     const Gains gains = gains_of(raw, pattern);
     std::string colours = "rgb";
     // The least gain is the strongest colour's.

@@ -15,8 +15,10 @@ namespace {
 
 constexpr double kSmallestOutlier_px = 0.1;  // no point this close is ever an outlier
 constexpr int kOutlierRounds = 3;
-constexpr double kOutliersByView = 0.1;  // of a view's points, and
-constexpr double kSpreadByView = 2.0;    // its robust spread against that of all: the view is off, not some points
+// Of a view's points, and its robust spread against that of all: normal noise has no outlier at 6 sigmas, and the
+// spread of twenty points is known to a fifth. Then the view is off, and not some of its points.
+constexpr double kOutliersByView = 0.1;
+constexpr double kSpreadByView = 2.0;
 constexpr double kHeavyTails = 1.5;      // of the plain standard deviation over the robust one, 1 for normal noise
 constexpr double kUndetermined = 0.05;   // a relative standard error above this is no measurement
 constexpr double kLeastSigma_px = 0.01;  // no detector is better; judges views whose residuals happen to be tiny
@@ -230,47 +232,31 @@ class Fit {
         return changed;
     }
 
-    // The robust spread of all points of a view, used or not.
-    [[nodiscard]] double spread_of(const BundleState& state, std::size_t view) const {
-        std::vector<double> magnitudes;
-        for (std::size_t i = 0; i < bundle_.used[view].size(); ++i) {
-            if (const auto r = residual(bundle_, state, view, i)) {
-                magnitudes.push_back(std::abs(r->x));
-                magnitudes.push_back(std::abs(r->y));
-            }
-        }
-        return magnitudes.empty() ? 0.0 : kSigmaPerMedian * median(magnitudes);
-    }
-
-    // What a view's squared residuals count, `limit` being where a point becomes an outlier.
-    [[nodiscard]] double weight_of(const BundleState& state, std::size_t view, double usual, double limit) const {
-        const auto beyond = [&](std::size_t i) {
-            const auto r = residual(bundle_, state, view, i);
-            return !r || std::hypot(r->x, r->y) > limit;
-        };
-        double outliers = 0.0;
-        for (std::size_t i = 0; i < bundle_.used[view].size(); ++i) {
-            outliers += beyond(i) ? 1.0 : 0.0;
-        }
-        const double own = spread_of(state, view);
-        const bool is_off = outliers >= kOutliersByView * static_cast<double>(bundle_.used[view].size()) &&
-                            own >= kSpreadByView * usual && usual > 0.0;
-        return is_off ? std::pow(usual / own, 2) : 1.0;
-    }
-
     bool mark_outliers(const BundleState& state) {
         const double usual = spread(state).robust;
         const double limit = std::max(options_.outlier_sigmas * usual, kSmallestOutlier_px);
         bool changed = false;
         for (std::size_t v = 0; v < bundle_.views.size(); ++v) {
-            // One view has no others to disagree with.
-            double& weight = bundle_.views[v].weight;
-            const double now = bundle_.views.size() > 1 ? weight_of(state, v, usual, limit) : 1.0;
-            changed = changed || std::abs(now - weight) > 0.05 * weight;
-            weight = now;
+            std::vector<double> distances;  // of the view's points, used or not
+            std::vector<double> magnitudes;
             for (std::size_t i = 0; i < bundle_.used[v].size(); ++i) {
                 const auto r = residual(bundle_, state, v, i);
-                const bool use = r && std::hypot(r->x, r->y) * std::sqrt(weight) <= limit;
+                distances.push_back(r ? std::hypot(r->x, r->y) : std::numeric_limits<double>::infinity());
+                if (r) {
+                    magnitudes.insert(magnitudes.end(), {std::abs(r->x), std::abs(r->y)});
+                }
+            }
+            const auto outliers = std::ranges::count_if(distances, [&](double d) { return d > limit; });
+            const double own = magnitudes.empty() ? 0.0 : kSigmaPerMedian * median(magnitudes);
+            const bool is_off =
+                bundle_.views.size() > 1 && usual > 0.0 && own >= kSpreadByView * usual &&
+                static_cast<double>(outliers) >= kOutliersByView * static_cast<double>(distances.size());
+            double& weight = bundle_.views[v].weight;
+            const double now = is_off ? std::pow(usual / own, 2) : 1.0;
+            changed = changed || std::abs(now - weight) > 0.05 * weight;
+            weight = now;
+            for (std::size_t i = 0; i < distances.size(); ++i) {
+                const bool use = distances[i] * std::sqrt(weight) <= limit;
                 changed = changed || use != bundle_.used[v][i];
                 bundle_.used[v][i] = use;
             }

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <tuple>
 
 #include "calibration/geometry/projection_uncertainty.h"
 #include "engine/base/input_error.h"
@@ -205,8 +204,7 @@ class Choice {
             }
             trial.excess2 = excess(trial.validation.held_out_squared_px, least);
             const double best2 = std::pow(trials_[best].candidate.held_out_rms_px, 2);
-            const bool knows_corners = worst <= unknown_place_px(width_, height_);
-            if (candidate.corner_px && knows_corners && best2 + trial.excess2 <= kMuchWorse * kMuchWorse * best2) {
+            if (candidate.corner_px && best2 + trial.excess2 <= kMuchWorse * kMuchWorse * best2) {
                 const double half = 0.5 * candidate.halves_px.value_or(0.0);
                 candidate.expected_error_px = std::sqrt(trial.excess2 + half * half + worst * worst);
             }
@@ -227,12 +225,11 @@ class Choice {
         return std::max(0.0, mean - (n > 1.0 ? std::sqrt(squares / (n * (n - 1.0))) : 0.0));
     }
 
-    // Fewer parameters win a tie; and should no candidate be left, the one that knows its corners best.
+    // Fewer parameters win a tie; and should no candidate be left, the best predictor.
     [[nodiscard]] std::size_t least_error(std::size_t best) const {
-        constexpr double never = std::numeric_limits<double>::infinity();
         const auto order = [&](std::size_t i) {
             const ModelCandidate& c = trials_[i].candidate;
-            return std::tuple(c.expected_error_px.value_or(never), c.corner_px.value_or(never), c.parameters);
+            return std::pair(c.expected_error_px.value_or(std::numeric_limits<double>::infinity()), c.parameters);
         };
         std::size_t chosen = best;
         for (std::size_t i = 0; i < trials_.size(); ++i) {
@@ -263,16 +260,13 @@ class Choice {
         return text;
     }
 
-    [[nodiscard]] std::string why_not(const Trial& trial, const Trial& best, const Trial& chosen) const {
+    static std::string why_not(const Trial& trial, const Trial& best, const Trial& chosen) {
         const ModelCandidate& c = trial.candidate;
         if (!trial.clean) {
             return fmt::format("{} is out: {}.", c.name, c.refused);
         }
         if (!c.corner_px) {
             return fmt::format("{} images nothing where the best does.", c.name);
-        }
-        if (!c.expected_error_px && *c.corner_px > unknown_place_px(width_, height_)) {
-            return fmt::format("{} does not know its corners (± {:.3g} px).", c.name, *c.corner_px);
         }
         if (!c.expected_error_px) {
             return fmt::format("{} predicts {:.0f} % worse than {} ({:.4f} px).", c.name,

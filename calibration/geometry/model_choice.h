@@ -49,8 +49,7 @@ struct ChosenGeometry {
 /// One that leaves twice the residuals of the best is out at once. All others are judged on the same points: those that
 /// the candidate with the smallest residuals (per point used) keeps. A candidate that predicts held-out points more
 /// than 5 % worse than the best of them, beyond chance (one standard error of the paired difference between views), is
-/// out, and so is one that does not know its corners (unknown_place_px), as long as another does; the rest are ordered
-/// by
+/// out; the rest are ordered by
 ///     expected error² = excess² + (halves / 2)² + corner²,
 /// excess² being the held-out mean square above the best's, beyond chance (what the model cannot express), half the
 /// difference of two half-size fits one standard error of the whole's mapping over the covered frame, and corner the

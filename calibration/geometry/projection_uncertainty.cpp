@@ -177,10 +177,6 @@ std::vector<bool> covered_pixels(const std::vector<ChartView>& views, const std:
     return inside;
 }
 
-double unknown_place_px(int width_px, int height_px) {
-    return 0.05 * 0.5 * std::hypot(width_px, height_px);
-}
-
 UncertaintyMap uncertainty_map(const GeometryFit& fit, const std::vector<ChartView>& views, int width_px, int height_px,
                                int columns) {
     UncertaintyMap map;

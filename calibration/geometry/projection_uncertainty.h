@@ -33,9 +33,6 @@ struct UncertaintyMap {
 UncertaintyMap uncertainty_map(const GeometryFit& fit, const std::vector<ChartView>& views, int width_px, int height_px,
                                int columns = 25);
 
-/// Where not even the order of the distortion is known: a standard deviation above 5 % of half the diagonal.
-double unknown_place_px(int width_px, int height_px);
-
 /// One point of the map: infinity, or a distance in mm.
 std::optional<double> projection_uncertainty_px(const GeometryFit& fit, const Vec2d& pixel,
                                                 std::optional<double> distance_mm = std::nullopt);

@@ -20,6 +20,9 @@
 namespace lensproof::calibration {
 namespace {
 
+// A place known to no better than this of half the diagonal: as where a fit refuses a principal point.
+constexpr double kUnknown = 0.05;
+
 struct Geometry {
     GeometryFit fit;
     std::optional<ModelChoice> choice;
@@ -80,12 +83,11 @@ void add_geometry(Profile& profile, Observations& seen, const std::vector<ChartV
 
 // What nobody may overlook of a fit that was made.
 void add_warnings(Profile& profile, const std::vector<ChartView>& charts, const GeometryFit& geometry) {
-    const double unknown = unknown_place_px(profile.width_px, profile.height_px);
     double worst = 0.0;
     for (const std::optional<double>& uncertainty : profile.geometry->uncertainty->far_px) {
         worst = std::max(worst, uncertainty.value_or(0.0));
     }
-    if (worst > unknown) {
+    if (worst > kUnknown * half_diagonal_px(profile)) {
         profile.warnings.push_back(fmt::format(
             "the pictures do not say what the camera does in all of the frame: a place is known to ± {:.3g} px "
             "at worst; add views of the chart that reach into the corners, tilted by 20° or more",
