@@ -74,7 +74,8 @@ optics::StatedMedium read_medium(const SeqFile& file, const std::string& glass, 
 }
 
 /// The odd polynomial: C1 the conic constant, C2 … C31 the coefficients of (r / R)^1 … (r / R)^30, C33 the radius R,
-/// for which 0 says 1 (CODE V Lens System Setup Reference Manual, "Odd polynomial").
+/// for which 0 says 1 (the layout is a public exporter's, which cites CODE V's
+/// Lens System Setup Reference Manual).
 void read_odd_polynomial(optics::PrescribedSurface& row, const SeqSurface& surface, int number, double unit_mm,
                          Remarks& remarks) {
     const auto stated = surface.special_values.find(kSeqNormalizingRadius);

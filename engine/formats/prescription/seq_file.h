@@ -22,7 +22,7 @@ enum class SeqDecentre {
     bend      // BEN: it acts a second time behind the surface
 };
 
-/// Which of its coefficients a special surface's normalizing radius is (CODE V, "Special surfaces", "Odd polynomial").
+/// Which of its coefficients a special surface's normalizing radius is (prescription_seq.cpp has the source).
 inline constexpr int kSeqNormalizingRadius = 33;
 
 /// An S line with what follows it. Lengths in the file's unit.
