@@ -7,6 +7,7 @@
 #include "calibration/profile/profile.h"
 #include "calibration/statistics/estimates_json.h"
 #include "engine/base/file.h"
+#include "engine/base/write_file.h"
 
 namespace lensproof::calibration {
 

@@ -12,6 +12,7 @@
 #include "engine/base/bytes.h"
 #include "engine/base/file.h"
 #include "engine/base/hash.h"
+#include "engine/base/write_file.h"
 
 namespace lensproof {
 
@@ -109,7 +110,7 @@ void Cache::store(std::string_view kind, std::string_view key, std::string_view 
         content += checksum(content);
         const fs::path kept = file(kind, key);
         if (content.size() <= limit_bytes_ && (!fs::exists(kept) || fs::is_regular_file(kept))) {
-            write_file(kept, content);
+            write_file(kept, content, Durability::usual);
             make_room();
         }
     } catch (const std::exception&) {  // NOLINT(bugprone-empty-catch): not kept, as promised

@@ -14,6 +14,7 @@
 #include "engine/base/file.h"
 #include "engine/base/hash.h"
 #include "engine/base/input_error.h"
+#include "engine/base/write_file.h"
 
 namespace lensproof::render {
 
@@ -219,18 +220,15 @@ RenderIdentity read_identity(DigestedReader& reader) {
 }  // namespace
 
 void write_checkpoint(const fs::path& file, const RenderIdentity& identity, const RenderState& state) {
-    write_whole(
-        file,
-        [&](const fs::path& temporary) {
-            errno = 0;
-            DigestedWriter writer(temporary);
-            write_state(writer, identity, state);
-            if (!writer.finish()) {
-                throw std::system_error(errno != 0 ? errno : EIO, std::generic_category(),
-                                        file.string() + " cannot be written");
-            }
-        },
-        Durability::power_cut);
+    write_whole(file, [&](const fs::path& temporary) {
+        errno = 0;
+        DigestedWriter writer(temporary);
+        write_state(writer, identity, state);
+        if (!writer.finish()) {
+            throw std::system_error(errno != 0 ? errno : EIO, std::generic_category(),
+                                    file.string() + " cannot be written");
+        }
+    });
 }
 
 void read_checkpoint(const fs::path& file, const RenderIdentity& identity, RenderState& state) {

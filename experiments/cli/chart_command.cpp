@@ -7,8 +7,8 @@
 #include <optional>
 #include <utility>
 
-#include "engine/base/file.h"
 #include "engine/base/input_error.h"
+#include "engine/base/write_file.h"
 #include "engine/scene/chart/chart_file.h"
 #include "experiments/cli/command.h"
 #include "experiments/draw/print/chart_words.h"

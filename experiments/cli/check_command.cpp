@@ -7,10 +7,10 @@
 #include <memory>
 #include <sstream>
 
-#include "engine/base/file.h"
 #include "engine/base/input_error.h"
 #include "engine/base/json.h"
 #include "engine/base/text.h"
+#include "engine/base/write_file.h"
 #include "engine/check/checker.h"
 #include "engine/formats/prescription/load_lens.h"
 #include "engine/formats/prescription/prescription_file.h"

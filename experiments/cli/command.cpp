@@ -3,8 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <stdexcept>
 
-#include "engine/base/file.h"
 #include "engine/base/input_error.h"
 #include "engine/base/json.h"
 #include "engine/base/text.h"
@@ -83,8 +83,15 @@ void write_json_result(const CommonOptions& options, const Json& result) {
     const std::string text = result.dump(2) + "\n";
     if (options.json_file == "-") {
         fmt::print("{}", text);
-    } else {
-        write_file(options.json_file, text);
+        return;
+    }
+    check_place(
+        write_somewhere({options.json_file}, [&](const std::filesystem::path& file) { write_file(file, text); }));
+}
+
+void check_place(const Delivery& delivery) {
+    if (!delivery.complaint.empty()) {
+        throw std::runtime_error(fmt::format("{}; the result lies in {}", delivery.complaint, delivery.place.string()));
     }
 }
 

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "engine/base/json.h"
+#include "engine/base/write_file.h"
 #include "engine/optics/finding.h"
 #include "engine/optics/glass_catalogue.h"
 #include "engine/optics/lens.h"
@@ -44,9 +45,12 @@ optics::IndexOverrides parse_indices(const std::vector<std::string>& texts);
 /// Throws InputError where --json cannot be written, before long work begins.
 void check_json_name(const CommonOptions& options);
 
-/// Writes the machine-readable result where --json asked for it. Bytes that are not UTF-8, as in some files' names, are
-/// replaced.
+/// Writes the machine-readable result where --json asked for it, the last thing that a command does. Bytes that are not
+/// UTF-8, as in some files' names, are replaced. Throws std::runtime_error where it had to be put elsewhere.
 void write_json_result(const CommonOptions& options, const Json& result);
+
+/// Throws std::runtime_error where a result lies elsewhere than was asked for: it says why, and where.
+void check_place(const Delivery& delivery);
 
 /// Every key is there; what does not apply is null: the surface of a finding about the lens as a whole, say.
 Json finding_json(const optics::Finding& finding);

@@ -8,8 +8,8 @@
 #include "calibration/export/opencv_yaml.h"
 #include "calibration/export/st_map.h"
 #include "calibration/profile/profile.h"
-#include "engine/base/file.h"
 #include "engine/base/input_error.h"
+#include "engine/base/write_file.h"
 #include "experiments/cli/command.h"
 
 namespace lensproof::cli {

@@ -77,7 +77,9 @@ int run(int argc, char** argv) {
 
 int main(int argc, char** argv) {
     // A reader that closes the pipe early (`| head`) is no reason to die by a signal in the middle of a file.
+    // A limit on a file's size is a write that fails.
     std::signal(SIGPIPE, SIG_IGN);
+    std::signal(SIGXFSZ, SIG_IGN);
     lensproof::cli::occupy_standard_streams();
     FLAGS_minloglevel = google::GLOG_FATAL;  // Ceres warns of steps that it then takes otherwise
     try {

@@ -12,6 +12,7 @@
 #include "calibration/self_test/self_test.h"
 #include "engine/base/file.h"
 #include "engine/base/input_error.h"
+#include "engine/base/write_file.h"
 #include "engine/scene/chart/chart_file.h"
 #include "experiments/cli/measure_parts.h"
 
@@ -64,13 +65,16 @@ void add_sharpness_input(calibration::MeasureInput& input, const MeasureOptions&
 }
 
 void write_and_print(const MeasureOptions& options, const calibration::Profile& profile) {
-    if (!options.output.empty()) {
-        calibration::write_profile(profile, options.output);
-    }
-    write_json_result(options.common, lensproof::to_json(profile));
     if (prints_text(options.common)) {
         print_profile(profile);
     }
+    Delivery delivery;
+    if (!options.output.empty()) {
+        delivery = write_somewhere(
+            {options.output}, [&](const std::filesystem::path& file) { calibration::write_profile(profile, file); });
+    }
+    write_json_result(options.common, lensproof::to_json(profile));
+    check_place(delivery);
 }
 
 const OptionCheck kTransferOption{

@@ -6,9 +6,9 @@
 #include <optional>
 #include <utility>
 
-#include "engine/base/file.h"
 #include "engine/base/input_error.h"
 #include "engine/base/json.h"
+#include "engine/base/write_file.h"
 #include "engine/formats/image/image.h"
 #include "engine/render/film/film_exr.h"
 #include "engine/render/film/film_image.h"

@@ -8,8 +8,8 @@
 #include <cstdint>
 #include <string>
 
-#include "engine/base/file.h"
 #include "engine/base/json.h"
+#include "engine/base/write_file.h"
 #include "engine/render/film/film_image.h"
 #include "engine/render/raw/raw_sensor.h"
 

@@ -5,10 +5,11 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <set>
 
-#include "engine/base/file.h"
 #include "engine/base/input_error.h"
 #include "engine/base/json.h"
+#include "engine/base/write_file.h"
 #include "engine/render/checkpoint.h"
 #include "engine/render/engine_version.h"
 #include "engine/render/film/film_image.h"
@@ -77,17 +78,47 @@ class RenderWatch {
         // Drawing takes a twentieth of the time at most.
         if (!options_.preview.empty() && seconds_since(preview_) > std::max(1.0, 20.0 * preview_cost_s_)) {
             const Clock::time_point start = Clock::now();
-            formats::write_png(render::film_rgb(state.film), options_.preview);
+            write_preview(state);
             preview_cost_s_ = seconds_since(start);
             preview_ = Clock::now();
         }
         if (!options_.checkpoint.empty() && seconds_since(checkpoint_) > options_.checkpoint_interval_s) {
-            render::write_checkpoint(options_.checkpoint, identity_, state);
+            write_checkpoint(state);
             checkpoint_ = Clock::now();
         }
     }
 
+    /// Where there is nothing more to render: both as they are now.
+    void look_last(const render::RenderState& state) {
+        if (!options_.checkpoint.empty()) {
+            write_checkpoint(state);
+        }
+        if (!options_.preview.empty()) {
+            write_preview(state);
+        }
+    }
+
   private:
+    void write_preview(const render::RenderState& state) {
+        attempt(options_.preview, [&] { formats::write_png(render::film_rgb(state.film), options_.preview); });
+    }
+
+    void write_checkpoint(const render::RenderState& state) {
+        attempt(options_.checkpoint, [&] { render::write_checkpoint(options_.checkpoint, identity_, state); });
+    }
+
+    /// A disk that is full for a while is no reason to lose a render: it is said once, and tried again the next time.
+    void attempt(const std::string& file, const std::function<void()>& write) {
+        try {
+            write();
+            failing_.erase(file);
+        } catch (const std::exception& failure) {
+            if (failing_.insert(file).second) {
+                fmt::print(stderr, "lensproof: {}; the render goes on without\n", failure.what());
+            }
+        }
+    }
+
     static std::string speed(const render::RenderReport& report) {
         const bool has_rays = report.rays > 0;
         const auto count = static_cast<double>(has_rays ? report.rays : report.samples);
@@ -101,6 +132,7 @@ class RenderWatch {
     Clock::time_point preview_ = Clock::now() - std::chrono::hours(1);  // the first at once
     double preview_cost_s_ = 0.0;
     Clock::time_point checkpoint_ = Clock::now();
+    std::set<std::string> failing_;
 };
 
 /// Samples a pixel, the mean over the film.
@@ -114,15 +146,32 @@ double mean_samples(const render::RenderState& state) {
     return sum / (static_cast<double>(state.film.width()) * state.film.height());
 }
 
+/// `file`, and the same name wherever else a file was asked for.
+std::vector<fs::path> places_for(const fs::path& file, const RenderJobOptions& options, const RenderFiles& files) {
+    std::vector<fs::path> places = {file};
+    for (const fs::path& other : {files.exr, fs::path(options.checkpoint), fs::path(options.preview),
+                                  fs::path(options.common.json_file == "-" ? "" : options.common.json_file)}) {
+        if (const fs::path place = other.parent_path() / file.filename(); !other.empty() && place != places.front()) {
+            places.push_back(place);
+        }
+    }
+    return places;
+}
+
 /// Saves what there is, and says how to go on.
 int end_early(const render::RenderState& state, const render::RenderIdentity& identity, const RenderJobOptions& options,
               const RenderFiles& files) {
     const std::string checkpoint = options.checkpoint.empty() ? files.exr.string() + ".checkpoint" : options.checkpoint;
-    render::write_checkpoint(checkpoint, identity, state);
+    const Delivery delivery = write_somewhere(places_for(checkpoint, options, files), [&](const fs::path& place) {
+        render::write_checkpoint(place, identity, state);
+    });
+    if (!delivery.complaint.empty()) {
+        fmt::print(stderr, "lensproof: {}\n", delivery.complaint);
+    }
     fmt::print(stderr,
                "lensproof: interrupted after {:.1f} samples a pixel of {}; the same command with --checkpoint {} goes "
                "on from there\n",
-               mean_samples(state), state.range.end - state.range.first, checkpoint);
+               mean_samples(state), state.range.end - state.range.first, delivery.place.string());
     return kInternalFailure;
 }
 
@@ -207,7 +256,6 @@ int run_render_job(const RenderJob& job, const RenderJobOptions& options) {
 
     render::RenderState state(job.render.film, range_of(job, options));
     if (!options.checkpoint.empty()) {
-        remove_leftovers(options.checkpoint);
         if (fs::exists(options.checkpoint)) {
             render::read_checkpoint(options.checkpoint, identity, state);
         }
@@ -223,20 +271,24 @@ int run_render_job(const RenderJob& job, const RenderJobOptions& options) {
             .on_progress = [&](const render::RenderState& now,
                                const render::RenderReport& report) { watch.look(now, report); }};
         end = render::render_progressively(state, job.render.renderer, goal_of(options), control);
+        if (end != render::RenderEnd::interrupted) {
+            watch.look_last(state);
+        }
     }
     if (end == render::RenderEnd::interrupted) {
         return end_early(state, identity, options, files);
     }
-    if (!options.checkpoint.empty()) {
-        render::write_checkpoint(options.checkpoint, identity, state);
-    }
-    if (!options.preview.empty()) {
-        formats::write_png(render::film_rgb(state.film), options.preview);
-    }
     const render::FilmNotes notes = notes_of(job, options, identity);
-    render::write_film_exr(state.film, notes, files.exr);
-    formats::write_png(render::film_rgb(state.film), files.png);
-    report(job, state, options, files, write_raw_files(state.film, notes, files.exr, options.common.threads));
+    const Delivery exr = write_somewhere(places_for(files.exr, options, files), [&](const fs::path& place) {
+        render::write_film_exr(state.film, notes, place);
+    });
+    const Delivery png =
+        write_somewhere({files.png, fs::path(exr.place).replace_extension(".png")},
+                        [&](const fs::path& place) { formats::write_png(render::film_rgb(state.film), place); });
+    report(job, state, options, {.exr = exr.place, .png = png.place},
+           write_raw_files(state.film, notes, exr.place, options.common.threads));
+    check_place(exr);
+    check_place(png);
     return kDone;
 }
 

@@ -6,8 +6,8 @@
 #include <memory>
 
 #include "engine/base/cache.h"
-#include "engine/base/file.h"
 #include "engine/base/json.h"
+#include "engine/base/write_file.h"
 #include "experiments/cli/command.h"
 #include "experiments/cli/progress.h"
 #include "experiments/draw/report/report.h"
@@ -86,13 +86,15 @@ int run(const RunOptions& options) {
     StepProgress progress(options.common.quiet);
     const findings::Findings found = runner::run_experiment(experiment, settings, std::ref(progress));
     const Json report = runner::report_json(experiment, found, settings);
-    write_report(folder, found, report);
-    write_json_result(options.common, report);
+    const Delivery delivery =
+        write_somewhere({folder}, [&](const std::filesystem::path& place) { write_report(place, found, report); });
     const findings::Verdict verdict = findings::overall(found.checks);
     if (prints_text(options.common)) {
         print_checks(found.checks);
-        fmt::print("{}: {}\n", findings::verdict_name(verdict), (folder / "report.html").string());
+        fmt::print("{}: {}\n", findings::verdict_name(verdict), (delivery.place / "report.html").string());
     }
+    write_json_result(options.common, report);
+    check_place(delivery);
     return verdict == findings::Verdict::pass ? kDone : kCheckFailed;
 }
 

@@ -8,9 +8,9 @@
 #include <optional>
 
 #include "engine/base/csv.h"
-#include "engine/base/file.h"
 #include "engine/base/input_error.h"
 #include "engine/base/json.h"
+#include "engine/base/write_file.h"
 #include "engine/formats/prescription/load_lens.h"
 #include "engine/optics/float_error.h"
 #include "engine/optics/lens.h"

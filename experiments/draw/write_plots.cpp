@@ -1,7 +1,7 @@
 #include <fmt/format.h>
 
-#include "engine/base/file.h"
 #include "engine/base/input_error.h"
+#include "engine/base/write_file.h"
 #include "experiments/draw/analysis_plots.h"
 
 namespace lensproof::draw {

@@ -16,6 +16,7 @@
 #include "engine/base/angle.h"
 #include "engine/base/file.h"
 #include "engine/base/infinity.h"
+#include "engine/base/write_file.h"
 #include "engine/formats/prescription/load_lens.h"
 #include "engine/formats/prescription/prescription_file.h"
 #include "engine/optics/focus.h"

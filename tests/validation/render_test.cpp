@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "engine/base/file.h"
+#include "engine/base/write_file.h"
 #include "engine/formats/prescription/prescription_file.h"
 #include "engine/optics/illumination.h"
 #include "engine/render/camera/lens_paths.h"

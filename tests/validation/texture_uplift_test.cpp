@@ -4,8 +4,8 @@
 #include <array>
 #include <numeric>
 
-#include "engine/base/file.h"
 #include "engine/base/input_error.h"
+#include "engine/base/write_file.h"
 #include "engine/scene/spectra/texture.h"
 #include "engine/spectral/illuminant.h"
 #include "engine/spectral/sensor_response.h"

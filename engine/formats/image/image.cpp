@@ -9,8 +9,9 @@
 #include <limits>
 #include <stdexcept>
 
-#include "engine/base/file.h"
 #include "engine/base/input_error.h"
+#include "engine/base/write_file.h"
+#include "engine/formats/image/exr_output.h"
 #include "engine/formats/image/frame_placement.h"
 #include "engine/formats/image/srgb.h"
 #include "engine/formats/image/stored_picture.h"
@@ -30,18 +31,6 @@ void linearise(Image& image, const std::string& colour_space) {
             value = srgb_to_linear(value);
         }
     }
-}
-
-void write_with_oiio(const OIIO::ImageSpec& spec, OIIO::TypeDesc type, const void* pixels,
-                     const std::filesystem::path& file) {
-    write_whole(file, [&](const std::filesystem::path& temporary) {
-        const auto output = OIIO::ImageOutput::create(temporary.string());
-        if (!output || !output->open(temporary.string(), spec) || !output->write_image(type, pixels) ||
-            !output->close()) {
-            throw std::runtime_error(fmt::format("{}: cannot be written: {}", file.string(),
-                                                 output ? output->geterror() : OIIO::geterror()));
-        }
-    });
 }
 
 /// Channel by channel, which of the image's go into a PNG.
@@ -136,7 +125,10 @@ void write_exr(const Image& image, const std::filesystem::path& file, const Fram
     for (const auto& [name, value] : image.metadata) {
         spec.attribute(name, value);
     }
-    write_with_oiio(spec, OIIO::TypeDesc::FLOAT, image.pixels.data(), file);
+    write_exr_file(file, [&](OIIO::ImageOutput& output, const std::string& name) {
+        return output.open(name, spec) && output.write_image(OIIO::TypeDesc::FLOAT, image.pixels.data()) &&
+               output.close();
+    });
 }
 
 void write_png(const Image& image, const std::filesystem::path& file) {

@@ -7,6 +7,7 @@
 
 #include "engine/base/file.h"
 #include "engine/base/input_error.h"
+#include "engine/base/write_file.h"
 #include "engine/formats/prescription/prescription_forms.h"
 
 namespace lensproof::formats {

@@ -13,6 +13,7 @@
 
 #include "engine/base/file.h"
 #include "engine/base/input_error.h"
+#include "engine/formats/image/exr_output.h"
 #include "engine/spectral/spectral_exr.h"
 
 namespace lensproof::render {
@@ -369,12 +370,8 @@ void write_film_exr(const Film& film, const FilmNotes& notes, const std::filesys
     std::vector<OIIO::ImageSpec> specs;
     std::ranges::transform(parts, std::back_inserter(specs),
                            [&](const Part& part) { return spec_of(part, film, notes); });
-    write_whole(file, [&](const std::filesystem::path& temporary) {
-        const auto output = OIIO::ImageOutput::create(temporary.string());
-        if (!output || !write_parts(*output, temporary.string(), parts, specs, film)) {
-            throw std::runtime_error(fmt::format("{}: cannot be written: {}", file.string(),
-                                                 output ? output->geterror() : OIIO::geterror()));
-        }
+    formats::write_exr_file(file, [&](OIIO::ImageOutput& output, const std::string& name) {
+        return write_parts(output, name, parts, specs, film);
     });
 }
 

@@ -12,10 +12,10 @@
 #include <stdexcept>
 #include <vector>
 
-#include "engine/base/file.h"
 #include "engine/base/input_error.h"
 #include "engine/base/overloaded.h"
 #include "engine/base/parallel.h"
+#include "engine/base/write_file.h"
 #include "engine/formats/image/page_png.h"
 
 namespace lensproof::draw {
@@ -127,8 +127,13 @@ void draw_vector(const scene::Chart& chart, const PrintLayout& layout, const std
                  const std::filesystem::path& file) {
     const double width = layout.paper.width_mm * kPointsPerMm;
     const double height = layout.paper.height_mm * kPointsPerMm;
-    const Surface surface(is_pdf ? cairo_pdf_surface_create(file.c_str(), width, height)
-                                 : cairo_svg_surface_create(file.c_str(), width, height),
+    std::string bytes;  // a file of its own the library would close without looking whether all was written
+    const cairo_write_func_t keep = [](void* to, const unsigned char* data, unsigned int size) {
+        static_cast<std::string*>(to)->append(reinterpret_cast<const char*>(data), size);
+        return CAIRO_STATUS_SUCCESS;
+    };
+    const Surface surface(is_pdf ? cairo_pdf_surface_create_for_stream(keep, &bytes, width, height)
+                                 : cairo_svg_surface_create_for_stream(keep, &bytes, width, height),
                           cairo_surface_destroy);
     check(cairo_surface_status(surface.get()), file);
     if (is_pdf) {
@@ -141,6 +146,7 @@ void draw_vector(const scene::Chart& chart, const PrintLayout& layout, const std
     check(cairo_status(page.get()), file);
     cairo_surface_finish(surface.get());
     check(cairo_surface_status(surface.get()), file);
+    write_file(file, bytes);
 }
 
 std::vector<unsigned char> greys_of(cairo_surface_t* surface) {
@@ -257,13 +263,11 @@ void print_chart(const scene::Chart& chart, const PrintLayout& layout, const std
     if (extension != ".pdf" && extension != ".svg" && extension != ".png") {
         throw InputError(fmt::format("{}: expected a name that ends in .pdf, .svg or .png", file.string()));
     }
-    write_whole(file, [&](const std::filesystem::path& temporary) {
-        if (extension == ".png") {
-            draw_png(chart, layout, caption, temporary);
-        } else {
-            draw_vector(chart, layout, caption, extension == ".pdf", temporary);
-        }
-    });
+    if (extension == ".png") {
+        draw_png(chart, layout, caption, file);
+    } else {
+        draw_vector(chart, layout, caption, extension == ".pdf", file);
+    }
 }
 
 }  // namespace lensproof::draw

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "engine/base/file.h"
+#include "engine/base/write_file.h"
 #include "tests/test_folder.h"
 
 namespace lensproof::cache_test {

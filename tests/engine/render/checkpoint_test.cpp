@@ -5,6 +5,7 @@
 #include <atomic>
 
 #include "engine/base/file.h"
+#include "engine/base/write_file.h"
 #include "tests/complaint.h"
 #include "tests/engine/render/film/film_sample.h"
 #include "tests/test_folder.h"
@@ -98,19 +99,6 @@ TEST(Checkpoint, OfAnotherRenderIsRefusedWithTheDifferenceNamed) {
     read_checkpoint(file, kIdentity, longer);
     EXPECT_EQ(longer.tiles[0], (TileProgress{.done = 100, .target = 100}));
     EXPECT_EQ(longer.range.end, 200U);
-}
-
-// What a killed process left beside its file goes; what belongs to a live one, or to another file, stays.
-TEST(WriteWhole, LeftoversOfDeadProcessesGo) {
-    const TestFolder folder;
-    for (const char* name : {".c.999999999.part", ".c.1.part", ".c.x.part", ".cc.999999999.part", "c"}) {
-        write_file(folder.path() / name, "x");
-    }
-    remove_leftovers(folder.path() / "c");
-    EXPECT_FALSE(std::filesystem::exists(folder.path() / ".c.999999999.part"));
-    for (const char* name : {".c.1.part", ".c.x.part", ".cc.999999999.part", "c"}) {
-        EXPECT_TRUE(std::filesystem::exists(folder.path() / name)) << name;
-    }
 }
 
 }  // namespace lensproof::render::checkpoint_test

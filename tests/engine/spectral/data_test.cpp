@@ -5,8 +5,8 @@
 #include <array>
 #include <cmath>
 
-#include "engine/base/file.h"
 #include "engine/base/input_error.h"
+#include "engine/base/write_file.h"
 #include "engine/spectral/colour_checker.h"
 #include "engine/spectral/colour_matching.h"
 #include "engine/spectral/illuminant.h"

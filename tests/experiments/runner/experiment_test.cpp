@@ -3,8 +3,8 @@
 
 #include <gtest/gtest.h>
 
-#include "engine/base/file.h"
 #include "engine/base/input_error.h"
+#include "engine/base/write_file.h"
 #include "experiments/runner/report_content.h"
 #include "tests/complaint.h"
 #include "tests/test_folder.h"

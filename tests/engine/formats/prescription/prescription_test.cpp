@@ -3,7 +3,7 @@
 
 #include <filesystem>
 
-#include "engine/base/file.h"
+#include "engine/base/write_file.h"
 #include "engine/formats/prescription/load_lens.h"
 #include "engine/formats/prescription/prescription_file.h"
 #include "engine/optics/lens.h"

@@ -9,6 +9,7 @@
 #include <stdexcept>
 
 #include "engine/base/file.h"
+#include "engine/base/write_file.h"
 #include "engine/formats/prescription/load_lens.h"
 #include "engine/formats/prescription/prescription_file.h"
 #include "engine/optics/convert_lens.h"

@@ -6,6 +6,7 @@
 
 #include "engine/base/file.h"
 #include "engine/base/input_error.h"
+#include "engine/base/write_file.h"
 #include "engine/formats/image/image.h"
 #include "tests/engine/render/film/film_sample.h"
 #include "tests/test_folder.h"

@@ -6,7 +6,7 @@
 #include <cstring>
 #include <filesystem>
 
-#include "engine/base/file.h"
+#include "engine/base/write_file.h"
 #include "engine/scene/geometry/surface_sampler.h"
 #include "tests/complaint.h"
 #include "tests/engine/scene/scene_shapes.h"
