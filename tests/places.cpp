@@ -6,6 +6,10 @@ std::filesystem::path program_file() {
     return LENSPROOF_PROGRAM;
 }
 
+std::filesystem::path failing_calls_library() {
+    return LENSPROOF_FAILING_CALLS;
+}
+
 std::filesystem::path shared_data() {
     return std::filesystem::path(LENSPROOF_SOURCE_DIR) / ".." / "shared";
 }
