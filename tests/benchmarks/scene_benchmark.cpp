@@ -1,5 +1,7 @@
 #include <benchmark/benchmark.h>
 
+#include <cmath>
+
 #include "engine/render/integrators/passes.h"
 #include "engine/render/progressive.h"
 #include "tests/benchmarks/benchmarks.h"
@@ -35,30 +37,86 @@ scene::Scene lit_by_lamp(const spectral::SpectralGrid& grid) {
     return parts.scene();
 }
 
-/// Under a sky of radiance 1.
-scene::Scene lit_evenly(const spectral::SpectralGrid& grid) {
-    SceneParts parts = wall_and_sphere(grid);
-    parts.lights.emplace_back(scene::ConstantLight{spectral::constant_spectrum(1.0, grid)});
-    return parts.scene();
+/// A still life in the open: four spheres, of plastic, frosted glass, clear glass and rough gold, on a checkered floor.
+SceneParts still_life(const spectral::SpectralGrid& grid) {
+    const scene::Chart checks{.pattern = scene::Checkerboard{.columns = 40, .rows = 40, .square_mm = 100.0},
+                              .white_reflectance = 0.8,
+                              .black_reflectance = 0.1};
+    SceneParts parts(grid);
+    parts.add(scene::Quad{8000.0, 8000.0}, {.linear = about_x(90.0), .translation = {0.0, 200.0, 2000.0}},
+              {scene::DiffuseMaterial{scene::chart_texture(checks, 8000.0, 8000.0, grid)}});
+    const auto glass = [&](double alpha) {
+        return scene::dielectric_material(spectral::constant_spectrum(1.5, grid), {alpha, alpha});
+    };
+    const scene::Material materials[] = {
+        {scene::plastic_material(spectral::constant_spectrum(0.5, grid), 1.5, 0.1)},
+        {glass(0.2)},
+        {glass(0.0)},
+        {scene::conductor_material(spectral::constant_spectrum(0.3, grid), spectral::constant_spectrum(3.0, grid),
+                                   {0.2, 0.2})}};
+    double x = -450.0;
+    for (const scene::Material& material : materials) {
+        parts.add(scene::Sphere{150.0}, {.linear = kIdentity3, .translation = {x, 50.0, 2000.0}}, material);
+        x += 300.0;
+    }
+    return parts;
 }
 
-/// Under a map as panoramas come: 4096 × 2048 pixels of many colours, bright and dark.
-scene::Scene lit_by_map(const spectral::SpectralGrid& grid) {
-    constexpr int kMapHeight = 2048;
-    scene::ImageTexture picture{.grid = {2 * kMapHeight, kMapHeight, scene::Wrap::repeat, scene::Wrap::clamp},
+constexpr int kMapHeight = 2048;
+constexpr int kMapWidth = 2 * kMapHeight;
+
+/// A map of 4096 × 2048 pixels as light, the top row's direction up in the picture.
+template <class TexelAt>
+scene::LightSource map_of(const spectral::SpectralGrid& grid, const TexelAt& texel_at) {
+    scene::ImageTexture picture{.grid = {kMapWidth, kMapHeight, scene::Wrap::repeat, scene::Wrap::clamp},
                                 .texel = {},
                                 .abscissa = spectral::tabulated(grid, spectral::sigmoid_abscissa),
                                 .white = spectral::constant_spectrum(1.0, grid)};
-    picture.texel.reserve(std::size_t{2} * kMapHeight * kMapHeight);
-    scene::Uniform uniform(1);
-    for (int i = 0; i < 2 * kMapHeight * kMapHeight; ++i) {
-        const auto number = [&] { return static_cast<float>(4.0 * uniform() - 2.0); };
-        picture.texel.push_back(
-            {.shape = {.coefficient = {number(), number(), number()}}, .scale = static_cast<float>(4.0 * uniform())});
+    picture.texel.reserve(std::size_t{kMapWidth} * kMapHeight);
+    for (int y = 0; y < kMapHeight; ++y) {
+        for (int x = 0; x < kMapWidth; ++x) {
+            picture.texel.push_back(texel_at(x, y));
+        }
     }
-    SceneParts parts = wall_and_sphere(grid);
-    parts.lights.emplace_back(scene::EnvironmentLight{
-        std::make_shared<const scene::Environment>(std::move(picture), Vec3d{0.0, -1.0, 0.0}, 0.0)});
+    return scene::EnvironmentLight{
+        std::make_shared<const scene::Environment>(std::move(picture), Vec3d{0.0, -1.0, 0.0}, 0.0)};
+}
+
+/// Of radiance 1.
+scene::LightSource even_sky(const spectral::SpectralGrid& grid) {
+    return scene::ConstantLight{spectral::constant_spectrum(1.0, grid)};
+}
+
+/// The hardest: every pixel another colour and brightness, so that no look-up is near the one before.
+scene::LightSource noise(const spectral::SpectralGrid& grid) {
+    scene::Uniform uniform(1);
+    const auto number = [&] { return static_cast<float>(4.0 * uniform() - 2.0); };
+    return map_of(grid, [&](int, int) {
+        return scene::ImageTexture::Texel{.shape = {.coefficient = {number(), number(), number()}},
+                                          .scale = static_cast<float>(4.0 * uniform())};
+    });
+}
+
+/// As panoramas are: a sky that brightens towards the horizon, some grain, a dim ground, and a sun of half a degree
+/// that gives as much light as all the rest.
+scene::LightSource panorama(const spectral::SpectralGrid& grid) {
+    scene::Uniform uniform(1);
+    constexpr double kSunRadius = kMapHeight * 0.265 / 180.0;
+    return map_of(grid, [&](int x, int y) {
+        const double down = (y + 0.5) / kMapHeight;
+        const bool is_sun = std::hypot(x - 0.6 * kMapWidth, y - 0.25 * kMapHeight) < kSunRadius;
+        const double radiance = is_sun ? 1e5 : down < 0.5 ? 0.5 + down : 0.3;
+        const auto blue = static_cast<float>(down < 0.5 ? -1.0 + down : 0.3);
+        return scene::ImageTexture::Texel{.shape = {.coefficient = {0.1F, blue, 0.2F}},
+                                          .scale = static_cast<float>(radiance * (0.9 + 0.2 * uniform()))};
+    });
+}
+
+template <SceneParts (&parts_of)(const spectral::SpectralGrid&),
+          scene::LightSource (&sky_of)(const spectral::SpectralGrid&)>
+scene::Scene under(const spectral::SpectralGrid& grid) {
+    SceneParts parts = parts_of(grid);
+    parts.lights.push_back(sky_of(grid));
     return parts.scene();
 }
 
@@ -106,8 +164,15 @@ void register_scene_benchmarks() {
             time_camera_paths(state, model, lit_by_lamp);
         })->Unit(benchmark::kMillisecond);
     }
-    benchmark::RegisterBenchmark("scene/sky/even", time_camera_paths, exact, lit_evenly)->Unit(benchmark::kMillisecond);
-    benchmark::RegisterBenchmark("scene/sky/map", time_camera_paths, exact, lit_by_map)->Unit(benchmark::kMillisecond);
+    const auto add = [](const char* name, MakeScene make_scene) {
+        benchmark::RegisterBenchmark(name, time_camera_paths, exact, make_scene)->Unit(benchmark::kMillisecond);
+    };
+    add("scene/sky/even", under<wall_and_sphere, even_sky>);
+    add("scene/sky/noise", under<wall_and_sphere, noise>);
+    add("scene/sky/panorama", under<wall_and_sphere, panorama>);
+    add("scene/still_life/even", under<still_life, even_sky>);
+    add("scene/still_life/noise", under<still_life, noise>);
+    add("scene/still_life/panorama", under<still_life, panorama>);
 }
 
 }  // namespace lensproof

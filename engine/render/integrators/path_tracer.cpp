@@ -18,17 +18,21 @@ class PathWalk {
     PathRadiance walk(Ray<double> ray) {
         spectral::SpectralSample throughput(1.0F);
         for (int bounce = 0;; ++bounce) {
+            const scene::MapPlace ahead = scene_.lights.expect_infinity(ray.direction);
             const auto hit = scene::intersect(*scene_.geometry, ray.origin, ray.direction, 0.0, kInfinity);
             ++result_.rays;
             if (bounce == 0 && drawn_ != nullptr) {
                 enter(hit ? LightOrigin{hit->point, false} : LightOrigin{-1.0 * ray.direction, true});
             }
             if (!hit) {
-                scene_.lights.visit_infinity(ray.direction, path_, [&](const scene::Lights::Emission& light) {
-                    add_found(throughput, light, 1.0);
-                });
+                scene_.lights.visit_infinity(
+                    ray.direction, path_,
+                    [&](const scene::Lights::Emission& light) { add_found(throughput, light, 1.0); }, ahead);
                 break;
             }
+            const auto numbers = numbers_.next();
+            const auto to_light = numbers_.peek();
+            scene_.lights.expect_sample(to_light[0], to_light[1], to_light[2]);
             throughput *= body_transmittance(scene_, *hit, ray.direction, path_);
             add_found(throughput, scene_.lights.emitted(*hit, from_, ray.direction, path_),
                       std::abs(dot(hit->geometric_normal, ray.direction)));
@@ -42,9 +46,9 @@ class PathWalk {
             if (bounce == settings_.max_bounces || !vertex.is_consistent(-1.0 * ray.direction, vertex.wo)) {
                 break;
             }
-            const auto numbers = numbers_.next();
             if (!scene::is_delta(vertex.bsdf)) {
-                add_from_lights(vertex, throughput);
+                numbers_.skip();
+                add_from_lights(vertex, to_light, throughput);
             }
             const auto turn = vertex.turn(numbers, scene::Transport::radiance);
             if (!turn) {
@@ -95,8 +99,8 @@ class PathWalk {
         }
     }
 
-    void add_from_lights(const PathVertex& vertex, const spectral::SpectralSample& throughput) {
-        const auto numbers = numbers_.next();
+    void add_from_lights(const PathVertex& vertex, const std::array<double, PathSampler::kNumbers>& numbers,
+                         const spectral::SpectralSample& throughput) {
         const auto light = scene_.lights.sample(vertex.hit.point, path_, numbers[0], numbers[1], numbers[2]);
         if (!light) {
             return;
@@ -117,7 +121,8 @@ class PathWalk {
         const double to_light =
             light->pdf > 0.0 ? scene::pdf(vertex.bsdf, vertex.wo, wi, scene::Transport::radiance) : 0.0;
         const PathTurn turn = turn_at(vertex, light->direction, wi, to_light);
-        add(static_cast<float>(weight_.of_sample(*light, turn)) * (throughput * scattering * light->value));
+        const spectral::SpectralSample value = scene::light_of(light->value, light->place, path_);
+        add(static_cast<float>(weight_.of_sample(*light, turn)) * (throughput * scattering * value));
     }
 
     void note_first(const PathVertex& vertex) {

@@ -26,6 +26,10 @@ class PathSampler {
         return PixelSampler(own, pixel_).point(shuffled(sample_, shuffle));
     }
 
+    /// What `next` will say, and as if it had said it.
+    [[nodiscard]] std::array<double, kNumbers> peek() const { return PathSampler(*this).next(); }
+    void skip() { ++set_; }
+
   private:
     /// Laine and Karras's hash acts on bits from the lowest up; an index is scrambled from the highest down.
     static std::uint32_t shuffled(std::uint32_t index, std::uint32_t seed) {

@@ -1,10 +1,8 @@
 // engine/scene/light/environment.h — a picture of all directions, as light from infinity.
 #pragma once
-#include <optional>
-#include <vector>
-
 #include "engine/base/basis.h"
 #include "engine/base/vec.h"
+#include "engine/scene/light/pixel_distribution.h"
 #include "engine/scene/spectra/texture.h"
 
 namespace lensproof::scene {
@@ -17,31 +15,51 @@ class Environment {
     /// `picture`: radiance, W·m⁻²·sr⁻¹·nm⁻¹. Throws InputError for one without light.
     Environment(ImageTexture picture, const Vec3d& up, double rotate_deg);
 
-    /// Radiance from a direction (of unit length, towards the sky).
-    [[nodiscard]] spectral::SpectralSample radiance(const Vec3d& direction,
-                                                    const spectral::PathWavelengths& path) const;
-
-    /// A direction drawn about as often as light comes from there: a pixel by its brightness and solid angle, evenly
-    /// within it (Pharr, Jakob & Humphreys, Physically Based Rendering, 4th ed., §12.5).
+    /// A direction drawn about as often as light comes from there: a cell of one or some pixels by its brightness and
+    /// solid angle, evenly within it (Pharr, Jakob & Humphreys, Physically Based Rendering, 4th ed., §12.5). What
+    /// `radiance_at` reads of the picture at `uv` is on its way from memory.
     struct Draw {
         Vec3d direction;
+        Vec2d uv;          // of the picture
         double pdf = 0.0;  // per solid angle
     };
     [[nodiscard]] Draw draw(double u1, double u2) const;
-    [[nodiscard]] double pdf(const Vec3d& direction) const;
+    [[nodiscard]] spectral::SpectralSample radiance_at(const Vec2d& uv, const spectral::PathWavelengths& path) const {
+        return value_at(picture_, uv, path);
+    }
+
+    /// Asks memory for what `draw` will read.
+    void expect_draw(double u1, double u2) const { cells_.expect(u1, u2); }
+
+    /// Where the picture shows a direction; asks memory for what `seen` will read there.
+    [[nodiscard]] Vec2d expect(const Vec3d& direction) const;
+
+    /// What comes from a direction, which the picture shows at `uv`, and the pdf with which `draw` draws it.
+    struct Seen {
+        spectral::SpectralSample radiance;
+        double pdf = 0.0;
+    };
+    [[nodiscard]] Seen seen(const Vec3d& direction, const Vec2d& uv, const spectral::PathWavelengths& path) const;
+    [[nodiscard]] Seen seen(const Vec3d& direction, const spectral::PathWavelengths& path) const {
+        return seen(direction, uv_of(frame_.to_local(direction)), path);
+    }
 
     /// ∫ of the mean radiance over the grid and all directions, W·m⁻²·nm⁻¹.
     [[nodiscard]] double mean_power() const { return mean_power_; }
 
   private:
-    [[nodiscard]] Vec2d uv_of(const Vec3d& direction) const;
-    /// Per uv area, of the pixel at uv.
-    [[nodiscard]] double pdf_in_picture(std::size_t pixel, std::size_t row) const;
+    /// Of a direction in the picture's frame.
+    [[nodiscard]] static Vec2d uv_of(const Vec3d& local);
+
+    struct Cell {
+        std::size_t column = 0;
+        std::size_t row = 0;
+    };
+    [[nodiscard]] Cell cell_at(const Vec2d& uv) const;
 
     ImageTexture picture_;
     Basis frame_;
-    std::vector<double> rows_;    // cumulative over the rows, from 0 to 1; one more than there are
-    std::vector<double> pixels_;  // the same within each row, row after row
+    PixelDistribution cells_;
     double mean_power_ = 0.0;
 };
 

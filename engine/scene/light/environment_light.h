@@ -33,14 +33,23 @@ struct EnvironmentLight {
     std::shared_ptr<const Environment> map;
 
     [[nodiscard]] double irradiance() const { return map->mean_power(); }
-    [[nodiscard]] SkySample draw(const spectral::PathWavelengths& path, double u1, double u2) const {
+    [[nodiscard]] SkySample draw(const spectral::PathWavelengths& /*path*/, double u1, double u2) const {
         const Environment::Draw drawn = map->draw(u1, u2);
-        return {drawn.direction, map->radiance(drawn.direction, path), drawn.pdf};
+        return {drawn.direction, spectral::SpectralSample(1.0F), drawn.pdf, {map.get(), drawn.uv}};
     }
-    [[nodiscard]] SkySample seen(const Vec3d& direction, const spectral::PathWavelengths& path) const {
-        return {direction, map->radiance(direction, path), map->pdf(direction)};
+    [[nodiscard]] SkySample seen(const Vec3d& direction, const spectral::PathWavelengths& path,
+                                 const MapPlace& ahead = {}) const {
+        const Environment::Seen seen =
+            ahead.map == map.get() ? map->seen(direction, ahead.uv, path) : map->seen(direction, path);
+        return {direction, seen.radiance, seen.pdf};
     }
 };
+
+/// `value`, and as a factor what a map has at `place`.
+inline spectral::SpectralSample light_of(const spectral::SpectralSample& value, const MapPlace& place,
+                                         const spectral::PathWavelengths& path) {
+    return place.map != nullptr ? value * place.map->radiance_at(place.uv, path) : value;
+}
 
 /// Light from every direction: the same, or as a picture in equirectangular projection, whose white (1, 1, 1) has the
 /// luminance and the illuminant. The picture's middle row is the horizon, its middle column the direction +x turned

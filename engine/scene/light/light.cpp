@@ -61,6 +61,9 @@ Lights::Lights(const SceneGeometry& scene, std::vector<LightSource> lights) : of
                                                    return sky.irradiance() * cross_section;
                                                }},
                                     light));
+        if (const auto* sky = std::get_if<EnvironmentLight>(&light); sky != nullptr && map_ == nullptr) {
+            map_ = sky->map.get();
+        }
         lights_.push_back({.light = std::move(light), .surface = std::move(surface)});
     }
     power_ = std::accumulate(powers.begin(), powers.end(), 0.0);
@@ -98,6 +101,7 @@ std::optional<LightSample> Lights::sample(const Vec3d& point, const spectral::Pa
                                   return LightSample{.direction = drawn.direction,
                                                      .end = point + beyond_mm(point) * drawn.direction,
                                                      .value = scaled(drawn.radiance, 1.0 / drawn.pdf),
+                                                     .place = drawn.place,
                                                      .pdf = drawn.pdf,
                                                      .leaving_per_sample = crossing_pdf_};
                               }},
@@ -128,10 +132,19 @@ Lights::Emission Lights::emitted(const SurfaceHit& hit, const Vec3d& from, const
             .leaving_pdf = entry.probability * area.leaving_pdf(per_mm2)};
 }
 
-Lights::Emission Lights::at_infinity(const Entry& entry, const Vec3d& direction,
+void Lights::expect_sample(double u_light, double u1, double u2) const {
+    if (map_ != nullptr) {
+        if (const auto* sky = std::get_if<EnvironmentLight>(&choose(u_light).entry->light)) {
+            sky->map->expect_draw(u1, u2);
+        }
+    }
+}
+
+Lights::Emission Lights::at_infinity(const Entry& entry, const Vec3d& direction, const MapPlace& ahead,
                                      const spectral::PathWavelengths& path) const {
     const SkySample seen =
-        std::visit(Overloaded{[&](const LightAtInfinity auto& sky) { return sky.seen(direction, path); },
+        std::visit(Overloaded{[&](const EnvironmentLight& sky) { return sky.seen(direction, path, ahead); },
+                              [&](const LightAtInfinity auto& sky) { return sky.seen(direction, path); },
                               [](const auto& /*nearer*/) { return SkySample(); }},
                    entry.light);
     const double pdf = entry.probability * seen.pdf;
@@ -160,7 +173,8 @@ LightStart Lights::start(const spectral::PathWavelengths& path, double u_light, 
                               const SkySample drawn = sky.draw(path, u1, u2);
                               start.is_at_infinity = true;
                               start.direction = -1.0 * drawn.direction;
-                              start.value = scaled(drawn.radiance, drawn.pdf > 0.0 ? 1.0 / drawn.pdf : 0.0);
+                              start.value = scaled(light_of(drawn.radiance, drawn.place, path),
+                                                   drawn.pdf > 0.0 ? 1.0 / drawn.pdf : 0.0);
                               start.pdf = drawn.pdf;
                           }},
                chosen->light);

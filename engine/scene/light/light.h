@@ -63,11 +63,20 @@ class Lights {
     [[nodiscard]] Emission emitted(const SurfaceHit& hit, const Vec3d& from, const Vec3d& direction,
                                    const spectral::PathWavelengths& path) const;
 
-    /// The same for a ray that leaves the scene: visits what each of the lights at infinity has in that direction.
+    /// Ask memory for what `sample` will read of these numbers, and for what a ray in that direction will look up if
+    /// it leaves the scene.
+    void expect_sample(double u_light, double u1, double u2) const;
+    [[nodiscard]] MapPlace expect_infinity(const Vec3d& direction) const {
+        return map_ != nullptr ? MapPlace{map_, map_->expect(direction)} : MapPlace{};
+    }
+
+    /// The same as `emitted` for a ray that leaves the scene: visits what each of the lights at infinity has in that
+    /// direction. `ahead`: what `expect_infinity` said of it.
     template <class Visit>
-    void visit_infinity(const Vec3d& direction, const spectral::PathWavelengths& path, const Visit& visit) const {
+    void visit_infinity(const Vec3d& direction, const spectral::PathWavelengths& path, const Visit& visit,
+                        const MapPlace& ahead = {}) const {
         for (const std::uint32_t index : at_infinity_) {
-            if (const Emission found = at_infinity(lights_[index], direction, path);
+            if (const Emission found = at_infinity(lights_[index], direction, ahead, path);
                 !spectral::is_black(found.radiance)) {
                 visit(found);
             }
@@ -105,13 +114,14 @@ class Lights {
         double rest;  // of the number that chose it, uniform again
     };
     [[nodiscard]] Chosen choose(double u) const;
-    [[nodiscard]] Emission at_infinity(const Entry& entry, const Vec3d& direction,
+    [[nodiscard]] Emission at_infinity(const Entry& entry, const Vec3d& direction, const MapPlace& ahead,
                                        const spectral::PathWavelengths& path) const;
 
     std::vector<Entry> lights_;
     std::vector<double> cumulative_;          // of the probabilities
     std::vector<std::int32_t> of_object_;     // the area light of each object, or −1
     std::vector<std::uint32_t> at_infinity_;  // indices
+    const Environment* map_ = nullptr;        // of the first light among these that is one
     Vec3d centre_;                            // of a sphere around the scene
     double radius_mm_ = 0.0;
     double crossing_pdf_ = 0.0;  // 1/mm²: of light paths from infinity over the disc in front of the scene

@@ -13,11 +13,21 @@
 
 namespace lensproof::scene {
 
+class Environment;
+
+/// A place of a map that is not yet looked up: it lies beyond the caches, and by the time that a path knows whether it
+/// sees the place, memory has brought it.
+struct MapPlace {
+    const Environment* map = nullptr;  // none: there is nothing to look up
+    Vec2d uv;
+};
+
 /// Light that reaches a point: what next-event estimation adds, if nothing stands in the way.
 struct LightSample {
     Vec3d direction;                 // from the point to the light, unit length
     Vec3d end;                       // the path is free if nothing stands between the point and this
-    spectral::SpectralSample value;  // radiance over pdf, or irradiance on a surface that faces a delta light
+    spectral::SpectralSample value;  // radiance over pdf, or irradiance on a surface that faces a delta light; but for
+    MapPlace place{};                // what a map's light has there, a factor (`light_of`)
     double pdf = 0.0;                // per solid angle at the point, choice of the light included; 0 for a delta
     /// The pdf per etendue with which a light path would leave along this path, over that of this sample, 1/mm².
     double leaving_per_sample = 0.0;
@@ -60,6 +70,7 @@ struct SkySample {
     Vec3d direction;  // unit length
     spectral::SpectralSample radiance;
     double pdf = 0.0;
+    MapPlace place{};  // whose light `radiance` lacks, as a factor
 };
 
 inline constexpr double kSquareMetresPerSquareMm = 1e-6;

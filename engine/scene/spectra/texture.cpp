@@ -30,8 +30,9 @@ Neighbours neighbours(double at, int count, Wrap wrap) {
     const double pixel = inside * count - 0.5;
     const double floor = std::floor(pixel);
     const auto wrapped = [&](int index) {
-        const int within = wrap == Wrap::repeat ? (index + count) % count : std::clamp(index, 0, count - 1);
-        return static_cast<std::size_t>(within);
+        const int below = wrap == Wrap::repeat ? count - 1 : 0;
+        const int beyond = wrap == Wrap::repeat ? 0 : count - 1;
+        return static_cast<std::size_t>(index < 0 ? below : index >= count ? beyond : index);
     };
     const int first = static_cast<int>(floor);
     return {.first = wrapped(first), .second = wrapped(first + 1), .fraction = static_cast<float>(pixel - floor)};
@@ -47,6 +48,17 @@ auto bilinear(const TexelGrid& grid, const Vec2d& uv, const Value& value) {
         return (1.0F - x.fraction) * value(start + x.first) + x.fraction * value(start + x.second);
     };
     return (1.0F - y.fraction) * row(y.first) + y.fraction * row(y.second);
+}
+
+/// But for the picture's white.
+[[gnu::always_inline]] inline spectral::SpectralSample value_of(const ImageTexture::Texel& texel,
+                                                                const spectral::SpectralSample& abscissa) {
+    return texel.scale * spectral::for_each_wavelength([&](float t) { return texel.shape.at(t); }, abscissa);
+}
+
+/// `uv` of a surface in the picture that covers it `repeats` times.
+Vec2d repeated(const ImageTexture& image, const Vec2d& uv) {
+    return {image.repeats.x * uv.x, image.repeats.y * uv.y};
 }
 
 spectral::SpectralSample value_at(const spectral::GridSpectrum& spectrum, const Vec2d&,
@@ -99,12 +111,37 @@ ImageTexture image_texture(const formats::Image& image, const std::filesystem::p
 
 spectral::SpectralSample value_at(const ImageTexture& image, const Vec2d& uv, const spectral::PathWavelengths& path) {
     const spectral::SpectralSample abscissa = image.abscissa(path);
-    const Vec2d at{image.repeats.x * uv.x, image.repeats.y * uv.y};
-    const spectral::SpectralSample value = bilinear(image.grid, at, [&](std::size_t index) {
-        const ImageTexture::Texel& texel = image.texel[index];
-        return texel.scale * spectral::for_each_wavelength([&](float t) { return texel.shape.at(t); }, abscissa);
-    });
+    const spectral::SpectralSample value = bilinear(
+        image.grid, repeated(image, uv), [&](std::size_t index) { return value_of(image.texel[index], abscissa); });
     return value * image.white(path);
+}
+
+void fetch(const ImageTexture& image, const Vec2d& uv) {
+    const Vec2d at = repeated(image, uv);
+    const Neighbours x = neighbours(at.x, image.grid.width, image.grid.wrap_u);
+    const Neighbours y = neighbours(1.0 - at.y, image.grid.height, image.grid.wrap_v);
+    for (const std::size_t row : {y.first, y.second}) {
+        const ImageTexture::Texel* start = image.texel.data() + row * static_cast<std::size_t>(image.grid.width);
+        __builtin_prefetch(start + x.first);
+        __builtin_prefetch(start + x.second);
+    }
+}
+
+std::vector<float> mean_over_grid(const ImageTexture& image) {
+    const std::size_t count = image.white.value.size();
+    std::vector<float> means;
+    means.reserve(image.texel.size());
+    for (const ImageTexture::Texel& texel : image.texel) {
+        spectral::SpectralSample sum;
+        for (std::size_t i = 0; i < count; i += spectral::kWavelengthsPerPath) {
+            const auto four = [i](const spectral::GridSpectrum& s) {
+                return spectral::SpectralSample({s.value[i], s.value[i + 1], s.value[i + 2], s.value[i + 3]});
+            };
+            sum += value_of(texel, four(image.abscissa)) * four(image.white);
+        }
+        means.push_back(spectral::kWavelengthsPerPath * mean(sum) / static_cast<float>(count));
+    }
+    return means;
 }
 
 spectral::SpectralSample value_at(const Texture& texture, const Vec2d& uv, const spectral::PathWavelengths& path) {

@@ -8,6 +8,7 @@
 #include <variant>
 #include <vector>
 
+#include "engine/base/large_pages.h"
 #include "engine/base/vec.h"
 #include "engine/formats/image/image.h"
 #include "engine/scene/chart/chart.h"
@@ -34,10 +35,10 @@ struct ImageTexture {
         float scale = 1.0F;
     };
     TexelGrid grid;
-    Vec2d repeats{1.0, 1.0};          // how often the picture covers the surface along u and v
-    std::vector<Texel> texel;         // rows from the top
-    spectral::GridSpectrum abscissa;  // sigmoid_abscissa of the wavelengths
-    spectral::GridSpectrum white;     // 1 for reflectances
+    Vec2d repeats{1.0, 1.0};                      // how often the picture covers the surface along u and v
+    std::vector<Texel, LargePages<Texel>> texel;  // rows from the top
+    spectral::GridSpectrum abscissa;              // sigmoid_abscissa of the wavelengths
+    spectral::GridSpectrum white;                 // 1 for reflectances
 };
 
 /// A chart on a surface of width_mm × height_mm, its centre in the middle: `black`, `white`, or what the chart says
@@ -69,6 +70,12 @@ class Texture {
 
 spectral::SpectralSample value_at(const Texture& texture, const Vec2d& uv, const spectral::PathWavelengths& path);
 spectral::SpectralSample value_at(const ImageTexture& image, const Vec2d& uv, const spectral::PathWavelengths& path);
+
+/// Asks memory for what `value_at` will read.
+void fetch(const ImageTexture& image, const Vec2d& uv);
+
+/// The mean over the grid's wavelengths of each pixel, row after row.
+std::vector<float> mean_over_grid(const ImageTexture& image);
 
 /// A picture's channels R, G, B, or Y, as reflectances of these colours under D65. Throws InputError naming `file`
 /// where there are no such channels.
