@@ -24,6 +24,57 @@ std::string shown(const toml::node& node) {
     return stream.str();
 }
 
+/// Past the text in quotes at `at`, on its own line or, between three quotes, on several; one quote or two may stand
+/// before the closing three.
+std::size_t past_quotes(std::string_view text, std::size_t at) {
+    const char quote = text[at];
+    const std::string three(3, quote);
+    const bool is_long = text.substr(at, 3) == three;
+    for (at += is_long ? 3 : 1; at < text.size(); ++at) {
+        if (text[at] == '\\' && quote == '"') {
+            ++at;
+        } else if (is_long ? text.substr(at, 3) == three : text[at] == quote) {
+            at += is_long ? 3 : 1;
+            break;
+        } else if (text[at] == '\n' && !is_long) {
+            break;
+        }
+    }
+    while (is_long && at < text.size() && text[at] == quote) {
+        ++at;
+    }
+    return std::min(at, text.size());
+}
+
+/// Refuses keys of many parts, a.b.c…: each is a table in the one before, and the library calls itself for each. It
+/// bounds brackets itself, to 256, so that nothing lies more than 257 · 32 deep, which a stack of 1 MiB holds.
+void check_keys(std::string_view text, const std::filesystem::path& name) {
+    constexpr std::size_t kMostParts = 32;
+    std::size_t parts = 1;
+    for (std::size_t at = 0; at < text.size();) {
+        const char c = text[at];
+        if (c == '"' || c == '\'') {
+            at = past_quotes(text, at);
+            continue;
+        }
+        if (c == '#') {
+            at = std::min(text.find('\n', at), text.size());
+            continue;
+        }
+        if (c == '.') {
+            ++parts;
+        } else if (std::string_view("\n=,[]{}").find(c) != std::string_view::npos) {
+            parts = 1;
+        }
+        if (parts > kMostParts) {
+            throw InputError(fmt::format(
+                "{}:{}: a key of more than {} parts", name.string(),
+                1 + std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(at), '\n'), kMostParts));
+        }
+        ++at;
+    }
+}
+
 }  // namespace
 
 TomlTable::TomlTable(std::shared_ptr<const toml::table> root, const toml::table* table, std::filesystem::path file,
@@ -35,6 +86,7 @@ TomlTable TomlTable::read(const std::filesystem::path& file) {
 }
 
 TomlTable TomlTable::parse(const std::string& text, const std::filesystem::path& name) {
+    check_keys(text, name);
     try {
         auto root = std::make_shared<const toml::table>(toml::parse(text));
         const toml::table* top = root.get();
