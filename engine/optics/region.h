@@ -23,7 +23,8 @@ struct RegionSearch {
 };
 
 /// A point inside: `start`, or else the best of a grid, improved by compass search down the margin (Kolda, Lewis,
-/// Torczon, SIAM Review 45, 2003); of a mirror image, on x = 0. Nothing where none is found.
+/// Torczon, SIAM Review 45, 2003); of a mirror image, on x = 0. Nothing where none is found
+/// in at most 18 000 looks: a region of a 1e-9th of the reach, or one at the end of a long, narrow valley.
 std::optional<Vec2d> find_inside(const Region& region, const RegionSearch& search);
 
 /// Where a line from a point inside a region leaves it.
