@@ -227,18 +227,24 @@ void write_whole(const fs::path& named, const std::function<void(const fs::path&
     }
 }
 
-void write_file(const fs::path& file, std::string_view content, Durability durability) {
+void write_stream(const fs::path& file, const std::function<void(std::ostream&)>& write, Durability durability) {
     write_whole(
         file,
         [&](const fs::path& temporary) {
             errno = 0;
             std::ofstream stream(temporary, std::ios::binary);
-            stream.write(content.data(), static_cast<std::streamsize>(content.size()));
+            write(stream);
             stream.close();
             if (!stream) {
                 throw system_failure(errno != 0 ? errno : EIO, file);
             }
         },
+        durability);
+}
+
+void write_file(const fs::path& file, std::string_view content, Durability durability) {
+    write_stream(
+        file, [&](std::ostream& stream) { stream.write(content.data(), static_cast<std::streamsize>(content.size())); },
         durability);
 }
 

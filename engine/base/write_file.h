@@ -2,6 +2,7 @@
 #pragma once
 #include <filesystem>
 #include <functional>
+#include <iosfwd>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -20,6 +21,10 @@ enum class Durability { usual, power_cut };
 /// std::runtime_error when that fails (disk full, no permission).
 void write_file(const std::filesystem::path& file, std::string_view content,
                 Durability durability = Durability::power_cut);
+
+/// The same for content of any length, which `write` puts out bit by bit.
+void write_stream(const std::filesystem::path& file, const std::function<void(std::ostream&)>& write,
+                  Durability durability = Durability::power_cut);
 
 /// Runs `write` on a temporary file beside `file` and renames the outcome; on an exception nothing is left behind. The
 /// temporary file is there and empty, its name cannot be guessed, and it has `file`'s extension, by which libraries of

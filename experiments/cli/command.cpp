@@ -3,7 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <iostream>
+#include <sstream>
 #include <stdexcept>
+#include <utility>
 
 #include "engine/base/input_error.h"
 #include "engine/base/json.h"
@@ -76,23 +79,46 @@ void check_json_name(const CommonOptions& options) {
     }
 }
 
+namespace {
+
+void put_json(const std::string& file, const std::function<void(std::ostream&)>& write) {
+    if (file == "-") {
+        write(std::cout);
+    } else if (!file.empty()) {
+        check_place(write_somewhere({file}, [&](const std::filesystem::path& place) { write_stream(place, write); }));
+    }
+}
+
+}  // namespace
+
 void write_json_result(const CommonOptions& options, const Json& result) {
-    if (options.json_file.empty()) {
-        return;
-    }
-    const std::string text = result.dump(2) + "\n";
-    if (options.json_file == "-") {
-        fmt::print("{}", text);
-        return;
-    }
-    check_place(
-        write_somewhere({options.json_file}, [&](const std::filesystem::path& file) { write_file(file, text); }));
+    put_json(options.json_file, [&](std::ostream& out) { out << result.dump(2) << "\n"; });
 }
 
 void check_place(const Delivery& delivery) {
     if (!delivery.complaint.empty()) {
         throw std::runtime_error(fmt::format("{}; the result lies in {}", delivery.complaint, delivery.place.string()));
     }
+}
+
+void write_json_result(const CommonOptions& options, const Json& result, std::string_view list,
+                       const std::function<void(const std::function<void(const Json&)>&)>& each) {
+    const std::string text = result.dump(2) + "\n";
+    const std::string mark = fmt::format("\"{}\": [", list);  // in no text, which has its quotes escaped
+    const std::size_t inside = text.find(mark) + mark.size();
+    put_json(options.json_file, [&](std::ostream& out) {
+        out << text.substr(0, inside);
+        const char* between = "\n";
+        each([&](const Json& value) {
+            out << std::exchange(between, ",\n");
+            std::istringstream lines(value.dump(2));
+            const char* line_end = "";
+            for (std::string line; std::getline(lines, line);) {
+                out << std::exchange(line_end, "\n") << "    " << line;
+            }
+        });
+        out << (*between == ',' ? "\n  " : "") << text.substr(inside);
+    });
 }
 
 Json finding_json(const optics::Finding& finding) {

@@ -48,6 +48,10 @@ void check_json_name(const CommonOptions& options);
 /// Writes the machine-readable result where --json asked for it, the last thing that a command does. Bytes that are not
 /// UTF-8, as in some files' names, are replaced. Throws std::runtime_error where it had to be put elsewhere.
 void write_json_result(const CommonOptions& options, const Json& result);
+/// The same with a list in `result`, empty there and on its top level, whose values `each` tells one by one: so that
+/// memory does not grow with them.
+void write_json_result(const CommonOptions& options, const Json& result, std::string_view list,
+                       const std::function<void(const std::function<void(const Json&)>&)>& each);
 
 /// Throws std::runtime_error where a result lies elsewhere than was asked for: it says why, and where.
 void check_place(const Delivery& delivery);

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iostream>
 #include <map>
 #include <memory>
 #include <optional>
@@ -62,47 +63,88 @@ GivenRay read_ray(const CsvRow& row) {
             .wavelength_nm = row.number("wavelength_nm", kPositive)};
 }
 
-std::vector<GivenRay> read_rays(const std::string& file) {
-    CsvTable table = CsvTable::read(file);
-    table.expect_columns({"id", "x_mm", "y_mm", "z_mm", "dx", "dy", "dz", "wavelength_nm"});
-    std::vector<GivenRay> rays;
-    while (const std::optional<CsvRow> row = table.next()) {
-        rays.push_back(read_ray(*row));
-    }
-    if (rays.empty()) {
-        throw InputError(fmt::format("{}: holds no ray", file));
-    }
-    return rays;
-}
-
-/// Collects a row a surface, as CSV or JSON.
-class TraceTable {
+/// Rays of a table, read anew each time that they are asked for.
+class GivenRays {
   public:
-    template <class T>
-    void add(const std::string& id, const std::string& surface, const Ray<T>& ray, T optical_path, T transmittance,
-             optics::RayStatus status) {
-        fmt::format_to(std::back_inserter(csv_), "{},{},{},{},{},{},{},{},{},{},{}\n", id, surface, ray.origin.x,
-                       ray.origin.y, ray.origin.z, ray.direction.x, ray.direction.y, ray.direction.z, optical_path,
-                       transmittance, optics::status_name(status));
-        json_.push_back({{"id", id},
-                         {"surface", surface},
-                         {"point_mm", {ray.origin.x, ray.origin.y, ray.origin.z}},
-                         {"direction", {ray.direction.x, ray.direction.y, ray.direction.z}},
-                         {"optical_path_mm", optical_path},
-                         {"transmittance", transmittance},
-                         {"status", optics::status_name(status)}});
+    explicit GivenRays(const std::string& file) : table_(CsvTable::read(file)) {
+        table_.expect_columns({"id", "x_mm", "y_mm", "z_mm", "dx", "dy", "dz", "wavelength_nm"});
+        if (!CsvTable(table_).next()) {
+            throw InputError(fmt::format("{}: holds no ray", file));
+        }
     }
 
-    [[nodiscard]] std::string csv() const { return std::string(kResultHeader) + "\n" + csv_; }
-    [[nodiscard]] const Json& json() const { return json_; }
+    template <class Visit>
+    void for_each(const Visit& visit) const {
+        CsvTable table = table_;
+        while (const std::optional<CsvRow> row = table.next()) {
+            visit(read_ray(*row));
+        }
+    }
 
   private:
-    std::string csv_;
-    Json json_ = Json::list();
+    CsvTable table_;
 };
 
-template <class T, optics::Direction direction, optics::Rims rims>
-void trace_one(const optics::TraceLens<T>& lens, const GivenRay& given, TraceTable& table) {
+/// The lens at the wavelengths of rays, which come by few; of many the last ones are kept.
+template <class T>
+class LensAtWavelengths {
+  public:
+    explicit LensAtWavelengths(const optics::Lens& lens) : lens_(&lens) {}
+
+    const optics::TraceLens<T>& at(double wavelength_nm) {
+        constexpr std::size_t kKept = 64;
+        if (!kept_.contains(wavelength_nm)) {
+            if (kept_.size() == kKept) {
+                kept_.clear();
+            }
+            kept_.emplace(wavelength_nm, optics::at_wavelength<T>(*lens_, wavelength_nm));
+        }
+        return kept_.at(wavelength_nm);
+    }
+
+  private:
+    const optics::Lens* lens_;
+    std::map<double, optics::TraceLens<T>> kept_;
+};
+
+/// Everything that can be wrong with the rays is found before the first is written.
+void check_rays(const optics::Lens& lens, const GivenRays& rays) {
+    LensAtWavelengths<double> lenses(lens);
+    rays.for_each([&](const GivenRay& given) { lenses.at(given.wavelength_nm); });
+}
+
+/// A ray at a surface, in whatever precision.
+template <class T>
+struct TraceRow {
+    const std::string& id;
+    std::string surface;
+    Ray<T> ray;
+    T optical_path;
+    T transmittance;
+    optics::RayStatus status;
+};
+
+template <class T>
+std::string csv_of(const TraceRow<T>& row) {
+    return fmt::format("{},{},{},{},{},{},{},{},{},{},{}\n", row.id, row.surface, row.ray.origin.x, row.ray.origin.y,
+                       row.ray.origin.z, row.ray.direction.x, row.ray.direction.y, row.ray.direction.z,
+                       row.optical_path, row.transmittance, optics::status_name(row.status));
+}
+
+template <class T>
+Json json_of(const TraceRow<T>& row) {
+    return {{"id", row.id},
+            {"surface", row.surface},
+            {"point_mm", {row.ray.origin.x, row.ray.origin.y, row.ray.origin.z}},
+            {"direction", {row.ray.direction.x, row.ray.direction.y, row.ray.direction.z}},
+            {"optical_path_mm", row.optical_path},
+            {"transmittance", row.transmittance},
+            {"status", optics::status_name(row.status)}};
+}
+
+/// Tells `visit` a row a surface.
+template <class T, optics::Direction direction, optics::Rims rims, class Visit>
+void trace_one(const optics::TraceLens<T>& lens, const GivenRay& given, const Visit& visit) {
     const auto cast = [](const Vec3d& v) {
         return Vec3<T>{static_cast<T>(v.x), static_cast<T>(v.y), static_cast<T>(v.z)};
     };
@@ -110,8 +152,8 @@ void trace_one(const optics::TraceLens<T>& lens, const GivenRay& given, TraceTab
     const Ray<T> ray{cast(given.ray.origin), normalized(cast(given.ray.direction))};
     const optics::TracedRay<T> traced =
         optics::trace<direction, rims>(lens, ray, [&](const optics::SurfaceEvent<T>& event) {
-            table.add(given.id, std::to_string(event.surface + 1), event.ray, event.optical_path, event.transmittance,
-                      event.status);
+            visit(TraceRow<T>{given.id, std::to_string(event.surface + 1), event.ray, event.optical_path,
+                              event.transmittance, event.status});
         });
     const bool ended = traced.status == optics::RayStatus::missed ||
                        traced.status == optics::RayStatus::total_internal_reflection ||
@@ -121,29 +163,38 @@ void trace_one(const optics::TraceLens<T>& lens, const GivenRay& given, TraceTab
     }
     if (traced.ray.direction.z > T(0)) {
         const optics::PlanePoint<T> image = optics::meet_plane(traced.ray, lens.image_z);
-        table.add(given.id, "image", Ray<T>{image.point, traced.ray.direction}, traced.optical_path + image.distance,
-                  traced.transmittance, optics::RayStatus::ok);
+        visit(TraceRow<T>{given.id, "image", Ray<T>{image.point, traced.ray.direction},
+                          traced.optical_path + image.distance, traced.transmittance, optics::RayStatus::ok});
     } else {
-        table.add(given.id, "image", traced.ray, traced.optical_path, traced.transmittance, optics::RayStatus::missed);
+        visit(TraceRow<T>{given.id, "image", traced.ray, traced.optical_path, traced.transmittance,
+                          optics::RayStatus::missed});
     }
 }
 
-template <class T>
-void trace_all(const optics::Lens& lens, const std::vector<GivenRay>& rays, const TraceOptions& options,
-               TraceTable& table) {
-    std::map<double, optics::TraceLens<T>> lenses;
-    for (const GivenRay& given : rays) {
-        if (!lenses.contains(given.wavelength_nm)) {
-            lenses.emplace(given.wavelength_nm, optics::at_wavelength<T>(lens, given.wavelength_nm));
-        }
+template <class T, class Visit>
+void trace_all(const optics::Lens& lens, const GivenRays& rays, const TraceOptions& options, const Visit& visit) {
+    LensAtWavelengths<T> lenses(lens);
+    rays.for_each([&](const GivenRay& given) {
         const optics::TraceLens<T>& at = lenses.at(given.wavelength_nm);
         if (options.reverse) {
-            options.no_clip ? trace_one<T, optics::Direction::reverse, optics::Rims::follow>(at, given, table)
-                            : trace_one<T, optics::Direction::reverse, optics::Rims::clip>(at, given, table);
+            options.no_clip ? trace_one<T, optics::Direction::reverse, optics::Rims::follow>(at, given, visit)
+                            : trace_one<T, optics::Direction::reverse, optics::Rims::clip>(at, given, visit);
         } else {
-            options.no_clip ? trace_one<T, optics::Direction::forward, optics::Rims::follow>(at, given, table)
-                            : trace_one<T, optics::Direction::forward, optics::Rims::clip>(at, given, table);
+            options.no_clip ? trace_one<T, optics::Direction::forward, optics::Rims::follow>(at, given, visit)
+                            : trace_one<T, optics::Direction::forward, optics::Rims::clip>(at, given, visit);
         }
+    });
+}
+
+/// In the precision asked for.
+template <class Visit>
+void trace_rows(const optics::Lens& lens, const GivenRays& rays, const TraceOptions& options, const Visit& visit) {
+    if (options.precision == "float") {
+        trace_all<float>(lens, rays, options, visit);
+    } else if (options.precision == "extended") {
+        trace_all<long double>(lens, rays, options, visit);
+    } else {
+        trace_all<double>(lens, rays, options, visit);
     }
 }
 
@@ -156,21 +207,17 @@ struct MeasuredError {
     [[nodiscard]] double bound_um() const { return optics::float_error_bound_um(system_length_mm); }
 };
 
-MeasuredError measure_float(const optics::Lens& lens, const std::vector<GivenRay>& rays, const TraceOptions& options) {
+MeasuredError measure_float(const optics::Lens& lens, const GivenRays& rays, const TraceOptions& options) {
     MeasuredError measured{.reverse = options.reverse,
                            .system_length_mm = lens.image_z - lens.surfaces.front().vertex_z};
-    std::map<double, std::pair<optics::TraceLens<float>, optics::TraceLens<double>>> lenses;
-    for (const GivenRay& given : rays) {
-        const double nm = given.wavelength_nm;
-        if (!lenses.contains(nm)) {
-            lenses.emplace(nm,
-                           std::pair{optics::at_wavelength<float>(lens, nm), optics::at_wavelength<double>(lens, nm)});
-        }
-        const auto& [in_float, in_double] = lenses.at(nm);
-        measured.error.add(optics::trace_in_float(
-            in_float, in_double, given.ray, options.reverse ? optics::Direction::reverse : optics::Direction::forward,
-            options.no_clip ? optics::Rims::follow : optics::Rims::clip));
-    }
+    LensAtWavelengths<float> in_float(lens);
+    LensAtWavelengths<double> in_double(lens);
+    rays.for_each([&](const GivenRay& given) {
+        measured.error.add(
+            optics::trace_in_float(in_float.at(given.wavelength_nm), in_double.at(given.wavelength_nm), given.ray,
+                                   options.reverse ? optics::Direction::reverse : optics::Direction::forward,
+                                   options.no_clip ? optics::Rims::follow : optics::Rims::clip));
+    });
     return measured;
 }
 
@@ -211,21 +258,18 @@ int run_trace(const TraceOptions& options) {
         formats::load_lens(options.lens, {.indices = parse_indices(options.indices),
                                           .zoom = options.zoom,
                                           .glasses = read_glass_catalogues(options.glass_catalogues)});
-    const std::vector<GivenRay> rays = read_rays(options.rays_file);
-    TraceTable table;
-    if (options.precision == "float") {
-        trace_all<float>(lens, rays, options, table);
-    } else if (options.precision == "extended") {
-        trace_all<long double>(lens, rays, options, table);
-    } else {
-        trace_all<double>(lens, rays, options, table);
-    }
+    const GivenRays rays(options.rays_file);
+    check_rays(lens, rays);
+    const auto write_csv = [&](std::ostream& out) {
+        out << kResultHeader << "\n";
+        trace_rows(lens, rays, options, [&](const auto& row) { out << csv_of(row); });
+    };
     if (!options.output_file.empty()) {
-        write_file(options.output_file, table.csv());
+        write_stream(options.output_file, write_csv);
     } else if (prints_text(options.common)) {
-        fmt::print("{}", table.csv());
+        write_csv(std::cout);
     }
-    Json result{{"lens", lens.id}, {"rows", table.json()}};
+    Json result{{"lens", lens.id}, {"rows", Json::list()}};
     if (options.precision == "float") {
         const MeasuredError measured = measure_float(lens, rays, options);
         if (!options.common.quiet) {
@@ -233,7 +277,9 @@ int run_trace(const TraceOptions& options) {
         }
         result["float_error"] = error_json(measured);
     }
-    write_json_result(options.common, result);
+    write_json_result(options.common, result, "rows", [&](const auto& visit) {
+        trace_rows(lens, rays, options, [&](const auto& row) { visit(json_of(row)); });
+    });
     return kDone;
 }
 

@@ -2,6 +2,7 @@
 
 #include <fcntl.h>
 #include <gtest/gtest.h>
+#include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -70,8 +71,12 @@ Outcome run_program(const std::vector<std::string>& arguments, const fs::path& w
         become_program(arguments, where);
     }
     int status = 0;
-    ::waitpid(child, &status, 0);
-    Outcome outcome{.status = exit_status(status), .out = bytes_of(out_file), .err = bytes_of(err_file)};
+    rusage used{};
+    ::wait4(child, &status, 0, &used);
+    Outcome outcome{.status = exit_status(status),
+                    .out = bytes_of(out_file),
+                    .err = bytes_of(err_file),
+                    .peak_kib = used.ru_maxrss};
     return outcome;
 }
 

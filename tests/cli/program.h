@@ -17,6 +17,7 @@ struct Outcome {
     int status = -1;  // the exit status; minus the signal's number where one ended it
     std::string out;
     std::string err;
+    long peak_kib = 0;  // of its memory, or of this test's where that had more when the program was started
 };
 
 /// Runs the program with `arguments` in the folder `where` and waits for it. A stream that is not captured stays empty.
