@@ -16,6 +16,7 @@
 #include "engine/base/file.h"
 #include "engine/base/input_error.h"
 #include "engine/base/text.h"
+#include "engine/scene/geometry/gltf_check.h"
 #include "engine/scene/geometry/mesh_normals.h"
 #include "engine/scene/geometry/ply_check.h"
 
@@ -24,11 +25,18 @@ namespace lensproof::scene {
 namespace {
 
 constexpr std::size_t kMost = std::size_t{1} << 31;
+/// With meshes that stand there more than once, each time for itself: a gigabyte of positions and normals.
+constexpr std::size_t kMostRepeated = std::size_t{1} << 25;
 
 std::string lower_extension(const std::filesystem::path& file) {
     std::string extension = file.extension().string();
     std::ranges::transform(extension, extension.begin(), [](unsigned char c) { return std::tolower(c); });
     return extension;
+}
+
+bool is_gltf(const std::filesystem::path& file) {
+    const std::string extension = lower_extension(file);
+    return extension == ".gltf" || extension == ".glb";
 }
 
 AffineMap affine(const aiMatrix4x4& m) {
@@ -95,6 +103,12 @@ class Collector {
         if (mesh_->positions.size() + 3 * std::size_t{from.mNumFaces} > kMost) {
             throw InputError(fmt::format("{}: holds more than {} vertices", mesh_->name, kMost));
         }
+        if (!added_.insert(&from).second && mesh_->positions.size() + from.mNumVertices > kMostRepeated) {
+            throw InputError(
+                fmt::format("{}: repeats meshes until they have more than {} vertices, instances in the "
+                            "scene file would share them",
+                            mesh_->name, kMostRepeated));
+        }
         TriangleMesh part = with_vertices(from, map);
         const bool is_mirrored = determinant(map.linear) < 0.0;
         for (unsigned i = 0; i < from.mNumFaces; ++i) {
@@ -145,6 +159,7 @@ class Collector {
     bool with_normals_;
     bool with_uvs_;
     std::set<std::string> names_;
+    std::set<const aiMesh*> added_;
     std::size_t lines_and_points_ = 0;
 };
 
@@ -157,6 +172,8 @@ const aiScene& read_scene(Assimp::Importer& importer, const std::filesystem::pat
     try {
         if (lower_extension(file) == ".ply") {
             check_ply(read_file(file), file);
+        } else if (is_gltf(file)) {
+            check_gltf(file);
         }
         scene = importer.ReadFile(file.string(), aiProcess_ValidateDataStructure | aiProcess_Triangulate |
                                                      aiProcess_SortByPType | aiProcess_JoinIdenticalVertices);
@@ -195,8 +212,7 @@ std::vector<std::string> ignored(const std::string& name, const aiScene& scene, 
 MeshFile read_mesh(const std::filesystem::path& file, const MeshOptions& options) {
     check_readable(file);
     const std::string extension = lower_extension(file);
-    const bool is_gltf = extension == ".gltf" || extension == ".glb";
-    if (!is_gltf && extension != ".obj" && extension != ".ply") {
+    if (!is_gltf(file) && extension != ".obj" && extension != ".ply") {
         throw InputError(
             fmt::format("{}: is no form of mesh that is known, expected .gltf, .glb, .obj or .ply", file.string()));
     }
@@ -205,7 +221,7 @@ MeshFile read_mesh(const std::filesystem::path& file, const MeshOptions& options
     MeshFile read{.mesh = {.name = file.string()}};
     Collector collector(scene, options, read.mesh);
     constexpr double kMetre = 1000.0;
-    const double scale = options.mm_per_unit.value_or(is_gltf ? kMetre : 1.0);
+    const double scale = options.mm_per_unit.value_or(is_gltf(file) ? kMetre : 1.0);
     const AffineMap to_mm{.linear = {Vec3d{scale, 0, 0}, Vec3d{0, scale, 0}, Vec3d{0, 0, scale}}};
     collector.collect(*scene.mRootNode, to_mm, false);
     if (read.mesh.triangles.empty()) {

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <cstdint>
 #include <cstring>
 #include <filesystem>
 
@@ -273,6 +274,65 @@ TEST_F(MeshFileTest, UnusableFilesAreRefusedByName) {
     expect_named("loop.gltf", with(gltf, R"("children": [1])", R"("children": [0])"));
     EXPECT_NE(complaint_about([] { read_mesh("no/such.obj"); }).find("no/such.obj: no such file"), std::string::npos);
     EXPECT_NE(complaint_about([] { read_mesh(testing::TempDir()); }).find("is a folder"), std::string::npos);
+}
+
+/// A glTF file of these nodes, the last of which is a triangle, as JSON or in the binary form.
+std::string nodes_gltf(const std::string& nodes, const std::string& roots = "0") {
+    return R"({"asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [)" + roots + R"(]}], "nodes": [)" +
+           nodes +
+           R"(], "meshes": [{"primitives": [{"attributes": {"POSITION": 0}}]}],
+"buffers": [{"byteLength": 36, "uri": "data:application/octet-stream;base64,AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAA"}],
+"bufferViews": [{"buffer": 0, "byteLength": 36}],
+"accessors": [{"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3", "min": [0, 0, 0], "max": [1, 1, 0]}]})";
+}
+std::string as_glb(std::string json) {
+    json.resize((json.size() + 3) / 4 * 4, ' ');
+    const auto word = [](std::size_t value) {
+        const auto bits = static_cast<std::uint32_t>(value);
+        return std::string(reinterpret_cast<const char*>(&bits), sizeof bits);
+    };
+    return "glTF" + word(2) + word(20 + json.size()) + word(json.size()) + "JSON" + json;
+}
+
+/// `levels` nodes each of which holds the next `times` times, and a triangle below them.
+std::string chain(int levels, int times) {
+    std::string nodes;
+    for (int i = 1; i <= levels; ++i) {
+        nodes += R"({"children": [)" + std::to_string(i);
+        for (int k = 1; k < times; ++k) {
+            nodes += ", " + std::to_string(i);
+        }
+        nodes += "]}, ";
+    }
+    return nodes + R"({"mesh": 0})";
+}
+
+// A tree of nodes costs stack for each level and memory for each node, shared ones each time: 24 levels of two make
+// 1.8 KB ask for 2²⁵ nodes. What is refused says so by name, in both forms; what is allowed is read, 2¹² shared
+// triangles of it.
+TEST_F(MeshFileTest, TreesOfNodesAreBounded) {
+    std::string roots = "0";
+    for (int i = 0; i < 1000; ++i) {
+        roots += ", 0";
+    }
+    const std::pair<std::string, std::string> bad[] = {{nodes_gltf(chain(20'000, 1)), "more than 256 deep"},
+                                                       {nodes_gltf(chain(24, 2)), "more than 250000 nodes"},
+                                                       {nodes_gltf(chain(200, 2)), "more than 250000 nodes"},
+                                                       {nodes_gltf(chain(8, 2), roots), "more than 250000 nodes"},
+                                                       {nodes_gltf(R"({"children": [0]})"), "inside itself"}};
+    for (const auto& [text, words] : bad) {
+        const auto complaint = [&](const std::string& name, const std::string& content) {
+            const fs::path file = write(name, content);
+            return complaint_about([&] { read_mesh(file); });
+        };
+        EXPECT_TRUE(says(complaint("tree.gltf", text), "tree.gltf: "));
+        EXPECT_TRUE(says(complaint("tree.gltf", text), words));
+        EXPECT_TRUE(says(complaint("tree.glb", as_glb(text)), words));
+    }
+    EXPECT_EQ(read_mesh(write("deep.gltf", nodes_gltf(chain(255, 1)))).mesh.triangles.size(), 1U);
+    EXPECT_EQ(read_mesh(write("shared.gltf", nodes_gltf(chain(12, 2)))).mesh.triangles.size(), 4096U);
+    EXPECT_TRUE(says(complaint_about([&] { read_mesh(write("nested.gltf", std::string(200'000, '['))); }),
+                     "nested.gltf: more than 64 brackets"));
 }
 
 // Cut anywhere, a file is refused by name or is a mesh that can be traced; nothing else happens. Binary forms, and

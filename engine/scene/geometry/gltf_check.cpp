@@ -1,0 +1,154 @@
+#include "engine/scene/geometry/gltf_check.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <fstream>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "engine/base/file.h"
+#include "engine/base/input_error.h"
+#include "engine/base/json.h"
+
+namespace lensproof::scene {
+
+namespace {
+
+constexpr std::size_t kDeepest = 256;
+constexpr std::size_t kMostNodes = 250'000;
+
+/// The JSON of a file: all of it, or the first chunk of the binary form, which follows five words: magic, version,
+/// length, and the chunk's length and kind (version 1 has its length in the same place). The rest is not read.
+std::string json_of(const std::filesystem::path& file) {
+    constexpr std::size_t kWord = 4;
+    std::ifstream stream(file, std::ios::binary);
+    std::string head(5 * kWord, '\0');
+    if (!stream.read(head.data(), static_cast<std::streamsize>(head.size())) || !head.starts_with("glTF")) {
+        return read_file(file);
+    }
+    std::size_t length = 0;
+    for (std::size_t i = kWord; i-- > 0;) {
+        length = length << 8U | static_cast<unsigned char>(head[3 * kWord + i]);
+    }
+    std::string json(std::min<std::size_t>(length, std::filesystem::file_size(file)), '\0');
+    stream.read(json.data(), static_cast<std::streamsize>(json.size()));
+    json.resize(static_cast<std::size_t>(stream.gcount()));
+    return json;
+}
+
+/// The nodes as a list of those below each. Version 1 names them, version 2 numbers them.
+class NodeTree {
+  public:
+    NodeTree(const Json& top, std::string file) : file_(std::move(file)) {
+        const Json& nodes = top["nodes"];
+        std::map<std::string, std::size_t> by_name;
+        for (const auto& [name, node] : nodes.members()) {
+            by_name.emplace(name, by_name.size());
+        }
+        const auto indices = [&](const Json& list) {
+            std::vector<std::size_t> found;
+            for (const Json& entry : list) {
+                if (const auto named = entry.is_text() ? by_name.find(entry.text()) : by_name.end();
+                    named != by_name.end()) {
+                    found.push_back(named->second);
+                } else if (entry.is_number() && entry.number() >= 0.0 &&
+                           entry.number() < static_cast<double>(nodes.size())) {
+                    found.push_back(static_cast<std::size_t>(entry.number()));
+                }
+            }
+            return found;
+        };
+        for (const Json& node : nodes) {
+            below_.push_back(indices(node["children"]));
+        }
+        for (const auto& [name, node] : nodes.members()) {
+            below_.push_back(indices(node["children"]));
+        }
+        const Json& scenes = top["scenes"];
+        for (const Json& scene : scenes) {
+            scenes_.push_back(indices(scene["nodes"]));
+        }
+        for (const auto& [name, scene] : scenes.members()) {
+            scenes_.push_back(indices(scene["nodes"]));
+        }
+    }
+
+    void check() const {
+        std::vector<Extent> extents(below_.size());
+        for (std::size_t node = 0; node < below_.size(); ++node) {
+            measure(node, extents);
+        }
+        for (const std::vector<std::size_t>& scene : scenes_) {
+            std::size_t nodes = 0;
+            for (const std::size_t root : scene) {
+                nodes = std::min(nodes + extents[root].nodes, kMostNodes + 1);
+            }
+            refuse_many(nodes);
+        }
+    }
+
+  private:
+    /// A node with all below it, shared ones as often as they are shared.
+    struct Extent {
+        std::size_t nodes = 0;  // 0: not yet known
+        std::size_t levels = 0;
+    };
+
+    /// Of a node and all below it, each once. Kept on a stack of its own; on it a node twice would be inside itself.
+    void measure(std::size_t root, std::vector<Extent>& extents) const {
+        struct Open {
+            std::size_t node;
+            std::size_t next = 0;  // of those below it
+            Extent sum{1, 1};
+        };
+        if (extents[root].nodes > 0) {
+            return;
+        }
+        std::vector<Open> open{{root}};
+        while (!open.empty()) {
+            if (open.size() > kDeepest) {
+                refuse(fmt::format("holds nodes more than {} deep, or one inside itself", kDeepest));
+            }
+            Open& at = open.back();
+            if (at.next == below_[at.node].size()) {
+                refuse_many(at.sum.nodes);
+                extents[at.node] = at.sum;
+                open.pop_back();
+                continue;
+            }
+            const std::size_t child = below_[at.node][at.next];
+            if (extents[child].nodes == 0) {
+                open.push_back({child});
+                continue;
+            }
+            at.sum.nodes += extents[child].nodes;
+            at.sum.levels = std::max(at.sum.levels, extents[child].levels + 1);
+            refuse_many(at.sum.nodes);
+            if (at.sum.levels > kDeepest) {
+                refuse(fmt::format("holds nodes more than {} deep", kDeepest));
+            }
+            ++at.next;
+        }
+    }
+
+    void refuse_many(std::size_t nodes) const {
+        if (nodes > kMostNodes) {
+            refuse(fmt::format("asks for more than {} nodes, those that others share counted for each", kMostNodes));
+        }
+    }
+    [[noreturn]] void refuse(const std::string& why) const { throw InputError(fmt::format("{}: {}", file_, why)); }
+
+    std::string file_;
+    std::vector<std::vector<std::size_t>> below_;
+    std::vector<std::vector<std::size_t>> scenes_;
+};
+
+}  // namespace
+
+void check_gltf(const std::filesystem::path& file) {
+    NodeTree(Json::parse(json_of(file), file.string()), file.string()).check();
+}
+
+}  // namespace lensproof::scene
