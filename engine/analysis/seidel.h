@@ -67,14 +67,16 @@ std::optional<SeidelSums<T>> seidel_sums(
 namespace seidel_detail {
 
 /// 8 G, where the sag departs from the sphere of the vertex's curvature by G r⁴. With the curvature c that the shape
-/// states and its r² term a, the vertex has c + 2 a, and 8 G = (1 + k) c³ − (c + 2 a)³ + 8 A4.
+/// states and its r² term a, the vertex has c + 2 a, and 8 G = (1 + k) c³ − (c + 2 a)³ + 8 A4; along the conic's normal
+/// a r² counts 1 + c² r² / 2 times.
 template <class T>
 T departure_from_sphere(const optics::TraceLens<T>& lens, const optics::TraceSurface<T>& surface) {
     const optics::SurfaceShape<T> shape = optics::shape_of(lens, surface);
     const T& c = shape.curvature;
     const T& c_vertex = surface.curvature;
     const T r2_term = 2 * shape.asphere[0];
-    return shape.conic * c * c * c - r2_term * (c * c + c * c_vertex + c_vertex * c_vertex) + 8 * shape.asphere[1];
+    const T r4_term = shape.along_normal ? shape.asphere[1] + shape.asphere[0] * c * c / 2 : shape.asphere[1];
+    return shape.conic * c * c * c - r2_term * (c * c + c * c_vertex + c_vertex * c_vertex) + 8 * r4_term;
 }
 
 /// δn / n of one medium.

@@ -192,8 +192,8 @@ void check_duplicate(const CheckedLens& checked, int i, Findings& findings) {
     const optics::PrescribedSurface& next = checked.row(i + 1);
     const bool same = !row.is_flat() && row.radius_mm == next.radius_mm && row.thickness_mm == next.thickness_mm &&
                       row.semi_diameter_mm == next.semi_diameter_mm && row.asphere == next.asphere &&
-                      row.odd_asphere == next.odd_asphere && row.medium.glass == next.medium.glass &&
-                      row.medium.n_d == next.medium.n_d;
+                      row.odd_asphere == next.odd_asphere && row.along_normal == next.along_normal &&
+                      row.medium.glass == next.medium.glass && row.medium.n_d == next.medium.n_d;
     if (same) {
         add(findings, "duplicate-surface", warning, i + 2, "it repeats the surface before it to the digit");
     }

@@ -28,6 +28,7 @@ SpecialSurface<To> convert_special(const SpecialSurface<From>& from) {
                 .conic = static_cast<To>(from.shape.conic),
                 .terms = from.shape.terms,
                 .odd_terms = from.shape.odd_terms,
+                .along_normal = from.shape.along_normal,
                 .is_toroid = from.shape.is_toroid,
                 .curvature_x = static_cast<To>(from.shape.curvature_x)};
     const auto convert_term = [](const From& term) { return static_cast<To>(term); };

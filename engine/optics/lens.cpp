@@ -201,6 +201,7 @@ SurfaceShape<double> prescribed_shape(const PrescribedSurface& row) {
                                .conic = row.conic,
                                .asphere = row.asphere,
                                .odd_asphere = row.odd_asphere,
+                               .along_normal = row.along_normal,
                                .is_toroid = row.radius_x_mm.has_value(),
                                .curvature_x = row.radius_x_mm ? 1.0 / *row.radius_x_mm : 0.0};
     for (int power = 1; power <= kHighestPower; ++power) {

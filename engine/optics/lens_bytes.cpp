@@ -1,6 +1,7 @@
 #include "engine/optics/lens_bytes.h"
 
 #include "engine/base/bytes.h"
+#include "engine/optics/prescription.h"
 
 namespace lensproof::optics {
 
@@ -10,8 +11,12 @@ namespace {
 // here.
 
 void append_shape(std::string& bytes, const SurfaceShape<double>& shape) {
-    const auto& [curvature, conic, asphere, terms, odd_asphere, odd_terms, is_toroid, curvature_x] = shape;
+    const auto& [curvature, conic, asphere, terms, odd_asphere, odd_terms, along_normal, is_toroid, curvature_x] =
+        shape;
     append_bytes(bytes, curvature, conic);
+    if (along_normal) {
+        append_bytes(bytes, -kAsphereTerms - 1);  // which is no count of odd terms
+    }
     if (odd_terms > 0) {  // their count is negative, as that of the even ones never is
         append_bytes(bytes, -odd_terms);
         for (const double coefficient : odd_asphere) {

@@ -60,6 +60,7 @@ struct PrescribedSurface {
     double conic = 0.0;            // 0 a sphere, −1 a paraboloid
     AsphereTerms asphere{};        // of even powers
     AsphereTerms odd_asphere{};
+    bool along_normal = false;          // these terms count along the conic's normal (SurfaceShape has the formula)
     std::optional<double> radius_x_mm;  // a toroid: the curve in y–z turned about an axis at this distance; inf: a
                                         // cylinder
     double thickness_mm = 0.0;          // to the next surface; for the last one: to the sensor

@@ -23,7 +23,8 @@ T sag_bend(const SurfaceShape<T>& shape, const T& r2) {
     const T& c = shape.curvature;
     const T flatness = T(1) + shape.conic;
     const T root2 = T(1) - flatness * c * c * r2;
-    T bend = root2 > T(0) ? flatness * c * c * c / (T(4) * root2 * sqrt(root2)) : T(0);
+    const T conic_bend = root2 > T(0) ? flatness * c * c * c / (T(4) * root2 * sqrt(root2)) : T(0);
+    T bend = shape.along_normal ? T(0) : conic_bend;
     T power = T(1);  // r^(2i)
     for (int i = 1; i < shape.terms; ++i) {
         bend += T(i + 1) * T(i) * shape.asphere[i] * power;
@@ -36,7 +37,15 @@ T sag_bend(const SurfaceShape<T>& shape, const T& r2) {
             power *= r2;
         }
     }
-    return bend;
+    if (!shape.along_normal) {
+        return bend;
+    }
+    // (φ S)'' = φ (S'' + 2 g S' + (g² + g') S), where g = (ln φ)' = c² / (2 N D), φ² = N / D.
+    const auto [secant, growth] = normal_secant(shape, r2, root2 > T(0));
+    const SagProfile<T> departure = terms_profile(shape, r2);
+    const T above = T(1) - shape.conic * c * c * r2;
+    const T bent = growth * growth * (T(1) + T(2) * (shape.conic * root2 + flatness * above));
+    return conic_bend + secant * (bend + T(2) * growth * departure.slope + bent * departure.sag);
 }
 
 template <class T>

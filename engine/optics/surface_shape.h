@@ -16,6 +16,9 @@ namespace lensproof::optics {
 ///
 /// Even and odd powers stand apart, for most aspheres have none of the latter. A_1 makes a cone, whose tip has no
 /// normal: the axis is taken there. A_3 bends nothing at the vertex, but the third derivative jumps.
+///
+/// `along_normal`: the terms count along the conic's normal, to first order, as in Forbes's mild aspheres: their sum is
+/// multiplied by 1 / cos of the normal's angle with the axis, √((1 − k c² y²) / (1 − (1 + k) c² y²)).
 template <class T>
 struct SurfaceShape {
     T curvature = T(0);
@@ -24,6 +27,7 @@ struct SurfaceShape {
     int terms = 0;                    // how many of them may differ from 0
     std::array<T, 10> odd_asphere{};  // A_1, A_3, … A_19
     int odd_terms = 0;
+    bool along_normal = false;
     bool is_toroid = false;
     T curvature_x = T(0);  // of a toroid
 
@@ -61,8 +65,9 @@ void add_odd_terms(const SurfaceShape<Scalar>& shape, const T& r2, SagProfile<T>
     }
 }
 
+/// The profile with its terms along the axis.
 template <class Scalar, class T>
-inline SagProfile<T> sag_profile(const SurfaceShape<Scalar>& shape, const T& r2) {
+inline SagProfile<T> axial_profile(const SurfaceShape<Scalar>& shape, const T& r2) {
     using std::abs;
     using std::sqrt;
     const Scalar& c = shape.curvature;
@@ -85,6 +90,41 @@ inline SagProfile<T> sag_profile(const SurfaceShape<Scalar>& shape, const T& r2)
         add_odd_terms(shape, r2, profile);
     }
     return profile;
+}
+
+/// The terms alone, on a plane, along the axis.
+template <class Scalar, class T>
+SagProfile<T> terms_profile(SurfaceShape<Scalar> shape, const T& r2) {
+    shape.curvature = Scalar(0);
+    return axial_profile(shape, r2);
+}
+
+/// 1 / cos of the angle of a conic's normal with the axis, φ, and its logarithm's derivative dlnφ / d(r²). 1 and 0
+/// outside `defined`, where there is no conic.
+template <class Scalar, class T>
+std::pair<T, T> normal_secant(const SurfaceShape<Scalar>& shape, const T& r2, const MaskOf<T>& defined) {
+    using std::sqrt;
+    const Scalar c2 = shape.curvature * shape.curvature;
+    const T above = select(defined, T(1) - T(shape.conic * c2) * r2, T(1));
+    const T below = select(defined, T(1) - T((Scalar(1) + shape.conic) * c2) * r2, T(1));
+    return {sqrt(above / below), select(defined, T(c2 / Scalar(2)) / (above * below), T(0))};
+}
+
+/// The profile with its terms along the conic's normal. By itself, and called with a value, since what is put into the
+/// other's inner loop, or only takes addresses there, costs every asphere a tenth.
+template <class Scalar, class T>
+[[gnu::noinline]] SagProfile<T> profile_along_normal(const SurfaceShape<Scalar>& shape, T r2) {
+    const SurfaceShape<Scalar> bare{.curvature = shape.curvature, .conic = shape.conic};
+    const SagProfile<T> conic = axial_profile(bare, r2);
+    const SagProfile<T> terms = terms_profile(shape, r2);
+    const auto [secant, growth] = normal_secant(shape, r2, conic.defined);
+    return {conic.sag + secant * terms.sag, conic.slope + secant * (terms.slope + growth * terms.sag),
+            secant * terms.largest_term, conic.defined};
+}
+
+template <class Scalar, class T>
+inline SagProfile<T> sag_profile(const SurfaceShape<Scalar>& shape, const T& r2) {
+    return shape.along_normal ? profile_along_normal(shape, r2) : axial_profile(shape, r2);
 }
 
 /// The surface as the zero of F, which rises towards +z, with its gradient.
@@ -145,7 +185,7 @@ struct ConicRoot {
 /// more, d_z² − c f − c² k (p_z² + d_z² p·p), which is still good to an ulp at k = 1e6. p is projected twice, for far
 /// origins: with k the linear term is too long to carry what rounding leaves of p·d.
 ///
-/// Here and in `sag_profile` the word `inline` is worth a tenth of an asphere's time: g++ 12 weighs it.
+/// Here and in `axial_profile` the word `inline` is worth a tenth of an asphere's time: g++ 12 weighs it.
 template <class T>
 inline ConicRoot<T> conic_root(const Vec3<T>& origin, const Vec3<T>& d, const T& c, const T& k, const T& heading) {
     using std::sqrt;

@@ -50,6 +50,7 @@ std::vector<PlacedSurface> placed_by_table(const optics::Prescription& prescript
             surface.shape.terms = row.is_asphere() ? optics::kAsphereTerms : 0;
             surface.shape.odd_asphere = row.odd_asphere;
             surface.shape.odd_terms = row.has_odd_terms() ? optics::kAsphereTerms : 0;
+            surface.shape.along_normal = row.along_normal;
         }
         here.is_exact = has_radius && (!row.semi_diameter_mm || usable(row.semi_diameter_mm));
         z += std::abs(row.thickness_mm) <= kLargest ? row.thickness_mm : 0.0;

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "engine/base/text.h"
+#include "engine/formats/prescription/axial_terms.h"
 #include "engine/formats/prescription/prescription_forms.h"
 #include "engine/formats/prescription/prescription_losses.h"
 #include "engine/spectral/wavelengths.h"
@@ -109,7 +110,8 @@ struct Needs {
 
 WrittenPrescription to_csv(const optics::Prescription& prescription) {
     WrittenPrescription written;
-    const optics::Prescription lens = single_position(prescription, written.lost);
+    optics::Prescription lens = single_position(prescription, written.lost);
+    state_along_axis(lens, written.lost);
     std::ranges::copy(losses_of_tables(lens), std::back_inserter(written.lost));
     const Needs needs(lens);
     written.text = comment_lines("name: ", lens.name) + comment_lines("source: ", lens.source) +

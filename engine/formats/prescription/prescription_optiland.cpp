@@ -13,6 +13,7 @@
 #include "engine/base/input_error.h"
 #include "engine/base/text.h"
 #include "engine/formats/prescription/design_program.h"
+#include "engine/formats/prescription/forbes_asphere.h"
 #include "engine/formats/prescription/prescription_forms.h"
 #include "engine/formats/prescription/python_json.h"
 #include "engine/optics/frame.h"
@@ -127,6 +128,8 @@ class OptilandLens {
         }
         if (type == "EvenAsphere" || type == "OddAsphere") {
             read_terms(geometry, "coefficients", type == "OddAsphere" ? 1 : 2, number, surface);
+        } else if (type == "ForbesQNormalSlopeGeometry" || type == "ForbesQbfsGeometry") {
+            read_forbes_terms(geometry.at("surface_config"), number, surface);
         } else if (type == "ToroidalGeometry") {
             surface.radius_mm = number_or(geometry, "radius_y", kInfinity);
             surface.radius_x_mm = number_or(geometry, "radius_x", kInfinity);
@@ -138,6 +141,34 @@ class OptilandLens {
             remark("shape-not-read", number,
                    fmt::format("a surface of the kind \"{}\" is not understood: its radius and conic alone are taken",
                                printable(type)),
+                   optics::Severity::error);
+        }
+    }
+
+    /// Forbes's mild asphere: {"radius", "conic", "norm_radius", "terms": {"0": a_0, …}}. Beyond the normalizing radius
+    /// Optiland leaves the terms out; here they go on.
+    void read_forbes_terms(const JsonNode& config, int number, optics::PrescribedSurface& surface) {
+        surface.radius_mm = number_or(config, "radius", kInfinity);
+        surface.conic = number_or(config, "conic", 0.0);
+        surface.along_normal = true;
+        std::array<double, kForbesTerms> a{};
+        for (const std::string& key : config.at("terms").keys()) {
+            const double coefficient = any_number(config.at("terms").at(key));
+            const int m = parse_exact<int>(key).value_or(-1);
+            if (m >= 0 && m < kForbesTerms) {
+                a[m] = coefficient;
+            } else if (coefficient != 0.0) {
+                remark("asphere-term-not-read", number,
+                       fmt::format("Forbes's term \"{}\" is left out: 0 to {} are carried", printable(key),
+                                   kForbesTerms - 1),
+                       optics::Severity::error);
+            }
+        }
+        const double radius = number_or(config, "norm_radius", 0.0);
+        if (radius > 0.0 && std::isfinite(radius)) {
+            surface.asphere = powers_of_qbfs(a, radius);
+        } else {
+            remark("shape-not-read", number, "its Forbes terms have no norm_radius: they are left out",
                    optics::Severity::error);
         }
     }

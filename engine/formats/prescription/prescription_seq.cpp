@@ -9,6 +9,7 @@
 #include "engine/base/text.h"
 #include "engine/base/text_encoding.h"
 #include "engine/formats/prescription/design_program.h"
+#include "engine/formats/prescription/forbes_asphere.h"
 #include "engine/formats/prescription/prescription_forms.h"
 #include "engine/formats/prescription/seq_file.h"
 #include "engine/formats/prescription/surface_chain.h"
@@ -73,26 +74,58 @@ optics::StatedMedium read_medium(const SeqFile& file, const std::string& glass, 
     return medium;
 }
 
-/// The odd polynomial: C1 the conic constant, C2 … C31 the coefficients of (r / R)^1 … (r / R)^30, C33 the radius R,
-/// for which 0 says 1 (the layout is a public exporter's, which cites CODE V's
-/// Lens System Setup Reference Manual).
-void read_odd_polynomial(optics::PrescribedSurface& row, const SeqSurface& surface, int number, double unit_mm,
-                         Remarks& remarks) {
-    const auto stated = surface.special_values.find(kSeqNormalizingRadius);
-    const double radius = stated == surface.special_values.end() || stated->second == 0.0 ? 1.0 : stated->second;
+/// A special surface's conic constant, normalizing radius (in the file's unit, 0: none) and terms, in the order of
+/// their powers.
+struct SpecialTerms {
+    std::optional<double> conic;
+    double radius = 0.0;
+    std::vector<double> a;
+};
+
+/// As many terms as fit into the powers to r^20.
+SpecialTerms special_terms(const SeqSpecial& special, const SeqSurface& surface, int number, Remarks& remarks) {
+    SpecialTerms terms;
+    terms.a.resize(static_cast<std::size_t>((optics::kHighestPower - special.first_power) / special.step) + 1);
     for (const auto& [index, value] : surface.special_values) {
-        const int power = index - 1;
-        if (index == 1) {
-            row.conic = value;
-        } else if (power >= 1 && power <= optics::kHighestPower) {
-            row.term(power) = value * std::pow(unit_mm, 1 - power) / std::pow(radius, power);
-        } else if (index != kSeqNormalizingRadius && value != 0.0) {
+        const int term = index - special.first_number;
+        if (index == special.conic) {
+            terms.conic = value;
+        } else if (index == special.radius) {
+            terms.radius = value;
+        } else if (term >= 0 && term < static_cast<int>(terms.a.size())) {
+            terms.a[term] = value;
+        } else if (value != 0.0) {
             remarks.add("surface-type", optics::Severity::error, number,
-                        fmt::format("line {}, surface {} of the file: the coefficient C{} = {} of the odd polynomial "
-                                    "is left out: powers to r^{} are known",
-                                    surface.line, number, index, value, optics::kHighestPower));
+                        fmt::format("line {}, surface {} of the file: the coefficient C{} = {} of the special surface "
+                                    "{} is left out: powers to r^{} are known",
+                                    surface.line, number, index, value, special.name, optics::kHighestPower));
         }
     }
+    return terms;
+}
+
+/// The odd polynomial's terms are those of (r / R)^j, for which a radius R of 0 says 1; Forbes's need one.
+void read_special(optics::PrescribedSurface& row, const SeqSpecial& special, const SeqSurface& surface, int number,
+                  double unit_mm, Remarks& remarks) {
+    SpecialTerms terms = special_terms(special, surface, number, remarks);
+    row.conic = terms.conic.value_or(row.conic);
+    if (special.name == "ODD") {
+        const double radius = terms.radius == 0.0 ? 1.0 : terms.radius;
+        for (int power = 1; power <= optics::kHighestPower; ++power) {
+            row.term(power) = terms.a[power - 1] * std::pow(unit_mm, 1 - power) / std::pow(radius, power);
+        }
+        return;
+    }
+    if (!(terms.radius > 0.0)) {
+        throw InputError(
+            fmt::format("{}: the special surface {} has the normalizing radius {}, expected SCO NRADIUS "
+                        "and a length",
+                        row.where, special.name, terms.radius));
+    }
+    std::ranges::transform(terms.a, terms.a.begin(), [&](double a) { return a * unit_mm; });
+    row.along_normal = special.name == "QBF";
+    row.asphere = row.along_normal ? powers_of_qbfs(terms.a, terms.radius * unit_mm)
+                                   : powers_of_qcon(terms.a, terms.radius * unit_mm);
 }
 
 optics::PrescribedSurface read_row(const SeqFile& file, int number, const std::filesystem::path& path,
@@ -117,8 +150,8 @@ optics::PrescribedSurface read_row(const SeqFile& file, int number, const std::f
     for (int term = 0; term < optics::kAsphereTerms; ++term) {
         row.asphere[term] = surface.asphere[term] * std::pow(unit, 1 - 2 * (term + 1));
     }
-    if (surface.special == "ODD") {
-        read_odd_polynomial(row, surface, number, unit, remarks);
+    if (const SeqSpecial* const special = find_special(surface.special)) {
+        read_special(row, *special, surface, number, unit, remarks);
     }
     row.thickness_mm = surface.thickness * unit;
     row.semi_diameter_mm = length(surface.semi_diameter);

@@ -77,20 +77,31 @@ optics::StatedMedium read_medium(TomlTable& row) {
 }
 
 /// Adds Forbes's departure from the conic, which the powers of r then hold.
-void read_qcon(TomlTable& row, optics::AsphereTerms& terms) {
-    if (!row.has("Qcon")) {
+void read_forbes_terms(TomlTable& row, optics::PrescribedSurface& surface) {
+    surface.along_normal = row.boolean_or("along_normal", false) || row.has("Qbfs");
+    if (surface.along_normal && (surface.has_odd_terms() || row.has("radius_x_mm") || row.has("Qcon"))) {
+        row.fail("",
+                 "odd terms, a radius_x_mm or Qcon stand beside terms along the conic's normal, expected A2, A4, … "
+                 "or Qbfs alone");
+    }
+    const char* key = row.has("Qbfs") ? "Qbfs" : "Qcon";
+    if (!row.has(key)) {
         if (row.has("Q_radius_mm")) {
-            row.fail("Q_radius_mm", "stands without Qcon");
+            row.fail("Q_radius_mm", "stands without Qbfs or Qcon");
         }
         return;
     }
-    const std::vector<double> a = row.numbers("Qcon", 0);
-    if (a.size() > kQconTerms) {
-        row.fail("Qcon", fmt::format("holds {} coefficients, expected up to {}, which make the terms to r^{}", a.size(),
-                                     kQconTerms, optics::kHighestPower));
+    if (surface.along_normal && surface.is_asphere()) {
+        row.fail(key, "stands beside A2, A4, …, expected one of the two");
     }
-    const optics::AsphereTerms powers = powers_of_qcon(a, row.number("Q_radius_mm", kPositive));
-    std::ranges::transform(terms, powers, terms.begin(), std::plus());
+    const std::vector<double> a = row.numbers(key, 0);
+    if (a.size() > kForbesTerms) {
+        row.fail(key, fmt::format("holds {} coefficients, expected up to {}, which make the terms to r^{}", a.size(),
+                                  kForbesTerms, optics::kHighestPower));
+    }
+    const double radius = row.number("Q_radius_mm", kPositive);
+    const optics::AsphereTerms powers = surface.along_normal ? powers_of_qbfs(a, radius) : powers_of_qcon(a, radius);
+    std::ranges::transform(surface.asphere, powers, surface.asphere.begin(), std::plus());
 }
 
 optics::PrescribedSurface read_surface(TomlTable& row) {
@@ -104,7 +115,7 @@ optics::PrescribedSurface read_surface(TomlTable& row) {
     for (int power = 1; power <= optics::kHighestPower; ++power) {
         surface.term(power) = optional_stated_number(row, fmt::format("A{}", power)).value_or(0.0);
     }
-    read_qcon(row, surface.asphere);
+    read_forbes_terms(row, surface);
     surface.radius_x_mm = optional_stated_number(row, "radius_x_mm");
     surface.thickness_mm = stated_number(row, "thickness_mm");
     surface.semi_diameter_mm = optional_stated_number(row, "semi_diameter_mm");

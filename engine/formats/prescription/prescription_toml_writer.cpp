@@ -236,6 +236,7 @@ class Writer {
         for (int power = 1; power <= optics::kHighestPower; ++power) {
             add_numbers(table, fmt::format("A{}", power), [&](const Row& row) { return unless_zero(row.term(power)); });
         }
+        add_texts(table, [](const Row& row) { return std::string(row.along_normal ? "along_normal = true" : ""); });
         add_numbers(table, "radius_x_mm", [](const Row& row) { return row.radius_x_mm; });
         add_numbers(table, "thickness_mm", [](const Row& row) { return Stated(row.thickness_mm); });
         add_texts(table, [](const Row& row) {

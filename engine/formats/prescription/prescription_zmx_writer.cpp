@@ -9,6 +9,7 @@
 
 #include "engine/base/text.h"
 #include "engine/base/text_encoding.h"
+#include "engine/formats/prescription/axial_terms.h"
 #include "engine/formats/prescription/design_program.h"
 #include "engine/formats/prescription/prescription_forms.h"
 #include "engine/formats/prescription/prescription_losses.h"
@@ -59,7 +60,9 @@ optics::Prescription without_groups(optics::Prescription prescription) {
 class ZmxWriter {
   public:
     explicit ZmxWriter(const optics::Prescription& prescription)
-        : original_(prescription), prescription_(without_groups(prescription)) {}
+        : original_(prescription), prescription_(without_groups(prescription)) {
+        state_along_axis(prescription_, lost_);
+    }
 
     WrittenPrescription write() {
         write_head();
@@ -346,7 +349,7 @@ class ZmxWriter {
     }
 
     const optics::Prescription& original_;
-    optics::Prescription prescription_;  // without groups
+    optics::Prescription prescription_;  // without groups and terms along normals
     std::string text_;
     int surfaces_ = 0;
     std::vector<int> gap_at_;  // of each row, the surface of the file that carries its gap

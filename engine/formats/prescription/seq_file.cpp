@@ -338,40 +338,55 @@ class SeqReader {
         return true;
     }
 
-    /// "SPS ODD 0.0", whose number is the normalizing radius, then "SCO K -1", "SCO AR3 1e-4", or by the coefficients'
-    /// numbers "SCO C1 -1", "SCO C4 1e-4".
+    /// "SPS ODD 0.0", then "SCO K -1", "SCO AR3 1e-4", or by the coefficients' numbers "SCO C1 -1", "SCO C4 1e-4".
     bool read_special(SeqSurface& surface) {
         if (here_.keyword == "SPS") {
             surface.special = here_.word(next_).substr(0, 3);
-            if (surface.special != "ODD") {
+            const SeqSpecial* const known = find_special(surface.special);
+            if (known == nullptr) {
                 remarks_.at(here_, "surface-type", optics::Severity::error, surface_,
                             fmt::format("the special surface {} is not known; it is taken as a conic",
                                         printable(surface.special)));
             } else if (next_ + 1 < words().size()) {
-                surface.special_values[kSeqNormalizingRadius] = here_.number(next_ + 1, "a normalizing radius");
+                const double radius = here_.number(next_ + 1, "a normalizing radius");
+                if (known->radius_stands_beside_name) {
+                    surface.special_values[known->radius] = radius;
+                } else if (radius != 0.0) {
+                    here_.fail(here_.word(next_ + 1),
+                               fmt::format("nothing behind {}: SCO NRADIUS says its radius", known->name));
+                }
             }
             return true;
         }
         if (here_.keyword != "SCO" || surface.special.empty()) {
             return false;
         }
-        if (surface.special != "ODD") {
-            return true;
+        if (const SeqSpecial* const known = find_special(surface.special)) {
+            const int number = coefficient_number(*known, here_.word(next_));
+            surface.special_values[number] = here_.number(next_ + 1, "a coefficient");
         }
+        return true;
+    }
+
+    /// Which coefficient a name of SCO says.
+    [[nodiscard]] int coefficient_number(const SeqSpecial& special, std::string_view name) const {
         constexpr int kMostCoefficients = 100;
-        const std::string_view name = here_.word(next_);
         const auto numbered = [&](std::string_view prefix) {
             const std::optional<double> number =
                 name.starts_with(prefix) ? parse_number(name.substr(prefix.size())) : std::nullopt;
             return number ? whole_number_within(*number, 0, kMostCoefficients) : 0;
         };
-        const int power = numbered("AR");
-        const int number = name == "K" ? 1 : power > 0 ? power + 1 : numbered("C");
+        const int beyond = numbered(special.terms) - special.first_power;
+        const int number = name == "K"                                 ? special.conic
+                           : name == "NRADIUS"                         ? special.radius
+                           : beyond >= 0 && beyond % special.step == 0 ? special.first_number + beyond / special.step
+                                                                       : numbered("C");
         if (number == 0) {
-            here_.fail(name, "K, AR1 … AR30 or C1 … C33");
+            here_.fail(name, fmt::format("{}NRADIUS, {}{}, {}{}, … or C1, C2, …", special.conic > 0 ? "K, " : "",
+                                         special.terms, special.first_power, special.terms,
+                                         special.first_power + special.step));
         }
-        surface.special_values[number] = here_.number(next_ + 1, "a coefficient");
-        return true;
+        return number;
     }
 
     bool read_decentre(SeqSurface& surface) {
@@ -496,6 +511,11 @@ class SeqReader {
 };
 
 }  // namespace
+
+const SeqSpecial* find_special(std::string_view name) {
+    const auto found = std::ranges::find(kSeqSpecials, name, &SeqSpecial::name);
+    return found == kSeqSpecials.end() ? nullptr : &*found;
+}
 
 SeqFile read_seq_file(std::string_view text, const std::filesystem::path& file, Remarks& remarks) {
     return SeqReader(file, remarks).read(text);

@@ -22,8 +22,26 @@ enum class SeqDecentre {
     bend      // BEN: it acts a second time behind the surface
 };
 
-/// Which of its coefficients a special surface's normalizing radius is (prescription_seq.cpp has the source).
-inline constexpr int kSeqNormalizingRadius = 33;
+/// A kind of special surface, whose coefficients are stated by name or by number, C1, C2, …
+struct SeqSpecial {
+    std::string_view name;
+    std::string_view terms;          // what the names of its terms begin with
+    int step;                        // from one term's power of r to the next
+    int first_power;                 // of r
+    int first_number;                // the coefficient that it is
+    int conic;                       // which coefficient K is; 0: there is none
+    int radius;                      // which coefficient NRADIUS, the normalizing radius, is
+    bool radius_stands_beside_name;  // "SPS ODD 0.0"
+};
+
+/// The odd polynomial's layout is a public exporter's, which cites CODE V's Lens System Setup Reference Manual. That of
+/// Forbes's mild asphere is from a listing of CODE V's own (threemrc_qbfs.lis, which comes with rayoptics):
+/// NRADIUS is C1, QB4, QB6, … are C3, C4, …; his strong asphere is taken to be laid out alike.
+inline constexpr std::array<SeqSpecial, 3> kSeqSpecials = {
+    {{"ODD", "AR", 1, 1, 2, 1, 33, true}, {"QBF", "QB", 2, 4, 3, 0, 1, false}, {"QCN", "QC", 2, 4, 3, 2, 1, false}}};
+
+/// The kind of that name, or nullptr.
+const SeqSpecial* find_special(std::string_view name);
 
 /// An S line with what follows it. Lengths in the file's unit.
 struct SeqSurface {

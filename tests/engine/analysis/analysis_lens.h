@@ -19,6 +19,7 @@ struct Row {
     double a6 = 0.0;
     double semi_diameter = 1e6;
     bool is_stop = false;
+    bool along_normal = false;  // the terms are
 };
 
 /// The lens of `rows` behind a medium of `index_before`; the image plane stands the last thickness behind it.
@@ -35,7 +36,8 @@ optics::TraceLens<T> lens_of(const std::vector<Row>& rows, double index_before =
             special.shape = {.curvature = curvature,
                              .conic = T(row.conic),
                              .asphere = {T(row.a2), T(row.a4), T(row.a6)},
-                             .terms = 3};
+                             .terms = 3,
+                             .along_normal = row.along_normal};
             lens.surfaces.back().special = static_cast<int>(lens.specials.size());
             lens.specials.push_back(special);
         }

@@ -228,7 +228,11 @@ TEST(Seidel, FiguresThatAgreeToTheFourthPowerAreOne) {
     const SeidelSums<double> sphere = sums({.radius = R});
     const SeidelSums<double> series =
         sums({.a2 = 0.5 / R, .a4 = std::pow(1 / R, 3) / 8, .a6 = std::pow(1 / R, 5) / 16});
+    // Along a sphere's normals a r² is a r² (1 + c² r² / 2) along the axis, to r⁴.
+    const SeidelSums<double> along_axis = sums({.radius = R, .a2 = 1e-3, .a4 = 2e-6 + 5e-4 / (R * R)});
+    const SeidelSums<double> along_normal = sums({.radius = R, .a2 = 1e-3, .a4 = 2e-6, .along_normal = true});
     for (std::size_t i = 0; i < 3; ++i) {
+        expect_equal(along_normal.surfaces[i], along_axis.surfaces[i], 1e-15);
         expect_equal(r2_term.surfaces[i], paraboloid.surfaces[i], 1e-15);
         expect_equal(both.surfaces[i], paraboloid.surfaces[i], 1e-15);
         expect_equal(series.surfaces[i], sphere.surfaces[i], 1e-15);

@@ -59,6 +59,11 @@ TEST(LensBytes, TellEveryLensFromEveryOther) {
             lens.specials[0].shape.odd_terms = 2;
             nudge(lens.specials[0].shape.odd_asphere[1]);
         },
+        [](auto& lens) { lens.specials[0].shape.along_normal = true; },
+        [](auto& lens) {
+            lens.specials[0].shape.along_normal = true;
+            lens.specials[0].shape.odd_terms = 2;
+        },
         [](auto& lens) { lens.specials[0].shape.is_toroid = true; },
         [](auto& lens) { nudge(lens.specials[0].shape.curvature_x); },
         [](auto& lens) { nudge(lens.specials[0].vertex.x); },

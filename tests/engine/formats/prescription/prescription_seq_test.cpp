@@ -130,10 +130,52 @@ TEST(Seq, ReadsOddPolynomials) {
     EXPECT_FALSE(has_finding(lens, "surface-type", ""));
     const std::string head = "RDM;LEN\nSO 0 1e13\nS 10 1 517642\n STO\n";
     EXPECT_TRUE(has_finding(parse(head + "SPS ODD; SCO AR21 1e-9\nS 20 5\nSI 0 0\n"), "surface-type",
-                            "C22 = 1e-09 of the odd polynomial is left out"));
+                            "C22 = 1e-09 of the special surface ODD is left out"));
     EXPECT_TRUE(has_finding(parse(head + "SPS XYP; SCO Y2 1e-9\nS 20 5\nSI 0 0\n"), "surface-type", "XYP"));
-    EXPECT_TRUE(says(complaint(head + "SPS ODD; SCO Q 1\nSI 0 0\n"), "test.seq:5: SCO is \"Q\", expected K, AR1"));
+    EXPECT_TRUE(
+        says(complaint(head + "SPS ODD; SCO Q 1\nSI 0 0\n"), "test.seq:5: SCO is \"Q\", expected K, NRADIUS, AR1"));
     EXPECT_TRUE(says(complaint(head + "SPS ODD; SCO AR3\nSI 0 0\n"), "expected a coefficient"));
+}
+
+double sag_of(const optics::PrescribedSurface& row, double r) {
+    return optics::sag_profile(optics::prescribed_shape(row), r * r).sag;
+}
+
+// The third mirror of CODE V's example threemrc.len, which its listings state twice: as an asphere (threemrc.lis) and
+// as Forbes's best fit sphere with terms along its normals (threemrc_qbfs.lis; both come with rayoptics). The listings
+// round: the normalizing radius to 5e-3 mm, which moves the sag by 2.2e-5 mm at the rim, and coefficients to five
+// digits, 5e-6 mm of the first; what terms beyond the sixth would add is below its 1.4e-7 mm.
+TEST(Seq, ReadsForbesMildAsphereAsCodeVStatesIt) {
+    const std::string head = "RDM;LEN\nSO 0 1e13\n";
+    const optics::PrescribedSurface stated_by_powers =
+        parse(head + "S -453.96516 10 517642\n STO\n ASP; K 0.226106; A 0.368950E-10\nS 0 5\nSI 0 0\n").surfaces[0];
+    const optics::Prescription mild = parse(
+        head +
+        "S -449.67012 10 517642\n STO\n SPS QBF\n SCO NRADIUS 1.8986E+02; SCO QB4 4.2605E-01; SCO QB6 -1.6782E-02\n"
+        " SCO C5 8.2673E-04; SCO QB10 -4.4487E-05; SCO QB12 2.5242E-06; SCO C8 -1.3595E-07\nS 0 5\nSI 0 0\n");
+    EXPECT_TRUE(mild.surfaces[0].along_normal);
+    EXPECT_TRUE(mild.remarks.empty());
+    for (const double r : {10.0, 50.0, 100.0, 150.0, 189.0}) {
+        EXPECT_NEAR(sag_of(mild.surfaces[0], r), sag_of(stated_by_powers, r), r < 180.0 ? 6e-6 : 3e-5) << r;
+    }
+}
+
+TEST(Seq, ReadsForbesStrongAsphereAndRefusesWhatItCannot) {
+    const std::string head = "RDM;LEN\nDIM I\nSO 0 1e13\nS 2 0.1 517642\n STO\n";
+    const std::string tail = "\nS 20 5\nSI 0 0\n";
+    const optics::PrescribedSurface strong =
+        parse(head + "SPS QCN; SCO NRADIUS 0.5; SCO K -1; SCO QC4 1e-3; SCO QC6 2e-4" + tail).surfaces[0];
+    EXPECT_EQ(strong.conic, -1.0);
+    EXPECT_FALSE(strong.along_normal);
+    // u⁴ (a_0 + a_1 (6 u² − 5)), Forbes 2007, table 1.
+    EXPECT_NEAR(strong.term(4), (1e-3 - 5 * 2e-4) * 25.4 / std::pow(12.7, 4), 1e-20);
+    EXPECT_NEAR(strong.term(6), 6 * 2e-4 * 25.4 / std::pow(12.7, 6), 1e-20);
+    EXPECT_TRUE(says(complaint(head + "SPS QBF; SCO QB4 1e-3" + tail), "expected SCO NRADIUS"));
+    EXPECT_TRUE(says(complaint(head + "SPS QBF; SCO QB5 1e-3" + tail), "SCO is \"QB5\", expected NRADIUS, QB4"));
+    EXPECT_TRUE(says(complaint(head + "SPS QBF 2.0" + tail), "SCO NRADIUS says its radius"));
+    EXPECT_TRUE(says(complaint(head + "SPS QBF; SCO K -1" + tail), "SCO is \"K\", expected NRADIUS"));
+    EXPECT_TRUE(
+        has_finding(parse(head + "SPS QBF; SCO NRADIUS 1; SCO QB22 1e-9" + tail), "surface-type", "C12 = 1e-09"));
 }
 
 TEST(Seq, ReadsEveryWayToStateAGlass) {

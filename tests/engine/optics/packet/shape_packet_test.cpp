@@ -101,6 +101,7 @@ SurfaceShape<Scalar> in_precision(const SurfaceShape<double>& shape) {
                             .conic = static_cast<Scalar>(shape.conic),
                             .terms = shape.terms,
                             .odd_terms = shape.odd_terms,
+                            .along_normal = shape.along_normal,
                             .is_toroid = shape.is_toroid,
                             .curvature_x = static_cast<Scalar>(shape.curvature_x)};
     for (std::size_t i = 0; i < to.asphere.size(); ++i) {
@@ -239,6 +240,14 @@ TEST(ShapePacket, OfOddAspheresAndCones) {
     const Seen seen = compare([](Random& random, int i) { return odd_asphere_shape(random, i, 8.0); });
     EXPECT_GT(seen.later_starts, 300);
     EXPECT_GT(seen.halvings, 100);
+}
+
+TEST(ShapePacket, OfTermsAlongTheNormal) {
+    compare([](Random& random, int i) {
+        SurfaceShape<double> shape = i % 2 == 0 ? asphere_shape(random, i, 0.05) : odd_asphere_shape(random, i, 0.5);
+        shape.along_normal = true;
+        return shape;
+    });
 }
 
 TEST(ShapePacket, OfToroidsAndCylinders) {
