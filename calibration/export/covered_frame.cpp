@@ -18,8 +18,7 @@ double covered_radius_px(const Profile& profile) {
 const ProfileGeometry& exported_geometry(const Profile& profile) {
     if (!profile.geometry || !(profile.geometry->covered_image_height > 0.0)) {
         const std::string reason = why_not_measured(profile, part::kGeometry, "");
-        throw InputError(profile.name + ": the profile has no camera model" +
-                         (reason.empty() ? "" : " (" + reason + ")") +
+        throw InputError("the profile has no camera model" + (reason.empty() ? "" : " (" + reason + ")") +
                          ": expected one measured from pictures of a chart");
     }
     return *profile.geometry;

@@ -310,8 +310,8 @@ LensfunExport lensfun_export(const Profile& profile, const LensfunOptions& optio
     result.type = options.type ? *options.type : nearest_type(profile);
     const auto distortion = fit_distortion(profile, result.type, unit_px);
     if (!distortion) {
-        throw InputError(profile.name + ": none of lensfun's distortion models follows the profile's " +
-                         kind_name(geometry.model) + " from the type " + name_of(result.type) +
+        throw InputError("none of lensfun's distortion models follows the profile's " + kind_name(geometry.model) +
+                         " from the type " + name_of(result.type) +
                          ": expected a narrower field, or another --lens-type");
     }
     result.distortion_model = distortion->model;

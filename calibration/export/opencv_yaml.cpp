@@ -266,8 +266,8 @@ OpencvExport opencv_export(const Profile& profile) {
         consider(stretched(fit_fisheye(square), geometry.model));
     }
     if (!best) {
-        throw InputError(profile.name + ": none of OpenCV's camera models follows the profile's " +
-                         kind_name(geometry.model) + ": expected a model that images one to one");
+        throw InputError("none of OpenCV's camera models follows the profile's " + kind_name(geometry.model) +
+                         ": expected a model that images one to one");
     }
     OpencvExport result{.yaml = {},
                         .model = best->fisheye ? "fisheye" : "pinhole",

@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cctype>
 
 #include "engine/base/file.h"
 #include "engine/base/input_error.h"
@@ -60,6 +61,15 @@ bool cut(std::string_view line, const Take& take) {
     }
 }
 
+/// A header for a message: of a line that is no list of columns' names, which another kind of file may begin with, no
+/// more than its first word.
+std::string shown_header(std::string_view line) {
+    const bool is_list = std::ranges::all_of(line, [](unsigned char letter) {
+        return std::isalnum(letter) != 0 || letter == '_' || letter == ',' || letter == '"';
+    });
+    return is_list ? printable(line) : printable(line.substr(0, line.find_first_of(" \t,"))) + "…";
+}
+
 /// What a cell says: without the quotes around it, and those inside once.
 std::string unquoted(std::string_view cell) {
     if (!cell.starts_with('"')) {
@@ -79,8 +89,8 @@ std::string_view CsvRow::cell(std::string_view column) const {
     const auto found = std::ranges::find(table_->header, column);
     if (found == table_->header.end()) {
         throw InputError(fmt::format("{}:{}: the header is \"{}\", expected a column {} in it", table_->name,
-                                     table_->header_line, printable(fmt::format("{}", fmt::join(table_->header, ","))),
-                                     column));
+                                     table_->header_line,
+                                     shown_header(fmt::format("{}", fmt::join(table_->header, ","))), column));
     }
     return cells_[found - table_->header.begin()];
 }
@@ -145,7 +155,7 @@ CsvTable CsvTable::parse(std::string text, const std::filesystem::path& name) {
     });
     const auto refuse = [&](const std::string& complaint) {
         throw InputError(
-            fmt::format("{}: the header is \"{}\": {}", table.where_header(), printable(*line), complaint));
+            fmt::format("{}: the header is \"{}\": {}", table.where_header(), shown_header(*line), complaint));
     };
     if (!whole) {
         refuse("expected a quote to end with its cell");
@@ -185,7 +195,7 @@ void CsvTable::expect_columns(const std::vector<std::string>& required,
     if (!complete || !known) {
         throw InputError(
             fmt::format("{}: the header is \"{}\", expected \"{}\"{}", where_header(),
-                        printable(fmt::format("{}", fmt::join(table_->header, ","))), fmt::join(required, ","),
+                        shown_header(fmt::format("{}", fmt::join(table_->header, ","))), fmt::join(required, ","),
                         optional.empty() ? "" : fmt::format(", and where wanted {}", fmt::join(optional, ", "))));
     }
 }
@@ -231,7 +241,7 @@ std::optional<CsvRow> CsvTable::next() {
     if (count != table_->header.size()) {
         throw InputError(fmt::format("{}:{}: {} cells, expected {} as in the header: {}", table_->name, line_, count,
                                      table_->header.size(),
-                                     printable(fmt::format("{}", fmt::join(table_->header, ",")))));
+                                     shown_header(fmt::format("{}", fmt::join(table_->header, ",")))));
     }
     return row;
 }

@@ -1,7 +1,12 @@
 #include "engine/base/file.h"
 
+#include <fcntl.h>
 #include <fmt/format.h>
+#include <poll.h>
+#include <unistd.h>
 
+#include <algorithm>
+#include <cerrno>
 #include <cstddef>
 #include <cstdlib>
 #include <fstream>
@@ -31,23 +36,41 @@ void check_readable(const fs::path& file) {
     if (fs::is_directory(status)) {
         throw InputError(fmt::format("{}: is a folder, expected a file", file.string()));
     }
+    if (fs::is_socket(status) || fs::is_block_file(status)) {
+        throw InputError(fmt::format("{}: is a {}, expected a file", file.string(),
+                                     fs::is_socket(status) ? "socket" : "block device"));
+    }
 }
 
 std::string read_file(const fs::path& file) {
     check_readable(file);
-    std::ifstream stream(file, std::ios::binary);
+    // Not blocking: a pipe that nobody writes to then has its end at once, and one whose writer is slow says so.
+    const int descriptor = ::open(file.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
     std::string content;
-    while (stream.good()) {
+    ssize_t count = descriptor == -1 ? -1 : 1;
+    while (count > 0) {
         const std::size_t before = content.size();
         if (before > kLargestFile) {
+            ::close(descriptor);
             throw InputError(fmt::format("{}: is larger than 256 MiB, expected a smaller file", file.string()));
         }
         content.resize(before + kChunk);
-        stream.read(content.data() + before, static_cast<std::streamsize>(kChunk));
-        content.resize(before + static_cast<std::size_t>(stream.gcount()));
+        while ((count = ::read(descriptor, content.data() + before, kChunk)) == -1 &&
+               (errno == EAGAIN || errno == EINTR)) {
+            pollfd more{.fd = descriptor, .events = POLLIN, .revents = 0};
+            ::poll(&more, 1, -1);
+        }
+        content.resize(before + static_cast<std::size_t>(std::max<ssize_t>(count, 0)));
     }
-    if (!stream.eof()) {
+    if (descriptor != -1) {
+        ::close(descriptor);
+    }
+    if (count == -1) {
         throw InputError(fmt::format("{}: cannot be read", file.string()));
+    }
+    std::error_code error;
+    if (content.empty() && fs::is_fifo(file, error)) {
+        throw InputError(fmt::format("{}: is a pipe that nothing is written to, expected a file", file.string()));
     }
     return content;
 }

@@ -8,6 +8,7 @@
 
 #include "engine/base/input_error.h"
 #include "engine/base/overloaded.h"
+#include "engine/base/visible.h"
 
 namespace lensproof {
 
@@ -156,7 +157,7 @@ void Json::append_to(std::string& text, int indent, int depth) const {
         text += end;
     };
     const auto scalar = [](const auto& value) {
-        return Library(value).dump(-1, ' ', false, Library::error_handler_t::replace);
+        return visible(Library(value).dump(-1, ' ', false, Library::error_handler_t::replace));
     };
     std::visit(Overloaded{[&](std::monostate) { text += "null"; },
                           [&](const List& values) {

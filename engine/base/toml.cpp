@@ -10,6 +10,7 @@
 
 #include "engine/base/file.h"
 #include "engine/base/input_error.h"
+#include "engine/base/nearest_name.h"
 
 namespace lensproof {
 
@@ -325,7 +326,9 @@ void TomlTable::finish() const {
     for (const auto& [key, node] : *table_) {
         const std::string name(key.str());
         if (!taken_.contains(name)) {
-            fail(name, fmt::format("is not a key that is known here; known are: {}", fmt::join(taken_, ", ")));
+            const std::string hint = name_hint(name, {taken_.begin(), taken_.end()});
+            fail(name, "is not a key that is known here" +
+                           (hint.empty() ? fmt::format("; known are: {}", fmt::join(taken_, ", ")) : hint));
         }
     }
 }

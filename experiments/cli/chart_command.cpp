@@ -48,6 +48,25 @@ draw::PrintLayout layout_of(const ChartOptions& options) {
     return layout;
 }
 
+/// The chart of a text that the options made. What is wrong with it is said of the option: there is no file yet.
+scene::Chart wished_chart(const std::string& toml) {
+    constexpr std::string_view kPlace = ": chart.";
+    TomlTable top = TomlTable::parse(toml, "");
+    TomlTable table = top.table("chart");
+    try {
+        return scene::read_chart(table);
+    } catch (const InputError& error) {
+        const std::string said = error.what();
+        const std::size_t place = said.find(kPlace);
+        if (place == std::string::npos) {
+            throw;
+        }
+        const std::string of_key = said.substr(place + kPlace.size());
+        const std::size_t end = of_key.find_first_of("[: ");
+        throw InputError(option_of(of_key.substr(0, end)) + of_key.substr(end));
+    }
+}
+
 int print(const ChartOptions& options) {
     check_json_name(options.common);
     const draw::PrintLayout layout = layout_of(options);
@@ -69,9 +88,7 @@ int print(const ChartOptions& options) {
     check_output_name(file);
     check_output_name(description);
     // What is drawn is what the file says: read back from it.
-    TomlTable top = TomlTable::parse(toml, description.string());
-    TomlTable table = top.table("chart");
-    const scene::Chart chart = scene::read_chart(table);
+    const scene::Chart chart = wished_chart(toml);
     draw::print_chart(chart, layout, draw::chart_caption(toml), file);
     write_file(description,
                "# " + file.filename().string() +

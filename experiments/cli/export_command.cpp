@@ -133,11 +133,22 @@ Written write_as(const ExportOptions& options, const calibration::Profile& profi
     return options.format == "opencv" ? write_opencv(options, profile) : write_st_maps(options, profile);
 }
 
+/// The same; what cannot be exported is said of the profile's file, whose name inside may be a photo's.
+Written written_as(const ExportOptions& options, const calibration::Profile& profile) {
+    try {
+        return write_as(options, profile);
+    } catch (const InputError& error) {
+        const std::string said = error.what();
+        const bool names_what = said.starts_with(options.profile) || said.starts_with("-o ");
+        throw InputError(names_what ? said : fmt::format("{}: {}", options.profile, said));
+    }
+}
+
 int run_export(const ExportOptions& options) {
     check_output_name(options.output);
     check_json_name(options.common);
     const calibration::Profile profile = calibration::read_profile(options.profile);
-    const Written written = write_as(options, profile);
+    const Written written = written_as(options, profile);
     write_json_result(options.common, {{"profile", options.profile},
                                        {"to", options.format},
                                        {"files", written.files},

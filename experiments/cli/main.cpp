@@ -13,6 +13,7 @@
 #include <iostream>
 
 #include "engine/base/input_error.h"
+#include "engine/base/visible.h"
 #include "experiments/cli/command.h"
 
 namespace lensproof::cli {
@@ -20,7 +21,7 @@ namespace {
 
 /// Says why the program ends. Where standard error is closed too, the exit status has to do.
 void say(const std::string& message) {
-    std::fputs(fmt::format("lensproof: {}\n", message).c_str(), stderr);
+    std::fputs(fmt::format("lensproof: {}\n", visible(message)).c_str(), stderr);
 }
 
 /// A standard stream that is closed would lend its number to the next file opened, and that file would get the text.

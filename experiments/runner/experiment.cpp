@@ -5,6 +5,7 @@
 
 #include <array>
 
+#include "engine/base/input_error.h"
 #include "experiments/studies/cameras/comparisons.h"
 #include "experiments/studies/cameras/photos.h"
 #include "experiments/studies/cameras/simulations.h"
@@ -58,7 +59,13 @@ findings::Findings run_experiment(const Experiment& experiment, const findings::
                                   const findings::RunProgress& progress) {
     findings::Findings found{.inputs = {experiment.file}};
     for (const findings::Study& study : experiment.studies) {
-        findings::append(found, study(settings, progress, found));
+        try {
+            findings::append(found, study(settings, progress, found));
+        } catch (const InputError& error) {
+            const std::string said = error.what();
+            const std::string file = experiment.file.string();
+            throw InputError(said.starts_with(file) ? said : fmt::format("{}: {}", file, said));
+        }
     }
     return found;
 }

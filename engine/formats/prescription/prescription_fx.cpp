@@ -120,7 +120,8 @@ class FxTable {
         line = trimmed(line.substr(std::min(line.find_first_not_of("#/"), line.size())));
         if (line.starts_with("!")) {
             remark("line-not-read", optics::Severity::warning, 0,
-                   fmt::format("the line \"{}\" is not understood", printable(line)));
+                   fmt::format("a line that begins with \"{}\" is not understood",
+                               printable(line.substr(0, line.find_first_of(" \t")))));
         } else if (!line.empty() && lens_.surfaces.empty() && !is_named_ && line.find(": ") == std::string::npos) {
             lens_.name = line;
             is_named_ = true;

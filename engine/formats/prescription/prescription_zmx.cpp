@@ -334,6 +334,10 @@ optics::Prescription parse_zmx(const std::string& text, const std::filesystem::p
             remarks.not_understood("STOP", number, zmx.surfaces[number].line, "the stop on a coordinate break");
         }
     }
+    if (prescription.surfaces.size() > kMostSurfaces) {
+        throw InputError(fmt::format("{}: holds a lens of {} surfaces, expected up to {}", file.string(),
+                                     prescription.surfaces.size(), kMostSurfaces));
+    }
     if (prescription.surfaces.empty() || zmx.surfaces.back().is_break()) {
         throw InputError(
             fmt::format("{}: holds {} surfaces, expected an object, a lens and an image that is no "

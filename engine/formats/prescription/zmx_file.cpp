@@ -18,6 +18,7 @@ namespace lensproof::formats {
 
 namespace {
 
+constexpr int kMostBlocks = 3 * kMostSurfaces + 2;  // each surface between two breaks, the object and the image
 constexpr int kMostConfigurations = 100;
 constexpr int kMostWavelengths = 1000;
 constexpr int kMostParameters = 300;
@@ -235,11 +236,11 @@ class ZmxReader {
         tail_.clear();
         tail_lines_ = 0;
         const double stated = here_.number(0, "a surface's number");
-        if (stated != static_cast<double>(file_.surfaces.size()) || file_.surfaces.size() >= kMostSurfaces) {
-            throw InputError(fmt::format(
-                "{}:{}: SURF {}, expected surfaces in order, here SURF {}, and not more "
-                "than {}",
-                path_.string(), here_.line, printable(here_.words[0]), file_.surfaces.size(), kMostSurfaces));
+        if (stated != static_cast<double>(file_.surfaces.size()) || file_.surfaces.size() >= kMostBlocks) {
+            throw InputError(
+                fmt::format("{}:{}: SURF {}, expected surfaces in order, here SURF {}, and not more "
+                            "than {}",
+                            path_.string(), here_.line, printable(here_.words[0]), file_.surfaces.size(), kMostBlocks));
         }
         file_.surfaces.push_back({.line = here_.line});
         here_.context = fmt::format("SURF {}: ", surface_number());

@@ -60,7 +60,7 @@ struct ZmxFile {
 
 /// Reads the lines of `text` (UTF-8). Each keyword is understood, or known to bear on no ray, or named in `remarks`
 /// with its line; surfaces are numbered as in the file. Throws InputError naming the line for what is no number where
-/// one belongs, surfaces out of order or more than 1000 of them, and non-sequential mode.
+/// one belongs, surfaces out of order or more than a lens of 1000 makes, and non-sequential mode.
 ZmxFile read_zmx_file(std::string_view text, const std::filesystem::path& file, Remarks& remarks);
 
 }  // namespace lensproof::formats

@@ -76,6 +76,8 @@ TEST(Csv, ComplaintsNameLineColumnFoundAndExpected) {
     EXPECT_EQ(complaint_about_a("b\n1\n"), "t.csv:1: the header is \"b\", expected a column a in it");
     EXPECT_EQ(complaint_about_a("a,b,a\n"), "t.csv:1: the header is \"a,b,a\": a stands there twice");
     EXPECT_EQ(complaint_about_a("a,,b\n"), "t.csv:1: the header is \"a,,b\": column 2 has no name");
+    EXPECT_EQ(complaint_about_a("secret: of another, file\n1,2\n"),
+              "t.csv:1: the header is \"secret:…\", expected a column a in it");
     EXPECT_EQ(complaint_about_a("# only\n\n"), "t.csv: is empty, expected a table with a header");
     EXPECT_EQ(complaint_about_a(""), "t.csv: is empty, expected a table with a header");
 }

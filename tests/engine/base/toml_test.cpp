@@ -1,4 +1,4 @@
-// Keys and brackets of TOML, however deep.
+// tests/engine/base/toml_test.cpp — keys and brackets of TOML, however deep; keys that are misspelt.
 #include "engine/base/toml.h"
 
 #include <gtest/gtest.h>
@@ -52,6 +52,23 @@ TEST(Toml, DotsInTextsCommentsAndNumbersAreFree) {
     EXPECT_EQ(TomlTable::parse("x = \"\"\"" + dots + "\n\"" + dots + "\"\"\"\ny = 1", "a.toml").text("x"),
               dots + "\n\"" + dots);
     EXPECT_EQ(TomlTable::parse("x = [" + repeated("1.5, ", 1000) + "]", "a.toml").numbers("x", 1000).size(), 1000U);
+}
+
+std::string complaint_about_keys(const std::string& text) {
+    TomlTable table = TomlTable::parse(text, "a.toml");
+    for (const char* key : {"radius_mm", "semi_diameter_mm", "thickness_mm"}) {
+        table.optional_number(key);
+    }
+    return complaint_about([&] { table.finish(); });
+}
+
+TEST(Toml, AMisspeltKeyIsOfferedItsNeighbour) {
+    EXPECT_EQ(complaint_about_keys("radius_mm = 1\n"), "");
+    EXPECT_EQ(complaint_about_keys("semi_diam_mm = 3.0\n"),
+              "a.toml:1: semi_diam_mm: is not a key that is known here; did you mean \"semi_diameter_mm\"?");
+    EXPECT_EQ(
+        complaint_about_keys("wombat = 3.0\n"),
+        "a.toml:1: wombat: is not a key that is known here; known are: radius_mm, semi_diameter_mm, thickness_mm");
 }
 
 }  // namespace lensproof::toml_test

@@ -258,7 +258,11 @@ TEST(Zmx, HostileFilesAreRefusedByLine) {
     for (int i = 0; i <= 2000; ++i) {
         many += surf(i, "  DISZ 1\r\n");
     }
-    EXPECT_TRUE(says(complaint(many), "SURF 1000"));
+    EXPECT_TRUE(says(complaint(many), "a lens of 1999 surfaces, expected up to 1000"));
+    for (int i = 2001; i <= 3010; ++i) {
+        many += surf(i, "  DISZ 1\r\n");
+    }
+    EXPECT_TRUE(says(complaint(many), "SURF 3002"));
     std::string unknown = kHead + kObject;
     for (int i = 0; i < 5000; ++i) {
         unknown += "  K" + std::to_string(i) + " 1\r\n";
@@ -358,6 +362,21 @@ TEST(Zmx, SaysWhatItCannotWrite) {
                               "2 a .zmx file cannot say what the coating AR", "barrel",
                               "5 a .zmx file cannot say a table of indices", "beyond y^14", "focus"}) {
         EXPECT_TRUE(says(said, words));
+    }
+}
+
+// Whatever lens can be entered can be written and read back: an object, an image, and two breaks around each surface
+// come on top of a thousand.
+TEST(Zmx, ALensOfEverySizeIsReadBack) {
+    optics::Prescription lens;
+    lens.name = "many";
+    lens.surfaces.resize(kMostSurfaces, {.radius_mm = 1e4, .thickness_mm = 0.5, .semi_diameter_mm = 3.0});
+    lens.surfaces.front().is_stop = true;
+    for (const double tilt_deg : {0.0, 1e-3}) {
+        for (optics::PrescribedSurface& row : lens.surfaces) {
+            row.misalignment.tilt_deg[0] = tilt_deg;
+        }
+        EXPECT_EQ(parse_zmx(to_zmx(lens).text, "many.zmx").surfaces.size(), lens.surfaces.size());
     }
 }
 
