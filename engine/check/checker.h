@@ -41,9 +41,4 @@ struct CheckReport {
 CheckReport check_prescription(const optics::Prescription& prescription, const optics::StatedData& claims,
                                const optics::GlassCatalogue& glasses, const CheckSettings& settings = {});
 
-/// Of these findings, those of names that no catalogue has ("glass-unknown"): what else a number rests on.
-std::vector<optics::Finding> unknown_glasses(const optics::Prescription& prescription,
-                                             const optics::GlassCatalogue& glasses,
-                                             const optics::IndexOverrides& indices = {});
-
 }  // namespace lensproof::check

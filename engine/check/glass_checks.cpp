@@ -98,24 +98,10 @@ void check_figures(const CheckedLens& checked, int i, const optics::Glass& glass
     }
 }
 
-bool is_looked_up(const optics::StatedMedium& medium, const optics::IndexOverrides& indices) {
-    return !medium.glass.empty() && !medium.is_air() && !indices.contains(medium.glass);
-}
-
-optics::Finding unknown_glass(const optics::StatedMedium& medium, const optics::GlassMatch& match, int i) {
-    std::string message =
-        fmt::format("no catalogue has the glass {}; {}", medium.glass, optics::suggestion_text(match.suggestions));
-    if (medium.n_d) {
-        message += fmt::format("; traced with the n_d = {}{} beside it", *medium.n_d,
-                               medium.V_d ? fmt::format(" and V_d = {}", *medium.V_d) : "");
-    }
-    return {"glass-unknown", medium.n_d ? warning : error, i + 1, message};
-}
-
 /// Rule 14.
 void check_name(const CheckedLens& checked, int i, Findings& findings) {
     const optics::StatedMedium& medium = checked.row(i).medium;
-    if (!is_looked_up(medium, checked.settings.indices)) {
+    if (medium.glass.empty() || medium.is_air() || checked.settings.indices.contains(medium.glass)) {
         return;
     }
     const optics::GlassMatch match = resolve(checked, medium.glass);
@@ -139,7 +125,7 @@ void check_name(const CheckedLens& checked, int i, Findings& findings) {
         check_figures(checked, i, *match.glass, findings);
         return;
     }
-    findings.push_back(unknown_glass(medium, match, i));
+    findings.push_back(optics::unknown_glass(medium, match, i + 1));
 }
 
 /// Whether the table gives the glass behind a surface by figures alone.
@@ -251,22 +237,6 @@ void check_last_medium(const CheckedLens& checked, Findings& findings) {
 }
 
 }  // namespace
-
-Findings unknown_glasses(const optics::Prescription& prescription, const optics::GlassCatalogue& glasses,
-                         const optics::IndexOverrides& indices) {
-    Findings findings;
-    for (std::size_t i = 0; i < prescription.surfaces.size(); ++i) {
-        const optics::StatedMedium& medium = prescription.surfaces[i].medium;
-        if (!is_looked_up(medium, indices) || !medium.indices.empty()) {
-            continue;
-        }
-        const optics::GlassMatch match = glasses.resolve(medium.glass, prescription.preferred_makers);
-        if (!match.glass) {
-            findings.push_back(unknown_glass(medium, match, static_cast<int>(i)));
-        }
-    }
-    return findings;
-}
 
 void check_glasses(const CheckedLens& checked, Findings& findings) {
     for (int i = 0; i < checked.size(); ++i) {

@@ -32,20 +32,20 @@ std::optional<Lens> driven(const Lens& lens, double drive) {
     return moved.last_vertex_z() <= moved.image_z ? std::optional(moved) : std::nullopt;
 }
 
-/// How far behind the sensor the paraxial image at the d line of an object in front of the table's first vertex lies.
-double defocus(const Lens& lens, double object_distance_mm) {
+/// How far behind the sensor the paraxial image of an object in front of the table's first vertex lies.
+double defocus(const Lens& lens, double object_distance_mm, double wavelength_nm) {
     const double distance = object_distance_mm + lens.surfaces.front().vertex_z;
-    return lens.last_vertex_z() + paraxial_image_distance(at_wavelength<double>(lens, spectral::kLineD), distance) -
+    return lens.last_vertex_z() + paraxial_image_distance(at_wavelength<double>(lens, wavelength_nm), distance) -
            lens.image_z;
 }
 
 /// The lens with its focusing groups where the image of the object is as far from the sensor as infinity's is in the
 /// table, which is where the table's own sensor stands.
-Lens focused_by_groups(const Lens& lens, double object_distance_mm) {
-    const double aim = defocus(lens, kInfinity);
+Lens focused_by_groups(const Lens& lens, double object_distance_mm, double wavelength_nm) {
+    const double aim = defocus(lens, kInfinity, wavelength_nm);
     const auto error = [&](double drive) -> std::optional<double> {
         const std::optional<Lens> moved = driven(lens, drive);
-        return moved ? std::optional(defocus(*moved, object_distance_mm) - aim) : std::nullopt;
+        return moved ? std::optional(defocus(*moved, object_distance_mm, wavelength_nm) - aim) : std::nullopt;
     };
     // Outwards in steps until the sign changes, then bisection.
     const double step = 1e-3 * (lens.image_z - lens.surfaces.front().vertex_z);
@@ -81,12 +81,12 @@ Lens with_f_number(Lens lens, double f_number, double wavelength_nm) {
     return lens;
 }
 
-Lens focused_at(Lens lens, double object_distance_mm) {
-    const TraceLens<double> at_d = at_wavelength<double>(lens, spectral::kLineD);
-    const double image_distance = paraxial_image_distance(at_d, object_distance_mm);
-    const double front_focus = -paraxial_data(at_d).ffl;
+Lens focused_at(Lens lens, double object_distance_mm, double wavelength_nm) {
+    const TraceLens<double> traced = at_wavelength<double>(lens, wavelength_nm);
+    const double image_distance = paraxial_image_distance(traced, object_distance_mm);
+    const double front_focus = -paraxial_data(traced).ffl;
     if (!lens.focus_groups.empty() && object_distance_mm > 0.0) {
-        return std::isinf(object_distance_mm) ? lens : focused_by_groups(lens, object_distance_mm);
+        return std::isinf(object_distance_mm) ? lens : focused_by_groups(lens, object_distance_mm, wavelength_nm);
     }
     if (!(object_distance_mm > front_focus) || !std::isfinite(image_distance)) {
         throw InputError(

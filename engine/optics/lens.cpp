@@ -196,6 +196,16 @@ Glass resolved_medium(const PrescribedSurface& surface, const GlassCatalogue& gl
                                  printable(medium.glass), suggestion_text(match.suggestions)));
 }
 
+Finding unknown_glass(const StatedMedium& medium, const GlassMatch& match, int surface) {
+    std::string message =
+        fmt::format("no catalogue has the glass {}; {}", medium.glass, suggestion_text(match.suggestions));
+    if (medium.n_d) {
+        message += fmt::format("; traced with the n_d = {}{} beside it", *medium.n_d,
+                               medium.V_d ? fmt::format(" and V_d = {}", *medium.V_d) : "");
+    }
+    return {"glass-unknown", medium.n_d ? Severity::warning : Severity::error, surface, message};
+}
+
 SurfaceShape<double> prescribed_shape(const PrescribedSurface& row) {
     SurfaceShape<double> shape{.curvature = row.curvature(),
                                .conic = row.conic,
@@ -237,6 +247,13 @@ Lens make_lens(const Prescription& prescription, const GlassCatalogue& glasses, 
                            ? everywhere(row.medium.glass, ConstantIndex{override_index->second})
                            : resolved_medium(row, glasses, prescription.preferred_makers);
         used.insert(row.medium.glass);
+        if (override_index == overrides.end() && row.medium.indices.empty() && !row.medium.is_air() &&
+            !row.medium.glass.empty()) {
+            const GlassMatch match = glasses.resolve(row.medium.glass, prescription.preferred_makers);
+            if (!match.glass) {
+                lens.findings.push_back(unknown_glass(row.medium, match, static_cast<int>(lens.surfaces.size()) + 1));
+            }
+        }
         LensSurface surface = placed_surface(row, frames[lens.surfaces.size()]);
         // A barrel is convex, so a path runs inside it where it does so at both ends.
         surface.semi_diameter = std::min({surface.semi_diameter, barrel_before, row.barrel_mm.value_or(kInfinity)});

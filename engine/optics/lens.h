@@ -43,6 +43,7 @@ struct Lens {
     Surroundings surroundings = Surroundings::air;
     bool is_rotationally_symmetric = true;
     double image_z = 0.0;
+    std::vector<Finding> findings;  // names of glasses that no catalogue has, which the figures beside them stand for
 
     [[nodiscard]] int stop_index() const;
     [[nodiscard]] double last_vertex_z() const { return surfaces.back().vertex_z; }
@@ -58,6 +59,10 @@ SurfaceShape<double> prescribed_shape(const PrescribedSurface& row);
 /// where the name is not known. Throws InputError with suggestions for an unknown name alone.
 Glass resolved_medium(const PrescribedSurface& surface, const GlassCatalogue& glasses,
                       const std::vector<std::string>& preferred_makers);
+
+/// That no catalogue has the name of the glass behind surface `surface` (from 1): an error, or a warning where figures
+/// beside it are traced.
+Finding unknown_glass(const StatedMedium& medium, const GlassMatch& match, int surface);
 
 /// Looks the prescription's glasses up. Throws InputError naming the file, the line and the name of an unknown glass,
 /// for an override of a glass that the lens does not have, and for a stop's picture that was not read.

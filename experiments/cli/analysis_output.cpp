@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "engine/base/json.h"
+#include "engine/base/visible.h"
 #include "experiments/cli/command.h"
 
 namespace lensproof::cli {
@@ -209,21 +210,18 @@ std::string fields_text(const std::vector<analysis::FieldAnalysis>& fields) {
 
 }  // namespace
 
-Json analysis_json(const optics::Lens& lens, const std::vector<optics::Finding>& findings,
-                   const analysis::AnalysisSettings& settings, const analysis::LensAnalysis& analysis) {
+Json analysis_json(const optics::Lens& lens, const analysis::AnalysisSettings& settings,
+                   const analysis::LensAnalysis& analysis) {
     Json json{{"lens", lens.id},
               {"name", lens.name},
               {"reference_wavelength_nm", settings.reference_wavelength_nm},
               {"object_distance_mm", settings.object_distance},
               {"projection", optics::projection_name(lens.projection)},
-              {"findings", Json::list()},
+              {"findings", findings_json(lens.findings)},
               {"paraxial", reference_json(lens, analysis)},
               {"seidel", seidel_json(lens, analysis.seidel)},
               {"fields", Json::list()},
               {"wavelengths", Json::list()}};
-    for (const optics::Finding& finding : findings) {
-        json["findings"].push_back(finding_json(finding));
-    }
     for (const analysis::FieldAnalysis& row : analysis.fields) {
         json["fields"].push_back(field_json(row));
     }
@@ -234,10 +232,10 @@ Json analysis_json(const optics::Lens& lens, const std::vector<optics::Finding>&
     return json;
 }
 
-std::string analysis_text(const optics::Lens& lens, const std::vector<optics::Finding>& findings,
-                          const analysis::AnalysisSettings& settings, const analysis::LensAnalysis& analysis) {
-    std::string text = lens.name + "\n";
-    for (const optics::Finding& finding : findings) {
+std::string analysis_text(const optics::Lens& lens, const analysis::AnalysisSettings& settings,
+                          const analysis::LensAnalysis& analysis) {
+    std::string text = visible(lens.name) + "\n";
+    for (const optics::Finding& finding : lens.findings) {
         text += finding_text(finding);
     }
     text +=

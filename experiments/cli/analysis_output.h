@@ -9,12 +9,12 @@
 
 namespace lensproof::cli {
 
-/// The contract's JSON, with what is to be known of the prescription (`findings`): what does not exist is null.
-Json analysis_json(const optics::Lens& lens, const std::vector<optics::Finding>& findings,
-                   const analysis::AnalysisSettings& settings, const analysis::LensAnalysis& analysis);
+/// The contract's JSON: what does not exist is null.
+Json analysis_json(const optics::Lens& lens, const analysis::AnalysisSettings& settings,
+                   const analysis::LensAnalysis& analysis);
 
 /// The same as tables to read.
-std::string analysis_text(const optics::Lens& lens, const std::vector<optics::Finding>& findings,
-                          const analysis::AnalysisSettings& settings, const analysis::LensAnalysis& analysis);
+std::string analysis_text(const optics::Lens& lens, const analysis::AnalysisSettings& settings,
+                          const analysis::LensAnalysis& analysis);
 
 }  // namespace lensproof::cli

@@ -15,7 +15,6 @@
 #include "engine/base/input_error.h"
 #include "engine/base/text.h"
 #include "engine/base/write_file.h"
-#include "engine/check/checker.h"
 #include "engine/formats/prescription/load_lens.h"
 #include "engine/formats/prescription/prescription_file.h"
 #include "engine/optics/chief_ray.h"
@@ -75,7 +74,7 @@ optics::Lens prepared_lens(const AnalyzeOptions& options, const optics::Prescrip
         lens = optics::with_f_number(std::move(lens), *options.f_number, reference_wavelength_nm);
     }
     if (!lens.focus_groups.empty() && !options.focus.empty()) {
-        lens = optics::focused_at(std::move(lens), distance);
+        lens = optics::focused_at(std::move(lens), distance, reference_wavelength_nm);
     }
     if (options.image_distance_mm) {
         if (!(std::abs(*options.image_distance_mm) <= kFarthestImage)) {
@@ -194,8 +193,6 @@ int run_analyze(const AnalyzeOptions& options) {
         formats::with_own_catalogues(read_glass_catalogues(options.glass_catalogues), prescription);
     optics::Lens lens =
         prepared_lens(options, prescription, glasses, settings.object_distance, settings.reference_wavelength_nm);
-    const std::vector<optics::Finding> findings =
-        check::unknown_glasses(prescription, glasses, parse_indices(options.indices));
     settings.fields_deg = fields_of(options, lens, settings.reference_wavelength_nm);
     if (!options.best_focus.empty()) {
         const double shift = best_focus_shift(options, lens, settings);
@@ -206,9 +203,9 @@ int run_analyze(const AnalyzeOptions& options) {
         write_analysis_plots(options, prescription, lens, settings, analysis);
     }
     if (prints_text(options.common)) {
-        fmt::print("{}", analysis_text(lens, findings, settings, analysis));
+        fmt::print("{}", analysis_text(lens, settings, analysis));
     }
-    write_json_result(options.common, analysis_json(lens, findings, settings, analysis));
+    write_json_result(options.common, analysis_json(lens, settings, analysis));
     return kDone;
 }
 

@@ -10,6 +10,7 @@
 #include "engine/base/input_error.h"
 #include "engine/base/json.h"
 #include "engine/base/text.h"
+#include "engine/base/visible.h"
 #include "engine/base/write_file.h"
 #include "engine/check/checker.h"
 #include "engine/formats/prescription/load_lens.h"
@@ -118,8 +119,8 @@ void print_report(const std::string& lens, const check::CheckReport& report) {
     };
     const auto errors = count(optics::Severity::error);
     const auto warnings = count(optics::Severity::warning);
-    fmt::print("{}: {} ({} error{}, {} warning{})", lens, report.ok() ? "ok" : "not ok", errors, errors == 1 ? "" : "s",
-               warnings, warnings == 1 ? "" : "s");
+    fmt::print("{}: {} ({} error{}, {} warning{})", visible(lens), report.ok() ? "ok" : "not ok", errors,
+               errors == 1 ? "" : "s", warnings, warnings == 1 ? "" : "s");
     if (!report.computed.empty()) {
         const optics::ParaxialData& data = report.computed.front().paraxial;
         fmt::print(", focal length {:.4f} mm, back focus {:.4f} mm", data.efl, data.bfl);

@@ -11,6 +11,7 @@
 #include "engine/base/input_error.h"
 #include "engine/base/json.h"
 #include "engine/base/text.h"
+#include "engine/base/visible.h"
 #include "engine/formats/glass/glass_file.h"
 #include "engine/formats/glass/shipped_glasses.h"
 
@@ -131,10 +132,27 @@ Json finding_json(const optics::Finding& finding) {
             {"unit", finding.unit}};
 }
 
+Json findings_json(const std::vector<optics::Finding>& findings) {
+    Json json = Json::list();
+    for (const optics::Finding& finding : findings) {
+        json.push_back(finding_json(finding));
+    }
+    return json;
+}
+
+void print_findings(const CommonOptions& options, const optics::Lens& lens) {
+    for (const optics::Finding& finding : lens.findings) {
+        if (!options.quiet) {
+            fmt::print(stderr, "lensproof: {}: {}, surface {}: {}\n", visible(lens.name),
+                       optics::severity_name(finding.severity), finding.surface, visible(finding.message));
+        }
+    }
+}
+
 std::string finding_text(const optics::Finding& finding) {
     const std::string where = finding.surface > 0 ? fmt::format("surface {}", finding.surface) : "lens";
     return fmt::format("  {:7} {:10} {}: {}\n", optics::severity_name(finding.severity), where, finding.code,
-                       finding.message);
+                       visible(finding.message));
 }
 
 bool prints_text(const CommonOptions& options) {

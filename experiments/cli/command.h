@@ -59,6 +59,12 @@ void check_place(const Delivery& delivery);
 /// Every key is there; what does not apply is null: the surface of a finding about the lens as a whole, say.
 Json finding_json(const optics::Finding& finding);
 
+/// A list of those.
+Json findings_json(const std::vector<optics::Finding>& findings);
+
+/// Says on standard error, unless --quiet, what there is to know of a lens: "lensproof: NAME: warning, surface 3: …".
+void print_findings(const CommonOptions& options, const optics::Lens& lens);
+
 /// "  warning surface 3  glass-unknown: …", a line.
 std::string finding_text(const optics::Finding& finding);
 

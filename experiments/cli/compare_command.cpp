@@ -42,14 +42,15 @@ bool is_lens(const std::string& name) {
     return name.find('.') == std::string::npos || has_extension(name, ".toml") || has_extension(name, ".csv");
 }
 
-/// The lens seen by the camera that `like` was taken with.
-calibration::Profile profile_of_lens(const std::string& lens, const calibration::Profile& like,
-                                     const CompareOptions& options) {
+/// The lens seen by the camera that `like` was taken with, and what is to be known of the lens.
+std::pair<calibration::Profile, std::vector<optics::Finding>> profile_of_lens(const std::string& lens,
+                                                                              const calibration::Profile& like,
+                                                                              const CompareOptions& options) {
     if (!like.pixel_pitch_um) {
         throw InputError(
             fmt::format("{} has no pixel_pitch_um, which {} needs to be compared with it: measure with "
                         "--pixel-pitch",
-                        like.name, lens));
+                        lens == options.a ? options.b : options.a, lens));
     }
     const render::CameraSettings camera{.lens = lens,
                                         .f_number = options.f_number,
@@ -57,7 +58,9 @@ calibration::Profile profile_of_lens(const std::string& lens, const calibration:
                                         .sensor = {like.width_px, like.height_px, *like.pixel_pitch_um / 1e3},
                                         .exposure = {},
                                         .response = options.response};
-    return studies::lens_profile(render::Camera(camera, {}, {}, Cache::standard()));
+    const render::Camera seen(camera, {}, {}, Cache::standard());
+    print_findings(options.common, *seen.lens());
+    return {studies::lens_profile(seen), seen.lens()->findings};
 }
 
 struct Row {
@@ -80,8 +83,9 @@ Row make_row(const std::string& label, const calibration::Unit& unit,
     return row;
 }
 
-int report(const std::vector<Row>& rows, const Json& curves, const CompareOptions& options) {
-    Json json{{"a", options.a}, {"b", options.b}, {"differences", Json::list()}};
+int report(const std::vector<Row>& rows, const Json& curves, const std::vector<optics::Finding>& findings,
+           const CompareOptions& options) {
+    Json json{{"a", options.a}, {"b", options.b}, {"findings", findings_json(findings)}, {"differences", Json::list()}};
     int status = kDone;
     for (const Row& row : rows) {
         const findings::Check& check = row.check;
@@ -117,7 +121,8 @@ int report(const std::vector<Row>& rows, const Json& curves, const CompareOption
     return status;
 }
 
-int compare_profiles(const calibration::Profile& a, const calibration::Profile& b, const CompareOptions& options) {
+int compare_profiles(const calibration::Profile& a, const calibration::Profile& b,
+                     const std::vector<optics::Finding>& findings, const CompareOptions& options) {
     std::vector<Row> rows;
     Json curves;
     const auto add = [&](const std::string& name, const calibration::Unit& unit,
@@ -164,7 +169,7 @@ int compare_profiles(const calibration::Profile& a, const calibration::Profile& 
                         "a chart was found",
                         options.a, options.b));
     }
-    return report(rows, curves, options);
+    return report(rows, curves, findings, options);
 }
 
 void check_finite(const formats::Image& image, const std::string& file) {
@@ -209,7 +214,7 @@ int compare_images(const CompareOptions& options) {
         row.check.limit = options.rms_limit;
         rows.push_back(row);
     }
-    return report(rows, nullptr, options);
+    return report(rows, nullptr, {}, options);
 }
 
 /// A limit that nothing is held against would look like one that held.
@@ -245,15 +250,18 @@ int run_compare(const CompareOptions& options) {
         }
     }
     if (a_is_profile && b_is_profile) {
-        return compare_profiles(calibration::read_profile(options.a), calibration::read_profile(options.b), options);
+        return compare_profiles(calibration::read_profile(options.a), calibration::read_profile(options.b), {},
+                                options);
     }
     if (a_is_profile && is_lens(options.b)) {
         const calibration::Profile a = calibration::read_profile(options.a);
-        return compare_profiles(a, profile_of_lens(options.b, a, options), options);
+        const auto [lens, findings] = profile_of_lens(options.b, a, options);
+        return compare_profiles(a, lens, findings, options);
     }
     if (b_is_profile && is_lens(options.a)) {
         const calibration::Profile b = calibration::read_profile(options.b);
-        return compare_profiles(profile_of_lens(options.a, b, options), b, options);
+        const auto [lens, findings] = profile_of_lens(options.a, b, options);
+        return compare_profiles(lens, b, findings, options);
     }
     return compare_images(options);
 }

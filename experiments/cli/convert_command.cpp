@@ -4,6 +4,7 @@
 #include <memory>
 
 #include "engine/base/json.h"
+#include "engine/base/visible.h"
 #include "engine/formats/prescription/prescription_file.h"
 #include "experiments/cli/command.h"
 
@@ -51,7 +52,7 @@ int convert(const ConvertOptions& options) {
                                        {"remarks", to_json(prescription.remarks)},
                                        {"lost", to_json(lost)}});
     if (prints_text(options.common) && !options.common.quiet) {
-        fmt::print("{}: {} surfaces\n", options.out, prescription.surfaces.size());
+        fmt::print("{}: {} surfaces\n", visible(options.out), prescription.surfaces.size());
     }
     return kDone;
 }

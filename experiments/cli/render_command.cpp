@@ -8,6 +8,7 @@
 #include "engine/base/file.h"
 #include "engine/base/hash.h"
 #include "engine/base/input_error.h"
+#include "engine/base/visible.h"
 #include "engine/render/prepared_scene.h"
 #include "engine/scene/scene_build.h"
 #include "experiments/cli/raw_files.h"
@@ -72,9 +73,12 @@ int run_render(const RenderJobOptions& options, const std::string& paths) {
         return std::make_unique<render::PreparedScene>(setup, filter, Cache::standard(), render::pass_named(paths));
     });
     for (const std::string& remark : scene->remarks()) {
-        fmt::print(stderr, "lensproof: {}\n", remark);
+        fmt::print(stderr, "lensproof: {}\n", visible(remark));
     }
     const std::optional<optics::Lens>& lens = scene->camera().lens();
+    if (lens) {
+        print_findings(options.common, *lens);
+    }
     RenderJob job{.render = scene->render(options.common.seed, options.has_features)};
     job.identity = {{"scene", scene_hash(setup, options.scene)},
                     {"lens", scene->camera().hash()},
@@ -86,6 +90,7 @@ int run_render(const RenderJobOptions& options, const std::string& paths) {
     job.sensor = setup.sensor;
     job.json["scene"] = options.scene;
     job.json["lens"] = lens ? lens->id : "";
+    job.json["findings"] = findings_json(lens ? lens->findings : std::vector<optics::Finding>());
     return run_render_job(job, options);
 }
 

@@ -75,9 +75,14 @@ class GivenRays {
 
     template <class Visit>
     void for_each(const Visit& visit) const {
+        for_each_row([&](const CsvRow& row) { visit(read_ray(row)); });
+    }
+
+    template <class Visit>
+    void for_each_row(const Visit& visit) const {
         CsvTable table = table_;
         while (const std::optional<CsvRow> row = table.next()) {
-            visit(read_ray(*row));
+            visit(*row);
         }
     }
 
@@ -110,7 +115,14 @@ class LensAtWavelengths {
 /// Everything that can be wrong with the rays is found before the first is written.
 void check_rays(const optics::Lens& lens, const GivenRays& rays) {
     LensAtWavelengths<double> lenses(lens);
-    rays.for_each([&](const GivenRay& given) { lenses.at(given.wavelength_nm); });
+    rays.for_each_row([&](const CsvRow& row) {
+        const GivenRay given = read_ray(row);
+        try {
+            lenses.at(given.wavelength_nm);
+        } catch (const InputError& error) {
+            throw InputError(fmt::format("{}: {}", row.where("wavelength_nm"), error.what()));
+        }
+    });
 }
 
 /// A ray at a surface, in whatever precision.
@@ -258,6 +270,7 @@ int run_trace(const TraceOptions& options) {
         formats::load_lens(options.lens, {.indices = parse_indices(options.indices),
                                           .zoom = options.zoom,
                                           .glasses = read_glass_catalogues(options.glass_catalogues)});
+    print_findings(options.common, lens);
     const GivenRays rays(options.rays_file);
     check_rays(lens, rays);
     const auto write_csv = [&](std::ostream& out) {
@@ -269,7 +282,7 @@ int run_trace(const TraceOptions& options) {
     } else if (prints_text(options.common)) {
         write_csv(std::cout);
     }
-    Json result{{"lens", lens.id}, {"rows", Json::list()}};
+    Json result{{"lens", lens.id}, {"findings", findings_json(lens.findings)}, {"rows", Json::list()}};
     if (options.precision == "float") {
         const MeasuredError measured = measure_float(lens, rays, options);
         if (!options.common.quiet) {

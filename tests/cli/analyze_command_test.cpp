@@ -90,6 +90,17 @@ TEST(Analyze, SaysWhichGlassIsTracedByItsFiguresAlone) {
         EXPECT_NE(text.find(word), std::string::npos) << text;
     }
     EXPECT_EQ(place.json({"analyze", "unknown.toml", "--index", "XBK77=1.5"})["findings"], Json::array());
+    // As do the commands that trace it, on standard error too.
+    place.file("rays.csv", "id,x_mm,y_mm,z_mm,dx,dy,dz,wavelength_nm\na,0,0,-10,0,0,1,550\n");
+    place.file("scene.toml", with(small_scene(), "\"tessar\"", "\"unknown.toml\""));
+    for (const std::vector<std::string>& command :
+         {std::vector<std::string>{"trace", "unknown.toml", "--rays", "rays.csv"},
+          {"render", "scene.toml", "-o", "scene.exr"}}) {
+        EXPECT_EQ(place.json(command)["findings"], findings) << command[0];
+        const std::string said = place.run(command).err;
+        EXPECT_NE(said.find("warning, surface 1: no catalogue has the glass XBK77"), std::string::npos) << said;
+    }
+    EXPECT_EQ(place.json({"trace", "known.toml", "--rays", "rays.csv"})["findings"], Json::array());
 }
 
 TEST(Analyze, BeyondTheFieldThereIsNothing) {

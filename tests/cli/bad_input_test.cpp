@@ -89,6 +89,22 @@ TEST(BadCommandLine, NamesWhatIsUnknownAndWhatIsNearest) {
     }
 }
 
+TEST(BadCommandLine, WhatAChartCannotBeIsSaidOfTheOption) {
+    const Workplace place;
+    const Outcome outcome = place.run({"chart", "checkerboard", "--squares", "1x1"});
+    EXPECT_EQ(outcome.status, 2);
+    EXPECT_NE(outcome.err.find("--squares"), std::string::npos) << outcome.err;
+    EXPECT_EQ(outcome.err.find(".toml"), std::string::npos) << outcome.err;
+    expect_refused(place, {"check", "a\x1b[31m\u202elmot.x"}, {"a\\u001b[31m\\u202elmot.x"});
+}
+
+TEST(BadFile, AWavelengthThatNoGlassCoversIsNamedByItsLine) {
+    const Workplace place;
+    place.file("rays.csv", std::string(kRayHeader) + kAxialRay + "far,0,0,-10,0,0,1,9000\n");
+    expect_refused(place, {"trace", "tessar", "--rays", "rays.csv"},
+                   {"rays.csv:3: wavelength_nm", "9000 nm is outside"});
+}
+
 TEST(BadFile, EveryCommandNamesAFileThatItCannotRead) {
     const Workplace place;
     place.file("folder.toml/inside", "");
