@@ -31,16 +31,6 @@ bool in_use(const Surveyed& photo) {
     return photo.picture.left_out.empty();
 }
 
-/// A JPEG's last mark (EOI) comes late in the file; that of the small picture in its header early. The library would
-/// fill what is missing with grey and say nothing.
-bool is_cut_off(const std::string& bytes) {
-    if (bytes.rfind("\xFF\xD8", 0) != 0) {
-        return false;
-    }
-    const std::size_t end = bytes.rfind("\xFF\xD9");
-    return end == std::string::npos || end < bytes.size() / 2;
-}
-
 Surveyed look_at(const fs::path& file, PictureRole role, const std::optional<formats::TransferCurve>& assumed,
                  std::map<std::string, std::string>& seen_bytes) {
     Surveyed photo{.picture = {.name = file.string(),
@@ -55,8 +45,6 @@ Surveyed look_at(const fs::path& file, PictureRole role, const std::optional<for
         const auto [first, is_new] = seen_bytes.emplace(hash_text(bytes), file.string());
         if (!is_new) {
             photo.picture.left_out = "a copy of " + first->second;
-        } else if (is_cut_off(bytes)) {
-            photo.picture.left_out = "the file is cut off: a JPEG without its end";
         }
     } catch (const InputError& e) {
         photo.picture.left_out = e.what();

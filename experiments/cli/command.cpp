@@ -14,6 +14,7 @@
 #include "engine/base/visible.h"
 #include "engine/formats/glass/glass_file.h"
 #include "engine/formats/glass/shipped_glasses.h"
+#include "engine/formats/image/image.h"
 
 namespace lensproof::cli {
 
@@ -24,6 +25,12 @@ void add_common_options(Command& command, CommonOptions& options) {
     command.add_option("--threads", options.threads, "Threads to use (0: one a core)")
         .check(in_range(0, 1024))
         .shows_default();
+    command
+        .add_option("--largest-picture", formats::largest_picture_mib(),
+                    "MiB that a picture read may take in memory, in place of half of the machine's and of what its "
+                    "file's size makes likely")
+        .type_name("MIB")
+        .check(kPositiveOption);
     command.add_option("--seed", options.seed, "Seed of everything random").check(kSeedOption).shows_default();
 }
 

@@ -24,10 +24,13 @@ std::string noise(std::size_t size) {
     return bytes;
 }
 
-/// A PPM of one grey: a picture without a chart.
+std::string picture_head(int width, int height) {
+    return "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y " + std::to_string(height) + " +X " + std::to_string(width) + "\n";
+}
+
+/// A Radiance HDR of one grey: a picture without a chart.
 std::string grey_picture(int width, int height) {
-    return "P6\n" + std::to_string(width) + " " + std::to_string(height) + "\n255\n" +
-           std::string(static_cast<std::size_t>(3 * width * height), '\x80');
+    return picture_head(width, height) + std::string(static_cast<std::size_t>(4 * width * height), '\x80');
 }
 
 /// One edit to a good file, and what the message has to say of it beside the file's name.
@@ -236,11 +239,11 @@ TEST(BadScene, NamesTheLineTheKeyAndWhatItHolds) {
 TEST(BadPicture, IsNamed) {
     const Workplace place;
     place.file("chart.toml", kChart);
-    place.file("grey.ppm", grey_picture(64, 48));
-    place.file("wide.ppm", grey_picture(80, 48));
-    place.file("one.ppm", grey_picture(1, 1));
-    place.file("cut.ppm", grey_picture(64, 48).substr(0, 400));
-    place.file("huge.ppm", "P6\n100000 100000\n255\n\1\2\3");
+    place.file("grey.hdr", grey_picture(64, 48));
+    place.file("wide.hdr", grey_picture(80, 48));
+    place.file("one.hdr", grey_picture(1, 1));
+    place.file("cut.hdr", grey_picture(64, 48).substr(0, 400));
+    place.file("huge.hdr", picture_head(100000, 100000) + "\1\2\3");
     const std::vector<std::string> chart = {"--chart", "chart.toml", "-o", "out.json"};
     const auto measure = [&](std::vector<std::string> pictures, const std::vector<std::string>& words) {
         SCOPED_TRACE(pictures.front());
@@ -248,15 +251,15 @@ TEST(BadPicture, IsNamed) {
         pictures.insert(pictures.end(), chart.begin(), chart.end());
         expect_refused(place, pictures, words);
     };
-    measure({"grey.ppm"}, {"grey.ppm", "no 11 × 8 checkerboard"});
-    measure({"one.ppm"}, {"one.ppm", "no 11 × 8 checkerboard"});
-    measure({"grey.ppm", "wide.ppm"}, {"wide.ppm", "80 × 48", "64 × 48"});
-    measure({"cut.ppm"}, {"cut.ppm"});
-    measure({"huge.ppm"}, {"huge.ppm", "100000 × 100000"});
+    measure({"grey.hdr"}, {"grey.hdr", "no 11 × 8 checkerboard"});
+    measure({"one.hdr"}, {"one.hdr", "no 11 × 8 checkerboard"});
+    measure({"grey.hdr", "wide.hdr"}, {"wide.hdr", "80 × 48", "64 × 48"});
+    measure({"cut.hdr"}, {"cut.hdr"});
+    measure({"huge.hdr"}, {"huge.hdr", "100000 × 100000"});
     measure({"chart.toml"}, {"chart.toml", "not a picture"});
-    expect_refused(place, {"compare", "grey.ppm", "wide.ppm"}, {"64 × 48", "80 × 48"});
-    expect_refused(place, {"compare", "grey.ppm", "grey.ppm", "--position-limit", "1"}, {"--position-limit"});
-    expect_refused(place, {"compare", "tessar", "grey.ppm"}, {"tessar", "grey.ppm"});
+    expect_refused(place, {"compare", "grey.hdr", "wide.hdr"}, {"64 × 48", "80 × 48"});
+    expect_refused(place, {"compare", "grey.hdr", "grey.hdr", "--position-limit", "1"}, {"--position-limit"});
+    expect_refused(place, {"compare", "tessar", "grey.hdr"}, {"tessar", "grey.hdr"});
     expect_refused(place, {"compare", "tessar", "petzval"}, {"tessar", "petzval"});
 }
 

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -37,9 +38,15 @@ int find_channel(const Image& image, const std::string& name);
 
 /// Reads a picture and linearises it: float formats (EXR) are linear already, integer formats are taken as sRGB unless
 /// the file states another gamma. Full scale is 1. EXIF orientation is applied; an alpha channel is dropped.
-/// Throws InputError for a file that is missing, not a picture, truncated, or larger than 200 megapixels or 2·10⁹
-/// values.
+/// Throws InputError for a file that is missing, not a picture (JPEG, PNG, TIFF, EXR, Radiance HDR, a camera's raw
+/// file, whatever its name), truncated, larger than 2·10⁹ values, or than `largest_picture_mib` says.
 Image read_image(const std::filesystem::path& file);
+
+/// The most memory that a picture's numbers may take, MiB, where it is set: before any picture is read, by the command
+/// line. Otherwise a picture has at most 200 million pixels and takes at most half of the memory that there is; and of
+/// more than 2²⁶ numbers it has at most 300 for a byte of its file. (Deflate makes at most 1032 bytes of one, which are
+/// 258 numbers of 32 bits; cameras' JPEGs come to 30 of 8 bits.)
+std::optional<double>& largest_picture_mib();
 
 /// Writes a linear EXR (32-bit float, every channel, metadata as attributes); whole or not at all.
 void write_exr(const Image& image, const std::filesystem::path& file);

@@ -98,6 +98,29 @@ std::optional<int> jpeg_quality(std::string_view file) {
     return best;
 }
 
+bool is_cut_off(std::string_view file) {
+    const std::size_t end = file.rfind("\xFF\xD9");
+    return end == std::string_view::npos || end < file.size() / 2;
+}
+
+int scan_count(std::string_view file) {
+    constexpr int kScan = 0xDA;
+    constexpr int kEnd = 0xD9;
+    int scans = 0;
+    // From mark to mark, over what a scan's bytes are between (B.1.1): those hold no 0xFF but before a 0 or a restart.
+    for (std::size_t at = file.find('\xFF', 2); at < file.size(); at = file.find('\xFF', at)) {
+        const int marker = byte_at(file, at + 1);
+        if (marker == kEnd) {
+            break;
+        }
+        scans += marker == kScan ? 1 : 0;
+        const bool is_alone = marker <= 1 || (marker >= 0xD0 && marker <= 0xD8);
+        const std::size_t content = is_alone ? 0 : 256 * byte_at(file, at + 2) + byte_at(file, at + 3);
+        at += marker == 0xFF ? 1 : 2 + content;
+    }
+    return scans;
+}
+
 Image after_jpeg(const Image& image, int quality) {
     std::vector<unsigned char> values;
     values.reserve(image.pixels.size());
@@ -115,8 +138,10 @@ Image after_jpeg(const Image& image, int quality) {
             fmt::format("a JPEG cannot be made: {}", output ? output->geterror() : OIIO::geterror()));
     }
     OIIO::Filesystem::IOMemReader source(bytes.data(), bytes.size());
-    const auto input = OIIO::ImageInput::open("picture.jpg", nullptr, &source);
-    if (!input || !input->read_image(0, 0, 0, image.channel_count(), spec.format, values.data())) {
+    const auto input = OIIO::ImageInput::create("jpeg");
+    OIIO::ImageSpec read;
+    if (!input || !input->set_ioproxy(&source) || !input->open("picture.jpg", read) ||
+        !input->read_image(0, 0, 0, image.channel_count(), spec.format, values.data())) {
         throw std::runtime_error(
             fmt::format("a JPEG just made cannot be read: {}", input ? input->geterror() : OIIO::geterror()));
     }

@@ -17,4 +17,12 @@ Image after_jpeg(const Image& image, int quality);
 /// without that table.
 std::optional<int> jpeg_quality(std::string_view file);
 
+/// Whether the last mark (EOI) of a JPEG of these bytes, which comes late in the file, is missing; that of the small
+/// picture in its header comes early.
+bool is_cut_off(std::string_view file);
+
+/// How often the picture is gone over (SOS): once, or about ten times where it is progressive. Each takes a reader as
+/// long as the whole picture, however few bytes it has.
+int scan_count(std::string_view file);
+
 }  // namespace lensproof::formats

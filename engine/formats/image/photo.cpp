@@ -14,15 +14,9 @@ namespace lensproof::formats {
 
 namespace {
 
-constexpr std::array kRawExtensions = {".dng", ".cr2", ".cr3", ".crw", ".nef", ".nrw", ".arw", ".sr2", ".srf",
-                                       ".raf", ".orf", ".rw2", ".rwl", ".pef", ".srw", ".x3f", ".3fr", ".fff",
-                                       ".iiq", ".mos", ".mrw", ".erf", ".kdc", ".dcr", ".mef", ".raw"};
+// Those that are not read as well: a photo that is left out is named.
 constexpr std::array kPictureExtensions = {".jpg", ".jpeg", ".png", ".tif",  ".tiff", ".exr",
                                            ".ppm", ".pgm",  ".bmp", ".webp", ".heic", ".hdr"};
-
-bool is_raw(const std::filesystem::path& file) {
-    return std::ranges::find(kRawExtensions, lower_extension(file)) != kRawExtensions.end();
-}
 
 /// What OpenImageIO is told of RAW files; other formats do not look at it.
 OIIO::ImageSpec raw_hints() {
@@ -165,19 +159,17 @@ std::optional<double> CameraNotes::crop_factor() const {
 }
 
 PhotoHeader read_photo_header(const std::filesystem::path& file, const std::optional<TransferCurve>& assumed) {
-    const bool raw = is_raw(file);
-    const OIIO::ImageSpec spec = read_header(file, raw ? raw_hints() : OIIO::ImageSpec());
+    const auto [spec, form] = read_header(file, raw_hints());
     return {.width = spec.width,
             .height = spec.height,
             .orientation = spec.get_int_attribute("Orientation", 1),
-            .notes = notes_of(spec, raw, assumed),
+            .notes = notes_of(spec, form == PictureForm::raw, assumed),
             .suspicions = suspicions_of(spec)};
 }
 
 Image read_photo(const std::filesystem::path& file, const std::optional<TransferCurve>& assumed) {
-    const bool raw = is_raw(file);
-    StoredPicture stored = read_stored(file, raw ? raw_hints() : OIIO::ImageSpec());
-    const TransferCurve curve = curve_of(stored.spec, raw, assumed).curve;
+    StoredPicture stored = read_stored(file, raw_hints());
+    const TransferCurve curve = curve_of(stored.spec, stored.form == PictureForm::raw, assumed).curve;
     if (curve.kind != TransferKind::linear) {
         for (float& value : stored.image.pixels) {
             value = to_linear(curve, value);
@@ -187,7 +179,8 @@ Image read_photo(const std::filesystem::path& file, const std::optional<Transfer
 }
 
 bool has_picture_name(const std::filesystem::path& file) {
-    return is_raw(file) || std::ranges::find(kPictureExtensions, lower_extension(file)) != kPictureExtensions.end();
+    return has_raw_name(file) ||
+           std::ranges::find(kPictureExtensions, lower_extension(file)) != kPictureExtensions.end();
 }
 
 }  // namespace lensproof::formats

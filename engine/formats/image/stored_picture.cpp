@@ -3,27 +3,15 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <memory>
 #include <stdexcept>
 
-#include "engine/base/file.h"
 #include "engine/base/input_error.h"
 
 namespace lensproof::formats {
 
 namespace {
 
-constexpr double kMostPixels = 200e6;
 constexpr double kMostValues = 2e9;  // in all channels
-
-/// The library's message without its line breaks.
-std::string one_line(std::string message) {
-    while (!message.empty() && message.back() == '\n') {
-        message.pop_back();
-    }
-    std::ranges::replace(message, '\n', ';');
-    return message;
-}
 
 std::vector<std::string> channel_names(const OIIO::ImageSpec& spec) {
     std::vector<std::string> names = spec.channelnames;
@@ -33,71 +21,54 @@ std::vector<std::string> channel_names(const OIIO::ImageSpec& spec) {
     return names;
 }
 
-void drop_channel(Image& image, int dropped) {
-    Image kept = make_image(image.width, image.height, [&] {
-        std::vector<std::string> names = image.channels;
-        names.erase(names.begin() + dropped);
-        return names;
-    }());
-    kept.metadata = image.metadata;
-    for (int y = 0; y < image.height; ++y) {
-        for (int x = 0; x < image.width; ++x) {
-            for (int from = 0, to = 0; from < image.channel_count(); ++from) {
-                if (from != dropped) {
-                    kept.at(x, y, to++) = image.at(x, y, from);
-                }
-            }
+/// In place: pixels take half of the memory there is at most, and not twice.
+void drop_channel(Image& image, std::size_t dropped) {
+    const std::size_t channels = image.channels.size();
+    std::size_t kept = 0;
+    for (std::size_t i = 0; i < image.pixels.size(); ++i) {
+        if (i % channels != dropped) {
+            image.pixels[kept++] = image.pixels[i];
         }
     }
-    image = std::move(kept);
+    image.pixels.resize(kept);
+    image.channels.erase(image.channels.begin() + static_cast<std::ptrdiff_t>(dropped));
 }
 
-std::unique_ptr<OIIO::ImageInput> open(const std::filesystem::path& file, const OIIO::ImageSpec& hints) {
-    check_readable(file);
-    if (!std::filesystem::is_regular_file(file)) {
-        throw InputError(fmt::format("{}: is a device or a pipe, expected a picture's file", file.string()));
-    }
-    auto input = OIIO::ImageInput::open(file.string(), &hints);
-    if (!input) {
-        throw InputError(
-            fmt::format("{}: not a picture that can be read: {}", file.string(), one_line(OIIO::geterror())));
-    }
-    const OIIO::ImageSpec& spec = input->spec();
-    if (spec.width < 1 || spec.height < 1 || spec.depth > 1 || spec.nchannels < 1) {
-        throw InputError(fmt::format("{}: a picture of {} × {} pixels with {} channels, expected a flat picture",
-                                     file.string(), spec.width, spec.height, spec.nchannels));
-    }
-    if (static_cast<double>(spec.width) * spec.height > kMostPixels) {
-        throw InputError(fmt::format("{}: {} × {} pixels, expected at most {:.0f} million", file.string(), spec.width,
-                                     spec.height, kMostPixels / 1e6));
-    }
+OpenPicture open(const std::filesystem::path& file, const OIIO::ImageSpec& hints) {
+    OpenPicture picture = open_picture(file, hints);
+    const OIIO::ImageSpec& spec = picture.input->spec();
     if (static_cast<double>(spec.width) * spec.height * spec.nchannels > kMostValues) {
         throw InputError(fmt::format("{}: {} × {} pixels with {} channels, expected at most {:.0f} million values",
                                      file.string(), spec.width, spec.height, spec.nchannels, kMostValues / 1e6));
     }
-    return input;
+    check_picture_size(file, spec, spec.nchannels, sizeof(float) * static_cast<double>(spec.nchannels));
+    return picture;
 }
 
 }  // namespace
 
 StoredPicture read_stored(const std::filesystem::path& file, const OIIO::ImageSpec& hints) {
-    const auto input = open(file, hints);
-    StoredPicture stored{.image = {}, .spec = input->spec()};
+    const auto [form, input] = open(file, hints);
+    StoredPicture stored{.image = {}, .spec = input->spec(), .form = form};
     const OIIO::ImageSpec& spec = stored.spec;
     Image& image = stored.image;
     image = make_image(spec.width, spec.height, channel_names(spec));
-    if (!input->read_image(0, 0, 0, spec.nchannels, OIIO::TypeDesc::FLOAT, image.pixels.data())) {
-        throw InputError(fmt::format("{}: the picture is damaged: {}", file.string(), one_line(input->geterror())));
+    input->geterror();  // of the header's lesser parts
+    const bool is_read = input->read_image(0, 0, 0, spec.nchannels, OIIO::TypeDesc::FLOAT, image.pixels.data());
+    // The reader of TIFF leaves strips that are missing black, takes note, and succeeds.
+    if (!is_read || input->has_error()) {
+        throw InputError(fmt::format("{}: the picture is damaged: {}", file.string(), on_one_line(input->geterror())));
     }
     const int alpha = find_channel(image, "A");
     if (alpha >= 0 && image.channel_count() > 1) {
-        drop_channel(image, alpha);
+        drop_channel(image, static_cast<std::size_t>(alpha));
     }
     return stored;
 }
 
-OIIO::ImageSpec read_header(const std::filesystem::path& file, const OIIO::ImageSpec& hints) {
-    return open(file, hints)->spec();
+StoredHeader read_header(const std::filesystem::path& file, const OIIO::ImageSpec& hints) {
+    const auto [form, input] = open(file, hints);
+    return {.spec = input->spec(), .form = form};
 }
 
 Image turned(Image image, int orientation) {

@@ -5,6 +5,7 @@
 #include <filesystem>
 
 #include "engine/formats/image/image.h"
+#include "engine/formats/image/picture_file.h"
 
 namespace lensproof::formats {
 
@@ -12,13 +13,20 @@ namespace lensproof::formats {
 struct StoredPicture {
     Image image;           // without metadata; an alpha channel is dropped
     OIIO::ImageSpec spec;  // the file's
+    PictureForm form = PictureForm::jpeg;
+};
+
+/// What a file says beside its pixels.
+struct StoredHeader {
+    OIIO::ImageSpec spec;
+    PictureForm form = PictureForm::jpeg;
 };
 
 /// Throws InputError as read_image says. `hints` are the library's for the file's format (raw:…).
 StoredPicture read_stored(const std::filesystem::path& file, const OIIO::ImageSpec& hints);
 
-/// What the file says beside its pixels, checked for a size that can be read; no pixel is.
-OIIO::ImageSpec read_header(const std::filesystem::path& file, const OIIO::ImageSpec& hints);
+/// The same without the pixels, checked for a size that can be read.
+StoredHeader read_header(const std::filesystem::path& file, const OIIO::ImageSpec& hints);
 
 /// Turns a picture as its EXIF orientation (1 to 8) says it is to be seen.
 Image turned(Image image, int orientation);

@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <cstring>
 #include <functional>
 #include <stdexcept>
 #include <utility>
@@ -14,6 +13,7 @@
 #include "engine/base/file.h"
 #include "engine/base/input_error.h"
 #include "engine/formats/image/exr_output.h"
+#include "engine/formats/image/picture_file.h"
 #include "engine/spectral/spectral_exr.h"
 
 namespace lensproof::render {
@@ -21,7 +21,6 @@ namespace lensproof::render {
 namespace {
 
 constexpr int kRowsAtOnce = 64;
-constexpr double kMostPixels = 200e6;
 constexpr const char* kIdentityPrefix = "lensproof:identity:";
 constexpr const char* kLightPaths = "lensproof:lightPaths";
 constexpr const char* kLeftOut = "lensproof:leftOut";
@@ -178,12 +177,10 @@ bool write_parts(OIIO::ImageOutput& output, const std::string& name, const std::
 class FilmReader {
   public:
     explicit FilmReader(const std::filesystem::path& file) : file_(file) {
-        check_readable(file);
-        input_ = OIIO::ImageInput::open(file.string());
-        if (!input_ || std::strcmp(input_->format_name(), "openexr") != 0) {
-            OIIO::geterror();
+        if (formats::picture_form(file) != formats::PictureForm::exr) {
             fail("not an OpenEXR file that can be read");
         }
+        input_ = formats::open_picture(file, {}).input;
     }
 
     FilmNotes read_notes() { return notes_of(seek("rgb")); }
@@ -198,6 +195,7 @@ class FilmReader {
                           .has_splats = find("light").has_value(),
                           .has_features = find("features").has_value()};
         layout.rgb_weights.resize(layout.layer_nm.size());
+        formats::check_picture_size(file_, first, first.nchannels, static_cast<double>(film_bytes_per_pixel(layout)));
         Film film(std::move(layout));
         film.set_light_paths(count_in(first, kLightPaths));
         film.set_left_out(count_in(first, kLeftOut));
@@ -229,12 +227,11 @@ class FilmReader {
         }
         input_->seek_subimage(*found, 0);
         const OIIO::ImageSpec& spec = input_->spec();
+        formats::check_picture_size(file_, spec, spec.nchannels, sizeof(float) * static_cast<double>(spec.nchannels));
         if (size_ == std::pair(0, 0)) {
             size_ = {spec.width, spec.height};
         }
-        if (spec.width < 1 || spec.height < 1 || spec.x != 0 || spec.y != 0 ||
-            static_cast<double>(spec.width) * spec.height > kMostPixels ||
-            size_ != std::pair(spec.width, spec.height)) {
+        if (spec.x != 0 || spec.y != 0 || size_ != std::pair(spec.width, spec.height)) {
             fail(fmt::format("part \"{}\" has {} × {} pixels", part, spec.width, spec.height));
         }
         return spec;
@@ -274,6 +271,9 @@ class FilmReader {
             }
             layer_nm.push_back(channel->wavelength_nm);
         }
+        if (layer_nm.empty()) {
+            fail("has no spectral layer");
+        }
         std::ranges::sort(layer_nm);
         return layer_nm;
     }
@@ -283,7 +283,7 @@ class FilmReader {
         const OIIO::ImageSpec spec = seek(part);
         std::vector<float> all(static_cast<std::size_t>(spec.width) * (end - y) * spec.nchannels);
         if (!input_->read_scanlines(*find(part), 0, y, end, 0, 0, spec.nchannels, OIIO::TypeDesc::FLOAT, all.data())) {
-            fail(fmt::format("part \"{}\" is damaged ({})", part, input_->geterror()));
+            fail(fmt::format("part \"{}\" is damaged ({})", part, formats::on_one_line(input_->geterror())));
         }
         std::vector<float> wanted(static_cast<std::size_t>(spec.width) * (end - y) * names.size());
         for (std::size_t k = 0; k < names.size(); ++k) {
@@ -303,7 +303,7 @@ class FilmReader {
         std::vector<std::uint32_t> numbers(static_cast<std::size_t>(spec.width) * (end - y) * kCounts.size());
         if (spec.channelnames != kCounts || !input_->read_scanlines(*find("samples"), 0, y, end, 0, 0, spec.nchannels,
                                                                     OIIO::TypeDesc::UINT32, numbers.data())) {
-            fail(fmt::format("part \"samples\" is damaged ({})", input_->geterror()));
+            fail(fmt::format("part \"samples\" is damaged ({})", formats::on_one_line(input_->geterror())));
         }
         std::vector<PixelCounts> counts;
         for (std::size_t i = 0; i < numbers.size(); i += 2) {

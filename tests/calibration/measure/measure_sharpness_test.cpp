@@ -1,5 +1,6 @@
 #include "calibration/measure/measure_sharpness.h"
 
+#include <OpenImageIO/imageio.h>
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -9,6 +10,7 @@
 #include "engine/base/input_error.h"
 #include "tests/calibration/sharpness/sharpness_edge.h"
 #include "tests/places.h"
+#include "tests/test_folder.h"
 
 namespace lensproof::calibration::measure_sharpness_test {
 
@@ -72,6 +74,19 @@ TEST(CalibrationMeasureSharpness, APictureThatIsOnlyAnEdgeIsEnough) {
     }
 }
 
+/// The picture in a file of a form that is not read, as a PNG.
+fs::path as_png(const fs::path& file, const char* form, const TestFolder& folder) {
+    const auto input = OIIO::ImageInput::create(form);
+    OIIO::ImageSpec spec;
+    EXPECT_TRUE(input && input->open(file.string(), spec));
+    std::vector<unsigned char> bytes(static_cast<std::size_t>(spec.image_bytes()));
+    EXPECT_TRUE(input->read_image(0, 0, 0, spec.nchannels, spec.format, bytes.data()));
+    const std::string png = (folder.path() / "as.png").string();
+    const auto output = OIIO::ImageOutput::create("png");
+    EXPECT_TRUE(output && output->open(png, spec) && output->write_image(spec.format, bytes.data()) && output->close());
+    return png;
+}
+
 // Sample edges of the sfrmat5 program, which come without its output. What can be held: the same pixels as TIFF and as
 // BMP give the same answer, the channels agree to a few percent, and the edge's errors are below 2 %.
 TEST(CalibrationMeasureSharpness, SampleEdgesOfAnotherProgramAgreeAmongThemselves) {
@@ -79,13 +94,13 @@ TEST(CalibrationMeasureSharpness, SampleEdgesOfAnotherProgramAgreeAmongThemselve
     if (!fs::exists(folder)) {
         GTEST_SKIP() << folder << " is not there";
     }
-    const auto profile_of = [&](const char* file) {
-        const fs::path path = folder / file;
-        return measure(
-            only_edges({{file, PictureRole::edges, [path] { return formats::read_image(path); }}}, {PixelRectangle{}}));
+    const auto profile_of = [](const fs::path& path) {
+        return measure(only_edges({{path.filename(), PictureRole::edges, [path] { return formats::read_image(path); }}},
+                                  {PixelRectangle{}}));
     };
-    const Profile tiff = profile_of("Test_edge1.tif");
-    const Profile bitmap = profile_of("Test_edge1.bmp");
+    const TestFolder place;
+    const Profile tiff = profile_of(folder / "Test_edge1.tif");
+    const Profile bitmap = profile_of(as_png(folder / "Test_edge1.bmp", "bmp", place));
     const double green = tiff.sharpness.at("G")[0].edge.mtf50->cycles_per_px;
     for (const char* channel : {"R", "G", "B"}) {
         const MtfFrequency& mtf50 = *tiff.sharpness.at(channel)[0].edge.mtf50;
@@ -93,7 +108,7 @@ TEST(CalibrationMeasureSharpness, SampleEdgesOfAnotherProgramAgreeAmongThemselve
         EXPECT_NEAR(mtf50.cycles_per_px / green, 1.0, 0.05);
         EXPECT_LT(mtf50.standard_error, 0.02 * mtf50.cycles_per_px);
     }
-    const Profile grey = profile_of("Test_edge1_mono.tif");
+    const Profile grey = profile_of(folder / "Test_edge1_mono.tif");
     EXPECT_NEAR(grey.sharpness.at("Y")[0].edge.mtf50->cycles_per_px / green, 1.0, 0.08);
 }
 

@@ -279,4 +279,16 @@ TEST(Photo, SaysTheQualityThatAJpegWasWrittenWith) {
     EXPECT_FALSE(jpeg_quality("\x89PNG"));
 }
 
+// Quality 100 has steps of 1 in the coefficients: an even picture comes back to two steps of 255 of what it was, where
+// sRGB rises by 2.2 at most.
+TEST(Photo, ComesBackFromAJpegNearlyAsItWas) {
+    Image image = make_image(32, 16, {"R", "G", "B"});
+    std::ranges::fill(image.pixels, 0.5F);
+    const Image back = after_jpeg(image, 100);
+    ASSERT_EQ(back.pixels.size(), image.pixels.size());
+    for (const float value : back.pixels) {
+        EXPECT_NEAR(value, 0.5F, 2.0F * 2.2F / 255.0F);
+    }
+}
+
 }  // namespace lensproof::formats::photo_test

@@ -100,7 +100,8 @@ TEST(ChartPrint, ThePdfIsTheSameChartToAnotherProgram) {
         const std::string stem = (folder.path() / kind).string();
         print_chart(chart, layout, chart_caption(toml), stem + ".pdf");
         print_chart(chart, layout, chart_caption(toml), stem + ".png");
-        const auto seen = rasterised(fmt::format("pdftoppm -r 100 -gray -singlefile {0}.pdf {0}", stem), stem + ".pgm");
+        const auto seen = rasterised(fmt::format("pdftoppm -r 100 -gray -png -singlefile {0}.pdf {0}_seen", stem),
+                                     stem + "_seen.png");
         if (!seen) {
             GTEST_SKIP() << "needs pdftoppm (poppler-utils)";
         }

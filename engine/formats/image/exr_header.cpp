@@ -1,0 +1,116 @@
+#include "engine/formats/image/exr_header.h"
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <fstream>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "engine/base/bytes.h"
+
+namespace lensproof::formats {
+
+namespace {
+
+constexpr std::uint32_t kHasParts = 0x1000;                                   // of the version field
+constexpr std::size_t kLongestName = 255;                                     // of attributes and of their types
+constexpr std::array kLinesOfChunk = {1, 1, 1, 16, 32, 16, 32, 32, 32, 256};  // by compression
+
+/// Counts the chunks that headers promise.
+class ExrHeaders {
+  public:
+    explicit ExrHeaders(const std::filesystem::path& file)
+        : stream_(file, std::ios::binary), size_(static_cast<double>(std::filesystem::file_size(file))) {}
+
+    bool fit() {
+        const auto magic = number<std::uint32_t>();
+        const auto version = number<std::uint32_t>();
+        if (!magic || !version) {
+            return false;
+        }
+        double chunks = 0.0;
+        for (std::optional<double> part = chunks_of_part(); part != 0.0; part = chunks_of_part()) {
+            chunks += part.value_or(size_);
+            if (8.0 * chunks > size_) {
+                return false;
+            }
+            if ((*version & kHasParts) == 0) {
+                break;
+            }
+        }
+        return true;
+    }
+
+  private:
+    template <class Number>
+    std::optional<Number> number() {
+        std::string bytes(sizeof(Number), '\0');
+        stream_.read(bytes.data(), sizeof(Number));
+        std::string_view rest = bytes;
+        return stream_ ? take_bytes<Number>(rest) : std::nullopt;
+    }
+
+    std::string name() {
+        std::string text;
+        for (int c = stream_.get(); c > 0 && text.size() <= kLongestName; c = stream_.get()) {
+            text += static_cast<char>(c);
+        }
+        return text;
+    }
+
+    /// 0 where there is no further header; nothing where the header does not fit.
+    std::optional<double> chunks_of_part() {
+        double width = 0.0;
+        double height = 0.0;
+        double lines = 1.0;
+        double stated = 0.0;
+        double tile_area = 0.0;
+        bool is_empty = true;
+        for (std::string attribute = name(); !attribute.empty(); attribute = name()) {
+            is_empty = false;
+            name();  // of its type
+            const auto size = number<std::uint32_t>();
+            const auto at = static_cast<double>(stream_.tellg());
+            if (!size || at + *size > size_) {
+                return std::nullopt;
+            }
+            if (attribute == "dataWindow") {
+                const auto left = number<std::int32_t>();
+                const auto top = number<std::int32_t>();
+                const auto right = number<std::int32_t>();
+                const auto bottom = number<std::int32_t>();
+                width = bottom ? double{1} + *right - *left : 0.0;
+                height = bottom ? double{1} + *bottom - *top : 0.0;
+            } else if (attribute == "compression") {
+                const auto kind = number<std::uint8_t>().value_or(0);
+                lines = kind < kLinesOfChunk.size() ? kLinesOfChunk.at(kind) : 1;
+            } else if (attribute == "tiles") {
+                const auto across = number<std::uint32_t>();
+                const auto down = number<std::uint32_t>();
+                tile_area = down ? static_cast<double>(*across) * *down : 0.0;
+            } else if (attribute == "chunkCount") {
+                stated = number<std::uint32_t>().value_or(0);
+            }
+            stream_.clear();
+            stream_.seekg(static_cast<std::streamoff>(at + *size));
+        }
+        if (is_empty) {
+            return 0.0;
+        }
+        const double counted = tile_area > 0.0 ? width * height / tile_area : height / lines;
+        return std::max({1.0, stated, counted});
+    }
+
+    std::ifstream stream_;
+    double size_;
+};
+
+}  // namespace
+
+bool exr_header_fits(const std::filesystem::path& file) {
+    return ExrHeaders(file).fit();
+}
+
+}  // namespace lensproof::formats

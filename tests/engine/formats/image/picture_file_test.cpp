@@ -1,0 +1,181 @@
+// Which files are opened, by which reader, and up to which size.
+#include "engine/formats/image/picture_file.h"
+
+#include <OpenImageIO/imageio.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstdint>
+#include <fstream>
+#include <random>
+
+#include "engine/base/file.h"
+#include "engine/base/memory.h"
+#include "engine/formats/image/image.h"
+#include "engine/formats/image/jpeg.h"
+#include "engine/formats/image/photo.h"
+#include "tests/complaint.h"
+#include "tests/test_folder.h"
+
+namespace lensproof::formats::picture_file_test {
+
+constexpr int kSide = 32;
+
+/// The bytes of a picture in the form that the extension says, by the library.
+std::string bytes_of_form(const TestFolder& folder, const std::string& extension) {
+    const std::filesystem::path file = folder.path() / ("made" + extension);
+    const bool floats = extension == ".exr" || extension == ".hdr";
+    const OIIO::ImageSpec spec(kSide, kSide, 3, floats ? OIIO::TypeDesc::FLOAT : OIIO::TypeDesc::UINT8);
+    std::vector<float> values(std::size_t{kSide} * kSide * 3);
+    std::mt19937 random(1);
+    std::ranges::generate(values, [&] { return static_cast<float>(random() % 256) / 255.0F; });
+    const auto output = OIIO::ImageOutput::create(file.string());
+    EXPECT_TRUE(output && output->open(file.string(), spec) &&
+                output->write_image(OIIO::TypeDesc::FLOAT, values.data()) && output->close())
+        << extension;
+    return read_file(file);
+}
+
+std::filesystem::path named(const TestFolder& folder, const std::string& name, const std::string& bytes) {
+    std::ofstream(folder.path() / name, std::ios::binary) << bytes;
+    return folder.path() / name;
+}
+
+/// A TIFF whose header promises 8-bit pixels, of which none is there.
+std::string empty_tiff(std::uint32_t width, std::uint32_t height, std::uint32_t channels) {
+    std::string bytes("II*\0\10\0\0\0", 8);
+    const std::vector<std::pair<std::uint32_t, std::uint32_t>> entries = {
+        {256, width}, {257, height}, {258, 8}, {259, 1}, {262, 1}, {273, 8}, {277, channels}, {278, height}, {279, 8}};
+    const auto append = [&](std::uint32_t value, int size) {
+        for (int i = 0; i < size; ++i) {
+            bytes += static_cast<char>(value >> (8 * i));
+        }
+    };
+    append(static_cast<std::uint32_t>(entries.size()), 2);
+    for (const auto& [tag, value] : entries) {
+        append(tag, 2);
+        append(4, 2);
+        append(1, 4);
+        append(value, 4);
+    }
+    append(0, 4);
+    return bytes;
+}
+
+// A name is what somebody gave; a raw one counts where the bytes leave it open.
+TEST(PictureFile, IsWhatItsFirstBytesSay) {
+    const TestFolder folder;
+    const std::vector<std::pair<std::string, PictureForm>> forms = {{".jpg", PictureForm::jpeg},
+                                                                    {".png", PictureForm::png},
+                                                                    {".tif", PictureForm::tiff},
+                                                                    {".exr", PictureForm::exr},
+                                                                    {".hdr", PictureForm::hdr}};
+    for (const auto& [extension, form] : forms) {
+        const std::string bytes = bytes_of_form(folder, extension);
+        for (const char* name : {"a.jpg", "a.png", "a.tif", "a.exr", "a.hdr", "a.fits", "a"}) {
+            SCOPED_TRACE(extension + " named " + name);
+            const auto file = named(folder, name, bytes);
+            EXPECT_EQ(picture_form(file), form);
+            EXPECT_EQ(read_image(file).width, kSide);
+        }
+        EXPECT_EQ(picture_form(named(folder, "a.dng", bytes)), form == PictureForm::tiff ? PictureForm::raw : form);
+    }
+    for (const std::string& bytes : {std::string("II*\0\x10\0\0\0CR\2\0", 12), std::string("FUJIFILMCCD-RAW "),
+                                     std::string("\0\0\0\x18"
+                                                 "ftypcrx ",
+                                                 12)}) {
+        EXPECT_EQ(picture_form(named(folder, "a.jpg", bytes)), PictureForm::raw);
+        EXPECT_TRUE(says(complaint_about([&] { read_image(folder.path() / "a.jpg"); }), "not a picture"));
+    }
+}
+
+// Good files of forms that OpenImageIO knows and the program does not advertise; its readers of some of them write
+// beyond their buffers where a file is damaged. A film, a page and a text go the same way.
+TEST(PictureFile, OfAnotherFormIsRefusedUnopened) {
+    const TestFolder folder;
+    std::vector<std::string> others = {"%PDF-1.5\n", "SIMPLE  =                    T",
+                                       std::string("\0\0\0\x18"
+                                                   "ftypmp42",
+                                                   12),
+                                       "a text", ""};
+    for (const char* extension : {".bmp", ".dpx", ".fits", ".iff", ".ppm", ".rla", ".sgi", ".tga"}) {
+        others.push_back(bytes_of_form(folder, extension));
+    }
+    for (const std::string& bytes : others) {
+        for (const char* name : {"p.jpg", "p.dng", "p.exr", "p.bmp"}) {
+            const auto file = named(folder, name, bytes);
+            EXPECT_TRUE(says(complaint_about([&] { read_image(file); }), "not a picture")) << bytes.substr(0, 8);
+            EXPECT_TRUE(says(complaint_about([&] { read_photo_header(file, std::nullopt); }), "not a picture"));
+        }
+    }
+}
+
+// The library makes grey of what is missing in a JPEG: whoever reads it is told instead.
+TEST(PictureFile, CutOffIsRefused) {
+    const TestFolder folder;
+    for (const char* extension : {".jpg", ".png", ".tif", ".exr", ".hdr"}) {
+        const std::string bytes = bytes_of_form(folder, extension);
+        const auto file = named(folder, std::string("cut") + extension, bytes.substr(0, bytes.size() / 2));
+        const std::string complaint = complaint_about([&] { read_image(file); });
+        EXPECT_TRUE(says(complaint, "cut")) << extension;
+        EXPECT_TRUE(says(complaint, extension == std::string(".jpg") ? "without its end" : ":"));
+    }
+}
+
+// 200 scans of no byte each: a picture of 20 megapixels would take a minute.
+TEST(PictureFile, GoesOverAPictureAHundredTimesAtMost) {
+    const TestFolder folder;
+    std::string bytes = bytes_of_form(folder, ".jpg");
+    EXPECT_EQ(scan_count(bytes), 1);
+    for (int i = 0; i < 200; ++i) {
+        bytes.insert(bytes.size() - 2, std::string("\xFF\xDA\0\2", 4));
+    }
+    EXPECT_EQ(scan_count(bytes), 201);
+    const auto file = named(folder, "a.jpg", bytes);
+    EXPECT_TRUE(says(complaint_about([&] { read_image(file); }), "a JPEG of 201 scans, expected at most 100"));
+}
+
+// What a file of 122 bytes promises is not made room for, unless asked for; then it is what it takes that counts.
+TEST(PictureFile, PromisesNoMoreThanItsBytesCanHold) {
+    const TestFolder folder;
+    const auto bomb = named(folder, "bomb.tif", empty_tiff(14000, 14000, 8));
+    const auto read = [&] { read_image(bomb); };
+    EXPECT_TRUE(says(complaint_about(read), "14000 × 14000 pixels with 8 numbers each out of 122 bytes"));
+    EXPECT_TRUE(says(complaint_about(read), "--largest-picture 5982"));  // 14000² · 8 · 4 bytes
+    EXPECT_TRUE(says(complaint_about([&] { read_image(named(folder, "b.tif", empty_tiff(20000, 20000, 1))); }),
+                     "at most 200 million"));
+    largest_picture_mib() = 5000.0;
+    EXPECT_TRUE(says(complaint_about(read), "take 5981 MiB, expected at most the 5000 of --largest-picture"));
+    largest_picture_mib() = 3e-3;
+    EXPECT_TRUE(says(complaint_about([&] { read_image(named(folder, "a.png", bytes_of_form(folder, ".png"))); }),
+                     "32 × 32 pixels take"));
+    largest_picture_mib() = std::nullopt;
+}
+
+// An attribute of 2 GB in a file of 2 KB, and a window of 2³¹ rows, which is a table of 2²⁷ chunks: the library would
+// make room for each. Where the numbers stand follows from the attributes' names and types before them.
+TEST(PictureFile, ExrHeadersPromiseNoMoreThanThereIs) {
+    const TestFolder folder;
+    const std::string good = bytes_of_form(folder, ".exr");
+    const std::vector<std::pair<std::string, std::size_t>> numbers = {
+        {std::string("channels\0chlist\0", 16), 0},
+        {std::string("dataWindow\0box2i\0\x10\0\0\0", 21), 12},
+    };
+    for (const auto& [before, further] : numbers) {
+        std::string bytes = good;
+        const std::size_t at = bytes.find(before);
+        ASSERT_NE(at, std::string::npos);
+        bytes.replace(at + before.size() + further, 4, "\xFF\xFF\xFF\x7E");
+        const auto file = named(folder, "a.exr", bytes);
+        EXPECT_TRUE(says(complaint_about([&] { read_image(file); }), "promises more than there is"));
+    }
+    EXPECT_EQ(complaint_about([&] { read_image(named(folder, "good.exr", good)); }), "");
+}
+
+// No limit is beyond the machine; a 32 × 32 picture is within every one.
+TEST(PictureFile, KnowsHowMuchMemoryThereIs) {
+    EXPECT_GT(memory_bytes(), 64.0 * 1024 * 1024);
+    EXPECT_LT(memory_bytes(), 1e15);
+}
+
+}  // namespace lensproof::formats::picture_file_test
