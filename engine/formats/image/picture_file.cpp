@@ -13,9 +13,9 @@
 #include "engine/base/input_error.h"
 #include "engine/base/memory.h"
 #include "engine/base/text.h"
-#include "engine/formats/image/exr_header.h"
 #include "engine/formats/image/image.h"
 #include "engine/formats/image/jpeg.h"
+#include "engine/formats/image/stated_sizes.h"
 
 namespace lensproof::formats {
 
@@ -131,9 +131,10 @@ OpenPicture open_picture(const fs::path& file, const OIIO::ImageSpec& hints) {
     if (*form == PictureForm::jpeg) {
         check_jpeg(file);
     }
-    if (*form == PictureForm::exr && !exr_header_fits(file)) {
+    if ((*form == PictureForm::exr && !exr_header_fits(file)) || (*form == PictureForm::png && !png_chunks_fit(file))) {
         throw InputError(
-            fmt::format("{}: not a picture that can be read: its header promises more than there is", file.string()));
+            fmt::format("{}: not a picture that can be read: it states more than there is of it, as if it were cut off",
+                        file.string()));
     }
     OpenPicture picture{.form = *form, .input = OIIO::ImageInput::create(reader_of(*form))};
     OIIO::ImageSpec spec;

@@ -152,9 +152,10 @@ TEST(PictureFile, PromisesNoMoreThanItsBytesCanHold) {
     largest_picture_mib() = std::nullopt;
 }
 
-// An attribute of 2 GB in a file of 2 KB, and a window of 2³¹ rows, which is a table of 2²⁷ chunks: the library would
-// make room for each. Where the numbers stand follows from the attributes' names and types before them.
-TEST(PictureFile, ExrHeadersPromiseNoMoreThanThereIs) {
+// A PNG's chunk of 2 GB in a file of 4 KB; an EXR's attribute of 2 GB, and a window of 2³¹ rows, which is a table of
+// 2²⁷ chunks: the library would make room for each. Where the numbers stand follows from the attributes' names and
+// types before them.
+TEST(PictureFile, StatesNoMoreThanThereIs) {
     const TestFolder folder;
     const std::string good = bytes_of_form(folder, ".exr");
     const std::vector<std::pair<std::string, std::size_t>> numbers = {
@@ -167,9 +168,12 @@ TEST(PictureFile, ExrHeadersPromiseNoMoreThanThereIs) {
         ASSERT_NE(at, std::string::npos);
         bytes.replace(at + before.size() + further, 4, "\xFF\xFF\xFF\x7E");
         const auto file = named(folder, "a.exr", bytes);
-        EXPECT_TRUE(says(complaint_about([&] { read_image(file); }), "promises more than there is"));
+        EXPECT_TRUE(says(complaint_about([&] { read_image(file); }), "states more than there is"));
     }
     EXPECT_EQ(complaint_about([&] { read_image(named(folder, "good.exr", good)); }), "");
+    const std::string png = bytes_of_form(folder, ".png");
+    const auto file = named(folder, "a.png", png.substr(0, 33) + std::string("\x7F\xFF\xFF\0tEXt", 8) + png.substr(33));
+    EXPECT_TRUE(says(complaint_about([&] { read_image(file); }), "states more than there is"));
 }
 
 // No limit is beyond the machine; a 32 × 32 picture is within every one.

@@ -1,4 +1,4 @@
-#include "engine/formats/image/exr_header.h"
+#include "engine/formats/image/stated_sizes.h"
 
 #include <algorithm>
 #include <array>
@@ -111,6 +111,28 @@ class ExrHeaders {
 
 bool exr_header_fits(const std::filesystem::path& file) {
     return ExrHeaders(file).fit();
+}
+
+bool png_chunks_fit(const std::filesystem::path& file) {
+    constexpr std::uintmax_t kSignature = 8;
+    constexpr std::uintmax_t kAround = 12;  // length, type and checksum
+    const std::uintmax_t size = std::filesystem::file_size(file);
+    std::ifstream stream(file, std::ios::binary);
+    for (std::uintmax_t at = kSignature; at < size;) {
+        std::array<unsigned char, 8> head{};
+        stream.seekg(static_cast<std::streamoff>(at));
+        stream.read(reinterpret_cast<char*>(head.data()), head.size());
+        const std::uintmax_t length = (std::uintmax_t{head[0]} << 24U) + (std::uintmax_t{head[1]} << 16U) +
+                                      (std::uintmax_t{head[2]} << 8U) + head[3];
+        at += kAround + length;
+        if (!stream || at > size) {
+            return false;
+        }
+        if (std::string_view(reinterpret_cast<const char*>(head.data()) + 4, 4) == "IEND") {
+            break;
+        }
+    }
+    return true;
 }
 
 }  // namespace lensproof::formats
