@@ -3,9 +3,9 @@
 #include <optional>
 
 #include "engine/base/bytes.h"
-#include "engine/base/file.h"
 #include "engine/base/hash.h"
 #include "engine/base/input_error.h"
+#include "engine/base/write_file.h"
 #include "engine/formats/image/photo.h"
 #include "engine/render/checkpoint.h"
 #include "engine/scene/geometry/geometry.h"
@@ -20,7 +20,7 @@ namespace {
 std::filesystem::path file_of(std::string_view bytes, const char* name) {
     static const TestFolder folder;
     const std::filesystem::path file = folder.path() / name;
-    write_file(file, bytes);
+    write_file(file, bytes, Durability::usual);
     return file;
 }
 
