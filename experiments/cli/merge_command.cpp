@@ -26,6 +26,7 @@ struct MergeOptions {
     std::vector<std::string> files;
     std::string output;
     bool takes_some = false;
+    bool has_digest = false;  // what is a shard still always has one
 };
 
 /// A file and what its first look says.
@@ -119,6 +120,7 @@ int run_merge(const MergeOptions& options) {
                                      missing.size(), shards.count, shard_list(missing, ", ")));
     }
     render::FilmFile sum = sum_of(std::move(parts));
+    sum.notes.has_digest = options.has_digest || !missing.empty();
     if (missing.empty()) {
         sum.notes.metadata.erase(kShardNote);
     } else {
@@ -151,6 +153,7 @@ void add_merge_command(Program& program) {
         .required();
     command.add_flag("--partial", options->takes_some,
                      "Take the shards that there are; the result merges further as a shard");
+    command.add_flag("--digest", options->has_digest, "Also write a digest of all pixels, as shards have it");
     add_common_options(command, options->common);
     command.runs([options] { return run_merge(*options); });
 }

@@ -49,12 +49,12 @@ std::uint32_t whole_samples(const RenderJob& job, const RenderJobOptions& option
 render::SampleRange range_of(const RenderJob& job, const RenderJobOptions& options) {
     const Shard shard = shard_of(options);
     const std::uint32_t samples = whole_samples(job, options);
-    const render::SampleRange range = shard.part_of(samples);
-    if (range.first == range.end) {
-        throw InputError(fmt::format("--shard is \"{}\": {} samples a pixel leave it none, expected {} shards at most",
-                                     options.shard, samples, samples));
+    if (const std::uint32_t most = most_shards(samples); static_cast<std::uint32_t>(shard.count) > most) {
+        throw InputError(
+            fmt::format("--shard is \"{}\": {} samples a pixel are dealt in blocks of {}, expected i/n with n ≤ {}",
+                        options.shard, samples, render::kSamplesPerBlock, most));
     }
-    return range;
+    return shard.part_of(samples);
 }
 
 render::RenderGoal goal_of(const RenderJobOptions& options) {
@@ -189,6 +189,7 @@ render::FilmNotes notes_of(const RenderJob& job, const RenderJobOptions& options
     if (options.noise > 0.0) {
         notes.metadata["lensproof:noise"] = fmt::format("{}", options.noise);
     }
+    notes.has_digest = options.has_digest || !options.shard.empty();
     if (!options.shard.empty()) {
         const Shard shard = shard_of(options);
         notes.metadata[kShardNote] = shard_set_text({.indices = {shard.index}, .count = shard.count});
@@ -327,6 +328,8 @@ void add_render_job_options(Command& command, RenderJobOptions& options) {
         .check(one_of(render::PixelFilter::known_names()))
         .shows_default();
     command.add_flag("--features", options.has_features, "Also write depth, albedo and normals");
+    command.add_flag("--digest", options.has_digest,
+                     "Also write a digest of all pixels, by which `merge` knows damage; shards always have one");
     add_common_options(command, options.common);
 }
 

@@ -28,6 +28,7 @@ struct RenderJobOptions {
     std::string shard;
     std::string filter = "box";
     bool has_features = false;
+    bool has_digest = false;  // shards always have one
 };
 
 /// Adds the options above, but those that name the scene.

@@ -30,13 +30,15 @@ bool take(std::string_view& text, char wanted) {
 
 }  // namespace
 
+std::uint32_t most_shards(std::uint32_t samples) {
+    return (samples + render::kSamplesPerBlock - 1) / render::kSamplesPerBlock;
+}
+
 render::SampleRange Shard::part_of(std::uint32_t samples) const {
-    const std::uint32_t blocks = (samples + render::kSamplesPerBlock - 1) / render::kSamplesPerBlock;
-    const std::uint32_t unit = blocks >= static_cast<unsigned>(count) ? render::kSamplesPerBlock : 1;
-    const std::uint64_t units = unit > 1 ? blocks : samples;
+    const std::uint64_t blocks = most_shards(samples);
     const auto end_of = [&](int shards) {
-        const std::uint64_t whole_units = units * static_cast<unsigned>(shards) / static_cast<unsigned>(count);
-        return static_cast<std::uint32_t>(std::min<std::uint64_t>(samples, whole_units * unit));
+        const std::uint64_t before = blocks * static_cast<unsigned>(shards) / static_cast<unsigned>(count);
+        return static_cast<std::uint32_t>(std::min<std::uint64_t>(samples, before * render::kSamplesPerBlock));
     };
     return {.first = end_of(index - 1), .end = end_of(index)};
 }

@@ -1,5 +1,6 @@
 // experiments/cli/shard.h — which part of a render's samples one of several machines takes.
 #pragma once
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
@@ -13,13 +14,16 @@ struct Shard {
     int index = 1;
     int count = 1;
 
-    /// Its part of `samples` a pixel: together the shards have each sample once, next to each other, so that each
-    /// shard's points are as well spread as a render's of its own; whole blocks of them where there are enough, so that
-    /// the variances add up to the whole's too.
+    /// Its part of `samples` a pixel, in whole blocks, so that the variances add up to the whole's: together the shards
+    /// have each sample once, next to each other, so that each shard's points are as well spread as a render's of its
+    /// own. Some are left none where there are more shards than blocks (`most_shards`).
     [[nodiscard]] render::SampleRange part_of(std::uint32_t samples) const;
 };
 
 inline constexpr int kMostShards = 10000;
+
+/// As many as `samples` have blocks.
+std::uint32_t most_shards(std::uint32_t samples);
 
 /// Reads "2/5". Nothing where it is not i/n with 1 ≤ i ≤ n ≤ kMostShards.
 std::optional<Shard> parse_shard(const std::string& text);

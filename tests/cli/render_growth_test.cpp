@@ -210,7 +210,7 @@ TEST(RenderGrowth, RefusesACheckpointOfAnotherRender) {
     expect_refused(place, with_more({"--seed", "1"}), {"state", "seed is 0, expected 1"});
     expect_refused(place, with_more({"--filter", "tent"}), {"state", "settings", "tent"});
     expect_refused(place, with_more({"--spp", "2"}), {"state", "4 samples a pixel already, expected 2"});
-    expect_refused(place, with_more({"--shard", "2/2"}), {"state", "samples begin"});
+    expect_refused(place, with_more({"--spp", "32", "--shard", "2/2"}), {"state", "samples begin"});
     place.file("scene.toml", with(small_scene(), "f_number = 8.0", "f_number = 4.0"));
     expect_refused(place, with_more({}), {"state", "scene"});
     place.file("scene.toml", small_scene());

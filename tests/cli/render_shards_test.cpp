@@ -102,9 +102,9 @@ TEST(Merge, KnowsALensByItsSurfaces) {
     const Workplace place;
     place.file("scene.toml", with(small_scene(), "\"tessar\"", "\"singlet.toml\""));
     place.file("singlet.toml", kSinglet);
-    EXPECT_EQ(place.run({"render", "scene.toml", "--shard", "1/2", "-o", "a.exr"}).status, 0);
+    EXPECT_EQ(place.run({"render", "scene.toml", "--spp", "32", "--shard", "1/2", "-o", "a.exr"}).status, 0);
     place.file("singlet.toml", with(kSinglet, "radius_mm =  50.0", "radius_mm =  50.1"));
-    EXPECT_EQ(place.run({"render", "scene.toml", "--shard", "2/2", "-o", "b.exr"}).status, 0);
+    EXPECT_EQ(place.run({"render", "scene.toml", "--spp", "32", "--shard", "2/2", "-o", "b.exr"}).status, 0);
     expect_refused(place, {"merge", "a.exr", "b.exr", "-o", "sum.exr"},
                    {"b.exr: is of another render than a.exr: its lens is"});
 }
@@ -112,8 +112,16 @@ TEST(Merge, KnowsALensByItsSurfaces) {
 TEST(Shard, IsNamedByItsNumbersWhereNoNameIsGiven) {
     const Workplace place;
     place.file("scene.toml", small_scene());
-    EXPECT_EQ(place.run({"render", "scene.toml", "--shard", "2/3"}).status, 0);
+    EXPECT_EQ(place.run({"render", "scene.toml", "--spp", "48", "--shard", "2/3"}).status, 0);
     EXPECT_TRUE(place.has("scene.shard-2-of-3.exr"));
+}
+
+// Blocks that are cut would make the variances of the sum several times the whole's.
+TEST(Shard, HasWholeBlocks) {
+    const Workplace place;
+    place.file("scene.toml", small_scene());
+    expect_refused(place, {"render", "scene.toml", "--spp", "48", "--shard", "2/4", "-o", "a.exr"},
+                   {"--shard is \"2/4\": 48 samples a pixel are dealt in blocks of 16, expected i/n with n ≤ 3"});
 }
 
 }  // namespace lensproof::render_shards_test

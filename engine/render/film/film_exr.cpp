@@ -10,7 +10,7 @@
 #include <stdexcept>
 #include <utility>
 
-#include "engine/base/file.h"
+#include "engine/base/hash.h"
 #include "engine/base/input_error.h"
 #include "engine/formats/image/exr_output.h"
 #include "engine/formats/image/picture_file.h"
@@ -24,6 +24,7 @@ constexpr int kRowsAtOnce = 64;
 constexpr const char* kIdentityPrefix = "lensproof:identity:";
 constexpr const char* kLightPaths = "lensproof:lightPaths";
 constexpr const char* kLeftOut = "lensproof:leftOut";
+constexpr const char* kDigest = "lensproof:digest";
 
 const std::vector<std::string> kRgb = {"R", "G", "B"};
 const std::vector<std::string> kVariance = {"variance.R", "variance.G", "variance.B"};
@@ -95,6 +96,68 @@ std::vector<Part> parts_of(const Film& film) {
     return parts;
 }
 
+/// A digest of pixels, row by row of each part: however many rows are read or written at once.
+class PixelDigest {
+  public:
+    template <class Number>
+    void add(const std::string& part, const std::vector<Number>& values, int rows) {
+        const std::string_view bytes(reinterpret_cast<const char*>(values.data()), values.size() * sizeof(Number));
+        const std::size_t row = bytes.size() / static_cast<std::size_t>(rows);
+        for (std::size_t at = 0; at < bytes.size(); at += row) {
+            std::uint64_t& digest = parts_[part];
+            digest = hash_of(bytes.substr(at, row), digest);
+        }
+    }
+
+    [[nodiscard]] std::string text() const {
+        std::string all;
+        for (const auto& [part, digest] : parts_) {
+            all += fmt::format("{} {:016x}\n", part, digest);
+        }
+        return hash_text(all);
+    }
+
+  private:
+    std::map<std::string, std::uint64_t> parts_;
+};
+
+/// Calls `visit(y, end, values)` for the part's rows, some at once, until it returns false.
+template <class Visit>
+bool visit_rows(const Part& part, const Film& film, const Visit& visit) {
+    std::vector<float> values;
+    std::vector<std::uint32_t> counts;
+    for (int y = 0; y < film.height(); y += kRowsAtOnce) {
+        const int end = std::min(film.height(), y + kRowsAtOnce);
+        values.clear();
+        counts.clear();
+        for (int row = y; row < end; ++row) {
+            for (int x = 0; x < film.width(); ++x) {
+                if (part.append_pixel) {
+                    part.append_pixel(x, row, values);
+                } else {
+                    counts.push_back(film.counts(x, row).blocks);
+                    counts.push_back(film.counts(x, row).samples);
+                }
+            }
+        }
+        if (!(part.append_pixel ? visit(y, end, values) : visit(y, end, counts))) {
+            return false;
+        }
+    }
+    return true;
+}
+
+std::string digest_of(const std::vector<Part>& parts, const Film& film) {
+    PixelDigest digest;
+    for (const Part& part : parts) {
+        visit_rows(part, film, [&](int y, int end, const auto& values) {
+            digest.add(part.name, values, end - y);
+            return true;
+        });
+    }
+    return digest.text();
+}
+
 OIIO::ImageSpec spec_of(const Part& part, const Film& film, const FilmNotes& notes) {
     OIIO::ImageSpec spec(film.width(), film.height(), static_cast<int>(part.channels.size()),
                          part.append_pixel ? OIIO::TypeDesc::FLOAT : OIIO::TypeDesc::UINT32);
@@ -135,32 +198,10 @@ OIIO::ImageSpec spec_of(const Part& part, const Film& film, const FilmNotes& not
     return spec;
 }
 
-/// Rows of a part, one after the other.
 bool write_rows(OIIO::ImageOutput& output, const Part& part, const Film& film) {
-    std::vector<float> values;
-    std::vector<std::uint32_t> counts;
-    for (int y = 0; y < film.height(); y += kRowsAtOnce) {
-        const int end = std::min(film.height(), y + kRowsAtOnce);
-        values.clear();
-        counts.clear();
-        for (int row = y; row < end; ++row) {
-            for (int x = 0; x < film.width(); ++x) {
-                if (part.append_pixel) {
-                    part.append_pixel(x, row, values);
-                } else {
-                    counts.push_back(film.counts(x, row).blocks);
-                    counts.push_back(film.counts(x, row).samples);
-                }
-            }
-        }
-        const bool is_written = part.append_pixel
-                                    ? output.write_scanlines(y, end, 0, OIIO::TypeDesc::FLOAT, values.data())
-                                    : output.write_scanlines(y, end, 0, OIIO::TypeDesc::UINT32, counts.data());
-        if (!is_written) {
-            return false;
-        }
-    }
-    return true;
+    return visit_rows(part, film, [&]<class Number>(int y, int end, const std::vector<Number>& values) {
+        return output.write_scanlines(y, end, 0, OIIO::BaseTypeFromC<Number>::value, values.data());
+    });
 }
 
 bool write_parts(OIIO::ImageOutput& output, const std::string& name, const std::vector<Part>& parts,
@@ -201,6 +242,10 @@ class FilmReader {
         film.set_left_out(count_in(first, kLeftOut));
         for (int y = 0; y < film.height(); y += kRowsAtOnce) {
             read_rows(film, y, std::min(film.height(), y + kRowsAtOnce));
+        }
+        if (notes.has_digest && first.get_string_attribute(kDigest) != digest_.text()) {
+            throw InputError(
+                fmt::format("{}: is damaged: its pixels are not those that its digest was made of", file_.string()));
         }
         return {.film = std::move(film), .notes = std::move(notes)};
     }
@@ -251,10 +296,11 @@ class FilmReader {
             const std::string name = attribute.name().string();
             if (name.starts_with(prefix)) {
                 notes.identity.push_back({name.substr(prefix.size()), attribute.get_string()});
-            } else if (name.starts_with("lensproof:") && name != kLightPaths && name != kLeftOut) {
+            } else if (name.starts_with("lensproof:") && name != kLightPaths && name != kLeftOut && name != kDigest) {
                 notes.metadata[name] = attribute.get_string();
             }
         }
+        notes.has_digest = !spec.get_string_attribute(kDigest).empty();
         std::array<float, 8> xy{};
         if (spec.getattribute("chromaticities", OIIO::TypeDesc(OIIO::TypeDesc::FLOAT, 8), xy.data())) {
             notes.colours = {{xy[0], xy[1]}, {xy[2], xy[3]}, {xy[4], xy[5]}, {xy[6], xy[7]}};
@@ -295,6 +341,7 @@ class FilmReader {
                 wanted[i * names.size() + k] = all[i * spec.nchannels + static_cast<std::size_t>(channel)];
             }
         }
+        digest_.add(part, wanted, end - y);
         return wanted;
     }
 
@@ -305,6 +352,7 @@ class FilmReader {
                                                                     OIIO::TypeDesc::UINT32, numbers.data())) {
             fail(fmt::format("part \"samples\" is damaged ({})", formats::on_one_line(input_->geterror())));
         }
+        digest_.add("samples", numbers, end - y);
         std::vector<PixelCounts> counts;
         for (std::size_t i = 0; i < numbers.size(); i += 2) {
             counts.push_back({.samples = numbers[i + 1], .blocks = numbers[i]});
@@ -361,6 +409,7 @@ class FilmReader {
     std::filesystem::path file_;
     std::unique_ptr<OIIO::ImageInput> input_;
     std::pair<int, int> size_{0, 0};
+    PixelDigest digest_;
 };
 
 }  // namespace
@@ -370,6 +419,9 @@ void write_film_exr(const Film& film, const FilmNotes& notes, const std::filesys
     std::vector<OIIO::ImageSpec> specs;
     std::ranges::transform(parts, std::back_inserter(specs),
                            [&](const Part& part) { return spec_of(part, film, notes); });
+    if (notes.has_digest) {
+        specs.front().attribute(kDigest, digest_of(parts, film));
+    }
     formats::write_exr_file(file, [&](OIIO::ImageOutput& output, const std::string& name) {
         return write_parts(output, name, parts, specs, film);
     });

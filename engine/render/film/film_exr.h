@@ -16,6 +16,7 @@ struct FilmNotes {
     RenderIdentity identity;                      // attributes "lensproof:identity:NAME"
     std::map<std::string, std::string> metadata;  // further attributes of the first part
     std::optional<spectral::RgbSpace> colours;  // of R, G, B: the attribute "chromaticities"; nothing: the sensor's own
+    bool has_digest = false;                    // the attribute "lensproof:digest"
 };
 
 /// Writes the film; whole or not at all, the same bytes for the same film and notes. Parts, each of 32-bit floats:
@@ -28,11 +29,13 @@ struct FilmNotes {
 /// - light: R, G, B, variance.R, …, and spectral layers, what of all these came by light paths, whose number is the
 ///   attribute "lensproof:lightPaths"; where the film has them.
 ///
-/// The attribute "lensproof:leftOut" says how many samples were left out (`Film::left_out`), where any were.
+/// The attribute "lensproof:leftOut" says how many samples were left out (`Film::left_out`), where any were, and
+/// "lensproof:digest" is a digest of all pixels of all parts, where the notes ask for one.
 void write_film_exr(const Film& film, const FilmNotes& notes, const std::filesystem::path& file);
 
 /// A film from its file, so that films add up: sums from means, variances and counts; of floats, so to 1e-7. Its layout
-/// knows sizes and layers but no strata. Throws InputError naming the file where it is not one of the above.
+/// knows sizes and layers but no strata. Throws InputError naming the file where it is not one of the above, or not
+/// what its digest says.
 struct FilmFile {
     Film film;
     FilmNotes notes;

@@ -140,4 +140,37 @@ TEST(FilmExr, RefusesWhatItDidNotWrite) {
     }
 }
 
+/// How many of a file's bytes with one bit turned make another film of it without a word.
+int silent_damages(const FilmNotes& notes) {
+    const TestFolder folder;
+    const std::filesystem::path file = folder.path() / "a.exr";
+    const Film film = exponential_film(8, 1, 0, 32);
+    write_film_exr(film, notes, file);
+    const std::string good = read_file(file);
+    int silent = 0;
+    for (std::size_t at = 0; at < good.size(); at += 3) {
+        std::string damaged = good;
+        damaged[at] = static_cast<char>(damaged[at] ^ 1);
+        write_file(file, damaged, Durability::usual);
+        try {
+            const Film read = read_film_exr(file).film;
+            bool is_same = read.width() == 8 && read.height() == 8;
+            for (int i = 0; is_same && i < 64; ++i) {
+                const auto [rgb, variance] = read.estimate(i % 8, i / 8);
+                const auto [rgb_before, variance_before] = film.estimate(i % 8, i / 8);
+                is_same = length(rgb - rgb_before) < 1e-6 && length(variance - variance_before) < 1e-6;
+            }
+            silent += is_same ? 0 : 1;
+        } catch (const std::exception&) {  // NOLINT(bugprone-empty-catch): not silent
+        }
+    }
+    return silent;
+}
+
+// Small films and noise do not shrink, and lie in the file as they are, without the sums of packed ones.
+TEST(FilmExr, ADigestKnowsDamage) {
+    EXPECT_GT(silent_damages({}), 0);
+    EXPECT_EQ(silent_damages({.identity = {}, .metadata = {}, .colours = {}, .has_digest = true}), 0);
+}
+
 }  // namespace lensproof::render::film_exr_test
