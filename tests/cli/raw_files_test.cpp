@@ -62,8 +62,8 @@ TEST(RawFiles, AreSaidToHoldTheRendersNoiseToo) {
 TEST(RawFiles, ComeOfAMergedWholeAndNotOfItsParts) {
     const Workplace place;
     place.file("scene.toml", small_scene() + sensor_table());
-    ASSERT_EQ(place.run({"render", "scene.toml", "--shard", "1/2", "-o", "1.exr"}).status, 0);
-    ASSERT_EQ(place.run({"render", "scene.toml", "--shard", "2/2", "-o", "2.exr"}).status, 0);
+    ASSERT_EQ(place.run({"render", "scene.toml", "--spp", "32", "--shard", "1/2", "-o", "1.exr"}).status, 0);
+    ASSERT_EQ(place.run({"render", "scene.toml", "--spp", "32", "--shard", "2/2", "-o", "2.exr"}).status, 0);
     EXPECT_FALSE(place.has("1.raw.png"));
     ASSERT_EQ(place.run({"merge", "1.exr", "-o", "part.exr", "--partial"}).status, 0);
     EXPECT_FALSE(place.has("part.raw.png"));
