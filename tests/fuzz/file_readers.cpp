@@ -19,7 +19,7 @@ namespace {
 /// The one file of a process that its readers are given, by this name.
 std::filesystem::path file_of(std::string_view bytes, const char* name) {
     static const TestFolder folder;
-    const std::filesystem::path file = folder.path() / name;
+    std::filesystem::path file = folder.path() / name;
     write_file(file, bytes, Durability::usual);
     return file;
 }

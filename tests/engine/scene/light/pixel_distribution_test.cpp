@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <numeric>
 #include <random>
 
 namespace lensproof::scene::pixel_distribution_test {
@@ -26,10 +27,8 @@ std::vector<float> weights() {
 }
 
 std::vector<double> row_factors() {
-    std::vector<double> factors;
-    for (int row = 0; row < kHeight; ++row) {
-        factors.push_back(1.0 + row);
-    }
+    std::vector<double> factors(kHeight);
+    std::iota(factors.begin(), factors.end(), 1.0);
     return factors;
 }
 
