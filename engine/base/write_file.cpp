@@ -162,9 +162,8 @@ void make_folders(const fs::path& file, Durability durability) {
     }
 }
 
-}  // namespace
-
-void check_output_name(const fs::path& file) {
+/// What can be wrong with a name as such.
+void check_name(const fs::path& file) {
     std::error_code error;
     if (!file.has_filename() || fs::is_directory(file, error)) {
         throw InputError(fmt::format("{}: is a folder, expected a file name to write", file.string()));
@@ -188,6 +187,13 @@ void check_output_name(const fs::path& file) {
         throw InputError(fmt::format("{}: a path of {} bytes, expected at most {}", file.string(), file.native().size(),
                                      PATH_MAX - 1 - (path - file.native().size())));
     }
+}
+
+}  // namespace
+
+void check_output_name(const fs::path& file) {
+    check_name(file);
+    std::error_code error;
     if (fs::exists(file, error) && !fs::is_regular_file(file, error)) {
         if (::access(file.c_str(), W_OK) != 0) {
             refuse(file, file, errno);
@@ -207,7 +213,7 @@ void check_output_name(const fs::path& file) {
 }
 
 void write_whole(const fs::path& named, const std::function<void(const fs::path&)>& write, Durability durability) {
-    check_output_name(named);
+    check_name(named);
     std::error_code error;
     if (fs::exists(named, error) && !fs::is_regular_file(named, error)) {
         write(named);  // a rename would put a file in the place of /dev/null

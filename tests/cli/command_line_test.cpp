@@ -302,20 +302,12 @@ TEST(Compare, EndsIn1WhereALimitIsBroken) {
     EXPECT_EQ(place.run({"compare", "a.exr", "b.exr", "--rms-limit", "1e-9"}).status, 1);
 }
 
-// Three views of a chart, 160 × 120 pixels: about the smallest experiment that measures something.
 TEST(Run, WritesItsReportAndItsProfileReadsBack) {
     const Workplace place;
-    std::string text = with(small_scene(), "[camera]",
-                            "[[simulations]]\nname = \"a\"\nmodel = \"brown-conrady\"\n"
-                            "flat_field = false\n[simulations.camera]");
-    text = with(with(text, "[chart]", "[simulations.chart]"), "[8, 6]", "[160, 120]");
-    text = with(text, "[pose]\ndistance_mm = 10000.0",
-                "[[simulations.views]]\ndistance_mm = 10000.0\n"
-                "[[simulations.views]]\ndistance_mm = 10500.0\ntilt_deg = [30.0, 0.0, 0.0]\n"
-                "[[simulations.views]]\ndistance_mm = 10500.0\ntilt_deg = [0.0, 30.0, 0.0]");
+    const std::string text = small_experiment();
     const std::string limit = "[simulations.limits]\ndistortion_rms_px = ";
-    place.file("good.toml", "title = \"t\"\n" + text + limit + "50.0\n");
-    place.file("bad.toml", "title = \"t\"\n" + text + limit + "1e-9\n");
+    place.file("good.toml", text + limit + "50.0\n");
+    place.file("bad.toml", text + limit + "1e-9\n");
     const Outcome good = place.run({"run", "good.toml", "-o", "good", "--json", "-"});
     EXPECT_EQ(good.status, 0) << good.err;
     EXPECT_EQ(good.err, "");

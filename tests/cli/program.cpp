@@ -193,4 +193,15 @@ layers = 4
 )";
 }
 
+std::string small_experiment() {
+    std::string text = with(small_scene(), "[camera]",
+                            "title = \"t\"\n[[simulations]]\nname = \"a\"\nmodel = \"brown-conrady\"\n"
+                            "flat_field = false\n[simulations.camera]");
+    text = with(with(text, "[chart]", "[simulations.chart]"), "[8, 6]", "[160, 120]");
+    return with(text, "[pose]\ndistance_mm = 10000.0",
+                "[[simulations.views]]\ndistance_mm = 10000.0\n"
+                "[[simulations.views]]\ndistance_mm = 10500.0\ntilt_deg = [30.0, 0.0, 0.0]\n"
+                "[[simulations.views]]\ndistance_mm = 10500.0\ntilt_deg = [0.0, 30.0, 0.0]");
+}
+
 }  // namespace lensproof

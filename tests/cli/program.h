@@ -76,6 +76,9 @@ std::string with(std::string text, const std::string& from, const std::string& t
 /// A scene of 8 × 6 pixels that renders in no time: a checkerboard through the Tessar.
 std::string small_scene();
 
+/// Three views of a chart, 160 × 120 pixels: about the smallest experiment that measures something.
+std::string small_experiment();
+
 /// A biconvex singlet in the project's form; line 5 is its first surface.
 constexpr const char* kSinglet = R"(name = "singlet"
 source = "made up for a test"

@@ -46,7 +46,7 @@ void write_exr_file(const std::filesystem::path& file,
             throw failure(file, temporary, output ? output->geterror() : OIIO::geterror());
         }
         try {
-            if (is_complete(temporary)) {
+            if (!std::filesystem::is_regular_file(temporary) || is_complete(temporary)) {
                 return;
             }
         } catch (const std::exception&) {  // NOLINT(bugprone-empty-catch): not even a header

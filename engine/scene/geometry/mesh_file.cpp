@@ -5,9 +5,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <algorithm>
 #include <assimp/Importer.hpp>
-#include <cctype>
 #include <cstdint>
 #include <exception>
 #include <set>
@@ -27,12 +25,6 @@ namespace {
 constexpr std::size_t kMost = std::size_t{1} << 31;
 /// With meshes that stand there more than once, each time for itself: a gigabyte of positions and normals.
 constexpr std::size_t kMostRepeated = std::size_t{1} << 25;
-
-std::string lower_extension(const std::filesystem::path& file) {
-    std::string extension = file.extension().string();
-    std::ranges::transform(extension, extension.begin(), [](unsigned char c) { return std::tolower(c); });
-    return extension;
-}
 
 bool is_gltf(const std::filesystem::path& file) {
     const std::string extension = lower_extension(file);
