@@ -12,6 +12,7 @@
 #include <fstream>
 #include <system_error>
 
+#include "engine/base/confined.h"
 #include "engine/base/input_error.h"
 #include "engine/base/text.h"
 
@@ -24,6 +25,18 @@ namespace {
 // No text, table or photo comes near; /dev/zero would go on for ever.
 constexpr std::size_t kLargestFile = std::size_t{256} << 20;
 constexpr std::size_t kChunk = std::size_t{1} << 20;
+
+/// Links followed, as far as there are such files.
+fs::path place_of(const fs::path& file) {
+    std::error_code error;
+    const fs::path place = fs::weakly_canonical(fs::absolute(file), error);
+    return error ? fs::path() : place;
+}
+
+bool lies_in(const fs::path& folder, const fs::path& file) {
+    const fs::path within = file.lexically_relative(folder);
+    return !within.empty() && *within.begin() != "..";
+}
 
 }  // namespace
 
@@ -73,6 +86,23 @@ std::string read_file(const fs::path& file) {
         throw InputError(fmt::format("{}: is a pipe that nothing is written to, expected a file", file.string()));
     }
     return content;
+}
+
+void check_reference(const fs::path& from, const fs::path& file) {
+    if (!files_are_distrusted()) {
+        return;
+    }
+    const fs::path place = place_of(file);
+    if (!lies_in(place_of(from).parent_path(), place) && !lies_in(place_of(data_root()), place)) {
+        throw InputError(fmt::format("{}: refers to {}, expected a file in its own folder, as --untrusted asks",
+                                     from.string(), file.string()));
+    }
+}
+
+fs::path referred_file(const fs::path& from, const fs::path& name) {
+    fs::path file = from.parent_path() / name;
+    check_reference(from, file);
+    return file;
 }
 
 std::string lower_extension(const fs::path& file) {

@@ -12,6 +12,13 @@ void check_readable(const std::filesystem::path& file);
 /// MiB.
 std::string read_file(const std::filesystem::path& file);
 
+/// Where files are distrusted (confined.h): throws InputError unless the file that `from` refers to lies in the folder
+/// of `from` or below it, links followed, or is the project's own.
+void check_reference(const std::filesystem::path& from, const std::filesystem::path& file);
+
+/// The file that `from` refers to by `name`, which is relative to it. Throws as check_reference does.
+std::filesystem::path referred_file(const std::filesystem::path& from, const std::filesystem::path& name);
+
 /// The name's extension with its dot, in small letters.
 std::string lower_extension(const std::filesystem::path& file);
 

@@ -67,7 +67,7 @@ std::filesystem::path read_file_name(TomlTable& table, const std::string& key) {
 }
 
 std::filesystem::path file_beside(const TomlTable& table, const std::string& key, const std::string& name) {
-    std::filesystem::path file = table.file().parent_path() / name;
+    std::filesystem::path file = referred_file(table.file(), name);
     try {
         check_readable(file);
     } catch (const InputError& error) {

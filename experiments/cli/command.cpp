@@ -8,6 +8,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "engine/base/confined.h"
 #include "engine/base/input_error.h"
 #include "engine/base/json.h"
 #include "engine/base/text.h"
@@ -17,6 +18,18 @@
 #include "engine/formats/image/image.h"
 
 namespace lensproof::cli {
+
+namespace {
+
+void distrust_inputs() {
+    if (!distrust_files()) {
+        fmt::print(stderr,
+                   "lensproof: --untrusted: this system has no Landlock (Linux 5.13): the readers of pictures "
+                   "and meshes are limited in memory and time, but may use files as this program may\n");
+    }
+}
+
+}  // namespace
 
 void add_common_options(Command& command, CommonOptions& options) {
     command.add_option("--json", options.json_file, "Write the machine-readable result to FILE (-: standard output)")
@@ -31,6 +44,9 @@ void add_common_options(Command& command, CommonOptions& options) {
                     "file's size makes likely")
         .type_name("MIB")
         .check(kPositiveOption);
+    command.add_flag("--untrusted", distrust_inputs,
+                     "Decode pictures and meshes in processes that can do nothing else, and follow no reference out of "
+                     "the folder of the file that makes it");
     command.add_option("--seed", options.seed, "Seed of everything random").check(kSeedOption).shows_default();
 }
 

@@ -169,6 +169,10 @@ Option Command::add_flag(const std::string& names, bool& value, const std::strin
     return Option(app_->add_flag(names, value, help));
 }
 
+Option Command::add_flag(const std::string& names, const std::function<void()>& given, const std::string& help) {
+    return Option(app_->add_flag_callback(names, given, help));
+}
+
 void Command::footer(const std::string& text) {
     app_->footer(text);
 }

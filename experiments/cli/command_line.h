@@ -58,6 +58,7 @@ class Command {
     template <class T>
     Option add_option(const std::string& names, T& value, const std::string& help);
     Option add_flag(const std::string& names, bool& value, const std::string& help);
+    Option add_flag(const std::string& names, const std::function<void()>& given, const std::string& help);
 
     /// What stands below the options in the help: an example.
     void footer(const std::string& text);

@@ -9,10 +9,12 @@
 #include <string>
 #include <string_view>
 
+#include "engine/base/confined.h"
 #include "engine/base/file.h"
 #include "engine/base/input_error.h"
 #include "engine/base/memory.h"
 #include "engine/base/text.h"
+#include "engine/formats/image/confined_picture.h"
 #include "engine/formats/image/image.h"
 #include "engine/formats/image/jpeg.h"
 #include "engine/formats/image/stated_sizes.h"
@@ -122,6 +124,10 @@ bool has_raw_name(const fs::path& file) {
 }
 
 OpenPicture open_picture(const fs::path& file, const OIIO::ImageSpec& hints) {
+    return files_are_distrusted() ? open_confined(file, hints) : open_picture_here(file, hints);
+}
+
+OpenPicture open_picture_here(const fs::path& file, const OIIO::ImageSpec& hints) {
     const std::optional<PictureForm> form = picture_form(file);
     if (!form) {
         throw InputError(fmt::format(

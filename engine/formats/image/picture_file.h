@@ -29,7 +29,12 @@ struct OpenPicture {
 ///
 /// Throws InputError for a file that is missing or not of these forms, or whose header is damaged, and for a JPEG that
 /// is cut off (the library would fill what is missing with grey and say nothing), or has more than 100 scans.
+///
+/// Where files are distrusted (engine/base/confined.h), a confined process decodes it.
 OpenPicture open_picture(const std::filesystem::path& file, const OIIO::ImageSpec& hints);
+
+/// The same in this process, whatever its file is.
+OpenPicture open_picture_here(const std::filesystem::path& file, const OIIO::ImageSpec& hints);
 
 /// Throws InputError where the file's picture, of `spec`'s size, takes more than `largest_picture_mib` allows; and
 /// where it is not flat.

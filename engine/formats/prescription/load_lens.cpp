@@ -1,3 +1,4 @@
+#include "engine/base/file.h"
 #include "engine/formats/prescription/load_lens.h"
 
 #include <algorithm>
@@ -39,9 +40,17 @@ optics::GlassCatalogue with_own_catalogues(optics::GlassCatalogue glasses, const
 optics::Prescription with_stop_picture(optics::Prescription prescription) {
     if (auto* textured = std::get_if<optics::TexturedStop>(&prescription.stop_shape)) {
         textured->texture = std::make_shared<const optics::StopTexture>(
-            stop_texture(read_image(prescription.file.parent_path() / textured->image)));
+            stop_texture(read_image(referred_file(prescription.file, textured->image))));
     }
     return prescription;
+}
+
+std::string read_lens_name(TomlTable& table) {
+    std::string lens = table.text("lens");
+    if (lens.find_first_of("./") != std::string::npos) {  // no lens that ships has such a name
+        check_reference(table.file(), lens);
+    }
+    return lens;
 }
 
 optics::Lens load_lens(const std::string& lens, const LensSettings& settings) {

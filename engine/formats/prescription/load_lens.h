@@ -3,6 +3,7 @@
 #include <optional>
 #include <string>
 
+#include "engine/base/toml.h"
 #include "engine/optics/lens.h"
 
 namespace lensproof::formats {
@@ -19,6 +20,10 @@ optics::GlassCatalogue with_own_catalogues(optics::GlassCatalogue glasses, const
 
 /// The prescription with the picture that its stop's shape names. Throws InputError where that cannot be read.
 optics::Prescription with_stop_picture(optics::Prescription prescription);
+
+/// The lens that a table names by the key `lens`: one that ships, or a file. Throws InputError where check_reference
+/// does.
+std::string read_lens_name(TomlTable& table);
 
 /// find_lens_file, read_prescription, the zoom position, and make_lens.
 optics::Lens load_lens(const std::string& lens, const LensSettings& settings = {});

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <functional>
 
+#include "engine/base/file.h"
 #include "engine/base/infinity.h"
 #include "engine/base/text.h"
 #include "engine/base/toml.h"
@@ -301,7 +302,7 @@ optics::Prescription parse_toml_prescription(const std::string& text, const std:
     }
     if (top.has("catalogues")) {
         for (const std::string& name : top.texts("catalogues")) {
-            prescription.catalogues.push_back(file.parent_path() / name);
+            prescription.catalogues.push_back(referred_file(file, name));
         }
     }
     if (top.has("makers")) {

@@ -111,7 +111,7 @@ AffineMap camera_to_world(const CameraSettings& camera) {
 
 CameraSettings read_camera_settings(TomlTable& table) {
     CameraSettings camera;
-    camera.lens = table.text("lens");
+    camera.lens = formats::read_lens_name(table);
     read_exposure(table, camera);
     table.finish();
     return camera;
@@ -121,7 +121,7 @@ CameraSettings read_placed_camera(TomlTable& table) {
     CameraSettings camera;
     read_place(table, camera);
     read_model(table, camera);
-    camera.lens = camera.focal_length_mm ? table.text_or("lens", "") : table.text("lens");
+    camera.lens = camera.focal_length_mm && !table.has("lens") ? "" : formats::read_lens_name(table);
     read_exposure(table, camera);
     camera.white_balance = scene::read_illuminant(table, "white_balance");
     if (camera.focal_length_mm && !camera.lens.empty()) {

@@ -11,9 +11,11 @@
 #include <set>
 
 #include "engine/base/affine.h"
+#include "engine/base/confined.h"
 #include "engine/base/file.h"
 #include "engine/base/input_error.h"
 #include "engine/base/text.h"
+#include "engine/scene/geometry/confined_mesh.h"
 #include "engine/scene/geometry/gltf_check.h"
 #include "engine/scene/geometry/mesh_normals.h"
 #include "engine/scene/geometry/ply_check.h"
@@ -202,6 +204,10 @@ std::vector<std::string> ignored(const std::string& name, const aiScene& scene, 
 }  // namespace
 
 MeshFile read_mesh(const std::filesystem::path& file, const MeshOptions& options) {
+    return files_are_distrusted() ? read_mesh_confined(file, options) : read_mesh_here(file, options);
+}
+
+MeshFile read_mesh_here(const std::filesystem::path& file, const MeshOptions& options) {
     check_readable(file);
     const std::string extension = lower_extension(file);
     if (!is_gltf(file) && extension != ".obj" && extension != ".ply") {

@@ -39,6 +39,11 @@ struct MeshFile {
 /// larger than 256 MiB (PLY), no triangles, no such part, more than 2³¹ vertices. A triangle of glTF whose
 /// indices lead beyond its vertices is left out by Assimp, without a word. The mesh still has to be repaired, as
 /// `SceneGeometry` does.
+///
+/// Where files are distrusted (engine/base/confined.h), a confined process reads it, and what lies beside it.
 MeshFile read_mesh(const std::filesystem::path& file, const MeshOptions& options = {});
+
+/// The same in this process, whatever its file is.
+MeshFile read_mesh_here(const std::filesystem::path& file, const MeshOptions& options);
 
 }  // namespace lensproof::scene

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 
+#include "engine/base/file.h"
 #include "engine/base/input_error.h"
 #include "engine/scene/chart/chart_file.h"
 
@@ -19,7 +20,7 @@ fs::path find_folder(const TomlTable& manifest, const std::vector<std::string>& 
                      const std::vector<std::string>& files, const std::string& source) {
     std::vector<std::string> missing;
     for (const std::string& folder : folders) {
-        fs::path path = manifest.file().parent_path() / folder;
+        fs::path path = referred_file(manifest.file(), folder);
         const auto absent = std::ranges::find_if(files, [&](const std::string& file) {
             std::error_code error;  // a name that is too long is a file that is not there
             return !fs::exists(path / file, error);

@@ -8,6 +8,7 @@
 
 #include "calibration/photos/photo_survey.h"
 #include "calibration/self_test/self_test.h"
+#include "engine/base/file.h"
 #include "engine/base/input_error.h"
 #include "experiments/studies/cameras/measured_camera.h"
 #include "experiments/studies/cameras/photo_set.h"
@@ -35,7 +36,7 @@ struct Photos {
 Photos read_one(TomlTable& table, findings::ExperimentFile& file) {
     Photos photos;
     photos.name = read_camera_name(table, file);
-    photos.manifest = table.file().parent_path() / table.text("manifest");
+    photos.manifest = referred_file(table.file(), table.text("manifest"));
     photos.model = read_model(table);
     if (auto expected = table.optional_table("expected")) {
         if (expected->has("focal_length_px")) {

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <iterator>
 
+#include "engine/formats/prescription/load_lens.h"
 #include "engine/formats/prescription/prescription_file.h"
 #include "experiments/draw/section_drawing.h"
 
@@ -137,7 +138,7 @@ findings::Subject subject_of(const Passage& passage) {
 PassageSetting read_passage_setting(TomlTable& table) {
     constexpr Bounds kPercent{.min = 0.0, .max = 100.0};
     PassageSetting setting{
-        .lens = table.text("lens"), .f_number = table.number("f_number", {.min = 0.1, .max = 1000.0}), .published = {}};
+        .lens = formats::read_lens_name(table), .f_number = table.number("f_number", {.min = 0.1, .max = 1000.0}), .published = {}};
     if (auto published = table.optional_table("published_percent")) {
         setting.published =
             PassageSetting::Published{.whole_element_percent = published->number("whole_element", kPercent),
