@@ -157,6 +157,13 @@ class Collector {
     std::size_t lines_and_points_ = 0;
 };
 
+bool has_empty_faces(const aiScene& scene) {
+    return std::any_of(scene.mMeshes, scene.mMeshes + scene.mNumMeshes, [](const aiMesh* mesh) {
+        return std::any_of(mesh->mFaces, mesh->mFaces + mesh->mNumFaces,
+                           [](const aiFace& face) { return face.mNumIndices == 0; });
+    });
+}
+
 const aiScene& read_scene(Assimp::Importer& importer, const std::filesystem::path& file) {
     const auto refuse = [&](std::string_view reason) {
         throw InputError(fmt::format("{}: cannot be read as {}: {}", file.string(), lower_extension(file).substr(1),
@@ -169,8 +176,13 @@ const aiScene& read_scene(Assimp::Importer& importer, const std::filesystem::pat
         } else if (is_gltf(file)) {
             check_gltf(file);
         }
-        scene = importer.ReadFile(file.string(), aiProcess_ValidateDataStructure | aiProcess_Triangulate |
-                                                     aiProcess_SortByPType | aiProcess_JoinIdenticalVertices);
+        scene = importer.ReadFile(file.string(), aiProcess_ValidateDataStructure);
+        if (scene != nullptr && has_empty_faces(*scene)) {
+            refuse("a face without corners");  // which ends the program in Assimp's cutting of polygons
+        }
+        scene = scene == nullptr ? nullptr
+                                 : importer.ApplyPostProcessing(aiProcess_Triangulate | aiProcess_SortByPType |
+                                                                aiProcess_JoinIdenticalVertices);
     } catch (const InputError&) {
         throw;
     } catch (const std::exception& error) {  // of a library that meets counts that cannot be
