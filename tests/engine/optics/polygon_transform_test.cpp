@@ -12,9 +12,9 @@ using std::numbers::pi;
 
 /// Of circumradius 1, a corner on +x.
 std::vector<Vec2d> regular(int corners) {
-    std::vector<Vec2d> polygon;
+    std::vector<Vec2d> polygon(static_cast<std::size_t>(corners));
     for (int i = 0; i < corners; ++i) {
-        polygon.push_back({std::cos(2 * pi * i / corners), std::sin(2 * pi * i / corners)});
+        polygon[static_cast<std::size_t>(i)] = {std::cos(2 * pi * i / corners), std::sin(2 * pi * i / corners)};
     }
     return polygon;
 }
