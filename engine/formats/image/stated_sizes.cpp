@@ -7,6 +7,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 
 #include "engine/base/bytes.h"
 
@@ -14,9 +15,37 @@ namespace lensproof::formats {
 
 namespace {
 
-constexpr std::uint32_t kHasParts = 0x1000;                                   // of the version field
+constexpr std::uint32_t kHasParts = 0x1000;  // of the version field
+constexpr std::streamoff kBytesOfChannel = 16;
 constexpr std::size_t kLongestName = 255;                                     // of attributes and of their types
 constexpr std::array kLinesOfChunk = {1, 1, 1, 16, 32, 16, 32, 32, 32, 256};  // by compression
+
+/// Types of attributes whose values always take these bytes: OpenEXR's library reads as many, whatever size is stated,
+/// and takes what follows for the next attribute.
+constexpr std::pair<std::string_view, std::uint32_t> kTypeSizes[] = {{"box2f", 16},
+                                                                     {"box2i", 16},
+                                                                     {"chromaticities", 32},
+                                                                     {"compression", 1},
+                                                                     {"deepImageState", 1},
+                                                                     {"double", 8},
+                                                                     {"envmap", 1},
+                                                                     {"float", 4},
+                                                                     {"int", 4},
+                                                                     {"keycode", 28},
+                                                                     {"lineOrder", 1},
+                                                                     {"m33d", 72},
+                                                                     {"m33f", 36},
+                                                                     {"m44d", 128},
+                                                                     {"m44f", 64},
+                                                                     {"rational", 8},
+                                                                     {"tiledesc", 9},
+                                                                     {"timecode", 8},
+                                                                     {"v2d", 16},
+                                                                     {"v2f", 8},
+                                                                     {"v2i", 8},
+                                                                     {"v3d", 24},
+                                                                     {"v3f", 12},
+                                                                     {"v3i", 12}};
 
 /// Counts the chunks that headers promise.
 class ExrHeaders {
@@ -60,6 +89,36 @@ class ExrHeaders {
         return text;
     }
 
+    /// What the value that begins here takes by its type and its own counts; `size` where those say nothing.
+    double length_of(const std::string& type, std::uint32_t size) {
+        const auto* fixed = std::ranges::find(kTypeSizes, type, &std::pair<std::string_view, std::uint32_t>::first);
+        if (fixed != std::end(kTypeSizes)) {
+            return fixed->second;
+        }
+        double length = 0.0;
+        if (type == "chlist") {  // names and 16 bytes each, up to a name of nothing
+            for (std::string channel = name(); !channel.empty() && length < size; channel = name()) {
+                length += static_cast<double>(channel.size()) + 1 + kBytesOfChannel;
+                stream_.seekg(kBytesOfChannel, std::ios::cur);
+            }
+            return length + 1;
+        }
+        if (type == "preview") {  // 4 bytes a pixel
+            const auto width = number<std::uint32_t>();
+            const auto height = number<std::uint32_t>();
+            return height ? 8.0 + 4.0 * *width * *height : 0.0;
+        }
+        if (type == "stringvector") {
+            while (length < size) {
+                const auto text = number<std::uint32_t>();
+                length += 4.0 + text.value_or(size);
+                stream_.seekg(text.value_or(0), std::ios::cur);
+            }
+            return length;
+        }
+        return size;
+    }
+
     /// 0 where there is no further header; nothing where the header does not fit.
     std::optional<double> chunks_of_part() {
         double width = 0.0;
@@ -70,12 +129,14 @@ class ExrHeaders {
         bool is_empty = true;
         for (std::string attribute = name(); !attribute.empty(); attribute = name()) {
             is_empty = false;
-            name();  // of its type
+            const std::string type = name();
             const auto size = number<std::uint32_t>();
             const auto at = static_cast<double>(stream_.tellg());
-            if (!size || at + *size > size_) {
+            if (!size || at + *size > size_ || length_of(type, *size) != *size) {
                 return std::nullopt;
             }
+            stream_.clear();
+            stream_.seekg(static_cast<std::streamoff>(at));
             if (attribute == "dataWindow") {
                 const auto left = number<std::int32_t>();
                 const auto top = number<std::int32_t>();

@@ -5,8 +5,8 @@
 
 namespace lensproof::formats {
 
-/// Whether each attribute ends within the file, and the file has room for the 8 bytes that stand in it for each chunk
-/// of each part (OpenEXR File Layout, "Offset Tables").
+/// Whether each attribute ends within the file and is as long as its type says, and the file has room for the 8 bytes
+/// that stand in it for each chunk of each part (OpenEXR File Layout, "Offset Tables").
 bool exr_header_fits(const std::filesystem::path& file);
 
 /// Whether each chunk of a PNG, up to the last (IEND), ends within the file.
