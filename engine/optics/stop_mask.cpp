@@ -56,6 +56,68 @@ StopMask::EdgeMargin StopMask::edge_margin(double x, double y) const {
     return worst;
 }
 
+double StopMask::Arc::radius() const {
+    return radius_squared > 0.0 ? std::sqrt(radius_squared) : kInfinity;
+}
+
+double StopMask::half_chord() const {
+    return std::sin(std::numbers::pi / static_cast<double>(arcs_.size()));
+}
+
+std::vector<StopMask::NearEdge> StopMask::edges_near(double x, double y, double width) const {
+    std::vector<NearEdge> edges;
+    if (texture_) {
+        return edges;
+    }
+    if (arcs_.empty()) {
+        const double r = std::hypot(x, y);
+        if (r > 0.0 && 1.0 - r < width) {
+            edges.push_back({1.0 - r, {x / r, y / r}, 1.0});
+        }
+        return edges;
+    }
+    for (const Arc& arc : arcs_) {
+        const double across = arc.x * y - arc.y * x;
+        const double along = arc.x * x + arc.y * y - arc.centre;
+        if (!(arc.radius_squared > 0.0)) {
+            if (-along < width && std::abs(across) <= half_chord()) {
+                edges.push_back({-along, {arc.x, arc.y}, kInfinity});
+            }
+            continue;
+        }
+        const double from_centre = std::hypot(along, across);
+        if (arc.radius() - from_centre < width && along > 0.0 &&
+            std::abs(across) * arc.radius() <= half_chord() * from_centre) {
+            const Vec2d outward{(arc.x * along - arc.y * across) / from_centre,
+                                (arc.y * along + arc.x * across) / from_centre};
+            edges.push_back({arc.radius() - from_centre, outward, arc.radius()});
+        }
+    }
+    return edges;
+}
+
+double StopMask::perimeter() const {
+    double length = arcs_.empty() ? 2.0 * std::numbers::pi : 0.0;
+    for (const Arc& arc : arcs_) {
+        const double h = half_chord();
+        length += arc.radius_squared > 0.0 ? 2.0 * arc.radius() * std::asin(h / arc.radius()) : 2.0 * h;
+    }
+    return length;
+}
+
+double StopMask::area() const {
+    double area = arcs_.empty() ? std::numbers::pi : 0.0;
+    for (const Arc& arc : arcs_) {
+        const double h = half_chord();
+        area += h * std::sqrt(1.0 - h * h);  // the triangle from the middle
+        if (arc.radius_squared > 0.0) {
+            const double half = std::asin(h / arc.radius());
+            area += arc.radius_squared * (half - 0.5 * std::sin(2.0 * half));  // the segment beyond it
+        }
+    }
+    return area;
+}
+
 double StopMask::transmittance(double x, double y) const {
     const auto is_inside = [&](const Arc& arc) { return arc.margin(x, y) <= 0.0; };
     if (!std::ranges::all_of(arcs_, is_inside)) {

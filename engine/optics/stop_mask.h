@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "engine/base/vec.h"
 #include "engine/optics/prescription.h"
 
 namespace lensproof::optics {
@@ -31,6 +32,21 @@ class StopMask {
     };
     [[nodiscard]] EdgeMargin edge_margin(double x, double y) const;
 
+    /// A point's place beside an edge of the opening, in units of the semi-diameter.
+    struct NearEdge {
+        double distance = 0.0;  // to its foot on the edge
+        Vec2d outward;          // of unit length, from the point to the foot
+        double radius = 0.0;    // of the edge; infinite where it is straight
+    };
+
+    /// The edges, of the circle too, that have their foot from a point of the opening between their ends and within
+    /// `width`: beside a corner two of them. None of a texture.
+    [[nodiscard]] std::vector<NearEdge> edges_near(double x, double y, double width) const;
+
+    /// The edges' length and what they enclose, in units of the semi-diameter. Not of a texture.
+    [[nodiscard]] double perimeter() const;
+    [[nodiscard]] double area() const;
+
     /// Appends all that tells this mask from another.
     void append_to(std::string& bytes) const;
 
@@ -43,7 +59,10 @@ class StopMask {
         double radius_squared = 0.0;  // of the disc; 0: the half plane up to `centre`
 
         [[nodiscard]] double margin(double at_x, double at_y) const;  // ≤ 0 inside
+        [[nodiscard]] double radius() const;                          // infinite where it is straight
     };
+
+    [[nodiscard]] double half_chord() const;  // of each edge
 
     std::vector<Arc> arcs_;
     std::shared_ptr<const StopTexture> texture_;

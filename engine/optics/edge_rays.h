@@ -1,0 +1,44 @@
+// engine/optics/edge_rays.h — rays that the edge of a stop diffracts, in the place of rays that pass close to it.
+#pragma once
+#include <array>
+#include <optional>
+
+#include "engine/base/ray.h"
+#include "engine/optics/stop_mask.h"
+
+namespace lensproof::optics {
+
+/// Which rays are diffracted, and how far.
+struct EdgeZone {
+    double width = 0.0;  // of the zone along the edges, in units of the stop's semi-diameter
+    /// Deflections about the edge, radians. Below the smallest, light counts as going straight on.
+    double smallest_angle = 0.0;
+    double largest_angle = 0.0;
+};
+
+/// A ray that goes on from the stop in another direction, and the light that it carries of the one that arrived.
+struct DiffractedRay {
+    Vec3<double> direction;
+    double weight = 0.0;
+};
+
+/// A stop's plane z = const as rays find it.
+struct StopPlane {
+    const StopMask* mask = nullptr;
+    double semi_diameter = 0.0;  // mm
+    double wavenumber = 0.0;     // 2π n / λ, 1/mm
+};
+
+/// What a ray becomes that passes the opening at `point` (from its middle, mm): with a probability that falls from 1 at
+/// an edge to 0 at the zone's width, a ray on the Keller cone of that edge (Keller, J. Opt. Soc. Am. 52, 1962; drawn as
+/// Steinert et al. 2011 do). `numbers` are three from [0, 1). For rays that fill the opening evenly the weights sum up
+/// to what the edges diffract by the geometrical theory, λ / (4π² θ²) of what falls on a mm of edge into a radian at
+/// small angles θ: a zone estimates the light at its edge, so it is to be narrow where the beam is uneven.
+std::optional<DiffractedRay> diffracted(const StopPlane& stop, const EdgeZone& zone, const Vec2d& point,
+                                        const Vec3<double>& direction, const std::array<double, 3>& numbers);
+
+/// The share of the light through an evenly lit opening that its edges deflect by more than `angle` (small, radians):
+/// P λ / (2π² A angle) with the opening's perimeter P and area A. What the light that goes straight on loses.
+double diffracted_share(const StopPlane& stop, double angle);
+
+}  // namespace lensproof::optics
