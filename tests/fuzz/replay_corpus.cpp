@@ -11,6 +11,7 @@
 #include <cstdint>
 #include <cstdio>
 #include <cstdlib>
+#include <exception>
 #include <filesystem>
 #include <random>
 #include <string>
@@ -141,9 +142,7 @@ int use_mutants(const std::string& name, const std::vector<std::string>& corpus,
     return failures;
 }
 
-}  // namespace
-
-int main(int argc, char** argv) {
+int replay(int argc, char** argv) {
     if (argc < 2 || argc > 4) {
         std::fprintf(stderr, "usage: %s FOLDER [MUTANTS [FIRST]]\n", argv[0]);
         return 2;
@@ -153,10 +152,8 @@ int main(int argc, char** argv) {
         files.push_back(entry.path());
     }
     std::ranges::sort(files);
-    std::vector<std::string> corpus;
-    for (const std::filesystem::path& file : files) {
-        corpus.push_back(lensproof::read_file(file));
-    }
+    std::vector<std::string> corpus(files.size());
+    std::ranges::transform(files, corpus.begin(), lensproof::read_file);
     int failures = 0;
     if (argc > 2) {
         const auto number = [&](int i) {
@@ -173,4 +170,15 @@ int main(int argc, char** argv) {
         std::printf("%zu files\n", files.size());
     }
     return files.empty() || failures > 0 ? 1 : 0;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    try {
+        return replay(argc, argv);
+    } catch (const std::exception& error) {
+        std::fprintf(stderr, "%s\n", error.what());
+        return 1;
+    }
 }

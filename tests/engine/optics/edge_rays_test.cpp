@@ -39,10 +39,12 @@ TEST(StopMask, KnowsItsEdgesLengthAndArea) {
     const StopMask half = blades(7, 0.5);
     int inside = 0;
     constexpr int kSide = 2000;
-    for (int i = 0; i < kSide * kSide; ++i) {
-        const double x = 2.0 * (i % kSide + 0.5) / kSide - 1.0;
-        const double y = 2.0 * (i / kSide + 0.5) / kSide - 1.0;
-        inside += x * x + y * y < 1.0 && half.transmittance(x, y) > 0.0 ? 1 : 0;
+    for (int row = 0; row < kSide; ++row) {
+        for (int column = 0; column < kSide; ++column) {
+            const double x = 2.0 * (column + 0.5) / kSide - 1.0;
+            const double y = 2.0 * (row + 0.5) / kSide - 1.0;
+            inside += x * x + y * y < 1.0 && half.transmittance(x, y) > 0.0 ? 1 : 0;
+        }
     }
     EXPECT_NEAR(4.0 * inside / (kSide * kSide), half.area(), 1e-4);
 }
