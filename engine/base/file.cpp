@@ -55,6 +55,13 @@ void check_readable(const fs::path& file) {
     }
 }
 
+void check_regular(const fs::path& file, std::string_view expected) {
+    check_readable(file);
+    if (!fs::is_regular_file(file)) {
+        throw InputError(fmt::format("{}: is a device or a pipe, expected {}", file.string(), expected));
+    }
+}
+
 std::string read_file(const fs::path& file) {
     check_readable(file);
     // Not blocking: a pipe that nobody writes to then has its end at once, and one whose writer is slow says so.

@@ -2,11 +2,16 @@
 #pragma once
 #include <filesystem>
 #include <string>
+#include <string_view>
 
 namespace lensproof {
 
 /// Throws InputError naming the file when it is missing or a folder.
 void check_readable(const std::filesystem::path& file);
+
+/// Throws InputError where it is missing, or no regular file: what opens a device or a pipe by its name may wait for
+/// ever, or read for ever. `expected`: "a checkpoint".
+void check_regular(const std::filesystem::path& file, std::string_view expected);
 
 /// The file's bytes. Throws InputError naming the file when it is missing, a folder, unreadable, or larger than 256
 /// MiB.

@@ -82,10 +82,7 @@ class DigestedWriter {
 class DigestedReader {
   public:
     explicit DigestedReader(const fs::path& file) : file_(file) {
-        check_readable(file);
-        if (!fs::is_regular_file(file)) {
-            throw InputError(fmt::format("{}: is a device or a pipe, expected a checkpoint", file.string()));
-        }
+        check_regular(file, "a checkpoint");
         left_ = fs::file_size(file);
         stream_.open(file, std::ios::binary);
         if (std::string magic(kMagic.size(), '\0');

@@ -1,5 +1,6 @@
 #include "engine/scene/geometry/mesh_file.h"
 
+#include <assimp/DefaultIOSystem.h>
 #include <assimp/postprocess.h>
 #include <assimp/scene.h>
 #include <fmt/format.h>
@@ -8,7 +9,9 @@
 #include <assimp/Importer.hpp>
 #include <cstdint>
 #include <exception>
+#include <filesystem>
 #include <set>
+#include <system_error>
 
 #include "engine/base/affine.h"
 #include "engine/base/confined.h"
@@ -164,11 +167,42 @@ bool has_empty_faces(const aiScene& scene) {
     });
 }
 
+/// The files that Assimp opens, or tries to: a mesh's own, and those that it names, materials and buffers.
+class RegularFiles : public Assimp::DefaultIOSystem {
+  public:
+    /// `refused`: is given the first that is a device or a pipe; none is opened.
+    explicit RegularFiles(std::filesystem::path& refused) : refused_(refused) {}
+
+    [[nodiscard]] bool Exists(const char* file) const override {  // asked by opening it
+        return is_regular(file) && DefaultIOSystem::Exists(file);
+    }
+
+    Assimp::IOStream* Open(const char* file, const char* mode) override {
+        return is_regular(file) ? DefaultIOSystem::Open(file, mode) : nullptr;
+    }
+
+  private:
+    bool is_regular(const char* file) const {
+        std::error_code error;
+        const std::filesystem::file_status status = std::filesystem::status(file, error);
+        const bool is_refused = std::filesystem::exists(status) && !std::filesystem::is_regular_file(status) &&
+                                !std::filesystem::is_directory(status);
+        if (is_refused && refused_.empty()) {
+            refused_ = file;
+        }
+        return std::filesystem::is_regular_file(status);
+    }
+
+    std::filesystem::path& refused_;
+};
+
 const aiScene& read_scene(Assimp::Importer& importer, const std::filesystem::path& file) {
     const auto refuse = [&](std::string_view reason) {
         throw InputError(fmt::format("{}: cannot be read as {}: {}", file.string(), lower_extension(file).substr(1),
                                      printable(trimmed(reason))));
     };
+    std::filesystem::path no_file;
+    importer.SetIOHandler(new RegularFiles(no_file));  // which it then owns
     const aiScene* scene = nullptr;
     try {
         if (lower_extension(file) == ".ply") {
@@ -187,6 +221,11 @@ const aiScene& read_scene(Assimp::Importer& importer, const std::filesystem::pat
         throw;
     } catch (const std::exception& error) {  // of a library that meets counts that cannot be
         refuse(error.what());
+    }
+    importer.SetIOHandler(nullptr);
+    if (!no_file.empty()) {
+        throw InputError(fmt::format("{}: names {}, a device or a pipe, expected a file", file.string(),
+                                     printable(no_file.string())));
     }
     if (scene == nullptr || scene->mRootNode == nullptr) {
         refuse(importer.GetErrorString());
@@ -220,7 +259,7 @@ MeshFile read_mesh(const std::filesystem::path& file, const MeshOptions& options
 }
 
 MeshFile read_mesh_here(const std::filesystem::path& file, const MeshOptions& options) {
-    check_readable(file);
+    check_regular(file, "a mesh's file");
     const std::string extension = lower_extension(file);
     if (!is_gltf(file) && extension != ".obj" && extension != ".ply") {
         throw InputError(

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
 #include <cstdint>
 #include <cstring>
@@ -274,6 +275,31 @@ TEST_F(MeshFileTest, UnusableFilesAreRefusedByName) {
     expect_named("loop.gltf", with(gltf, R"("children": [1])", R"("children": [0])"));
     EXPECT_NE(complaint_about([] { read_mesh("no/such.obj"); }).find("no/such.obj: no such file"), std::string::npos);
     EXPECT_NE(complaint_about([] { read_mesh(testing::TempDir()); }).find("is a folder"), std::string::npos);
+}
+
+// Assimp opens files by their names, the mesh's own and those that it says: it would wait for a pipe's writer, and read
+// a device without end.
+TEST_F(MeshFileTest, DevicesAndPipesAreRefused) {
+    const fs::path folder = write("any", "").parent_path();
+    for (const std::string extension : {"obj", "ply", "gltf", "glb", "mtl", "bin"}) {
+        const fs::path pipe = folder / ("pipe." + extension);
+        ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
+        fs::create_symlink("/dev/zero", folder / ("zero." + extension));
+    }
+    for (const std::string name : {"pipe", "zero"}) {
+        for (const std::string extension : {".obj", ".ply", ".gltf", ".glb"}) {
+            const std::string own = name + extension;
+            EXPECT_TRUE(says(complaint_about([&] { read_mesh(folder / own); }),
+                             own + ": is a device or a pipe, expected a mesh's file"));
+        }
+        const fs::path obj = write("names.obj", "mtllib " + name + ".mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+        const fs::path gltf = write("names.gltf", box_gltf("\"uri\": \"" + name + ".bin\", "));
+        for (const auto& [file, names] : {std::pair{obj, name + ".mtl"}, {gltf, name + ".bin"}}) {
+            const std::string complaint = complaint_about([&] { read_mesh(file); });
+            EXPECT_TRUE(says(complaint, file.filename().string() + ": names "));
+            EXPECT_TRUE(says(complaint, names + ", a device or a pipe, expected a file"));
+        }
+    }
 }
 
 /// A glTF file of these nodes, the last of which is a triangle, as JSON or in the binary form.
