@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "engine/base/visible.h"
+
 namespace lensproof {
 
 std::vector<std::string_view> lines_of(std::string_view text) {
@@ -65,10 +67,14 @@ int whole_number_within(double value, int low, int high) {
 
 std::string printable(std::string_view text) {
     constexpr std::size_t kShown = 100;
-    std::string shown(text.substr(0, kShown));
-    std::ranges::replace_if(
-        shown, [](unsigned char letter) { return letter < 0x20 || letter >= 0x7f; }, '?');
-    return text.size() > kShown ? shown + "…" : shown;
+    if (text.size() <= kShown) {
+        return visible(text);
+    }
+    std::size_t end = kShown;
+    while (end > kShown - 4 && (static_cast<unsigned char>(text[end]) & 0xc0U) == 0x80U) {
+        --end;  // not within a letter
+    }
+    return visible(text.substr(0, end)) + "…";
 }
 
 }  // namespace lensproof

@@ -40,7 +40,7 @@ std::optional<double> parse_number(std::string_view text);
 /// A count that a file states as any number: its whole part, held within [low, high]; NaN counts as low.
 int whole_number_within(double value, int low, int high);
 
-/// The start of a text for a message, without what a terminal would act upon.
+/// The start of a text for a message, as `visible` (engine/base/visible.h) shows it.
 std::string printable(std::string_view text);
 
 }  // namespace lensproof

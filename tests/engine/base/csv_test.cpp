@@ -68,7 +68,7 @@ TEST(Csv, ComplaintsNameLineColumnFoundAndExpected) {
         EXPECT_TRUE(complaint.starts_with("t.csv:3: ")) << complaint;
     }
     EXPECT_EQ(complaint_about_a("a\ntwo\n"), "t.csv:2: a is \"two\"" + finite);
-    EXPECT_EQ(complaint_about_a("a\n\x1b[2J\xff\n"), "t.csv:2: a is \"?[2J?\"" + finite);
+    EXPECT_EQ(complaint_about_a("a\n\x1b[2J\xff\n"), "t.csv:2: a is \"\\u001b[2J\ufffd\"" + finite);
     EXPECT_EQ(complaint_about_a("a,b\n1\n"), "t.csv:2: 1 cells, expected 2 as in the header: a,b");
     EXPECT_EQ(complaint_about_a("a,b\n1,2,3\n"), "t.csv:2: 3 cells, expected 2 as in the header: a,b");
     EXPECT_EQ(complaint_about_a("a\n\"1\n"), "t.csv:2: a quote does not end with its cell");

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "engine/base/json.h"
+#include "engine/base/text.h"
 
 namespace lensproof::visible_test {
 
@@ -15,6 +16,14 @@ TEST(Visible, WritesOutWhatATerminalActsUpon) {
     EXPECT_EQ(visible("\x9b\xc0\xaf\xed\xa0\x80\xf5\xe2\x82"),
               "\ufffd\ufffd\ufffd\ufffd\ufffd\ufffd\ufffd\ufffd\ufffd");
     EXPECT_EQ(visible(""), "");
+}
+
+// The start of a text for a message is the same, and not cut within a letter.
+TEST(Visible, IsWhatMessagesQuote) {
+    EXPECT_EQ(printable("µ\x1b[31m"), "µ\\u001b[31m");
+    const std::string ninety_nine(99, 'x');
+    EXPECT_EQ(printable(ninety_nine + "µ"), ninety_nine + "…");
+    EXPECT_EQ(printable(ninety_nine + "yz"), ninety_nine + "y…");
 }
 
 // JSON says the same text by its own escapes, in keys too: a reader gets back what there was.
