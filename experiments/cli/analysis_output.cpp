@@ -7,7 +7,6 @@
 #include <utility>
 
 #include "engine/base/json.h"
-#include "engine/base/visible.h"
 #include "experiments/cli/command.h"
 
 namespace lensproof::cli {
@@ -234,7 +233,7 @@ Json analysis_json(const optics::Lens& lens, const analysis::AnalysisSettings& s
 
 std::string analysis_text(const optics::Lens& lens, const analysis::AnalysisSettings& settings,
                           const analysis::LensAnalysis& analysis) {
-    std::string text = visible(lens.name) + "\n";
+    std::string text = lens.name + "\n";
     for (const optics::Finding& finding : lens.findings) {
         text += finding_text(finding);
     }

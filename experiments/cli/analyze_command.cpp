@@ -22,6 +22,7 @@
 #include "engine/spectral/wavelengths.h"
 #include "experiments/cli/analysis_output.h"
 #include "experiments/cli/command.h"
+#include "experiments/cli/terminal.h"
 #include "experiments/draw/analysis_drawings.h"
 #include "experiments/draw/curves_json.h"
 #include "experiments/draw/lens_section.h"
@@ -203,7 +204,7 @@ int run_analyze(const AnalyzeOptions& options) {
         write_analysis_plots(options, prescription, lens, settings, analysis);
     }
     if (prints_text(options.common)) {
-        fmt::print("{}", analysis_text(lens, settings, analysis));
+        print("{}", analysis_text(lens, settings, analysis));
     }
     write_json_result(options.common, analysis_json(lens, settings, analysis));
     return kDone;

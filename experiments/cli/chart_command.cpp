@@ -8,9 +8,11 @@
 #include <utility>
 
 #include "engine/base/input_error.h"
+#include "engine/base/visible.h"
 #include "engine/base/write_file.h"
 #include "engine/scene/chart/chart_file.h"
 #include "experiments/cli/command.h"
+#include "experiments/cli/terminal.h"
 #include "experiments/draw/print/chart_words.h"
 
 namespace lensproof::cli {
@@ -67,7 +69,7 @@ scene::Chart wished_chart(const std::string& toml) {
     }
 }
 
-int print(const ChartOptions& options) {
+int make_chart(const ChartOptions& options) {
     check_json_name(options.common);
     const draw::PrintLayout layout = layout_of(options);
     draw::ChartWish wish = options.wish;
@@ -91,7 +93,7 @@ int print(const ChartOptions& options) {
     const scene::Chart chart = wished_chart(toml);
     draw::print_chart(chart, layout, draw::chart_caption(toml), file);
     write_file(description,
-               "# " + file.filename().string() +
+               "# " + visible(file.filename().string()) +
                    ", for `lensproof measure … --chart`. Lengths are those of a print at 100 %: measure its "
                    "scale.\n" +
                    toml);
@@ -102,8 +104,8 @@ int print(const ChartOptions& options) {
                                        {"paper_mm", {layout.paper.width_mm, layout.paper.height_mm}},
                                        {"pattern_mm", {size.x, size.y}}});
     if (prints_text(options.common) && !options.common.quiet) {
-        fmt::print("{}: {}, {:g} × {:g} mm on {:g} × {:g} mm; print at 100 %\n{}: for measure --chart\n", file.string(),
-                   wish.kind, size.x, size.y, layout.paper.width_mm, layout.paper.height_mm, description.string());
+        print("{}: {}, {:g} × {:g} mm on {:g} × {:g} mm; print at 100 %\n{}: for measure --chart\n", file.string(),
+              wish.kind, size.x, size.y, layout.paper.width_mm, layout.paper.height_mm, description.string());
     }
     return kDone;
 }
@@ -142,7 +144,7 @@ void add_chart_command(Program& program) {
     }
     command.add_option("--dictionary", options->wish.dictionary, "Of a ChArUco board's markers, such as DICT_4X4_50");
     add_common_options(command, options->common);
-    command.runs([options] { return print(*options); });
+    command.runs([options] { return make_chart(*options); });
 }
 
 }  // namespace lensproof::cli

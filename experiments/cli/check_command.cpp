@@ -10,12 +10,12 @@
 #include "engine/base/input_error.h"
 #include "engine/base/json.h"
 #include "engine/base/text.h"
-#include "engine/base/visible.h"
 #include "engine/base/write_file.h"
 #include "engine/check/checker.h"
 #include "engine/formats/prescription/load_lens.h"
 #include "engine/formats/prescription/prescription_file.h"
 #include "experiments/cli/command.h"
+#include "experiments/cli/terminal.h"
 #include "experiments/draw/lens_section.h"
 
 namespace lensproof::cli {
@@ -119,18 +119,18 @@ void print_report(const std::string& lens, const check::CheckReport& report) {
     };
     const auto errors = count(optics::Severity::error);
     const auto warnings = count(optics::Severity::warning);
-    fmt::print("{}: {} ({} error{}, {} warning{})", visible(lens), report.ok() ? "ok" : "not ok", errors,
-               errors == 1 ? "" : "s", warnings, warnings == 1 ? "" : "s");
+    print("{}: {} ({} error{}, {} warning{})", lens, report.ok() ? "ok" : "not ok", errors, errors == 1 ? "" : "s",
+          warnings, warnings == 1 ? "" : "s");
     if (!report.computed.empty()) {
         const optics::ParaxialData& data = report.computed.front().paraxial;
-        fmt::print(", focal length {:.4f} mm, back focus {:.4f} mm", data.efl, data.bfl);
+        print(", focal length {:.4f} mm, back focus {:.4f} mm", data.efl, data.bfl);
         if (std::isfinite(data.f_number)) {
-            fmt::print(", f/{:.3f}", data.f_number);
+            print(", f/{:.3f}", data.f_number);
         }
     }
-    fmt::print("\n");
+    print("\n");
     for (const optics::Finding& finding : report.findings) {
-        fmt::print("{}", finding_text(finding));
+        print("{}", finding_text(finding));
     }
 }
 

@@ -12,10 +12,10 @@
 #include "engine/base/input_error.h"
 #include "engine/base/json.h"
 #include "engine/base/text.h"
-#include "engine/base/visible.h"
 #include "engine/formats/glass/glass_file.h"
 #include "engine/formats/glass/shipped_glasses.h"
 #include "engine/formats/image/image.h"
+#include "experiments/cli/terminal.h"
 
 namespace lensproof::cli {
 
@@ -23,9 +23,9 @@ namespace {
 
 void distrust_inputs() {
     if (!distrust_files()) {
-        fmt::print(stderr,
-                   "lensproof: --untrusted: this system has no Landlock (Linux 5.13): the readers of pictures "
-                   "and meshes are limited in memory and time, but may use files as this program may\n");
+        print_message(
+            "lensproof: --untrusted: this system has no Landlock (Linux 5.13): the readers of pictures "
+            "and meshes are limited in memory and time, but may use files as this program may\n");
     }
 }
 
@@ -65,10 +65,10 @@ optics::GlassCatalogue read_glass_catalogues(const std::vector<std::string>& fil
         formats::GlassFile read = formats::read_glass_file(file);
         constexpr std::size_t kShownNotes = 5;
         for (std::size_t i = 0; i < std::min(kShownNotes, read.notes.size()); ++i) {
-            fmt::print(stderr, "lensproof: {}\n", read.notes[i]);
+            print_message("lensproof: {}\n", read.notes[i]);
         }
         if (read.notes.size() > kShownNotes) {
-            fmt::print(stderr, "lensproof: {}: {} more such notes\n", file, read.notes.size() - kShownNotes);
+            print_message("lensproof: {}: {} more such notes\n", file, read.notes.size() - kShownNotes);
         }
         catalogue.add(std::move(read.glasses));
     }
@@ -166,8 +166,8 @@ Json findings_json(const std::vector<optics::Finding>& findings) {
 void print_findings(const CommonOptions& options, const optics::Lens& lens) {
     for (const optics::Finding& finding : lens.findings) {
         if (!options.quiet) {
-            fmt::print(stderr, "lensproof: {}: {}, surface {}: {}\n", visible(lens.name),
-                       optics::severity_name(finding.severity), finding.surface, visible(finding.message));
+            print_message("lensproof: {}: {}, surface {}: {}\n", lens.name, optics::severity_name(finding.severity),
+                          finding.surface, finding.message);
         }
     }
 }
@@ -175,7 +175,7 @@ void print_findings(const CommonOptions& options, const optics::Lens& lens) {
 std::string finding_text(const optics::Finding& finding) {
     const std::string where = finding.surface > 0 ? fmt::format("surface {}", finding.surface) : "lens";
     return fmt::format("  {:7} {:10} {}: {}\n", optics::severity_name(finding.severity), where, finding.code,
-                       visible(finding.message));
+                       finding.message);
 }
 
 bool prints_text(const CommonOptions& options) {

@@ -13,6 +13,7 @@
 #include "engine/base/json.h"
 #include "engine/formats/image/image.h"
 #include "experiments/cli/command.h"
+#include "experiments/cli/terminal.h"
 #include "experiments/findings/verdict.h"
 #include "experiments/studies/cameras/lens_profile.h"
 
@@ -109,9 +110,9 @@ int report(const std::vector<Row>& rows, const Json& curves, const std::vector<o
         }
         json["differences"].push_back(entry);
         if (prints_text(options.common)) {
-            fmt::print("{:32} rms {:.5g} ± {:.2g} {}{}\n", check.label, check.value, check.sigma, check.unit,
-                       row.limited ? fmt::format("  limit {:g}: {}", check.limit, findings::verdict_name(verdict))
-                                   : std::string());
+            print("{:32} rms {:.5g} ± {:.2g} {}{}\n", check.label, check.value, check.sigma, check.unit,
+                  row.limited ? fmt::format("  limit {:g}: {}", check.limit, findings::verdict_name(verdict))
+                              : std::string());
         }
     }
     if (!curves.is_null()) {

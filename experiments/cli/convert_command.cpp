@@ -4,9 +4,9 @@
 #include <memory>
 
 #include "engine/base/json.h"
-#include "engine/base/visible.h"
 #include "engine/formats/prescription/prescription_file.h"
 #include "experiments/cli/command.h"
+#include "experiments/cli/terminal.h"
 
 namespace lensproof::cli {
 
@@ -30,8 +30,8 @@ Json to_json(const std::vector<optics::Finding>& findings) {
 void say(const std::vector<optics::Finding>& findings, const std::filesystem::path& file) {
     for (const optics::Finding& finding : findings) {
         const std::string surface = finding.surface > 0 ? fmt::format("surface {}: ", finding.surface) : "";
-        fmt::print(stderr, "{}: {}{} ({})\n", optics::severity_name(finding.severity), surface, finding.message,
-                   file.filename().string());
+        print_message("{}: {}{} ({})\n", optics::severity_name(finding.severity), surface, finding.message,
+                      file.filename().string());
     }
 }
 
@@ -52,7 +52,7 @@ int convert(const ConvertOptions& options) {
                                        {"remarks", to_json(prescription.remarks)},
                                        {"lost", to_json(lost)}});
     if (prints_text(options.common) && !options.common.quiet) {
-        fmt::print("{}: {} surfaces\n", visible(options.out), prescription.surfaces.size());
+        print("{}: {} surfaces\n", options.out, prescription.surfaces.size());
     }
     return kDone;
 }

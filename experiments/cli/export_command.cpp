@@ -11,6 +11,7 @@
 #include "engine/base/input_error.h"
 #include "engine/base/write_file.h"
 #include "experiments/cli/command.h"
+#include "experiments/cli/terminal.h"
 
 namespace lensproof::cli {
 
@@ -156,10 +157,10 @@ int run_export(const ExportOptions& options) {
                                        {"notes", written.notes}});
     if (prints_text(options.common)) {
         for (const std::string& file : written.files) {
-            fmt::print("{}\n", file);
+            print("{}\n", file);
         }
         for (const std::string& note : written.notes) {
-            fmt::print("{}\n", note);
+            print("{}\n", note);
         }
     }
     return kDone;

@@ -14,6 +14,7 @@
 #include "engine/optics/glass_catalogue.h"
 #include "engine/spectral/wavelengths.h"
 #include "experiments/cli/command.h"
+#include "experiments/cli/terminal.h"
 
 namespace lensproof::cli {
 
@@ -53,9 +54,9 @@ int list_glasses(const GlassesOptions& options, const optics::GlassCatalogue& ca
     for (const optics::Glass& glass : catalogue.glasses()) {
         glasses.push_back(summary(glass));
         if (prints_text(options.common)) {
-            fmt::print("{:12} {:8} n_d {:.5f}  V_d {:5.2f}  {:4.0f} to {:4.0f} nm  {:8}  {}\n", glass.name,
-                       glass.catalogue, index_where_covered(glass, spectral::kLineD), abbe_where_covered(glass),
-                       glass.min_wavelength_nm, glass.max_wavelength_nm, glass.status, glass.source);
+            print("{:12} {:8} n_d {:.5f}  V_d {:5.2f}  {:4.0f} to {:4.0f} nm  {:8}  {}\n", glass.name, glass.catalogue,
+                  index_where_covered(glass, spectral::kLineD), abbe_where_covered(glass), glass.min_wavelength_nm,
+                  glass.max_wavelength_nm, glass.status, glass.source);
         }
     }
     write_json_result(options.common, {{"glasses", glasses}});
@@ -105,32 +106,31 @@ std::string cell(const Json& value, double factor, int digits) {
 
 void print_sheet(const Json& json) {
     const auto text = [&](const char* key) { return json[key].text(); };
-    fmt::print("{} ({}{})\n  {}\n", text("glass"), text("catalogue"),
-               text("status").empty() ? "" : ", " + text("status"), text("source"));
+    print("{} ({}{})\n  {}\n", text("glass"), text("catalogue"), text("status").empty() ? "" : ", " + text("status"),
+          text("source"));
     if (!text("note").empty()) {
-        fmt::print("  {}\n", text("note"));
+        print("  {}\n", text("note"));
     }
     std::vector<std::string> also_in;
     std::ranges::transform(json["also_in"], std::back_inserter(also_in), &Json::text);
     if (!also_in.empty()) {
-        fmt::print("  a glass of this name, with another formula: {}\n", fmt::join(also_in, ", "));
+        print("  a glass of this name, with another formula: {}\n", fmt::join(also_in, ", "));
     }
-    fmt::print("  n_d {}  V_d {}  V_e {}  P_gF {}  {:.0f} to {:.0f} nm\n", cell(json["n_d"], 1.0, 6),
-               cell(json["V_d"], 1.0, 2), cell(json["V_e"], 1.0, 2), cell(json["P_gF"], 1.0, 4),
-               json["min_wavelength_nm"].number(), json["max_wavelength_nm"].number());
-    fmt::print("  line         nm   n (in air)  n (vacuum)  dn/dT at 20 °C, 1e-6/K: in air, vacuum\n");
+    print("  n_d {}  V_d {}  V_e {}  P_gF {}  {:.0f} to {:.0f} nm\n", cell(json["n_d"], 1.0, 6),
+          cell(json["V_d"], 1.0, 2), cell(json["V_e"], 1.0, 2), cell(json["P_gF"], 1.0, 4),
+          json["min_wavelength_nm"].number(), json["max_wavelength_nm"].number());
+    print("  line         nm   n (in air)  n (vacuum)  dn/dT at 20 °C, 1e-6/K: in air, vacuum\n");
     for (const auto& line : json["lines"]) {
-        fmt::print("  {:4} {:10.4f}   {:>10}  {:>10}  {:>7} {:>7}\n", line["line"].text(),
-                   line["wavelength_nm"].number(), cell(line["n"], 1.0, 6), cell(line["n_in_vacuum"], 1.0, 6),
-                   cell(line["dn_dT_relative_per_K"], 1e6, 2), cell(line["dn_dT_absolute_per_K"], 1e6, 2));
+        print("  {:4} {:10.4f}   {:>10}  {:>10}  {:>7} {:>7}\n", line["line"].text(), line["wavelength_nm"].number(),
+              cell(line["n"], 1.0, 6), cell(line["n_in_vacuum"], 1.0, 6), cell(line["dn_dT_relative_per_K"], 1e6, 2),
+              cell(line["dn_dT_absolute_per_K"], 1e6, 2));
     }
     if (!json["internal_transmittance"].empty()) {
-        fmt::print("  internal transmittance through {} mm\n ",
-                   json["internal_transmittance"][0]["thickness_mm"].number());
+        print("  internal transmittance through {} mm\n ", json["internal_transmittance"][0]["thickness_mm"].number());
         for (const auto& point : json["internal_transmittance"]) {
-            fmt::print(" {:.0f}:{}", point["wavelength_nm"].number(), cell(point["internal_transmittance"], 1.0, 3));
+            print(" {:.0f}:{}", point["wavelength_nm"].number(), cell(point["internal_transmittance"], 1.0, 3));
         }
-        fmt::print("\n");
+        print("\n");
     }
 }
 

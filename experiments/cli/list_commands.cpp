@@ -14,6 +14,7 @@
 #include "engine/optics/paraxial.h"
 #include "engine/spectral/wavelengths.h"
 #include "experiments/cli/command.h"
+#include "experiments/cli/terminal.h"
 
 namespace lensproof::cli {
 
@@ -81,8 +82,8 @@ std::string indented_lines(const std::string& text) {
 }
 
 void print_figures(const std::string& label, const Json& json, const std::string& rest) {
-    fmt::print("{:25} {:8.2f} {:8.2f} {:7.2f} {:8.1f}{}\n", label, json["efl_mm"].number(), json["bfl_mm"].number(),
-               json["f_number"].number(), json["half_field_deg"].number(), rest);
+    print("{:25} {:8.2f} {:8.2f} {:7.2f} {:8.1f}{}\n", label, json["efl_mm"].number(), json["bfl_mm"].number(),
+          json["f_number"].number(), json["half_field_deg"].number(), rest);
 }
 
 void print_lens(const Json& json) {
@@ -94,17 +95,17 @@ void print_lens(const Json& json) {
     for (const Json& position : json["zoom"]) {
         print_figures(fmt::format("{} at {}", kIndent, position["name"].text()), position, "");
     }
-    fmt::print("{} {}\n{}\n\n", kIndent, json["name"].text(), indented_lines(json["source"].text()));
+    print("{} {}\n{}\n\n", kIndent, json["name"].text(), indented_lines(json["source"].text()));
 }
 
 int list_lenses(const CommonOptions& options) {
     Json lenses = Json::list();
     if (prints_text(options)) {
-        fmt::print(
+        print(
             "Computed from each table at the d line, for an object at infinity; field: half, in degrees, of the "
             "last\nchief ray that passes every rim, beside what the source states.\n\n");
-        fmt::print("{:25} {:>8} {:>8} {:>7} {:>8}  {:>6} {:>5}  {:12} {}\n", "lens", "efl mm", "bfl mm", "f/", "field",
-                   "stated", "elem.", "design", "projection");
+        print("{:25} {:>8} {:>8} {:>7} {:>8}  {:>6} {:>5}  {:12} {}\n", "lens", "efl mm", "bfl mm", "f/", "field",
+              "stated", "elem.", "design", "projection");
     }
     for (const std::string& name : formats::shipped_lens_names()) {
         lenses.push_back(lens_json(name, formats::read_prescription(formats::find_lens_file(name))));

@@ -13,15 +13,15 @@
 #include <iostream>
 
 #include "engine/base/input_error.h"
-#include "engine/base/visible.h"
 #include "experiments/cli/command.h"
+#include "experiments/cli/terminal.h"
 
 namespace lensproof::cli {
 namespace {
 
 /// Says why the program ends. Where standard error is closed too, the exit status has to do.
 void say(const std::string& message) {
-    std::fputs(fmt::format("lensproof: {}\n", visible(message)).c_str(), stderr);
+    print_message("lensproof: {}\n", message);
 }
 
 /// A standard stream that is closed would lend its number to the next file opened, and that file would get the text.

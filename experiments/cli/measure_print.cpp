@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "experiments/cli/measure_parts.h"
+#include "experiments/cli/terminal.h"
 
 namespace lensproof::cli {
 
@@ -22,32 +23,32 @@ void print_curve(const calibration::Profile& profile, const calibration::Quantit
     const double height =  // some curves are extrapolated beyond what was covered, some end before it
         curve.image_height.empty() ? 0.0 : std::min(curve.covered_image_height, curve.image_height.back());
     if (const std::optional<calibration::Banded> end = calibration::sample(curve, height)) {
-        fmt::print("{:22} {:9.4f} ± {:.4f} {} at image height {:.2f}\n", quantity.title(channel), end->value,
-                   (end->upper_95 - end->lower_95) / (2.0 * calibration::k95), quantity.unit.symbol, height);
+        print("{:22} {:9.4f} ± {:.4f} {} at image height {:.2f}\n", quantity.title(channel), end->value,
+              (end->upper_95 - end->lower_95) / (2.0 * calibration::k95), quantity.unit.symbol, height);
     }
 }
 
 void print_edge(const std::string& channel, const calibration::ProfileEdge& listed) {
     const calibration::EdgeMtf& edge = listed.edge;
     if (edge.mtf50) {
-        fmt::print("{:22} {:9.4f} ± {:.4f} cycles/px at ({:.1f}, {:.1f}) px, edge normal {:.1f}°\n",
-                   fmt::format("MTF50 {}", channel), edge.mtf50->cycles_per_px, edge.mtf50->standard_error,
-                   edge.centre_px.x, edge.centre_px.y, edge.normal_deg);
+        print("{:22} {:9.4f} ± {:.4f} cycles/px at ({:.1f}, {:.1f}) px, edge normal {:.1f}°\n",
+              fmt::format("MTF50 {}", channel), edge.mtf50->cycles_per_px, edge.mtf50->standard_error, edge.centre_px.x,
+              edge.centre_px.y, edge.normal_deg);
     }
 }
 
 void print_star(const std::string& channel, const calibration::ProfileStar& listed) {
     const calibration::StarMtf& star = listed.star;
-    fmt::print("{:22} at ({:.1f}, {:.1f}), {:.0f} x {:.0f} px\n", "star " + channel, star.centre_px.x, star.centre_px.y,
-               2.0 * star.outline.long_half_axis_px, 2.0 * star.outline.short_half_axis_px);
+    print("{:22} at ({:.1f}, {:.1f}), {:.0f} x {:.0f} px\n", "star " + channel, star.centre_px.x, star.centre_px.y,
+          2.0 * star.outline.long_half_axis_px, 2.0 * star.outline.short_half_axis_px);
     for (const calibration::StarSegment& segment : star.segments) {
         const std::string label = fmt::format("  along {:.0f}° (at {:.0f}°)", segment.frequency_deg, segment.side_deg);
         if (segment.mtf50) {
-            fmt::print("{:22} MTF50 {:.4f} ± {:.4f} cycles/px\n", label, segment.mtf50->cycles_per_px,
-                       segment.mtf50->standard_error);
+            print("{:22} MTF50 {:.4f} ± {:.4f} cycles/px\n", label, segment.mtf50->cycles_per_px,
+                  segment.mtf50->standard_error);
         } else {
-            fmt::print("{:22} no MTF50 among the star's frequencies, {:.3f} to {:.3f} cycles/px\n", label,
-                       segment.cycles_per_px.front(), segment.cycles_per_px.back());
+            print("{:22} no MTF50 among the star's frequencies, {:.3f} to {:.3f} cycles/px\n", label,
+                  segment.cycles_per_px.front(), segment.cycles_per_px.back());
         }
     }
 }
@@ -74,7 +75,7 @@ void print_sharpness(const calibration::Profile& profile) {
 void print_account(const calibration::Profile& profile) {
     const auto used =
         std::ranges::count_if(profile.pictures, [](const calibration::PictureAccount& p) { return p.used; });
-    fmt::print("{} of {} pictures used\n", used, profile.pictures.size());
+    print("{} of {} pictures used\n", used, profile.pictures.size());
     std::size_t widest = 0;
     for (const calibration::PictureAccount& picture : profile.pictures) {
         widest = std::max(widest, picture.image.size());
@@ -86,10 +87,10 @@ void print_account(const calibration::Profile& profile) {
                                                    picture.orientation, picture.reason.empty() ? "" : "; ");
         const std::string line = fmt::format("  {:8}  {:{}}  {}{}", picture.used ? "used" : "left out", picture.image,
                                              widest, held, picture.reason);
-        fmt::print("{}\n", line.substr(0, line.find_last_not_of(' ') + 1));
+        print("{}\n", line.substr(0, line.find_last_not_of(' ') + 1));
     }
     for (const std::string& suspicion : profile.source.suspicions) {
-        fmt::print("correction suspected: {}\n", suspicion);
+        print("correction suspected: {}\n", suspicion);
     }
 }
 
@@ -97,34 +98,33 @@ void print_account(const calibration::Profile& profile) {
 
 void print_profile(const calibration::Profile& profile) {
     for (const std::string& warning : profile.warnings) {
-        fmt::print("warning: {}\n", warning);
+        print("warning: {}\n", warning);
     }
     print_account(profile);
     if (profile.geometry) {
         const calibration::ProfileGeometry& geometry = *profile.geometry;
         const std::vector<std::string> names = calibration::parameter_names(geometry.model);
         const std::vector<double> values = calibration::parameters(geometry.model);
-        fmt::print("{}: {} points in {} views, rms {:.4f} px\n", calibration::kind_name(geometry.model),
-                   geometry.points_used, geometry.views_used, geometry.reprojection_rms_px);
+        print("{}: {} points in {} views, rms {:.4f} px\n", calibration::kind_name(geometry.model),
+              geometry.points_used, geometry.views_used, geometry.reprojection_rms_px);
         for (std::size_t i = 0; i < names.size(); ++i) {
             if (names[i] == calibration::kStretchY && values[i] == 0.0) {
                 continue;  // square pixels
             }
-            fmt::print("{:22} {:.6g} ± {:.2g}", names[i], values[i], geometry.standard_error(i));
-            fmt::print("{}\n", geometry.view_standard_error.empty()
-                                   ? ""
-                                   : fmt::format(" (from view to view ± {:.2g})", geometry.view_standard_error[i]));
+            print("{:22} {:.6g} ± {:.2g}", names[i], values[i], geometry.standard_error(i));
+            print("{}\n", geometry.view_standard_error.empty()
+                              ? ""
+                              : fmt::format(" (from view to view ± {:.2g})", geometry.view_standard_error[i]));
         }
     }
     if (profile.geometry && profile.geometry->board) {
         for (std::size_t i = 0; i < calibration::kBoardTerms; ++i) {
-            fmt::print("{:22} {:.4f} ± {:.2g}\n", calibration::kBoardTermNames[i],
-                       profile.geometry->board->height_mm[i],
-                       calibration::standard_error_mm(*profile.geometry->board, i));
+            print("{:22} {:.4f} ± {:.2g}\n", calibration::kBoardTermNames[i], profile.geometry->board->height_mm[i],
+                  calibration::standard_error_mm(*profile.geometry->board, i));
         }
     }
     if (profile.geometry && profile.geometry->choice) {
-        fmt::print("chosen because: {}\n", profile.geometry->choice->why);
+        print("chosen because: {}\n", profile.geometry->choice->why);
     }
     print_curve(profile, kQuantities.distortion);
     for (const char channel : kQuantities.vignetting_ev.channels) {
@@ -132,14 +132,14 @@ void print_profile(const calibration::Profile& profile) {
     }
     for (const auto& [channel, models] : profile.vignetting_models) {
         if (!models.empty()) {
-            fmt::print("{:22} {}: {}\n", "vignetting " + channel, models.front().name, models.front().verdict);
+            print("{:22} {}: {}\n", "vignetting " + channel, models.front().name, models.front().verdict);
         }
     }
     for (const auto& [name, terms] : profile.terms) {
         const auto channel = calibration::kMeanShiftTerms.channel_in(name);
         for (std::size_t i = 0; channel && i < terms.names.size(); ++i) {
-            fmt::print("{:22} {:9.4f} ± {:.4f} px, {} of all points\n", "shift " + *channel, terms.values[i],
-                       std::sqrt(terms.covariance[i * (terms.names.size() + 1)]), terms.names[i]);
+            print("{:22} {:9.4f} ± {:.4f} px, {} of all points\n", "shift " + *channel, terms.values[i],
+                  std::sqrt(terms.covariance[i * (terms.names.size() + 1)]), terms.names[i]);
         }
     }
     for (const auto& [name, curve] : profile.curves) {
@@ -149,11 +149,11 @@ void print_profile(const calibration::Profile& profile) {
         }
     }
     if (profile.self_test) {
-        fmt::print("{:22} {}\n", "floor of the method", calibration::describe_floor(*profile.self_test));
+        print("{:22} {}\n", "floor of the method", calibration::describe_floor(*profile.self_test));
     }
     print_sharpness(profile);
     for (const auto& [what, why] : profile.not_measured) {
-        fmt::print("{} not measured: {}\n", what, why);
+        print("{} not measured: {}\n", what, why);
     }
 }
 

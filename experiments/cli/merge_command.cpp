@@ -16,6 +16,7 @@
 #include "experiments/cli/raw_files.h"
 #include "experiments/cli/render_job.h"
 #include "experiments/cli/shard.h"
+#include "experiments/cli/terminal.h"
 
 namespace lensproof::cli {
 
@@ -132,7 +133,7 @@ int run_merge(const MergeOptions& options) {
     Json json = {{"shards", shards.indices}, {"missing", missing}, {"exr", exr.string()}, {"png", png.string()}};
     report_left_out(sum.film, json);
     if (prints_text(options.common)) {
-        fmt::print("{}\n{}\n", exr.string(), png.string());
+        print("{}\n{}\n", exr.string(), png.string());
     }
     if (raw) {
         report_raw_files(*raw, json, options.common);

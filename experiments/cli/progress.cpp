@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <cstdio>
 
+#include "engine/base/visible.h"
+
 namespace lensproof::cli {
 
 namespace {
@@ -20,8 +22,8 @@ double seconds_since(Clock::time_point then) {
     return std::chrono::duration<double>(Clock::now() - then).count();
 }
 
-ProgressBar::ProgressBar(std::string label, bool quiet)
-    : label_(std::move(label)), shown_(!quiet && ::isatty(STDERR_FILENO) == 1), start_(Clock::now()) {}
+ProgressBar::ProgressBar(std::string_view label, bool quiet)
+    : label_(visible(label)), shown_(!quiet && ::isatty(STDERR_FILENO) == 1), start_(Clock::now()) {}
 
 ProgressBar::~ProgressBar() {
     if (shown_) {

@@ -3,6 +3,7 @@
 #include <chrono>
 #include <functional>
 #include <string>
+#include <string_view>
 
 namespace lensproof::cli {
 
@@ -13,7 +14,7 @@ double seconds_since(std::chrono::steady_clock::time_point then);
 class ProgressBar {
   public:
     /// Silent when `quiet`, or when standard error is not a terminal.
-    ProgressBar(std::string label, bool quiet);
+    ProgressBar(std::string_view label, bool quiet);
     ~ProgressBar();
     ProgressBar(const ProgressBar&) = delete;
     ProgressBar& operator=(const ProgressBar&) = delete;

@@ -12,6 +12,7 @@
 #include "engine/base/write_file.h"
 #include "engine/render/film/film_image.h"
 #include "engine/render/raw/raw_sensor.h"
+#include "experiments/cli/terminal.h"
 
 namespace lensproof::cli {
 
@@ -83,12 +84,12 @@ void report_raw_files(const RawFiles& files, Json& json, const CommonOptions& co
     json["demosaiced"] = files.demosaiced.string();
     json["film_noise_over_sensor_noise"] = files.noise_ratio;
     if (prints_text(common)) {
-        fmt::print("{}\n{}\n", files.raw.string(), files.demosaiced.string());
+        print("{}\n{}\n", files.raw.string(), files.demosaiced.string());
     }
     if (files.noise_ratio > kNoticeable) {
-        fmt::print(stderr,
-                   "lensproof: the render's own noise is up to {:.2f} times the sensor's: more samples bring it down\n",
-                   files.noise_ratio);
+        print_message(
+            "lensproof: the render's own noise is up to {:.2f} times the sensor's: more samples bring it down\n",
+            files.noise_ratio);
     }
 }
 

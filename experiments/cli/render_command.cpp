@@ -8,11 +8,11 @@
 #include "engine/base/file.h"
 #include "engine/base/hash.h"
 #include "engine/base/input_error.h"
-#include "engine/base/visible.h"
 #include "engine/render/prepared_scene.h"
 #include "engine/scene/scene_build.h"
 #include "experiments/cli/raw_files.h"
 #include "experiments/cli/render_job.h"
+#include "experiments/cli/terminal.h"
 
 namespace lensproof::cli {
 
@@ -73,7 +73,7 @@ int run_render(const RenderJobOptions& options, const std::string& paths) {
         return std::make_unique<render::PreparedScene>(setup, filter, Cache::standard(), render::pass_named(paths));
     });
     for (const std::string& remark : scene->remarks()) {
-        fmt::print(stderr, "lensproof: {}\n", visible(remark));
+        print_message("lensproof: {}\n", remark);
     }
     const std::optional<optics::Lens>& lens = scene->camera().lens();
     if (lens) {

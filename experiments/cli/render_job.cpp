@@ -16,6 +16,7 @@
 #include "experiments/cli/interruption.h"
 #include "experiments/cli/progress.h"
 #include "experiments/cli/raw_files.h"
+#include "experiments/cli/terminal.h"
 
 namespace lensproof::cli {
 
@@ -114,7 +115,7 @@ class RenderWatch {
             failing_.erase(file);
         } catch (const std::exception& failure) {
             if (failing_.insert(file).second) {
-                fmt::print(stderr, "lensproof: {}; the render goes on without\n", failure.what());
+                print_message("lensproof: {}; the render goes on without\n", failure.what());
             }
         }
     }
@@ -166,12 +167,12 @@ int end_early(const render::RenderState& state, const render::RenderIdentity& id
         render::write_checkpoint(place, identity, state);
     });
     if (!delivery.complaint.empty()) {
-        fmt::print(stderr, "lensproof: {}\n", delivery.complaint);
+        print_message("lensproof: {}\n", delivery.complaint);
     }
-    fmt::print(stderr,
-               "lensproof: interrupted after {:.1f} samples a pixel of {}; the same command with --checkpoint {} goes "
-               "on from there\n",
-               mean_samples(state), state.range.end - state.range.first, delivery.place.string());
+    print_message(
+        "lensproof: interrupted after {:.1f} samples a pixel of {}; the same command with --checkpoint {} goes "
+        "on from there\n",
+        mean_samples(state), state.range.end - state.range.first, delivery.place.string());
     return kInternalFailure;
 }
 
@@ -211,7 +212,7 @@ void report(const RenderJob& job, const render::RenderState& state, const Render
     json["exr"] = files.exr.string();
     json["png"] = files.png.string();
     if (prints_text(options.common)) {
-        fmt::print("{}\n{}\n", files.exr.string(), files.png.string());
+        print("{}\n{}\n", files.exr.string(), files.png.string());
     }
     if (raw) {
         report_raw_files(*raw, json, options.common);
@@ -295,9 +296,8 @@ int run_render_job(const RenderJob& job, const RenderJobOptions& options) {
 
 void report_left_out(const render::Film& film, Json& json) {
     if (film.left_out() > 0) {
-        fmt::print(stderr,
-                   "lensproof: {} samples were no finite numbers; they were left out, as if they had met no light\n",
-                   film.left_out());
+        print_message("lensproof: {} samples were no finite numbers; they were left out, as if they had met no light\n",
+                      film.left_out());
         json["samples_left_out"] = film.left_out();
     }
 }

@@ -10,6 +10,7 @@
 #include "engine/base/write_file.h"
 #include "experiments/cli/command.h"
 #include "experiments/cli/progress.h"
+#include "experiments/cli/terminal.h"
 #include "experiments/draw/report/report.h"
 #include "experiments/runner/report_content.h"
 
@@ -48,14 +49,14 @@ void print_checks(const std::vector<findings::Check>& checks) {
     for (const findings::Check& check : checks) {
         if (check.group != group) {
             group = check.group;
-            fmt::print("{}\n", group);
+            print("{}\n", group);
         }
         const std::string bound =
             check.expectation == findings::Expectation::within ? fmt::format("{:g} ± {:g}", check.target, check.limit)
             : check.expectation == findings::Expectation::differs ? fmt::format("> {:g}", check.limit)
                                                                   : fmt::format("≤ {:g}", check.limit);
-        fmt::print("  {:13} {:44} {:.4g} ± {:.2g} {} (wanted {})\n", findings::verdict_name(check.verdict()),
-                   check.label, check.value, check.sigma, check.unit, bound);
+        print("  {:13} {:44} {:.4g} ± {:.2g} {} (wanted {})\n", findings::verdict_name(check.verdict()), check.label,
+              check.value, check.sigma, check.unit, bound);
     }
 }
 
@@ -91,7 +92,7 @@ int run(const RunOptions& options) {
     const findings::Verdict verdict = findings::overall(found.checks);
     if (prints_text(options.common)) {
         print_checks(found.checks);
-        fmt::print("{}: {}\n", findings::verdict_name(verdict), (delivery.place / "report.html").string());
+        print("{}: {}\n", findings::verdict_name(verdict), (delivery.place / "report.html").string());
     }
     write_json_result(options.common, report);
     check_place(delivery);

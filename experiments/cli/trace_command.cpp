@@ -3,10 +3,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iostream>
 #include <map>
 #include <memory>
 #include <optional>
+#include <ostream>
 
 #include "engine/base/csv.h"
 #include "engine/base/input_error.h"
@@ -16,6 +16,7 @@
 #include "engine/optics/float_error.h"
 #include "engine/optics/lens.h"
 #include "experiments/cli/command.h"
+#include "experiments/cli/terminal.h"
 
 namespace lensproof::cli {
 
@@ -240,9 +241,9 @@ void print_error(const MeasuredError& measured) {
                                      : fmt::format("at most {:.3g} µm {} ({:.3g} µm rms)", distances.largest_um, where,
                                                    distances.rms_um());
     };
-    fmt::print(stderr, "lensproof: float against double: {}, {}; {} of {} rays end otherwise; allowed: {:.3g} µm\n",
-               text(error.at_end, measured.reverse ? "on the first surface" : "on the image plane"),
-               text(error.anywhere, "anywhere"), error.other_fates, error.rays, measured.bound_um());
+    print_message("lensproof: float against double: {}, {}; {} of {} rays end otherwise; allowed: {:.3g} µm\n",
+                  text(error.at_end, measured.reverse ? "on the first surface" : "on the image plane"),
+                  text(error.anywhere, "anywhere"), error.other_fates, error.rays, measured.bound_um());
 }
 
 Json error_json(const MeasuredError& measured) {
@@ -273,14 +274,15 @@ int run_trace(const TraceOptions& options) {
     print_findings(options.common, lens);
     const GivenRays rays(options.rays_file);
     check_rays(lens, rays);
-    const auto write_csv = [&](std::ostream& out) {
-        out << kResultHeader << "\n";
-        trace_rows(lens, rays, options, [&](const auto& row) { out << csv_of(row); });
+    const auto csv_to = [&](const auto& put) {
+        put(std::string(kResultHeader) + "\n");
+        trace_rows(lens, rays, options, [&](const auto& row) { put(csv_of(row)); });
     };
     if (!options.output_file.empty()) {
-        write_stream(options.output_file, write_csv);
+        write_stream(options.output_file,
+                     [&](std::ostream& out) { csv_to([&](const std::string& line) { out << line; }); });
     } else if (prints_text(options.common)) {
-        write_csv(std::cout);
+        csv_to(show);  // rays' names are a file's
     }
     Json result{{"lens", lens.id}, {"findings", findings_json(lens.findings)}, {"rows", Json::list()}};
     if (options.precision == "float") {

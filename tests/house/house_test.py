@@ -5,6 +5,7 @@
 - A namespace a room: what lies in engine/ROOM or experiments/ROOM is in lensproof::ROOM, in calibration/ in
   lensproof::calibration, in engine/base in lensproof itself. Folders within a room share its namespace.
 - engine/README.md's table of the rooms says what engine/CMakeLists.txt does.
+- One door to the terminal: texts for people go through experiments/cli/terminal.h, which shows what would steer it.
 - Tests mirror the sources: a folder below tests/engine, tests/calibration and tests/experiments is a folder there.
 - No name is defined twice: two files that define the same type, or a function of the same name and parameters, in one
   namespace are linked into one program, which is undefined behaviour that no linker tells. universal-ctags finds the
@@ -81,6 +82,14 @@ def mistold(home):
             for room, uses in built.items() if told.get(room) != uses]
 
 
+def past_the_door(home):
+    # The progress bar steers the line that it stands on, JSON has its own escapes, and main() flushes.
+    doors = {f"experiments/cli/{name}.cpp" for name in ("terminal", "progress", "command", "main")}
+    return [f"{file.relative_to(home)} writes to the terminal by itself: {found[0]}" for file in sources(home)
+            if file.relative_to(home).as_posix() not in doors
+            and (found := re.search(r"fmt::print\(|std::(cout|cerr|fwrite|fputs|puts|printf)\b", file.read_text()))]
+
+
 def unmirrored(home):
     return [f"tests/{folder} mirrors no folder {folder}"
             for folder in sorted({file.parent.relative_to(home / "tests") for file in sources(home / "tests")})
@@ -127,7 +136,8 @@ def main():
     planted(mistold, {"engine/CMakeLists.txt": "lensproof_room(engine/optics USES engine/base\n  engine/scene LINKS x)\n",
                       "engine/README.md": "| `optics` | lenses | `base` |\n"}, "optics uses ['base']")
     planted(unmirrored, {"engine/optics/lens.h": "", "tests/engine/io/lens_test.cpp": ""}, "tests/engine/io")
-    faults = circles(home) + misplaced(home) + mistold(home) + unmirrored(home)
+    planted(past_the_door, {"experiments/cli/a_command.cpp": 'fmt::print("{}\\n", name);'}, "fmt::print")
+    faults = circles(home) + misplaced(home) + mistold(home) + past_the_door(home) + unmirrored(home)
     has_ctags = shutil.which("ctags") and "Universal" in subprocess.run(
         ["ctags", "--version"], capture_output=True, text=True).stdout
     if has_ctags:
