@@ -3,7 +3,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
+#include <cstring>
 #include <iterator>
+#include <limits>
+
+#include "engine/base/infinity.h"
+#include "engine/base/markup.h"
 
 namespace lensproof {
 
@@ -42,6 +48,38 @@ std::size_t JsonArchive::place_among(std::string_view key, std::size_t place, co
 
 JsonArchive& JsonArchive::numbers(std::string_view key, std::vector<double>& values, std::size_t count) {
     at(key).value_of(values, count);
+    return *this;
+}
+
+JsonArchive& JsonArchive::any_number(std::string_view key, double& number) {
+    constexpr std::array<double, 3> kOthers = {kInfinity, -kInfinity, std::numeric_limits<double>::quiet_NaN()};
+    const std::vector<std::string> names = {"inf", "-inf", "nan"};
+    const bool is_named = reading() ? node_->at(std::string(key)).value().is_text() : !std::isfinite(number);
+    if (!is_named) {
+        return field(key, number);
+    }
+    const std::size_t place = std::isnan(number) ? 2 : number > 0.0 ? 0 : 1;
+    number = kOthers.at(place_among(key, place, names, "a number, inf, -inf or nan"));
+    return *this;
+}
+
+JsonArchive& JsonArchive::packed(std::string_view key, std::string& bytes) {
+    std::string text = reading() ? "" : base64(bytes);
+    field(key, text);
+    if (reading()) {
+        std::optional<std::string> read = from_base64(text);
+        expect(key, read.has_value(), "bytes in base64");
+        bytes = *std::move(read);
+    }
+    return *this;
+}
+
+JsonArchive& JsonArchive::packed(std::string_view key, std::vector<float>& numbers) {
+    std::string bytes(reinterpret_cast<const char*>(numbers.data()), numbers.size() * sizeof(float));
+    packed(key, bytes);
+    expect(key, bytes.size() % sizeof(float) == 0, "floats of 4 bytes in base64");
+    numbers.resize(bytes.size() / sizeof(float));
+    std::memcpy(numbers.data(), bytes.data(), bytes.size());
     return *this;
 }
 

@@ -86,6 +86,12 @@ class JsonArchive {
         return lacks(key) || (!reading() && !something) ? *this : group(key, members);
     }
 
+    /// A number that may be infinite or none.
+    JsonArchive& any_number(std::string_view key, double& number);
+    /// Bytes, and floats as this machine's bytes, as one text: pictures.
+    JsonArchive& packed(std::string_view key, std::string& bytes);
+    JsonArchive& packed(std::string_view key, std::vector<float>& numbers);
+
     /// Written for other programs, and not read.
     JsonArchive& derived(std::string_view key, Json value);
     /// Throws where what was read is not so: the key's value is not what was expected.

@@ -7,6 +7,8 @@ namespace lensproof {
 
 namespace {
 
+constexpr std::string_view kAlphabet = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";  // base64
+
 constexpr std::string_view kReplacement = "\uFFFD";
 
 /// The length of the UTF-8 sequence at the start of `text` (not empty), or 0 where it is not one (RFC 3629) or XML
@@ -85,7 +87,6 @@ std::string escape_markup(std::string_view text) {
 }
 
 std::string base64(std::string_view bytes) {
-    static constexpr std::string_view kAlphabet = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
     const auto byte = [&](std::size_t i) -> std::uint32_t {
         return i < bytes.size() ? static_cast<unsigned char>(bytes[i]) : 0u;
     };
@@ -99,6 +100,31 @@ std::string base64(std::string_view bytes) {
         }
     }
     return out;
+}
+
+std::optional<std::string> from_base64(std::string_view text) {
+    const std::size_t padding = text.ends_with("==") ? 2 : text.ends_with('=') ? 1 : 0;
+    if (text.size() % 4 != 0) {
+        return std::nullopt;
+    }
+    std::string bytes;
+    bytes.reserve(text.size() / 4 * 3);
+    std::uint32_t group = 0;
+    for (std::size_t i = 0; i < text.size(); ++i) {
+        const bool is_padding = i >= text.size() - padding;
+        const std::size_t sextet = is_padding ? 0 : kAlphabet.find(text[i]);
+        if (sextet == std::string_view::npos) {
+            return std::nullopt;
+        }
+        group = group << 6 | static_cast<std::uint32_t>(sextet);
+        if (i % 4 == 3) {
+            for (const unsigned shift : {16U, 8U, 0U}) {
+                bytes += static_cast<char>(group >> shift & 255U);
+            }
+        }
+    }
+    bytes.resize(bytes.size() - padding);
+    return bytes;
 }
 
 }  // namespace lensproof

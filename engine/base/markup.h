@@ -1,5 +1,6 @@
 // engine/base/markup.h — text that may come from anyone, made safe to stand in a page or a drawing.
 #pragma once
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -16,5 +17,8 @@ std::vector<std::string_view> markup_characters(std::string_view text);
 
 /// RFC 4648, section 4, with padding.
 std::string base64(std::string_view bytes);
+
+/// The bytes that `base64` made the text of; nothing where it is no such text.
+std::optional<std::string> from_base64(std::string_view text);
 
 }  // namespace lensproof

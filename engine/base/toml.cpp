@@ -110,6 +110,12 @@ std::vector<std::string> TomlTable::keys() const {
     return names;
 }
 
+std::string TomlTable::stated() const {
+    std::ostringstream text;
+    text << toml::json_formatter(*table_);
+    return text.str();
+}
+
 bool TomlTable::is_number(const std::string& key) const {
     const toml::node* node = table_->get(key);
     return node != nullptr && node->is_number();

@@ -60,6 +60,10 @@ class TomlTable {
     /// An array of tables; empty where the key is absent.
     std::vector<TomlTable> tables(const std::string& key);
 
+    /// All that stands in the table, read or not, as a text: two tables have the same only where they state the same
+    /// values, in whatever order and notation.
+    [[nodiscard]] std::string stated() const;
+
     /// Refuses keys that were not read.
     void finish() const;
 

@@ -4,14 +4,17 @@
 #include <functional>
 #include <map>
 #include <memory>
+#include <stdexcept>
 
 #include "engine/base/cache.h"
 #include "engine/base/json.h"
 #include "engine/base/write_file.h"
 #include "experiments/cli/command.h"
+#include "experiments/cli/interruption.h"
 #include "experiments/cli/progress.h"
 #include "experiments/cli/terminal.h"
 #include "experiments/draw/report/report.h"
+#include "experiments/runner/kept_steps.h"
 #include "experiments/runner/report_content.h"
 
 namespace lensproof::cli {
@@ -22,14 +25,21 @@ struct RunOptions {
     CommonOptions common;
     std::string experiment;
     std::string output;
+    bool fresh = false;
 };
 
-/// A new progress bar for every new step.
+/// Thrown where a signal asked the run to end.
+struct Interrupted {};
+
+/// A new progress bar for every new step. Throws Interrupted once a signal has come.
 class StepProgress {
   public:
     explicit StepProgress(bool quiet) : quiet_(quiet) {}
 
     void operator()(const std::string& step, double done) {
+        if (Interruption::has_come()) {
+            throw Interrupted();
+        }
         if (step != step_) {
             bar_.reset();
             step_ = step;
@@ -73,6 +83,13 @@ void write_report(const std::filesystem::path& folder, const findings::Findings&
     write_file(folder / "report.html", draw::report_html(report, pictures));
 }
 
+void say_what_was_kept(const RunOptions& options, const findings::Steps& steps, const std::filesystem::path& folder) {
+    if (steps.kept() > 0 && !options.common.quiet) {
+        print_message("lensproof: {} of {} steps were finished before, and kept in {} (--fresh: do all again)\n",
+                      steps.kept(), steps.kept() + steps.made(), folder.string());
+    }
+}
+
 int run(const RunOptions& options) {
     const runner::Experiment experiment = runner::read_experiment(options.experiment);
     const std::filesystem::path folder =
@@ -82,10 +99,21 @@ int run(const RunOptions& options) {
     check_output_name(folder / "report.html");
     check_output_name(folder / "report.json");
     check_json_name(options.common);
-    const findings::RunSettings settings{
-        .seed = options.common.seed, .threads = options.common.threads, .cache = Cache::standard()};
-    StepProgress progress(options.common.quiet);
-    const findings::Findings found = runner::run_experiment(experiment, settings, std::ref(progress));
+    const std::filesystem::path kept = folder / "steps";
+    const findings::RunSettings settings{.seed = options.common.seed,
+                                         .threads = options.common.threads,
+                                         .cache = Cache::standard(),
+                                         .steps = runner::steps_kept_in(kept, options.fresh)};
+    findings::Findings found;
+    try {
+        const Interruption interruption;
+        StepProgress progress(options.common.quiet);
+        found = runner::run_experiment(experiment, settings, std::ref(progress));
+    } catch (const Interrupted&) {
+        throw std::runtime_error(fmt::format("ended early, with {} steps finished; the same command goes on from {}",
+                                             settings.steps.kept() + settings.steps.made(), kept.string()));
+    }
+    say_what_was_kept(options, settings.steps, kept);
     const Json report = runner::report_json(experiment, found, settings);
     const Delivery delivery =
         write_somewhere({folder}, [&](const std::filesystem::path& place) { write_report(place, found, report); });
@@ -107,6 +135,7 @@ void add_run_command(Program& program) {
     command.footer("Example: lensproof run experiments/first_light.toml -o output/first_light");
     command.add_option("EXPERIMENT", options->experiment, "An experiment file").required();
     command.add_option("-o,--output", options->output, "Folder to write (default: output/EXPERIMENT)").type_name("DIR");
+    command.add_flag("--fresh", options->fresh, "Do every step again, also those that an earlier run has finished");
     add_common_options(command, options->common);
     command.runs([options] { return run(*options); });
 }

@@ -10,6 +10,7 @@
 #include "engine/base/cache.h"
 #include "engine/base/toml.h"
 #include "experiments/findings/findings.h"
+#include "experiments/findings/steps.h"
 
 namespace lensproof::findings {
 
@@ -18,6 +19,7 @@ struct RunSettings {
     int threads = 0;        // 0: as many as the machine has
     Cache cache{};          // for what is found by tracing lenses
     bool self_test = true;  // each measurement says its own floor (calibration/self_test/self_test.h)
+    Steps steps{};          // what takes long is done as one of these
 };
 
 /// Reports what is being done ("tessar, view 2 of 6") and how much of it is.

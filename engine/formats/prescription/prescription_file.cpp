@@ -112,4 +112,14 @@ std::filesystem::path find_lens_file(const std::string& lens) {
     return path;
 }
 
+std::vector<std::filesystem::path> files_of_lens(const std::string& lens) {
+    std::vector<std::filesystem::path> files = {find_lens_file(lens)};
+    const optics::Prescription prescription = read_prescription(files.front());
+    files.insert(files.end(), prescription.catalogues.begin(), prescription.catalogues.end());
+    if (const auto* texture = std::get_if<optics::TexturedStop>(&prescription.stop_shape)) {
+        files.push_back(files.front().parent_path() / texture->image);
+    }
+    return files;
+}
+
 }  // namespace lensproof::formats

@@ -31,6 +31,9 @@ std::vector<optics::Finding> write_prescription(const optics::Prescription& pres
 /// names.
 std::filesystem::path find_lens_file(const std::string& lens);
 
+/// That file, and those that it names: its own glass catalogues, its stop's picture.
+std::vector<std::filesystem::path> files_of_lens(const std::string& lens);
+
 /// Names of the lenses that ship, sorted.
 std::vector<std::string> shipped_lens_names();
 

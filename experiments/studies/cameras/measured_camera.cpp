@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "calibration/geometry/projection_uncertainty.h"
+#include "calibration/self_test/self_test.h"
 
 namespace lensproof::studies {
 
@@ -98,6 +99,23 @@ std::optional<calibration::ModelKind> read_model(TomlTable& table) {
     std::vector<std::string> names = calibration::model_kind_names();
     names.emplace_back("auto");
     return calibration::model_kind(table.choice("model", names));
+}
+
+Json stated_model(const std::optional<calibration::ModelKind>& model) {
+    return model ? Json(calibration::kind_name(calibration::empty_model(*model))) : Json();
+}
+
+calibration::Profile measured_in_steps(const findings::RunSettings& settings, const findings::StepInput& stated,
+                                       const calibration::MeasureInput& input,
+                                       calibration::Profile (*measure)(const calibration::MeasureInput&)) {
+    calibration::Profile profile = settings.steps.step("measured", stated, [&] { return measure(input); });
+    if (!settings.self_test) {
+        return profile;
+    }
+    return settings.steps.step("self-test", stated, [&] {
+        calibration::add_self_test(profile, input);
+        return profile;
+    });
 }
 
 findings::Picture shown_picture(const std::string& name, const std::string& caption, const formats::Image& image) {

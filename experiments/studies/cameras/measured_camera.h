@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "calibration/measure/measure.h"
 #include "calibration/profile/profile.h"
 #include "engine/base/toml.h"
 #include "engine/formats/image/image.h"
@@ -19,11 +20,20 @@ std::string read_camera_name(TomlTable& table, findings::ExperimentFile& file);
 /// Takes the key `model`; nothing where the key is missing or "auto": what fits best.
 std::optional<calibration::ModelKind> read_model(TomlTable& table);
 
+/// The model as part of what a step follows from.
+Json stated_model(const std::optional<calibration::ModelKind>& model);
+
 struct MeasuredCamera {
     findings::Subject subject;  // with facts of its own, and its pictures
     calibration::Profile profile;
     std::optional<calibration::Profile> traced;  // the lens's own rays, for a simulation
 };
+
+/// The profile that `measure` makes of the input, and its self-test where the settings ask for one: a step each, which
+/// follow from `stated`.
+calibration::Profile measured_in_steps(const findings::RunSettings& settings, const findings::StepInput& stated,
+                                       const calibration::MeasureInput& input,
+                                       calibration::Profile (*measure)(const calibration::MeasureInput&));
 
 /// A smaller copy for the report, as PNG.
 findings::Picture shown_picture(const std::string& name, const std::string& caption, const formats::Image& image);

@@ -7,7 +7,7 @@
 #include <iterator>
 
 #include "calibration/photos/photo_survey.h"
-#include "calibration/self_test/self_test.h"
+#include "engine/base/confined.h"
 #include "engine/base/file.h"
 #include "engine/base/input_error.h"
 #include "experiments/studies/cameras/measured_camera.h"
@@ -52,13 +52,23 @@ Photos read_one(TomlTable& table, findings::ExperimentFile& file) {
     return photos;
 }
 
-/// A picture that cannot be read is named and not shown.
-findings::Picture shown_photo(const calibration::Picture& picture, const std::string& name) {
-    const std::string caption = std::filesystem::path(picture.name).filename().string();
+/// A photo as a report shows it; one that cannot be read is named and not shown.
+struct ShownPhoto {
+    int width = 0;
+    int height = 0;
+    std::string png;
+};
+
+void fields(JsonArchive& json, ShownPhoto& photo) {
+    json.field("width", photo.width).field("height", photo.height).packed("png", photo.png);
+}
+
+ShownPhoto shown_photo(const calibration::Picture& picture) {
     try {
-        return shown_picture(name, caption, picture.load());
+        const formats::Image image = picture.load();
+        return {.width = image.width, .height = image.height, .png = shown_picture("", "", image).bytes};
     } catch (const InputError&) {
-        return {.name = name, .caption = caption, .width = 0, .height = 0};
+        return {};
     }
 }
 
@@ -86,7 +96,8 @@ void add_account(MeasuredCamera& camera) {
     }
 }
 
-MeasuredCamera measure_photos(const Photos& photos, bool self_test, const findings::RunProgress& progress) {
+MeasuredCamera measure_photos(const Photos& photos, const findings::RunSettings& settings,
+                              const findings::RunProgress& progress) {
     const PhotoSet& set = photos.set;
     MeasuredCamera camera{
         .subject = {.id = photos.name, .kind = "photos", .label = set.name}, .profile = {}, .traced = {}};
@@ -102,17 +113,29 @@ MeasuredCamera measure_photos(const Photos& photos, bool self_test, const findin
     for (std::size_t i = 0; i < set.focus_positions_mm.size(); ++i) {
         input.focus_position_mm[set.photos[i].string()] = set.focus_positions_mm[i];
     }
+    // What decides beside its bytes whether a picture is read.
+    const Json reading{{"largest_picture_mib", formats::largest_picture_mib()}, {"untrusted", files_are_distrusted()}};
     for (const calibration::Picture& picture : input.pictures) {
         const std::filesystem::path file = picture.name;
         progress(fmt::format("{}, {}", photos.name, file.filename().string()), 0.0);
-        pictures.push_back(shown_photo(
-            picture, fmt::format("{}/{:02}-{}.png", photos.name, pictures.size() + 1, file.stem().string())));
+        const ShownPhoto shown =
+            settings.steps.step("photo", {.settings = reading, .files = {file}}, [&] { return shown_photo(picture); });
+        pictures.push_back(
+            {.name = fmt::format("{}/{:02}-{}.png", photos.name, pictures.size() + 1, file.stem().string()),
+             .caption = file.filename().string(),
+             .width = shown.width,
+             .height = shown.height,
+             .bytes = shown.png});
     }
     progress(photos.name + ", measuring", 0.0);
-    camera.profile = calibration::measure_surveyed(input);
-    if (self_test) {
-        calibration::add_self_test(camera.profile, input);
+    findings::StepInput all{
+        .settings = {{"name", photos.name}, {"model", stated_model(photos.model)}, {"reading", reading}},
+        .files = {photos.manifest}};
+    for (const calibration::Picture& picture : input.pictures) {
+        all.settings["pictures"].push_back(picture.name);
+        all.files.emplace_back(picture.name);
     }
+    camera.profile = measured_in_steps(settings, all, input, calibration::measure_surveyed);
     for (std::size_t i = 0, view = 0; i < pictures.size(); ++i) {
         if (input.pictures[i].role == calibration::PictureRole::chart) {
             add_view(pictures[i], camera.profile.views.at(view++));
@@ -181,7 +204,7 @@ findings::Study read_photos(findings::ExperimentFile& file) {
                                   const findings::Findings&) {
         findings::Findings found;
         for (const Photos& photos : all) {
-            MeasuredCamera camera = measure_photos(photos, settings.self_test, progress);
+            MeasuredCamera camera = measure_photos(photos, settings, progress);
             findings::append(found, {.checks = photo_checks(camera, photos.expected)});
             findings::append(found, camera_findings(std::move(camera)));
             found.inputs.push_back(photos.manifest);

@@ -11,6 +11,7 @@
 #include "calibration/self_test/self_test.h"
 #include "engine/base/input_error.h"
 #include "engine/formats/glass/shipped_glasses.h"
+#include "engine/formats/image/image_json.h"
 #include "engine/formats/prescription/prescription_file.h"
 #include "engine/optics/paraxial.h"
 #include "engine/render/film/film_image.h"
@@ -58,17 +59,22 @@ Simulation read_simulation(TomlTable& table, findings::ExperimentFile& file) {
         chart.fail("kind", fmt::format("is {}, which is not measured: expected one of {}", scene::kind_name(seen),
                                        calibration::detectable_kinds()));
     }
+    simulation.stated_scene = {{"camera", camera.stated()}, {"chart", chart.stated()}};
     if (auto light = file.top.optional_table("light")) {
         render::read_even_light(*light, simulation.scene);
+        simulation.stated_scene["light"] = light->stated();
     }
     if (auto render = file.top.optional_table("render")) {
         render::read_render_table(*render, simulation.scene);
+        simulation.stated_scene["render"] = render->stated();
     }
     if (auto own = table.optional_table("render")) {
         render::read_render_table(*own, simulation.scene);
+        simulation.stated_scene["own_render"] = own->stated();
     }
     for (TomlTable& view : table.tables("views")) {
         simulation.views.push_back(scene::read_placement(view));
+        simulation.stated_views.push_back(view.stated());
     }
     if (simulation.views.empty()) {
         table.fail("views", "holds no view of the chart");
@@ -154,20 +160,30 @@ MeasuredCamera measure_simulation(const Simulation& simulation, const render::Ca
     MeasuredCamera measured{.subject = {.id = simulation.name, .kind = "simulation", .label = camera.lens()->name},
                             .profile = {},
                             .traced = {}};
+    const std::vector<std::filesystem::path> files = formats::files_of_lens(simulation.scene.camera.lens);
+    const auto input_of = [&](Json what) {
+        return findings::StepInput{
+            .settings = {{"scene", simulation.stated_scene}, {"what", std::move(what)}, {"seed", settings.seed}},
+            .files = files};
+    };
     std::vector<calibration::Picture> pictures;
     const auto add_picture = [&](const std::string& file, const std::string& caption, calibration::PictureRole role,
                                  const scene::Chart& chart, const scene::Placement& placement, int samples_per_pixel,
-                                 const std::string& step) {
-        const render::World world =
-            render::even_chart(chart, placement, simulation.scene.chart->luminance_cd_m2, camera);
-        const render::View view{.world = &world,
-                                .camera = &camera,
-                                .seed = settings.seed + pictures.size()};  // views do not share their noise
-        const render::Film film =
-            render::render_film(render::pass_named("chart").render(view),
-                                {.first = 0, .end = static_cast<std::uint32_t>(samples_per_pixel)}, settings.threads,
-                                [&](double done) { progress(simulation.name + step, done); });
-        formats::Image image = colours_only(render::film_image(film));
+                                 const std::string& step, Json stated) {
+        const auto rendered = [&] {
+            const render::World world =
+                render::even_chart(chart, placement, simulation.scene.chart->luminance_cd_m2, camera);
+            const render::View view{.world = &world,
+                                    .camera = &camera,
+                                    .seed = settings.seed + pictures.size()};  // views do not share their noise
+            const render::Film film =
+                render::render_film(render::pass_named("chart").render(view),
+                                    {.first = 0, .end = static_cast<std::uint32_t>(samples_per_pixel)},
+                                    settings.threads, [&](double done) { progress(simulation.name + step, done); });
+            return colours_only(render::film_image(film));
+        };
+        formats::Image image = settings.steps.step(
+            "view", input_of(Json::list({std::move(stated), samples_per_pixel, pictures.size()})), rendered);
         const std::string name = fmt::format("{}/{}.png", simulation.name, file);
         measured.subject.pictures.push_back(shown_picture(name, caption, image));
         pictures.push_back({.name = name, .role = role, .load = [image = std::move(image)] { return image; }});
@@ -176,11 +192,11 @@ MeasuredCamera measure_simulation(const Simulation& simulation, const render::Ca
     for (std::size_t i = 0; i < count; ++i) {
         add_picture(fmt::format("view-{}", i + 1), describe(simulation.views[i]), calibration::PictureRole::chart,
                     simulation.scene.chart->chart, simulation.views[i], simulation.scene.samples_per_pixel,
-                    fmt::format(", view {} of {}", i + 1, count));
+                    fmt::format(", view {} of {}", i + 1, count), simulation.stated_views[i]);
     }
     if (simulation.flat_field) {
         add_picture("flat-field", "flat field", calibration::PictureRole::flat_field, {.pattern = scene::FlatField{}},
-                    {.distance_mm = 1000.0}, simulation.flat_field_samples_per_pixel, ", flat field");
+                    {.distance_mm = 1000.0}, simulation.flat_field_samples_per_pixel, ", flat field", "flat field");
     }
     progress(simulation.name + ", measuring", 0.0);
     const calibration::MeasureInput input{
@@ -191,15 +207,18 @@ MeasuredCamera measure_simulation(const Simulation& simulation, const render::Ca
         .geometry = {.fit_tangential = false},  // a centred lens
         .source = {.kind = "render", .images = {}, .camera = "simulated", .lens = measured.subject.label},
         .pixel_pitch_um = 1e3 * camera.sensor().pixel_pitch_mm};
-    measured.profile = calibration::measure(input);
-    if (settings.self_test) {
-        calibration::add_self_test(measured.profile, input);
-    }
+    const findings::StepInput all =
+        input_of({{"name", simulation.name},
+                  {"model", stated_model(simulation.model)},
+                  {"views", simulation.stated_views},
+                  {"flat_field", simulation.flat_field ? simulation.flat_field_samples_per_pixel : 0},
+                  {"samples_per_pixel", simulation.scene.samples_per_pixel}});
+    measured.profile = measured_in_steps(settings, all, input, calibration::measure);
     for (std::size_t i = 0; i < count; ++i) {
         add_view(measured.subject.pictures[i], measured.profile.views.at(i));
     }
     progress(simulation.name + ", tracing", 0.0);
-    measured.traced = lens_profile(camera);
+    measured.traced = settings.steps.step("traced", input_of("traced"), [&] { return lens_profile(camera); });
     add_facts(measured, simulation, camera);
     return measured;
 }

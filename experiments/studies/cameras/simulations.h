@@ -22,6 +22,9 @@ struct Simulation {
     int flat_field_samples_per_pixel = 128;  // an even field shows the noise that edges hide
     std::optional<calibration::ModelKind> model;
     ClosedLoopLimits limits;
+    // What the file states of it, for steps to be known by.
+    Json stated_scene{};  // camera, chart, light, sampling
+    Json stated_views = Json::list();
 };
 
 /// Also takes [light] and [render], which they share.

@@ -134,7 +134,7 @@ findings::Study read_measurement_floor(findings::ExperimentFile& file) {
         findings::Findings found{.counts_checks = true, .subjects_title = "Sweeps"};
         Json sweeps;
         for (const auto measure : {measure_detectors, measure_quantities, measure_models, measure_intervals}) {
-            MeasurementFloor part = measure(wanted, settings.seed, settings.threads, progress);
+            MeasurementFloor part = measure(wanted, settings, progress);
             std::ranges::move(part.checks, std::back_inserter(found.checks));
             std::ranges::transform(part.sweeps, std::back_inserter(found.subjects), sweep_subject);
             std::ranges::transform(part.sweeps, std::back_inserter(sweeps), sweep_json);

@@ -107,6 +107,15 @@ struct Errors {
     [[nodiscard]] double bias() const { return found > 0 ? std::hypot(sum.x, sum.y) / found : 0.0; }
 };
 
+void fields(JsonArchive& json, Errors& errors) {
+    json.field("expected", errors.expected)
+        .field("found", errors.found)
+        .field("pictures", errors.pictures)
+        .field("empty", errors.empty)
+        .field("squares", errors.squares)
+        .field("sum", errors.sum);
+}
+
 /// One picture, simulated, searched and refined.
 Errors look(const Detector& detector, const calibration::SimulatedCamera& camera, const PoseWish& wish,
             std::uint32_t seed) {
@@ -176,7 +185,7 @@ std::vector<std::string> floor_detectors() {
     return labels;
 }
 
-MeasurementFloor measure_detectors(const FloorSettings& settings, std::uint64_t seed, int threads,
+MeasurementFloor measure_detectors(const FloorSettings& settings, const findings::RunSettings& run,
                                    const findings::RunProgress& progress) {
     std::vector<Detector> all = detectors();
     std::erase_if(all,
@@ -189,22 +198,19 @@ MeasurementFloor measure_detectors(const FloorSettings& settings, std::uint64_t 
     }
     struct Job {
         std::size_t sweep, detector, value;
-        int picture;
     };
     std::vector<Job> jobs;
     for (std::size_t s = 0; s < sweeps.size(); ++s) {
         for (std::size_t d = 0; d < all.size(); ++d) {
             for (std::size_t v = 0; v < sweeps[s].of.values.size(); ++v) {
-                for (int p = 0; p < settings.pictures; ++p) {
-                    jobs.push_back({s, d, v, p});
-                }
+                jobs.push_back({s, d, v});
             }
         }
     }
     std::vector<Errors> results(jobs.size());
     const int count = static_cast<int>(jobs.size());
     parallel_for(
-        count, threads,
+        count, run.threads,
         [&](int i) {
             const Job& job = jobs[static_cast<std::size_t>(i)];
             calibration::SimulatedCamera camera = chart_camera();
@@ -212,9 +218,21 @@ MeasurementFloor measure_detectors(const FloorSettings& settings, std::uint64_t 
             const double value = what.of.values[job.value];
             what.of.apply(value, camera);
             const PoseWish wish{.tilt_deg = std::lerp(kUsualTilt_deg, value, what.tilt_fraction)};
-            // The same poses and noise at every value and for every chart, so that curves differ by these alone.
-            const auto own = static_cast<std::uint32_t>(seed * 1000U + static_cast<std::uint64_t>(job.picture));
-            results[static_cast<std::size_t>(i)] = look(all[job.detector], camera, wish, own);
+            const findings::StepInput input{.settings = {{"sweep", what.of.id},
+                                                         {"value", value},
+                                                         {"detector", all[job.detector].label},
+                                                         {"pictures", settings.pictures},
+                                                         {"seed", run.seed}}};
+            results[static_cast<std::size_t>(i)] = run.steps.step("detector", input, [&] {
+                Errors errors;
+                for (int picture = 0; picture < settings.pictures; ++picture) {
+                    // The same poses and noise at every value and for every chart, so that curves differ by these
+                    // alone.
+                    const auto own = static_cast<std::uint32_t>(run.seed * 1000U + static_cast<std::uint64_t>(picture));
+                    errors.add(look(all[job.detector], camera, wish, own));
+                }
+                return errors;
+            });
         },
         [&](int done) { progress("detectors", static_cast<double>(done) / count); });
 
@@ -234,10 +252,7 @@ MeasurementFloor measure_detectors(const FloorSettings& settings, std::uint64_t 
         for (const Detector& detector : all) {
             FloorCurve curve{.label = detector.label, .points = {}};
             for (const double value : what.of.values) {
-                Errors errors;
-                for (int p = 0; p < settings.pictures; ++p) {
-                    errors.add(results[next++]);
-                }
+                const Errors& errors = results[next++];
                 curve.points.push_back({.value = value,
                                         .error = errors.rms(),
                                         .sigma = errors.sigma(),

@@ -56,22 +56,22 @@ struct MeasurementFloor {
 std::vector<std::string> detector_sweeps();
 std::vector<std::string> floor_detectors();
 
-/// The parts, each on up to `threads` threads with the same result for any number of them. `seed` draws poses and
-/// noise.
+/// The parts, each on up to as many threads as the run's settings say, with the same result for any number of them.
+/// Their seed draws poses and noise.
 ///
 /// Detectors: the error of found points against noise, blur, tilt and JPEG's quality, for each kind of chart.
-MeasurementFloor measure_detectors(const FloorSettings& settings, std::uint64_t seed, int threads,
+MeasurementFloor measure_detectors(const FloorSettings& settings, const findings::RunSettings& run,
                                    const findings::RunProgress& progress);
 /// Quantities: the errors of chromatic shift, vignetting and MTF50 against noise, blur and JPEG's quality.
-MeasurementFloor measure_quantities(const FloorSettings& settings, std::uint64_t seed, int threads,
+MeasurementFloor measure_quantities(const FloorSettings& settings, const findings::RunSettings& run,
                                     const findings::RunProgress& progress);
 /// Models: the error of fitted mappings against the number of photos and their coverage, for the models that one might
 /// fit to a lens, and for every model on a lens of its own family; and what the model that is chosen by itself makes of
 /// the usual set. A value's "pictures" are sets.
-MeasurementFloor measure_models(const FloorSettings& settings, std::uint64_t seed, int threads,
+MeasurementFloor measure_models(const FloorSettings& settings, const findings::RunSettings& run,
                                 const findings::RunProgress& progress);
 /// Intervals: in how many of the trials the stated 95 % intervals hold the truth.
-MeasurementFloor measure_intervals(const FloorSettings& settings, std::uint64_t seed, int threads,
+MeasurementFloor measure_intervals(const FloorSettings& settings, const findings::RunSettings& run,
                                    const findings::RunProgress& progress);
 
 }  // namespace lensproof::studies

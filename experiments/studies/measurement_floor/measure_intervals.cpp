@@ -32,10 +32,11 @@ struct Stated {
     std::string id;
     std::string label;
 };
-using Outcome = std::vector<int>;  // a quantity each: 1 held, 0 not, -1 no interval
+constexpr int kNoInterval = 2;
+using Outcome = std::vector<int>;  // a quantity each: 1 held, 0 not, or no interval
 
 int holds(const std::optional<calibration::Banded>& stated, double truth) {
-    return !stated ? -1 : stated->lower_95 <= truth && truth <= stated->upper_95 ? 1 : 0;
+    return !stated ? kNoInterval : stated->lower_95 <= truth && truth <= stated->upper_95 ? 1 : 0;
 }
 
 std::vector<Stated> at_heights(const std::string& id, const std::string& label) {
@@ -122,7 +123,7 @@ Outcome outcome_of(Outcome (*trial)(std::uint32_t seed), std::size_t quantities,
     try {
         return trial(seed);
     } catch (const InputError&) {
-        return Outcome(quantities, -1);
+        return Outcome(quantities, kNoInterval);
     }
 }
 
@@ -141,30 +142,47 @@ std::vector<Study> studies() {
 
 }  // namespace
 
-MeasurementFloor measure_intervals(const FloorSettings& settings, std::uint64_t seed, int threads,
+MeasurementFloor measure_intervals(const FloorSettings& settings, const findings::RunSettings& run,
                                    const findings::RunProgress& progress) {
     const std::vector<Study> all = studies();
-    std::vector<std::vector<Outcome>> outcomes(all.size(),
-                                               std::vector<Outcome>(static_cast<std::size_t>(settings.trials)));
-    const int count = static_cast<int>(all.size()) * settings.trials;
+    // Many at a time are a step: one takes a few milliseconds.
+    constexpr int kTrialsOfAStep = 25;
+    const int steps = (settings.trials + kTrialsOfAStep - 1) / kTrialsOfAStep;  // of a study
+    std::vector<std::vector<Outcome>> results(all.size() * static_cast<std::size_t>(steps));
+    const int count = static_cast<int>(results.size());
     parallel_for(
-        count, threads,
+        count, run.threads,
         [&](int i) {
-            const auto study = static_cast<std::size_t>(i / settings.trials);
-            const auto trial = static_cast<std::size_t>(i % settings.trials);
-            outcomes[study][trial] =
-                outcome_of(all[study].trial, all[study].quantities.size(),
-                           static_cast<std::uint32_t>(seed * 100003U + static_cast<std::uint64_t>(i)));
+            const int of = i / steps;
+            const Study& study = all[static_cast<std::size_t>(of)];
+            const int first = i % steps * kTrialsOfAStep;
+            const int end = std::min(first + kTrialsOfAStep, settings.trials);
+            const findings::StepInput input{
+                .settings = {{"study", of}, {"trials", Json::list({first, end, settings.trials})}, {"seed", run.seed}}};
+            results[static_cast<std::size_t>(i)] = run.steps.step("intervals", input, [&] {
+                std::vector<Outcome> outcomes;
+                for (int trial = first; trial < end; ++trial) {
+                    const auto own = run.seed * 100003U + static_cast<std::uint64_t>(of * settings.trials + trial);
+                    outcomes.push_back(
+                        outcome_of(study.trial, study.quantities.size(), static_cast<std::uint32_t>(own)));
+                }
+                return outcomes;
+            });
         },
         [&](int done) { progress("intervals", static_cast<double>(done) / count); });
 
+    std::vector<std::vector<Outcome>> outcomes(all.size());
+    for (std::size_t i = 0; i < results.size(); ++i) {
+        std::vector<Outcome>& of_study = outcomes[i / static_cast<std::size_t>(steps)];
+        of_study.insert(of_study.end(), results[i].begin(), results[i].end());
+    }
     MeasurementFloor floor;
     for (std::size_t s = 0; s < all.size(); ++s) {
         for (std::size_t q = 0; q < all[s].quantities.size(); ++q) {
             int stated = 0;
             int held = 0;
             for (const Outcome& outcome : outcomes[s]) {
-                stated += outcome[q] >= 0 ? 1 : 0;
+                stated += outcome[q] != kNoInterval ? 1 : 0;
                 held += outcome[q] == 1 ? 1 : 0;
             }
             floor.checks.push_back(

@@ -124,6 +124,16 @@ std::vector<Vec2d> covered_grid(const std::vector<calibration::ChartView>& views
     return pixels;
 }
 
+/// What a set of photos gave: the error, NaN where there is none, and where the model was chosen, which.
+struct SetResult {
+    double error_px = kNaN;
+    std::string chosen;
+};
+
+void fields(JsonArchive& json, SetResult& result) {
+    json.any_number("error_px", result.error_px).field("chosen", result.chosen);
+}
+
 /// Where a fitted mapping is compared with the true one.
 enum class Where { covered, frame };
 
@@ -178,16 +188,13 @@ double mapping_error(const Trial& trial, const std::vector<calibration::ChartVie
 }
 
 /// The same with the model chosen, and which it was.
-double choice_error(const calibration::CameraModel& lens, const std::vector<calibration::ChartView>& views,
-                    std::string& chosen) {
+SetResult choice_error(const calibration::CameraModel& lens, const std::vector<calibration::ChartView>& views) {
     try {
         const calibration::ChosenGeometry choice = calibration::choose_model(views, kWidth, kHeight, {});
-        chosen = calibration::kind_name(choice.fit.model);
         const auto apart = calibration::mapping_difference(choice.fit.model, lens, covered_grid(views));
-        return apart ? apart->rms_px : kNaN;
+        return {.error_px = apart ? apart->rms_px : kNaN, .chosen = calibration::kind_name(choice.fit.model)};
     } catch (const InputError&) {
-        chosen = "none";
-        return kNaN;
+        return {.error_px = kNaN, .chosen = "none"};
     }
 }
 
@@ -262,54 +269,69 @@ void own_checks(MeasurementFloor& floor) {
 
 }  // namespace
 
-MeasurementFloor measure_models(const FloorSettings& settings, std::uint64_t seed, int threads,
+MeasurementFloor measure_models(const FloorSettings& settings, const findings::RunSettings& run,
                                 const findings::RunProgress& progress) {
     const std::vector<TrueLens> lenses = true_lenses();
     const std::vector<Varied> sweeps = varied();
     struct Job {
         std::size_t sweep, lens, model, value;  // sweep = sweeps.size(): the model is chosen
-        int set;
+        int first_set, sets;
     };
     std::vector<Job> jobs;
     for (std::size_t l = 0; l < lenses.size(); ++l) {
         for (std::size_t s = 0; s < sweeps.size(); ++s) {
             for (std::size_t m = 0; m < lenses[l].trials.size(); ++m) {
                 for (std::size_t v = 0; v < sweeps[s].values.size(); ++v) {
-                    for (int set = 0; set < settings.pictures; ++set) {
-                        jobs.push_back({s, l, m, v, set});
-                    }
+                    jobs.push_back({s, l, m, v, 0, settings.pictures});
                 }
             }
         }
         for (int set = 0; lenses[l].is_one_lens && set < chosen_sets(settings); ++set) {
-            jobs.push_back({sweeps.size(), l, 0, 0, set});
+            jobs.push_back({sweeps.size(), l, 0, 0, set, 1});
         }
     }
-    std::vector<double> errors(jobs.size());
-    std::vector<std::string> chosen(jobs.size());
+    const auto measured = [&](const Job& job, int set) -> SetResult {
+        const TrueLens& lens = lenses[job.lens];
+        int photos = kUsualPhotos;
+        PoseWish wish = kUsualWish;
+        const auto own = static_cast<std::uint32_t>(run.seed * 1000U + static_cast<std::uint64_t>(set));
+        if (job.sweep == sweeps.size()) {
+            const calibration::CameraModel& truth = lens.trials.front().truth;
+            return choice_error(truth, views_of(truth, photos, wish, own));
+        }
+        const Varied& sweep = sweeps[job.sweep];
+        sweep.apply(sweep.values[job.value], photos, wish);
+        const Trial& trial = lens.trials[job.model];
+        return {.error_px = mapping_error(trial, views_of(trial.truth, photos, wish, own), where_compared(lens, sweep)),
+                .chosen = ""};
+    };
+    std::vector<std::vector<SetResult>> results(jobs.size());
     const int count = static_cast<int>(jobs.size());
     parallel_for(
-        count, threads,
+        count, run.threads,
         [&](int i) {
-            const auto at = static_cast<std::size_t>(i);
-            const Job& job = jobs[at];
-            const TrueLens& lens = lenses[job.lens];
-            int photos = kUsualPhotos;
-            PoseWish wish = kUsualWish;
-            const auto own = static_cast<std::uint32_t>(seed * 1000U + static_cast<std::uint64_t>(job.set));
-            if (job.sweep == sweeps.size()) {
-                errors[at] = choice_error(lens.trials.front().truth,
-                                          views_of(lens.trials.front().truth, photos, wish, own), chosen[at]);
-            } else {
-                const Varied& sweep = sweeps[job.sweep];
-                sweep.apply(sweep.values[job.value], photos, wish);
-                const Trial& trial = lens.trials[job.model];
-                errors[at] =
-                    mapping_error(trial, views_of(trial.truth, photos, wish, own), where_compared(lens, sweep));
-            }
+            const auto& job = jobs[static_cast<std::size_t>(i)];
+            const auto& [sweep, lens, model, value, first_set, sets] = job;
+            const findings::StepInput input{
+                .settings = {{"cell", Json::list({sweep, lens, model, value, first_set, sets})}, {"seed", run.seed}}};
+            results[static_cast<std::size_t>(i)] = run.steps.step("models", input, [&] {
+                std::vector<SetResult> of_sets;
+                for (int set = first_set; set < first_set + sets; ++set) {
+                    of_sets.push_back(measured(job, set));
+                }
+                return of_sets;
+            });
         },
         [&](int done) { progress("models", static_cast<double>(done) / count); });
 
+    std::vector<double> errors;
+    std::vector<std::string> chosen;
+    for (const std::vector<SetResult>& of_sets : results) {
+        for (const SetResult& result : of_sets) {
+            errors.push_back(result.error_px);
+            chosen.push_back(result.chosen);
+        }
+    }
     MeasurementFloor floor;
     std::size_t next = 0;
     const auto take = [&](int number) {

@@ -75,6 +75,13 @@ struct QuantityErrors {
     double mtf50_percent = kNaN;  // of one edge, rms
 };
 
+void fields(JsonArchive& json, QuantityErrors& errors) {
+    json.any_number("shift_px", errors.shift_px)
+        .any_number("flat_percent", errors.flat_percent)
+        .any_number("white_percent", errors.white_percent)
+        .any_number("mtf50_percent", errors.mtf50_percent);
+}
+
 double vignetting_error_percent(const std::vector<calibration::LightGroup>& groups) {
     try {
         const calibration::Curve measured = calibration::fit_vignetting(groups, centre(), kHalfDiagonal).ratio;
@@ -225,7 +232,7 @@ findings::Check target_check(const Sort& sort, const JudgedQuantity& quantity, c
 
 }  // namespace
 
-MeasurementFloor measure_quantities(const FloorSettings& settings, std::uint64_t seed, int threads,
+MeasurementFloor measure_quantities(const FloorSettings& settings, const findings::RunSettings& run,
                                     const findings::RunProgress& progress) {
     std::vector<PictureSweep> sweeps = picture_sweeps();
     std::erase_if(sweeps, [&](const PictureSweep& sweep) { return !findings::is_wanted(settings.sweeps, sweep.id); });
@@ -248,13 +255,17 @@ MeasurementFloor measure_quantities(const FloorSettings& settings, std::uint64_t
     std::vector<QuantityErrors> results(jobs.size());
     const int count = static_cast<int>(jobs.size());
     parallel_for(
-        count, threads,
+        count, run.threads,
         [&](int i) {
             const Job& job = jobs[static_cast<std::size_t>(i)];
             calibration::SimulatedCamera camera = usual_camera();
             sweeps[job.sweep].apply(sweeps[job.sweep].values[job.value], camera);
-            const auto own = static_cast<std::uint32_t>(seed * 1000U + static_cast<std::uint64_t>(job.set));
-            results[static_cast<std::size_t>(i)] = errors_of_set(camera, own);
+            const auto own = static_cast<std::uint32_t>(run.seed * 1000U + static_cast<std::uint64_t>(job.set));
+            const findings::StepInput input{.settings = {{"sweep", sweeps[job.sweep].id},
+                                                         {"value", sweeps[job.sweep].values[job.value]},
+                                                         {"seed", own}}};
+            results[static_cast<std::size_t>(i)] =
+                run.steps.step("quantities", input, [&] { return errors_of_set(camera, own); });
         },
         [&](int done) { progress("quantities", static_cast<double>(done) / count); });
 

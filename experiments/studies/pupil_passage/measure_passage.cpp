@@ -160,25 +160,42 @@ class PassageMeter {
 
 }  // namespace
 
-Passage measure_passage(const PassageSetting& setting, std::uint64_t seed) {
-    Passage passage{
-        .setting = setting,
-        .lens = optics::focused_at(optics::with_f_number(formats::load_lens(setting.lens), setting.f_number),
-                                   std::numeric_limits<double>::infinity()),
-        .whole_element = {},
-        .pupil = {}};
+// Where the archive looks for them, beside the types.
+static void fields(JsonArchive& json, DrawnPath& path) {
+    json.field("points", path.points).field("passes", path.passes);
+}
+
+static void fields(JsonArchive& json, PassageOf& of) {
+    json.field("rings", of.rings).field("mean", of.mean).field("error", of.error).field("drawn", of.drawn);
+}
+
+void fields(JsonArchive& json, PassageCounts& counts) {
+    json.field("circle_mm", counts.circle_mm).field("whole_element", counts.whole_element).field("pupil", counts.pupil);
+}
+
+optics::Lens passage_lens(const PassageSetting& setting) {
+    return optics::focused_at(optics::with_f_number(formats::load_lens(setting.lens), setting.f_number), kInfinity);
+}
+
+PassageCounts count_passage(const optics::Lens& lens, std::uint64_t seed) {
     std::vector<optics::TraceLens<double>> band;
     band.reserve(kWavelengths);
     for (int i = 0; i < kWavelengths; ++i) {
-        band.push_back(optics::at_wavelength<double>(passage.lens, 400.0 + 300.0 * (i + 0.5) / kWavelengths));
+        band.push_back(optics::at_wavelength<double>(lens, 400.0 + 300.0 * (i + 0.5) / kWavelengths));
     }
-    const auto& stated = passage.lens.stated.image_circle_mm;
-    passage.circle_mm = last_light(band, stated ? 0.5 * *stated : kInfinity);
-    const pupil::PupilMap map(band, passage.lens.is_rotationally_symmetric, passage.circle_mm);
-    const PassageMeter meter(band, passage.circle_mm, seed);
-    passage.whole_element = meter.measure(pupil::PupilMap::whole_element(band.front(), passage.circle_mm));
-    passage.pupil = meter.measure(map);
-    return passage;
+    const auto& stated = lens.stated.image_circle_mm;
+    const double circle_mm = last_light(band, stated ? 0.5 * *stated : kInfinity);
+    const pupil::PupilMap map(band, lens.is_rotationally_symmetric, circle_mm);
+    const PassageMeter meter(band, circle_mm, seed);
+    return {.circle_mm = circle_mm,
+            .whole_element = meter.measure(pupil::PupilMap::whole_element(band.front(), circle_mm)),
+            .pupil = meter.measure(map)};
+}
+
+Passage measure_passage(const PassageSetting& setting, std::uint64_t seed) {
+    optics::Lens lens = passage_lens(setting);
+    PassageCounts counts = count_passage(lens, seed);
+    return {std::move(counts), setting, std::move(lens)};
 }
 
 }  // namespace lensproof::studies

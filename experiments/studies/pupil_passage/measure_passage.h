@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "engine/base/json_archive.h"
 #include "engine/optics/lens.h"
 
 namespace lensproof::studies {
@@ -38,15 +39,27 @@ struct PassageOf {
     std::vector<DrawnPath> drawn;               // from a few heights, evenly over what is drawn from there
 };
 
-struct Passage {
-    PassageSetting setting;
-    optics::Lens lens;
+/// Both, of a lens.
+struct PassageCounts {
     double circle_mm = 0.0;  // radius: where the last light of the band ends, or what is stated, if that is smaller
     PassageOf whole_element;
     PassageOf pupil;
 };
 
-/// Traces paths of wavelengths from 400 to 700 nm. Throws InputError for a lens that cannot be loaded or set so.
+void fields(JsonArchive& json, PassageCounts& counts);
+
+struct Passage : PassageCounts {
+    PassageSetting setting;
+    optics::Lens lens;
+};
+
+/// The lens as it is set. Throws InputError for one that cannot be loaded or set so.
+optics::Lens passage_lens(const PassageSetting& setting);
+
+/// Traces paths of wavelengths from 400 to 700 nm.
+PassageCounts count_passage(const optics::Lens& lens, std::uint64_t seed);
+
+/// Both together.
 Passage measure_passage(const PassageSetting& setting, std::uint64_t seed);
 
 }  // namespace lensproof::studies

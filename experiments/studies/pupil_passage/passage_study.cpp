@@ -194,7 +194,13 @@ findings::Study read_pupil_passage(findings::ExperimentFile& file) {
                                         const findings::Findings&) {
         std::vector<Passage> passages;
         for (const PassageSetting& setting : wanted) {
-            passages.push_back(measure_passage(setting, settings.seed));
+            optics::Lens lens = passage_lens(setting);
+            PassageCounts counts = settings.steps.step(
+                "passage",
+                {.settings = {{"lens", setting.lens}, {"f_number", setting.f_number}, {"seed", settings.seed}},
+                 .files = formats::files_of_lens(setting.lens)},
+                [&] { return count_passage(lens, settings.seed); });
+            passages.push_back({std::move(counts), setting, std::move(lens)});
             progress("passage", static_cast<double>(passages.size()) / static_cast<double>(wanted.size()));
         }
         return passage_findings(passages);

@@ -170,6 +170,29 @@ void measure_point(StabilityPoint& point, const StabilityCase& given, std::mt199
 
 }  // namespace
 
+// Where the archive looks for it, beside the type.
+static void fields(JsonArchive& json, TypeResult& type) {
+    json.any_number("error_mm", type.error_mm)
+        .field("other_statuses", type.other_statuses)
+        .field("close_calls", type.close_calls)
+        .field("not_finite", type.not_finite);
+}
+
+void fields(JsonArchive& json, StabilityPoint& point) {
+    json.any_number("value", point.value)
+        .field("refusal", point.refusal)
+        .field("is_rightly_refused", point.is_rightly_refused)
+        .field("rays", point.rays)
+        .field("at_a_change", point.at_a_change)
+        .field("fates", point.fates)
+        .any_number("conditioning_mm", point.conditioning_mm)
+        .any_number("excess", point.excess)
+        .field("lanes_unlike_scalar", point.lanes_unlike_scalar);
+    for (std::size_t type = 0; type < kNumberTypes.size(); ++type) {
+        json.field(kNumberTypes.at(type), point.types.at(type));
+    }
+}
+
 StabilitySweep measure_stability(const Extreme& extreme, std::uint64_t seed) {
     StabilitySweep sweep{.extreme = extreme, .points = {}};
     for (std::size_t i = 0; i < extreme.values.size(); ++i) {

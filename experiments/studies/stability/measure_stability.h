@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "engine/base/json_archive.h"
 #include "experiments/studies/stability/extremes.h"
 
 namespace lensproof::studies {
@@ -44,6 +45,8 @@ struct StabilityPoint {
     std::array<TypeResult, kNumberTypes.size()> types{};
     int lanes_unlike_scalar = 0;  // rays whose lane of a packet has not the bits of the float alone
 };
+
+void fields(JsonArchive& json, StabilityPoint& point);
 
 struct StabilitySweep {
     Extreme extreme;

@@ -206,7 +206,10 @@ findings::Study read_stability(findings::ExperimentFile& file) {
             count, settings.threads,
             [&](int i) {
                 const auto at = static_cast<std::size_t>(i);
-                sweeps[at] = measure_stability(extremes[at], settings.seed);
+                sweeps[at] = {.extreme = extremes[at],
+                              .points = settings.steps.step(
+                                  "extreme", {.settings = {{"id", extremes[at].id}, {"seed", settings.seed}}},
+                                  [&] { return measure_stability(extremes[at], settings.seed).points; })};
             },
             [&](int done) { progress("extremes", static_cast<double>(done) / count); });
         return stability_findings(sweeps);

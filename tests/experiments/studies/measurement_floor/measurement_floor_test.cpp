@@ -2,6 +2,7 @@
 // for any number of threads, and how a sweep becomes a report.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "calibration/geometry/fit_geometry.h"
@@ -10,13 +11,37 @@
 #include "experiments/studies/measurement_floor/floor_study.h"
 #include "experiments/studies/measurement_floor/random_poses.h"
 #include "tests/complaint.h"
+#include "tests/test_folder.h"
 
 namespace lensproof::studies::measurement_floor_test {
 
 constexpr auto kQuiet = [](const std::string&, double) {};
 
+/// What `measure` finds, twice: the second time each of its steps is there, and all is the same.
+template <class Measure>
+MeasurementFloor kept_whole(const Measure& measure) {
+    const TestFolder folder;
+    const auto run = [&] {
+        return findings::RunSettings{.seed = 3, .threads = 2, .steps = {Cache(folder.path()), "this", false}};
+    };
+    const findings::RunSettings first = run();
+    const MeasurementFloor made = measure(first);
+    EXPECT_GT(first.steps.made(), 0);
+    const findings::RunSettings second = run();
+    const MeasurementFloor kept = measure(second);
+    EXPECT_EQ(second.steps.made(), 0);
+    EXPECT_EQ(second.steps.kept(), first.steps.made());
+    EXPECT_EQ(made.checks.size(), kept.checks.size());
+    for (std::size_t i = 0; i < std::min(made.checks.size(), kept.checks.size()); ++i) {
+        EXPECT_EQ(made.checks[i].value, kept.checks[i].value);
+        EXPECT_EQ(made.checks[i].explanation, kept.checks[i].explanation);
+    }
+    return kept;
+}
+
 MeasurementFloor noise_of_checkerboards(int threads) {
-    return measure_detectors({.sweeps = {"noise"}, .detectors = {"checkerboard"}, .pictures = 1}, 3, threads, kQuiet);
+    return measure_detectors({.sweeps = {"noise"}, .detectors = {"checkerboard"}, .pictures = 1},
+                             {.seed = 3, .threads = threads}, kQuiet);
 }
 
 const MeasurementFloor& on_two_threads() {
@@ -49,8 +74,9 @@ TEST(MeasurementFloor, PointsErrAsMuchAsTheirPictureIsNoisy) {
 // One set of pictures at 1 % noise: shift, vignetting and MTF50 are all measured, keep what is asked, and are not
 // without error.
 TEST(MeasurementFloor, QuantitiesKeepTheirTargets) {
-    const MeasurementFloor floor =
-        measure_quantities({.sweeps = {"noise"}, .values = {1.0}, .pictures = 1}, 3, 2, kQuiet);
+    const MeasurementFloor floor = kept_whole([](const findings::RunSettings& run) {
+        return measure_quantities({.sweeps = {"noise"}, .values = {1.0}, .pictures = 1}, run, kQuiet);
+    });
     ASSERT_EQ(floor.sweeps.size(), 3U);
     EXPECT_EQ(floor.checks.size(), 4U);
     for (const FloorSweep& sweep : floor.sweeps) {
@@ -92,7 +118,8 @@ TEST(MeasurementFloor, ThreadsChangeNothing) {
 // Of 40 trials, 38 hold on average; four standard errors (3.4 %) below is 81 %. That no interval holds less is what 40
 // trials can show; the experiment makes 500.
 TEST(MeasurementFloor, StatedIntervalsHoldTheTruth) {
-    const MeasurementFloor floor = measure_intervals({.trials = 40}, 1, 0, kQuiet);
+    const MeasurementFloor floor =
+        kept_whole([](const findings::RunSettings& run) { return measure_intervals({.trials = 40}, run, kQuiet); });
     EXPECT_EQ(floor.checks.size(), 10U);
     for (const findings::Check& check : floor.checks) {
         EXPECT_GE(check.value, 81.0) << check.label;
