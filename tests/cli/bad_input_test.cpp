@@ -303,6 +303,13 @@ TEST(BadExperiment, NamesTheLineAndTheKeyBeforeAnythingIsRendered) {
     place.file("experiment.toml", good);
     place.file("file", "");
     expect_refused(place, {"run", "experiment.toml", "-o", "file"}, {"file"});
+    // What turns out later: no chart is found in pictures of 8 × 6 pixels.
+    const Outcome outcome = place.run({"run", "experiment.toml", "-o", "out"});
+    EXPECT_EQ(outcome.status, 2);
+    EXPECT_EQ(outcome.err.rfind("lensproof: experiment.toml: a: no 11 × 8 checkerboard found in any of 2 pictures", 0),
+              0U)
+        << outcome.err;
+    EXPECT_FALSE(place.has("out/report.html"));
 }
 
 TEST(BadOutput, IsRefusedBeforeTheWork) {

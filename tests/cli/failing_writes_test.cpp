@@ -69,6 +69,13 @@ class FailingWrites : public ::testing::Test {
         fs::create_directory(temporary_);
     }
 
+    /// Pictures of a chart to measure, and the chart.
+    void make_pictures() {
+        EXPECT_EQ(place_.run({"run", "experiment.toml", "-o", "made", "--quiet"}).status, 0);
+        fs::rename(place_.path() / "made/images/a", place_.path() / "pictures");
+        place_.file("chart.toml", "[chart]\nkind = \"checkerboard\"\nsquares = [12, 9]\nsquare_mm = 560.0\n");
+    }
+
     /// What the files hold where nothing fails.
     std::map<std::string, std::string> whole(const Job& job) {
         const Outcome outcome = place_.run(job.arguments);
@@ -157,11 +164,18 @@ const Job kRender = {{"render", "scene.toml", "-o", "a.exr", "--json", "a.json",
                      {"p.png", "c.state"}};
 const Job kConvert = {{"convert", "tessar", "t.zmx"}, {"t.zmx"}, {}};
 const Job kChart = {{"chart", "checkerboard", "-o", "b.pdf", "--quiet"}, {"b.pdf", "b.toml"}, {}};
-const Job kRun = {{"run", "experiment.toml", "-o", "out", "--quiet"}, {"out/report.html", "out/report.json"}, {}};
+const Job kRun = {
+    {"run", "experiment.toml", "-o", "out", "--fresh", "--quiet"}, {"out/report.html", "out/report.json"}, {}};
+// Of the pictures that the run leaves.
+const Job kMeasure = {{"measure", "pictures", "--chart", "chart.toml", "--model", "brown-conrady", "--no-self-test",
+                       "-o", "m.json", "--json", "again.json", "--quiet"},
+                      {"m.json", "again.json"},
+                      {}};
 
 // The system's own limit on a file's size, at any byte: what a library leaves in its buffers until the end counts.
 TEST_F(FailingWrites, AtAnyByteNothingIsHalfWritten) {
-    for (const Job& job : {kRender, kConvert, kChart}) {
+    make_pictures();
+    for (const Job& job : {kRender, kConvert, kChart, kMeasure}) {
         const std::map<std::string, std::string> expected = whole(job);
         for (const auto& [file, content] : expected) {
             for (const std::size_t written : {content.size() / 2, content.size() - 40, content.size() - 1}) {
@@ -181,7 +195,9 @@ TEST_F(FailingWrites, AtAnyCallNothingIsHalfWritten) {
     if (failing_calls_library().empty()) {
         GTEST_SKIP() << "the address sanitizer wants to be loaded first";
     }
-    for (const auto& [job, widening] : {std::pair{kRender, 1.3}, {kConvert, 1.3}, {kChart, 1.5}, {kRun, 5.0}}) {
+    make_pictures();
+    for (const auto& [job, widening] :
+         {std::pair{kRender, 1.3}, {kConvert, 1.3}, {kChart, 1.5}, {kMeasure, 1.3}, {kRun, 5.0}}) {
         const std::map<std::string, std::string> expected = whole(job);
         for (const std::string kind : {"write ", "writes "}) {
             EXPECT_GT(fail_in_turn(job, expected, kind, widening), 5) << job.arguments[0];
@@ -197,7 +213,8 @@ TEST_F(FailingWrites, AtAnyAllocationNothingIsHalfWritten) {
     if (failing_calls_library().empty()) {
         GTEST_SKIP() << "the address sanitizer wants to be loaded first";
     }
-    for (const auto& [job, widening] : {std::pair{kRender, 1.5}, {kConvert, 1.5}, {kRun, 5.0}}) {
+    make_pictures();
+    for (const auto& [job, widening] : {std::pair{kRender, 1.5}, {kConvert, 1.5}, {kMeasure, 3.0}, {kRun, 5.0}}) {
         EXPECT_GT(fail_in_turn(job, whole(job), "new ", widening), 1000) << job.arguments[0];
     }
 }
