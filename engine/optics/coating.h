@@ -1,4 +1,5 @@
-// engine/optics/coating.h — how much light passes a coated surface, by thin-film transfer matrices.
+// engine/optics/coating.h — what a coated surface reflects and lets through: thin films by their characteristic
+// matrices, each polarisation by itself.
 #pragma once
 #include <cmath>
 #include <complex>
@@ -7,13 +8,14 @@
 
 namespace lensproof::optics {
 
-/// A coating at one wavelength: layers without absorption from the scene's side to the sensor's, or a stated
-/// reflectance in their place, which then holds at every angle.
+/// A coating at one wavelength: layers from the scene's side to the sensor's, or a stated reflectance in their place,
+/// which then holds at every angle from which light passes.
 template <class T>
 struct TraceCoating {
     struct Layer {
-        T index;
-        T thickness;  // in vacuum wavelengths
+        T index;              // n of the complex index n + iκ
+        T thickness;          // in vacuum wavelengths
+        T extinction = T(0);  // κ, 0 or above: a wave fades as e^{−2πκ z/λ}
     };
     std::vector<Layer> layers;
     std::optional<T> reflectance;
@@ -21,44 +23,224 @@ struct TraceCoating {
     [[nodiscard]] bool is_bare() const { return layers.empty() && !reflectance; }
 };
 
-/// The transmittance for unpolarised light from a medium of index `n1` at the angle of cosine `cos1` into one of `n2`
-/// at `cos2`; n1 lies on the scene's side, wherever the light comes from (the transmittance is the same).
-///
-/// Each layer's characteristic matrix is [cos δ, i sin δ / η; i η sin δ, cos δ] with δ = 2π n d cos θ / λ and the
-/// tilted admittance η = n cos θ (s) or n / cos θ (p); with [B; C] their product on [1; η₂], T = 4 η₁ η₂ / |η₁ B + C|²
-/// (Macleod, Thin-Film Optical Filters, 4th ed., §2.4; Abelès 1950). Within a layer beyond its critical angle cos θ is
-/// imaginary and the same formulas hold.
+/// The shares of a wave's power that a coated surface sends back and on; the layers keep the rest.
 template <class T>
-T coating_transmittance(const TraceCoating<T>& coating, const T& n1, const T& n2, const T& cos1, const T& cos2) {
-    if (coating.reflectance) {
-        return T(1) - *coating.reflectance;
+struct CoatedPowers {
+    T reflected;
+    T transmitted;
+
+    [[nodiscard]] T absorbed() const { return T(1) - reflected - transmitted; }
+};
+
+/// Both polarisations' powers. Their mean is what becomes of unpolarised light.
+template <class T>
+struct PolarisedPowers {
+    CoatedPowers<T> s;
+    CoatedPowers<T> p;
+
+    [[nodiscard]] CoatedPowers<T> unpolarised() const {
+        return {(s.reflected + p.reflected) / T(2), (s.transmitted + p.transmitted) / T(2)};
     }
-    using Complex = std::complex<T>;
-    const T sine = n1 * n1 * (T(1) - cos1 * cos1);  // (n sin θ)², the same in every layer
-    using std::acos;
-    const T pi = acos(T(-1));  // in every number type
-    T sum = T(0);
-    for (const bool s_polarised : {true, false}) {
-        const auto admittance = [&](const Complex& n, const Complex& cosine) {
-            return s_polarised ? n * cosine : n / cosine;
-        };
-        Complex b(T(1));
-        Complex c = admittance(n2, cos2);
-        const T eta1 = admittance(n1, cos1).real();
-        const T eta2 = c.real();
-        for (auto layer = coating.layers.rbegin(); layer != coating.layers.rend(); ++layer) {
-            const Complex cosine = sqrt(Complex(T(1) - sine / (layer->index * layer->index)));
-            const Complex eta = admittance(layer->index, cosine);
-            const Complex phase = T(2) * pi * layer->index * layer->thickness * cosine;
-            const Complex i_sine = Complex(T(0), T(1)) * std::sin(phase);
-            const Complex cos_phase = std::cos(phase);
-            const Complex next_b = cos_phase * b + i_sine / eta * c;
-            c = i_sine * eta * b + cos_phase * c;
-            b = next_b;
+};
+
+/// Amplitudes of the electric field at the surface, the incoming wave's being 1, for waves e^{i(k·x − ωt)}: reflected
+/// at the layers' near side, transmitted at their far side. Signs are Fresnel's (Born & Wolf, §1.5.2): p is positive
+/// along k × s in each of the three waves, so that r_p = −r_s at normal incidence. A transmitted power is |t|² times
+/// the ratio of the two media's n cos θ, for s and p alike.
+template <class T>
+struct CoatedAmplitudes {
+    std::complex<T> r_s;
+    std::complex<T> r_p;
+    std::complex<T> t_s;
+    std::complex<T> t_p;
+};
+
+/// The product of finite numbers: std::complex's own looks for infinities, which takes longer than the product.
+template <class T>
+std::complex<T> times(const std::complex<T>& a, const std::complex<T>& b) {
+    return {a.real() * b.real() - a.imag() * b.imag(), a.real() * b.imag() + a.imag() * b.real()};
+}
+
+/// A layer's wave of longitudinal wavenumber q (in units of the vacuum's, Im q ≥ 0) over its thickness: cos φ and
+/// sin φ / q, φ = 2π q · thickness, both divided by e^{Im φ} (which is 1 / `decay`), so that they stay finite in
+/// layers that are thick and let little through. Both are even in q: where a layer is at its critical angle nothing is
+/// lost.
+template <class T>
+struct LayerWave {
+    std::complex<T> cosine;
+    std::complex<T> sine_by_q;
+    T decay;
+};
+
+template <class T>
+LayerWave<T> layer_wave(const std::complex<T>& q_squared, const T& phase_by_q) {
+    using std::cos;
+    using std::exp;
+    using std::expm1;
+    using std::sin;
+    using std::sqrt;
+    const T real = q_squared.real();
+    if (q_squared.imag() == T(0)) {
+        const T q = real < T(0) ? sqrt(-real) : sqrt(real);
+        const T phase = phase_by_q * q;
+        if (phase == T(0)) {
+            return {T(1), phase_by_q, T(1)};
         }
-        sum += T(4) * eta1 * eta2 / std::norm(eta1 * b + c);
+        if (real > T(0)) {
+            return {cos(phase), sin(phase) / q, T(1)};
+        }
+        const T fall = expm1(T(-2) * phase);  // cosh φ = (1 + e^{−2φ}) e^φ / 2, and sinh φ likewise
+        return {T(1) + fall / T(2), -fall / (T(2) * q), exp(-phase)};
     }
-    return sum / T(2);
+    const std::complex<T> q = sqrt(q_squared);
+    const T turn = phase_by_q * q.real();
+    const T fading = phase_by_q * q.imag();
+    const T fall = expm1(T(-2) * fading);
+    const T cosh = T(1) + fall / T(2);
+    const T sinh = -fall / T(2);
+    const std::complex<T> sine(sin(turn) * cosh, cos(turn) * sinh);
+    return {{cos(turn) * cosh, -sin(turn) * sinh}, sine / q, exp(-fading)};
+}
+
+/// One polarisation's tangential fields on the near side of the layers, up to the factor `scale`, and the admittances
+/// of the two media: η = n cos θ for s, with the electric field first, and cos θ / n for p, with the magnetic field
+/// first. So neither is infinite at grazing incidence.
+template <class T>
+struct StackFields {
+    std::complex<T> first;
+    std::complex<T> second;
+    T scale;  // first and second are the fields times this, where the transmitted wave has amplitude 1
+    T eta_near;
+    std::complex<T> eta_far;
+
+    [[nodiscard]] std::complex<T> incoming() const { return eta_near * first + second; }  // times 2 η_near
+    [[nodiscard]] std::complex<T> outgoing() const { return eta_near * first - second; }
+    [[nodiscard]] std::complex<T> reflected() const { return outgoing() / incoming(); }
+    [[nodiscard]] std::complex<T> transmitted() const { return T(2) * eta_near * scale / incoming(); }
+    [[nodiscard]] CoatedPowers<T> powers() const {
+        const T incoming_power = std::norm(incoming());
+        return {.reflected = std::norm(outgoing()) / incoming_power,
+                .transmitted = T(4) * eta_near * eta_far.real() * scale / incoming_power * scale};
+    }
+};
+
+template <class T>
+struct PolarisedFields {
+    StackFields<T> s;
+    StackFields<T> p;
+};
+
+/// The fields on the side that light comes from, at an angle of cosine `cos_incidence` there (above 0). `n1` is the
+/// medium on the scene's side, `n2` that on the sensor's.
+///
+/// A layer's matrix is [cos φ, −i sin φ / η; −i η sin φ, cos φ] on (first, second), applied to (1, η_far) from the far
+/// side on (Abelès 1950; Macleod, Thin-Film Optical Filters, 4th ed., §2.4, with κ and i of the other sign). Going
+/// back, the wave that fades in the layers grows and the others' rounding errors fade; what it grows by is kept apart.
+template <class T>
+PolarisedFields<T> stack_fields(const TraceCoating<T>& coating, const T& n1, const T& n2, const T& cos_incidence,
+                                bool from_scene_side) {
+    using std::abs;
+    using std::acos;
+    using std::sqrt;
+    using Complex = std::complex<T>;
+    const T& near = from_scene_side ? n1 : n2;
+    const T& far = from_scene_side ? n2 : n1;
+    const T q_near = near * cos_incidence;
+    const T far_squared = (far - near) * (far + near) + q_near * q_near;
+    const Complex q_far = far_squared < T(0) ? Complex(T(0), sqrt(-far_squared)) : Complex(sqrt(far_squared));
+    PolarisedFields<T> fields{
+        .s = {.first = T(1), .second = q_far, .scale = T(1), .eta_near = q_near, .eta_far = q_far},
+        .p = {.first = T(1), .second = {}, .scale = T(1), .eta_near = q_near / (near * near), .eta_far = {}}};
+    fields.p.eta_far = q_far / (far * far);
+    fields.p.second = fields.p.eta_far;
+    const T two_pi = T(2) * acos(T(-1));  // in every number type
+    const std::size_t count = coating.layers.size();
+    for (std::size_t i = 0; i < count; ++i) {
+        const typename TraceCoating<T>::Layer& layer = coating.layers[from_scene_side ? count - 1 - i : i];
+        const T& n = layer.index;
+        const T& kappa = layer.extinction;
+        const Complex n_squared((n - kappa) * (n + kappa), T(2) * n * kappa);
+        const Complex q_squared((n - near) * (n + near) - kappa * kappa + q_near * q_near, n_squared.imag());
+        const LayerWave<T> wave = layer_wave(q_squared, two_pi * layer.thickness);
+        const Complex sine_times_q = times(wave.sine_by_q, q_squared);
+        const auto cross = [&](StackFields<T>& of, const Complex& by_eta, const Complex& with_eta) {
+            const Complex to_first = times(by_eta, of.second);
+            const Complex to_second = times(with_eta, of.first);
+            of.first = times(wave.cosine, of.first) + Complex(to_first.imag(), -to_first.real());
+            of.second = times(wave.cosine, of.second) + Complex(to_second.imag(), -to_second.real());
+            of.scale = of.scale * wave.decay;
+            const T size = abs(of.first.real()) + abs(of.first.imag()) + abs(of.second.real()) + abs(of.second.imag());
+            if (const T large(1e10); size > large) {  // a mirror's fields grow with each of its layers
+                of.first = of.first / large;
+                of.second = of.second / large;
+                of.scale = of.scale / large;
+            }
+        };
+        cross(fields.s, wave.sine_by_q, sine_times_q);
+        cross(fields.p, times(wave.sine_by_q, n_squared), sine_times_q / n_squared);
+    }
+    return fields;
+}
+
+/// Whether light from that side gets through at all, or is reflected totally by the medium behind the coating.
+template <class T>
+bool is_beyond_critical(const T& n1, const T& n2, const T& cos_incidence, bool from_scene_side) {
+    const T& near = from_scene_side ? n1 : n2;
+    const T& far = from_scene_side ? n2 : n1;
+    return (far - near) * (far + near) + near * near * cos_incidence * cos_incidence <= T(0);
+}
+
+/// The shares of power for light that meets a surface between `n1` on the scene's side and `n2` on the sensor's, coming
+/// from either at an angle of cosine `cos_incidence` (in its own medium, above 0). Beyond the critical angle nothing is
+/// transmitted, and what layers without absorption reflect is 1. Without layers these are Fresnel's.
+template <class T>
+PolarisedPowers<T> coating_powers(const TraceCoating<T>& coating, const T& n1, const T& n2, const T& cos_incidence,
+                                  bool from_scene_side) {
+    if (coating.reflectance) {
+        const T stated = is_beyond_critical(n1, n2, cos_incidence, from_scene_side) ? T(1) : *coating.reflectance;
+        const CoatedPowers<T> powers{.reflected = stated, .transmitted = T(1) - stated};
+        return {powers, powers};
+    }
+    const PolarisedFields<T> fields = stack_fields(coating, n1, n2, cos_incidence, from_scene_side);
+    return {fields.s.powers(), fields.p.powers()};
+}
+
+/// Of unpolarised light.
+template <class T>
+T coating_transmittance(const TraceCoating<T>& coating, const T& n1, const T& n2, const T& cos_incidence,
+                        bool from_scene_side) {
+    return coating_powers(coating, n1, n2, cos_incidence, from_scene_side).unpolarised().transmitted;
+}
+
+template <class T>
+T coating_reflectance(const TraceCoating<T>& coating, const T& n1, const T& n2, const T& cos_incidence,
+                      bool from_scene_side) {
+    return coating_powers(coating, n1, n2, cos_incidence, from_scene_side).unpolarised().reflected;
+}
+
+/// Amplitudes in the place of powers. A stated reflectance gives their moduli, the bare surface their phases.
+template <class T>
+CoatedAmplitudes<T> coating_amplitudes(const TraceCoating<T>& coating, const T& n1, const T& n2, const T& cos_incidence,
+                                       bool from_scene_side) {
+    using std::sqrt;
+    const PolarisedFields<T> fields = stack_fields(coating, n1, n2, cos_incidence, from_scene_side);
+    const T from_magnetic = from_scene_side ? n1 / n2 : n2 / n1;
+    CoatedAmplitudes<T> amplitudes{.r_s = fields.s.reflected(),
+                                   .r_p = fields.p.reflected(),
+                                   .t_s = fields.s.transmitted(),
+                                   .t_p = from_magnetic * fields.p.transmitted()};
+    if (coating.reflectance && !is_beyond_critical(n1, n2, cos_incidence, from_scene_side)) {
+        const auto scale_to = [](std::complex<T>& amplitude, const T& power, const T& stated) {
+            amplitude = power > T(0) ? amplitude * sqrt(stated / power) : std::complex<T>(sqrt(stated));
+        };
+        const CoatedPowers<T> s = fields.s.powers();
+        const CoatedPowers<T> p = fields.p.powers();
+        scale_to(amplitudes.r_s, s.reflected, *coating.reflectance);
+        scale_to(amplitudes.r_p, p.reflected, *coating.reflectance);
+        scale_to(amplitudes.t_s, s.transmitted, T(1) - *coating.reflectance);
+        scale_to(amplitudes.t_p, p.transmitted, T(1) - *coating.reflectance);
+    }
+    return amplitudes;
 }
 
 }  // namespace lensproof::optics

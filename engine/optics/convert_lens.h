@@ -37,7 +37,8 @@ SpecialSurface<To> convert_special(const SpecialSurface<From>& from) {
     to.vertex = {static_cast<To>(from.vertex.x), static_cast<To>(from.vertex.y)};
     std::ranges::transform(from.axes, to.axes.begin(), convert_vector<To, From>);
     for (const auto& layer : from.coating.layers) {
-        to.coating.layers.push_back({static_cast<To>(layer.index), static_cast<To>(layer.thickness)});
+        to.coating.layers.push_back(
+            {static_cast<To>(layer.index), static_cast<To>(layer.thickness), static_cast<To>(layer.extinction)});
     }
     if (from.coating.reflectance) {
         to.coating.reflectance = static_cast<To>(*from.coating.reflectance);

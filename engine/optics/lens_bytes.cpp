@@ -32,8 +32,8 @@ void append_shape(std::string& bytes, const SurfaceShape<double>& shape) {
 void append_coating(std::string& bytes, const TraceCoating<double>& coating) {
     const auto& [layers, reflectance] = coating;
     append_bytes(bytes, layers.size());
-    for (const auto& [index, thickness] : layers) {
-        append_bytes(bytes, index, thickness);
+    for (const auto& [index, thickness, extinction] : layers) {
+        append_bytes(bytes, index, thickness, extinction);
     }
     append_bytes(bytes, reflectance.has_value(), reflectance.value_or(0.0));
 }

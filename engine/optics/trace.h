@@ -75,9 +75,8 @@ T mask_transmittance(const TraceSurface<T>& surface, const SpecialSurface<T>& sp
 /// The transmittance of a coated surface for unpolarised light, from either side.
 template <class T>
 T coated_transmittance(const TraceSurface<T>& surface, const SpecialSurface<T>& special, bool forward,
-                       const T& cos_incidence, const T& cos_refraction) {
-    return coating_transmittance(special.coating, surface.index_before, surface.index_after,
-                                 forward ? cos_incidence : cos_refraction, forward ? cos_refraction : cos_incidence);
+                       const T& cos_incidence) {
+    return coating_transmittance(special.coating, surface.index_before, surface.index_after, cos_incidence, forward);
 }
 
 template <class T>
@@ -261,8 +260,7 @@ TracedRay<T> trace_through(const TraceLens<T>& lens, const Ray<T>& ray, Visitor&
         ray_direction = bent.direction;
         T passing = T(1);
         if (has_specials && special != nullptr && !special->coating.is_bare()) {
-            passing = coated_transmittance(surface, *special, direction == Direction::forward, meeting.cos_incidence,
-                                           bent.cos_refraction);
+            passing = coated_transmittance(surface, *special, direction == Direction::forward, meeting.cos_incidence);
         } else {
             passing = fresnel_transmittance(index_before, index_after, meeting.cos_incidence, bent.cos_refraction);
         }

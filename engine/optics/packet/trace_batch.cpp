@@ -39,18 +39,16 @@ T lane_mask_transmittance(const SpectralLens<T>& lens, int surface, T x, T y) {
 }
 
 template <class T>
-T lane_coated_transmittance(const SpectralLens<T>& lens, int wavelength, int surface, bool forward, T cos_incidence,
-                            T cos_refraction) {
+T lane_coated_transmittance(const SpectralLens<T>& lens, int wavelength, int surface, bool forward, T cos_incidence) {
     const TraceLens<T>& at = lens.at(wavelength);
     const TraceSurface<T>& coated = at.surfaces[static_cast<std::size_t>(surface)];
-    return coated_transmittance(coated, at.specials[static_cast<std::size_t>(coated.special)], forward, cos_incidence,
-                                cos_refraction);
+    return coated_transmittance(coated, at.specials[static_cast<std::size_t>(coated.special)], forward, cos_incidence);
 }
 
 template float lane_mask_transmittance(const SpectralLens<float>&, int, float, float);
 template double lane_mask_transmittance(const SpectralLens<double>&, int, double, double);
-template float lane_coated_transmittance(const SpectralLens<float>&, int, int, bool, float, float);
-template double lane_coated_transmittance(const SpectralLens<double>&, int, int, bool, double, double);
+template float lane_coated_transmittance(const SpectralLens<float>&, int, int, bool, float);
+template double lane_coated_transmittance(const SpectralLens<double>&, int, int, bool, double);
 
 template <Direction direction, class T>
 void trace_batch(const SpectralLens<T>& lens, RayBatch<T>& rays, const BatchSettings& settings) {

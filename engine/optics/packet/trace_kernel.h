@@ -298,9 +298,8 @@ class BlockTracer {
                 settle(here, packet, before, after, met.hit, beyond || !(open > Numbers(Scalar(0))), bent.transmitted);
             add_path(packet, media, met.distance, fate.met);
             if constexpr (carry != Carry::geometry) {
-                const Numbers passing = special.coating.is_bare()
-                                            ? fresnel(media, met, bent)
-                                            : coated_transmittances(here, packet, met, bent, fate.on);
+                const Numbers passing = special.coating.is_bare() ? fresnel(media, met, bent)
+                                                                  : coated_transmittances(here, packet, met, fate.on);
                 add_loss(packet, passing * open, fate.on);
             }
         }
@@ -325,13 +324,13 @@ class BlockTracer {
     }
 
     Numbers coated_transmittances(const Here& here, int packet, const Intersection<Numbers>& met,
-                                  const Refraction<Numbers>& bent, const Mask& lanes) const {
+                                  const Mask& lanes) const {
         Numbers passing(Scalar(1));
         for (int lane = 0; lane < kLanes; ++lane) {
             if (lanes[lane]) {
                 const int wavelength = lens_.is_monochromatic ? 0 : rays_.wavelength[at(packet) + lane];
                 passing.set(lane, lane_coated_transmittance(*lens_.lens, wavelength, here.index, kForward,
-                                                            met.cos_incidence[lane], bent.cos_refraction[lane]));
+                                                            met.cos_incidence[lane]));
             }
         }
         return passing;

@@ -40,8 +40,7 @@ struct KernelRays {
 template <class T>
 T lane_mask_transmittance(const SpectralLens<T>& lens, int surface, T x, T y);
 template <class T>
-T lane_coated_transmittance(const SpectralLens<T>& lens, int wavelength, int surface, bool forward, T cos_incidence,
-                            T cos_refraction);
+T lane_coated_transmittance(const SpectralLens<T>& lens, int wavelength, int surface, bool forward, T cos_incidence);
 
 template <class T>
 using TraceKernel = void (*)(const KernelLens<T>& lens, const KernelRays<T>& rays, bool clip);
