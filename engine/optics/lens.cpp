@@ -26,31 +26,6 @@ constexpr double kLargestLength = 1e7;
 constexpr double kLargestThickness = 1e10;
 constexpr double kSmallestRadius = 1e-3;
 
-Glass everywhere(std::string name, DispersionFormula formula) {
-    Glass glass;
-    glass.name = std::move(name);
-    glass.formula = formula;
-    glass.max_wavelength_nm = kInfinity;
-    return glass;
-}
-
-Glass tabulated_glass(const std::vector<WavelengthValue>& indices) {
-    Glass glass;
-    glass.name = fmt::format("a table of {} indices", indices.size());
-    if (indices.size() == 1) {
-        return everywhere(glass.name, ConstantIndex{indices.front().value});
-    }
-    IndexTable table;
-    for (const WavelengthValue& entry : indices) {
-        table.wavelength_um.push_back(1e-3 * entry.wavelength_nm);
-        table.index.push_back(entry.value);
-    }
-    glass.formula = std::move(table);
-    glass.min_wavelength_nm = indices.front().wavelength_nm;
-    glass.max_wavelength_nm = indices.back().wavelength_nm;
-    return glass;
-}
-
 void require(bool holds, const PrescribedSurface& row, const char* key, double found, const char* expected) {
     if (!holds) {
         throw InputError(fmt::format("{}.{} is {}, expected {}", row.where, key, found, expected));
@@ -169,10 +144,10 @@ Glass resolved_medium(const PrescribedSurface& surface, const GlassCatalogue& gl
                       const std::vector<std::string>& preferred_makers) {
     const StatedMedium& medium = surface.medium;
     if (medium.is_air()) {
-        return everywhere("air", ConstantIndex{1.0});
+        return constant_glass("air", 1.0);
     }
     if (!medium.indices.empty()) {
-        return tabulated_glass(medium.indices);
+        return tabulated_glass(fmt::format("a table of {} indices", medium.indices.size()), medium.indices);
     }
     GlassMatch match;
     if (!medium.glass.empty()) {
@@ -182,7 +157,7 @@ Glass resolved_medium(const PrescribedSurface& surface, const GlassCatalogue& gl
         }
     }
     if (medium.n_d && !medium.V_d) {
-        return everywhere(fmt::format("n={}", *medium.n_d), ConstantIndex{*medium.n_d});
+        return constant_glass(fmt::format("n={}", *medium.n_d), *medium.n_d);
     }
     if (medium.n_d) {
         Glass glass;
@@ -243,9 +218,8 @@ Lens make_lens(const Prescription& prescription, const GlassCatalogue& glasses, 
     double barrel_before = kInfinity;
     for (const PrescribedSurface& row : prescription.surfaces) {
         const auto override_index = overrides.find(row.medium.glass);
-        Glass medium = override_index != overrides.end()
-                           ? everywhere(row.medium.glass, ConstantIndex{override_index->second})
-                           : resolved_medium(row, glasses, prescription.preferred_makers);
+        Glass medium = override_index != overrides.end() ? constant_glass(row.medium.glass, override_index->second)
+                                                         : resolved_medium(row, glasses, prescription.preferred_makers);
         used.insert(row.medium.glass);
         if (override_index == overrides.end() && row.medium.indices.empty() && !row.medium.is_air() &&
             !row.medium.glass.empty()) {
@@ -259,7 +233,15 @@ Lens make_lens(const Prescription& prescription, const GlassCatalogue& glasses, 
         surface.semi_diameter = std::min({surface.semi_diameter, barrel_before, row.barrel_mm.value_or(kInfinity)});
         surface.medium = std::move(medium);
         if (!row.coating.empty()) {
-            surface.coating = prescription.coatings.at(row.coating);
+            const auto coating = prescription.coatings.find(row.coating);
+            if (coating == prescription.coatings.end()) {
+                throw InputError(fmt::format("{}.coating is \"{}\", which the prescription does not hold", row.where,
+                                             printable(row.coating)));
+            }
+            surface.coating = resolved_coating(
+                coating->second, glasses,
+                lens.surfaces.empty() ? constant_glass("air", 1.0) : lens.surfaces.back().medium, surface.medium,
+                fmt::format("{}: coating {}", prescription.file.string(), row.coating));
         }
         lens.surfaces.push_back(std::move(surface));
         barrel_before = row.barrel_mm.value_or(kInfinity);
@@ -287,6 +269,12 @@ WavelengthRange wavelength_range(const Lens& lens) {
     for (const LensSurface& surface : lens.surfaces) {
         range.min_nm = std::max(range.min_nm, surface.medium.min_wavelength_nm);
         range.max_nm = std::min(range.max_nm, surface.medium.max_wavelength_nm);
+        if (const auto* films = std::get_if<std::vector<ThinFilm>>(&surface.coating)) {
+            for (const ThinFilm& film : *films) {
+                range.min_nm = std::max(range.min_nm, film.medium.min_wavelength_nm);
+                range.max_nm = std::min(range.max_nm, film.medium.max_wavelength_nm);
+            }
+        }
     }
     return range;
 }
@@ -300,18 +288,6 @@ double index_in(Surroundings surroundings, const Glass& medium, double wavelengt
     }
     const double in_air_nm = air_wavelength_nm(wavelength_nm);
     return absolute_index(refractive_index(medium.formula, in_air_nm), in_air_nm);
-}
-
-TraceCoating<double> traced_coating(const Coating& coating, double wavelength_nm) {
-    TraceCoating<double> traced;
-    if (const auto* layers = std::get_if<std::vector<CoatingLayer>>(&coating)) {
-        for (const CoatingLayer& layer : *layers) {
-            traced.layers.push_back({layer.index, layer.thickness_nm / wavelength_nm});
-        }
-    } else {
-        traced.reflectance = interpolated(std::get<std::vector<WavelengthValue>>(coating), wavelength_nm);
-    }
-    return traced;
 }
 
 TraceLens<double> traced_lens(const Lens& lens, double wavelength_nm) {
@@ -333,7 +309,7 @@ TraceLens<double> traced_lens(const Lens& lens, double wavelength_nm) {
                                        .shape = surface.shape,
                                        .vertex = surface.vertex,
                                        .axes = surface.axes,
-                                       .coating = traced_coating(surface.coating, wavelength_nm)};
+                                       .coating = coating_at(surface.coating, wavelength_nm, lens.name)};
         if (is_masked) {
             special.mask = lens.stop_mask;
         }

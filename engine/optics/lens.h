@@ -7,6 +7,7 @@
 
 #include "engine/optics/glass_catalogue.h"
 #include "engine/optics/prescription.h"
+#include "engine/optics/thin_film.h"
 #include "engine/optics/trace.h"
 
 namespace lensproof::optics {
@@ -22,7 +23,7 @@ struct LensSurface {
     bool has_shape = false;
     Vec2d vertex{};                                                                  // x, y of a displaced vertex
     std::array<Vec3d, 3> axes{{{1.0, 0.0, 0.0}, {0.0, 1.0, 0.0}, {0.0, 0.0, 1.0}}};  // of its frame, in lens space
-    Coating coating{};                                                               // empty layers: bare
+    LensCoating coating{};
 
     [[nodiscard]] bool is_misaligned() const {
         return axes[2] != Vec3d{0.0, 0.0, 1.0} || axes[0] != Vec3d{1.0, 0.0, 0.0} || vertex != Vec2d{};
@@ -65,10 +66,11 @@ Glass resolved_medium(const PrescribedSurface& surface, const GlassCatalogue& gl
 Finding unknown_glass(const StatedMedium& medium, const GlassMatch& match, int surface);
 
 /// Looks the prescription's glasses up. Throws InputError naming the file, the line and the name of an unknown glass,
-/// for an override of a glass that the lens does not have, and for a stop's picture that was not read.
+/// for an override of a glass that the lens does not have, for a coating that it does not have or that
+/// `resolved_coating` refuses, and for a stop's picture that was not read.
 Lens make_lens(const Prescription& prescription, const GlassCatalogue& glasses, const IndexOverrides& overrides = {});
 
-/// The range of wavelengths that every glass's formula covers, nm.
+/// The range of wavelengths that every glass's formula and every coating covers, nm.
 struct WavelengthRange {
     double min_nm = 0.0;
     double max_nm = 0.0;

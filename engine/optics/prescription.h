@@ -137,16 +137,27 @@ struct TexturedStop {
 
 using StopShape = std::variant<std::monostate, PolygonStop, TexturedStop>;  // monostate: the full circle
 
-/// A layer of a thin-film stack.
+/// A layer of a thin-film stack, of index n + iκ. One value of n or κ holds at every wavelength; a table of several
+/// ends where it ends.
 struct CoatingLayer {
-    double index = 1.0;
-    double thickness_nm = 0.0;
+    std::vector<WavelengthValue> index;         // n; empty where a material is named
+    std::string material{};                     // as the glass catalogues know it
+    std::vector<WavelengthValue> extinction{};  // κ; empty: 0
+    double thickness_nm = 0.0;                  // or, where that is 0:
+    double quarter_wave_nm = 0.0;               // the vacuum wavelength of which it is a quarter's optical thickness
     bool operator==(const CoatingLayer&) const = default;
 };
 
-/// What lies on a surface: layers from the scene's side to the sensor's, or the reflectance that a maker states.
-/// One value of the latter holds at every wavelength; between values it is interpolated, beyond them kept.
-using Coating = std::variant<std::vector<CoatingLayer>, std::vector<WavelengthValue>>;
+/// Layers from the scene's side to the sensor's; or from the side of the lower index, which is the air's, to the other.
+struct LayerStack {
+    std::vector<CoatingLayer> layers;
+    bool from_air = false;
+    bool operator==(const LayerStack&) const = default;
+};
+
+/// What lies on a surface: thin films, or the reflectance that a maker states. One value of the latter holds at every
+/// wavelength; between values it is interpolated, beyond them kept.
+using Coating = std::variant<LayerStack, std::vector<WavelengthValue>>;
 
 /// A range of surfaces that is shifted and tilted as one, about the vertex of its first surface plus `pivot_mm` along
 /// the axis. Surfaces are counted from 1.

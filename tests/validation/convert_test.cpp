@@ -172,7 +172,7 @@ TEST_F(Conversion, WarnsOfWhatTablesCannotSay) {
     grouped.groups = {{.first = 2, .last = 4, .misalignment = {{0.0, 0.2}, {0.5, 0.0, 0.0}}, .pivot_mm = 2.0}};
     expect("lost-misalignment", grouped);
     optics::Prescription coated = plain();
-    coated.coatings["single"] = std::vector<optics::CoatingLayer>{{1.38, 99.6}};
+    coated.coatings["single"] = optics::LayerStack{{{.index = {{550.0, 1.38}}, .thickness_nm = 99.6}}};
     coated.surfaces[1].coating = "single";
     expect("lost-coating", coated);
     optics::Prescription bladed = plain();

@@ -8,6 +8,7 @@
 #include "engine/formats/glass/shipped_glasses.h"
 #include "engine/formats/image/image.h"
 #include "engine/formats/prescription/prescription_file.h"
+#include "engine/formats/prescription/shipped_coatings.h"
 
 namespace lensproof::formats {
 
@@ -54,7 +55,8 @@ std::string read_lens_name(TomlTable& table) {
 }
 
 optics::Lens load_lens(const std::string& lens, const LensSettings& settings) {
-    optics::Prescription prescription = with_stop_picture(read_prescription(find_lens_file(lens)));
+    optics::Prescription prescription =
+        with_coatings(with_stop_picture(read_prescription(find_lens_file(lens))), settings.coatings);
     const std::size_t position = settings.zoom.empty() ? 0 : optics::find_zoom_position(prescription, settings.zoom);
     prescription = optics::at_zoom_position(std::move(prescription), position);
     const optics::GlassCatalogue glasses =

@@ -2,6 +2,7 @@
 #pragma once
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "engine/base/toml.h"
 #include "engine/optics/lens.h"
@@ -12,6 +13,7 @@ namespace lensproof::formats {
 struct LensSettings {
     optics::IndexOverrides indices;
     std::string zoom;                               // the position's name or number; empty: the first
+    std::vector<std::string> coatings{};            // in place of its own: see with_coatings
     std::optional<optics::GlassCatalogue> glasses;  // nothing: those that ship
 };
 

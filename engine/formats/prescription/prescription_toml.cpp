@@ -11,8 +11,10 @@
 #include "engine/base/infinity.h"
 #include "engine/base/text.h"
 #include "engine/base/toml.h"
+#include "engine/formats/prescription/coating_toml.h"
 #include "engine/formats/prescription/forbes_asphere.h"
 #include "engine/formats/prescription/prescription_forms.h"
+#include "engine/formats/prescription/shipped_coatings.h"
 
 namespace lensproof::formats {
 
@@ -38,26 +40,6 @@ std::array<double, count> numbers_or_zero(TomlTable& table, const std::string& k
 
 optics::Misalignment read_misalignment(TomlTable& table) {
     return {.decentre_mm = numbers_or_zero<2>(table, "decentre_mm"), .tilt_deg = numbers_or_zero<3>(table, "tilt_deg")};
-}
-
-/// Pairs [wavelength in nm, value], by rising wavelength.
-std::vector<optics::WavelengthValue> read_wavelength_values(TomlTable& table, const std::string& key,
-                                                            const Bounds& values) {
-    std::vector<optics::WavelengthValue> read;
-    for (const std::vector<double>& pair : table.number_lists(key)) {
-        const bool good = pair.size() == 2 && pair[0] > 0.0 && pair[1] >= values.min && pair[1] <= values.max &&
-                          (read.empty() || pair[0] > read.back().wavelength_nm);
-        if (!good) {
-            table.fail(key, fmt::format("holds [{}], expected pairs [wavelength in nm, value from {} to {}] by rising "
-                                        "wavelength",
-                                        fmt::join(pair, ", "), values.min, values.max));
-        }
-        read.push_back({pair[0], pair[1]});
-    }
-    if (read.empty()) {
-        table.fail(key, "is empty, expected pairs [wavelength in nm, value]");
-    }
-    return read;
 }
 
 optics::StatedMedium read_medium(TomlTable& row) {
@@ -152,36 +134,6 @@ optics::StopShape read_stop_shape(TomlTable& table) {
     return shape;
 }
 
-optics::CoatingLayer read_layer(TomlTable& table) {
-    const double index = table.number("n", {.min = 1.0, .max = 5.0});
-    const bool quarter = table.has("quarter_wave_nm");
-    const double thickness_nm =
-        quarter ? table.number("quarter_wave_nm", kPositive) / (4.0 * index) : table.number("thickness_nm", kPositive);
-    table.finish();
-    return {.index = index, .thickness_nm = thickness_nm};
-}
-
-optics::Coating read_coating(TomlTable& table) {
-    optics::Coating coating;
-    if (table.has("reflectance")) {
-        coating =
-            table.is_number("reflectance")
-                ? std::vector<optics::WavelengthValue>{{550.0, table.number("reflectance", {.min = 0.0, .max = 1.0})}}
-                : read_wavelength_values(table, "reflectance", {.min = 0.0, .max = 1.0});
-    } else {
-        std::vector<optics::CoatingLayer> layers;
-        for (TomlTable& layer : table.tables("layers")) {
-            layers.push_back(read_layer(layer));
-        }
-        if (layers.empty()) {
-            table.fail("", "expected layers = [{ n = …, thickness_nm = … or quarter_wave_nm = … }], or reflectance");
-        }
-        coating = std::move(layers);
-    }
-    table.finish();
-    return coating;
-}
-
 /// Surfaces from `first` to `last`, both counted from 1.
 void read_surface_range(TomlTable& table, int surfaces, int& first, int& last) {
     const std::vector<double> range = table.numbers("surfaces", 2, {.min = 1.0, .max = static_cast<double>(surfaces)});
@@ -250,10 +202,17 @@ void read_coatings(TomlTable& top, optics::Prescription& prescription) {
         }
     }
     for (const optics::PrescribedSurface& surface : prescription.surfaces) {
-        if (!surface.coating.empty() && !prescription.coatings.contains(surface.coating)) {
-            top.fail("surfaces", fmt::format("name the coating \"{}\", but there is no table [coatings.{}]",
-                                             surface.coating, surface.coating));
+        const std::string& name = surface.coating;
+        if (name.empty() || prescription.coatings.contains(name)) {
+            continue;
         }
+        if (!is_shipped_coating(name)) {
+            top.fail("surfaces",
+                     fmt::format("name the coating \"{}\", but there is no table [coatings.{}], and none of "
+                                 "that name ships{}",
+                                 printable(name), printable(name), coating_hint(name, prescription)));
+        }
+        prescription.coatings[name] = shipped_coating(name).coating;
     }
 }
 

@@ -35,6 +35,11 @@ std::string pairs(const std::vector<optics::WavelengthValue>& values) {
     return fmt::format("[{}]", fmt::join(texts, ", "));
 }
 
+/// What holds at every wavelength, or a table.
+std::string number_or_pairs(const std::vector<optics::WavelengthValue>& values) {
+    return values.size() == 1 ? number(values.front().value) : pairs(values);
+}
+
 /// `bytes` with whatever is not UTF-8 replaced by U+FFFD, since a TOML file may hold nothing else.
 std::string valid_utf8(std::string_view bytes) {
     return Json::parse(Json(bytes).dump(), "").text();
@@ -334,18 +339,30 @@ class Writer {
         }
     }
 
+    static std::string layer_text(const optics::CoatingLayer& layer) {
+        std::string text = layer.material.empty() ? "n = " + number_or_pairs(layer.index)
+                                                  : "material = " + toml_string(layer.material);
+        if (!layer.extinction.empty()) {
+            text += ", k = " + number_or_pairs(layer.extinction);
+        }
+        text += layer.quarter_wave_nm > 0.0 ? ", quarter_wave_nm = " + number(layer.quarter_wave_nm)
+                                            : ", thickness_nm = " + number(layer.thickness_nm);
+        return "{ " + text + " }";
+    }
+
     void write_coating(const std::string& name, const optics::Coating& coating) {
         text_ += fmt::format("\n[coatings.{}]\n", key_name(name));
-        if (const auto* layers = std::get_if<std::vector<optics::CoatingLayer>>(&coating)) {
+        if (const auto* stack = std::get_if<optics::LayerStack>(&coating)) {
             std::vector<std::string> each;
-            std::ranges::transform(*layers, std::back_inserter(each), [](const optics::CoatingLayer& layer) {
-                return fmt::format("{{ n = {}, thickness_nm = {} }}", number(layer.index), number(layer.thickness_nm));
-            });
+            std::ranges::transform(stack->layers, std::back_inserter(each), layer_text);
             line("layers", fmt::format("[{}]", fmt::join(each, ", ")));
+            if (stack->from_air) {
+                line("from_air", "true");
+            }
             return;
         }
         const auto& reflectance = std::get<std::vector<optics::WavelengthValue>>(coating);
-        line("reflectance", reflectance.size() == 1 ? number(reflectance.front().value) : pairs(reflectance));
+        line("reflectance", number_or_pairs(reflectance));
     }
 
     void write_groups() {

@@ -358,7 +358,8 @@ TEST(Misalignment, OfOneSurfaceIsThatOfItsGroup) {
 
 TEST(Coating, IsTracedFromThePrescriptionBothWays) {
     Prescription prescription = biconvex();
-    prescription.coatings["v"] = std::vector<CoatingLayer>{{std::sqrt(1.6), kWavelength / 4.0 / std::sqrt(1.6)}};
+    prescription.coatings["v"] =
+        LayerStack{{{.index = {{550.0, std::sqrt(1.6)}}, .thickness_nm = kWavelength / 4.0 / std::sqrt(1.6)}}};
     prescription.coatings["stated"] = std::vector<WavelengthValue>{{500.0, 0.01}, {700.0, 0.03}};
     prescription.surfaces[0].coating = "v";
     prescription.surfaces[1].coating = "stated";

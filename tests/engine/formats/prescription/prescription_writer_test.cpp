@@ -35,7 +35,11 @@ optics::Prescription everything() {
                    .entrance_pupil_diameter_mm = 1.0 / 3.0,
                    .source = "claims"};
     lens.stop_shape = optics::PolygonStop{.blades = 7, .curvature = 0.25, .rotation_deg = -12.5};
-    lens.coatings["single layer"] = std::vector<optics::CoatingLayer>{{1.38, 99.6}, {2.1, 0.1}};
+    lens.coatings["single layer"] = optics::LayerStack{
+        .layers = {{.index = {{550.0, 1.38}}, .thickness_nm = 99.6},
+                   {.index = {{400.0, 2.2}, {700.0, 2.1}}, .extinction = {{550.0, 1e-4}}, .quarter_wave_nm = 500.0},
+                   {.material = "MGF2", .extinction = {{400.0, 2e-4}, {700.0, 0.0}}, .quarter_wave_nm = 550.0}},
+        .from_air = true};
     lens.coatings["stated"] = std::vector<optics::WavelengthValue>{{400.0, 0.01}, {700.0, 0.02}};
     lens.coatings["same"] = std::vector<optics::WavelengthValue>{{550.0, 0.005}};
 

@@ -173,7 +173,7 @@ TEST(TracePacket, TracesBladesCoatingsAndTurnedGroups) {
     for (const Lens& lens :
          {tessar_with("[stop]\nblades = 6\nrotation_deg = 10\n"),
           tessar_with("[[groups]]\nsurfaces = [3, 6]\ntilt_deg = [1, -2, 0]\ndecentre_mm = [0.3, 0.2]\n"),
-          formats::load_lens("heliar-tronnier")}) {
+          formats::load_lens("heliar-tronnier"), formats::load_lens("tessar", {.coatings = {"broadband,1=v-coat"}})}) {
         ASSERT_FALSE(at_wavelength<double>(lens, 550.0).specials.empty());
         const Fates fates = compare<Direction::forward>(at_three(lens), rays_at(lens, 400, 0.4));
         EXPECT_GT(fates[static_cast<std::size_t>(RayStatus::ok)], 20);
