@@ -59,6 +59,16 @@ void add_glass_catalogue_option(Command& command, std::vector<std::string>& file
         .takes_one_argument();
 }
 
+void add_coating_option(Command& command, std::vector<std::string>& wishes) {
+    command
+        .add_option(
+            "--coating", wishes,
+            "Coatings in the place of the lens's own: broadband on every face to air, 3=mgf2 on surface 3, none "
+            "for bare; several between commas (see lensproof coatings)")
+        .type_name("[SURFACE=]NAME,…")
+        .takes_one_argument();
+}
+
 optics::GlassCatalogue read_glass_catalogues(const std::vector<std::string>& files) {
     optics::GlassCatalogue catalogue = formats::shipped_glasses();
     for (const std::string& file : files) {

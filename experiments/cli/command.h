@@ -36,6 +36,9 @@ void add_glass_catalogue_option(Command& command, std::vector<std::string>& file
 /// out goes to standard error.
 optics::GlassCatalogue read_glass_catalogues(const std::vector<std::string>& files);
 
+/// Adds --coating, which may be repeated: formats::with_coatings says what it may be.
+void add_coating_option(Command& command, std::vector<std::string>& wishes);
+
 /// Adds --index NAME=VALUE, which may be repeated and takes no more than that one argument.
 void add_index_option(Command& command, std::vector<std::string>& texts);
 
@@ -85,5 +88,6 @@ void add_export_command(Program& program);
 void add_run_command(Program& program);
 void add_lenses_command(Program& program);
 void add_glasses_command(Program& program);
+void add_coatings_command(Program& program);
 
 }  // namespace lensproof::cli

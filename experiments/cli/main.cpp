@@ -70,6 +70,7 @@ int run(int argc, char** argv) {
     add_run_command(program);
     add_lenses_command(program);
     add_glasses_command(program);
+    add_coatings_command(program);
     return program.run(argc, argv);
 }
 

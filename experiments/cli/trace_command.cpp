@@ -39,6 +39,7 @@ struct TraceOptions {
     std::string precision = "double";
     std::vector<std::string> indices;
     std::vector<std::string> glass_catalogues;
+    std::vector<std::string> coatings;
     bool reverse = false;
     bool no_clip = false;
 };
@@ -270,6 +271,7 @@ int run_trace(const TraceOptions& options) {
     const optics::Lens lens =
         formats::load_lens(options.lens, {.indices = parse_indices(options.indices),
                                           .zoom = options.zoom,
+                                          .coatings = options.coatings,
                                           .glasses = read_glass_catalogues(options.glass_catalogues)});
     print_findings(options.common, lens);
     const GivenRays rays(options.rays_file);
@@ -316,6 +318,7 @@ void add_trace_command(Program& program) {
     add_index_option(command, options->indices);
     command.add_option("--zoom", options->zoom, "Position of a zoom lens, by name or number (default: the first)")
         .type_name("POSITION");
+    add_coating_option(command, options->coatings);
     add_glass_catalogue_option(command, options->glass_catalogues);
     command.add_flag("--reverse", options->reverse, "Rays run from the sensor outwards");
     command.add_flag("--no-clip", options->no_clip, "Follow rays beyond the rims; the first rim passed is still named");

@@ -16,8 +16,8 @@ namespace lensproof::command_line_test {
 
 using Json = nlohmann::json;
 
-const std::vector<std::string> kCommands = {"check",   "convert", "trace", "render", "merge",  "measure",
-                                            "compare", "export",  "run",   "lenses", "glasses"};
+const std::vector<std::string> kCommands = {"check",   "convert", "trace", "render", "merge",   "measure",
+                                            "compare", "export",  "run",   "lenses", "glasses", "coatings"};
 
 std::string rays_text() {
     return std::string(kRayHeader) + kAxialRay + "b,0,19,-10,0,0,1,486.1327\nc,0,40,-10,0,0,1,587.5618\n";
@@ -52,6 +52,57 @@ TEST(Lists, NameWhatShipsWithItsSource) {
     for (const Json& glass : glasses) {
         EXPECT_FALSE(glass["source"].get<std::string>().empty()) << glass;
     }
+}
+
+TEST(Coatings, AreListedWithWhatTheyReflect) {
+    const Workplace place;
+    const Json result = place.json({"coatings"});
+    EXPECT_NEAR(result["bare_reflectance_at_550_nm_percent"].get<double>(), 4.2389,
+                1e-3);  // ((n - 1)/(n + 1))², 1.51852
+    std::vector<std::string> names;
+    for (const Json& coating : result["coatings"]) {
+        names.push_back(coating["coating"]);
+        EXPECT_FALSE(coating["source"].get<std::string>().empty());
+        EXPECT_TRUE(says(coating["notes"], "Assumed"));
+        EXPECT_LT(coating["mean_reflectance_400_to_700_nm_percent"].get<double>(), 2.0);
+        EXPECT_GE(coating["absorptance_at_550_nm_percent"].get<double>(), -1e-12);
+    }
+    EXPECT_EQ(names, (std::vector<std::string>{"broadband", "mgf2", "quarter-half-quarter", "v-coat"}));
+    EXPECT_TRUE(says(place.run({"coatings"}).out, "assumed"));
+    place.file("own.toml", "name = \"own\"\nsource = \"me\"\nlayers = [{ n = 1.38, quarter_wave_nm = 550.0 }]\n");
+    const Json own = place.json({"coatings", "own.toml", "mgf2", "--on", "SF6", "--plots", "plots"});
+    ASSERT_EQ(own["coatings"].size(), 2U);
+    EXPECT_EQ(own["coatings"][0]["coating"], "own");
+    EXPECT_EQ(own["coatings"][0]["spectra"].size(), 5U);
+    for (const char* file : {"own-wavelength.svg", "own-angle.svg", "mgf2-wavelength.svg", "mgf2-angle.svg"}) {
+        EXPECT_TRUE(says(place.content(std::string("plots/") + file), "<svg")) << file;
+    }
+    for (const auto& [arguments, words] :
+         {std::pair{std::vector<std::string>{"coatings", "mgf3"}, "did you mean \"mgf2\"?"},
+          {{"coatings", "--on", "GLAS"}, "--on GLAS"}}) {
+        const Outcome refused = place.run(arguments);
+        EXPECT_EQ(refused.status, 2);
+        EXPECT_TRUE(says(refused.err, words));
+    }
+}
+
+// A ray along the axis passes six faces to air: all with a quarter wave, all bare, one only.
+TEST(Coatings, AreWornOnRequest) {
+    const Workplace place;
+    place.file("rays.csv", std::string(kRayHeader) + "a,0,0,-10,0,0,1,550\n");
+    const auto passes = [&](const std::vector<std::string>& more) {
+        std::vector<std::string> arguments{"trace", "tessar", "--rays", "rays.csv"};
+        arguments.insert(arguments.end(), more.begin(), more.end());
+        return place.json(arguments)["rows"].back()["transmittance"].get<double>();
+    };
+    const double bare = passes({});
+    EXPECT_EQ(passes({"--coating", "none"}), bare);
+    EXPECT_GT(passes({"--coating", "mgf2"}), 1.2 * bare);
+    EXPECT_GT(passes({"--coating", "broadband"}), passes({"--coating", "mgf2"}));
+    EXPECT_GT(passes({"--coating", "1=mgf2"}), bare);
+    const Outcome refused = place.run({"trace", "tessar", "--rays", "rays.csv", "--coating", "9=mgf2"});
+    EXPECT_EQ(refused.status, 2);
+    EXPECT_TRUE(says(refused.err, "from 1 to 8"));
 }
 
 TEST(Glasses, ShowsTheSheetOfAGlassAsItsMakerDoes) {

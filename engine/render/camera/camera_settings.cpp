@@ -54,6 +54,9 @@ std::optional<optics::PolygonStop> read_blades(TomlTable& table) {
 /// What stands between lens and film.
 void read_exposure(TomlTable& table, CameraSettings& camera) {
     camera.zoom = table.text_or("zoom", "");
+    if (table.has("coating")) {
+        camera.coatings = {table.text("coating")};
+    }
     camera.blades = read_blades(table);
     camera.f_number = table.number("f_number", {.min = 0.1, .max = 1000.0});
     camera.focus_distance_mm = table.infinity("focus_distance_mm") > 0 ? std::numeric_limits<double>::infinity()
@@ -136,7 +139,7 @@ CameraSettings read_placed_camera(TomlTable& table) {
 }
 
 optics::Lens camera_lens(const CameraSettings& camera) {
-    optics::Lens lens = formats::load_lens(camera.lens, {.zoom = camera.zoom});
+    optics::Lens lens = formats::load_lens(camera.lens, {.zoom = camera.zoom, .coatings = camera.coatings});
     if (camera.blades) {
         lens.stop_mask = optics::StopMask(*camera.blades);
     }

@@ -30,6 +30,7 @@ const std::string& name_of(LensModel model);
 struct CameraSettings {
     std::string lens;  // a file, or the name of a lens that ships; empty where a focal length stands for it
     std::string zoom;  // the position's name or number; empty: the first
+    std::vector<std::string> coatings;  // in the place of its own: see formats::with_coatings
     /// Blades in place of what shape the lens's stop has, in the circle that the f-number says.
     std::optional<optics::PolygonStop> blades;
     double f_number = 0.0;
@@ -50,9 +51,9 @@ struct CameraSettings {
 /// X_world = R · X_camera + t. The camera frame is that of pose.h.
 AffineMap camera_to_world(const CameraSettings& camera);
 
-/// Reads a camera's table: lens, zoom (optional), blades with blade_curvature and blade_rotation_deg (optional),
-/// f_number, focus_distance_mm (inf allowed), sensor_mm = [w, h], pixels = [w, h], shutter_s, iso, response. Throws
-/// InputError naming file, line and key; pixels have to be square.
+/// Reads a camera's table: lens, zoom (optional), coating (optional), blades with blade_curvature and
+/// blade_rotation_deg (optional), f_number, focus_distance_mm (inf allowed), sensor_mm = [w, h], pixels = [w, h],
+/// shutter_s, iso, response. Throws InputError naming file, line and key; pixels have to be square.
 CameraSettings read_camera_settings(TomlTable& table);
 
 /// The same of a camera that stands in a world: position_mm, look_at_mm, and up, model, focal_length_mm in the place of
