@@ -53,6 +53,10 @@ FieldAnalysis analyze_field(double field_deg, const AnalysedColour& analysed,
     row.surface = bundle->chief.surface;
     row.chief_ray_point = bundle->chief.image_point;
     row.lateral_colour = bundle->chief.image_height - reference->chief.image_height;
+    const Ray<double>& chief = bundle->chief.front;
+    row.transmittance =
+        optics::trace_past_rims(colour.lens, Ray<double>{chief.origin - chief.direction, chief.direction})
+            .transmittance;
     row.distortion_percent = distortion_percent(colour.lens, projection, *bundle);
     if (const auto pencil = ray_pencil(colour.lens, *bundle)) {
         const AstigmaticFoci foci = astigmatic_foci(*pencil, colour.lens.image_z);

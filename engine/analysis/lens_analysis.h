@@ -33,7 +33,8 @@ struct FieldAnalysis {
     std::optional<double> tangential_focus;  // from the image plane, positive beyond it
     std::optional<double> sagittal_focus;
     std::optional<double> relative_illumination;
-    std::optional<double> vignetting;  // beam cross-section over that on axis
+    std::optional<double> vignetting;     // beam cross-section over that on axis
+    std::optional<double> transmittance;  // of the chief ray: surfaces, coatings, glass
     std::optional<double> spot_rms;
     std::optional<Vec2d> spot_centroid;
     std::optional<double> wavefront_rms_waves;

@@ -63,6 +63,8 @@ TraceLens<To> convert_lens(const TraceLens<From>& lens) {
         converted.surfaces.back().from_far_reverse = surface.from_far_reverse;
     }
     std::ranges::transform(lens.specials, std::back_inserter(converted.specials), convert_special<To, From>);
+    std::ranges::transform(lens.attenuation, std::back_inserter(converted.attenuation),
+                           [](const From& attenuation) { return static_cast<To>(attenuation); });
     return converted;
 }
 

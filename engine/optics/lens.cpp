@@ -290,9 +290,17 @@ double index_in(Surroundings surroundings, const Glass& medium, double wavelengt
     return absolute_index(refractive_index(medium.formula, in_air_nm), in_air_nm);
 }
 
+/// By which light fades in glass of known internal transmittance, 1/mm: as far as a table's zeros may say.
+double attenuation_of(const Glass& medium, double wavelength_nm) {
+    constexpr double kOpaque = 100.0;
+    const std::optional<double> through = internal_transmittance(medium, wavelength_nm, 1.0);
+    return through ? std::min(-std::log(*through), kOpaque) : 0.0;
+}
+
 TraceLens<double> traced_lens(const Lens& lens, double wavelength_nm) {
     TraceLens<double> traced{.surfaces = {}, .image_z = lens.image_z};
     double index_before = 1.0;
+    traced.attenuation = {0.0};
     for (const LensSurface& surface : lens.surfaces) {
         if (!covers(surface.medium, wavelength_nm)) {
             throw InputError(fmt::format("{}: {} nm is outside the range of {}, {} to {} nm", lens.name, wavelength_nm,
@@ -317,7 +325,11 @@ TraceLens<double> traced_lens(const Lens& lens, double wavelength_nm) {
             traced.surfaces.back().special = static_cast<int>(traced.specials.size());
             traced.specials.push_back(std::move(special));
         }
+        traced.attenuation.push_back(attenuation_of(surface.medium, wavelength_nm));
         index_before = index_after;
+    }
+    if (std::ranges::all_of(traced.attenuation, [](double per_mm) { return per_mm == 0.0; })) {
+        traced.attenuation.clear();
     }
     note_near_gaps(traced.surfaces);
     return traced;

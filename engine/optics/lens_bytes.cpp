@@ -52,8 +52,11 @@ void append_special(std::string& bytes, const SpecialSurface<double>& special) {
 }  // namespace
 
 void append_lens_bytes(std::string& bytes, const TraceLens<double>& lens) {
-    const auto& [surfaces, image_z, specials] = lens;
-    append_bytes(bytes, surfaces.size(), specials.size(), image_z);
+    const auto& [surfaces, image_z, specials, attenuation] = lens;
+    append_bytes(bytes, surfaces.size(), specials.size(), image_z, attenuation.size());
+    for (const double per_mm : attenuation) {
+        append_bytes(bytes, per_mm);
+    }
     for (const TraceSurface<double>& surface : surfaces) {
         const auto& [curvature, vertex_z, semi_diameter_squared, index_before, index_after, forward_ratio,
                      reverse_ratio, is_stop, special, from_far_forward, from_far_reverse] = surface;

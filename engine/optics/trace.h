@@ -121,6 +121,14 @@ struct TraceLens {
     std::vector<TraceSurface<T>> surfaces;
     T image_z;  // the sensor's plane, mm
     std::vector<SpecialSurface<T>> specials{};
+    /// By which light fades in the medium in front of each surface, and behind the last: e^(−attenuation · mm). Empty
+    /// where no medium is known to absorb.
+    std::vector<T> attenuation{};
+
+    /// Of the medium that a ray crosses on its way to a surface.
+    [[nodiscard]] const T& attenuation_towards(int surface, bool forward) const {
+        return attenuation[static_cast<std::size_t>(forward ? surface : surface + 1)];
+    }
 };
 
 /// Where a ray travels: from the scene to the sensor, or from the sensor outwards.
@@ -135,7 +143,7 @@ template <class T>
 struct TracedRay {
     Ray<T> ray;       // origin on that surface, direction after it (before it where it ended there)
     T optical_path;   // Σ n·t from the ray's origin, mm
-    T transmittance;  // Fresnel, every surface passed, unpolarised
+    T transmittance;  // Fresnel and coatings at every surface passed, unpolarised, and what the glass between left
     RayStatus status;
     int surface;  // counted from 0 as in the prescription: where it was clipped or ended, else the last one
 };
@@ -150,8 +158,15 @@ struct SurfaceEvent {
     RayStatus status;
 };
 
-/// `trace`, compiled once for lenses of centred, bare spheres alone and once for all others, so that the former pay for
-/// nothing.
+/// What is left of light over an optical depth, Σ attenuation · distance.
+template <class T>
+T fading(const T& optical_depth) {
+    using std::exp;
+    return exp(-optical_depth);
+}
+
+/// `trace`, compiled once for lenses of centred, bare spheres of clear glass alone and once for all others, so that the
+/// former pay for nothing.
 template <Direction direction, Rims rims, bool has_specials, class T, class Visitor>
 TracedRay<T> trace_through(const TraceLens<T>& lens, const Ray<T>& ray, Visitor&& visit) {
     // The state in single variables, made a TracedRay only at the end, and two vectors for `intersect` rather than a
@@ -161,14 +176,17 @@ TracedRay<T> trace_through(const TraceLens<T>& lens, const Ray<T>& ray, Visitor&
     T last_vertex_z = T(0);
     Vec3<T> ray_direction = ray.direction;
     T optical_path = T(0);
-    T transmittance = T(1);
+    T at_surfaces = T(1);
+    T optical_depth = T(0);
+    const bool absorbs = has_specials && !lens.attenuation.empty();
     RayStatus status = RayStatus::ok;
     int ended_at = -1;
     const auto global = [&] { return Ray<T>{{origin.x, origin.y, origin.z + last_vertex_z}, ray_direction}; };
+    const auto transmittance = [&] { return absorbs ? at_surfaces * fading(optical_depth) : at_surfaces; };
     const auto report = [&](int index, RayStatus here) {
-        visit(SurfaceEvent<T>{index, global(), optical_path, transmittance, here});
+        visit(SurfaceEvent<T>{index, global(), optical_path, transmittance(), here});
     };
-    const auto traced = [&] { return TracedRay<T>{global(), optical_path, transmittance, status, ended_at}; };
+    const auto traced = [&] { return TracedRay<T>{global(), optical_path, transmittance(), status, ended_at}; };
 
     const int count = static_cast<int>(lens.surfaces.size());
     const T heading = direction == Direction::forward ? T(1) : T(-1);
@@ -214,6 +232,12 @@ TracedRay<T> trace_through(const TraceLens<T>& lens, const Ray<T>& ray, Visitor&
         }
         const Vec3<T>& point = meeting.point;
         optical_path = optical_path + index_before * (to_vertex + meeting.distance);
+        if constexpr (has_specials) {
+            if (absorbs) {
+                optical_depth = optical_depth + lens.attenuation_towards(index, direction == Direction::forward) *
+                                                    (to_vertex + meeting.distance);
+            }
+        }
         origin = point;
         last_vertex_z = surface.vertex_z;
         if constexpr (has_specials) {
@@ -270,7 +294,7 @@ TracedRay<T> trace_through(const TraceLens<T>& lens, const Ray<T>& ray, Visitor&
                 passing = passing * open;
             }
         }
-        transmittance = transmittance * passing;
+        at_surfaces = at_surfaces * passing;
         report(index, here);
     }
     if (status == RayStatus::ok) {
@@ -285,8 +309,8 @@ TracedRay<T> trace_through(const TraceLens<T>& lens, const Ray<T>& ray, Visitor&
 /// A missed surface has no point: its event repeats the ray as it was.
 template <Direction direction = Direction::forward, Rims rims = Rims::clip, class T, class Visitor>
 TracedRay<T> trace(const TraceLens<T>& lens, const Ray<T>& ray, Visitor&& visit) {
-    return lens.specials.empty() ? trace_through<direction, rims, false>(lens, ray, visit)
-                                 : trace_through<direction, rims, true>(lens, ray, visit);
+    return lens.specials.empty() && lens.attenuation.empty() ? trace_through<direction, rims, false>(lens, ray, visit)
+                                                             : trace_through<direction, rims, true>(lens, ray, visit);
 }
 
 template <Direction direction = Direction::forward, Rims rims = Rims::clip, class T>

@@ -108,6 +108,7 @@ Json field_json(const analysis::FieldAnalysis& row) {
         {"sagittal_focus_mm", optional_json(row.sagittal_focus)},
         {"relative_illumination", optional_json(row.relative_illumination)},
         {"vignetting", optional_json(row.vignetting)},
+        {"transmittance", optional_json(row.transmittance)},
         {"spot_rms_um", optional_json(row.spot_rms, kMicrometre)},
         {"spot_centroid_mm", row.spot_centroid ? Json{row.spot_centroid->x, row.spot_centroid->y} : Json(nullptr)},
         {"wavefront_rms_waves", optional_json(row.wavefront_rms_waves)},

@@ -17,6 +17,7 @@
 #include "engine/base/write_file.h"
 #include "engine/formats/prescription/load_lens.h"
 #include "engine/formats/prescription/prescription_file.h"
+#include "engine/formats/prescription/shipped_coatings.h"
 #include "engine/optics/chief_ray.h"
 #include "engine/optics/focus.h"
 #include "engine/spectral/wavelengths.h"
@@ -37,6 +38,7 @@ struct AnalyzeOptions {
     std::string zoom;
     std::vector<std::string> indices;
     std::vector<std::string> glass_catalogues;
+    std::vector<std::string> coatings;
     std::vector<double> wavelengths_nm;
     std::optional<double> reference_wavelength_nm;
     std::vector<double> fields_deg;
@@ -69,8 +71,8 @@ double object_distance(const std::string& option, const optics::Prescription& pr
 /// The lens as it is analysed: zoomed, stopped down, focused, its sensor in place.
 optics::Lens prepared_lens(const AnalyzeOptions& options, const optics::Prescription& prescription,
                            const optics::GlassCatalogue& glasses, double distance, double reference_wavelength_nm) {
-    optics::Lens lens =
-        optics::make_lens(formats::with_stop_picture(prescription), glasses, parse_indices(options.indices));
+    optics::Lens lens = formats::with_transmittance(
+        optics::make_lens(formats::with_stop_picture(prescription), glasses, parse_indices(options.indices)));
     if (options.f_number) {
         lens = optics::with_f_number(std::move(lens), *options.f_number, reference_wavelength_nm);
     }
@@ -179,7 +181,8 @@ int run_analyze(const AnalyzeOptions& options) {
     if (options.best_focus == "mtf" && !options.focus_frequency) {
         throw InputError("--best-focus mtf needs --focus-frequency, in cycles/mm");
     }
-    optics::Prescription prescription = formats::read_prescription(formats::find_lens_file(options.lens));
+    optics::Prescription prescription =
+        formats::with_coatings(formats::read_prescription(formats::find_lens_file(options.lens)), options.coatings);
     const std::size_t position = options.zoom.empty() ? 0 : optics::find_zoom_position(prescription, options.zoom);
     if (!prescription.zoom.empty()) {
         prescription.name += ", at " + prescription.zoom[position].name;
@@ -278,6 +281,7 @@ void add_analyze_command(Program& program) {
     command.add_option("--zoom", options->zoom, "Position of a zoom lens, by name or number (default: the first)")
         .type_name("POSITION");
     add_index_option(command, options->indices);
+    add_coating_option(command, options->coatings);
     add_glass_catalogue_option(command, options->glass_catalogues);
     add_common_options(command, options->common);
     command.runs([options] { return run_analyze(*options); });

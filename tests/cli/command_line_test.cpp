@@ -100,6 +100,14 @@ TEST(Coatings, AreWornOnRequest) {
     EXPECT_GT(passes({"--coating", "mgf2"}), 1.2 * bare);
     EXPECT_GT(passes({"--coating", "broadband"}), passes({"--coating", "mgf2"}));
     EXPECT_GT(passes({"--coating", "1=mgf2"}), bare);
+    const auto of_axis = [&](const char* coating) {
+        return place
+            .json({"analyze", "tessar", "--fields", "0", "--wavelengths", "550", "--coating",
+                   coating})["fields"][0]["transmittance"]
+            .get<double>();
+    };
+    EXPECT_NEAR(of_axis("none"), bare, 1e-12);
+    EXPECT_NEAR(of_axis("mgf2"), passes({"--coating", "mgf2"}), 1e-12);
     const Outcome refused = place.run({"trace", "tessar", "--rays", "rays.csv", "--coating", "9=mgf2"});
     EXPECT_EQ(refused.status, 2);
     EXPECT_TRUE(says(refused.err, "from 1 to 8"));

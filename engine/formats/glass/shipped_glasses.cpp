@@ -23,6 +23,10 @@ std::filesystem::path glass_folder() {
     return data_root() / "lenses" / "glass";
 }
 
+std::filesystem::path transmittance_file(const char* table) {
+    return glass_folder() / "transmittance" / fmt::format("{}.csv", table);
+}
+
 }  // namespace
 
 optics::GlassCatalogue shipped_glasses() {
@@ -44,13 +48,24 @@ std::vector<std::filesystem::path> shipped_glass_files() {
     return files;
 }
 
+std::vector<std::filesystem::path> shipped_transmittance_files() {
+    std::vector<std::filesystem::path> files;
+    for (const char* table : kTables) {
+        std::filesystem::path file = transmittance_file(table);
+        if (std::filesystem::exists(file)) {
+            files.push_back(std::move(file));
+        }
+    }
+    return files;
+}
+
 std::vector<optics::TransmittancePoint> shipped_transmittance(const optics::Glass& glass) {
     if (!glass.internal_transmittance.empty()) {
         return glass.internal_transmittance;
     }
     std::vector<optics::TransmittancePoint> points;
     for (const char* name : kTables) {
-        const std::filesystem::path file = glass_folder() / "transmittance" / fmt::format("{}.csv", name);
+        const std::filesystem::path file = transmittance_file(name);
         const std::string maker = std::string(name).substr(0, std::string_view(name).find('-'));
         if (!optics::same_letters(maker, glass.catalogue) || !std::filesystem::exists(file)) {
             continue;

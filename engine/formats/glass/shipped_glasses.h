@@ -13,6 +13,9 @@ optics::GlassCatalogue shipped_glasses();
 /// The files that `shipped_glasses` reads: among the inputs of whatever is computed with them.
 std::vector<std::filesystem::path> shipped_glass_files();
 
+/// The files that `shipped_transmittance` reads: likewise.
+std::vector<std::filesystem::path> shipped_transmittance_files();
+
 /// The internal transmittance of a glass that ships, which is not read with the rest; the glass's own where it has one.
 std::vector<optics::TransmittancePoint> shipped_transmittance(const optics::Glass& glass);
 

@@ -54,6 +54,13 @@ std::string read_lens_name(TomlTable& table) {
     return lens;
 }
 
+optics::Lens with_transmittance(optics::Lens lens) {
+    for (optics::LensSurface& surface : lens.surfaces) {
+        surface.medium.internal_transmittance = shipped_transmittance(surface.medium);
+    }
+    return lens;
+}
+
 optics::Lens load_lens(const std::string& lens, const LensSettings& settings) {
     optics::Prescription prescription =
         with_coatings(with_stop_picture(read_prescription(find_lens_file(lens))), settings.coatings);
@@ -61,7 +68,7 @@ optics::Lens load_lens(const std::string& lens, const LensSettings& settings) {
     prescription = optics::at_zoom_position(std::move(prescription), position);
     const optics::GlassCatalogue glasses =
         with_own_catalogues(settings.glasses ? *settings.glasses : shipped_glasses(), prescription);
-    return optics::make_lens(prescription, glasses, settings.indices);
+    return with_transmittance(optics::make_lens(prescription, glasses, settings.indices));
 }
 
 }  // namespace lensproof::formats

@@ -27,7 +27,11 @@ optics::Prescription with_stop_picture(optics::Prescription prescription);
 /// does.
 std::string read_lens_name(TomlTable& table);
 
-/// find_lens_file, read_prescription, the zoom position, and make_lens.
+/// The lens with the internal transmittance of its glasses that ship, which their catalogue leaves out; glass without
+/// data takes nothing.
+optics::Lens with_transmittance(optics::Lens lens);
+
+/// find_lens_file, read_prescription, the zoom position, coatings, make_lens and with_transmittance.
 optics::Lens load_lens(const std::string& lens, const LensSettings& settings = {});
 
 }  // namespace lensproof::formats

@@ -1,5 +1,6 @@
 #include "engine/optics/packet/spectral_lens.h"
 
+#include <algorithm>
 #include <stdexcept>
 
 namespace lensproof::optics {
@@ -33,7 +34,11 @@ SpectralLens<T>::SpectralLens(std::vector<TraceLens<T>> at) : at_(std::move(at))
         throw std::invalid_argument("a spectral lens has 1 to 65536 wavelengths");
     }
     const std::size_t count = at_.size();
-    table_.resize(at_.front().surfaces.size() * kColumns * count);
+    const std::size_t surfaces = at_.front().surfaces.size();
+    absorbs_ = std::ranges::any_of(at_, [](const TraceLens<T>& lens) { return !lens.attenuation.empty(); });
+    // What absorbs lies behind the rest, so that a lens of clear glass has no wider a table.
+    const std::size_t attenuations = surfaces * kColumns * count;
+    table_.resize(attenuations + (absorbs_ ? surfaces * 2 * count : 0));
     for (std::size_t k = 0; k < count; ++k) {
         if (!differ_in_indices_alone(at_.front(), at_[k])) {
             throw std::invalid_argument("the lenses of a spectral lens differ in more than indices and coatings");
@@ -46,13 +51,21 @@ SpectralLens<T>::SpectralLens(std::vector<TraceLens<T>> at) : at_(std::move(at))
             entry[kReverseRatio * count] = surface.reverse_ratio;
             entry += kColumns * count;
         }
+        for (std::size_t i = 0; i < surfaces && !at_[k].attenuation.empty(); ++i) {
+            T* of_surface = table_.data() + attenuations + i * 2 * count + k;
+            of_surface[0] = at_[k].attenuation[i];
+            of_surface[count] = at_[k].attenuation[i + 1];
+        }
     }
-    for (std::size_t i = 0; i < at_.front().surfaces.size(); ++i) {
+    for (std::size_t i = 0; i < surfaces; ++i) {
         const T* columns = table_.data() + i * kColumns * count;
+        const T* absorbing = absorbs_ ? table_.data() + attenuations + i * 2 * count : nullptr;
         indices_.push_back({.before = columns + kBefore * count,
                             .after = columns + kAfter * count,
                             .forward_ratio = columns + kForwardRatio * count,
-                            .reverse_ratio = columns + kReverseRatio * count});
+                            .reverse_ratio = columns + kReverseRatio * count,
+                            .attenuation_before = absorbing,
+                            .attenuation_after = absorbs_ ? absorbing + count : nullptr});
     }
 }
 

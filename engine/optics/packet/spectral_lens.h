@@ -8,7 +8,7 @@
 namespace lensproof::optics {
 
 /// One lens at up to 65,536 wavelengths in one precision. The surfaces are the same in all of them but for indices and
-/// coatings; the indices lie in a table a surface, so that a packet can look its lanes' up.
+/// coatings; the indices and what absorbs lie in a table a surface, so that a packet can look its lanes' up.
 template <class T>
 class SpectralLens {
   public:
@@ -33,13 +33,18 @@ class SpectralLens {
         const T* after;
         const T* forward_ratio;
         const T* reverse_ratio;
+        const T* attenuation_before;
+        const T* attenuation_after;
     };
     [[nodiscard]] const std::vector<Indices>& indices() const { return indices_; }
+    /// Whether a medium absorbs at one of the wavelengths.
+    [[nodiscard]] bool absorbs() const { return absorbs_; }
 
   private:
     std::vector<TraceLens<T>> at_;
     std::vector<T> table_;  // [surface][which][wavelength]
     std::vector<Indices> indices_;
+    bool absorbs_ = false;
 };
 
 extern template class SpectralLens<float>;

@@ -45,6 +45,13 @@ T lane_coated_transmittance(const SpectralLens<T>& lens, int wavelength, int sur
     return coated_transmittance(coated, at.specials[static_cast<std::size_t>(coated.special)], forward, cos_incidence);
 }
 
+template <class T>
+T lane_fading(T optical_depth) {
+    return fading(optical_depth);
+}
+
+template float lane_fading(float);
+template double lane_fading(double);
 template float lane_mask_transmittance(const SpectralLens<float>&, int, float, float);
 template double lane_mask_transmittance(const SpectralLens<double>&, int, double, double);
 template float lane_coated_transmittance(const SpectralLens<float>&, int, int, bool, float);
@@ -58,7 +65,8 @@ void trace_batch(const SpectralLens<T>& lens, RayBatch<T>& rays, const BatchSett
                                    .specials = lens.at().front().specials.data(),
                                    .lens = &lens,
                                    .count = static_cast<int>(surfaces.size()),
-                                   .is_monochromatic = lens.wavelengths() == 1};
+                                   .is_monochromatic = lens.wavelengths() == 1,
+                                   .absorbs = lens.absorbs()};
     const KernelRays<T> plain_rays{.x = rays.origin.x.data(),
                                    .y = rays.origin.y.data(),
                                    .z = rays.origin.z.data(),

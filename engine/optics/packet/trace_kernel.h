@@ -93,6 +93,7 @@ class BlockTracer {
         set_going(packet, is_ray(packet, count));
         Numbers(Scalar(1)).store(transmittance_.data() + packet * kLanes);
         Numbers(Scalar(0)).store(path_.data() + packet * kLanes);
+        Numbers(Scalar(0)).store(depth_.data() + packet * kLanes);
     }
 
     /// Back into the batch, in lens space; the lanes behind the last ray keep what the batch has there.
@@ -111,11 +112,24 @@ class BlockTracer {
         put(state.direction.y, rays_.dy);
         put(state.direction.z, rays_.dz);
         if constexpr (carry != Carry::geometry) {
-            put(Numbers::load(transmittance_.data() + packet * kLanes), rays_.transmittance);
+            put(transmittances(packet), rays_.transmittance);
         }
         if constexpr (carry == Carry::all) {
             put(Numbers::load(path_.data() + packet * kLanes), rays_.optical_path);
         }
+    }
+
+    /// What surfaces and media left of each ray.
+    [[nodiscard]] Numbers transmittances(int packet) const {
+        const Numbers at_surfaces = Numbers::load(transmittance_.data() + packet * kLanes);
+        if (!lens_.absorbs) {
+            return at_surfaces;
+        }
+        Numbers left = at_surfaces;
+        for (int lane = 0; lane < kLanes; ++lane) {
+            left.set(lane, at_surfaces[lane] * lane_fading(depth_[packet * kLanes + lane]));
+        }
+        return left;
     }
 
     static Mask is_ray(int packet, int count) {
@@ -202,6 +216,7 @@ class BlockTracer {
             store(packet, {select(going, at_surface, before.origin), select(going, bent.direction, before.direction)});
         }
         add_path(packet, media, distance_moved<from_far>(here, before) + met.distance, going);
+        add_depth<per_lane>(here, packet, distance_moved<from_far>(here, before) + met.distance, going);
         add_loss(packet, fresnel(media, met, bent), going);
     }
 
@@ -246,6 +261,32 @@ class BlockTracer {
         }
     }
 
+    /// Adds a stretch in front of a surface to the optical depth of the rays in `lanes`, where it is asked for.
+    template <bool per_lane>
+    void add_depth(const Here& here, int packet, const Numbers& distance, const Mask& lanes) {
+        if constexpr (carry != Carry::geometry) {
+            if (lens_.absorbs) {
+                deepen<per_lane>(here.index, packet, distance, lanes);
+            }
+        }
+    }
+
+    /// Kept apart, so that clear glass pays for a branch alone.
+    template <bool per_lane>
+    [[gnu::noinline]] void deepen(int surface, int packet, const Numbers& distance, const Mask& lanes) {
+        const auto& of = lens_.indices[surface];
+        const Scalar* table = kForward ? of.attenuation_before : of.attenuation_after;
+        Numbers attenuation;
+        if constexpr (per_lane) {
+            attenuation = Numbers::gather(table, rays_.wavelength + at(packet));
+        } else {
+            attenuation = Numbers(*table);
+        }
+        Scalar* depth = depth_.data() + packet * kLanes;
+        const Numbers so_far = Numbers::load(depth);
+        select(lanes, so_far + attenuation * distance, so_far).store(depth);
+    }
+
     /// Takes a surface's loss from the rays in `lanes`, where it is asked for.
     void add_loss(int packet, const Numbers& passing, const Mask& lanes) {
         if constexpr (carry != Carry::geometry) {
@@ -266,6 +307,7 @@ class BlockTracer {
         const Fate fate =
             settle(here, packet, before, {met.point, bent.direction}, met.hit, !is_inside(here, met), bent.transmitted);
         add_path(packet, media, distance_moved<from_far>(here, before) + met.distance, fate.met);
+        add_depth<per_lane>(here, packet, distance_moved<from_far>(here, before) + met.distance, fate.met);
         add_loss(packet, fresnel(media, met, bent), fate.on);
     }
 
@@ -297,6 +339,7 @@ class BlockTracer {
             const Fate fate =
                 settle(here, packet, before, after, met.hit, beyond || !(open > Numbers(Scalar(0))), bent.transmitted);
             add_path(packet, media, met.distance, fate.met);
+            add_depth<per_lane>(here, packet, met.distance, fate.met);
             if constexpr (carry != Carry::geometry) {
                 const Numbers passing = special.coating.is_bare() ? fresnel(media, met, bent)
                                                                   : coated_transmittances(here, packet, met, fate.on);
@@ -387,6 +430,7 @@ class BlockTracer {
     alignas(kPacketAlignment) Column dz_;
     alignas(kPacketAlignment) Column path_;
     alignas(kPacketAlignment) Column transmittance_;
+    alignas(kPacketAlignment) Column depth_;  // optical: Σ attenuation · distance
     alignas(kPacketAlignment) Column going_;  // 1: not ended, 0: ended or no ray
 };
 

@@ -17,6 +17,7 @@ struct KernelLens {
     const SpectralLens<T>* lens = nullptr;  // for what is done ray by ray
     int count = 0;
     bool is_monochromatic = false;  // `wavelength` of the rays is then not looked at
+    bool absorbs = false;
 };
 
 /// Rays as the inner loop sees them: the columns of a RayBatch.
@@ -36,11 +37,15 @@ struct KernelRays {
     int size;
 };
 
-/// `mask_transmittance` and `coated_transmittance` of one ray. Not inline, so that they are compiled for any machine.
+/// `mask_transmittance`, `coated_transmittance` and `fading` of one ray. Not inline, so that they are compiled for any
+/// machine.
 template <class T>
 T lane_mask_transmittance(const SpectralLens<T>& lens, int surface, T x, T y);
 template <class T>
 T lane_coated_transmittance(const SpectralLens<T>& lens, int wavelength, int surface, bool forward, T cos_incidence);
+
+template <class T>
+T lane_fading(T optical_depth);
 
 template <class T>
 using TraceKernel = void (*)(const KernelLens<T>& lens, const KernelRays<T>& rays, bool clip);

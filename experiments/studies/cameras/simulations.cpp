@@ -232,6 +232,7 @@ findings::Study read_simulations(findings::ExperimentFile& file) {
                                                   const findings::RunProgress& progress, const findings::Findings&) {
         findings::Findings found;
         found.inputs = formats::shipped_glass_files();
+        std::ranges::move(formats::shipped_transmittance_files(), std::back_inserter(found.inputs));
         // A camera that cannot be is found before the long part begins.
         std::deque<render::Camera> cameras;
         for (const Simulation& simulation : simulations) {

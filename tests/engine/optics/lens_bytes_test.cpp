@@ -38,6 +38,12 @@ TEST(LensBytes, TellEveryLensFromEveryOther) {
     std::vector<Change> changes = {
         [](auto&) {},
         [](auto& lens) { nudge(lens.image_z); },
+        [](auto& lens) {
+            lens.attenuation = {0.0, 1e-3};
+        },
+        [](auto& lens) {
+            lens.attenuation = {0.0, 2e-3};
+        },
         [](auto& lens) { lens.surfaces.pop_back(); },
         [](auto& lens) { lens.specials.emplace_back(); },
         [](auto& lens) { nudge(lens.surfaces[1].curvature); },
