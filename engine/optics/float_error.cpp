@@ -10,20 +10,23 @@ namespace lensproof::optics {
 namespace {
 
 /// A ray's points on the surfaces and, forward, on the image plane; in double, which holds either type's.
-struct Path {
+struct TracedPath {
     std::vector<Vec3d> points;
     bool arrives = false;  // at the image plane, or in reverse at the first surface
     RayFate fate;
 };
 
 template <Direction direction, Rims rims, class T>
-Path path_of(const TraceLens<T>& lens, const Ray<double>& ray) {
-    Path path;
-    const TracedRay<T> traced = trace<direction, rims>(lens, convert_ray<T>(ray), [&](const SurfaceEvent<T>& event) {
+TracedPath path_of(const TraceLens<T>& lens, const GhostPath& reflections, const Ray<double>& ray) {
+    TracedPath path;
+    const auto visit = [&](const SurfaceEvent<T>& event) {
         if (event.status != RayStatus::missed) {  // that has no point
             path.points.push_back(convert_vector<double>(event.ray.origin));
         }
-    });
+    };
+    const TracedRay<T> traced = reflections.empty()
+                                    ? trace<direction, rims>(lens, convert_ray<T>(ray), visit)
+                                    : trace_ghost<direction, rims>(lens, reflections, convert_ray<T>(ray), {}, visit);
     path.fate = {traced.status, traced.surface};
     const bool ends = traced.status == RayStatus::missed || traced.status == RayStatus::total_internal_reflection ||
                       (rims == Rims::clip && traced.status != RayStatus::ok);
@@ -35,10 +38,11 @@ Path path_of(const TraceLens<T>& lens, const Ray<double>& ray) {
 }
 
 template <Direction direction, Rims rims>
-RayInFloat compare(const TraceLens<float>& lens_in_float, const TraceLens<double>& lens, const Ray<double>& ray) {
+RayInFloat compare(const TraceLens<float>& lens_in_float, const TraceLens<double>& lens, const Ray<double>& ray,
+                   const GhostPath& reflections = {}) {
     constexpr double kUmPerMm = 1e3;
-    const Path in_float = path_of<direction, rims>(lens_in_float, ray);
-    const Path in_double = path_of<direction, rims>(lens, ray);
+    const TracedPath in_float = path_of<direction, rims>(lens_in_float, reflections, ray);
+    const TracedPath in_double = path_of<direction, rims>(lens, reflections, ray);
     RayInFloat compared{.in_float = in_float.fate, .in_double = in_double.fate};
     for (std::size_t i = 0; i < std::min(in_float.points.size(), in_double.points.size()); ++i) {
         compared.off_um.push_back(kUmPerMm * length(in_float.points[i] - in_double.points[i]));
@@ -60,6 +64,12 @@ RayInFloat trace_in_float(const TraceLens<float>& lens_in_float, const TraceLens
     }
     return clip ? compare<Direction::reverse, Rims::clip>(lens_in_float, lens, ray)
                 : compare<Direction::reverse, Rims::follow>(lens_in_float, lens, ray);
+}
+
+RayInFloat trace_ghost_in_float(const TraceLens<float>& lens_in_float, const TraceLens<double>& lens,
+                                const GhostPath& path, const Ray<double>& ray, Rims rims) {
+    return rims == Rims::clip ? compare<Direction::forward, Rims::clip>(lens_in_float, lens, ray, path)
+                              : compare<Direction::forward, Rims::follow>(lens_in_float, lens, ray, path);
 }
 
 void Distances::add(double um) {

@@ -3,7 +3,7 @@
 #include <optional>
 #include <vector>
 
-#include "engine/optics/trace.h"
+#include "engine/optics/ghost_path.h"
 
 namespace lensproof::optics {
 
@@ -25,6 +25,10 @@ struct RayInFloat {
 
 RayInFloat trace_in_float(const TraceLens<float>& lens_in_float, const TraceLens<double>& lens, const Ray<double>& ray,
                           Direction direction, Rims rims);
+
+/// The same of a ray along a ghost.
+RayInFloat trace_ghost_in_float(const TraceLens<float>& lens_in_float, const TraceLens<double>& lens,
+                                const GhostPath& path, const Ray<double>& ray, Rims rims);
 
 /// Some distances, µm.
 struct Distances {

@@ -144,6 +144,11 @@ Option& Option::takes(int values) {
     return *this;
 }
 
+Option& Option::excludes(const Option& other) {
+    option_->excludes(other.option_);
+    return *this;
+}
+
 Option& Option::needs(const Option& other) {
     option_->needs(other.option_);
     return *this;

@@ -41,6 +41,7 @@ class Option {
     Option& takes_one_argument();          // of a list: an option's further values repeat its name
     Option& takes(int values);
     Option& needs(const Option& other);
+    Option& excludes(const Option& other);
 
   private:
     CLI::Option* option_;

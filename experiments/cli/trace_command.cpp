@@ -14,8 +14,10 @@
 #include "engine/base/write_file.h"
 #include "engine/formats/prescription/load_lens.h"
 #include "engine/optics/float_error.h"
+#include "engine/optics/ghost_path.h"
 #include "engine/optics/lens.h"
 #include "experiments/cli/command.h"
+#include "experiments/cli/ghost_options.h"
 #include "experiments/cli/terminal.h"
 
 namespace lensproof::cli {
@@ -42,6 +44,14 @@ struct TraceOptions {
     std::vector<std::string> coatings;
     bool reverse = false;
     bool no_clip = false;
+    std::vector<std::string> sequence;
+    MirrorOptions mirrors;
+};
+
+/// The way that rays take: through the lens, or along a ghost.
+struct Way {
+    optics::GhostPath reflections;  // empty: through
+    optics::StrayMirrors<double> mirrors;
 };
 
 // Far beyond any scene, far below what would overflow when squared, in a float too.
@@ -158,17 +168,21 @@ Json json_of(const TraceRow<T>& row) {
 
 /// Tells `visit` a row a surface.
 template <class T, optics::Direction direction, optics::Rims rims, class Visit>
-void trace_one(const optics::TraceLens<T>& lens, const GivenRay& given, const Visit& visit) {
+void trace_one(const optics::TraceLens<T>& lens, const GivenRay& given, const Way& way, const Visit& visit) {
     const auto cast = [](const Vec3d& v) {
         return Vec3<T>{static_cast<T>(v.x), static_cast<T>(v.y), static_cast<T>(v.z)};
     };
     // Normalised in the working precision: a double's unit vector is not one to long double's last digits.
     const Ray<T> ray{cast(given.ray.origin), normalized(cast(given.ray.direction))};
-    const optics::TracedRay<T> traced =
-        optics::trace<direction, rims>(lens, ray, [&](const optics::SurfaceEvent<T>& event) {
-            visit(TraceRow<T>{given.id, std::to_string(event.surface + 1), event.ray, event.optical_path,
-                              event.transmittance, event.status});
-        });
+    const auto visit_event = [&](const optics::SurfaceEvent<T>& event) {
+        const bool is_sensor = event.surface == static_cast<int>(lens.surfaces.size());
+        visit(TraceRow<T>{given.id, is_sensor ? kSensorName : std::to_string(event.surface + 1), event.ray,
+                          event.optical_path, event.transmittance, event.status});
+    };
+    const optics::StrayMirrors<T> mirrors{static_cast<T>(way.mirrors.sensor), static_cast<T>(way.mirrors.blades)};
+    const optics::TracedRay<T> traced = way.reflections.empty() ? optics::trace<direction, rims>(lens, ray, visit_event)
+                                                                : optics::trace_ghost<direction, rims>(
+                                                                      lens, way.reflections, ray, mirrors, visit_event);
     const bool ended = traced.status == optics::RayStatus::missed ||
                        traced.status == optics::RayStatus::total_internal_reflection ||
                        (rims == optics::Rims::clip && traced.status != optics::RayStatus::ok);
@@ -177,38 +191,40 @@ void trace_one(const optics::TraceLens<T>& lens, const GivenRay& given, const Vi
     }
     if (traced.ray.direction.z > T(0)) {
         const optics::PlanePoint<T> image = optics::meet_plane(traced.ray, lens.image_z);
-        visit(TraceRow<T>{given.id, "image", Ray<T>{image.point, traced.ray.direction},
+        visit(TraceRow<T>{given.id, kSensorName, Ray<T>{image.point, traced.ray.direction},
                           traced.optical_path + image.distance, traced.transmittance, optics::RayStatus::ok});
     } else {
-        visit(TraceRow<T>{given.id, "image", traced.ray, traced.optical_path, traced.transmittance,
+        visit(TraceRow<T>{given.id, kSensorName, traced.ray, traced.optical_path, traced.transmittance,
                           optics::RayStatus::missed});
     }
 }
 
 template <class T, class Visit>
-void trace_all(const optics::Lens& lens, const GivenRays& rays, const TraceOptions& options, const Visit& visit) {
+void trace_all(const optics::Lens& lens, const GivenRays& rays, const TraceOptions& options, const Way& way,
+               const Visit& visit) {
     LensAtWavelengths<T> lenses(lens);
     rays.for_each([&](const GivenRay& given) {
         const optics::TraceLens<T>& at = lenses.at(given.wavelength_nm);
         if (options.reverse) {
-            options.no_clip ? trace_one<T, optics::Direction::reverse, optics::Rims::follow>(at, given, visit)
-                            : trace_one<T, optics::Direction::reverse, optics::Rims::clip>(at, given, visit);
+            options.no_clip ? trace_one<T, optics::Direction::reverse, optics::Rims::follow>(at, given, way, visit)
+                            : trace_one<T, optics::Direction::reverse, optics::Rims::clip>(at, given, way, visit);
         } else {
-            options.no_clip ? trace_one<T, optics::Direction::forward, optics::Rims::follow>(at, given, visit)
-                            : trace_one<T, optics::Direction::forward, optics::Rims::clip>(at, given, visit);
+            options.no_clip ? trace_one<T, optics::Direction::forward, optics::Rims::follow>(at, given, way, visit)
+                            : trace_one<T, optics::Direction::forward, optics::Rims::clip>(at, given, way, visit);
         }
     });
 }
 
 /// In the precision asked for.
 template <class Visit>
-void trace_rows(const optics::Lens& lens, const GivenRays& rays, const TraceOptions& options, const Visit& visit) {
+void trace_rows(const optics::Lens& lens, const GivenRays& rays, const TraceOptions& options, const Way& way,
+                const Visit& visit) {
     if (options.precision == "float") {
-        trace_all<float>(lens, rays, options, visit);
+        trace_all<float>(lens, rays, options, way, visit);
     } else if (options.precision == "extended") {
-        trace_all<long double>(lens, rays, options, visit);
+        trace_all<long double>(lens, rays, options, way, visit);
     } else {
-        trace_all<double>(lens, rays, options, visit);
+        trace_all<double>(lens, rays, options, way, visit);
     }
 }
 
@@ -221,16 +237,20 @@ struct MeasuredError {
     [[nodiscard]] double bound_um() const { return optics::float_error_bound_um(system_length_mm); }
 };
 
-MeasuredError measure_float(const optics::Lens& lens, const GivenRays& rays, const TraceOptions& options) {
+MeasuredError measure_float(const optics::Lens& lens, const GivenRays& rays, const TraceOptions& options,
+                            const Way& way) {
     MeasuredError measured{.reverse = options.reverse,
                            .system_length_mm = lens.image_z - lens.surfaces.front().vertex_z};
     LensAtWavelengths<float> in_float(lens);
     LensAtWavelengths<double> in_double(lens);
     rays.for_each([&](const GivenRay& given) {
-        measured.error.add(
-            optics::trace_in_float(in_float.at(given.wavelength_nm), in_double.at(given.wavelength_nm), given.ray,
-                                   options.reverse ? optics::Direction::reverse : optics::Direction::forward,
-                                   options.no_clip ? optics::Rims::follow : optics::Rims::clip));
+        const optics::Rims rims = options.no_clip ? optics::Rims::follow : optics::Rims::clip;
+        const optics::Direction direction = options.reverse ? optics::Direction::reverse : optics::Direction::forward;
+        const optics::TraceLens<float>& narrow = in_float.at(given.wavelength_nm);
+        const optics::TraceLens<double>& wide = in_double.at(given.wavelength_nm);
+        measured.error.add(way.reflections.empty()
+                               ? optics::trace_in_float(narrow, wide, given.ray, direction, rims)
+                               : optics::trace_ghost_in_float(narrow, wide, way.reflections, given.ray, rims));
     });
     return measured;
 }
@@ -274,11 +294,16 @@ int run_trace(const TraceOptions& options) {
                                           .coatings = options.coatings,
                                           .glasses = read_glass_catalogues(options.glass_catalogues)});
     print_findings(options.common, lens);
+    Way way;
+    if (!options.sequence.empty()) {
+        way.reflections = parse_sequence(options.sequence, lens, options.mirrors);
+        way.mirrors = stray_mirrors(options.mirrors);
+    }
     const GivenRays rays(options.rays_file);
     check_rays(lens, rays);
     const auto csv_to = [&](const auto& put) {
         put(std::string(kResultHeader) + "\n");
-        trace_rows(lens, rays, options, [&](const auto& row) { put(csv_of(row)); });
+        trace_rows(lens, rays, options, way, [&](const auto& row) { put(csv_of(row)); });
     };
     if (!options.output_file.empty()) {
         write_stream(options.output_file,
@@ -288,14 +313,14 @@ int run_trace(const TraceOptions& options) {
     }
     Json result{{"lens", lens.id}, {"findings", findings_json(lens.findings)}, {"rows", Json::list()}};
     if (options.precision == "float") {
-        const MeasuredError measured = measure_float(lens, rays, options);
+        const MeasuredError measured = measure_float(lens, rays, options, way);
         if (!options.common.quiet) {
             print_error(measured);
         }
         result["float_error"] = error_json(measured);
     }
     write_json_result(options.common, result, "rows", [&](const auto& visit) {
-        trace_rows(lens, rays, options, [&](const auto& row) { visit(json_of(row)); });
+        trace_rows(lens, rays, options, way, [&](const auto& row) { visit(json_of(row)); });
     });
     return kDone;
 }
@@ -307,7 +332,8 @@ void add_trace_command(Program& program) {
     Command command = program.add_command("trace", "Trace given rays and write every intersection");
     command.footer(
         "Example: lensproof trace tessar --rays rays.csv -o traced.csv\n"
-        "rays.csv has the header id,x_mm,y_mm,z_mm,dx,dy,dz,wavelength_nm");
+        "rays.csv has the header id,x_mm,y_mm,z_mm,dx,dy,dz,wavelength_nm\n"
+        "Along a ghost: lensproof trace tessar --rays rays.csv --sequence 2,1");
     command.add_option("LENS", options->lens, "A prescription file, or the name of a lens that ships").required();
     command.add_option("--rays", options->rays_file, "CSV of rays").required().type_name("FILE");
     command.add_option("-o,--output", options->output_file, "CSV to write (default: standard output)")
@@ -320,8 +346,16 @@ void add_trace_command(Program& program) {
         .type_name("POSITION");
     add_coating_option(command, options->coatings);
     add_glass_catalogue_option(command, options->glass_catalogues);
-    command.add_flag("--reverse", options->reverse, "Rays run from the sensor outwards");
+    const Option reverse = command.add_flag("--reverse", options->reverse, "Rays run from the sensor outwards");
     command.add_flag("--no-clip", options->no_clip, "Follow rays beyond the rims; the first rim passed is still named");
+    command
+        .add_option("--sequence", options->sequence,
+                    "Follow the rays along a ghost: the surfaces that reflect, in that order (image: the sensor; the "
+                    "stop's number: its blades)")
+        .separated_by(',')
+        .excludes(reverse)
+        .type_name("I,J,…");
+    add_mirror_options(command, options->mirrors);
     add_common_options(command, options->common);
     command.runs([options] { return run_trace(*options); });
 }
