@@ -2,27 +2,14 @@
 // use.
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cmath>
-#include <limits>
 #include <memory>
-#include <optional>
 
-#include "engine/analysis/best_focus.h"
-#include "engine/analysis/field_curves.h"
 #include "engine/analysis/lens_analysis.h"
-#include "engine/base/angle.h"
-#include "engine/base/input_error.h"
-#include "engine/base/text.h"
 #include "engine/base/write_file.h"
-#include "engine/formats/prescription/load_lens.h"
-#include "engine/formats/prescription/prescription_file.h"
-#include "engine/formats/prescription/shipped_coatings.h"
-#include "engine/optics/chief_ray.h"
-#include "engine/optics/focus.h"
-#include "engine/spectral/wavelengths.h"
 #include "experiments/cli/analysis_output.h"
 #include "experiments/cli/command.h"
+#include "experiments/cli/lens_options.h"
 #include "experiments/cli/terminal.h"
 #include "experiments/draw/analysis_drawings.h"
 #include "experiments/draw/curves_json.h"
@@ -34,115 +21,9 @@ namespace {
 
 struct AnalyzeOptions {
     CommonOptions common;
-    std::string lens;
-    std::string zoom;
-    std::vector<std::string> indices;
-    std::vector<std::string> glass_catalogues;
-    std::vector<std::string> coatings;
-    std::vector<double> wavelengths_nm;
-    std::optional<double> reference_wavelength_nm;
-    std::vector<double> fields_deg;
-    std::string focus;
-    std::optional<double> f_number;
-    std::optional<double> image_distance_mm;
-    int rings = 0;
-    std::string best_focus;
-    std::optional<double> focus_frequency;
+    LensOptions lens;
     std::string plots_folder;
 };
-
-constexpr double kFarthestImage = 1e15;  // mm
-
-constexpr const char* kCriteria[] = {"paraxial", "spot", "wavefront", "mtf"};
-
-/// The object's distance: the option's, or that which the table is set to.
-double object_distance(const std::string& option, const optics::Prescription& prescription) {
-    if (option.empty()) {
-        return prescription.object_distance_mm;
-    }
-    const std::optional<double> distance = option == "infinity" ? INFINITY : parse_number(option);
-    if (!distance || !(*distance > 0.0)) {
-        throw InputError(
-            fmt::format("--focus is \"{}\", expected infinity, or a distance above 0 in mm", printable(option)));
-    }
-    return *distance;
-}
-
-/// The lens as it is analysed: zoomed, stopped down, focused, its sensor in place.
-optics::Lens prepared_lens(const AnalyzeOptions& options, const optics::Prescription& prescription,
-                           const optics::GlassCatalogue& glasses, double distance, double reference_wavelength_nm) {
-    optics::Lens lens = formats::with_transmittance(
-        optics::make_lens(formats::with_stop_picture(prescription), glasses, parse_indices(options.indices)));
-    if (options.f_number) {
-        lens = optics::with_f_number(std::move(lens), *options.f_number, reference_wavelength_nm);
-    }
-    if (!lens.focus_groups.empty() && !options.focus.empty()) {
-        lens = optics::focused_at(std::move(lens), distance, reference_wavelength_nm);
-    }
-    if (options.image_distance_mm) {
-        if (!(std::abs(*options.image_distance_mm) <= kFarthestImage)) {
-            throw InputError(fmt::format("--image-distance is {}, expected mm from -{:g} to {:g}",
-                                         *options.image_distance_mm, kFarthestImage, kFarthestImage));
-        }
-        lens.image_z = lens.last_vertex_z() + *options.image_distance_mm;
-    } else if (lens.image_z == lens.last_vertex_z()) {  // the source does not say
-        const optics::TraceLens<double> traced = optics::at_wavelength<double>(lens, reference_wavelength_nm);
-        const double image = optics::paraxial_image_distance(traced, analysis::distance_from_front(lens, distance));
-        if (std::isfinite(image)) {
-            lens.image_z += image;
-        }
-    }
-    return lens;
-}
-
-/// The fields to look at where none are given: the axis and four parts of what the source states, or of what the chief
-/// ray reaches.
-std::vector<double> usual_fields(const optics::Lens& lens, double wavelength_nm) {
-    constexpr double kThousandths = 1000.0;  // a hair inside the last ray that passes, where rounding does not decide
-    const double reached = degrees(optics::ChiefRays(lens, wavelength_nm).largest_field());
-    const double largest = std::floor(kThousandths * reached) / kThousandths;
-    const double stated = lens.stated.half_field_deg.value_or(largest);
-    return analysis::even_fields(stated > 0.0 && stated < 180.0 ? stated : largest, 5);
-}
-
-std::vector<double> fields_of(const AnalyzeOptions& options, const optics::Lens& lens, double wavelength_nm) {
-    for (const double field : options.fields_deg) {
-        if (!(field > -180.0 && field < 180.0)) {
-            throw InputError(fmt::format("--fields holds {}, expected degrees between -180 and 180", field));
-        }
-    }
-    return options.fields_deg.empty() ? usual_fields(lens, wavelength_nm) : options.fields_deg;
-}
-
-std::vector<double> wavelengths_of(const AnalyzeOptions& options, const optics::Prescription& prescription) {
-    if (options.wavelengths_nm.empty()) {
-        return prescription.wavelengths_nm.empty() ? std::vector{spectral::kLineD, spectral::kLineF, spectral::kLineC}
-                                                   : prescription.wavelengths_nm;
-    }
-    return options.wavelengths_nm;
-}
-
-/// Where the image is best, from where the image plane stands.
-double best_focus_shift(const AnalyzeOptions& options, const optics::Lens& lens,
-                        const analysis::AnalysisSettings& settings) {
-    if (options.best_focus == "paraxial") {
-        return analysis::paraxial_focus_shift(lens, settings.reference_wavelength_nm,
-                                              analysis::distance_from_front(lens, settings.object_distance));
-    }
-    std::vector<analysis::WeightedField> fields;
-    for (std::optional<analysis::PolychromaticField>& field : analysis::polychromatic_fields(lens, settings)) {
-        if (field) {
-            fields.push_back({.field = std::move(*field)});
-        }
-    }
-    if (options.best_focus == "spot") {
-        return analysis::spot_focus_shift(fields);
-    }
-    if (options.best_focus == "wavefront") {
-        return analysis::wavefront_focus_shift(fields);
-    }
-    return analysis::mtf_focus_shift(fields, *options.focus_frequency);
-}
 
 /// "f/2.73, object at infinity, image plane 79.83 mm behind the last surface"
 std::string conditions(const optics::Lens& lens, const analysis::AnalysisSettings& settings,
@@ -178,30 +59,7 @@ int run_analyze(const AnalyzeOptions& options) {
     if (!options.plots_folder.empty()) {
         check_output_name(std::filesystem::path(options.plots_folder) / "curves.json");
     }
-    if (options.best_focus == "mtf" && !options.focus_frequency) {
-        throw InputError("--best-focus mtf needs --focus-frequency, in cycles/mm");
-    }
-    optics::Prescription prescription =
-        formats::with_coatings(formats::read_prescription(formats::find_lens_file(options.lens)), options.coatings);
-    const std::size_t position = options.zoom.empty() ? 0 : optics::find_zoom_position(prescription, options.zoom);
-    if (!prescription.zoom.empty()) {
-        prescription.name += ", at " + prescription.zoom[position].name;
-    }
-    prescription = optics::at_zoom_position(std::move(prescription), position);
-    analysis::AnalysisSettings settings;
-    settings.wavelengths_nm = wavelengths_of(options, prescription);
-    settings.reference_wavelength_nm = options.reference_wavelength_nm.value_or(settings.wavelengths_nm.front());
-    settings.object_distance = object_distance(options.focus, prescription);
-    settings.rings = options.rings;
-    const optics::GlassCatalogue glasses =
-        formats::with_own_catalogues(read_glass_catalogues(options.glass_catalogues), prescription);
-    optics::Lens lens =
-        prepared_lens(options, prescription, glasses, settings.object_distance, settings.reference_wavelength_nm);
-    settings.fields_deg = fields_of(options, lens, settings.reference_wavelength_nm);
-    if (!options.best_focus.empty()) {
-        const double shift = best_focus_shift(options, lens, settings);
-        lens = analysis::with_image_shift(std::move(lens), shift);
-    }
+    const auto [prescription, lens, settings] = read_analysed_lens(options.lens);
     const analysis::LensAnalysis analysis = analysis::analyze_lens(lens, settings);
     if (!options.plots_folder.empty()) {
         write_analysis_plots(options, prescription, lens, settings, analysis);
@@ -217,72 +75,18 @@ int run_analyze(const AnalyzeOptions& options) {
 
 void add_analyze_command(Program& program) {
     const auto options = std::make_shared<AnalyzeOptions>();
-    options->rings = analysis::AnalysisSettings{}.rings;
     Command command =
         program.add_command("analyze", "First-order data, Seidel sums, real-ray curves, spots, wavefront");
     command.footer(
         "Example: lensproof analyze tessar --fields 0,12,24 --f-number 4 --plots tessar-plots\n"
         "Fields are angles at the entrance pupil; what does not exist (light from beyond the field, say) is null or "
         "a dash.");
-    command.add_option("LENS", options->lens, "A prescription file, or the name of a lens that ships").required();
-    command
-        .add_option("--wavelengths", options->wavelengths_nm,
-                    "nm; the first is the reference (default: those of a design program's file, else d, F, C)")
-        .separated_by(',')
-        .check(kPositiveOption)
-        .type_name("NM,…");
-    command
-        .add_option("--reference-wavelength", options->reference_wavelength_nm,
-                    "nm, of first-order data, Seidel sums and the image point of each field")
-        .check(kPositiveOption)
-        .type_name("NM");
-    command
-        .add_option("--fields", options->fields_deg,
-                    "Field angles in degrees (default: five, up to the field that the source states)")
-        .separated_by(',')
-        .check(kNumberOption)
-        .type_name("DEG,…");
-    command
-        .add_option("--focus", options->focus,
-                    "Distance of the object in front of the first vertex (default: the prescription's). Its focusing "
-                    "groups move to it; a lens without any stays as it is, and --best-focus or --image-distance "
-                    "moves the image plane")
-        .type_name("infinity|MM");
-    command
-        .add_option("--f-number", options->f_number,
-                    "Close the stop to this paraxial f-number, at the reference wavelength")
-        .check(kPositiveOption)
-        .type_name("N");
-    command
-        .add_option("--image-distance", options->image_distance_mm,
-                    "Image plane behind the last vertex (default: the prescription's)")
-        .check(kNumberOption)
-        .type_name("MM");
-    command.add_option("--rings", options->rings, "Rings of rays over a beam, for spots and wavefronts")
-        .check(in_range(1, 1000))
-        .shows_default();
-    const Option best_focus =
-        command
-            .add_option("--best-focus", options->best_focus,
-                        "Move the image plane to the best image of all fields and wavelengths together: paraxial, "
-                        "spot (least rms, lateral colour included), wavefront (least rms) or mtf (highest at "
-                        "--focus-frequency)")
-            .check(one_of(std::vector<std::string>(std::begin(kCriteria), std::end(kCriteria))))
-            .type_name("CRITERION");
-    command.add_option("--focus-frequency", options->focus_frequency, "cycles/mm, for --best-focus mtf")
-        .needs(best_focus)
-        .check(kPositiveOption)
-        .type_name("F");
+    add_lens_options(command, options->lens);
     command
         .add_option("--plots", options->plots_folder,
                     "Draw the lens section, ray fans, field curves, spots, MTF and the rest into a folder (SVG), "
                     "their numbers beside them (curves.json)")
         .type_name("DIR");
-    command.add_option("--zoom", options->zoom, "Position of a zoom lens, by name or number (default: the first)")
-        .type_name("POSITION");
-    add_index_option(command, options->indices);
-    add_coating_option(command, options->coatings);
-    add_glass_catalogue_option(command, options->glass_catalogues);
     add_common_options(command, options->common);
     command.runs([options] { return run_analyze(*options); });
 }

@@ -79,6 +79,7 @@ void add_chart_command(Program& program);
 void add_check_command(Program& program);
 void add_analyze_command(Program& program);
 void add_trace_command(Program& program);
+void add_ghosts_command(Program& program);
 void add_render_command(Program& program);
 void add_measure_command(Program& program);
 void add_merge_command(Program& program);

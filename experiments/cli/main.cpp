@@ -61,6 +61,7 @@ int run(int argc, char** argv) {
     add_convert_command(program);
     add_analyze_command(program);
     add_trace_command(program);
+    add_ghosts_command(program);
     add_render_command(program);
     add_merge_command(program);
     add_chart_command(program);

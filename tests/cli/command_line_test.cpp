@@ -16,7 +16,7 @@ namespace lensproof::command_line_test {
 
 using Json = nlohmann::json;
 
-const std::vector<std::string> kCommands = {"check",   "convert", "trace", "render", "merge",   "measure",
+const std::vector<std::string> kCommands = {"check",   "convert", "trace", "ghosts", "render",  "merge",   "measure",
                                             "compare", "export",  "run",   "lenses", "glasses", "coatings"};
 
 std::string rays_text() {

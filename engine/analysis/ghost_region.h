@@ -1,0 +1,45 @@
+// engine/analysis/ghost_region.h — the part of the front element from which a ghost reaches the sensor.
+#pragma once
+#include <unordered_set>
+#include <vector>
+
+#include "engine/analysis/ghost_beam.h"
+
+namespace lensproof::analysis {
+
+/// Squares of a grid over a FrontBeam's square.
+struct GhostRegion {
+    struct Cell {
+        int x;
+        int y;
+    };
+    int across = 1;     // cells along a side of the whole
+    double cell = 0.0;  // side, mm
+    Vec2d corner;
+    std::vector<Cell> cells;
+    std::unordered_set<std::uint64_t> held;  // the same, to be asked for
+    int search_rays = 0;
+
+    static std::uint64_t key(int x, int y) {
+        return (static_cast<std::uint64_t>(static_cast<std::uint32_t>(x)) << 32U) | static_cast<std::uint32_t>(y);
+    }
+    [[nodiscard]] double area() const { return static_cast<double>(cells.size()) * cell * cell; }
+    [[nodiscard]] bool contains(Vec2d offset) const {
+        return held.contains(
+            key(static_cast<int>((offset.x - corner.x) / cell), static_cast<int>((offset.y - corner.y) / cell)));
+    }
+};
+
+/// The cells in which rays may land, by the `landing_margins` at their centres. A cell is left out where one margin is
+/// so far above 0 that it does not come down to it within the cell, changing half as fast again as between the cell and
+/// its neighbours. Once ten cells land, two rules more keep the edges of total reflection out: the same of
+/// 1 − limit / r, which is bounded where r grows beyond all limits there, and that where no ray around a cell arrives
+/// there is nothing to be found. From 32 × 32 cells, or as many more (256 × 256 at most) as make one half as wide as the
+/// entrance pupil, they are divided until so many land that 80 % of a grid's rays will, at most ten times.
+///
+/// What may be missed lies where a margin dips by more within a cell of the first grid than its differences to all
+/// neighbours tell, or in a part apart from the first ten cells that is smaller than they. `measure_ghost` looks for
+/// such light outside the region too.
+GhostRegion ghost_region(const GhostScene& scene, const optics::GhostPath& path);
+
+}  // namespace lensproof::analysis
