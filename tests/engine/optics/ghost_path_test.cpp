@@ -5,14 +5,16 @@
 
 #include <cmath>
 #include <limits>
+#include <nlohmann/json.hpp>
 #include <numbers>
 #include <random>
 
-#include "engine/base/infinity.h"
+#include "engine/base/file.h"
 #include "engine/formats/prescription/load_lens.h"
 #include "engine/optics/convert_lens.h"
 #include "engine/optics/lens.h"
 #include "tests/engine/random_lens.h"
+#include "tests/places.h"
 
 namespace lensproof::optics::ghost_path_test {
 
@@ -342,6 +344,35 @@ TEST(GhostPath, RimsClipAtEveryPassage) {
     EXPECT_EQ(followed.status, RayStatus::clipped);
     EXPECT_EQ(followed.surface, 1);
     EXPECT_GT(followed.ray.origin.z, 13.9);
+}
+
+// Rays along ghosts of six lenses by Optiland's multi-sequence tracing, which make_ghost_rays.py recorded: all within
+// 1e-9 mm on the image plane.
+TEST(GhostPath, AgreesWithOptiland) {
+    const auto recorded = nlohmann::json::parse(read_file(reference_numbers_folder() / "ghost_rays.json"));
+    int compared = 0;
+    double worst = 0.0;
+    for (const auto& from : recorded["lenses"]) {
+        const std::string name = from["lens"];
+        const TraceLens<double> lens = at_wavelength<double>(formats::load_lens(name), recorded["wavelength_nm"]);
+        for (const auto& ghost : from["ghosts"]) {
+            const GhostPath path{ghost["surfaces"][0].get<int>() - 1, ghost["surfaces"][1].get<int>() - 1};
+            for (const auto& entry : ghost["rays"]) {
+                const std::vector<double> ray = entry["ray"];
+                const TracedRay<double> out =
+                    trace_ghost(lens, path, {{ray[0], ray[1], ray[2]}, normalized(Vec3d{ray[3], ray[4], ray[5]})});
+                ASSERT_EQ(out.status, RayStatus::ok) << name;
+                const Vec3d image = meet_plane(out.ray, lens.image_z).point;
+                const double distance = std::hypot(image.x - entry["image_mm"][0].get<double>(),
+                                                   image.y - entry["image_mm"][1].get<double>());
+                EXPECT_LT(distance, 1e-9) << name;
+                worst = std::max(worst, distance);
+                ++compared;
+            }
+        }
+    }
+    EXPECT_EQ(compared, 207);
+    RecordProperty("largest_distance_mm", std::to_string(worst));
 }
 
 TEST(GhostPath, OnlyEvenCountsInTheOrderOfTheLight) {
