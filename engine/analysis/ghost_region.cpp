@@ -13,9 +13,9 @@ constexpr int kFirstGrid = 32;
 constexpr int kFinestFirstGrid = 256;  // for fisheyes, whose pupil is a fiftieth of their front
 constexpr double kSteeper = 1.5;
 constexpr int kMostDivisions = 10;
-constexpr int kResolved = 10;             // cells that land: then the region is seen, and not only its surroundings
-constexpr std::size_t kMostCells = 6000;  // that are divided: a region too ragged for fewer is sampled as it is
-constexpr double kEnoughLand = 0.86;      // of the cells' centres; a grid within them loses a little more
+constexpr int kResolved = 10;              // cells that land: then the region is seen, and not only its surroundings
+constexpr std::size_t kMostCells = 16000;  // that are divided: a region too ragged for fewer is sampled as it is
+constexpr double kEnoughLand = 0.86;       // of the cells' centres; a grid within them loses a little more
 
 using Cells = std::vector<GhostRegion::Cell>;
 

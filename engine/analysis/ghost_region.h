@@ -34,8 +34,8 @@ struct GhostRegion {
 /// so far above 0 that it does not come down to it within the cell, changing half as fast again as between the cell and
 /// its neighbours. Once ten cells land, two rules more keep the edges of total reflection out: the same of
 /// 1 − limit / r, which is bounded where r grows beyond all limits there, and that where no ray around a cell arrives
-/// there is nothing to be found. From 32 × 32 cells, or as many more (256 × 256 at most) as make one half as wide as the
-/// entrance pupil, they are divided until so many land that 80 % of a grid's rays will, at most ten times.
+/// there is nothing to be found. From 32 × 32 cells (or more, up to 256 × 256, so that one is half as wide as the
+/// entrance pupil) they are divided until so many land that 80 % of a grid's rays will, at most ten times.
 ///
 /// What may be missed lies where a margin dips by more within a cell of the first grid than its differences to all
 /// neighbours tell, or in a part apart from the first ten cells that is smaller than they. `measure_ghost` looks for
