@@ -262,14 +262,12 @@ TEST(Ghosts, AgreeWithReflectionsLeftToChance) {
 // region is not: 10 000 rays a ghost.
 TEST(Ghosts, RegionHoldsAllLightAndLittleElse) {
     int ghosts = 0;
-    for (const auto& [name, source_deg] :
-         {std::pair{"tessar", 0.0}, {"tessar", 20.0}, {"heliar-tronnier", 10.0}, {"fisheye-220", 10.0}}) {
+    for (const auto& [name, source_deg] : {std::pair{"tessar", 0.0}, {"tessar", 20.0}, {"heliar-tronnier", 10.0}}) {
         const optics::Lens lens = formats::load_lens(name);
         GhostSettings settings = settings_for(lens, source_deg);
         settings.sampling.rays = 2000;
         const GhostScene scene = ghost_scene(lens, settings, kWavelength);
         std::vector<optics::GhostPath> paths = ghosts_of_two(scene);
-        paths.resize(std::min<std::size_t>(paths.size(), scene.lens.surfaces.size() > 12 ? 8 : 40));
         paths.push_back({});  // the image
         for (const optics::GhostPath& path : paths) {
             SCOPED_TRACE(std::string(name) + " " + testing::PrintToString(path));
