@@ -36,7 +36,7 @@ class Branches {
                                      : optics::run_to_surface<optics::Rims::clip>(scene_.lens, index, step > 0, what,
                                                                                   scene_.mirrors, ray)
                                            .second;
-            if (goes_on && ray.transmittance > 0.0) {
+            if (goes_on && ray.transmittance(scene_.lens) > 0.0) {
                 next.push_back(ray);
             }
         }
@@ -76,7 +76,7 @@ class Branches {
     [[nodiscard]] double energy(const Bundle& bundle) const {
         double sum = 0.0;
         for (const TravellingRay& ray : bundle) {
-            sum += ray_share_ * ray.transmittance;
+            sum += ray_share_ * ray.transmittance(scene_.lens);
         }
         return sum;
     }
@@ -84,7 +84,7 @@ class Branches {
     [[nodiscard]] double end_bound(const optics::GhostPath& path, const Bundle& bundle) const {
         double largest = 0.0;
         for (const TravellingRay& ray : bundle) {
-            largest = std::max(largest, ray_share_ * ray.transmittance);
+            largest = std::max(largest, ray_share_ * ray.transmittance(scene_.lens));
         }
         Bundle out = bundle;
         for (int index = path.back() + 1; index < sensor_; ++index) {

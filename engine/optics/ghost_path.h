@@ -36,11 +36,22 @@ struct TravellingRay {
     T last_vertex_z = T(0);
     Vec3<T> direction;
     T optical_path = T(0);
-    T transmittance = T(1);
+    T at_surfaces = T(1);    // what surfaces left of its light,
+    T optical_depth = T(0);  // and the glass between them (`fading`)
     RayStatus status = RayStatus::ok;
     int surface = -1;  // where the status befell it
 
     [[nodiscard]] Ray<T> global() const { return {{origin.x, origin.y, origin.z + last_vertex_z}, direction}; }
+
+    void cross(const TraceLens<T>& lens, int towards, bool forward, const T& distance) {
+        if (!lens.attenuation.empty()) {
+            optical_depth = optical_depth + lens.attenuation_towards(towards, forward) * distance;
+        }
+    }
+
+    [[nodiscard]] T transmittance(const TraceLens<T>& lens) const {
+        return lens.attenuation.empty() ? at_surfaces : T(at_surfaces * fading(optical_depth));
+    }
 
     void end(RayStatus why, int at) {
         status = why;
@@ -64,8 +75,9 @@ bool reflect_at_sensor(const TraceLens<T>& lens, const StrayMirrors<T>& mirrors,
     ray.origin = {image.point.x, image.point.y, T(0)};
     ray.last_vertex_z = lens.image_z;
     ray.optical_path = ray.optical_path + image.distance;
+    ray.cross(lens, sensor, true, image.distance);
     ray.direction.z = -ray.direction.z;
-    ray.transmittance = ray.transmittance * mirrors.sensor;
+    ray.at_surfaces = ray.at_surfaces * mirrors.sensor;
     return true;
 }
 
@@ -116,6 +128,7 @@ std::pair<RayStatus, bool> run_to_surface(const TraceLens<T>& lens, int index, b
     const Vec3<T>& point = meeting.point;
     const T& index_before = forward ? surface.index_before : surface.index_after;
     ray.optical_path = ray.optical_path + index_before * (to_vertex + meeting.distance);
+    ray.cross(lens, index, forward, to_vertex + meeting.distance);
     ray.origin = point;
     ray.last_vertex_z = surface.vertex_z;
     if (special != nullptr) {
@@ -152,8 +165,8 @@ std::pair<RayStatus, bool> run_to_surface(const TraceLens<T>& lens, int index, b
             : refract_at_sphere(direction, point, c, heading, meeting.cos_incidence, meeting.sin2_incidence, ratio);
     if (what == AtSurface::reflect) {
         direction = reflect(direction, normal, meeting.cos_incidence);
-        ray.transmittance =
-            ray.transmittance *
+        ray.at_surfaces =
+            ray.at_surfaces *
             (by_blades ? T(mirrors.blades * (T(1) - open))
                        : T(open * surface_reflectance(surface, special, forward, meeting.cos_incidence, bent)));
     } else {
@@ -163,12 +176,12 @@ std::pair<RayStatus, bool> run_to_surface(const TraceLens<T>& lens, int index, b
         direction = bent.direction;
         const T& index_after = forward ? surface.index_after : surface.index_before;
         T passing = special != nullptr && !special->coating.is_bare()
-                        ? coated_transmittance(surface, *special, forward, meeting.cos_incidence, bent.cos_refraction)
+                        ? coated_transmittance(surface, *special, forward, meeting.cos_incidence)
                         : fresnel_transmittance(index_before, index_after, meeting.cos_incidence, bent.cos_refraction);
         if (special != nullptr) {
             passing = passing * open;
         }
-        ray.transmittance = ray.transmittance * passing;
+        ray.at_surfaces = ray.at_surfaces * passing;
     }
     ray.direction = special != nullptr ? special->from_own(direction) : direction;
     return {here, true};
@@ -200,7 +213,7 @@ TracedRay<T> trace_ghost(const TraceLens<T>& lens, const GhostPath& path, const 
             index == count ? std::pair{RayStatus::ok, ghost_detail::reflect_at_sensor(lens, mirrors, at)}
                            : run_to_surface<rims>(lens, index, step > 0,
                                                   reflects ? AtSurface::reflect : AtSurface::pass, mirrors, at);
-        visit(SurfaceEvent<T>{index, at.global(), at.optical_path, at.transmittance, goes_on ? here : at.status});
+        visit(SurfaceEvent<T>{index, at.global(), at.optical_path, at.transmittance(lens), goes_on ? here : at.status});
         last = index;
         if (!goes_on) {
             break;
@@ -210,7 +223,8 @@ TracedRay<T> trace_ghost(const TraceLens<T>& lens, const GhostPath& path, const 
             ++next;
         }
     }
-    return {at.global(), at.optical_path, at.transmittance, at.status, at.status == RayStatus::ok ? last : at.surface};
+    return {at.global(), at.optical_path, at.transmittance(lens), at.status,
+            at.status == RayStatus::ok ? last : at.surface};
 }
 
 template <Direction direction = Direction::forward, Rims rims = Rims::clip, class T>

@@ -22,16 +22,15 @@ T fresnel_reflectance(const T& index_before, const T& index_after, const T& cos_
 }
 
 /// What a surface reflects of unpolarised light that runs forward through the lens or back; `special` is null where it
-/// has nothing beyond its sphere. Layers absorb nothing, so a coating reflects what it does not pass; beyond the
-/// critical angle every surface reflects all.
+/// has nothing beyond its sphere. Beyond the critical angle a bare surface reflects all.
 template <class T>
 T surface_reflectance(const TraceSurface<T>& surface, const SpecialSurface<T>* special, bool forward,
                       const T& cos_incidence, const Refraction<T>& bent) {
+    if (special != nullptr && !special->coating.is_bare()) {
+        return coating_reflectance(special->coating, surface.index_before, surface.index_after, cos_incidence, forward);
+    }
     if (!bent.transmitted) {
         return T(1);
-    }
-    if (special != nullptr && !special->coating.is_bare()) {
-        return T(1) - coated_transmittance(surface, *special, forward, cos_incidence, bent.cos_refraction);
     }
     return forward ? fresnel_reflectance(surface.index_before, surface.index_after, cos_incidence, bent.cos_refraction)
                    : fresnel_reflectance(surface.index_after, surface.index_before, cos_incidence, bent.cos_refraction);

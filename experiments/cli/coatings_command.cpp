@@ -11,6 +11,7 @@
 #include "engine/base/text.h"
 #include "engine/formats/prescription/shipped_coatings.h"
 #include "experiments/cli/command.h"
+#include "experiments/cli/terminal.h"
 #include "experiments/draw/coating_plots.h"
 
 namespace lensproof::cli {
@@ -101,15 +102,15 @@ Json coating_json(const Looked& coating, const std::string& glass) {
 }
 
 void print_coating(const Json& json) {
-    fmt::print("{:22} {:>6} {:>9.4f} {:>9.4f}   {}\n", json["coating"].text(), json["layers"].size(),
-               json["reflectance_at_550_nm_percent"].number(), json["mean_reflectance_400_to_700_nm_percent"].number(),
-               json["name"].text());
+    print("{:22} {:>6} {:>9.4f} {:>9.4f}   {}\n", json["coating"].text(), json["layers"].size(),
+          json["reflectance_at_550_nm_percent"].number(), json["mean_reflectance_400_to_700_nm_percent"].number(),
+          json["name"].text());
     for (const Json& layer : json["layers"]) {
         const std::string material = layer["material"].is_null() ? "" : layer["material"].text();
-        fmt::print("{:22}   {:8} n {:.4f}  k {:<9.2g} {:8.3f} nm\n", "", material, layer["n_at_550_nm"].number(),
-                   layer["k_at_550_nm"].number(), layer["thickness_nm"].number());
+        print("{:22}   {:8} n {:.4f}  k {:<9.2g} {:8.3f} nm\n", "", material, layer["n_at_550_nm"].number(),
+              layer["k_at_550_nm"].number(), layer["thickness_nm"].number());
     }
-    fmt::print("    {}\n", json["source"].text());
+    print("    {}\n", json["source"].text());
 }
 
 int run_coatings(const CoatingsOptions& options) {
@@ -152,7 +153,7 @@ int run_coatings(const CoatingsOptions& options) {
     const double bare_at = kPercent * analysis::coated_powers(bare, kDesignNm, 0.0).unpolarised().reflected;
     const double bare_mean = kPercent * analysis::mean_reflectance(bare);
     if (prints_text(options.common)) {
-        fmt::print(
+        print(
             "Reflectance in % of a face of {} in air at normal incidence: at 550 nm, and the mean from 400 to 700 nm.\n"
             "Layers from air to glass. Makers do not publish theirs: on any lens these are assumed.\n\n"
             "{:22} {:>6} {:>9} {:>9}\n{:22} {:>6} {:>9.4f} {:>9.4f}\n",

@@ -14,6 +14,7 @@
 #include "experiments/cli/command.h"
 #include "experiments/cli/ghost_options.h"
 #include "experiments/cli/lens_options.h"
+#include "experiments/cli/terminal.h"
 #include "experiments/draw/ghost_plot.h"
 
 namespace lensproof::cli {
@@ -221,7 +222,7 @@ int run_ghosts(const GhostsOptions& options) {
         write_plot(options, analysed, settings, survey);
     }
     if (prints_text(options.common)) {
-        fmt::print("{}", survey_text(options, analysed.lens, settings, survey));
+        print("{}", survey_text(options, analysed.lens, settings, survey));
     }
     write_json_result(options.common, survey_json(options, analysed.lens, settings, survey));
     return kDone;
