@@ -328,7 +328,8 @@ TEST(Ghosts, CoatingASurfaceDoesWhatTheSurveySaid) {
     for (const SurfaceShare& share : {survey.surfaces.front(), survey.surfaces.back()}) {
         optics::Prescription coated = bare;
         coated.coatings["perfect"] = std::vector<optics::WavelengthValue>{{.wavelength_nm = kWavelength, .value = 0.0}};
-        coated.coatings["mgf2"] = std::vector<optics::CoatingLayer>{{.index = 1.38, .thickness_nm = 550.0 / 4 / 1.38}};
+        coated.coatings["mgf2"] = optics::LayerStack{
+            .layers = {{.index = {{.wavelength_nm = 550.0, .value = 1.38}}, .thickness_nm = 550.0 / 4 / 1.38}}};
         for (const auto& [name, gone] : {std::pair{"perfect", share.perfect}, {"mgf2", share.quarter_wave.value()}}) {
             coated.surfaces[static_cast<std::size_t>(share.surface)].coating = name;
             const optics::Lens with = optics::make_lens(coated, {});
