@@ -10,6 +10,7 @@
 #include "engine/base/input_error.h"
 #include "engine/base/parallel.h"
 #include "engine/optics/chief_ray.h"
+#include "engine/optics/polarised_ghost.h"
 
 namespace lensproof::analysis {
 
@@ -54,6 +55,19 @@ std::vector<LandedRay> thinned(const std::vector<LandedRay>& rays, std::size_t m
         few.push_back(rays[i]);
     }
     return few;
+}
+
+/// The ghost's energy with its light's polarisation carried along the path: as its kept rays, which stand for equal
+/// areas of the front, have it.
+double polarised_energy(const GhostScene& scene, const Ghost& ghost) {
+    double averaged = 0.0;
+    double carried = 0.0;
+    for (const LandedRay& ray : ghost.light.first_grid) {
+        averaged += ray.energy;
+        carried +=
+            ray.energy * optics::polarisation_factor(scene.lens, ghost.path, scene.beam.ray(ray.offset), scene.mirrors);
+    }
+    return averaged > 0.0 ? ghost.light.energy * carried / averaged : ghost.light.energy;
 }
 
 /// The rays of the ghosts that carry all but a thousandth of the light, to be weighed again with other coatings: these
@@ -201,6 +215,9 @@ GhostSurvey survey_ghosts(const optics::Lens& lens, const GhostSettings& setting
             ghost.paraxial = optics::paraxial_ghost(scene.lens, ghost.path, settings.chief_angle);
             ghost.light = light_along(scene, ghost.path, settings.sampling, &footprint);
             ghost.light.first_grid = thinned(ghost.light.first_grid, kWeighedRays);
+            if (settings.polarised) {
+                ghost.polarised_energy = polarised_energy(scene, ghost);
+            }
             if (brightest > 0.0) {
                 ghost.peak_over_image = ghost.light.peak / brightest;
             }
@@ -215,6 +232,7 @@ GhostSurvey survey_ghosts(const optics::Lens& lens, const GhostSettings& setting
     std::ranges::stable_sort(survey.ghosts, std::ranges::greater(), [](const Ghost& g) { return g.light.energy; });
     for (const Ghost& ghost : survey.ghosts) {
         survey.energy += ghost.light.energy;
+        survey.polarised_energy += ghost.polarised_energy;
     }
     survey.surfaces = surface_shares(scene, survey, settings);
     return survey;

@@ -20,6 +20,7 @@ struct GhostSettings {
     int reflections = 2;                 // or 4: those of two and of four
     double tolerance = 1e-6;             // ghosts of four reflections that carry less are skipped
     optics::StrayMirrors<double> mirrors;
+    bool polarised = false;     // finds each ghost's `polarised_energy` too
     double image_radius = 0.0;  // mm
     GhostSampling sampling;
     int threads = 0;
@@ -32,6 +33,7 @@ struct Ghost {
     GhostLight light;
     std::vector<double> energies;           // at the settings' further wavelengths
     std::optional<double> peak_over_image;  // nothing where the light's own image is not on the sensor
+    double polarised_energy = 0.0;  // with polarisation carried along the path, of unpolarised light; if asked for
 };
 
 /// What one surface has to do with the ghosts' light, as shares of all of it.
@@ -47,7 +49,8 @@ struct SurfaceShare {
 struct GhostSurvey {
     std::vector<Ghost> ghosts;  // the strongest first
     double energy = 0.0;        // of all
-    GhostLight image;           // of the light itself
+    double polarised_energy = 0.0;
+    GhostLight image;  // of the light itself
     double skipped_energy_bound = 0.0;
     std::vector<SurfaceShare> surfaces;  // that whose coating takes away most first
 };

@@ -140,7 +140,7 @@ class Order {
 };
 
 /// The confined process, until its asker closes the channel.
-void serve(ConfinedWork work, Channel channel) {
+void serve(ConfinedWork work, MessageChannel channel) {
     fs::path file;
     try {
         file = channel.receive();
@@ -177,7 +177,7 @@ void serve(ConfinedWork work, Channel channel) {
         }
         if (::fork() == 0) {
             ::close(orders);
-            serve(order.work(), Channel(socket, {}));
+            serve(order.work(), MessageChannel(socket, {}));
             std::_Exit(0);
         }
         ::close(socket);
@@ -209,23 +209,24 @@ bool files_are_distrusted() {
     return forker() != -1;
 }
 
-Channel::Channel(Channel&& other) noexcept : socket_(std::exchange(other.socket_, -1)), file_(std::move(other.file_)) {}
+MessageChannel::MessageChannel(MessageChannel&& other) noexcept
+    : socket_(std::exchange(other.socket_, -1)), file_(std::move(other.file_)) {}
 
-Channel::~Channel() {
+MessageChannel::~MessageChannel() {
     if (socket_ != -1) {
         ::close(socket_);
     }
 }
 
-void Channel::send(std::string_view message) {
+void MessageChannel::send(std::string_view message) {
     send(Kind::message, message);
 }
 
-void Channel::refuse(std::string_view message) {
+void MessageChannel::refuse(std::string_view message) {
     send(Kind::refusal, message);
 }
 
-void Channel::send(Kind kind, std::string_view message) {
+void MessageChannel::send(Kind kind, std::string_view message) {
     std::string head(1 + sizeof(std::uint64_t), static_cast<char>(kind));
     const std::uint64_t length = message.size();
     std::memcpy(head.data() + 1, &length, sizeof length);
@@ -243,7 +244,7 @@ void Channel::send(Kind kind, std::string_view message) {
     }
 }
 
-std::string Channel::receive(std::size_t most) {
+std::string MessageChannel::receive(std::size_t most) {
     const std::size_t length = receive_length();
     if (length > most) {
         throw InputError(fmt::format("{}: its reader answers with {} bytes, as if the file had taken it over",
@@ -254,7 +255,7 @@ std::string Channel::receive(std::size_t most) {
     return message;
 }
 
-void Channel::receive(char* bytes, std::size_t count) {
+void MessageChannel::receive(char* bytes, std::size_t count) {
     if (const std::size_t length = receive_length(); length != count) {
         throw InputError(
             fmt::format("{}: its reader answers with {} bytes, expected {}, as if the file had taken it "
@@ -264,7 +265,7 @@ void Channel::receive(char* bytes, std::size_t count) {
     receive_all(bytes, count);
 }
 
-std::size_t Channel::receive_length() {
+std::size_t MessageChannel::receive_length() {
     Kind kind{};
     std::uint64_t length = 0;
     receive_all(reinterpret_cast<char*>(&kind), sizeof kind);
@@ -278,7 +279,7 @@ std::size_t Channel::receive_length() {
     return length;
 }
 
-void Channel::receive_all(char* bytes, std::size_t count) {
+void MessageChannel::receive_all(char* bytes, std::size_t count) {
     while (count > 0) {
         const ssize_t got = ::recv(socket_, bytes, count, 0);
         if (got == -1 && errno == EINTR) {
@@ -295,13 +296,13 @@ void Channel::receive_all(char* bytes, std::size_t count) {
     }
 }
 
-Channel start_confined(ConfinedWork work, const fs::path& file, const fs::path& readable) {
+MessageChannel start_confined(ConfinedWork work, const fs::path& file, const fs::path& readable) {
     static std::mutex one_at_a_time;
     std::array<int, 2> ends{};
     if (::socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends.data()) != 0) {
         throw std::runtime_error(fmt::format("no confined reader can be started: {}", std::strerror(errno)));
     }
-    Channel channel(ends[0], file);
+    MessageChannel channel(ends[0], file);
     {
         const std::lock_guard lock(one_at_a_time);
         Order(work).send(ends[1]);

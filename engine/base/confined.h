@@ -19,13 +19,13 @@ bool distrust_files();
 [[nodiscard]] bool files_are_distrusted();
 
 /// One end of the way between a process and a confined one: messages that arrive whole and in order.
-class Channel {
+class MessageChannel {
   public:
     /// `file`: that is read, for errors.
-    Channel(int socket, std::filesystem::path file) : socket_(socket), file_(std::move(file)) {}
-    Channel(Channel&& other) noexcept;
-    Channel& operator=(Channel&&) = delete;
-    ~Channel();
+    MessageChannel(int socket, std::filesystem::path file) : socket_(socket), file_(std::move(file)) {}
+    MessageChannel(MessageChannel&& other) noexcept;
+    MessageChannel& operator=(MessageChannel&&) = delete;
+    ~MessageChannel();
 
     void send(std::string_view message);
 
@@ -50,11 +50,12 @@ class Channel {
 
 /// What a confined process does with the file: takes requests from the channel and answers them. An InputError that it
 /// throws is thrown by the asker's `receive`.
-using ConfinedWork = void (*)(const std::filesystem::path& file, Channel& channel);
+using ConfinedWork = void (*)(const std::filesystem::path& file, MessageChannel& channel);
 
 /// Starts `work` on `file` in a process that may read `readable` (a file, or a folder and all in it) and no other file,
 /// writes none, starts no program, opens no connection over TCP, takes half of the memory that there is and a minute of
 /// a processor's time. Limits that the system does not have do not hold (see distrust_files).
-Channel start_confined(ConfinedWork work, const std::filesystem::path& file, const std::filesystem::path& readable);
+MessageChannel start_confined(ConfinedWork work, const std::filesystem::path& file,
+                              const std::filesystem::path& readable);
 
 }  // namespace lensproof

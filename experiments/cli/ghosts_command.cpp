@@ -29,6 +29,7 @@ struct GhostsOptions {
     std::string reflections = "2";
     std::optional<int> strongest;
     double tolerance = analysis::GhostSettings{}.tolerance;
+    bool polarised = false;
     std::optional<double> image_circle_mm;
     std::string plot_file;
 };
@@ -50,6 +51,7 @@ analysis::GhostSettings settings_of(const GhostsOptions& options, const Analysed
         .reflections = options.reflections == "4" ? 4 : 2,
         .tolerance = options.tolerance,
         .mirrors = stray_mirrors(options.mirrors),
+        .polarised = options.polarised,
         .sampling = {.seed = options.common.seed},
         .threads = options.common.threads};
     for (const double wavelength_nm : analysed.settings.wavelengths_nm) {
@@ -106,6 +108,7 @@ Json ghost_json(const optics::Lens& lens, const analysis::GhostSettings& setting
               {"f_number", ghost.paraxial.f_number}}},
             {"energy", light.energy},
             {"energy_standard_error", light.standard_error},
+            {"polarised_energy", settings.polarised ? Json(ghost.polarised_energy) : Json(nullptr)},
             {"wavelengths", std::move(wavelengths)},
             {"centroid_mm", lands ? Json{light.centroid.x, light.centroid.y} : Json(nullptr)},
             {"rms_radius_mm", lands ? Json(light.rms_radius) : Json(nullptr)},
@@ -140,6 +143,7 @@ Json survey_json(const GhostsOptions& options, const optics::Lens& lens, const a
             {"image_circle_mm", 2.0 * settings.image_radius},
             {"ghosts", std::move(ghosts)},
             {"energy", survey.energy},
+            {"polarised_energy", settings.polarised ? Json(survey.polarised_energy) : Json(nullptr)},
             {"image_energy", survey.image.energy},
             {"surfaces", std::move(surfaces)},
             {"skipped_energy_bound", survey.skipped_energy_bound}};
@@ -177,6 +181,10 @@ std::string survey_text(const GhostsOptions& options, const optics::Lens& lens, 
     text += fmt::format("{} ghosts, together {:.3g} of the light that enters the entrance pupil; its image {:.3g}",
                         survey.ghosts.size(), survey.energy, survey.image.energy);
     text += settings.reflections == 4 ? fmt::format("; skipped, at most {:.3g}\n", survey.skipped_energy_bound) : "\n";
+    if (settings.polarised) {
+        text += fmt::format("with polarisation carried along their paths: {:.3g}, {:+.2f} %\n", survey.polarised_energy,
+                            100.0 * (survey.polarised_energy / survey.energy - 1.0));
+    }
     text += "\nWhich surface to coat: what of the ghosts' light goes with it\n";
     text += fmt::format("{:>14}{:>11}{:>14}{:>14}\n", "surface", "involved", "perfectly", "MgF2");
     for (const analysis::SurfaceShare& share : survey.surfaces) {
@@ -256,6 +264,8 @@ void add_ghosts_command(Program& program) {
     command.add_option("--strongest", options->strongest, "List these alone (default: all)")
         .check(in_range(1, 1000000))
         .type_name("N");
+    command.add_flag("--polarised", options->polarised,
+                     "Also find the energies with polarisation carried along the path, not averaged at each surface");
     command
         .add_option("--image-circle", options->image_circle_mm,
                     "Diameter in which light counts, mm (default: as stated, else as the outermost chief ray has it)")

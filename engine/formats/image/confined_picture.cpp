@@ -185,7 +185,7 @@ class Decoder {
   public:
     Decoder(const fs::path& file, OIIO::ImageInput& input) : file_(&file), input_(&input) {}
 
-    void answer(std::string_view request, Channel& channel) {
+    void answer(std::string_view request, MessageChannel& channel) {
         Taker taker(*file_, request);
         if (taker.number<char>() == static_cast<char>(Wish::part)) {
             answer_part(taker.number<int>(), channel);
@@ -196,7 +196,7 @@ class Decoder {
     }
 
   private:
-    void answer_part(int part, Channel& channel) {
+    void answer_part(int part, MessageChannel& channel) {
         std::string bytes;
         if (input_->seek_subimage(part, 0)) {
             put_spec(bytes, input_->spec());
@@ -205,7 +205,7 @@ class Decoder {
         channel.send(bytes);
     }
 
-    void answer_rows(int begin, int end, Channel& channel) {
+    void answer_rows(int begin, int end, MessageChannel& channel) {
         const OIIO::ImageSpec& spec = input_->spec();
         const std::size_t row = static_cast<std::size_t>(spec.width) * spec.pixel_bytes(true);
         std::vector<char> rows;
@@ -236,7 +236,7 @@ class Decoder {
     std::vector<char> rows_of_tiles_;
 };
 
-void decode(const fs::path& file, Channel& channel) {
+void decode(const fs::path& file, MessageChannel& channel) {
     // Threads would be the library's, and it is one file.
     OIIO::attribute("threads", 1);
     OIIO::attribute("exr_threads", -1);
@@ -255,7 +255,7 @@ void decode(const fs::path& file, Channel& channel) {
 /// The asker's side, as the library's own readers are used.
 class ConfinedInput final : public OIIO::ImageInput {
   public:
-    ConfinedInput(Channel channel, fs::path file, OIIO::ImageSpec spec)
+    ConfinedInput(MessageChannel channel, fs::path file, OIIO::ImageSpec spec)
         : channel_(std::move(channel)), file_(std::move(file)) {
         take(std::move(spec));
     }
@@ -316,7 +316,7 @@ class ConfinedInput final : public OIIO::ImageInput {
         m_spec.tile_depth = 0;
     }
 
-    Channel channel_;
+    MessageChannel channel_;
     fs::path file_;
     int part_ = 0;
 };
@@ -324,7 +324,7 @@ class ConfinedInput final : public OIIO::ImageInput {
 }  // namespace
 
 OpenPicture open_confined(const fs::path& file, const OIIO::ImageSpec& hints) {
-    Channel channel = start_confined(decode, file, file);
+    MessageChannel channel = start_confined(decode, file, file);
     std::string bytes;
     put_spec(bytes, hints);
     channel.send(bytes);

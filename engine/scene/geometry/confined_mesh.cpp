@@ -21,12 +21,12 @@ struct Numbers {
 };
 
 template <class T>
-void send_column(Channel& channel, const std::vector<T>& column) {
+void send_column(MessageChannel& channel, const std::vector<T>& column) {
     channel.send({reinterpret_cast<const char*>(column.data()), column.size() * sizeof(T)});
 }
 
 template <class T>
-std::vector<T> receive_column(Channel& channel) {
+std::vector<T> receive_column(MessageChannel& channel) {
     const std::string bytes = channel.receive();
     std::vector<T> column(bytes.size() / sizeof(T));
     if (!column.empty()) {
@@ -35,7 +35,7 @@ std::vector<T> receive_column(Channel& channel) {
     return column;
 }
 
-void read(const std::filesystem::path& file, Channel& channel) {
+void read(const std::filesystem::path& file, MessageChannel& channel) {
     MeshOptions options{.mm_per_unit = {}, .part = channel.receive()};
     Numbers numbers{};
     channel.receive(reinterpret_cast<char*>(&numbers), sizeof numbers);
@@ -58,7 +58,7 @@ void read(const std::filesystem::path& file, Channel& channel) {
 }  // namespace
 
 MeshFile read_mesh_confined(const std::filesystem::path& file, const MeshOptions& options) {
-    Channel channel = start_confined(read, file, std::filesystem::absolute(file).parent_path());
+    MessageChannel channel = start_confined(read, file, std::filesystem::absolute(file).parent_path());
     channel.send(options.part);
     const Numbers numbers{options.mm_per_unit.value_or(0.0), options.crease_deg, options.normals};
     channel.send({reinterpret_cast<const char*>(&numbers), sizeof numbers});

@@ -33,7 +33,7 @@ void in_distrust(const Test& test) {
 }
 
 std::string answer(ConfinedWork work, const fs::path& readable) {
-    Channel channel = start_confined(work, readable / "some.file", readable);
+    MessageChannel channel = start_confined(work, readable / "some.file", readable);
     channel.send("request");
     return channel.receive();
 }
@@ -41,11 +41,12 @@ std::string answer(ConfinedWork work, const fs::path& readable) {
 TEST(Confined, AnswersAndRefuses) {
     in_distrust([] {
         const TestFolder folder;
-        EXPECT_EQ(answer([](const fs::path& file,
-                            Channel& channel) { channel.send(file.filename().string() + " " + channel.receive()); },
-                         folder.path()),
-                  "some.file request");
-        const ConfinedWork refuses = [](const fs::path&, Channel&) { throw InputError("not like this"); };
+        EXPECT_EQ(
+            answer([](const fs::path& file,
+                      MessageChannel& channel) { channel.send(file.filename().string() + " " + channel.receive()); },
+                   folder.path()),
+            "some.file request");
+        const ConfinedWork refuses = [](const fs::path&, MessageChannel&) { throw InputError("not like this"); };
         EXPECT_EQ(complaint_about([&] { answer(refuses, folder.path()); }), "not like this");
     });
 }
@@ -56,23 +57,25 @@ TEST(Confined, NothingThatItDoesHarmsTheAsker) {
     in_distrust([] {
         const TestFolder folder;
         const auto said = [&](ConfinedWork work) { return complaint_about([&] { answer(work, folder.path()); }); };
-        EXPECT_TRUE(says(said([](const fs::path&, Channel&) { std::raise(SIGSEGV); }), "some.file: its reader ended"));
-        EXPECT_TRUE(says(said([](const fs::path&, Channel&) {}), "some.file: its reader ended"));
+        EXPECT_TRUE(
+            says(said([](const fs::path&, MessageChannel&) { std::raise(SIGSEGV); }), "some.file: its reader ended"));
+        EXPECT_TRUE(says(said([](const fs::path&, MessageChannel&) {}), "some.file: its reader ended"));
         EXPECT_TRUE(says(complaint_about([&] {
-                             Channel channel = start_confined([](const fs::path&, Channel& c) { c.send("too long"); },
-                                                              folder.path() / "some.file", folder.path());
+                             MessageChannel channel =
+                                 start_confined([](const fs::path&, MessageChannel& c) { c.send("too long"); },
+                                                folder.path() / "some.file", folder.path());
                              channel.receive(3);
                          }),
                          "taken it over"));
 #ifndef __SANITIZE_ADDRESS__
-        EXPECT_TRUE(says(said([](const fs::path&, Channel& channel) {
+        EXPECT_TRUE(says(said([](const fs::path&, MessageChannel& channel) {
                              const std::vector<char> much(static_cast<std::size_t>(memory_bytes()));
                              channel.send({much.data(), 1});
                          }),
                          "MiB of memory"));
 #endif
         EXPECT_EQ(answer(
-                      [](const fs::path&, Channel& channel) {
+                      [](const fs::path&, MessageChannel& channel) {
                           ::rlimit limit{};
                           ::getrlimit(RLIMIT_CPU, &limit);
                           channel.send(std::to_string(limit.rlim_max));
@@ -90,7 +93,7 @@ TEST(Confined, HasNoFilesButWhatItWasGiven) {
         }
         const TestFolder folder;
         std::ofstream(folder.path() / "some.file") << "inside";
-        const ConfinedWork tries = [](const fs::path& file, Channel& channel) {
+        const ConfinedWork tries = [](const fs::path& file, MessageChannel& channel) {
             std::string done;
             std::string word;
             std::ifstream(file) >> word;
