@@ -133,10 +133,11 @@ double draw_footprints(Svg& svg, const std::vector<DrawnGhost>& ghosts, double r
     const AxisRange range = footprint_range(ghosts);
     for (std::size_t i = 0; i < ghosts.size(); ++i) {
         const DrawnGhost& ghost = ghosts[i];
-        const PageBox box{
-            kGhostEdge + static_cast<double>(i % kFootprintColumns) * (kFootprintSide + kFootprintGap),
-            top + static_cast<double>(i / kFootprintColumns) * (kFootprintSide + kFootprintTitle) + kFootprintTitle,
-            kFootprintSide, kFootprintSide};
+        const std::size_t column = i % kFootprintColumns;
+        const std::size_t row = i / kFootprintColumns;
+        const PageBox box{kGhostEdge + static_cast<double>(column) * (kFootprintSide + kFootprintGap),
+                          top + static_cast<double>(row) * (kFootprintSide + kFootprintTitle) + kFootprintTitle,
+                          kFootprintSide, kFootprintSide};
         svg.text({box.x, box.y - 6.0}, fmt::format("{}   {:.3g}", ghost.name, ghost.energy),
                  {.size = kGhostTextSize, .fill = kInk, .class_name = "footprint"});
         const HeatMap map = footprint_map(ghost.footprint, radius, range);
