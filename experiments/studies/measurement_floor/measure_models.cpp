@@ -316,7 +316,7 @@ MeasurementFloor measure_models(const FloorSettings& settings, const findings::R
                 .settings = {{"cell", Json::list({sweep, lens, model, value, first_set, sets})}, {"seed", run.seed}}};
             results[static_cast<std::size_t>(i)] = run.steps.step("models", input, [&] {
                 std::vector<SetResult> of_sets;
-                for (int set = first_set; set < first_set + sets; ++set) {
+                for (int set = job.first_set; set < job.first_set + job.sets; ++set) {
                     of_sets.push_back(measured(job, set));
                 }
                 return of_sets;
