@@ -379,7 +379,8 @@ TEST(Run, WritesItsReportAndItsProfileReadsBack) {
     const std::string profile = "good/profiles/a.json";
     EXPECT_EQ(place.run({"compare", profile, profile, "--position-limit", "50"}).status, 0);
     EXPECT_EQ(place.run({"compare", "tessar", profile, "--focus", "10000", "--position-limit", "50"}).status, 0);
-    place.file("unknown.toml", with(read_file(data_root() / "lenses/tessar.toml"), "\"LLF7\"", "\"XLLF7\", n_d = 1.549, V_d = 45.4"));
+    place.file("unknown.toml",
+               with(read_file(data_root() / "lenses/tessar.toml"), "\"LLF7\"", "\"XLLF7\", n_d = 1.549, V_d = 45.4"));
     const Outcome unknown = place.run({"compare", "unknown.toml", profile, "--focus", "10000", "--json", "-"});
     ASSERT_EQ(unknown.status, 0) << unknown.err;
     EXPECT_EQ(Json::parse(unknown.out)["findings"][0]["code"], "glass-unknown");

@@ -1,9 +1,9 @@
-#include "engine/base/file.h"
 #include "engine/formats/prescription/load_lens.h"
 
 #include <algorithm>
 #include <memory>
 
+#include "engine/base/file.h"
 #include "engine/formats/glass/glass_file.h"
 #include "engine/formats/glass/shipped_glasses.h"
 #include "engine/formats/image/image.h"

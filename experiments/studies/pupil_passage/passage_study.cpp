@@ -137,8 +137,9 @@ findings::Subject subject_of(const Passage& passage) {
 
 PassageSetting read_passage_setting(TomlTable& table) {
     constexpr Bounds kPercent{.min = 0.0, .max = 100.0};
-    PassageSetting setting{
-        .lens = formats::read_lens_name(table), .f_number = table.number("f_number", {.min = 0.1, .max = 1000.0}), .published = {}};
+    PassageSetting setting{.lens = formats::read_lens_name(table),
+                           .f_number = table.number("f_number", {.min = 0.1, .max = 1000.0}),
+                           .published = {}};
     if (auto published = table.optional_table("published_percent")) {
         setting.published =
             PassageSetting::Published{.whole_element_percent = published->number("whole_element", kPercent),

@@ -277,7 +277,8 @@ TEST(Ghosts, RegionHoldsAllLightAndLittleElse) {
             int landed = 0;
             int missed = 0;
             for (int i = 0; i < kAcross * kAcross; ++i) {
-                const Vec2d place{(i % kAcross + 0.5) / kAcross, (i / kAcross + 0.5) / kAcross};
+                const int row = i / kAcross;
+                const Vec2d place{(i % kAcross + 0.5) / kAcross, (row + 0.5) / kAcross};
                 const Vec2d offset = scene.beam.corner() + scene.beam.side() * place;
                 if (landing(scene, path, offset)) {
                     ++landed;

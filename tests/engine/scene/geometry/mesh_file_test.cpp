@@ -294,10 +294,10 @@ TEST_F(MeshFileTest, DevicesAndPipesAreRefused) {
         }
         const fs::path obj = write("names.obj", "mtllib " + name + ".mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
         const fs::path gltf = write("names.gltf", box_gltf("\"uri\": \"" + name + ".bin\", "));
-        for (const auto& [file, names] : {std::pair{obj, name + ".mtl"}, {gltf, name + ".bin"}}) {
-            const std::string complaint = complaint_about([&] { read_mesh(file); });
-            EXPECT_TRUE(says(complaint, file.filename().string() + ": names "));
-            EXPECT_TRUE(says(complaint, names + ", a device or a pipe, expected a file"));
+        for (const auto& mesh : {std::pair{obj, name + ".mtl"}, {gltf, name + ".bin"}}) {
+            const std::string complaint = complaint_about([&] { read_mesh(mesh.first); });
+            EXPECT_TRUE(says(complaint, mesh.first.filename().string() + ": names "));
+            EXPECT_TRUE(says(complaint, mesh.second + ", a device or a pipe, expected a file"));
         }
     }
 }

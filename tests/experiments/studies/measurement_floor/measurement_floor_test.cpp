@@ -28,7 +28,7 @@ MeasurementFloor kept_whole(const Measure& measure) {
     const MeasurementFloor made = measure(first);
     EXPECT_GT(first.steps.made(), 0);
     const findings::RunSettings second = run();
-    const MeasurementFloor kept = measure(second);
+    MeasurementFloor kept = measure(second);
     EXPECT_EQ(second.steps.made(), 0);
     EXPECT_EQ(second.steps.kept(), first.steps.made());
     EXPECT_EQ(made.checks.size(), kept.checks.size());
