@@ -170,8 +170,8 @@ bool has_empty_faces(const aiScene& scene) {
 /// The files that Assimp opens, or tries to: a mesh's own, and those that it names, materials and buffers.
 class RegularFiles : public Assimp::DefaultIOSystem {
   public:
-    /// `refused`: is given the first that is a device or a pipe; none is opened.
-    explicit RegularFiles(std::filesystem::path& refused) : refused_(refused) {}
+    /// The first that is a device or a pipe; none is opened.
+    [[nodiscard]] const std::filesystem::path& refused() const { return refused_; }
 
     [[nodiscard]] bool Exists(const char* file) const override {  // asked by opening it
         return is_regular(file) && DefaultIOSystem::Exists(file);
@@ -193,7 +193,7 @@ class RegularFiles : public Assimp::DefaultIOSystem {
         return std::filesystem::is_regular_file(status);
     }
 
-    std::filesystem::path& refused_;
+    mutable std::filesystem::path refused_;
 };
 
 const aiScene& read_scene(Assimp::Importer& importer, const std::filesystem::path& file) {
@@ -201,8 +201,8 @@ const aiScene& read_scene(Assimp::Importer& importer, const std::filesystem::pat
         throw InputError(fmt::format("{}: cannot be read as {}: {}", file.string(), lower_extension(file).substr(1),
                                      printable(trimmed(reason))));
     };
-    std::filesystem::path no_file;
-    importer.SetIOHandler(new RegularFiles(no_file));  // which it then owns
+    auto* files = new RegularFiles;
+    importer.SetIOHandler(files);  // which it then owns
     const aiScene* scene = nullptr;
     try {
         if (lower_extension(file) == ".ply") {
@@ -222,10 +222,9 @@ const aiScene& read_scene(Assimp::Importer& importer, const std::filesystem::pat
     } catch (const std::exception& error) {  // of a library that meets counts that cannot be
         refuse(error.what());
     }
-    importer.SetIOHandler(nullptr);
-    if (!no_file.empty()) {
+    if (!files->refused().empty()) {
         throw InputError(fmt::format("{}: names {}, a device or a pipe, expected a file", file.string(),
-                                     printable(no_file.string())));
+                                     printable(files->refused().string())));
     }
     if (scene == nullptr || scene->mRootNode == nullptr) {
         refuse(importer.GetErrorString());
