@@ -15,10 +15,10 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// Of the glasses, spectra and markers that every study may look up.
+/// Of the glasses, coatings, spectra and markers that every study may look up.
 std::string shipped_data_digest() {
     std::vector<fs::path> files;
-    for (const char* folder : {"lenses/glass", "engine/spectral/data", "engine/scene/data"}) {
+    for (const char* folder : {"lenses/glass", "lenses/coatings", "engine/spectral/data", "engine/scene/data"}) {
         for (const fs::directory_entry& entry : fs::recursive_directory_iterator(data_root() / folder)) {
             if (entry.is_regular_file()) {
                 files.push_back(entry.path());
