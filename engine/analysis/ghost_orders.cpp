@@ -31,11 +31,10 @@ class Branches {
     [[nodiscard]] Bundle passed(Bundle bundle, int index, optics::AtSurface what, int step) const {
         Bundle next;
         for (TravellingRay& ray : bundle) {
-            const bool goes_on = index == sensor_
-                                     ? optics::ghost_detail::reflect_at_sensor(scene_.lens, scene_.mirrors, ray)
-                                     : optics::run_to_surface<optics::Rims::clip>(scene_.lens, index, step > 0, what,
-                                                                                  scene_.mirrors, ray)
-                                           .second;
+            const bool goes_on = index == sensor_ ? optics::reflect_at_sensor(scene_.lens, scene_.mirrors, ray)
+                                                  : optics::run_to_surface<optics::Rims::clip>(
+                                                        scene_.lens, index, step > 0, what, scene_.mirrors, ray)
+                                                        .second;
             if (goes_on && ray.transmittance(scene_.lens) > 0.0) {
                 next.push_back(ray);
             }

@@ -61,8 +61,6 @@ struct TravellingRay {
 
 enum class AtSurface { pass, reflect };
 
-namespace ghost_detail {
-
 /// Takes the ray to the sensor's plane and back from it; false where it does not meet it.
 template <class T>
 bool reflect_at_sensor(const TraceLens<T>& lens, const StrayMirrors<T>& mirrors, TravellingRay<T>& ray) {
@@ -80,8 +78,6 @@ bool reflect_at_sensor(const TraceLens<T>& lens, const StrayMirrors<T>& mirrors,
     ray.at_surfaces = ray.at_surfaces * mirrors.sensor;
     return true;
 }
-
-}  // namespace ghost_detail
 
 /// Takes `ray` to surface `index`, forward or back, and through it or back from it. Returns the status there, as an
 /// event of `trace` has it, and whether the ray goes on. A step of `trace`, with the same pieces in the same order, so
@@ -210,7 +206,7 @@ TracedRay<T> trace_ghost(const TraceLens<T>& lens, const GhostPath& path, const 
             break;
         }
         const auto [here, goes_on] =
-            index == count ? std::pair{RayStatus::ok, ghost_detail::reflect_at_sensor(lens, mirrors, at)}
+            index == count ? std::pair{RayStatus::ok, reflect_at_sensor(lens, mirrors, at)}
                            : run_to_surface<rims>(lens, index, step > 0,
                                                   reflects ? AtSurface::reflect : AtSurface::pass, mirrors, at);
         visit(SurfaceEvent<T>{index, at.global(), at.optical_path, at.transmittance(lens), goes_on ? here : at.status});
