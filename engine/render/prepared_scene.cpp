@@ -9,9 +9,10 @@
 
 namespace lensproof::render {
 
-PreparedScene::PreparedScene(const SceneSetup& setup, const PixelFilter& filter, const Cache& cache, const Pass& pass)
-    : pass_(setup.chart ? &pass_named("chart") : &pass),
-      camera_(setup.camera, setup.spectral, filter, cache, pass_->has_splats),
+PreparedScene::PreparedScene(const SceneSetup& setup, const PixelFilter& filter, const Cache& cache,
+                             const Integrator& integrator)
+    : integrator_(setup.chart ? &integrator_named("chart") : &integrator),
+      camera_(setup.camera, setup.spectral, filter, cache, integrator_->has_splats),
       max_bounces_(setup.max_bounces),
       world_(make_world(setup, cache)) {
     if (!camera_.clamp_note().empty()) {
@@ -29,11 +30,11 @@ World PreparedScene::make_world(const SceneSetup& setup, const Cache& cache) {
 }
 
 Render PreparedScene::render(std::uint64_t seed, bool has_features) const {
-    return pass_->render({.world = &world_,
-                          .camera = &camera_,
-                          .seed = seed,
-                          .has_features = has_features,
-                          .paths = {.max_bounces = max_bounces_}});
+    return integrator_->render({.world = &world_,
+                                .camera = &camera_,
+                                .seed = seed,
+                                .has_features = has_features,
+                                .paths = {.max_bounces = max_bounces_}});
 }
 
 std::map<std::string, std::string> PreparedScene::metadata() const {

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "engine/base/cache.h"
-#include "engine/render/integrators/passes.h"
+#include "engine/render/integrators/integrators.h"
 #include "engine/render/progressive.h"
 #include "engine/render/scene_setup.h"
 
@@ -15,18 +15,18 @@ namespace lensproof::render {
 /// Camera and world, ready for any number of renders. It stays where it was made: views refer to it.
 class PreparedScene {
   public:
-    /// Loads the lens and everything that the scene names. `pass`: of a chart in even light there is but one. `cache`:
-    /// for what is found by tracing the lens and for the uplift of RGB; the same pictures come from any. Throws
-    /// InputError as `Camera` and `build_scene` do.
+    /// Loads the lens and everything that the scene names. `integrator`: of a chart in even light there is but one.
+    /// `cache`: for what is found by tracing the lens and for the uplift of RGB; the same pictures come from any.
+    /// Throws InputError as `Camera` and `build_scene` do.
     PreparedScene(const SceneSetup& setup, const PixelFilter& filter, const Cache& cache,
-                  const Pass& pass = pass_named("camera"));
+                  const Integrator& integrator = integrator_named("camera"));
     PreparedScene(const PreparedScene&) = delete;
     PreparedScene& operator=(const PreparedScene&) = delete;
 
     [[nodiscard]] Render render(std::uint64_t seed, bool has_features) const;
 
     [[nodiscard]] const Camera& camera() const { return camera_; }
-    [[nodiscard]] const Pass& pass() const { return *pass_; }
+    [[nodiscard]] const Integrator& integrator() const { return *integrator_; }
 
     /// What was repaired or left out, and that wavelengths were clamped to the glasses' range: a sentence each.
     [[nodiscard]] const std::vector<std::string>& remarks() const { return remarks_; }
@@ -37,7 +37,7 @@ class PreparedScene {
   private:
     [[nodiscard]] World make_world(const SceneSetup& setup, const Cache& cache);
 
-    const Pass* pass_;
+    const Integrator* integrator_;
     Camera camera_;
     int max_bounces_;
     std::vector<std::string> remarks_;

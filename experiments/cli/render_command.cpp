@@ -70,7 +70,7 @@ int run_render(const RenderJobOptions& options, const std::string& paths) {
     }
     const render::PixelFilter filter = filter_of(setup.sensor, options);
     const auto scene = said_of_scene(options, [&] {
-        return std::make_unique<render::PreparedScene>(setup, filter, Cache::standard(), render::pass_named(paths));
+        return std::make_unique<render::PreparedScene>(setup, filter, Cache::standard(), render::integrator_named(paths));
     });
     for (const std::string& remark : scene->remarks()) {
         print_message("lensproof: {}\n", remark);
@@ -83,7 +83,7 @@ int run_render(const RenderJobOptions& options, const std::string& paths) {
     job.identity = {{"scene", scene_hash(setup, options.scene)},
                     {"lens", scene->camera().hash()},
                     {"settings", fmt::format("{} filter, {} features{}", filter.name(),
-                                             options.has_features ? "with" : "no", scene->pass().description)}};
+                                             options.has_features ? "with" : "no", scene->integrator().description)}};
     job.notes.metadata = scene->metadata();
     job.notes.colours = scene->camera().colours();
     job.samples = static_cast<std::uint32_t>(setup.samples_per_pixel);

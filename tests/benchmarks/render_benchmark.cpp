@@ -5,7 +5,7 @@
 
 #include "engine/pupil/pupil_map.h"
 #include "engine/render/integrators/chart_tracer.h"
-#include "engine/render/integrators/passes.h"
+#include "engine/render/integrators/integrators.h"
 #include "engine/render/progressive.h"
 #include "engine/render/sampling/sampler.h"
 #include "tests/benchmarks/benchmarks.h"
@@ -46,7 +46,7 @@ void time_render(benchmark::State& state, const Setting& setting, const scene::C
     const render::View view{.world = &world, .camera = &camera};
     while (state.KeepRunning()) {
         benchmark::DoNotOptimize(
-            render::render_film(render::pass_named("chart").render(view), {.first = 0, .end = kSamples}, 1));
+            render::render_film(render::integrator_named("chart").render(view), {.first = 0, .end = kSamples}, 1));
     }
     const render::Sensor& sensor = camera.sensor();
     state.counters["paths/s"] = benchmark::Counter(

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "engine/render/integrators/passes.h"
+#include "engine/render/integrators/integrators.h"
 #include "engine/render/progressive.h"
 #include "tests/benchmarks/benchmarks.h"
 #include "tests/engine/scene/bsdf/bsdf_cases.h"
@@ -132,7 +132,7 @@ void time_camera_paths(benchmark::State& state, render::LensModel model, MakeSce
                                 {.layers = 8, .strata_per_layer = 8}, {}, {});
     const render::World world = make_scene(camera.grid());
     const render::Render render =
-        render::pass_named("camera").render({.world = &world, .camera = &camera, .paths = kPaths});
+        render::integrator_named("camera").render({.world = &world, .camera = &camera, .paths = kPaths});
     render::Film film(render.film);
     render::FilmTile tile(film.layout());
     const auto tiles = render::film_tiles(kWidth, kHeight);

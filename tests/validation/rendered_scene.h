@@ -35,7 +35,7 @@ inline render::Film rendered(const SeenChart& seen, const render::SampleRange& r
                              int threads = 0) {
     const render::World world = render::even_chart(seen.chart, seen.placement, 1000.0, seen.camera);
     const render::View view{.world = &world, .camera = &seen.camera, .seed = seed, .has_features = seen.has_features};
-    return render::render_film(render::pass_named("chart").render(view), range, threads);
+    return render::render_film(render::integrator_named("chart").render(view), range, threads);
 }
 
 }  // namespace lensproof

@@ -48,7 +48,7 @@ class Studio {
 
   private:
     [[nodiscard]] render::Film film_of(const char* pass, std::uint32_t samples) const {
-        render::Render render = render::pass_named(pass).render(view_);
+        render::Render render = render::integrator_named(pass).render(view_);
         // R, G and B all are the mean irradiance over the band.
         const double per_nm = 1.0 / render.film.band_nm;
         render.film.rgb_weights.assign(render.film.rgb_weights.size(), {per_nm, per_nm, per_nm});

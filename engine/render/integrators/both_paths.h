@@ -11,7 +11,8 @@ namespace lensproof::render {
 /// TileRenderer.
 class BothPaths {
   public:
-    explicit BothPaths(const View& view) : camera_(view, Combination::weighed), light_(view, Combination::weighed) {}
+    explicit BothPaths(const View& view)
+        : camera_(view, Combination::weighed), light_(light_tracer(view, Combination::weighed)) {}
 
     void operator()(const TileSamples& samples, FilmTile& tile) {
         camera_(samples, tile);
@@ -20,7 +21,7 @@ class BothPaths {
 
   private:
     PathTracer camera_;
-    LightTracer light_;
+    TileRenderer light_;
 };
 
 }  // namespace lensproof::render

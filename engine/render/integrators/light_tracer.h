@@ -8,7 +8,7 @@
 namespace lensproof::render {
 
 /// Renders a scene by light paths, one for each sample of each pixel, wherever it lands: the film's layout has splats,
-/// and the camera meets light paths. A TileRenderer.
+/// and the camera meets light paths.
 ///
 /// Each path is followed, and from each of its points joins the camera (Dutré, Lafortune & Willems, EGSR 1993,
 /// "particle tracing" with a camera of glass): a ray into it is drawn with a known pdf, and each wavelength is brought
@@ -20,16 +20,6 @@ namespace lensproof::render {
 /// light paths miss them; with camera paths, these bring them. Light from surfaces inside the sphere about a lens's
 /// front is likewise theirs. Sources without an extent (points, spots) light the scene and are not seen themselves, as
 /// they are not by camera paths nor in mirrors: their radiance is no number; small spheres are seen.
-class LightTracer {
-  public:
-    explicit LightTracer(const View& view, Combination combination = Combination::alone);
-
-    void operator()(const TileSamples& samples, FilmTile& tile) const;
-
-  private:
-    View view_;
-    bool is_weighed_;
-    std::uint64_t seed_;
-};
+TileRenderer light_tracer(const View& view, Combination combination = Combination::alone);
 
 }  // namespace lensproof::render

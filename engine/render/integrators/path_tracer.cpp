@@ -24,18 +24,23 @@ class PathWalk {
             if (bounce == 0 && drawn_ != nullptr) {
                 enter(hit ? LightOrigin{hit->point, false} : LightOrigin{-1.0 * ray.direction, true});
             }
+            const bool counts = bounce >= settings_.min_bounces;
             if (!hit) {
-                scene_.lights.visit_infinity(
-                    ray.direction, path_,
-                    [&](const scene::Lights::Emission& light) { add_found(throughput, light, 1.0); }, ahead);
+                if (counts) {
+                    scene_.lights.visit_infinity(
+                        ray.direction, path_,
+                        [&](const scene::Lights::Emission& light) { add_found(throughput, light, 1.0); }, ahead);
+                }
                 break;
             }
             const auto numbers = numbers_.next();
             const auto to_light = numbers_.peek();
             scene_.lights.expect_sample(to_light[0], to_light[1], to_light[2]);
             throughput *= body_transmittance(scene_, *hit, ray.direction, path_);
-            add_found(throughput, scene_.lights.emitted(*hit, from_, ray.direction, path_),
-                      std::abs(dot(hit->geometric_normal, ray.direction)));
+            if (counts) {
+                add_found(throughput, scene_.lights.emitted(*hit, from_, ray.direction, path_),
+                          std::abs(dot(hit->geometric_normal, ray.direction)));
+            }
             if (bounce == settings_.max_bounces && bounce > 0) {
                 break;
             }

@@ -13,6 +13,7 @@ namespace lensproof::render {
 
 struct PathSettings {
     int max_bounces = 8;  // scatterings on a path; 0 shows lights alone
+    int min_bounces = 0;  // 0 or 1: the latter leaves out light that comes straight from its source
     /// From this bounce on, paths are ended at random by how little they still carry ("Russian roulette", Arvo & Kirk,
     /// SIGGRAPH 1990); those that go on carry more for it.
     int roulette_from = 3;

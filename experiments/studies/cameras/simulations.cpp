@@ -16,7 +16,7 @@
 #include "engine/optics/paraxial.h"
 #include "engine/render/film/film_image.h"
 #include "engine/render/integrators/chart_tracer.h"
-#include "engine/render/integrators/passes.h"
+#include "engine/render/integrators/integrators.h"
 #include "engine/render/progressive.h"
 #include "engine/scene/chart/chart_file.h"
 #include "engine/spectral/wavelengths.h"
@@ -177,7 +177,7 @@ MeasuredCamera measure_simulation(const Simulation& simulation, const render::Ca
                                     .camera = &camera,
                                     .seed = settings.seed + pictures.size()};  // views do not share their noise
             const render::Film film =
-                render::render_film(render::pass_named("chart").render(view),
+                render::render_film(render::integrator_named("chart").render(view),
                                     {.first = 0, .end = static_cast<std::uint32_t>(samples_per_pixel)},
                                     settings.threads, [&](double done) { progress(simulation.name + step, done); });
             return colours_only(render::film_image(film));

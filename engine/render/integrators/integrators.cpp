@@ -1,4 +1,4 @@
-#include "engine/render/integrators/passes.h"
+#include "engine/render/integrators/integrators.h"
 
 #include <algorithm>
 #include <stdexcept>
@@ -10,34 +10,34 @@ namespace lensproof::render {
 
 namespace {
 
-template <class Integrator>
+template <class Renderer>
 TileRenderer renderer_by(const View& view) {
-    return Integrator(view);
+    return Renderer(view);
 }
 
 }  // namespace
 
-Render Pass::render(const View& view) const {
+Render Integrator::render(const View& view) const {
     Render render{.film = view.camera->film(), .renderer = renderer(view)};
     render.film.has_splats = has_splats;
     render.film.has_features = view.has_features;
     return render;
 }
 
-const std::vector<Pass>& passes() {
-    static const std::vector<Pass> all = {
+const std::vector<Integrator>& integrators() {
+    static const std::vector<Integrator> all = {
         {"camera", "", false, renderer_by<PathTracer>},
-        {"light", ", light paths", true, renderer_by<LightTracer>},
+        {"light", ", light paths", true, [](const View& view) { return light_tracer(view); }},
         {"both", ", camera and light paths", true, renderer_by<BothPaths>},
         {"chart", "", false, renderer_by<ChartTracer>},
     };
     return all;
 }
 
-const Pass& pass_named(const std::string& name) {
-    const auto found = std::ranges::find(passes(), name, &Pass::name);
-    if (found == passes().end()) {
-        throw std::out_of_range("no pass is called " + name);
+const Integrator& integrator_named(const std::string& name) {
+    const auto found = std::ranges::find(integrators(), name, &Integrator::name);
+    if (found == integrators().end()) {
+        throw std::out_of_range("no integrator is called " + name);
     }
     return *found;
 }

@@ -1,4 +1,4 @@
-// engine/render/integrators/passes.h — the integrators, by name.
+// engine/render/integrators/integrators.h — the integrators, by name.
 #pragma once
 #include <string>
 #include <vector>
@@ -7,21 +7,21 @@
 
 namespace lensproof::render {
 
-/// What makes a film of a world. Each pass is a file in this folder and a line in passes.cpp.
-struct Pass {
+/// What makes a film of a world. Each is a file in this folder and a line in integrators.cpp.
+struct Integrator {
     std::string name;         // as `render --paths` has it
     std::string description;  // what of it stands among a render's settings
     bool has_splats = false;  // light lands anywhere: the film keeps it, the camera meets light paths
     TileRenderer (*renderer)(const View& view) = nullptr;
 
-    /// The camera's film, with what the pass puts there.
+    /// The camera's film, with what the integrator puts there.
     [[nodiscard]] Render render(const View& view) const;
 };
 
 /// Of scenes: "camera", "light" and "both"; of charts under even light: "chart".
-const std::vector<Pass>& passes();
+const std::vector<Integrator>& integrators();
 
 /// Throws std::out_of_range for a name that is none of them.
-const Pass& pass_named(const std::string& name);
+const Integrator& integrator_named(const std::string& name);
 
 }  // namespace lensproof::render

@@ -1,0 +1,254 @@
+// engine/render/integrators/light_walk.h — light paths, from the lights through the scene and into the camera to the
+// film, by whichever way they take in the camera.
+#pragma once
+#include <cmath>
+#include <memory>
+#include <utility>
+
+#include "engine/base/infinity.h"
+#include "engine/render/camera/entry.h"
+#include "engine/render/integrators/mis_weight.h"
+#include "engine/render/integrators/view.h"
+
+namespace lensproof::render {
+
+/// One light path: from each of its points it joins the camera, whose film it reaches as `entrance` draws.
+///
+/// An entrance that says `mis_weight(entry, wavelength, others, is_hero_alone)` is one of two ways to make these paths,
+/// the other being camera paths. One that says `meet` is met by chance, too: behind a mirror or smooth glass, from
+/// where no ray can be drawn.
+template <class Entrance>
+class LightWalk {
+  public:
+    LightWalk(const View& view, const Entrance& entrance, const spectral::PathWavelengths& path, PathSampler& numbers,
+              FilmTile& tile)
+        : scene_(view.scene()),
+          entrance_(entrance),
+          path_(path),
+          settings_(view.paths),
+          numbers_(numbers),
+          tile_(tile),
+          pixel_m2_(1e-6 * view.camera->sensor().pixel_pitch_mm * view.camera->sensor().pixel_pitch_mm) {}
+
+    /// Returns how many rays were traced, in the scene and into the camera.
+    std::uint32_t walk() {
+        const auto begin = numbers_.next();
+        const scene::LightStart start = scene_.lights.start(path_, begin[0], begin[1], begin[2]);
+        if (settings_.min_bounces == 0 && (Entrance::shows_points || !start.is_point())) {
+            join_from_light(start);
+        }
+        if (settings_.max_bounces > 0) {
+            const auto onwards = numbers_.next();
+            scatter(start, scene_.lights.leave(start, onwards[0], onwards[1]));
+        }
+        return rays_;
+    }
+
+  private:
+    static constexpr double kSquareMetresPerSquareMm = 1e-6;
+    static constexpr bool kIsWeighed = requires(const Entrance& entrance, const typename Entrance::Entry& entry) {
+        entrance.mis_weight(entry, std::size_t{0}, 0.0, false);
+    };
+    static constexpr bool kIsMet = requires(const Entrance& entrance, const Ray<double>& ray,
+                                            const spectral::PathWavelengths& path, PathSampler& numbers) {
+        entrance.meet(ray, path, numbers);
+    };
+
+    /// Carries on from surface to surface, and joins the camera from each.
+    void scatter(const scene::LightStart& start, const scene::EmittedRay& light) {
+        Ray<double> ray = light.ray;
+        spectral::SpectralSample throughput(1.0F);
+        for (int bounce = 1; spectral::max_value(light.power) > 0.0F; ++bounce) {
+            const auto hit = scene::intersect(*scene_.geometry, ray.origin, ray.direction, 0.0, kInfinity);
+            ++rays_;
+            if constexpr (kIsMet) {
+                if (is_mirrored_) {
+                    arrive(ray, hit ? hit->distance_mm : kInfinity, light.power * throughput);
+                }
+            }
+            if (!hit) {
+                return;
+            }
+            throughput *= body_transmittance(scene_, *hit, ray.direction, path_);
+            const PathVertex vertex(*hit, -1.0 * ray.direction, scene_, path_);
+            if (!vertex.is_consistent(-1.0 * ray.direction, vertex.wo)) {
+                return;
+            }
+            if (kIsWeighed && bounce == 1) {
+                weight_.leave(scene_.lights.first_segment(start, hit->point));
+            }
+            if (!scene::is_delta(vertex.bsdf)) {
+                join_from_surface(vertex, light.power * throughput);
+            }
+            if (bounce == settings_.max_bounces) {
+                return;
+            }
+            const auto numbers = numbers_.next();
+            const auto turn = vertex.turn(numbers, scene::Transport::importance);
+            if (!turn) {
+                return;
+            }
+            const auto& [scattered, onwards] = *turn;
+            throughput *=
+                scattered.weight * spectral::SpectralSample(shading_correction(vertex, onwards, scattered.wi));
+            if (scattered.is_dispersed && !is_hero_alone_) {
+                throughput = static_cast<float>(spectral::kWavelengthsPerPath) * spectral::hero_alone(throughput);
+                is_hero_alone_ = true;
+            }
+            if constexpr (kIsWeighed) {
+                weight_.turn(scattered.is_delta ? PathTurn{.is_delta = true}
+                                                : light_turn(vertex, onwards, scattered.wi, scattered.pdf));
+            }
+            if (!survives_roulette(settings_, bounce, numbers[3], throughput)) {
+                return;
+            }
+            is_mirrored_ = scattered.is_delta;
+            ray = vertex.ray(onwards);
+        }
+    }
+
+    /// Light carries |cos| about the geometric normal where its paths' weights have that about the shading normal
+    /// (Veach 1997, eq. 5.17).
+    static float shading_correction(const PathVertex& vertex, const Vec3d& wi_world, const Vec3d& wi) {
+        const double before =
+            std::abs(vertex.wo.z) / std::abs(dot(vertex.frame.to_world(vertex.wo), vertex.hit.geometric_normal));
+        const double after = std::abs(dot(wi_world, vertex.hit.geometric_normal)) / std::abs(wi.z);
+        return static_cast<float>(before * after);
+    }
+
+    void join_from_light(const scene::LightStart& start) {
+        const LightOrigin from{start.is_at_infinity ? start.direction : start.point, start.is_at_infinity};
+        join(from, [&](const Entry& in) {
+            if (start.is_at_infinity) {
+                return Carried{.light = is_blocked(in.end - scene_.lights.beyond_mm(in.end) * start.direction, in.end)
+                                            ? spectral::SpectralSample()
+                                            : start.value,
+                               .others = LightMisWeight::others(start, 1.0)};
+            }
+            const spectral::SpectralSample intensity = scene_.lights.intensity(start, in.direction);
+            const Vec3d origin = scene::ray_origin(start.point, start.normal, start.error_mm, in.direction);
+            return Carried{.light = spectral::is_black(intensity) || is_blocked(origin, in.end)
+                                        ? spectral::SpectralSample()
+                                        : intensity,
+                           .others = LightMisWeight::others(start, std::abs(dot(start.normal, in.direction)))};
+        });
+    }
+
+    void join_from_surface(const PathVertex& vertex, const spectral::SpectralSample& power) {
+        join({vertex.hit.point, false}, [&](const Entry& in) -> Carried {
+            const Vec3d wi = vertex.frame.to_local(in.direction);
+            if (!vertex.is_consistent(in.direction, wi)) {
+                return {};
+            }
+            const spectral::SpectralSample scattered =
+                scene::evaluate(vertex.bsdf, vertex.wo, wi, scene::Transport::importance);
+            if (spectral::is_black(scattered) || is_blocked(scene::ray_origin(vertex.hit, in.direction), in.end)) {
+                return {};
+            }
+            return {.light = power * scattered * spectral::SpectralSample(shading_correction(vertex, in.direction, wi)),
+                    .others = kIsWeighed ? weight_.others(light_turn(vertex, in.direction, wi, 0.0)) : 0.0};
+        });
+    }
+
+    /// What goes along a ray into the camera: an intensity from a point, from far off an irradiance; and the pdfs of
+    /// the other techniques to make the path (LightMisWeight).
+    struct Carried {
+        spectral::SpectralSample light;
+        double others = 0.0;
+    };
+
+    /// Draws a ray into the camera and brings its light to the film.
+    template <class CarriedBy>
+    void join(const LightOrigin& from, const CarriedBy& carried_by) {
+        const auto entry = entrance_.draw(from, path_, is_hero_alone_, numbers_);
+        if (!entry) {
+            return;
+        }
+        rays_ += spectral::kWavelengthsPerPath;
+        if (entry->is_dark()) {
+            return;
+        }
+        const Carried carried = carried_by(*entry);
+        if (spectral::is_black(carried.light)) {
+            return;
+        }
+        splat(*entry, carried, (from.is_far ? kSquareMetresPerSquareMm : 1.0) / (entry->pdf * pixel_m2_));
+    }
+
+    /// The same along a ray that comes anyway and is free up to `free_mm`.
+    void arrive(const Ray<double>& ray, double free_mm, const spectral::SpectralSample& power) {
+        const auto entry = entrance_.meet(ray, path_, numbers_);
+        if (entry && length(entry->end - ray.origin) < free_mm) {
+            rays_ += spectral::kWavelengthsPerPath;
+            splat(*entry, {.light = power, .others = 0.0}, 1.0 / (entry->pdf * pixel_m2_));
+        }
+    }
+
+    void splat(const typename Entrance::Entry& entry, const Carried& carried, double to_irradiance) {
+        std::array<float, spectral::kWavelengthsPerPath> irradiance{};
+        for (std::size_t i = 0; i < irradiance.size(); ++i) {
+            if (entry.weight[i] > 0.0) {
+                double arrives = to_irradiance * entry.weight[i] * carried.light[i];
+                if constexpr (kIsWeighed) {
+                    arrives *= entrance_.mis_weight(entry, i, carried.others, is_hero_alone_);
+                }
+                irradiance[i] = static_cast<float>(arrives);
+            }
+        }
+        tile_.splat(entry.at_px, path_.index, irradiance);
+    }
+
+    bool is_blocked(const Vec3d& from, const Vec3d& to) {
+        ++rays_;
+        return scene::is_occluded(*scene_.geometry, from, to);
+    }
+
+    const scene::Scene& scene_;
+    const Entrance& entrance_;
+    const spectral::PathWavelengths& path_;
+    const PathSettings& settings_;
+    PathSampler& numbers_;
+    FilmTile& tile_;
+    LightMisWeight weight_;
+    std::uint32_t rays_ = 0;
+    double pixel_m2_;
+    bool is_hero_alone_ = false;
+    bool is_mirrored_ = false;  // its last point sends light one way only
+};
+
+/// Renders a scene by light paths, one for each sample of each pixel, wherever it lands: the film's layout has splats.
+/// A TileRenderer.
+template <class Entrance>
+class LightPaths {
+  public:
+    /// Light paths have numbers of their own, and `salt` tells those of one entrance from another's: those of other
+    /// paths of the same sample would go with them.
+    LightPaths(const View& view, Entrance entrance, std::uint64_t salt)
+        : view_(view),
+          entrance_(std::make_shared<const Entrance>(std::move(entrance))),
+          seed_(sampler_detail::mixed(view.seed ^ salt)) {}
+
+    void operator()(const TileSamples& samples, FilmTile& tile) const {
+        const PixelRect& rect = samples.rect;
+        const spectral::SpectralGrid& grid = view_.camera->grid();
+        for (int y = rect.y; y < rect.y + rect.height; ++y) {
+            for (int x = rect.x; x < rect.x + rect.width; ++x) {
+                const auto pixel = static_cast<std::uint32_t>(y * view_.camera->sensor().width + x);
+                for (std::uint32_t sample = samples.first; sample < samples.end; ++sample) {
+                    PathSampler numbers(seed_, pixel, sample);
+                    const spectral::PathWavelengths strata =
+                        grid.path(static_cast<int>(numbers.next()[0] * grid.size()));
+                    tile.begin_light_path();
+                    tile.count_rays(LightWalk(view_, *entrance_, strata, numbers, tile).walk());
+                }
+            }
+        }
+    }
+
+  private:
+    View view_;
+    std::shared_ptr<const Entrance> entrance_;
+    std::uint64_t seed_;
+};
+
+}  // namespace lensproof::render
