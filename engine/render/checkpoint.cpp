@@ -23,7 +23,7 @@ namespace fs = std::filesystem;
 namespace {
 
 // The file's form. A number, not its digits: a machine of another byte order takes it for another version.
-constexpr std::uint32_t kVersion = 2;
+constexpr std::uint32_t kVersion = 3;
 constexpr std::string_view kMagic = "lensproof checkpoint\n";
 constexpr std::size_t kPiece = std::size_t{1} << 20U;
 constexpr std::size_t kDigestSize = sizeof(std::uint64_t);
@@ -164,7 +164,7 @@ std::string shape_of(const RenderState& state) {
     std::string bytes;
     append_bytes(bytes, layout.width, layout.height, layout.has_splats, layout.has_features, layout.layer_nm.size(),
                  layout.rgb_weights.size(), state.tiles.size());
-    return bytes;
+    return bytes + state.pass;
 }
 
 void write_text(DigestedWriter& writer, std::string_view text) {
@@ -172,18 +172,15 @@ void write_text(DigestedWriter& writer, std::string_view text) {
     writer.write(text);
 }
 
-void write_state(DigestedWriter& writer, const RenderIdentity& identity, const RenderState& state) {
-    writer.write(kMagic);
-    writer.write_numbers(kVersion, static_cast<std::uint64_t>(identity.size()));
-    for (const IdentityPart& part : identity) {
-        write_text(writer, part.name);
-        write_text(writer, part.value);
-    }
+void write_progress(DigestedWriter& writer, const RenderState& state) {
     write_text(writer, shape_of(state));
     writer.write_numbers(state.range.first, state.range.end);
     for (const TileProgress& tile : state.tiles) {
         writer.write_numbers(tile.done, tile.target);
     }
+}
+
+void write_sums(DigestedWriter& writer, const RenderState& state) {
     Film::visit_sums(state.film, [&]<class Sums>(const Sums& sums) {
         if constexpr (std::is_arithmetic_v<Sums>) {
             writer.write_numbers(sums);
@@ -191,6 +188,22 @@ void write_state(DigestedWriter& writer, const RenderIdentity& identity, const R
             writer.write_all(sums);
         }
     });
+}
+
+void write_render(DigestedWriter& writer, const RenderIdentity& identity, std::span<const RenderState> passes) {
+    writer.write(kMagic);
+    writer.write_numbers(kVersion, static_cast<std::uint64_t>(identity.size()));
+    for (const IdentityPart& part : identity) {
+        write_text(writer, part.name);
+        write_text(writer, part.value);
+    }
+    writer.write_numbers(static_cast<std::uint64_t>(passes.size()));
+    for (const RenderState& state : passes) {
+        write_progress(writer, state);
+    }
+    for (const RenderState& state : passes) {
+        write_sums(writer, state);
+    }
 }
 
 std::uintmax_t bytes_of_sums(const Film& film) {
@@ -205,6 +218,11 @@ std::uintmax_t bytes_of_sums(const Film& film) {
     return bytes;
 }
 
+InputError of_another_render(const fs::path& file, const std::string& why) {
+    return InputError(
+        fmt::format("{}: the checkpoint is of another render: {}; remove it to begin anew", file.string(), why));
+}
+
 RenderIdentity read_identity(DigestedReader& reader) {
     RenderIdentity identity;
     for (auto parts = reader.number<std::uint64_t>(); parts > 0; --parts) {
@@ -214,39 +232,15 @@ RenderIdentity read_identity(DigestedReader& reader) {
     return identity;
 }
 
-}  // namespace
-
-void write_checkpoint(const fs::path& file, const RenderIdentity& identity, const RenderState& state) {
-    write_whole(file, [&](const fs::path& temporary) {
-        errno = 0;
-        DigestedWriter writer(temporary);
-        write_state(writer, identity, state);
-        if (!writer.finish()) {
-            throw std::system_error(errno != 0 ? errno : EIO, std::generic_category(),
-                                    file.string() + " cannot be written");
-        }
-    });
-}
-
-void read_checkpoint(const fs::path& file, const RenderIdentity& identity, RenderState& state) {
-    DigestedReader reader(file);
-    const auto of_another_render = [&](const std::string& why) {
-        throw InputError(
-            fmt::format("{}: the checkpoint is of another render: {}; remove it to begin anew", file.string(), why));
-    };
-    if (const auto version = reader.number<std::uint32_t>(); version != kVersion) {
-        of_another_render(fmt::format("its form is version {}, expected {}", version, kVersion));
-    }
-    if (const auto difference = first_difference(read_identity(reader), identity)) {
-        of_another_render(*difference);
-    }
+/// A film's shape, its range and how far its tiles are.
+std::vector<TileProgress> read_tiles(DigestedReader& reader, const fs::path& file, const RenderState& state) {
     if (reader.text() != shape_of(state)) {
-        of_another_render("its film has another size or other layers");
+        throw of_another_render(file, "its film has another size or other layers");
     }
     const auto first = reader.number<std::uint32_t>();
     reader.number<std::uint32_t>();
     if (first != state.range.first) {
-        of_another_render(fmt::format("its samples begin at {}, expected {}", first, state.range.first));
+        throw of_another_render(file, fmt::format("its samples begin at {}, expected {}", first, state.range.first));
     }
     std::vector<TileProgress> tiles(state.tiles.size());
     for (TileProgress& tile : tiles) {
@@ -260,15 +254,55 @@ void read_checkpoint(const fs::path& file, const RenderIdentity& identity, Rende
             reader.fail();
         }
     }
-    reader.expect_left(bytes_of_sums(state.film));
-    state.tiles = std::move(tiles);
-    Film::visit_sums(state.film, [&]<class Sums>(Sums& sums) {
+    return tiles;
+}
+
+void read_sums(DigestedReader& reader, Film& film) {
+    Film::visit_sums(film, [&]<class Sums>(Sums& sums) {
         if constexpr (std::is_arithmetic_v<Sums>) {
             sums = reader.number<Sums>();
         } else {
             reader.read_all(sums);
         }
     });
+}
+
+}  // namespace
+
+void write_checkpoint(const fs::path& file, const RenderIdentity& identity, std::span<const RenderState> passes) {
+    write_whole(file, [&](const fs::path& temporary) {
+        errno = 0;
+        DigestedWriter writer(temporary);
+        write_render(writer, identity, passes);
+        if (!writer.finish()) {
+            throw std::system_error(errno != 0 ? errno : EIO, std::generic_category(),
+                                    file.string() + " cannot be written");
+        }
+    });
+}
+
+void read_checkpoint(const fs::path& file, const RenderIdentity& identity, std::span<RenderState> passes) {
+    DigestedReader reader(file);
+    if (const auto version = reader.number<std::uint32_t>(); version != kVersion) {
+        throw of_another_render(file, fmt::format("its form is version {}, expected {}", version, kVersion));
+    }
+    if (const auto difference = first_difference(read_identity(reader), identity)) {
+        throw of_another_render(file, *difference);
+    }
+    if (const auto count = reader.number<std::uint64_t>(); count != passes.size()) {
+        throw of_another_render(file, fmt::format("it has {} passes, expected {}", count, passes.size()));
+    }
+    std::vector<std::vector<TileProgress>> tiles;
+    std::uintmax_t bytes = 0;
+    for (const RenderState& state : passes) {
+        tiles.push_back(read_tiles(reader, file, state));
+        bytes += bytes_of_sums(state.film);
+    }
+    reader.expect_left(bytes);
+    for (std::size_t i = 0; i < passes.size(); ++i) {
+        passes[i].tiles = std::move(tiles[i]);
+        read_sums(reader, passes[i].film);
+    }
 }
 
 }  // namespace lensproof::render

@@ -29,12 +29,20 @@ World PreparedScene::make_world(const SceneSetup& setup, const Cache& cache) {
     return std::move(built.scene);
 }
 
+View PreparedScene::view(std::uint64_t seed, bool has_features) const {
+    return {.world = &world_,
+            .camera = &camera_,
+            .seed = seed,
+            .has_features = has_features,
+            .paths = {.max_bounces = max_bounces_}};
+}
+
 Render PreparedScene::render(std::uint64_t seed, bool has_features) const {
-    return integrator_->render({.world = &world_,
-                                .camera = &camera_,
-                                .seed = seed,
-                                .has_features = has_features,
-                                .paths = {.max_bounces = max_bounces_}});
+    return integrator_->render(view(seed, has_features));
+}
+
+Render PreparedScene::render(const Pass& pass, std::uint64_t seed, bool has_features) const {
+    return pass.render(view(seed, has_features), *integrator_);
 }
 
 std::map<std::string, std::string> PreparedScene::metadata() const {

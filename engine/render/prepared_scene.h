@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "engine/base/cache.h"
-#include "engine/render/integrators/integrators.h"
+#include "engine/render/integrators/passes.h"
 #include "engine/render/progressive.h"
 #include "engine/render/scene_setup.h"
 
@@ -24,6 +24,8 @@ class PreparedScene {
     PreparedScene& operator=(const PreparedScene&) = delete;
 
     [[nodiscard]] Render render(std::uint64_t seed, bool has_features) const;
+    /// What one of its passes has of that. Throws InputError where the camera has none of it.
+    [[nodiscard]] Render render(const Pass& pass, std::uint64_t seed, bool has_features) const;
 
     [[nodiscard]] const Camera& camera() const { return camera_; }
     [[nodiscard]] const Integrator& integrator() const { return *integrator_; }
@@ -35,6 +37,7 @@ class PreparedScene {
     [[nodiscard]] std::map<std::string, std::string> metadata() const;
 
   private:
+    [[nodiscard]] View view(std::uint64_t seed, bool has_features) const;
     [[nodiscard]] World make_world(const SceneSetup& setup, const Cache& cache);
 
     const Integrator* integrator_;

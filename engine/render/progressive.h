@@ -4,9 +4,11 @@
 #include <cstdint>
 #include <functional>
 #include <limits>
+#include <span>
+#include <string>
 #include <vector>
 
-#include "engine/render/film/film.h"
+#include "engine/render/film/picture.h"
 
 namespace lensproof::render {
 
@@ -26,14 +28,19 @@ struct TileProgress {
     friend bool operator==(const TileProgress&, const TileProgress&) = default;
 };
 
-/// A render between two of its steps: all that is needed to go on.
+/// A render between two of its steps, or one of its passes: all that is needed to go on.
 struct RenderState {
-    RenderState(FilmLayout layout, SampleRange range);
+    RenderState(FilmLayout layout, SampleRange range, std::string pass = "");
+
+    std::string pass;  // its name, among several
 
     Film film;
     SampleRange range;
     std::vector<TileProgress> tiles;  // row by row from the top left
 };
+
+/// What they make together.
+Picture picture_of(std::span<const RenderState> passes);
 
 inline constexpr int kTileSide = 16;  // px
 
@@ -79,8 +86,8 @@ struct RenderControl {
     bool in_passes = true;
     /// Asked before every tile, by any thread; true ends the render as soon as the tiles in work are done.
     std::function<bool()> is_interrupted;
-    /// Called after tiles were stored, one call at a time; the state is whole and stands still meanwhile.
-    std::function<void(const RenderState&, const RenderReport&)> on_progress;
+    /// Called after tiles were stored, one call at a time; states are whole and stand still meanwhile.
+    std::function<void(const RenderReport&)> on_progress;
 };
 
 enum class RenderEnd { complete, out_of_time, interrupted };
@@ -90,14 +97,24 @@ enum class RenderEnd { complete, out_of_time, interrupted };
 RenderEnd render_progressively(RenderState& state, const TileRenderer& renderer, const RenderGoal& goal,
                                const RenderControl& control);
 
+/// The same of passes that add up to a picture, in turns: each time the pass goes on by which the picture's relative
+/// variance falls most for a sample, but all of them until they have kFewestSamplesToJudge. A pass whose light lands
+/// anywhere goes on in all tiles where one is not good yet. As many renders as states.
+RenderEnd render_passes(std::span<RenderState> states, std::span<const Render> renders, const RenderGoal& goal,
+                        const RenderControl& control);
+
 /// The film after these samples of every pixel; `progress` is told which part of them is done.
 Film render_film(const Render& render, const SampleRange& range, int threads = 0,
                  const std::function<void(double done)>& progress = {});
 
-/// A tile's error as `RenderGoal::noise` has it; `dark` is the brightness that darker pixels count as.
-double tile_error(const Film& film, const PixelRect& rect, double dark);
+/// The pixels' variances over their squared brightness, the sum; `dark` is the brightness that darker pixels count as.
+/// `of`: whose variances, of a part of the picture or of all.
+double relative_variance(const Picture& picture, const Picture& of, const PixelRect& rect, double dark);
+
+/// A tile's error as `RenderGoal::noise` has it.
+double tile_error(const Picture& picture, const PixelRect& rect, double dark);
 
 /// Mean over the film of the pixels' means of R, G and B.
-double mean_brightness(const Film& film);
+double mean_brightness(const Picture& picture);
 
 }  // namespace lensproof::render

@@ -94,11 +94,16 @@ render::FilmFile sum_of(std::vector<Part> parts) {
     render::FilmFile sum = render::read_film_exr(parts.front().file);
     for (std::size_t i = 1; i < parts.size(); ++i) {
         const render::FilmFile more = render::read_film_exr(parts[i].file);
-        if (!sum.film.can_merge(more.film)) {
+        const auto can_merge = [](const render::PassFilm& a, const render::PassFilm& b) {
+            return a.pass == b.pass && a.film.can_merge(b.film);
+        };
+        if (!std::ranges::equal(sum.films, more.films, can_merge)) {
             throw InputError(
-                fmt::format("{}: has another size or other layers than {}", parts[i].file, parts.front().file));
+                fmt::format("{}: has another size, other layers or passes than {}", parts[i].file, parts.front().file));
         }
-        sum.film.merge(more.film);
+        for (std::size_t pass = 0; pass < sum.films.size(); ++pass) {
+            sum.films[pass].film.merge(more.films[pass].film);
+        }
     }
     return sum;
 }
@@ -127,11 +132,12 @@ int run_merge(const MergeOptions& options) {
     } else {
         sum.notes.metadata[kShardNote] = shard_set_text(shards);
     }
-    render::write_film_exr(sum.film, sum.notes, exr);
-    formats::write_png(render::film_rgb(sum.film), png);
-    const std::optional<RawFiles> raw = write_raw_files(sum.film, sum.notes, exr, options.common.threads);
+    const render::Picture picture(sum.films);
+    render::write_film_exr(picture, sum.notes, exr);
+    formats::write_png(render::film_rgb(picture), png);
+    const std::optional<RawFiles> raw = write_raw_files(picture, sum.notes, exr, options.common.threads);
     Json json = {{"shards", shards.indices}, {"missing", missing}, {"exr", exr.string()}, {"png", png.string()}};
-    report_left_out(sum.film, json);
+    report_left_out(picture, json);
     if (prints_text(options.common)) {
         print("{}\n{}\n", exr.string(), png.string());
     }

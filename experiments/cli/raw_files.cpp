@@ -33,7 +33,7 @@ std::uint64_t seed_of(const render::FilmNotes& notes) {
 
 /// What the film is wrong by, in electrons, over what the sensor adds: their variances' ratio, the mean over all
 /// values.
-double noise_ratio(const render::Film& film, const render::RawSensor& sensor) {
+double noise_ratio(const render::Picture& film, const render::RawSensor& sensor) {
     const double electrons = render::electrons_at_saturation(sensor);
     double sum = 0.0;
     for (int y = 0; y < film.height(); ++y) {
@@ -62,7 +62,7 @@ RawFiles raw_files(const std::filesystem::path& exr) {
     return files;
 }
 
-std::optional<RawFiles> write_raw_files(const render::Film& film, const render::FilmNotes& notes,
+std::optional<RawFiles> write_raw_files(const render::Picture& film, const render::FilmNotes& notes,
                                         const std::filesystem::path& exr, int threads) {
     const auto sensor = notes.metadata.find(kSensorNote);
     if (sensor == notes.metadata.end() || notes.metadata.contains(kShardNote)) {

@@ -25,7 +25,7 @@ RawFiles raw_files(const std::filesystem::path& exr);
 
 /// Writes both for the film whose file is `exr`, with noise by the render's seed, and says where; nothing where its
 /// notes name no sensor, or where it is a shard, whose noise says nothing of the whole's.
-std::optional<RawFiles> write_raw_files(const render::Film& film, const render::FilmNotes& notes,
+std::optional<RawFiles> write_raw_files(const render::Picture& film, const render::FilmNotes& notes,
                                         const std::filesystem::path& exr, int threads);
 
 /// Says what was written: keys of a machine-readable result, and where a person reads it.

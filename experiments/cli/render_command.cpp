@@ -1,6 +1,8 @@
 // experiments/cli/render_command.cpp — `lensproof render SCENE`: a scene, or a chart, through a lens.
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <iterator>
 #include <memory>
 #include <utility>
 
@@ -56,11 +58,45 @@ std::string scene_hash(const render::SceneSetup& setup, const std::string& file)
     return hash_text(hashes);
 }
 
-int run_render(const RenderJobOptions& options, const std::string& paths) {
+std::vector<std::string> pass_names() {
+    std::vector<std::string> names;
+    std::ranges::transform(render::passes(), std::back_inserter(names), &render::Pass::name);
+    return names;
+}
+
+std::string pass_list() {
+    std::vector<std::string> entries;
+    for (const render::Pass& pass : render::passes()) {
+        entries.push_back(fmt::format("{} ({})", pass.name, pass.description));
+    }
+    return fmt::format("{}", fmt::join(entries, "; "));
+}
+
+/// Throws InputError where these passes do not add up to a picture.
+void check_passes(const std::vector<std::string>& passes, const RenderJobOptions& options) {
+    for (const std::string& pass : passes) {
+        if (std::ranges::count(passes, pass) > 1) {
+            throw InputError(fmt::format("--passes names {} twice, expected each once", pass));
+        }
+    }
+    const auto has = [&](const char* name) { return std::ranges::find(passes, name) != passes.end(); };
+    if (has("everything") && passes.size() > 1) {
+        throw InputError("--passes has everything beside others, of which it is the sum; expected it alone");
+    }
+    if (!passes.empty() && options.has_features && !has("imaged")) {
+        throw InputError("--features goes with the pass imaged, expected it in --passes");
+    }
+}
+
+int run_render(const RenderJobOptions& options, const std::string& paths, const std::vector<std::string>& passes) {
     const RenderFiles files = render_files(options);  // before long work
+    check_passes(passes, options);
     const render::SceneSetup setup = render::read_scene_setup(options.scene);
     if (paths != "camera" && setup.chart) {
         throw InputError("--paths light and both are for scenes with lights, not for a [chart] in an even world");
+    }
+    if (!passes.empty() && setup.chart) {
+        throw InputError("--passes is for scenes with lights, not for a [chart] in an even world");
     }
     if (paths == "light" && (options.noise > 0.0 || options.has_features)) {
         throw InputError("--paths light goes neither with --noise nor with --features; --paths both does");
@@ -70,7 +106,8 @@ int run_render(const RenderJobOptions& options, const std::string& paths) {
     }
     const render::PixelFilter filter = filter_of(setup.sensor, options);
     const auto scene = said_of_scene(options, [&] {
-        return std::make_unique<render::PreparedScene>(setup, filter, Cache::standard(), render::integrator_named(paths));
+        return std::make_unique<render::PreparedScene>(setup, filter, Cache::standard(),
+                                                       render::integrator_named(paths));
     });
     for (const std::string& remark : scene->remarks()) {
         print_message("lensproof: {}\n", remark);
@@ -79,11 +116,22 @@ int run_render(const RenderJobOptions& options, const std::string& paths) {
     if (lens) {
         print_findings(options.common, *lens);
     }
-    RenderJob job{.render = scene->render(options.common.seed, options.has_features)};
+    RenderJob job{.passes = passes, .renders = {}};
+    if (passes.empty()) {
+        job.passes.emplace_back();
+        job.renders.push_back(scene->render(options.common.seed, options.has_features));
+    }
+    said_of_scene(options, [&] {
+        for (const std::string& pass : passes) {
+            job.renders.push_back(scene->render(render::pass_named(pass), options.common.seed, options.has_features));
+        }
+        return 0;
+    });
     job.identity = {{"scene", scene_hash(setup, options.scene)},
                     {"lens", scene->camera().hash()},
                     {"settings", fmt::format("{} filter, {} features{}", filter.name(),
-                                             options.has_features ? "with" : "no", scene->integrator().description)}};
+                                             options.has_features ? "with" : "no", scene->integrator().description) +
+                                     (passes.empty() ? "" : fmt::format(", passes {}", fmt::join(passes, " and ")))}};
     job.notes.metadata = scene->metadata();
     job.notes.colours = scene->camera().colours();
     job.samples = static_cast<std::uint32_t>(setup.samples_per_pixel);
@@ -104,6 +152,7 @@ void add_render_command(Program& program) {
         "         lensproof render experiments/scenes/cornell_box.toml --spp 256 -o box.exr\n"
         "         lensproof render SCENE --noise 0.01 --time 3600 --preview now.png --checkpoint chart.checkpoint\n"
         "         lensproof render SCENE --spp 1024 --shard 2/5 -o part2.exr; lensproof merge part*.exr -o chart.exr\n"
+        "         lensproof render SCENE --passes imaged,direct,ghosts -o flare.exr\n"
         "Ctrl-C ends a render with a checkpoint written and exit status 3; a second one at once.");
     command.add_option("SCENE", options->scene, "A scene file").required();
     add_render_job_options(command, *options);
@@ -113,7 +162,16 @@ void add_render_command(Program& program) {
                     "Where paths begin: camera (the default); light, which finds what shines through glass and cannot "
                     "see mirrors; or both, each counted by how well it makes what it finds. One image by each")
         .check(one_of({"camera", "light", "both"}));
-    command.runs([options, paths] { return run_render(*options, *paths); });
+    const auto passes = std::make_shared<std::vector<std::string>>();
+    command
+        .add_option("--passes", *passes,
+                    "Classes of light paths, each a film of its own, whose sum is the picture (default: imaged and "
+                    "direct in one film): " +
+                        pass_list())
+        .check(one_of(pass_names()))
+        .separated_by(',')
+        .takes_one_argument();
+    command.runs([options, paths, passes] { return run_render(*options, *paths, *passes); });
 }
 
 }  // namespace lensproof::cli

@@ -24,6 +24,7 @@ namespace {
 
 namespace fs = std::filesystem;
 using Clock = std::chrono::steady_clock;
+using States = std::span<const render::RenderState>;  // of the passes
 
 /// The shard asked for; 1/1 where none is.
 Shard shard_of(const RenderJobOptions& options) {
@@ -74,38 +75,39 @@ class RenderWatch {
     RenderWatch(const RenderJobOptions& options, const render::RenderIdentity& identity)
         : options_(options), identity_(identity), bar_("rendering", options.common.quiet) {}
 
-    void look(const render::RenderState& state, const render::RenderReport& report) {
+    void look(States passes, const render::RenderReport& report) {
         bar_.update(report.done, report.seconds_left, speed(report));
         // Drawing takes a twentieth of the time at most.
         if (!options_.preview.empty() && seconds_since(preview_) > std::max(1.0, 20.0 * preview_cost_s_)) {
             const Clock::time_point start = Clock::now();
-            write_preview(state);
+            write_preview(passes);
             preview_cost_s_ = seconds_since(start);
             preview_ = Clock::now();
         }
         if (!options_.checkpoint.empty() && seconds_since(checkpoint_) > options_.checkpoint_interval_s) {
-            write_checkpoint(state);
+            write_checkpoint(passes);
             checkpoint_ = Clock::now();
         }
     }
 
     /// Where there is nothing more to render: both as they are now.
-    void look_last(const render::RenderState& state) {
+    void look_last(States passes) {
         if (!options_.checkpoint.empty()) {
-            write_checkpoint(state);
+            write_checkpoint(passes);
         }
         if (!options_.preview.empty()) {
-            write_preview(state);
+            write_preview(passes);
         }
     }
 
   private:
-    void write_preview(const render::RenderState& state) {
-        attempt(options_.preview, [&] { formats::write_png(render::film_rgb(state.film), options_.preview); });
+    void write_preview(States passes) {
+        attempt(options_.preview,
+                [&] { formats::write_png(render::film_rgb(render::picture_of(passes)), options_.preview); });
     }
 
-    void write_checkpoint(const render::RenderState& state) {
-        attempt(options_.checkpoint, [&] { render::write_checkpoint(options_.checkpoint, identity_, state); });
+    void write_checkpoint(States passes) {
+        attempt(options_.checkpoint, [&] { render::write_checkpoint(options_.checkpoint, identity_, passes); });
     }
 
     /// A disk that is full for a while is no reason to lose a render: it is said once, and tried again the next time.
@@ -136,7 +138,7 @@ class RenderWatch {
     std::set<std::string> failing_;
 };
 
-/// Samples a pixel, the mean over the film.
+/// Samples a pixel, the mean over a film.
 double mean_samples(const render::RenderState& state) {
     double sum = 0.0;
     for (int y = 0; y < state.film.height(); ++y) {
@@ -145,6 +147,18 @@ double mean_samples(const render::RenderState& state) {
         }
     }
     return sum / (static_cast<double>(state.film.width()) * state.film.height());
+}
+
+/// What a film has of light: the mean of R, G and B over its pixels.
+double light_of(const render::Film& film) {
+    double sum = 0.0;
+    for (int y = 0; y < film.height(); ++y) {
+        for (int x = 0; x < film.width(); ++x) {
+            const Vec3d rgb = film.estimate(x, y).rgb;
+            sum += (rgb.x + rgb.y + rgb.z) / 3.0;
+        }
+    }
+    return sum / (static_cast<double>(film.width()) * film.height());
 }
 
 /// `file`, and the same name wherever else a file was asked for.
@@ -160,11 +174,11 @@ std::vector<fs::path> places_for(const fs::path& file, const RenderJobOptions& o
 }
 
 /// Saves what there is, and says how to go on.
-int end_early(const render::RenderState& state, const render::RenderIdentity& identity, const RenderJobOptions& options,
+int end_early(States passes, const render::RenderIdentity& identity, const RenderJobOptions& options,
               const RenderFiles& files) {
     const std::string checkpoint = options.checkpoint.empty() ? files.exr.string() + ".checkpoint" : options.checkpoint;
     const Delivery delivery = write_somewhere(places_for(checkpoint, options, files), [&](const fs::path& place) {
-        render::write_checkpoint(place, identity, state);
+        render::write_checkpoint(place, identity, passes);
     });
     if (!delivery.complaint.empty()) {
         print_message("lensproof: {}\n", delivery.complaint);
@@ -172,7 +186,7 @@ int end_early(const render::RenderState& state, const render::RenderIdentity& id
     print_message(
         "lensproof: interrupted after {:.1f} samples a pixel of {}; the same command with --checkpoint {} goes "
         "on from there\n",
-        mean_samples(state), state.range.end - state.range.first, delivery.place.string());
+        mean_samples(passes.front()), passes.front().range.end - passes.front().range.first, delivery.place.string());
     return kInternalFailure;
 }
 
@@ -198,17 +212,24 @@ render::FilmNotes notes_of(const RenderJob& job, const RenderJobOptions& options
     return notes;
 }
 
-void report(const RenderJob& job, const render::RenderState& state, const RenderJobOptions& options,
-            const RenderFiles& files, const std::optional<RawFiles>& raw) {
+void report(const RenderJob& job, States passes, const RenderJobOptions& options, const RenderFiles& files,
+            const std::optional<RawFiles>& raw) {
     Json json = job.json;
-    json["samples_per_pixel"] = mean_samples(state);
+    const render::Picture picture = render::picture_of(passes);
+    json["samples_per_pixel"] = mean_samples(passes.front());
+    if (passes.size() > 1) {
+        for (const render::RenderState& state : passes) {
+            json["passes"].push_back(
+                {{"pass", state.pass}, {"samples_per_pixel", mean_samples(state)}, {"light", light_of(state.film)}});
+        }
+    }
     json["seed"] = options.common.seed;
     if (!options.shard.empty()) {
         json["shard"] = options.shard;
     }
-    const render::PixelRect all{.x = 0, .y = 0, .width = state.film.width(), .height = state.film.height()};
-    json["relative_error"] = render::tile_error(state.film, all, 0.01 * render::mean_brightness(state.film));
-    report_left_out(state.film, json);
+    const render::PixelRect all{.x = 0, .y = 0, .width = picture.width(), .height = picture.height()};
+    json["relative_error"] = render::tile_error(picture, all, 0.01 * render::mean_brightness(picture));
+    report_left_out(picture, json);
     json["exr"] = files.exr.string();
     json["png"] = files.png.string();
     if (prints_text(options.common)) {
@@ -256,10 +277,13 @@ int run_render_job(const RenderJob& job, const RenderJobOptions& options) {
     identity.push_back({"seed", fmt::format("{}", options.common.seed)});
     identity.push_back({"version", render::engine_version()});
 
-    render::RenderState state(job.render.film, range_of(job, options));
+    std::vector<render::RenderState> passes;
+    for (std::size_t i = 0; i < job.renders.size(); ++i) {
+        passes.emplace_back(job.renders[i].film, range_of(job, options), job.passes[i]);
+    }
     if (!options.checkpoint.empty()) {
         if (fs::exists(options.checkpoint)) {
-            render::read_checkpoint(options.checkpoint, identity, state);
+            render::read_checkpoint(options.checkpoint, identity, passes);
         }
     }
     const Interruption interruption;
@@ -268,33 +292,32 @@ int run_render_job(const RenderJob& job, const RenderJobOptions& options) {
         RenderWatch watch(options, identity);
         const render::RenderControl control{
             .threads = options.common.threads,
-            .in_passes = job.render.film.has_splats || !options.preview.empty() || options.time_s > 0.0,
+            .in_passes = job.renders.front().film.has_splats || !options.preview.empty() || options.time_s > 0.0,
             .is_interrupted = [] { return Interruption::has_come(); },
-            .on_progress = [&](const render::RenderState& now,
-                               const render::RenderReport& report) { watch.look(now, report); }};
-        end = render::render_progressively(state, job.render.renderer, goal_of(options), control);
+            .on_progress = [&](const render::RenderReport& report) { watch.look(passes, report); }};
+        end = render::render_passes(passes, job.renders, goal_of(options), control);
         if (end != render::RenderEnd::interrupted) {
-            watch.look_last(state);
+            watch.look_last(passes);
         }
     }
     if (end == render::RenderEnd::interrupted) {
-        return end_early(state, identity, options, files);
+        return end_early(passes, identity, options, files);
     }
     const render::FilmNotes notes = notes_of(job, options, identity);
-    const Delivery exr = write_somewhere(places_for(files.exr, options, files), [&](const fs::path& place) {
-        render::write_film_exr(state.film, notes, place);
-    });
+    const render::Picture picture = render::picture_of(passes);
+    const Delivery exr = write_somewhere(places_for(files.exr, options, files),
+                                         [&](const fs::path& place) { render::write_film_exr(picture, notes, place); });
     const Delivery png =
         write_somewhere({files.png, fs::path(exr.place).replace_extension(".png")},
-                        [&](const fs::path& place) { formats::write_png(render::film_rgb(state.film), place); });
-    report(job, state, options, {.exr = exr.place, .png = png.place},
-           write_raw_files(state.film, notes, exr.place, options.common.threads));
+                        [&](const fs::path& place) { formats::write_png(render::film_rgb(picture), place); });
+    report(job, passes, options, {.exr = exr.place, .png = png.place},
+           write_raw_files(picture, notes, exr.place, options.common.threads));
     check_place(exr);
     check_place(png);
     return kDone;
 }
 
-void report_left_out(const render::Film& film, Json& json) {
+void report_left_out(const render::Picture& film, Json& json) {
     if (film.left_out() > 0) {
         print_message("lensproof: {} samples were no finite numbers; they were left out, as if they had met no light\n",
                       film.left_out());

@@ -44,7 +44,8 @@ RenderFiles render_files(const RenderJobOptions& options);
 
 /// What is rendered.
 struct RenderJob {
-    render::Render render;
+    std::vector<std::string> passes;          // their names; one alone may have none
+    std::vector<render::Render> renders;      // as many
     render::RenderIdentity identity;          // "scene", "lens", "settings"; seed and version are added
     render::FilmNotes notes;                  // metadata and colours
     std::uint32_t samples = 0;                // a pixel, the scene's own
@@ -53,7 +54,7 @@ struct RenderJob {
 };
 
 /// Says on standard error, and in `json`, how many samples were left out of the film, where any were.
-void report_left_out(const render::Film& film, Json& json);
+void report_left_out(const render::Picture& film, Json& json);
 
 /// Renders, writes the pictures and says where they are. Returns the exit status: kInternalFailure where a signal ended
 /// it before its goal, with a checkpoint written.

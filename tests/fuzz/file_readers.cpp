@@ -53,7 +53,7 @@ render::RenderState checkpoint(std::string_view bytes, Name /*unused*/) {
     std::string whole(bytes);
     append_bytes(whole, hash_of(bytes));
     render::RenderState state(render::full_film(2, 2, 1), {.first = 0, .end = 16});
-    render::read_checkpoint(file_of(whole, "checkpoint"), {{"scene", "abc"}}, state);
+    render::read_checkpoint(file_of(whole, "checkpoint"), {{"scene", "abc"}}, {&state, 1});
     return state;
 }
 

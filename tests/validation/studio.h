@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <string>
 
+#include "engine/render/integrators/passes.h"
 #include "tests/validation/rendered_scene.h"
 #include "tests/validation/small_scene.h"
 
@@ -24,11 +25,13 @@ class Studio {
         spectral::SpectralGrid grid;
         int max_bounces = 3;
         render::PixelFilter filter;
+        optics::StrayMirrors<double> mirrors;
     };
 
     Studio(const Setup& setup, const SceneParts& parts)
         : world_(parts.scene()),
           camera_({.lens = setup.lens,
+                   .mirrors = setup.mirrors,
                    .f_number = setup.f_number,
                    .focus_distance_mm = setup.focus_mm,
                    .sensor = setup.sensor,
@@ -39,16 +42,23 @@ class Studio {
     Studio(const Studio&) = delete;
     Studio& operator=(const Studio&) = delete;
 
-    [[nodiscard]] render::Film by_camera(std::uint32_t samples) const { return film_of("camera", samples); }
-    [[nodiscard]] render::Film by_lights(std::uint32_t samples) const { return film_of("light", samples); }
-    [[nodiscard]] render::Film by_both(std::uint32_t samples) const { return film_of("both", samples); }
+    [[nodiscard]] render::Film by_camera(std::uint32_t samples) const { return film_by("camera", samples); }
+    [[nodiscard]] render::Film by_lights(std::uint32_t samples) const { return film_by("light", samples); }
+    [[nodiscard]] render::Film by_both(std::uint32_t samples) const { return film_by("both", samples); }
+
+    [[nodiscard]] render::Film by_pass(const char* pass, std::uint32_t samples) const {
+        return film_of(render::pass_named(pass).render(view_, render::integrator_named("camera")), samples);
+    }
 
     [[nodiscard]] const scene::Scene& scene() const { return view_.scene(); }
     [[nodiscard]] const render::Camera& camera() const { return camera_; }
 
   private:
-    [[nodiscard]] render::Film film_of(const char* pass, std::uint32_t samples) const {
-        render::Render render = render::integrator_named(pass).render(view_);
+    [[nodiscard]] render::Film film_by(const char* integrator, std::uint32_t samples) const {
+        return film_of(render::integrator_named(integrator).render(view_), samples);
+    }
+
+    static render::Film film_of(render::Render render, std::uint32_t samples) {
         // R, G and B all are the mean irradiance over the band.
         const double per_nm = 1.0 / render.film.band_nm;
         render.film.rgb_weights.assign(render.film.rgb_weights.size(), {per_nm, per_nm, per_nm});
@@ -70,7 +80,7 @@ struct FilmDifference {
     double error = 0.0;  // standard, of their difference
 };
 
-inline FilmDifference difference(const render::Film& first, const render::Film& second) {
+inline FilmDifference difference(const render::Picture& first, const render::Picture& second) {
     FilmDifference found;
     double variance = 0.0;
     for (int y = 0; y < first.height(); ++y) {
@@ -95,7 +105,7 @@ inline FilmDifference difference(const render::Film& first, const render::Film& 
 
 /// Both are unbiased estimates of one film irradiance, so in each pixel they differ by no more than their standard
 /// errors say: χ² over the pixels lies within five of its standard deviations √(2n), and the totals within four errors.
-inline void expect_same_image(const render::Film& first, const render::Film& second, double most_error = 0.015) {
+inline void expect_same_image(const render::Picture& first, const render::Picture& second, double most_error = 0.015) {
     const FilmDifference found = difference(first, second);
     EXPECT_NEAR(found.first, found.second, 4.0 * found.error);
     EXPECT_LT(found.error, most_error * found.first);

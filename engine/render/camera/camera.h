@@ -94,6 +94,8 @@ class Camera {
         return {map_point(pose_, scene::camera_to_lens(ray.origin)),
                 pose_.linear * scene::camera_to_lens(ray.direction)};
     }
+    /// And an origin of light from there.
+    [[nodiscard]] LightOrigin in_lens_space(const LightOrigin& from) const;
     [[nodiscard]] const spectral::SpectralGrid& grid() const { return grid_; }
     /// Says so where wavelengths were clamped to the range of the lens's glasses; else empty.
     [[nodiscard]] const std::string& clamp_note() const { return clamp_note_; }
@@ -115,7 +117,6 @@ class Camera {
     [[nodiscard]] spectral::SpectralGrid make_grid(const SpectralSampling& sampling);
     [[nodiscard]] FilmLayout make_film(int layers, const PixelFilter& filter) const;
     [[nodiscard]] Optics make_optics(const Cache& cache, bool meets_light_paths) const;
-    [[nodiscard]] LightOrigin in_lens_space(const LightOrigin& from) const;
 
     CameraSettings settings_;
     AffineMap pose_;

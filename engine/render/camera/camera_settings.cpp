@@ -58,6 +58,9 @@ void read_exposure(TomlTable& table, CameraSettings& camera) {
         camera.coatings = {table.text("coating")};
     }
     camera.blades = read_blades(table);
+    constexpr Bounds kReflectance{.min = 0.0, .max = 1.0};
+    camera.mirrors = {.sensor = table.number_or("sensor_reflectance", 0.0, kReflectance),
+                      .blades = table.number_or("blade_reflectance", 0.0, kReflectance)};
     camera.f_number = table.number("f_number", {.min = 0.1, .max = 1000.0});
     camera.focus_distance_mm = table.infinity("focus_distance_mm") > 0 ? std::numeric_limits<double>::infinity()
                                                                        : table.number("focus_distance_mm", kPositive);

@@ -187,6 +187,7 @@ using TileRenderer = std::function<void(const TileSamples&, FilmTile&)>;
 struct Render {
     FilmLayout film;
     TileRenderer renderer;
+    bool lands_anywhere = false;  // all of its light comes as splats: no tile has samples of its own
 };
 
 /// What samples say of a pixel, and the variance of that.

@@ -7,6 +7,7 @@
 #include <charconv>
 #include <cmath>
 #include <functional>
+#include <sstream>
 #include <stdexcept>
 #include <utility>
 
@@ -21,10 +22,12 @@ namespace lensproof::render {
 namespace {
 
 constexpr int kRowsAtOnce = 64;
+constexpr std::size_t kMostPasses = 16;
 constexpr const char* kIdentityPrefix = "lensproof:identity:";
 constexpr const char* kLightPaths = "lensproof:lightPaths";
 constexpr const char* kLeftOut = "lensproof:leftOut";
 constexpr const char* kDigest = "lensproof:digest";
+constexpr const char* kPasses = "lensproof:passes";
 
 const std::vector<std::string> kRgb = {"R", "G", "B"};
 const std::vector<std::string> kVariance = {"variance.R", "variance.G", "variance.B"};
@@ -58,24 +61,37 @@ struct Part {
     std::string name;
     std::vector<std::string> channels;
     std::function<void(int x, int y, std::vector<float>& values)> append_pixel;  // none: counts of samples
+    const Film* counted = nullptr;                                               // whose
 };
 
-std::vector<Part> parts_of(const Film& film) {
-    const std::vector<std::string> spectral = spectral_names(film.layout().layer_nm);
+/// What a part's name begins with.
+std::string prefix_of(const std::string& pass) {
+    return pass.empty() ? "" : pass + ".";
+}
+
+/// Of a film, or of the sum of several.
+template <class Summed>
+void add_estimates(const Summed& film, const std::string& prefix, std::vector<Part>& parts) {
     std::vector<double> layers(film.layout().layer_nm.size());
-    std::vector<Part> parts;
-    parts.push_back(
-        {"rgb", kRgb, [&film](int x, int y, std::vector<float>& values) { append(values, film.estimate(x, y).rgb); }});
-    parts.push_back({"spectral", spectral, [&film, layers](int x, int y, std::vector<float>& values) mutable {
+    parts.push_back({prefix + "rgb", kRgb,
+                     [&film](int x, int y, std::vector<float>& values) { append(values, film.estimate(x, y).rgb); }});
+    parts.push_back({prefix + "spectral", spectral_names(film.layout().layer_nm),
+                     [&film, layers](int x, int y, std::vector<float>& values) mutable {
                          film.layers(x, y, layers);
                          append(values, std::span<const double>(layers));
                      }});
-    parts.push_back({"variance", kVariance, [&film](int x, int y, std::vector<float>& values) {
+    parts.push_back({prefix + "variance", kVariance, [&film](int x, int y, std::vector<float>& values) {
                          append(values, film.estimate(x, y).variance);
                      }});
-    parts.push_back({"samples", kCounts, {}});
+}
+
+void add_film(const Film& film, const std::string& prefix, std::vector<Part>& parts) {
+    const std::vector<std::string> spectral = spectral_names(film.layout().layer_nm);
+    std::vector<double> layers(film.layout().layer_nm.size());
+    add_estimates(film, prefix, parts);
+    parts.push_back({prefix + "samples", kCounts, {}, &film});
     if (film.layout().has_features) {
-        parts.push_back({"features", kFeatures, [&film](int x, int y, std::vector<float>& values) {
+        parts.push_back({prefix + "features", kFeatures, [&film](int x, int y, std::vector<float>& values) {
                              const PixelFeatures features = film.features(x, y);
                              values.push_back(static_cast<float>(features.depth_mm));
                              append(values, features.albedo_rgb);
@@ -84,7 +100,7 @@ std::vector<Part> parts_of(const Film& film) {
                          }});
     }
     if (film.layout().has_splats) {
-        parts.push_back({"light", joined(joined(kRgb, kVariance), spectral),
+        parts.push_back({prefix + "light", joined(joined(kRgb, kVariance), spectral),
                          [&film, layers](int x, int y, std::vector<float>& values) mutable {
                              const auto [rgb, variance] = film.light_estimate(x, y);
                              append(values, rgb);
@@ -92,6 +108,16 @@ std::vector<Part> parts_of(const Film& film) {
                              film.light_layers(x, y, layers);
                              append(values, std::span<const double>(layers));
                          }});
+    }
+}
+
+std::vector<Part> parts_of(const Picture& picture) {
+    std::vector<Part> parts;
+    if (picture.parts().size() > 1) {
+        add_estimates(picture, "", parts);
+    }
+    for (const auto& [pass, film] : picture.parts()) {
+        add_film(*film, prefix_of(pass), parts);
     }
     return parts;
 }
@@ -123,20 +149,20 @@ class PixelDigest {
 
 /// Calls `visit(y, end, values)` for the part's rows, some at once, until it returns false.
 template <class Visit>
-bool visit_rows(const Part& part, const Film& film, const Visit& visit) {
+bool visit_rows(const Part& part, const Picture& picture, const Visit& visit) {
     std::vector<float> values;
     std::vector<std::uint32_t> counts;
-    for (int y = 0; y < film.height(); y += kRowsAtOnce) {
-        const int end = std::min(film.height(), y + kRowsAtOnce);
+    for (int y = 0; y < picture.height(); y += kRowsAtOnce) {
+        const int end = std::min(picture.height(), y + kRowsAtOnce);
         values.clear();
         counts.clear();
         for (int row = y; row < end; ++row) {
-            for (int x = 0; x < film.width(); ++x) {
+            for (int x = 0; x < picture.width(); ++x) {
                 if (part.append_pixel) {
                     part.append_pixel(x, row, values);
                 } else {
-                    counts.push_back(film.counts(x, row).blocks);
-                    counts.push_back(film.counts(x, row).samples);
+                    counts.push_back(part.counted->counts(x, row).blocks);
+                    counts.push_back(part.counted->counts(x, row).samples);
                 }
             }
         }
@@ -147,10 +173,10 @@ bool visit_rows(const Part& part, const Film& film, const Visit& visit) {
     return true;
 }
 
-std::string digest_of(const std::vector<Part>& parts, const Film& film) {
+std::string digest_of(const std::vector<Part>& parts, const Picture& picture) {
     PixelDigest digest;
     for (const Part& part : parts) {
-        visit_rows(part, film, [&](int y, int end, const auto& values) {
+        visit_rows(part, picture, [&](int y, int end, const auto& values) {
             digest.add(part.name, values, end - y);
             return true;
         });
@@ -158,8 +184,13 @@ std::string digest_of(const std::vector<Part>& parts, const Film& film) {
     return digest.text();
 }
 
-OIIO::ImageSpec spec_of(const Part& part, const Film& film, const FilmNotes& notes) {
-    OIIO::ImageSpec spec(film.width(), film.height(), static_cast<int>(part.channels.size()),
+/// An attribute of a pass's film.
+std::string attribute_of(const char* name, const std::string& pass) {
+    return pass.empty() ? name : fmt::format("{}:{}", name, pass);
+}
+
+OIIO::ImageSpec spec_of(const Part& part, const Picture& picture, const FilmNotes& notes) {
+    OIIO::ImageSpec spec(picture.width(), picture.height(), static_cast<int>(part.channels.size()),
                          part.append_pixel ? OIIO::TypeDesc::FLOAT : OIIO::TypeDesc::UINT32);
     spec.channelnames = part.channels;
     spec.attribute("oiio:subimagename", part.name);
@@ -176,7 +207,7 @@ OIIO::ImageSpec spec_of(const Part& part, const Film& film, const FilmNotes& not
         }
         spec.attribute("chromaticities", OIIO::TypeDesc(OIIO::TypeDesc::FLOAT, 8), chromaticities.data());
     }
-    if (part.name == "spectral" || part.name == "light") {
+    if (part.name.ends_with("spectral") || part.name.ends_with("light")) {
         for (const auto& [name, value] : spectral::spectral_attributes(spectral::kFilmIrradianceUnits)) {
             spec.attribute(name, value);
         }
@@ -188,28 +219,35 @@ OIIO::ImageSpec spec_of(const Part& part, const Film& film, const FilmNotes& not
         for (const IdentityPart& of : notes.identity) {
             spec.attribute(kIdentityPrefix + of.name, of.value);
         }
-        if (film.layout().has_splats) {
-            spec.attribute(kLightPaths, fmt::format("{}", film.light_paths()));
+        std::vector<std::string> passes;
+        for (const auto& [pass, film] : picture.parts()) {
+            if (film->layout().has_splats) {
+                spec.attribute(attribute_of(kLightPaths, pass), fmt::format("{}", film->light_paths()));
+            }
+            if (film->left_out() > 0) {
+                spec.attribute(attribute_of(kLeftOut, pass), fmt::format("{}", film->left_out()));
+            }
+            passes.push_back(pass);
         }
-        if (film.left_out() > 0) {
-            spec.attribute(kLeftOut, fmt::format("{}", film.left_out()));
+        if (!passes.front().empty()) {
+            spec.attribute(kPasses, fmt::format("{}", fmt::join(passes, ",")));
         }
     }
     return spec;
 }
 
-bool write_rows(OIIO::ImageOutput& output, const Part& part, const Film& film) {
-    return visit_rows(part, film, [&]<class Number>(int y, int end, const std::vector<Number>& values) {
+bool write_rows(OIIO::ImageOutput& output, const Part& part, const Picture& picture) {
+    return visit_rows(part, picture, [&]<class Number>(int y, int end, const std::vector<Number>& values) {
         return output.write_scanlines(y, end, 0, OIIO::BaseTypeFromC<Number>::value, values.data());
     });
 }
 
 bool write_parts(OIIO::ImageOutput& output, const std::string& name, const std::vector<Part>& parts,
-                 const std::vector<OIIO::ImageSpec>& specs, const Film& film) {
+                 const std::vector<OIIO::ImageSpec>& specs, const Picture& picture) {
     bool is_written = output.open(name, static_cast<int>(specs.size()), specs.data());
     for (std::size_t i = 0; is_written && i < parts.size(); ++i) {
         is_written = (i == 0 || output.open(name, specs[i], OIIO::ImageOutput::AppendSubimage)) &&
-                     write_rows(output, parts[i], film);
+                     write_rows(output, parts[i], picture);
     }
     return is_written && output.close();
 }
@@ -228,31 +266,60 @@ class FilmReader {
 
     FilmFile read() {
         const OIIO::ImageSpec first = seek("rgb");
-        FilmNotes notes = notes_of(first);
-        FilmLayout layout{.width = first.width,
-                          .height = first.height,
-                          .layer_nm = layers_of(seek("spectral")),
-                          .rgb_weights = {},
-                          .has_splats = find("light").has_value(),
-                          .has_features = find("features").has_value()};
-        layout.rgb_weights.resize(layout.layer_nm.size());
-        formats::check_picture_size(file_, first, first.nchannels, static_cast<double>(film_bytes_per_pixel(layout)));
-        Film film(std::move(layout));
-        film.set_light_paths(count_in(first, kLightPaths));
-        film.set_left_out(count_in(first, kLeftOut));
-        for (int y = 0; y < film.height(); y += kRowsAtOnce) {
-            read_rows(film, y, std::min(film.height(), y + kRowsAtOnce));
+        FilmFile read{.films = {}, .notes = notes_of(first)};
+        std::vector<std::string> passes = names_in(first.get_string_attribute(kPasses));
+        if (passes.size() > kMostPasses) {
+            fail(fmt::format("names {} passes", passes.size()));
         }
-        if (notes.has_digest && first.get_string_attribute(kDigest) != digest_.text()) {
+        if (passes.empty()) {
+            passes.emplace_back();
+        }
+        for (const std::string& pass : passes) {
+            read.films.push_back({pass, read_film(pass, first)});
+        }
+        if (read.notes.has_digest && first.get_string_attribute(kDigest) != digest_text(read.films)) {
             throw InputError(
                 fmt::format("{}: is damaged: its pixels are not those that its digest was made of", file_.string()));
         }
-        return {.film = std::move(film), .notes = std::move(notes)};
+        return read;
     }
 
   private:
     [[noreturn]] void fail(const std::string& what) const {
         throw InputError(fmt::format("{}: {}, expected a picture that lensproof rendered", file_.string(), what));
+    }
+
+    Film read_film(const std::string& pass, const OIIO::ImageSpec& first) {
+        prefix_ = prefix_of(pass);
+        FilmLayout layout{.width = first.width,
+                          .height = first.height,
+                          .layer_nm = layers_of(seek(prefix_ + "spectral")),
+                          .rgb_weights = {},
+                          .has_splats = find(prefix_ + "light").has_value(),
+                          .has_features = find(prefix_ + "features").has_value()};
+        layout.rgb_weights.resize(layout.layer_nm.size());
+        formats::check_picture_size(file_, first, first.nchannels, static_cast<double>(film_bytes_per_pixel(layout)));
+        Film film(std::move(layout));
+        film.set_light_paths(count_in(first, attribute_of(kLightPaths, pass)));
+        film.set_left_out(count_in(first, attribute_of(kLeftOut, pass)));
+        for (int y = 0; y < film.height(); y += kRowsAtOnce) {
+            read_rows(film, y, std::min(film.height(), y + kRowsAtOnce));
+        }
+        return film;
+    }
+
+    /// Of the films' parts, and of their sum's where there are several.
+    std::string digest_text(const std::vector<PassFilm>& films) {
+        prefix_.clear();
+        const OIIO::ImageSpec spec = seek("spectral");
+        const std::vector<std::string> spectral = spectral_names(layers_of(spec));
+        for (int y = 0; films.size() > 1 && y < spec.height; y += kRowsAtOnce) {
+            const int end = std::min(spec.height, y + kRowsAtOnce);
+            rows("rgb", kRgb, y, end);
+            rows("spectral", spectral, y, end);
+            rows("variance", kVariance, y, end);
+        }
+        return digest_.text();
     }
 
     std::optional<int> find(const std::string& part) {
@@ -282,7 +349,16 @@ class FilmReader {
         return spec;
     }
 
-    [[nodiscard]] static std::uint64_t count_in(const OIIO::ImageSpec& spec, const char* name) {
+    [[nodiscard]] static std::vector<std::string> names_in(const std::string& list) {
+        std::vector<std::string> names;
+        std::istringstream stream(list);
+        for (std::string name; std::getline(stream, name, ',');) {
+            names.push_back(name);
+        }
+        return names;
+    }
+
+    [[nodiscard]] static std::uint64_t count_in(const OIIO::ImageSpec& spec, const std::string& name) {
         const std::string text = spec.get_string_attribute(name, "0");
         std::uint64_t count = 0;
         std::from_chars(text.data(), text.data() + text.size(), count);
@@ -296,7 +372,8 @@ class FilmReader {
             const std::string name = attribute.name().string();
             if (name.starts_with(prefix)) {
                 notes.identity.push_back({name.substr(prefix.size()), attribute.get_string()});
-            } else if (name.starts_with("lensproof:") && name != kLightPaths && name != kLeftOut && name != kDigest) {
+            } else if (name.starts_with("lensproof:") && !name.starts_with(kLightPaths) &&
+                       !name.starts_with(kLeftOut) && name != kDigest && name != kPasses) {
                 notes.metadata[name] = attribute.get_string();
             }
         }
@@ -325,7 +402,8 @@ class FilmReader {
     }
 
     /// Rows of the channels called `names`, pixel by pixel.
-    std::vector<float> rows(const std::string& part, const std::vector<std::string>& names, int y, int end) {
+    std::vector<float> rows(const std::string& of_film, const std::vector<std::string>& names, int y, int end) {
+        const std::string part = prefix_ + of_film;
         const OIIO::ImageSpec spec = seek(part);
         std::vector<float> all(static_cast<std::size_t>(spec.width) * (end - y) * spec.nchannels);
         if (!input_->read_scanlines(*find(part), 0, y, end, 0, 0, spec.nchannels, OIIO::TypeDesc::FLOAT, all.data())) {
@@ -346,13 +424,14 @@ class FilmReader {
     }
 
     std::vector<PixelCounts> count_rows(int y, int end) {
-        const OIIO::ImageSpec spec = seek("samples");
+        const std::string part = prefix_ + "samples";
+        const OIIO::ImageSpec spec = seek(part);
         std::vector<std::uint32_t> numbers(static_cast<std::size_t>(spec.width) * (end - y) * kCounts.size());
-        if (spec.channelnames != kCounts || !input_->read_scanlines(*find("samples"), 0, y, end, 0, 0, spec.nchannels,
+        if (spec.channelnames != kCounts || !input_->read_scanlines(*find(part), 0, y, end, 0, 0, spec.nchannels,
                                                                     OIIO::TypeDesc::UINT32, numbers.data())) {
-            fail(fmt::format("part \"samples\" is damaged ({})", formats::on_one_line(input_->geterror())));
+            fail(fmt::format("part \"{}\" is damaged ({})", part, formats::on_one_line(input_->geterror())));
         }
-        digest_.add("samples", numbers, end - y);
+        digest_.add(part, numbers, end - y);
         std::vector<PixelCounts> counts;
         for (std::size_t i = 0; i < numbers.size(); i += 2) {
             counts.push_back({.samples = numbers[i + 1], .blocks = numbers[i]});
@@ -408,22 +487,23 @@ class FilmReader {
 
     std::filesystem::path file_;
     std::unique_ptr<OIIO::ImageInput> input_;
+    std::string prefix_;  // of the film that is read
     std::pair<int, int> size_{0, 0};
     PixelDigest digest_;
 };
 
 }  // namespace
 
-void write_film_exr(const Film& film, const FilmNotes& notes, const std::filesystem::path& file) {
-    const std::vector<Part> parts = parts_of(film);
+void write_film_exr(const Picture& picture, const FilmNotes& notes, const std::filesystem::path& file) {
+    const std::vector<Part> parts = parts_of(picture);
     std::vector<OIIO::ImageSpec> specs;
     std::ranges::transform(parts, std::back_inserter(specs),
-                           [&](const Part& part) { return spec_of(part, film, notes); });
+                           [&](const Part& part) { return spec_of(part, picture, notes); });
     if (notes.has_digest) {
-        specs.front().attribute(kDigest, digest_of(parts, film));
+        specs.front().attribute(kDigest, digest_of(parts, picture));
     }
     formats::write_exr_file(file, [&](OIIO::ImageOutput& output, const std::string& name) {
-        return write_parts(output, name, parts, specs, film);
+        return write_parts(output, name, parts, specs, picture);
     });
 }
 

@@ -5,7 +5,7 @@
 #include <optional>
 #include <string>
 
-#include "engine/render/film/film.h"
+#include "engine/render/film/picture.h"
 #include "engine/render/film/render_identity.h"
 #include "engine/spectral/sensor_response.h"
 
@@ -19,7 +19,7 @@ struct FilmNotes {
     bool has_digest = false;                    // the attribute "lensproof:digest"
 };
 
-/// Writes the film; whole or not at all, the same bytes for the same film and notes. Parts, each of 32-bit floats:
+/// Writes the picture; whole or not at all, the same bytes for the same films and notes. Parts, each of 32-bit floats:
 ///
 /// - rgb: R, G, B, linear, 1 = saturation. First, so that whoever takes the file for a picture gets it.
 /// - spectral: one channel a layer, in the layout of spectral_exr.h: film irradiance, W·m⁻²·nm⁻¹.
@@ -29,15 +29,18 @@ struct FilmNotes {
 /// - light: R, G, B, variance.R, …, and spectral layers, what of all these came by light paths, whose number is the
 ///   attribute "lensproof:lightPaths"; where the film has them.
 ///
+/// Of a picture that is the sum of several passes the first three are that sum's, and after them each pass has all of
+/// these for itself, as "PASS.rgb", …; the attribute "lensproof:passes" names them.
+///
 /// The attribute "lensproof:leftOut" says how many samples were left out (`Film::left_out`), where any were, and
 /// "lensproof:digest" is a digest of all pixels of all parts, where the notes ask for one.
-void write_film_exr(const Film& film, const FilmNotes& notes, const std::filesystem::path& file);
+void write_film_exr(const Picture& picture, const FilmNotes& notes, const std::filesystem::path& file);
 
-/// A film from its file, so that films add up: sums from means, variances and counts; of floats, so to 1e-7. Its layout
-/// knows sizes and layers but no strata. Throws InputError naming the file where it is not one of the above, or not
-/// what its digest says.
+/// Films from their file, so that they add up: sums from means, variances and counts; of floats, so to 1e-7. Their
+/// layout knows sizes and layers but no strata. Throws InputError naming the file where it is not one of the above, or
+/// not what its digest says.
 struct FilmFile {
-    Film film;
+    std::vector<PassFilm> films;
     FilmNotes notes;
 };
 FilmFile read_film_exr(const std::filesystem::path& file);

@@ -18,7 +18,7 @@ void put_rgb(const Vec3d& rgb, float* to) {
 
 }  // namespace
 
-formats::Image film_image(const Film& film) {
+formats::Image film_image(const Picture& film) {
     std::vector<std::string> channels = {"R", "G", "B", "error.R", "error.G", "error.B"};
     for (const double nm : film.layout().layer_nm) {
         channels.push_back(spectral::spectral_channel_name(nm));
@@ -38,7 +38,7 @@ formats::Image film_image(const Film& film) {
     return image;
 }
 
-formats::Image film_rgb(const Film& film) {
+formats::Image film_rgb(const Picture& film) {
     formats::Image image = formats::make_image(film.width(), film.height(), {"R", "G", "B"});
     for (int y = 0; y < film.height(); ++y) {
         for (int x = 0; x < film.width(); ++x) {

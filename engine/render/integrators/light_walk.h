@@ -6,9 +6,9 @@
 #include <utility>
 
 #include "engine/base/infinity.h"
-#include "engine/render/camera/entry.h"
 #include "engine/render/integrators/mis_weight.h"
 #include "engine/render/integrators/view.h"
+#include "engine/render/stray/entry.h"
 
 namespace lensproof::render {
 

@@ -31,12 +31,12 @@ class SmallRender {
 
 std::string file_of(const RenderState& state) {
     const TestFolder folder;
-    write_checkpoint(folder.path() / "c", kIdentity, state);
+    write_checkpoint(folder.path() / "c", kIdentity, {&state, 1});
     return read_file(folder.path() / "c");
 }
 
 std::string refusal(const std::filesystem::path& file, const RenderIdentity& identity, RenderState& state) {
-    return complaint_about([&] { read_checkpoint(file, identity, state); });
+    return complaint_about([&] { read_checkpoint(file, identity, {&state, 1}); });
 }
 
 TEST(Checkpoint, HoldsEveryBitOfARender) {
@@ -46,9 +46,9 @@ TEST(Checkpoint, HoldsEveryBitOfARender) {
     render.go_on(whole, 1000);
     RenderState state = render.begin(100);
     render.go_on(state, 8);  // in the midst of the second pass
-    write_checkpoint(folder.path() / "c", kIdentity, state);
+    write_checkpoint(folder.path() / "c", kIdentity, {&state, 1});
     RenderState read = render.begin(100);
-    read_checkpoint(folder.path() / "c", kIdentity, read);
+    read_checkpoint(folder.path() / "c", kIdentity, {&read, 1});
     EXPECT_EQ(file_of(read), file_of(state));
     render.go_on(read, 1000);
     EXPECT_EQ(file_of(read), file_of(whole));
@@ -84,7 +84,7 @@ TEST(Checkpoint, OfAnotherRenderIsRefusedWithTheDifferenceNamed) {
     const SmallRender render;
     RenderState state = render.begin(100);
     render.go_on(state, 1000);
-    write_checkpoint(file, kIdentity, state);
+    write_checkpoint(file, kIdentity, {&state, 1});
     RenderState fresh = render.begin(100);
     EXPECT_NE(refusal(file, {{"scene", "abc"}, {"lens", "xyz"}}, fresh).find("its lens is def, expected xyz"),
               std::string::npos);
@@ -96,7 +96,7 @@ TEST(Checkpoint, OfAnotherRenderIsRefusedWithTheDifferenceNamed) {
     RenderState shorter = render.begin(99);
     EXPECT_NE(refusal(file, kIdentity, shorter).find("100 samples a pixel already"), std::string::npos);
     RenderState longer = render.begin(200);
-    read_checkpoint(file, kIdentity, longer);
+    read_checkpoint(file, kIdentity, {&longer, 1});
     EXPECT_EQ(longer.tiles[0], (TileProgress{.done = 100, .target = 100}));
     EXPECT_EQ(longer.range.end, 200U);
 }

@@ -125,13 +125,12 @@ TEST(Progressive, ReportsGoForward) {
     const FilmLayout layout = plain_film(40, 40);
     double before = 0.0;
     std::uint64_t samples = 0;
-    rendered(
-        layout, exponential_renderer(layout, 1), 64,
-        {.threads = 2, .in_passes = true, .is_interrupted = {}, .on_progress = [&](const auto&, const auto& report) {
-             EXPECT_GE(report.done, before);
-             before = report.done;
-             samples = report.samples;
-         }});
+    rendered(layout, exponential_renderer(layout, 1), 64,
+             {.threads = 2, .in_passes = true, .is_interrupted = {}, .on_progress = [&](const auto& report) {
+                  EXPECT_GE(report.done, before);
+                  before = report.done;
+                  samples = report.samples;
+              }});
     EXPECT_EQ(before, 1.0);
     EXPECT_EQ(samples, 40U * 40U * 64U);
 }

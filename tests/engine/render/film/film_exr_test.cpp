@@ -83,7 +83,8 @@ TEST(FilmExr, HoldsAFilm) {
     write_film_exr(film, kNotes, folder.path() / "a.exr");
     write_film_exr(film, kNotes, folder.path() / "b.exr");
     EXPECT_EQ(read_file(folder.path() / "a.exr"), read_file(folder.path() / "b.exr"));
-    const auto [read, notes] = read_film_exr(folder.path() / "a.exr");
+    const auto [films, notes] = read_film_exr(folder.path() / "a.exr");
+    const Film& read = films.front().film;
     expect_same(read, film, kFloat);
     EXPECT_EQ(notes.identity, kNotes.identity);
     EXPECT_EQ(notes.metadata, kNotes.metadata);
@@ -110,7 +111,7 @@ TEST(FilmExr, PartsAddUpToTheWhole) {
     const TestFolder folder;
     const auto through_file = [&](const Film& film) {
         write_film_exr(film, kNotes, folder.path() / "part.exr");
-        return read_film_exr(folder.path() / "part.exr").film;
+        return Film(read_film_exr(folder.path() / "part.exr").films.front().film);
     };
     Film sum = through_file(filled(48, 96));
     sum.merge(through_file(filled(0, 16)));
@@ -153,7 +154,7 @@ int silent_damages(const FilmNotes& notes) {
         damaged[at] = static_cast<char>(damaged[at] ^ 1);
         write_file(file, damaged, Durability::usual);
         try {
-            const Film read = read_film_exr(file).film;
+            const Film read = std::move(read_film_exr(file).films.front().film);
             bool is_same = read.width() == 8 && read.height() == 8;
             for (int i = 0; is_same && i < 64; ++i) {
                 const auto [rgb, variance] = read.estimate(i % 8, i / 8);

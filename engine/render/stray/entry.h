@@ -1,4 +1,4 @@
-// engine/render/camera/entry.h — light that enters a camera and what becomes of it there, drawn at random as a whole.
+// engine/render/stray/entry.h — light that enters a camera and what becomes of it there, drawn at random as a whole.
 #pragma once
 #include <algorithm>
 #include <array>

@@ -1,0 +1,133 @@
+#include "engine/render/stray/ghost_entrance.h"
+
+#include <array>
+#include <cmath>
+
+#include "engine/base/angle.h"
+#include "engine/optics/drawn_ghost.h"
+
+namespace lensproof::render {
+
+namespace {
+
+constexpr double kOfMore = 0.1;    // the share of rays for ghosts of four reflections and more
+constexpr double kUnguided = 0.2;  // of the rest
+
+/// One number after the other.
+class Numbers {
+  public:
+    explicit Numbers(PathSampler& numbers) : numbers_(numbers) {}
+    double operator()() {
+        if (next_ == PathSampler::kNumbers) {
+            set_ = numbers_.next();
+            next_ = 0;
+        }
+        return set_[static_cast<std::size_t>(next_++)];
+    }
+
+  private:
+    PathSampler& numbers_;
+    std::array<double, PathSampler::kNumbers> set_{};
+    int next_ = PathSampler::kNumbers;
+};
+
+double disc_area(const pupil::EntranceBeam& beam) {
+    return kPi * beam.radius * beam.radius;
+}
+
+Vec2d in_disc(const pupil::EntranceBeam& beam, double u, double v) {
+    const double r = beam.radius * std::sqrt(u);
+    return {r * std::cos(2.0 * kPi * v), r * std::sin(2.0 * kPi * v)};
+}
+
+}  // namespace
+
+GhostEntrance::GhostEntrance(const Camera& camera, Reflections reflections)
+    : front_(camera),
+      reflections_(reflections),
+      mirrors_(camera.settings().mirrors),
+      guide_(std::make_shared<const GhostGuide>(*camera.lens(), front_.middle(), mirrors_, front_.film_radius_mm())),
+      turning_(optics::turning_probabilities(front_.middle(), mirrors_)) {}
+
+std::optional<GhostEntrance::Way> GhostEntrance::draw_any(const pupil::EntranceBeam& beam, bool of_beam,
+                                                          std::size_t fewest, PathSampler& numbers) const {
+    Numbers number(numbers);
+    const Vec2d offset = of_beam ? in_disc(beam, number(), number()) : Vec2d{};
+    const auto drawn = optics::draw_ghost(turning_, number);
+    if (!drawn || drawn->path.size() < fewest) {
+        return std::nullopt;
+    }
+    return Way{drawn->path, offset, drawn->probability / (of_beam ? disc_area(beam) : 1.0)};
+}
+
+std::optional<GhostEntrance::Way> GhostEntrance::draw_ghost(const pupil::EntranceBeam& beam, bool of_beam,
+                                                            PathSampler& numbers) const {
+    const auto u = numbers.next();
+    const auto ghosts = static_cast<double>(guide_->paths().size());
+    const double unguided = guide_->is_known() ? kUnguided : 1.0;
+    GhostGuide::Draw drawn;
+    if (u[3] < unguided) {
+        drawn = {.ghost = static_cast<std::size_t>(u[0] * ghosts), .offset = in_disc(beam, u[1], u[2])};
+    } else if (const auto guided = guide_->draw(beam, {u[0], u[1], u[2]})) {
+        drawn = *guided;
+    } else {
+        return std::nullopt;
+    }
+    const double guided_pdf = of_beam ? guide_->pdf(beam, drawn) : guide_->probability(beam, drawn.ghost);
+    const bool is_in_disc = !of_beam || length(drawn.offset) <= beam.radius;
+    const double even_pdf = is_in_disc ? 1.0 / (ghosts * (of_beam ? disc_area(beam) : 1.0)) : 0.0;
+    return Way{guide_->paths()[drawn.ghost], drawn.offset, (1.0 - unguided) * guided_pdf + unguided * even_pdf};
+}
+
+std::optional<GhostEntrance::Way> GhostEntrance::draw_way(const pupil::EntranceBeam& beam, bool of_beam,
+                                                          PathSampler& numbers) const {
+    if (reflections_ == Reflections::anything) {
+        return draw_any(beam, of_beam, 0, numbers);
+    }
+    if (guide_->paths().empty()) {
+        return std::nullopt;
+    }
+    const bool is_of_more = numbers.next()[0] < kOfMore;
+    auto way = is_of_more ? draw_any(beam, of_beam, 4, numbers) : draw_ghost(beam, of_beam, numbers);
+    if (way) {
+        way->pdf *= is_of_more ? kOfMore : 1.0 - kOfMore;
+    }
+    return way;
+}
+
+Entry GhostEntrance::followed(Entry entry, const Ray<double>& ray, const optics::GhostPath& ghost,
+                              const spectral::PathWavelengths& path) const {
+    for (std::size_t i = 0; i < spectral::kWavelengthsPerPath; ++i) {
+        const optics::TraceLens<double>& lens = front_.lens().at(path.index[i]);
+        const optics::TracedRay<double> traced = optics::trace_ghost(lens, ghost, ray, mirrors_);
+        if (traced.status == optics::RayStatus::ok && traced.ray.direction.z > 0.0) {
+            entry.at_px[i] = front_.film_px(traced.ray, lens);
+            entry.weight[i] = traced.transmittance;
+        }
+    }
+    return entry;
+}
+
+std::optional<Entry> GhostEntrance::draw(const LightOrigin& from, const spectral::PathWavelengths& path,
+                                         bool /*is_hero_alone*/, PathSampler& numbers) const {
+    const auto beam = front_.beam(from);
+    const auto way = beam ? draw_way(*beam, true, numbers) : std::nullopt;
+    if (!way) {
+        return std::nullopt;
+    }
+    return followed(front_.entry(from, *beam, way->offset, way->pdf), beam->ray(way->offset), way->path, path);
+}
+
+std::optional<Entry> GhostEntrance::meet(const Ray<double>& ray, const spectral::PathWavelengths& path,
+                                         PathSampler& numbers) const {
+    const auto meeting = front_.meet(ray);
+    const auto way = meeting ? draw_way(meeting->beam, false, numbers) : std::nullopt;
+    if (!way) {
+        return std::nullopt;
+    }
+    Entry entry = front_.entry(ray, *meeting);
+    entry.pdf = way->pdf;
+    return followed(entry, meeting->beam.ray(meeting->offset), way->path, path);
+}
+
+}  // namespace lensproof::render

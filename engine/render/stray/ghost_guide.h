@@ -1,0 +1,62 @@
+// engine/render/stray/ghost_guide.h — which ghost far light most likely takes in a lens, and where it enters for that.
+#pragma once
+#include <array>
+#include <cstddef>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <vector>
+
+#include "engine/analysis/ghost_region.h"
+#include "engine/optics/lens.h"
+#include "engine/pupil/entrance_beam.h"
+
+namespace lensproof::render {
+
+/// For light of each field angle, a degree apart: the energy of every ghost of two reflections, and the region of the
+/// front from which it reaches the film (analysis/ghost_region.h). An angle is looked at when light first comes from
+/// there, by whichever thread; between two of them either is taken, the nearer one more often.
+///
+/// Of a lens that is not rotationally symmetric it knows nothing.
+class GhostGuide {
+  public:
+    /// `traced`: at the wavelength in the middle of the band. For light that lands within `film_radius_mm` of the axis.
+    GhostGuide(const optics::Lens& lens, optics::TraceLens<double> traced, const optics::StrayMirrors<double>& mirrors,
+               double film_radius_mm);
+
+    [[nodiscard]] const std::vector<optics::GhostPath>& paths() const { return paths_; }
+    [[nodiscard]] bool is_known() const { return is_known_; }
+
+    /// A ghost's number, and where its light crosses the plane of its beam.
+    struct Draw {
+        std::size_t ghost = 0;
+        Vec2d offset;
+    };
+    /// Draws both for the light of a beam by three numbers in (0, 1). Nothing where no ghost is known.
+    [[nodiscard]] std::optional<Draw> draw(const pupil::EntranceBeam& beam, const std::array<double, 3>& numbers) const;
+    /// The pdf of that, 1/mm²; and the probability of the ghost.
+    [[nodiscard]] double pdf(const pupil::EntranceBeam& beam, const Draw& drawn) const;
+    [[nodiscard]] double probability(const pupil::EntranceBeam& beam, std::size_t ghost) const;
+
+  private:
+    struct Angle {  // what is known of one
+        std::once_flag once;
+        std::vector<analysis::GhostRegion> regions;  // a ghost each, in its FrontBeam's plane
+        std::vector<double> cumulative;              // of the energies' shares; empty where there is none
+        Vec2d centre;                                // of the front sphere there
+    };
+    struct Place;
+    [[nodiscard]] Place place_of(const pupil::EntranceBeam& beam) const;
+    [[nodiscard]] const Angle* angle(std::size_t degrees) const;
+    void look_at(Angle& angle, double radians) const;
+
+    optics::TraceLens<double> lens_;
+    optics::StrayMirrors<double> mirrors_;
+    double film_radius_mm_;
+    double pupil_area_ = 0.0;
+    bool is_known_;
+    std::vector<optics::GhostPath> paths_;
+    mutable std::vector<std::unique_ptr<Angle>> angles_;
+};
+
+}  // namespace lensproof::render
