@@ -13,14 +13,15 @@ namespace lensproof::render {
 
 namespace {
 
-constexpr std::size_t kAngles = 120;  // degrees: few fronts are met by light from farther behind
-constexpr int kRaysOfGhost = 400;     // to weigh it
+constexpr double kStep = 2.5 * kDegree;
+constexpr std::size_t kAngles = 49;  // to 120°: few fronts are met by light from farther behind
+constexpr int kRaysOfGhost = 400;    // to weigh it
 
 }  // namespace
 
 /// Where a beam stands among the angles, and how its offsets are turned there.
 struct GhostGuide::Place {
-    std::size_t below = 0;  // degrees
+    std::size_t below = 0;  // a number of steps
     double above = 0.0;     // how often the next angle is taken
     Vec2d azimuth;          // a beam turned about the axis has its offsets turned with it
 
@@ -46,7 +47,7 @@ GhostGuide::GhostGuide(const optics::Lens& lens, optics::TraceLens<double> trace
                                       .mirrors = mirrors,
                                       .image_radius = film_radius_mm,
                                       .pupil_area = pupil_area_});
-    for (std::size_t degrees = 0; degrees <= kAngles; ++degrees) {
+    while (angles_.size() < kAngles) {
         angles_.push_back(std::make_unique<Angle>());
     }
 }
@@ -74,19 +75,19 @@ void GhostGuide::look_at(Angle& angle, double radians) const {
     angle.centre = {dot(front.centre, beam.across[0]), dot(front.centre, beam.across[1])};
 }
 
-const GhostGuide::Angle* GhostGuide::angle(std::size_t degrees) const {
-    if (!is_known_ || degrees >= angles_.size()) {
+const GhostGuide::Angle* GhostGuide::angle(std::size_t steps) const {
+    if (!is_known_ || steps >= angles_.size()) {
         return nullptr;
     }
-    Angle& found = *angles_[degrees];
-    std::call_once(found.once, [&] { look_at(found, static_cast<double>(degrees) * kDegree); });
+    Angle& found = *angles_[steps];
+    std::call_once(found.once, [&] { look_at(found, static_cast<double>(steps) * kStep); });
     return found.cumulative.empty() ? nullptr : &found;
 }
 
 GhostGuide::Place GhostGuide::place_of(const pupil::EntranceBeam& beam) const {
     const Vec3d& direction = beam.axis.direction;
     const double across = std::hypot(direction.x, direction.y);
-    const double at = std::atan2(across, direction.z) / kDegree;
+    const double at = std::atan2(across, direction.z) / kStep;
     const double below = std::floor(at);
     return {.below = static_cast<std::size_t>(below),
             .above = at - below,
@@ -121,8 +122,8 @@ double GhostGuide::pdf(const pupil::EntranceBeam& beam, const Draw& drawn) const
     const Place place = place_of(beam);
     const Vec2d meridional = place.to_meridional(drawn.offset);
     double pdf = 0.0;
-    for (const auto& [degrees, share] : {std::pair{place.below, 1.0 - place.above}, {place.below + 1, place.above}}) {
-        const Angle* at = share > 0.0 ? angle(degrees) : nullptr;
+    for (const auto& [steps, share] : {std::pair{place.below, 1.0 - place.above}, {place.below + 1, place.above}}) {
+        const Angle* at = share > 0.0 ? angle(steps) : nullptr;
         if (at != nullptr && at->regions[drawn.ghost].contains(meridional + at->centre)) {
             const double before = drawn.ghost > 0 ? at->cumulative[drawn.ghost - 1] : 0.0;
             pdf += share * (at->cumulative[drawn.ghost] - before) / at->regions[drawn.ghost].area();
@@ -134,8 +135,8 @@ double GhostGuide::pdf(const pupil::EntranceBeam& beam, const Draw& drawn) const
 double GhostGuide::probability(const pupil::EntranceBeam& beam, std::size_t ghost) const {
     const Place place = place_of(beam);
     double probability = 0.0;
-    for (const auto& [degrees, share] : {std::pair{place.below, 1.0 - place.above}, {place.below + 1, place.above}}) {
-        if (const Angle* at = share > 0.0 ? angle(degrees) : nullptr; at != nullptr) {
+    for (const auto& [steps, share] : {std::pair{place.below, 1.0 - place.above}, {place.below + 1, place.above}}) {
+        if (const Angle* at = share > 0.0 ? angle(steps) : nullptr; at != nullptr) {
             probability += share * (at->cumulative[ghost] - (ghost > 0 ? at->cumulative[ghost - 1] : 0.0));
         }
     }

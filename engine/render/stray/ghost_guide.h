@@ -13,7 +13,7 @@
 
 namespace lensproof::render {
 
-/// For light of each field angle, a degree apart: the energy of every ghost of two reflections, and the region of the
+/// For light of each field angle, 2.5° apart: the energy of every ghost of two reflections, and the region of the
 /// front from which it reaches the film (analysis/ghost_region.h). An angle is looked at when light first comes from
 /// there, by whichever thread; between two of them either is taken, the nearer one more often.
 ///
@@ -47,7 +47,7 @@ class GhostGuide {
     };
     struct Place;
     [[nodiscard]] Place place_of(const pupil::EntranceBeam& beam) const;
-    [[nodiscard]] const Angle* angle(std::size_t degrees) const;
+    [[nodiscard]] const Angle* angle(std::size_t steps) const;
     void look_at(Angle& angle, double radians) const;
 
     optics::TraceLens<double> lens_;

@@ -3,8 +3,11 @@
 #include <gtest/gtest.h>
 
 #include <atomic>
+#include <utility>
+#include <vector>
 
 #include "engine/base/file.h"
+#include "engine/base/input_error.h"
 #include "engine/base/write_file.h"
 #include "tests/complaint.h"
 #include "tests/engine/render/film/film_sample.h"
@@ -52,6 +55,30 @@ TEST(Checkpoint, HoldsEveryBitOfARender) {
     EXPECT_EQ(file_of(read), file_of(state));
     render.go_on(read, 1000);
     EXPECT_EQ(file_of(read), file_of(whole));
+}
+
+TEST(Checkpoint, HoldsEveryPass) {
+    const TestFolder folder;
+    const SmallRender render;
+    const auto begin = [&] {
+        std::vector<RenderState> passes = {render.begin(32), render.begin(32)};
+        passes[0].pass = "imaged";
+        passes[1].pass = "ghosts";
+        return passes;
+    };
+    std::vector<RenderState> passes = begin();
+    render.go_on(passes[1], 3);
+    write_checkpoint(folder.path() / "c", kIdentity, passes);
+    std::vector<RenderState> read = begin();
+    read_checkpoint(folder.path() / "c", kIdentity, read);
+    EXPECT_EQ(file_of(read[0]), file_of(passes[0]));
+    EXPECT_EQ(file_of(read[1]), file_of(passes[1]));
+    EXPECT_NE(file_of(read[0]), file_of(read[1]));
+    // Of other passes it is another render's.
+    std::swap(read[0], read[1]);
+    EXPECT_THROW(read_checkpoint(folder.path() / "c", kIdentity, read), InputError);
+    read.pop_back();
+    EXPECT_THROW(read_checkpoint(folder.path() / "c", kIdentity, read), InputError);
 }
 
 // Cut anywhere, or with any bit turned, it is refused, and the state that wanted it stands as it was.

@@ -7,6 +7,7 @@
 #include <cstring>
 #include <stdexcept>
 #include <string>
+#include <vector>
 
 #include "tests/engine/render/film/film_sample.h"
 
@@ -95,6 +96,64 @@ TEST(Progressive, GoesOnAsIfNothingHadHappened) {
         EXPECT_GT(turns, 48 / (tiles_a_turn + 2)) << "it was interrupted";
         EXPECT_EQ(bits(state.film), whole) << tiles_a_turn;
     }
+}
+
+/// An even field by camera paths and light that lands anywhere, noisier by far.
+struct TwoPasses {
+    FilmLayout plain = plain_film(50, 37, 4);
+    FilmLayout splats = film_with_splats();
+    std::vector<Render> renders = {
+        {.film = plain, .renderer = exponential_renderer(plain, 1)},
+        {.film = splats, .renderer = splatting_renderer(splats), .lands_anywhere = true}};
+
+    [[nodiscard]] std::vector<RenderState> begin(std::uint32_t samples) const {
+        return {{plain, {.first = 0, .end = samples}, "a"}, {splats, {.first = 0, .end = samples}, "b"}};
+    }
+};
+
+// Each pass ends at the bits that it has alone, in turns, with any threads and wherever it is interrupted.
+TEST(Progressive, PassesInTurnsAreThoseByThemselves) {
+    const TwoPasses two;
+    const std::string first = bits(rendered(two.plain, two.renders[0].renderer, 100, {.threads = 1}).film);
+    const std::string second = bits(rendered(two.splats, two.renders[1].renderer, 100, {.threads = 1}).film);
+    for (const int tiles_a_turn : {5, 1000}) {
+        std::vector<RenderState> states = two.begin(100);
+        for (RenderEnd end = RenderEnd::interrupted; end == RenderEnd::interrupted;) {
+            std::atomic<int> asked = 0;
+            end = render_passes(states, two.renders, {},
+                                {.threads = 2, .is_interrupted = [&] { return ++asked > tiles_a_turn; }});
+        }
+        EXPECT_EQ(bits(states[0].film), first) << tiles_a_turn;
+        EXPECT_EQ(bits(states[1].film), second) << tiles_a_turn;
+    }
+}
+
+// Samples go where the picture's variance is. That of either pass is σ²/n a sample of each pixel: the best split of a
+// budget has n in proportion to σ, within the quarter more that a turn takes at a time (and its square, for both).
+TEST(Progressive, NoiseTakesSamplesFromThePassThatMakesIt) {
+    const FilmLayout layout = plain_film(32, 32);
+    const auto brighter = [&](double factor) {
+        return [=, width = layout.width](const TileSamples& samples, FilmTile& tile) {
+            for (int y = samples.rect.y; y < samples.rect.y + samples.rect.height; ++y) {
+                for (int x = samples.rect.x; x < samples.rect.x + samples.rect.width; ++x) {
+                    for (std::uint32_t i = samples.first; i < samples.end; ++i) {
+                        const auto pixel = static_cast<std::uint32_t>(y * width + x);
+                        tile.add(tile.pixel(x, y), i, 0, factor * exponential_number(7, pixel, i));
+                    }
+                }
+            }
+        };
+    };
+    const std::vector<Render> renders = {{.film = layout, .renderer = brighter(1.0)},
+                                         {.film = layout, .renderer = brighter(4.0)}};
+    std::vector<RenderState> states = {{layout, {.first = 0, .end = 1U << 16U}, "faint"},
+                                       {layout, {.first = 0, .end = 1U << 16U}, "bright"}};
+    EXPECT_EQ(render_passes(states, renders, {.noise = 0.02}, {.threads = 2}), RenderEnd::complete);
+    const PixelRect all{.width = 32, .height = 32};
+    EXPECT_LE(tile_error(picture_of(states), all, 0.0), 0.02);
+    const double ratio = static_cast<double>(states[1].film.counts(0, 0).samples) / states[0].film.counts(0, 0).samples;
+    EXPECT_GT(ratio, 4.0 / (1.25 * 1.25));
+    EXPECT_LT(ratio, 4.0 * 1.25 * 1.25);
 }
 
 TEST(Progressive, EndsInTimeWithWholeTiles) {

@@ -125,6 +125,33 @@ TEST(FilmExr, PartsAddUpToTheWhole) {
     }
 }
 
+// Its first parts are the sum of the passes, and each comes back.
+TEST(FilmExr, HoldsPasses) {
+    const TestFolder folder;
+    const Film imaged = filled(0, 20);
+    const Film ghosts = filled(20, 50);
+    FilmNotes notes = kNotes;
+    notes.has_digest = true;
+    const Picture picture({{"imaged", &imaged}, {"ghosts", &ghosts}});
+    write_film_exr(picture, notes, folder.path() / "a.exr");
+    const formats::Image image = formats::read_image(folder.path() / "a.exr");
+    EXPECT_EQ(image.at(69, 32, 2),
+              static_cast<float>(imaged.estimate(69, 32).rgb.z + ghosts.estimate(69, 32).rgb.z));
+    const FilmFile read = read_film_exr(folder.path() / "a.exr");
+    ASSERT_EQ(read.films.size(), 2U);
+    EXPECT_EQ(read.films[1].pass, "ghosts");
+    expect_same(read.films[0].film, imaged, kFloat);
+    expect_same(read.films[1].film, ghosts, kFloat);
+    EXPECT_EQ(read.notes.metadata, kNotes.metadata);
+    std::vector<double> sum(4);
+    std::vector<double> first(4);
+    std::vector<double> second(4);
+    picture.layers(3, 4, sum);
+    imaged.layers(3, 4, first);
+    ghosts.layers(3, 4, second);
+    EXPECT_DOUBLE_EQ(sum[1], first[1] + second[1]);
+}
+
 TEST(FilmExr, RefusesWhatItDidNotWrite) {
     const TestFolder folder;
     const std::filesystem::path file = folder.path() / "a.exr";
