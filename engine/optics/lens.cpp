@@ -90,6 +90,8 @@ LensSurface placed_surface(const PrescribedSurface& row, const Frame& frame) {
     surface.vertex = {frame.origin.x, frame.origin.y};
     surface.axes = frame.axes;
     surface.semi_diameter = row.semi_diameter_mm.value_or(row.rim_mm.value_or(kInfinity));
+    surface.rim = row.rim_mm.value_or(0.0);
+    surface.tube_behind = row.barrel_mm.value_or(0.0);
     surface.is_stop = row.is_stop;
     surface.has_shape = row.conic != 0.0 || row.is_asphere() || row.radius_x_mm.has_value();
     surface.shape = prescribed_shape(row);
@@ -210,6 +212,7 @@ Lens make_lens(const Prescription& prescription, const GlassCatalogue& glasses, 
     lens.projection = prescription.projection;
     lens.stated = prescription.stated;
     lens.stop_mask = StopMask(prescription.stop_shape);
+    lens.barrel = prescription.barrel;
     lens.focus_groups = prescription.focus_groups;
     lens.surroundings = prescription.surroundings;
     lens.is_rotationally_symmetric = prescription.is_rotationally_symmetric();

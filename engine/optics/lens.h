@@ -9,6 +9,7 @@
 #include "engine/optics/prescription.h"
 #include "engine/optics/thin_film.h"
 #include "engine/optics/trace.h"
+#include "engine/optics/wall_finish.h"
 
 namespace lensproof::optics {
 
@@ -17,6 +18,8 @@ struct LensSurface {
     double curvature = 0.0;
     double vertex_z = 0.0;
     double semi_diameter = 0.0;  // of what passes: the clear aperture, or the barrel where that is narrower
+    double rim = 0.0;            // of the glass, mechanically, and
+    double tube_behind = 0.0;    // the barrel's inner radius over the space behind; 0 where they are not stated
     Glass medium;                // behind the surface
     bool is_stop = false;
     SurfaceShape<double> shape{};  // of a surface that is no sphere; its curvature is the one above
@@ -40,6 +43,7 @@ struct Lens {
     StatedData stated;
     std::vector<LensSurface> surfaces;
     StopMask stop_mask;
+    BarrelFinish barrel;
     std::vector<FocusGroup> focus_groups;
     Surroundings surroundings = Surroundings::air;
     bool is_rotationally_symmetric = true;

@@ -13,6 +13,7 @@
 #include "engine/base/infinity.h"
 #include "engine/optics/finding.h"
 #include "engine/optics/projection.h"
+#include "engine/optics/wall_finish.h"
 
 namespace lensproof::optics {
 
@@ -197,6 +198,7 @@ struct Prescription {
     StatedData stated;
     std::vector<PrescribedSurface> surfaces;
     StopShape stop_shape;
+    BarrelFinish barrel;
     std::map<std::string, Coating> coatings;
     std::vector<MisalignedGroup> groups;
     std::vector<ZoomPosition> zoom;        // empty: a lens of one focal length

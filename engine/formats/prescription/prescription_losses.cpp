@@ -94,6 +94,8 @@ std::vector<optics::Finding> losses_of_tables(const optics::Prescription& prescr
     add(moves, "lost-misalignment", optics::Severity::warning, "decentred and tilted groups are written as if aligned");
     add(prescription.stop_shape.index() != 0, "lost-stop-shape", optics::Severity::warning,
         "the stop's shape is left out: a full circle is written");
+    add(!prescription.barrel.is_black(), "lost-barrel", optics::Severity::info,
+        "what its walls scatter is left out: the image stays, its stray light changes");
     add(!prescription.focus_groups.empty(), "lost-focus-groups", optics::Severity::warning,
         "which groups move to focus is left out");
     add(prescription.surroundings == optics::Surroundings::vacuum, "lost-surroundings", optics::Severity::warning,

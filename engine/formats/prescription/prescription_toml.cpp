@@ -11,6 +11,7 @@
 #include "engine/base/infinity.h"
 #include "engine/base/text.h"
 #include "engine/base/toml.h"
+#include "engine/formats/prescription/barrel_toml.h"
 #include "engine/formats/prescription/coating_toml.h"
 #include "engine/formats/prescription/forbes_asphere.h"
 #include "engine/formats/prescription/prescription_forms.h"
@@ -244,6 +245,9 @@ optics::Prescription parse_toml_prescription(const std::string& text, const std:
     }
     if (auto stop = top.optional_table("stop")) {
         prescription.stop_shape = read_stop_shape(*stop);
+    }
+    if (auto barrel = top.optional_table("barrel")) {
+        prescription.barrel = read_barrel(*barrel);
     }
     read_coatings(top, prescription);
     read_moving_parts(top, prescription);

@@ -169,6 +169,7 @@ class Writer {
         write_surfaces();
         write_claims("stated", prescription_.stated);
         write_stop();
+        write_barrel();
         for (const auto& [name, coating] : prescription_.coatings) {
             write_coating(name, coating);
         }
@@ -336,6 +337,18 @@ class Writer {
                                  number(polygon->curvature), number(polygon->rotation_deg));
         } else if (const auto* texture = std::get_if<optics::TexturedStop>(&prescription_.stop_shape)) {
             text_ += fmt::format("\n[stop]\ntexture = {}\n", toml_string(texture->image));
+        }
+    }
+
+    void write_barrel() {
+        if (prescription_.barrel == optics::BarrelFinish{}) {
+            return;
+        }
+        text_ += "\n[barrel]\n";
+        const auto& [tube, edges, blades] = prescription_.barrel;
+        for (const auto& [key, finish] : {std::pair{"tube", tube}, {"edges", edges}, {"blades", blades}}) {
+            line(key, fmt::format("{{ albedo = {}, gloss = {}, roughness = {} }}", number(finish.albedo),
+                                  number(finish.gloss), number(finish.roughness)));
         }
     }
 

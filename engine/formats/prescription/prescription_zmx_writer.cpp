@@ -318,6 +318,9 @@ class ZmxWriter {
 
     void report_lost() {
         const optics::StatedData& stated = original_.stated;
+        if (!original_.barrel.is_black()) {
+            lose("lost-barrel", 0, "what its walls scatter", optics::Severity::info);
+        }
         if (!std::holds_alternative<std::monostate>(original_.stop_shape)) {
             lose("lost-stop-shape", 0, "a stop that is no circle");
         }

@@ -49,6 +49,26 @@ TEST_F(PrescriptionFile, UnknownGlassIsNamedWithItsLine) {
     EXPECT_TRUE(says(said, "lensproof glasses")) << "where the glasses are listed: " << said;
 }
 
+// What a wall does not state is as for all of them; without a table all is black.
+TEST_F(PrescriptionFile, BarrelsStateWhatTheirWallsScatter) {
+    const std::string lens = std::string(kHead) + kStop;
+    const auto barrel = [&](const std::string& text) {
+        return load_lens(write("b.toml", lens + text).string()).barrel;
+    };
+    EXPECT_TRUE(barrel("").is_black());
+    const optics::BarrelFinish found =
+        barrel("[barrel]\nalbedo = 0.05\ngloss = 0.4\nedges = { albedo = 0.2, roughness = 1.0 }\n");
+    EXPECT_EQ(found.tube, (optics::WallFinish{.albedo = 0.05, .gloss = 0.4}));
+    EXPECT_EQ(found.blades, found.tube);
+    EXPECT_EQ(found.edges, (optics::WallFinish{.albedo = 0.2, .gloss = 0.4, .roughness = 1.0}));
+    const auto said = [&](const std::string& text) { return complaint(write("b.toml", lens + text)); };
+    EXPECT_TRUE(says(said("[barrel]\nalbedo = 1.5\n"), "b.toml:8: barrel.albedo"));
+    EXPECT_TRUE(says(said("[barrel]\nalbedo = nan\n"), "barrel.albedo"));
+    EXPECT_TRUE(says(said("[barrel]\nedges = { gloss = -0.1 }\n"), "barrel.edges.gloss"));
+    EXPECT_TRUE(says(said("[barrel]\nroughnes = 0.1\n"), "barrel.roughnes"));
+    EXPECT_TRUE(says(said("[barrel]\nblades = 0.1\n"), "barrel.blades"));
+}
+
 TEST_F(PrescriptionFile, EveryOtherDefectIsAnInputError) {
     const std::string row = "[[surfaces]]\nthickness_mm = 1\nsemi_diameter_mm = 1\n";
     for (const std::string& text :

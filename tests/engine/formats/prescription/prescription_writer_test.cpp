@@ -35,6 +35,9 @@ optics::Prescription everything() {
                    .entrance_pupil_diameter_mm = 1.0 / 3.0,
                    .source = "claims"};
     lens.stop_shape = optics::PolygonStop{.blades = 7, .curvature = 0.25, .rotation_deg = -12.5};
+    lens.barrel = {.tube = {.albedo = 0.04, .gloss = 0.5, .roughness = 0.25},
+                   .edges = {.albedo = 0.1 + 0.2, .gloss = 0.0, .roughness = 1.0},
+                   .blades = {.albedo = 0.0, .gloss = 1.0, .roughness = 0.0}};
     lens.coatings["single layer"] = optics::LayerStack{
         .layers = {{.index = {{550.0, 1.38}}, .thickness_nm = 99.6},
                    {.index = {{400.0, 2.2}, {700.0, 2.1}}, .extinction = {{550.0, 1e-4}}, .quarter_wave_nm = 500.0},
@@ -106,6 +109,7 @@ TEST(TomlWriter, ReadsBackToTheSamePrescription) {
     EXPECT_EQ(polygon.blades, 7);
     EXPECT_EQ(polygon.curvature, 0.25);
     EXPECT_EQ(polygon.rotation_deg, -12.5);
+    EXPECT_EQ(back.barrel, lens.barrel);
     EXPECT_EQ(back.coatings, lens.coatings);
     ASSERT_EQ(back.groups.size(), 1U);
     EXPECT_EQ(back.groups[0].last, 2);
@@ -187,9 +191,9 @@ TEST(CsvWriter, CarriesWhatItsColumnsHoldAndNamesTheRest) {
     EXPECT_EQ(back.surfaces[1].medium.indices, lens.surfaces[1].medium.indices);
     EXPECT_TRUE(back.surfaces[2].is_stop);
     EXPECT_EQ(back.surfaces[1].semi_diameter_mm, 14.0) << "the barrel before it";
-    for (const char* code :
-         {"lost-zoom", "lost-toroid", "lost-misalignment", "lost-coating", "lost-stop-shape", "lost-focus-groups",
-          "lost-surroundings", "lost-catalogues", "lost-projection", "lost-stated", "lost-object-distance"}) {
+    for (const char* code : {"lost-zoom", "lost-toroid", "lost-misalignment", "lost-coating", "lost-stop-shape",
+                             "lost-barrel", "lost-focus-groups", "lost-surroundings", "lost-catalogues",
+                             "lost-projection", "lost-stated", "lost-object-distance"}) {
         EXPECT_NE(std::ranges::find(written.lost, code, &optics::Finding::code), written.lost.end()) << code;
     }
 }

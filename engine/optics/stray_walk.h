@@ -1,0 +1,216 @@
+// engine/optics/stray_walk.h — light that goes its way inside a lens by chance: through glass, back from it, from wall
+// to wall.
+#pragma once
+#include <array>
+#include <cmath>
+#include <optional>
+
+#include "engine/base/basis.h"
+#include "engine/optics/barrel.h"
+#include "engine/optics/ghost_path.h"
+#include "engine/optics/surface_axes.h"
+
+namespace lensproof::optics {
+
+/// Light on its way, and what it met so far. A path belongs to the barrel where it met a wall, else to the ghosts where
+/// glass or the sensor reflected it, else to the image.
+struct StrayLight {
+    Ray<double> ray;
+    double weight = 1.0;
+    int reflections = 0;
+    int walls = 0;
+};
+
+enum class StrayEnd {
+    front,     // out through the first surface, into the scene
+    film,      // on the sensor's plane
+    body,      // out behind the last surface, and not towards the sensor
+    absorbed,  // by a wall, or outside the first or last surface; or glass let nothing pass
+    lost       // through a gap in the table's walls, or still on its way after many thousands of events
+};
+
+/// Follows light until it leaves the lens or ends: at glass it is reflected or refracted by chance, as the surface's
+/// reflectance and transmittance have it, at walls scattered as their finish says. The weight carries what is then left
+/// to account for: glass and coatings that absorb, the first wall's albedo (later ones end the path by chance), so that
+/// light of weight 1 in a lens that absorbs nothing keeps it to the end.
+///
+/// `forward`: from the scene to the first surface, else from the sensor to the last; both ways carry the same light, as
+/// surfaces and walls are reciprocal. A ray from one surface to its neighbour's clear aperture passes, whatever wall
+/// the table's rims put in between: what `trace` sees as open is open.
+///
+/// Numbers: `double numbers()`, from (0, 1). `landed(const StrayLight&)` is called at each arrival on the sensor's
+/// plane, the ray's origin on it; a sensor that is a mirror sends light back, by chance too.
+template <class Numbers>
+class StrayWalk {
+  public:
+    StrayWalk(const TraceLens<double>& lens, const Barrel& barrel, const StrayMirrors<double>& mirrors,
+              Numbers& numbers)
+        : lens_(lens),
+          barrel_(barrel),
+          mirrors_(mirrors),
+          numbers_(numbers),
+          count_(static_cast<int>(lens.surfaces.size())) {}
+
+    template <class Landed>
+    StrayEnd follow(StrayLight& light, bool forward, Landed&& landed) {
+        constexpr int kMostEvents = 10000;
+        cell_ = forward ? 0 : count_;
+        target_ = forward ? 0 : count_ - 1;
+        for (int event = 0; event < kMostEvents; ++event) {
+            if (cell_ == count_ && target_ == count_) {
+                if (!reach_film(light)) {
+                    return StrayEnd::body;
+                }
+                landed(std::as_const(light));
+                if (!(numbers_() < mirrors_.sensor)) {
+                    return StrayEnd::film;
+                }
+                light.ray.direction.z = -light.ray.direction.z;
+                ++light.reflections;
+                target_ = count_ - 1;
+                continue;
+            }
+            if (target_ == -1 && cell_ == 0) {
+                return StrayEnd::front;
+            }
+            const std::optional<StrayEnd> end = take_step(light);
+            if (end) {
+                return *end;
+            }
+        }
+        return StrayEnd::lost;
+    }
+
+  private:
+    static constexpr int kAnySurface = -2;
+
+    struct GlassMeeting {
+        int surface = 0;
+        bool forward = true;
+        double distance = 0.0;
+        TravellingRay<double> passed;
+        double open = 1.0;  // of a stop's mask at the point
+    };
+
+    bool reach_film(StrayLight& light) const {
+        if (!(light.ray.direction.z > 0.0)) {
+            return false;
+        }
+        light.ray.origin = meet_plane(light.ray, lens_.image_z).point;
+        return true;
+    }
+
+    /// The surface where the ray crosses it inside its rim.
+    [[nodiscard]] std::optional<GlassMeeting> meet_surface(const Ray<double>& ray, int index, bool forward) const {
+        GlassMeeting meeting{
+            .surface = index, .forward = forward, .passed = {.origin = ray.origin, .direction = ray.direction}};
+        const RayStatus status =
+            run_to_surface<Rims::clip>(lens_, index, forward, AtSurface::pass, mirrors_, meeting.passed).first;
+        if (status == RayStatus::missed || status == RayStatus::clipped) {
+            return std::nullopt;
+        }
+        const TraceSurface<double>& surface = lens_.surfaces[static_cast<std::size_t>(index)];
+        const Vec3d point = meeting.passed.global().origin;
+        if (const SpecialSurface<double>* special = special_of(lens_, surface)) {
+            const Vec3d own = to_own_axes(lens_, surface, point);
+            const bool is_beyond = own.x * own.x + own.y * own.y > surface.semi_diameter_squared;
+            meeting.open = is_beyond ? 0.0 : mask_transmittance(surface, *special, own.x, own.y);
+            if (is_beyond) {
+                return std::nullopt;
+            }
+        } else if (status == RayStatus::stopped) {
+            return std::nullopt;
+        }
+        if (status != RayStatus::ok) {
+            meeting.passed.at_surfaces = 0.0;
+        }
+        meeting.distance = dot(point - ray.origin, ray.direction);
+        return meeting;
+    }
+
+    /// To the next surface or wall and on from it, or to an end.
+    std::optional<StrayEnd> take_step(StrayLight& light) {
+        if (target_ != kAnySurface) {
+            if (const auto next = meet_surface(light.ray, target_, target_ == cell_)) {
+                return leave_surface(light, *next);
+            }
+            if (cell_ == 0 || cell_ == count_) {
+                return StrayEnd::absorbed;
+            }
+        }
+        // Past the neighbour's rim or from a wall: whatever is nearest. A hollow surface may meet its own light again.
+        std::optional<GlassMeeting> glass;
+        for (const int index : {cell_ - 1, cell_}) {
+            if (index != target_) {
+                const auto meeting = meet_surface(light.ray, index, index == cell_);
+                constexpr double kAhead = 1e-9;  // mm
+                if (meeting && meeting->distance > kAhead && (!glass || meeting->distance < glass->distance)) {
+                    glass = meeting;
+                }
+            }
+        }
+        const std::optional<WallMeeting> wall = barrel_.meet(cell_, light.ray);
+        if (glass && !(wall && wall->distance < glass->distance)) {
+            return leave_surface(light, *glass);
+        }
+        if (!wall) {
+            return StrayEnd::lost;
+        }
+        if (!lens_.attenuation.empty()) {
+            light.weight *= fading(lens_.attenuation[static_cast<std::size_t>(cell_)] * wall->distance);
+        }
+        light.ray.origin = light.ray.origin + wall->distance * light.ray.direction;
+        return leave_wall(light, wall->normal, wall->finish);
+    }
+
+    std::optional<StrayEnd> leave_wall(StrayLight& light, const Vec3d& normal, const WallFinish& finish) {
+        if (!(finish.albedo > 0.0) || (light.walls > 0 && numbers_() >= finish.albedo)) {
+            return StrayEnd::absorbed;
+        }
+        light.weight *= light.walls > 0 ? 1.0 : finish.albedo;
+        ++light.walls;
+        const Basis frame(normal);
+        light.ray.direction =
+            normalized(frame.to_world(scattered_direction(finish, frame.to_local(light.ray.direction), numbers_)));
+        target_ = kAnySurface;
+        return std::nullopt;
+    }
+
+    std::optional<StrayEnd> leave_surface(StrayLight& light, const GlassMeeting& at) {
+        const TraceSurface<double>& surface = lens_.surfaces[static_cast<std::size_t>(at.surface)];
+        light.weight *= at.passed.optical_depth > 0.0 ? fading(at.passed.optical_depth) : 1.0;
+        if (at.open < 1.0 && numbers_() >= at.open) {
+            light.ray.origin = at.passed.global().origin;
+            return leave_wall(light, {0.0, 0.0, at.forward ? -1.0 : 1.0}, barrel_.finish().blades);
+        }
+        const double passing = at.passed.at_surfaces / at.open;
+        TravellingRay<double> reflected{.origin = light.ray.origin, .direction = light.ray.direction};
+        double reflecting = 0.0;
+        if (!reflects_by_blades(surface)) {
+            run_to_surface<Rims::clip>(lens_, at.surface, at.forward, AtSurface::reflect, mirrors_, reflected);
+            reflecting = reflected.at_surfaces / at.open;
+        }
+        const double going_on = passing + reflecting;
+        if (!(going_on > 0.0)) {
+            return StrayEnd::absorbed;
+        }
+        light.weight *= going_on;
+        const bool is_back = reflecting > 0.0 && numbers_() * going_on < reflecting;
+        light.ray = is_back ? reflected.global() : at.passed.global();
+        light.reflections += is_back ? 1 : 0;
+        const bool runs_forward = at.forward != is_back;
+        cell_ = runs_forward ? at.surface + 1 : at.surface;
+        target_ = runs_forward ? at.surface + 1 : at.surface - 1;
+        return std::nullopt;
+    }
+
+    const TraceLens<double>& lens_;
+    const Barrel& barrel_;
+    const StrayMirrors<double>& mirrors_;
+    Numbers& numbers_;
+    int count_;
+    int cell_ = 0;    // the space in front of surface `cell_`
+    int target_ = 0;  // the surface that light from the one it left comes to next
+};
+
+}  // namespace lensproof::optics
