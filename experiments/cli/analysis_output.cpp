@@ -6,6 +6,7 @@
 #include <cmath>
 #include <utility>
 
+#include "engine/base/angle.h"
 #include "engine/base/json.h"
 #include "experiments/cli/command.h"
 
@@ -254,6 +255,24 @@ std::string analysis_text(const optics::Lens& lens, const analysis::AnalysisSett
     }
     text += "Fields:\n" + fields_text(analysis.fields);
     return text;
+}
+
+Json veiling_glare_json(const analysis::VeilingGlare& glare) {
+    constexpr double kPercent = 0.01;
+    return {{"index_percent", glare.index.share / kPercent},
+            {"standard_error_percent", glare.index.standard_error / kPercent},
+            {"ghosts_percent", glare.ghosts.share / kPercent},
+            {"barrel_percent", glare.barrel.share / kPercent},
+            {"blur_percent", glare.blur.share / kPercent},
+            {"spot_diameter_deg", 2.0 * glare.spot_angle / kDegree}};
+}
+
+std::string veiling_glare_text(const analysis::VeilingGlare& glare) {
+    return fmt::format(
+        "Veiling glare index: {:.3f} +- {:.3f} % (ghosts {:.3f}, barrel {:.3f}, blur {:.3f}), of a black "
+        "spot of {:.2f} deg at the middle of an even half space\n",
+        100.0 * glare.index.share, 100.0 * glare.index.standard_error, 100.0 * glare.ghosts.share,
+        100.0 * glare.barrel.share, 100.0 * glare.blur.share, 2.0 * glare.spot_angle / kDegree);
 }
 
 }  // namespace lensproof::cli

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "engine/analysis/lens_analysis.h"
+#include "engine/analysis/veiling_glare.h"
 #include "engine/base/json.h"
 #include "engine/optics/finding.h"
 
@@ -16,5 +17,9 @@ Json analysis_json(const optics::Lens& lens, const analysis::AnalysisSettings& s
 /// The same as tables to read.
 std::string analysis_text(const optics::Lens& lens, const analysis::AnalysisSettings& settings,
                           const analysis::LensAnalysis& analysis);
+
+/// The member `veiling_glare`, and a line to read.
+Json veiling_glare_json(const analysis::VeilingGlare& glare);
+std::string veiling_glare_text(const analysis::VeilingGlare& glare);
 
 }  // namespace lensproof::cli

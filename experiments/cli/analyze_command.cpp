@@ -4,11 +4,15 @@
 
 #include <cmath>
 #include <memory>
+#include <optional>
 
 #include "engine/analysis/lens_analysis.h"
+#include "engine/analysis/veiling_glare.h"
+#include "engine/base/input_error.h"
 #include "engine/base/write_file.h"
 #include "experiments/cli/analysis_output.h"
 #include "experiments/cli/command.h"
+#include "experiments/cli/ghost_options.h"
 #include "experiments/cli/lens_options.h"
 #include "experiments/cli/terminal.h"
 #include "experiments/draw/analysis_drawings.h"
@@ -23,6 +27,8 @@ struct AnalyzeOptions {
     CommonOptions common;
     LensOptions lens;
     std::string plots_folder;
+    bool has_veiling_glare = false;
+    MirrorOptions mirrors;
 };
 
 /// "f/2.73, object at infinity, image plane 79.83 mm behind the last surface"
@@ -54,6 +60,24 @@ void write_analysis_plots(const AnalyzeOptions& options, const optics::Prescript
     }
 }
 
+/// Of the black spot at the middle of the field, where the lens is focused.
+std::optional<analysis::VeilingGlare> asked_veiling_glare(const AnalyzeOptions& options, const optics::Lens& lens,
+                                                          const analysis::AnalysisSettings& settings) {
+    if (!options.has_veiling_glare) {
+        if (options.mirrors.sensor) {
+            throw InputError("--sensor-reflectance stands without --veiling-glare, which it is for");
+        }
+        return std::nullopt;
+    }
+    return analysis::veiling_glare(lens,
+                                   {.wavelength_nm = settings.reference_wavelength_nm,
+                                    .spot_angle = analysis::tenth_of_field(lens, settings.reference_wavelength_nm),
+                                    .object_distance = settings.object_distance,
+                                    .mirrors = stray_mirrors(options.mirrors),
+                                    .seed = options.common.seed,
+                                    .threads = options.common.threads});
+}
+
 int run_analyze(const AnalyzeOptions& options) {
     check_json_name(options.common);
     if (!options.plots_folder.empty()) {
@@ -61,13 +85,18 @@ int run_analyze(const AnalyzeOptions& options) {
     }
     const auto [prescription, lens, settings] = read_analysed_lens(options.lens);
     const analysis::LensAnalysis analysis = analysis::analyze_lens(lens, settings);
+    const std::optional<analysis::VeilingGlare> glare = asked_veiling_glare(options, lens, settings);
     if (!options.plots_folder.empty()) {
         write_analysis_plots(options, prescription, lens, settings, analysis);
     }
     if (prints_text(options.common)) {
-        print("{}", analysis_text(lens, settings, analysis));
+        print("{}{}", analysis_text(lens, settings, analysis), glare ? veiling_glare_text(*glare) : "");
     }
-    write_json_result(options.common, analysis_json(lens, settings, analysis));
+    Json json = analysis_json(lens, settings, analysis);
+    if (glare) {
+        json["veiling_glare"] = veiling_glare_json(*glare);
+    }
+    write_json_result(options.common, json);
     return kDone;
 }
 
@@ -87,6 +116,9 @@ void add_analyze_command(Program& program) {
                     "Draw the lens section, ray fans, field curves, spots, MTF and the rest into a folder (SVG), "
                     "their numbers beside them (curves.json)")
         .type_name("DIR");
+    command.add_flag("--veiling-glare", options->has_veiling_glare,
+                     "The veiling glare index too: what a black spot's image gets of its bright surround (ISO 9358)");
+    add_sensor_option(command, options->mirrors);
     add_common_options(command, options->common);
     command.runs([options] { return run_analyze(*options); });
 }

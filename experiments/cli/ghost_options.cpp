@@ -19,12 +19,16 @@ bool is_glass_surface(const optics::Lens& lens, int index) {
 
 }  // namespace
 
-void add_mirror_options(Command& command, MirrorOptions& mirrors) {
+void add_sensor_option(Command& command, MirrorOptions& mirrors) {
     command
         .add_option("--sensor-reflectance", mirrors.sensor,
                     "What the sensor reflects, 0 to 1, like a mirror and at every angle (default: nothing)")
         .check(in_range(0.0, 1.0))
         .type_name("R");
+}
+
+void add_mirror_options(Command& command, MirrorOptions& mirrors) {
+    add_sensor_option(command, mirrors);
     command
         .add_option("--blade-reflectance", mirrors.blades,
                     "What the stop's blades reflect likewise, from either side (default: nothing)")

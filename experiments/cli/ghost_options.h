@@ -19,6 +19,9 @@ struct MirrorOptions {
     std::optional<double> blades;
 };
 
+/// Adds --sensor-reflectance alone.
+void add_sensor_option(Command& command, MirrorOptions& mirrors);
+
 /// Adds --sensor-reflectance and --blade-reflectance.
 void add_mirror_options(Command& command, MirrorOptions& mirrors);
 

@@ -44,6 +44,22 @@ TEST(Analyze, TheJsonHasEveryKeyOfTheContract) {
     EXPECT_EQ(json["fields"][4]["status"], "clipped");  // 30.1° is beyond the field
 }
 
+// Asked for, the veiling glare index is there with its parts; a sensor that reflects adds to it, and says so alone
+// there.
+TEST(Analyze, GivesTheVeilingGlareIndexOnRequest) {
+    EXPECT_FALSE(analysis({"tessar", "--fields", "0"}).contains("veiling_glare"));
+    const Json black = analysis({"tessar", "--fields", "0", "--veiling-glare"})["veiling_glare"];
+    EXPECT_NEAR(black["index_percent"].get<double>(),
+                black["ghosts_percent"].get<double>() + black["blur_percent"].get<double>(), 1e-12);
+    EXPECT_EQ(black["barrel_percent"], 0.0);
+    EXPECT_GT(black["standard_error_percent"], 0.0);
+    EXPECT_LT(black["standard_error_percent"], 0.03 * black["index_percent"].get<double>());
+    const Json mirror =
+        analysis({"tessar", "--fields", "0", "--veiling-glare", "--sensor-reflectance", "1"})["veiling_glare"];
+    EXPECT_GT(mirror["index_percent"], black["index_percent"]);
+    expect_refused({}, {"analyze", "tessar", "--sensor-reflectance", "0.1"}, {"--veiling-glare"});
+}
+
 // What is asked for is what is reported, to rounding.
 TEST(Analyze, TheFNumberIsThatAtTheReferenceWavelength) {
     for (const char* reference_nm : {"450", "550", "700"}) {
