@@ -33,6 +33,10 @@ double edge_z(const LensSurface& surface) {
     return surface.vertex_z + (std::isfinite(height) ? height : 1.0 / shape.curvature);  // a hemisphere's equator
 }
 
+Glass medium_before(const Lens& lens, std::size_t i) {
+    return i > 0 ? lens.surfaces[i - 1].medium : constant_glass("air", 1.0);
+}
+
 bool is_glass(const Glass& medium) {
     return medium.formula != DispersionFormula(ConstantIndex{1.0});
 }
@@ -55,7 +59,8 @@ Barrel::Barrel(const Lens& lens) : finish_(lens.barrel) {
             return Ring{.z = edge_z(surface),
                         .inner = surface.semi_diameter,
                         .outer = rim_of(lens, at),
-                        .finish = surface.is_stop ? finish_.blades : finish_.tube};
+                        .finish = surface.is_stop ? finish_.blades : finish_.tube,
+                        .is_blades = surface.is_stop && medium_before(lens, at).formula == surface.medium.formula};
         };
         Cell cell{.front = ring(i),
                   .rear = ring(i + 1),
@@ -75,9 +80,9 @@ std::optional<WallMeeting> Barrel::meet(int cell, const Ray<double>& ray) const 
     const Vec3d& o = ray.origin;
     const Vec3d& d = ray.direction;
     std::optional<WallMeeting> nearest;
-    const auto take = [&](double distance, const Vec3d& normal, const WallFinish& finish) {
+    const auto take = [&](double distance, const Vec3d& normal, const WallFinish& finish, bool is_blades) {
         if (distance > 0.0 && (!nearest || distance < nearest->distance)) {
-            nearest = WallMeeting{distance, normal, finish};
+            nearest = WallMeeting{distance, normal, finish, is_blades};
         }
     };
     for (const Ring* ring : {&front, &rear}) {
@@ -86,7 +91,7 @@ std::optional<WallMeeting> Barrel::meet(int cell, const Ray<double>& ray) const 
             const double distance = (ring->z - o.z) / d.z;
             const double r = std::hypot(o.x + distance * d.x, o.y + distance * d.y);
             if (r > ring->inner && r <= ring->outer) {
-                take(distance, {0.0, 0.0, inwards}, ring->finish);
+                take(distance, {0.0, 0.0, inwards}, ring->finish, ring->is_blades);
             }
         }
     }
@@ -105,7 +110,7 @@ std::optional<WallMeeting> Barrel::meet(int cell, const Ray<double>& ray) const 
             const Vec3d at = o + distance * d;
             const double radius = front.outer + m * (at.z - front.z);
             if (at.z >= front.z && at.z <= rear.z && radius > 0.0) {
-                take(distance, normalized(Vec3d{-at.x, -at.y, m * radius}), around);
+                take(distance, normalized(Vec3d{-at.x, -at.y, m * radius}), around, false);
             }
         }
     }

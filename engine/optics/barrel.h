@@ -14,6 +14,7 @@ struct WallMeeting {
     double distance = 0.0;  // mm
     Vec3d normal;           // of unit length, inwards
     WallFinish finish;
+    bool is_blades = false;  // of a stop that is no face of glass
 };
 
 class Barrel {
@@ -36,6 +37,7 @@ class Barrel {
         double inner = 0.0;
         double outer = 0.0;
         WallFinish finish;
+        bool is_blades = false;
     };
     /// A space between two successive surfaces.
     struct Cell {

@@ -39,7 +39,8 @@ enum class StrayEnd {
 /// the table's rims put in between: what `trace` sees as open is open.
 ///
 /// Numbers: `double numbers()`, from (0, 1). `landed(const StrayLight&)` is called at each arrival on the sensor's
-/// plane, the ray's origin on it; a sensor that is a mirror sends light back, by chance too.
+/// plane, the ray's origin on it; a sensor and a stop's blades that are mirrors send light back, by chance
+/// too, and that counts as a reflection: what such blades do not reflect meets their finish.
 template <class Numbers>
 class StrayWalk {
   public:
@@ -160,7 +161,18 @@ class StrayWalk {
             light.weight *= fading(lens_.attenuation[static_cast<std::size_t>(cell_)] * wall->distance);
         }
         light.ray.origin = light.ray.origin + wall->distance * light.ray.direction;
+        if (wall->is_blades && numbers_() < mirrors_.blades) {
+            leave_mirror(light);
+            return std::nullopt;
+        }
         return leave_wall(light, wall->normal, wall->finish);
+    }
+
+    /// Back from blades that are mirrors, to the surface in front of them or behind.
+    void leave_mirror(StrayLight& light) {
+        light.ray.direction.z = -light.ray.direction.z;
+        ++light.reflections;
+        target_ = light.ray.direction.z > 0.0 ? cell_ : cell_ - 1;
     }
 
     std::optional<StrayEnd> leave_wall(StrayLight& light, const Vec3d& normal, const WallFinish& finish) {
@@ -181,6 +193,10 @@ class StrayWalk {
         light.weight *= at.passed.optical_depth > 0.0 ? fading(at.passed.optical_depth) : 1.0;
         if (at.open < 1.0 && numbers_() >= at.open) {
             light.ray.origin = at.passed.global().origin;
+            if (reflects_by_blades(surface) && numbers_() < mirrors_.blades) {
+                leave_mirror(light);
+                return std::nullopt;
+            }
             return leave_wall(light, {0.0, 0.0, at.forward ? -1.0 : 1.0}, barrel_.finish().blades);
         }
         const double passing = at.passed.at_surfaces / at.open;

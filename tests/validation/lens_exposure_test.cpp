@@ -181,6 +181,16 @@ TEST(LensExposure, BladesWithoutALensOrANumberAreRefused) {
     EXPECT_TRUE(says(message(kDoubleGauss + "\nblades = 2"), "blades"));
 }
 
+// A camera's walls stand in the place of its lens's; ideal models have none.
+TEST(LensExposure, CamerasStateTheirBarrel) {
+    EXPECT_TRUE(render::camera_lens(setup_of(kDoubleGauss, "").camera).barrel.is_black());
+    const auto grey = render::camera_lens(setup_of(kDoubleGauss + "\nbarrel = { albedo = 0.1 }", "").camera);
+    EXPECT_EQ(grey.barrel.edges.albedo, 0.1);
+    const auto message = [](const std::string& camera) { return complaint_about([&] { setup_of(camera, ""); }); };
+    EXPECT_TRUE(says(message(kDoubleGauss + "\nmodel = \"thin-lens\"\nbarrel = { albedo = 0.1 }"), "thin-lens"));
+    EXPECT_TRUE(says(message(kDoubleGauss + "\nbarrel = { albedo = 2 }"), "barrel.albedo"));
+}
+
 // Through a pinhole the same plane falls off as cos⁴θ. Through a thin lens it does as a disc of radius a seen from the
 // film at the distance s does (Foote, Bull. Bur. Standards 12, 1915): E = π L / 2 · (1 − (1 + tan²θ − tan²α) /
 // √(tan⁴θ + 2 tan²θ (1 − tan²α) + 1 / cos⁴α)), tan α = a / s.

@@ -29,6 +29,22 @@ TEST(Passes, GhostsOfASunBesideThePictureAreAllThatChanceFinds) {
     expect_same_image(studio.by_pass("ghosts", 2000), studio.by_pass("everything", 40000), 0.05);
 }
 
+// A barrel that scatters leaves the ghosts as they are and adds its own light: of mirrors and blades too.
+TEST(Passes, ASunsGhostsAndBarrelAreAllThatChanceFinds) {
+    constexpr optics::WallFinish kGrey{.albedo = 0.6, .gloss = 0.5, .roughness = 0.3};
+    const Studio studio({.lens = "tessar",
+                         .f_number = 4.0,
+                         .sensor = kSensor,
+                         .grid = kGrid,
+                         .mirrors = kMirrors,
+                         .barrel = {.tube = kGrey, .edges = kGrey, .blades = kGrey}},
+                        sun_from({-0.15, 0.22, 1.0}));
+    const render::Film ghosts = studio.by_pass("ghosts", 500);
+    const render::Film barrel = studio.by_pass("barrel", 2000);
+    expect_same_image(render::Picture({{"ghosts", &ghosts}, {"barrel", &barrel}}), studio.by_pass("everything", 4000),
+                      0.1);
+}
+
 // A wall under a lamp that is seen, before a mirror of a sensor.
 TEST(Passes, AddUpToEverything) {
     SceneParts parts(kGrid);

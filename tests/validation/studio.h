@@ -26,12 +26,14 @@ class Studio {
         int max_bounces = 3;
         render::PixelFilter filter;
         optics::StrayMirrors<double> mirrors;
+        optics::BarrelFinish barrel;
     };
 
     Studio(const Setup& setup, const SceneParts& parts)
         : world_(parts.scene()),
           camera_({.lens = setup.lens,
                    .mirrors = setup.mirrors,
+                   .barrel = setup.barrel,
                    .f_number = setup.f_number,
                    .focus_distance_mm = setup.focus_mm,
                    .sensor = setup.sensor,

@@ -5,12 +5,31 @@
 #include <algorithm>
 #include <utility>
 
+#include "engine/base/bytes.h"
 #include "engine/base/hash.h"
 #include "engine/base/input_error.h"
 #include "engine/optics/lens_bytes.h"
 #include "engine/spectral/illuminant.h"
 
 namespace lensproof::render {
+
+namespace {
+
+/// All that light among a lens's walls meets beside its glass: nothing where they are black.
+void append_barrel_bytes(std::string& bytes, const optics::Lens& lens) {
+    if (lens.barrel.is_black()) {
+        return;
+    }
+    const auto& [tube, edges, blades] = lens.barrel;
+    for (const auto& [albedo, gloss, roughness] : {tube, edges, blades}) {
+        append_bytes(bytes, albedo, gloss, roughness);
+    }
+    for (const optics::LensSurface& surface : lens.surfaces) {
+        append_bytes(bytes, surface.rim, surface.tube_behind);
+    }
+}
+
+}  // namespace
 
 void CameraPaths::start(const CameraPathRange& range) {
     std::visit([&](auto& optics) { optics.start(range); }, optics_);
@@ -119,6 +138,7 @@ std::string Camera::hash() const {
         for (const optics::TraceLens<double>& lens : exact->lens().at()) {
             optics::append_lens_bytes(bytes, lens);
         }
+        append_barrel_bytes(bytes, *lens_);
     } else {
         for (const GaussianOptics& at : std::get<IdealCamera>(optics_).at()) {
             bytes += fmt::format("{} {} {} {} {} {} {} {} {} {}\n", at.film_z, at.pupil_z, at.pupil_radius_mm,

@@ -7,6 +7,7 @@
 #include <limits>
 #include <utility>
 
+#include "engine/formats/prescription/barrel_toml.h"
 #include "engine/formats/prescription/load_lens.h"
 #include "engine/optics/focus.h"
 #include "engine/optics/packet/spectral_lens.h"
@@ -61,6 +62,9 @@ void read_exposure(TomlTable& table, CameraSettings& camera) {
     constexpr Bounds kReflectance{.min = 0.0, .max = 1.0};
     camera.mirrors = {.sensor = table.number_or("sensor_reflectance", 0.0, kReflectance),
                       .blades = table.number_or("blade_reflectance", 0.0, kReflectance)};
+    if (auto barrel = table.optional_table("barrel")) {
+        camera.barrel = formats::read_barrel(*barrel);
+    }
     camera.f_number = table.number("f_number", {.min = 0.1, .max = 1000.0});
     camera.focus_distance_mm = table.infinity("focus_distance_mm") > 0 ? std::numeric_limits<double>::infinity()
                                                                        : table.number("focus_distance_mm", kPositive);
@@ -137,6 +141,10 @@ CameraSettings read_placed_camera(TomlTable& table) {
         table.fail("blades", fmt::format("stands beside model = \"{}\", whose pupil is round; expected the exact model",
                                          name_of(camera.model)));
     }
+    if (camera.barrel && camera.model != LensModel::exact) {
+        table.fail("barrel", fmt::format("stands beside model = \"{}\", which has no walls; expected the exact model",
+                                         name_of(camera.model)));
+    }
     table.finish();
     return camera;
 }
@@ -146,6 +154,7 @@ optics::Lens camera_lens(const CameraSettings& camera) {
     if (camera.blades) {
         lens.stop_mask = optics::StopMask(*camera.blades);
     }
+    lens.barrel = camera.barrel.value_or(lens.barrel);
     return optics::focused_at(optics::with_f_number(std::move(lens), camera.f_number), camera.focus_distance_mm);
 }
 

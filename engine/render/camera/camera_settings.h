@@ -34,7 +34,8 @@ struct CameraSettings {
     std::vector<std::string> coatings;  // in the place of its own: see formats::with_coatings
     /// Blades in place of what shape the lens's stop has, in the circle that the f-number says.
     std::optional<optics::PolygonStop> blades;
-    optics::StrayMirrors<double> mirrors;  // what the sensor and the blades reflect
+    optics::StrayMirrors<double> mirrors;        // what the sensor and the blades reflect
+    std::optional<optics::BarrelFinish> barrel;  // in the place of the lens's own
     double f_number = 0.0;
     double focus_distance_mm = 0.0;  // from the first vertex; may be infinite
     Sensor sensor;
@@ -54,9 +55,9 @@ struct CameraSettings {
 AffineMap camera_to_world(const CameraSettings& camera);
 
 /// Reads a camera's table: lens, zoom (optional), coating (optional), blades with blade_curvature and
-/// blade_rotation_deg (optional), sensor_reflectance and blade_reflectance (optional), f_number, focus_distance_mm (inf
-/// allowed), sensor_mm = [w, h], pixels = [w, h], shutter_s, iso, response. Throws InputError naming file, line and
-/// key; pixels have to be square.
+/// blade_rotation_deg (optional), sensor_reflectance and blade_reflectance (optional), barrel (optional), f_number,
+/// focus_distance_mm (inf allowed), sensor_mm = [w, h], pixels = [w, h], shutter_s, iso, response. Throws InputError
+/// naming file, line and key; pixels have to be square.
 CameraSettings read_camera_settings(TomlTable& table);
 
 /// The same of a camera that stands in a world: position_mm, look_at_mm, and up, model, focal_length_mm in the place of

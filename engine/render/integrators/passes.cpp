@@ -4,6 +4,7 @@
 #include <stdexcept>
 
 #include "engine/render/integrators/light_walk.h"
+#include "engine/render/stray/barrel_entrance.h"
 #include "engine/render/stray/ghost_entrance.h"
 
 namespace lensproof::render {
@@ -36,8 +37,15 @@ Render ghosts(const View& view, const Integrator& /*integrator*/) {
     return astray(view, GhostEntrance(*view.camera, Reflections::ghosts), 0x3c6ef372fe94f82bULL);
 }
 
+Render barrel(const View& view, const Integrator& /*integrator*/) {
+    return astray(view, BarrelEntrance(*view.camera, Walls::met), 0x1f83d9abfb41bd6bULL);
+}
+
 Render everything(const View& view, const Integrator& /*integrator*/) {
-    return astray(view, GhostEntrance(*view.camera, Reflections::anything), 0xa54ff53a5f1d36f1ULL);
+    constexpr std::uint64_t kChance = 0xa54ff53a5f1d36f1ULL;
+    const bool has_walls = view.camera->lens() && !view.camera->lens()->barrel.is_black();
+    return has_walls ? astray(view, BarrelEntrance(*view.camera, Walls::met_or_not), kChance)
+                     : astray(view, GhostEntrance(*view.camera, Reflections::anything), kChance);
 }
 
 }  // namespace
@@ -47,6 +55,7 @@ const std::vector<Pass>& passes() {
         {"imaged", "the scene through the lens", imaged},
         {"direct", "lights as they are seen", direct},
         {"ghosts", "light that surfaces of the lens reflect", ghosts},
+        {"barrel", "light that the inside of the lens scatters", barrel},
         {"everything", "all of these at once, by chance: slow, and a judge of the others", everything},
     };
     return all;

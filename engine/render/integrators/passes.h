@@ -13,10 +13,12 @@ namespace lensproof::render {
 ///   imaged    from the scene, through the lens
 ///   direct    from a light, through the lens: lamps as they are seen
 ///   ghosts    reflected in the lens, an even number of times
+///   barrel    scattered by a wall inside the lens, once or more
 ///
 /// And one that is none of them but what they add up to, as long as nothing else is modelled:
 ///
-///   everything    at every surface it is left to chance what becomes of the light: slow, and a judge of the others
+///   everything    at every surface and wall it is left to chance what becomes of the light: slow, and a judge of the
+///   others
 struct Pass {
     std::string name;  // as `render --passes` has it
     std::string description;

@@ -1,0 +1,79 @@
+#include "engine/render/stray/barrel_entrance.h"
+
+#include <cstdint>
+
+#include "engine/optics/stray_walk.h"
+#include "engine/pupil/disc.h"
+
+namespace lensproof::render {
+
+namespace {
+
+/// As many numbers as a walk takes, from the last two of a light path's five (SplitMix64).
+class WalkNumbers {
+  public:
+    explicit WalkNumbers(const std::array<double, PathSampler::kNumbers>& seed)
+        : state_((static_cast<std::uint64_t>(seed[3] * 0x1p32) << 32U) | static_cast<std::uint64_t>(seed[4] * 0x1p32)) {
+    }
+
+    double operator()() {
+        state_ += 0x9e3779b97f4a7c15ULL;
+        return (static_cast<double>(sampler_detail::mixed(state_) >> 12U) + 0.5) * 0x1p-52;
+    }
+
+  private:
+    std::uint64_t state_;
+};
+
+}  // namespace
+
+BarrelEntrance::BarrelEntrance(const Camera& camera, Walls walls)
+    : front_(camera), walls_(walls), barrel_(camera.lens().value()) {}
+
+std::optional<Entry> BarrelEntrance::draw(const LightOrigin& from, const spectral::PathWavelengths& path,
+                                          bool /*is_hero_alone*/, PathSampler& numbers) const {
+    const auto u = numbers.next();
+    const auto beam = front_.beam(from);
+    if (!beam || (walls_ == Walls::met && barrel_.finish().is_black())) {
+        return std::nullopt;
+    }
+    const pupil::Disc disc{beam->radius};
+    const Vec2d offset = disc.warped(u[0], u[1]);
+    return landed(front_.entry(from, *beam, offset, 1.0 / disc.area()), beam->ray(offset), path, u);
+}
+
+std::optional<Entry> BarrelEntrance::meet(const Ray<double>& ray, const spectral::PathWavelengths& path,
+                                          PathSampler& numbers) const {
+    const auto u = numbers.next();
+    const auto meeting = front_.meet(ray);
+    if (!meeting || (walls_ == Walls::met && barrel_.finish().is_black())) {
+        return std::nullopt;
+    }
+    return landed(front_.entry(ray, *meeting), meeting->beam.ray(meeting->offset), path, u);
+}
+
+Entry BarrelEntrance::landed(Entry entry, const Ray<double>& ray, const spectral::PathWavelengths& path,
+                             const std::array<double, PathSampler::kNumbers>& seed) const {
+    for (std::size_t i = 0; i < spectral::kWavelengthsPerPath; ++i) {
+        const optics::TraceLens<double>& lens = front_.lens().at(path.index[i]);
+        WalkNumbers numbers(seed);
+        optics::StrayWalk walk(lens, barrel_, front_.camera().settings().mirrors, numbers);
+        optics::StrayLight light{.ray = ray};
+        int places = 0;
+        double kept = 0.0;
+        walk.follow(light, true, [&](const optics::StrayLight& on_film) {
+            if (walls_ == Walls::met && on_film.walls == 0) {
+                return;
+            }
+            ++places;
+            if (places == 1 || numbers() * places < 1.0) {
+                entry.at_px[i] = front_.film_px(on_film.ray, lens);
+                kept = on_film.weight;
+            }
+        });
+        entry.weight[i] = places * kept;
+    }
+    return entry;
+}
+
+}  // namespace lensproof::render
