@@ -12,22 +12,40 @@ namespace {
 
 using std::numbers::pi;
 
-/// A deflection with a density of 1/θ² between the zone's angles, to either side.
 struct Deflection {
     double angle = 0.0;
     double density = 0.0;  // 1/rad
 };
 
-Deflection drawn_deflection(const EdgeZone& zone, double number) {
+/// With a density of θ^(−3/2) between the range's ends.
+Deflection drawn_deflection(const DeflectionRange& range, double number) {
     const double side = number < 0.5 ? -1.0 : 1.0;
     const double share = std::abs(2.0 * number - 1.0);
-    const double from = 1.0 / zone.smallest_angle;
-    const double range = from - 1.0 / zone.largest_angle;
-    const double angle = 1.0 / (from - share * range);
-    return {.angle = side * angle, .density = 0.5 / (range * angle * angle)};
+    const double from = 1.0 / std::sqrt(range.smallest);
+    const double width = from - 1.0 / std::sqrt(range.largest);
+    const double root = 1.0 / (from - share * width);
+    return {.angle = side * root * root, .density = 0.25 / (width * root * root * root)};
 }
 
 }  // namespace
+
+DiffractedRay diffracted_at_edge(const Vec2d& outward, double wavenumber, const Vec3<double>& direction,
+                                 const DeflectionRange& deflections, double number) {
+    // The edge runs along t; across it lie the blade's direction o, in the stop's plane, and z.
+    const Vec3<double> o{outward.x, outward.y, 0.0};
+    const Vec3<double> t{-outward.y, outward.x, 0.0};
+    const double along = dot(direction, t);
+    const double across = std::sqrt(1.0 - along * along);
+    // Azimuths about t from the blade's lit face, through the side that the light comes from.
+    const double incidence = std::atan2(direction.z, -dot(direction, o));
+    const Deflection deflection = drawn_deflection(deflections, number);
+    const double leaving = incidence + pi + deflection.angle;
+    const EdgeAngles angles{.incidence = incidence, .diffraction = leaving, .cone = std::acos(along)};
+    // Light for a mm of edge is that for a mm² across the ray.
+    const double power = keller_coefficients(angles, wavenumber).unpolarised() * across * across / direction.z;
+    return {.direction = along * t + across * (std::cos(leaving) * o - std::sin(leaving) * Vec3<double>{0, 0, 1}),
+            .weight = power / deflection.density};
+}
 
 std::optional<DiffractedRay> diffracted(const StopPlane& stop, const EdgeZone& zone, const Vec2d& point,
                                         const Vec3<double>& direction, const std::array<double, 3>& numbers) {
@@ -41,26 +59,11 @@ std::optional<DiffractedRay> diffracted(const StopPlane& stop, const EdgeZone& z
     if (!(numbers[1] < 1.0 - edge.distance / zone.width)) {
         return std::nullopt;
     }
-
-    // The edge runs along t; across it lie the blade's direction o, in the stop's plane, and z.
-    const Vec3<double> o{edge.outward.x, edge.outward.y, 0.0};
-    const Vec3<double> t{-edge.outward.y, edge.outward.x, 0.0};
-    const double along = dot(direction, t);
-    const double across = std::sqrt(1.0 - along * along);
-    // Azimuths about t from the blade's lit face, through the side that the light comes from.
-    const double incidence = std::atan2(direction.z, -dot(direction, o));
-    const Deflection deflection = drawn_deflection(zone, numbers[2]);
-    const double leaving = incidence + pi + deflection.angle;
-    const EdgeAngles angles{.incidence = incidence, .diffraction = leaving, .cone = std::acos(along)};
-    const double power = keller_coefficients(angles, stop.wavenumber).unpolarised() * across * across;
-
-    // The zone's strips grow narrower towards the inside of a curved edge. Light for a mm of edge is that for a mm²
-    // across the ray.
+    DiffractedRay ray = diffracted_at_edge(edge.outward, stop.wavenumber, direction, zone.deflections, numbers[2]);
+    // The zone's strips grow narrower towards the inside of a curved edge.
     const double strip = 1.0 - edge.distance / edge.radius;
-    const double for_edge = 2.0 / (zone.width * stop.semi_diameter) / strip / direction.z;
-    return DiffractedRay{
-        .direction = along * t + across * (std::cos(leaving) * o - std::sin(leaving) * Vec3<double>{0, 0, 1}),
-        .weight = count * for_edge * power / deflection.density};
+    ray.weight *= count * 2.0 / (zone.width * stop.semi_diameter) / strip;
+    return ray;
 }
 
 double diffracted_share(const StopPlane& stop, double angle) {

@@ -8,12 +8,16 @@
 
 namespace lensproof::optics {
 
+/// Deflections about an edge, to either side, radians. Below the smallest, light counts as going straight on.
+struct DeflectionRange {
+    double smallest = 0.0;
+    double largest = 0.0;
+};
+
 /// Which rays are diffracted, and how far.
 struct EdgeZone {
     double width = 0.0;  // of the zone along the edges, in units of the stop's semi-diameter
-    /// Deflections about the edge, radians. Below the smallest, light counts as going straight on.
-    double smallest_angle = 0.0;
-    double largest_angle = 0.0;
+    DeflectionRange deflections;
 };
 
 /// A ray that goes on from the stop in another direction, and the light that it carries of the one that arrived.
@@ -28,6 +32,13 @@ struct StopPlane {
     double semi_diameter = 0.0;  // mm
     double wavenumber = 0.0;     // 2π n / λ, 1/mm
 };
+
+/// A ray on the Keller cone of an edge that a ray along `direction` meets, in the stop's frame: `outward` is across the
+/// edge, towards the blade, in the stop's plane z = const. Its weight, mm: the light of a mm of edge over that of a mm²
+/// of the plane. Deflections θ are drawn with a density of θ^(−3/2), between that of the light, which leaves few rays
+/// far out, and one that is even in log θ. `wavenumber`: 2π n / λ, 1/mm.
+DiffractedRay diffracted_at_edge(const Vec2d& outward, double wavenumber, const Vec3<double>& direction,
+                                 const DeflectionRange& deflections, double number);
 
 /// What a ray becomes that passes the opening at `point` (from its middle, mm): with a probability that falls from 1 at
 /// an edge to 0 at the zone's width, a ray on the Keller cone of that edge (Keller, J. Opt. Soc. Am. 52, 1962; drawn as

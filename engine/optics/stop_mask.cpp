@@ -96,6 +96,27 @@ std::vector<StopMask::NearEdge> StopMask::edges_near(double x, double y, double 
     return edges;
 }
 
+StopMask::EdgePoint StopMask::edge_at(double share) const {
+    if (arcs_.empty()) {
+        const Vec2d outward{std::cos(2.0 * std::numbers::pi * share), std::sin(2.0 * std::numbers::pi * share)};
+        return {outward, outward};
+    }
+    const double at = share * static_cast<double>(arcs_.size());
+    const std::size_t index = std::min(arcs_.size() - 1, static_cast<std::size_t>(at));
+    const double along_edge = 2.0 * (at - static_cast<double>(index)) - 1.0;
+    const Arc& arc = arcs_[index];
+    const auto turned = [&](double along, double across) {
+        return Vec2d{arc.x * along - arc.y * across, arc.y * along + arc.x * across};
+    };
+    if (!(arc.radius_squared > 0.0)) {
+        return {turned(arc.centre, along_edge * half_chord()), {arc.x, arc.y}};
+    }
+    const double angle = along_edge * std::asin(half_chord() / arc.radius());
+    const double across = std::sin(angle);
+    return {turned(arc.centre + arc.radius() * std::cos(angle), arc.radius() * across),
+            turned(std::cos(angle), across)};
+}
+
 double StopMask::perimeter() const {
     double length = arcs_.empty() ? 2.0 * std::numbers::pi : 0.0;
     for (const Arc& arc : arcs_) {

@@ -43,6 +43,18 @@ class StopMask {
     /// `width`: beside a corner two of them. None of a texture.
     [[nodiscard]] std::vector<NearEdge> edges_near(double x, double y, double width) const;
 
+    /// A point of the edges, the circle's too, in units of the semi-diameter.
+    struct EdgePoint {
+        Vec2d point;
+        Vec2d outward;  // across the edge, of unit length
+    };
+
+    /// The point at this share, 0 to 1, of the edges' length: even shares lie evenly along them. Not of a texture.
+    [[nodiscard]] EdgePoint edge_at(double share) const;
+
+    /// Whether it has edges: a texture has none.
+    [[nodiscard]] bool has_edges() const { return !texture_; }
+
     /// The edges' length and what they enclose, in units of the semi-diameter. Not of a texture.
     [[nodiscard]] double perimeter() const;
     [[nodiscard]] double area() const;

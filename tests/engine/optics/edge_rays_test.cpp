@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <complex>
 #include <numbers>
@@ -72,11 +73,33 @@ TEST(StopMask, FindsTheEdgesBesideAPoint) {
     EXPECT_NEAR(half.edge_margin(foot.x, foot.y).margin, 0.0, 1e-14);
 }
 
+// Points at even shares lie on the edges, at even distances, with the direction across that a point beside has.
+TEST(StopMask, WalksAlongItsEdges) {
+    for (const StopMask& mask : {StopMask(), blades(5), blades(6, 0.5)}) {
+        constexpr int kSteps = 3000;
+        double length_of_steps = 0.0;
+        for (int i = 0; i < kSteps; ++i) {
+            const auto here = mask.edge_at((i + 0.5) / kSteps);
+            const auto next = mask.edge_at((i + 1.5) / kSteps - (i + 1 == kSteps ? 1.0 : 0.0));
+            length_of_steps += length(next.point - here.point);
+            const Vec2d inside = here.point - 1e-3 * here.outward;
+            EXPECT_GT(mask.transmittance(inside.x, inside.y), 0.0);
+            const auto edges = mask.edges_near(inside.x, inside.y, 1.01e-3);
+            ASSERT_GE(edges.size(), 1U);
+            const bool is_found = std::ranges::any_of(edges, [&](const auto& edge) {
+                return std::abs(edge.distance - 1e-3) < 1e-12 && length(edge.outward - here.outward) < 1e-9;
+            });
+            EXPECT_TRUE(is_found) << i;
+        }
+        EXPECT_NEAR(length_of_steps / mask.perimeter(), 1.0, 1e-3) << "six chords that cut corners by half a step";
+    }
+}
+
 /// What falls beyond angles of a far field, of a million rays straight through the opening.
 std::vector<double> shares_beyond(const StopMask& mask, double semi_diameter, double wavelength,
                                   const std::vector<double>& angles) {
     const StopPlane stop{&mask, semi_diameter, 2 * pi / wavelength};
-    const EdgeZone zone{.width = 0.05, .smallest_angle = angles.front(), .largest_angle = 0.5};
+    const EdgeZone zone{.width = 0.05, .deflections = {angles.front(), 0.5}};
     std::mt19937_64 random(1);
     std::uniform_real_distribution<double> unit;
     std::vector<double> sums(angles.size());
@@ -168,7 +191,7 @@ TEST(EdgeRays, OfACircleAreAirysTail) {
 TEST(EdgeRays, StandAtRightAnglesToTheBlades) {
     const StopMask five = blades(5);
     const StopPlane stop{&five, 2.0, 2 * pi / 550e-6};
-    const EdgeZone zone{.width = 0.05, .smallest_angle = 1e-3, .largest_angle = 0.3};
+    const EdgeZone zone{.width = 0.05, .deflections = {1e-3, 0.3}};
     const Vec3<double> slant = normalized(Vec3<double>{0.2, -0.1, 1.0});
     std::mt19937_64 random(2);
     std::uniform_real_distribution<double> unit;
