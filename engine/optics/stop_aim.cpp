@@ -164,6 +164,22 @@ std::optional<AimedRay> StopAim::aim(const RayOrigin& origin, const Vec2d& point
     return std::nullopt;
 }
 
+std::optional<RayAtStop> StopAim::to_stop(const Ray<double>& ray) const {
+    std::optional<Vec3d> front;
+    const auto traced =
+        trace(front_, ray, [&](const SurfaceEvent<double>& event) { front = front.value_or(event.ray.origin); });
+    const Vec3d start = frame_.to_own(traced.ray.origin - middle_);
+    const Vec3d direction = frame_.to_own(traced.ray.direction);
+    if (traced.status != RayStatus::ok || !(direction.z > 0.0)) {
+        return std::nullopt;
+    }
+    const Vec3d point = start - (start.z / direction.z) * direction;
+    return RayAtStop{.front = front.value_or(middle_ + in_lens(point)),
+                     .point = {point.x, point.y},
+                     .direction = direction,
+                     .transmittance = traced.transmittance};
+}
+
 TracedRay<double> StopAim::onwards(const Vec2d& point, const Vec3d& direction) const {
     return trace(rear_, {middle_ + in_lens({point.x, point.y, 0.0}), in_lens(direction)});
 }

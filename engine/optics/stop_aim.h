@@ -25,6 +25,14 @@ struct AimedRay {
     double beam_per_mm2 = 0.0;
 };
 
+/// A ray that came forward to the stop's plane, in the stop's own frame.
+struct RayAtStop {
+    Vec3d front;  // where it met the first surface, in lens space
+    Vec2d point;  // mm from the stop's middle, which may lie beyond its opening
+    Vec3d direction;
+    double transmittance = 0.0;
+};
+
 /// A lens at one wavelength, parted at its stop, which has to be a plane in one medium (`has_plane_stop`).
 ///
 /// Rays are aimed backwards from the stop, where the map to the scene is one to one over the whole field even of a
@@ -41,6 +49,9 @@ class StopAim {
     /// to begin with, from `aim` at another wavelength. Nothing where a rim before the stop is in the way.
     [[nodiscard]] std::optional<AimedRay> aim(const RayOrigin& origin, const Vec2d& point,
                                               const Vec3d* near = nullptr) const;
+
+    /// A ray from the scene as far as the stop. Nothing where a rim before the stop is in the way.
+    [[nodiscard]] std::optional<RayAtStop> to_stop(const Ray<double>& ray) const;
 
     /// A ray on from `point` along `direction`, both in the stop's frame, through the rest of the lens.
     [[nodiscard]] TracedRay<double> onwards(const Vec2d& point, const Vec3d& direction) const;
