@@ -41,8 +41,9 @@ Render PreparedScene::render(std::uint64_t seed, bool has_features) const {
     return integrator_->render(view(seed, has_features));
 }
 
-Render PreparedScene::render(const Pass& pass, std::uint64_t seed, bool has_features) const {
-    return pass.render(view(seed, has_features), *integrator_);
+std::vector<Render> PreparedScene::render(const std::vector<std::string>& passes, std::uint64_t seed,
+                                          bool has_features) const {
+    return renders_of(passes, view(seed, has_features), *integrator_);
 }
 
 std::map<std::string, std::string> PreparedScene::metadata() const {

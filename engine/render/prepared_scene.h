@@ -24,8 +24,9 @@ class PreparedScene {
     PreparedScene& operator=(const PreparedScene&) = delete;
 
     [[nodiscard]] Render render(std::uint64_t seed, bool has_features) const;
-    /// What one of its passes has of that. Throws InputError where the camera has none of it.
-    [[nodiscard]] Render render(const Pass& pass, std::uint64_t seed, bool has_features) const;
+    /// What passes have of that, by their names (renders_of). Throws InputError where the camera has none of it.
+    [[nodiscard]] std::vector<Render> render(const std::vector<std::string>& passes, std::uint64_t seed,
+                                             bool has_features) const;
 
     [[nodiscard]] const Camera& camera() const { return camera_; }
     [[nodiscard]] const Integrator& integrator() const { return *integrator_; }

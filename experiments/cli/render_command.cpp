@@ -121,12 +121,10 @@ int run_render(const RenderJobOptions& options, const std::string& paths, const 
         job.passes.emplace_back();
         job.renders.push_back(scene->render(options.common.seed, options.has_features));
     }
-    said_of_scene(options, [&] {
-        for (const std::string& pass : passes) {
-            job.renders.push_back(scene->render(render::pass_named(pass), options.common.seed, options.has_features));
-        }
-        return 0;
-    });
+    if (!passes.empty()) {
+        job.renders =
+            said_of_scene(options, [&] { return scene->render(passes, options.common.seed, options.has_features); });
+    }
     job.identity = {{"scene", scene_hash(setup, options.scene)},
                     {"lens", scene->camera().hash()},
                     {"settings", fmt::format("{} filter, {} features{}", filter.name(),

@@ -47,6 +47,7 @@ struct FilmLayout {
     PixelFilter filter;         // that splats are spread with
     bool has_splats = false;    // sums for light paths are kept
     bool has_features = false;  // depth, albedo, normals are kept
+    double light_share = 1.0;   // of what is added to it, that is kept: the rest goes to other films
 };
 
 /// Bytes that a film holds for each of its pixels.
@@ -94,10 +95,11 @@ class FilmTile {
             ++left_out_;
             return;
         }
+        const double kept = light_share_ * irradiance;
         const Light& light = lights_[stratum];
         Vec3d& rgb = block_of(pixel, sample).rgb;
-        rgb = rgb + rgb_of(light, irradiance);
-        sums_[pixel * stride_ + light.layer] += irradiance;
+        rgb = rgb + rgb_of(light, kept);
+        sums_[pixel * stride_ + light.layer] += kept;
     }
 
     /// The same at the wavelengths of one path, of which each is as likely as any to be at any stratum (hero wavelength
@@ -164,6 +166,7 @@ class FilmTile {
 
     std::vector<Light> lights_;
     double band_nm_ = 0.0;
+    double light_share_ = 1.0;
     Vec2d film_px_;  // its size
     double filter_radius_px_ = 0.0;
     std::size_t stride_ = 0;

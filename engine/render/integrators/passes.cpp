@@ -5,6 +5,7 @@
 
 #include "engine/render/integrators/light_walk.h"
 #include "engine/render/stray/barrel_entrance.h"
+#include "engine/render/stray/diffracted_entrance.h"
 #include "engine/render/stray/ghost_entrance.h"
 
 namespace lensproof::render {
@@ -41,6 +42,10 @@ Render barrel(const View& view, const Integrator& /*integrator*/) {
     return astray(view, BarrelEntrance(*view.camera, Walls::met), 0x1f83d9abfb41bd6bULL);
 }
 
+Render diffracted(const View& view, const Integrator& /*integrator*/) {
+    return astray(view, DiffractedEntrance(*view.camera), 0x510e527fade682d1ULL);
+}
+
 Render everything(const View& view, const Integrator& /*integrator*/) {
     constexpr std::uint64_t kChance = 0xa54ff53a5f1d36f1ULL;
     const bool has_walls = view.camera->lens() && !view.camera->lens()->barrel.is_black();
@@ -52,11 +57,12 @@ Render everything(const View& view, const Integrator& /*integrator*/) {
 
 const std::vector<Pass>& passes() {
     static const std::vector<Pass> all = {
-        {"imaged", "the scene through the lens", imaged},
-        {"direct", "lights as they are seen", direct},
+        {"imaged", "the scene through the lens", imaged, true},
+        {"direct", "lights as they are seen", direct, true},
         {"ghosts", "light that surfaces of the lens reflect", ghosts},
         {"barrel", "light that the inside of the lens scatters", barrel},
-        {"everything", "all of these at once, by chance: slow, and a judge of the others", everything},
+        {"diffracted", "light that the edges of the stop turn aside: halos and streaks", diffracted},
+        {"everything", "all of these but the last at once, by chance: slow, and a judge of them", everything},
     };
     return all;
 }
@@ -67,6 +73,18 @@ const Pass& pass_named(const std::string& name) {
         throw std::out_of_range("no pass is called " + name);
     }
     return *found;
+}
+
+std::vector<Render> renders_of(const std::vector<std::string>& names, const View& view, const Integrator& integrator) {
+    const bool is_diffracted = std::ranges::find(names, "diffracted") != names.end();
+    const double straight = is_diffracted ? DiffractedEntrance(*view.camera).geometric_share() : 1.0;
+    std::vector<Render> renders;
+    for (const std::string& name : names) {
+        const Pass& pass = pass_named(name);
+        renders.push_back(pass.render(view, integrator));
+        renders.back().film.light_share = pass.goes_straight ? straight : 1.0;
+    }
+    return renders;
 }
 
 }  // namespace lensproof::render

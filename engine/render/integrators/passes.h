@@ -10,23 +10,29 @@ namespace lensproof::render {
 /// Every path of light from its source to the film is of one class, and each class a pass: the films of all of them add
 /// up to the picture, with nothing twice and nothing missing.
 ///
-///   imaged    from the scene, through the lens
-///   direct    from a light, through the lens: lamps as they are seen
-///   ghosts    reflected in the lens, an even number of times
-///   barrel    scattered by a wall inside the lens, once or more
+///   imaged      from the scene, through the lens
+///   direct      from a light, through the lens: lamps as they are seen
+///   ghosts      reflected in the lens, an even number of times
+///   barrel      scattered by a wall inside the lens, once or more
+///   diffracted  turned aside by the edges of the stop; what images is less by that, where both are rendered
 ///
-/// And one that is none of them but what they add up to, as long as nothing else is modelled:
+/// And one that is none of them but what the first four add up to:
 ///
-///   everything    at every surface and wall it is left to chance what becomes of the light: slow, and a judge of the
-///   others
+///   everything  at every surface and wall it is left to chance what becomes of the light: slow, and a judge of others
 struct Pass {
     std::string name;  // as `render --passes` has it
     std::string description;
     /// `integrator`: that of paths which image.
     Render (*render)(const View& view, const Integrator& integrator) = nullptr;
+    bool goes_straight = false;  // through the stop
 };
 
 const std::vector<Pass>& passes();
+
+/// Passes that are to be added up: where "diffracted" is one of them, those that go straight through the stop are less
+/// by what its edges take. Throws InputError where the camera has none of a pass's light, std::out_of_range as
+/// `pass_named`.
+std::vector<Render> renders_of(const std::vector<std::string>& names, const View& view, const Integrator& integrator);
 
 /// Throws std::out_of_range for a name that is none of them.
 const Pass& pass_named(const std::string& name);
