@@ -4,9 +4,9 @@
 #include <stdexcept>
 
 #include "engine/render/integrators/light_walk.h"
-#include "engine/render/stray/barrel_entrance.h"
 #include "engine/render/stray/diffracted_entrance.h"
 #include "engine/render/stray/ghost_entrance.h"
+#include "engine/render/stray/walk_entrance.h"
 
 namespace lensproof::render {
 
@@ -35,11 +35,15 @@ Render astray(const View& view, Entrance entrance, std::uint64_t salt) {
 }
 
 Render ghosts(const View& view, const Integrator& /*integrator*/) {
-    return astray(view, GhostEntrance(*view.camera, Reflections::ghosts), 0x3c6ef372fe94f82bULL);
+    return astray(view, GhostEntrance(*view.camera), 0x3c6ef372fe94f82bULL);
+}
+
+Render faint_ghosts(const View& view, const Integrator& /*integrator*/) {
+    return astray(view, WalkEntrance(*view.camera, Ways::many_reflections), 0x9b05688c2b3e6c1fULL);
 }
 
 Render barrel(const View& view, const Integrator& /*integrator*/) {
-    return astray(view, BarrelEntrance(*view.camera, Walls::met), 0x1f83d9abfb41bd6bULL);
+    return astray(view, WalkEntrance(*view.camera, Ways::walls), 0x1f83d9abfb41bd6bULL);
 }
 
 Render diffracted(const View& view, const Integrator& /*integrator*/) {
@@ -47,10 +51,7 @@ Render diffracted(const View& view, const Integrator& /*integrator*/) {
 }
 
 Render everything(const View& view, const Integrator& /*integrator*/) {
-    constexpr std::uint64_t kChance = 0xa54ff53a5f1d36f1ULL;
-    const bool has_walls = view.camera->lens() && !view.camera->lens()->barrel.is_black();
-    return has_walls ? astray(view, BarrelEntrance(*view.camera, Walls::met_or_not), kChance)
-                     : astray(view, GhostEntrance(*view.camera, Reflections::anything), kChance);
+    return astray(view, WalkEntrance(*view.camera, Ways::all), 0xa54ff53a5f1d36f1ULL);
 }
 
 }  // namespace
@@ -59,7 +60,8 @@ const std::vector<Pass>& passes() {
     static const std::vector<Pass> all = {
         {"imaged", "the scene through the lens", imaged, true},
         {"direct", "lights as they are seen", direct, true},
-        {"ghosts", "light that surfaces of the lens reflect", ghosts},
+        {"ghosts", "light that two surfaces of the lens reflect", ghosts},
+        {"faint-ghosts", "light that is reflected four times and more", faint_ghosts},
         {"barrel", "light that the inside of the lens scatters", barrel},
         {"diffracted", "light that the edges of the stop turn aside: halos and streaks", diffracted},
         {"everything", "all of these but the last at once, by chance: slow, and a judge of them", everything},

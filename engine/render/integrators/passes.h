@@ -10,15 +10,17 @@ namespace lensproof::render {
 /// Every path of light from its source to the film is of one class, and each class a pass: the films of all of them add
 /// up to the picture, with nothing twice and nothing missing.
 ///
-///   imaged      from the scene, through the lens
-///   direct      from a light, through the lens: lamps as they are seen
-///   ghosts      reflected in the lens, an even number of times
-///   barrel      scattered by a wall inside the lens, once or more
-///   diffracted  turned aside by the edges of the stop; what images is less by that, where both are rendered
+///   imaged        from the scene, through the lens
+///   direct        from a light, through the lens: lamps as they are seen
+///   ghosts        reflected twice in the lens
+///   faint-ghosts  reflected four times and more
+///   barrel        scattered by a wall inside the lens, once or more
+///   diffracted    turned aside by the edges of the stop; what images is less by that, where both are rendered
 ///
-/// And one that is none of them but what the first four add up to:
+/// And one that is none of them but what the first five add up to:
 ///
-///   everything  at every surface and wall it is left to chance what becomes of the light: slow, and a judge of others
+///   everything    at every surface and wall it is left to chance what becomes of the light: slow, and a judge of
+///   others
 struct Pass {
     std::string name;  // as `render --passes` has it
     std::string description;

@@ -4,32 +4,12 @@
 #include <cmath>
 
 #include "engine/base/angle.h"
-#include "engine/optics/drawn_ghost.h"
 
 namespace lensproof::render {
 
 namespace {
 
-constexpr double kOfMore = 0.1;    // the share of rays for ghosts of four reflections and more
-constexpr double kUnguided = 0.2;  // of the rest
-
-/// One number after the other.
-class Numbers {
-  public:
-    explicit Numbers(PathSampler& numbers) : numbers_(numbers) {}
-    double operator()() {
-        if (next_ == PathSampler::kNumbers) {
-            set_ = numbers_.next();
-            next_ = 0;
-        }
-        return set_[static_cast<std::size_t>(next_++)];
-    }
-
-  private:
-    PathSampler& numbers_;
-    std::array<double, PathSampler::kNumbers> set_{};
-    int next_ = PathSampler::kNumbers;
-};
+constexpr double kUnguided = 0.2;  // the share of rays
 
 double disc_area(const pupil::EntranceBeam& beam) {
     return kPi * beam.radius * beam.radius;
@@ -42,26 +22,16 @@ Vec2d in_disc(const pupil::EntranceBeam& beam, double u, double v) {
 
 }  // namespace
 
-GhostEntrance::GhostEntrance(const Camera& camera, Reflections reflections)
+GhostEntrance::GhostEntrance(const Camera& camera)
     : front_(camera),
-      reflections_(reflections),
       mirrors_(camera.settings().mirrors),
-      guide_(std::make_shared<const GhostGuide>(*camera.lens(), front_.middle(), mirrors_, front_.film_radius_mm())),
-      turning_(optics::turning_probabilities(front_.middle(), mirrors_)) {}
+      guide_(std::make_shared<const GhostGuide>(*camera.lens(), front_.middle(), mirrors_, front_.film_radius_mm())) {}
 
-std::optional<GhostEntrance::Way> GhostEntrance::draw_any(const pupil::EntranceBeam& beam, bool of_beam,
-                                                          std::size_t fewest, PathSampler& numbers) const {
-    Numbers number(numbers);
-    const Vec2d offset = of_beam ? in_disc(beam, number(), number()) : Vec2d{};
-    const auto drawn = optics::draw_ghost(turning_, number);
-    if (!drawn || drawn->path.size() < fewest) {
+std::optional<GhostEntrance::Way> GhostEntrance::draw_way(const pupil::EntranceBeam& beam, bool of_beam,
+                                                          PathSampler& numbers) const {
+    if (guide_->paths().empty()) {
         return std::nullopt;
     }
-    return Way{drawn->path, offset, drawn->probability / (of_beam ? disc_area(beam) : 1.0)};
-}
-
-std::optional<GhostEntrance::Way> GhostEntrance::draw_ghost(const pupil::EntranceBeam& beam, bool of_beam,
-                                                            PathSampler& numbers) const {
     const auto u = numbers.next();
     const auto ghosts = static_cast<double>(guide_->paths().size());
     const double unguided = guide_->is_known() ? kUnguided : 1.0;
@@ -77,22 +47,6 @@ std::optional<GhostEntrance::Way> GhostEntrance::draw_ghost(const pupil::Entranc
     const bool is_in_disc = !of_beam || length(drawn.offset) <= beam.radius;
     const double even_pdf = is_in_disc ? 1.0 / (ghosts * (of_beam ? disc_area(beam) : 1.0)) : 0.0;
     return Way{guide_->paths()[drawn.ghost], drawn.offset, (1.0 - unguided) * guided_pdf + unguided * even_pdf};
-}
-
-std::optional<GhostEntrance::Way> GhostEntrance::draw_way(const pupil::EntranceBeam& beam, bool of_beam,
-                                                          PathSampler& numbers) const {
-    if (reflections_ == Reflections::anything) {
-        return draw_any(beam, of_beam, 0, numbers);
-    }
-    if (guide_->paths().empty()) {
-        return std::nullopt;
-    }
-    const bool is_of_more = numbers.next()[0] < kOfMore;
-    auto way = is_of_more ? draw_any(beam, of_beam, 4, numbers) : draw_ghost(beam, of_beam, numbers);
-    if (way) {
-        way->pdf *= is_of_more ? kOfMore : 1.0 - kOfMore;
-    }
-    return way;
 }
 
 Entry GhostEntrance::followed(Entry entry, const Ray<double>& ray, const optics::GhostPath& ghost,

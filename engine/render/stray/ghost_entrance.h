@@ -10,22 +10,17 @@
 
 namespace lensproof::render {
 
-/// Which ways light is to take.
-enum class Reflections {
-    ghosts,    // of two reflections, guided, and now and then of more
-    anything,  // of any number, none too, all drawn at random: slow, and a judge of others
-};
-
-/// Light of an origin is drawn over the front of the exact camera, with the ghost that it takes; each wavelength
-/// follows that by itself. A ghost that GhostGuide knows nothing of, or misses a part of, is found by a fifth of the
-/// rays over the whole front and any ghost; those of four reflections and more by a tenth.
+/// Ghosts of two reflections, through the exact camera. A ghost and a place of the front where it enters are drawn for
+/// light of an origin as GhostGuide has them, and a fifth of the time any of either, since it may not know all: light
+/// from near by, other wavelengths, a part of the front that its search missed. Each wavelength follows the ghost by
+/// itself.
 class GhostEntrance {
   public:
     using Entry = render::Entry;
     static constexpr bool shows_points = true;  // spread by what follows, other than their image
 
     /// Throws InputError for an ideal camera. The camera outlives it.
-    GhostEntrance(const Camera& camera, Reflections reflections);
+    explicit GhostEntrance(const Camera& camera);
 
     [[nodiscard]] std::optional<Entry> draw(const LightOrigin& from, const spectral::PathWavelengths& path,
                                             bool is_hero_alone, PathSampler& numbers) const;
@@ -42,18 +37,12 @@ class GhostEntrance {
     /// means nothing.
     [[nodiscard]] std::optional<Way> draw_way(const pupil::EntranceBeam& beam, bool of_beam,
                                               PathSampler& numbers) const;
-    [[nodiscard]] std::optional<Way> draw_any(const pupil::EntranceBeam& beam, bool of_beam, std::size_t fewest,
-                                              PathSampler& numbers) const;
-    [[nodiscard]] std::optional<Way> draw_ghost(const pupil::EntranceBeam& beam, bool of_beam,
-                                                PathSampler& numbers) const;
     [[nodiscard]] Entry followed(Entry entry, const Ray<double>& ray, const optics::GhostPath& ghost,
                                  const spectral::PathWavelengths& path) const;
 
     CameraFront front_;
-    Reflections reflections_;
     optics::StrayMirrors<double> mirrors_;
     std::shared_ptr<const GhostGuide> guide_;
-    std::vector<double> turning_;
 };
 
 }  // namespace lensproof::render

@@ -1,8 +1,7 @@
-#include "engine/render/stray/barrel_entrance.h"
+#include "engine/render/stray/walk_entrance.h"
 
 #include <cstdint>
 
-#include "engine/optics/stray_walk.h"
 #include "engine/pupil/disc.h"
 
 namespace lensproof::render {
@@ -27,14 +26,31 @@ class WalkNumbers {
 
 }  // namespace
 
-BarrelEntrance::BarrelEntrance(const Camera& camera, Walls walls)
-    : front_(camera), walls_(walls), barrel_(camera.lens().value()) {}
+WalkEntrance::WalkEntrance(const Camera& camera, Ways ways)
+    : front_(camera), ways_(ways), barrel_(camera.lens().value()) {}
 
-std::optional<Entry> BarrelEntrance::draw(const LightOrigin& from, const spectral::PathWavelengths& path,
-                                          bool /*is_hero_alone*/, PathSampler& numbers) const {
+/// Whether there is no such way: walls that are black send nothing on.
+bool WalkEntrance::is_dark() const {
+    return ways_ == Ways::walls && barrel_.finish().is_black();
+}
+
+bool WalkEntrance::counts(const optics::StrayLight& light) const {
+    switch (ways_) {
+        case Ways::many_reflections:
+            return light.walls == 0 && light.reflections >= 4;
+        case Ways::walls:
+            return light.walls > 0;
+        case Ways::all:
+            break;
+    }
+    return true;
+}
+
+std::optional<Entry> WalkEntrance::draw(const LightOrigin& from, const spectral::PathWavelengths& path,
+                                        bool /*is_hero_alone*/, PathSampler& numbers) const {
     const auto u = numbers.next();
     const auto beam = front_.beam(from);
-    if (!beam || (walls_ == Walls::met && barrel_.finish().is_black())) {
+    if (!beam || is_dark()) {
         return std::nullopt;
     }
     const pupil::Disc disc{beam->radius};
@@ -42,18 +58,18 @@ std::optional<Entry> BarrelEntrance::draw(const LightOrigin& from, const spectra
     return landed(front_.entry(from, *beam, offset, 1.0 / disc.area()), beam->ray(offset), path, u);
 }
 
-std::optional<Entry> BarrelEntrance::meet(const Ray<double>& ray, const spectral::PathWavelengths& path,
-                                          PathSampler& numbers) const {
+std::optional<Entry> WalkEntrance::meet(const Ray<double>& ray, const spectral::PathWavelengths& path,
+                                        PathSampler& numbers) const {
     const auto u = numbers.next();
     const auto meeting = front_.meet(ray);
-    if (!meeting || (walls_ == Walls::met && barrel_.finish().is_black())) {
+    if (!meeting || is_dark()) {
         return std::nullopt;
     }
     return landed(front_.entry(ray, *meeting), meeting->beam.ray(meeting->offset), path, u);
 }
 
-Entry BarrelEntrance::landed(Entry entry, const Ray<double>& ray, const spectral::PathWavelengths& path,
-                             const std::array<double, PathSampler::kNumbers>& seed) const {
+Entry WalkEntrance::landed(Entry entry, const Ray<double>& ray, const spectral::PathWavelengths& path,
+                           const std::array<double, PathSampler::kNumbers>& seed) const {
     for (std::size_t i = 0; i < spectral::kWavelengthsPerPath; ++i) {
         const optics::TraceLens<double>& lens = front_.lens().at(path.index[i]);
         WalkNumbers numbers(seed);
@@ -62,7 +78,7 @@ Entry BarrelEntrance::landed(Entry entry, const Ray<double>& ray, const spectral
         int places = 0;
         double kept = 0.0;
         walk.follow(light, true, [&](const optics::StrayLight& on_film) {
-            if (walls_ == Walls::met && on_film.walls == 0) {
+            if (!counts(on_film)) {
                 return;
             }
             ++places;

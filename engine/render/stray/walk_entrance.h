@@ -1,28 +1,29 @@
-// engine/render/stray/barrel_entrance.h — light that walls inside the lens scatter, and that reaches the film.
+// engine/render/stray/walk_entrance.h — light that is left to chance inside the lens, and that reaches the film.
 #pragma once
 #include <optional>
 
-#include "engine/optics/barrel.h"
+#include "engine/optics/stray_walk.h"
 #include "engine/render/sampling/path_sampler.h"
 #include "engine/render/stray/camera_front.h"
 
 namespace lensproof::render {
 
-/// Which ways light is to take.
-enum class Walls {
-    met,         // a wall at least once: what glass alone reflects is the ghosts'
-    met_or_not,  // all ways: slow, and a judge of others
+/// Which of the ways that light takes count.
+enum class Ways {
+    many_reflections,  // four and more, and no wall: ghosts that are too many to look for one by one
+    walls,             // a wall at least once
+    all,               // slow, and a judge of others
 };
 
 /// A ray is drawn evenly over the front of an exact camera; behind it each wavelength goes its own way by chance
-/// (optics::StrayWalk), from the same numbers, so that most of them keep together. Nothing meets walls that are black.
-class BarrelEntrance {
+/// (optics::StrayWalk), from the same numbers, so that most of them keep together.
+class WalkEntrance {
   public:
     static constexpr bool shows_points = true;  // spread by what scatters
     using Entry = render::Entry;
 
     /// Throws InputError for an ideal camera, and as `optics::Barrel` does. The camera outlives it.
-    BarrelEntrance(const Camera& camera, Walls walls);
+    WalkEntrance(const Camera& camera, Ways ways);
 
     [[nodiscard]] std::optional<Entry> draw(const LightOrigin& from, const spectral::PathWavelengths& path,
                                             bool is_hero_alone, PathSampler& numbers) const;
@@ -30,12 +31,14 @@ class BarrelEntrance {
                                             PathSampler& numbers) const;
 
   private:
+    [[nodiscard]] bool is_dark() const;
+    [[nodiscard]] bool counts(const optics::StrayLight& light) const;
     /// The entry with where its light lands: of a mirror of a sensor's several places one, by chance.
     [[nodiscard]] Entry landed(Entry entry, const Ray<double>& ray, const spectral::PathWavelengths& path,
                                const std::array<double, PathSampler::kNumbers>& seed) const;
 
     CameraFront front_;
-    Walls walls_;
+    Ways ways_;
     optics::Barrel barrel_;
 };
 
