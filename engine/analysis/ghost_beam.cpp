@@ -55,10 +55,14 @@ std::optional<Landing> landing(const GhostScene& scene, const optics::GhostPath&
     return length(at) <= scene.image_radius ? std::optional(Landing{at, out.transmittance}) : std::nullopt;
 }
 
-LandingMargins landing_margins(const GhostScene& scene, const optics::GhostPath& path, Vec2d offset) {
+namespace {
+
+/// Tells `found` of the ray's margins in turn. Returns the ray behind the lens.
+template <class Found>
+optics::TracedRay<double> follow_margins(const GhostScene& scene, const optics::GhostPath& path, Vec2d offset,
+                                         Found&& found) {
     const optics::TraceLens<double>& lens = scene.lens;
     const int sensor = static_cast<int>(lens.surfaces.size());
-    LandingMargins found;
     auto next = path.begin();
     const auto compare = [&](const optics::SurfaceEvent<double>& event) {
         const bool reflects = next != path.end() && *next == event.surface;
@@ -78,16 +82,44 @@ LandingMargins landing_margins(const GhostScene& scene, const optics::GhostPath&
         if (special != nullptr && !special->mask.is_full_circle()) {
             margin = std::max(margin, special->mask.edge_margin(scale * at.x, scale * at.y).margin);
         }
-        found.margins.push_back(by_blades ? -margin : margin);
+        found(by_blades ? -margin : margin);
     };
-    const auto out = optics::trace_ghost<optics::Direction::forward, optics::Rims::follow>(
-        lens, path, scene.beam.ray(offset), scene.mirrors, compare);
-    found.arrives = optics::gets_through(out.status) && out.ray.direction.z > 0.0;
+    return optics::trace_ghost<optics::Direction::forward, optics::Rims::follow>(lens, path, scene.beam.ray(offset),
+                                                                                 scene.mirrors, compare);
+}
+
+bool reaches_sensor(const optics::TracedRay<double>& out) {
+    return optics::gets_through(out.status) && out.ray.direction.z > 0.0;
+}
+
+}  // namespace
+
+LandingMargins landing_margins(const GhostScene& scene, const optics::GhostPath& path, Vec2d offset) {
+    LandingMargins found;
+    const auto out = follow_margins(scene, path, offset, [&](double margin) { found.margins.push_back(margin); });
+    found.arrives = reaches_sensor(out);
     if (found.arrives) {
-        const Vec3d point = optics::meet_plane(out.ray, lens.image_z).point;
+        const Vec3d point = optics::meet_plane(out.ray, scene.lens.image_z).point;
         found.margins.push_back(std::hypot(point.x, point.y) / scene.image_radius - 1.0);
     }
     return found;
+}
+
+void rim_rays(const GhostScene& scene, const optics::GhostPath& path, const std::vector<Vec2d>& offsets,
+              std::vector<RimRay>& rays) {
+    for (std::size_t i = 0; i < offsets.size(); ++i) {
+        RimRay& ray = rays[i];
+        ray.margin = -1.0;
+        const auto out =
+            follow_margins(scene, path, offsets[i], [&](double margin) { ray.margin = std::max(ray.margin, margin); });
+        ray.arrives = reaches_sensor(out);
+        ray.transmittance = out.transmittance;
+        if (ray.arrives) {
+            const Vec3d point = optics::meet_plane(out.ray, scene.lens.image_z).point;
+            ray.point = {point.x, point.y};
+            ray.margin = std::max(ray.margin, std::hypot(point.x, point.y) / scene.image_radius - 1.0);
+        }
+    }
 }
 
 }  // namespace lensproof::analysis

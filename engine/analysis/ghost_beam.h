@@ -55,4 +55,14 @@ struct LandingMargins {
 };
 LandingMargins landing_margins(const GhostScene& scene, const optics::GhostPath& path, Vec2d offset);
 
+/// A ray followed past rims: where it would land, and the largest of its margins, above 0 where it does not.
+struct RimRay {
+    Vec2d point;
+    double transmittance = 0.0;
+    double margin = 0.0;
+    bool arrives = false;  // at the image plane; else the margin is that of the limits that it met
+};
+void rim_rays(const GhostScene& scene, const optics::GhostPath& path, const std::vector<Vec2d>& offsets,
+              std::vector<RimRay>& rays);
+
 }  // namespace lensproof::analysis
