@@ -11,7 +11,9 @@ namespace {
 
 constexpr int kFirstGrid = 32;
 constexpr int kFinestFirstGrid = 256;  // for fisheyes, whose pupil is a fiftieth of their front
+constexpr int kSecondGrid = 128;       // where the first saw nothing
 constexpr double kSteeper = 1.5;
+constexpr double kUnknown = 1.0;  // a change of margin that is possible where a ray ends before it has one
 constexpr int kMostDivisions = 10;
 constexpr int kResolved = 10;              // cells that land: then the region is seen, and not only its surroundings
 constexpr std::size_t kMostCells = 16000;  // that are divided: a region too ragged for fewer is sampled as it is
@@ -85,7 +87,9 @@ class Grid {
             double bounded_steepest = 0.0;
             bool is_known = false;
             for (const LandingMargins* other : beside) {
-                if (other != nullptr && other->margins.size() > k) {
+                if (other != nullptr && other->margins.size() <= k && !is_fine_) {
+                    steepest = std::max(steepest, kUnknown);
+                } else if (other != nullptr && other->margins.size() > k) {
                     steepest = std::max(steepest, std::abs(here.margins[k] - other->margins[k]));
                     bounded_steepest =
                         std::max(bounded_steepest, std::abs(bounded(here.margins[k]) - bounded(other->margins[k])));
@@ -123,13 +127,7 @@ Cells divided(const Cells& cells) {
     return parts;
 }
 
-}  // namespace
-
-GhostRegion ghost_region(const GhostScene& scene, const optics::GhostPath& path) {
-    int first = kFirstGrid;
-    while (first < kFinestFirstGrid && scene.beam.side() / first > 0.5 * std::sqrt(scene.pupil_area)) {
-        first *= 2;
-    }
+GhostRegion region_from(const GhostScene& scene, const optics::GhostPath& path, int first) {
     GhostRegion region{
         .across = first, .cell = scene.beam.side() / first, .corner = scene.beam.corner(), .cells = {}, .held = {}};
     Cells cells;
@@ -157,6 +155,22 @@ GhostRegion ghost_region(const GhostScene& scene, const optics::GhostPath& path)
     }
     for (const auto& [x, y] : region.cells) {
         region.held.insert(GhostRegion::key(x, y));
+    }
+    return region;
+}
+
+}  // namespace
+
+GhostRegion ghost_region(const GhostScene& scene, const optics::GhostPath& path) {
+    int first = kFirstGrid;
+    while (first < kFinestFirstGrid && scene.beam.side() / first > 0.5 * std::sqrt(scene.pupil_area)) {
+        first *= 2;
+    }
+    GhostRegion region = region_from(scene, path, first);
+    if (region.cells.empty() && first < kSecondGrid) {
+        const int searched = region.search_rays;
+        region = region_from(scene, path, kSecondGrid);
+        region.search_rays += searched;
     }
     return region;
 }
