@@ -57,10 +57,11 @@ std::optional<Landing> landing(const GhostScene& scene, const optics::GhostPath&
 
 namespace {
 
-/// Tells `found` of the ray's margins in turn. Returns the ray behind the lens.
+/// Tells `found` in turn of the limits that the ray meets: r² and the limit's square, whether it has to be beyond, and
+/// the margin at the edges of a stop that is no circle, else −1. Returns the ray behind the lens.
 template <class Found>
-optics::TracedRay<double> follow_margins(const GhostScene& scene, const optics::GhostPath& path, Vec2d offset,
-                                         Found&& found) {
+optics::TracedRay<double> follow_limits(const GhostScene& scene, const optics::GhostPath& path, Vec2d offset,
+                                        Found&& found) {
     const optics::TraceLens<double>& lens = scene.lens;
     const int sensor = static_cast<int>(lens.surfaces.size());
     auto next = path.begin();
@@ -75,17 +76,22 @@ optics::TracedRay<double> follow_margins(const GhostScene& scene, const optics::
         if (event.status == optics::RayStatus::missed && !by_blades) {
             return;  // it has no point; blades have been missed in their plane
         }
-        const Vec3d at = optics::to_own_axes(lens, surface, event.ray.origin);
-        const double scale = 1.0 / std::sqrt(surface.semi_diameter_squared);
-        double margin = scale * std::hypot(at.x, at.y) - 1.0;
+        const Vec3d at = surface.special < 0 ? event.ray.origin : optics::to_own_axes(lens, surface, event.ray.origin);
+        double mask_margin = -1.0;
         const optics::SpecialSurface<double>* special = optics::special_of(lens, surface);
         if (special != nullptr && !special->mask.is_full_circle()) {
-            margin = std::max(margin, special->mask.edge_margin(scale * at.x, scale * at.y).margin);
+            const double scale = 1.0 / std::sqrt(surface.semi_diameter_squared);
+            mask_margin = special->mask.edge_margin(scale * at.x, scale * at.y).margin;
         }
-        found(by_blades ? -margin : margin);
+        found(Vec2d{at.x, at.y}, surface.semi_diameter_squared, by_blades, mask_margin);
     };
     return optics::trace_ghost<optics::Direction::forward, optics::Rims::follow>(lens, path, scene.beam.ray(offset),
                                                                                  scene.mirrors, compare);
+}
+
+double margin_at(Vec2d at, double limit_squared, bool by_blades, double mask_margin) {
+    const double margin = 1.0 / std::sqrt(limit_squared) * std::hypot(at.x, at.y) - 1.0;
+    return by_blades ? -std::max(margin, mask_margin) : std::max(margin, mask_margin);
 }
 
 bool reaches_sensor(const optics::TracedRay<double>& out) {
@@ -96,7 +102,8 @@ bool reaches_sensor(const optics::TracedRay<double>& out) {
 
 LandingMargins landing_margins(const GhostScene& scene, const optics::GhostPath& path, Vec2d offset) {
     LandingMargins found;
-    const auto out = follow_margins(scene, path, offset, [&](double margin) { found.margins.push_back(margin); });
+    const auto out =
+        follow_limits(scene, path, offset, [&](const auto&... limit) { found.margins.push_back(margin_at(limit...)); });
     found.arrives = reaches_sensor(out);
     if (found.arrives) {
         const Vec3d point = optics::meet_plane(out.ray, scene.lens.image_z).point;
@@ -109,9 +116,17 @@ void rim_rays(const GhostScene& scene, const optics::GhostPath& path, const std:
               std::vector<RimRay>& rays) {
     for (std::size_t i = 0; i < offsets.size(); ++i) {
         RimRay& ray = rays[i];
-        ray.margin = -1.0;
-        const auto out =
-            follow_margins(scene, path, offsets[i], [&](double margin) { ray.margin = std::max(ray.margin, margin); });
+        double margin = -1.0;
+        double ratio_squared = 0.0;  // largest r² / limit², where that is all there is: roots take their time
+        const auto compare = [&](Vec2d at, double limit_squared, bool by_blades, double mask_margin) {
+            if (by_blades || mask_margin > -1.0) {
+                margin = std::max(margin, margin_at(at, limit_squared, by_blades, mask_margin));
+            } else {
+                ratio_squared = std::max(ratio_squared, dot(at, at) / limit_squared);
+            }
+        };
+        const auto out = follow_limits(scene, path, offsets[i], compare);
+        ray.margin = std::max(margin, std::sqrt(ratio_squared) - 1.0);
         ray.arrives = reaches_sensor(out);
         ray.transmittance = out.transmittance;
         if (ray.arrives) {

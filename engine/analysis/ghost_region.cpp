@@ -17,7 +17,6 @@ constexpr double kUnknown = 1.0;  // a change of margin that is possible where a
 constexpr int kMostDivisions = 10;
 constexpr int kResolved = 10;              // cells that land: then the region is seen, and not only its surroundings
 constexpr std::size_t kMostCells = 16000;  // that are divided: a region too ragged for fewer is sampled as it is
-constexpr double kEnoughLand = 0.86;       // of the cells' centres; a grid within them loses a little more
 
 using Cells = std::vector<GhostRegion::Cell>;
 
@@ -127,7 +126,7 @@ Cells divided(const Cells& cells) {
     return parts;
 }
 
-GhostRegion region_from(const GhostScene& scene, const optics::GhostPath& path, int first) {
+GhostRegion region_from(const GhostScene& scene, const optics::GhostPath& path, double landing_share, int first) {
     GhostRegion region{
         .across = first, .cell = scene.beam.side() / first, .corner = scene.beam.corner(), .cells = {}, .held = {}};
     Cells cells;
@@ -145,7 +144,7 @@ GhostRegion region_from(const GhostScene& scene, const optics::GhostPath& path, 
                 landing += grid.lands(cell) ? 1 : 0;
             }
         }
-        const bool enough = static_cast<double>(landing) >= kEnoughLand * static_cast<double>(region.cells.size());
+        const bool enough = static_cast<double>(landing) >= landing_share * static_cast<double>(region.cells.size());
         if (enough || division == kMostDivisions || region.cells.size() > kMostCells) {
             break;
         }
@@ -161,15 +160,15 @@ GhostRegion region_from(const GhostScene& scene, const optics::GhostPath& path, 
 
 }  // namespace
 
-GhostRegion ghost_region(const GhostScene& scene, const optics::GhostPath& path) {
+GhostRegion ghost_region(const GhostScene& scene, const optics::GhostPath& path, double landing_share) {
     int first = kFirstGrid;
     while (first < kFinestFirstGrid && scene.beam.side() / first > 0.5 * std::sqrt(scene.pupil_area)) {
         first *= 2;
     }
-    GhostRegion region = region_from(scene, path, first);
+    GhostRegion region = region_from(scene, path, landing_share, first);
     if (region.cells.empty() && first < kSecondGrid) {
         const int searched = region.search_rays;
-        region = region_from(scene, path, kSecondGrid);
+        region = region_from(scene, path, landing_share, kSecondGrid);
         region.search_rays += searched;
     }
     return region;

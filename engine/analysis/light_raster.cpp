@@ -100,24 +100,22 @@ void LightRaster::add_side(Vec2d from, Vec2d to, double density) {
             differences[0] += height;
             continue;
         }
-        const bool is_upright = !(right > left);
-        const double by_width = is_upright ? 0.0 : height / (right - left);
+        int first = static_cast<int>(left);
+        if (left >= 0.0 && right <= first + 1.0) {
+            // Of what stands right of the middle, a part of this pixel, and all of the next.
+            const double inside = 1.0 - (0.5 * (left + right) - first);
+            differences[first] += height * inside;
+            differences[first + 1] += height * (1.0 - inside);
+            continue;
+        }
+        const double by_width = height / (right - left);
         if (left < 0.0) {
             differences[0] += -left * by_width;
             left = 0.0;
+            first = 0;
         }
         right = std::min(right, static_cast<double>(width_));
-        const int first = static_cast<int>(left);
-        const int last = static_cast<int>(std::ceil(right)) - 1;
-        if (last <= first) {
-            // Of what stands right of the middle, a part of this pixel, and all of the next.
-            const double passed = is_upright ? height : (right - left) * by_width;
-            const double inside = 1.0 - (0.5 * (left + right) - first);
-            differences[first] += passed * inside;
-            differences[first + 1] += passed * (1.0 - inside);
-            continue;
-        }
-        for (int u = first; u <= last; ++u) {
+        for (int u = first; u < right; ++u) {
             const double a = std::max(left, static_cast<double>(u));
             const double b = std::min(right, u + 1.0);
             const double passed = (b - a) * by_width;

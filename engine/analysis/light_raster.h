@@ -3,6 +3,7 @@
 #include <array>
 #include <vector>
 
+#include "engine/base/large_pages.h"
 #include "engine/base/vec.h"
 
 namespace lensproof::analysis {
@@ -40,7 +41,7 @@ class LightRaster {
     int width_;
     int height_;
     double pitch_;
-    std::vector<double> differences_;  // width + 2 a row
+    std::vector<double, LargePages<double>> differences_;  // width + 2 a row
 };
 
 }  // namespace lensproof::analysis

@@ -12,6 +12,7 @@
 #include "engine/base/input_error.h"
 #include "engine/base/write_file.h"
 #include "experiments/cli/command.h"
+#include "experiments/cli/ghost_image.h"
 #include "experiments/cli/ghost_options.h"
 #include "experiments/cli/lens_options.h"
 #include "experiments/cli/terminal.h"
@@ -32,6 +33,7 @@ struct GhostsOptions {
     bool polarised = false;
     std::optional<double> image_circle_mm;
     std::string plot_file;
+    GhostImageOptions image;
 };
 
 analysis::GhostSettings settings_of(const GhostsOptions& options, const AnalysedLens& analysed) {
@@ -218,6 +220,38 @@ void write_plot(const GhostsOptions& options, const AnalysedLens& analysed, cons
     write_file(options.plot_file, draw::ghosts_svg(analysed.prescription, lens, scene, conditions, drawn));
 }
 
+/// Of how many ghosts a picture of their own is asked for.
+std::size_t layers_wanted(const GhostsOptions& options) {
+    constexpr int kUsual = 8;
+    return static_cast<std::size_t>(options.strongest.value_or(kUsual));
+}
+
+/// Of the picture that --image asks for.
+analysis::PictureSettings picture_of(const GhostsOptions& options, const analysis::GhostSettings& settings,
+                                     std::size_t layers) {
+    std::vector<double> wavelengths_nm = settings.wavelengths_nm;
+    wavelengths_nm.push_back(settings.reference_wavelength_nm);
+    return picture_settings(options.image, 2.0 * settings.image_radius, wavelengths_nm, layers);
+}
+
+void write_image(const GhostsOptions& options, const optics::Lens& lens, const analysis::GhostSettings& settings,
+                 const analysis::GhostSurvey& survey) {
+    const std::size_t separate = std::min(layers_wanted(options), survey.ghosts.size());
+    const analysis::PictureSettings picture = picture_of(options, settings, separate);
+    std::vector<optics::GhostPath> paths;
+    std::vector<GhostLayer> layers;
+    for (const analysis::Ghost& ghost : survey.ghosts) {
+        paths.push_back(ghost.path);
+        if (layers.size() < separate) {
+            layers.push_back({path_text(lens, ghost.path), ghost_json(lens, settings, ghost).dump()});
+        }
+    }
+    const Json about{{"lens", lens.id}, {"source_deg", settings.source_angle / kDegree}, {"energy", survey.energy}};
+    const double pupil_area = analysis::ghost_scene(lens, settings, settings.reference_wavelength_nm).pupil_area;
+    write_ghost_image(options.image.file, picture, pupil_area,
+                      analysis::draw_ghosts(lens, settings, picture, paths, separate), about.dump(), layers);
+}
+
 int run_ghosts(const GhostsOptions& options) {
     check_json_name(options.common);
     if (!options.plot_file.empty()) {
@@ -225,7 +259,15 @@ int run_ghosts(const GhostsOptions& options) {
     }
     const AnalysedLens analysed = read_analysed_lens(options.lens);
     const analysis::GhostSettings settings = settings_of(options, analysed);
+    if (!options.image.file.empty()) {
+        check_output_name(options.image.file);
+        const std::size_t surfaces = analysed.lens.surfaces.size() + 1;
+        picture_of(options, settings, std::min(layers_wanted(options), surfaces * surfaces));
+    }
     const analysis::GhostSurvey survey = analysis::survey_ghosts(analysed.lens, settings);
+    if (!options.image.file.empty()) {
+        write_image(options, analysed.lens, settings, survey);
+    }
     if (!options.plot_file.empty()) {
         write_plot(options, analysed, settings, survey);
     }
@@ -275,6 +317,7 @@ void add_ghosts_command(Program& program) {
         .add_option("--plot", options->plot_file,
                     "Draw the strongest ghost's way through the lens, and the footprints of the eight strongest (SVG)")
         .type_name("FILE");
+    add_ghost_image_options(command, options->image);
     add_mirror_options(command, options->mirrors);
     add_common_options(command, options->common);
     command.runs([options] { return run_ghosts(*options); });

@@ -1,9 +1,11 @@
 // tests/cli/ghosts_command_test.cpp — `lensproof ghosts` as a user meets it: its JSON, its table, its picture, what it
 // refuses.
+#include <OpenImageIO/imageio.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <numbers>
 
 #include "tests/cli/program.h"
 #include "tests/complaint.h"
@@ -78,6 +80,51 @@ TEST(GhostsCommand, ListsTheStrongestAndTheSensor) {
     EXPECT_TRUE(says(text, "Which surface to coat"));
 }
 
+// A part's irradiance inside the image circle, over its pixels, is the row's energy of the light that enters the pupil:
+// pixels that the circle cuts are 4 in 100, of which its half counts wrongly at most. The sum is that of its parts.
+TEST(GhostsCommand, DrawsWhatItLists) {
+    const Workplace place;
+    place.file("singlet.toml", kSinglet);
+    const Json result =
+        place.json({"ghosts", "singlet.toml", "--wavelengths", "587.5618,486.1327,656.2725", "--image-circle", "20",
+                    "--source-deg", "3", "--image", "ghosts.exr", "--pixels", "120,120", "--sensor-mm", "24,24",
+                    "--strongest", "3", "--sensor-reflectance", "0.1"});
+    const Json lens = place.json({"analyze", "singlet.toml", "--wavelengths", "587.5618"});
+    const double diameter = lens["paraxial"]["entrance_pupil_diameter_mm"].get<double>();
+    const double pupil = std::numbers::pi / 4.0 * diameter * diameter * std::cos(3.0 * std::numbers::pi / 180.0);
+    const auto file = OIIO::ImageInput::open((place.path() / "ghosts.exr").string());
+    ASSERT_NE(file, nullptr);
+    constexpr std::size_t kPixels = 120 * 120;
+    std::vector<double> left(kPixels);
+    for (int part = 0; part < 4; ++part) {
+        const OIIO::ImageSpec spec = file->spec(part);
+        ASSERT_EQ(spec.nchannels, 6);
+        std::vector<float> values(kPixels * 6);
+        ASSERT_TRUE(file->read_image(part, 0, 0, 6, OIIO::TypeDesc::FLOAT, values.data()));
+        const auto yellow = static_cast<std::size_t>(spec.channelindex("S0.587,561800nm"));
+        double in_circle = 0.0;
+        for (std::size_t i = 0; i < kPixels; ++i) {
+            const double value = values[6 * i + yellow];
+            left[i] += part == 0 ? value : -value;
+            const double x = (static_cast<double>(i % 120) - 59.5) * 0.2;
+            const double y = (static_cast<double>(i / 120) - 59.5) * 0.2;
+            in_circle += std::hypot(x, y) < 10.0 ? value * 0.2 * 0.2 / pupil : 0.0;
+        }
+        if (part == 0) {
+            EXPECT_EQ(spec.get_string_attribute("oiio:subimagename"), "ghosts");
+            EXPECT_EQ(Json::parse(spec.get_string_attribute("lensproof:ghosts").c_str())["source_deg"], 3.0);
+            EXPECT_NEAR(in_circle, result["energy"].get<double>(), 0.03 * in_circle);
+            continue;
+        }
+        const Json& row = result["ghosts"][static_cast<std::size_t>(part) - 1];
+        EXPECT_EQ(Json::parse(spec.get_string_attribute("lensproof:ghost").c_str()), row);
+        EXPECT_NEAR(in_circle, row["energy"].get<double>(), 0.03 * in_circle);
+    }
+    for (const double value : left) {
+        ASSERT_NEAR(value, 0.0, 1e-5);  // irradiances of some 0.01, as floats
+    }
+}
+
 TEST(GhostsCommand, RefusesWhatItCannotUse) {
     const Workplace place;
     place.file("singlet.toml", kSinglet);
@@ -90,7 +137,14 @@ TEST(GhostsCommand, RefusesWhatItCannotUse) {
                                      {{"--blade-reflectance", "2"}, "--blade-reflectance"},
                                      {{"--image-circle", "0"}, "--image-circle"},
                                      {{"--wavelengths", "100"}, "100 nm"},
-                                     {{"--plot", "nowhere/"}, "nowhere"}}) {
+                                     {{"--plot", "nowhere/"}, "nowhere"},
+                                     {{"--image", "nowhere/"}, "nowhere"},
+                                     {{"--image", "a.exr", "--pixels", "100"}, "--pixels"},
+                                     {{"--image", "a.exr", "--pixels", "100,1.5"}, "--pixels"},
+                                     {{"--image", "a.exr", "--pixels", "1e9,1"}, "--pixels"},
+                                     {{"--image", "a.exr", "--pixels", "20000,20000"}, "--pixels"},
+                                     {{"--image", "a.exr", "--sensor-mm", "36"}, "--sensor-mm"},
+                                     {{"--image", "a.exr", "--sensor-mm", "36,24"}, "squares"}}) {
         std::vector<std::string> arguments{"ghosts", "singlet.toml"};
         arguments.insert(arguments.end(), more.begin(), more.end());
         expect_refused(place, arguments, {word});

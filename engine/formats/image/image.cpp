@@ -12,6 +12,7 @@
 #include "engine/base/input_error.h"
 #include "engine/base/write_file.h"
 #include "engine/formats/image/exr_output.h"
+#include "engine/formats/image/exr_parts.h"
 #include "engine/formats/image/frame_placement.h"
 #include "engine/formats/image/srgb.h"
 #include "engine/formats/image/stored_picture.h"
@@ -82,6 +83,19 @@ std::string encode_srgb_png(const Image& image, OIIO::TypeDesc type) {
     return png_bytes(spec, encode_srgb<Integer>(image, sources).data());
 }
 
+OIIO::ImageSpec exr_spec(const Image& image) {
+    OIIO::ImageSpec spec(image.width, image.height, image.channel_count(), OIIO::TypeDesc::FLOAT);
+    spec.channelnames = image.channels;
+    spec.attribute("compression", "zip");
+    spec.attribute("oiio:ColorSpace", "linear");
+    spec.attribute("DateTime",
+                   "1970:01:01 00:00:00");  // else the library writes the clock's: the same render, other bytes
+    for (const auto& [name, value] : image.metadata) {
+        spec.attribute(name, value);
+    }
+    return spec;
+}
+
 }  // namespace
 
 Image make_image(int width, int height, std::vector<std::string> channels) {
@@ -112,22 +126,30 @@ void write_exr(const Image& image, const std::filesystem::path& file) {
 }
 
 void write_exr(const Image& image, const std::filesystem::path& file, const FramePlacement& placement) {
-    OIIO::ImageSpec spec(image.width, image.height, image.channel_count(), OIIO::TypeDesc::FLOAT);
-    spec.channelnames = image.channels;
+    OIIO::ImageSpec spec = exr_spec(image);
     spec.x = placement.x;
     spec.y = placement.y;
     spec.full_width = placement.frame_width;
     spec.full_height = placement.frame_height;
-    spec.attribute("compression", "zip");
-    spec.attribute("oiio:ColorSpace", "linear");
-    spec.attribute("DateTime",
-                   "1970:01:01 00:00:00");  // else the library writes the clock's: the same render, other bytes
-    for (const auto& [name, value] : image.metadata) {
-        spec.attribute(name, value);
-    }
     write_exr_file(file, [&](OIIO::ImageOutput& output, const std::string& name) {
         return output.open(name, spec) && output.write_image(OIIO::TypeDesc::FLOAT, image.pixels.data()) &&
                output.close();
+    });
+}
+
+void write_exr(const std::vector<NamedImage>& parts, const std::filesystem::path& file) {
+    std::vector<OIIO::ImageSpec> specs;
+    for (const NamedImage& part : parts) {
+        specs.push_back(exr_spec(part.image));
+        specs.back().attribute("oiio:subimagename", part.name);
+    }
+    write_exr_file(file, [&](OIIO::ImageOutput& output, const std::string& name) {
+        bool is_written = output.open(name, static_cast<int>(specs.size()), specs.data());
+        for (std::size_t i = 0; is_written && i < parts.size(); ++i) {
+            is_written = (i == 0 || output.open(name, specs[i], OIIO::ImageOutput::AppendSubimage)) &&
+                         output.write_image(OIIO::TypeDesc::FLOAT, parts[i].image.pixels.data());
+        }
+        return is_written && output.close();
     });
 }
 
