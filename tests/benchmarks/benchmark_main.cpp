@@ -125,6 +125,7 @@ int main(int argc, char** argv) {
     lensproof::register_bsdf_benchmarks();
     lensproof::register_measure_benchmarks();
     lensproof::register_analysis_benchmarks();
+    lensproof::register_ghost_benchmarks();
     lensproof::RatioReporter reporter;
     benchmark::RunSpecifiedBenchmarks(&reporter);
     benchmark::Shutdown();
