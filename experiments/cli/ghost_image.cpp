@@ -21,9 +21,10 @@ constexpr double kMostValues = 2.5e8;  // of all parts together: three gigabytes
 /// they are in order.
 std::vector<Vec3d> rgb_weights(const std::vector<double>& wavelengths_nm) {
     const std::size_t count = wavelengths_nm.size();
-    const std::vector<Vec3d> grey(count, (1.0 / static_cast<double>(count)) * Vec3d{1.0, 1.0, 1.0});
+    std::vector<Vec3d> grey(count, (1.0 / static_cast<double>(count)) * Vec3d{1.0, 1.0, 1.0});
     const spectral::ColourMatching observer = spectral::cie_1931();
     std::vector<Vec3d> tristimuli;
+    tristimuli.reserve(count);
     Vec3d white{};
     for (std::size_t k = 0; k < count; ++k) {
         const double nm = wavelengths_nm[k];
@@ -37,6 +38,7 @@ std::vector<Vec3d> rgb_weights(const std::vector<double>& wavelengths_nm) {
     const auto [red, green, blue] = spectral::rec709_primaries(white);
     const double volume = dot(red, cross(green, blue));
     std::vector<Vec3d> weights;
+    weights.reserve(count);
     for (const Vec3d& xyz : tristimuli) {
         weights.push_back((1.0 / volume) *
                           Vec3d{dot(xyz, cross(green, blue)), dot(xyz, cross(blue, red)), dot(xyz, cross(red, green))});

@@ -94,7 +94,8 @@ TEST(GhostsCommand, DrawsWhatItLists) {
     const double pupil = std::numbers::pi / 4.0 * diameter * diameter * std::cos(3.0 * std::numbers::pi / 180.0);
     const auto file = OIIO::ImageInput::open((place.path() / "ghosts.exr").string());
     ASSERT_NE(file, nullptr);
-    constexpr std::size_t kPixels = 120 * 120;
+    constexpr std::size_t kAcross = 120;
+    constexpr std::size_t kPixels = kAcross * kAcross;
     std::vector<double> left(kPixels);
     for (int part = 0; part < 4; ++part) {
         const OIIO::ImageSpec spec = file->spec(part);
@@ -106,8 +107,9 @@ TEST(GhostsCommand, DrawsWhatItLists) {
         for (std::size_t i = 0; i < kPixels; ++i) {
             const double value = values[6 * i + yellow];
             left[i] += part == 0 ? value : -value;
-            const double x = (static_cast<double>(i % 120) - 59.5) * 0.2;
-            const double y = (static_cast<double>(i / 120) - 59.5) * 0.2;
+            const std::size_t row = i / kAcross;
+            const double x = (static_cast<double>(i % kAcross) - 59.5) * 0.2;
+            const double y = (static_cast<double>(row) - 59.5) * 0.2;
             in_circle += std::hypot(x, y) < 10.0 ? value * 0.2 * 0.2 / pupil : 0.0;
         }
         if (part == 0) {

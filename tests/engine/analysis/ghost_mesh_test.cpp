@@ -88,7 +88,7 @@ TEST(GhostMesh, EnergiesAreThoseOfShiftedGrids) {
 // them land to know their error.
 TEST(GhostMesh, PicturesAreThoseOfRaysAtRandom) {
     const optics::Lens lens = formats::load_lens("double-gauss-tronnier");
-    constexpr int kAcross = 24;
+    constexpr std::size_t kAcross = 24;
     constexpr double kPitch = 1.25;
     std::mt19937_64 random(5);
     std::uniform_real_distribution<double> unit(0.0, 1.0);
