@@ -13,8 +13,8 @@ namespace lensproof::analysis {
 
 namespace {
 
-constexpr int kDivisions = 7;             // of a first cell, at most
-constexpr int kUnits = 2 << kDivisions;   // of the lattice of corners along a first cell: the smallest has middles
+constexpr int kDivisions = 7;            // of a first cell, at most
+constexpr int kUnits = 2 << kDivisions;  // of the lattice of corners along a first cell: the smallest has middles
 constexpr std::size_t kFirstCells = 40;  // about so many, or up to four times as many
 constexpr std::size_t kMostLeaves = 40000;
 constexpr int kMostGrowth = 64;  // rings of first cells

@@ -37,10 +37,10 @@ void register_measure_benchmarks();
 /// and the rest that needs no diffraction. westrogon-24 has 14 surfaces and a stop.
 void register_analysis_benchmarks();
 
-/// ghosts/LENS: the picture of all ghosts of two reflections of a distant light, eight wavelengths on 1000 × 1000 pixels,
-/// by meshes on one thread. Counters: ghosts with more than 1e-6 of the light; the largest of their energies' stated
-/// errors; the CPU time of rays at random over the front element, reflected at random, until each such ghost's energy
-/// is known to 1 %, by the variance that a part of them shows; and how many times that is the meshes'.
+/// ghosts/LENS: the picture of all ghosts of two reflections of a distant light, eight wavelengths on 1000 × 1000
+/// pixels, by meshes on one thread. Counters: ghosts with more than 1e-6 of the light; the largest of their energies'
+/// stated errors; the CPU time of rays at random over the front element, reflected at random, until each such ghost's
+/// energy is known to 1 %, by the variance that a part of them shows; and how many times that is the meshes'.
 /// double-gauss-angenieux has 14 surfaces and a stop.
 void register_ghost_benchmarks();
 
