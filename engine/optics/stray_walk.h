@@ -17,6 +17,7 @@ namespace lensproof::optics {
 struct StrayLight {
     Ray<double> ray;
     double weight = 1.0;
+    double at_first_wall = 0.0;  // what that wall took of it; later ones take all or nothing
     int reflections = 0;
     int walls = 0;
 };
@@ -179,7 +180,10 @@ class StrayWalk {
         if (!(finish.albedo > 0.0) || (light.walls > 0 && numbers_() >= finish.albedo)) {
             return StrayEnd::absorbed;
         }
-        light.weight *= light.walls > 0 ? 1.0 : finish.albedo;
+        if (light.walls == 0) {
+            light.at_first_wall = light.weight * (1.0 - finish.albedo);
+            light.weight *= finish.albedo;
+        }
         ++light.walls;
         const Basis frame(normal);
         light.ray.direction =

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "engine/base/cache.h"
+#include "engine/render/integrators/energy_audit.h"
 #include "engine/render/integrators/passes.h"
 #include "engine/render/progressive.h"
 #include "engine/render/scene_setup.h"
@@ -27,6 +28,11 @@ class PreparedScene {
     /// What passes have of that, by their names (renders_of). Throws InputError where the camera has none of it.
     [[nodiscard]] std::vector<Render> render(const std::vector<std::string>& passes, std::uint64_t seed,
                                              bool has_features) const;
+
+    /// Where the light goes that comes into the camera. Throws InputError where that is not known (FateEntrance).
+    [[nodiscard]] EnergyAudit audit(std::uint64_t seed, std::uint32_t paths) const {
+        return energy_audit(view(seed, false), paths);
+    }
 
     [[nodiscard]] const Camera& camera() const { return camera_; }
     [[nodiscard]] const Integrator& integrator() const { return *integrator_; }

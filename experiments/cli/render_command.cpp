@@ -88,7 +88,25 @@ void check_passes(const std::vector<std::string>& passes, const RenderJobOptions
     }
 }
 
-int run_render(const RenderJobOptions& options, const std::string& paths, const std::vector<std::string>& passes) {
+/// Says where the light goes that comes into the camera.
+Json audit_json(const render::PreparedScene& scene, const RenderJobOptions& options) {
+    constexpr std::uint32_t kPaths = 1U << 19U;  // of a half, 0.07 %
+    const render::EnergyAudit audit = said_of_scene(options, [&] { return scene.audit(options.common.seed, kPaths); });
+    Json json = {{"light_in_w_per_nm", audit.light_in}};
+    for (std::size_t i = 0; i < audit.shares.size(); ++i) {
+        const auto& [share, error] = audit.shares[i];
+        const std::string& name = render::fate_names()[i];
+        json[name + "_percent"] = 100.0 * share;
+        json[name + "_standard_error_percent"] = 100.0 * error;
+        if (prints_text(options.common)) {
+            print("light that comes in, {:<8} {:8.3f} ± {:.3f} %\n", name, 100.0 * share, 100.0 * error);
+        }
+    }
+    return json;
+}
+
+int run_render(const RenderJobOptions& options, const std::string& paths, const std::vector<std::string>& passes,
+               bool is_audited) {
     const RenderFiles files = render_files(options);  // before long work
     check_passes(passes, options);
     const render::SceneSetup setup = render::read_scene_setup(options.scene);
@@ -97,6 +115,9 @@ int run_render(const RenderJobOptions& options, const std::string& paths, const 
     }
     if (!passes.empty() && setup.chart) {
         throw InputError("--passes is for scenes with lights, not for a [chart] in an even world");
+    }
+    if (is_audited && setup.chart) {
+        throw InputError("--audit is for scenes with lights, not for a [chart] in an even world");
     }
     if (paths == "light" && (options.noise > 0.0 || options.has_features)) {
         throw InputError("--paths light goes neither with --noise nor with --features; --paths both does");
@@ -137,6 +158,9 @@ int run_render(const RenderJobOptions& options, const std::string& paths, const 
     job.json["scene"] = options.scene;
     job.json["lens"] = lens ? lens->id : "";
     job.json["findings"] = findings_json(lens ? lens->findings : std::vector<optics::Finding>());
+    if (is_audited) {
+        job.json["energy"] = audit_json(*scene, options);
+    }
     return run_render_job(job, options);
 }
 
@@ -169,7 +193,11 @@ void add_render_command(Program& program) {
         .check(one_of(pass_names()))
         .separated_by(',')
         .takes_one_argument();
-    command.runs([options, paths, passes] { return run_render(*options, *paths, *passes); });
+    const auto is_audited = std::make_shared<bool>(false);
+    command.add_flag("--audit", *is_audited,
+                     "Also say where the light goes that comes into the lens: imaged, ghosts, barrel, beside the film, "
+                     "out of the front, clipped, absorbed");
+    command.runs([options, paths, passes, is_audited] { return run_render(*options, *paths, *passes, *is_audited); });
 }
 
 }  // namespace lensproof::cli

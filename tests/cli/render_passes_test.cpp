@@ -88,6 +88,21 @@ TEST(RenderPasses, AreTheSameForAnyNumberOfThreads) {
     EXPECT_EQ(place.content("1.exr"), place.content("2.exr"));
 }
 
+// All light that comes in goes somewhere, whatever is rendered of it.
+TEST(RenderPasses, AuditsAllLight) {
+    const Workplace place;
+    place.file("scene.toml", lamps());
+    const Json energy = place.json({"render", "scene.toml", "--spp", "1", "--audit", "-o", "a.exr"})["energy"];
+    double sum = 0.0;
+    for (const char* fate : {"imaged", "ghosts", "barrel", "beside", "front", "clipped", "absorbed", "lost"}) {
+        sum += energy[std::string(fate) + "_percent"].get<double>();
+        EXPECT_LT(energy[std::string(fate) + "_standard_error_percent"], 0.5) << fate;
+    }
+    EXPECT_NEAR(sum, 100.0, 1e-9);
+    EXPECT_GT(energy["light_in_w_per_nm"], 0.0);
+    EXPECT_GT(energy["ghosts_percent"], 0.0);
+}
+
 TEST(RenderPasses, RefuseWhatDoesNotAddUp) {
     const Workplace place;
     place.file("scene.toml", lamps());
@@ -105,6 +120,7 @@ TEST(RenderPasses, RefuseWhatDoesNotAddUp) {
     expect_no_render("ghosts", {"scene.toml", "blade_reflectance", "1.5"});
     place.file("scene.toml", small_scene());
     expect_no_render("ghosts", {"--passes", "[chart]"});
+    expect_refused(place, {"render", "scene.toml", "--audit", "-o", "a.exr"}, {"--audit", "[chart]"});
 }
 
 }  // namespace lensproof::render_passes_test

@@ -1,6 +1,7 @@
 // Classes of light paths, each rendered by itself, and all of them at once by chance: one image.
 #include "engine/render/integrators/passes.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -46,6 +47,67 @@ TEST(Passes, ASunsGhostsAndBarrelAreAllThatChanceFinds) {
     const render::Film barrel = studio.by_pass("barrel", 2000);
     expect_same_image(render::Picture({{"ghosts", &ghosts}, {"barrel", &barrel}}), studio.by_pass("everything", 4000),
                       0.1);
+}
+
+/// What films gather together, as the audit counts light, over a pixel's area; and the variance of that.
+struct Gathered {
+    double light = 0.0;
+    double variance = 0.0;
+};
+
+Gathered gathered(const render::Picture& picture) {
+    Gathered sum;
+    for (int y = 0; y < picture.height(); ++y) {
+        for (int x = 0; x < picture.width(); ++x) {
+            const render::PixelEstimate pixel = picture.estimate(x, y);
+            sum = {sum.light + pixel.rgb.x, sum.variance + pixel.variance.x};
+        }
+    }
+    return sum;
+}
+
+// All light that comes in goes somewhere, and where it goes to the film each pass gathers what the audit has there.
+// Surfaces of 4 to 7 % send back more than one of them by the front.
+TEST(Passes, GatherWhatTheAuditSays) {
+    SceneParts parts(kGrid);
+    parts.add(scene::Quad{4000.0, 4000.0}, {.linear = about_x(180.0), .translation = {0.0, 0.0, 2000.0}}, 0.7);
+    const std::uint32_t lamp =
+        parts.add(scene::Quad{300.0, 300.0}, {.linear = about_x(135.0), .translation = {0.0, 200.0, 1800.0}}, 0.0);
+    parts.lights.emplace_back(scene::AreaLight{.object = lamp, .radiance = spectral::constant_spectrum(20.0, kGrid)});
+    const optics::WallFinish grey{.albedo = 0.8, .gloss = 0.2};
+    const Studio studio({.lens = "tessar",
+                         .f_number = 4.0,
+                         .sensor = kSensor,
+                         .grid = kGrid,
+                         .barrel = optics::BarrelFinish{.tube = grey, .edges = grey, .blades = grey}},
+                        parts);
+    const render::EnergyAudit audit = studio.audit(200'000);
+    double sum = 0.0;
+    for (const render::EnergyShare& share : audit.shares) {
+        sum += share.share;
+    }
+    EXPECT_NEAR(sum, 1.0, 1e-12);
+    EXPECT_LT(audit[render::Fate::absorbed].share, 0.01) << "its glasses pass 99 % and more";
+    EXPECT_LT(audit[render::Fate::lost].share, 1e-6);
+    EXPECT_GT(audit[render::Fate::front].share, 0.05);
+
+    const double pitch_m = 1e-3 * kSensor.pixel_pitch_mm;
+    const double light_in = audit.light_in / (pitch_m * pitch_m);
+    const auto expect_gathered = [&](render::Fate fate, const render::Picture& films, double most_error) {
+        const auto& [share, error] = audit[fate];
+        const auto [light, variance] = gathered(films);
+        const double both = std::hypot(light_in * error, std::sqrt(variance));
+        fmt::print("{:.5g} of {:.5g} ± {:.2g}\n", light, light_in * share, both);
+        EXPECT_NEAR(light, light_in * share, 4.0 * both);
+        EXPECT_LT(both, most_error * light);
+    };
+    const render::Film imaged = studio.by_pass("imaged", 128);
+    const render::Film direct = studio.by_pass("direct", 128);
+    const render::Film ghosts = studio.by_pass("ghosts", 500);
+    const render::Film faint = studio.by_pass("faint-ghosts", 2000);
+    expect_gathered(render::Fate::imaged, render::Picture({{"imaged", &imaged}, {"direct", &direct}}), 0.02);
+    expect_gathered(render::Fate::ghosts, render::Picture({{"ghosts", &ghosts}, {"faint-ghosts", &faint}}), 0.1);
+    expect_gathered(render::Fate::barrel, studio.by_pass("barrel", 4000), 0.15);
 }
 
 // A wall under a lamp that is seen, before a mirror of a sensor.

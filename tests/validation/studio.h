@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <string>
 
+#include "engine/render/integrators/energy_audit.h"
 #include "engine/render/integrators/passes.h"
 #include "tests/validation/rendered_scene.h"
 #include "tests/validation/small_scene.h"
@@ -51,6 +52,8 @@ class Studio {
     [[nodiscard]] render::Film by_pass(const char* pass, std::uint32_t samples) const {
         return film_of(render::pass_named(pass).render(view_, render::integrator_named("camera")), samples);
     }
+
+    [[nodiscard]] render::EnergyAudit audit(std::uint32_t paths) const { return render::energy_audit(view_, paths); }
 
     [[nodiscard]] const scene::Scene& scene() const { return view_.scene(); }
     [[nodiscard]] const render::Camera& camera() const { return camera_; }

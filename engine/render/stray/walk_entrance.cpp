@@ -1,30 +1,9 @@
 #include "engine/render/stray/walk_entrance.h"
 
-#include <cstdint>
-
 #include "engine/pupil/disc.h"
+#include "engine/render/stray/walk_numbers.h"
 
 namespace lensproof::render {
-
-namespace {
-
-/// As many numbers as a walk takes, from the last two of a light path's five (SplitMix64).
-class WalkNumbers {
-  public:
-    explicit WalkNumbers(const std::array<double, PathSampler::kNumbers>& seed)
-        : state_((static_cast<std::uint64_t>(seed[3] * 0x1p32) << 32U) | static_cast<std::uint64_t>(seed[4] * 0x1p32)) {
-    }
-
-    double operator()() {
-        state_ += 0x9e3779b97f4a7c15ULL;
-        return (static_cast<double>(sampler_detail::mixed(state_) >> 12U) + 0.5) * 0x1p-52;
-    }
-
-  private:
-    std::uint64_t state_;
-};
-
-}  // namespace
 
 WalkEntrance::WalkEntrance(const Camera& camera, Ways ways)
     : front_(camera), ways_(ways), barrel_(camera.lens().value()) {}
