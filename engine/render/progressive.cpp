@@ -21,26 +21,14 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-constexpr double kDarkFraction = 0.01;  // of the picture's mean
-constexpr std::uint32_t kLongestPass = 1024;
+constexpr std::uint32_t kLongestRound = 1024;
 
-/// The end of the pass that follows `done`.
-std::uint32_t pass_end(std::uint32_t done, bool in_passes) {
-    if (!in_passes) {
-        return done + kLongestPass;
-    }
-    if (done < 64) {
-        return std::bit_floor(std::max<std::uint32_t>(kSamplesPerBlock / 2, done)) * 2;
-    }
-    return done + std::max<std::uint32_t>(64, done / 256 * 64);
-}
-
-/// One pass over the tiles that are to have more samples. Tiles are stored in their order, whoever was first, so that
+/// One round over the tiles that are to have more samples. Tiles are stored in their order, whoever was first, so that
 /// splats are always added in the same one. After an interruption the tiles before some place are stored and none
 /// after.
-class Pass {
+class Round {
   public:
-    Pass(RenderState& state, std::vector<std::size_t> todo, const std::vector<PixelRect>& rects)
+    Round(RenderState& state, std::vector<std::size_t> todo, const std::vector<PixelRect>& rects)
         : state_(&state), rects_(&rects), todo_(std::move(todo)) {}
 
     [[nodiscard]] int size() const { return static_cast<int>(todo_.size()); }
@@ -108,7 +96,7 @@ class Pass {
     bool has_gap_ = false;
 };
 
-/// Plans passes, carries them out, and tells how far they are.
+/// Plans rounds, carries them out, and tells how far they are.
 class ProgressiveRender {
   public:
     ProgressiveRender(RenderState& state, const TileRenderer& renderer, const RenderGoal& goal,
@@ -123,7 +111,7 @@ class ProgressiveRender {
     RenderEnd run_planned() {
         std::vector<std::size_t> todo = plan();
         done_before_ = fraction_done();
-        render_pass(std::move(todo));
+        render_round(std::move(todo));
         return end_;
     }
 
@@ -133,7 +121,7 @@ class ProgressiveRender {
                 done_before_ = fraction_done();
                 has_begun_ = true;
             }
-            render_pass(std::move(todo));
+            render_round(std::move(todo));
             if (end_ != RenderEnd::complete) {
                 return end_;
             }
@@ -146,7 +134,7 @@ class ProgressiveRender {
 
     [[nodiscard]] static bool is_unfinished(const TileProgress& tile) { return tile.done < tile.target; }
 
-    /// The tiles of the next pass; those of the last one first, if it was not carried out to its end.
+    /// The tiles of the next round; those of the last one first, if it was not carried out to its end.
     std::vector<std::size_t> plan() {
         if (expected_.empty() || std::ranges::none_of(state_.tiles, is_unfinished)) {
             set_targets();
@@ -174,12 +162,12 @@ class ProgressiveRender {
                 expected_[i] = std::clamp(taken * excess * excess, static_cast<double>(taken), expected_[i]);
             }
             if (!resumes && !is_good && tile.done < state_.range.end) {
-                tile.target = std::min(state_.range.end, state_.range.first + pass_end(taken, in_passes()));
+                tile.target = std::min(state_.range.end, state_.range.first + round_end(taken, in_rounds()));
             }
         }
     }
 
-    [[nodiscard]] bool in_passes() const { return control_.in_passes || goal_.noise > 0.0; }
+    [[nodiscard]] bool in_rounds() const { return control_.in_rounds || goal_.noise > 0.0; }
 
     /// Whether the render has to end now; once it has, it always has.
     bool has_to_end() {
@@ -191,8 +179,8 @@ class ProgressiveRender {
         return end_ != RenderEnd::complete;
     }
 
-    void render_pass(std::vector<std::size_t> todo) {
-        Pass pass(state_, std::move(todo), rects_);
+    void render_round(std::vector<std::size_t> todo) {
+        Round round(state_, std::move(todo), rects_);
         const auto stored = [this](const FilmTile& tile, const TileProgress& before) {
             samples_ += static_cast<std::uint64_t>(tile.rect().pixels()) * (before.target - before.done);
             rays_ += tile.rays();
@@ -207,18 +195,18 @@ class ProgressiveRender {
                 std::optional<FilmTile> tile;
                 try {
                     if (!has_to_end()) {
-                        tile = pass.take(i);
-                        render(pass.samples_of(i), *tile);
+                        tile = round.take(i);
+                        render(round.samples_of(i), *tile);
                         tile->finish();
                     }
                 } catch (...) {
-                    pass.give(i, std::nullopt, stored, done);  // or others would wait for it
+                    round.give(i, std::nullopt, stored, done);  // or others would wait for it
                     throw;
                 }
-                pass.give(i, std::move(tile), stored, done);
+                round.give(i, std::move(tile), stored, done);
             };
         };
-        parallel_for_workers(pass.size(), control_.threads, make_worker, [](int) {});
+        parallel_for_workers(round.size(), control_.threads, make_worker, [](int) {});
     }
 
     /// The fraction of the samples that are expected to be needed which have been taken.
@@ -260,6 +248,16 @@ class ProgressiveRender {
 };
 
 }  // namespace
+
+std::uint32_t round_end(std::uint32_t done, bool in_rounds) {
+    if (!in_rounds) {
+        return done + kLongestRound;
+    }
+    if (done < 64) {
+        return std::bit_floor(std::max<std::uint32_t>(kSamplesPerBlock / 2, done)) * 2;
+    }
+    return done + std::max<std::uint32_t>(64, done / 256 * 64);
+}
 
 std::vector<PixelRect> film_tiles(int width, int height) {
     std::vector<PixelRect> tiles;
@@ -319,161 +317,15 @@ RenderEnd render_progressively(RenderState& state, const TileRenderer& renderer,
     return ProgressiveRender(state, renderer, goal, control).run();
 }
 
-namespace {
-
-/// Whose turn it is among passes, and in which tiles.
-class Turns {
-  public:
-    Turns(std::span<RenderState> states, std::span<const Render> renders, double noise)
-        : states_(states),
-          renders_(renders),
-          noise_(noise),
-          rects_(film_tiles(states.front().film.width(), states.front().film.height())) {}
-
-    /// Sets the targets of the pass that goes on, and returns it; nothing where all are done. One that was interrupted
-    /// goes on first.
-    std::optional<std::size_t> next() {
-        for (std::size_t i = 0; i < states_.size(); ++i) {
-            if (std::ranges::any_of(states_[i].tiles,
-                                    [](const TileProgress& tile) { return tile.done < tile.target; })) {
-                return i;
-            }
-        }
-        judge();
-        constexpr double kMost = std::numeric_limits<double>::max();
-        std::optional<std::size_t> best;
-        double most = -1.0;
-        for (std::size_t i = 0; i < states_.size(); ++i) {
-            const std::uint32_t taken = taken_of(states_[i]);
-            // Those with few samples first, the fewest before others; then what a sample more takes away of V / n.
-            const double gain = taken < kFewestSamplesToJudge ? kMost / (1.0 + taken) : variance_of(i) / taken;
-            if (has_more(i) && gain > most) {
-                most = gain;
-                best = i;
-            }
-        }
-        if (best) {
-            set_targets(*best);
-        }
-        return best;
-    }
-
-    [[nodiscard]] double fraction_done() const {
-        double taken = 0.0;
-        double all = 0.0;
-        for (const RenderState& state : states_) {
-            for (const TileProgress& tile : state.tiles) {
-                taken += tile.done - state.range.first;
-                all += state.range.end - state.range.first;
-            }
-        }
-        return taken / all;
-    }
-
-  private:
-    static std::uint32_t taken_of(const RenderState& state) {
-        return std::ranges::max(state.tiles, {}, &TileProgress::done).done - state.range.first;
-    }
-
-    /// Which tiles are to go on.
-    void judge() {
-        const Picture picture = picture_of(states_);
-        dark_ = kDarkFraction * mean_brightness(picture);
-        const bool is_judged = noise_ > 0.0 && std::ranges::all_of(states_, [](const RenderState& state) {
-                                   return taken_of(state) >= kFewestSamplesToJudge;
-                               });
-        is_good_.assign(rects_.size(), false);
-        for (std::size_t i = 0; is_judged && i < rects_.size(); ++i) {
-            is_good_[i] = tile_error(picture, rects_[i], dark_) <= noise_;
-        }
-    }
-
-    [[nodiscard]] double variance_of(std::size_t pass) const {
-        const Picture picture = picture_of(states_);
-        return relative_variance(picture, states_[pass].film, {.width = picture.width(), .height = picture.height()},
-                                 dark_);
-    }
-
-    [[nodiscard]] bool goes_on(std::size_t pass, std::size_t tile) const {
-        const RenderState& state = states_[pass];
-        const bool is_wanted =
-            renders_[pass].lands_anywhere ? !std::ranges::all_of(is_good_, std::identity()) : !is_good_[tile];
-        return is_wanted && state.tiles[tile].done < state.range.end;
-    }
-
-    [[nodiscard]] bool has_more(std::size_t pass) const {
-        for (std::size_t i = 0; i < rects_.size(); ++i) {
-            if (goes_on(pass, i)) {
-                return true;
-            }
-        }
-        return false;
-    }
-
-    void set_targets(std::size_t pass) {
-        RenderState& state = states_[pass];
-        for (std::size_t i = 0; i < rects_.size(); ++i) {
-            if (goes_on(pass, i)) {
-                const std::uint32_t taken = state.tiles[i].done - state.range.first;
-                state.tiles[i].target = std::min(state.range.end, state.range.first + pass_end(taken, true));
-            }
-        }
-    }
-
-    std::span<RenderState> states_;
-    std::span<const Render> renders_;
-    double noise_;
-    std::vector<PixelRect> rects_;
-    double dark_ = 0.0;
-    std::vector<bool> is_good_;
-};
-
-}  // namespace
-
-RenderEnd render_passes(std::span<RenderState> states, std::span<const Render> renders, const RenderGoal& goal,
-                        const RenderControl& control) {
-    if (states.size() == 1 && !renders.front().lands_anywhere) {
-        return render_progressively(states.front(), renders.front().renderer, goal, control);
-    }
-    const Clock::time_point start = Clock::now();
-    const auto seconds = [&] { return std::chrono::duration<double>(Clock::now() - start).count(); };
-    Turns turns(states, renders, goal.noise);
-    const double done_before = turns.fraction_done();
-    RenderReport before;  // of the turns so far
-    RenderReport turn;
-    RenderControl in_turn = control;
-    in_turn.on_progress = [&](const RenderReport& now) {
-        turn = now;
-        if (!control.on_progress) {
-            return;
-        }
-        const double done = turns.fraction_done();
-        const double in_this_run = (done - done_before) / (1.0 - done_before);
-        const double rest = seconds() * (1.0 - in_this_run) / std::max(1e-9, in_this_run);
-        control.on_progress({.done = std::clamp(std::max(done, seconds() / goal.seconds), 0.0, 1.0),
-                             .seconds = seconds(),
-                             .seconds_left = std::max(0.0, std::min(rest, goal.seconds - seconds())),
-                             .samples = before.samples + turn.samples,
-                             .rays = before.rays + turn.rays});
-    };
-    while (const auto pass = turns.next()) {
-        turn = {};
-        const RenderEnd end =
-            ProgressiveRender(states[*pass], renders[*pass].renderer, {.seconds = goal.seconds - seconds()}, in_turn)
-                .run_planned();
-        if (end != RenderEnd::complete) {
-            return end;
-        }
-        before.samples += turn.samples;
-        before.rays += turn.rays;
-    }
-    return RenderEnd::complete;
+RenderEnd render_planned(RenderState& state, const TileRenderer& renderer, const RenderGoal& goal,
+                         const RenderControl& control) {
+    return ProgressiveRender(state, renderer, goal, control).run_planned();
 }
 
 Film render_film(const Render& render, const SampleRange& range, int threads,
                  const std::function<void(double done)>& progress) {
     RenderState state(render.film, range);
-    RenderControl control{.threads = threads, .in_passes = false, .is_interrupted = {}, .on_progress = {}};
+    RenderControl control{.threads = threads, .in_rounds = false, .is_interrupted = {}, .on_progress = {}};
     if (progress) {
         control.on_progress = [&](const RenderReport& report) { progress(report.done); };
     }

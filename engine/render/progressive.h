@@ -44,6 +44,11 @@ Picture picture_of(std::span<const RenderState> passes);
 
 inline constexpr int kTileSide = 16;  // px
 
+inline constexpr double kDarkFraction = 0.01;  // of the picture's mean: darker pixels are judged as if they had that
+
+/// How many samples the tiles have at the end of the round after `done`.
+std::uint32_t round_end(std::uint32_t done, bool in_rounds);
+
 /// The parts of a film that are rendered and, with --noise, judged as one, row by row from the top left.
 std::vector<PixelRect> film_tiles(int width, int height);
 
@@ -52,7 +57,7 @@ struct RenderGoal {
     double seconds = std::numeric_limits<double>::infinity();
 
     /// The relative error wanted of pixels, 0: none. After at least kFewestSamplesToJudge samples a pixel, and then at
-    /// the ends of passes, a tile gets no more samples once its error is down to that. A tile's error is the root mean
+    /// the ends of rounds, a tile gets no more samples once its error is down to that. A tile's error is the root mean
     /// square, over its pixels and R, G, B, of the standard error over the pixel's mean of R, G, B; a pixel darker than
     /// a hundredth of the picture's mean counts as that bright.
     ///
@@ -80,10 +85,10 @@ struct RenderReport {
 
 struct RenderControl {
     int threads = 0;  // 0: one a core
-    /// The whole picture early, then better and better, in passes that end at 16, 32, 64 samples and a quarter more
-    /// each time; else as few passes as there can be. It decides when tiles are judged, and the order in which splats
+    /// The whole picture early, then better and better, in rounds that end at 16, 32, 64 samples and a quarter more
+    /// each time; else as few rounds as there can be. It decides when tiles are judged, and the order in which splats
     /// are added, so their last bits; no bit of anything else.
-    bool in_passes = true;
+    bool in_rounds = true;
     /// Asked before every tile, by any thread; true ends the render as soon as the tiles in work are done.
     std::function<bool()> is_interrupted;
     /// Called after tiles were stored, one call at a time; states are whole and stand still meanwhile.
@@ -97,11 +102,9 @@ enum class RenderEnd { complete, out_of_time, interrupted };
 RenderEnd render_progressively(RenderState& state, const TileRenderer& renderer, const RenderGoal& goal,
                                const RenderControl& control);
 
-/// The same of passes that add up to a picture, in turns: each time the pass goes on by which the picture's relative
-/// variance falls most for a sample, but all of them until they have kFewestSamplesToJudge. A pass whose light lands
-/// anywhere goes on in all tiles where one is not good yet. As many renders as states.
-RenderEnd render_passes(std::span<RenderState> states, std::span<const Render> renders, const RenderGoal& goal,
-                        const RenderControl& control);
+/// No further than to each tile's target.
+RenderEnd render_planned(RenderState& state, const TileRenderer& renderer, const RenderGoal& goal,
+                         const RenderControl& control);
 
 /// The film after these samples of every pixel; `progress` is told which part of them is done.
 Film render_film(const Render& render, const SampleRange& range, int threads = 0,

@@ -13,6 +13,7 @@
 #include "engine/render/checkpoint.h"
 #include "engine/render/engine_version.h"
 #include "engine/render/film/film_image.h"
+#include "engine/render/pass_turns.h"
 #include "experiments/cli/interruption.h"
 #include "experiments/cli/progress.h"
 #include "experiments/cli/raw_files.h"
@@ -292,7 +293,7 @@ int run_render_job(const RenderJob& job, const RenderJobOptions& options) {
         RenderWatch watch(options, identity);
         const render::RenderControl control{
             .threads = options.common.threads,
-            .in_passes = job.renders.front().film.has_splats || !options.preview.empty() || options.time_s > 0.0,
+            .in_rounds = job.renders.front().film.has_splats || !options.preview.empty() || options.time_s > 0.0,
             .is_interrupted = [] { return Interruption::has_come(); },
             .on_progress = [&](const render::RenderReport& report) { watch.look(passes, report); }};
         end = render::render_passes(passes, job.renders, goal_of(options), control);

@@ -48,7 +48,7 @@ TEST(Checkpoint, HoldsEveryBitOfARender) {
     RenderState whole = render.begin(100);
     render.go_on(whole, 1000);
     RenderState state = render.begin(100);
-    render.go_on(state, 8);  // in the midst of the second pass
+    render.go_on(state, 8);  // in the midst of the second round
     write_checkpoint(folder.path() / "c", kIdentity, {&state, 1});
     RenderState read = render.begin(100);
     read_checkpoint(folder.path() / "c", kIdentity, {&read, 1});

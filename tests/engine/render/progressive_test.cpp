@@ -1,5 +1,3 @@
-#include "engine/render/progressive.h"
-
 #include <gtest/gtest.h>
 
 #include <atomic>
@@ -9,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "engine/render/pass_turns.h"
 #include "tests/engine/render/film/film_sample.h"
 
 namespace lensproof::render::progressive_test {
@@ -56,9 +55,9 @@ RenderState rendered(const FilmLayout& layout, const TileRenderer& renderer, std
 
 TEST(Progressive, TakesEverySampleOnce) {
     const FilmLayout layout = plain_film(50, 37);
-    for (const bool in_passes : {false, true}) {
+    for (const bool in_rounds : {false, true}) {
         const RenderState state =
-            rendered(layout, exponential_renderer(layout, 1), 150, {.threads = 2, .in_passes = in_passes});
+            rendered(layout, exponential_renderer(layout, 1), 150, {.threads = 2, .in_rounds = in_rounds});
         Film expected(layout);
         FilmTile tile(layout);
         const TileSamples all{.rect = {0, 0, 50, 37}, .first = 0, .end = 150};
@@ -66,7 +65,7 @@ TEST(Progressive, TakesEverySampleOnce) {
         exponential_renderer(layout, 1)(all, tile);
         tile.finish();
         expected.store(tile);
-        EXPECT_EQ(bits(state.film), bits(expected)) << "passes " << in_passes;
+        EXPECT_EQ(bits(state.film), bits(expected)) << "rounds " << in_rounds;
     }
 }
 
@@ -81,7 +80,7 @@ TEST(Progressive, GivesTheSameBitsForEveryNumberOfThreads) {
     EXPECT_EQ(with_threads(5), alone);
 }
 
-// Wherever a render is interrupted, as often as may be, it ends at the same bits. 12 tiles and 4 passes are 48 places.
+// Wherever a render is interrupted, as often as may be, it ends at the same bits. 12 tiles and 4 rounds are 48 places.
 TEST(Progressive, GoesOnAsIfNothingHadHappened) {
     const FilmLayout layout = film_with_splats();
     const std::string whole = bits(rendered(layout, splatting_renderer(layout), 100, {.threads = 1}).film);
@@ -102,9 +101,8 @@ TEST(Progressive, GoesOnAsIfNothingHadHappened) {
 struct TwoPasses {
     FilmLayout plain = plain_film(50, 37, 4);
     FilmLayout splats = film_with_splats();
-    std::vector<Render> renders = {
-        {.film = plain, .renderer = exponential_renderer(plain, 1)},
-        {.film = splats, .renderer = splatting_renderer(splats), .lands_anywhere = true}};
+    std::vector<Render> renders = {{.film = plain, .renderer = exponential_renderer(plain, 1)},
+                                   {.film = splats, .renderer = splatting_renderer(splats), .lands_anywhere = true}};
 
     [[nodiscard]] std::vector<RenderState> begin(std::uint32_t samples) const {
         return {{plain, {.first = 0, .end = samples}, "a"}, {splats, {.first = 0, .end = samples}, "b"}};
@@ -185,7 +183,7 @@ TEST(Progressive, ReportsGoForward) {
     double before = 0.0;
     std::uint64_t samples = 0;
     rendered(layout, exponential_renderer(layout, 1), 64,
-             {.threads = 2, .in_passes = true, .is_interrupted = {}, .on_progress = [&](const auto& report) {
+             {.threads = 2, .in_rounds = true, .is_interrupted = {}, .on_progress = [&](const auto& report) {
                   EXPECT_GE(report.done, before);
                   before = report.done;
                   samples = report.samples;
