@@ -135,8 +135,7 @@ TEST(FilmExr, HoldsPasses) {
     const Picture picture({{"imaged", &imaged}, {"ghosts", &ghosts}});
     write_film_exr(picture, notes, folder.path() / "a.exr");
     const formats::Image image = formats::read_image(folder.path() / "a.exr");
-    EXPECT_EQ(image.at(69, 32, 2),
-              static_cast<float>(imaged.estimate(69, 32).rgb.z + ghosts.estimate(69, 32).rgb.z));
+    EXPECT_EQ(image.at(69, 32, 2), static_cast<float>(imaged.estimate(69, 32).rgb.z + ghosts.estimate(69, 32).rgb.z));
     const FilmFile read = read_film_exr(folder.path() / "a.exr");
     ASSERT_EQ(read.films.size(), 2U);
     EXPECT_EQ(read.films[1].pass, "ghosts");
