@@ -116,6 +116,8 @@ TEST(RenderPasses, RefuseWhatDoesNotAddUp) {
                    {"--features", "imaged"});
     place.file("scene.toml", lamps("model = \"thin-lens\"\n"));
     expect_no_render("ghosts", {"scene.toml", "camera", "thin-lens", "exact"});
+    place.file("scene.toml", with(lamps(), "pixels = [12, 8]", "pixels = [12000, 8000]"));
+    expect_no_render("imaged,direct,ghosts", {"3 passes", "GB"});  // each by itself would do
     place.file("scene.toml", lamps("blade_reflectance = 1.5\n"));
     expect_no_render("ghosts", {"scene.toml", "blade_reflectance", "1.5"});
     place.file("scene.toml", small_scene());

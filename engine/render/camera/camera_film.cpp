@@ -9,12 +9,6 @@
 
 namespace lensproof::render {
 
-namespace {
-
-constexpr double kMostBytes = 16e9;  // of sums in memory, without features and splats
-
-}  // namespace
-
 FilmLayout Camera::make_film(int layers, const PixelFilter& filter) const {
     const spectral::WavelengthStrata& strata = grid_.strata;
     const spectral::Illuminant white = spectral::illuminant(settings_.white_balance);
@@ -29,11 +23,11 @@ FilmLayout Camera::make_film(int layers, const PixelFilter& filter) const {
         std::ranges::for_each(film.rgb_weights, [](Vec3d& weight) { weight = {weight.x, weight.x, weight.x}; });
     }
     const double bytes = static_cast<double>(film_bytes_per_pixel(film)) * film.width * film.height;
-    if (bytes > kMostBytes) {
+    if (bytes > kMostFilmBytes) {
         throw InputError(
             fmt::format("{} × {} pixels with {} spectral layers need {:.1f} GB, expected {:.0f} GB at most: "
                         "fewer pixels or layers",
-                        film.width, film.height, layers, bytes / 1e9, kMostBytes / 1e9));
+                        film.width, film.height, layers, bytes / 1e9, kMostFilmBytes / 1e9));
     }
     return film;
 }

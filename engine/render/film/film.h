@@ -50,6 +50,9 @@ struct FilmLayout {
     double light_share = 1.0;   // of what is added to it, that is kept: the rest goes to other films
 };
 
+/// Of sums in memory, that all films of a picture may take; a camera's own without features and splats.
+inline constexpr double kMostFilmBytes = 16e9;
+
 /// Bytes that a film holds for each of its pixels.
 std::size_t film_bytes_per_pixel(const FilmLayout& layout);
 

@@ -1,8 +1,11 @@
 #include "engine/render/integrators/passes.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <stdexcept>
 
+#include "engine/base/input_error.h"
 #include "engine/render/integrators/light_walk.h"
 #include "engine/render/stray/diffracted_entrance.h"
 #include "engine/render/stray/ghost_entrance.h"
@@ -85,6 +88,17 @@ std::vector<Render> renders_of(const std::vector<std::string>& names, const View
         const Pass& pass = pass_named(name);
         renders.push_back(pass.render(view, integrator));
         renders.back().film.light_share = pass.goes_straight ? straight : 1.0;
+    }
+    double bytes = 0.0;
+    for (const Render& render : renders) {
+        const FilmLayout& film = render.film;
+        bytes += static_cast<double>(film_bytes_per_pixel(film)) * film.width * film.height;
+    }
+    if (renders.size() > 1 && bytes > kMostFilmBytes) {
+        throw InputError(
+            fmt::format("{} passes need {:.1f} GB of films, expected {:.0f} GB at most: fewer passes, "
+                        "pixels or layers",
+                        renders.size(), bytes / 1e9, kMostFilmBytes / 1e9));
     }
     return renders;
 }
