@@ -76,11 +76,27 @@ void check_keys(std::string_view text, const std::filesystem::path& name) {
     }
 }
 
+/// Puts `over` over `under`, as TomlTable::overlaid says.
+void put_over(toml::table& under, const toml::table& over) {
+    for (const auto& [key, node] : over) {
+        toml::table* inner = under[key].as_table();
+        if (inner != nullptr && node.is_table()) {
+            put_over(*inner, *node.as_table());
+        } else {
+            under.insert_or_assign(key, node);
+        }
+    }
+}
+
 }  // namespace
 
-TomlTable::TomlTable(std::shared_ptr<const toml::table> root, const toml::table* table, std::filesystem::path file,
-                     std::string path)
-    : root_(std::move(root)), table_(table), file_(std::move(file)), path_(std::move(path)) {}
+std::string TomlTable::Layer::qualified(const std::string& key) const {
+    return path.empty() || key.empty() ? path + key : path + "." + key;
+}
+
+TomlTable::Layer TomlTable::Layer::below(const std::string& key, const toml::table* inner) const {
+    return {root, inner, file, qualified(key)};
+}
 
 TomlTable TomlTable::read(const std::filesystem::path& file) {
     return parse(read_file(file), file);
@@ -91,58 +107,73 @@ TomlTable TomlTable::parse(const std::string& text, const std::filesystem::path&
     try {
         auto root = std::make_shared<const toml::table>(toml::parse(text));
         const toml::table* top = root.get();
-        return {std::move(root), top, name, ""};
+        return TomlTable({{std::move(root), top, name, ""}});
     } catch (const toml::parse_error& error) {
         throw InputError(fmt::format("{}:{}: not TOML: {}", name.string(), error.source().begin.line,
                                      std::string(error.description())));
     }
 }
 
+TomlTable TomlTable::overlaid(const TomlTable& over) const {
+    std::vector<Layer> layers = over.layers_;
+    layers.insert(layers.end(), layers_.begin(), layers_.end());
+    return TomlTable(std::move(layers));
+}
+
+const TomlTable::Layer& TomlTable::layer_of(const std::string& key) const {
+    const auto found = std::ranges::find_if(layers_, [&](const Layer& layer) { return layer.table->contains(key); });
+    return found == layers_.end() ? layers_.back() : *found;
+}
+
+const toml::node* TomlTable::get(const std::string& key) const {
+    return layer_of(key).table->get(key);
+}
+
 bool TomlTable::has(const std::string& key) const {
-    return table_->contains(key);
+    return get(key) != nullptr;
 }
 
 std::vector<std::string> TomlTable::keys() const {
-    std::vector<std::string> names;
-    for (const auto& [key, node] : *table_) {
-        names.emplace_back(key.str());
+    std::set<std::string> names;
+    for (const Layer& layer : layers_) {
+        for (const auto& [key, node] : *layer.table) {
+            names.emplace(key.str());
+        }
     }
-    return names;
+    return {names.begin(), names.end()};
 }
 
 std::string TomlTable::stated() const {
+    toml::table joined;
+    for (auto layer = layers_.rbegin(); layer != layers_.rend(); ++layer) {
+        put_over(joined, *layer->table);
+    }
     std::ostringstream text;
-    text << toml::json_formatter(*table_);
+    text << toml::json_formatter(joined);
     return text.str();
 }
 
 bool TomlTable::is_number(const std::string& key) const {
-    const toml::node* node = table_->get(key);
+    const toml::node* node = get(key);
     return node != nullptr && node->is_number();
 }
 
 bool TomlTable::is_text(const std::string& key) const {
-    const toml::node* node = table_->get(key);
+    const toml::node* node = get(key);
     return node != nullptr && node->is_string();
 }
 
 bool TomlTable::is_table(const std::string& key) const {
-    const toml::node* node = table_->get(key);
+    const toml::node* node = get(key);
     return node != nullptr && node->is_table();
 }
 
-std::string TomlTable::qualified(const std::string& key) const {
-    if (path_.empty() || key.empty()) {
-        return path_ + key;
-    }
-    return path_ + "." + key;
-}
-
 std::string TomlTable::where(const std::string& key) const {
-    const toml::node* node = table_->get(key);
-    const auto line = (node != nullptr ? node->source() : table_->source()).begin.line;
-    const std::string name = qualified(key);
-    return fmt::format("{}:{}:{}{}", file_.string(), std::max(1U, line), name.empty() ? "" : " ", name);
+    const Layer& layer = layer_of(key);
+    const toml::node* node = layer.table->get(key);
+    const auto line = (node != nullptr ? node->source() : layer.table->source()).begin.line;
+    const std::string name = layer.qualified(key);
+    return fmt::format("{}:{}:{}{}", layer.file.string(), std::max(1U, line), name.empty() ? "" : " ", name);
 }
 
 void TomlTable::fail(const std::string& key, const std::string& message) const {
@@ -151,7 +182,7 @@ void TomlTable::fail(const std::string& key, const std::string& message) const {
 
 const toml::node* TomlTable::find(const std::string& key) {
     taken_.insert(key);
-    return table_->get(key);
+    return get(key);
 }
 
 const toml::node& TomlTable::require(const std::string& key) {
@@ -300,7 +331,13 @@ TomlTable TomlTable::table(const std::string& key) {
     if (!node.is_table()) {
         fail(key, fmt::format("is {}, expected a table", shown(node)));
     }
-    return {root_, node.as_table(), file_, qualified(key)};
+    std::vector<Layer> layers;
+    for (const Layer& layer : layers_) {
+        if (const toml::table* inner = (*layer.table)[key].as_table()) {
+            layers.push_back(layer.below(key, inner));
+        }
+    }
+    return TomlTable(std::move(layers));
 }
 
 std::optional<TomlTable> TomlTable::optional_table(const std::string& key) {
@@ -323,14 +360,13 @@ std::vector<TomlTable> TomlTable::tables(const std::string& key) {
         if (element == nullptr) {
             fail(key, fmt::format("its entry {} is {}, expected a table", i + 1, shown(*array->get(i))));
         }
-        found.push_back(TomlTable(root_, element, file_, fmt::format("{}[{}]", qualified(key), i + 1)));
+        found.push_back(TomlTable({layer_of(key).below(fmt::format("{}[{}]", key, i + 1), element)}));
     }
     return found;
 }
 
 void TomlTable::finish() const {
-    for (const auto& [key, node] : *table_) {
-        const std::string name(key.str());
+    for (const std::string& name : keys()) {
         if (!taken_.contains(name)) {
             const std::string hint = name_hint(name, {taken_.begin(), taken_.end()});
             fail(name, "is not a key that is known here" +

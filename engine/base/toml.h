@@ -29,6 +29,11 @@ class TomlTable {
     /// Parses a text; `name` stands for the file in messages.
     static TomlTable parse(const std::string& text, const std::filesystem::path& name);
 
+    /// The table with what `over` states put over it: of a key that both have, over's value counts, and where both
+    /// values are tables they are joined in the same way. Complaints name the file that states what they are about;
+    /// `file` remains this table's.
+    [[nodiscard]] TomlTable overlaid(const TomlTable& over) const;
+
     [[nodiscard]] bool has(const std::string& key) const;
     /// Every key of the table, for a table whose keys are names.
     [[nodiscard]] std::vector<std::string> keys() const;
@@ -72,20 +77,29 @@ class TomlTable {
     /// Throws InputError "where(key): message".
     [[noreturn]] void fail(const std::string& key, const std::string& message) const;
 
-    [[nodiscard]] const std::filesystem::path& file() const { return file_; }
+    [[nodiscard]] const std::filesystem::path& file() const { return layers_.back().file; }
 
   private:
-    TomlTable(std::shared_ptr<const toml::table> root, const toml::table* table, std::filesystem::path file,
-              std::string path);
+    /// A table as one file states it.
+    struct Layer {
+        std::shared_ptr<const toml::table> root;  // keeps the nodes alive
+        const toml::table* table;
+        std::filesystem::path file;
+        std::string path;  // "surfaces[3]", empty at the top
+
+        [[nodiscard]] std::string qualified(const std::string& key) const;
+        [[nodiscard]] Layer below(const std::string& key, const toml::table* inner) const;
+    };
+
+    explicit TomlTable(std::vector<Layer> layers) : layers_(std::move(layers)) {}
     const toml::node& require(const std::string& key);
     const toml::node* find(const std::string& key);
     double checked_number(const toml::node& node, const std::string& key, const Bounds& bounds) const;
-    [[nodiscard]] std::string qualified(const std::string& key) const;
+    /// The layer whose value of the key counts; the lowest where none has it.
+    [[nodiscard]] const Layer& layer_of(const std::string& key) const;
+    [[nodiscard]] const toml::node* get(const std::string& key) const;
 
-    std::shared_ptr<const toml::table> root_;  // keeps the nodes alive
-    const toml::table* table_;
-    std::filesystem::path file_;
-    std::string path_;  // "surfaces[3]", empty at the top
+    std::vector<Layer> layers_;  // the one that counts most first
     std::set<std::string> taken_;
 };
 

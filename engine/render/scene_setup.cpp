@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include "engine/base/file.h"
 #include "engine/scene/chart/chart_file.h"
 #include "engine/scene/scene_file.h"
 #include "engine/scene/spectra/spectrum_keys.h"
@@ -58,8 +57,7 @@ void read_render_table(TomlTable& table, SceneSetup& setup) {
     table.finish();
 }
 
-SceneSetup parse_scene_setup(const std::string& text, const std::filesystem::path& name) {
-    TomlTable top = TomlTable::parse(text, name);
+SceneSetup read_scene_setup(TomlTable top) {
     SceneSetup setup;
     top.has("chart") ? read_chart_tables(top, setup) : read_scene_tables(top, setup);
     if (auto render = top.optional_table("render")) {
@@ -76,8 +74,12 @@ SceneSetup parse_scene_setup(const std::string& text, const std::filesystem::pat
     return setup;
 }
 
+SceneSetup parse_scene_setup(const std::string& text, const std::filesystem::path& name) {
+    return read_scene_setup(TomlTable::parse(text, name));
+}
+
 SceneSetup read_scene_setup(const std::filesystem::path& file) {
-    return parse_scene_setup(read_file(file), file);
+    return read_scene_setup(TomlTable::read(file));
 }
 
 }  // namespace lensproof::render

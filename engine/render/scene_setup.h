@@ -38,6 +38,9 @@ struct SceneSetup {
 /// a flat field alone.
 SceneSetup read_scene_setup(const std::filesystem::path& file);
 
+/// The same of a table that holds all of it.
+SceneSetup read_scene_setup(TomlTable top);
+
 /// The same from a text; `name` stands for the file in messages, and its folder is where files are looked for.
 SceneSetup parse_scene_setup(const std::string& text, const std::filesystem::path& name);
 

@@ -3,12 +3,26 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
+#include <cctype>
+
 namespace lensproof::findings {
 
 void ExperimentFile::add_subject(const TomlTable& table, const std::string& key, const std::string& id) {
     if (!subjects.insert(id).second) {
         table.fail(key, fmt::format("makes a second subject \"{}\" of the report, expected one of each id", id));
     }
+}
+
+std::string read_name(TomlTable& table) {
+    std::string name = table.text("name");
+    // Names become files' names.
+    const bool plain = std::ranges::all_of(
+        name, [](unsigned char letter) { return std::isalnum(letter) != 0 || letter == '-' || letter == '_'; });
+    if (name.empty() || !plain) {
+        table.fail("name", fmt::format("is \"{}\", expected letters, digits, - and _", name));
+    }
+    return name;
 }
 
 std::vector<std::string> names_of(TomlTable& table, const std::string& key, const std::vector<std::string>& known) {

@@ -44,6 +44,9 @@ struct ExperimentFile {
 /// and key, and where something that the study needs is missing.
 using StudyReader = Study (*)(ExperimentFile& file);
 
+/// The table's `name`, of letters, digits, - and _: files are called by it.
+std::string read_name(TomlTable& table);
+
 /// The names that the table lists under `key`, each of which is among `known`; none where it has no such key.
 std::vector<std::string> names_of(TomlTable& table, const std::string& key, const std::vector<std::string>& known);
 

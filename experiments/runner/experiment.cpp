@@ -9,9 +9,11 @@
 #include "experiments/studies/cameras/comparisons.h"
 #include "experiments/studies/cameras/photos.h"
 #include "experiments/studies/cameras/simulations.h"
+#include "experiments/studies/edge_diffraction/edge_study.h"
 #include "experiments/studies/measurement_floor/floor_study.h"
 #include "experiments/studies/pupil_passage/passage_study.h"
 #include "experiments/studies/stability/stability_study.h"
+#include "experiments/studies/stray_light/stray_study.h"
 
 namespace lensproof::runner {
 
@@ -30,6 +32,8 @@ constexpr std::array kStudies = {
     StudyKind{"[[comparisons]]", studies::read_comparisons, false},
     StudyKind{"[stability]", studies::read_stability},
     StudyKind{"[[pupil_passage]]", studies::read_pupil_passage},
+    StudyKind{"[[stray_light]]", studies::read_stray_light},
+    StudyKind{"[[edge_diffraction]]", studies::read_edge_diffraction},
     StudyKind{"[measurement_floor]", studies::read_measurement_floor},
 };
 

@@ -8,7 +8,6 @@
 #include <string>
 #include <vector>
 
-#include "engine/analysis/edge_wave.h"
 #include "engine/base/angle.h"
 #include "engine/base/basis.h"
 #include "engine/base/file.h"
@@ -18,6 +17,7 @@
 #include "engine/formats/prescription/prescription_file.h"
 #include "engine/render/integrators/passes.h"
 #include "engine/render/stray/diffracted_entrance.h"
+#include "experiments/studies/edge_diffraction/measure_edges.h"
 #include "tests/test_folder.h"
 #include "tests/validation/rendered_scene.h"
 #include "tests/validation/small_scene.h"
@@ -25,200 +25,54 @@
 namespace lensproof::diffracted_light_test {
 
 const spectral::SpectralGrid kGrid = spectral::spectral_grid(545.0, 555.0, 4);
-constexpr double kWavelength_nm = 550.0;
-constexpr double kIrradiance = 1000.0;  // of the light, across it
-constexpr int kPixelsPerAiry = 3;       // a pixel is λN / 3
-constexpr double kRotation_deg = 10.0;
 
 struct Setting {
     int blades = 0;  // 0: a circle
     double f_number = 8.0;
     double curvature = 0.0;
-    [[nodiscard]] double airy_mm() const { return 1e-6 * kWavelength_nm * f_number; }
 };
 
 render::CameraSettings tessar(const Setting& setting, int pixels) {
-    render::CameraSettings camera{
-        .lens = "tessar",
-        .f_number = setting.f_number,
-        .focus_distance_mm = kInfinity,
-        .sensor = {.width = pixels, .height = pixels, .pixel_pitch_mm = setting.airy_mm() / kPixelsPerAiry},
-        .response = "luminance"};
+    render::CameraSettings camera{.lens = "tessar",
+                                  .f_number = setting.f_number,
+                                  .focus_distance_mm = kInfinity,
+                                  .sensor = {.width = pixels, .height = pixels, .pixel_pitch_mm = 1e-3},
+                                  .response = "luminance"};
     if (setting.blades > 0) {
-        camera.blades = optics::PolygonStop{
-            .blades = setting.blades, .curvature = setting.curvature, .rotation_deg = kRotation_deg};
+        camera.blades =
+            optics::PolygonStop{.blades = setting.blades, .curvature = setting.curvature, .rotation_deg = 10.0};
     }
     return camera;
 }
 
-/// What a star on the axis is diffracted to, 100 λN and a little more far, by `paths` light paths.
-class StarFilm {
-  public:
-    StarFilm(const Setting& setting, std::uint32_t paths)
-        : camera_(tessar(setting, kPixels), {545.0, 555.0, 4, 1}, {}, {}), film_(camera_.film()) {
-        SceneParts parts(kGrid);
-        parts.add(scene::Sphere{1.0}, {.linear = kIdentity3, .translation = {0.0, 0.0, -1e4}}, 0.0);
-        const double cos_radius = std::cos(1e-5);
-        const double cone = 2.0 * kPi * (1.0 - cos_radius);
-        parts.lights.emplace_back(
-            scene::SunLight{{0.0, 0.0, 1.0}, cos_radius, spectral::constant_spectrum(kIrradiance / cone, kGrid)});
-        const render::World world = parts.scene();
-        const render::View view{.world = &world, .camera = &camera_, .seed = 1, .paths = {.max_bounces = 0}};
-        render::Render render = render::pass_named("diffracted").render(view, render::integrator_named("camera"));
-        const double per_nm = 1.0 / render.film.band_nm;
-        render.film.rgb_weights.assign(render.film.rgb_weights.size(), {per_nm, per_nm, per_nm});
-        const render::PixelRect all{.width = kPixels, .height = static_cast<int>(paths) / kPixels};
-        film_ = rendered(render, {&all, 1}, 1);
-    }
-
-    /// Visits each pixel: place in λN from the image, irradiance over the light's.
-    template <class Visit>
-    void for_each(const Visit& visit) const {
-        for (int y = 0; y < kPixels; ++y) {
-            for (int x = 0; x < kPixels; ++x) {
-                const Vec2d place = camera_.sensor().position(x, y);
-                visit(place / (kPixelsPerAiry * camera_.sensor().pixel_pitch_mm),
-                      film_.estimate(x, y).rgb.x / kIrradiance);
-            }
-        }
-    }
-
-    [[nodiscard]] const render::Camera& camera() const { return camera_; }
-
-  private:
-    static constexpr int kPixels = 2 * 101 * kPixelsPerAiry;
-    render::Camera camera_;
-    render::Film film_;
-};
-
-/// Octaves of radius, in λN, half an octave apart. Each is weighed by sin² over it, which averages what oscillates with
-/// a period of about a λN.
-struct Octave {
-    double from = 0.0;
-    [[nodiscard]] double weight(double radius) const {
-        const double s = std::sin(kPi * (radius / from - 1.0));
-        return radius > from && radius < 2.0 * from ? s * s : 0.0;
-    }
-};
-const std::vector<Octave> kOctaves = {{5.0}, {7.0}, {10.0}, {14.0}, {20.0}, {28.0}, {40.0}, {50.0}};
-
-/// Mean irradiances over the light's, an octave each, and the sum from 5 to 100 λN, in (λN)²: its beginning is the mean
-/// of those from 5 to 7, since a sharp cut swings with the rings.
-struct Profile {
-    std::vector<double> irradiance;
-    double energy = 0.0;
-
-    /// `visit_all`: calls its argument with (radius, irradiance, area) for the places of the film.
-    template <class VisitAll>
-    explicit Profile(const VisitAll& visit_all) : irradiance(kOctaves.size()) {
-        std::vector<double> weights(kOctaves.size());
-        visit_all([&](double radius, double here, double area) {
-            energy += radius < 100.0 ? std::clamp(0.5 * (radius - 5.0), 0.0, 1.0) * area * here : 0.0;
-            for (std::size_t i = 0; i < kOctaves.size(); ++i) {
-                irradiance[i] += kOctaves[i].weight(radius) * area * here;
-                weights[i] += kOctaves[i].weight(radius) * area;
-            }
-        });
-        for (std::size_t i = 0; i < kOctaves.size(); ++i) {
-            irradiance[i] /= weights[i];
-        }
-    }
-
-    /// d log E / d log r, by least squares over the octaves.
-    [[nodiscard]] double slope() const {
-        const auto n = static_cast<double>(irradiance.size());
-        double x = 0.0;
-        double y = 0.0;
-        double xx = 0.0;
-        double xy = 0.0;
-        for (std::size_t i = 0; i < irradiance.size(); ++i) {
-            const double log_r = std::log(kOctaves[i].from);
-            x += log_r / n;
-            y += std::log(irradiance[i]) / n;
-            xx += log_r * log_r / n;
-            xy += log_r * std::log(irradiance[i]) / n;
-        }
-        return (xy - x * y) / (xx - x * x);
-    }
-};
-
-Profile by_rays(const StarFilm& film) {
-    return Profile([&](const auto& visit) {
-        film.for_each([&](const Vec2d& place, double irradiance) {
-            visit(length(place), irradiance, 1.0 / (kPixelsPerAiry * kPixelsPerAiry));
-        });
-    });
-}
-
-analysis::EdgeWave wave_of(const render::Camera& camera, int pieces) {
-    const optics::Lens& lens = *camera.lens();
-    const optics::StopAim aim(optics::at_wavelength<double>(lens, kWavelength_nm), lens.stop_index());
-    return {aim, lens.stop_mask, {.at = {0.0, 0.0, 1.0}, .is_far = true}, kWavelength_nm, pieces};
-}
-
-/// A blade's sector is like the others, and its halves each other's mirror image: from a corner to the next edge's
-/// normal, with steps that are short at both, where streaks are narrow.
-Profile by_wave(const Setting& setting, const analysis::EdgeWave& wave) {
-    const double half_sector = setting.blades > 0 ? kPi / setting.blades : kPi;
-    const int azimuths = setting.blades > 0 ? 64 : 1;
-    constexpr double kStep = 0.15;
-    return Profile([&](const auto& visit) {
-        for (double radius = 5.0 + 0.5 * kStep; radius < 100.0; radius += kStep) {
-            for (int j = 0; j < azimuths; ++j) {
-                const double t = (j + 0.5) / azimuths;
-                const double azimuth = radians(kRotation_deg) + half_sector * t * t * (3.0 - 2.0 * t);
-                const double share = azimuths == 1 ? 1.0 : 6.0 * t * (1.0 - t) / azimuths;
-                const double r = radius * setting.airy_mm();
-                visit(radius, wave.irradiance({r * std::cos(azimuth), r * std::sin(azimuth)}),
-                      2.0 * kPi * radius * kStep * share);
-            }
-        }
-    });
-}
-
 // From 5 to 100 λN: each octave within 10 % of the wave's, the slope within 5 %, all light together within 5 %. (Sixty
 // thousand paths leave 1.5 % in the outermost octave; two million have every octave of a circle's within 0.5 %.)
-void expect_the_waves_profile(const Setting& setting) {
-    const StarFilm film(setting, 60'000);
-    const Profile rays = by_rays(film);
-    const Profile wave = by_wave(setting, wave_of(film.camera(), setting.blades > 0 ? 32 * setting.blades : 2048));
-    double worst = 0.0;
-    for (std::size_t i = 0; i < kOctaves.size(); ++i) {
-        const double ratio = rays.irradiance[i] / wave.irradiance[i];
-        EXPECT_NEAR(ratio, 1.0, 0.1) << setting.blades << " blades, from " << kOctaves[i].from << " λN";
-        worst = std::max(worst, std::abs(ratio - 1.0));
-    }
-    EXPECT_NEAR(rays.slope() / wave.slope(), 1.0, 0.05);
-    EXPECT_NEAR(rays.energy / wave.energy, 1.0, 0.05);
-    fmt::print("{} blades, f/{}: octaves within {:.1f} %, slopes {:.3f} and {:.3f}, energies' ratio {:.4f}\n",
-               setting.blades, setting.f_number, 100.0 * worst, rays.slope(), wave.slope(), rays.energy / wave.energy);
-}
-
 TEST(DiffractedLight, HasTheWavesProfile) {
-    expect_the_waves_profile({.blades = 5, .f_number = 8.0});
-    expect_the_waves_profile({.blades = 0, .f_number = 22.0});
+    constexpr int kPaths = 60'000;
+    for (const studies::EdgeSetting& setting :
+         {studies::EdgeSetting{.lens = "tessar", .f_number = 8.0, .blades = 5, .paths = kPaths},
+          studies::EdgeSetting{.lens = "tessar", .f_number = 22.0, .blades = 0, .paths = kPaths}}) {
+        const studies::EdgeDiffraction found = studies::measure_edges(setting, 1);
+        for (std::size_t i = 0; i < studies::kOctaves.size(); ++i) {
+            EXPECT_NEAR(found.rays.octaves[i] / found.wave.octaves[i], 1.0, 0.1)
+                << setting.blades << " blades, from " << studies::kOctaves.at(i) << " λN";
+        }
+        EXPECT_NEAR(found.rays.slope() / found.wave.slope(), 1.0, 0.05);
+        EXPECT_NEAR(found.rays.energy / found.wave.energy, 1.0, 0.05);
+    }
 }
 
-// Streaks stand at right angles to the blades' edges, two for each of seven: each one's mean azimuth within 0.2°.
+// Streaks stand at right angles to the blades' edges, two for each of seven and one for each of six: each one's mean
+// azimuth within 0.2°.
 TEST(DiffractedLight, StandsAtRightAnglesToTheBlades) {
-    constexpr int kBlades = 7;
-    constexpr std::size_t kStreaks = 14;
-    const StarFilm film({.blades = kBlades, .f_number = 22.0}, 60'000);
-    std::vector<double> light(kStreaks);
-    std::vector<double> turn(kStreaks);
-    film.for_each([&](const Vec2d& place, double irradiance) {
-        if (length(place) > 20.0) {
-            const double sector = 180.0 / kBlades;
-            const double azimuth = (degrees(std::atan2(place.y, place.x)) - kRotation_deg) / sector;
-            const auto streak = static_cast<std::size_t>(std::lround(azimuth) + 14) % kStreaks;
-            light[streak] += irradiance;
-            turn[streak] += irradiance * sector * (azimuth - std::round(azimuth));
+    for (const auto& [blades, streaks] : {std::pair(7, 14U), std::pair(6, 6U)}) {
+        const studies::EdgeDiffraction found =
+            studies::measure_edges({.lens = "tessar", .f_number = 22.0, .blades = blades, .paths = 60'000}, 1);
+        ASSERT_EQ(found.streaks.size(), streaks);
+        for (const studies::Streak& streak : found.streaks) {
+            EXPECT_GT(streak.light, 0.7);
+            EXPECT_NEAR(streak.turn_deg, 0.0, 0.2) << blades << " blades";
         }
-    });
-    const double most = *std::ranges::max_element(light);
-    for (std::size_t i = 0; i < light.size(); ++i) {
-        EXPECT_GT(light[i], 0.7 * most) << "streak " << i;
-        EXPECT_NEAR(turn[i] / light[i], 0.0, 0.2) << "streak " << i;
     }
 }
 

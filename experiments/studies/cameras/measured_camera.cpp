@@ -13,29 +13,6 @@ namespace lensproof::studies {
 
 namespace {
 
-constexpr int kShownWidth = 480;  // px, at most: a report holds many pictures
-
-/// A smaller copy for the report: means of whole blocks of pixels.
-formats::Image shrunk(const formats::Image& image) {
-    const int factor = std::max(1, (image.width + kShownWidth - 1) / kShownWidth);
-    formats::Image small =
-        formats::make_image(std::max(1, image.width / factor), std::max(1, image.height / factor), image.channels);
-    for (int y = 0; y < small.height; ++y) {
-        for (int x = 0; x < small.width; ++x) {
-            for (int c = 0; c < image.channel_count(); ++c) {
-                float sum = 0.0F;
-                for (int dy = 0; dy < factor; ++dy) {
-                    for (int dx = 0; dx < factor; ++dx) {
-                        sum += image.at(x * factor + dx, y * factor + dy, c);
-                    }
-                }
-                small.at(x, y, c) = sum / static_cast<float>(factor * factor);
-            }
-        }
-    }
-    return small;
-}
-
 std::vector<Vec2d> points_used(const calibration::Profile& profile) {
     std::vector<Vec2d> points;
     for (const calibration::ProfileView& view : profile.views) {
@@ -78,13 +55,7 @@ std::string in_words(const calibration::Profile& profile) {
 }  // namespace
 
 std::string read_camera_name(TomlTable& table, findings::ExperimentFile& file) {
-    std::string name = table.text("name");
-    // Names become files' names.
-    const bool plain = std::ranges::all_of(
-        name, [](unsigned char letter) { return std::isalnum(letter) != 0 || letter == '-' || letter == '_'; });
-    if (name.empty() || !plain) {
-        table.fail("name", fmt::format("is \"{}\", expected letters, digits, - and _", name));
-    }
+    std::string name = findings::read_name(table);
     if (!file.cameras.insert(name).second) {
         table.fail("name", "stands in the file twice");
     }
@@ -116,14 +87,6 @@ calibration::Profile measured_in_steps(const findings::RunSettings& settings, co
         calibration::add_self_test(profile, input);
         return profile;
     });
-}
-
-findings::Picture shown_picture(const std::string& name, const std::string& caption, const formats::Image& image) {
-    return {.name = name,
-            .caption = caption,
-            .width = image.width,
-            .height = image.height,
-            .bytes = formats::encode_png(shrunk(image))};
 }
 
 void add_view(findings::Picture& picture, const calibration::ProfileView& view) {

@@ -35,9 +35,6 @@ calibration::Profile measured_in_steps(const findings::RunSettings& settings, co
                                        const calibration::MeasureInput& input,
                                        calibration::Profile (*measure)(const calibration::MeasureInput&));
 
-/// A smaller copy for the report, as PNG.
-findings::Picture shown_picture(const std::string& name, const std::string& caption, const formats::Image& image);
-
 /// What was found in the picture, and why it was left out.
 void add_view(findings::Picture& picture, const calibration::ProfileView& view);
 

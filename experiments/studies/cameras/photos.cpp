@@ -10,6 +10,7 @@
 #include "engine/base/confined.h"
 #include "engine/base/file.h"
 #include "engine/base/input_error.h"
+#include "experiments/findings/shown_picture.h"
 #include "experiments/studies/cameras/measured_camera.h"
 #include "experiments/studies/cameras/photo_set.h"
 
@@ -66,7 +67,7 @@ void fields(JsonArchive& json, ShownPhoto& photo) {
 ShownPhoto shown_photo(const calibration::Picture& picture) {
     try {
         const formats::Image image = picture.load();
-        return {.width = image.width, .height = image.height, .png = shown_picture("", "", image).bytes};
+        return {.width = image.width, .height = image.height, .png = findings::shown_picture("", "", image).bytes};
     } catch (const InputError&) {
         return {};
     }

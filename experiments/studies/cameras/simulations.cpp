@@ -20,6 +20,7 @@
 #include "engine/render/progressive.h"
 #include "engine/scene/chart/chart_file.h"
 #include "engine/spectral/wavelengths.h"
+#include "experiments/findings/shown_picture.h"
 #include "experiments/studies/cameras/lens_profile.h"
 
 namespace lensproof::studies {
@@ -185,7 +186,7 @@ MeasuredCamera measure_simulation(const Simulation& simulation, const render::Ca
         formats::Image image = settings.steps.step(
             "view", input_of(Json::list({std::move(stated), samples_per_pixel, pictures.size()})), rendered);
         const std::string name = fmt::format("{}/{}.png", simulation.name, file);
-        measured.subject.pictures.push_back(shown_picture(name, caption, image));
+        measured.subject.pictures.push_back(findings::shown_picture(name, caption, image));
         pictures.push_back({.name = name, .role = role, .load = [image = std::move(image)] { return image; }});
     };
     const std::size_t count = simulation.views.size();

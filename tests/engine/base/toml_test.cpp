@@ -71,4 +71,35 @@ TEST(Toml, AMisspeltKeyIsOfferedItsNeighbour) {
         "a.toml:1: wombat: is not a key that is known here; known are: radius_mm, semi_diameter_mm, thickness_mm");
 }
 
+// A table over another: values, tables in tables, lists as a whole; and each complaint names the file that is to blame.
+TEST(Toml, OneTableOverAnother) {
+    const TomlTable under = TomlTable::parse("a = 1\nb = 2\n[t]\nx = 3\ny = 4\n[[l]]\nz = 5\n[[l]]\nz = 6\n", "u.toml");
+    TomlTable over = TomlTable::parse("v.b = 7\nv.t.y = \"eight\"\n\nv.l = [{ z = 9 }]\n", "o.toml");
+    TomlTable both = under.overlaid(over.table("v"));
+    EXPECT_EQ(both.keys(), (std::vector<std::string>{"a", "b", "l", "t"}));
+    EXPECT_EQ(both.number("a"), 1.0);
+    EXPECT_EQ(both.number("b"), 7.0);
+    TomlTable t = both.table("t");
+    EXPECT_EQ(t.number("x"), 3.0);
+    EXPECT_TRUE(says(complaint_about([&] { t.number("y"); }), "o.toml:2: v.t.y: is 'eight'"));
+    EXPECT_TRUE(says(complaint_about([&] { t.number("x", {.min = 4.0}); }), "u.toml:4: t.x: is 3"));
+    std::vector<TomlTable> list = both.tables("l");
+    ASSERT_EQ(list.size(), 1U);
+    EXPECT_EQ(list[0].number("z"), 9.0);
+    EXPECT_EQ(list[0].where("z"), "o.toml:4: v.l[1].z");
+    EXPECT_EQ(both.stated(),
+              TomlTable::parse("a = 1\nb = 7\nt = { x = 3, y = \"eight\" }\nl = [{ z = 9 }]", "").stated());
+    EXPECT_EQ(both.file(), "u.toml");
+    EXPECT_NO_THROW(both.finish());
+    TomlTable unknown = under.overlaid(TomlTable::parse("\n\nc = 1", "o.toml"));
+    for (const char* key : {"a", "b", "t", "l"}) {
+        EXPECT_TRUE(unknown.has(key));
+    }
+    EXPECT_TRUE(says(complaint_about([&] {
+                         unknown.number("a"), unknown.number("b"), unknown.table("t"), unknown.tables("l"),
+                             unknown.finish();
+                     }),
+                     "o.toml:3: c: is not a key"));
+}
+
 }  // namespace lensproof::toml_test

@@ -1,0 +1,40 @@
+#include "experiments/findings/shown_picture.h"
+
+#include <algorithm>
+
+namespace lensproof::findings {
+
+namespace {
+
+/// A smaller copy: means of whole blocks of pixels.
+formats::Image shrunk(const formats::Image& image, int widest) {
+    const int factor = std::max(1, (image.width + widest - 1) / widest);
+    formats::Image small =
+        formats::make_image(std::max(1, image.width / factor), std::max(1, image.height / factor), image.channels);
+    for (int y = 0; y < small.height; ++y) {
+        for (int x = 0; x < small.width; ++x) {
+            for (int c = 0; c < image.channel_count(); ++c) {
+                float sum = 0.0F;
+                for (int dy = 0; dy < factor; ++dy) {
+                    for (int dx = 0; dx < factor; ++dx) {
+                        sum += image.at(x * factor + dx, y * factor + dy, c);
+                    }
+                }
+                small.at(x, y, c) = sum / static_cast<float>(factor * factor);
+            }
+        }
+    }
+    return small;
+}
+
+}  // namespace
+
+Picture shown_picture(const std::string& name, const std::string& caption, const formats::Image& image, int widest) {
+    return {.name = name,
+            .caption = caption,
+            .width = image.width,
+            .height = image.height,
+            .bytes = formats::encode_png(shrunk(image, widest))};
+}
+
+}  // namespace lensproof::findings

@@ -1,0 +1,16 @@
+// experiments/findings/shown_picture.h — a picture as a report shows it.
+#pragma once
+#include <string>
+
+#include "engine/formats/image/image.h"
+#include "experiments/findings/findings.h"
+
+namespace lensproof::findings {
+
+inline constexpr int kShownWidth = 480;  // px: a report holds many pictures
+
+/// A copy as PNG, smaller where it is wider than that by a factor or more: by a whole number.
+Picture shown_picture(const std::string& name, const std::string& caption, const formats::Image& image,
+                      int widest = kShownWidth);
+
+}  // namespace lensproof::findings

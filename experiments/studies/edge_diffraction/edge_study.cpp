@@ -1,0 +1,227 @@
+#include "experiments/studies/edge_diffraction/edge_study.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <iterator>
+
+#include "engine/base/input_error.h"
+#include "engine/formats/prescription/load_lens.h"
+#include "engine/formats/prescription/prescription_file.h"
+#include "experiments/draw/chart.h"
+#include "experiments/draw/heat_map.h"
+#include "experiments/draw/palette.h"
+
+namespace lensproof::studies {
+
+namespace {
+
+std::string id_of(const EdgeSetting& setting) {
+    std::string id = setting.blades == 0 ? "circle" : fmt::format("{}-blades", setting.blades);
+    if (setting.curvature > 0.0) {
+        id += fmt::format("-round-{:g}", setting.curvature);
+    }
+    return fmt::format("{}-{}-f{:g}", std::filesystem::path(setting.lens).stem().string(), id, setting.f_number);
+}
+
+std::string label_of(const EdgeSetting& setting) {
+    const std::string stop =
+        setting.blades == 0 ? "a circle"
+                            : fmt::format("{} {}blades", setting.blades, setting.curvature > 0.0 ? "rounded " : "");
+    return fmt::format("{}, {} at f/{:g}", setting.lens, stop, setting.f_number);
+}
+
+double worst_octave(const EdgeDiffraction& found) {
+    double worst = 0.0;
+    for (std::size_t i = 0; i < found.rays.octaves.size(); ++i) {
+        worst = std::max(worst, std::abs(found.rays.octaves[i] / found.wave.octaves[i] - 1.0));
+    }
+    return worst;
+}
+
+double worst_turn(const EdgeDiffraction& found) {
+    double worst = 0.0;
+    for (const Streak& streak : found.streaks) {
+        worst = std::max(worst, std::abs(streak.turn_deg));
+    }
+    return worst;
+}
+
+/// The wave's map, the rays' map: the left half is the one, the right half the other.
+findings::Picture map_drawing(const EdgeSetting& setting, const EdgeDiffraction& found) {
+    const auto side = static_cast<std::size_t>(found.ray_map.side);
+    draw::HeatMap map{.columns = side,
+                      .rows = side,
+                      .values = {},
+                      .x = {-kMapRadius, kMapRadius},
+                      .y = {-kMapRadius, kMapRadius},
+                      .label = "log₁₀ of the irradiance over the light's"};
+    for (std::size_t i = 0; i < side * side; ++i) {
+        map.values.push_back((i % side < side / 2 ? found.wave_map : found.ray_map).values[i]);
+    }
+    std::vector<double> ordered(found.wave_map.values.begin(), found.wave_map.values.end());
+    const auto brightest = ordered.begin() + static_cast<std::ptrdiff_t>(0.999 * static_cast<double>(ordered.size()));
+    std::ranges::nth_element(ordered, brightest);
+    constexpr double kDecades = 4.0;
+    map.range = {*brightest - kDecades, *brightest};
+    draw::PlotChart chart{.title = label_of(setting),
+                          .caption = "Left by waves, right by rays",
+                          .x = {.label = "x", .unit = "λN"},
+                          .y = {.label = "y", .unit = "λN"},
+                          .map = std::move(map),
+                          .has_equal_scales = true};
+    constexpr draw::ChartSize kSize{.width = 620.0, .height = 560.0};
+    return {.name = id_of(setting) + "/map.svg",
+            .caption = "Diffracted light about the image of a star: left by waves, right by rays",
+            .width = kSize.width,
+            .height = kSize.height,
+            .bytes = draw::chart_svg(chart, kSize)};
+}
+
+findings::Picture profile_drawing(const EdgeSetting& setting, const EdgeDiffraction& found) {
+    draw::PlotChart chart{
+        .title = label_of(setting),
+        .caption = "Mean irradiance around the image of a star",
+        .x = {.label = "Distance from the image", .unit = "λN", .scale = draw::AxisScale::logarithmic},
+        .y = {.label = "Irradiance over the light's", .scale = draw::AxisScale::logarithmic},
+        .curves = {{.label = "by waves", .points = found.wave.rings, .colour = draw::series_colour(0)},
+                   {.label = "by rays",
+                    .points = found.rays.rings,
+                    .colour = draw::series_colour(1),
+                    .line = draw::CurveLine::none,
+                    .marker = draw::CurveMarker::ring}}};
+    constexpr draw::ChartSize kSize{.width = 620.0, .height = 420.0};
+    return {.name = id_of(setting) + "/profile.svg",
+            .caption = "All azimuths together, in narrow rings",
+            .width = kSize.width,
+            .height = kSize.height,
+            .bytes = draw::chart_svg(chart, kSize)};
+}
+
+findings::Subject subject_of(const EdgeSetting& setting, const EdgeDiffraction& found) {
+    findings::Subject subject{
+        .id = id_of(setting),
+        .kind = "stop",
+        .label = label_of(setting),
+        .facts = {{"λN", fmt::format("{:.3g} µm", 1e3 * airy_mm(setting))},
+                  {"octaves from 5 to 100 λN, rays over waves", fmt::format("1 ± {:.3f}", worst_octave(found))},
+                  {"logarithmic slope, rays and waves",
+                   fmt::format("{:.3f} and {:.3f}", found.rays.slope(), found.wave.slope())},
+                  {"light from 5 λN on, rays over waves",
+                   fmt::format("{:.4f}", found.rays.energy / found.wave.energy)}},
+        .pictures = {map_drawing(setting, found), profile_drawing(setting, found)}};
+    if (!found.streaks.empty()) {
+        subject.facts.push_back({"streaks", fmt::format("{}, within {:.3f}° of the edges' normals",
+                                                        found.streaks.size(), worst_turn(found))});
+    }
+    return subject;
+}
+
+Json setting_json(const EdgeSetting& setting, const EdgeDiffraction& found) {
+    Json turns = Json::list();
+    std::ranges::transform(found.streaks, std::back_inserter(turns), &Streak::turn_deg);
+    return {{"lens", setting.lens},
+            {"f_number", setting.f_number},
+            {"blades", setting.blades},
+            {"curvature", setting.curvature},
+            {"octaves_airy", std::vector<double>(kOctaves.begin(), kOctaves.end())},
+            {"rays", found.rays.octaves},
+            {"wave", found.wave.octaves},
+            {"rays_slope", found.rays.slope()},
+            {"wave_slope", found.wave.slope()},
+            {"energy_ratio", found.rays.energy / found.wave.energy},
+            {"streaks_deg", std::move(turns)}};
+}
+
+std::vector<EdgeSetting> read_settings(TomlTable& table, findings::ExperimentFile& file) {
+    EdgeSetting setting{.lens = formats::read_lens_name(table),
+                        .curvature = table.number_or("curvature", 0.0, {.min = 0.0, .max = 1.0}),
+                        .paths = table.integer_or("paths", EdgeSetting{}.paths, 1000, 360'000)};
+    std::vector<EdgeSetting> settings;
+    for (const double blades : table.numbers("blades", 0, {.min = 0.0, .max = 64.0})) {
+        if (blades != std::floor(blades) || blades == 1.0 || blades == 2.0) {
+            table.fail("blades", fmt::format("has {}, expected whole numbers: 0 for a circle, or 3 to 64", blades));
+        }
+        for (const double f_number : table.numbers("f_numbers", 0, {.min = 0.1, .max = 1000.0})) {
+            setting.blades = static_cast<int>(blades);
+            setting.f_number = f_number;
+            file.add_subject(table, "blades", id_of(setting));
+            settings.push_back(setting);
+        }
+    }
+    table.finish();
+    return settings;
+}
+
+}  // namespace
+
+std::vector<findings::Check> edge_checks(const MeasuredEdges& measured) {
+    std::vector<findings::Check> checks;
+    for (const auto& [setting, found] : measured) {
+        const auto add = [&](const std::string& what, const std::string& label, double off, const std::string& unit,
+                             double limit, const std::string& explanation) {
+            checks.push_back({.id = id_of(setting) + "-" + what,
+                              .group = label_of(setting),
+                              .subject = id_of(setting),
+                              .label = label,
+                              .value = off,
+                              .unit = unit,
+                              .limit = limit,
+                              .explanation = explanation});
+        };
+        add("octaves", "worst octave from 5 to 100 λN", 100.0 * worst_octave(found), "%", 10.0,
+            "Rays over waves, a mean over an octave of distance, which averages the rings.");
+        add("slope", "logarithmic slope", 100.0 * std::abs(found.rays.slope() / found.wave.slope() - 1.0), "%", 5.0,
+            "Of the irradiance over the distance, by least squares over the octaves.");
+        add("energy", "light from 5 λN on", 100.0 * std::abs(found.rays.energy / found.wave.energy - 1.0), "%", 5.0,
+            "Up to 100 λN; it begins as the mean of 5 to 7 λN, since a sharp cut swings with the rings.");
+        if (!found.streaks.empty()) {
+            add("streaks", "streaks from the edges' normals", worst_turn(found), "°", 0.2,
+                "The mean azimuth of each, beyond 20 λN, the worst of them.");
+        }
+    }
+    return checks;
+}
+
+findings::Findings edge_findings(const MeasuredEdges& measured) {
+    findings::Findings found{.checks = edge_checks(measured), .subjects_title = "Stops"};
+    Json table = Json::list();
+    for (const auto& [setting, edges] : measured) {
+        found.subjects.push_back(subject_of(setting, edges));
+        std::ranges::move(formats::files_of_lens(setting.lens), std::back_inserter(found.inputs));
+        table.push_back(setting_json(setting, edges));
+    }
+    found.tables = {{"edge_diffraction", std::move(table)}};
+    return found;
+}
+
+findings::Study read_edge_diffraction(findings::ExperimentFile& file) {
+    std::vector<EdgeSetting> settings;
+    for (TomlTable& table : file.top.tables("edge_diffraction")) {
+        std::ranges::move(read_settings(table, file), std::back_inserter(settings));
+    }
+    if (settings.empty()) {
+        return {};
+    }
+    return [settings = std::move(settings)](const findings::RunSettings& run, const findings::RunProgress& progress,
+                                            const findings::Findings&) {
+        MeasuredEdges measured;
+        for (const EdgeSetting& setting : settings) {
+            progress(label_of(setting), 0.0);
+            const findings::StepInput input{.settings = {{"lens", setting.lens},
+                                                         {"f_number", setting.f_number},
+                                                         {"blades", setting.blades},
+                                                         {"curvature", setting.curvature},
+                                                         {"paths", setting.paths},
+                                                         {"seed", run.seed}},
+                                            .files = formats::files_of_lens(setting.lens)};
+            measured.emplace_back(
+                setting, run.steps.step("edge-diffraction", input, [&] { return measure_edges(setting, run.seed); }));
+        }
+        return edge_findings(measured);
+    };
+}
+
+}  // namespace lensproof::studies

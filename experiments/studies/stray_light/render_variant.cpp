@@ -1,0 +1,228 @@
+#include "experiments/studies/stray_light/render_variant.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <iterator>
+#include <memory>
+#include <type_traits>
+#include <utility>
+
+#include "engine/analysis/ghosts.h"
+#include "engine/analysis/veiling_glare.h"
+#include "engine/base/angle.h"
+#include "engine/formats/image/image_json.h"
+#include "engine/render/film/film_image.h"
+#include "engine/render/prepared_scene.h"
+
+namespace lensproof::studies {
+
+static void fields(JsonArchive& json, Estimate& estimate) {
+    json.field("value", estimate.value).field("standard_error", estimate.standard_error);
+}
+
+static void fields(JsonArchive& json, PassPicture& picture) {
+    json.field("pass", picture.pass).field("rgb", picture.rgb).field("light", picture.light);
+}
+
+static void fields(JsonArchive& json, GhostEnergy& ghost) {
+    json.field("surfaces", ghost.surfaces).field("energy", ghost.energy);
+}
+
+namespace {
+
+constexpr double kReferenceWavelength_nm = 550.0;
+constexpr std::uint32_t kAuditPaths = 1U << 19U;  // of a half, 0.07 %
+
+Estimate sum(const std::vector<Estimate>& terms) {
+    Estimate all;
+    for (const Estimate& term : terms) {
+        all.value += term.value;
+        all.standard_error = std::hypot(all.standard_error, term.standard_error);
+    }
+    return all;
+}
+
+/// Errors of R, G and B are taken to go together, those of pixels not.
+Estimate light_of(const render::Film& film) {
+    double light = 0.0;
+    double variance = 0.0;
+    for (int y = 0; y < film.height(); ++y) {
+        for (int x = 0; x < film.width(); ++x) {
+            const render::PixelEstimate pixel = film.estimate(x, y);
+            light += (pixel.rgb.x + pixel.rgb.y + pixel.rgb.z) / 3.0;
+            const double error =
+                (std::sqrt(pixel.variance.x) + std::sqrt(pixel.variance.y) + std::sqrt(pixel.variance.z)) / 3.0;
+            variance += error * error;
+        }
+    }
+    const double pixels = static_cast<double>(film.width()) * film.height();
+    return {light / pixels, std::sqrt(variance) / pixels};
+}
+
+/// The steps of one variant. The scene is not prepared before one of them has to be made.
+class VariantSteps {
+  public:
+    VariantSteps(const StrayScene& scene, const StrayVariant& variant, const findings::RunSettings& settings,
+                 const findings::RunProgress& progress)
+        : scene_(scene), variant_(variant), settings_(settings), progress_(progress), files_(files_of(variant)) {}
+
+    [[nodiscard]] PassPicture pass(std::size_t index) {
+        const std::string& name = scene_.passes[index];
+        const auto asked = scene_.samples_per_pixel.find(name);
+        const int samples = asked == scene_.samples_per_pixel.end() ? variant_.setup.samples_per_pixel : asked->second;
+        return step("stray-pass", {{"passes", scene_.passes}, {"pass", name}, {"samples_per_pixel", samples}}, [&] {
+            const render::Film film =
+                render::render_film(renders().at(index), {.first = 0, .end = static_cast<std::uint32_t>(samples)},
+                                    settings_.threads, [&](double done) { progress_(name_of(name), done); });
+            return PassPicture{.pass = name, .rgb = render::film_rgb(film), .light = light_of(film)};
+        });
+    }
+
+    [[nodiscard]] std::vector<GhostEnergy> ghosts(double source_deg) {
+        return step("stray-ghosts", {{"source_deg", source_deg}}, [&] {
+            progress_(name_of("ghosts one by one"), 0.0);
+            return surveyed(source_deg);
+        });
+    }
+
+    [[nodiscard]] Estimate veiling_glare() {
+        return step("stray-glare", {}, [&] {
+            progress_(name_of("veiling glare"), 0.0);
+            const analysis::VeilingGlare glare = analysis::veiling_glare(
+                lens(), {.wavelength_nm = kReferenceWavelength_nm,
+                         .spot_angle = analysis::tenth_of_field(lens(), kReferenceWavelength_nm),
+                         .object_distance = variant_.setup.camera.focus_distance_mm,
+                         .mirrors = variant_.setup.camera.mirrors,
+                         .seed = settings_.seed,
+                         .threads = settings_.threads});
+            return Estimate{glare.index.share, glare.index.standard_error};
+        });
+    }
+
+    [[nodiscard]] std::vector<std::pair<std::string, Estimate>> fates() {
+        const std::vector<Estimate> shares = step("stray-audit", {}, [&] {
+            progress_(name_of("energy audit"), 0.0);
+            std::vector<Estimate> found;
+            for (const render::EnergyShare& share : prepared().audit(settings_.seed, kAuditPaths).shares) {
+                found.push_back({share.share, share.standard_error});
+            }
+            return found;
+        });
+        std::vector<std::pair<std::string, Estimate>> named;
+        std::ranges::transform(render::fate_names(), shares, std::back_inserter(named),
+                               [](const std::string& name, const Estimate& share) { return std::pair(name, share); });
+        return named;
+    }
+
+  private:
+    template <class Make>
+    std::invoke_result_t<Make> step(std::string_view kind, Json what, const Make& make) {
+        what["scene"] = variant_.stated;
+        what["seed"] = settings_.seed;
+        return settings_.steps.step(kind, {.settings = std::move(what), .files = files_}, make);
+    }
+
+    [[nodiscard]] std::string name_of(const std::string& what) const {
+        return fmt::format("{}, {}: {}", scene_.name, variant_.name, what);
+    }
+
+    const render::PreparedScene& prepared() {
+        if (!prepared_) {
+            progress_(name_of("loading"), 0.0);
+            prepared_ = std::make_unique<render::PreparedScene>(variant_.setup, render::PixelFilter{}, settings_.cache);
+        }
+        return *prepared_;
+    }
+
+    const std::vector<render::Render>& renders() {
+        if (renders_.empty()) {
+            renders_ = prepared().render(scene_.passes, settings_.seed, false);
+        }
+        return renders_;
+    }
+
+    const optics::Lens& lens() { return prepared().camera().lens().value(); }
+
+    std::vector<GhostEnergy> surveyed(double source_deg) {
+        const render::Sensor& sensor = variant_.setup.camera.sensor;
+        const analysis::GhostSurvey survey = analysis::survey_ghosts(
+            lens(), {.reference_wavelength_nm = kReferenceWavelength_nm,
+                     .wavelengths_nm = {},
+                     .source_angle = source_deg * kDegree,
+                     .chief_angle = source_deg * kDegree,
+                     .mirrors = variant_.setup.camera.mirrors,
+                     .image_radius = 0.5 * sensor.pixel_pitch_mm * std::hypot(sensor.width, sensor.height),
+                     .sampling = {.seed = settings_.seed},
+                     .threads = settings_.threads});
+        std::vector<GhostEnergy> found;
+        for (const analysis::Ghost& ghost : survey.ghosts) {
+            GhostEnergy energy{.surfaces = {}, .energy = {ghost.light.energy, ghost.light.standard_error}};
+            std::ranges::transform(ghost.path, std::back_inserter(energy.surfaces),
+                                   [](int surface) { return surface + 1; });
+            found.push_back(std::move(energy));
+        }
+        return found;
+    }
+
+    const StrayScene& scene_;
+    const StrayVariant& variant_;
+    const findings::RunSettings& settings_;
+    const findings::RunProgress& progress_;
+    std::vector<std::filesystem::path> files_;
+    std::unique_ptr<render::PreparedScene> prepared_;
+    std::vector<render::Render> renders_;
+};
+
+}  // namespace
+
+Estimate VariantFindings::light(const std::string& pass) const {
+    std::vector<Estimate> lights;
+    for (const PassPicture& picture : passes) {
+        if (pass == kPicture || pass == picture.pass) {
+            lights.push_back(picture.light);
+        }
+    }
+    return sum(lights);
+}
+
+Estimate VariantFindings::ghost_energy(int surface, bool is_involved) const {
+    std::vector<Estimate> energies;
+    for (const GhostEnergy& ghost : ghosts) {
+        if ((std::ranges::count(ghost.surfaces, surface) > 0) == is_involved) {
+            energies.push_back(ghost.energy);
+        }
+    }
+    return sum(energies);
+}
+
+formats::Image picture_of(const std::vector<PassPicture>& passes) {
+    formats::Image all = passes.front().rgb;
+    for (std::size_t i = 1; i < passes.size(); ++i) {
+        std::ranges::transform(all.pixels, passes[i].rgb.pixels, all.pixels.begin(), std::plus<>());
+    }
+    return all;
+}
+
+VariantFindings render_variant(const StrayScene& scene, const StrayVariant& variant,
+                               const findings::RunSettings& settings, const findings::RunProgress& progress) {
+    VariantSteps steps(scene, variant, settings, progress);
+    VariantFindings found;
+    for (std::size_t i = 0; i < scene.passes.size(); ++i) {
+        found.passes.push_back(steps.pass(i));
+    }
+    if (scene.ghosts_deg) {
+        found.ghosts = steps.ghosts(*scene.ghosts_deg);
+    }
+    if (scene.has_veiling_glare) {
+        found.veiling_glare = steps.veiling_glare();
+    }
+    if (scene.has_audit) {
+        found.fates = steps.fates();
+    }
+    return found;
+}
+
+}  // namespace lensproof::studies

@@ -1,0 +1,155 @@
+#include "experiments/studies/stray_light/stray_scene.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <iterator>
+
+#include "engine/base/file.h"
+#include "engine/base/input_error.h"
+#include "engine/formats/prescription/prescription_file.h"
+#include "engine/render/integrators/passes.h"
+#include "engine/scene/scene_build.h"
+
+namespace lensproof::studies {
+
+namespace {
+
+constexpr int kMostVariants = 100;
+
+std::vector<std::string> pass_names() {
+    std::vector<std::string> names;
+    for (const render::Pass& pass : render::passes()) {
+        if (pass.name != "everything") {  // the sum of others
+            names.push_back(pass.name);
+        }
+    }
+    return names;
+}
+
+StrayVariant read_variant(TomlTable& table, const TomlTable& scene, const StrayScene& owner,
+                          findings::ExperimentFile& file) {
+    StrayVariant variant{.name = findings::read_name(table), .label = {}, .setup = {}, .stated = {}};
+    variant.label = table.text_or("label", variant.name);
+    const std::optional<TomlTable> changed = table.optional_table("scene");
+    const TomlTable whole = changed ? scene.overlaid(*changed) : scene;
+    variant.setup = render::read_scene_setup(whole);
+    if (variant.setup.chart) {
+        throw InputError(
+            fmt::format("{}: is a [chart] in an even world, expected a scene with lights", scene.file().string()));
+    }
+    variant.stated = whole.stated();
+    file.add_subject(table, "name", fmt::format("{}-{}", owner.name, variant.name));
+    table.finish();
+    return variant;
+}
+
+/// A table of numbers by the passes' names.
+template <class Read>
+auto by_pass(TomlTable& table, const char* key, const std::vector<std::string>& passes, const Read& read) {
+    std::map<std::string, decltype(read(table, std::string()))> found;
+    if (auto numbers = table.optional_table(key)) {
+        for (const std::string& pass : passes) {
+            if (numbers->has(pass)) {
+                found[pass] = read(*numbers, pass);
+            }
+        }
+        numbers->finish();
+    }
+    return found;
+}
+
+void read_bound(TomlTable& table, StrayCheck& check) {
+    const bool is_between = table.has("between");
+    if (table.has("at_most") + table.has("at_least") + is_between != 1) {
+        table.fail("", "expected one of at_most, at_least and between");
+    }
+    if (is_between) {
+        const std::vector<double> ends = table.numbers("between", 2);
+        check.expectation = findings::Expectation::within;
+        check.target = 0.5 * (ends[0] + ends[1]);
+        check.limit = 0.5 * (ends[1] - ends[0]);
+        if (!(check.limit > 0.0)) {
+            table.fail("between", fmt::format("is [{}, {}], expected the lower number first", ends[0], ends[1]));
+        }
+        return;
+    }
+    check.expectation = table.has("at_most") ? findings::Expectation::at_most : findings::Expectation::differs;
+    check.limit = table.number(table.has("at_most") ? "at_most" : "at_least", kNotNegative);
+}
+
+StrayCheck read_check(TomlTable& table, const StrayScene& scene) {
+    std::vector<std::string> lights = scene.passes;
+    lights.emplace_back(kPicture);
+    std::vector<std::string> variants;
+    std::ranges::transform(scene.variants, std::back_inserter(variants), &StrayVariant::name);
+    StrayCheck check;
+    if (table.has("light")) {
+        check.pass = table.choice("light", lights);
+        check.over_pass = table.has("over_light") ? table.choice("over_light", lights) : check.pass;
+    } else {
+        const bool involves = table.has("ghosts_of_surface");
+        check.what = involves ? StrayCheck::Of::ghosts_of_surface : StrayCheck::Of::ghosts_beside_surface;
+        const char* key = involves ? "ghosts_of_surface" : "ghosts_beside_surface";
+        check.surface = table.integer(key, 1, 100'000);
+        if (!scene.ghosts_deg) {
+            table.fail(key, "stands in a table without ghosts_deg, which says whose ghosts are meant");
+        }
+    }
+    check.variant = table.choice("of", variants);
+    check.over_variant = table.has("over") ? table.choice("over", variants) : check.variant;
+    if (check.variant == check.over_variant && check.pass == check.over_pass) {
+        table.fail("of", "is set against itself, expected another variant in over, or another pass in over_light");
+    }
+    read_bound(table, check);
+    table.finish();
+    return check;
+}
+
+}  // namespace
+
+std::vector<std::filesystem::path> files_of(const StrayVariant& variant) {
+    const std::string& lens = variant.setup.camera.lens;
+    std::vector<std::filesystem::path> files = scene::named_files(variant.setup.scene);
+    if (!lens.empty()) {
+        std::ranges::move(formats::files_of_lens(lens), std::back_inserter(files));
+    }
+    return files;
+}
+
+StrayScene read_stray_scene(TomlTable& table, findings::ExperimentFile& file) {
+    StrayScene scene{
+        .name = findings::read_name(table), .title = {}, .file = {}, .passes = {}, .variants = {}, .checks = {}};
+    scene.title = table.text_or("title", scene.name);
+    file.add_subject(table, "name", scene.name);
+    scene.file = referred_file(table.file(), table.text("scene"));
+    const TomlTable world = TomlTable::read(scene.file);
+    scene.passes = findings::names_of(table, "passes", pass_names());
+    if (scene.passes.empty()) {
+        scene.passes = {"imaged", "direct", "ghosts"};
+    }
+    scene.samples_per_pixel =
+        by_pass(table, "samples_per_pixel", scene.passes,
+                [](TomlTable& numbers, const std::string& pass) { return numbers.integer(pass, 1, 1 << 20); });
+    scene.brightening_ev = by_pass(table, "brightening_ev", scene.passes,
+                                   [](TomlTable& numbers, const std::string& pass) { return numbers.number(pass); });
+    std::vector<TomlTable> variants = table.tables("variants");
+    if (variants.empty() || variants.size() > kMostVariants) {
+        table.fail("variants", fmt::format("has {} tables, expected 1 to {}", variants.size(), kMostVariants));
+    }
+    for (TomlTable& variant : variants) {
+        scene.variants.push_back(read_variant(variant, world, scene, file));
+    }
+    scene.columns = table.integer_or("columns", static_cast<int>(std::min<std::size_t>(3, variants.size())), 1, 20);
+    scene.ghosts_deg = table.optional_number("ghosts_deg", {.min = 0.0, .max = 89.9});
+    scene.has_veiling_glare = table.boolean_or("veiling_glare", false);
+    scene.has_audit = table.boolean_or("audit", false);
+    for (TomlTable& check : table.tables("checks")) {
+        scene.checks.push_back(read_check(check, scene));
+    }
+    table.finish();
+    return scene;
+}
+
+}  // namespace lensproof::studies
