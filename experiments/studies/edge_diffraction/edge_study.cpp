@@ -33,20 +33,55 @@ std::string label_of(const EdgeSetting& setting) {
     return fmt::format("{}, {} at f/{:g}", setting.lens, stop, setting.f_number);
 }
 
-double worst_octave(const EdgeDiffraction& found) {
-    double worst = 0.0;
-    for (std::size_t i = 0; i < found.rays.octaves.size(); ++i) {
-        worst = std::max(worst, std::abs(found.rays.octaves[i] / found.wave.octaves[i] - 1.0));
+/// A number that rays and waves lead to, and its standard error by how the batches differ.
+struct Compared {
+    double value = 0.0;
+    double standard_error = 0.0;
+};
+
+template <class Of>
+Compared compared(const EdgeDiffraction& found, const Of& of) {
+    const auto count = static_cast<double>(found.batches.size());
+    double mean = 0.0;
+    double squares = 0.0;
+    for (const EdgeRays& batch : found.batches) {
+        mean += of(batch) / count;
+        squares += of(batch) * of(batch) / count;
     }
-    return worst;
+    const double variance = count > 1.0 ? std::max(0.0, squares - mean * mean) / (count - 1.0) : 0.0;
+    return {of(found.rays), std::sqrt(variance)};
 }
 
-double worst_turn(const EdgeDiffraction& found) {
-    double worst = 0.0;
-    for (const Streak& streak : found.streaks) {
-        worst = std::max(worst, std::abs(streak.turn_deg));
+/// Rays over waves, less one, of the octave that is farthest off.
+Compared worst_octave(const EdgeDiffraction& found) {
+    const auto off = [&](const EdgeRays& rays, std::size_t i) {
+        return rays.profile.octaves[i] / found.wave.octaves[i] - 1.0;
+    };
+    std::size_t worst = 0;
+    for (std::size_t i = 1; i < kOctaves.size(); ++i) {
+        worst = std::abs(off(found.rays, i)) > std::abs(off(found.rays, worst)) ? i : worst;
     }
-    return worst;
+    return compared(found, [&](const EdgeRays& rays) { return off(rays, worst); });
+}
+
+Compared slope_off(const EdgeDiffraction& found) {
+    return compared(found, [&](const EdgeRays& rays) { return rays.profile.slope() / found.wave.slope() - 1.0; });
+}
+
+Compared energy_off(const EdgeDiffraction& found) {
+    return compared(found, [&](const EdgeRays& rays) { return rays.profile.energy / found.wave.energy - 1.0; });
+}
+
+/// Degrees.
+Compared worst_turn(const EdgeDiffraction& found) {
+    const std::vector<Streak>& streaks = found.rays.streaks;
+    const auto worst = std::ranges::max_element(streaks, {}, [](const Streak& s) { return std::abs(s.turn_deg); });
+    const auto index = static_cast<std::size_t>(worst - streaks.begin());
+    return compared(found, [&](const EdgeRays& rays) { return rays.streaks[index].turn_deg; });
+}
+
+std::string signed_percent(const Compared& off) {
+    return fmt::format("{:+.2f} ± {:.2f} %", 100.0 * off.value, 100.0 * off.standard_error);
 }
 
 /// The wave's map, the rays' map: the left half is the one, the right half the other.
@@ -88,7 +123,7 @@ findings::Picture profile_drawing(const EdgeSetting& setting, const EdgeDiffract
         .y = {.label = "Irradiance over the light's", .scale = draw::AxisScale::logarithmic},
         .curves = {{.label = "by waves", .points = found.wave.rings, .colour = draw::series_colour(0)},
                    {.label = "by rays",
-                    .points = found.rays.rings,
+                    .points = found.rays.profile.rings,
                     .colour = draw::series_colour(1),
                     .line = draw::CurveLine::none,
                     .marker = draw::CurveMarker::ring}}};
@@ -106,32 +141,32 @@ findings::Subject subject_of(const EdgeSetting& setting, const EdgeDiffraction& 
         .kind = "stop",
         .label = label_of(setting),
         .facts = {{"λN", fmt::format("{:.3g} µm", 1e3 * airy_mm(setting))},
-                  {"octaves from 5 to 100 λN, rays over waves", fmt::format("1 ± {:.3f}", worst_octave(found))},
+                  {"worst octave from 5 to 100 λN, rays against waves", signed_percent(worst_octave(found))},
                   {"logarithmic slope, rays and waves",
-                   fmt::format("{:.3f} and {:.3f}", found.rays.slope(), found.wave.slope())},
-                  {"light from 5 λN on, rays over waves",
-                   fmt::format("{:.4f}", found.rays.energy / found.wave.energy)}},
+                   fmt::format("{:.3f} and {:.3f}", found.rays.profile.slope(), found.wave.slope())},
+                  {"light from 5 λN on, rays against waves", signed_percent(energy_off(found))}},
         .pictures = {map_drawing(setting, found), profile_drawing(setting, found)}};
-    if (!found.streaks.empty()) {
+    if (!found.rays.streaks.empty()) {
         subject.facts.push_back({"streaks", fmt::format("{}, within {:.3f}° of the edges' normals",
-                                                        found.streaks.size(), worst_turn(found))});
+                                                        found.rays.streaks.size(), std::abs(worst_turn(found).value))});
     }
     return subject;
 }
 
 Json setting_json(const EdgeSetting& setting, const EdgeDiffraction& found) {
     Json turns = Json::list();
-    std::ranges::transform(found.streaks, std::back_inserter(turns), &Streak::turn_deg);
+    std::ranges::transform(found.rays.streaks, std::back_inserter(turns), &Streak::turn_deg);
     return {{"lens", setting.lens},
             {"f_number", setting.f_number},
             {"blades", setting.blades},
             {"curvature", setting.curvature},
             {"octaves_airy", std::vector<double>(kOctaves.begin(), kOctaves.end())},
-            {"rays", found.rays.octaves},
+            {"rays", found.rays.profile.octaves},
             {"wave", found.wave.octaves},
-            {"rays_slope", found.rays.slope()},
+            {"rays_slope", found.rays.profile.slope()},
             {"wave_slope", found.wave.slope()},
-            {"energy_ratio", found.rays.energy / found.wave.energy},
+            {"energy_ratio", found.rays.profile.energy / found.wave.energy},
+            {"energy_ratio_standard_error", energy_off(found).standard_error},
             {"streaks_deg", std::move(turns)}};
 }
 
@@ -160,25 +195,26 @@ std::vector<EdgeSetting> read_settings(TomlTable& table, findings::ExperimentFil
 std::vector<findings::Check> edge_checks(const MeasuredEdges& measured) {
     std::vector<findings::Check> checks;
     for (const auto& [setting, found] : measured) {
-        const auto add = [&](const std::string& what, const std::string& label, double off, const std::string& unit,
-                             double limit, const std::string& explanation) {
+        const auto add = [&](const std::string& what, const std::string& label, const Compared& off, double scale,
+                             const std::string& unit, double limit, const std::string& explanation) {
             checks.push_back({.id = id_of(setting) + "-" + what,
                               .group = label_of(setting),
                               .subject = id_of(setting),
                               .label = label,
-                              .value = off,
+                              .value = scale * std::abs(off.value),
+                              .sigma = scale * off.standard_error,
                               .unit = unit,
                               .limit = limit,
                               .explanation = explanation});
         };
-        add("octaves", "worst octave from 5 to 100 λN", 100.0 * worst_octave(found), "%", 10.0,
+        add("octaves", "worst octave from 5 to 100 λN", worst_octave(found), 100.0, "%", 10.0,
             "Rays over waves, a mean over an octave of distance, which averages the rings.");
-        add("slope", "logarithmic slope", 100.0 * std::abs(found.rays.slope() / found.wave.slope() - 1.0), "%", 5.0,
+        add("slope", "logarithmic slope", slope_off(found), 100.0, "%", 5.0,
             "Of the irradiance over the distance, by least squares over the octaves.");
-        add("energy", "light from 5 λN on", 100.0 * std::abs(found.rays.energy / found.wave.energy - 1.0), "%", 5.0,
+        add("energy", "light from 5 λN on", energy_off(found), 100.0, "%", 5.0,
             "Up to 100 λN; it begins as the mean of 5 to 7 λN, since a sharp cut swings with the rings.");
-        if (!found.streaks.empty()) {
-            add("streaks", "streaks from the edges' normals", worst_turn(found), "°", 0.2,
+        if (!found.rays.streaks.empty()) {
+            add("streaks", "streaks from the edges' normals", worst_turn(found), 1.0, "°", 0.2,
                 "The mean azimuth of each, beyond 20 λN, the worst of them.");
         }
     }

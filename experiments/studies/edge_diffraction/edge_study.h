@@ -21,7 +21,7 @@ std::vector<findings::Check> edge_checks(const MeasuredEdges& measured);
 
 /// A subject for each lens and number of blades, with both maps and both profiles, and the table "edge_diffraction":
 ///     [{"lens", "f_number", "blades", "curvature", "octaves_airy": [5, …], "rays": […], "wave": […], "rays_slope",
-///       "wave_slope", "energy_ratio", "streaks_deg": […]}]
+///       "wave_slope", "energy_ratio", "energy_ratio_standard_error", "streaks_deg": […]}]
 /// with irradiances over that of the light, and lengths in λN.
 findings::Findings edge_findings(const MeasuredEdges& measured);
 

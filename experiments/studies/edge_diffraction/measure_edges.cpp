@@ -25,10 +25,14 @@ static void fields(JsonArchive& json, EdgeMap& map) {
     json.field("side", map.side).packed("values", map.values);
 }
 
+static void fields(JsonArchive& json, EdgeRays& rays) {
+    json.field("profile", rays.profile).field("streaks", rays.streaks);
+}
+
 void fields(JsonArchive& json, EdgeDiffraction& found) {
     json.field("rays", found.rays)
+        .field("batches", found.batches)
         .field("wave", found.wave)
-        .field("streaks", found.streaks)
         .field("ray_map", found.ray_map)
         .field("wave_map", found.wave_map);
 }
@@ -77,50 +81,61 @@ scene::Scene starlight(const spectral::SpectralGrid& grid) {
     return made;
 }
 
-/// What a star on the axis is diffracted to.
+/// A pixel's place in λN from the image.
+Vec2d place_of(int x, int y, const render::Sensor& sensor) {
+    return sensor.position(x, y) / (kPixelsPerAiry * sensor.pixel_pitch_mm);
+}
+
+/// What a star on the axis is diffracted to: irradiances over the light's.
 class StarFilm {
   public:
-    StarFilm(const EdgeSetting& setting, std::uint64_t seed)
-        : camera_(camera_settings(setting),
-                  {kWavelength_nm - kHalfBand_nm, kWavelength_nm + kHalfBand_nm, spectral::kWavelengthsPerPath, 1}, {},
-                  {}),
-          film_(camera_.film()) {
-        const render::World world = starlight(camera_.grid());
-        const render::View view{.world = &world, .camera = &camera_, .seed = seed, .paths = {.max_bounces = 0}};
-        render::Render render = render::pass_named("diffracted").render(view, render::integrator_named("camera"));
-        const double per_nm = 1.0 / render.film.band_nm;
-        render.film.rgb_weights.assign(render.film.rgb_weights.size(), {per_nm, per_nm, per_nm});
-        film_ = render::Film(render.film);
-        // Paths land anywhere, so that a few rows' stand for all.
-        render::FilmTile tile(film_.layout());
-        const render::TileSamples rows{
-            .rect = {.width = kPixels, .height = std::clamp(setting.paths / kPixels, 1, kPixels)},
-            .first = 0,
-            .end = 1};
-        film_.load(rows, tile);
-        render.renderer(rows, tile);
-        tile.finish();
-        film_.store(tile);
-    }
+    explicit StarFilm(const render::Sensor& sensor) : sensor_(sensor), irradiance_(std::size_t{kPixels} * kPixels) {}
 
-    /// Visits each pixel: place in λN from the image, irradiance over the light's.
-    template <class Visit>
-    void for_each(const Visit& visit) const {
+    void add(const render::Film& film, double weight) {
         for (int y = 0; y < kPixels; ++y) {
             for (int x = 0; x < kPixels; ++x) {
-                const Vec2d place = camera_.sensor().position(x, y);
-                visit(place / (kPixelsPerAiry * camera_.sensor().pixel_pitch_mm),
-                      film_.estimate(x, y).rgb.x / kIrradiance);
+                irradiance_[index(x, y)] += weight * film.estimate(x, y).rgb.x / kIrradiance;
             }
         }
     }
 
-    [[nodiscard]] const render::Camera& camera() const { return camera_; }
+    /// Visits each pixel: its place, its irradiance.
+    template <class Visit>
+    void for_each(const Visit& visit) const {
+        for (int y = 0; y < kPixels; ++y) {
+            for (int x = 0; x < kPixels; ++x) {
+                visit(place_of(x, y, sensor_), irradiance_[index(x, y)]);
+            }
+        }
+    }
 
   private:
-    render::Camera camera_;
-    render::Film film_;
+    static std::size_t index(int x, int y) {
+        return static_cast<std::size_t>(y) * kPixels + static_cast<std::size_t>(x);
+    }
+
+    render::Sensor sensor_;
+    std::vector<double> irradiance_;
 };
+
+/// By that many light paths, or a few less.
+render::Film star_film(const render::Camera& camera, int paths, std::uint64_t seed) {
+    const render::World world = starlight(camera.grid());
+    const render::View view{.world = &world, .camera = &camera, .seed = seed, .paths = {.max_bounces = 0}};
+    render::Render render = render::pass_named("diffracted").render(view, render::integrator_named("camera"));
+    const double per_nm = 1.0 / render.film.band_nm;
+    render.film.rgb_weights.assign(render.film.rgb_weights.size(), {per_nm, per_nm, per_nm});
+    render::Film film(render.film);
+    // Paths land anywhere, so that a few rows' stand for all.
+    render::FilmTile tile(film.layout());
+    const render::TileSamples rows{
+        .rect = {.width = kPixels, .height = std::clamp(paths / kPixels, 1, kPixels)}, .first = 0, .end = 1};
+    film.load(rows, tile);
+    render.renderer(rows, tile);
+    tile.finish();
+    film.store(tile);
+    return film;
+}
 
 double octave_weight(double from, double radius) {
     const double s = std::sin(kPi * (radius / from - 1.0));
@@ -157,14 +172,6 @@ EdgeProfile profile_of(const VisitAll& visit_all) {
         profile.rings[i].y /= std::max(areas[i], 1e-9);
     }
     return profile;
-}
-
-EdgeProfile by_rays(const StarFilm& film) {
-    return profile_of([&](const auto& visit) {
-        film.for_each([&](const Vec2d& place, double irradiance) {
-            visit(length(place), irradiance, 1.0 / (kPixelsPerAiry * kPixelsPerAiry));
-        });
-    });
 }
 
 analysis::EdgeWave wave_of(const EdgeSetting& setting, const render::Camera& camera) {
@@ -225,6 +232,15 @@ std::vector<Streak> streaks_of(const EdgeSetting& setting, const StarFilm& film)
     return streaks;
 }
 
+EdgeRays by_rays(const EdgeSetting& setting, const StarFilm& film) {
+    const EdgeProfile profile = profile_of([&](const auto& visit) {
+        film.for_each([&](const Vec2d& place, double irradiance) {
+            visit(length(place), irradiance, 1.0 / (kPixelsPerAiry * kPixelsPerAiry));
+        });
+    });
+    return {.profile = profile, .streaks = streaks_of(setting, film)};
+}
+
 float shown(double irradiance) {
     return static_cast<float>(std::log10(std::max(irradiance, kFaintest)));
 }
@@ -276,13 +292,25 @@ double EdgeProfile::slope() const {
 }
 
 EdgeDiffraction measure_edges(const EdgeSetting& setting, std::uint64_t seed) {
-    const StarFilm film(setting, seed);
-    const analysis::EdgeWave wave = wave_of(setting, film.camera());
-    return {.rays = by_rays(film),
-            .wave = by_wave(setting, wave),
-            .streaks = streaks_of(setting, film),
-            .ray_map = map_of_rays(film),
-            .wave_map = map_of_wave(setting, wave)};
+    const render::Camera camera(
+        camera_settings(setting),
+        {kWavelength_nm - kHalfBand_nm, kWavelength_nm + kHalfBand_nm, spectral::kWavelengthsPerPath, 1}, {}, {});
+    const analysis::EdgeWave wave = wave_of(setting, camera);
+    StarFilm all(camera.sensor());
+    EdgeDiffraction found{.rays = {}, .batches = {}, .wave = by_wave(setting, wave), .ray_map = {}, .wave_map = {}};
+    for (std::uint64_t i = 0; i < kEdgeBatches; ++i) {
+        const render::Film film = star_film(camera, setting.paths / kEdgeBatches, kEdgeBatches * seed + i);
+        StarFilm one(camera.sensor());
+        one.add(film, 1.0);
+        all.add(film, 1.0 / kEdgeBatches);
+        found.batches.push_back(by_rays(setting, one));
+    }
+    found.rays = by_rays(setting, all);
+    if (setting.has_maps) {
+        found.ray_map = map_of_rays(all);
+        found.wave_map = map_of_wave(setting, wave);
+    }
+    return found;
 }
 
 }  // namespace lensproof::studies

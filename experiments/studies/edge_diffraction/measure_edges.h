@@ -16,6 +16,7 @@ struct EdgeSetting {
     int blades = 0;          // 0: a circle
     double curvature = 0.0;  // of the blades' edges: 0 straight, 1 round
     int paths = 300'000;     // of light
+    bool has_maps = true;    // for drawings
 };
 
 /// The unit of length on the film: λN.
@@ -43,6 +44,14 @@ struct Streak {
     double turn_deg = 0.0;  // its mean azimuth, from the normal of the edge that makes it
 };
 
+/// What a number of light paths makes.
+struct EdgeRays {
+    EdgeProfile profile;
+    std::vector<Streak> streaks;  // of straight blades: two each where their number is odd, else one
+};
+
+inline constexpr int kEdgeBatches = 8;  // of light paths, independent of each other
+
 /// A square about the image, row by row from its low y: log10 of the irradiance over the light's.
 struct EdgeMap {
     int side = 0;  // pixels
@@ -51,10 +60,10 @@ struct EdgeMap {
 inline constexpr double kMapRadius = 50.0;  // λN
 
 struct EdgeDiffraction {
-    EdgeProfile rays;
+    EdgeRays rays;
+    std::vector<EdgeRays> batches;  // which `rays` is of all together: how far they differ is its error
     EdgeProfile wave;
-    std::vector<Streak> streaks;  // by rays; of straight blades: two each where their number is odd, else one
-    EdgeMap ray_map;
+    EdgeMap ray_map;  // both empty where they are not asked for
     EdgeMap wave_map;
 };
 

@@ -24,13 +24,20 @@ EdgeMap even_map() {
 
 TEST(EdgeStudy, SaysHowFarRaysAreFromWaves) {
     EXPECT_NEAR(cubic(2.0).slope(), -3.0, 1e-12);
-    EdgeDiffraction found{
-        .rays = cubic(1.02), .wave = cubic(1.0), .streaks = {}, .ray_map = even_map(), .wave_map = even_map()};
-    found.streaks = {{1.0, 0.05}, {0.9, -0.3}};
+    const auto rays = [](double scale) {
+        return EdgeRays{.profile = cubic(scale), .streaks = {{1.0, 0.05}, {0.9, -0.3}}};
+    };
+    // Two batches of ±1 %: their mean's standard error is 1 %.
+    const EdgeDiffraction found{.rays = rays(1.02),
+                                .batches = {rays(1.01), rays(1.03)},
+                                .wave = cubic(1.0),
+                                .ray_map = even_map(),
+                                .wave_map = even_map()};
     const MeasuredEdges measured{{{.lens = "tessar", .f_number = 8.0, .blades = 7}, found}};
     const findings::Findings said = edge_findings(measured);
     ASSERT_EQ(said.checks.size(), 4U);
     EXPECT_NEAR(said.checks[0].value, 2.0, 1e-9);
+    EXPECT_NEAR(said.checks[0].sigma, 1.0, 1e-9);
     EXPECT_NEAR(said.checks[1].value, 0.0, 1e-9);
     EXPECT_NEAR(said.checks[2].value, 2.0, 1e-9);
     EXPECT_EQ(said.checks[2].verdict(), findings::Verdict::pass);
