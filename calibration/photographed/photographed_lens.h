@@ -1,0 +1,71 @@
+// calibration/photographed/photographed_lens.h — a lens as it was calibrated from photographs: an entry of lensfun.
+#pragma once
+#include <array>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "engine/optics/projection.h"
+
+namespace lensproof::calibration {
+
+/// One channel's lateral colour: its radius over green's is v + c r + b r², r green's in units of
+/// PhotographedLens::unit_mm.
+struct ChannelScale {
+    double v = 1.0;
+    double c = 0.0;
+    double b = 0.0;
+};
+
+struct LateralColour {
+    ChannelScale red;
+    ChannelScale blue;
+};
+
+/// Light at a share x of the half-diagonal over that on the axis: 1 + k1 x² + k2 x⁴ + k3 x⁶ (lensfun's "pa").
+struct MeasuredVignetting {
+    double f_number = 0.0;
+    double distance_m = 0.0;  // of focus; lensfun writes 1000 for infinity
+    std::array<double, 3> k{};
+
+    [[nodiscard]] double brightness(double share) const;
+};
+
+/// What lensfun says of a lens at one focal length, in lensfun's terms (lensfun.h 0.3.3; tests ask the library): a
+/// direction at the angle θ from the axis, which `projection` without distortion images at r_u = F g(θ), is imaged at
+///     r_d = Σ distortion[i] r_u^(i+1),
+/// both in units of half the sensor's short side, `unit_mm`. F is nowhere stated: a free scale.
+struct PhotographedLens {
+    std::string maker;
+    std::string model;
+    double crop_factor = 1.0;   // diagonal of 36 × 24 mm over that of the sensor it was photographed on
+    double aspect_ratio = 1.5;  // long side over short side of the pictures
+    optics::Projection projection = optics::Projection::rectilinear;
+    double focal_length_mm = 0.0;  // nominal, at which it was calibrated
+    std::string distortion_model;  // "poly3", "poly5", "ptlens"; empty: not calibrated
+    std::array<double, 5> distortion{1.0, 0.0, 0.0, 0.0, 0.0};
+    std::optional<LateralColour> lateral_colour;
+    std::vector<MeasuredVignetting> vignetting;  // by f-number, of each the farthest focus
+
+    [[nodiscard]] double half_diagonal_mm() const;
+    [[nodiscard]] double unit_mm() const;
+};
+
+/// The radius (mm) where a point is photographed that a lens without distortion images at `ideal_mm`.
+double photographed_radius(const PhotographedLens& lens, double ideal_mm);
+
+/// d photographed / d ideal there; on the axis what the polynomial magnifies by.
+double photographed_slope(const PhotographedLens& lens, double ideal_mm);
+
+/// How far photographs go at all: the first ideal radius (mm) from which on the polynomial images no farther out, and
+/// at most `largest_mm`.
+double ideal_radius_covered(const PhotographedLens& lens, double largest_mm);
+
+/// How far the channel's image lies outside of green's (mm), where green's is at `radius_mm`.
+double channel_shift(const PhotographedLens& lens, const ChannelScale& channel, double radius_mm);
+
+/// Root mean square (mm) of what distinguishes the photographed lens from one without distortion of the best focal
+/// length, evenly over image heights up to the half-diagonal: how much there is to tell lenses apart by.
+double departure_from_ideal(const PhotographedLens& lens);
+
+}  // namespace lensproof::calibration
