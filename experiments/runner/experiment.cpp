@@ -11,6 +11,7 @@
 #include "experiments/studies/cameras/simulations.h"
 #include "experiments/studies/edge_diffraction/edge_study.h"
 #include "experiments/studies/measurement_floor/floor_study.h"
+#include "experiments/studies/photographed_lenses/photographed_study.h"
 #include "experiments/studies/pupil_passage/passage_study.h"
 #include "experiments/studies/stability/stability_study.h"
 #include "experiments/studies/stray_light/stray_study.h"
@@ -35,6 +36,7 @@ constexpr std::array kStudies = {
     StudyKind{"[[stray_light]]", studies::read_stray_light},
     StudyKind{"[[edge_diffraction]]", studies::read_edge_diffraction},
     StudyKind{"[measurement_floor]", studies::read_measurement_floor},
+    StudyKind{"[[photographed_lenses]]", studies::read_photographed_lenses},
 };
 
 }  // namespace
