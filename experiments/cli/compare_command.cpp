@@ -1,4 +1,5 @@
-// experiments/cli/compare_command.cpp — `lensproof compare A B`: two profiles, two images, or a lens with a profile.
+// experiments/cli/compare_command.cpp — `lensproof compare A B`: two profiles, two images, a lens with a profile or
+// with photographs.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -13,6 +14,7 @@
 #include "engine/base/json.h"
 #include "engine/formats/image/image.h"
 #include "experiments/cli/command.h"
+#include "experiments/cli/compare_measured.h"
 #include "experiments/cli/terminal.h"
 #include "experiments/findings/verdict.h"
 #include "experiments/studies/cameras/lens_profile.h"
@@ -33,6 +35,7 @@ struct CompareOptions {
     double f_number = 8.0;
     double focus_mm = kInfinity;
     std::string response = "camera";
+    MeasuredOptions measured;
 };
 
 bool has_extension(const std::string& name, const char* extension) {
@@ -237,6 +240,13 @@ void check_limits(bool profiles, const CompareOptions& options) {
 
 int run_compare(const CompareOptions& options) {
     check_json_name(options.common);
+    if (!options.measured.measured.empty()) {
+        return compare_measured(options.a, options.measured, options.common);
+    }
+    if (options.b.empty()) {
+        throw InputError(
+            fmt::format("{} is given alone, expected what to compare it with: B, or --measured", options.a));
+    }
     const bool a_is_profile = has_extension(options.a, ".json");
     const bool b_is_profile = has_extension(options.b, ".json");
     const bool profiles =
@@ -271,10 +281,13 @@ int run_compare(const CompareOptions& options) {
 
 void add_compare_command(Program& program) {
     const auto options = std::make_shared<CompareOptions>();
-    Command command = program.add_command("compare", "Compare two profiles, two images, or a lens with a profile");
-    command.footer("Example: lensproof compare tessar profile.json --f-number 8 --position-limit 0.5");
+    Command command = program.add_command(
+        "compare", "Compare two profiles, two images, or a lens with a profile or with photographs");
+    command.footer(
+        "Examples: lensproof compare tessar profile.json --f-number 8 --position-limit 0.5\n"
+        "          lensproof compare canon-fd-24 --measured \"lensfun:Canon FDn 24mm 1:2.8\"");
     command.add_option("A", options->a, "A profile (.json), an image, or a lens").required();
-    command.add_option("B", options->b, "Likewise").required();
+    command.add_option("B", options->b, "Likewise").excludes(add_measured_options(command, options->measured));
     command.add_option("--position-limit", options->position_limit_px, "Limit of image position, rms, px")
         .check(kPositiveOption);
     command.add_option("--distortion-limit", options->distortion_limit_percent, "Limit of distortion, rms, %")
