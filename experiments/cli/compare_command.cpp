@@ -12,11 +12,10 @@
 #include "engine/base/infinity.h"
 #include "engine/base/input_error.h"
 #include "engine/base/json.h"
-#include "engine/formats/image/image.h"
 #include "experiments/cli/command.h"
 #include "experiments/cli/compare_measured.h"
-#include "experiments/cli/terminal.h"
-#include "experiments/findings/verdict.h"
+#include "experiments/cli/compare_pictures.h"
+#include "experiments/cli/compare_report.h"
 #include "experiments/studies/cameras/lens_profile.h"
 
 namespace lensproof::cli {
@@ -31,11 +30,11 @@ struct CompareOptions {
     double position_limit_px = 0.0;
     double vignetting_limit_ev = 0.0;
     double chromatic_limit_px = 0.0;
-    double rms_limit = 0.0;
     double f_number = 8.0;
     double focus_mm = kInfinity;
     std::string response = "camera";
     MeasuredOptions measured;
+    PictureOptions pictures;
 };
 
 bool has_extension(const std::string& name, const char* extension) {
@@ -67,15 +66,9 @@ std::pair<calibration::Profile, std::vector<optics::Finding>> profile_of_lens(co
     return {studies::lens_profile(seen), seen.lens()->findings};
 }
 
-struct Row {
-    findings::Check check;
-    bool limited = false;
-    std::string key_suffix;  // of JSON keys of numbers in the check's unit
-};
-
-Row make_row(const std::string& label, const calibration::Unit& unit,
-             const std::optional<calibration::CurveDifference>& difference, double limit) {
-    Row row;
+ComparedRow make_row(const std::string& label, const calibration::Unit& unit,
+                     const std::optional<calibration::CurveDifference>& difference, double limit) {
+    ComparedRow row;
     row.limited = limit > 0.0;
     row.check.id = label;
     row.check.label = label;
@@ -87,37 +80,10 @@ Row make_row(const std::string& label, const calibration::Unit& unit,
     return row;
 }
 
-int report(const std::vector<Row>& rows, const Json& curves, const std::vector<optics::Finding>& findings,
+int report(const std::vector<ComparedRow>& rows, const Json& curves, const std::vector<optics::Finding>& findings,
            const CompareOptions& options) {
-    Json json{{"a", options.a}, {"b", options.b}, {"findings", findings_json(findings)}, {"differences", Json::list()}};
-    int status = kDone;
-    for (const Row& row : rows) {
-        const findings::Check& check = row.check;
-        if (!std::isfinite(check.value)) {
-            if (row.limited) {
-                throw InputError(
-                    fmt::format("{} and {}: their difference in {} is {}, expected a finite number to "
-                                "hold against its limit",
-                                options.a, options.b, check.label, check.value));
-            }
-            continue;
-        }
-        const findings::Verdict verdict = check.verdict();
-        Json entry{{"quantity", check.label},
-                   {"rms" + row.key_suffix, check.value},
-                   {"standard_error" + row.key_suffix, check.sigma}};
-        if (row.limited) {
-            entry["limit" + row.key_suffix] = check.limit;
-            entry["verdict"] = findings::verdict_name(verdict);
-            status = verdict == findings::Verdict::pass ? status : kCheckFailed;
-        }
-        json["differences"].push_back(entry);
-        if (prints_text(options.common)) {
-            print("{:32} rms {:.5g} ± {:.2g} {}{}\n", check.label, check.value, check.sigma, check.unit,
-                  row.limited ? fmt::format("  limit {:g}: {}", check.limit, findings::verdict_name(verdict))
-                              : std::string());
-        }
-    }
+    Json json{{"a", options.a}, {"b", options.b}, {"findings", findings_json(findings)}};
+    const int status = report_rows(rows, options.a, options.b, options.common, json);
     if (!curves.is_null()) {
         json["curves"] = curves;
     }
@@ -127,7 +93,7 @@ int report(const std::vector<Row>& rows, const Json& curves, const std::vector<o
 
 int compare_profiles(const calibration::Profile& a, const calibration::Profile& b,
                      const std::vector<optics::Finding>& findings, const CompareOptions& options) {
-    std::vector<Row> rows;
+    std::vector<ComparedRow> rows;
     Json curves;
     const auto add = [&](const std::string& name, const calibration::Unit& unit,
                          const std::optional<calibration::CurveDifference>& found, double limit) {
@@ -167,58 +133,13 @@ int compare_profiles(const calibration::Profile& a, const calibration::Profile& 
     };
     add_channels(kQuantities.vignetting_ev, options.vignetting_limit_ev);
     add_channels(kQuantities.chromatic_shift, options.chromatic_limit_px);
-    if (std::ranges::none_of(rows, [](const Row& row) { return std::isfinite(row.check.value); })) {
+    if (std::ranges::none_of(rows, [](const ComparedRow& row) { return std::isfinite(row.check.value); })) {
         throw InputError(
             fmt::format("{} and {}: they have no curve in common, expected profiles of pictures in which "
                         "a chart was found",
                         options.a, options.b));
     }
     return report(rows, curves, findings, options);
-}
-
-void check_finite(const formats::Image& image, const std::string& file) {
-    const auto found = std::ranges::find_if_not(image.pixels, [](float value) { return std::isfinite(value); });
-    if (found != image.pixels.end()) {
-        const auto index = static_cast<std::size_t>(found - image.pixels.begin());
-        const std::size_t pixel = index / image.channels.size();
-        throw InputError(fmt::format("{}: channel {} of pixel ({}, {}) is {}, expected a finite number", file,
-                                     image.channels[index % image.channels.size()], pixel % image.width,
-                                     pixel / image.width, *found));
-    }
-}
-
-int compare_images(const CompareOptions& options) {
-    const formats::Image a = formats::read_image(options.a);
-    const formats::Image b = formats::read_image(options.b);
-    if (a.width != b.width || a.height != b.height || a.channels != b.channels) {
-        throw InputError(
-            fmt::format("{} is {} × {} with {} channels and {} is {} × {} with {}: expected pictures alike", options.a,
-                        a.width, a.height, a.channel_count(), options.b, b.width, b.height, b.channel_count()));
-    }
-    check_finite(a, options.a);
-    check_finite(b, options.b);
-    std::vector<Row> rows;
-    for (int c = 0; c < a.channel_count(); ++c) {
-        double squares = 0.0;
-        double fourths = 0.0;
-        for (std::size_t i = static_cast<std::size_t>(c); i < a.pixels.size(); i += a.channels.size()) {
-            const double square = std::pow(static_cast<double>(a.pixels[i]) - static_cast<double>(b.pixels[i]), 2);
-            squares += square;
-            fourths += square * square;
-        }
-        const double n = static_cast<double>(a.width) * a.height;
-        const double mean = squares / n;
-        Row row;
-        row.limited = options.rms_limit > 0.0;
-        row.check.label = "channel " + a.channels[c];
-        row.check.value = std::sqrt(mean);
-        // The mean square's standard error over pixels, carried to its root.
-        row.check.sigma =
-            mean > 0.0 ? std::sqrt(std::max(0.0, fourths / n - mean * mean) / n) / (2.0 * std::sqrt(mean)) : 0.0;
-        row.check.limit = options.rms_limit;
-        rows.push_back(row);
-    }
-    return report(rows, nullptr, {}, options);
 }
 
 /// A limit that nothing is held against would look like one that held.
@@ -228,8 +149,7 @@ void check_limits(bool profiles, const CompareOptions& options) {
         {"--distortion-limit", options.distortion_limit_percent},
         {"--vignetting-limit", options.vignetting_limit_ev},
         {"--chromatic-limit", options.chromatic_limit_px}};
-    const std::vector<std::pair<const char*, double>> of_images = {{"--rms-limit", options.rms_limit}};
-    for (const auto& [name, limit] : profiles ? of_images : of_profiles) {
+    for (const auto& [name, limit] : profiles ? options.pictures.limits() : of_profiles) {
         if (limit > 0.0) {
             throw InputError(fmt::format("{} is given, which is a limit of {}; {} and {} are {}", name,
                                          profiles ? "pictures" : "profiles", options.a, options.b,
@@ -274,7 +194,7 @@ int run_compare(const CompareOptions& options) {
         const auto [lens, findings] = profile_of_lens(options.a, b, options);
         return compare_profiles(lens, b, findings, options);
     }
-    return compare_images(options);
+    return compare_pictures(options.a, options.b, options.pictures, options.common);
 }
 
 }  // namespace
@@ -296,8 +216,7 @@ void add_compare_command(Program& program) {
         .check(kPositiveOption);
     command.add_option("--chromatic-limit", options->chromatic_limit_px, "Limit of chromatic shift, rms, px")
         .check(kPositiveOption);
-    command.add_option("--rms-limit", options->rms_limit, "Limit of images' rms difference, full scale 1")
-        .check(kPositiveOption);
+    add_picture_options(command, options->pictures);
     command.add_option("--f-number", options->f_number, "f-number of a lens").check(kPositiveOption).shows_default();
     command.add_option("--focus", options->focus_mm, "Focus distance of a lens, mm, or inf")
         .check(either(kPositiveOption, one_of({"inf"})))

@@ -1,0 +1,86 @@
+#include "experiments/cli/compare_maps.h"
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <map>
+#include <vector>
+
+#include "calibration/statistics/order_statistics.h"
+#include "engine/base/write_file.h"
+#include "engine/formats/image/image.h"
+#include "experiments/draw/analysis_plots.h"
+#include "experiments/draw/colour_map.h"
+
+namespace lensproof::cli {
+
+namespace {
+
+constexpr int kMapShades = 256;
+constexpr double kLeastRange = 1e-4;
+
+struct ShownRange {
+    double lowest = 0.0;
+    double highest = 1.0;
+};
+
+std::string map_png(const formats::Image& values, draw::ColourMap colours, const ShownRange& range) {
+    std::vector<Vec3d> shades;
+    for (int i = 0; i < kMapShades; ++i) {
+        shades.push_back(draw::map_colour(colours, i / (kMapShades - 1.0)));
+    }
+    formats::Image picture = formats::make_image(values.width, values.height, {"R", "G", "B"});
+    for (std::size_t i = 0; i < values.pixels.size(); ++i) {
+        const double fraction = std::clamp(
+            (static_cast<double>(values.pixels[i]) - range.lowest) / (range.highest - range.lowest), 0.0, 1.0);
+        const Vec3d& rgb = shades[static_cast<std::size_t>(std::lround(fraction * (kMapShades - 1)))];
+        picture.pixels[3 * i] = static_cast<float>(rgb.x);
+        picture.pixels[3 * i + 1] = static_cast<float>(rgb.y);
+        picture.pixels[3 * i + 2] = static_cast<float>(rgb.z);
+    }
+    return formats::encode_png(picture);
+}
+
+/// What 999 of 1000 values do not exceed.
+double nearly_largest(const formats::Image& values) {
+    std::vector<float> magnitudes;
+    magnitudes.reserve(values.pixels.size());
+    for (const float value : values.pixels) {
+        magnitudes.push_back(std::abs(value));
+    }
+    return static_cast<double>(calibration::quantile(magnitudes, 0.999));
+}
+
+}  // namespace
+
+void check_maps_folder(const std::string& folder) {
+    check_output_name(std::filesystem::path(folder) / "difference.png");
+}
+
+Json write_maps(const calibration::PictureComparison& found, const std::string& folder) {
+    std::map<std::string, std::string> files;
+    Json told = Json::list();
+    const auto add = [&](const std::string& quantity, const formats::Image& values, draw::ColourMap colours,
+                         const ShownRange& range) {
+        files[quantity + ".png"] = map_png(values, colours, range);
+        told.push_back(Json{{"file", (std::filesystem::path(folder) / (quantity + ".png")).string()},
+                            {"quantity", quantity},
+                            {"lowest", range.lowest},
+                            {"highest", range.highest}});
+    };
+    if (found.difference) {
+        const double range = std::max(kLeastRange, nearly_largest(found.difference->map));
+        add("difference", found.difference->map, draw::ColourMap::diverging, {-range, range});
+    }
+    if (found.flip_map) {
+        add("flip", *found.flip_map, draw::ColourMap::sequential, {0.0, 1.0});
+    }
+    if (found.ciede2000_map) {
+        add("ciede2000", *found.ciede2000_map, draw::ColourMap::sequential,
+            {0.0, std::max(1.0, nearly_largest(*found.ciede2000_map))});
+    }
+    draw::write_plots(folder, files);
+    return told;
+}
+
+}  // namespace lensproof::cli
