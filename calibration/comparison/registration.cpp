@@ -60,10 +60,10 @@ Fitted fitted(const WarpLevel& level, const Warp& start, WarpModel model, int th
 
 /// The same with as many terms as the level tells; the start where it tells none.
 Fitted best_at(const WarpLevel& level, const Warp& start, WarpModel model, int threads) {
-    const Fitted shifted = fitted(level, start, WarpModel::translation, threads);
-    const Fitted all = model == WarpModel::translation
-                           ? shifted
-                           : fitted(level, shifted.is_determined ? shifted.warp : start, model, threads);
+    Fitted shifted = fitted(level, start, WarpModel::translation, threads);
+    Fitted all = model == WarpModel::translation
+                     ? shifted
+                     : fitted(level, shifted.is_determined ? shifted.warp : start, model, threads);
     if (all.is_determined) {
         return all;
     }

@@ -26,6 +26,7 @@ struct ShownRange {
 
 std::string map_png(const formats::Image& values, draw::ColourMap colours, const ShownRange& range) {
     std::vector<Vec3d> shades;
+    shades.reserve(kMapShades);
     for (int i = 0; i < kMapShades; ++i) {
         shades.push_back(draw::map_colour(colours, i / (kMapShades - 1.0)));
     }
