@@ -19,12 +19,11 @@
 #include "experiments/cli/command.h"
 #include "experiments/cli/ghost_options.h"
 #include "experiments/cli/terminal.h"
+#include "experiments/cli/trace_rows.h"
 
 namespace lensproof::cli {
 
 namespace {
-
-constexpr const char* kResultHeader = "id,surface,x_mm,y_mm,z_mm,dx,dy,dz,optical_path_mm,transmittance,status";
 
 struct GivenRay {
     std::string id;
@@ -44,6 +43,7 @@ struct TraceOptions {
     std::vector<std::string> coatings;
     bool reverse = false;
     bool no_clip = false;
+    bool polarised = false;
     std::vector<std::string> sequence;
     MirrorOptions mirrors;
 };
@@ -52,6 +52,7 @@ struct TraceOptions {
 struct Way {
     optics::GhostPath reflections;  // empty: through
     optics::StrayMirrors<double> mirrors;
+    bool polarised = false;  // rows say what becomes of polarised light too
 };
 
 // Far beyond any scene, far below what would overflow when squared, in a float too.
@@ -137,35 +138,6 @@ void check_rays(const optics::Lens& lens, const GivenRays& rays) {
     });
 }
 
-/// A ray at a surface, in whatever precision.
-template <class T>
-struct TraceRow {
-    const std::string& id;
-    std::string surface;
-    Ray<T> ray;
-    T optical_path;
-    T transmittance;
-    optics::RayStatus status;
-};
-
-template <class T>
-std::string csv_of(const TraceRow<T>& row) {
-    return fmt::format("{},{},{},{},{},{},{},{},{},{},{}\n", row.id, row.surface, row.ray.origin.x, row.ray.origin.y,
-                       row.ray.origin.z, row.ray.direction.x, row.ray.direction.y, row.ray.direction.z,
-                       row.optical_path, row.transmittance, optics::status_name(row.status));
-}
-
-template <class T>
-Json json_of(const TraceRow<T>& row) {
-    return {{"id", row.id},
-            {"surface", row.surface},
-            {"point_mm", {row.ray.origin.x, row.ray.origin.y, row.ray.origin.z}},
-            {"direction", {row.ray.direction.x, row.ray.direction.y, row.ray.direction.z}},
-            {"optical_path_mm", row.optical_path},
-            {"transmittance", row.transmittance},
-            {"status", optics::status_name(row.status)}};
-}
-
 /// Tells `visit` a row a surface.
 template <class T, optics::Direction direction, optics::Rims rims, class Visit>
 void trace_one(const optics::TraceLens<T>& lens, const GivenRay& given, const Way& way, const Visit& visit) {
@@ -174,10 +146,23 @@ void trace_one(const optics::TraceLens<T>& lens, const GivenRay& given, const Wa
     };
     // Normalised in the working precision: a double's unit vector is not one to long double's last digits.
     const Ray<T> ray{cast(given.ray.origin), normalized(cast(given.ray.direction))};
+    std::optional<optics::PolarisedEvents<T>> polarised;
+    if (way.polarised) {
+        polarised.emplace(lens, way.reflections, ray.direction, direction, rims);
+    }
+    const auto tell = [&](TraceRow<T> row) {
+        if (polarised) {
+            row.polarised = polarised->light(row.transmittance);
+        }
+        visit(row);
+    };
     const auto visit_event = [&](const optics::SurfaceEvent<T>& event) {
+        if (polarised) {
+            (*polarised)(event);
+        }
         const bool is_sensor = event.surface == static_cast<int>(lens.surfaces.size());
-        visit(TraceRow<T>{given.id, is_sensor ? kSensorName : std::to_string(event.surface + 1), event.ray,
-                          event.optical_path, event.transmittance, event.status});
+        tell({given.id, is_sensor ? kSensorName : std::to_string(event.surface + 1), event.ray, event.optical_path,
+              event.transmittance, event.status});
     };
     const optics::StrayMirrors<T> mirrors{static_cast<T>(way.mirrors.sensor), static_cast<T>(way.mirrors.blades)};
     const optics::TracedRay<T> traced = way.reflections.empty() ? optics::trace<direction, rims>(lens, ray, visit_event)
@@ -191,11 +176,10 @@ void trace_one(const optics::TraceLens<T>& lens, const GivenRay& given, const Wa
     }
     if (traced.ray.direction.z > T(0)) {
         const optics::PlanePoint<T> image = optics::meet_plane(traced.ray, lens.image_z);
-        visit(TraceRow<T>{given.id, kSensorName, Ray<T>{image.point, traced.ray.direction},
-                          traced.optical_path + image.distance, traced.transmittance, optics::RayStatus::ok});
+        tell({given.id, kSensorName, Ray<T>{image.point, traced.ray.direction}, traced.optical_path + image.distance,
+              traced.transmittance, optics::RayStatus::ok});
     } else {
-        visit(TraceRow<T>{given.id, kSensorName, traced.ray, traced.optical_path, traced.transmittance,
-                          optics::RayStatus::missed});
+        tell({given.id, kSensorName, traced.ray, traced.optical_path, traced.transmittance, optics::RayStatus::missed});
     }
 }
 
@@ -294,7 +278,7 @@ int run_trace(const TraceOptions& options) {
                                           .coatings = options.coatings,
                                           .glasses = read_glass_catalogues(options.glass_catalogues)});
     print_findings(options.common, lens);
-    Way way;
+    Way way{.reflections = {}, .mirrors = {}, .polarised = options.polarised};
     if (!options.sequence.empty()) {
         way.reflections = parse_sequence(options.sequence, lens, options.mirrors);
         way.mirrors = stray_mirrors(options.mirrors);
@@ -302,7 +286,7 @@ int run_trace(const TraceOptions& options) {
     const GivenRays rays(options.rays_file);
     check_rays(lens, rays);
     const auto csv_to = [&](const auto& put) {
-        put(std::string(kResultHeader) + "\n");
+        put(kTraceHeader + std::string(options.polarised ? kPolarisedHeader : "") + "\n");
         trace_rows(lens, rays, options, way, [&](const auto& row) { put(csv_of(row)); });
     };
     if (!options.output_file.empty()) {
@@ -355,6 +339,9 @@ void add_trace_command(Program& program) {
         .separated_by(',')
         .excludes(reverse)
         .type_name("I,J,…");
+    command.add_flag("--polarised", options->polarised,
+                     "Carry the light's polarisation along each ray: what arrives of unpolarised light, and of light "
+                     "polarised across and in the plane of ray and axis");
     add_mirror_options(command, options->mirrors);
     add_common_options(command, options->common);
     command.runs([options] { return run_trace(*options); });
