@@ -19,14 +19,15 @@ double percent_reflected(const CoatedFace& face, double wavelength_nm, double an
 
 }  // namespace
 
-optics::PolarisedPowers<double> coated_powers(const CoatedFace& face, double wavelength_nm, double angle_deg) {
+optics::PolarisedPowers<double> coated_powers(const CoatedFace& face, double wavelength_nm, double angle_deg,
+                                              FaceSide from) {
     if (!optics::covers(face.glass, wavelength_nm)) {
         throw InputError(fmt::format("{} nm is outside the range of {}, {} to {} nm", wavelength_nm, face.glass.name,
                                      face.glass.min_wavelength_nm, face.glass.max_wavelength_nm));
     }
     return optics::coating_powers(optics::coating_at(face.coating, wavelength_nm, "the coating"), 1.0,
                                   optics::refractive_index(face.glass.formula, wavelength_nm),
-                                  std::cos(radians(angle_deg)), true);
+                                  std::cos(radians(angle_deg)), from == FaceSide::air);
 }
 
 double mean_reflectance(const CoatedFace& face) {

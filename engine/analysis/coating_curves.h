@@ -13,8 +13,11 @@ struct CoatedFace {
     optics::Glass glass;
 };
 
-/// For light from air. Throws InputError where the coating or the glass has no data at the wavelength.
-optics::PolarisedPowers<double> coated_powers(const CoatedFace& face, double wavelength_nm, double angle_deg);
+/// For light from air or from the glass, at an angle below 90° in the medium that it comes from. Throws InputError
+/// where the coating or the glass has no data at the wavelength.
+enum class FaceSide { air, glass };
+optics::PolarisedPowers<double> coated_powers(const CoatedFace& face, double wavelength_nm, double angle_deg,
+                                              FaceSide from = FaceSide::air);
 
 /// Of unpolarised light at normal incidence: the mean over 400 to 700 nm, of a value a nanometre.
 double mean_reflectance(const CoatedFace& face);

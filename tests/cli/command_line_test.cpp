@@ -86,6 +86,30 @@ TEST(Coatings, AreListedWithWhatTheyReflect) {
     }
 }
 
+// Both polarisations from both sides: of a single face by Fresnel, and as much through it both ways; nothing gets out
+// beyond the critical angle.
+TEST(Coatings, SayBothPolarisationsOnRequest) {
+    const Workplace place;
+    place.file("none.toml", "name = \"none\"\nsource = \"me\"\nlayers = [{ n = 1.5, thickness_nm = 90.0 }]\n");
+    const Json result =
+        place.json({"coatings", "none.toml", "--on", "1.5", "--angles", "0,60", "--wavelengths", "500"});
+    EXPECT_EQ(result["glass"], "n = 1.5");
+    const Json& powers = result["coatings"][0]["powers"];
+    ASSERT_EQ(powers.size(), 4U);
+    EXPECT_NEAR(powers[0]["s"]["reflectance"].get<double>(), 0.04, 1e-14);
+    EXPECT_EQ(powers[1]["from"], "glass");
+    EXPECT_NEAR(powers[1]["p"]["transmittance"].get<double>(), 0.96, 1e-14);
+    const double inside = std::asin(std::sin(std::acos(0.5)) / 1.5);
+    const double s = std::sin(std::acos(0.5) - inside) / std::sin(std::acos(0.5) + inside);
+    EXPECT_EQ(powers[2]["angle_deg"], 60.0);
+    EXPECT_NEAR(powers[2]["s"]["reflectance"].get<double>(), s * s, 1e-14);
+    EXPECT_NEAR(powers[3]["s"]["reflectance"].get<double>(), 1.0, 1e-14);
+    EXPECT_TRUE(says(place.run({"coatings", "mgf2", "--angles", "30"}).out, "R s %"));
+    expect_refused(place, {"coatings", "mgf2", "--angles", "90"}, {"--angles", "below 90"});
+    expect_refused(place, {"coatings", "mgf2", "--wavelengths", "500"}, {"--angles"});
+    expect_refused(place, {"coatings", "mgf2", "--on", "0.5"}, {"--on", "1 to 10"});
+}
+
 // A ray along the axis passes six faces to air: all with a quarter wave, all bare, one only.
 TEST(Coatings, AreWornOnRequest) {
     const Workplace place;
