@@ -12,6 +12,7 @@
 #include "engine/base/input_error.h"
 #include "engine/base/parallel.h"
 #include "engine/optics/paraxial.h"
+#include "engine/optics/polarised_ray.h"
 #include "engine/optics/stray_walk.h"
 #include "engine/pupil/rear_disc.h"
 
@@ -24,6 +25,23 @@ constexpr int kBatches = 64;  // each with numbers of its own, on any thread
 /// What one batch saw: of each class what came from beside the spot, and of all paths what came from anywhere.
 using Sums = std::array<double, 4>;
 enum Class { ghosts, barrel, blur, all };
+
+/// By averages at each surface, and with polarisation carried.
+struct Seen {
+    Sums averaged{};
+    Sums carried{};
+};
+
+/// Carries a walk's polarisation.
+struct PolarisationWitness {
+    optics::PolarisedRay<double>* light;
+
+    void at_surface(optics::AtSurface what, int index, bool forward, const Ray<double>& on) const {
+        light->meet(what, index, forward, on.origin, on.direction);
+    }
+    void at_mirror() const { light->meet_mirror({0.0, 0.0, 1.0}); }
+    void at_wall(const Vec3d& scattered_along) const { light->depolarise(scattered_along); }
+};
 
 class BatchNumbers {
   public:
@@ -51,24 +69,113 @@ bool sees_spot(const Ray<double>& out, const VeilingGlareSettings& settings) {
     return std::hypot(at.x, at.y) <= settings.object_distance * std::tan(settings.spot_angle);
 }
 
-/// The share of the mean, and the standard error of such a ratio, to first order, from how batches differ.
-GlareShare share_of(const std::vector<Sums>& batches, const Sums& total, std::initializer_list<Class> classes) {
-    const auto sum = [&](const Sums& sums) {
-        double found = 0.0;
-        for (const Class one : classes) {
-            found += sums[one];
-        }
-        return found;
-    };
-    const double share = sum(total) / total[all];
+double sum_of(const Sums& sums, std::initializer_list<Class> classes) {
+    double found = 0.0;
+    for (const Class one : classes) {
+        found += sums[one];
+    }
+    return found;
+}
+
+/// The standard error of what batches add up to, from how they differ.
+template <class Residual>
+double error_of_sum(const std::vector<Seen>& batches, const Residual& residual) {
     double squares = 0.0;
-    for (const Sums& batch : batches) {
-        const double residual = sum(batch) - share * batch[all];
-        squares += residual * residual;
+    for (const Seen& batch : batches) {
+        squares += residual(batch) * residual(batch);
     }
     const double n = kBatches;
-    return {share, std::sqrt(squares * n / (n - 1.0)) / total[all]};
+    return std::sqrt(squares * n / (n - 1.0));
 }
+
+/// The share of the mean, and the standard error of such a ratio, to first order.
+GlareShare share_of(const std::vector<Seen>& batches, const Seen& total, Sums Seen::*which,
+                    std::initializer_list<Class> classes) {
+    const double whole = (total.*which)[all];
+    const double share = sum_of(total.*which, classes) / whole;
+    const auto residual = [&](const Seen& batch) {
+        return sum_of(batch.*which, classes) - share * (batch.*which)[all];
+    };
+    return {share, error_of_sum(batches, residual) / whole};
+}
+
+PolarisedGlare polarised_glare(const std::vector<Seen>& batches, const Seen& total) {
+    const auto share = [&](std::initializer_list<Class> classes) {
+        return share_of(batches, total, &Seen::carried, classes);
+    };
+    PolarisedGlare glare{.index = share({ghosts, barrel, blur}),
+                         .ghosts = share({ghosts}),
+                         .barrel = share({barrel}),
+                         .blur = share({blur}),
+                         .difference = {}};
+    const double averaged = share_of(batches, total, &Seen::averaged, {ghosts, barrel, blur}).share;
+    const auto residual = [&](const Seen& batch) {
+        const auto of = [&](const Sums& sums, double index, double whole) {
+            return (sum_of(sums, {ghosts, barrel, blur}) - index * sums[all]) / whole;
+        };
+        return of(batch.carried, glare.index.share, total.carried[all]) -
+               of(batch.averaged, averaged, total.averaged[all]);
+    };
+    glare.difference = {glare.index.share - averaged, error_of_sum(batches, residual)};
+    return glare;
+}
+
+/// Adds the paths of one batch up. The random decisions are those of unpolarised light, whether or not polarisation is
+/// carried, which weighs the path at its end.
+class GlarePaths {
+  public:
+    GlarePaths(const optics::Lens& lens, const VeilingGlareSettings& settings)
+        : settings_(settings),
+          at_(optics::at_wavelength<double>(lens, settings.wavelength_nm)),
+          walls_(lens),
+          disc_(pupil::rear_disc(at_, 0.0)) {}
+
+    [[nodiscard]] double disc_area() const { return disc_.area(); }
+
+    [[nodiscard]] Seen of_batch(int batch) const {
+        BatchNumbers numbers(settings_.seed, batch);
+        Seen seen;
+        for (std::int64_t i = batch; i < settings_.paths; i += kBatches) {
+            add_path(numbers, seen);
+        }
+        return seen;
+    }
+
+  private:
+    void add_path(BatchNumbers& numbers, Seen& seen) const {
+        const double to_disc = at_.image_z - disc_.plane_z;
+        const double u = numbers();
+        const Vec2d place = disc_.warped(u, numbers());
+        const Vec3d direction = normalized(Vec3d{place.x, place.y, -to_disc});
+        const double projected = std::pow(direction.z, 4) / (to_disc * to_disc);  // solid angle a mm² of the disc
+        optics::StrayLight light{.ray = {{0.0, 0.0, at_.image_z}, direction}};
+        optics::PolarisedRay<double> polarised(at_, direction);
+        const auto leaves_at_front = [&](auto witness) {
+            optics::StrayWalk walk(at_, walls_, settings_.mirrors, numbers, witness);
+            return walk.follow(light, false, [](const optics::StrayLight&) {}) == optics::StrayEnd::front;
+        };
+        if (!(settings_.polarised ? leaves_at_front(PolarisationWitness{&polarised})
+                                  : leaves_at_front(optics::NoWitness{}))) {
+            return;
+        }
+        const Class found = light.walls > 0 ? barrel : light.reflections > 0 ? ghosts : blur;
+        const auto add = [&](Sums& sums, double weight) {
+            sums[all] += weight;
+            if (!sees_spot(light.ray, settings_)) {
+                sums[found] += weight;
+            }
+        };
+        add(seen.averaged, projected * light.weight);
+        if (settings_.polarised) {
+            add(seen.carried, projected * light.weight * polarised.factor());
+        }
+    }
+
+    const VeilingGlareSettings& settings_;
+    optics::TraceLens<double> at_;
+    optics::Barrel walls_;
+    pupil::RearDisc disc_;
+};
 
 }  // namespace
 
@@ -85,47 +192,33 @@ double tenth_of_field(const optics::Lens& lens, double wavelength_nm) {
 }
 
 VeilingGlare veiling_glare(const optics::Lens& lens, const VeilingGlareSettings& settings) {
-    const optics::TraceLens<double> at = optics::at_wavelength<double>(lens, settings.wavelength_nm);
-    const optics::Barrel walls(lens);
-    const pupil::RearDisc disc = pupil::rear_disc(at, 0.0);
-    const double to_disc = at.image_z - disc.plane_z;
-    std::vector<Sums> batches(kBatches, Sums{});
-    const auto run = [&](int batch) {
-        BatchNumbers numbers(settings.seed, batch);
-        Sums& sums = batches[static_cast<std::size_t>(batch)];
-        for (std::int64_t i = batch; i < settings.paths; i += kBatches) {
-            const double u = numbers();
-            const Vec2d place = disc.warped(u, numbers());
-            const Vec3d direction = normalized(Vec3d{place.x, place.y, -to_disc});
-            const double projected = std::pow(direction.z, 4) / (to_disc * to_disc);  // solid angle a mm² of the disc
-            optics::StrayLight light{.ray = {{0.0, 0.0, at.image_z}, direction}};
-            optics::StrayWalk walk(at, walls, settings.mirrors, numbers);
-            if (walk.follow(light, false, [](const optics::StrayLight&) {}) != optics::StrayEnd::front) {
-                continue;
-            }
-            const double seen = projected * light.weight;
-            sums[all] += seen;
-            if (!sees_spot(light.ray, settings)) {
-                sums[light.walls > 0 ? barrel : light.reflections > 0 ? ghosts : blur] += seen;
-            }
-        }
-    };
-    parallel_for(kBatches, settings.threads, run);
-    Sums total{};
-    for (const Sums& batch : batches) {
-        for (std::size_t i = 0; i < total.size(); ++i) {
-            total[i] += batch[i];
+    const GlarePaths paths(lens, settings);
+    std::vector<Seen> batches(kBatches);
+    parallel_for(kBatches, settings.threads,
+                 [&](int batch) { batches[static_cast<std::size_t>(batch)] = paths.of_batch(batch); });
+    Seen total;
+    for (const Seen& batch : batches) {
+        for (std::size_t i = 0; i < total.averaged.size(); ++i) {
+            total.averaged[i] += batch.averaged[i];
+            total.carried[i] += batch.carried[i];
         }
     }
-    if (!(total[all] > 0.0)) {
+    if (!(total.averaged[all] > 0.0)) {
         return {.spot_angle = settings.spot_angle};
     }
-    return {.index = share_of(batches, total, {ghosts, barrel, blur}),
-            .ghosts = share_of(batches, total, {ghosts}),
-            .barrel = share_of(batches, total, {barrel}),
-            .blur = share_of(batches, total, {blur}),
-            .spot_angle = settings.spot_angle,
-            .irradiance = disc.area() * total[all] / static_cast<double>(settings.paths)};
+    const auto share = [&](std::initializer_list<Class> classes) {
+        return share_of(batches, total, &Seen::averaged, classes);
+    };
+    VeilingGlare glare{.index = share({ghosts, barrel, blur}),
+                       .ghosts = share({ghosts}),
+                       .barrel = share({barrel}),
+                       .blur = share({blur}),
+                       .spot_angle = settings.spot_angle,
+                       .irradiance = paths.disc_area() * total.averaged[all] / static_cast<double>(settings.paths)};
+    if (settings.polarised) {
+        glare.polarised = polarised_glare(batches, total);
+    }
+    return glare;
 }
 
 }  // namespace lensproof::analysis

@@ -1,6 +1,7 @@
 // engine/analysis/veiling_glare.h — how much light a lens brings to a black spot from its bright surround.
 #pragma once
 #include <cstdint>
+#include <optional>
 
 #include "engine/base/infinity.h"
 #include "engine/optics/barrel.h"
@@ -20,6 +21,7 @@ struct VeilingGlareSettings {
     double spot_angle = 0.0;             // half of what the spot subtends, radians
     double object_distance = kInfinity;  // of the plane in which the spot lies, in front of z = 0
     optics::StrayMirrors<double> mirrors;
+    bool polarised = false;  // finds `VeilingGlare::polarised` too
     std::int64_t paths = 400'000;
     std::uint64_t seed = 0;
     int threads = 0;
@@ -31,6 +33,17 @@ struct GlareShare {
     double standard_error = 0.0;
 };
 
+/// The same of light whose polarisation is carried from surface to surface, and not averaged at each: the surround's
+/// light is unpolarised, and so is what walls scatter. `difference` is that of the two indices; the same paths find
+/// both, so that its error is far below either's.
+struct PolarisedGlare {
+    GlareShare index;
+    GlareShare ghosts;
+    GlareShare barrel;
+    GlareShare blur;
+    GlareShare difference;
+};
+
 /// `index` is the sum of the three after it: what glass (and the sensor, where it is a mirror) reflected, what met
 /// walls, and what should have made the image beside the spot and reaches its middle by aberrations alone.
 struct VeilingGlare {
@@ -40,6 +53,7 @@ struct VeilingGlare {
     GlareShare blur;
     double spot_angle = 0.0;  // as in the settings
     double irradiance = 0.0;  // of the even field of radiance 1, at the image's centre; 0 where no light gets there
+    std::optional<PolarisedGlare> polarised{};
 };
 
 /// The same settings give the same numbers for any number of threads. A lens whose walls are black may have any shape.

@@ -30,6 +30,13 @@ enum class StrayEnd {
     lost       // through a gap in the table's walls, or still on its way after many thousands of events
 };
 
+/// Told of what a walk meets; this one does not listen.
+struct NoWitness {
+    void at_surface(AtSurface /*what*/, int /*index*/, bool /*forward*/, const Ray<double>& /*on*/) const {}
+    void at_mirror() const {}  // the sensor, or blades, in a plane across the axis
+    void at_wall(const Vec3d& /*scattered_along*/) const {}
+};
+
 /// Follows light until it leaves the lens or ends: at glass it is reflected or refracted by chance, as the surface's
 /// reflectance and transmittance have it, at walls scattered as their finish says. The weight carries what is then left
 /// to account for: glass and coatings that absorb, the first wall's albedo (later ones end the path by chance), so that
@@ -42,15 +49,18 @@ enum class StrayEnd {
 /// Numbers: `double numbers()`, from (0, 1). `landed(const StrayLight&)` is called at each arrival on the sensor's
 /// plane, the ray's origin on it; a sensor and a stop's blades that are mirrors send light back, by chance
 /// too, and that counts as a reflection: what such blades do not reflect meets their finish.
-template <class Numbers>
+///
+/// Witness: as `NoWitness`; a copy is told, in order.
+template <class Numbers, class Witness = NoWitness>
 class StrayWalk {
   public:
     StrayWalk(const TraceLens<double>& lens, const Barrel& barrel, const StrayMirrors<double>& mirrors,
-              Numbers& numbers)
+              Numbers& numbers, Witness witness = {})
         : lens_(lens),
           barrel_(barrel),
           mirrors_(mirrors),
           numbers_(numbers),
+          witness_(witness),
           count_(static_cast<int>(lens.surfaces.size())) {}
 
     template <class Landed>
@@ -69,6 +79,7 @@ class StrayWalk {
                 }
                 light.ray.direction.z = -light.ray.direction.z;
                 ++light.reflections;
+                witness_.at_mirror();
                 target_ = count_ - 1;
                 continue;
             }
@@ -173,6 +184,7 @@ class StrayWalk {
     void leave_mirror(StrayLight& light) {
         light.ray.direction.z = -light.ray.direction.z;
         ++light.reflections;
+        witness_.at_mirror();
         target_ = light.ray.direction.z > 0.0 ? cell_ : cell_ - 1;
     }
 
@@ -188,6 +200,7 @@ class StrayWalk {
         const Basis frame(normal);
         light.ray.direction =
             normalized(frame.to_world(scattered_direction(finish, frame.to_local(light.ray.direction), numbers_)));
+        witness_.at_wall(light.ray.direction);
         target_ = kAnySurface;
         return std::nullopt;
     }
@@ -218,6 +231,7 @@ class StrayWalk {
         const bool is_back = reflecting > 0.0 && numbers_() * going_on < reflecting;
         light.ray = is_back ? reflected.global() : at.passed.global();
         light.reflections += is_back ? 1 : 0;
+        witness_.at_surface(is_back ? AtSurface::reflect : AtSurface::pass, at.surface, at.forward, light.ray);
         const bool runs_forward = at.forward != is_back;
         cell_ = runs_forward ? at.surface + 1 : at.surface;
         target_ = runs_forward ? at.surface + 1 : at.surface - 1;
@@ -228,6 +242,7 @@ class StrayWalk {
     const Barrel& barrel_;
     const StrayMirrors<double>& mirrors_;
     Numbers& numbers_;
+    Witness witness_;
     int count_;
     int cell_ = 0;    // the space in front of surface `cell_`
     int target_ = 0;  // the surface that light from the one it left comes to next

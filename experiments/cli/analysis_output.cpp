@@ -259,20 +259,39 @@ std::string analysis_text(const optics::Lens& lens, const analysis::AnalysisSett
 
 Json veiling_glare_json(const analysis::VeilingGlare& glare) {
     constexpr double kPercent = 0.01;
-    return {{"index_percent", glare.index.share / kPercent},
-            {"standard_error_percent", glare.index.standard_error / kPercent},
-            {"ghosts_percent", glare.ghosts.share / kPercent},
-            {"barrel_percent", glare.barrel.share / kPercent},
-            {"blur_percent", glare.blur.share / kPercent},
-            {"spot_diameter_deg", 2.0 * glare.spot_angle / kDegree}};
+    Json json{{"index_percent", glare.index.share / kPercent},
+              {"standard_error_percent", glare.index.standard_error / kPercent},
+              {"ghosts_percent", glare.ghosts.share / kPercent},
+              {"barrel_percent", glare.barrel.share / kPercent},
+              {"blur_percent", glare.blur.share / kPercent},
+              {"spot_diameter_deg", 2.0 * glare.spot_angle / kDegree}};
+    if (const auto& polarised = glare.polarised) {
+        json["polarised"] = {{"index_percent", polarised->index.share / kPercent},
+                             {"standard_error_percent", polarised->index.standard_error / kPercent},
+                             {"ghosts_percent", polarised->ghosts.share / kPercent},
+                             {"barrel_percent", polarised->barrel.share / kPercent},
+                             {"blur_percent", polarised->blur.share / kPercent},
+                             {"difference_percent", polarised->difference.share / kPercent},
+                             {"difference_standard_error_percent", polarised->difference.standard_error / kPercent}};
+    }
+    return json;
 }
 
 std::string veiling_glare_text(const analysis::VeilingGlare& glare) {
-    return fmt::format(
+    std::string text = fmt::format(
         "Veiling glare index: {:.3f} +- {:.3f} % (ghosts {:.3f}, barrel {:.3f}, blur {:.3f}), of a black "
         "spot of {:.2f} deg at the middle of an even half space\n",
         100.0 * glare.index.share, 100.0 * glare.index.standard_error, 100.0 * glare.ghosts.share,
         100.0 * glare.barrel.share, 100.0 * glare.blur.share, 2.0 * glare.spot_angle / kDegree);
+    if (const auto& polarised = glare.polarised) {
+        text += fmt::format(
+            "With polarisation carried along its paths: {:.3f} %, that is {:+.4f} +- {:.4f} % (ghosts {:.3f}, barrel "
+            "{:.3f}, blur {:.3f})\n",
+            100.0 * polarised->index.share, 100.0 * polarised->difference.share,
+            100.0 * polarised->difference.standard_error, 100.0 * polarised->ghosts.share,
+            100.0 * polarised->barrel.share, 100.0 * polarised->blur.share);
+    }
+    return text;
 }
 
 }  // namespace lensproof::cli

@@ -28,6 +28,7 @@ struct AnalyzeOptions {
     LensOptions lens;
     std::string plots_folder;
     bool has_veiling_glare = false;
+    bool polarised = false;
     MirrorOptions mirrors;
 };
 
@@ -67,6 +68,9 @@ std::optional<analysis::VeilingGlare> asked_veiling_glare(const AnalyzeOptions& 
         if (options.mirrors.sensor) {
             throw InputError("--sensor-reflectance stands without --veiling-glare, which it is for");
         }
+        if (options.polarised) {
+            throw InputError("--polarised stands without --veiling-glare, which it is for");
+        }
         return std::nullopt;
     }
     return analysis::veiling_glare(lens,
@@ -74,6 +78,7 @@ std::optional<analysis::VeilingGlare> asked_veiling_glare(const AnalyzeOptions& 
                                     .spot_angle = analysis::tenth_of_field(lens, settings.reference_wavelength_nm),
                                     .object_distance = settings.object_distance,
                                     .mirrors = stray_mirrors(options.mirrors),
+                                    .polarised = options.polarised,
                                     .seed = options.common.seed,
                                     .threads = options.common.threads});
 }
@@ -118,6 +123,8 @@ void add_analyze_command(Program& program) {
         .type_name("DIR");
     command.add_flag("--veiling-glare", options->has_veiling_glare,
                      "The veiling glare index too: what a black spot's image gets of its bright surround (ISO 9358)");
+    command.add_flag("--polarised", options->polarised,
+                     "That index too with the light's polarisation carried along its paths, and the difference");
     add_sensor_option(command, options->mirrors);
     add_common_options(command, options->common);
     command.runs([options] { return run_analyze(*options); });

@@ -57,7 +57,13 @@ TEST(Analyze, GivesTheVeilingGlareIndexOnRequest) {
     const Json mirror =
         analysis({"tessar", "--fields", "0", "--veiling-glare", "--sensor-reflectance", "1"})["veiling_glare"];
     EXPECT_GT(mirror["index_percent"], black["index_percent"]);
+    const Json polarised = analysis({"tessar", "--fields", "0", "--veiling-glare", "--polarised"})["veiling_glare"];
+    EXPECT_EQ(polarised["index_percent"], black["index_percent"]);
+    EXPECT_NEAR(polarised["polarised"]["index_percent"].get<double>() - polarised["index_percent"].get<double>(),
+                polarised["polarised"]["difference_percent"].get<double>(), 1e-12);
+    EXPECT_LT(polarised["polarised"]["difference_standard_error_percent"], polarised["standard_error_percent"]);
     expect_refused({}, {"analyze", "tessar", "--sensor-reflectance", "0.1"}, {"--veiling-glare"});
+    expect_refused({}, {"analyze", "tessar", "--polarised"}, {"--veiling-glare"});
 }
 
 // What is asked for is what is reported, to rounding.

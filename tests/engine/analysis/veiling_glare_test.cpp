@@ -40,6 +40,43 @@ TEST(VeilingGlare, PlateGivesWhatItsReflectanceSays) {
     EXPECT_NEAR(glare.irradiance, even, 0.01 * even);
 }
 
+// The same plate at a slant, where s is reflected more than p: each polarisation keeps to itself, and of the sums over
+// both, T² R² + T² R⁴ + … over T² + T² R² + …, more is ghosts than by the mean reflectance. The spot hides half.
+TEST(VeilingGlare, PolarisationOfASlantedPlate) {
+    constexpr double kTilt_deg = 55.0;
+    optics::Prescription prescription;
+    prescription.surfaces = {
+        {.thickness_mm = 3.0, .semi_diameter_mm = 50.0, .medium = {.n_d = 2.0}},
+        {.thickness_mm = 60.0, .semi_diameter_mm = 50.0},
+        {.thickness_mm = 50.0, .semi_diameter_mm = 1.0, .is_stop = true},
+    };
+    for (const std::size_t face : {0U, 1U}) {
+        prescription.surfaces[face].misalignment.tilt_deg = {kTilt_deg, 0.0, 0.0};
+    }
+    const VeilingGlare glare =
+        veiling_glare(optics::make_lens(prescription, {}), {.wavelength_nm = kWavelength,
+                                                            .spot_angle = std::atan(std::sqrt(0.5) / 50.0),
+                                                            .polarised = true,
+                                                            .paths = 200'000,
+                                                            .threads = 1});
+    const double incidence = kTilt_deg * std::numbers::pi / 180.0;
+    const double inside = std::asin(std::sin(incidence) / 2.0);
+    const double r_s = std::pow(std::sin(incidence - inside) / std::sin(incidence + inside), 2);  // Born & Wolf, §1.5.2
+    const double r_p = std::pow(std::tan(incidence - inside) / std::tan(incidence + inside), 2);
+    const auto all = [](double r) { return (1.0 - r) / (1.0 + r); };
+    const double carried = (all(r_s) * r_s * r_s + all(r_p) * r_p * r_p) / (all(r_s) + all(r_p));
+    const double averaged = std::pow((r_s + r_p) / 2.0, 2);
+    ASSERT_TRUE(glare.polarised);
+    const PolarisedGlare& polarised = *glare.polarised;
+    EXPECT_GT(carried, 1.2 * averaged);
+    EXPECT_LT(polarised.ghosts.standard_error, 0.05 * carried);
+    EXPECT_NEAR(glare.ghosts.share, 0.5 * averaged, 4.0 * glare.ghosts.standard_error);
+    EXPECT_NEAR(polarised.ghosts.share, 0.5 * carried, 4.0 * polarised.ghosts.standard_error);
+    EXPECT_NEAR(polarised.index.share, polarised.ghosts.share + polarised.blur.share, 1e-12);
+    EXPECT_NEAR(polarised.difference.share, polarised.index.share - glare.index.share, 1e-12);
+    EXPECT_LT(polarised.difference.standard_error, polarised.index.standard_error);
+}
+
 /// From the image's centre towards the rear of the lens, evenly over a disc that holds it.
 class FromCentre {
   public:
@@ -129,6 +166,13 @@ TEST(VeilingGlare, WallsAndSensorAddTheirs) {
     EXPECT_EQ(black.barrel.share, 0.0);
     EXPECT_GT(grey.barrel.share, 10.0 * grey.barrel.standard_error);
     EXPECT_GT(bright.barrel.share, 1.5 * grey.barrel.share);
+    settings.polarised = true;
+    settings.mirrors.sensor = 0.0;
+    lens.barrel.tube.albedo = lens.barrel.edges.albedo = lens.barrel.blades.albedo = 0.2;
+    const VeilingGlare polarised = veiling_glare(lens, settings);  // on the same paths
+    EXPECT_EQ(polarised.index.share, grey.index.share);
+    EXPECT_EQ(polarised.barrel.share, grey.barrel.share);
+    EXPECT_NEAR(polarised.polarised->barrel.share, grey.barrel.share, 0.2 * grey.barrel.share);
     EXPECT_NEAR(grey.ghosts.share, black.ghosts.share,
                 4.0 * std::hypot(grey.ghosts.standard_error, black.ghosts.standard_error));
     EXPECT_GT(bright.ghosts.share,
