@@ -204,8 +204,8 @@ void add_compare_command(Program& program) {
     Command command = program.add_command(
         "compare", "Compare two profiles, two images, or a lens with a profile or with photographs");
     command.footer(
-        "Examples: lensproof compare tessar profile.json --f-number 8 --position-limit 0.5\n"
-        "          lensproof compare canon-fd-24 --measured \"lensfun:Canon FDn 24mm 1:2.8\"");
+        "Example: lensproof compare tessar profile.json --f-number 8 --position-limit 0.5\n"
+        "         lensproof compare canon-fd-24 --measured \"lensfun:Canon FDn 24mm 1:2.8\"");
     command.add_option("A", options->a, "A profile (.json), an image, or a lens").required();
     command.add_option("B", options->b, "Likewise").excludes(add_measured_options(command, options->measured));
     command.add_option("--position-limit", options->position_limit_px, "Limit of image position, rms, px")

@@ -63,8 +63,9 @@ void print_checks(const std::vector<findings::Check>& checks) {
         }
         const std::string bound =
             check.expectation == findings::Expectation::within ? fmt::format("{:g} ± {:g}", check.target, check.limit)
-            : check.expectation == findings::Expectation::differs ? fmt::format("> {:g}", check.limit)
-                                                                  : fmt::format("≤ {:g}", check.limit);
+            : check.expectation == findings::Expectation::differs  ? fmt::format("> {:g}", check.limit)
+            : check.expectation == findings::Expectation::at_least ? fmt::format("≥ {:g}", check.limit)
+                                                                   : fmt::format("≤ {:g}", check.limit);
         print("  {:13} {:44} {:.4g} ± {:.2g} {} (wanted {})\n", findings::verdict_name(check.verdict()), check.label,
               check.value, check.sigma, check.unit, bound);
     }

@@ -14,7 +14,7 @@ std::string verdict_name(Verdict verdict) {
 }
 
 std::string expectation_name(Expectation expectation) {
-    constexpr std::array kNames = {"at most", "within", "differs"};
+    constexpr std::array kNames = {"at most", "within", "differs", "at least"};
     return kNames.at(static_cast<std::size_t>(expectation));
 }
 
@@ -28,7 +28,7 @@ Verdict Check::verdict() const {
     if (!surely_below && !surely_above) {
         return Verdict::inconclusive;
     }
-    const bool wanted_below = expectation != Expectation::differs;
+    const bool wanted_below = expectation == Expectation::at_most || expectation == Expectation::within;
     return surely_below == wanted_below ? Verdict::pass : Verdict::fail;
 }
 

@@ -16,6 +16,7 @@ enum class Expectation {
     at_most,  // value ≤ limit
     within,   // |value − target| ≤ limit
     differs,  // value > limit: a negative control, for things that must be told apart
+    at_least  // value ≥ limit
 };
 
 std::string expectation_name(Expectation expectation);

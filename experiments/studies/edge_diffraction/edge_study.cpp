@@ -195,17 +195,19 @@ std::vector<EdgeSetting> read_settings(TomlTable& table, findings::ExperimentFil
 std::vector<findings::Check> edge_checks(const MeasuredEdges& measured) {
     std::vector<findings::Check> checks;
     for (const auto& [setting, found] : measured) {
-        const auto add = [&](const std::string& what, const std::string& label, const Compared& off, double scale,
-                             const std::string& unit, double limit, const std::string& explanation) {
-            checks.push_back({.id = id_of(setting) + "-" + what,
-                              .group = label_of(setting),
-                              .subject = id_of(setting),
-                              .label = label,
-                              .value = scale * std::abs(off.value),
-                              .sigma = scale * off.standard_error,
-                              .unit = unit,
-                              .limit = limit,
-                              .explanation = explanation});
+        const findings::Check common{.group = label_of(setting), .subject = id_of(setting)};
+        const auto add = [&checks, &common](const std::string& what, const std::string& label, const Compared& off,
+                                            double scale, const std::string& unit, double limit,
+                                            const std::string& explanation) {
+            findings::Check check = common;
+            check.id = common.subject + "-" + what;
+            check.label = label;
+            check.value = scale * std::abs(off.value);
+            check.sigma = scale * off.standard_error;
+            check.unit = unit;
+            check.limit = limit;
+            check.explanation = explanation;
+            checks.push_back(std::move(check));
         };
         add("octaves", "worst octave from 5 to 100 λN", worst_octave(found), 100.0, "%", 10.0,
             "Rays over waves, a mean over an octave of distance, which averages the rings.");

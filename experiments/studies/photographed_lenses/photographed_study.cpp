@@ -113,7 +113,7 @@ std::vector<findings::Check> population_checks(const PopulationSummary& summary)
     if (summary.ranked > 0) {
         checks.push_back(population_check(
             "beaten", "other lenses that the right one beats, median", 100.0 * summary.beaten_median, 0.0, "%",
-            kBeatenPercent, findings::Expectation::differs,
+            kBeatenPercent, findings::Expectation::at_least,
             fmt::format(
                 "Over the {} pairs that have three other lenses of like focal length and format or more; the others' "
                 "median is {:.1f} µm.",

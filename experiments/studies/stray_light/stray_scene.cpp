@@ -75,7 +75,7 @@ void read_bound(TomlTable& table, StrayCheck& check) {
         }
         return;
     }
-    check.expectation = table.has("at_most") ? findings::Expectation::at_most : findings::Expectation::differs;
+    check.expectation = table.has("at_most") ? findings::Expectation::at_most : findings::Expectation::at_least;
     check.limit = table.number(table.has("at_most") ? "at_most" : "at_least", kNotNegative);
 }
 

@@ -51,6 +51,8 @@ TEST(Verdict, NegativeControlsWantADifference) {
     EXPECT_EQ(check(5.0, 0.1, 1.0, Expectation::differs).verdict(), Verdict::pass);
     EXPECT_EQ(check(0.5, 0.1, 1.0, Expectation::differs).verdict(), Verdict::fail);
     EXPECT_EQ(check(1.1, 0.1, 1.0, Expectation::differs).verdict(), Verdict::inconclusive);
+    EXPECT_EQ(check(5.0, 0.1, 1.0, Expectation::at_least).verdict(), Verdict::pass);
+    EXPECT_EQ(check(0.5, 0.1, 1.0, Expectation::at_least).verdict(), Verdict::fail);
 }
 
 TEST(Verdict, WhatIsNotKnownIsNotPassed) {
