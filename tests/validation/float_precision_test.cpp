@@ -311,9 +311,13 @@ TEST(FloatPrecision, IsKeptByEveryLensThatShips) {
     int over_bound = 0;
     print_heading();
     for (const Setting& setting : of_shipped_settings(make_setting)) {
-        Random random(15);  // a lens more changes no other's rays
-        const Row camera = Measurement(setting, optics::Direction::reverse, random).run();
-        const Row scene = Measurement(setting, optics::Direction::forward, random).run();
+        // Every lens's own numbers: one more changes no other's rays. Of these some graze minolta-fisheye-16's front.
+        const auto measured = [&](optics::Direction direction) {
+            Random random(32);
+            return Measurement(setting, direction, random).run();
+        };
+        const Row camera = measured(optics::Direction::reverse);
+        const Row scene = measured(optics::Direction::forward);
         print_row(setting, camera, scene);
         for (const Row& row : {camera, scene}) {
             EXPECT_GT(row.error.rays, 400) << setting.label;
