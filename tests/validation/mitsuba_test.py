@@ -16,6 +16,7 @@ its error says that no geometry, shadow or colour that bleeds is elsewhere.
 import math, pathlib, shutil, subprocess, sys, tempfile, tomllib
 
 sys.dont_write_bytecode = True
+from fetched import fetch
 
 SKIPPED = 77
 PACKAGES = ("mitsuba==3.5.2", "OpenEXR==3.3.2", "numpy==1.26.4")
@@ -37,30 +38,6 @@ def expect(holds, what):
     if not holds:
         failures.append(what)
     print(("ok      " if holds else "FAILED  ") + what)
-
-
-def fetch(folder):
-    """Why the packages cannot be had, or nothing; then they can be imported."""
-    place = folder / "-".join(package.replace("==", "-") for package in PACKAGES)
-    if not place.is_dir():
-        folder.mkdir(parents=True, exist_ok=True)
-        with tempfile.TemporaryDirectory(dir=folder) as scratch:
-            command = [sys.executable, "-m", "pip", "install", "--quiet", "--disable-pip-version-check", "--no-input",
-                       "--only-binary", ":all:", "--retries", "1", "--timeout", "30", "--target", scratch + "/packages",
-                       *PACKAGES]
-            try:
-                done = subprocess.run(command, stdin=subprocess.DEVNULL, capture_output=True, text=True, timeout=480)
-            except subprocess.TimeoutExpired:
-                return "pip took longer than 480 s"
-            if done.returncode != 0:
-                return done.stderr.strip() or f"pip ended with {done.returncode}"
-            try:
-                pathlib.Path(scratch, "packages").rename(place)
-            except OSError:  # another test run was quicker
-                if not place.is_dir():
-                    raise
-    sys.path.insert(0, str(place))
-    return None
 
 
 def band_edges():
@@ -269,7 +246,7 @@ def render_both(program, scenes, scratch):
 
 def main():
     program, scenes, folder = sys.argv[1], pathlib.Path(sys.argv[2]), pathlib.Path(sys.argv[3])
-    missing = fetch(folder)
+    missing = fetch(folder, PACKAGES)
     if missing:
         print(f"skipped: Mitsuba could not be fetched: {missing}")
         return SKIPPED

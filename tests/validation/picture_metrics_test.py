@@ -12,6 +12,7 @@ CIELAB takes sRGB's matrix and white with five digits, 2e-3 of differences of 10
 import json, pathlib, subprocess, sys, tempfile
 
 sys.dont_write_bytecode = True
+from fetched import fetch
 
 SKIPPED = 77
 PACKAGES = ("scikit-image==0.26.0", "flip-evaluator==1.7", "numpy==2.4.6")
@@ -24,29 +25,6 @@ def expect(holds, what):
     if not holds:
         failures.append(what)
     print(("ok      " if holds else "FAILED  ") + what)
-
-
-def fetch(folder):
-    """Why the packages cannot be had, or nothing; then they can be imported."""
-    place = folder / "-".join(package.replace("==", "-") for package in PACKAGES)
-    if not place.is_dir():
-        folder.mkdir(parents=True, exist_ok=True)
-        with tempfile.TemporaryDirectory(dir=folder) as scratch:
-            command = [sys.executable, "-m", "pip", "install", "--quiet", "--disable-pip-version-check", "--no-input",
-                       "--only-binary", ":all:", "--retries", "1", "--timeout", "30", "--target", scratch + "/packages",
-                       *PACKAGES]
-            try:
-                done = subprocess.run(command, stdin=subprocess.DEVNULL, capture_output=True, text=True, timeout=480)
-            except subprocess.TimeoutExpired:
-                return "pip took longer than 480 s"
-            if done.returncode != 0:
-                return done.stderr.strip() or f"pip ended with {done.returncode}"
-            try:
-                pathlib.Path(scratch, "packages").rename(place)
-            except OSError:  # another test run was quicker
-                if not place.is_dir():
-                    raise
-    sys.path.insert(0, str(place))
 
 
 def made():
@@ -95,7 +73,7 @@ def said(program, a, b):
 
 def main():
     program, folder = sys.argv[1], pathlib.Path(sys.argv[2])
-    if complaint := fetch(folder):
+    if complaint := fetch(folder, PACKAGES):
         print(f"skipped: {complaint}")
         sys.exit(SKIPPED)
     import flip_evaluator

@@ -15,6 +15,7 @@ rounding leaves 12 · 10 · 1e-16, and some ten times that where waves all but c
 import itertools, json, math, pathlib, random, subprocess, sys, tempfile, warnings
 
 sys.dont_write_bytecode = True
+from fetched import fetch
 
 SKIPPED = 77
 PACKAGES = ("tmm==0.2.0", "numpy==1.26.4")
@@ -23,30 +24,6 @@ STACKS = 8  # on each
 WAVELENGTHS_NM = (405.0, 550.0, 700.0)
 ANGLES_DEG = (0.0, 17.3, 41.0, 56.7, 75.0, 89.0)
 TOLERANCE = 1e-12
-
-
-def fetch(folder):
-    """Why the packages cannot be had, or nothing; then they can be imported."""
-    place = folder / "-".join(package.replace("==", "-") for package in PACKAGES)
-    if not place.is_dir():
-        folder.mkdir(parents=True, exist_ok=True)
-        with tempfile.TemporaryDirectory(dir=folder) as scratch:
-            command = [sys.executable, "-m", "pip", "install", "--quiet", "--disable-pip-version-check", "--no-input",
-                       "--no-deps", "--only-binary", ":all:", "--retries", "1", "--timeout", "30", "--target",
-                       scratch + "/packages", *PACKAGES]
-            try:
-                done = subprocess.run(command, stdin=subprocess.DEVNULL, capture_output=True, text=True, timeout=480)
-            except subprocess.TimeoutExpired:
-                return "pip took longer than 480 s"
-            if done.returncode != 0:
-                return done.stderr.strip() or f"pip ended with {done.returncode}"
-            try:
-                pathlib.Path(scratch, "packages").rename(place)
-            except OSError:  # another test run was quicker
-                if not place.is_dir():
-                    raise
-    sys.path.insert(0, str(place))
-    return None
 
 
 def random_stack(chance):
@@ -90,7 +67,7 @@ def powers_by_tmm(polarisation, stack, substrate, wavelength, angle_deg, side):
 
 def main():
     program, folder = sys.argv[1], pathlib.Path(sys.argv[2])
-    reason = fetch(folder)
+    reason = fetch(folder, PACKAGES, dependencies=False)
     if reason:
         print(f"skipped: the package could not be fetched: {reason}")
         return SKIPPED
