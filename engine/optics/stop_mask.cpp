@@ -117,13 +117,17 @@ StopMask::EdgePoint StopMask::edge_at(double share) const {
             turned(std::cos(angle), across)};
 }
 
-double StopMask::perimeter() const {
-    double length = arcs_.empty() ? 2.0 * std::numbers::pi : 0.0;
-    for (const Arc& arc : arcs_) {
-        const double h = half_chord();
-        length += arc.radius_squared > 0.0 ? 2.0 * arc.radius() * std::asin(h / arc.radius()) : 2.0 * h;
+double StopMask::edge_length() const {
+    if (arcs_.empty()) {
+        return kInfinity;
     }
-    return length;
+    const Arc& any = arcs_.front();  // they are alike
+    const double h = half_chord();
+    return any.radius_squared > 0.0 ? 2.0 * any.radius() * std::asin(h / any.radius()) : 2.0 * h;
+}
+
+double StopMask::perimeter() const {
+    return arcs_.empty() ? 2.0 * std::numbers::pi : static_cast<double>(arcs_.size()) * edge_length();
 }
 
 double StopMask::area() const {

@@ -55,6 +55,10 @@ class StopMask {
     /// Whether it has edges: a texture has none.
     [[nodiscard]] bool has_edges() const { return !texture_; }
 
+    /// The length of an edge from corner to corner, in units of the semi-diameter: infinite for the circle, which has
+    /// no corners. Not of a texture.
+    [[nodiscard]] double edge_length() const;
+
     /// The edges' length and what they enclose, in units of the semi-diameter. Not of a texture.
     [[nodiscard]] double perimeter() const;
     [[nodiscard]] double area() const;

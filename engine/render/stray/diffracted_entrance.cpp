@@ -72,7 +72,8 @@ std::optional<Entry> DiffractedEntrance::draw(const LightOrigin& from, const spe
             continue;
         }
         const optics::DiffractedRay ray =
-            optics::diffracted_at_edge(edge.outward, at.wavenumber, aimed->direction, at.deflections, u[1]);
+            optics::diffracted_at_edge({edge.outward, mask_.edge_length() * semi_diameter_}, at.wavenumber,
+                                       aimed->direction, at.deflections, {u[1], u[2]});
         if (!first) {
             first = aimed;
             const Ray<double> world = front_.camera().to_world(aimed->front);
@@ -99,7 +100,7 @@ std::optional<Entry> DiffractedEntrance::meet(const Ray<double>& ray, const spec
         }
         const auto diffracted = optics::diffracted({&mask_, semi_diameter_, at.wavenumber},
                                                    {.width = zone_width_, .deflections = at.deflections}, stop->point,
-                                                   stop->direction, {u[0], u[1], u[2]});
+                                                   stop->direction, {u[0], u[1], u[2], u[3]});
         if (!diffracted) {
             continue;
         }

@@ -80,6 +80,11 @@ Compared worst_turn(const EdgeDiffraction& found) {
     return compared(found, [&](const EdgeRays& rays) { return rays.streaks[index].turn_deg; });
 }
 
+/// Of the light, in the middle of the streaks.
+Compared near_streaks_off(const EdgeDiffraction& found) {
+    return compared(found, [&](const EdgeRays& rays) { return rays.profile.near_streaks - found.wave.near_streaks; });
+}
+
 std::string signed_percent(const Compared& off) {
     return fmt::format("{:+.2f} ± {:.2f} %", 100.0 * off.value, 100.0 * off.standard_error);
 }
@@ -149,6 +154,9 @@ findings::Subject subject_of(const EdgeSetting& setting, const EdgeDiffraction& 
     if (!found.rays.streaks.empty()) {
         subject.facts.push_back({"streaks", fmt::format("{}, within {:.3f}° of the edges' normals",
                                                         found.rays.streaks.size(), std::abs(worst_turn(found).value))});
+        subject.facts.push_back({"light within a λN of the streaks' middles, by rays and waves",
+                                 fmt::format("{:.1f} and {:.1f} %", 100.0 * found.rays.profile.near_streaks,
+                                             100.0 * found.wave.near_streaks)});
     }
     return subject;
 }
@@ -167,7 +175,9 @@ Json setting_json(const EdgeSetting& setting, const EdgeDiffraction& found) {
             {"wave_slope", found.wave.slope()},
             {"energy_ratio", found.rays.profile.energy / found.wave.energy},
             {"energy_ratio_standard_error", energy_off(found).standard_error},
-            {"streaks_deg", std::move(turns)}};
+            {"streaks_deg", std::move(turns)},
+            {"rays_near_streaks", found.rays.profile.near_streaks},
+            {"wave_near_streaks", found.wave.near_streaks}};
 }
 
 std::vector<EdgeSetting> read_settings(TomlTable& table, findings::ExperimentFile& file) {
@@ -218,6 +228,11 @@ std::vector<findings::Check> edge_checks(const MeasuredEdges& measured) {
         if (!found.rays.streaks.empty()) {
             add("streaks", "streaks from the edges' normals", worst_turn(found), 1.0, "°", 0.2,
                 "The mean azimuth of each, beyond 20 λN, the worst of them.");
+            add("streak-width", "light in the middle of the streaks", near_streaks_off(found), 100.0, "% of the light",
+                20.0,
+                "Of the light beyond 20 λN, what lies within a λN of the middle of a streak, rays less waves. Rays add "
+                "the lens's aberrations to what the edge's length spreads; waves hardly do where they are below a "
+                "quarter of a wave.");
         }
     }
     return checks;

@@ -14,7 +14,10 @@
 namespace lensproof::studies {
 
 static void fields(JsonArchive& json, EdgeProfile& profile) {
-    json.field("octaves", profile.octaves).field("rings", profile.rings).field("energy", profile.energy);
+    json.field("octaves", profile.octaves)
+        .field("rings", profile.rings)
+        .field("energy", profile.energy)
+        .field("near_streaks", profile.near_streaks);
 }
 
 static void fields(JsonArchive& json, Streak& streak) {
@@ -142,15 +145,49 @@ double octave_weight(double from, double radius) {
     return radius > from && radius < 2.0 * from ? s * s : 0.0;
 }
 
-/// `visit_all`: calls its argument with (radius, irradiance, area) for the places of the film.
+/// How the streaks of straight blades stand: evenly, the first at this azimuth.
+struct StreakFan {
+    int count = 0;  // 0: no streaks
+    double first_deg = 0.0;
+
+    [[nodiscard]] double sector_deg() const { return 360.0 / count; }
+
+    /// In sectors from the first.
+    [[nodiscard]] double turn(double azimuth) const { return (degrees(azimuth) - first_deg) / sector_deg(); }
+
+    /// From the middle of the nearest; infinite where there is none.
+    [[nodiscard]] double distance(double radius, double azimuth) const {
+        if (count == 0) {
+            return kInfinity;
+        }
+        const double sectors = turn(azimuth);
+        return radius * std::sin(radians(std::abs(sectors - std::round(sectors)) * sector_deg()));
+    }
+};
+
+/// An edge's normal stands between two corners, of which one is at the rotation; of an odd number a corner's own
+/// direction is that of the opposite edge's other streak.
+StreakFan streak_fan(const EdgeSetting& setting) {
+    if (setting.blades == 0 || setting.curvature != 0.0) {
+        return {};
+    }
+    return setting.blades % 2 == 1 ? StreakFan{2 * setting.blades, kRotation_deg}
+                                   : StreakFan{setting.blades, kRotation_deg + 180.0 / setting.blades};
+}
+
+constexpr double kStreaksFrom = 20.0;  // λN: there they stand apart
+constexpr double kStreakCore = 1.0;    // λN from its middle: farther out it is as faint as the light between them
+
+/// `visit_all`: calls its argument with (radius, azimuth, irradiance, area) for the places of the film.
 template <class VisitAll>
-EdgeProfile profile_of(const VisitAll& visit_all) {
+EdgeProfile profile_of(const StreakFan& fan, const VisitAll& visit_all) {
     constexpr std::size_t kRings = 48;
     const double octaves = std::log(kOutermost / kOctaves.front());
     EdgeProfile profile{.octaves = std::vector<double>(kOctaves.size()), .rings = std::vector<Vec2d>(kRings)};
     std::vector<double> weights(kOctaves.size());
     std::vector<double> areas(kRings);
-    visit_all([&](double radius, double here, double area) {
+    double beyond = 0.0;
+    visit_all([&](double radius, double azimuth, double here, double area) {
         const double begun = std::clamp(0.5 * (radius - kOctaves.front()), 0.0, 1.0);
         profile.energy += radius < kOutermost ? begun * area * here : 0.0;
         for (std::size_t i = 0; i < kOctaves.size(); ++i) {
@@ -158,12 +195,17 @@ EdgeProfile profile_of(const VisitAll& visit_all) {
             profile.octaves[i] += weight * here;
             weights[i] += weight;
         }
+        if (radius > kStreaksFrom && radius < kOutermost) {
+            beyond += area * here;
+            profile.near_streaks += fan.distance(radius, azimuth) < kStreakCore ? area * here : 0.0;
+        }
         const double ring = kRings * std::log(radius / kOctaves.front()) / octaves;
         if (ring >= 0.0 && ring < kRings) {
             profile.rings[static_cast<std::size_t>(ring)].y += area * here;
             areas[static_cast<std::size_t>(ring)] += area;
         }
     });
+    profile.near_streaks /= beyond;
     for (std::size_t i = 0; i < kOctaves.size(); ++i) {
         profile.octaves[i] /= weights[i];
     }
@@ -189,39 +231,35 @@ EdgeProfile by_wave(const EdgeSetting& setting, const analysis::EdgeWave& wave) 
     const double half_sector = setting.blades > 0 ? kPi / setting.blades : kPi;
     const int azimuths = setting.blades > 0 ? 64 : 1;
     constexpr double kStep = 0.15;
-    return profile_of([&](const auto& visit) {
+    return profile_of(streak_fan(setting), [&](const auto& visit) {
         for (double radius = kOctaves.front() + 0.5 * kStep; radius < kOutermost; radius += kStep) {
             for (int j = 0; j < azimuths; ++j) {
                 const double t = (j + 0.5) / azimuths;
                 const double azimuth = radians(kRotation_deg) + half_sector * t * t * (3.0 - 2.0 * t);
                 const double share = azimuths == 1 ? 1.0 : 6.0 * t * (1.0 - t) / azimuths;
                 const double r = radius * airy_mm(setting);
-                visit(radius, wave.irradiance({r * std::cos(azimuth), r * std::sin(azimuth)}),
+                visit(radius, azimuth, wave.irradiance({r * std::cos(azimuth), r * std::sin(azimuth)}),
                       2.0 * kPi * radius * kStep * share);
             }
         }
     });
 }
 
-/// Of the light beyond 20 λN, where streaks stand apart.
+/// Of the light from kStreaksFrom on, in the middle of each.
 std::vector<Streak> streaks_of(const EdgeSetting& setting, const StarFilm& film) {
-    if (setting.blades == 0 || setting.curvature != 0.0) {
+    const StreakFan fan = streak_fan(setting);
+    if (fan.count == 0) {
         return {};
     }
-    const bool is_odd = setting.blades % 2 == 1;
-    const int count = is_odd ? 2 * setting.blades : setting.blades;
-    const double sector = 360.0 / count;
-    // An edge's normal stands between two corners, of which one is at the rotation; of an odd number a corner's own
-    // direction is that of the opposite edge's other streak.
-    const double first = kRotation_deg + (is_odd ? 0.0 : 0.5 * sector);
-    std::vector<Streak> streaks(static_cast<std::size_t>(count));
+    std::vector<Streak> streaks(static_cast<std::size_t>(fan.count));
     film.for_each([&](const Vec2d& place, double irradiance) {
-        if (length(place) > 20.0) {
-            const double azimuth = (degrees(std::atan2(place.y, place.x)) - first) / sector;
-            const int nearest = static_cast<int>(std::lround(azimuth));
-            Streak& streak = streaks[static_cast<std::size_t>((nearest % count + count) % count)];
+        const double azimuth = std::atan2(place.y, place.x);
+        if (length(place) > kStreaksFrom && fan.distance(length(place), azimuth) < kStreakCore) {
+            const double turn = fan.turn(azimuth);
+            const int nearest = static_cast<int>(std::lround(turn));
+            Streak& streak = streaks[static_cast<std::size_t>((nearest % fan.count + fan.count) % fan.count)];
             streak.light += irradiance;
-            streak.turn_deg += irradiance * sector * (azimuth - nearest);
+            streak.turn_deg += irradiance * fan.sector_deg() * (turn - nearest);
         }
     });
     const double most = std::ranges::max(streaks, {}, &Streak::light).light;
@@ -233,9 +271,9 @@ std::vector<Streak> streaks_of(const EdgeSetting& setting, const StarFilm& film)
 }
 
 EdgeRays by_rays(const EdgeSetting& setting, const StarFilm& film) {
-    const EdgeProfile profile = profile_of([&](const auto& visit) {
+    const EdgeProfile profile = profile_of(streak_fan(setting), [&](const auto& visit) {
         film.for_each([&](const Vec2d& place, double irradiance) {
-            visit(length(place), irradiance, 1.0 / (kPixelsPerAiry * kPixelsPerAiry));
+            visit(length(place), std::atan2(place.y, place.x), irradiance, 1.0 / (kPixelsPerAiry * kPixelsPerAiry));
         });
     });
     return {.profile = profile, .streaks = streaks_of(setting, film)};

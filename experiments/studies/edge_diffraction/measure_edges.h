@@ -33,6 +33,8 @@ struct EdgeProfile {
     std::vector<Vec2d> rings;     // (λN, mean) of narrow rings, outwards
     double energy = 0.0;  // the sum from 5 to 100 λN, in (λN)²; its beginning is the mean of those from 5 to 7,
                           // since a sharp cut swings with the rings
+    double near_streaks = 0.0;  // of the light beyond 20 λN, what lies within a λN of a streak's middle: of straight
+                                // blades, else 0
 
     /// d log E / d log r, by least squares over the octaves.
     [[nodiscard]] double slope() const;

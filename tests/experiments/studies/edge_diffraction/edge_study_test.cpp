@@ -11,7 +11,8 @@ namespace lensproof::studies::edge_study_test {
 
 /// A profile that falls with the cube of the distance, as a straight edge's rings do on average.
 EdgeProfile cubic(double scale) {
-    EdgeProfile profile{.octaves = {}, .rings = {{5.0, scale}, {50.0, 1e-3 * scale}}, .energy = scale};
+    EdgeProfile profile{
+        .octaves = {}, .rings = {{5.0, scale}, {50.0, 1e-3 * scale}}, .energy = scale, .near_streaks = 0.7 * scale};
     for (const double from : kOctaves) {
         profile.octaves.push_back(scale * std::pow(from, -3.0));
     }
@@ -35,7 +36,7 @@ TEST(EdgeStudy, SaysHowFarRaysAreFromWaves) {
                                 .wave_map = even_map()};
     const MeasuredEdges measured{{{.lens = "tessar", .f_number = 8.0, .blades = 7}, found}};
     const findings::Findings said = edge_findings(measured);
-    ASSERT_EQ(said.checks.size(), 4U);
+    ASSERT_EQ(said.checks.size(), 5U);
     EXPECT_NEAR(said.checks[0].value, 2.0, 1e-9);
     EXPECT_NEAR(said.checks[0].sigma, 1.0, 1e-9);
     EXPECT_NEAR(said.checks[1].value, 0.0, 1e-9);
@@ -43,6 +44,7 @@ TEST(EdgeStudy, SaysHowFarRaysAreFromWaves) {
     EXPECT_EQ(said.checks[2].verdict(), findings::Verdict::pass);
     EXPECT_EQ(said.checks[3].value, 0.3);
     EXPECT_EQ(said.checks[3].verdict(), findings::Verdict::fail);
+    EXPECT_NEAR(said.checks[4].value, 1.4, 1e-9) << "0.7 times 2 %";
     ASSERT_EQ(said.subjects.at(0).pictures.size(), 2U);
     EXPECT_TRUE(says(said.subjects[0].pictures[0].bytes, "Left by waves, right by rays"));
 }
