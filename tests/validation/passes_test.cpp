@@ -49,6 +49,30 @@ TEST(Passes, ASunsGhostsAndBarrelAreAllThatChanceFinds) {
                       0.1);
 }
 
+// From both ends: a lit wall by camera paths, a lamp by light paths, and a point light in a mirror, which no camera
+// path finds, by light paths too. A wall that the point lights through the mirror is of these.
+TEST(Passes, OfWallsFromBothEndsAreWhatLightPathsBring) {
+    SceneParts parts(kGrid);
+    parts.add(scene::Quad{4000.0, 4000.0}, {.linear = about_x(180.0), .translation = {0.0, 0.0, 2000.0}}, 0.7);
+    parts.add(scene::Quad{2000.0, 2000.0}, {.linear = kIdentity3, .translation = {0.0, 0.0, -100.0}},
+              scene::Material{scene::ConductorMaterial{.n = spectral::constant_spectrum(0.1, kGrid),
+                                                       .k = spectral::constant_spectrum(4.0, kGrid),
+                                                       .roughness = {}}});
+    const std::uint32_t lamp =
+        parts.add(scene::Quad{300.0, 300.0}, {.linear = about_x(135.0), .translation = {0.0, 200.0, 1800.0}}, 0.0);
+    parts.lights.emplace_back(scene::AreaLight{.object = lamp, .radiance = spectral::constant_spectrum(2.0, kGrid)});
+    parts.lights.emplace_back(
+        scene::PointLight{.position = {0.0, 300.0, -50.0}, .intensity = spectral::constant_spectrum(10.0, kGrid)});
+    const optics::WallFinish grey{.albedo = 0.8, .gloss = 0.2};
+    const Studio studio({.lens = "tessar",
+                         .f_number = 4.0,
+                         .sensor = kSensor,
+                         .grid = kGrid,
+                         .barrel = optics::BarrelFinish{.tube = grey, .edges = grey, .blades = grey}},
+                        parts);
+    expect_same_image(studio.by_pass("barrel", 12000), studio.by_light_paths(render::Ways::walls, 24000), 0.12);
+}
+
 /// What films gather together, as the audit counts light, over a pixel's area; and the variance of that.
 struct Gathered {
     double light = 0.0;

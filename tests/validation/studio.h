@@ -6,9 +6,11 @@
 #include <cmath>
 #include <cstdint>
 #include <string>
+#include <utility>
 
 #include "engine/render/integrators/energy_audit.h"
 #include "engine/render/integrators/passes.h"
+#include "engine/render/integrators/stray_paths.h"
 #include "tests/validation/rendered_scene.h"
 #include "tests/validation/small_scene.h"
 
@@ -51,6 +53,15 @@ class Studio {
 
     [[nodiscard]] render::Film by_pass(const char* pass, std::uint32_t samples) const {
         return film_of(render::pass_named(pass).render(view_, render::integrator_named("camera")), samples);
+    }
+
+    /// All of what is left to chance inside the lens by light paths: the other way to what a pass makes from both ends.
+    [[nodiscard]] render::Film by_light_paths(render::Ways ways, std::uint32_t samples) const {
+        render::Render render{.film = camera_.film(),
+                              .renderer = render::LightPaths(view_, render::WalkEntrance(camera_, ways), 1),
+                              .lands_anywhere = true};
+        render.film.has_splats = true;
+        return film_of(std::move(render), samples);
     }
 
     [[nodiscard]] render::EnergyAudit audit(std::uint32_t paths) const { return render::energy_audit(view_, paths); }

@@ -12,6 +12,14 @@
 
 namespace lensproof::render {
 
+/// Which light paths count.
+enum class LightPathsKept {
+    all,
+    /// Beside camera paths: those that come to the camera straight, and those of point lights whose first scattering is
+    /// by a mirror or smooth glass, which no camera path makes.
+    beside_camera_paths,
+};
+
 /// One light path: from each of its points it joins the camera, whose film it reaches as `entrance` draws.
 ///
 /// An entrance that says `mis_weight(entry, wavelength, others, is_hero_alone)` is one of two ways to make these paths,
@@ -21,13 +29,14 @@ template <class Entrance>
 class LightWalk {
   public:
     LightWalk(const View& view, const Entrance& entrance, const spectral::PathWavelengths& path, PathSampler& numbers,
-              FilmTile& tile)
+              FilmTile& tile, LightPathsKept kept = LightPathsKept::all)
         : scene_(view.scene()),
           entrance_(entrance),
           path_(path),
           settings_(view.paths),
           numbers_(numbers),
           tile_(tile),
+          kept_(kept),
           pixel_m2_(1e-6 * view.camera->sensor().pixel_pitch_mm * view.camera->sensor().pixel_pitch_mm) {}
 
     /// Returns how many rays were traced, in the scene and into the camera.
@@ -37,7 +46,7 @@ class LightWalk {
         if (settings_.min_bounces == 0 && (Entrance::shows_points || !start.is_point())) {
             join_from_light(start);
         }
-        if (settings_.max_bounces > 0) {
+        if (settings_.max_bounces > 0 && (kept_ == LightPathsKept::all || start.is_point())) {
             const auto onwards = numbers_.next();
             scatter(start, scene_.lights.leave(start, onwards[0], onwards[1]));
         }
@@ -77,7 +86,8 @@ class LightWalk {
             if (kIsWeighed && bounce == 1) {
                 weight_.leave(scene_.lights.first_segment(start, hit->point));
             }
-            if (!scene::is_delta(vertex.bsdf)) {
+            const bool is_others = bounce == 1 && kept_ == LightPathsKept::beside_camera_paths;
+            if (!scene::is_delta(vertex.bsdf) && !is_others) {
                 join_from_surface(vertex, light.power * throughput);
             }
             if (bounce == settings_.max_bounces) {
@@ -89,6 +99,9 @@ class LightWalk {
                 return;
             }
             const auto& [scattered, onwards] = *turn;
+            if (is_others && !scattered.is_delta) {
+                return;
+            }
             throughput *=
                 scattered.weight * spectral::SpectralSample(shading_correction(vertex, onwards, scattered.wi));
             if (scattered.is_dispersed && !is_hero_alone_) {
@@ -210,6 +223,7 @@ class LightWalk {
     PathSampler& numbers_;
     FilmTile& tile_;
     LightMisWeight weight_;
+    LightPathsKept kept_;
     std::uint32_t rays_ = 0;
     double pixel_m2_;
     bool is_hero_alone_ = false;
@@ -223,10 +237,11 @@ class LightPaths {
   public:
     /// Light paths have numbers of their own, and `salt` tells those of one entrance from another's: those of other
     /// paths of the same sample would go with them.
-    LightPaths(const View& view, Entrance entrance, std::uint64_t salt)
+    LightPaths(const View& view, Entrance entrance, std::uint64_t salt, LightPathsKept kept = LightPathsKept::all)
         : view_(view),
           entrance_(std::make_shared<const Entrance>(std::move(entrance))),
-          seed_(sampler_detail::mixed(view.seed ^ salt)) {}
+          seed_(sampler_detail::mixed(view.seed ^ salt)),
+          kept_(kept) {}
 
     void operator()(const TileSamples& samples, FilmTile& tile) const {
         const PixelRect& rect = samples.rect;
@@ -239,7 +254,7 @@ class LightPaths {
                     const spectral::PathWavelengths strata =
                         grid.path(static_cast<int>(numbers.next()[0] * grid.size()));
                     tile.begin_light_path();
-                    tile.count_rays(LightWalk(view_, *entrance_, strata, numbers, tile).walk());
+                    tile.count_rays(LightWalk(view_, *entrance_, strata, numbers, tile, kept_).walk());
                 }
             }
         }
@@ -249,6 +264,7 @@ class LightPaths {
     View view_;
     std::shared_ptr<const Entrance> entrance_;
     std::uint64_t seed_;
+    LightPathsKept kept_;
 };
 
 }  // namespace lensproof::render

@@ -6,10 +6,9 @@
 #include <stdexcept>
 
 #include "engine/base/input_error.h"
-#include "engine/render/integrators/light_walk.h"
+#include "engine/render/integrators/stray_paths.h"
 #include "engine/render/stray/diffracted_entrance.h"
 #include "engine/render/stray/ghost_entrance.h"
-#include "engine/render/stray/walk_entrance.h"
 
 namespace lensproof::render {
 
@@ -28,13 +27,22 @@ Render direct(const View& view, const Integrator& integrator) {
     return integrator.render(seen);
 }
 
+Render with_splats(const View& view, TileRenderer renderer) {
+    Render render{.film = view.camera->film(), .renderer = std::move(renderer)};
+    render.film.has_splats = true;
+    return render;
+}
+
 /// By light paths from all that shines on the camera.
 template <class Entrance>
 Render astray(const View& view, Entrance entrance, std::uint64_t salt) {
-    Render render{
-        .film = view.camera->film(), .renderer = LightPaths(view, std::move(entrance), salt), .lands_anywhere = true};
-    render.film.has_splats = true;
+    Render render = with_splats(view, LightPaths(view, std::move(entrance), salt));
+    render.lands_anywhere = true;
     return render;
+}
+
+Render by_chance(const View& view, Ways ways, std::uint64_t salt) {
+    return with_splats(view, StrayPaths(view, ways, salt));
 }
 
 Render ghosts(const View& view, const Integrator& /*integrator*/) {
@@ -42,11 +50,11 @@ Render ghosts(const View& view, const Integrator& /*integrator*/) {
 }
 
 Render faint_ghosts(const View& view, const Integrator& /*integrator*/) {
-    return astray(view, WalkEntrance(*view.camera, Ways::many_reflections), 0x9b05688c2b3e6c1fULL);
+    return by_chance(view, Ways::many_reflections, 0x9b05688c2b3e6c1fULL);
 }
 
 Render barrel(const View& view, const Integrator& /*integrator*/) {
-    return astray(view, WalkEntrance(*view.camera, Ways::walls), 0x1f83d9abfb41bd6bULL);
+    return by_chance(view, Ways::walls, 0x1f83d9abfb41bd6bULL);
 }
 
 Render diffracted(const View& view, const Integrator& /*integrator*/) {

@@ -8,13 +8,12 @@ namespace lensproof::render {
 WalkEntrance::WalkEntrance(const Camera& camera, Ways ways)
     : front_(camera), ways_(ways), barrel_(camera.lens().value()) {}
 
-/// Whether there is no such way: walls that are black send nothing on.
-bool WalkEntrance::is_dark() const {
-    return ways_ == Ways::walls && barrel_.finish().is_black();
+bool is_dark(Ways ways, const optics::Barrel& barrel) {
+    return ways == Ways::walls && barrel.finish().is_black();
 }
 
-bool WalkEntrance::counts(const optics::StrayLight& light) const {
-    switch (ways_) {
+bool counts(Ways ways, const optics::StrayLight& light) {
+    switch (ways) {
         case Ways::many_reflections:
             return light.walls == 0 && light.reflections >= 4;
         case Ways::walls:
@@ -29,7 +28,7 @@ std::optional<Entry> WalkEntrance::draw(const LightOrigin& from, const spectral:
                                         bool /*is_hero_alone*/, PathSampler& numbers) const {
     const auto u = numbers.next();
     const auto beam = front_.beam(from);
-    if (!beam || is_dark()) {
+    if (!beam || is_dark(ways_, barrel_)) {
         return std::nullopt;
     }
     const pupil::Disc disc{beam->radius};
@@ -41,7 +40,7 @@ std::optional<Entry> WalkEntrance::meet(const Ray<double>& ray, const spectral::
                                         PathSampler& numbers) const {
     const auto u = numbers.next();
     const auto meeting = front_.meet(ray);
-    if (!meeting || is_dark()) {
+    if (!meeting || is_dark(ways_, barrel_)) {
         return std::nullopt;
     }
     return landed(front_.entry(ray, *meeting), meeting->beam.ray(meeting->offset), path, u);
@@ -57,7 +56,7 @@ Entry WalkEntrance::landed(Entry entry, const Ray<double>& ray, const spectral::
         int places = 0;
         double kept = 0.0;
         walk.follow(light, true, [&](const optics::StrayLight& on_film) {
-            if (!counts(on_film)) {
+            if (!counts(ways_, on_film)) {
                 return;
             }
             ++places;

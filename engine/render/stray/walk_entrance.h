@@ -15,6 +15,12 @@ enum class Ways {
     all,               // slow, and a judge of others
 };
 
+/// Whether light that took its way is of these.
+bool counts(Ways ways, const optics::StrayLight& light);
+
+/// Whether no light is: walls that are black send nothing on.
+bool is_dark(Ways ways, const optics::Barrel& barrel);
+
 /// A ray is drawn evenly over the front of an exact camera; behind it each wavelength goes its own way by chance
 /// (optics::StrayWalk), from the same numbers, so that most of them keep together.
 class WalkEntrance {
@@ -31,8 +37,6 @@ class WalkEntrance {
                                             PathSampler& numbers) const;
 
   private:
-    [[nodiscard]] bool is_dark() const;
-    [[nodiscard]] bool counts(const optics::StrayLight& light) const;
     /// The entry with where its light lands: of a mirror of a sensor's several places one, by chance.
     [[nodiscard]] Entry landed(Entry entry, const Ray<double>& ray, const spectral::PathWavelengths& path,
                                const std::array<double, PathSampler::kNumbers>& seed) const;

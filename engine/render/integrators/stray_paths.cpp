@@ -1,0 +1,74 @@
+#include "engine/render/integrators/stray_paths.h"
+
+#include <cmath>
+
+#include "engine/render/integrators/path_tracer.h"
+#include "engine/render/stray/walk_numbers.h"
+
+namespace lensproof::render {
+
+StrayCameraPaths::StrayCameraPaths(const View& view, Ways ways, std::uint64_t salt)
+    : view_(view),
+      front_(*view.camera),
+      ways_(ways),
+      barrel_(std::make_shared<const optics::Barrel>(view.camera->lens().value())),
+      disc_(pupil::rear_disc(front_.middle(), front_.film_radius_mm())),
+      // Another's than those of the light paths beside them.
+      seed_(sampler_detail::mixed(~(view.seed ^ salt))) {
+    view_.paths.min_bounces = 1;
+}
+
+void StrayCameraPaths::operator()(const TileSamples& samples, FilmTile& tile) const {
+    if (is_dark(ways_, *barrel_) || view_.paths.max_bounces < 1) {
+        return;
+    }
+    const PixelRect& rect = samples.rect;
+    const spectral::SpectralGrid& grid = view_.camera->grid();
+    for (int y = rect.y; y < rect.y + rect.height; ++y) {
+        for (int x = rect.x; x < rect.x + rect.width; ++x) {
+            const auto pixel = static_cast<std::uint32_t>(y * view_.camera->sensor().width + x);
+            for (std::uint32_t sample = samples.first; sample < samples.end; ++sample) {
+                PathSampler numbers(seed_, pixel, sample);
+                const spectral::PathWavelengths path = grid.path(static_cast<int>(numbers.next()[0] * grid.size()));
+                const float found = irradiance({static_cast<double>(x), static_cast<double>(y)}, path, numbers, tile);
+                if (found != 0.0F) {
+                    constexpr auto kWavelengths = static_cast<float>(spectral::kWavelengthsPerPath);
+                    tile.add(tile.pixel(x, y), sample, path.index, std::array{kWavelengths * found, 0.0F, 0.0F, 0.0F});
+                }
+            }
+        }
+    }
+}
+
+float StrayCameraPaths::irradiance(Vec2d pixel, const spectral::PathWavelengths& path, PathSampler& numbers,
+                                   FilmTile& tile) const {
+    const Camera& camera = front_.camera();
+    const auto place = numbers.next();
+    const auto aim = numbers.next();
+    const PixelFilter& filter = camera.film().filter;
+    const PixelFilter::Draw across = filter.draw(place[0]);
+    const PixelFilter::Draw down = filter.draw(place[1]);
+    const Vec2d at = camera.sensor().position(pixel.x + across.offset_px, pixel.y + down.offset_px);
+
+    const optics::TraceLens<double>& lens = front_.lens().at(path.index[0]);
+    const Vec2d through = disc_.warped(aim[0], aim[1]);
+    const Vec3d film{at.x, at.y, lens.image_z};
+    const Vec3d to_disc = Vec3d{through.x, through.y, disc_.plane_z} - film;
+    const double distance2 = dot(to_disc, to_disc);
+    optics::StrayLight light{.ray = {film, normalized(to_disc)}};
+    WalkNumbers walk_numbers(aim);
+    optics::StrayWalk walk(lens, *barrel_, camera.settings().mirrors, walk_numbers);
+    tile.count_rays(1);
+    if (walk.follow(light, false, [](const optics::StrayLight&) {}) != optics::StrayEnd::front ||
+        !counts(ways_, light)) {
+        return 0.0F;
+    }
+    const PathRadiance found = trace_path(view_.scene(), camera.to_world(light.ray), path, view_.paths, numbers);
+    tile.count_rays(found.rays);
+    const double cosine2 = to_disc.z * to_disc.z / distance2;
+    const double steradians = disc_.area() * cosine2 / distance2;  // the film's cosine and the disc's
+    return static_cast<float>(across.weight * down.weight * steradians * light.weight) *
+           (found.radiance[0] + found.hero_radiance);
+}
+
+}  // namespace lensproof::render

@@ -1,0 +1,55 @@
+// engine/render/integrators/stray_paths.h — light that is left to chance inside the lens, from both ends.
+#pragma once
+#include <cstdint>
+#include <memory>
+
+#include "engine/pupil/rear_disc.h"
+#include "engine/render/integrators/light_walk.h"
+#include "engine/render/stray/walk_entrance.h"
+
+namespace lensproof::render {
+
+/// Camera paths that go from the film to the front by chance (optics::StrayWalk), and on in the scene as those that
+/// image do (path_tracer.h): they see a room, a window or a lit wall for all that it sends. Light that comes straight
+/// from its source is left to light paths, which aim at the front from a lamp however small.
+///
+/// A path has one wavelength, since each leaves the lens another way. A TileRenderer.
+class StrayCameraPaths {
+  public:
+    /// Throws as WalkEntrance.
+    StrayCameraPaths(const View& view, Ways ways, std::uint64_t salt);
+
+    void operator()(const TileSamples& samples, FilmTile& tile) const;
+
+  private:
+    /// The irradiance that one path brings, W·m⁻²·nm⁻¹, filter weight included.
+    [[nodiscard]] float irradiance(Vec2d pixel, const spectral::PathWavelengths& path, PathSampler& numbers,
+                                   FilmTile& tile) const;
+
+    View view_;
+    CameraFront front_;
+    Ways ways_;
+    std::shared_ptr<const optics::Barrel> barrel_;
+    pupil::RearDisc disc_;
+    std::uint64_t seed_;
+};
+
+/// All light of these ways: for each sample of each pixel a camera path and a light path, of which each scene path is
+/// made by one. A TileRenderer.
+class StrayPaths {
+  public:
+    StrayPaths(const View& view, Ways ways, std::uint64_t salt)
+        : camera_(view, ways, salt),
+          light_(view, WalkEntrance(*view.camera, ways), salt, LightPathsKept::beside_camera_paths) {}
+
+    void operator()(const TileSamples& samples, FilmTile& tile) const {
+        camera_(samples, tile);
+        light_(samples, tile);
+    }
+
+  private:
+    StrayCameraPaths camera_;
+    LightPaths<WalkEntrance> light_;
+};
+
+}  // namespace lensproof::render
