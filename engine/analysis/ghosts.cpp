@@ -74,7 +74,7 @@ double polarised_energy(const GhostScene& scene, const Ghost& ghost) {
 /// do not change a ray's way.
 class WeighedRays {
   public:
-    WeighedRays(const GhostScene& scene, const std::vector<Ghost>& ghosts, double energy) : scene_(scene) {
+    WeighedRays(const GhostScene& scene, const std::vector<Ghost>& ghosts, double energy) {
         double left = energy;
         for (const Ghost& ghost : ghosts) {
             if (left <= 1e-3 * energy) {
@@ -120,7 +120,6 @@ class WeighedRays {
         return sum;
     }
 
-    const GhostScene& scene_;
     std::vector<Part> parts_;
     double energy_ = 0.0;
 };

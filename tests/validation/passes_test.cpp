@@ -73,6 +73,27 @@ TEST(Passes, OfWallsFromBothEndsAreWhatLightPathsBring) {
     expect_same_image(studio.by_pass("barrel", 12000), studio.by_light_paths(render::Ways::walls, 24000), 0.12);
 }
 
+// A sky above a wall: camera paths see it for all that it sends, an even one nearly by themselves.
+TEST(Passes, OfWallsAndASkyAreWhatLightPathsBring) {
+    SceneParts parts(kGrid);
+    parts.add(scene::Quad{4000.0, 4000.0}, {.linear = about_x(180.0), .translation = {0.0, -2200.0, 2000.0}}, 0.7);
+    parts.lights.emplace_back(scene::ConstantLight{spectral::constant_spectrum(1.0, kGrid)});
+    const optics::WallFinish grey{.albedo = 0.8, .gloss = 0.2};
+    const Studio studio({.lens = "tessar",
+                         .f_number = 4.0,
+                         .sensor = kSensor,
+                         .grid = kGrid,
+                         .barrel = optics::BarrelFinish{.tube = grey, .edges = grey, .blades = grey}},
+                        parts);
+    const render::Film film = studio.by_pass("barrel", 1000);
+    const render::Film judge = studio.by_light_paths(render::Ways::walls, 16000);
+    // Of the totals alone: few light paths land, each as bright as many, so that the variance of a pixel is not known.
+    const FilmDifference found = difference(film, judge);
+    EXPECT_NEAR(found.first, found.second, 4.0 * found.error);
+    EXPECT_LT(found.error, 0.15 * found.first);
+    EXPECT_LT(difference(film, film).error, 0.5 * difference(judge, judge).error) << "with a sixteenth of its paths";
+}
+
 /// What films gather together, as the audit counts light, over a pixel's area; and the variance of that.
 struct Gathered {
     double light = 0.0;

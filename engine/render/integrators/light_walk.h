@@ -15,8 +15,9 @@ namespace lensproof::render {
 /// Which light paths count.
 enum class LightPathsKept {
     all,
-    /// Beside camera paths: those that come to the camera straight, and those of point lights whose first scattering is
-    /// by a mirror or smooth glass, which no camera path makes.
+    /// Beside camera paths: those that come to the camera straight, of the sky what camera paths leave of it
+    /// (`sky_by_camera`); and those of point lights whose first scattering is by a mirror or smooth glass, which no
+    /// camera path makes.
     beside_camera_paths,
 };
 
@@ -133,9 +134,10 @@ class LightWalk {
         const LightOrigin from{start.is_at_infinity ? start.direction : start.point, start.is_at_infinity};
         join(from, [&](const Entry& in) {
             if (start.is_at_infinity) {
+                const double kept = kept_ == LightPathsKept::all ? 1.0 : 1.0 - sky_by_camera(start.pdf);
                 return Carried{.light = is_blocked(in.end - scene_.lights.beyond_mm(in.end) * start.direction, in.end)
                                             ? spectral::SpectralSample()
-                                            : start.value,
+                                            : scene::scaled(start.value, kept),
                                .others = LightMisWeight::others(start, 1.0)};
             }
             const spectral::SpectralSample intensity = scene_.lights.intensity(start, in.direction);

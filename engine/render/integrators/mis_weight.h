@@ -28,12 +28,22 @@
 // from bias asks for (`MisWeight.WeightsOfAPathSumToOne`).
 #pragma once
 #include <cmath>
+#include <numbers>
 
 #include "engine/render/camera/camera.h"
 #include "engine/render/integrators/path_vertex.h"
 #include "engine/scene/light/light.h"
 
 namespace lensproof::render {
+
+/// What camera paths count of light that comes straight from infinity, where paths of both ends go through the lens by
+/// chance and theirs have no pdf; light paths, which draw the direction with `start_pdf` (1/sr), count the rest. Any
+/// weights that add up to one are right: these give an even sky to camera paths, a sun to light paths.
+inline double sky_by_camera(double start_pdf) {
+    constexpr double kHalf = 10.0 / (4.0 * std::numbers::pi);  // ten times as likely as in an even sky
+    const double ratio = start_pdf / kHalf;
+    return 1.0 / (1.0 + ratio * ratio);
+}
 
 /// A path's turn at a surface point.
 struct PathTurn {

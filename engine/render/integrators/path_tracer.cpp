@@ -26,10 +26,15 @@ class PathWalk {
             }
             const bool counts = bounce >= settings_.min_bounces;
             if (!hit) {
-                if (counts) {
+                if (counts || settings_.shares_sky) {
                     scene_.lights.visit_infinity(
                         ray.direction, path_,
-                        [&](const scene::Lights::Emission& light) { add_found(throughput, light, 1.0); }, ahead);
+                        [&](scene::Lights::Emission light) {
+                            light.radiance =
+                                scene::scaled(light.radiance, counts ? 1.0 : sky_by_camera(light.start_pdf));
+                            add_found(throughput, light, 1.0);
+                        },
+                        ahead);
                 }
                 break;
             }

@@ -16,10 +16,11 @@ StrayCameraPaths::StrayCameraPaths(const View& view, Ways ways, std::uint64_t sa
       // Another's than those of the light paths beside them.
       seed_(sampler_detail::mixed(~(view.seed ^ salt))) {
     view_.paths.min_bounces = 1;
+    view_.paths.shares_sky = true;
 }
 
 void StrayCameraPaths::operator()(const TileSamples& samples, FilmTile& tile) const {
-    if (is_dark(ways_, *barrel_) || view_.paths.max_bounces < 1) {
+    if (is_dark(ways_, *barrel_)) {
         return;
     }
     const PixelRect& rect = samples.rect;

@@ -10,8 +10,8 @@
 namespace lensproof::render {
 
 /// Camera paths that go from the film to the front by chance (optics::StrayWalk), and on in the scene as those that
-/// image do (path_tracer.h): they see a room, a window or a lit wall for all that it sends. Light that comes straight
-/// from its source is left to light paths, which aim at the front from a lamp however small.
+/// image do (path_tracer.h): they see a sky, a room or a lit wall for all that it sends. Light that comes straight from
+/// a lamp or a sun is left to light paths, which aim at the front from one however small.
 ///
 /// A path has one wavelength, since each leaves the lens another way. A TileRenderer.
 class StrayCameraPaths {
