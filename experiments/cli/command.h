@@ -84,6 +84,7 @@ void add_render_command(Program& program);
 void add_measure_command(Program& program);
 void add_merge_command(Program& program);
 void add_compare_command(Program& program);
+void add_fit_command(Program& program);
 void add_convert_command(Program& program);
 void add_export_command(Program& program);
 void add_run_command(Program& program);

@@ -66,6 +66,7 @@ int run(int argc, char** argv) {
     add_merge_command(program);
     add_chart_command(program);
     add_measure_command(program);
+    add_fit_command(program);
     add_compare_command(program);
     add_export_command(program);
     add_run_command(program);
