@@ -156,6 +156,14 @@ std::optional<LensResiduals> ResidualTracer::residuals(const LensState& state, b
         result.by_pose.setZero(rows, kPoseUnknowns * static_cast<Eigen::Index>(seen_.views.size()));
     }
     slopes_.resize(static_cast<std::size_t>(seen_.count()));
+    if (!add_points(rays, state, with_derivatives, result) || !add_shifts(rays, with_derivatives, result)) {
+        return std::nullopt;
+    }
+    return result;
+}
+
+bool ResidualTracer::add_points(const Rays& rays, const LensState& state, bool with_derivatives,
+                                LensResiduals& result) {
     Eigen::Index row = 0;
     for (std::size_t v = 0; v < seen_.views.size(); ++v) {
         const SeenView& view = seen_.views[v];
@@ -165,7 +173,7 @@ std::optional<LensResiduals> ResidualTracer::residuals(const LensState& state, b
             const auto image = rays.image(view.profile, kGreen, object.place,
                                           slopes_[static_cast<std::size_t>(row / 2)], with_derivatives);
             if (!image) {
-                return std::nullopt;
+                return false;
             }
             result.values.segment<2>(row) << (point.image_px.x - image->px.x) / sigma,
                 (point.image_px.y - image->px.y) / sigma;
@@ -177,10 +185,15 @@ std::optional<LensResiduals> ResidualTracer::residuals(const LensState& state, b
             row += 2;
         }
     }
+    return true;
+}
+
+bool ResidualTracer::add_shifts(const Rays& rays, bool with_derivatives, LensResiduals& result) const {
+    Eigen::Index row = 2 * static_cast<Eigen::Index>(seen_.count());
     for (const SeenShift& shift : seen_.shifts) {
         const Eigen::Index n = static_cast<Eigen::Index>(shift.objects.size());
         Eigen::VectorXd shifts(2 * n);
-        Eigen::MatrixXd by_change(2 * n, columns);
+        Eigen::MatrixXd by_change(2 * n, result.by_change.cols());
         for (Eigen::Index i = 0; i < n; ++i) {
             const Vec3d object = in_lens_space(shift.objects[static_cast<std::size_t>(i)], lens_.entrance_pupil_z);
             std::array<std::optional<Vec2d>, 2> start;
@@ -188,7 +201,7 @@ std::optional<LensResiduals> ResidualTracer::residuals(const LensState& state, b
             const auto other =
                 rays.image(shift.profile, static_cast<std::size_t>(shift.channel), object, start, with_derivatives);
             if (!green || !other) {
-                return std::nullopt;
+                return false;
             }
             shifts.segment<2>(2 * i) << other->px.x - green->px.x, other->px.y - green->px.y;
             if (with_derivatives) {
@@ -202,7 +215,7 @@ std::optional<LensResiduals> ResidualTracer::residuals(const LensState& state, b
         }
         row += terms;
     }
-    return result;
+    return true;
 }
 
 std::vector<std::vector<bool>> ResidualTracer::imaged(const LensState& state) {

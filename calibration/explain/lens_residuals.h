@@ -55,6 +55,10 @@ class ResidualTracer {
     struct Image;
     class Rays;
 
+    // Each fills its rows of the residuals; false where a point is not imaged.
+    bool add_points(const Rays& rays, const LensState& state, bool with_derivatives, LensResiduals& result);
+    [[nodiscard]] bool add_shifts(const Rays& rays, bool with_derivatives, LensResiduals& result) const;
+
     const ExplainedLens& lens_;
     const SeenPoints& seen_;
     std::vector<std::array<std::optional<Vec2d>, 2>> slopes_;  // of green's rays to the points

@@ -153,6 +153,10 @@ int SeenPoints::count() const {
 }
 
 SeenPoints seen_points(const std::vector<NamedProfile>& profiles) {
+    if (profiles.size() > kMostViews) {
+        throw InputError(
+            fmt::format("{} profiles, expected {} at most: no more views are used", profiles.size(), kMostViews));
+    }
     const NamedProfile& first = profiles.front();
     SeenPoints seen;
     seen.camera = {.width_px = first.profile.width_px,

@@ -57,7 +57,7 @@ struct SeenPoints {
 };
 
 /// At most so much is used of all profiles, evenly: more noise-free digits than the lens's own tolerances need.
-inline constexpr int kMostViews = 40;
+inline constexpr std::size_t kMostViews = 40;
 inline constexpr int kMostPoints = 1000;
 
 /// A profile and its file's name, for messages.
@@ -66,7 +66,8 @@ struct NamedProfile {
     Profile profile;
 };
 
-/// Throws InputError where a profile has no points, pixel pitch or geometry, or is another camera's than the first.
+/// Throws InputError where a profile has no points, pixel pitch or geometry, or is another camera's than the first, and
+/// for more than kMostViews of them.
 SeenPoints seen_points(const std::vector<NamedProfile>& profiles);
 
 }  // namespace lensproof::calibration

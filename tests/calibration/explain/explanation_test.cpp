@@ -173,6 +173,8 @@ TEST(Explanation, NamesWhatItCannotUse) {
     without = good;
     without.profile.views.clear();
     EXPECT_NE(message({without}, {}).find("no views"), std::string::npos);
+    EXPECT_NE(message(std::vector<NamedProfile>(41, good), {}).find("41 profiles, expected 40 at most"),
+              std::string::npos);
     EXPECT_NE(message({good}, {.free = {"stop"}}).find("--free is \"stop\", expected focus"), std::string::npos);
 }
 
