@@ -101,14 +101,14 @@ class ResidualSum {
     double total_ = 0.0;
 };
 
-ShiftAgreement shift_agreement(const PhotographedLens& photographed, const ChannelScale& scale,
+ShiftAgreement shift_agreement(const PhotographedLens& photographed, const ChannelRadius& colour,
                                const ImagedField& simulated, std::size_t channel) {
     ShiftAgreement agreement;
     ResidualSum sum;
     const double edge = photographed.half_diagonal_mm();
     for (std::size_t i = 0; i < simulated.field_angle.size() && simulated.green(i) <= edge * (1.0 + 1e-6); ++i) {
         const double green = simulated.green(i);
-        const double seen = channel_shift(photographed, scale, green);
+        const double seen = channel_shift(photographed, colour, green);
         const double traced = simulated.height_mm[i][channel] - green;
         const double below = simulated.green(i == 0 ? 0 : i - 1);
         const double above = simulated.green(std::min(i + 1, simulated.field_angle.size() - 1));

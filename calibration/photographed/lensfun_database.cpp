@@ -109,7 +109,7 @@ void take_distortion(const lfLens& entry, double focal_length_mm, PhotographedLe
     switch (found.Model) {
         case LF_DIST_MODEL_POLY3:
             lens.distortion_model = "poly3";
-            lens.distortion = {1.0 - t0, 0.0, t0, 0.0, 0.0};
+            lens.distortion = {1.0 - t0, 0.0, t0};
             break;
         case LF_DIST_MODEL_POLY5:
             lens.distortion_model = "poly5";
@@ -117,7 +117,7 @@ void take_distortion(const lfLens& entry, double focal_length_mm, PhotographedLe
             break;
         case LF_DIST_MODEL_PTLENS:
             lens.distortion_model = "ptlens";
-            lens.distortion = {1.0 - t0 - t1 - t2, t2, t1, t0, 0.0};
+            lens.distortion = {1.0 - t0 - t1 - t2, t2, t1, t0};
             break;
         case LF_DIST_MODEL_NONE:
             break;
@@ -132,10 +132,12 @@ void take_lateral_colour(const lfLens& entry, double focal_length_mm, Photograph
         return;
     }
     if (found.Model == LF_TCA_MODEL_LINEAR) {
-        lens.lateral_colour = LateralColour{.red = {.v = found.Terms[0]}, .blue = {.v = found.Terms[1]}};
+        lens.lateral_colour =
+            LateralColour{.red = ChannelScale{.v = found.Terms[0]}, .blue = ChannelScale{.v = found.Terms[1]}};
     } else if (found.Model == LF_TCA_MODEL_POLY3) {
-        lens.lateral_colour = LateralColour{.red = {.v = found.Terms[0], .c = found.Terms[2], .b = found.Terms[4]},
-                                            .blue = {.v = found.Terms[1], .c = found.Terms[3], .b = found.Terms[5]}};
+        lens.lateral_colour =
+            LateralColour{.red = ChannelScale{.v = found.Terms[0], .c = found.Terms[2], .b = found.Terms[4]},
+                          .blue = ChannelScale{.v = found.Terms[1], .c = found.Terms[3], .b = found.Terms[5]}};
     }
 }
 

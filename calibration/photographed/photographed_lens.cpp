@@ -3,18 +3,41 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/base/bisect.h"
+
 namespace lensproof::calibration {
 
 namespace {
 
-const double kFullFrameDiagonal_mm = std::hypot(36.0, 24.0);
 constexpr int kHeights = 200;
+
+/// In the polynomial's unit.
+double radius_of(const RadialPolynomial& polynomial, double r) {
+    double sum = 0.0;
+    for (std::size_t i = polynomial.size(); i-- > 0;) {
+        sum = (sum + polynomial[i]) * r;
+    }
+    return sum;
+}
+
+/// Where photographed_radius is `radius_mm`, at most where photographs end.
+double ideal_radius(const PhotographedLens& lens, double radius_mm) {
+    const double covered = ideal_radius_covered(lens, 4.0 * lens.half_diagonal_mm());
+    constexpr int kHalvings = 60;
+    return bisected({.inside = 0.0, .outside = covered}, kHalvings,
+                    [&](double ideal_mm) { return photographed_radius(lens, ideal_mm) <= radius_mm; })
+        .inside;
+}
 
 }  // namespace
 
 double MeasuredVignetting::brightness(double share) const {
     const double x2 = share * share;
-    return 1.0 + x2 * (k[0] + x2 * (k[1] + x2 * k[2]));
+    double sum = 0.0;
+    for (std::size_t i = k.size(); i-- > 0;) {
+        sum = (sum + k[i]) * x2;
+    }
+    return corrects ? 1.0 / (1.0 + sum) : 1.0 + sum;
 }
 
 double PhotographedLens::half_diagonal_mm() const {
@@ -26,12 +49,7 @@ double PhotographedLens::unit_mm() const {
 }
 
 double photographed_radius(const PhotographedLens& lens, double ideal_mm) {
-    const double u = ideal_mm / lens.unit_mm();
-    double sum = 0.0;
-    for (std::size_t i = lens.distortion.size(); i-- > 0;) {
-        sum = (sum + lens.distortion[i]) * u;
-    }
-    return sum * lens.unit_mm();
+    return radius_of(lens.distortion, ideal_mm / lens.unit_mm()) * lens.unit_mm();
 }
 
 double photographed_slope(const PhotographedLens& lens, double ideal_mm) {
@@ -56,9 +74,14 @@ double ideal_radius_covered(const PhotographedLens& lens, double largest_mm) {
     return covered;
 }
 
-double channel_shift(const PhotographedLens& lens, const ChannelScale& channel, double radius_mm) {
-    const double r = radius_mm / lens.unit_mm();
-    return radius_mm * (channel.v - 1.0 + r * (channel.c + r * channel.b));
+double channel_shift(const PhotographedLens& lens, const ChannelRadius& channel, double radius_mm) {
+    if (const auto* scale = std::get_if<ChannelScale>(&channel)) {
+        const double r = radius_mm / lens.unit_mm();
+        return radius_mm * (scale->v - 1.0 + r * (scale->c + r * scale->b));
+    }
+    const double ideal_mm = ideal_radius(lens, radius_mm);
+    return radius_of(std::get<RadialPolynomial>(channel), ideal_mm / lens.unit_mm()) * lens.unit_mm() -
+           photographed_radius(lens, ideal_mm);
 }
 
 double departure_from_ideal(const PhotographedLens& lens) {

@@ -4,6 +4,7 @@
 
 #include <string_view>
 
+#include "calibration/photographed/dng_corrections.h"
 #include "calibration/photographed/lensfun_database.h"
 #include "engine/base/input_error.h"
 #include "engine/formats/prescription/load_lens.h"
@@ -17,11 +18,20 @@ namespace lensproof::cli {
 namespace {
 
 constexpr std::string_view kLensfun = "lensfun:";
+constexpr std::string_view kDng = "dng:";
 
 calibration::PhotographedLens read_photographed(const optics::Lens& lens, const MeasuredOptions& options) {
+    if (options.measured.starts_with(kDng)) {
+        if (!options.lensfun_data.empty()) {
+            throw InputError(
+                fmt::format("--lensfun-data {}: expected with --measured lensfun:MODEL only", options.lensfun_data));
+        }
+        return calibration::read_dng_corrections(options.measured.substr(kDng.size()), options.crop_factor);
+    }
     if (!options.measured.starts_with(kLensfun) || options.measured.size() == kLensfun.size()) {
         throw InputError(fmt::format(
-            "--measured is \"{}\", expected lensfun:MODEL, say lensfun:\"Canon FDn 24mm 1:2.8\"", options.measured));
+            "--measured is \"{}\", expected lensfun:MODEL, say lensfun:\"Canon FDn 24mm 1:2.8\", or dng:FILE",
+            options.measured));
     }
     const calibration::LensfunDatabase database = options.lensfun_data.empty()
                                                       ? calibration::LensfunDatabase::of_system()
@@ -42,8 +52,11 @@ void print_residual(const char* what, const calibration::Residual& residual,
 
 void print_comparison(const studies::MeasuredComparison& comparison) {
     const calibration::PhotographedLens& photographed = comparison.photographed;
-    print("{} against {} (lensfun, {}, crop factor {:.4g}, {})\n", comparison.lens, photographed.model,
+    print("{} against {} ({}, {}, crop factor {:.4g}, {})\n", comparison.lens, photographed.model, photographed.source,
           photographed.maker, photographed.crop_factor, optics::projection_name(photographed.projection));
+    for (const std::string& remark : photographed.remarks) {
+        print("{:14} {}\n", "", remark);
+    }
     if (const auto& distortion = comparison.distortion) {
         print_residual("distortion", distortion->residual, comparison);
         print("{:14} up to {:.0f} % of {:.2f} mm; focal length {:.4f} times the simulated one\n", "",
@@ -64,9 +77,13 @@ void print_comparison(const studies::MeasuredComparison& comparison) {
 }  // namespace
 
 Option add_measured_options(Command& command, MeasuredOptions& options) {
-    const Option measured = command.add_option("--measured", options.measured,
-                                               "In place of B: a lens calibrated from photographs, lensfun:MODEL");
-    command.add_option("--crop-factor", options.crop_factor, "Of its entry, where the model has several")
+    const Option measured =
+        command.add_option("--measured", options.measured,
+                           "In place of B: a lens calibrated from photographs, lensfun:MODEL, or as its "
+                           "maker corrects it, dng:FILE");
+    command
+        .add_option("--crop-factor", options.crop_factor,
+                    "Of its entry, where the model has several; of the DNG's sensor")
         .check(kPositiveOption)
         .needs(measured);
     command

@@ -2,9 +2,12 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 
+#include "tests/calibration/photographed/dng_file.h"
 #include "tests/cli/program.h"
+#include "tests/complaint.h"
 
 namespace lensproof::compare_measured_test {
 
@@ -12,9 +15,13 @@ constexpr double kHalfDiagonal_mm = 21.633307652783937;  // of 36 × 24 mm
 constexpr double kUnit_mm = 12.0;
 constexpr const char* kModel = "lensfun:Own 50mm f/2";
 
-/// lensfun's poly5 through the heights that `analyze` finds at two fields, for pictures at a focal length that is
-/// `scale` times the lens's own: that leaves lensfun's terms as they are, but for the unit of height.
-std::string own_entry(const Workplace& place, const std::string& lens) {
+/// What is imaged at r (1 + k1 r² + k2 r⁴), r in kUnit_mm, through the heights that `analyze` finds at two fields.
+struct TwoTerms {
+    double k1 = 0.0;
+    double k2 = 0.0;
+};
+
+TwoTerms own_terms(const Workplace& place, const std::string& lens) {
     const nlohmann::json found = place.json({"analyze", lens, "--fields", "15,23", "--wavelengths", "587.5618"});
     const double focal = found["paraxial"]["efl_mm"];
     const auto sample = [&](int i) {
@@ -26,6 +33,12 @@ std::string own_entry(const Workplace& place, const std::string& lens) {
     const auto [x, a] = sample(0);
     const auto [y, b] = sample(1);
     const double k2 = (b / y - a / x) / (y - x);
+    return {.k1 = a / x - k2 * x, .k2 = k2};
+}
+
+/// lensfun's poly5 with these terms.
+std::string own_entry(const Workplace& place, const std::string& lens) {
+    const TwoTerms terms = own_terms(place, lens);
     return fmt::format(
         "<!DOCTYPE lensdatabase SYSTEM \"lensfun-database.dtd\">\n<lensdatabase "
         "version=\"1\">\n<lens><maker>Own</maker>"
@@ -34,7 +47,19 @@ std::string own_entry(const Workplace& place, const std::string& lens) {
         "<tca model=\"linear\" focal=\"50\" kr=\"1.0001\" kb=\"1.0001\"/>"
         "<vignetting model=\"pa\" focal=\"50\" aperture=\"8\" distance=\"1000\" k1=\"-0.4\" k2=\"0\" k3=\"0\"/>"
         "</calibration></lens></lensdatabase>\n",
-        a / x - k2 * x, k2);
+        terms.k1, terms.k2);
+}
+
+/// The same as its maker's correction: in units of the half-diagonal, but for half a pixel of thousands.
+std::string own_dng(const Workplace& place, const std::string& lens) {
+    using namespace calibration::synthetic;
+    const TwoTerms terms = own_terms(place, lens);
+    const double unit2 = std::pow(kHalfDiagonal_mm / kUnit_mm, 2);
+    const std::array warp{1.0, terms.k1 * unit2, terms.k2 * unit2 * unit2, 0.0, 0.0, 0.0, 0.5, 0.5};
+    const std::array gain{0.4, 0.0, 0.0, 0.0, 0.0, 0.5, 0.5};
+    Dng dng{.opcodes = opcode_list({opcode(3, big_endian(gain)), warp_opcode(1, warp)})};
+    dng.photo = with_focal_plane(dng.photo);
+    return dng_bytes(dng);
 }
 
 TEST(CompareMeasured, ALensAgreesWithItsOwnEntryAndAnotherDoesNot) {
@@ -73,6 +98,28 @@ TEST(CompareMeasured, ALensAgreesWithItsOwnEntryAndAnotherDoesNot) {
     EXPECT_NE(text.out.find("red − green"), std::string::npos) << text.out;
 }
 
+TEST(CompareMeasured, ALensAgreesWithItsMakersCorrectionAndAnotherDoesNot) {
+    const Workplace place;
+    place.file("own.dng", own_dng(place, "xenon"));
+    const Outcome right =
+        place.run({"compare", "xenon", "--measured", "dng:own.dng", "--wavelength", "587.5618", "--json", "-"});
+    ASSERT_EQ(right.status, 0) << right.err;
+    const nlohmann::json json = nlohmann::json::parse(right.out);
+    EXPECT_EQ(json["measured"]["source"], "dng");
+    EXPECT_EQ(json["measured"]["model"], "Own 50mm f/2");
+    EXPECT_EQ(json["measured"]["distortion_model"], "warp-rectilinear");
+    EXPECT_TRUE(json["measured"]["remarks"].empty());
+    EXPECT_LT(json["distortion"]["residual_rms_um"], 1.0);  // two terms through two heights
+    EXPECT_NEAR(json["distortion"]["scale"], 1.0, 2e-4);
+    EXPECT_NEAR(json["distortion"]["half_diagonal_mm"], kHalfDiagonal_mm, 1e-6);
+    EXPECT_EQ(json["distortion"]["verdict"], "PASS");
+    EXPECT_NEAR(json["vignetting"][0]["corner_measured"], 1.0 / 1.4, 1e-3);
+
+    const Outcome wrong = place.run({"compare", "nikkor-50-f12", "--measured", "dng:own.dng"});
+    EXPECT_EQ(wrong.status, 1);
+    EXPECT_TRUE(says(wrong.out, "FAIL"));
+}
+
 TEST(CompareMeasured, RefusesWhatItCannotCompare) {
     const Workplace place;
     place.file("own.xml", own_entry(place, "xenon"));
@@ -84,7 +131,10 @@ TEST(CompareMeasured, RefusesWhatItCannotCompare) {
     refused({"--measured", "lensfun:Own 50mm f/1", "--lensfun-data", "own.xml"}, {"own.xml", "Own 50mm f/2"});
     refused({"--measured", kModel, "--crop-factor", "1.5", "--lensfun-data", "own.xml"}, {"1.5"});
     refused({"--measured", kModel, "--lensfun-data", "none.xml"}, {"none.xml"});
-    refused({"--measured", "Own 50mm f/2"}, {"lensfun:MODEL"});
+    refused({"--measured", "Own 50mm f/2"}, {"lensfun:MODEL", "dng:FILE"});
+    refused({"--measured", "dng:own.xml"}, {"own.xml", "no DNG"});
+    refused({"--measured", "dng:none.dng"}, {"none.dng"});
+    refused({"--measured", "dng:own.xml", "--lensfun-data", "own.xml"}, {"--lensfun-data"});
     refused({"--measured", kModel, "--lensfun-data", "own.xml", "--wavelength", "50"}, {"50"});
     refused({"--crop-factor", "1"}, {"--measured"});
     refused({}, {"--measured"});

@@ -2,6 +2,7 @@
 
 #include <optional>
 
+#include "calibration/photographed/dng_corrections.h"
 #include "engine/base/bytes.h"
 #include "engine/base/hash.h"
 #include "engine/base/input_error.h"
@@ -42,6 +43,10 @@ formats::Image picture(std::string_view bytes, Name /*unused*/) {
 
 formats::Image raw_picture(std::string_view bytes, Name /*unused*/) {
     return read_both_ways(file_of(bytes, "picture.dng"));
+}
+
+calibration::PhotographedLens dng(std::string_view bytes, Name /*unused*/) {
+    return calibration::read_dng_corrections(file_of(bytes, "picture.dng"), std::nullopt);
 }
 
 render::FilmFile film(std::string_view bytes, Name /*unused*/) {

@@ -3,6 +3,7 @@
 #include <string>
 #include <string_view>
 
+#include "calibration/photographed/photographed_lens.h"
 #include "calibration/profile/profile.h"
 #include "engine/formats/image/image.h"
 #include "engine/render/film/film_exr.h"
@@ -19,6 +20,9 @@ formats::Image picture(std::string_view bytes, Name);
 
 /// The same where the name says that it is a camera's raw file.
 formats::Image raw_picture(std::string_view bytes, Name);
+
+/// A maker's corrections in a DNG.
+calibration::PhotographedLens dng(std::string_view bytes, Name);
 
 /// The film of a render or of a shard.
 render::FilmFile film(std::string_view bytes, Name);

@@ -128,13 +128,14 @@ Json comparison_json(const MeasuredComparison& comparison) {
     const calibration::PhotographedLens& photographed = comparison.photographed;
     Json json{{"lens", comparison.lens},
               {"measured",
-               {{"source", "lensfun"},
+               {{"source", photographed.source},
                 {"maker", photographed.maker},
                 {"model", photographed.model},
                 {"crop_factor", photographed.crop_factor},
                 {"projection", optics::projection_name(photographed.projection)},
                 {"focal_length_mm", photographed.focal_length_mm},
-                {"distortion_model", photographed.distortion_model}}},
+                {"distortion_model", photographed.distortion_model},
+                {"remarks", photographed.remarks}}},
               {"distortion", distortion_json(comparison)},
               {"chromatic_shift", nullptr},
               {"vignetting", Json::list()}};

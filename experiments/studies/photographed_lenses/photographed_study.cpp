@@ -53,10 +53,15 @@ std::vector<LensPair> pairs_of_manifest(const std::filesystem::path& manifest, c
 }
 
 LensPair pair_of_table(TomlTable& table, const std::filesystem::path& database) {
-    LensPair pair{
-        .lens = formats::read_lens_name(table),
-        .photographed = {.model = table.text("model"), .crop_factor = table.optional_number("crop_factor", kCrop)},
-        .lensfun_data = database};
+    LensPair pair{.lens = formats::read_lens_name(table),
+                  .photographed = {.crop_factor = table.optional_number("crop_factor", kCrop)},
+                  .lensfun_data = database};
+    if (table.has("dng")) {
+        pair.dng = referred_file(table.file(), table.text("dng")).lexically_normal();
+        pair.photographed.model = pair.dng.filename().string();
+        return pair;
+    }
+    pair.photographed.model = table.text("model");
     if (table.has("projection")) {
         std::vector<std::string> names;
         std::ranges::transform(optics::kProjections, std::back_inserter(names), optics::projection_name);
@@ -241,6 +246,9 @@ findings::Findings photographed_findings(const std::vector<PairResult>& results)
     found.tables = {{"photographed_lenses", {{"summary", summary_json(summary)}, {"pairs", std::move(pairs)}}}};
     for (const PairResult& result : results) {
         std::ranges::copy(formats::files_of_lens(result.pair.lens), std::back_inserter(found.inputs));
+        if (!result.pair.dng.empty()) {
+            found.inputs.push_back(result.pair.dng);
+        }
     }
     return found;
 }
@@ -252,7 +260,7 @@ findings::Study read_photographed_lenses(findings::ExperimentFile& file) {
         PhotographedSettings read = read_photographed_table(table);
         std::erase_if(read.pairs, [&](const LensPair& pair) { return entries.contains(entry_of(pair)); });
         for (const LensPair& pair : read.pairs) {
-            file.add_subject(table, "model", pair_id(pair));
+            file.add_subject(table, pair.dng.empty() ? "model" : "dng", pair_id(pair));
             entries.insert(entry_of(pair));
         }
         std::ranges::move(read.pairs, std::back_inserter(wanted.pairs));

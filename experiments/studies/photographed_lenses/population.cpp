@@ -8,6 +8,7 @@
 #include <iterator>
 #include <map>
 
+#include "calibration/photographed/dng_corrections.h"
 #include "calibration/statistics/order_statistics.h"
 #include "engine/base/infinity.h"
 #include "engine/base/parallel.h"
@@ -149,6 +150,22 @@ double median_error(const std::vector<double>& values, double median) {
            std::sqrt(static_cast<double>(values.size()));
 }
 
+using Databases = std::map<std::filesystem::path, calibration::LensfunDatabase>;
+
+calibration::PhotographedLens photographed_of(const LensPair& pair, double focal_length_mm, Databases& databases) {
+    if (!pair.dng.empty()) {
+        return calibration::read_dng_corrections(pair.dng, pair.photographed.crop_factor);
+    }
+    if (!databases.contains(pair.lensfun_data)) {
+        databases.emplace(pair.lensfun_data, pair.lensfun_data.empty()
+                                                 ? calibration::LensfunDatabase::of_system()
+                                                 : calibration::LensfunDatabase::read(pair.lensfun_data));
+    }
+    calibration::LensfunQuery query = pair.photographed;
+    query.focal_length_mm = focal_length_mm;
+    return databases.at(pair.lensfun_data).find(query);
+}
+
 }  // namespace
 
 std::string pair_id(const LensPair& pair) {
@@ -187,20 +204,13 @@ std::optional<double> PairResult::share_beaten() const {
 std::vector<PairResult> compare_pairs(const std::vector<LensPair>& pairs, const std::vector<std::string>& others,
                                       int threads) {
     std::vector<Candidate> candidates = candidates_of(pairs, others);
-    std::map<std::filesystem::path, calibration::LensfunDatabase> databases;
+    Databases databases;
     std::vector<PairResult> results;
     double largest_mm = 0.0;
     for (const LensPair& pair : pairs) {
-        if (!databases.contains(pair.lensfun_data)) {
-            databases.emplace(pair.lensfun_data, pair.lensfun_data.empty()
-                                                     ? calibration::LensfunDatabase::of_system()
-                                                     : calibration::LensfunDatabase::read(pair.lensfun_data));
-        }
         Candidate& right = *std::ranges::find(candidates, pair.lens, &Candidate::file);
-        calibration::LensfunQuery query = pair.photographed;
-        query.focal_length_mm = right.focal_mm;
         PairResult result{.pair = pair,
-                          .comparison = {.photographed = databases.at(pair.lensfun_data).find(query), .lens = {}}};
+                          .comparison = {.photographed = photographed_of(pair, right.focal_mm, databases), .lens = {}}};
         const double half_diagonal = result.comparison.photographed.half_diagonal_mm();
         right.half_diagonal_mm = std::max(right.half_diagonal_mm, half_diagonal);
         right.models.push_back(lower_case(pair.photographed.model));

@@ -15,6 +15,7 @@ struct LensPair {
     std::string lens;  // one that ships, or a file
     calibration::LensfunQuery photographed;
     std::filesystem::path lensfun_data;  // empty: the system's database
+    std::filesystem::path dng;           // not empty: its maker's corrections in place of lensfun's
 };
 
 /// Letters, digits and hyphens: prescription, model and crop factor.

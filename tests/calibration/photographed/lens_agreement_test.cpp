@@ -9,7 +9,7 @@ namespace lensproof::calibration::lens_agreement_test {
 
 constexpr double kFocal_mm = 50.0;
 
-PhotographedLens full_frame(const std::array<double, 5>& distortion) {
+PhotographedLens full_frame(const RadialPolynomial& distortion) {
     PhotographedLens lens;
     lens.distortion_model = "ptlens";
     lens.distortion = distortion;
@@ -105,7 +105,7 @@ TEST(LensAgreement, LateralColourIsTheDifferenceOfChannels) {
     PhotographedLens lens = barrel();
     const ImagedField field = field_of([](double angle) { return kFocal_mm * std::tan(angle); }, 0.4, 2000);
     EXPECT_FALSE(lateral_colour_agreement(lens, field));
-    lens.lateral_colour = LateralColour{.red = {.v = 1.001}, .blue = {.v = 1.0}};
+    lens.lateral_colour = LateralColour{.red = ChannelScale{.v = 1.001}, .blue = ChannelScale{.v = 1.0}};
     const auto agreement = lateral_colour_agreement(lens, field);
     ASSERT_TRUE(agreement);
     EXPECT_LT(agreement->red.residual.rms_um, 1e-6);

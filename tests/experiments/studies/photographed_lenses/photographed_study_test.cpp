@@ -175,6 +175,8 @@ TEST(PhotographedLenses, ReadsItsTables) {
     EXPECT_TRUE(read("pairs = \"none.csv\"\noptional = true\n").pairs.empty());
     EXPECT_THROW(read("pairs = \"none.csv\"\n"), InputError);
     EXPECT_EQ(read("lens = \"xenon\"\nmodel = \"M\"\n").pairs.at(0).photographed.model, "M");
+    EXPECT_EQ(read("lens = \"xenon\"\ndng = \"a.dng\"\n").pairs.at(0).dng, folder.path() / "a.dng");
+    EXPECT_THROW(read("lens = \"xenon\"\ndng = \"a.dng\"\nmodel = \"M\"\n"), InputError);
     EXPECT_EQ(read("others = [\"xenon\"]\n").others.size(), 1U);
     EXPECT_THROW(read("others = [\"xenom\"]\n"), InputError);
     EXPECT_THROW(read("lens = \"xenon\"\n"), InputError);
