@@ -31,9 +31,11 @@ int spelling_distance(std::string_view a, std::string_view b) {
     return above[b.size()];
 }
 
-std::string name_hint(const std::string& name, const std::vector<std::string>& known) {
+namespace {
+
+/// Empty where none is near.
+std::string nearest_hint(const std::string& name, const std::vector<std::string>& known) {
     constexpr std::size_t kLongest = 100;
-    constexpr std::size_t kMostListed = 10;
     const std::string* nearest = nullptr;
     int least = static_cast<int>(kLongest);
     for (const std::string& candidate : known) {
@@ -45,10 +47,23 @@ std::string name_hint(const std::string& name, const std::vector<std::string>& k
             }
         }
     }
-    if (nearest != nullptr) {
-        return fmt::format("; did you mean \"{}\"?", *nearest);
+    return nearest == nullptr ? "" : fmt::format("; did you mean \"{}\"?", *nearest);
+}
+
+}  // namespace
+
+std::string name_hint(const std::string& name, const std::vector<std::string>& known) {
+    constexpr std::size_t kMostListed = 10;
+    std::string hint = nearest_hint(name, known);
+    if (!hint.empty()) {
+        return hint;
     }
     return known.empty() || known.size() > kMostListed ? "" : fmt::format("; known are: {}", fmt::join(known, ", "));
+}
+
+std::string complete_name_hint(const std::string& name, const std::vector<std::string>& known) {
+    const std::string hint = nearest_hint(name, known);
+    return fmt::format("{} are: {}", hint.empty() ? "; known" : hint + " Known", fmt::join(known, ", "));
 }
 
 }  // namespace lensproof

@@ -11,7 +11,10 @@ namespace lensproof {
 int spelling_distance(std::string_view a, std::string_view b);
 
 /// "; did you mean \"white\"?" for the known name with the fewest letters to change, add, drop or swap, if these are at
-/// most a third of its letters, and at least one; else, of ten names at most, "; known are: white, red"; else nothing.
+/// most a third of its letters, or one; else, of ten names at most, "; known are: white, red"; else nothing.
 std::string name_hint(const std::string& name, const std::vector<std::string>& known);
+
+/// The nearest, where there is one, and all that are known, however many.
+std::string complete_name_hint(const std::string& name, const std::vector<std::string>& known);
 
 }  // namespace lensproof

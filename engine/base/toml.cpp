@@ -368,9 +368,8 @@ std::vector<TomlTable> TomlTable::tables(const std::string& key) {
 void TomlTable::finish() const {
     for (const std::string& name : keys()) {
         if (!taken_.contains(name)) {
-            const std::string hint = name_hint(name, {taken_.begin(), taken_.end()});
-            fail(name, "is not a key that is known here" +
-                           (hint.empty() ? fmt::format("; known are: {}", fmt::join(taken_, ", ")) : hint));
+            const std::vector<std::string> known(taken_.begin(), taken_.end());
+            fail(name, "is not a key that is known here" + complete_name_hint(name, known));
         }
     }
 }

@@ -2,6 +2,7 @@
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <glog/logging.h>
+#include <poll.h>
 #include <unistd.h>
 
 #include <cerrno>
@@ -40,11 +41,17 @@ bool is_unusable_path(const std::error_code& code) {
            code == std::errc::too_many_symbolic_link_levels;
 }
 
-/// What is left in the buffers may still fail to be written: a full disk, a reader that has gone.
+/// Whether standard output is a pipe that nobody reads any more.
+bool has_reader_gone() {
+    pollfd output{.fd = STDOUT_FILENO, .events = POLLOUT, .revents = 0};
+    return ::poll(&output, 1, 0) == 1 && (output.revents & POLLERR) != 0;
+}
+
+/// What is left in the buffers may still fail to be written, on a full disk. A reader that has gone has all it wanted.
 int flushed(int status) {
     errno = 0;
     std::cout.flush();
-    if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0 && std::cout.good()) {
+    if ((std::fflush(stdout) == 0 && std::ferror(stdout) == 0 && std::cout.good()) || has_reader_gone()) {
         return status;
     }
     say(fmt::format("standard output cannot be written: {}", std::strerror(errno != 0 ? errno : EIO)));

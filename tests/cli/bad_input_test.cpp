@@ -76,6 +76,7 @@ TEST(BadCommandLine, NamesTheOption) {
 TEST(BadCommandLine, NamesWhatIsUnknownAndWhatIsNearest) {
     const Workplace place;
     const std::vector<std::pair<std::vector<std::string>, std::vector<std::string>>> cases = {
+        {{"analyze", "tesar"}, {"neither a file nor a lens that ships", "\"tessar\"? Known are: biotar, "}},
         {{"chekc", "tessar"}, {"\"chekc\" is no command", "did you mean \"check\"?", "Try: lensproof --help"}},
         {{"analyse", "tessar", "--json", "-"}, {"\"analyse\"", "\"analyze\"?"}},
         {{"frobnicate"}, {"\"frobnicate\" is no command"}},

@@ -208,6 +208,16 @@ TEST(StandardOutput, ThatCannotBeWrittenIsStatus3) {
     }
 }
 
+// As `| head` does: the reader has all it wanted. `glasses` says more than a buffer holds.
+TEST(StandardOutput, WhoseReaderHasGoneEndsQuietly) {
+    const Workplace place;
+    for (const char* command : {"--help", "glasses", "lenses"}) {
+        const Outcome gone = place.run({command}, Stream::reader_gone);
+        EXPECT_EQ(gone.status, 0) << command;
+        EXPECT_EQ(gone.err, "") << command;
+    }
+}
+
 TEST(StandardOutput, ThatIsClosedDoesNotSpoilAFile) {
     const Workplace place;
     place.file("rays.csv", rays_text());

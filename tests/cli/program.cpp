@@ -7,6 +7,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <csignal>
 #include <cstdlib>
 #include <fstream>
@@ -31,6 +32,15 @@ std::string bytes_of(const fs::path& file) {
 void redirect(int descriptor, Stream stream, const char* capture) {
     if (stream == Stream::closed) {
         ::close(descriptor);
+        return;
+    }
+    if (stream == Stream::reader_gone) {
+        std::array<int, 2> pipe{};
+        if (::pipe(pipe.data()) == 0) {
+            ::close(pipe[0]);
+            ::dup2(pipe[1], descriptor);
+            ::close(pipe[1]);
+        }
         return;
     }
     const int to = stream == Stream::captured ? ::open(capture, O_WRONLY | O_CREAT | O_TRUNC, 0600)

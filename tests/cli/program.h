@@ -11,7 +11,7 @@
 namespace lensproof {
 
 /// Where a spawned program's standard stream goes.
-enum class Stream { captured, closed, full_disk };
+enum class Stream { captured, closed, full_disk, reader_gone };
 
 struct Outcome {
     int status = -1;  // the exit status; minus the signal's number where one ended it

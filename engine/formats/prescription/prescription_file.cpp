@@ -7,6 +7,7 @@
 
 #include "engine/base/file.h"
 #include "engine/base/input_error.h"
+#include "engine/base/nearest_name.h"
 #include "engine/base/write_file.h"
 #include "engine/formats/prescription/prescription_forms.h"
 
@@ -104,8 +105,8 @@ std::filesystem::path find_lens_file(const std::string& lens) {
         return shipped;
     }
     if (!std::filesystem::exists(lens)) {
-        throw InputError(fmt::format("{}: neither a file nor a lens that ships; those are: {}", lens,
-                                     fmt::join(shipped_lens_names(), ", ")));
+        throw InputError(fmt::format("{}: neither a file nor a lens that ships{}", lens,
+                                     complete_name_hint(lens, shipped_lens_names())));
     }
     std::filesystem::path path(lens);
     find_form(path);

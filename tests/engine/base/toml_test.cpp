@@ -65,7 +65,8 @@ std::string complaint_about_keys(const std::string& text) {
 TEST(Toml, AMisspeltKeyIsOfferedItsNeighbour) {
     EXPECT_EQ(complaint_about_keys("radius_mm = 1\n"), "");
     EXPECT_EQ(complaint_about_keys("semi_diam_mm = 3.0\n"),
-              "a.toml:1: semi_diam_mm: is not a key that is known here; did you mean \"semi_diameter_mm\"?");
+              "a.toml:1: semi_diam_mm: is not a key that is known here; did you mean \"semi_diameter_mm\"? Known are: "
+              "radius_mm, semi_diameter_mm, thickness_mm");
     EXPECT_EQ(
         complaint_about_keys("wombat = 3.0\n"),
         "a.toml:1: wombat: is not a key that is known here; known are: radius_mm, semi_diameter_mm, thickness_mm");

@@ -383,6 +383,8 @@ TEST(NearestName, TheLeastChangeIsMeant) {
     EXPECT_EQ(name_hint("metal:ag", known), "; did you mean \"metal:Ag\"?");
     EXPECT_EQ(name_hint("plaster", known), "; known are: white, wine, metal:Ag");
     EXPECT_EQ(name_hint("plaster", {}), "");
+    EXPECT_EQ(complete_name_hint("wines", known), "; did you mean \"wine\"? Known are: white, wine, metal:Ag");
+    EXPECT_EQ(complete_name_hint("plaster", known), "; known are: white, wine, metal:Ag");
 }
 
 }  // namespace lensproof::scene::scene_file_test
