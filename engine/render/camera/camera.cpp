@@ -45,9 +45,14 @@ std::int64_t CameraPaths::started() const {
 
 Camera::Camera(const CameraSettings& settings, const SpectralSampling& sampling, const PixelFilter& filter,
                const Cache& cache, bool meets_light_paths)
+    : Camera(settings, settings.focal_length_mm ? std::nullopt : std::optional(camera_lens(settings)), sampling, filter,
+             cache, meets_light_paths) {}
+
+Camera::Camera(const CameraSettings& settings, std::optional<optics::Lens> lens, const SpectralSampling& sampling,
+               const PixelFilter& filter, const Cache& cache, bool meets_light_paths)
     : settings_(settings),
       pose_(camera_to_world(settings)),
-      lens_(settings.focal_length_mm ? std::nullopt : std::optional(camera_lens(settings))),
+      lens_(std::move(lens)),
       grid_(make_grid(sampling)),
       film_(make_film(sampling.layers, filter)),
       colours_(spectral::rgb_space(settings.response, spectral::illuminant(settings.white_balance))),

@@ -69,6 +69,10 @@ class Camera {
     /// InputError as `camera_lens` and `gaussian_optics` do, and for a picture of more values than fit.
     Camera(const CameraSettings& settings, const SpectralSampling& sampling, const PixelFilter& filter,
            const Cache& cache, bool meets_light_paths = false);
+    /// The same with a lens, stopped down and focused, in the place of the one that the settings name; none where they
+    /// have a focal length instead.
+    Camera(const CameraSettings& settings, std::optional<optics::Lens> lens, const SpectralSampling& sampling,
+           const PixelFilter& filter, const Cache& cache, bool meets_light_paths = false);
     Camera(const Camera&) = delete;
     Camera& operator=(const Camera&) = delete;
 

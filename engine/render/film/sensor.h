@@ -7,23 +7,30 @@
 
 namespace lensproof::render {
 
-/// The sensor behind a lens: square pixels, centred on the axis. The picture is turned upright, as a camera does it:
-/// pixel (u, v) lies at x = −(u − (width − 1)/2) pitch, y = (v − (height − 1)/2) pitch in lens space.
+/// The sensor behind a lens: square pixels. The picture is turned upright, as a camera does it: pixel (u, v) lies at
+/// x = −(u − axis.x) pitch, y = (v − axis.y) pitch in lens space.
 struct Sensor {
     int width = 0;
     int height = 0;
     double pixel_pitch_mm = 0.0;
+    Vec2d axis_from_middle_px{};  // where the axis meets it, to the right and down
 
+    /// The pixel coordinates of that place.
+    [[nodiscard]] Vec2d axis() const {
+        return {0.5 * (width - 1) + axis_from_middle_px.x, 0.5 * (height - 1) + axis_from_middle_px.y};
+    }
     [[nodiscard]] Vec2d position(double u, double v) const {
-        return {-(u - 0.5 * (width - 1)) * pixel_pitch_mm, (v - 0.5 * (height - 1)) * pixel_pitch_mm};
+        return {-(u - axis().x) * pixel_pitch_mm, (v - axis().y) * pixel_pitch_mm};
     }
     /// The pixel coordinates of a point, on the sensor or beyond it: `position` undone.
     [[nodiscard]] Vec2d pixel(Vec2d position) const {
-        return {0.5 * (width - 1) - position.x / pixel_pitch_mm, position.y / pixel_pitch_mm + 0.5 * (height - 1)};
+        return {axis().x - position.x / pixel_pitch_mm, position.y / pixel_pitch_mm + axis().y};
     }
     /// From the axis to the farthest point of it; or of what lies up to `margin_px` around it.
     [[nodiscard]] double half_diagonal_mm(double margin_px = 0.0) const {
-        return 0.5 * std::hypot(width + 2.0 * margin_px, height + 2.0 * margin_px) * pixel_pitch_mm;
+        return std::hypot(0.5 * width + margin_px + std::abs(axis_from_middle_px.x),
+                          0.5 * height + margin_px + std::abs(axis_from_middle_px.y)) *
+               pixel_pitch_mm;
     }
 };
 
