@@ -18,26 +18,6 @@ constexpr double kSignificant = 3.0;  // of a gain
 constexpr double kShiftsGain = 30.0;  // of squares, by seven terms a channel
 constexpr double kSystematic = 1.5;   // squares beyond the noise that a prescription may leave: its own roundings
 
-/// Leaves out the points that the lens does not image, and the views that have few others.
-int keep_imaged(const ExplainedLens& lens, SeenPoints& seen) {
-    const auto imaged = ResidualTracer(lens, seen).imaged(start_of(lens, seen));
-    int dropped = 0;
-    for (std::size_t v = 0; v < seen.views.size(); ++v) {
-        std::vector<SeenPoint>& points = seen.views[v].points;
-        std::vector<SeenPoint> kept;
-        for (std::size_t i = 0; i < points.size(); ++i) {
-            if (imaged[v][i]) {
-                kept.push_back(points[i]);
-            }
-        }
-        dropped += static_cast<int>(points.size() - kept.size());
-        points = std::move(kept);
-    }
-    constexpr std::size_t kLeastPoints = 6;
-    std::erase_if(seen.views, [](const SeenView& view) { return view.points.size() < kLeastPoints; });
-    return dropped;
-}
-
 Eigen::Index point_rows(const SeenPoints& seen) {
     return 2 * static_cast<Eigen::Index>(seen.count());
 }

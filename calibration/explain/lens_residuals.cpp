@@ -232,4 +232,23 @@ std::vector<std::vector<bool>> ResidualTracer::imaged(const LensState& state) {
     return imaged;
 }
 
+int keep_imaged(const ExplainedLens& lens, SeenPoints& seen) {
+    const auto imaged = ResidualTracer(lens, seen).imaged(start_of(lens, seen));
+    int dropped = 0;
+    for (std::size_t v = 0; v < seen.views.size(); ++v) {
+        std::vector<SeenPoint>& points = seen.views[v].points;
+        std::vector<SeenPoint> kept;
+        for (std::size_t i = 0; i < points.size(); ++i) {
+            if (imaged[v][i]) {
+                kept.push_back(points[i]);
+            }
+        }
+        dropped += static_cast<int>(points.size() - kept.size());
+        points = std::move(kept);
+    }
+    constexpr std::size_t kLeastPoints = 6;
+    std::erase_if(seen.views, [](const SeenView& view) { return view.points.size() < kLeastPoints; });
+    return dropped;
+}
+
 }  // namespace lensproof::calibration

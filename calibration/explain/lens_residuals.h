@@ -64,4 +64,8 @@ class ResidualTracer {
     std::vector<std::array<std::optional<Vec2d>, 2>> slopes_;  // of green's rays to the points
 };
 
+/// Leaves out the points that the lens does not image, and the views that have few others. Returns how many points
+/// that were.
+int keep_imaged(const ExplainedLens& lens, SeenPoints& seen);
+
 }  // namespace lensproof::calibration

@@ -2,6 +2,7 @@
 #pragma once
 #include <array>
 #include <cmath>
+#include <stdexcept>
 #include <string>
 #include <utility>
 #include <vector>
@@ -94,7 +95,11 @@ inline void image_points(const ExplainedLens& lens, const Eigen::VectorXd& value
 inline Eigen::VectorXd values_of(const std::vector<LensChange>& changes, const Faults& faults) {
     Eigen::VectorXd values = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(changes.size()));
     for (const auto& [name, value] : faults) {
-        values[std::ranges::find(changes, name, &LensChange::name) - changes.begin()] = value;
+        const auto change = std::ranges::find(changes, name, &LensChange::name);
+        if (change == changes.end()) {
+            throw std::invalid_argument(name + ": no such change");
+        }
+        values[change - changes.begin()] = value;
     }
     return values;
 }
