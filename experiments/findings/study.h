@@ -2,7 +2,9 @@
 #pragma once
 #include <algorithm>
 #include <cstdint>
+#include <filesystem>
 #include <functional>
+#include <map>
 #include <set>
 #include <string>
 #include <vector>
@@ -32,7 +34,8 @@ using Study = std::function<Findings(const RunSettings& settings, const RunProgr
 /// An experiment's file while its studies read it.
 struct ExperimentFile {
     TomlTable top;
-    std::set<std::string> cameras{};   // those that are to be measured, for others to refer to
+    std::set<std::string> cameras{};                           // those that are to be measured, for others to refer to
+    std::map<std::string, std::filesystem::path> manifests{};  // of those that were photographed
     std::set<std::string> subjects{};  // the ids of what will be reported, as far as the file says them
 
     /// Takes an id that `key` makes: files are named by it, and curves and checks refer to it. Throws InputError where

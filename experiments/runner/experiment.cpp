@@ -15,6 +15,7 @@
 #include "experiments/studies/pupil_passage/passage_study.h"
 #include "experiments/studies/stability/stability_study.h"
 #include "experiments/studies/stray_light/stray_study.h"
+#include "experiments/studies/twins/twins_study.h"
 
 namespace lensproof::runner {
 
@@ -31,6 +32,7 @@ constexpr std::array kStudies = {
     StudyKind{"[[simulations]]", studies::read_simulations},
     StudyKind{"[[photos]]", studies::read_photos},
     StudyKind{"[[comparisons]]", studies::read_comparisons, false},
+    StudyKind{"[[twins]]", studies::read_twins, false},
     StudyKind{"[stability]", studies::read_stability},
     StudyKind{"[[pupil_passage]]", studies::read_pupil_passage},
     StudyKind{"[[stray_light]]", studies::read_stray_light},

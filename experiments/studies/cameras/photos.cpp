@@ -50,6 +50,7 @@ Photos read_one(TomlTable& table, findings::ExperimentFile& file) {
     }
     table.finish();
     photos.set = read_photo_set(photos.manifest);
+    file.manifests[photos.name] = photos.manifest;
     return photos;
 }
 

@@ -1,0 +1,185 @@
+#include "experiments/studies/twins/render_twin.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "calibration/detection/refine.h"
+#include "calibration/detection/working_copy.h"
+#include "calibration/picture/picture_traits.h"
+#include "engine/render/film/film_image.h"
+#include "engine/render/integrators/chart_tracer.h"
+#include "engine/render/integrators/integrators.h"
+#include "engine/render/progressive.h"
+#include "experiments/draw/colour_map.h"
+#include "experiments/findings/shown_picture.h"
+
+namespace lensproof::studies {
+
+namespace {
+
+constexpr double kLuminance_cd_m2 = 1000.0;
+constexpr double kWhite = 0.7;  // about what the twin's white is to be, full scale 1
+constexpr double kIso = 100.0;
+
+formats::Image rendered(const TwinSettings& settings, const FittedTwin& fitted, const PhotoSet& photos,
+                        const render::Camera& camera, std::size_t view, const findings::RunSettings& run,
+                        const std::function<void(double)>& progress) {
+    const render::World world = render::EvenChart{.chart = photos.chart,
+                                                  .pose = fitted.camera.charts[view],
+                                                  .white_radiance = render::white_radiance(camera, kLuminance_cd_m2)};
+    const render::View seen{.world = &world, .camera = &camera, .seed = run.seed + view};
+    return render::film_image(render::render_film(
+        render::integrator_named("chart").render(seen),
+        {.first = 0, .end = static_cast<std::uint32_t>(settings.samples_per_pixel)}, run.threads, progress));
+}
+
+/// A view's points, by the chart's features.
+struct ChartIndex {
+    std::vector<Vec2d> features;
+
+    /// −1: none of them.
+    [[nodiscard]] int of(const Vec2d& chart_mm) const {
+        constexpr double kSame_mm = 1e-6;
+        const auto found =
+            std::ranges::find_if(features, [&](const Vec2d& feature) { return length(feature - chart_mm) < kSame_mm; });
+        return found == features.end() ? -1 : static_cast<int>(found - features.begin());
+    }
+};
+
+std::vector<calibration::TwinPoint> points_in_both(const FittedTwin& fitted, const calibration::ProfileView& seen,
+                                                   const formats::Image& twin, int channel, const scene::Chart& chart,
+                                                   std::size_t view) {
+    const ChartIndex index{scene::feature_points(chart)};
+    const std::vector<calibration::SeenPoint>& points = fitted.seen.views[view].points;
+    std::vector<Vec2d> chart_mm;
+    const std::vector<Vec2d>& predicted = fitted.predicted[view];
+    calibration::ChartPoints start{.image_px = std::vector<Vec2d>(index.features.size()),
+                                   .found = std::vector<bool>(index.features.size(), false)};
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        chart_mm.push_back({points[i].board_mm.x, points[i].board_mm.y});
+        const int feature = index.of(chart_mm.back());
+        if (feature >= 0) {
+            start.image_px[static_cast<std::size_t>(feature)] = predicted[i];
+            start.found[static_cast<std::size_t>(feature)] = true;
+        }
+    }
+    const calibration::ChartPoints refined = calibration::refine(twin, channel, start, chart);
+    std::vector<calibration::TwinPoint> both;
+    for (const calibration::ProfilePoint& point : seen.points) {
+        const int feature = index.of(point.chart_mm);
+        const auto f = static_cast<std::size_t>(std::max(0, feature));
+        if (!point.used || feature < 0 || !start.found[f] || !refined.found[f]) {
+            continue;
+        }
+        const Vec2d photo_error = point.standard_error_px.value_or(Vec2d{});
+        const Vec2d twin_error = refined.standard_error_px[f].value_or(Vec2d{});
+        const auto [by_x, by_y] = calibration::steps_on_chart(chart_mm, predicted, point.chart_mm);
+        both.push_back(
+            {.view = static_cast<int>(view),
+             .feature = feature,
+             .photo_px = point.image_px,
+             .twin_px = refined.image_px[f],
+             .standard_error_px = {std::hypot(photo_error.x, twin_error.x), std::hypot(photo_error.y, twin_error.y)},
+             .by_chart_x_px = by_x,
+             .by_chart_y_px = by_y});
+    }
+    return both;
+}
+
+/// Side by side, as a person looks at them: white at 0.8 of full scale.
+formats::Image side_by_side(const formats::Image& photo, const formats::Image& lit, int channel, double white,
+                            double contrast) {
+    formats::Image all = formats::make_image(3 * photo.width, photo.height, {"R", "G", "B"});
+    const double exposure = white > 0.0 ? 0.8 / white : 1.0;
+    for (int y = 0; y < photo.height; ++y) {
+        for (int x = 0; x < photo.width; ++x) {
+            for (int c = 0; c < 3; ++c) {
+                const int from = photo.channel_count() < 3 ? 0 : c;
+                all.at(x, y, c) = static_cast<float>(exposure * static_cast<double>(photo.at(x, y, from)));
+                all.at(photo.width + x, y, c) = static_cast<float>(exposure * static_cast<double>(lit.at(x, y, from)));
+            }
+            const double difference =
+                (static_cast<double>(photo.at(x, y, channel)) - static_cast<double>(lit.at(x, y, channel))) / contrast;
+            const Vec3d colour = draw::map_colour(draw::ColourMap::diverging,
+                                                  std::clamp(0.5 + 0.5 * difference / kShownDifference, 0.0, 1.0));
+            all.at(2 * photo.width + x, y, 0) = static_cast<float>(colour.x);
+            all.at(2 * photo.width + x, y, 1) = static_cast<float>(colour.y);
+            all.at(2 * photo.width + x, y, 2) = static_cast<float>(colour.z);
+        }
+    }
+    return all;
+}
+
+/// Of a pixel of the twin, as it is measured in photos.
+double twin_noise(const formats::Image& twin, int channel, const std::vector<calibration::TwinPoint>& points) {
+    calibration::ChartPoints seen;
+    for (const calibration::TwinPoint& point : points) {
+        seen.image_px.push_back(point.twin_px);
+        seen.found.push_back(true);
+    }
+    const auto traits = calibration::picture_traits(twin, channel, seen);
+    return traits ? traits->noise : 0.0;
+}
+
+}  // namespace
+
+void fields(JsonArchive& json, Twin& twin) {
+    json.field("width", twin.width)
+        .field("height", twin.height)
+        .field("points", twin.points)
+        .field("pixels", twin.pixels)
+        .packed("png", twin.png);
+}
+
+render::CameraSettings camera_settings(const TwinSettings& settings, const FittedTwin& fitted) {
+    render::CameraSettings camera;
+    camera.lens = settings.lens;
+    camera.f_number = fitted.f_number;
+    camera.sensor = {.width = fitted.seen.camera.width_px,
+                     .height = fitted.seen.camera.height_px,
+                     .pixel_pitch_mm = fitted.camera.pixel_pitch_mm,
+                     .axis_from_middle_px = fitted.camera.axis_from_middle_px};
+    // The illuminance of a white far off, π L / 4 N², for as long as makes it so bright.
+    const double illuminance = std::numbers::pi * kLuminance_cd_m2 / (4.0 * fitted.f_number * fitted.f_number);
+    camera.exposure = {.time_s = kWhite * spectral::saturation_exposure_lx_s(kIso) / illuminance, .iso = kIso};
+    camera.response = settings.response;
+    return camera;
+}
+
+Twin render_twin(const TwinSettings& settings, const FittedTwin& fitted, const calibration::Profile& profile,
+                 const PhotoSet& photos, const calibration::Picture& photo, const render::Camera& camera,
+                 std::size_t view, const findings::RunSettings& run, const std::function<void(double)>& progress) {
+    const formats::Image image = photo.load();
+    const formats::Image twin = rendered(settings, fitted, photos, camera, view, run, progress);
+    const auto seen = std::ranges::find(profile.views, fitted.seen.views[view].image, &calibration::ProfileView::image);
+    const int channel = calibration::reference_channel(image);
+    const std::string& name = image.channels[static_cast<std::size_t>(channel)];
+    const int twin_channel = formats::find_channel(twin, formats::find_channel(twin, name) < 0 ? "G" : name);
+    Twin found{.width = image.width,
+               .height = image.height,
+               .points = points_in_both(fitted, *seen, twin, twin_channel, photos.chart, view),
+               .pixels = {},
+               .png = {}};
+    constexpr std::size_t kLeastPoints = 4;
+    if (found.points.size() < kLeastPoints || !seen->traits) {
+        found.points.clear();
+        return found;
+    }
+    const double contrast = seen->traits->white - seen->traits->black;
+    found.pixels = calibration::account_of_pixels({.photo = image,
+                                                   .twin = twin,
+                                                   .photo_channel = channel,
+                                                   .twin_channel = twin_channel,
+                                                   .contrast = contrast,
+                                                   .photo_noise = seen->traits->noise,
+                                                   .twin_noise = twin_noise(twin, twin_channel, found.points)},
+                                                  found.points);
+    const formats::Image lit = calibration::in_light_of(twin, image, found.points);
+    found.png = findings::shown_picture("", "", side_by_side(image, lit, channel, seen->traits->white, contrast),
+                                        3 * findings::kShownWidth)
+                    .bytes;
+    return found;
+}
+
+}  // namespace lensproof::studies
