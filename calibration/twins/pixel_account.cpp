@@ -16,6 +16,7 @@ namespace {
 /// The pixels inside the points' hull in the photo.
 std::vector<cv::Point> pixels_among(const std::vector<TwinPoint>& points, int width, int height) {
     std::vector<cv::Point> corners;
+    corners.reserve(points.size());
     for (const TwinPoint& point : points) {
         corners.emplace_back(static_cast<int>(std::lround(point.photo_px.x)),
                              static_cast<int>(std::lround(point.photo_px.y)));

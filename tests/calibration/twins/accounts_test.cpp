@@ -26,6 +26,7 @@ struct Planted {
 std::vector<TwinPoint> planted_points(const Planted& planted) {
     synthetic::Noise noise(3);
     std::vector<Vec2d> misprint;
+    misprint.reserve(std::size_t{kColumns} * kRows);
     for (int i = 0; i < kColumns * kRows; ++i) {
         misprint.push_back({planted.chart_mm * noise(), planted.chart_mm * noise()});
     }
@@ -37,7 +38,7 @@ std::vector<TwinPoint> planted_points(const Planted& planted) {
         const Vec2d along_x{scale * std::cos(angle), scale * std::sin(angle)};
         const Vec2d along_y{-along_x.y, along_x.x};
         for (int i = 0; i < kColumns * kRows; ++i) {
-            const double row = i / kColumns;
+            const int row = i / kColumns;
             const Vec2d mm{40.0 * (i % kColumns - 4.0), 40.0 * (row - 2.5)};
             const Vec2d at = middle + mm.x * along_x + mm.y * along_y;
             const Vec2d u = (1.0 / 360.6) * (at - Vec2d{299.5, 199.5});
@@ -103,7 +104,7 @@ TEST(PointAccount, StepsOnTheChartAreThoseOfAnAffinePicture) {
     std::vector<Vec2d> mm;
     std::vector<Vec2d> px;
     for (int i = 0; i < 20; ++i) {
-        const double row = i / 5;
+        const int row = i / 5;
         mm.push_back({10.0 * (i % 5), 10.0 * row});
         px.push_back({3.0 + 2.0 * mm.back().x - 0.5 * mm.back().y, 1.0 + 0.25 * mm.back().x + 1.5 * mm.back().y});
     }
@@ -136,7 +137,7 @@ double even(double, double) {
 std::vector<TwinPoint> corners(double photo_x_px) {
     std::vector<TwinPoint> points;
     for (int i = 0; i < 8 * 6; ++i) {
-        const double row = i / 8;
+        const int row = i / 8;
         const Vec2d at{24.0 * (1.0 + i % 8), 24.0 * (1.0 + row)};
         points.push_back({.view = 0,
                           .feature = i,

@@ -78,7 +78,7 @@ square_mm = 180.0
     }
 
     static std::filesystem::path experiment(const std::string& twins, const std::string& manifest = "manifest.toml") {
-        const std::filesystem::path file = folder_->path() / "twins.toml";
+        std::filesystem::path file = folder_->path() / "twins.toml";
         write_file(file, fmt::format("title = \"t\"\n[[photos]]\nname = \"photos\"\nmanifest = \"{}\"\n"
                                      "model = \"brown-conrady\"\n[[twins]]\nname = \"twins\"\n{}",
                                      manifest, twins));
