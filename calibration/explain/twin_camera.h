@@ -1,5 +1,6 @@
 // calibration/explain/twin_camera.h — a fitted lens and its charts as a renderer takes them.
 #pragma once
+#include <optional>
 #include <vector>
 
 #include "calibration/explain/lens_fit.h"
@@ -21,8 +22,7 @@ struct TwinCamera {
 /// glass that is changed becomes a table of indices, every 5 nm of the range in which its formula holds.
 TwinCamera twin_camera(const ExplainedLens& lens, const SeenPoints& seen, const LensState& state);
 
-/// Where that state images the points of each view, px: the profile's first, in the views' order. Nothing where a point
-/// is not imaged.
+/// Where that state images each view's points, px. Nothing where one is not imaged.
 std::optional<std::vector<std::vector<Vec2d>>> predicted_points(const ExplainedLens& lens, const SeenPoints& seen,
                                                                 const LensState& state);
 

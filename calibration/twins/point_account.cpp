@@ -157,12 +157,16 @@ PointAccount account_of_points(const std::vector<TwinPoint>& points, int width_p
     const auto rows = 2 * static_cast<Eigen::Index>(points.size());
     Eigen::VectorXd displaced(rows);
     double expected = 0.0;
+    double known = 0.0;  // coordinates
     std::set<int> views;
     for (std::size_t i = 0; i < points.size(); ++i) {
         const TwinPoint& point = points[i];
         displaced.segment<2>(2 * static_cast<Eigen::Index>(i)) << point.photo_px.x - point.twin_px.x,
             point.photo_px.y - point.twin_px.y;
-        expected += dot(point.standard_error_px, point.standard_error_px);
+        if (point.standard_error_px) {
+            expected += dot(*point.standard_error_px, *point.standard_error_px);
+            known += 2.0;
+        }
         views.insert(point.view);
     }
     Design design(points.size());
@@ -183,7 +187,7 @@ PointAccount account_of_points(const std::vector<TwinPoint>& points, int width_p
                          .lens = share_of(poses, lens, variance, static_cast<double>(rows)),
                          .chart = {},
                          .rest_px = std::sqrt(variance),
-                         .expected_px = std::sqrt(expected / static_cast<double>(rows)),
+                         .expected_px = std::sqrt(expected / known),
                          .lens_px = {}};
     if (tells_chart) {
         account.chart = share_of(lens, rest, variance, static_cast<double>(rows));

@@ -3,6 +3,7 @@
 #pragma once
 #include <array>
 #include <cmath>
+#include <optional>
 #include <vector>
 
 #include "calibration/statistics/curve.h"
@@ -17,7 +18,8 @@ struct TwinPoint {
     int feature = 0;  // which of the chart's points
     Vec2d photo_px;
     Vec2d twin_px;
-    Vec2d standard_error_px;  // of their difference along x and y, from the pictures' noise
+    /// Of their difference along x and y, from the pictures' noise; none where it is not known.
+    std::optional<Vec2d> standard_error_px;
     /// Where the twin's picture of it goes by a millimetre along the chart's x and y, px.
     Vec2d by_chart_x_px;
     Vec2d by_chart_y_px;
@@ -46,7 +48,7 @@ struct PointAccount {
     TwinShare lens;
     TwinShare chart;             // NaN for fewer than three views: it cannot be told from the lens
     double rest_px = 0.0;        // standard deviation of a coordinate
-    double expected_px = 0.0;    // of the points' own standard errors, rms
+    double expected_px = 0.0;    // rms of the points' standard errors where they are known; NaN: of none
     Curve radial_px{};           // what the lens's share does along the radius, over the image height
     std::vector<Vec2d> lens_px;  // the lens's share at each point
 };

@@ -72,17 +72,19 @@ std::vector<calibration::TwinPoint> points_in_both(const FittedTwin& fitted, con
         if (!point.used || feature < 0 || !start.found[f] || !refined.found[f]) {
             continue;
         }
-        const Vec2d photo_error = point.standard_error_px.value_or(Vec2d{});
-        const Vec2d twin_error = refined.standard_error_px[f].value_or(Vec2d{});
+        std::optional<Vec2d> error;
+        if (const auto& in_twin = refined.standard_error_px[f]; in_twin && point.standard_error_px) {
+            error = {std::hypot(point.standard_error_px->x, in_twin->x),
+                     std::hypot(point.standard_error_px->y, in_twin->y)};
+        }
         const auto [by_x, by_y] = calibration::steps_on_chart(chart_mm, predicted, point.chart_mm);
-        both.push_back(
-            {.view = static_cast<int>(view),
-             .feature = feature,
-             .photo_px = point.image_px,
-             .twin_px = refined.image_px[f],
-             .standard_error_px = {std::hypot(photo_error.x, twin_error.x), std::hypot(photo_error.y, twin_error.y)},
-             .by_chart_x_px = by_x,
-             .by_chart_y_px = by_y});
+        both.push_back({.view = static_cast<int>(view),
+                        .feature = feature,
+                        .photo_px = point.image_px,
+                        .twin_px = refined.image_px[f],
+                        .standard_error_px = error,
+                        .by_chart_x_px = by_x,
+                        .by_chart_y_px = by_y});
     }
     return both;
 }

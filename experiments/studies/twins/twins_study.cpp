@@ -141,13 +141,15 @@ std::vector<findings::Fact> TwinFindings::facts() const {
     facts.push_back({"photo − twin, rms of a coordinate", fmt::format("{:.3f} px", account.displaced_px)});
     facts.push_back({"of it the lens", share_text(account.lens)});
     facts.push_back({"the chart", share_text(account.chart)});
-    facts.push_back({"what repeats in neither", fmt::format("{:.3f} px, of which the pictures' noise explains {:.3f}",
-                                                            account.rest_px, account.expected_px)});
+    facts.push_back({"what repeats in neither",
+                     fmt::format("{:.3f} px, of which the pictures' noise explains {}", account.rest_px,
+                                 std::isnan(account.expected_px) ? "what is not known"
+                                                                 : fmt::format("{:.3f}", account.expected_px))});
     return facts;
 }
 
 findings::Check TwinFindings::check() const {
-    const double limit = settings.limit_px.value_or(kLimitShare * half_diagonal_px);
+    const double limit = settings.limit_px.value_or(kTwinLimitShare * half_diagonal_px);
     return {.id = settings.name + "-lens",
             .group = label + ": photos against their twins",
             .subject = settings.name,
@@ -177,7 +179,7 @@ Json TwinFindings::json(Json pictures) const {
                                           {"chart", number_or_null(chart.rms_px)},
                                           {"chart_sigma", chart.standard_error_px},
                                           {"rest", account.rest_px},
-                                          {"expected", account.expected_px}}},
+                                          {"expected", number_or_null(account.expected_px)}}},
                 {"pictures", std::move(pictures)}};
 }
 

@@ -51,7 +51,7 @@ std::vector<TwinPoint> planted_points(const Planted& planted) {
                               .feature = i,
                               .photo_px = at + by,
                               .twin_px = at,
-                              .standard_error_px = {planted.noise_px, planted.noise_px},
+                              .standard_error_px = Vec2d{planted.noise_px, planted.noise_px},
                               .by_chart_x_px = along_x,
                               .by_chart_y_px = along_y});
         }
@@ -90,6 +90,18 @@ TEST(PointAccount, WhatIsPlantedIsFoundWhereItBelongs) {
     EXPECT_LT(chart.chart.rms_px, 0.19);
     EXPECT_LT(chart.lens.rms_px, 0.5 * chart.chart.rms_px);
     EXPECT_NEAR(chart.rest_px, 0.02, 0.003);
+}
+
+TEST(PointAccount, ErrorsThatAreNotKnownDoNotCountAsNone) {
+    std::vector<TwinPoint> points = planted_points({.noise_px = 0.05});
+    for (std::size_t i = 0; i < points.size(); i += 2) {
+        points[i].standard_error_px.reset();
+    }
+    EXPECT_NEAR(account_of_points(points, kWidth, kHeight).expected_px, 0.05, 1e-12);
+    for (TwinPoint& point : points) {
+        point.standard_error_px.reset();
+    }
+    EXPECT_TRUE(std::isnan(account_of_points(points, kWidth, kHeight).expected_px));
 }
 
 TEST(PointAccount, TwoPhotosCannotTellTheChartFromTheLens) {
