@@ -186,7 +186,7 @@ void Command::runs(const std::function<int()>& run) {
     app_->callback([run, status = status_] { *status = run(); });
 }
 
-Program::Program(const std::string& name, const std::string& description, const std::string& version,
+Program::Program(const std::string& name, const std::string& description, const std::function<std::string()>& version,
                  const std::string& footer)
     : app_(std::make_unique<CLI::App>(description, name)), name_(name) {
     app_->set_version_flag("--version", version);

@@ -74,7 +74,8 @@ class Command {
 
 class Program {
   public:
-    Program(const std::string& name, const std::string& description, const std::string& version,
+    /// `version` is asked for --version alone.
+    Program(const std::string& name, const std::string& description, const std::function<std::string()>& version,
             const std::string& footer);
     ~Program();
     Program(const Program&) = delete;

@@ -16,6 +16,7 @@
 #include "engine/base/input_error.h"
 #include "experiments/cli/command.h"
 #include "experiments/cli/terminal.h"
+#include "experiments/runner/provenance.h"
 
 namespace lensproof::cli {
 namespace {
@@ -58,11 +59,16 @@ int flushed(int status) {
     return kInternalFailure;
 }
 
+std::string version_text() {
+    return fmt::format("lensproof {}\ncommit {}\nbuilt against {}", runner::program_version(), runner::source_commit(),
+                       runner::library_versions());
+}
+
 int run(int argc, char** argv) {
     Program program(
         "lensproof",
         "lensproof: does the simulated lens behave like the real one, where not, by how much, and how sure are we?",
-        LENSPROOF_VERSION,
+        version_text,
         "The launcher also has: ./lensproof demo, the demo experiment, and ./lensproof test, every test.");
     add_check_command(program);
     add_convert_command(program);

@@ -42,6 +42,14 @@ std::string packed_reference(const fs::path& git, const std::string& reference) 
 
 }  // namespace
 
+std::string program_version() {
+    return LENSPROOF_VERSION;
+}
+
+std::string library_versions() {
+    return LENSPROOF_LIBRARIES;
+}
+
 std::string sha256(const fs::path& file) {
     const std::string content = read_file(file);
     std::array<char, SHA256_DIGEST_STRING_LENGTH> digest{};

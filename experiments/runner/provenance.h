@@ -5,6 +5,12 @@
 
 namespace lensproof::runner {
 
+/// The project's version, "0.1.0".
+std::string program_version();
+
+/// The libraries that the program was built against, with their versions: "OpenCV 4.6.0, Ceres 2.1.0, …".
+std::string library_versions();
+
 /// Lower-case hexadecimal SHA-256 of the file's bytes.
 std::string sha256(const std::filesystem::path& file);
 

@@ -38,7 +38,10 @@ Json check_json(const findings::Check& check) {
 }
 
 Json provenance_json(std::vector<std::filesystem::path> inputs, const findings::RunSettings& settings) {
-    Json provenance{{"program", "lensproof"}, {"version", LENSPROOF_VERSION}, {"commit", source_commit()}};
+    Json provenance{{"program", "lensproof"},
+                    {"version", program_version()},
+                    {"commit", source_commit()},
+                    {"libraries", library_versions()}};
     provenance["settings"] = {{"seed", settings.seed}};
     std::ranges::sort(inputs);
     inputs.erase(std::unique(inputs.begin(), inputs.end()), inputs.end());

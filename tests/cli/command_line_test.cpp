@@ -6,6 +6,7 @@
 #include <cmath>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <regex>
 
 #include "engine/base/file.h"
 #include "tests/cli/program.h"
@@ -35,6 +36,20 @@ TEST(Help, ListsEveryCommandAndShowsAnExampleOfEach) {
         EXPECT_EQ(one.err, "");
         EXPECT_TRUE(says(one.out, "Example: lensproof " + command));
     }
+}
+
+TEST(Version, SaysCommitAndLibraries) {
+    const Workplace place;
+    const Outcome version = place.run({"--version"});
+    ASSERT_EQ(version.status, 0) << version.err;
+    std::string numbered;
+    for (const char* library : {"OpenCV", "Ceres", "OpenImageIO", "OpenEXR", "Embree", "Eigen", "assimp"}) {
+        numbered += (numbered.empty() ? "" : ", ") + std::string(library) + R"( [0-9]+(\.[0-9]+)+)";
+    }
+    EXPECT_TRUE(std::regex_match(
+        version.out,
+        std::regex("lensproof [0-9]+(\\.[0-9]+)+\ncommit ([0-9a-f]{40}|unknown)\nbuilt against " + numbered + "\n")))
+        << version.out;
 }
 
 TEST(Lists, NameWhatShipsWithItsSource) {

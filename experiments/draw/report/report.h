@@ -45,7 +45,8 @@ namespace lensproof::draw {
 ///                                       for a difference,
 ///                             "covered_to"?: beyond this x the data ended, and the curve is drawn faded}]}],
 ///      "maps"?: [{"name", "subject"?, "caption"?}],         drawings over the frame, after the plots
-///      "provenance"?: {"program", "version", "commit", "inputs": [{"file", "sha256"}], "settings": {…}, …},
+///      "provenance"?: {"program", "version", "commit", "libraries", "inputs": [{"file", "sha256"}],
+///                      "settings": {…}, …},
 ///      "reproduce"?: "lensproof run …"}
 ///
 /// Pixel coordinates are those of engine/formats/image/image.h: the centre of the top-left pixel is (0, 0), y runs
