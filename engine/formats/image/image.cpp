@@ -62,25 +62,29 @@ std::vector<Integer> encode_srgb(const Image& image, const std::vector<int>& sou
     return encoded;
 }
 
-/// The bytes of a PNG whose pixels are of the type that `spec` says.
-std::string png_bytes(const OIIO::ImageSpec& spec, const void* pixels) {
+/// The bytes of a file of that form, "png" or "jpeg", whose pixels are of the type that `spec` says.
+std::string file_bytes(const std::string& form, const OIIO::ImageSpec& spec, const void* pixels) {
     std::vector<unsigned char> bytes;
     OIIO::Filesystem::IOVecOutput sink(bytes);
-    const auto output = OIIO::ImageOutput::create("png", &sink);
-    if (!output || !output->open("picture.png", spec) || !output->write_image(spec.format, pixels) ||
+    const auto output = OIIO::ImageOutput::create(form, &sink);
+    if (!output || !output->open("picture." + form, spec) || !output->write_image(spec.format, pixels) ||
         !output->close()) {
         throw std::runtime_error(
-            fmt::format("a PNG cannot be made: {}", output ? output->geterror() : OIIO::geterror()));
+            fmt::format("a {} cannot be made: {}", form, output ? output->geterror() : OIIO::geterror()));
     }
     return {bytes.begin(), bytes.end()};
 }
 
 template <class Integer>
-std::string encode_srgb_png(const Image& image, OIIO::TypeDesc type) {
+std::string encode_srgb_file(const std::string& form, const Image& image, OIIO::TypeDesc type, int quality = 0) {
     const std::vector<int> sources = shown_channels(image);
     OIIO::ImageSpec spec(image.width, image.height, static_cast<int>(sources.size()), type);
     spec.attribute("oiio:ColorSpace", "sRGB");
-    return png_bytes(spec, encode_srgb<Integer>(image, sources).data());
+    if (quality > 0) {
+        spec.attribute("compression", fmt::format("jpeg:{}", quality));
+        spec.attribute("jpeg:subsampling", "4:4:4");
+    }
+    return file_bytes(form, spec, encode_srgb<Integer>(image, sources).data());
 }
 
 OIIO::ImageSpec exr_spec(const Image& image) {
@@ -158,7 +162,7 @@ void write_png(const Image& image, const std::filesystem::path& file) {
 }
 
 void write_png_16(const Image& image, const std::filesystem::path& file) {
-    write_file(file, encode_srgb_png<std::uint16_t>(image, OIIO::TypeDesc::UINT16));
+    write_file(file, encode_srgb_file<std::uint16_t>("png", image, OIIO::TypeDesc::UINT16));
 }
 
 void write_png(const IntegerImage& image, const std::filesystem::path& file) {
@@ -167,11 +171,15 @@ void write_png(const IntegerImage& image, const std::filesystem::path& file) {
     for (const auto& [name, value] : image.metadata) {
         spec.attribute(name, value);
     }
-    write_file(file, png_bytes(spec, image.values.data()));
+    write_file(file, file_bytes("png", spec, image.values.data()));
 }
 
 std::string encode_png(const Image& image) {
-    return encode_srgb_png<unsigned char>(image, OIIO::TypeDesc::UINT8);
+    return encode_srgb_file<unsigned char>("png", image, OIIO::TypeDesc::UINT8);
+}
+
+std::string encode_jpeg(const Image& image, int quality) {
+    return encode_srgb_file<unsigned char>("jpeg", image, OIIO::TypeDesc::UINT8, quality);
 }
 
 }  // namespace lensproof::formats

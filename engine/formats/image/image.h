@@ -73,4 +73,8 @@ void write_png(const IntegerImage& image, const std::filesystem::path& file);
 /// The 8-bit sRGB PNG as bytes, for a report that holds its pictures inside.
 std::string encode_png(const Image& image);
 
+/// The same as a JPEG of that quality, colours at full resolution: where many photos are to be looked at and none is to
+/// be measured.
+std::string encode_jpeg(const Image& image, int quality = 88);
+
 }  // namespace lensproof::formats
