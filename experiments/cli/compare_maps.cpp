@@ -10,37 +10,18 @@
 #include "engine/base/write_file.h"
 #include "engine/formats/image/image.h"
 #include "experiments/draw/analysis_plots.h"
-#include "experiments/draw/colour_map.h"
+#include "experiments/draw/coloured_image.h"
 
 namespace lensproof::cli {
 
 namespace {
 
-constexpr int kMapShades = 256;
 constexpr double kLeastRange = 1e-4;
 
 struct ShownRange {
     double lowest = 0.0;
     double highest = 1.0;
 };
-
-std::string map_png(const formats::Image& values, draw::ColourMap colours, const ShownRange& range) {
-    std::vector<Vec3d> shades;
-    shades.reserve(kMapShades);
-    for (int i = 0; i < kMapShades; ++i) {
-        shades.push_back(draw::map_colour(colours, i / (kMapShades - 1.0)));
-    }
-    formats::Image picture = formats::make_image(values.width, values.height, {"R", "G", "B"});
-    for (std::size_t i = 0; i < values.pixels.size(); ++i) {
-        const double fraction = std::clamp(
-            (static_cast<double>(values.pixels[i]) - range.lowest) / (range.highest - range.lowest), 0.0, 1.0);
-        const Vec3d& rgb = shades[static_cast<std::size_t>(std::lround(fraction * (kMapShades - 1)))];
-        picture.pixels[3 * i] = static_cast<float>(rgb.x);
-        picture.pixels[3 * i + 1] = static_cast<float>(rgb.y);
-        picture.pixels[3 * i + 2] = static_cast<float>(rgb.z);
-    }
-    return formats::encode_png(picture);
-}
 
 /// What 999 of 1000 values do not exceed.
 double nearly_largest(const formats::Image& values) {
@@ -63,7 +44,8 @@ Json write_maps(const calibration::PictureComparison& found, const std::string& 
     Json told = Json::list();
     const auto add = [&](const std::string& quantity, const formats::Image& values, draw::ColourMap colours,
                          const ShownRange& range) {
-        files[quantity + ".png"] = map_png(values, colours, range);
+        files[quantity + ".png"] =
+            formats::encode_png(draw::coloured_image(values, colours, range.lowest, range.highest));
         told.push_back(Json{{"file", (std::filesystem::path(folder) / (quantity + ".png")).string()},
                             {"quantity", quantity},
                             {"lowest", range.lowest},

@@ -19,15 +19,28 @@ struct Fact {
     std::string value;
 };
 
+/// What a layer of a picture shows: the same frame once more, or a signed difference in false colours.
+enum class LayerKind { picture, difference };
+
+/// Something else of a picture's frame, to be laid over it pixel by pixel. Named as a picture is.
+struct PictureLayer {
+    std::string name;
+    std::string label;
+    LayerKind kind = LayerKind::picture;
+    std::string bytes{};
+};
+
 /// A picture or a drawing of a subject.
 struct Picture {
-    std::string name;  // of its file, "tessar/view-1.png"; SVG where it ends so, else PNG
+    std::string name;  // of its file, "tessar/view-1.png"; SVG or JPEG where it ends in .svg or .jpg, else PNG
     std::string caption;
     Json width{};  // px of what was measured, of which the file may be a smaller copy; of a drawing, its own units
     Json height{};
     std::string bytes{};  // empty: it is named and not shown
     /// Detected points, and measured − model there: x, y, dx, dy in px, as in engine/formats/image/image.h.
     std::optional<std::vector<std::array<double, 4>>> points = std::nullopt;
+    std::string label{};  // what it is among its layers
+    std::vector<PictureLayer> layers{};
 };
 
 /// One of the things that a study looks at: a camera, an extreme, a lens, a sweep.

@@ -37,4 +37,8 @@ Picture shown_picture(const std::string& name, const std::string& caption, const
             .bytes = formats::encode_png(shrunk(image, widest))};
 }
 
+std::string laid_picture(const formats::Image& image) {
+    return formats::encode_jpeg(shrunk(image, kLaidWidth));
+}
+
 }  // namespace lensproof::findings

@@ -54,6 +54,14 @@ Json provenance_json(std::vector<std::filesystem::path> inputs, const findings::
 Json picture_json(const findings::Picture& picture) {
     Json json{
         {"name", picture.name}, {"caption", picture.caption}, {"width", picture.width}, {"height", picture.height}};
+    if (!picture.layers.empty()) {
+        json["label"] = picture.label;
+    }
+    for (const findings::PictureLayer& layer : picture.layers) {
+        json["layers"].push_back({{"name", layer.name},
+                                  {"label", layer.label},
+                                  {"kind", layer.kind == findings::LayerKind::difference ? "difference" : "picture"}});
+    }
     if (picture.points) {
         json["points"] = *picture.points;
     }
@@ -152,8 +160,14 @@ std::map<std::string, std::string> report_pictures(const findings::Findings& fou
         const findings::Subject& subject = found.subjects[i];
         colours.emplace(subject.id, kSubjectColours.at(i % kSubjectColours.size()));
         for (const findings::Picture& picture : subject.pictures) {
-            if (!picture.bytes.empty()) {
-                pictures[picture.name] = picture.bytes;
+            const auto keep = [&](const std::string& name, const std::string& bytes) {
+                if (!bytes.empty()) {
+                    pictures[name] = bytes;
+                }
+            };
+            keep(picture.name, picture.bytes);
+            for (const findings::PictureLayer& layer : picture.layers) {
+                keep(layer.name, layer.bytes);
             }
         }
     }

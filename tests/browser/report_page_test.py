@@ -56,11 +56,12 @@ class Browser:
                 return answer["result"]
             self.events.append(answer)
 
-    def open(self, file, width=1280, height=900, dark=False, script=True):
+    def open(self, file, width=1280, height=900, dark=False, script=True, calm=False):
         self.events = []
         self.call("Emulation.setDeviceMetricsOverride", width=width, height=height, deviceScaleFactor=1, mobile=False)
         self.call("Emulation.setEmulatedMedia",
-                  features=[{"name": "prefers-color-scheme", "value": "dark" if dark else "light"}])
+                  features=[{"name": "prefers-color-scheme", "value": "dark" if dark else "light"},
+                            {"name": "prefers-reduced-motion", "value": "reduce" if calm else "no-preference"}])
         self.call("Emulation.setScriptExecutionDisabled", value=not script)
         self.call("Page.navigate", url="file://" + os.path.abspath(file))
         while not any(event.get("method") == "Page.loadEventFired" for event in self.events):
@@ -151,11 +152,17 @@ def reports():
                             {"name": "gone.png", "caption": "absent", "width": 640, "height": 400,
                              "points": [[9, 9, None, 1]]},
                             {"name": "a/1.png", "caption": "no size"}]}
+    layers = [{"name": "a/2.png", "label": "twin " + ATTACK, "kind": "picture"},
+              {"name": "a/1.png", "label": "difference", "kind": "difference"}, {"name": "gone.png", "kind": ATTACK}]
+    pair = {"id": "b", "kind": "twins", "label": "Pairs", "pictures": [
+        {"name": "a/1.png", "caption": "first pair", "label": "photo", "layers": layers, "width": 640, "height": 400,
+         "points": points[:50]},
+        {"name": "a/2.png", "caption": "second pair", "label": "photo", "layers": layers[:2]}]}
     usual = {"schema": "lensproof-report/1", "title": "Title " + ATTACK, "summary": ATTACK, "verdict": "FAIL",
              "checks": [check(0, floor=0.02), check(1, expect="at least", verdict="FAIL"), check(2, expect="within", target=0.2),
                         check(3, expect="differs", value=9), check(4, value=None, verdict="INCONCLUSIVE"),
                         check(5, limit=0), check(6, limit=None), check(7, expect=ATTACK, value=-1, sigma=1e9)],
-             "subjects": [subject], "plots": [plot, {**plot, "id": "again"}],
+             "subjects": [subject, pair], "plots": [plot, {**plot, "id": "again"}],
              "maps": [{"name": "a/1.png", "subject": "a", "caption": "map " + ATTACK}, None],
              "provenance": {"program": ATTACK, "inputs": [{"file": ATTACK, "sha256": "0" * 64}],
                             "settings": {"a": {"b": 1}}},
@@ -280,14 +287,98 @@ def test_pictures(browser):
     expect(browser.js(arrows) != before, "the slider magnifies the residuals")
     expect("×500" in browser.js("document.querySelector('.tools output').textContent"), "and the scale is said")
     browser.js("document.querySelector('.tools [type=checkbox]').click()")
-    expect(browser.js("document.querySelectorAll('.stage > svg').length") == 0, "the overlay can be switched off")
+    expect(browser.js("document.querySelectorAll('#subject-0 .stage > svg').length") == 0, "the overlay can be switched off")
     browser.js("document.querySelector('.tools [type=checkbox]').click()")
     browser.js("document.querySelector('#picture-0-0 .enlarge').click()")
     expect(browser.js("document.querySelector('dialog').open && document.querySelectorAll('dialog .stage svg').length")
            == 1,
            "a click enlarges the picture with its overlay")
-    browser.js("document.querySelector('dialog button').click()")
+    browser.js("document.querySelector('dialog .bar > button:last-of-type').click()")
     expect(not browser.js("document.querySelector('dialog').open"), "and it closes")
+
+
+def test_layers(browser):
+    page, dialog = "#subject-1", "dialog"
+
+    def look(where, way):
+        browser.js(f"[...document.querySelectorAll('{where} .views button')]"
+                   f".find((b) => b.textContent === {json.dumps(way)}).click()")
+
+    def seen(where):
+        """Of each layer of the first picture: whether it is to be seen, and how it is cut."""
+        return browser.js(f"[...document.querySelector('{where} .stage').querySelectorAll(':scope > .layer')].map((l) =>"
+                          "[l.checkVisibility(), getComputedStyle(l).clipPath, getComputedStyle(l).maskImage !== 'none'])")
+
+    def stages():
+        return browser.js("[...document.querySelectorAll('dialog .stage')].map((s) => { const b = s.getBoundingClientRect(),"
+                          "p = s.parentNode.getBoundingClientRect();"
+                          "return [b.left - p.left, b.top - p.top, b.width].map(Math.round).join(); })")
+
+    hidden = [False, "none", False]
+    whole = [True, "none", False]
+    expect(seen(page) == [whole, [True, "inset(0px 0px 0px 50%)", False], hidden, hidden],
+           f"a pair begins with the divider in the middle: {seen(page)}")
+    left, top, width, height = box(browser, page + " .stage")
+    browser.mouse("mousePressed", left + width / 2, top + height / 2, button="left", clickCount=1)
+    browser.mouse("mouseMoved", left + width / 4, top + height / 2, button="left", buttons=1)
+    browser.mouse("mouseReleased", left + width / 4, top + height / 2, button="left", clickCount=1)
+    expect(seen(page)[1][1] == "inset(0px 0px 0px 25%)", f"the divider follows the pointer: {seen(page)[1]}")
+    expect(seen("#picture-1-1")[1][1] == seen(page)[1][1], "in all pairs of a subject")
+    browser.js(f"(() => {{ const s = document.querySelector('{page} .tools [type=range]'); s.value = 0.75;"
+               "s.dispatchEvent(new Event('input')); })()")
+    expect(seen(page)[1][1] == "inset(0px 0px 0px 75%)", "and the slider, so that keys move it")
+    look(page, "checker")
+    expect(seen(page) == [whole, [True, "none", True], hidden, hidden], f"the checker masks one: {seen(page)}")
+    look(page, "blink")
+    expect(browser.js(f"document.querySelector('{page} .over').getAnimations().length") == 1, "blink blinks")
+    look(page, "difference")
+    expect(seen(page) == [hidden, hidden, whole, hidden], f"the difference alone: {seen(page)}")
+    expect(browser.js(f"document.querySelector('{page} .views [aria-pressed=true]').textContent") == "difference",
+           "and the button says so")
+
+    browser.js("document.querySelector('#picture-1-0 .enlarge').click()")
+    expect(seen(dialog) == [hidden, hidden, whole, hidden], "enlarged, the same is shown")
+    look(dialog, "side by side")
+    before = stages()
+    expect(len(before) == 4 and len(set(before)) == 1, f"all layers beside each other: {before}")
+    left, top, width, height = box(browser, "dialog .pane:nth-child(2)")
+    browser.mouse("mouseWheel", left + width / 3, top + height / 2, deltaX=0, deltaY=-600)
+    deadline = time.monotonic() + 5
+    while stages() == before and time.monotonic() < deadline:
+        time.sleep(0.05)
+    zoomed = stages()
+    expect(zoomed != before and len(set(zoomed)) == 1, f"the wheel zooms all of them alike: {zoomed}")
+    browser.mouse("mousePressed", left + width / 2, top + height / 2, button="left", clickCount=1)
+    browser.mouse("mouseMoved", left + width / 2 - 30, top + height / 2 - 10, button="left", buttons=1)
+    browser.mouse("mouseReleased", left + width / 2 - 30, top + height / 2 - 10, button="left", clickCount=1)
+    expect(stages() != zoomed and len(set(stages())) == 1, f"dragging moves all of them alike: {stages()}")
+    moved = stages()
+    browser.js("document.querySelector('dialog .view').focus()")
+    browser.key("PageDown")
+    expect("second pair" in browser.js("document.querySelector('dialog strong').textContent"), "Page Down goes on")
+    browser.key("PageUp")
+    expect(stages() == moved, "and back: place and zoom stay")
+    browser.key("ArrowLeft")
+    expect(stages() != moved, "an arrow key moves the picture")
+    browser.key("0")
+    expect(stages() == before, "0 fits it again")
+    look(dialog, "slider")
+    expect(len(stages()) == 1 and seen(dialog)[1][1] == "inset(0px 0px 0px 75%)", "the divider is where it was")
+    browser.js("document.querySelector('dialog .bar > button:last-of-type').click()")
+    expect(seen(page)[1][1] == "inset(0px 0px 0px 75%)", "the page shows what was chosen")
+
+
+def test_calm_and_print(browser, page):
+    browser.open(page, calm=True)
+    ways = browser.js("[...document.querySelectorAll('#subject-1 .views button')].map((b) => b.textContent)")
+    expect("checker" in ways and "blink" not in ways, f"who wants no motion is offered no blinking: {ways}")
+    browser.open(page)
+    browser.call("Emulation.setEmulatedMedia", media="print")
+    boxes = browser.js("[...document.querySelectorAll('#picture-1-0 .layer')].map((l) => [l.checkVisibility(),"
+                       "getComputedStyle(l).clipPath, l.getBoundingClientRect().left])")
+    expect(all(shown and clip == "none" for shown, clip, left in boxes) and
+           len({left for shown, clip, left in boxes}) == 4, f"in print layers stand side by side: {boxes}")
+    browser.call("Emulation.setEmulatedMedia", media="")
 
 
 def test_without_script(browser):
@@ -296,6 +387,8 @@ def test_without_script(browser):
     expect(browser.js("document.querySelector('[data-plot=distortion] details').textContent").count("±") >= 6,
            "without script: and their values")
     expect(browser.js("document.querySelectorAll('td.scale > svg').length") == 7, "without script: and the scales")
+    sides = browser.js("[...document.querySelectorAll('#picture-1-0 .layer')].map((l) => l.getBoundingClientRect().left)")
+    expect(len(sides) == 4 and sides == sorted(set(sides)), f"without script: layers stand side by side {sides}")
     expect(browser.js("[...document.querySelectorAll('.plot button, .plot input')].every((b) => !b.checkVisibility())"),
            "without script: nothing that would not work")
 
@@ -309,8 +402,9 @@ def main():
     with tempfile.TemporaryDirectory(ignore_cleanup_errors=True) as temporary:
         folder = sys.argv[2] if len(sys.argv) > 2 else temporary
         os.makedirs(os.path.join(folder, "pictures/a"), exist_ok=True)
-        with open(os.path.join(folder, "pictures/a/1.png"), "wb") as out:
-            out.write(png(320, 200))
+        for i in (1, 2):
+            with open(os.path.join(folder, f"pictures/a/{i}.png"), "wb") as out:
+                out.write(png(320, 200))
         for name, report in reports().items():
             with open(os.path.join(folder, name + ".json"), "w", encoding="utf-8") as out:
                 json.dump(report, out)
@@ -330,11 +424,13 @@ def main():
             test_checks(browser)
             test_curves(browser)
             test_pictures(browser)
+            test_layers(browser)
             expect(browser.js("window.pwned === undefined && !document.querySelector('[onerror], img[src=x], h1 b')"),
                    "hostile texts stay texts")
             blocked = browser.js("new Promise((done) => { const i = new Image(); i.onerror = () => done(true); "
                                  "i.onload = () => done(false); i.src = 'pictures/a/1.png'; })")
             expect(blocked, "the page's own policy blocks a request, even one that would succeed")
+            test_calm_and_print(browser, os.path.join(folder, "usual.html"))
             browser.open(os.path.join(folder, "usual.html"), script=False)
             browser.screenshot(os.path.join(folder, "no-script.png"))
             expect(browser.complaints() == [], "without script: no complaint")

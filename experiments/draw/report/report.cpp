@@ -153,33 +153,54 @@ std::string facts_html(const Json& subject) {
     return rows.empty() ? "" : "<table class=\"facts\"><tbody>\n" + rows + "</tbody></table>\n";
 }
 
-std::string picture_html(const Json& picture, const std::string& id, const std::map<std::string, std::string>& pngs) {
-    const auto png = pngs.find(as_text(picture["name"]));
-    const std::string caption = text(picture, "caption");
-    std::string out = "<figure class=\"picture\" id=\"" + id + "\"><div class=\"stage\">";
-    if (png == pngs.end()) {
-        out += "<p class=\"missing\">not in this report: " + text(picture, "name") + "</p>";
-    } else {
-        const char* type = png->first.ends_with(".svg") ? "svg+xml" : "png";
-        out += "<img alt=\"" + (caption.empty() ? text(picture, "name") : caption) + "\" src=\"data:image/" + type +
-               ";base64," + base64(png->second) + "\">";
+using Files = std::map<std::string, std::string>;
+
+/// `alt`: of the picture.
+std::string image_html(const Json& named, const std::string& alt, const Files& files) {
+    const std::string name = as_text(named["name"]);
+    const auto file = files.find(name);
+    if (file == files.end()) return "<p class=\"missing\">not in this report: " + escape_markup(name) + "</p>";
+    const char* type = name.ends_with(".svg") ? "svg+xml" : name.ends_with(".jpg") ? "jpeg" : "png";
+    return "<img alt=\"" + (alt.empty() ? escape_markup(name) : alt) + "\" src=\"data:image/" + type + ";base64," +
+           base64(file->second) + "\">";
+}
+
+/// Without a script they stand side by side; the script lays them over each other.
+std::string layers_html(const Json& picture, const Files& files) {
+    const auto layer = [&](const Json& named, const std::string& kind) {
+        const std::string label = text(named, "label");
+        return "<div class=\"layer\" data-kind=\"" + kind + "\">" +
+               image_html(named, text(picture, "caption") + ": " + label, files) + "<span>" + label + "</span></div>";
+    };
+    std::string out = layer(picture, "picture");
+    for (const Json& more : picture["layers"]) {
+        out += layer(more, as_text(more["kind"]) == "difference" ? "difference" : "picture");
     }
-    return out + "</div><figcaption><span class=\"caption\">" + caption + "</span></figcaption></figure>\n";
+    return out;
+}
+
+std::string picture_html(const Json& picture, const std::string& id, const Files& files) {
+    const std::string caption = text(picture, "caption");
+    const bool is_layered = !picture["layers"].elements().empty();
+    return std::string("<figure class=\"picture") + (is_layered ? " layered" : "") + "\" id=\"" + id +
+           "\"><div class=\"stage\">" +
+           (is_layered ? layers_html(picture, files) : image_html(picture, caption, files)) +
+           "</div><figcaption><span class=\"caption\">" + caption + "</span></figcaption></figure>\n";
 }
 
 /// Where the measurements are sure, beside the curves that say how sure they are along the radius.
-std::string maps_html(const Json& report, const std::map<std::string, std::string>& pngs) {
+std::string maps_html(const Json& report, const Files& files) {
     std::string out;
     const Json::List& maps = report["maps"].elements();
     for (std::size_t i = 0; i < maps.size(); ++i) {
-        out += picture_html(maps[i], "map-" + std::to_string(i), pngs);
+        out += picture_html(maps[i], "map-" + std::to_string(i), files);
     }
     return out.empty() ? ""
                        : "<h3 class=\"maps-title\">Certainty and coverage over the frame</h3>\n<div class=\"maps\">\n" +
                              out + "</div>\n";
 }
 
-std::string subjects_html(const Json& report, const std::map<std::string, std::string>& pngs) {
+std::string subjects_html(const Json& report, const Files& files) {
     const Json::List& subjects = report["subjects"].elements();
     if (subjects.empty()) return "<p class=\"empty\">This report shows no lens and no photo.</p>\n";
     std::string out;
@@ -191,7 +212,7 @@ std::string subjects_html(const Json& report, const std::map<std::string, std::s
         const Json::List& pictures = subjects[i]["pictures"].elements();
         if (!pictures.empty()) out += "<div class=\"pictures\">\n";
         for (std::size_t k = 0; k < pictures.size(); ++k) {
-            out += picture_html(pictures[k], "picture-" + number + "-" + std::to_string(k), pngs);
+            out += picture_html(pictures[k], "picture-" + number + "-" + std::to_string(k), files);
         }
         out += pictures.empty() ? "</section>\n" : "</div></section>\n";
     }
@@ -278,7 +299,7 @@ std::string fill(std::string_view page, const std::map<std::string, std::string,
 
 }  // namespace
 
-std::string report_html(const Json& report, const std::map<std::string, std::string>& png_bytes_by_name) {
+std::string report_html(const Json& report, const std::map<std::string, std::string>& files) {
     const std::string title = text(report, "title");
     const std::string subjects = text(report, "subjects_title");
     // A report without the key has no curves to draw; one with none in its list says so.
@@ -291,8 +312,8 @@ std::string report_html(const Json& report, const std::map<std::string, std::str
                                                 {"tally", tally_html(report)},
                                                 {"checks", checks_html(report)},
                                                 {"curves", curves_html(report)},
-                                                {"maps", maps_html(report, png_bytes_by_name)},
-                                                {"subjects", subjects_html(report, png_bytes_by_name)},
+                                                {"maps", maps_html(report, files)},
+                                                {"subjects", subjects_html(report, files)},
                                                 {"provenance", provenance_html(report)},
                                                 {"reproduce", reproduce_html(report)},
                                                 {"data", json_for_script(report)}});

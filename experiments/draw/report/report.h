@@ -12,8 +12,9 @@ namespace lensproof::draw {
 /// checks, the curves, the facts, the pictures and the provenance; the script zooms and reads the curves and draws the
 /// residuals, whose magnification is the reader's.
 ///
-/// `png_bytes_by_name` holds the files' bytes under the `name` that a picture in `report` has. A name that is missing
-/// leaves a labelled gap; a picture that neither a subject nor a map names is left out. Names in .svg are SVG.
+/// `bytes_by_name` holds the files' bytes under the `name` that a picture in `report` has. A name that is missing
+/// leaves a labelled gap; a picture that neither a subject nor a map names is left out. Names in .svg are SVG, in .jpg
+/// JPEG.
 ///
 /// Whatever `report` holds is shown as text: no string in it can become markup or script. Any key may be absent or
 /// null, and a number that is not finite counts as null; nothing throws but std::bad_alloc. The same arguments give the
@@ -34,7 +35,10 @@ namespace lensproof::draw {
 ///      "subjects": [{"id", "kind": "simulation" | "photos", "label",
 ///                    "facts"?: [{"label", "value": string or number}], "focal_length_px"?: {"value", "sigma"?},
 ///                    "pictures"?: [{"name", "caption", "width", "height",   of the picture that was measured, px; the
-///                                                                           PNG may be a smaller copy of it
+///                                                                           file may be a smaller copy of it
+///                                   "label"?: what it is among its layers,
+///                                   "layers"?: [{"name", "label", "kind": "picture" | "difference"}],
+///                                                           of the same frame: laid over it, or beside it
 ///                                   "points"?: [[x, y, dx, dy], …]}]}],     detected point and measured − model, px
 ///      "plots"?: [{"id", "title", "subtitle"?, "x_label", "y_label", "x_unit"?, "y_unit"?,
 ///                 "limit"?: draws the band ± limit,
@@ -51,6 +55,6 @@ namespace lensproof::draw {
 ///
 /// Pixel coordinates are those of engine/formats/image/image.h: the centre of the top-left pixel is (0, 0), y runs
 /// down. `provenance` may hold further keys; a list of objects becomes a table, an object a list of its settings.
-std::string report_html(const Json& report, const std::map<std::string, std::string>& png_bytes_by_name);
+std::string report_html(const Json& report, const std::map<std::string, std::string>& bytes_by_name);
 
 }  // namespace lensproof::draw

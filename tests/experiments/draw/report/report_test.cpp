@@ -153,6 +153,29 @@ TEST(Report, PicturesTravelInside) {
     EXPECT_TRUE(has(page, "not in this report: a/2.png"));
 }
 
+TEST(Report, LayersStandBesideTheirPicture) {
+    const Json report = {{"subjects",
+                          {{{"id", "a"},
+                            {"pictures",
+                             {{{"name", "a/1.jpg"},
+                               {"caption", "one"},
+                               {"label", "photo"},
+                               {"layers",
+                                {{{"name", "a/1-twin.png"}, {"label", "twin"}, {"kind", "picture"}},
+                                 {{"name", "a/gone.png"}, {"label", "difference"}, {"kind", "difference"}}}}}}}}}}};
+    const std::string page = report_html(report, {{"a/1.jpg", "foobar"}, {"a/1-twin.png", "foob"}});
+    const auto photo = page.find(
+        "<div class=\"layer\" data-kind=\"picture\"><img alt=\"one: photo\" "
+        "src=\"data:image/jpeg;base64,Zm9vYmFy\"><span>photo</span>");
+    const auto twin = page.find(
+        "<div class=\"layer\" data-kind=\"picture\"><img alt=\"one: twin\" "
+        "src=\"data:image/png;base64,Zm9vYg==\"><span>twin</span>");
+    const auto difference = page.find("<div class=\"layer\" data-kind=\"difference\"><p class=\"missing\">");
+    EXPECT_LT(photo, twin);
+    EXPECT_LT(twin, difference);
+    EXPECT_NE(difference, page.npos);
+}
+
 TEST(Report, TheTableOfChecksNeedsNoScript) {
     const std::string page = report_html(one_check(Json::object()), {});
     EXPECT_TRUE(has(page, "<th scope=\"row\"><span class=\"name\">distortion, rms</span><span class=\"why\">because"));
