@@ -137,6 +137,18 @@ PixelAccount account_of_pixels(const PhotoAndTwin& pictures, const std::vector<T
             .unexplained = share(sharp, noise) / pictures.contrast};
 }
 
+formats::Image difference_among(const PhotoAndTwin& pictures, const std::vector<TwinPoint>& points) {
+    const formats::Image& photo = pictures.photo;
+    formats::Image difference = formats::make_image(photo.width, photo.height, {"Y"});
+    std::ranges::fill(difference.pixels, std::nanf(""));
+    for (const cv::Point& pixel : pixels_among(points, photo.width, photo.height)) {
+        const auto by = static_cast<double>(photo.at(pixel.x, pixel.y, pictures.photo_channel)) -
+                        static_cast<double>(pictures.twin.at(pixel.x, pixel.y, pictures.twin_channel));
+        difference.at(pixel.x, pixel.y, 0) = static_cast<float>(by / pictures.contrast);
+    }
+    return difference;
+}
+
 formats::Image in_light_of(const formats::Image& twin, const formats::Image& photo,
                            const std::vector<TwinPoint>& points) {
     const std::vector<cv::Point> pixels = pixels_among(points, twin.width, twin.height);

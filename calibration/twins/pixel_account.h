@@ -39,6 +39,9 @@ struct PhotoAndTwin {
 /// The points are of this photo alone; at least four, not on a line.
 PixelAccount account_of_pixels(const PhotoAndTwin& pictures, const std::vector<TwinPoint>& points);
 
+/// Photo less twin, of the channels to be compared, in shares of the contrast; NaN but among the points.
+formats::Image difference_among(const PhotoAndTwin& pictures, const std::vector<TwinPoint>& points);
+
 /// The twin in the photo's exposure: each of the photo's channels by a factor and an offset, over the pixels among the
 /// points. A twin without that channel lends its first.
 formats::Image in_light_of(const formats::Image& twin, const formats::Image& photo,

@@ -11,7 +11,7 @@
 #include "engine/render/integrators/chart_tracer.h"
 #include "engine/render/integrators/integrators.h"
 #include "engine/render/progressive.h"
-#include "experiments/draw/colour_map.h"
+#include "experiments/draw/coloured_image.h"
 #include "experiments/findings/shown_picture.h"
 
 namespace lensproof::studies {
@@ -89,28 +89,19 @@ std::vector<calibration::TwinPoint> points_in_both(const FittedTwin& fitted, con
     return both;
 }
 
-/// Side by side, as a person looks at them: white at 0.8 of full scale.
-formats::Image side_by_side(const formats::Image& photo, const formats::Image& lit, int channel, double white,
-                            double contrast) {
-    formats::Image all = formats::make_image(3 * photo.width, photo.height, {"R", "G", "B"});
+/// As a person looks at them: white at 0.8 of full scale.
+formats::Image as_seen(const formats::Image& picture, double white) {
+    formats::Image seen = formats::make_image(picture.width, picture.height, {"R", "G", "B"});
     const double exposure = white > 0.0 ? 0.8 / white : 1.0;
-    for (int y = 0; y < photo.height; ++y) {
-        for (int x = 0; x < photo.width; ++x) {
+    for (int y = 0; y < picture.height; ++y) {
+        for (int x = 0; x < picture.width; ++x) {
             for (int c = 0; c < 3; ++c) {
-                const int from = photo.channel_count() < 3 ? 0 : c;
-                all.at(x, y, c) = static_cast<float>(exposure * static_cast<double>(photo.at(x, y, from)));
-                all.at(photo.width + x, y, c) = static_cast<float>(exposure * static_cast<double>(lit.at(x, y, from)));
+                seen.at(x, y, c) = static_cast<float>(
+                    exposure * static_cast<double>(picture.at(x, y, picture.channel_count() < 3 ? 0 : c)));
             }
-            const double difference =
-                (static_cast<double>(photo.at(x, y, channel)) - static_cast<double>(lit.at(x, y, channel))) / contrast;
-            const Vec3d colour = draw::map_colour(draw::ColourMap::diverging,
-                                                  std::clamp(0.5 + 0.5 * difference / kShownDifference, 0.0, 1.0));
-            all.at(2 * photo.width + x, y, 0) = static_cast<float>(colour.x);
-            all.at(2 * photo.width + x, y, 1) = static_cast<float>(colour.y);
-            all.at(2 * photo.width + x, y, 2) = static_cast<float>(colour.z);
         }
     }
-    return all;
+    return seen;
 }
 
 /// Of a pixel of the twin, as it is measured in photos.
@@ -131,7 +122,9 @@ void fields(JsonArchive& json, Twin& twin) {
         .field("height", twin.height)
         .field("points", twin.points)
         .field("pixels", twin.pixels)
-        .packed("png", twin.png);
+        .packed("photo", twin.photo)
+        .packed("render", twin.render)
+        .packed("difference", twin.difference);
 }
 
 render::CameraSettings camera_settings(const TwinSettings& settings, const FittedTwin& fitted) {
@@ -161,8 +154,7 @@ Twin render_twin(const TwinSettings& settings, const FittedTwin& fitted, const c
     Twin found{.width = image.width,
                .height = image.height,
                .points = points_in_both(fitted, *seen, twin, twin_channel, photos.chart, view),
-               .pixels = {},
-               .png = {}};
+               .pixels = {}};
     constexpr std::size_t kLeastPoints = 4;
     if (found.points.size() < kLeastPoints || !seen->traits) {
         found.points.clear();
@@ -178,9 +170,13 @@ Twin render_twin(const TwinSettings& settings, const FittedTwin& fitted, const c
                                                    .twin_noise = twin_noise(twin, twin_channel, found.points)},
                                                   found.points);
     const formats::Image lit = calibration::in_light_of(twin, image, found.points);
-    found.png = findings::shown_picture("", "", side_by_side(image, lit, channel, seen->traits->white, contrast),
-                                        3 * findings::kShownWidth)
-                    .bytes;
+    found.photo = findings::laid_picture(as_seen(image, seen->traits->white));
+    found.render = findings::laid_picture(as_seen(lit, seen->traits->white));
+    const formats::Image difference = calibration::difference_among(
+        {.photo = image, .twin = lit, .photo_channel = channel, .twin_channel = channel, .contrast = contrast},
+        found.points);
+    found.difference = findings::laid_picture(
+        draw::coloured_image(difference, draw::ColourMap::diverging, -kShownDifference, kShownDifference));
     return found;
 }
 

@@ -19,7 +19,10 @@ struct Twin {
     int height = 0;
     std::vector<calibration::TwinPoint> points;  // found in both
     calibration::PixelAccount pixels;
-    std::string png;  // photo, twin in its light, and their difference, side by side
+    // To be looked at: JPEG; empty where too few points are found in the twin.
+    std::string photo{};
+    std::string render{};      // in the photo's light
+    std::string difference{};  // photo less twin
 };
 
 void fields(JsonArchive& json, Twin& twin);

@@ -64,23 +64,27 @@ std::string percent(double share) {
 }
 
 findings::Picture shown(const TwinSettings& settings, const std::string& file, const Twin& twin) {
-    findings::Picture picture{
-        .name = fmt::format("{}/{}.png", settings.name, std::filesystem::path(file).stem().string()),
-        .caption = std::filesystem::path(file).filename().string(),
-        .width = 3 * twin.width,
-        .height = twin.height,
-        .bytes = twin.png};
-    if (twin.png.empty()) {
+    const std::string stem = fmt::format("{}/{}", settings.name, std::filesystem::path(file).stem().string());
+    findings::Picture picture{.name = stem + ".jpg",
+                              .caption = std::filesystem::path(file).filename().string(),
+                              .width = twin.width,
+                              .height = twin.height,
+                              .bytes = twin.photo,
+                              .label = "photo"};
+    if (twin.photo.empty()) {
         picture.caption += " (the chart was not found again in its twin)";
         return picture;
     }
+    picture.layers = {{.name = stem + "-twin.jpg", .label = "twin", .bytes = twin.render},
+                      {.name = stem + "-difference.jpg",
+                       .label = "difference",
+                       .kind = findings::LayerKind::difference,
+                       .bytes = twin.difference}};
     const calibration::PixelAccount& by = twin.pixels;
-    picture.caption += fmt::format(
-        ": photo, twin, difference (± {:.0f} % of the chart's contrast). Of {} % rms: light {}, place {}, sharpness "
-        "{}, "
-        "noise {}, unexplained {}",
-        100.0 * kShownDifference, percent(by.as_rendered), percent(by.light), percent(by.place), percent(by.sharpness),
-        percent(by.noise), percent(by.unexplained));
+    picture.caption +=
+        fmt::format(": of {} % rms of the chart's contrast, light {}, place {}, sharpness {}, noise {}, unexplained {}",
+                    percent(by.as_rendered), percent(by.light), percent(by.place), percent(by.sharpness),
+                    percent(by.noise), percent(by.unexplained));
     picture.points.emplace();
     for (const calibration::TwinPoint& point : twin.points) {
         const Vec2d by_px = point.photo_px - point.twin_px;
@@ -130,6 +134,10 @@ std::vector<findings::Fact> TwinFindings::facts() const {
         {"rendered at", fmt::format("f/{:g}, {} samples a pixel", fitted.f_number, settings.samples_per_pixel)},
         {"pixel pitch", fmt::format("{:.4f} µm{}", 1e3 * fitted.camera.pixel_pitch_mm,
                                     fitted.is_pitch_known ? "" : ", chosen: the photos do not state it")},
+        {"shown difference",
+         fmt::format("photo − twin among the chart's points; red: the photo is brighter; full colour "
+                     "at ± {:.0f} % of the chart's contrast",
+                     100.0 * kShownDifference)},
         {"axis from the sensor's middle", fmt::format("{:.2f} px right, {:.2f} px down", axis.x, axis.y)}};
     if (!fitted.changes.empty()) {
         facts.push_back({"fitted, and decided by the photos", fmt::format("{}", fmt::join(fitted.changes, "; "))});
