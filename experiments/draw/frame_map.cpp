@@ -99,14 +99,17 @@ PlotChart empty_frame(const FrameMap& map, const std::string& title) {
 
 AxisRange common_range(const std::vector<const FrameMap*>& maps) {
     AxisRange range{kInfinity, 0.0};
+    double anywhere = 0.0;
     for (const FrameMap* map : maps) {
         for (std::size_t i = 0; i < map->values.size(); ++i) {
+            anywhere = std::isnan(map->values[i]) ? anywhere : std::max(anywhere, map->values[i]);
             if (map->covered[i] && map->values[i] > 0.0) {
                 range = {std::min(range.low, map->values[i]), std::max(range.high, map->values[i])};
             }
         }
     }
-    return range.low <= range.high ? AxisRange{range.low, 10.0 * range.high} : AxisRange{1e-3, 1.0};
+    const double high = std::min(10.0 * range.high, anywhere);
+    return range.low < high ? AxisRange{range.low, high} : AxisRange{1e-3, 1.0};
 }
 
 std::string frame_map_svg(const FrameMap& map, const AxisRange& range, const std::string& colour) {

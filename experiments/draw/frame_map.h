@@ -25,8 +25,8 @@ struct FrameMap {
     std::vector<Vec2d> hull{};  // convex
 };
 
-/// The maps' values, smallest to largest inside the points' hulls and ten times that at most: one range for all
-/// drawings, so that colours compare. 0.001 to 1 where there is no value.
+/// The maps' values from the smallest inside the points' hulls to the largest, ten times that inside the hulls at most:
+/// one range for all drawings, so that colours compare. 0.001 to 1 where there is no value.
 AxisRange common_range(const std::vector<const FrameMap*>& maps);
 
 /// As SVG: left the values as colours, logarithmic over `range`, right the points in `colour` (CSS); in both the hull

@@ -43,6 +43,13 @@ struct Picture {
     std::vector<PictureLayer> layers{};
 };
 
+/// What a subject's points lie about, for the page to find those behind a place of a curve.
+struct PointFrame {
+    Vec2d centre_px;
+    double half_diagonal_px = 0.0;
+    double rms_px = 0.0;  // of a residual's coordinate
+};
+
 /// One of the things that a study looks at: a camera, an extreme, a lens, a sweep.
 struct Subject {
     std::string id;
@@ -51,9 +58,18 @@ struct Subject {
     std::vector<Fact> facts{};
     std::optional<std::pair<double, double>> focal_length_px = std::nullopt;  // and its standard error
     std::vector<Picture> pictures{};
+    std::optional<PointFrame> points = std::nullopt;  // of the pictures' points
+    std::vector<Picture> worst{};                     // drawings of the points that are furthest off
 };
 
-/// A curve of a subject over the image height.
+/// What a plot's curves run over: their `image_height`, whatever it holds.
+enum class PlotOver {
+    image_height,  // shares of the half-diagonal
+    azimuth,       // ° from right to down
+    residual,      // of a point's coordinate, over its rms
+};
+
+/// A curve of a subject.
 struct Series {
     std::string label;
     std::string subject;
@@ -62,7 +78,7 @@ struct Series {
     std::optional<double> floor = std::nullopt;  // the method's own error
 };
 
-/// Curves over the image height in one frame. One without a series is not drawn, but keeps its place among the others.
+/// Curves in one frame. One without a series is not drawn, but keeps its place among the others.
 struct Plot {
     std::string id;
     std::string title;
@@ -71,6 +87,7 @@ struct Plot {
     std::string y_unit;
     std::optional<double> limit = std::nullopt;  // a band ± limit
     std::vector<Series> series{};
+    PlotOver over = PlotOver::image_height;
 };
 
 /// A quantity over the frame of a subject's pictures.
@@ -78,7 +95,7 @@ struct Map {
     std::string name;  // of its file
     std::string subject;
     std::string caption;
-    draw::FrameMap frame;
+    draw::FrameMap frame;  // maps of the same label share the range of their colours
 };
 
 /// What subjects are together where a report's page is not told otherwise (experiments/draw/report/report.h).

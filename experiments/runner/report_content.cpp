@@ -80,6 +80,14 @@ Json subject_json(const findings::Subject& subject) {
     for (const findings::Picture& picture : subject.pictures) {
         json["pictures"].push_back(picture_json(picture));
     }
+    if (const auto& points = subject.points) {
+        json["points"] = {{"centre_px", Json::list({points->centre_px.x, points->centre_px.y})},
+                          {"half_diagonal_px", points->half_diagonal_px},
+                          {"rms_px", points->rms_px}};
+    }
+    for (const findings::Picture& picture : subject.worst) {
+        json["worst"].push_back({{"name", picture.name}, {"caption", picture.caption}});
+    }
     return json;
 }
 
@@ -94,14 +102,28 @@ Json series_json(const findings::Series& series) {
     return json;
 }
 
+struct Abscissa {
+    const char* key;
+    const char* label;
+    const char* unit;
+};
+
+Abscissa abscissa(findings::PlotOver over) {
+    switch (over) {
+        case findings::PlotOver::azimuth:
+            return {"azimuth", "azimuth about the centre, from right to down", "°"};
+        case findings::PlotOver::residual:
+            return {"residual", "residual of a coordinate, over its rms", ""};
+        case findings::PlotOver::image_height:
+            break;
+    }
+    return {"image_height", "image height (of the half-diagonal)", ""};
+}
+
 Json plot_json(const findings::Plot& plot) {
-    Json json{{"id", plot.id},
-              {"title", plot.title},
-              {"subtitle", plot.subtitle},
-              {"x_label", "image height (of the half-diagonal)"},
-              {"y_label", plot.y_label},
-              {"x_unit", ""},
-              {"y_unit", plot.y_unit}};
+    const Abscissa over = abscissa(plot.over);
+    Json json{{"id", plot.id},         {"title", plot.title},     {"subtitle", plot.subtitle}, {"over", over.key},
+              {"x_label", over.label}, {"y_label", plot.y_label}, {"x_unit", over.unit},       {"y_unit", plot.y_unit}};
     for (const findings::Series& series : plot.series) {
         json["series"].push_back(series_json(series));
     }
@@ -170,11 +192,16 @@ std::map<std::string, std::string> report_pictures(const findings::Findings& fou
                 keep(layer.name, layer.bytes);
             }
         }
+        for (const findings::Picture& picture : subject.worst) {
+            pictures[picture.name] = picture.bytes;
+        }
     }
-    std::vector<const draw::FrameMap*> frames;
-    std::ranges::transform(found.maps, std::back_inserter(frames), [](const findings::Map& map) { return &map.frame; });
-    const draw::AxisRange range = draw::common_range(frames);
+    std::map<std::string, std::vector<const draw::FrameMap*>> frames;
     for (const findings::Map& map : found.maps) {
+        frames[map.frame.label].push_back(&map.frame);
+    }
+    for (const findings::Map& map : found.maps) {
+        const draw::AxisRange range = draw::common_range(frames.at(map.frame.label));
         pictures[map.name] = draw::frame_map_svg(map.frame, range, colours.at(map.subject));
     }
     return pictures;

@@ -148,6 +148,8 @@ def reports():
                 {"label": "second", "subject": "a", "style": "measured", "x": [0, 10, 20, 30], "y": [0, None, 1, 2]}]}
     points = [[20 + 10 * i % 600, 20 + 10 * (i // 58), 0.1 * math.sin(i), 0.1 * math.cos(i)] for i in range(2000)]
     subject = {"id": "a", "kind": "simulation", "label": "Lens " + ATTACK, "facts": [{"label": "f", "value": "100 mm"}],
+               "points": {"centre_px": [319.5, 199.5], "half_diagonal_px": 377.0, "rms_px": 0.07},
+               "worst": [{"name": "a/2.png", "caption": "far " + ATTACK}, {"name": "gone.svg"}],
                "pictures": [{"name": "a/1.png", "caption": "one", "width": 640, "height": 400, "points": points},
                             {"name": "gone.png", "caption": "absent", "width": 640, "height": 400,
                              "points": [[9, 9, None, 1]]},
@@ -158,11 +160,13 @@ def reports():
         {"name": "a/1.png", "caption": "first pair", "label": "photo", "layers": layers, "width": 640, "height": 400,
          "points": points[:50]},
         {"name": "a/2.png", "caption": "second pair", "label": "photo", "layers": layers[:2]}]}
+    behind = {"id": "behind", "title": "Behind", "over": "image_height", "x_label": "image height", "y_label": "y",
+              "series": [{"label": "radial", "subject": "a", "style": "measured", "x": [0, 1], "y": [0, 1]}]}
     usual = {"schema": "lensproof-report/1", "title": "Title " + ATTACK, "summary": ATTACK, "verdict": "FAIL",
              "checks": [check(0, floor=0.02), check(1, expect="at least", verdict="FAIL"), check(2, expect="within", target=0.2),
                         check(3, expect="differs", value=9), check(4, value=None, verdict="INCONCLUSIVE"),
                         check(5, limit=0), check(6, limit=None), check(7, expect=ATTACK, value=-1, sigma=1e9)],
-             "subjects": [subject, pair], "plots": [plot, {**plot, "id": "again"}],
+             "subjects": [subject, pair], "plots": [plot, {**plot, "id": "again"}, behind],
              "maps": [{"name": "a/1.png", "subject": "a", "caption": "map " + ATTACK}, None],
              "provenance": {"program": ATTACK, "inputs": [{"file": ATTACK, "sha256": "0" * 64}],
                             "settings": {"a": {"b": 1}}},
@@ -381,6 +385,42 @@ def test_calm_and_print(browser, page):
     browser.call("Emulation.setEmulatedMedia", media="")
 
 
+def test_points_behind_curves(browser):
+    curves = "[data-plot=behind] .wide-canvas"
+    rings = ("((p) => p ? p.getAttribute('d').split('M').length - 2 : 0)"  # and the circle that they lie on
+             "(document.querySelector('#picture-0-0 path.behind'))")
+    expect(browser.js(rings) == 0, "no point is ringed at first")
+    left, top, width, height = box(browser, curves)
+    x, y, frame_width, _ = map(float, browser.js(f"document.querySelector('{curves}').dataset.frame").split())
+    scale = width / browser.js(f"document.querySelector('{curves}').viewBox.baseVal.width")
+    at = left + (x + 0.5 * frame_width) * scale
+    browser.mouse("mousePressed", at, top + height / 2, button="left", clickCount=1)
+    browser.mouse("mouseReleased", at, top + height / 2, button="left", clickCount=1)
+    points = reports()["usual"]["subjects"][0]["pictures"][0]["points"]
+    near = sum(abs(math.hypot(p[0] - 319.5, p[1] - 199.5) / 377.0 - 0.5) < 0.025 for p in points)
+    found = browser.js(rings)
+    # The pointer's place is known to a px of the screen: so many points come and go at the ring's two borders.
+    border = sum(abs(abs(math.hypot(p[0] - 319.5, p[1] - 199.5) / 377.0 - 0.5) - 0.025) < 2 / frame_width for p in points)
+    expect(near > 50 and abs(found - near) <= border, f"a click rings the points behind it: {found}, {near} ± {border}")
+    browser.mouse("mouseMoved", 2, 2)
+    expect(browser.js("document.querySelector('[data-plot=behind] .legend output').textContent") != "", "the place stays")
+    button = "document.querySelector('[data-plot=behind] .pixels')"
+    expect(str(found) in browser.js(button + ".textContent"), "and says how many they are")
+    browser.js(button + ".click()")
+    expect(browser.js("document.querySelector('dialog').open && document.querySelectorAll('dialog path.behind').length") == 1,
+           "they are shown where they are most")
+    browser.js("document.querySelector('dialog .bar > button:last-of-type').click()")
+    browser.js(f"document.querySelector('{curves}').focus()")
+    browser.key("Escape")
+    expect(browser.js(rings) == 0 and browser.js(button + ".hidden"), "Escape lets go of it")
+    browser.key("ArrowRight")
+    browser.key("Enter")
+    expect(browser.js(rings) > 0, "and Enter holds what the arrow keys found")
+    browser.key("Escape")
+    expect(browser.js("document.querySelectorAll('#subject-0 .worst .picture').length") == 2,
+           "the points that are furthest off stand below")
+
+
 def test_without_script(browser):
     expect(browser.js("document.querySelector('[data-plot=distortion] .series-0 path.curve').getTotalLength()") > 200,
            "without script: the curves are there")
@@ -425,6 +465,7 @@ def main():
             test_curves(browser)
             test_pictures(browser)
             test_layers(browser)
+            test_points_behind_curves(browser)
             expect(browser.js("window.pwned === undefined && !document.querySelector('[onerror], img[src=x], h1 b')"),
                    "hostile texts stay texts")
             blocked = browser.js("new Promise((done) => { const i = new Image(); i.onerror = () => done(true); "

@@ -182,8 +182,8 @@ std::string layers_html(const Json& picture, const Files& files) {
 std::string picture_html(const Json& picture, const std::string& id, const Files& files) {
     const std::string caption = text(picture, "caption");
     const bool is_layered = !picture["layers"].elements().empty();
-    return std::string("<figure class=\"picture") + (is_layered ? " layered" : "") + "\" id=\"" + id +
-           "\"><div class=\"stage\">" +
+    return std::string("<figure class=\"picture") + (is_layered ? " layered" : "") + "\"" +
+           (id.empty() ? "" : " id=\"" + id + "\"") + "><div class=\"stage\">" +
            (is_layered ? layers_html(picture, files) : image_html(picture, caption, files)) +
            "</div><figcaption><span class=\"caption\">" + caption + "</span></figcaption></figure>\n";
 }
@@ -195,9 +195,7 @@ std::string maps_html(const Json& report, const Files& files) {
     for (std::size_t i = 0; i < maps.size(); ++i) {
         out += picture_html(maps[i], "map-" + std::to_string(i), files);
     }
-    return out.empty() ? ""
-                       : "<h3 class=\"maps-title\">Certainty and coverage over the frame</h3>\n<div class=\"maps\">\n" +
-                             out + "</div>\n";
+    return out.empty() ? "" : "<h3 class=\"maps-title\">Over the frame</h3>\n<div class=\"maps\">\n" + out + "</div>\n";
 }
 
 std::string subjects_html(const Json& report, const Files& files) {
@@ -214,7 +212,12 @@ std::string subjects_html(const Json& report, const Files& files) {
         for (std::size_t k = 0; k < pictures.size(); ++k) {
             out += picture_html(pictures[k], "picture-" + number + "-" + std::to_string(k), files);
         }
-        out += pictures.empty() ? "</section>\n" : "</div></section>\n";
+        if (!pictures.empty()) out += "</div>\n";
+        const Json::List& worst = subjects[i]["worst"].elements();
+        if (!worst.empty())
+            out += "<div class=\"worst\"><h4>The points that are furthest off</h4>\n<div class=\"crops\">\n";
+        for (const Json& crop : worst) out += picture_html(crop, "", files);
+        out += worst.empty() ? "</section>\n" : "</div></div></section>\n";
     }
     return out;
 }

@@ -39,8 +39,11 @@ namespace lensproof::draw {
 ///                                   "label"?: what it is among its layers,
 ///                                   "layers"?: [{"name", "label", "kind": "picture" | "difference"}],
 ///                                                           of the same frame: laid over it, or beside it
-///                                   "points"?: [[x, y, dx, dy], …]}]}],     detected point and measured − model, px
+///                                   "points"?: [[x, y, dx, dy], …]}],       detected point and measured − model, px
+///                    "points"?: {"centre_px": [x, y], "half_diagonal_px", "rms_px"},   what the points lie about
+///                    "worst"?: [{"name", "caption"}]}],              drawings of the points that are furthest off
 ///      "plots"?: [{"id", "title", "subtitle"?, "x_label", "y_label", "x_unit"?, "y_unit"?,
+///                 "over"?: "image_height" | "azimuth" | "residual": the subjects' points behind a place can be shown,
 ///                 "limit"?: draws the band ± limit,
 ///                 "series": [{"label", "subject"?: an id above, which gives the colour,
 ///                             "style": "measured" (solid) | "reference" (dashed) | "difference" (solid),

@@ -13,16 +13,16 @@ namespace lensproof::studies {
 
 namespace {
 
-std::vector<Vec2d> points_used(const calibration::Profile& profile) {
-    std::vector<Vec2d> points;
+std::vector<calibration::PlacedResidual> residuals_of(const calibration::Profile& profile) {
+    std::vector<calibration::PlacedResidual> residuals;
     for (const calibration::ProfileView& view : profile.views) {
         for (const calibration::ProfilePoint& point : view.points) {
             if (point.used) {
-                points.push_back(point.image_px);
+                residuals.push_back({point.image_px, point.residual_px});
             }
         }
     }
-    return points;
+    return residuals;
 }
 
 /// "0.004 px at the best place, at most 0.012 px inside the points' hull (71 % of the frame), 0.3 px in a corner".
@@ -135,6 +135,14 @@ findings::Findings camera_findings(MeasuredCamera camera, const ClosedLoopLimits
         }
     }
     found.plots = camera_plots(camera, limits);
+    if (const auto& geometry = camera.profile.geometry) {
+        add_residuals(found, camera.subject, residuals_of(camera.profile),
+                      {.width_px = camera.profile.width_px,
+                       .height_px = camera.profile.height_px,
+                       .centre_px = calibration::centre_px(geometry->model)},
+                      "measured − model");
+        add_worst(camera.subject, std::move(camera.far_points));
+    }
     found.subjects = {std::move(camera.subject)};
     found.profiles = {std::move(camera.profile)};
     return found;
@@ -142,7 +150,10 @@ findings::Findings camera_findings(MeasuredCamera camera, const ClosedLoopLimits
 
 findings::Map certainty_map(const calibration::Profile& profile, const std::string& label) {
     const calibration::UncertaintyMap& knots = *profile.geometry->uncertainty;
-    const std::vector<Vec2d> points = points_used(profile);
+    std::vector<Vec2d> points;
+    for (const calibration::PlacedResidual& residual : residuals_of(profile)) {
+        points.push_back(residual.at_px);
+    }
     draw::FrameMap frame{.title = fmt::format("{}, {}", profile.name, label),
                          .heading = "How sure the projection is",
                          .label = "projection uncertainty, 1 σ",

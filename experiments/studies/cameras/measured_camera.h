@@ -10,6 +10,7 @@
 #include "engine/formats/image/image.h"
 #include "experiments/findings/study.h"
 #include "experiments/studies/cameras/closed_loop.h"
+#include "experiments/studies/cameras/residual_findings.h"
 
 namespace lensproof::studies {
 
@@ -27,6 +28,7 @@ struct MeasuredCamera {
     findings::Subject subject;  // with facts of its own, and its pictures
     calibration::Profile profile;
     std::optional<calibration::Profile> traced;  // the lens's own rays, for a simulation
+    std::vector<FarPoint> far_points{};
 };
 
 /// The profile that `measure` makes of the input, and its self-test where the settings ask for one: a step each, which

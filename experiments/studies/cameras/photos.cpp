@@ -138,6 +138,8 @@ MeasuredCamera measure_photos(const Photos& photos, const findings::RunSettings&
         all.files.emplace_back(picture.name);
     }
     camera.profile = measured_in_steps(settings, all, input, calibration::measure_surveyed);
+    camera.far_points =
+        settings.steps.step("far points", all, [&] { return far_points(camera.profile, input.pictures); });
     for (std::size_t i = 0, view = 0; i < pictures.size(); ++i) {
         if (input.pictures[i].role == calibration::PictureRole::chart) {
             add_view(pictures[i], camera.profile.views.at(view++));
@@ -152,7 +154,8 @@ MeasuredCamera measure_photos(const Photos& photos, const findings::RunSettings&
 }
 
 std::vector<findings::Check> photo_checks(const MeasuredCamera& camera, const PhotoExpectations& expected) {
-    const auto& [subject, profile, traced] = camera;
+    const findings::Subject& subject = camera.subject;
+    const calibration::Profile& profile = camera.profile;
     std::vector<findings::Check> checks;
     if (!profile.geometry) {
         return checks;

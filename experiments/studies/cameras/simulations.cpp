@@ -215,6 +215,7 @@ MeasuredCamera measure_simulation(const Simulation& simulation, const render::Ca
                   {"flat_field", simulation.flat_field ? simulation.flat_field_samples_per_pixel : 0},
                   {"samples_per_pixel", simulation.scene.samples_per_pixel}});
     measured.profile = measured_in_steps(settings, all, input, calibration::measure);
+    measured.far_points = far_points(measured.profile, input.pictures);
     for (std::size_t i = 0; i < count; ++i) {
         add_view(measured.subject.pictures[i], measured.profile.views.at(i));
     }

@@ -1,5 +1,7 @@
 #include "experiments/studies/twins/render_twin.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -12,6 +14,7 @@
 #include "engine/render/integrators/integrators.h"
 #include "engine/render/progressive.h"
 #include "experiments/draw/coloured_image.h"
+#include "experiments/draw/point_crop.h"
 #include "experiments/findings/shown_picture.h"
 
 namespace lensproof::studies {
@@ -104,6 +107,28 @@ formats::Image as_seen(const formats::Image& picture, double white) {
     return seen;
 }
 
+std::vector<FarPoint> far_points_of(const Twin& twin, const std::string& photo, const formats::Image& image,
+                                    const formats::Image& lit, int channel) {
+    std::vector<calibration::TwinPoint> points = twin.points;
+    const auto off_px = [](const calibration::TwinPoint& point) { return length(point.photo_px - point.twin_px); };
+    std::ranges::sort(points, std::ranges::greater{}, off_px);
+    points.resize(std::min(points.size(), kWorstPoints));
+    std::vector<FarPoint> far;
+    far.reserve(points.size());
+    for (const calibration::TwinPoint& point : points) {
+        far.push_back(
+            {.off_px = off_px(point),
+             .caption = fmt::format("{} at ({:.1f}, {:.1f}) px: photo and twin {:.3f} px apart",
+                                    std::filesystem::path(photo).filename().string(), point.photo_px.x,
+                                    point.photo_px.y, off_px(point)),
+             .svg = draw::point_crops_svg({draw::PointCrop("photo", image, channel, point.photo_px),
+                                           draw::PointCrop("twin", lit, channel, point.photo_px)},
+                                          {{.at_px = point.twin_px, .label = "in the twin", .is_expected = true},
+                                           {.at_px = point.photo_px, .label = "in the photo"}})});
+    }
+    return far;
+}
+
 /// Of a pixel of the twin, as it is measured in photos.
 double twin_noise(const formats::Image& twin, int channel, const std::vector<calibration::TwinPoint>& points) {
     calibration::ChartPoints seen;
@@ -124,7 +149,8 @@ void fields(JsonArchive& json, Twin& twin) {
         .field("pixels", twin.pixels)
         .packed("photo", twin.photo)
         .packed("render", twin.render)
-        .packed("difference", twin.difference);
+        .packed("difference", twin.difference)
+        .field("far_points", twin.far_points);
 }
 
 render::CameraSettings camera_settings(const TwinSettings& settings, const FittedTwin& fitted) {
@@ -172,6 +198,7 @@ Twin render_twin(const TwinSettings& settings, const FittedTwin& fitted, const c
     const formats::Image lit = calibration::in_light_of(twin, image, found.points);
     found.photo = findings::laid_picture(as_seen(image, seen->traits->white));
     found.render = findings::laid_picture(as_seen(lit, seen->traits->white));
+    found.far_points = far_points_of(found, photo.name, image, lit, channel);
     const formats::Image difference = calibration::difference_among(
         {.photo = image, .twin = lit, .photo_channel = channel, .twin_channel = channel, .contrast = contrast},
         found.points);

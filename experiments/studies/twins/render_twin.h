@@ -9,6 +9,7 @@
 #include "engine/base/json_archive.h"
 #include "engine/render/camera/camera.h"
 #include "experiments/findings/study.h"
+#include "experiments/studies/cameras/residual_findings.h"
 #include "experiments/studies/twins/twin_set.h"
 
 namespace lensproof::studies {
@@ -23,6 +24,7 @@ struct Twin {
     std::string photo{};
     std::string render{};      // in the photo's light
     std::string difference{};  // photo less twin
+    std::vector<FarPoint> far_points{};
 };
 
 void fields(JsonArchive& json, Twin& twin);

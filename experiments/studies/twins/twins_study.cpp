@@ -208,6 +208,7 @@ findings::Findings twins_of(const TwinSettings& settings, const findings::RunSet
     std::optional<render::Camera> camera;  // made where a picture is to be
     findings::Subject subject{.id = settings.name, .kind = "twins", .label = fitted.camera.lens.name};
     std::vector<calibration::TwinPoint> points;
+    std::vector<FarPoint> far_points;
     Json pictures = Json::list();
     const std::size_t count = fitted.seen.views.size();
     for (std::size_t view = 0; view < count; ++view) {
@@ -233,6 +234,7 @@ findings::Findings twins_of(const TwinSettings& settings, const findings::RunSet
         subject.pictures.push_back(shown(settings, file, twin));
         pictures.push_back(picture_json(file, twin));
         std::ranges::copy(twin.points, std::back_inserter(points));
+        std::ranges::copy(twin.far_points, std::back_inserter(far_points));
     }
     constexpr std::size_t kLeastPoints = 10;
     if (points.size() < kLeastPoints) {
@@ -256,6 +258,18 @@ findings::Findings twins_of(const TwinSettings& settings, const findings::RunSet
          .y_unit = "px",
          .series = {
              {.label = told.label, .subject = settings.name, .style = "difference", .curve = account.radial_px}}});
+    std::vector<calibration::PlacedResidual> residuals;
+    residuals.reserve(points.size());
+    for (const calibration::TwinPoint& point : points) {
+        residuals.push_back({point.photo_px, point.photo_px - point.twin_px});
+    }
+    const Vec2d middle{0.5 * (profile.width_px - 1), 0.5 * (profile.height_px - 1)};
+    add_residuals(found, subject, residuals,
+                  {.width_px = profile.width_px,
+                   .height_px = profile.height_px,
+                   .centre_px = middle + fitted.camera.axis_from_middle_px},
+                  "photo − twin");
+    add_worst(subject, std::move(far_points));
     found.subjects.push_back(std::move(subject));
     found.inputs = {formats::find_lens_file(settings.lens)};
     return found;

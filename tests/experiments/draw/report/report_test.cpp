@@ -176,6 +176,20 @@ TEST(Report, LayersStandBesideTheirPicture) {
     EXPECT_NE(difference, page.npos);
 }
 
+TEST(Report, ThePointsThatAreFurthestOffStandBelowThePictures) {
+    const Json report = {
+        {"subjects",
+         {{{"id", "a"},
+           {"pictures", {{{"name", "a/1.png"}, {"caption", "one"}}}},
+           {"worst", {{{"name", "a/worst-01.svg"}, {"caption", "0.7 px"}}, {{"name", "a/worst-02.svg"}}}}}}}};
+    const std::string page = report_html(report, {{"a/1.png", "foobar"}, {"a/worst-01.svg", "foob"}});
+    const auto picture = page.find("id=\"picture-0-0\"");
+    const auto worst = page.find("alt=\"0.7 px\" src=\"data:image/svg+xml;base64,Zm9vYg==\"");
+    EXPECT_LT(picture, worst);
+    EXPECT_NE(worst, page.npos);
+    EXPECT_TRUE(has(page, "not in this report: a/worst-02.svg"));
+}
+
 TEST(Report, TheTableOfChecksNeedsNoScript) {
     const std::string page = report_html(one_check(Json::object()), {});
     EXPECT_TRUE(has(page, "<th scope=\"row\"><span class=\"name\">distortion, rms</span><span class=\"why\">because"));
