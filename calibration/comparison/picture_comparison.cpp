@@ -93,6 +93,7 @@ PictureComparison compare_pictures(const formats::Image& a, formats::Image b, co
         result.flip_map = std::move(flip_map);
         result.ciede2000_map = std::move(colours);
         result.difference = denoised_difference(a, other, overlap);
+        result.b_over_a = std::move(other);
     }
     return result;
 }

@@ -37,7 +37,8 @@ struct PictureComparison {
     Estimate ciede2000_mean;
     Estimate ciede2000_p99;               // the 99th percentile over pixels
     std::map<std::string, Curve> curves;  // radial_differences
-    // The maps, where they were asked for.
+    // Where maps were asked for: `b` over `a`, as everything was told of it, and the maps.
+    std::optional<formats::Image> b_over_a;
     std::optional<DenoisedDifference> difference;
     std::optional<formats::Image> flip_map;
     std::optional<formats::Image> ciede2000_map;

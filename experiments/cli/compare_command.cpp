@@ -144,6 +144,9 @@ int compare_profiles(const calibration::Profile& a, const calibration::Profile& 
 
 /// A limit that nothing is held against would look like one that held.
 void check_limits(bool profiles, const CompareOptions& options) {
+    if (profiles && options.pictures.is_shown()) {
+        throw InputError(fmt::format("--maps and --report show pictures; {} and {} are not", options.a, options.b));
+    }
     const std::vector<std::pair<const char*, double>> of_profiles = {
         {"--position-limit", options.position_limit_px},
         {"--distortion-limit", options.distortion_limit_percent},

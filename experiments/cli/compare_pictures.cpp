@@ -10,10 +10,13 @@
 #include "calibration/comparison/colour_planes.h"
 #include "calibration/comparison/picture_comparison.h"
 #include "engine/base/input_error.h"
+#include "engine/base/write_file.h"
 #include "engine/formats/image/photo.h"
 #include "engine/formats/image/picture_file.h"
 #include "experiments/cli/compare_maps.h"
+#include "experiments/cli/compare_page.h"
 #include "experiments/cli/compare_report.h"
+#include "experiments/cli/picture_measures.h"
 #include "experiments/cli/terminal.h"
 
 namespace lensproof::cli {
@@ -101,7 +104,7 @@ calibration::ComparisonWishes wishes_of(const PictureOptions& options, const Rea
                                          .clipped = {.a = a.clipped_from, .b = b.clipped_from},
                                          .is_high_range = a.is_high_range && b.is_high_range,
                                          .pixels_per_degree = options.pixels_per_degree,
-                                         .makes_maps = !options.maps_folder.empty(),
+                                         .makes_maps = options.is_shown(),
                                          .threads = common.threads};
     for (const auto model : {calibration::WarpModel::translation, calibration::WarpModel::similarity,
                              calibration::WarpModel::affine, calibration::WarpModel::homography}) {
@@ -148,51 +151,6 @@ Json curves_json(const std::map<std::string, calibration::Curve>& curves) {
     return json;
 }
 
-/// A number of the comparison, by its JSON key. `limit`: 0 is none.
-struct Measure {
-    std::string key;
-    std::string title;
-    Estimate estimate;
-    double limit = 0.0;
-    /// What is held against the limit's, the smaller the better.
-    Estimate fault;
-    double largest_fault = 0.0;
-};
-
-std::vector<Measure> measures(const PictureComparison& found, const PictureOptions& options) {
-    const Estimate unlike{.value = 1.0 - found.ssim.value, .standard_error = found.ssim.standard_error};
-    return {{.key = "psnr_db",
-             .title = "PSNR, dB",
-             .estimate = found.psnr_db,
-             .limit = options.psnr_limit_db,
-             .fault = found.rms,
-             .largest_fault = std::pow(10.0, -options.psnr_limit_db / 20.0)},
-            {.key = "ssim",
-             .title = "SSIM",
-             .estimate = found.ssim,
-             .limit = options.ssim_limit,
-             .fault = unlike,
-             .largest_fault = 1.0 - options.ssim_limit},
-            {.key = "flip",
-             .title = found.flip_exposures ? "FLIP, high range" : "FLIP",
-             .estimate = found.flip,
-             .limit = options.flip_limit,
-             .fault = found.flip,
-             .largest_fault = options.flip_limit},
-            {.key = "ciede2000_mean",
-             .title = "CIEDE2000, mean",
-             .estimate = found.ciede2000_mean,
-             .limit = options.ciede2000_limit,
-             .fault = found.ciede2000_mean,
-             .largest_fault = options.ciede2000_limit},
-            {.key = "ciede2000_p99",
-             .title = "CIEDE2000, 99 %",
-             .estimate = found.ciede2000_p99,
-             .limit = options.ciede2000_p99_limit,
-             .fault = found.ciede2000_p99,
-             .largest_fault = options.ciede2000_p99_limit}};
-}
-
 /// Throws InputError where a number has a limit and is none.
 void check_measures(const std::vector<Measure>& list, const std::string& files) {
     for (const Measure& measure : list) {
@@ -213,10 +171,9 @@ int report_measures(const std::vector<Measure>& list, const CommonOptions& commo
         json["standard_errors"][measure.key] = error;
         std::string verdict_text;
         if (measure.limit > 0.0) {
-            const findings::Check check{
-                .value = measure.fault.value, .sigma = measure.fault.standard_error, .limit = measure.largest_fault};
-            const std::string verdict = findings::verdict_name(check.verdict());
-            status = check.verdict() == findings::Verdict::pass ? status : kCheckFailed;
+            const findings::Verdict judged = measure.check().verdict();
+            const std::string verdict = findings::verdict_name(judged);
+            status = judged == findings::Verdict::pass ? status : kCheckFailed;
             json["checks"].push_back(Json{{"quantity", measure.key}, {"limit", measure.limit}, {"verdict", verdict}});
             verdict_text = fmt::format("  limit {:g}: {}", measure.limit, verdict);
         }
@@ -250,8 +207,9 @@ void check_comparable(const std::string& files, const std::string& why, const Pi
             throw InputError(fmt::format("{}: {}, so that nothing can be held against {}", files, why, name));
         }
     }
-    if (!options.maps_folder.empty()) {
-        throw InputError(fmt::format("{}: {}, so that there is nothing for --maps to show", files, why));
+    if (options.is_shown()) {
+        throw InputError(fmt::format("{}: {}, so that there is nothing for {} to show", files, why,
+                                     options.maps_folder.empty() ? "--report" : "--maps"));
     }
 }
 
@@ -287,7 +245,7 @@ int report_comparison(const PictureComparison& found, const formats::Image& pict
     }
     json["exposure"] = exposure_json(found.exposure, picture);
     if (!options.maps_folder.empty()) {
-        json["maps"] = write_maps(found, options.maps_folder);
+        json["maps"] = write_maps(drawn_maps(found), options.maps_folder);
     }
     if (prints_text(common)) {
         print_matches(found, picture);
@@ -319,6 +277,8 @@ void add_picture_options(Command& command, PictureOptions& options) {
         .shows_default();
     command.add_option("--maps", options.maps_folder, "Folder for maps of two pictures' differences, PNG")
         .type_name("DIR");
+    command.add_option("--report", options.report_file, "Page that lays two pictures over each other, HTML")
+        .type_name("FILE");
     command.add_option("--pixels-per-degree", options.pixels_per_degree, "Of FLIP's display, as its viewer sees it")
         .check(in_range(5.0, 500.0))
         .shows_default();
@@ -339,6 +299,9 @@ int compare_pictures(const std::string& a, const std::string& b, const PictureOp
     if (!options.maps_folder.empty()) {
         check_maps_folder(options.maps_folder);
     }
+    if (!options.report_file.empty()) {
+        check_output_name(options.report_file);
+    }
     ReadPicture one = read_picture(a);
     ReadPicture other = read_picture(b);
     check_alike(one.image, a, other.image, b);
@@ -350,6 +313,9 @@ int compare_pictures(const std::string& a, const std::string& b, const PictureOp
     int status = report_rows(rows, a, b, common, json);
     if (found) {
         status = std::max(status, report_comparison(*found, one.image, options, common, json));
+    }
+    if (found && found->b_over_a && !options.report_file.empty()) {
+        write_file(options.report_file, comparison_page({a, one.image, one.is_high_range}, b, *found, options));
     }
     write_json_result(common, json);
     return status;

@@ -14,6 +14,7 @@ struct PictureOptions {
     std::string registration = "auto";
     std::string exposure = "match";
     std::string maps_folder;
+    std::string report_file;
     double pixels_per_degree = calibration::kFlipPixelsPerDegree;
     double rms_limit = 0.0;
     double psnr_limit_db = 0.0;
@@ -21,6 +22,9 @@ struct PictureOptions {
     double flip_limit = 0.0;
     double ciede2000_limit = 0.0;
     double ciede2000_p99_limit = 0.0;
+
+    /// Whether there is to be something to look at.
+    [[nodiscard]] bool is_shown() const { return !maps_folder.empty() || !report_file.empty(); }
 
     /// By the options' names.
     [[nodiscard]] std::vector<std::pair<const char*, double>> limits() const;

@@ -37,12 +37,12 @@ Json check_json(const findings::Check& check) {
             {"explanation", explanation}};
 }
 
-Json provenance_json(std::vector<std::filesystem::path> inputs, const findings::RunSettings& settings) {
+Json provenance_json(std::vector<std::filesystem::path> inputs, const Json& settings) {
     Json provenance{{"program", "lensproof"},
                     {"version", program_version()},
                     {"commit", source_commit()},
                     {"libraries", library_versions()}};
-    provenance["settings"] = {{"seed", settings.seed}};
+    provenance["settings"] = settings;
     std::ranges::sort(inputs);
     inputs.erase(std::unique(inputs.begin(), inputs.end()), inputs.end());
     for (const std::filesystem::path& input : inputs) {
@@ -144,9 +144,18 @@ std::string summary_of(const Experiment& experiment, const findings::Findings& f
 }  // namespace
 
 Json report_json(const Experiment& experiment, const findings::Findings& found, const findings::RunSettings& settings) {
+    return report_json(
+        {.title = experiment.title,
+         .summary = summary_of(experiment, found),
+         .settings = {{"seed", settings.seed}},
+         .reproduce = fmt::format("./lensproof run {} --seed {}", portable_path(experiment.file), settings.seed)},
+        found);
+}
+
+Json report_json(const ReportHead& head, const findings::Findings& found) {
     Json report{{"schema", "lensproof-report/1"},
-                {"title", experiment.title},
-                {"summary", summary_of(experiment, found)},
+                {"title", head.title},
+                {"summary", head.summary},
                 {"verdict", findings::verdict_name(findings::overall(found.checks))}};
     if (found.subjects_title != findings::kUsualSubjects) {
         report["subjects_title"] = found.subjects_title;
@@ -170,8 +179,8 @@ Json report_json(const Experiment& experiment, const findings::Findings& found, 
     for (const findings::Map& map : found.maps) {
         report["maps"].push_back({{"name", map.name}, {"subject", map.subject}, {"caption", map.caption}});
     }
-    report["provenance"] = provenance_json(found.inputs, settings);
-    report["reproduce"] = fmt::format("./lensproof run {} --seed {}", portable_path(experiment.file), settings.seed);
+    report["provenance"] = provenance_json(found.inputs, head.settings);
+    report["reproduce"] = head.reproduce;
     return report;
 }
 

@@ -9,8 +9,17 @@
 
 namespace lensproof::runner {
 
+/// What a report says beside its findings.
+struct ReportHead {
+    std::string title;
+    std::string summary;
+    Json settings;          // of its provenance
+    std::string reproduce;  // the command
+};
+
 /// With program, version, commit, settings, and the inputs with their hashes. A study's tables stand under keys of
 /// their own.
+Json report_json(const ReportHead& head, const findings::Findings& found);
 Json report_json(const Experiment& experiment, const findings::Findings& found, const findings::RunSettings& settings);
 
 /// The pictures' bytes by the names that the JSON uses. Maps of all subjects have one range of colours.

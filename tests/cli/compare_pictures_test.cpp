@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "engine/base/file.h"
 #include "engine/formats/image/image.h"
 #include "tests/cli/program.h"
 #include "tests/complaint.h"
@@ -97,6 +98,32 @@ TEST(ComparePicturesCommand, DrawsMaps) {
         EXPECT_EQ(picture.height, 90);
         EXPECT_LT(map["lowest"].get<double>(), map["highest"].get<double>());
     }
+}
+
+TEST(ComparePicturesCommand, WritesAPageThatLaysThemOverEachOther) {
+    const Workplace place;
+    formats::write_exr(scene(0.0, 0.0), place.path() / "a.exr");
+    formats::write_exr(scene(1.3, 0.0, 0.5), place.path() / "b.exr");
+    const auto compared = [&](const std::string& ssim) {
+        return place.run({"compare", "a.exr", "b.exr", "--report", "page.html", "--ssim-limit", ssim}).status;
+    };
+    EXPECT_EQ(compared("0.5"), 0);
+    const std::string page = read_file(place.path() / "page.html");
+    for (const char* part :
+         {"A: a.exr, B: b.exr", "<span>B</span>", "<span>difference</span>", "<span>flip</span>",
+          "<span>ciede2000</span>", "1 − SSIM", "shift_x_px", "lensproof compare a.exr b.exr --registration auto",
+          "Brightness, B against A", "PASS</span>"}) {
+        EXPECT_TRUE(says(page, part));
+    }
+    EXPECT_EQ(compared("0.9999999"), 1);
+    EXPECT_TRUE(says(read_file(place.path() / "page.html"), "FAIL</span>"));
+    EXPECT_EQ(place.run({"compare", "a.exr", "b.exr", "--report", "nowhere/page.html"}).status, 0)
+        << "folders are made";
+    formats::write_exr(formats::make_image(120, 90, {"U", "V"}), place.path() / "uv.exr");
+    const auto refused = place.run({"compare", "uv.exr", "uv.exr", "--report", "uv.html"});
+    EXPECT_EQ(refused.status, 2);
+    EXPECT_TRUE(says(refused.err, "nothing for --report to show"));
+    EXPECT_FALSE(std::filesystem::exists(place.path() / "uv.html"));
 }
 
 TEST(ComparePicturesCommand, RefusesWhatCannotBeCompared) {
