@@ -273,7 +273,7 @@ std::string provenance_html(const Json& report) {
     for (const auto& [key, value] : provenance.members()) {
         std::string label = key;
         for (char& c : label) c = c == '_' ? ' ' : c;
-        out += "<div><dt>" + escape_markup(label) + "</dt><dd>" + value_html(value) + "</dd></div>\n";
+        out += "<dt>" + escape_markup(label) + "</dt><dd>" + value_html(value) + "</dd>\n";
     }
     return out + "</dl>\n";
 }
