@@ -183,7 +183,13 @@ TEST(PhotoFolder, AnExperimentsReportHasTheSameAccount) {
         EXPECT_TRUE(says(facts, part));
     }
     EXPECT_EQ(report["subjects"][0]["pictures"].size(), 6u);
-    EXPECT_EQ(report["maps"].size(), 1u);
+    EXPECT_EQ(report["maps"].size(), 2u) << "its certainty, and how far its points are off";
+    const Json& worst = report["subjects"][0]["worst"];
+    ASSERT_EQ(worst.size(), 10u);
+    for (const Json& point : worst) {
+        EXPECT_TRUE(says(point["caption"].get<std::string>(), ".jpg at (")) << point;
+        EXPECT_TRUE(says(place.content("report/images/" + point["name"].get<std::string>()), "measured"));
+    }
 
     place.file("photos/manifest.toml", "focus_positions_mm = [0, 1]\n" + manifest + kBoardFile);
     expect_refused(place, {"run", "experiment.toml", "-o", "other"}, {"manifest.toml", "focus_positions_mm"});
