@@ -48,10 +48,15 @@ optics::Prescription with_stop_picture(optics::Prescription prescription) {
 
 std::string read_lens_name(TomlTable& table) {
     std::string lens = table.text("lens");
-    if (lens.find_first_of("./") != std::string::npos) {  // no lens that ships has such a name
-        check_reference(table.file(), lens);
+    if (lens.find_first_of("./") == std::string::npos) {  // no lens that ships has such a name
+        return lens;
     }
-    return lens;
+    const std::filesystem::path beside = std::filesystem::path(table.file()).parent_path() / lens;
+    std::error_code ignored;
+    const std::filesystem::path file =
+        std::filesystem::is_regular_file(beside, ignored) ? beside : std::filesystem::path(lens);
+    check_reference(table.file(), file);
+    return file.string();
 }
 
 optics::Lens with_transmittance(optics::Lens lens) {

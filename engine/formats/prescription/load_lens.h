@@ -23,8 +23,8 @@ optics::GlassCatalogue with_own_catalogues(optics::GlassCatalogue glasses, const
 /// The prescription with the picture that its stop's shape names. Throws InputError where that cannot be read.
 optics::Prescription with_stop_picture(optics::Prescription prescription);
 
-/// The lens that a table names by the key `lens`: one that ships, or a file. Throws InputError where check_reference
-/// does.
+/// The lens that a table names by the key `lens`: one that ships, or a file, relative to the table's own where there is
+/// one, else to the working folder. Throws InputError where check_reference does.
 std::string read_lens_name(TomlTable& table);
 
 /// The lens with the internal transmittance of its glasses that ship, which their catalogue leaves out; glass without

@@ -3,6 +3,7 @@
 
 #include <filesystem>
 
+#include "engine/base/toml.h"
 #include "engine/base/write_file.h"
 #include "engine/formats/prescription/load_lens.h"
 #include "engine/formats/prescription/prescription_file.h"
@@ -114,6 +115,19 @@ TEST(Projections, AgreeNearTheAxisAndHoldBeyondNinetyDegrees) {
     }
     EXPECT_DOUBLE_EQ(optics::projected_radius(optics::Projection::equidistant, 2.0), 2.0);
     EXPECT_DOUBLE_EQ(optics::projected_radius(optics::Projection::equisolid, 2.0), 2.0 * std::sin(1.0));
+}
+
+/// A file's own folder comes first, then the working folder, as on the command line.
+TEST(LensName, IsRelativeToTheFileThatStatesIt) {
+    const TestFolder folder;
+    const auto named = [&](const std::string& lens) {
+        TomlTable table = TomlTable::parse("lens = \"" + lens + "\"", (folder.path() / "case.toml").string());
+        return read_lens_name(table);
+    };
+    EXPECT_EQ(named("tessar"), "tessar");
+    EXPECT_EQ(named("lens.toml"), "lens.toml") << "none lies beside it";
+    write_file(folder.path() / "lens.toml", "name = \"mine\"\n");
+    EXPECT_EQ(named("lens.toml"), (folder.path() / "lens.toml").string());
 }
 
 }  // namespace lensproof::formats::prescription_test
