@@ -13,7 +13,7 @@ inline constexpr int kShownWidth = 480;  // px: a report holds many pictures
 Picture shown_picture(const std::string& name, const std::string& caption, const formats::Image& image,
                       int widest = kShownWidth);
 
-inline constexpr int kLaidWidth = 960;  // px, of pictures to be laid over each other: ten of 24 megapixels fill 4 MB
+inline constexpr int kLaidWidth = 960;  // px, of pictures to be laid over each other
 
 /// A copy as JPEG, smaller in the same way.
 std::string laid_picture(const formats::Image& image);

@@ -22,7 +22,7 @@ struct ReportHead {
 Json report_json(const ReportHead& head, const findings::Findings& found);
 Json report_json(const Experiment& experiment, const findings::Findings& found, const findings::RunSettings& settings);
 
-/// The pictures' bytes by the names that the JSON uses. Maps of all subjects have one range of colours.
+/// The pictures' bytes by the names that the JSON uses. Maps of one quantity have one range of colours.
 std::map<std::string, std::string> report_pictures(const findings::Findings& found);
 
 }  // namespace lensproof::runner

@@ -70,22 +70,27 @@ void add_residuals(findings::Findings& found, findings::Subject& subject,
                            .series = {series("", "measured", curves.density),
                                       series(", Gaussian", "reference", calibration::gaussian_density(curves.density))},
                            .over = findings::PlotOver::residual});
-    found.plots.push_back({.id = "residual-radius",
-                           .title = "Residuals along the radius",
-                           .subtitle = "means over the points of a bin, with their 95 % bounds",
-                           .y_label = "mean residual",
-                           .y_unit = "px",
-                           .series = {series(", radial", "measured", curves.radial),
-                                      series(", tangential", "measured", curves.tangential)}});
-    found.plots.push_back({.id = "residual-azimuth",
-                           .title = "Residuals around the centre",
-                           .subtitle = "means; one wave around: decentred; two: tilted, or pixels not square",
-                           .y_label = "mean residual",
-                           .y_unit = "px",
-                           .series = {series(", radial", "measured", curves.radial_azimuth),
-                                      series(", tangential", "measured", curves.tangential_azimuth)},
-                           .over = findings::PlotOver::azimuth});
-    found.maps.push_back(residual_map(subject, residuals, frame, what));
+    const auto add_means = [&](const std::string& id, const std::string& title, const std::string& subtitle,
+                               const calibration::Curve& radial, const calibration::Curve& tangential,
+                               findings::PlotOver over) {
+        found.plots.push_back(
+            {.id = id,
+             .title = title,
+             .subtitle = subtitle,
+             .y_label = "mean residual",
+             .y_unit = "px",
+             .series = {series(", radial", "measured", radial), series(", tangential", "measured", tangential)},
+             .over = over});
+    };
+    add_means("residual-radius", "Residuals along the radius", "means over the points of a bin, with their 95 % bounds",
+              curves.radial, curves.tangential, findings::PlotOver::image_height);
+    add_means("residual-azimuth", "Residuals around the centre",
+              "means; one wave around: decentred; two: tilted, or pixels not square", curves.radial_azimuth,
+              curves.tangential_azimuth, findings::PlotOver::azimuth);
+    findings::Map map = residual_map(subject, residuals, frame, what);
+    if (std::ranges::find(map.frame.covered, true) != map.frame.covered.end()) {
+        found.maps.push_back(std::move(map));
+    }
 }
 
 void fields(JsonArchive& json, FarPoint& point) {

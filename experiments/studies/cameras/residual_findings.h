@@ -20,7 +20,7 @@ struct ResidualFrame {
 
 /// Adds to `subject` what its points lie about and a fact, and to `found` the residuals' distribution beside a
 /// Gaussian, their radial and tangential means along the radius and around, and a map of their rms. `what` is what
-/// they are, "measured − model". Nothing for fewer than kLeastResiduals.
+/// they are, "measured − model". Nothing for fewer than kLeastResiduals, no map where they lie too thin for one.
 void add_residuals(findings::Findings& found, findings::Subject& subject,
                    const std::vector<calibration::PlacedResidual>& residuals, const ResidualFrame& frame,
                    const std::string& what);
