@@ -45,7 +45,7 @@ double held(const Curve& curve, const Expected& expected) {
     return inside / static_cast<double>(curve.value.size());
 }
 
-/// Bounds of 95 % over twenty samples and more hold the truth in 80 % but once in ten thousand (binomial).
+/// Of twenty bounds of 95 % five or more miss the truth once in four hundred (binomial); the seed is fixed.
 constexpr double kLeastHeld = 0.8;
 
 TEST(ResidualCurves, NoiseIsGaussianAndHasNoMean) {
@@ -75,7 +75,7 @@ TEST(ResidualCurves, TailsAreSeen) {
         return random() % 50 == 0 ? Vec2d{3.0, -3.0} : noise(from, random);
     };
     const ResidualCurves curves = residual_curves(residuals(with_outliers), kCentre, kHalfDiagonal);
-    EXPECT_NEAR(curves.beyond_3, 0.02, 0.004);  // a fiftieth of the points, at seven times the rms
+    EXPECT_NEAR(curves.beyond_3, 0.02, 0.004);  // a fiftieth of 20000 points, ± four standard errors
 }
 
 TEST(ResidualCurves, ARadialErrorStandsAlongTheRadius) {
@@ -113,7 +113,7 @@ TEST(ResidualCurves, TheMapShowsWhereTheyAreOff) {
                   [](const PlacedResidual& residual) { return residual.at_px.x > 400.0 && residual.at_px.y > 250.0; });
     const std::vector<double> map = local_rms_px(all, kWidth, kHeight, 13, 9);
     ASSERT_EQ(map.size(), 13U * 9U);
-    // About 150 points count at each place: an rms of 300 coordinates is known to 4 %.
+    // About 150 points count at each place: an rms of 300 coordinates is known to 4 %. Five times that.
     EXPECT_NEAR(map[4 * 13 + 1], 0.2, 0.2 * 0.2);
     EXPECT_NEAR(map[2 * 13 + 11], 0.6, 0.6 * 0.2);
     EXPECT_TRUE(std::isnan(map[9 * 13 - 1]));  // no point is near the lower right corner
