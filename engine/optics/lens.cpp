@@ -14,7 +14,7 @@
 #include "engine/optics/air.h"
 #include "engine/optics/convert_lens.h"
 #include "engine/optics/frame.h"
-#include "engine/optics/paraxial.h"
+#include "engine/optics/unstated_rims.h"
 #include "engine/spectral/wavelengths.h"
 
 namespace lensproof::optics {
@@ -98,48 +98,6 @@ LensSurface placed_surface(const PrescribedSurface& row, const Frame& frame) {
     return surface;
 }
 
-/// Where no semi-diameter is stated: the heights of the marginal and of the chief ray, added, as design programs do.
-/// Throws InputError where the aperture is not stated either.
-void estimate_semi_diameters(Lens& lens) {
-    if (std::ranges::none_of(lens.surfaces, [](const LensSurface& s) { return std::isinf(s.semi_diameter); })) {
-        return;
-    }
-    const TraceLens<double> at_d = at_wavelength<double>(lens, spectral::kLineD);
-    const ParaxialData data = paraxial_data(at_d);
-    double pupil = lens.stated.entrance_pupil_diameter_mm.value_or(data.entrance_pupil_diameter);
-    if (!std::isfinite(pupil) && lens.stated.f_number) {
-        pupil = std::abs(data.efl) / *lens.stated.f_number;
-    }
-    if (!std::isfinite(pupil)) {
-        throw InputError(
-            fmt::format("{}: no semi-diameter is stated for some surfaces, and no f-number that they could "
-                        "be found from; expected semi_diameter_mm, or stated.f_number",
-                        lens.name));
-    }
-    double tangent = 0.0;
-    if (lens.stated.half_field_deg && *lens.stated.half_field_deg < 80.0) {
-        tangent = std::tan(*lens.stated.half_field_deg * kDegree);
-    } else if (lens.stated.image_circle_mm) {
-        tangent = 0.5 * *lens.stated.image_circle_mm / std::abs(data.efl);
-    }
-    ParaxialRay marginal{0.5 * pupil, 0.0};
-    ParaxialRay chief{-tangent * data.entrance_pupil_z, tangent};
-    for (std::size_t i = 0; i < lens.surfaces.size(); ++i) {
-        LensSurface& surface = lens.surfaces[i];
-        if (i > 0) {
-            const double gap = surface.vertex_z - lens.surfaces[i - 1].vertex_z;
-            marginal.height += gap * marginal.slope;
-            chief.height += gap * chief.slope;
-        }
-        if (std::isinf(surface.semi_diameter)) {
-            surface.semi_diameter = std::abs(marginal.height) + (surface.is_stop ? 0.0 : std::abs(chief.height));
-        }
-        const int here = static_cast<int>(i);
-        marginal = trace_paraxial(at_d, marginal, here, here);
-        chief = trace_paraxial(at_d, chief, here, here);
-    }
-}
-
 }  // namespace
 
 Glass resolved_medium(const PrescribedSurface& surface, const GlassCatalogue& glasses,
@@ -215,6 +173,7 @@ Lens make_lens(const Prescription& prescription, const GlassCatalogue& glasses, 
     lens.barrel = prescription.barrel;
     lens.focus_groups = prescription.focus_groups;
     lens.surroundings = prescription.surroundings;
+    lens.reference_wavelength_nm = prescription.reference_wavelength_nm();
     lens.is_rotationally_symmetric = prescription.is_rotationally_symmetric();
     std::set<std::string> used;
     const std::vector<Frame> frames = surface_frames(prescription);
@@ -263,7 +222,8 @@ Lens make_lens(const Prescription& prescription, const GlassCatalogue& glasses, 
         throw InputError(fmt::format("{}: the last surface is followed by {}, expected air", prescription.file.string(),
                                      last.medium.name));
     }
-    estimate_semi_diameters(lens);
+    open_stop(lens, prescription);
+    estimate_rims(lens, prescription);
     return lens;
 }
 

@@ -10,6 +10,7 @@
 #include "engine/optics/thin_film.h"
 #include "engine/optics/trace.h"
 #include "engine/optics/wall_finish.h"
+#include "engine/spectral/wavelengths.h"
 
 namespace lensproof::optics {
 
@@ -46,6 +47,7 @@ struct Lens {
     BarrelFinish barrel;
     std::vector<FocusGroup> focus_groups;
     Surroundings surroundings = Surroundings::air;
+    double reference_wavelength_nm = spectral::kLineD;
     bool is_rotationally_symmetric = true;
     double image_z = 0.0;
     std::vector<Finding> findings;  // names of glasses that no catalogue has, which the figures beside them stand for

@@ -7,6 +7,7 @@
 
 #include "engine/base/input_error.h"
 #include "engine/base/text.h"
+#include "engine/spectral/wavelengths.h"
 
 namespace lensproof::optics {
 
@@ -35,6 +36,37 @@ bool StatedMedium::is_air() const {
     return glass == "air" || glass == "AIR" || glass == "Air";
 }
 
+std::string describe(const SystemAperture& aperture) {
+    switch (aperture.kind) {
+        case ApertureKind::entrance_pupil_diameter:
+            return fmt::format("an entrance pupil of {} mm", aperture.value);
+        case ApertureKind::f_number:
+            return fmt::format("f/{}", aperture.value);
+        case ApertureKind::working_f_number:
+            return fmt::format("a working f-number of {}", aperture.value);
+        case ApertureKind::object_numerical_aperture:
+            return fmt::format("a numerical aperture of {} towards the object", aperture.value);
+        case ApertureKind::stop:
+            break;
+    }
+    return "the stop's semi-diameter";
+}
+
+double Prescription::reference_wavelength_nm() const {
+    return wavelengths_nm.empty() ? spectral::kLineD : wavelengths_nm.front();
+}
+
+SystemAperture Prescription::governing_aperture() const {
+    const auto stop = std::ranges::find_if(surfaces, &PrescribedSurface::is_stop);
+    if (aperture.kind != ApertureKind::stop || stop == surfaces.end() || stop->semi_diameter_mm || stop->rim_mm) {
+        return aperture;
+    }
+    if (stated.entrance_pupil_diameter_mm) {
+        return {ApertureKind::entrance_pupil_diameter, *stated.entrance_pupil_diameter_mm};
+    }
+    return stated.f_number ? SystemAperture{ApertureKind::f_number, *stated.f_number} : aperture;
+}
+
 bool Prescription::is_rotationally_symmetric() const {
     const bool round_surfaces = std::ranges::all_of(surfaces, [](const PrescribedSurface& surface) {
         return !surface.radius_x_mm && surface.misalignment == Misalignment{};
@@ -61,6 +93,9 @@ Prescription at_zoom_position(Prescription prescription, std::size_t position) {
         if (stop != prescription.surfaces.end()) {
             stop->semi_diameter_mm = chosen.stop_semi_diameter_mm;
         }
+    }
+    if (chosen.aperture.kind != ApertureKind::stop) {
+        prescription.aperture = chosen.aperture;
     }
     StatedData& stated = prescription.stated;
     // What a source says of the whole lens holds at each position that says nothing else, but for lengths that zooming

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "engine/base/infinity.h"
+#include "engine/base/vec.h"
 #include "engine/optics/finding.h"
 #include "engine/optics/projection.h"
 #include "engine/optics/wall_finish.h"
@@ -97,6 +98,42 @@ struct StatedData {
     bool operator==(const StatedData&) const = default;
 };
 
+/// What sets how far the stop opens: its own semi-diameter, or the system's aperture as design programs state it. The
+/// stop is then the smaller of its semi-diameter, where it has one, and of what the paraxial marginal ray needs.
+enum class ApertureKind {
+    stop,
+    entrance_pupil_diameter,    // mm
+    f_number,                   // focal length over entrance pupil diameter
+    working_f_number,           // 1 / (2 n' |u'|) for the object that the table is set to
+    object_numerical_aperture,  // n sin U there
+};
+struct SystemAperture {
+    ApertureKind kind = ApertureKind::stop;
+    double value = 0.0;
+    bool operator==(const SystemAperture&) const = default;
+};
+
+/// "an entrance pupil of 10 mm".
+std::string describe(const SystemAperture& aperture);
+
+/// How Zemax shrinks the pupil for a field: from −1 to 1 across it, the rays fill decentre ± (1 − compression).
+struct PupilVignetting {
+    Vec2d decentre;
+    Vec2d compression;
+    bool operator==(const PupilVignetting&) const = default;
+};
+
+/// What the points of a design's fields say; in Zemax's order.
+enum class FieldKind { angle, object_height, paraxial_image_height, image_height };
+
+/// The fields that a lens is designed for, the file's own order; degrees in x and in y, or mm.
+struct DesignFields {
+    FieldKind kind = FieldKind::angle;
+    std::vector<Vec2d> points;
+    std::vector<PupilVignetting> vignetting;  // of each point, or empty
+    bool operator==(const DesignFields&) const = default;
+};
+
 /// A number of StatedData, as files key it.
 struct Claim {
     const char* key;
@@ -174,6 +211,7 @@ struct ZoomPosition {
     std::string name;
     std::map<int, double> gaps_mm;
     std::optional<double> stop_semi_diameter_mm;
+    SystemAperture aperture;  // or the prescription's, where the kind is `stop`
     StatedData stated;
 };
 
@@ -204,7 +242,9 @@ struct Prescription {
     std::vector<ZoomPosition> zoom;        // empty: a lens of one focal length
     std::vector<FocusGroup> focus_groups;  // empty: the lens focuses as a whole, that is, the sensor moves
     Surroundings surroundings = Surroundings::air;
-    double object_distance_mm = kInfinity;          // that the table is set to
+    double object_distance_mm = kInfinity;  // that the table is set to
+    SystemAperture aperture;
+    DesignFields fields;                            // may be empty
     std::vector<double> wavelengths_nm;             // that a design program's file names, the
                                                     // reference first; may be empty
     std::vector<std::filesystem::path> catalogues;  // glass files of its own
@@ -212,6 +252,10 @@ struct Prescription {
     std::vector<Finding> remarks;  // what its reader could not carry over, and what it took upon itself
     std::filesystem::path file;
 
+    /// The wavelength that the table is to be judged at: the file's reference, or the d line.
+    [[nodiscard]] double reference_wavelength_nm() const;
+    /// The aperture that governs; where the stop says nothing, the one that is claimed.
+    [[nodiscard]] SystemAperture governing_aperture() const;
     /// Of the surfaces; the stop may have blades all the same.
     [[nodiscard]] bool is_rotationally_symmetric() const;
 };

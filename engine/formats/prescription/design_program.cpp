@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "engine/base/angle.h"
+#include "engine/optics/design_fields.h"
 
 namespace lensproof::formats {
 
@@ -14,12 +14,22 @@ optics::Prescription prescription_of(const std::filesystem::path& file) {
     return prescription;
 }
 
-double field_angle_deg(double x_deg, double y_deg) {
-    const double x = std::abs(x_deg);
-    const double y = std::abs(y_deg);
-    const bool is_oblique = x != 0.0 && y != 0.0 && std::max(x, y) < 90.0;
-    return is_oblique ? std::atan(std::hypot(std::tan(x * kDegree), std::tan(y * kDegree))) / kDegree
-                      : std::hypot(x, y);
+void take_fields(optics::Prescription& prescription, optics::DesignFields fields) {
+    double largest = 0.0;
+    for (const Vec2d& point : fields.points) {
+        largest = std::max(largest, fields.kind == optics::FieldKind::angle ? std::abs(optics::oblique_angle_deg(point))
+                                                                            : std::hypot(point.x, point.y));
+    }
+    if (largest > 0.0 && fields.kind == optics::FieldKind::angle) {
+        prescription.stated.half_field_deg = largest;
+    } else if (largest > 0.0 && fields.kind != optics::FieldKind::object_height) {
+        prescription.stated.image_circle_mm = 2.0 * largest;
+    }
+    if (std::ranges::all_of(fields.vignetting,
+                            [](const optics::PupilVignetting& each) { return each == optics::PupilVignetting{}; })) {
+        fields.vignetting.clear();
+    }
+    prescription.fields = std::move(fields);
 }
 
 std::vector<int> take_zoom_gaps(optics::Prescription& prescription, const std::vector<PrescriptionTable>& tables) {

@@ -19,8 +19,8 @@ bool is_among(const auto& words, std::string_view word) {
 /// A prescription that is named after its file, and has it for its source.
 optics::Prescription prescription_of(const std::filesystem::path& file);
 
-/// The angle of a field that is stated as angles in x and in y, which add as their tangents; degrees, not negative.
-double field_angle_deg(double x_deg, double y_deg);
+/// The design's fields, and what they claim of the whole lens: the half field, or the image circle.
+void take_fields(optics::Prescription& prescription, optics::DesignFields fields);
 
 /// Whether row `i` of one of the tables has another `member` than the prescription.
 template <class Member>

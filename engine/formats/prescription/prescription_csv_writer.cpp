@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "engine/base/input_error.h"
 #include "engine/base/text.h"
 #include "engine/formats/prescription/axial_terms.h"
 #include "engine/formats/prescription/prescription_forms.h"
@@ -113,6 +114,13 @@ WrittenPrescription to_csv(const optics::Prescription& prescription) {
     optics::Prescription lens = single_position(prescription, written.lost);
     state_along_axis(lens, written.lost);
     std::ranges::copy(losses_of_tables(lens), std::back_inserter(written.lost));
+    try {
+        state_rims(lens, written.lost);
+    } catch (const InputError& error) {
+        written.lost.push_back(
+            lost("lost-aperture", optics::Severity::warning, 0,
+                 fmt::format("clear apertures that the lens does not state are left out: {}", error.what())));
+    }
     const Needs needs(lens);
     written.text = comment_lines("name: ", lens.name) + comment_lines("source: ", lens.source) +
                    comment_lines("", lens.notes) + needs.header();

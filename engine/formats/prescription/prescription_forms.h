@@ -1,6 +1,7 @@
 // engine/formats/prescription/prescription_forms.h — the forms that prescriptions are written in, each from and to a
 // text.
 #pragma once
+#include <array>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -10,6 +11,28 @@
 namespace lensproof::formats {
 
 inline constexpr int kMostSurfaces = 1000;  // in a file of any form; more is no lens
+
+/// How the project's own form says the system's aperture and the fields' kind.
+struct ApertureKey {
+    const char* key;
+    optics::ApertureKind kind;
+};
+inline constexpr std::array kApertureKeys = {
+    ApertureKey{"entrance_pupil_diameter_mm", optics::ApertureKind::entrance_pupil_diameter},
+    ApertureKey{"f_number", optics::ApertureKind::f_number},
+    ApertureKey{"working_f_number", optics::ApertureKind::working_f_number},
+    ApertureKey{"object_numerical_aperture", optics::ApertureKind::object_numerical_aperture},
+};
+struct FieldKindName {
+    const char* name;
+    optics::FieldKind kind;
+};
+inline constexpr std::array kFieldKinds = {
+    FieldKindName{"angle", optics::FieldKind::angle},
+    FieldKindName{"object-height", optics::FieldKind::object_height},
+    FieldKindName{"paraxial-image-height", optics::FieldKind::paraxial_image_height},
+    FieldKindName{"image-height", optics::FieldKind::image_height},
+};
 
 /// Each takes a file's bytes; `file` names it in messages and in the prescription. See `read_prescription`.
 optics::Prescription parse_toml_prescription(const std::string& text, const std::filesystem::path& file);

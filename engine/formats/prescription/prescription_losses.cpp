@@ -5,6 +5,8 @@
 #include <algorithm>
 
 #include "engine/base/infinity.h"
+#include "engine/formats/glass/shipped_glasses.h"
+#include "engine/formats/prescription/load_lens.h"
 #include "engine/optics/lens.h"
 #include "engine/spectral/wavelengths.h"
 
@@ -38,6 +40,30 @@ std::optional<double> plain_semi_diameter(const optics::Prescription& prescripti
         narrow(prescription.surfaces[index - 1].barrel_mm);
     }
     return narrowest;
+}
+
+void state_rims(optics::Prescription& prescription, std::vector<optics::Finding>& lost_here) {
+    std::vector<std::size_t> unstated;
+    for (std::size_t i = 0; i < prescription.surfaces.size(); ++i) {
+        const bool is_set =
+            prescription.surfaces[i].is_stop && prescription.aperture.kind != optics::ApertureKind::stop;
+        if (is_set || !plain_semi_diameter(prescription, i)) {
+            unstated.push_back(i);
+        }
+    }
+    if (unstated.empty()) {
+        return;
+    }
+    const optics::Lens lens =
+        optics::make_lens(with_stop_picture(prescription), with_own_catalogues(shipped_glasses(), prescription));
+    for (const std::size_t i : unstated) {
+        const double needed = lens.surfaces[i].semi_diameter;
+        prescription.surfaces[i].semi_diameter_mm = needed;
+        lost_here.push_back(lost("aperture-estimated", optics::Severity::info, static_cast<int>(i) + 1,
+                                 fmt::format("no clear aperture is stated; written is what the aperture and the fields "
+                                             "need, {:.6g} mm across",
+                                             2.0 * needed)));
+    }
 }
 
 namespace {
@@ -109,6 +135,7 @@ std::vector<optics::Finding> losses_of_tables(const optics::Prescription& prescr
         "what the source states of the whole lens is left out");
     add(prescription.object_distance_mm != kInfinity, "lost-object-distance", optics::Severity::info,
         fmt::format("the object's distance, {} mm, is left out", prescription.object_distance_mm));
+    add(!prescription.fields.points.empty(), "lost-fields", optics::Severity::info, "the design's fields are left out");
     add(!prescription.wavelengths_nm.empty(), "lost-wavelengths", optics::Severity::info,
         "the wavelengths are left out");
     return losses;

@@ -19,6 +19,10 @@ optics::Prescription single_position(const optics::Prescription& prescription, s
 /// or the rim where none is, narrowed by the barrel on either side. Nothing where nothing is stated.
 std::optional<double> plain_semi_diameter(const optics::Prescription& prescription, std::size_t index);
 
+/// For forms that hold no aperture and no fields: the clear apertures that those make, written into the rows that state
+/// none and named. Throws InputError where the lens cannot be made, or where its apertures cannot be found.
+void state_rims(optics::Prescription& prescription, std::vector<optics::Finding>& lost_here);
+
 /// n_d and V_d of a medium's table of indices, as it is traced; V_d is 0 where the index does not fall from F to C.
 std::pair<double, double> figures_of_table(const optics::StatedMedium& medium);
 

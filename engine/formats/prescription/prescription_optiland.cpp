@@ -288,10 +288,13 @@ class OptilandLens {
         const std::string type = aperture.has("type") ? aperture.at("type").text() : text_or(aperture, "ap_type", "");
         const double value = any_number(aperture.at("value"));
         const auto stop = std::ranges::find_if(lens_.surfaces, &optics::PrescribedSurface::is_stop);
+        using optics::ApertureKind;
         if (type == "EPD") {
-            lens_.stated.entrance_pupil_diameter_mm = value;
+            lens_.aperture = {ApertureKind::entrance_pupil_diameter, value};
         } else if (type == "imageFNO") {
-            lens_.stated.f_number = value;
+            lens_.aperture = {ApertureKind::f_number, value};
+        } else if (type == "objectNA") {
+            lens_.aperture = {ApertureKind::object_numerical_aperture, value};
         } else if (type == "float_by_stop_size" && stop != lens_.surfaces.end()) {
             stop->semi_diameter_mm = 0.5 * value;
         } else {
@@ -307,25 +310,25 @@ class OptilandLens {
         const std::string type = fields.has("field_definition")
                                      ? text_or(fields.at("field_definition"), "field_type", "")
                                      : text_or(fields, "field_type", "");
-        double largest = 0.0;
-        bool vignetted = false;
-        for (const JsonNode& field : fields.at("fields").elements()) {
-            largest = std::max(largest, std::hypot(number_or(field, "x", 0.0), number_or(field, "y", 0.0)));
-            vignetted = vignetted || number_or(field, "vx", 0.0) != 0.0 || number_or(field, "vy", 0.0) != 0.0;
-        }
-        if (vignetted) {
-            remark("not-read", 0, "the fields' vignetting factors are left out: rims vignette here");
-        }
-        if (!(largest > 0.0)) {
-            return;
-        }
+        optics::DesignFields design;
         if (type == "AngleField" || type == "angle") {
-            lens_.stated.half_field_deg = largest;
-        } else if (type.find("ImageHeight") != std::string::npos || type.find("image_height") != std::string::npos) {
-            lens_.stated.image_circle_mm = 2.0 * largest;
+            design.kind = optics::FieldKind::angle;
+        } else if (type == "ObjectHeightField" || type == "object_height") {
+            design.kind = optics::FieldKind::object_height;
+        } else if (type == "ParaxialImageHeightField" || type == "paraxial_image_height") {
+            design.kind = optics::FieldKind::paraxial_image_height;
+        } else if (type == "RealImageHeightField" || type == "real_image_height") {
+            design.kind = optics::FieldKind::image_height;
         } else {
             remark("not-read", 0, fmt::format("fields stated as \"{}\" are left out", printable(type)));
+            return;
         }
+        for (const JsonNode& field : fields.at("fields").elements()) {
+            design.points.push_back({number_or(field, "x", 0.0), number_or(field, "y", 0.0)});
+            design.vignetting.push_back(
+                {.decentre = {}, .compression = {number_or(field, "vx", 0.0), number_or(field, "vy", 0.0)}});
+        }
+        take_fields(lens_, std::move(design));
     }
 
     void read_wavelengths(const JsonNode& top) {

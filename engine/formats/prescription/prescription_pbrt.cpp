@@ -167,6 +167,7 @@ class PbrtWriter {
 
     WrittenPrescription write() {
         std::ranges::copy(losses_of_tables(lens_), std::back_inserter(written_.lost));
+        state_rims(lens_, written_.lost);
         add_comment(lens_.name);
         add_comment(lens_.source);
         add_comment(lens_.notes);
@@ -191,20 +192,6 @@ class PbrtWriter {
         written_.lost.push_back(lost(code, severity, static_cast<int>(index) + 1, message));
     }
 
-    double diameter(std::size_t index) {
-        if (const std::optional<double> stated = plain_semi_diameter(lens_, index)) {
-            return 2.0 * *stated;
-        }
-        if (estimated_.surfaces.empty()) {
-            estimated_ = optics::make_lens(with_stop_picture(lens_), glasses_);
-        }
-        const double needed = 2.0 * estimated_.surfaces[index].semi_diameter;
-        lose("aperture-estimated", optics::Severity::info, index,
-             fmt::format("no clear aperture is stated; written is what the stated f-number and field need, {:.6g} mm",
-                         needed));
-        return needed;
-    }
-
     void add_line(double radius, double thickness, double index, double aperture) {
         written_.text += fmt::format("{}\t{}\t{}\t{}\n", radius, thickness, index, aperture);
     }
@@ -224,7 +211,7 @@ class PbrtWriter {
         if (row.conic != 0.0 || row.is_asphere()) {
             lose("lost-asphere", optics::Severity::warning, i, "its conic and aspheric terms are left out");
         }
-        const double aperture = diameter(i);
+        const double aperture = 2.0 * *plain_semi_diameter(lens_, i);
         const bool is_plane = row.is_flat();
         if (row.is_stop && is_plane && after == before) {
             add_line(0.0, row.thickness_mm, after == 1.0 ? 0.0 : after, aperture);
@@ -246,7 +233,6 @@ class PbrtWriter {
     WrittenPrescription written_;
     optics::Prescription lens_;
     optics::GlassCatalogue glasses_;
-    optics::Lens estimated_;  // made where its semi-diameters are asked for
 };
 
 }  // namespace

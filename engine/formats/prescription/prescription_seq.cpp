@@ -216,54 +216,89 @@ std::vector<ChainLink> chain_of(const SeqFile& file, const std::filesystem::path
     return links;
 }
 
-void read_aperture(const std::string& type, double value, double unit_mm, optics::StatedData& stated,
-                   Remarks& remarks) {
-    if (type == "EPD" && value > 0.0) {
-        stated.entrance_pupil_diameter_mm = value * unit_mm;
-    } else if (type == "FNO" && value > 0.0) {
-        stated.f_number = value;
-    } else if (type == "NA" && value > 0.0) {
-        stated.f_number = 0.5 / value;
-    } else if (!type.empty()) {
-        remarks.add_once(
-            type, "aperture", optics::Severity::info, 0,
-            fmt::format("{} = {} does not say the aperture; the stop's semi-diameter is taken", type, value));
+constexpr double kFarthest = 1e10;  // the program's infinity
+
+double object_distance_mm(const SeqFile& file) {
+    const double thickness = file.surfaces.front().thickness;
+    return thickness >= kFarthest ? kInfinity : thickness * file.unit_mm;
+}
+
+/// CODE V Reference Manual, "System data": FNO and NA are those of the image as it is used.
+optics::SystemAperture system_aperture(const SeqFile& file, const std::string& type, double value) {
+    using optics::ApertureKind;
+    const bool is_far = std::isinf(object_distance_mm(file));
+    if (!(value > 0.0)) {
+        return {};
+    }
+    if (type == "EPD") {
+        return {ApertureKind::entrance_pupil_diameter, value * file.unit_mm};
+    }
+    if (type == "FNO" || type == "NA") {
+        return {is_far ? ApertureKind::f_number : ApertureKind::working_f_number, type == "NA" ? 0.5 / value : value};
+    }
+    return type == "NAO" && !is_far ? optics::SystemAperture{ApertureKind::object_numerical_aperture, value}
+                                    : optics::SystemAperture{};
+}
+
+/// A file has one kind of fields. Vignetting factors cut the pupil from −1 + VLY to 1 − VUY.
+void read_fields(const SeqFile& file, optics::Prescription& prescription) {
+    using optics::FieldKind;
+    struct Kind {
+        const char* x;
+        const char* y;
+        FieldKind kind;
+    };
+    constexpr Kind kKinds[] = {{"XAN", "YAN", FieldKind::angle},
+                               {"XOB", "YOB", FieldKind::object_height},
+                               {"XIM", "YIM", FieldKind::paraxial_image_height},
+                               {"XRI", "YRI", FieldKind::image_height}};
+    const auto at = [&](const char* command, std::size_t i) {
+        const auto found = file.fields.find(command);
+        return found != file.fields.end() && i < found->second.size() ? found->second[i] : 0.0;
+    };
+    const auto count_of = [&](const char* command) {
+        const auto found = file.fields.find(command);
+        return found == file.fields.end() ? 0 : found->second.size();
+    };
+    for (const Kind& kind : kKinds) {
+        const std::size_t count = std::max(count_of(kind.x), count_of(kind.y));
+        if (count == 0) {
+            continue;
+        }
+        const double unit = kind.kind == FieldKind::angle ? 1.0 : file.unit_mm;
+        optics::DesignFields fields{.kind = kind.kind, .points = {}, .vignetting = {}};
+        for (std::size_t i = 0; i < count; ++i) {
+            const Vec2d upper{at("VUX", i), at("VUY", i)};
+            const Vec2d lower{at("VLX", i), at("VLY", i)};
+            fields.points.push_back({unit * at(kind.x, i), unit * at(kind.y, i)});
+            fields.vignetting.push_back({.decentre = 0.5 * (lower - upper), .compression = 0.5 * (lower + upper)});
+        }
+        take_fields(prescription, std::move(fields));
+        return;
     }
 }
 
-void read_fields(const SeqFile& file, optics::StatedData& stated, Remarks& remarks) {
-    const auto largest = [&](const char* in_x, const char* in_y, bool is_angle) {
-        const auto x = file.fields.find(in_x);
-        const auto y = file.fields.find(in_y);
-        double most = 0.0;
-        const std::size_t count =
-            std::max(x == file.fields.end() ? 0 : x->second.size(), y == file.fields.end() ? 0 : y->second.size());
-        for (std::size_t i = 0; i < count; ++i) {
-            const double here_x = x != file.fields.end() && i < x->second.size() ? x->second[i] : 0.0;
-            const double here_y = y != file.fields.end() && i < y->second.size() ? y->second[i] : 0.0;
-            most = std::max(most, is_angle ? field_angle_deg(here_x, here_y) : std::hypot(here_x, here_y));
-        }
-        return most;
-    };
-    if (const double angle = largest("XAN", "YAN", true); angle > 0.0) {
-        stated.half_field_deg = angle;
+/// CIR on the stop is what drawings show, the aperture what the stop opens to.
+void free_stop(optics::Prescription& prescription) {
+    const auto stop = std::ranges::find_if(prescription.surfaces, &optics::PrescribedSurface::is_stop);
+    if (prescription.aperture.kind != optics::ApertureKind::stop && stop != prescription.surfaces.end()) {
+        stop->semi_diameter_mm.reset();
     }
-    if (const double height = std::max(largest("XIM", "YIM", false), largest("XRI", "YRI", false)); height > 0.0) {
-        stated.image_circle_mm = 2.0 * height * file.unit_mm;
-    }
-    if (const double height = largest("XOB", "YOB", false); height > 0.0) {
-        remarks.add(
-            "fields", optics::Severity::info, 0,
-            fmt::format("fields are stated as object heights, up to {} mm, and left out", height * file.unit_mm));
+}
+
+/// Without STO the first surface is the stop, as CODE V has it.
+void choose_stop(optics::Prescription& prescription, Remarks& remarks) {
+    if (std::ranges::none_of(prescription.surfaces, &optics::PrescribedSurface::is_stop)) {
+        prescription.surfaces.front().is_stop = true;
+        remarks.add("stop", optics::Severity::warning, 1, "no STO says which surface is the stop; the first is taken");
     }
 }
 
 /// The object, the image and its defocus.
 void read_ends(const SeqFile& file, const std::vector<ChainLink>& links, optics::Prescription& prescription,
                Remarks& remarks) {
-    constexpr double kFarthest = 1e10;  // the program's infinity
     const SeqSurface& object = file.surfaces.front();
-    prescription.object_distance_mm = object.thickness >= kFarthest ? kInfinity : object.thickness * file.unit_mm;
+    prescription.object_distance_mm = object_distance_mm(file);
     if (object.curvature != 0.0) {
         remarks.add("object-shape", optics::Severity::warning, 0,
                     fmt::format("line {}: the object is curved, and taken as flat", object.line));
@@ -309,7 +344,7 @@ void read_zoom(const SeqFile& file, optics::Prescription& prescription, Remarks&
         optics::ZoomPosition position{.name = at < file.zoom_titles.size() ? file.zoom_titles[at]
                                                                            : fmt::format("position {}", i + 1)};
         for (const auto& [type, values] : file.zoomed_apertures) {
-            read_aperture(type, values[std::min(at, values.size() - 1)], file.unit_mm, position.stated, remarks);
+            position.aperture = system_aperture(file, type, values[std::min(at, values.size() - 1)]);
         }
         prescription.zoom.push_back(std::move(position));
     }
@@ -341,8 +376,10 @@ optics::Prescription parse_seq(const std::string& text, const std::filesystem::p
     }
     const std::vector<ChainLink> links = chain_of(seq, file);
     prescription.surfaces = placed(std::move(prescription.surfaces), seq, file);
-    read_aperture(seq.aperture_type, seq.aperture_value, seq.unit_mm, prescription.stated, remarks);
-    read_fields(seq, prescription.stated, remarks);
+    prescription.aperture = system_aperture(seq, seq.aperture_type, seq.aperture_value);
+    choose_stop(prescription, remarks);
+    free_stop(prescription);
+    read_fields(seq, prescription);
     read_ends(seq, links, prescription, remarks);
     read_zoom(seq, prescription, remarks);
     prescription.wavelengths_nm = seq.wavelengths_nm;

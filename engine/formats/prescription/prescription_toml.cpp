@@ -9,6 +9,7 @@
 
 #include "engine/base/file.h"
 #include "engine/base/infinity.h"
+#include "engine/base/input_error.h"
 #include "engine/base/text.h"
 #include "engine/base/toml.h"
 #include "engine/formats/prescription/barrel_toml.h"
@@ -163,6 +164,54 @@ optics::FocusGroup read_focus_group(TomlTable& table, int surfaces) {
     return group;
 }
 
+/// One key says what the number is.
+optics::SystemAperture read_aperture(TomlTable& table) {
+    optics::SystemAperture aperture;
+    for (const auto& [key, kind] : kApertureKeys) {
+        if (const std::optional<double> value = table.optional_number(key, kPositive)) {
+            if (aperture.kind != optics::ApertureKind::stop) {
+                table.fail(key, "is a second statement of the aperture, expected one");
+            }
+            aperture = {kind, *value};
+        }
+    }
+    table.finish();
+    if (aperture.kind == optics::ApertureKind::stop) {
+        std::vector<std::string_view> keys;
+        std::ranges::transform(kApertureKeys, std::back_inserter(keys), &ApertureKey::key);
+        throw InputError(fmt::format("{} is empty, expected one of {}", table.where(), fmt::join(keys, ", ")));
+    }
+    return aperture;
+}
+
+optics::DesignFields read_fields(TomlTable& table) {
+    optics::DesignFields fields;
+    std::vector<std::string> names;
+    std::ranges::transform(kFieldKinds, std::back_inserter(names), &FieldKindName::name);
+    fields.kind = kFieldKinds[std::ranges::find(names, table.choice("kind", names)) - names.begin()].kind;
+    const auto lists = [&](const std::string& key, std::size_t count) {
+        std::vector<std::vector<double>> values = table.number_lists(key);
+        if (std::ranges::any_of(values, [&](const std::vector<double>& each) { return each.size() != count; })) {
+            table.fail(key, fmt::format("holds a list of another length, expected {} numbers in each", count));
+        }
+        return values;
+    };
+    for (const std::vector<double>& point : lists("points", 2)) {
+        fields.points.push_back({point[0], point[1]});
+    }
+    if (table.has("vignetting")) {
+        for (const std::vector<double>& each : lists("vignetting", 4)) {
+            fields.vignetting.push_back({.decentre = {each[0], each[1]}, .compression = {each[2], each[3]}});
+        }
+        if (fields.vignetting.size() != fields.points.size()) {
+            table.fail("vignetting", fmt::format("holds {} lists, expected one for each of the {} points",
+                                                 fields.vignetting.size(), fields.points.size()));
+        }
+    }
+    table.finish();
+    return fields;
+}
+
 optics::ZoomPosition read_zoom_position(TomlTable& table, int surfaces) {
     optics::ZoomPosition position;
     position.name = table.text("name");
@@ -175,6 +224,9 @@ optics::ZoomPosition read_zoom_position(TomlTable& table, int surfaces) {
         position.gaps_mm[surface] = stated_number(gaps, key);
     }
     position.stop_semi_diameter_mm = table.optional_number("stop_semi_diameter_mm", kPositive);
+    if (auto aperture = table.optional_table("aperture")) {
+        position.aperture = read_aperture(*aperture);
+    }
     if (auto stated = table.optional_table("stated")) {
         position.stated = read_stated(*stated);
     }
@@ -235,6 +287,12 @@ optics::Prescription parse_toml_prescription(const std::string& text, const std:
     }
     if (auto stated = top.optional_table("stated")) {
         prescription.stated = read_stated(*stated);
+    }
+    if (auto aperture = top.optional_table("aperture")) {
+        prescription.aperture = read_aperture(*aperture);
+    }
+    if (auto fields = top.optional_table("fields")) {
+        prescription.fields = read_fields(*fields);
     }
     for (TomlTable& row : top.tables("surfaces")) {
         prescription.surfaces.push_back(read_surface(row));

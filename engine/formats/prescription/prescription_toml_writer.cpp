@@ -168,6 +168,8 @@ class Writer {
         write_head();
         write_surfaces();
         write_claims("stated", prescription_.stated);
+        write_aperture("aperture", prescription_.aperture);
+        write_fields();
         write_stop();
         write_barrel();
         for (const auto& [name, coating] : prescription_.coatings) {
@@ -331,6 +333,36 @@ class Writer {
         }
     }
 
+    void write_aperture(const std::string& table, const optics::SystemAperture& aperture) {
+        const auto* key = std::ranges::find(kApertureKeys, aperture.kind, &ApertureKey::kind);
+        if (key != std::end(kApertureKeys)) {
+            text_ += fmt::format("\n[{}]\n{} = {}\n", table, key->key, number(aperture.value));
+        }
+    }
+
+    void write_fields() {
+        const optics::DesignFields& fields = prescription_.fields;
+        if (fields.points.empty()) {
+            return;
+        }
+        std::vector<std::string> points;
+        std::ranges::transform(fields.points, std::back_inserter(points), [](const Vec2d& point) {
+            return number_list(std::array{point.x, point.y});
+        });
+        text_ += fmt::format("\n[fields]\nkind = {}\npoints = [{}]\n",
+                             toml_string(std::ranges::find(kFieldKinds, fields.kind, &FieldKindName::kind)->name),
+                             fmt::join(points, ", "));
+        if (!fields.vignetting.empty()) {
+            std::vector<std::string> factors;
+            std::ranges::transform(
+                fields.vignetting, std::back_inserter(factors), [](const optics::PupilVignetting& each) {
+                    return number_list(
+                        std::array{each.decentre.x, each.decentre.y, each.compression.x, each.compression.y});
+                });
+            line("vignetting", fmt::format("[{}]", fmt::join(factors, ", ")));
+        }
+    }
+
     void write_stop() {
         if (const auto* polygon = std::get_if<optics::PolygonStop>(&prescription_.stop_shape)) {
             text_ += fmt::format("\n[stop]\nblades = {}\ncurvature = {}\nrotation_deg = {}\n", polygon->blades,
@@ -401,6 +433,7 @@ class Writer {
             if (position.stop_semi_diameter_mm) {
                 line("stop_semi_diameter_mm", number(*position.stop_semi_diameter_mm));
             }
+            write_aperture("zoom.aperture", position.aperture);
             write_claims("zoom.stated", position.stated);
         }
     }

@@ -182,46 +182,69 @@ std::vector<int> rows_of_surfaces(const ZmxFile& file) {
     return rows;
 }
 
-void read_aperture(const ZmxFile& file, double value, optics::StatedData& stated, Remarks& remarks) {
-    const bool at_infinity = std::isinf(file.surfaces.front().thickness);
-    if (file.aperture_type == "ENPD" && value > 0.0) {
-        stated.entrance_pupil_diameter_mm = value * file.unit_mm;
-    } else if (file.aperture_type == "FNUM" && value > 0.0 && (!file.is_working_f_number || at_infinity)) {
-        stated.f_number = value;
-    } else if (file.aperture_type == "OBNA" || file.aperture_type == "FNUM") {
-        remarks.add_once("", "aperture", optics::Severity::info, 0,
-                         fmt::format("{} = {} says the aperture on the object's side or at a finite distance; the "
-                                     "stop's semi-diameter is taken instead",
-                                     file.aperture_type, value));
+/// OpticStudio's help, "System Explorer", "Aperture": the image-space f-number is for an object at infinity whatever
+/// the lens's is, the paraxial working one is not.
+optics::SystemAperture system_aperture(const ZmxFile& file, double value) {
+    using optics::ApertureKind;
+    if (!(value > 0.0)) {
+        return {};
+    }
+    if (file.aperture_type == "ENPD") {
+        return {ApertureKind::entrance_pupil_diameter, value * file.unit_mm};
+    }
+    if (file.aperture_type == "FNUM") {
+        return {file.is_working_f_number ? ApertureKind::working_f_number : ApertureKind::f_number, value};
+    }
+    if (file.aperture_type == "OBNA" && std::isfinite(file.surfaces.front().thickness)) {
+        return {ApertureKind::object_numerical_aperture, value};
+    }
+    return {};
+}
+
+/// The stop's DIAM is what Zemax computed from the aperture, unless that is FLOA. Where it is a user's own it cuts
+/// beams at surfaces of power alone, as an aperture does anywhere.
+void free_stop(const ZmxFile& file, const std::vector<int>& rows, optics::Prescription& prescription) {
+    if (prescription.aperture.kind == optics::ApertureKind::stop) {
+        return;
+    }
+    for (std::size_t number = 1; number + 1 < file.surfaces.size(); ++number) {
+        const ZmxSurface& surface = file.surfaces[number];
+        if (surface.is_stop && !surface.is_break()) {
+            const bool cuts = surface.aperture || (surface.semi_diameter_is_fixed && surface.curvature != 0.0);
+            optics::PrescribedSurface& row = prescription.surfaces[rows[number] - 1];
+            row.semi_diameter_mm = cuts ? row.semi_diameter_mm : std::nullopt;
+        }
     }
 }
 
-/// Fields as half field angle or as image circle.
-void read_fields(const ZmxFile& file, optics::StatedData& stated, Remarks& remarks) {
-    const auto stated_count = static_cast<std::size_t>(file.fields);
-    std::size_t count = std::max(file.field_x.size(), file.field_y.size());
-    count = file.fields > 0 ? std::min(count, stated_count) : count;
-    double largest = 0.0;
-    for (std::size_t i = 0; i < count; ++i) {
-        const double x = i < file.field_x.size() ? file.field_x[i] : 0.0;
-        const double y = i < file.field_y.size() ? file.field_y[i] : 0.0;
-        largest = std::max(largest, file.field_type == 0 ? field_angle_deg(x, y) : std::hypot(x, y));
-    }
-    if (largest == 0.0) {
+void read_fields(const ZmxFile& file, optics::Prescription& prescription, Remarks& remarks) {
+    using optics::FieldKind;
+    static constexpr FieldKind kKinds[] = {FieldKind::angle, FieldKind::object_height, FieldKind::paraxial_image_height,
+                                           FieldKind::image_height};
+    if (file.field_type < 0 || file.field_type >= static_cast<int>(std::size(kKinds))) {
+        remarks.add(
+            "fields", optics::Severity::info, 0,
+            fmt::format("fields are stated as {} (FTYP {}), and left out",
+                        file.field_type == 4 ? "theodolite angles" : "a kind that is not known", file.field_type));
         return;
     }
-    if (file.field_type == 0) {
-        stated.half_field_deg = largest;
-    } else if (file.field_type == 2 || file.field_type == 3) {
-        stated.image_circle_mm = 2.0 * largest * file.unit_mm;
-    } else if (file.field_type == 4) {
-        remarks.add("fields", optics::Severity::info, 0,
-                    "fields are stated as theodolite angles (FTYP 4), and left out");
-    } else {
-        remarks.add("fields", optics::Severity::info, 0,
-                    fmt::format("fields are stated as object heights (FTYP {}), up to {} mm, and left out",
-                                file.field_type, largest * file.unit_mm));
+    optics::DesignFields fields{.kind = kKinds[file.field_type], .points = {}, .vignetting = {}};
+    std::size_t count = std::max(file.field_x.size(), file.field_y.size());
+    count = file.fields > 0 ? std::min(count, static_cast<std::size_t>(file.fields)) : count;
+    const double unit = fields.kind == FieldKind::angle ? 1.0 : file.unit_mm;
+    const auto at = [](const std::vector<double>& values, std::size_t i) {
+        return i < values.size() ? values[i] : 0.0;
+    };
+    const auto factor = [&](const char* keyword, std::size_t i) {
+        const auto found = file.vignetting.find(keyword);
+        return found == file.vignetting.end() ? 0.0 : at(found->second, i);
+    };
+    for (std::size_t i = 0; i < count; ++i) {
+        fields.points.push_back({unit * at(file.field_x, i), unit * at(file.field_y, i)});
+        fields.vignetting.push_back({.decentre = {factor("VDXN", i), factor("VDYN", i)},
+                                     .compression = {factor("VCXN", i), factor("VCYN", i)}});
     }
+    take_fields(prescription, std::move(fields));
 }
 
 std::vector<double> wavelengths_nm(const ZmxFile& file) {
@@ -297,7 +320,7 @@ void read_configurations(const ZmxFile& file, optics::Prescription& prescription
             if (keyword == "THIC" && of >= 1 && of < last) {
                 varied.surfaces[of].thickness = value == values.end() ? varied.surfaces[of].thickness : value->second;
             } else if (keyword == "APER" && value != values.end()) {
-                read_aperture(file, value->second, position.stated, remarks);
+                position.aperture = system_aperture(file, value->second);
             } else {
                 left_out.insert(fmt::format("{} {}", keyword, of));
             }
@@ -352,8 +375,9 @@ optics::Prescription parse_zmx(const std::string& text, const std::filesystem::p
                              fmt::format("{}: the stop is tilted against the axis", prescription.surfaces[i].where));
         }
     }
-    read_aperture(zmx, zmx.aperture_value, prescription.stated, remarks);
-    read_fields(zmx, prescription.stated, remarks);
+    prescription.aperture = system_aperture(zmx, zmx.aperture_value);
+    free_stop(zmx, rows_of_surfaces(zmx), prescription);
+    read_fields(zmx, prescription, remarks);
     read_ends(zmx, links, prescription, remarks);
     read_configurations(zmx, prescription, remarks);
     prescription.wavelengths_nm = wavelengths_nm(zmx);

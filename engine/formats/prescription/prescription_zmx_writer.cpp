@@ -85,7 +85,6 @@ class ZmxWriter {
     }
 
     void write_head() {
-        const optics::StatedData& stated = prescription_.stated;
         line("VERS 140124 0 0");
         line("MODE SEQ");
         line("NAME {}", one_line(prescription_.name));
@@ -94,28 +93,70 @@ class ZmxWriter {
             line("NOTE 0 {}", one_line(std::string(note)));
         }
         line("UNIT MM X W X CM MR CPMM");
-        if (stated.entrance_pupil_diameter_mm) {
-            line("ENPD {}", *stated.entrance_pupil_diameter_mm);
-        } else if (stated.f_number) {
-            line("FNUM {} 0", *stated.f_number);
-        } else {
-            line("FLOA");
-        }
+        write_aperture();
         line("ENVD 20 1 0");
         line("GFAC 0 0");
         write_catalogues();
         const auto wavelengths = std::max<std::size_t>(1, prescription_.wavelengths_nm.size());
-        const bool has_field = stated.half_field_deg || stated.image_circle_mm;
-        const double field = stated.half_field_deg.value_or(0.5 * stated.image_circle_mm.value_or(0.0));
-        line("FTYP {} 0 {} {} 0 0 0", stated.half_field_deg || !has_field ? 0 : 3, has_field ? 3 : 1, wavelengths);
-        line("XFLN 0 0 0 0 0 0 0 0 0 0 0 0");
-        line("YFLN 0 {} {} 0 0 0 0 0 0 0 0 0", std::numbers::sqrt2 / 2.0 * field, field);
-        line("FWGN 1 1 1 1 1 1 1 1 1 1 1 1");
+        write_fields(wavelengths);
         for (std::size_t i = 0; i < wavelengths; ++i) {
             const double nm = prescription_.wavelengths_nm.empty() ? spectral::kLineD : prescription_.wavelengths_nm[i];
             line("WAVM {} {} 1", i + 1, nm * 1e-3);
         }
         line("PWAV 1");
+    }
+
+    void write_aperture() {
+        const optics::SystemAperture aperture = prescription_.governing_aperture();
+        switch (aperture.kind) {
+            case optics::ApertureKind::entrance_pupil_diameter:
+                line("ENPD {}", aperture.value);
+                break;
+            case optics::ApertureKind::f_number:
+            case optics::ApertureKind::working_f_number:
+                line("FNUM {} {}", aperture.value, aperture.kind == optics::ApertureKind::working_f_number ? 1 : 0);
+                break;
+            case optics::ApertureKind::object_numerical_aperture:
+                line("OBNA {} 0", aperture.value);
+                break;
+            case optics::ApertureKind::stop:
+                line("FLOA");
+                break;
+        }
+    }
+
+    /// Those of the design, or the axis, 0.7 and the whole of the field that the source claims.
+    void write_fields(std::size_t wavelengths) {
+        const optics::StatedData& stated = prescription_.stated;
+        optics::DesignFields fields = prescription_.fields;
+        if (fields.points.empty()) {
+            const double field = stated.half_field_deg.value_or(0.5 * stated.image_circle_mm.value_or(0.0));
+            fields.kind = stated.half_field_deg || !stated.image_circle_mm ? optics::FieldKind::angle
+                                                                           : optics::FieldKind::image_height;
+            fields.points = {{}};
+            if (field > 0.0) {
+                fields.points.push_back({0.0, std::numbers::sqrt2 / 2.0 * field});
+                fields.points.push_back({0.0, field});
+            }
+        }
+        const auto list = [&](const char* keyword, const auto& values, auto value_of) {
+            std::string text = keyword;
+            for (const auto& each : values) {
+                text += fmt::format(" {}", value_of(each));
+            }
+            line("{}", text);
+        };
+        line("FTYP {} 0 {} {} 0 0 0", static_cast<int>(fields.kind), fields.points.size(), wavelengths);
+        list("XFLN", fields.points, [](const Vec2d& point) { return point.x; });
+        list("YFLN", fields.points, [](const Vec2d& point) { return point.y; });
+        list("FWGN", fields.points, [](const Vec2d&) { return 1; });
+        if (!fields.vignetting.empty()) {
+            using optics::PupilVignetting;
+            list("VDXN", fields.vignetting, [](const PupilVignetting& each) { return each.decentre.x; });
+            list("VDYN", fields.vignetting, [](const PupilVignetting& each) { return each.decentre.y; });
+            list("VCXN", fields.vignetting, [](const PupilVignetting& each) { return each.compression.x; });
+            list("VCYN", fields.vignetting, [](const PupilVignetting& each) { return each.compression.y; });
+        }
     }
 
     /// The makers that names of glasses carry, before those that the lens prefers.
@@ -337,9 +378,9 @@ class ZmxWriter {
         if (!original_.catalogues.empty()) {
             lose("lost-catalogues", 0, "where the lens's own glass files lie");
         }
-        if (stated.efl_mm || stated.bfl_mm || stated.total_track_mm ||
-            (stated.f_number && stated.entrance_pupil_diameter_mm)) {
-            lose("lost-stated", 0, "all of the stated data; the aperture and the field are written",
+        if (stated.efl_mm || stated.bfl_mm || stated.total_track_mm || stated.f_number ||
+            stated.entrance_pupil_diameter_mm) {
+            lose("lost-stated", 0, "all of the stated data; the aperture that governs and the fields are written",
                  optics::Severity::info);
         }
         if (!original_.groups.empty() && optics::surface_frames(original_).front().origin.z != 0.0) {

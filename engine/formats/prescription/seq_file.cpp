@@ -31,8 +31,8 @@ constexpr std::string_view kSeqSilent[] = {"LEN", "GO",  "INI", "WTW", "WTF", "C
 /// Solves and pick-ups, whose outcome the file holds as the value itself.
 constexpr std::string_view kSeqSolves[] = {"PIM", "PUY", "PIY", "HMY", "HCY", "UMY", "IMY", "UCY", "ICY", "APY", "PIK"};
 
-constexpr std::string_view kSeqVignettingFactors[] = {"VUX", "VLX", "VUY", "VLY"};
-constexpr std::string_view kFields[] = {"XAN", "YAN", "XOB", "YOB", "XIM", "YIM", "XRI", "YRI"};
+constexpr std::string_view kFields[] = {"XAN", "YAN", "XOB", "YOB", "XIM", "YIM",
+                                        "XRI", "YRI", "VUX", "VLX", "VUY", "VLY"};
 constexpr std::string_view kSeqApertureShapes[] = {"REX", "REY", "ELX", "ELY", "CIG",
                                                    "REG", "ELG", "ADX", "ADY", "ARO"};
 constexpr std::string_view kDiffraction[] = {"DIF", "HOR", "HWL", "HCT", "HCO", "HCC", "GRT", "GRO", "GRS", "HOE"};
@@ -205,9 +205,6 @@ class SeqReader {
             read_zoom();
         } else if (here_.keyword == "DEL") {
             read_deletion();
-        } else if (is_among(kSeqVignettingFactors, here_.keyword)) {
-            remarks_.at(here_, "vignetting-factors", optics::Severity::info, 0,
-                        "vignetting factors are left out; rims cut the beams");
         } else if (here_.keyword == "TEM" || here_.keyword == "PRE") {
             remarks_.at(here_, "environment", optics::Severity::info, 0,
                         "left out: indices and lengths are taken at 20 °C and 1 atm");

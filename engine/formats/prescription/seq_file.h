@@ -69,7 +69,8 @@ struct SeqFile {
     double unit_mm = 1.0;
     std::string aperture_type;  // EPD, FNO, NA or NAO
     double aperture_value = 0.0;
-    std::map<std::string, std::vector<double>> fields;  // XAN, YAN, XOB, YOB, XIM, YIM, XRI, YRI
+    // XAN, YAN, XOB, YOB, XIM, YIM, XRI, YRI, and the vignetting factors VUX, VLX, VUY, VLY
+    std::map<std::string, std::vector<double>> fields;
     std::vector<double> wavelengths_nm;
     int reference_wavelength = 1;
     std::map<std::string, std::vector<optics::WavelengthValue>> private_glasses;  // PRV, by rising wavelength

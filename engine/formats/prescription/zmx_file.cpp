@@ -39,7 +39,7 @@ constexpr std::string_view kZmxApertureShapes[] = {"SQAP", "ELAP", "OBSC", "SQOB
                                                    "SPID", "UDAD", "USAP", "UDOB"};
 
 /// Vignetting factors: Zemax shrinks pupils by them where rims would cut the beams.
-constexpr std::string_view kZmxVignettingFactors[] = {"VDXN", "VDYN", "VCXN", "VCYN", "VANN"};
+constexpr std::string_view kZmxVignettingFactors[] = {"VDXN", "VDYN", "VCXN", "VCYN"};
 
 /// Reads one file, line by line.
 class ZmxReader {
@@ -76,18 +76,29 @@ class ZmxReader {
         if (here_.keyword.empty()) {
             return;
         }
-        static constexpr Keyword kKeywords[] = {
-            {"MODE", &ZmxReader::read_mode},          {"NAME", &ZmxReader::read_name},
-            {"NOTE", &ZmxReader::read_note},          {"UNIT", &ZmxReader::read_unit},
-            {"ENPD", &ZmxReader::read_aperture_type}, {"FNUM", &ZmxReader::read_aperture_type},
-            {"OBNA", &ZmxReader::read_aperture_type}, {"FLOA", &ZmxReader::read_aperture_type},
-            {"FTYP", &ZmxReader::read_field_type},    {"XFLN", &ZmxReader::read_fields},
-            {"YFLN", &ZmxReader::read_fields},        {"XFLD", &ZmxReader::read_fields},
-            {"YFLD", &ZmxReader::read_fields},        {"WAVM", &ZmxReader::read_wavelength},
-            {"WAVL", &ZmxReader::read_wavelengths},   {"PWAV", &ZmxReader::read_reference},
-            {"GCAT", &ZmxReader::read_catalogues},    {"ENVD", &ZmxReader::read_environment},
-            {"GFAC", &ZmxReader::read_apodization},   {"MNUM", &ZmxReader::read_configurations},
-            {"SURF", &ZmxReader::read_surface},       {"FIMP", &ZmxReader::read_import}};
+        static constexpr Keyword kKeywords[] = {{"MODE", &ZmxReader::read_mode},
+                                                {"NAME", &ZmxReader::read_name},
+                                                {"NOTE", &ZmxReader::read_note},
+                                                {"UNIT", &ZmxReader::read_unit},
+                                                {"ENPD", &ZmxReader::read_aperture_type},
+                                                {"FNUM", &ZmxReader::read_aperture_type},
+                                                {"OBNA", &ZmxReader::read_aperture_type},
+                                                {"FLOA", &ZmxReader::read_aperture_type},
+                                                {"FTYP", &ZmxReader::read_field_type},
+                                                {"XFLN", &ZmxReader::read_fields},
+                                                {"YFLN", &ZmxReader::read_fields},
+                                                {"XFLD", &ZmxReader::read_fields},
+                                                {"YFLD", &ZmxReader::read_fields},
+                                                {"WAVM", &ZmxReader::read_wavelength},
+                                                {"WAVL", &ZmxReader::read_wavelengths},
+                                                {"PWAV", &ZmxReader::read_reference},
+                                                {"GCAT", &ZmxReader::read_catalogues},
+                                                {"ENVD", &ZmxReader::read_environment},
+                                                {"GFAC", &ZmxReader::read_apodization},
+                                                {"MNUM", &ZmxReader::read_configurations},
+                                                {"SURF", &ZmxReader::read_surface},
+                                                {"FIMP", &ZmxReader::read_import},
+                                                {"VANN", &ZmxReader::read_vignetting_angle}};
         static constexpr Keyword kOfSurfaces[] = {
             {"TYPE", &ZmxReader::read_type},       {"CURV", &ZmxReader::read_curvature},
             {"CONI", &ZmxReader::read_conic},      {"DISZ", &ZmxReader::read_thickness},
@@ -341,10 +352,18 @@ class ZmxReader {
     }
 
     void read_vignetting() {
+        std::vector<double>& factors = file_.vignetting[std::string(here_.keyword)];
+        factors.clear();
+        for (std::size_t i = 0; i < here_.words.size() && i < kMostWavelengths; ++i) {
+            factors.push_back(here_.number_or_zero(i));
+        }
+    }
+
+    void read_vignetting_angle() {
         for (std::size_t i = 0; i < here_.words.size(); ++i) {
             if (here_.number_or_zero(i) != 0.0) {
                 remarks_.at(here_, "vignetting-factors", optics::Severity::info, 0,
-                            "vignetting factors are left out; rims cut the beams");
+                            "the angles that turn vignetted pupils are left out");
             }
         }
     }

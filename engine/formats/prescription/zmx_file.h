@@ -49,7 +49,8 @@ struct ZmxFile {
     int field_type = 0;  // 0 angle, 1 object height, 2 paraxial and 3 real image height
     int fields = 0;      // 0: not said
     std::vector<double> field_x, field_y;
-    int wavelengths = 0;  // 0: not said
+    std::map<std::string, std::vector<double>> vignetting;  // VDXN, VDYN, VCXN, VCYN, by field
+    int wavelengths = 0;                                    // 0: not said
     std::map<int, double> wavelengths_um;
     int reference_wavelength = 1;
     std::vector<std::string> catalogues;

@@ -496,8 +496,8 @@ TEST(Medium, TableOfIndicesIsMetAtItsWavelengths) {
     EXPECT_ANY_THROW(at_wavelength<double>(lens, 700.0));
 }
 
-// Where no semi-diameter is stated, it is the marginal ray's height and the chief ray's, added: a thin lens at the stop
-// needs the pupil alone, one 20 mm behind it tan(field) · 20 mm more.
+// Where no semi-diameter is stated, it is the height of the field's uppermost ray: a plane at the stop needs the pupil
+// alone, a sphere 20 mm behind it what the ray from the pupil's edge meets (to the 1e-9 that a rim is wider).
 TEST(SemiDiameter, IsEstimatedFromApertureAndField) {
     PrescribedSurface front = row(50.0, 0.0, 1.5);
     PrescribedSurface rear = row(-50.0, 50.0);
@@ -511,7 +511,13 @@ TEST(SemiDiameter, IsEstimatedFromApertureAndField) {
     prescription.stated.half_field_deg = 10.0;
     const Lens lens = make_lens(prescription, GlassCatalogue{});
     EXPECT_NEAR(lens.surfaces[0].semi_diameter, 5.0, 1e-12);
-    EXPECT_NEAR(lens.surfaces[1].semi_diameter, 5.0 + 20.0 * std::tan(radians(10.0)), 1e-12);
+    const double sine = std::sin(radians(10.0));
+    const double cosine = std::cos(radians(10.0));
+    const double y = 5.0;  // from the sphere's centre
+    const double z = -70.0;
+    const double along = y * sine + z * cosine;
+    const double path = -along - std::sqrt(along * along - (y * y + z * z - 2500.0));
+    EXPECT_NEAR(lens.surfaces[1].semi_diameter, y + path * sine, 2e-8);
 }
 
 }  // namespace lensproof::optics::special_surface_test

@@ -6,8 +6,10 @@
 
 #include "engine/base/file.h"
 #include "engine/base/infinity.h"
+#include "engine/formats/glass/shipped_glasses.h"
 #include "engine/formats/prescription/prescription_file.h"
 #include "engine/formats/prescription/prescription_forms.h"
+#include "engine/optics/lens.h"
 #include "tests/complaint.h"
 #include "tests/test_folder.h"
 
@@ -34,6 +36,10 @@ optics::Prescription everything() {
                    .total_track_mm = 1e-7,
                    .entrance_pupil_diameter_mm = 1.0 / 3.0,
                    .source = "claims"};
+    lens.aperture = {optics::ApertureKind::object_numerical_aperture, 0.1};
+    lens.fields = {.kind = optics::FieldKind::object_height,
+                   .points = {{}, {-1.5, 1.0 / 3.0}},
+                   .vignetting = {{}, {.decentre = {0.0, -0.1}, .compression = {0.1, 0.2}}}};
     lens.stop_shape = optics::PolygonStop{.blades = 7, .curvature = 0.25, .rotation_deg = -12.5};
     lens.barrel = {.tube = {.albedo = 0.04, .gloss = 0.5, .roughness = 0.25},
                    .edges = {.albedo = 0.1 + 0.2, .gloss = 0.0, .roughness = 1.0},
@@ -76,11 +82,13 @@ optics::Prescription everything() {
 
     lens.groups = {{.first = 1, .last = 2, .misalignment = {{0.5, 0.0}, {0.0, -1e-3, 0.0}}, .pivot_mm = 3.5}};
     lens.focus_groups = {{.first = 1, .last = 1, .travel = 1.0}, {.first = 2, .last = 4, .travel = -0.75}};
-    lens.zoom = {{.name = "wide \"end\"",
-                  .gaps_mm = {{1, 2.5}, {4, kInfinity}},
-                  .stop_semi_diameter_mm = 7.5,
-                  .stated = {.efl_mm = 24.0}},
-                 {.name = "tele", .gaps_mm = {{1, 20.0}, {4, 1.0}}, .stop_semi_diameter_mm = {}, .stated = {}}};
+    lens.zoom = {
+        {.name = "wide \"end\"",
+         .gaps_mm = {{1, 2.5}, {4, kInfinity}},
+         .stop_semi_diameter_mm = 7.5,
+         .aperture = {optics::ApertureKind::f_number, 3.5},
+         .stated = {.efl_mm = 24.0}},
+        {.name = "tele", .gaps_mm = {{1, 20.0}, {4, 1.0}}, .stop_semi_diameter_mm = {}, .aperture = {}, .stated = {}}};
     return lens;
 }
 
@@ -94,6 +102,8 @@ TEST(TomlWriter, ReadsBackToTheSamePrescription) {
     EXPECT_EQ(back.notes, lens.notes);
     EXPECT_EQ(back.projection, lens.projection);
     EXPECT_EQ(back.stated, lens.stated);
+    EXPECT_EQ(back.aperture, lens.aperture);
+    EXPECT_EQ(back.fields, lens.fields);
     ASSERT_EQ(back.surfaces.size(), lens.surfaces.size());
     for (std::size_t i = 0; i < lens.surfaces.size(); ++i) {
         optics::PrescribedSurface found = back.surfaces[i];
@@ -123,6 +133,7 @@ TEST(TomlWriter, ReadsBackToTheSamePrescription) {
         EXPECT_EQ(back.zoom[i].name, lens.zoom[i].name);
         EXPECT_EQ(back.zoom[i].gaps_mm, lens.zoom[i].gaps_mm);
         EXPECT_EQ(back.zoom[i].stop_semi_diameter_mm, lens.zoom[i].stop_semi_diameter_mm);
+        EXPECT_EQ(back.zoom[i].aperture, lens.zoom[i].aperture);
         EXPECT_EQ(back.zoom[i].stated, lens.zoom[i].stated);
     }
     EXPECT_EQ(back.surroundings, lens.surroundings);
@@ -191,10 +202,27 @@ TEST(CsvWriter, CarriesWhatItsColumnsHoldAndNamesTheRest) {
     EXPECT_EQ(back.surfaces[1].medium.indices, lens.surfaces[1].medium.indices);
     EXPECT_TRUE(back.surfaces[2].is_stop);
     EXPECT_EQ(back.surfaces[1].semi_diameter_mm, 14.0) << "the barrel before it";
-    for (const char* code : {"lost-zoom", "lost-toroid", "lost-misalignment", "lost-coating", "lost-stop-shape",
-                             "lost-barrel", "lost-focus-groups", "lost-surroundings", "lost-catalogues",
-                             "lost-projection", "lost-stated", "lost-object-distance"}) {
+    for (const char* code :
+         {"lost-zoom", "lost-toroid", "lost-misalignment", "lost-coating", "lost-stop-shape", "lost-barrel",
+          "lost-focus-groups", "lost-surroundings", "lost-catalogues", "lost-projection", "lost-stated",
+          "lost-object-distance", "lost-fields", "lost-aperture"}) {
         EXPECT_NE(std::ranges::find(written.lost, code, &optics::Finding::code), written.lost.end()) << code;
+    }
+}
+
+// A table holds no aperture and no fields: their openings go into its column.
+TEST(CsvWriter, WritesTheOpeningsThatApertureAndFieldsMake) {
+    optics::Prescription lens = read_prescription(find_lens_file("tessar"));
+    for (optics::PrescribedSurface& row : lens.surfaces) {
+        row.semi_diameter_mm.reset();
+    }
+    lens.aperture = {optics::ApertureKind::f_number, 8.0};
+    lens.fields = {.kind = optics::FieldKind::angle, .points = {{}, {0.0, 20.0}}, .vignetting = {}};
+    const optics::Prescription back = parse_csv_prescription(to_csv(lens).text, "a.csv");
+    const optics::Lens expected = optics::make_lens(lens, shipped_glasses());
+    const optics::Lens found = optics::make_lens(back, shipped_glasses());
+    for (std::size_t i = 0; i < expected.surfaces.size(); ++i) {
+        EXPECT_EQ(found.surfaces[i].semi_diameter, expected.surfaces[i].semi_diameter) << i;
     }
 }
 

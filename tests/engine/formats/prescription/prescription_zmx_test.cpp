@@ -142,7 +142,8 @@ TEST(Zmx, SaysWhatTheHeadMeans) {
     EXPECT_EQ(lens.name, "A lens");
     EXPECT_EQ(lens.source, "a book");
     EXPECT_EQ(lens.notes, "a note");
-    EXPECT_EQ(lens.stated.f_number, 2.8);
+    EXPECT_EQ(lens.aperture, (optics::SystemAperture{optics::ApertureKind::f_number, 2.8}));
+    EXPECT_EQ(lens.fields.points, (std::vector<Vec2d>{{0.0, 0.0}, {0.0, 14.0}}));
     EXPECT_DOUBLE_EQ(lens.stated.half_field_deg.value(), 14.0);
     EXPECT_DOUBLE_EQ(lens.stated.image_circle_mm.value(), 25.4);
     EXPECT_EQ(lens.preferred_makers, (std::vector<std::string>{"SCHOTT", "OHARA"}));
@@ -295,11 +296,42 @@ TEST(Zmx, TessarComesBack) {
     EXPECT_EQ(back.name, lens.name);
     EXPECT_EQ(back.source, lens.source);
     EXPECT_EQ(back.notes, lens.notes);
-    EXPECT_EQ(back.stated.f_number, lens.stated.f_number);
+    EXPECT_EQ(back.aperture, optics::SystemAperture{}) << "the stop's size governs";
     EXPECT_EQ(back.stated.half_field_deg, lens.stated.half_field_deg);
     const std::vector<optics::Finding> lost = to_zmx(lens).lost;
     ASSERT_EQ(lost.size(), 1U);
     EXPECT_EQ(lost[0].severity, optics::Severity::info);
+}
+
+// The stop's DIAM is what Zemax drew; an aperture of its own, or a user's DIAM on a surface of power, cuts beams.
+TEST(Zmx, ApertureGovernsTheStop) {
+    using optics::ApertureKind;
+    const auto lens = [](const std::string& aperture, const std::string& stop) {
+        return parse("MODE SEQ\nUNIT MM\n" + aperture + kObject + surf(1, "  STOP\n" + stop + "  DISZ 0\n") +
+                     surf(2, "  CURV 0.02\n  DISZ 2\n  GLAS ___BLANK 1 0 1.5 60\n  DIAM 9 0\n") +
+                     surf(3, "  DISZ 99\n  DIAM 9 0\n") + surf(4, "  DISZ 0\n"));
+    };
+    const auto opening = [](const optics::Prescription& prescription) {
+        return optics::make_lens(prescription, {}).surfaces[0].semi_diameter;
+    };
+    // f = 100 mm by 1/((n − 1) c); the stop stands in front, so it is the entrance pupil.
+    EXPECT_NEAR(opening(lens("ENPD 12\n", "  DIAM 7.9 0\n")), 6.0, 1e-12);
+    EXPECT_NEAR(opening(lens("FNUM 10 0\n", "  DIAM 7.9 0\n")), 5.0, 1e-12);
+    EXPECT_NEAR(opening(lens("FLOA\n", "  DIAM 7.9 0\n")), 7.9, 1e-12);
+    EXPECT_NEAR(opening(lens("ENPD 12\n", "  DIAM 7.9 0\n  FLAP 0 4 0\n")), 4.0, 1e-12);
+    EXPECT_NEAR(opening(lens("ENPD 12\n", "  DIAM 4 1\n")), 6.0, 1e-12) << "a plane without power";
+    EXPECT_NEAR(opening(lens("ENPD 12\n", "  CURV 0.001\n  DIAM 4 1\n")), 4.0, 1e-12);
+}
+
+TEST(Zmx, ApertureAndFieldsComeBack) {
+    optics::Prescription lens = tessar();
+    lens.aperture = {optics::ApertureKind::working_f_number, 4.5};
+    lens.fields = {.kind = optics::FieldKind::image_height,
+                   .points = {{0.0, 0.0}, {3.0, 10.5}},
+                   .vignetting = {{}, {.decentre = {0.0, 0.1}, .compression = {0.05, 0.2}}}};
+    const optics::Prescription back = again(lens);
+    EXPECT_EQ(back.aperture, lens.aperture);
+    EXPECT_EQ(back.fields, lens.fields);
 }
 
 TEST(Zmx, EveryShapeComesBack) {
