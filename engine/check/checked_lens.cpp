@@ -13,13 +13,13 @@ namespace lensproof::check {
 namespace {
 
 double index_behind(const optics::PrescribedSurface& row, const std::optional<optics::Glass>& medium,
-                    const CheckSettings& settings) {
-    const auto override_index = settings.indices.find(row.medium.glass);
-    if (!row.medium.glass.empty() && override_index != settings.indices.end()) {
+                    const optics::IndexOverrides& indices, double wavelength_nm) {
+    const auto override_index = indices.find(row.medium.glass);
+    if (!row.medium.glass.empty() && override_index != indices.end()) {
         return override_index->second;
     }
-    const bool is_known = medium && optics::covers(*medium, settings.wavelength_nm);
-    return is_known ? optics::refractive_index(medium->formula, settings.wavelength_nm) : kNaN;
+    const bool is_known = medium && optics::covers(*medium, wavelength_nm);
+    return is_known ? optics::refractive_index(medium->formula, wavelength_nm) : kNaN;
 }
 
 /// Where a stop is missing or doubled, rays are judged as though the narrowest of the surfaces that may be meant were
@@ -48,12 +48,12 @@ void trace_if_possible(CheckedLens& checked) {
     try {
         checked.lens = optics::make_lens(traceable, *checked.known_glasses, checked.settings.indices);
         for (const optics::LensSurface& surface : checked.lens->surfaces) {
-            if (!optics::covers(surface.medium, checked.settings.wavelength_nm)) {
-                throw InputError(fmt::format("the index of {} is not known at {} nm", surface.medium.name,
-                                             checked.settings.wavelength_nm));
+            if (!optics::covers(surface.medium, checked.wavelength_nm)) {
+                throw InputError(
+                    fmt::format("the index of {} is not known at {} nm", surface.medium.name, checked.wavelength_nm));
             }
         }
-        checked.traced = optics::at_wavelength<double>(*checked.lens, checked.settings.wavelength_nm);
+        checked.traced = optics::at_wavelength<double>(*checked.lens, checked.wavelength_nm);
         checked.paraxial = optics::paraxial_data(*checked.traced);
     } catch (const InputError& error) {
         checked.why_not_traced = error.what();
@@ -112,6 +112,7 @@ CheckedLens make_checked_lens(const optics::Prescription& at_one_position, const
     checked.claims = at_one_position.stated;
     optics::take_claims(checked.claims, claims);  // from outside: before what the file says
     checked.settings = settings;
+    checked.wavelength_nm = settings.wavelength_nm.value_or(at_one_position.reference_wavelength_nm());
     checked.known_glasses = &glasses;
     trace_if_possible(checked);
     bool is_known = true;
@@ -121,8 +122,9 @@ CheckedLens make_checked_lens(const optics::Prescription& at_one_position, const
         checked.table.curvature.push_back(row.curvature() + 2.0 * row.asphere[0]);
         checked.table.gap.push_back(row.thickness_mm);
         // The traced lens knows of its surroundings, too.
-        checked.table.index.push_back(checked.traced ? checked.traced->surfaces[i].index_after
-                                                     : index_behind(row, checked.media.back(), settings));
+        checked.table.index.push_back(
+            checked.traced ? checked.traced->surfaces[i].index_after
+                           : index_behind(row, checked.media.back(), settings.indices, checked.wavelength_nm));
         const bool is_last = i + 1 == checked.size();
         is_known = is_known && std::isfinite(checked.table.curvature.back()) &&
                    std::isfinite(checked.table.index.back()) && checked.table.index.back() > 0.0 &&

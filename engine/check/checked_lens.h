@@ -34,6 +34,7 @@ struct CheckedLens {
     optics::Prescription prescription;  // at one zoom position
     optics::StatedData claims;
     CheckSettings settings;
+    double wavelength_nm = spectral::kLineD;  // of the first-order data and of the rays
     const optics::GlassCatalogue* known_glasses = nullptr;
 
     std::vector<std::optional<optics::Glass>> media;  // behind each surface; nothing where it is not known

@@ -88,7 +88,7 @@ std::optional<ComputedData> computed_data(const CheckedLens& checked, std::strin
     paraxial.efl = checked.focus->efl;
     paraxial.bfl = checked.focus->bfl;
     return ComputedData{
-        .zoom_position = std::move(position), .paraxial = paraxial, .wavelength_nm = checked.settings.wavelength_nm};
+        .zoom_position = std::move(position), .paraxial = paraxial, .wavelength_nm = checked.wavelength_nm};
 }
 
 }  // namespace

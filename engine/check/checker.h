@@ -11,7 +11,7 @@
 namespace lensproof::check {
 
 struct CheckSettings {
-    double wavelength_nm = spectral::kLineD;   // of the first-order data and of the rays
+    std::optional<double> wavelength_nm;       // of the first-order data and of the rays; default: the file's reference
     optics::IndexOverrides indices;            // constant indices in place of glasses
     std::optional<std::size_t> zoom_position;  // counted from 0; without one, every position is checked
     bool manufacture = false;                  // whether customs of manufacture are held against the lens, too

@@ -74,7 +74,7 @@ RayFate first_failure(const CheckedLens& checked) {
 
 /// Rule 26. Returns the chief ray, past the rims where need be.
 std::optional<optics::ChiefRay> check_chief_ray(const CheckedLens& checked, double field, Findings& findings) {
-    const double wavelength = checked.settings.wavelength_nm;
+    const double wavelength = checked.wavelength_nm;
     const optics::ChiefRays rays(lens_in_focus(checked, true), wavelength);
     if (std::optional<optics::ChiefRay> chief = rays.at_field(field)) {
         return chief;
@@ -162,7 +162,7 @@ void check_vignetting(const CheckedLens& checked, double field, double axial, do
     if (!(transmitted > 0.0)) {
         const double within = kRoundedField * field;
         const std::optional<optics::ChiefRay> chief =
-            optics::ChiefRays(lens_in_focus(checked, false), checked.settings.wavelength_nm).at_field(within);
+            optics::ChiefRays(lens_in_focus(checked, false), checked.wavelength_nm).at_field(within);
         const bool is_dark = !chief || !(field_beam(checked, within, *chief, axial).area > 0.0);
         severity = is_dark ? error : warning;
     }
@@ -237,7 +237,7 @@ void check_image_circle(const CheckedLens& checked, std::optional<double> image_
     if (image_height) {
         is_off = std::abs(2.0 * *image_height / circle - 1.0) > kImageCircle;
     } else {
-        const optics::ChiefRays rays(lens_in_focus(checked, true), checked.settings.wavelength_nm);
+        const optics::ChiefRays rays(lens_in_focus(checked, true), checked.wavelength_nm);
         const std::optional<optics::ChiefRay> last = rays.at_field(rays.largest_field() * (1.0 - 1e-9));
         image_height = last ? last->image_height : 0.0;
         is_off = 2.0 * *image_height < (1.0 - kImageCircle) * circle;

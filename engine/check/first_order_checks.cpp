@@ -169,10 +169,15 @@ void check_aperture(const CheckedLens& checked, Findings& findings) {
     if (checked.is_estimated[stop]) {
         return;
     }
-    if (const std::optional<double>& f_number = checked.claims.f_number) {
+    const auto stated_as = [&](optics::ApertureKind kind, const std::optional<double>& claim) {
+        const optics::SystemAperture& aperture = checked.prescription.aperture;
+        return aperture.kind == kind ? std::optional(aperture.value) : claim;
+    };
+    if (const auto f_number = stated_as(optics::ApertureKind::f_number, checked.claims.f_number)) {
         compare(findings, "f-number", "the f-number", {data.f_number, *f_number, *f_number}, kFNumber, stop + 1);
     }
-    if (const std::optional<double>& diameter = checked.claims.entrance_pupil_diameter_mm) {
+    if (const auto diameter =
+            stated_as(optics::ApertureKind::entrance_pupil_diameter, checked.claims.entrance_pupil_diameter_mm)) {
         compare(findings, "entrance-pupil", "the entrance pupil's diameter (mm)",
                 {data.entrance_pupil_diameter, *diameter, *diameter}, kFNumber, stop + 1);
     }

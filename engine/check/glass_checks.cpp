@@ -201,7 +201,7 @@ void check_wavelengths(const CheckedLens& checked, int i, Findings& findings) {
         return;  // an index in place of a glass holds at every wavelength
     }
     const optics::Glass& glass = *checked.media[i];
-    const double asked = checked.settings.wavelength_nm;
+    const double asked = checked.wavelength_nm;
     std::vector<double> wavelengths{asked};
     wavelengths.insert(wavelengths.end(), checked.prescription.wavelengths_nm.begin(),
                        checked.prescription.wavelengths_nm.end());

@@ -121,8 +121,8 @@ class Trials {
              lens_.known_glasses->nearest(n_d, optics::abbe_number(formula), kNeighbours)) {
             constexpr double kFarFetched = 3.0;
             ParaxialTable table = lens_.table;
-            table.index[i] = optics::refractive_index(glass.formula, lens_.settings.wavelength_nm);
-            if (glass.name != medium.glass && optics::covers(glass, lens_.settings.wavelength_nm)) {
+            table.index[i] = optics::refractive_index(glass.formula, lens_.wavelength_nm);
+            if (glass.name != medium.glass && optics::covers(glass, lens_.wavelength_nm)) {
                 judge(i, std::move(table), kFarFetched,
                       fmt::format("glass {} {} in place of {} behind it", glass.catalogue, glass.name, medium.glass));
             }

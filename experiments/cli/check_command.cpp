@@ -27,7 +27,7 @@ struct CheckOptions {
     std::vector<std::string> lenses;
     std::string stated;
     std::vector<std::string> indices;
-    double wavelength_nm = spectral::kLineD;
+    std::optional<double> wavelength_nm;
     std::string zoom;
     bool manufacture = false;
     std::string plot_file;
@@ -206,9 +206,11 @@ void add_check_command(Program& program) {
                     "half_field_deg, image_circle_mm, total_track_mm (of each lens; of a zoom, at each position)")
         .type_name("KEY=NUMBER,…");
     add_index_option(command, options->indices);
-    command.add_option("--wavelength", options->wavelength_nm, "nm, of first-order data and rays")
-        .check(kPositiveOption)
-        .shows_default();
+    command
+        .add_option(
+            "--wavelength", options->wavelength_nm,
+            "nm, of first-order data and rays (default: the reference of a design program's file, else 587.5618)")
+        .check(kPositiveOption);
     command.add_option("--zoom", options->zoom, "Check this zoom position alone (default: every one)")
         .type_name("NAME|N");
     command.add_flag("--manufacture", options->manufacture,

@@ -14,6 +14,7 @@
 #include "engine/formats/prescription/prescription_file.h"
 #include "engine/formats/prescription/shipped_coatings.h"
 #include "engine/optics/chief_ray.h"
+#include "engine/optics/design_fields.h"
 #include "engine/optics/focus.h"
 #include "engine/spectral/wavelengths.h"
 #include "experiments/cli/command.h"
@@ -76,13 +77,19 @@ std::vector<double> usual_fields(const optics::Lens& lens, double wavelength_nm)
     return analysis::even_fields(stated > 0.0 && stated < 180.0 ? stated : largest, 5);
 }
 
-std::vector<double> fields_of(const LensOptions& options, const optics::Lens& lens, double wavelength_nm) {
+std::vector<double> fields_of(const LensOptions& options, const optics::Prescription& prescription,
+                              const optics::Lens& lens, const analysis::AnalysisSettings& settings) {
     for (const double field : options.fields_deg) {
         if (!(field > -180.0 && field < 180.0)) {
             throw InputError(fmt::format("--fields holds {}, expected degrees between -180 and 180", field));
         }
     }
-    return options.fields_deg.empty() ? usual_fields(lens, wavelength_nm) : options.fields_deg;
+    if (!options.fields_deg.empty()) {
+        return options.fields_deg;
+    }
+    const std::vector<double> design =
+        optics::design_fields_deg(prescription, lens, settings.reference_wavelength_nm, settings.object_distance);
+    return design.empty() ? usual_fields(lens, settings.reference_wavelength_nm) : design;
 }
 
 std::vector<double> wavelengths_of(const LensOptions& options, const optics::Prescription& prescription) {
@@ -131,8 +138,10 @@ void add_lens_options(Command& command, LensOptions& options) {
         .check(kPositiveOption)
         .type_name("NM");
     command
-        .add_option("--fields", options.fields_deg,
-                    "Field angles in degrees (default: five, up to the field that the source states)")
+        .add_option(
+            "--fields", options.fields_deg,
+            "Field angles in degrees (default: those of a design program's file, else five, up to the field that "
+            "the source states)")
         .separated_by(',')
         .check(kNumberOption)
         .type_name("DEG,…");
@@ -194,7 +203,7 @@ AnalysedLens read_analysed_lens(const LensOptions& options) {
         formats::with_own_catalogues(read_glass_catalogues(options.glass_catalogues), prescription);
     optics::Lens lens =
         prepared_lens(options, prescription, glasses, settings.object_distance, settings.reference_wavelength_nm);
-    settings.fields_deg = fields_of(options, lens, settings.reference_wavelength_nm);
+    settings.fields_deg = fields_of(options, prescription, lens, settings);
     if (!options.best_focus.empty()) {
         const double shift = best_focus_shift(options, lens, settings);
         lens = analysis::with_image_shift(std::move(lens), shift);

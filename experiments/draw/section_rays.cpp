@@ -6,9 +6,9 @@
 #include <cmath>
 
 #include "engine/base/angle.h"
-#include "engine/base/bisect.h"
 #include "engine/base/infinity.h"
 #include "engine/base/input_error.h"
+#include "engine/optics/design_fields.h"
 #include "engine/optics/meridional_bundle.h"
 #include "engine/spectral/wavelengths.h"
 
@@ -47,12 +47,7 @@ double wanted_field(const optics::StatedData& stated, const optics::ChiefRays& c
     if (!stated.image_circle_mm || !(*stated.image_circle_mm > 0.0)) {
         return kInfinity;
     }
-    constexpr int kHalvings = 30;
-    const auto is_inside = [&](double field) {
-        const auto chief = chiefs.at_field(field);
-        return chief && std::abs(chief->image_height) < 0.5 * *stated.image_circle_mm;
-    };
-    return bisected({0.0, chiefs.largest_field()}, kHalvings, is_inside).outside;
+    return optics::field_at_image_height(chiefs, 0.5 * *stated.image_circle_mm);
 }
 
 SectionBundle drawn_bundle(const optics::TraceLens<double>& lens, const optics::MeridionalBundle& bundle, double lead,
@@ -83,7 +78,7 @@ SectionBundle blocked_axis(const optics::TraceLens<double>& lens, double lead) {
 }  // namespace
 
 double drawing_wavelength(const optics::Prescription& prescription, const optics::Lens& lens) {
-    const double asked = prescription.wavelengths_nm.empty() ? spectral::kLineD : prescription.wavelengths_nm.front();
+    const double asked = prescription.reference_wavelength_nm();
     const optics::WavelengthRange range = optics::wavelength_range(lens);
     return asked >= range.min_nm && asked <= range.max_nm ? asked : 0.5 * (range.min_nm + range.max_nm);
 }
@@ -103,9 +98,13 @@ SectionRays section_rays(const optics::Prescription& prescription, const optics:
         if (edge > 0.0) {
             fields = {0.0, 0.7 * edge, edge};
         }
-        if (!fields_deg.empty()) {
+        const std::vector<double> asked =
+            fields_deg.empty()
+                ? optics::design_fields_deg(prescription, lens, wavelength_nm, prescription.object_distance_mm)
+                : fields_deg;
+        if (!asked.empty()) {
             fields.clear();
-            std::ranges::transform(fields_deg, std::back_inserter(fields), [](double deg) { return deg * kDegree; });
+            std::ranges::transform(asked, std::back_inserter(fields), [](double deg) { return deg * kDegree; });
         }
         for (const double field : fields) {
             if (const std::optional<optics::ChiefRay> chief = chiefs.at_field(field)) {
