@@ -36,6 +36,7 @@ constexpr std::string_view kFields[] = {"XAN", "YAN", "XOB", "YOB", "XIM", "YIM"
 constexpr std::string_view kSeqApertureShapes[] = {"REX", "REY", "ELX", "ELY", "CIG",
                                                    "REG", "ELG", "ADX", "ADY", "ARO"};
 constexpr std::string_view kDiffraction[] = {"DIF", "HOR", "HWL", "HCT", "HCO", "HCC", "GRT", "GRO", "GRS", "HOE"};
+constexpr std::string_view kRadii[] = {"RDY", "RDX", "CUY", "CUX"};
 constexpr std::string_view kTypes[] = {"SPH", "CON", "ASP", "CYL", "YTO", "XTO"};
 constexpr std::string_view kOtherTypes[] = {"AAS", "XYP", "SPL", "UDS", "ZRN", "QBF", "QCN", "NSS", "GRN", "LEM"};
 constexpr std::string_view kAsphereTermNames = "ABCDEFGHJ";  // of r⁴, r⁶, … r²⁰
@@ -298,8 +299,7 @@ class SeqReader {
             remarks_.at(here_, "aperture-shape", optics::Severity::warning, surface_,
                         "makes the aperture no full circle about the vertex, and is left out");
         } else if (is_among(kSeqSolves, here_.keyword)) {
-            remarks_.at(here_, "solve", optics::Severity::info, 0,
-                        "what solves and pick-ups gave is taken as stated; they are not followed");
+            report_solve();
         } else if (is_among(kDiffraction, here_.keyword) || is_among(kOtherTypes, here_.keyword)) {
             remarks_.at(here_, "surface-type", optics::Severity::error, surface_,
                         "the surface is more than a conic, asphere or toroid; the rest is left out");
@@ -309,6 +309,12 @@ class SeqReader {
         return true;
     }
 
+    void report_solve() {
+        remarks_.at(here_, "solve", optics::Severity::info, 0,
+                    "what solves and pick-ups gave is taken as stated; they are not followed");
+    }
+
+    /// "CUY UMY -0.1" says what angle of the marginal ray the curvature, which stands on the S line, was solved for.
     bool read_shape(SeqSurface& surface) {
         const std::size_t term =
             here_.keyword.size() == 1 ? kAsphereTermNames.find(here_.keyword[0]) : std::string_view::npos;
@@ -319,6 +325,8 @@ class SeqReader {
             surface.conic = here_.number(next_, "a conic constant");
         } else if (term != std::string_view::npos) {
             surface.asphere[term + 1] = here_.number(next_, "an aspheric coefficient");
+        } else if (is_among(kRadii, here_.keyword) && is_among(kSeqSolves, here_.word(next_).substr(0, 3))) {
+            report_solve();
         } else if (here_.keyword == "RDY" || here_.keyword == "CUY") {
             const double value = here_.number(next_, "a radius or a curvature");
             surface.curvature = here_.keyword == "RDY" ? curvature_of(value) : value;

@@ -284,6 +284,16 @@ TEST(Seq, DeletedSurfacesMakeAnotherLens) {
     EXPECT_THROW(optics::make_lens(cut, {}), InputError);
 }
 
+// opticspy's singlet.seq has CUY UMY on its last surface; what the solve gave stands on the S line.
+TEST(Seq, ASolvedCurvatureIsTheSurfaceLines) {
+    const std::string head = "RDM;LEN\nEPD 4\nWL 500\nYAN 0\nSO 0 1e13\nS 50 5 500.600\n STO\nS 1175.7 96.57\n";
+    const optics::Prescription lens = parse(head + " CUY UMY -0.1\n PIM\nSI 0 0\n");
+    expect_same_rays(parse(head + "SI 0 0\n"), lens);
+    EXPECT_TRUE(has_finding(lens, "solve", "CUY"));
+    EXPECT_EQ(complaint(head + " CUY PINK\nSI 0 0\n"),
+              "test.seq:9: CUY is \"PINK\", expected a radius or a curvature");
+}
+
 TEST(Seq, EveryLineEndIsOne) {
     std::string old = kTessar;
     std::ranges::replace(old, '\n', '\r');
