@@ -278,11 +278,12 @@ void read_fields(const SeqFile& file, optics::Prescription& prescription) {
     }
 }
 
-/// CIR on the stop is what drawings show, the aperture what the stop opens to.
+/// CIR and CIR EDG on the stop are what drawings show, the aperture what the stop opens to.
 void free_stop(optics::Prescription& prescription) {
     const auto stop = std::ranges::find_if(prescription.surfaces, &optics::PrescribedSurface::is_stop);
     if (prescription.aperture.kind != optics::ApertureKind::stop && stop != prescription.surfaces.end()) {
         stop->semi_diameter_mm.reset();
+        stop->rim_mm.reset();
     }
 }
 

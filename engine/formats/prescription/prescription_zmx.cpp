@@ -202,7 +202,7 @@ optics::SystemAperture system_aperture(const ZmxFile& file, double value) {
 }
 
 /// The stop's DIAM is what Zemax computed from the aperture, unless that is FLOA. Where it is a user's own it cuts
-/// beams at surfaces of power alone, as an aperture does anywhere.
+/// beams at surfaces of power alone, as an aperture does anywhere. MEMA follows DIAM, and cuts none.
 void free_stop(const ZmxFile& file, const std::vector<int>& rows, optics::Prescription& prescription) {
     if (prescription.aperture.kind == optics::ApertureKind::stop) {
         return;
@@ -212,7 +212,10 @@ void free_stop(const ZmxFile& file, const std::vector<int>& rows, optics::Prescr
         if (surface.is_stop && !surface.is_break()) {
             const bool cuts = surface.aperture || (surface.semi_diameter_is_fixed && surface.curvature != 0.0);
             optics::PrescribedSurface& row = prescription.surfaces[rows[number] - 1];
-            row.semi_diameter_mm = cuts ? row.semi_diameter_mm : std::nullopt;
+            if (!cuts) {
+                row.semi_diameter_mm.reset();
+                row.rim_mm.reset();
+            }
         }
     }
 }

@@ -290,8 +290,16 @@ TEST(Seq, ASolvedCurvatureIsTheSurfaceLines) {
     const optics::Prescription lens = parse(head + " CUY UMY -0.1\n PIM\nSI 0 0\n");
     expect_same_rays(parse(head + "SI 0 0\n"), lens);
     EXPECT_TRUE(has_finding(lens, "solve", "CUY"));
-    EXPECT_EQ(complaint(head + " CUY PINK\nSI 0 0\n"),
-              "test.seq:9: CUY is \"PINK\", expected a radius or a curvature");
+    EXPECT_EQ(complaint(head + " CUY PINK\nSI 0 0\n"), "test.seq:9: CUY is \"PINK\", expected a radius or a curvature");
+}
+
+// rayoptics' asp46.seq: EPD 2, and an edge of 0.55 on the stop, which it and Optiland open to 2.
+TEST(Seq, TheApertureOpensTheStopPastItsEdge) {
+    const optics::Prescription lens = parse(
+        "RDM;LEN\nEPD 2\nWL 587.6\nYAN 0\nSO 0 1e13\nS 50 1 500.700\n STO; CIR EDG 0.55\nS 0 2\n CIR EDG 0.55\nSI 0 "
+        "0\n");
+    EXPECT_NEAR(optics::make_lens(lens, {}).surfaces[0].semi_diameter, 1.0, 1e-12);
+    EXPECT_EQ(lens.surfaces[1].rim_mm, 0.55);
 }
 
 TEST(Seq, EveryLineEndIsOne) {

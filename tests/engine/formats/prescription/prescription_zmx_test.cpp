@@ -320,6 +320,7 @@ TEST(Zmx, ApertureGovernsTheStop) {
     EXPECT_NEAR(opening(lens("FLOA\n", "  DIAM 7.9 0\n")), 7.9, 1e-12);
     EXPECT_NEAR(opening(lens("ENPD 12\n", "  DIAM 7.9 0\n  FLAP 0 4 0\n")), 4.0, 1e-12);
     EXPECT_NEAR(opening(lens("ENPD 12\n", "  DIAM 4 1\n")), 6.0, 1e-12) << "a plane without power";
+    EXPECT_NEAR(opening(lens("ENPD 12\n", "  DIAM 4 1\n  MEMA 4.5 0\n")), 6.0, 1e-12) << "what MEMA follows is gone";
     EXPECT_NEAR(opening(lens("ENPD 12\n", "  CURV 0.001\n  DIAM 4 1\n")), 4.0, 1e-12);
 }
 
