@@ -13,9 +13,12 @@ ARCHIVES = [
      "sha256": "71a5a82770e6281e337885e0c78aa438806d65c1dae8b22b224d6308ba98e796"},
     {"package": "optiland", "version": "0.6.3", "kind": "source",
      "sha256": "72f4282ae3c147953630a1dc3fefc27c6d66d8d53d490f188509ecc029a0d0b6"},
-    {"package": "opticspy", "version": "0.2.1", "kind": "source", "sha256": "4d2fd3d19a9cde98f5c2be0ea167dd29273fa181a0deb6be1aed8101904c4db3"},
-    {"package": "pyzdde", "version": "2.0.3", "kind": "source", "sha256": "cd6f2af0630f9c5b640f88b90d4344d511b055db60b727b02f7e97b87f143d62"},
-    {"package": "raytracing", "version": "1.4.7", "kind": "source", "sha256": "8928b0b976e0a921012595c571c630f2fbafdfa2e8c6c9d0517245faf6d6b5b1"},
+    {"package": "opticspy", "version": "0.2.1", "kind": "source",
+     "sha256": "4d2fd3d19a9cde98f5c2be0ea167dd29273fa181a0deb6be1aed8101904c4db3"},
+    {"package": "pyzdde", "version": "2.0.3", "kind": "source",
+     "sha256": "cd6f2af0630f9c5b640f88b90d4344d511b055db60b727b02f7e97b87f143d62"},
+    {"package": "raytracing", "version": "1.4.7", "kind": "source",
+     "sha256": "8928b0b976e0a921012595c571c630f2fbafdfa2e8c6c9d0517245faf6d6b5b1"},
 ]
 # A lens is small; PyZDDE has a ground glass with 15 MB of heights.
 LARGEST_BYTES = 1_000_000
