@@ -25,18 +25,19 @@ void Remarks::at(const Command& command, std::string code, optics::Severity seve
 }
 
 void Remarks::not_understood(const std::string& word, int surface, int line, const std::string& what) {
-    constexpr int kMost = 100;
-    if (not_understood_ >= kMost) {
-        ++unsaid_;
-        return;
-    }
+    constexpr std::size_t kMostWords = 100;
     const std::string shown = printable(word);
-    if (said_.insert(fmt::format("not-understood {} {}", shown, surface)).second) {
-        ++not_understood_;
+    const auto known = not_understood_.find(shown);
+    if (known != not_understood_.end()) {
+        ++known->second.lines;
+    } else if (not_understood_.size() < kMostWords) {
+        not_understood_[shown] = {.finding = findings_.size()};
         add("not-understood", optics::Severity::warning, surface,
             fmt::format("line {}{}: {} is not understood and left out{}", line,
                         surface > 0 ? fmt::format(", surface {} of the file", surface) : "", shown,
                         what.empty() ? "" : ": " + what));
+    } else {
+        ++unsaid_;
     }
 }
 
@@ -45,6 +46,11 @@ std::vector<optics::Finding> Remarks::renumbered(const std::vector<int>& row_of)
     for (optics::Finding& finding : findings) {
         const auto number = static_cast<std::size_t>(finding.surface);
         finding.surface = finding.surface >= 0 && number < row_of.size() ? row_of[number] : 0;
+    }
+    for (const auto& [word, said] : not_understood_) {
+        if (said.lines > 1) {
+            findings[said.finding].message += fmt::format(" ({} lines of it)", said.lines);
+        }
     }
     if (unsaid_ > 0) {
         findings.push_back({"not-understood", optics::Severity::warning, 0,

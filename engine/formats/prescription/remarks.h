@@ -1,5 +1,6 @@
 // engine/formats/prescription/remarks.h — what a reader of another program's file has to say about it, each thing once.
 #pragma once
+#include <map>
 #include <set>
 #include <string>
 #include <vector>
@@ -22,7 +23,8 @@ class Remarks {
     /// code and keyword.
     void at(const Command& command, std::string code, optics::Severity severity, int surface, const std::string& what);
 
-    /// That a word of the file is not understood: once for each word and surface, and not more than a hundred times.
+    /// That a word of the file is not understood: once for each word, with the number of its lines, and of not more than
+    /// a hundred words.
     void not_understood(const std::string& word, int surface, int line, const std::string& what = "");
 
     /// The findings with their surfaces counted as `row_of` maps the file's numbers: to rows from 1, or to 0.
@@ -31,8 +33,12 @@ class Remarks {
   private:
     std::vector<optics::Finding> findings_;
     std::set<std::string> said_;
-    int not_understood_ = 0;
-    int unsaid_ = 0;
+    struct Unknown {
+        std::size_t finding = 0;  // the first line's
+        int lines = 1;
+    };
+    std::map<std::string, Unknown> not_understood_;  // by word
+    int unsaid_ = 0;                                 // lines of further words
 };
 
 }  // namespace lensproof::formats

@@ -24,12 +24,14 @@ constexpr int kMostWavelengths = 1000;
 constexpr int kMostParameters = 300;
 constexpr std::size_t kMostOperands = 10000;
 
-/// Keywords that bear on no ray: the program's version and settings, weights, names of its data files, drawing,
-/// physical optics, polarization, tolerances, marks of what an optimizer may vary.
-constexpr std::string_view kZmxSilent[] = {
-    "VERS", "PFIL", "LANG", "RAIM", "PUSH", "SDMA", "OMMA", "ROPD", "PICB", "HYPR", "DBDT", "AUTH", "FWGN",
-    "FWGT", "WWGT", "WWGN", "POLS", "GLRS", "GSTD", "NSCD", "COFN", "MOFF", "COMM", "HIDE", "MIRR", "SLAB",
-    "POPS", "VPAR", "VDSZ", "VCON", "VCUR", "TCMM", "TCED", "BLNK", "TOL",  "CONF", "SCOL", "SURO"};
+/// Keywords that bear on no ray: the program's version and settings, identities of surfaces and lenses, weights, names
+/// of its data files, drawing, chip zones (OEMA), physical optics, polarization, tolerances, marks of what an optimizer
+/// may vary.
+constexpr std::string_view kZmxSilent[] = {"VERS", "PFIL", "LANG", "RAIM", "PUSH", "SDMA", "OMMA", "ROPD", "PICB",
+                                           "HYPR", "DBDT", "AUTH", "FWGN", "FWGT", "WWGT", "WWGN", "POLS", "GLRS",
+                                           "GSTD", "NSCD", "COFN", "MOFF", "COMM", "HIDE", "MIRR", "SLAB", "POPS",
+                                           "VPAR", "VDSZ", "VCON", "VCUR", "TCMM", "TCED", "BLNK", "TOL",  "CONF",
+                                           "SCOL", "SURO", "SSID", "LUID", "EERA", "IWDP", "OEMA", "STUD"};
 
 /// Solves, whose outcome the file holds as the value itself.
 constexpr std::string_view kZmxSolves[] = {"PZUP", "PPAR", "PKUP", "MAZH", "EDGE", "TOLE", "TCOM"};
