@@ -256,7 +256,7 @@ double mtf_focus_shift(std::span<const WeightedField> fields, double frequency) 
 }
 
 optics::Lens with_image_shift(optics::Lens lens, double shift) {
-    if (!(lens.image_z + shift > lens.last_vertex_z()) || !std::isfinite(shift)) {
+    if (!(lens.final_heading() * (lens.image_z + shift - lens.last_vertex_z()) > 0.0) || !std::isfinite(shift)) {
         throw InputError(
             fmt::format("the image plane of {} cannot be moved by {} mm: it stands {} mm behind the last vertex",
                         lens.name, shift, lens.image_z - lens.last_vertex_z()));

@@ -27,7 +27,7 @@ std::optional<double> ideal_height(const optics::TraceLens<double>& lens, optics
         return std::nullopt;
     }
     const optics::ParaxialData first_order = optics::paraxial_data(lens);
-    double height = first_order.efl * optics::projected_radius(projection, field);
+    double height = first_order.front_efl * optics::projected_radius(projection, field);
     if (bundle.is_near()) {
         const double magnification = paraxial_magnification(lens, bundle.object_distance);
         const double focal =
@@ -38,16 +38,23 @@ std::optional<double> ideal_height(const optics::TraceLens<double>& lens, optics
     return std::isfinite(height) ? std::optional(height) : std::nullopt;
 }
 
+double distortion_plane(const optics::TraceLens<double>& reference, double object_distance) {
+    const double image =
+        optics::paraxial_image_distance(reference, object_distance + reference.surfaces.front().vertex_z);
+    return std::isfinite(image) ? reference.surfaces.back().vertex_z + image : reference.image_z;
+}
+
 std::optional<double> distortion_percent(const optics::TraceLens<double>& lens, optics::Projection projection,
-                                         const optics::FieldBundle& bundle) {
+                                         const optics::FieldBundle& bundle, double plane_z) {
     const std::optional<double> ideal = ideal_height(lens, projection, bundle);
-    if (!ideal) {
+    const optics::TracedRay<double> chief = optics::trace_past_rims(lens, bundle.ray({}));
+    if (!ideal || !optics::gets_through(chief.status)) {
         return std::nullopt;
     }
     if (bundle.chief.field_angle == 0.0) {
         return 0.0;
     }
-    const double percent = 100.0 * (bundle.chief.image_height / *ideal - 1.0);
+    const double percent = 100.0 * (optics::meet_plane(chief.ray, plane_z).point.y / *ideal - 1.0);
     return std::isfinite(percent) ? std::optional(percent) : std::nullopt;
 }
 

@@ -18,8 +18,14 @@ namespace lensproof::analysis {
 std::optional<double> ideal_height(const optics::TraceLens<double>& lens, optics::Projection projection,
                                    const optics::FieldBundle& bundle);
 
-/// 100 (h / h_ideal − 1) of the bundle's chief ray at the sensor's plane; 0 at field 0.
+/// The plane that heights are compared in, z: that of the paraxial image at the reference wavelength, where h_ideal is
+/// the height of paraxial rays, so that a curve starts at 0 wherever the sensor stands. The sensor's, where the
+/// paraxial image lies at infinity. `object_distance` from z = 0.
+double distortion_plane(const optics::TraceLens<double>& reference, double object_distance);
+
+/// 100 (h / h_ideal − 1) of the bundle's chief ray in the plane z = `plane_z`; 0 at field 0. Nothing where it does not
+/// get through.
 std::optional<double> distortion_percent(const optics::TraceLens<double>& lens, optics::Projection projection,
-                                         const optics::FieldBundle& bundle);
+                                         const optics::FieldBundle& bundle, double plane_z);
 
 }  // namespace lensproof::analysis

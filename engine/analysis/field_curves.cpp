@@ -10,8 +10,10 @@ std::vector<double> even_fields(double largest, int count) {
     return fields;
 }
 
-std::vector<FieldCurvePoint> field_curves(const ColourOfLens& colour, optics::Projection projection,
-                                          std::span<const double> fields, double object_distance) {
+std::vector<FieldCurvePoint> field_curves(const ColourOfLens& colour, const ColourOfLens& reference,
+                                          optics::Projection projection, std::span<const double> fields,
+                                          double object_distance) {
+    const double plane_z = distortion_plane(reference.lens, object_distance);
     std::vector<FieldCurvePoint> curve;
     for (const double field : fields) {
         const auto bundle = optics::field_bundle(colour.chief_rays, field, object_distance);
@@ -19,7 +21,7 @@ std::vector<FieldCurvePoint> field_curves(const ColourOfLens& colour, optics::Pr
         if (pencil) {
             curve.push_back({.field_angle = field,
                              .image_height = bundle->chief.image_height,
-                             .distortion_percent = distortion_percent(colour.lens, projection, *bundle),
+                             .distortion_percent = distortion_percent(colour.lens, projection, *bundle, plane_z),
                              .foci = astigmatic_foci(*pencil, colour.lens.image_z)});
         }
     }

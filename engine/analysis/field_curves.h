@@ -34,9 +34,11 @@ struct FieldCurvePoint {
     AstigmaticFoci foci;                       // mm from the image plane
 };
 
-/// Astigmatism, field curvature and distortion. Fields without a chief ray are left out.
-std::vector<FieldCurvePoint> field_curves(const ColourOfLens& colour, optics::Projection projection,
-                                          std::span<const double> fields, double object_distance = kInfinity);
+/// Astigmatism, field curvature and distortion (in `reference`'s paraxial image plane). Fields without a chief ray are
+/// left out.
+std::vector<FieldCurvePoint> field_curves(const ColourOfLens& colour, const ColourOfLens& reference,
+                                          optics::Projection projection, std::span<const double> fields,
+                                          double object_distance = kInfinity);
 
 struct LateralColourPoint {
     double field_angle;         // radians

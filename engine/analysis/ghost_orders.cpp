@@ -114,10 +114,12 @@ std::vector<int> reflectors(const GhostScene& scene) {
     const int sensor = static_cast<int>(scene.lens.surfaces.size());
     for (int i = 0; i < sensor; ++i) {
         const optics::TraceSurface<double>& surface = scene.lens.surfaces[static_cast<std::size_t>(i)];
-        const bool is_coated =
-            surface.special >= 0 && !scene.lens.specials[static_cast<std::size_t>(surface.special)].coating.is_bare();
-        const bool is_glass = surface.index_before != surface.index_after || is_coated;
-        if (optics::reflects_by_blades(surface) ? scene.mirrors.blades > 0.0 : is_glass) {
+        const optics::TraceCoating<double>* coating =
+            surface.special >= 0 ? &scene.lens.specials[static_cast<std::size_t>(surface.special)].coating : nullptr;
+        const bool is_mirror = coating != nullptr && coating->is_mirror;  // sends all on, nothing back
+        const bool is_glass =
+            surface.index_before != surface.index_after || (coating != nullptr && !coating->is_bare());
+        if (!is_mirror && (optics::reflects_by_blades(surface) ? scene.mirrors.blades > 0.0 : is_glass)) {
             found.push_back(i);
         }
     }

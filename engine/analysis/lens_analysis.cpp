@@ -41,7 +41,7 @@ void add_image(FieldAnalysis& row, const ColourOfLens& colour, const optics::Fie
 /// `reference`: the field's bundle at the reference wavelength, which says where the object is.
 FieldAnalysis analyze_field(double field_deg, const AnalysedColour& analysed,
                             const std::optional<optics::FieldBundle>& reference, optics::Projection projection,
-                            int rings) {
+                            double distortion_z, int rings) {
     const ColourOfLens& colour = analysed.colour;
     FieldAnalysis row{.field_deg = field_deg, .wavelength_nm = colour.wavelength_nm};
     const auto bundle = reference ? optics::same_object(*reference, colour.chief_rays) : std::nullopt;
@@ -57,7 +57,7 @@ FieldAnalysis analyze_field(double field_deg, const AnalysedColour& analysed,
     row.transmittance =
         optics::trace_past_rims(colour.lens, Ray<double>{chief.origin - chief.direction, chief.direction})
             .transmittance;
-    row.distortion_percent = distortion_percent(colour.lens, projection, *bundle);
+    row.distortion_percent = distortion_percent(colour.lens, projection, *bundle, distortion_z);
     if (const auto pencil = ray_pencil(colour.lens, *bundle)) {
         const AstigmaticFoci foci = astigmatic_foci(*pencil, colour.lens.image_z);
         row.tangential_focus = foci.tangential;
@@ -110,10 +110,12 @@ LensAnalysis analyze_lens(const optics::Lens& lens, const AnalysisSettings& sett
     if (const auto chief = optics::paraxial_chief_ray(reference.lens, largest_field)) {
         analysis.chief_ray = ray_at_surfaces(reference.lens, *chief);
     }
+    const double distortion_z = distortion_plane(reference.lens, settings.object_distance);
     for (const double field : settings.fields_deg) {
         const auto bundle = optics::field_bundle(reference.chief_rays, field * kDegree, settings.object_distance);
         for (const AnalysedColour& colour : colours) {
-            analysis.fields.push_back(analyze_field(field, colour, bundle, lens.projection, settings.rings));
+            analysis.fields.push_back(
+                analyze_field(field, colour, bundle, lens.projection, distortion_z, settings.rings));
         }
     }
     return analysis;

@@ -90,7 +90,8 @@ PolychromaticField polychromatic_field(const optics::Lens& lens, const optics::F
         return field;
     }
     field.sphere = *sphere;
-    field.chief_direction = optics::trace_past_rims(reference, bundle.ray({})).ray.direction;
+    field.chief_direction =
+        reference.surfaces.back().index_after * optics::trace_past_rims(reference, bundle.ray({})).ray.direction;
     double total = 0.0;
     for (const WeightedWavelength& of : wavelengths) {
         if (!(of.weight >= 0.0) || !std::isfinite(of.weight)) {
@@ -153,7 +154,7 @@ std::optional<ImageRay> image_ray(const PolychromaticField::Part& part, const Po
         return std::nullopt;
     }
     const Vec3d at = optics::meet_plane(traced.ray, plane.centre.z).point - plane.centre;
-    return ImageRay{.direction = traced.ray.direction,
+    return ImageRay{.direction = part.lens.surfaces.back().index_after * traced.ray.direction,
                     .aberration = {at.x, at.y},
                     .path = meeting->optical_path,
                     .passes = traced.status == optics::RayStatus::ok};

@@ -27,7 +27,7 @@ struct PolychromaticField {
     };
     optics::FieldBundle bundle;
     ReferenceSphere sphere;
-    Vec3d chief_direction;    // of the chief ray at the image point
+    Vec3d chief_direction;    // optical direction cosines of the chief ray at the image point
     std::vector<Part> parts;  // whose light passes; their weights add up to 1. Empty: no light arrives
 };
 
@@ -44,7 +44,7 @@ std::vector<optics::RegionNode> polar_nodes(const PolychromaticField::Part& part
 
 /// A ray of the beam at the image.
 struct ImageRay {
-    Vec3d direction;      // of unit length
+    Vec3d direction;      // optical direction cosines: the index times the direction
     Vec2d aberration;     // mm, where it meets the image plane, from the image point
     double path = 0.0;    // optical path up to the foot of the perpendicular from the image point, mm
     bool passes = false;  // every rim

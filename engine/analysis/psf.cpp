@@ -128,13 +128,15 @@ struct Wavelet {
 struct WaveletPart {
     double wavelength_nm;
     double weight;
+    double index;  // of the medium that the sensor stands in
     double energy = 0.0;
     std::vector<Wavelet> wavelets{};
 };
 
 WaveletPart wavelets_of(const PolychromaticField& field, const PolychromaticField::Part& part,
                         const HuygensPsfSettings& settings) {
-    WaveletPart found{.wavelength_nm = part.wavelength_nm, .weight = part.weight};
+    WaveletPart found{
+        .wavelength_nm = part.wavelength_nm, .weight = part.weight, .index = part.lens.surfaces.back().index_after};
     const auto meet = [&](Vec2d offset) {
         return meet_sphere(part.lens, field.sphere, optics::trace_past_rims(part.lens, field.bundle.ray(offset)));
     };
@@ -162,11 +164,12 @@ WaveletPart wavelets_of(const PolychromaticField& field, const PolychromaticFiel
 double irradiance_at(const WaveletPart& part, double curvature, Vec2d point_um) {
     const Vec2d point = kMicrometre * point_um;
     const double wavenumber = 2.0 * std::numbers::pi / wavelength_mm(part.wavelength_nm);
-    const double c_square = curvature * dot(point, point);
+    const double c_by_index = curvature / part.index;
+    const double c_square = part.index * curvature * dot(point, point);
     Complex sum = 0.0;
     for (const Wavelet& wavelet : part.wavelets) {
         const double along = wavelet.towards.x * point.x + wavelet.towards.y * point.y;
-        const double distance = std::sqrt(1.0 + curvature * (2.0 * along + c_square));  // over the radius
+        const double distance = std::sqrt(1.0 + c_by_index * (2.0 * along + c_square));  // over the radius
         const double longer = (2.0 * along + c_square) / (1.0 + distance);
         sum += std::polar(wavelet.amplitude / distance, wavenumber * (wavelet.path + longer));
     }

@@ -86,10 +86,10 @@ FieldFans fans_of(const FieldBeams& field, double field_deg) {
     return fans;
 }
 
-FieldCurve field_curve(const ColourOfLens& colour, optics::Projection projection, std::span<const double> fields,
-                       double object_distance) {
+FieldCurve field_curve(const ColourOfLens& colour, const ColourOfLens& reference, optics::Projection projection,
+                       std::span<const double> fields, double object_distance) {
     FieldCurve curve{.wavelength_nm = colour.wavelength_nm, .points = {}};
-    for (const FieldCurvePoint& point : field_curves(colour, projection, fields, object_distance)) {
+    for (const FieldCurvePoint& point : field_curves(colour, reference, projection, fields, object_distance)) {
         curve.points.push_back(
             {.field_deg = point.field_angle / kDegree,
              .tangential_mm = point.foci.tangential,
@@ -210,7 +210,7 @@ RayCurves ray_curves(const optics::Lens& lens, const AnalysisSettings& settings)
     const double largest = largest_field_deg(settings) * kDegree;
     const std::vector<double> dense = even_fields(largest, kCurveFields);
     for (const ColourOfLens& colour : colours.all) {
-        curves.field_curves.push_back(field_curve(colour, lens.projection, dense, distance));
+        curves.field_curves.push_back(field_curve(colour, colours.reference, lens.projection, dense, distance));
     }
     curves.longitudinal = longitudinal_curves(colours, distance);
     curves.lateral_colour = lateral_curves(colours, dense, distance);

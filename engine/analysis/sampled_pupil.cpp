@@ -296,7 +296,7 @@ SampledPupil refocused(SampledPupil pupil, const PolychromaticField& field, doub
                 continue;
             }
             const Vec2d cosines = pupil.cosines(row, column);
-            const double z = std::sqrt(1.0 - cosines.x * cosines.x - cosines.y * cosines.y);
+            const double z = std::copysign(std::sqrt(dot(chief, chief) - dot(cosines, cosines)), chief.z);
             pupil.path[cell] += cosines.x * move.x + cosines.y * move.y + z * move.z - chief_path;
             Vec2d& aberration = pupil.aberration[cell];
             aberration = {aberration.x + shift * cosines.x / z - move.x, aberration.y + shift * cosines.y / z - move.y};

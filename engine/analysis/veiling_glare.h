@@ -57,7 +57,7 @@ struct VeilingGlare {
 };
 
 /// The same settings give the same numbers for any number of threads. A lens whose walls are black may have any shape.
-/// Throws InputError as `Barrel` and `at_wavelength` do.
+/// Throws InputError as `Barrel` and `at_wavelength` do, and for a lens with mirrors.
 VeilingGlare veiling_glare(const optics::Lens& lens, const VeilingGlareSettings& settings);
 
 /// Half of what a spot subtends whose image has a tenth of the image circle's diameter, radians. Throws InputError for

@@ -68,8 +68,9 @@ std::optional<SphereMeeting> meet_sphere(const optics::TraceLens<double>& lens, 
         return std::nullopt;
     }
     const double sag = c * q2 / (1.0 + std::sqrt(cos2));
-    return SphereMeeting{.optical_path = ray.optical_path + lens.surfaces.back().index_after * (to_foot + sag),
-                         .towards = (1.0 - c * sag) * direction - c * q};
+    const double index = lens.surfaces.back().index_after;
+    return SphereMeeting{.optical_path = ray.optical_path + index * (to_foot + sag),
+                         .towards = index * ((1.0 - c * sag) * direction - c * q)};
 }
 
 Wavefront wavefront(const optics::TraceLens<double>& lens, double wavelength_nm, const optics::FieldBundle& bundle,

@@ -26,7 +26,7 @@ std::optional<ReferenceSphere> reference_sphere(const optics::TraceLens<double>&
 /// Where a ray stands to the reference sphere.
 struct SphereMeeting {
     double optical_path;  // from the ray's origin to the sphere, plus the sphere's radius, mm
-    Vec3d towards;        // of unit length: from the ray's point on the sphere towards the centre
+    Vec3d towards;        // optical direction cosines, from the ray's point on the sphere towards the centre
 };
 
 /// With f = p + (d·(C − p)) d the ray's foot, the point next to the centre C, and q = f − C, the sphere lies
@@ -41,7 +41,8 @@ struct WavefrontRay {
     Vec2d offset;         // mm across the incoming chief ray, as FieldBundle takes it
     double weight = 0.0;  // mm², of the incoming beam's cross-section
     double opd_mm = 0.0;  // [chief ray] − [this ray], up to the sphere
-    Vec2d pupil;  // direction cosines x, y from the ray's point on the sphere to the image point, less the chief ray's
+    Vec2d
+        pupil;  // optical cosines n x, n y from the ray's point on the sphere to the image point, less the chief ray's
     double pupil_z = 0.0;  // the same of the z cosine
 };
 

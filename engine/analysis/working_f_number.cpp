@@ -13,7 +13,7 @@ double real_working_f_number(const optics::TraceLens<double>& lens, double objec
     const optics::MeridionalBundle bundle = optics::meridional_bundle(lens, axis, object_distance - first_vertex_z);
     const double sine_upper = optics::trace(lens, bundle.ray({0.0, bundle.upper})).ray.direction.y;
     const double sine_lower = optics::trace(lens, bundle.ray({0.0, bundle.lower})).ray.direction.y;
-    return 1.0 / (lens.surfaces.back().index_after * std::abs(sine_upper - sine_lower));
+    return 1.0 / std::abs(lens.surfaces.back().index_after * (sine_upper - sine_lower));
 }
 
 }  // namespace lensproof::analysis

@@ -96,7 +96,7 @@ Focus paraxial_focus(const ParaxialTable& table, double object_distance_mm) {
     const optics::TraceLens<double> lens = paraxial_lens(table);
     const optics::ParaxialRay rear =
         optics::trace_paraxial(lens, {1.0, 0.0}, 0, static_cast<int>(lens.surfaces.size()) - 1);
-    return {.efl = -1.0 / rear.slope,
+    return {.efl = -std::copysign(1.0, table.index.back()) / rear.slope,
             .bfl = -rear.height / rear.slope,
             .image_distance = optics::paraxial_image_distance(lens, object_distance_mm)};
 }
@@ -116,18 +116,21 @@ CheckedLens make_checked_lens(const optics::Prescription& at_one_position, const
     checked.known_glasses = &glasses;
     trace_if_possible(checked);
     bool is_known = true;
+    double heading = 1.0;
     for (int i = 0; i < checked.size(); ++i) {
         const optics::PrescribedSurface& row = checked.row(i);
         checked.media.push_back(stated_glass(row, glasses, at_one_position.preferred_makers));
         checked.table.curvature.push_back(row.curvature() + 2.0 * row.asphere[0]);
         checked.table.gap.push_back(row.thickness_mm);
+        heading = row.is_mirror ? -heading : heading;
+        checked.headings.push_back(heading);
         // The traced lens knows of its surroundings, too.
-        checked.table.index.push_back(
-            checked.traced ? checked.traced->surfaces[i].index_after
-                           : index_behind(row, checked.media.back(), settings.indices, checked.wavelength_nm));
+        checked.table.index.push_back(checked.traced ? checked.traced->surfaces[i].index_after
+                                                     : heading * index_behind(row, checked.media.back(),
+                                                                              settings.indices, checked.wavelength_nm));
         const bool is_last = i + 1 == checked.size();
         is_known = is_known && std::isfinite(checked.table.curvature.back()) &&
-                   std::isfinite(checked.table.index.back()) && checked.table.index.back() > 0.0 &&
+                   std::isfinite(checked.table.index.back()) && heading * checked.table.index.back() > 0.0 &&
                    (std::isfinite(row.thickness_mm) || is_last);
     }
     if (is_known) {

@@ -1,6 +1,7 @@
 // engine/check/checked_lens.h — what the checks look at: a prescription at one zoom position, with all that could be
 // made of it.
 #pragma once
+#include <cmath>
 #include <optional>
 #include <string>
 #include <vector>
@@ -15,7 +16,7 @@ using Findings = std::vector<optics::Finding>;
 struct ParaxialTable {
     std::vector<double> curvature;  // 1/mm, at the vertex
     std::vector<double> gap;        // mm, behind the surface
-    std::vector<double> index;      // behind the surface
+    std::vector<double> index;      // behind the surface; negative behind an odd number of mirrors
 };
 
 /// Where a lens focuses; mm. Not finite where it does not.
@@ -39,6 +40,7 @@ struct CheckedLens {
 
     std::vector<std::optional<optics::Glass>> media;  // behind each surface; nothing where it is not known
     ParaxialTable table;                 // NaN where a number is missing, or a glass has none at the wavelength
+    std::vector<double> headings;        // 1 where light runs along z behind the surface, −1 where against it
     std::optional<Focus> focus;          // nothing where a number is missing
     std::vector<double> semi_diameters;  // stated ones, else the rim, else estimated, else NaN
     std::vector<bool> is_estimated;      // whether that semi-diameter is not the table's
@@ -52,7 +54,9 @@ struct CheckedLens {
 
     [[nodiscard]] int size() const { return static_cast<int>(prescription.surfaces.size()); }
     [[nodiscard]] const optics::PrescribedSurface& row(int i) const { return prescription.surfaces[i]; }
-    [[nodiscard]] bool is_glass_behind(int i) const { return !row(i).medium.is_air() && table.index[i] != 1.0; }
+    [[nodiscard]] bool is_glass_behind(int i) const {
+        return !row(i).medium.is_air() && std::abs(table.index[i]) != 1.0;
+    }
     /// Whether light passes the surface unchanged: a stop's plane, or a dummy.
     [[nodiscard]] bool is_dummy(int i) const;
     /// Behind the surface, or in front of the first: the index.

@@ -53,10 +53,14 @@ Findings check_position(const CheckedLens& checked) {
     check_geometry(checked, findings);
     check_glasses(checked, findings);
     check_first_order(checked, findings);
-    check_conventions(checked, findings);
+    if (!checked.prescription.has_mirrors()) {
+        check_conventions(checked, findings);
+    }
     check_axial_rays(checked, findings);
     check_field_rays(checked, findings);
-    suggest_changes(checked, findings);
+    if (!checked.prescription.has_mirrors()) {
+        suggest_changes(checked, findings);
+    }
     report_untraced(checked, findings);
     report_rays_not_asked(checked, findings);
     std::ranges::stable_sort(

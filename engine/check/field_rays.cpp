@@ -214,7 +214,8 @@ void check_distortion(const CheckedLens& checked, double field, double image_hei
              field / kDegree, kWidestRectilinear, "deg"});
         return;
     }
-    const double ideal = checked.focus->efl * optics::projected_radius(projection, field);
+    const double ideal =
+        checked.focus->efl / std::abs(checked.table.index.back()) * optics::projected_radius(projection, field);
     const double off = image_height / ideal - 1.0;
     const double limit = is_rectilinear ? kDistortion : kFisheyeDistortion;
     if (std::abs(off) > limit) {

@@ -39,7 +39,7 @@ constexpr double kNoPower = 1e6;                            // focal lengths lon
 double lens_length(const CheckedLens& checked) {
     double length = 0.0;
     for (int i = 0; i + 1 < checked.size(); ++i) {
-        length += checked.row(i).thickness_mm;
+        length += checked.headings[i] * checked.row(i).thickness_mm;
     }
     return length;
 }
@@ -57,11 +57,11 @@ void check_power(const CheckedLens& checked, Findings& findings) {
              fmt::format("the focal length is {:.4f} mm: a diverging lens, which images nothing on a sensor",
                          focus.efl),
              focus.efl, 0.0, "mm"});
-    } else if (focus.image_distance <= 0.0) {
+    } else if (checked.headings.back() * focus.image_distance <= 0.0) {
         findings.push_back(
             {"image-in-front", warning, checked.size(),
              fmt::format("the image lies {:.3f} mm in front of the last surface, where no sensor can stand",
-                         -focus.image_distance),
+                         std::abs(focus.image_distance)),
              focus.image_distance, 0.0, "mm"});
     }
 }
@@ -119,21 +119,22 @@ void check_focal_lengths(const CheckedLens& checked, Findings& findings) {
         compare(findings, "focal-length", "the focal length (mm)", {focus.efl, *claims.efl_mm, *claims.efl_mm},
                 kFocalLength);
     }
+    const double heading = checked.headings.back();
     const double scale = claims.efl_mm.value_or(focus.efl);
     if (claims.bfl_mm) {
-        check_back_focus(checked, "the back focus (mm)", {focus.bfl, *claims.bfl_mm, scale}, 0, findings);
+        check_back_focus(checked, "the back focus (mm)", {heading * focus.bfl, *claims.bfl_mm, scale}, 0, findings);
     }
-    const double last = checked.row(checked.size() - 1).thickness_mm;
+    const double last = heading * checked.row(checked.size() - 1).thickness_mm;
     const bool repeats = claims.bfl_mm && std::abs(*claims.bfl_mm - last) < 1e-9;
     if (last > 0.0 && !repeats) {
         check_back_focus(checked, "the image's distance from the last surface (mm, last thickness)",
-                         {focus.image_distance, last, scale}, checked.size(), findings);
+                         {heading * focus.image_distance, last, scale}, checked.size(), findings);
     }
 }
 
 /// Rule 30.
 void check_track(const CheckedLens& checked, Findings& findings) {
-    const double last = checked.row(checked.size() - 1).thickness_mm;
+    const double last = checked.headings.back() * checked.row(checked.size() - 1).thickness_mm;
     if (const std::optional<double>& track = checked.claims.total_track_mm; track && last > 0.0) {
         compare(findings, "total-track", "the length from first vertex to sensor (mm)",
                 {lens_length(checked) + last, *track, *track}, kTrack);
@@ -216,8 +217,9 @@ void check_invariant(const CheckedLens& checked, Findings& findings) {
 /// A sensor that the rim of the last element has passed.
 void check_sensor_place(const CheckedLens& checked, Findings& findings) {
     const int last = checked.size() - 1;
-    const double distance = checked.row(last).thickness_mm;
-    const double rim = sag_at(checked.row(last), checked.semi_diameters[last]);
+    const double heading = checked.headings.back();
+    const double distance = heading * checked.row(last).thickness_mm;
+    const double rim = heading * sag_at(checked.row(last), checked.semi_diameters[last]);
     if (distance > 0.0 && rim > distance) {
         findings.push_back(
             {"sensor-inside-lens", checked.is_estimated[last] ? warning : error, last + 1,

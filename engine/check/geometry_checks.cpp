@@ -39,12 +39,13 @@ bool is_known(double value) {
     return std::isfinite(value);
 }
 
-/// Two successive surfaces, what lies between them, and how far out each reaches.
+/// Two successive surfaces, what lies between them, and how far out each reaches; z as light runs between them.
 struct Space {
     const CheckedLens& checked;
     int i;  // the first surface, from 0
-    const optics::PrescribedSurface& front = checked.row(i);
-    const optics::PrescribedSurface& rear = checked.row(i + 1);
+    bool is_turned = checked.headings[i] < 0.0;
+    optics::PrescribedSurface front = is_turned ? checked.row(i).turned() : checked.row(i);
+    optics::PrescribedSurface rear = is_turned ? checked.row(i + 1).turned() : checked.row(i + 1);
     double front_reach = checked.semi_diameters[i];
     double rear_reach = checked.semi_diameters[i + 1];
 

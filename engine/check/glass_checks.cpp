@@ -37,7 +37,7 @@ std::string medium_in_words(const optics::StatedMedium& medium) {
 
 /// Rule 13.
 void check_index_range(const CheckedLens& checked, int i, Findings& findings) {
-    const double index = checked.table.index[i];
+    const double index = std::abs(checked.table.index[i]);
     const std::string is = fmt::format("the index behind it is {:.6g}", index);
     if (index < 1.0) {
         findings.push_back({"index-range", error, i + 1, is + ": below that of air", index, 1.0});
@@ -122,7 +122,9 @@ void check_name(const CheckedLens& checked, int i, Findings& findings) {
             findings.push_back({"glass-obsolete", info, i + 1,
                                 fmt::format("{} {} is no longer made", match.glass->catalogue, match.glass->name)});
         }
-        check_figures(checked, i, *match.glass, findings);
+        if (!checked.prescription.figures_are_spare) {
+            check_figures(checked, i, *match.glass, findings);
+        }
         return;
     }
     findings.push_back(optics::unknown_glass(medium, match, i + 1));
@@ -228,7 +230,7 @@ void check_wavelengths(const CheckedLens& checked, int i, Findings& findings) {
 /// Rule 18.
 void check_last_medium(const CheckedLens& checked, Findings& findings) {
     const int last = checked.size() - 1;
-    if (!checked.row(last).medium.is_air() && checked.table.index[last] != 1.0) {
+    if (!checked.row(last).medium.is_air() && std::abs(checked.table.index[last]) != 1.0) {
         findings.push_back({"last-medium", warning, last + 1,
                             fmt::format("the last surface is followed by {}, not by air: is a row missing?",
                                         medium_in_words(checked.row(last).medium)),

@@ -65,7 +65,8 @@ RayFate follow(const optics::TraceLens<double>& lens, const Ray<double>& ray, op
             return;  // it bends no ray, so it does not matter on which side of a neighbour the ray meets it
         }
         const Vec3d step = event.ray.origin - before.origin;
-        if (!is_first && !fate.is_backwards && dot(step, before.direction) < kBackwards) {
+        const double heading = std::copysign(1.0, surface.index_before);
+        if (!is_first && !fate.is_backwards && heading * dot(step, before.direction) < kBackwards) {
             fate.is_backwards = true;
             fate.surface = event.surface;
         }

@@ -104,18 +104,18 @@ void check_extremes(const optics::PrescribedSurface& row, int surface, Findings&
     }
 }
 
-/// Rule 5: light of a refracting lens only runs forwards; surfaces without a gap are cemented or a dummy.
+/// Rule 5: light only runs forwards, and back behind each mirror; surfaces without a gap are cemented or a dummy.
 void check_thickness_sign(const CheckedLens& checked, int i, Findings& findings) {
-    const double thickness = checked.row(i).thickness_mm;
+    const double thickness = checked.headings[i] * checked.row(i).thickness_mm;
     const bool is_last = i + 1 == checked.size();
-    if (thickness < 0.0) {
+    if (thickness < -optics::kGapRounding) {
         add(findings, "negative-thickness", error, i + 1,
             is_last ? fmt::format("the sensor stands {} mm in front of the last surface", -thickness)
                     : fmt::format("the next surface stands {} mm in front of this one", -thickness),
             thickness, 0.0, "mm");
         return;
     }
-    if (thickness != 0.0) {
+    if (thickness > optics::kGapRounding) {
         return;
     }
     if (is_last) {
@@ -181,7 +181,7 @@ void check_stop(const CheckedLens& checked, Findings& findings) {
         add(findings, "stop-position", warning, stops[0],
             "the aperture stop is the last surface: a lens with its stop behind it, or the image plane listed?");
     } else if (checked.size() > 1 && stops[0] == 1) {
-        add(findings, "stop-position", checked.row(0).thickness_mm > 0.0 ? info : warning, 1,
+        add(findings, "stop-position", checked.headings[0] * checked.row(0).thickness_mm > 0.0 ? info : warning, 1,
             "the aperture stop is the first surface: a lens with its stop in front, or the object plane listed?");
     }
 }

@@ -44,10 +44,11 @@ bool is_glass(const Glass& medium) {
 }  // namespace
 
 Barrel::Barrel(const Lens& lens) : finish_(lens.barrel) {
+    if ((!lens.is_rotationally_symmetric || lens.has_mirrors()) && finish_.is_black()) {
+        return;  // which ends all light just so
+    }
+    require_no_mirrors(lens, "a barrel that scatters");
     if (!lens.is_rotationally_symmetric) {
-        if (finish_.is_black()) {
-            return;  // which ends all light just so
-        }
         throw InputError(
             fmt::format("{}: a barrel that scatters is known about one axis alone; some surface of this "
                         "lens is no surface of revolution about it",

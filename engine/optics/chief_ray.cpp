@@ -52,6 +52,7 @@ ChiefRays::ChiefRays(const Lens& lens, double wavelength_nm, Rims rims)
     stop_centre_ = {surface.vertex.x, surface.vertex.y, surface.vertex_z};
     stop_normal_ = surface.axes[2];
     stop_ratio_ = stop->reverse_ratio;
+    stop_heading_ = std::copysign(1.0, stop->index_after);
     largest_stop_angle_ = is_symmetric_ ? end_of_family() : 0.0;
     largest_field_ = find_largest_field();
 }
@@ -119,7 +120,7 @@ std::optional<ChiefRay> ChiefRays::through_stop(const Vec3d& direction, Rims rim
 }
 
 std::optional<ChiefRay> ChiefRays::from_stop(double stop_angle) const {
-    return through_stop({0.0, std::sin(stop_angle), std::cos(stop_angle)}, rims_);
+    return through_stop({0.0, stop_heading_ * std::sin(stop_angle), std::cos(stop_angle)}, rims_);
 }
 
 /// The ray of the symmetric family where `residual`, which rises with the stop angle, is 0.

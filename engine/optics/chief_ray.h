@@ -65,8 +65,9 @@ class ChiefRays {
     Rims rims_ = Rims::clip;
     bool is_symmetric_ = true;
     Vec3d stop_centre_;
-    Vec3d stop_normal_;        // towards the sensor
-    double stop_ratio_ = 1.0;  // index behind the stop over that before it
+    Vec3d stop_normal_;          // towards the sensor
+    double stop_ratio_ = 1.0;    // index behind the stop over that before it
+    double stop_heading_ = 1.0;  // the sign of the former
     double largest_stop_angle_ = 0.0;
     double largest_field_ = 0.0;
 };

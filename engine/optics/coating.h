@@ -9,7 +9,8 @@
 namespace lensproof::optics {
 
 /// A coating at one wavelength: layers from the scene's side to the sensor's, or a stated reflectance in their place,
-/// which then holds at every angle from which light passes.
+/// which then holds at every angle from which light passes. Of a mirror in the sequence of surfaces, what it reflects
+/// is what goes on through the lens, so that counts as transmitted.
 template <class T>
 struct TraceCoating {
     struct Layer {
@@ -19,8 +20,9 @@ struct TraceCoating {
     };
     std::vector<Layer> layers;
     std::optional<T> reflectance;
+    bool is_mirror = false;  // of the stated reflectance, or of 1
 
-    [[nodiscard]] bool is_bare() const { return layers.empty() && !reflectance; }
+    [[nodiscard]] bool is_bare() const { return layers.empty() && !reflectance && !is_mirror; }
 };
 
 /// The shares of a wave's power that a coated surface sends back and on; the layers keep the rest.
@@ -143,8 +145,8 @@ PolarisedFields<T> stack_fields(const TraceCoating<T>& coating, const T& n1, con
     using std::acos;
     using std::sqrt;
     using Complex = std::complex<T>;
-    const T& near = from_scene_side ? n1 : n2;
-    const T& far = from_scene_side ? n2 : n1;
+    const T near = abs(from_scene_side ? n1 : n2);  // behind a mirror both are negative
+    const T far = abs(from_scene_side ? n2 : n1);
     const T q_near = near * cos_incidence;
     const T far_squared = (far - near) * (far + near) + q_near * q_near;
     const Complex q_far = far_squared < T(0) ? Complex(T(0), sqrt(-far_squared)) : Complex(sqrt(far_squared));
@@ -196,6 +198,10 @@ bool is_beyond_critical(const T& n1, const T& n2, const T& cos_incidence, bool f
 template <class T>
 PolarisedPowers<T> coating_powers(const TraceCoating<T>& coating, const T& n1, const T& n2, const T& cos_incidence,
                                   bool from_scene_side) {
+    if (coating.is_mirror) {
+        const CoatedPowers<T> powers{.reflected = T(0), .transmitted = coating.reflectance.value_or(T(1))};
+        return {powers, powers};
+    }
     if (coating.reflectance) {
         const T stated = is_beyond_critical(n1, n2, cos_incidence, from_scene_side) ? T(1) : *coating.reflectance;
         const CoatedPowers<T> powers{.reflected = stated, .transmitted = T(1) - stated};
@@ -218,11 +224,16 @@ T coating_reflectance(const TraceCoating<T>& coating, const T& n1, const T& n2, 
     return coating_powers(coating, n1, n2, cos_incidence, from_scene_side).unpolarised().reflected;
 }
 
-/// Amplitudes in the place of powers. A stated reflectance gives their moduli, the bare surface their phases.
+/// Amplitudes in the place of powers. A stated reflectance gives their moduli, the bare surface their phases. A
+/// mirror's are those of a perfect conductor: in space that is unfolded at it both polarisations go on alike.
 template <class T>
 CoatedAmplitudes<T> coating_amplitudes(const TraceCoating<T>& coating, const T& n1, const T& n2, const T& cos_incidence,
                                        bool from_scene_side) {
     using std::sqrt;
+    if (coating.is_mirror) {
+        const std::complex<T> passing(sqrt(coating.reflectance.value_or(T(1))));
+        return {.r_s = {}, .r_p = {}, .t_s = passing, .t_p = passing};
+    }
     const PolarisedFields<T> fields = stack_fields(coating, n1, n2, cos_incidence, from_scene_side);
     const T from_magnetic = from_scene_side ? n1 / n2 : n2 / n1;
     CoatedAmplitudes<T> amplitudes{.r_s = fields.s.reflected(),

@@ -43,6 +43,7 @@ SpecialSurface<To> convert_special(const SpecialSurface<From>& from) {
     if (from.coating.reflectance) {
         to.coating.reflectance = static_cast<To>(*from.coating.reflectance);
     }
+    to.coating.is_mirror = from.coating.is_mirror;
     to.mask = from.mask;
     return to;
 }

@@ -20,7 +20,7 @@ double signed_length(const Vec2d& point) {
 double paraxial_slope(double image_height, const TraceLens<double>& lens, double object_distance) {
     const ParaxialData data = paraxial_data(lens);
     if (std::isinf(object_distance)) {
-        return image_height / data.efl;
+        return image_height / data.front_efl;
     }
     const double object_height = image_height / paraxial_conjugates(lens, object_distance).magnification;
     return -object_height / (object_distance + data.entrance_pupil_z);

@@ -25,11 +25,12 @@ std::optional<Lens> driven(const Lens& lens, double drive) {
         }
     }
     for (std::size_t i = 0; i + 1 < moved.surfaces.size(); ++i) {
-        if (moved.surfaces[i + 1].vertex_z < moved.surfaces[i].vertex_z) {
+        if (moved.heading_behind(i) * (moved.surfaces[i + 1].vertex_z - moved.surfaces[i].vertex_z) < 0.0) {
             return std::nullopt;
         }
     }
-    return moved.last_vertex_z() <= moved.image_z ? std::optional(moved) : std::nullopt;
+    const double to_sensor = moved.final_heading() * (moved.image_z - moved.last_vertex_z());
+    return to_sensor >= 0.0 ? std::optional(moved) : std::nullopt;
 }
 
 /// How far behind the sensor the paraxial image of an object in front of the table's first vertex lies.
@@ -93,7 +94,7 @@ Lens focused_at(Lens lens, double object_distance_mm, double wavelength_nm) {
             fmt::format("{} cannot be focused at {} mm: its front focal point lies {:.2f} mm in front of it", lens.name,
                         object_distance_mm, front_focus));
     }
-    if (!(image_distance > 0.0)) {
+    if (!(lens.final_heading() * image_distance > 0.0)) {
         throw InputError(
             fmt::format("{} focused at {} mm has its image {:.2f} mm behind the last vertex, where no sensor "
                         "can stand",

@@ -69,17 +69,22 @@ void require_traceable(const Prescription& prescription) {
     }
 }
 
-/// Light of a refracting lens runs forwards. Only a dummy, with one medium on both sides, may stand behind the surface
-/// that follows it, or in front of the one before it: there the step back is only in the table.
-void require_forwards(const Prescription& prescription, const std::vector<LensSurface>& surfaces) {
+/// Light runs forwards, and back behind each mirror. Only a dummy, with one medium on both sides, may stand behind the
+/// surface that follows it, or in front of the one before it: there the step back is only in the table.
+void require_forwards(const Prescription& prescription, const Lens& lens) {
+    const std::vector<LensSurface>& surfaces = lens.surfaces;
     const auto is_dummy = [&](std::size_t i) {
-        return i < surfaces.size() && (i == 0 ? surfaces[0].medium.formula == DispersionFormula(ConstantIndex{1.0})
-                                              : surfaces[i].medium.formula == surfaces[i - 1].medium.formula);
+        return i < surfaces.size() && !surfaces[i].is_mirror &&
+               (i == 0 ? surfaces[0].medium.formula == DispersionFormula(ConstantIndex{1.0})
+                       : surfaces[i].medium.formula == surfaces[i - 1].medium.formula);
     };
     for (std::size_t i = 0; i < surfaces.size(); ++i) {
         const PrescribedSurface& row = prescription.surfaces[i];
-        require(row.thickness_mm >= 0.0 || is_dummy(i) || is_dummy(i + 1), row, "thickness_mm", row.thickness_mm,
-                "a length that is not negative, but beside a dummy surface");
+        const double heading = lens.heading_behind(i);
+        require(heading * row.thickness_mm >= -kGapRounding || is_dummy(i) || is_dummy(i + 1), row, "thickness_mm",
+                row.thickness_mm,
+                heading > 0.0 ? "a length that is not negative, but beside a dummy surface"
+                              : "a length that is not positive behind a mirror, but beside a dummy surface");
     }
 }
 
@@ -92,6 +97,7 @@ LensSurface placed_surface(const PrescribedSurface& row, const Frame& frame) {
     surface.semi_diameter = row.semi_diameter_mm.value_or(row.rim_mm.value_or(kInfinity));
     surface.rim = row.rim_mm.value_or(0.0);
     surface.tube_behind = row.barrel_mm.value_or(0.0);
+    surface.is_mirror = row.is_mirror;
     surface.is_stop = row.is_stop;
     surface.has_shape = row.conic != 0.0 || row.is_asphere() || row.radius_x_mm.has_value();
     surface.shape = prescribed_shape(row);
@@ -161,6 +167,18 @@ int Lens::stop_index() const {
     return static_cast<int>(std::ranges::find_if(surfaces, &LensSurface::is_stop) - surfaces.begin());
 }
 
+double Lens::heading_behind(std::size_t i) const {
+    const auto end = surfaces.begin() + static_cast<std::ptrdiff_t>(i) + 1;
+    return std::count_if(surfaces.begin(), end, [](const LensSurface& each) { return each.is_mirror; }) % 2 == 0 ? 1.0
+                                                                                                                 : -1.0;
+}
+
+void require_no_mirrors(const Lens& lens, std::string_view what) {
+    if (lens.has_mirrors()) {
+        throw InputError(fmt::format("{}: {} is not simulated in lenses with mirrors", lens.name, what));
+    }
+}
+
 Lens make_lens(const Prescription& prescription, const GlassCatalogue& glasses, const IndexOverrides& overrides) {
     require_traceable(prescription);
     Lens lens;
@@ -191,36 +209,38 @@ Lens make_lens(const Prescription& prescription, const GlassCatalogue& glasses, 
             }
         }
         LensSurface surface = placed_surface(row, frames[lens.surfaces.size()]);
+        const Glass before = lens.surfaces.empty() ? constant_glass("air", 1.0) : lens.surfaces.back().medium;
         // A barrel is convex, so a path runs inside it where it does so at both ends.
         surface.semi_diameter = std::min({surface.semi_diameter, barrel_before, row.barrel_mm.value_or(kInfinity)});
         surface.medium = std::move(medium);
+        if (row.is_mirror && !(surface.medium.formula == before.formula)) {
+            throw InputError(fmt::format("{} is a mirror, behind which is {}; expected what is in front of it, {}",
+                                         row.where, surface.medium.name, before.name));
+        }
         if (!row.coating.empty()) {
             const auto coating = prescription.coatings.find(row.coating);
             if (coating == prescription.coatings.end()) {
                 throw InputError(fmt::format("{}.coating is \"{}\", which the prescription does not hold", row.where,
                                              printable(row.coating)));
             }
-            surface.coating = resolved_coating(
-                coating->second, glasses,
-                lens.surfaces.empty() ? constant_glass("air", 1.0) : lens.surfaces.back().medium, surface.medium,
-                fmt::format("{}: coating {}", prescription.file.string(), row.coating));
+            if (row.is_mirror && std::holds_alternative<LayerStack>(coating->second)) {
+                throw InputError(fmt::format("{}: the mirror's coating {} has layers, expected a reflectance",
+                                             row.where, printable(row.coating)));
+            }
+            surface.coating = resolved_coating(coating->second, glasses, before, surface.medium,
+                                               fmt::format("{}: coating {}", prescription.file.string(), row.coating));
         }
         lens.surfaces.push_back(std::move(surface));
         barrel_before = row.barrel_mm.value_or(kInfinity);
         lens.image_z += row.thickness_mm;
     }
-    require_forwards(prescription, lens.surfaces);
+    require_forwards(prescription, lens);
     for (const auto& [name, index] : overrides) {
         if (!used.contains(name)) {
             used.erase("");
             throw InputError(fmt::format("--index {}={}: {} has no glass of that name; it has: {}", name, index,
                                          prescription.file.string(), fmt::join(used, ", ")));
         }
-    }
-    const LensSurface& last = lens.surfaces.back();
-    if (refractive_index(last.medium.formula, spectral::kLineD) != 1.0) {
-        throw InputError(fmt::format("{}: the last surface is followed by {}, expected air", prescription.file.string(),
-                                     last.medium.name));
     }
     open_stop(lens, prescription);
     estimate_rims(lens, prescription);
@@ -263,6 +283,7 @@ double attenuation_of(const Glass& medium, double wavelength_nm) {
 TraceLens<double> traced_lens(const Lens& lens, double wavelength_nm) {
     TraceLens<double> traced{.surfaces = {}, .image_z = lens.image_z};
     double index_before = 1.0;
+    double sign = 1.0;  // of indices and distances: the other one behind each mirror
     traced.attenuation = {0.0};
     for (const LensSurface& surface : lens.surfaces) {
         if (!covers(surface.medium, wavelength_nm)) {
@@ -270,7 +291,8 @@ TraceLens<double> traced_lens(const Lens& lens, double wavelength_nm) {
                                          surface.medium.name, surface.medium.min_wavelength_nm,
                                          surface.medium.max_wavelength_nm));
         }
-        const double index_after = index_in(lens.surroundings, surface.medium, wavelength_nm);
+        sign = surface.is_mirror ? -sign : sign;
+        const double index_after = sign * index_in(lens.surroundings, surface.medium, wavelength_nm);
         // At the vertex an r² term bends like the curvature: A2 r² = c r² / 2.
         const double vertex_curvature = surface.curvature + 2.0 * surface.shape.asphere[0];
         traced.surfaces.push_back(make_trace_surface(vertex_curvature, surface.vertex_z, surface.semi_diameter,
@@ -281,6 +303,7 @@ TraceLens<double> traced_lens(const Lens& lens, double wavelength_nm) {
                                        .vertex = surface.vertex,
                                        .axes = surface.axes,
                                        .coating = coating_at(surface.coating, wavelength_nm, lens.name)};
+        special.coating.is_mirror = surface.is_mirror;
         if (is_masked) {
             special.mask = lens.stop_mask;
         }
@@ -288,7 +311,7 @@ TraceLens<double> traced_lens(const Lens& lens, double wavelength_nm) {
             traced.surfaces.back().special = static_cast<int>(traced.specials.size());
             traced.specials.push_back(std::move(special));
         }
-        traced.attenuation.push_back(attenuation_of(surface.medium, wavelength_nm));
+        traced.attenuation.push_back(sign * attenuation_of(surface.medium, wavelength_nm));
         index_before = index_after;
     }
     if (std::ranges::all_of(traced.attenuation, [](double per_mm) { return per_mm == 0.0; })) {

@@ -1,8 +1,10 @@
 // engine/optics/lens.h — a lens as it was meant: glasses looked up, stop and focus set, ready to be traced.
 #pragma once
+#include <algorithm>
 #include <map>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "engine/optics/glass_catalogue.h"
@@ -14,6 +16,9 @@
 
 namespace lensproof::optics {
 
+/// What rounding and optimizers leave of surfaces that touch: a gap below that is none, mm.
+inline constexpr double kGapRounding = 1e-6;
+
 /// A surface of a `Lens`. Lens space, mm.
 struct LensSurface {
     double curvature = 0.0;
@@ -22,6 +27,7 @@ struct LensSurface {
     double rim = 0.0;            // of the glass, mechanically, and
     double tube_behind = 0.0;    // the barrel's inner radius over the space behind; 0 where they are not stated
     Glass medium;                // behind the surface
+    bool is_mirror = false;
     bool is_stop = false;
     SurfaceShape<double> shape{};  // of a surface that is no sphere; its curvature is the one above
     bool has_shape = false;
@@ -34,8 +40,8 @@ struct LensSurface {
     }
 };
 
-/// A traceable lens. The scene lies in air in front of the first surface, the sensor at `image_z` in air behind the
-/// last.
+/// A traceable lens. The scene lies in air in front of the first surface, the sensor at `image_z` behind the last, in
+/// that one's medium.
 struct Lens {
     std::string name;
     std::string id;  // the file's stem
@@ -54,7 +60,15 @@ struct Lens {
 
     [[nodiscard]] int stop_index() const;
     [[nodiscard]] double last_vertex_z() const { return surfaces.back().vertex_z; }
+    [[nodiscard]] bool has_mirrors() const { return std::ranges::any_of(surfaces, &LensSurface::is_mirror); }
+    /// Where light runs behind surface `i`, from 0, and behind the last one: along z (1), or against it (−1) after an
+    /// odd number of mirrors.
+    [[nodiscard]] double heading_behind(std::size_t i) const;
+    [[nodiscard]] double final_heading() const { return heading_behind(surfaces.size() - 1); }
 };
+
+/// Throws InputError naming what is not known of lenses with mirrors, where `lens` has some.
+void require_no_mirrors(const Lens& lens, std::string_view what);
 
 /// Constant indices that stand for glasses, by catalogue name: `--index LAK9=1.691`.
 using IndexOverrides = std::map<std::string, double>;
@@ -73,7 +87,7 @@ Finding unknown_glass(const StatedMedium& medium, const GlassMatch& match, int s
 
 /// Looks the prescription's glasses up. Throws InputError naming the file, the line and the name of an unknown glass,
 /// for an override of a glass that the lens does not have, for a coating that it does not have or that
-/// `resolved_coating` refuses, and for a stop's picture that was not read.
+/// `resolved_coating` refuses, for a mirror with layers or with two media, and for a stop's picture that was not read.
 Lens make_lens(const Prescription& prescription, const GlassCatalogue& glasses, const IndexOverrides& overrides = {});
 
 /// The range of wavelengths that every glass's formula and every coating covers, nm.

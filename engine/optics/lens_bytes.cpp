@@ -30,12 +30,12 @@ void append_shape(std::string& bytes, const SurfaceShape<double>& shape) {
 }
 
 void append_coating(std::string& bytes, const TraceCoating<double>& coating) {
-    const auto& [layers, reflectance] = coating;
+    const auto& [layers, reflectance, is_mirror] = coating;
     append_bytes(bytes, layers.size());
     for (const auto& [index, thickness, extinction] : layers) {
         append_bytes(bytes, index, thickness, extinction);
     }
-    append_bytes(bytes, reflectance.has_value(), reflectance.value_or(0.0));
+    append_bytes(bytes, reflectance.has_value(), reflectance.value_or(0.0), is_mirror);
 }
 
 void append_special(std::string& bytes, const SpecialSurface<double>& special) {

@@ -12,7 +12,8 @@
 namespace lensproof::optics {
 
 // T: double, long double or a multiprecision number, as the lens has it. Only the curvature at each vertex counts (that
-// of a toroid in y–z, an r² term included); tilts and decentres are left out. The lens has one stop.
+// of a toroid in y–z, an r² term included); tilts and decentres are left out. The lens has one stop. Distances are
+// signed, as at mirrors the tracer's indices are.
 //
 // Nothing here is NaN: what lies at infinity is infinite, and its sign means nothing where it is not stated.
 
@@ -29,7 +30,8 @@ struct BasicParaxialRay {
 /// pupil at infinity (the stop in a focal plane of what lies on its side) has an infinite diameter.
 template <class T>
 struct BasicParaxialData {
-    T efl = T(0);                      // effective (rear) focal length, positive for a camera lens
+    T efl = T(0);                      // effective (rear) focal length |n'| / K, positive for a camera lens
+    T front_efl = T(0);                // n / K: paraxial image height over the tangent of the field angle
     T bfl = T(0);                      // last vertex to rear focal point
     T ffl = T(0);                      // first vertex to front focal point, negative in front of it
     T entrance_pupil_z = T(0);         // from the first vertex
@@ -42,7 +44,7 @@ struct BasicParaxialData {
     T front_nodal_z = T(0);      // from the first vertex; the principal point where both ends have one index
     T rear_nodal_z = T(0);       // from the last vertex
     // −1 / (n' Σ c (n' − n) / (n n')), of the surface on which a flat object's image lies where there is no
-    // astigmatism: negative where that curves towards the lens, infinite where it is flat.
+    // astigmatism: negative where its centre lies at smaller z, towards a lens, infinite where it is flat.
     T petzval_radius = T(0);
 };
 
@@ -51,7 +53,7 @@ template <class T>
 struct BasicConjugates {
     T image_distance = T(0);  // last vertex to paraxial image, mm
     T magnification = T(0);   // transverse, negative where the image is inverted; of an object at infinity 0
-    // Of the paraxial ray through the stop's edge: 1 / (2 n' |u'|), u' being a slope (a tangent). With an object at
+    // Of the paraxial ray through the stop's edge: 1 / (2 |n' u'|), u' being a slope (a tangent). With an object at
     // infinity this is the f-number's size; of a lens without coma the real 1 / (2 n' sin U') is the same.
     T working_f_number = T(0);
     T object_numerical_aperture = T(0);  // n |u| of that ray, to be read as a sine likewise
@@ -207,16 +209,18 @@ GaussianConstants<T> gaussian_constants(const TraceLens<T>& lens) {
 
 template <class T>
 void set_cardinal_points(BasicParaxialData<T>& data, const TraceLens<T>& lens) {
+    using std::abs;
     const GaussianConstants<T> constants = gaussian_constants(lens);
     const T& n_first = constants.n_first;
     const T& n_last = constants.n_last;
     const T& power = constants.power;
     if (power == T(0)) {
-        data.efl = data.bfl = data.rear_principal_z = data.rear_nodal_z = infinity<T>();
+        data.efl = data.front_efl = data.bfl = data.rear_principal_z = data.rear_nodal_z = infinity<T>();
         data.ffl = data.front_principal_z = data.front_nodal_z = -infinity<T>();
         return;
     }
-    data.efl = n_last / power;
+    data.efl = abs(n_last) / power;
+    data.front_efl = n_first / power;
     data.bfl = n_last * (T(1) + constants.height_change) / power;
     data.ffl = -n_first * (T(1) + constants.slope_change) / power;
     data.front_principal_z = -n_first * constants.slope_change / power;
@@ -302,7 +306,7 @@ BasicConjugates<T> paraxial_conjugates(const TraceLens<T>& lens, const std::type
     }
     if (const auto marginal = paraxial_marginal_ray(lens, object_distance)) {
         const T slope = abs(constants.through(*marginal).slope);
-        conjugates.working_f_number = slope == T(0) ? infinity<T>() : T(1 / (2 * constants.n_last * slope));
+        conjugates.working_f_number = slope == T(0) ? infinity<T>() : T(1 / abs(2 * constants.n_last * slope));
         conjugates.object_numerical_aperture = constants.n_first * abs(marginal->slope);
     } else {
         conjugates.object_numerical_aperture = front.slope == T(0) ? T(0) : infinity<T>();

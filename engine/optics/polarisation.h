@@ -34,11 +34,12 @@ class PolarisedPath {
     /// Snell's law gives. `normal` is the surface's, of either sign and any length.
     void refract(const TraceCoating<T>& coating, const T& n1, const T& n2, bool from_scene_side, const Vec3<T>& normal,
                  const Vec3<T>& after) {
+        using std::abs;
         using std::sqrt;
         const T cos_before = cosine(direction_, normal);
         const CoatedAmplitudes<T> amplitudes = coating_amplitudes(coating, n1, n2, cos_before, from_scene_side);
-        const T near = from_scene_side ? n1 : n2;
-        const T far = from_scene_side ? n2 : n1;
+        const T near = abs(from_scene_side ? n1 : n2);
+        const T far = abs(from_scene_side ? n2 : n1);
         const T to_power = sqrt(far * cosine(after, normal) / (near * cos_before));
         pass(to_power * amplitudes.t_s, to_power * amplitudes.t_p, normal, after);
     }

@@ -36,6 +36,27 @@ bool StatedMedium::is_air() const {
     return glass == "air" || glass == "AIR" || glass == "Air";
 }
 
+PrescribedSurface PrescribedSurface::turned() const {
+    PrescribedSurface row = *this;
+    row.radius_mm = is_flat() ? row.radius_mm : -row.radius_mm;
+    if (row.radius_x_mm) {
+        row.radius_x_mm = std::isinf(*row.radius_x_mm) ? row.radius_x_mm : std::optional(-*row.radius_x_mm);
+    }
+    for (int power = 1; power <= kHighestPower; ++power) {
+        row.term(power) = -row.term(power);
+    }
+    row.thickness_mm = -row.thickness_mm;
+    return row;
+}
+
+void set_mirror_media(std::vector<PrescribedSurface>& surfaces) {
+    StatedMedium before;
+    for (PrescribedSurface& row : surfaces) {
+        row.medium = row.is_mirror ? before : row.medium;
+        before = row.medium;
+    }
+}
+
 std::string describe(const SystemAperture& aperture) {
     switch (aperture.kind) {
         case ApertureKind::entrance_pupil_diameter:

@@ -1,5 +1,6 @@
 // engine/optics/prescription.h — a lens as its file states it: the table, the source, what the source claims.
 #pragma once
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <filesystem>
@@ -69,7 +70,8 @@ struct PrescribedSurface {
     std::optional<double> semi_diameter_mm;  // of the clear aperture
     std::optional<double> rim_mm;            // mechanical semi-diameter of the glass, where it is larger
     std::optional<double> barrel_mm;         // inner radius of the barrel over the space behind the surface
-    StatedMedium medium;                     // behind the surface
+    StatedMedium medium;                     // behind the surface; that in front of it at a mirror
+    bool is_mirror = false;                  // what follows lies at the distances −thickness
     bool is_stop = false;
     std::string coating;        // a name in Prescription::coatings; empty: bare
     Misalignment misalignment;  // of this surface alone, about its vertex
@@ -82,8 +84,13 @@ struct PrescribedSurface {
     [[nodiscard]] double term(int power) const { return (power % 2 == 0 ? asphere : odd_asphere)[(power - 1) / 2]; }
     [[nodiscard]] bool has_odd_terms() const { return odd_asphere != AsphereTerms{}; }
     [[nodiscard]] bool is_asphere() const { return asphere != AsphereTerms{} || has_odd_terms(); }
+    /// As it is in coordinates with z the other way, its misalignment left as it is.
+    [[nodiscard]] PrescribedSurface turned() const;
     bool operator==(const PrescribedSurface&) const = default;
 };
+
+/// Gives each mirror the medium in front of it, which is the one behind it too.
+void set_mirror_media(std::vector<PrescribedSurface>& surfaces);
 
 /// What the source claims about the lens as a whole; each is optional.
 struct StatedData {
@@ -249,6 +256,8 @@ struct Prescription {
                                                     // reference first; may be empty
     std::vector<std::filesystem::path> catalogues;  // glass files of its own
     std::vector<std::string> preferred_makers;      // whose glass a bare name means first
+    bool figures_are_spare =
+        false;                     // n_d and V_d beside a glass's name are no claim: they count where none has the name
     std::vector<Finding> remarks;  // what its reader could not carry over, and what it took upon itself
     std::filesystem::path file;
 
@@ -257,6 +266,7 @@ struct Prescription {
     /// The aperture that governs; where the stop says nothing, the one that is claimed.
     [[nodiscard]] SystemAperture governing_aperture() const;
     /// Of the surfaces; the stop may have blades all the same.
+    [[nodiscard]] bool has_mirrors() const { return std::ranges::any_of(surfaces, &PrescribedSurface::is_mirror); }
     [[nodiscard]] bool is_rotationally_symmetric() const;
 };
 

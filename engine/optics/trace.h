@@ -2,6 +2,11 @@
 //
 // Lens space: +z runs from the scene to the sensor along the optical axis, the origin is the vertex of the first
 // surface, light from the scene travels towards +z; mm.
+//
+// Mirrors by the sign convention of lens design (Welford, Aberrations of Optical Systems, §2.6): behind each, indices
+// have the other sign and distances run backwards, n' = −n. Snell's law with these makes of a refraction a reflection,
+// and every formula for lenses holds. Directions keep z > 0 where light runs towards −z: where the index is negative
+// light travels against them, and t < 0, so that n t is positive.
 #pragma once
 #include <tuple>
 #include <vector>
@@ -22,8 +27,8 @@ struct TraceSurface {
     T curvature;  // 1/mm, at the vertex (of a toroid: in y–z), positive where the centre of curvature lies at larger z
     T vertex_z;   // mm
     T semi_diameter_squared;  // mm²; 0: closed, even to a ray through the vertex
-    T index_before;           // of the medium on the scene's side
-    T index_after;            // of the medium on the sensor's side
+    T index_before;           // of the medium on the scene's side; negative behind an odd number of mirrors
+    T index_after;            // of the medium on the sensor's side; −index_before at a mirror
     T forward_ratio;          // index_before / index_after, and its inverse: divisions that the inner loop is spared
     T reverse_ratio;
     bool is_stop;
@@ -122,7 +127,7 @@ struct TraceLens {
     T image_z;  // the sensor's plane, mm
     std::vector<SpecialSurface<T>> specials{};
     /// By which light fades in the medium in front of each surface, and behind the last: e^(−attenuation · mm). Empty
-    /// where no medium is known to absorb.
+    /// where no medium is known to absorb; with the index's sign.
     std::vector<T> attenuation{};
 
     /// Of the medium that a ray crosses on its way to a surface.
@@ -322,6 +327,14 @@ TracedRay<T> trace(const TraceLens<T>& lens, const Ray<T>& ray) {
 template <class T>
 TracedRay<T> trace_past_rims(const TraceLens<T>& lens, const Ray<T>& ray) {
     return trace<Direction::forward, Rims::follow>(lens, ray);
+}
+
+/// From the sensor's side `from` through `to`, in reverse: z < 0, also behind an odd number of mirrors, where the
+/// sensor stands at the smaller z.
+template <class T>
+Ray<T> reverse_ray(const Vec3<T>& from, const Vec3<T>& to) {
+    const Vec3<T> direction = normalized(to - from);
+    return {from, direction.z > T(0) ? T(-1) * direction : direction};
 }
 
 /// Where `ray` meets the plane at `z` mm, and the distance along it (signed, mm). The ray must not run parallel to

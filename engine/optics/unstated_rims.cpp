@@ -90,7 +90,7 @@ std::vector<double> paraxial_heights(const Prescription& prescription, const Tra
     if (stated.half_field_deg && *stated.half_field_deg < 80.0) {
         tangent = std::tan(*stated.half_field_deg * kDegree);
     } else if (stated.image_circle_mm) {
-        tangent = 0.5 * *stated.image_circle_mm / std::abs(data.efl);
+        tangent = 0.5 * *stated.image_circle_mm / std::abs(data.front_efl);
     }
     ParaxialRay marginal = paraxial_marginal_ray(traced, prescription.object_distance_mm)
                                .value_or(ParaxialRay{0.5 * data.entrance_pupil_diameter, 0.0});
@@ -181,8 +181,8 @@ void estimate_rims(Lens& lens, const Prescription& prescription) {
     const TraceLens<double> infinite = at_wavelength<double>(lens, prescription.reference_wavelength_nm());
     const double efl = paraxial_data(infinite).efl;
     const double wide =
-        10.0 * (lens.last_vertex_z() - lens.surfaces.front().vertex_z + lens.surfaces[lens.stop_index()].semi_diameter +
-                (std::isfinite(efl) ? std::abs(efl) : 0.0));
+        10.0 * (std::abs(lens.last_vertex_z() - lens.surfaces.front().vertex_z) +
+                lens.surfaces[lens.stop_index()].semi_diameter + (std::isfinite(efl) ? std::abs(efl) : 0.0));
     for (LensSurface& surface : open.surfaces) {
         surface.semi_diameter = std::min(surface.semi_diameter, wide);
     }

@@ -14,7 +14,7 @@ namespace {
 RayFamily rays_from_sensor(double image_z, double plane_z) {
     return {.direction = optics::Direction::reverse, .ray = [image_z, plane_z](Vec2d sensor_point, Vec2d pupil_point) {
                 const Vec3d from{sensor_point.x, sensor_point.y, image_z};
-                return Ray<double>{from, normalized(Vec3d{pupil_point.x, pupil_point.y, plane_z} - from)};
+                return optics::reverse_ray(from, Vec3d{pupil_point.x, pupil_point.y, plane_z});
             }};
 }
 

@@ -47,9 +47,10 @@ std::vector<CapPoint> rear_cap(const optics::TraceLens<double>& lens) {
 RearDisc rear_disc(const optics::TraceLens<double>& lens, double sensor_radius_mm) {
     const std::vector<CapPoint> cap = rear_cap(lens);
     RearDisc disc;
-    disc.plane_z = -kInfinity;
+    const double heading = std::copysign(1.0, lens.surfaces.back().index_after);
+    disc.plane_z = -heading * kInfinity;
     for (const CapPoint& point : cap) {
-        disc.plane_z = std::max(disc.plane_z, point.z);
+        disc.plane_z = heading * std::max(heading * disc.plane_z, heading * point.z);
     }
     if (lens.surfaces.back().special >= 0) {
         // Between the grid's points a tilted or aspheric surface may rise a little higher.
@@ -57,7 +58,7 @@ RearDisc rear_disc(const optics::TraceLens<double>& lens, double sensor_radius_m
         for (std::size_t i = kAzimuths; i < cap.size(); ++i) {
             largest_step = std::max(largest_step, std::abs(cap[i].z - cap[i - kAzimuths].z));
         }
-        disc.plane_z += 0.5 * largest_step;
+        disc.plane_z += heading * 0.5 * largest_step;
     }
     const auto sensor_fraction = [&](const CapPoint& point) {
         return (disc.plane_z - point.z) / (lens.image_z - point.z);

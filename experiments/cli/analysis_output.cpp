@@ -105,6 +105,7 @@ Json field_json(const analysis::FieldAnalysis& row) {
         {"chief_ray_height_mm", row.chief_ray_point ? row.chief_ray_point->y + 0.0 : Json(nullptr)},
         {"chief_ray_x_mm", row.chief_ray_point ? row.chief_ray_point->x + 0.0 : Json(nullptr)},
         {"distortion_percent", optional_json(row.distortion_percent)},
+        {"distortion_plane", "paraxial"},
         {"tangential_focus_mm", optional_json(row.tangential_focus)},
         {"sagittal_focus_mm", optional_json(row.sagittal_focus)},
         {"relative_illumination", optional_json(row.relative_illumination)},

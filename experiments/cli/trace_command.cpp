@@ -138,6 +138,13 @@ void check_rays(const optics::Lens& lens, const GivenRays& rays) {
     });
 }
 
+/// Along which light travels that the tracer's direction stands for: against it where the index is negative, behind an
+/// odd number of mirrors.
+template <class T>
+Vec3<T> travelling(const Vec3<T>& direction, const T& index) {
+    return index < T(0) ? T(-1) * direction : direction;
+}
+
 /// Tells `visit` a row a surface.
 template <class T, optics::Direction direction, optics::Rims rims, class Visit>
 void trace_one(const optics::TraceLens<T>& lens, const GivenRay& given, const Way& way, const Visit& visit) {
@@ -145,7 +152,11 @@ void trace_one(const optics::TraceLens<T>& lens, const GivenRay& given, const Wa
         return Vec3<T>{static_cast<T>(v.x), static_cast<T>(v.y), static_cast<T>(v.z)};
     };
     // Normalised in the working precision: a double's unit vector is not one to long double's last digits.
-    const Ray<T> ray{cast(given.ray.origin), normalized(cast(given.ray.direction))};
+    const T index_at_sensor = lens.surfaces.back().index_after;
+    const Vec3<T> given_direction = normalized(cast(given.ray.direction));
+    const Ray<T> ray{cast(given.ray.origin), direction == optics::Direction::forward
+                                                 ? given_direction
+                                                 : travelling(given_direction, index_at_sensor)};
     std::optional<optics::PolarisedEvents<T>> polarised;
     if (way.polarised) {
         polarised.emplace(lens, way.reflections, ray.direction, direction, rims);
@@ -161,8 +172,15 @@ void trace_one(const optics::TraceLens<T>& lens, const GivenRay& given, const Wa
             (*polarised)(event);
         }
         const bool is_sensor = event.surface == static_cast<int>(lens.surfaces.size());
-        tell({given.id, is_sensor ? kSensorName : std::to_string(event.surface + 1), event.ray, event.optical_path,
-              event.transmittance, event.status});
+        T index = index_at_sensor;
+        if (!is_sensor) {
+            const optics::TraceSurface<T>& surface = lens.surfaces[static_cast<std::size_t>(event.surface)];
+            const bool is_behind = (event.ray.direction.z > T(0)) == (event.status != optics::RayStatus::missed);
+            index = is_behind ? surface.index_after : surface.index_before;
+        }
+        tell({given.id, is_sensor ? kSensorName : std::to_string(event.surface + 1),
+              Ray<T>{event.ray.origin, travelling(event.ray.direction, index)}, event.optical_path, event.transmittance,
+              event.status});
     };
     const optics::StrayMirrors<T> mirrors{static_cast<T>(way.mirrors.sensor), static_cast<T>(way.mirrors.blades)};
     const optics::TracedRay<T> traced = way.reflections.empty() ? optics::trace<direction, rims>(lens, ray, visit_event)
@@ -176,8 +194,8 @@ void trace_one(const optics::TraceLens<T>& lens, const GivenRay& given, const Wa
     }
     if (traced.ray.direction.z > T(0)) {
         const optics::PlanePoint<T> image = optics::meet_plane(traced.ray, lens.image_z);
-        tell({given.id, kSensorName, Ray<T>{image.point, traced.ray.direction}, traced.optical_path + image.distance,
-              traced.transmittance, optics::RayStatus::ok});
+        tell({given.id, kSensorName, Ray<T>{image.point, travelling(traced.ray.direction, index_at_sensor)},
+              traced.optical_path + index_at_sensor * image.distance, traced.transmittance, optics::RayStatus::ok});
     } else {
         tell({given.id, kSensorName, traced.ray, traced.optical_path, traced.transmittance, optics::RayStatus::missed});
     }
@@ -224,7 +242,7 @@ struct MeasuredError {
 MeasuredError measure_float(const optics::Lens& lens, const GivenRays& rays, const TraceOptions& options,
                             const Way& way) {
     MeasuredError measured{.reverse = options.reverse,
-                           .system_length_mm = lens.image_z - lens.surfaces.front().vertex_z};
+                           .system_length_mm = std::abs(lens.image_z - lens.surfaces.front().vertex_z)};
     LensAtWavelengths<float> in_float(lens);
     LensAtWavelengths<double> in_double(lens);
     rays.for_each([&](const GivenRay& given) {

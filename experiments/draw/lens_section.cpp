@@ -67,10 +67,13 @@ double draw_title(Svg& svg, const optics::Prescription& prescription, const opti
     return 85.0;
 }
 
-/// How far in front of the lens its rays begin, mm: a seventh of the whole, and not before a near object.
+/// How far in front of the first vertex its rays begin, mm: a seventh of the whole before the lens, in front of a
+/// secondary mirror too, and not before a near object.
 double lead_in(const SectionGeometry& geometry, const SectionBox& glass, double object_distance_mm) {
     const double length = std::max(glass.z_max, geometry.image_z) - glass.z_min;
-    const double lead = std::max(std::min(length / 7.0, 1.2 * glass.height()), 0.2 * glass.height());
+    const bool has_mirrors = std::ranges::any_of(geometry.surfaces, &SectionSurface::is_mirror);
+    const double lead = std::max(std::min(length / 7.0, 1.2 * glass.height()), 0.2 * glass.height()) +
+                        (has_mirrors ? -std::min(glass.z_min, geometry.image_z) : 0.0);
     return object_distance_mm > 0.0 ? std::min(lead, object_distance_mm) : lead;
 }
 

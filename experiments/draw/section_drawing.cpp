@@ -58,9 +58,12 @@ void draw_stop(Svg& svg, const SectionView& view, const SectionSurface& surface)
 
 void draw_surfaces(Svg& svg, const SectionView& view, const SectionGeometry& geometry) {
     for (const SectionSurface& surface : geometry.surfaces) {
+        if (surface.is_mirror) {
+            svg.path(view.to_page(surface.curve), {.stroke = kInk, .width = 2.6, .class_name = "mirror"});
+        }
         if (surface.is_stop) {
             draw_stop(svg, view, surface);
-        } else if (!surface.is_glass || !surface.is_exact) {
+        } else if ((!surface.is_glass && !surface.is_mirror) || !surface.is_exact) {
             svg.path(view.to_page(surface.curve),
                      {.stroke = kQuiet, .width = 0.9, .dashes = "3 3", .class_name = "surface"});
         }

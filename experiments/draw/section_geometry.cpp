@@ -139,14 +139,16 @@ SectionPoint moved(SectionPoint point, double by, SectionPoint along) {
     return {point.z + by * along.z, point.y + by * along.y};
 }
 
-/// The element between two surfaces, its edges at `semi_diameter`.
-SectionLine element_outline(const SectionSurface& front, const SectionSurface& back, double semi_diameter) {
+/// The element between two surfaces, its edges at `semi_diameter`; `heading`: where light runs in it, along z or (−1)
+/// against it.
+SectionLine element_outline(const SectionSurface& front, const SectionSurface& back, double semi_diameter,
+                            double heading) {
     SectionLine outline;
     const auto step = [&](const SectionSurface& surface, double side) {
         const SectionPoint end = side > 0.0 ? surface.curve.back() : surface.curve.front();
         return moved(end, side * std::max(0.0, semi_diameter - surface.semi_diameter), surface.across);
     };
-    const auto has_room = [&](double side) { return step(front, side).z < step(back, side).z; };
+    const auto has_room = [&](double side) { return heading * (step(back, side).z - step(front, side).z) > 0.0; };
     // Up the front, over the upper edge, down the back, over the lower edge.
     outline = front.curve;
     if (has_room(1.0)) {
@@ -187,7 +189,11 @@ SectionElement element(const optics::Prescription& prescription, const optics::L
     const auto mechanical = [&](std::size_t k) {
         return std::max(surfaces[k].semi_diameter, usable(prescription.surfaces[k].rim_mm).value_or(0.0));
     };
-    made.outline = element_outline(surfaces[i], surfaces[i + 1], std::max(mechanical(i), mechanical(i + 1)));
+    const auto end = prescription.surfaces.begin() + static_cast<std::ptrdiff_t>(i) + 1;
+    const auto mirrors =
+        std::count_if(prescription.surfaces.begin(), end, [](const auto& each) { return each.is_mirror; });
+    made.outline = element_outline(surfaces[i], surfaces[i + 1], std::max(mechanical(i), mechanical(i + 1)),
+                                   mirrors % 2 == 0 ? 1.0 : -1.0);
     return made;
 }
 
@@ -212,6 +218,7 @@ SectionGeometry section_geometry(const optics::Prescription& prescription, const
                                      .across = frame.across(),
                                      .semi_diameter = reach,
                                      .is_stop = row.is_stop,
+                                     .is_mirror = row.is_mirror,
                                      .is_glass = glass_before || !row.medium.is_air(),
                                      .is_exact = placed[i].is_exact});
     }

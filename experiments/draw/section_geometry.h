@@ -23,6 +23,7 @@ struct SectionSurface {
     SectionPoint across;  // the unit vector along its own y, in which rims and stop blades lie
     double semi_diameter = 0.0;
     bool is_stop = false;
+    bool is_mirror = false;
     bool is_glass = false;  // whether it bounds glass
     bool is_exact = true;   // false: a stand-in, for the table's radius or aperture is no usable number
 };

@@ -6,15 +6,18 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
 
 #include "engine/analysis/lens_analysis.h"
 #include "engine/base/angle.h"
+#include "engine/base/write_file.h"
 #include "engine/formats/prescription/load_lens.h"
 #include "engine/optics/chief_ray.h"
 #include "engine/optics/focus.h"
 #include "engine/optics/illumination.h"
 #include "engine/spectral/illuminant.h"
 #include "tests/complaint.h"
+#include "tests/test_folder.h"
 #include "tests/validation/rendered_scene.h"
 
 namespace lensproof::lens_exposure_test {
@@ -222,6 +225,41 @@ TEST(LensExposure, IdealCamerasFallOffByTheirFormulas) {
             expect_measured(thin[i][k], 0.4 * disc, 1e-4);
         }
     }
+}
+
+// A paraboloid sends the light of its rim to the focus at tan(U/2) = r / (2 f), a reflection on: the film in front of
+// it gets L π sin² U, and half of that where the mirror keeps half. Behind two mirrors it is the bundle's, as through
+// glass.
+TEST(LensExposure, MirrorsFillTheConesThatTheySend) {
+    const TestFolder folder;
+    const auto camera_of = [&](const std::string& name, const std::string& surfaces) {
+        const std::filesystem::path file = folder.path() / (name + ".toml");
+        write_file(file, fmt::format("name = \"{}\"\nsource = \"closed form\"\nsurfaces = [\n{}]\n"
+                                     "[coatings.half]\nreflectance = 0.5\n",
+                                     name, surfaces));
+        return fmt::format("lens = \"{}\"\nf_number = {}\nfocus_distance_mm = inf", file.string(),
+                           name == "prime" ? 2.0 : 8.0);
+    };
+    const std::string prime = camera_of(
+        "prime",
+        "{ stop = true, radius_mm = -200, conic = -1, thickness_mm = -100, semi_diameter_mm = 25, mirror = true, "
+        "coating = \"half\" },\n");
+    const std::string cassegrain = camera_of(
+        "cassegrain",
+        "{ stop = true, radius_mm = -200, conic = -1, thickness_mm = -70, semi_diameter_mm = 25, mirror = true },\n"
+        "{ radius_mm = -80, conic = -2.7777777777777777, thickness_mm = 120, semi_diameter_mm = 9, mirror = true },\n");
+    const double sine = std::sin(2.0 * std::atan(25.0 / 200.0));
+    const auto at_prime = exposures(setup_of(prime, ""), {210}, 4096);
+    const optics::Lens two = formats::load_lens((folder.path() / "cassegrain.toml").string());
+    const optics::Bundle bundle = optics::image_bundle(optics::at_wavelength<double>(two, kWavelengths[0]), 0.0);
+    const auto at_second = exposures(setup_of(cassegrain, ""), {210}, 4096);
+    // Over a pixel of 0.1 mm both stay as on the axis, to the square of 0.05 mm over the focal length.
+    for (std::size_t k = 0; k < kWavelengths.size(); ++k) {
+        expect_measured(at_prime[0][k], 0.5 * std::numbers::pi * sine * sine, 1e-5);
+        expect_measured(at_second[0][k], bundle.projected_solid_angle, 1e-5);
+    }
+    EXPECT_NEAR(bundle.projected_solid_angle, std::numbers::pi / (4.0 * 8.0 * 8.0),
+                2e-3 * bundle.projected_solid_angle);
 }
 
 }  // namespace lensproof::lens_exposure_test

@@ -169,9 +169,10 @@ TEST_P(OpticsReference, HeightsAndDistortion) {
                 if (!row.contains(key) || row[key].is_null()) {
                     continue;
                 }
-                const auto tangent = analysis::distortion_percent(colour.lens, optics::Projection::rectilinear, bundle);
+                const auto tangent =
+                    analysis::distortion_percent(colour.lens, optics::Projection::rectilinear, bundle, lens_.image_z);
                 const auto equidistant =
-                    analysis::distortion_percent(colour.lens, optics::Projection::equidistant, bundle);
+                    analysis::distortion_percent(colour.lens, optics::Projection::equidistant, bundle, lens_.image_z);
                 EXPECT_NEAR(tangent.value(), row[key]["vs_efl_tan_pct"].get<double>(), 1e-9) << field;
                 EXPECT_NEAR(equidistant.value(), row[key]["vs_efl_theta_pct"].get<double>(), 1e-9) << field;
                 ++compared;

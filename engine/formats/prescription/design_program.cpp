@@ -1,5 +1,7 @@
 #include "engine/formats/prescription/design_program.h"
 
+#include <fmt/format.h>
+
 #include <cmath>
 
 #include "engine/optics/design_fields.h"
@@ -30,6 +32,15 @@ void take_fields(optics::Prescription& prescription, optics::DesignFields fields
         fields.vignetting.clear();
     }
     prescription.fields = std::move(fields);
+}
+
+void name_folds(const std::vector<int>& folds, const std::vector<optics::PrescribedSurface>& rows, Remarks& remarks) {
+    for (const int fold : folds) {
+        remarks.add("fold", optics::Severity::info, 0,
+                    fmt::format("{}: a flat mirror that folds the axis; it is unfolded, and the mirror's rim is "
+                                "left out",
+                                rows[static_cast<std::size_t>(fold)].where));
+    }
 }
 
 std::vector<int> take_zoom_gaps(optics::Prescription& prescription, const std::vector<PrescriptionTable>& tables) {

@@ -6,6 +6,7 @@
 #include <string_view>
 #include <vector>
 
+#include "engine/formats/prescription/remarks.h"
 #include "engine/optics/prescription.h"
 
 namespace lensproof::formats {
@@ -21,6 +22,9 @@ optics::Prescription prescription_of(const std::filesystem::path& file);
 
 /// The design's fields, and what they claim of the whole lens: the half field, or the image circle.
 void take_fields(optics::Prescription& prescription, optics::DesignFields fields);
+
+/// Says of the rows (from 0) that were mirrors that the axis has been unfolded at them.
+void name_folds(const std::vector<int>& folds, const std::vector<optics::PrescribedSurface>& rows, Remarks& remarks);
 
 /// Whether row `i` of one of the tables has another `member` than the prescription.
 template <class Member>

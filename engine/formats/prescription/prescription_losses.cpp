@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "engine/base/infinity.h"
+#include "engine/base/input_error.h"
 #include "engine/formats/glass/shipped_glasses.h"
 #include "engine/formats/prescription/load_lens.h"
 #include "engine/optics/lens.h"
@@ -72,6 +73,10 @@ void add_surface_losses(const optics::PrescribedSurface& row, int surface, std::
     const auto add = [&](const std::string& code, optics::Severity severity, const std::string& message) {
         losses.push_back(lost(code, severity, surface, message));
     };
+    if (row.is_mirror) {
+        throw InputError(fmt::format(
+            "{} is a mirror, which a plain table of radii cannot say; convert to .toml or .zmx", row.where));
+    }
     if (row.radius_x_mm) {
         add("lost-toroid", optics::Severity::warning, "a toroid or cylinder, written as a surface of revolution");
     }

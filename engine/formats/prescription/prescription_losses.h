@@ -26,7 +26,8 @@ void state_rims(optics::Prescription& prescription, std::vector<optics::Finding>
 /// n_d and V_d of a medium's table of indices, as it is traced; V_d is 0 where the index does not fall from F to C.
 std::pair<double, double> figures_of_table(const optics::StatedMedium& medium);
 
-/// What neither the CSV table nor pbrt's says: toroids, tilts, coatings, blades, groups, surroundings, claims.
+/// What neither the CSV table nor pbrt's says: toroids, tilts, coatings, blades, groups, surroundings, claims. Throws
+/// InputError for a mirror, without which the rest is no lens.
 std::vector<optics::Finding> losses_of_tables(const optics::Prescription& prescription);
 
 }  // namespace lensproof::formats

@@ -65,6 +65,7 @@ class OptilandLens {
         for (std::size_t i = 1; i + 1 < surfaces.size(); ++i) {
             add_surface(surfaces[i], frames[i], frames[i + 1].origin.z - frames[i].origin.z);
         }
+        optics::set_mirror_media(lens_.surfaces);
         lens_.object_distance_mm = frames[1].origin.z - frames[0].origin.z;
         if (!(std::isfinite(lens_.object_distance_mm) && lens_.object_distance_mm > 0.0)) {
             lens_.object_distance_mm = kInfinity;
@@ -111,7 +112,13 @@ class OptilandLens {
         read_geometry(value.at("geometry"), number, surface);
         read_material(value.at("material_post"), number, surface.medium);
         read_rim(value, number, surface);
-        read_interaction(value.has("interaction_model") ? value.at("interaction_model") : value, number);
+        surface.is_mirror =
+            read_interaction(value.has("interaction_model") ? value.at("interaction_model") : value, number);
+        const bool is_fold = surface.is_mirror && surface.is_flat() && surface.misalignment != optics::Misalignment{};
+        if (is_fold) {
+            remark("mirror", number, "a flat mirror that folds the axis, which is not unfolded here",
+                   optics::Severity::error);
+        }
         name_unknown_keys(
             value, number,
             {"type", "thickness", "geometry", "material_pre", "material_post", "is_stop", "aperture", "comment",
@@ -253,10 +260,8 @@ class OptilandLens {
         }
     }
 
-    void read_interaction(const JsonNode& model, int number) {
-        if (is_true(model, "is_reflective")) {
-            remark("mirror", number, "a mirror: it is taken as a refracting surface", optics::Severity::error);
-        }
+    /// Returns whether it is a mirror.
+    bool read_interaction(const JsonNode& model, int number) {
         if (model.has("coating")) {
             remark("coating-not-read", number, "its coating is left out");
         }
@@ -267,6 +272,7 @@ class OptilandLens {
         if (type.find("Model") != std::string::npos && type != "RefractiveReflectiveModel") {
             remark("not-read", number, fmt::format("what \"{}\" does to rays is left out", printable(type)));
         }
+        return is_true(model, "is_reflective");
     }
 
     void read_image(const JsonNode& image, const optics::Frame& frame) {

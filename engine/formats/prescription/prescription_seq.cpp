@@ -159,11 +159,7 @@ optics::PrescribedSurface read_row(const SeqFile& file, int number, const std::f
         row.rim_mm = length(surface.edge);
     }
     row.medium = read_medium(file, surface.glass, row.where);
-    if (surface.is_mirror) {
-        remarks.add(
-            "mirror", optics::Severity::error, number,
-            fmt::format("line {}, surface {} of the file: a mirror, which is not traced", surface.line, number));
-    }
+    row.is_mirror = surface.is_mirror;
     return row;
 }
 
@@ -323,14 +319,17 @@ void read_ends(const SeqFile& file, const std::vector<ChainLink>& links, optics:
 /// The rows in their places; the sensor stands off the image by its defocus, SI's thickness.
 std::vector<optics::PrescribedSurface> placed(std::vector<optics::PrescribedSurface> rows, const SeqFile& file,
                                               const std::filesystem::path& path) {
-    place_rows(rows, chain_of(file, path));
+    std::vector<ChainLink> links = chain_of(file, path);
+    unfold(rows, links);
+    place_rows(rows, links);
     if (file.has_image && file.surfaces.back().thickness != 0.0) {
         rows.back().thickness_mm += file.surfaces.back().thickness * file.unit_mm;
     }
     return rows;
 }
 
-void read_zoom(const SeqFile& file, optics::Prescription& prescription, Remarks& remarks) {
+void read_zoom(const SeqFile& file, const std::vector<optics::PrescribedSurface>& rows,
+               optics::Prescription& prescription, Remarks& remarks) {
     if (file.zoom_positions == 1) {
         return;
     }
@@ -341,7 +340,7 @@ void read_zoom(const SeqFile& file, optics::Prescription& prescription, Remarks&
         for (const auto& [surface, values] : file.zoomed_thicknesses) {
             varied.surfaces[surface].thickness = values[std::min(at, values.size() - 1)];
         }
-        tables.push_back(placed(prescription.surfaces, varied, prescription.file));
+        tables.push_back(placed(rows, varied, prescription.file));
         optics::ZoomPosition position{.name = at < file.zoom_titles.size() ? file.zoom_titles[at]
                                                                            : fmt::format("position {}", i + 1)};
         for (const auto& [type, values] : file.zoomed_apertures) {
@@ -368,21 +367,21 @@ optics::Prescription parse_seq(const std::string& text, const std::filesystem::p
     for (int number = 1; number < rows; ++number) {
         prescription.surfaces.push_back(read_row(seq, number, file, remarks));
         row_of.push_back(number);
-        if (seq.surfaces[number].is_mirror && number > 1) {
-            prescription.surfaces.back().medium = prescription.surfaces.end()[-2].medium;
-        }
     }
+    optics::set_mirror_media(prescription.surfaces);
     if (prescription.surfaces.empty()) {
         throw InputError(fmt::format("{}: holds no surface between object and image", file.string()));
     }
-    const std::vector<ChainLink> links = chain_of(seq, file);
-    prescription.surfaces = placed(std::move(prescription.surfaces), seq, file);
+    const std::vector<optics::PrescribedSurface> table = prescription.surfaces;
+    std::vector<ChainLink> links = chain_of(seq, file);
+    name_folds(unfold(prescription.surfaces, links), prescription.surfaces, remarks);
+    prescription.surfaces = placed(table, seq, file);
     prescription.aperture = system_aperture(seq, seq.aperture_type, seq.aperture_value);
     choose_stop(prescription, remarks);
     free_stop(prescription);
     read_fields(seq, prescription);
     read_ends(seq, links, prescription, remarks);
-    read_zoom(seq, prescription, remarks);
+    read_zoom(seq, table, prescription, remarks);
     prescription.wavelengths_nm = seq.wavelengths_nm;
     const auto reference = static_cast<std::size_t>(seq.reference_wavelength);
     if (reference <= prescription.wavelengths_nm.size()) {

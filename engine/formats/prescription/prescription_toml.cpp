@@ -106,6 +106,12 @@ optics::PrescribedSurface read_surface(TomlTable& row) {
     surface.semi_diameter_mm = optional_stated_number(row, "semi_diameter_mm");
     surface.rim_mm = optional_stated_number(row, "rim_mm");
     surface.barrel_mm = optional_stated_number(row, "barrel_mm");
+    surface.is_mirror = row.boolean_or("mirror", false);
+    for (const char* key : {"glass", "n_d", "indices"}) {
+        if (surface.is_mirror && row.has(key)) {
+            row.fail(key, "stands on a mirror, behind which is what is in front of it");
+        }
+    }
     surface.medium = read_medium(row);
     surface.coating = row.text_or("coating", "");
     surface.misalignment = read_misalignment(row);
@@ -297,6 +303,7 @@ optics::Prescription parse_toml_prescription(const std::string& text, const std:
     for (TomlTable& row : top.tables("surfaces")) {
         prescription.surfaces.push_back(read_surface(row));
     }
+    optics::set_mirror_media(prescription.surfaces);
     if (prescription.surfaces.empty() || prescription.surfaces.size() > kMostSurfaces) {
         top.fail("surfaces",
                  fmt::format("holds {} surfaces, expected 1 to {}", prescription.surfaces.size(), kMostSurfaces));

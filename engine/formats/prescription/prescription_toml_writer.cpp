@@ -247,11 +247,13 @@ class Writer {
         add_texts(table, [](const Row& row) { return std::string(row.along_normal ? "along_normal = true" : ""); });
         add_numbers(table, "radius_x_mm", [](const Row& row) { return row.radius_x_mm; });
         add_numbers(table, "thickness_mm", [](const Row& row) { return Stated(row.thickness_mm); });
-        add_texts(table, [](const Row& row) {
-            return row.medium.glass.empty() ? std::string() : "glass = " + toml_string(row.medium.glass);
+        const auto medium = [](const Row& row) { return row.is_mirror ? optics::StatedMedium{} : row.medium; };
+        add_texts(table, [&](const Row& row) {
+            const std::string glass = medium(row).glass;
+            return row.is_mirror ? "mirror = true" : glass.empty() ? std::string() : "glass = " + toml_string(glass);
         });
-        add_numbers(table, "n_d", [](const Row& row) { return row.medium.n_d; });
-        add_numbers(table, "V_d", [](const Row& row) { return row.medium.n_d ? row.medium.V_d : std::nullopt; });
+        add_numbers(table, "n_d", [&](const Row& row) { return medium(row).n_d; });
+        add_numbers(table, "V_d", [&](const Row& row) { return medium(row).n_d ? row.medium.V_d : std::nullopt; });
         add_texts(table, [&](const Row& row) { return indices_cell(row); });
         add_numbers(table, "semi_diameter_mm", [](const Row& row) { return row.semi_diameter_mm; });
         add_numbers(table, "rim_mm", [](const Row& row) { return row.rim_mm; });
@@ -297,7 +299,7 @@ class Writer {
     }
 
     std::string indices_cell(const optics::PrescribedSurface& row) {
-        if (row.medium.indices.empty()) {
+        if (row.medium.indices.empty() || row.is_mirror) {
             return {};
         }
         const bool readable = std::ranges::all_of(row.medium.indices, [](const optics::WavelengthValue& at) {

@@ -119,11 +119,7 @@ optics::PrescribedSurface read_row(const ZmxFile& file, int number, const std::f
         row.rim_mm = length(surface.mechanical);
     }
     row.medium = surface.medium;
-    if (surface.is_mirror) {
-        remarks.add(
-            "mirror", optics::Severity::error, number,
-            fmt::format("line {}, surface {} of the file: GLAS MIRROR, which is not traced", surface.line, number));
-    }
+    row.is_mirror = surface.is_mirror;
     return row;
 }
 
@@ -306,8 +302,9 @@ void read_ends(const ZmxFile& file, const std::vector<ChainLink>& links, optics:
     }
 }
 
-/// The gaps of each configuration: the file's with its thicknesses, placed anew.
-void read_configurations(const ZmxFile& file, optics::Prescription& prescription, Remarks& remarks) {
+/// The gaps of each configuration: the file's with its thicknesses, `rows` placed anew.
+void read_configurations(const ZmxFile& file, const std::vector<optics::PrescribedSurface>& rows,
+                         optics::Prescription& prescription, Remarks& remarks) {
     if (file.configurations == 1) {
         return;
     }
@@ -328,8 +325,10 @@ void read_configurations(const ZmxFile& file, optics::Prescription& prescription
                 left_out.insert(fmt::format("{} {}", keyword, of));
             }
         }
-        tables.push_back(prescription.surfaces);
-        place_rows(tables.back(), chain_of(varied, prescription.file));
+        tables.push_back(rows);
+        std::vector<ChainLink> links = chain_of(varied, prescription.file);
+        unfold(tables.back(), links);
+        place_rows(tables.back(), links);
         prescription.zoom.push_back(std::move(position));
     }
     for (const int row : take_zoom_gaps(prescription, tables)) {
@@ -353,13 +352,11 @@ optics::Prescription parse_zmx(const std::string& text, const std::filesystem::p
     for (int number = 1; number < image; ++number) {
         if (!zmx.surfaces[number].is_break()) {
             prescription.surfaces.push_back(read_row(zmx, number, file, remarks));
-            if (zmx.surfaces[number].is_mirror && prescription.surfaces.size() > 1) {
-                prescription.surfaces.back().medium = prescription.surfaces.end()[-2].medium;
-            }
         } else if (zmx.surfaces[number].is_stop) {
             remarks.not_understood("STOP", number, zmx.surfaces[number].line, "the stop on a coordinate break");
         }
     }
+    optics::set_mirror_media(prescription.surfaces);
     if (prescription.surfaces.size() > kMostSurfaces) {
         throw InputError(fmt::format("{}: holds a lens of {} surfaces, expected up to {}", file.string(),
                                      prescription.surfaces.size(), kMostSurfaces));
@@ -370,7 +367,9 @@ optics::Prescription parse_zmx(const std::string& text, const std::filesystem::p
                         "coordinate break",
                         file.string(), zmx.surfaces.size()));
     }
-    const std::vector<ChainLink> links = chain_of(zmx, file);
+    const std::vector<optics::PrescribedSurface> rows = prescription.surfaces;
+    std::vector<ChainLink> links = chain_of(zmx, file);
+    name_folds(unfold(prescription.surfaces, links), prescription.surfaces, remarks);
     place_rows(prescription.surfaces, links);
     for (std::size_t i = 0; i < prescription.surfaces.size(); ++i) {
         if (prescription.surfaces[i].is_stop && !is_upright(links[i].frame)) {
@@ -382,9 +381,10 @@ optics::Prescription parse_zmx(const std::string& text, const std::filesystem::p
     free_stop(zmx, rows_of_surfaces(zmx), prescription);
     read_fields(zmx, prescription, remarks);
     read_ends(zmx, links, prescription, remarks);
-    read_configurations(zmx, prescription, remarks);
+    read_configurations(zmx, rows, prescription, remarks);
     prescription.wavelengths_nm = wavelengths_nm(zmx);
     prescription.preferred_makers = zmx.catalogues;
+    prescription.figures_are_spare = true;  // Zemax takes a name's glass from its catalogue, whatever stands beside it
     prescription.remarks = remarks.renumbered(rows_of_surfaces(zmx));
     return prescription;
 }

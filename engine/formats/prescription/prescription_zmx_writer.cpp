@@ -274,7 +274,11 @@ class ZmxWriter {
             }
         }
         line("  DISZ {}", zmx_number(thickness));
-        write_medium(row.medium, number);
+        if (row.is_mirror) {
+            line("  GLAS MIRROR 0 0 1.5 40 0 0 0 0 0 0");
+        } else {
+            write_medium(row.medium, number);
+        }
         if (row.conic != 0.0) {
             line("  CONI {}", row.conic);
         }

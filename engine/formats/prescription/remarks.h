@@ -23,8 +23,8 @@ class Remarks {
     /// code and keyword.
     void at(const Command& command, std::string code, optics::Severity severity, int surface, const std::string& what);
 
-    /// That a word of the file is not understood: once for each word, with the number of its lines, and of not more than
-    /// a hundred words.
+    /// That a word of the file is not understood: once for each word, with the number of its lines, and of not more
+    /// than a hundred words.
     void not_understood(const std::string& word, int surface, int line, const std::string& what = "");
 
     /// The findings with their surfaces counted as `row_of` maps the file's numbers: to rows from 1, or to 0.

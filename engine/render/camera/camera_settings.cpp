@@ -13,6 +13,7 @@
 #include "engine/optics/packet/spectral_lens.h"
 #include "engine/scene/scene_file_parts.h"
 #include "engine/scene/spectra/spectrum_keys.h"
+#include "engine/spectral/wavelengths.h"
 
 namespace lensproof::render {
 
@@ -155,6 +156,10 @@ optics::Lens camera_lens(const CameraSettings& camera) {
         lens.stop_mask = optics::StopMask(*camera.blades);
     }
     lens.barrel = camera.barrel.value_or(lens.barrel);
+    if (optics::refractive_index(lens.surfaces.back().medium.formula, spectral::kLineD) != 1.0) {
+        throw InputError(fmt::format("{}: its last surface is followed by {}; cameras have their sensors in air",
+                                     lens.name, lens.surfaces.back().medium.name));
+    }
     return optics::focused_at(optics::with_f_number(std::move(lens), camera.f_number), camera.focus_distance_mm);
 }
 

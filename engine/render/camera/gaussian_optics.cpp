@@ -24,7 +24,7 @@ GaussianOptics thin_lens(const optics::TraceLens<double>& lens, const optics::Pa
             .pupil_z = 0.0,
             .pupil_radius_mm = 0.5 * data.entrance_pupil_diameter,
             .object_z = data.front_principal_z,
-            .s_h = 1.0 / data.efl};
+            .s_h = 1.0 / data.front_efl};
 }
 
 GaussianOptics paraxial_lens(const optics::Lens& lens, const optics::TraceLens<double>& traced,

@@ -50,7 +50,7 @@ double last_light(const std::vector<optics::TraceLens<double>>& band, double sta
 
 Ray<double> path_from(const optics::TraceLens<double>& lens, Vec2d film, Vec2d pupil, double plane_z) {
     const Vec3d from{film.x, film.y, lens.image_z};
-    return {from, normalized(Vec3d{pupil.x, pupil.y, plane_z} - from)};
+    return optics::reverse_ray(from, Vec3d{pupil.x, pupil.y, plane_z});
 }
 
 /// Evenly over a ring's area.

@@ -142,9 +142,12 @@ TEST(Distortion, BallLens) {
     const ColourOfLens near(ball(1.0, near_image), spectral::kLineD);
     for (const double field : {0.0, 1e-6, 0.4, 1.2}) {
         const optics::FieldBundle bundle = optics::field_bundle(far.chief_rays, field).value();
-        EXPECT_NEAR(distortion_percent(far.lens, optics::Projection::rectilinear, bundle).value(), 0.0, 1e-10);
+        EXPECT_NEAR(distortion_percent(far.lens, optics::Projection::rectilinear, bundle, far.lens.image_z).value(),
+                    0.0, 1e-10);
         const optics::FieldBundle near_bundle = optics::field_bundle(near.chief_rays, field, kObject).value();
-        EXPECT_NEAR(distortion_percent(near.lens, optics::Projection::rectilinear, near_bundle).value(), 0.0, 1e-10);
+        EXPECT_NEAR(
+            distortion_percent(near.lens, optics::Projection::rectilinear, near_bundle, near.lens.image_z).value(), 0.0,
+            1e-10);
         if (field < 0.1) {
             continue;
         }
@@ -155,14 +158,32 @@ TEST(Distortion, BallLens) {
             {optics::Projection::orthographic, std::sin(field)}};
         for (const auto& [projection, radius] : laws) {
             const double expected = 100.0 * (std::tan(field) / radius - 1.0);
-            EXPECT_NEAR(distortion_percent(far.lens, projection, bundle).value(), expected, 1e-10);
+            EXPECT_NEAR(distortion_percent(far.lens, projection, bundle, far.lens.image_z).value(), expected, 1e-10);
             // −m (d + z_E) is what is left of f: the image's distance from the ball's centre, where the pupils are.
-            EXPECT_NEAR(distortion_percent(near.lens, projection, near_bundle).value(), expected, 1e-10);
+            EXPECT_NEAR(distortion_percent(near.lens, projection, near_bundle, near.lens.image_z).value(), expected,
+                        1e-10);
         }
     }
-    EXPECT_EQ(
-        distortion_percent(far.lens, optics::Projection::rectilinear, {.chief = far.chief_rays.at_field(0.0).value()}),
-        0.0);
+    EXPECT_EQ(distortion_percent(far.lens, optics::Projection::rectilinear,
+                                 {.chief = far.chief_rays.at_field(0.0).value()}, kFocal),
+              0.0);
+}
+
+// A sensor out of focus neither moves the curve's start from 0 nor changes it: the Tessar's is that in its paraxial
+// image plane, to what h_ideal's own digits leave at a field of 1e-4.
+TEST(Distortion, IsOfTheParaxialImagePlane) {
+    optics::Lens lens = formats::load_lens("tessar");
+    const ColourOfLens in_focus(lens, spectral::kLineD);
+    lens.image_z += 2.0;
+    const ColourOfLens out_of_focus(lens, spectral::kLineD);
+    const auto at = [&](const ColourOfLens& colour, double field) {
+        const auto bundle = optics::field_bundle(colour.chief_rays, field).value();
+        return distortion_percent(colour.lens, lens.projection, bundle, distortion_plane(colour.lens, kInfinity))
+            .value();
+    };
+    EXPECT_NEAR(at(out_of_focus, 1e-4), 0.0, 1e-6);
+    EXPECT_NEAR(at(out_of_focus, 0.4), at(in_focus, 0.4), 1e-9);
+    EXPECT_LT(at(out_of_focus, 0.4), -0.1);
 }
 
 // Beyond 90° there is no rectilinear height; the fisheye's own law has one.
@@ -171,8 +192,8 @@ TEST(Distortion, BehindTheLens) {
     const ColourOfLens d(lens, spectral::kLineD);
     for (const double degrees : {90.0, 105.0}) {
         const optics::FieldBundle bundle = optics::field_bundle(d.chief_rays, radians(degrees)).value();
-        EXPECT_FALSE(distortion_percent(d.lens, optics::Projection::rectilinear, bundle));
-        EXPECT_LT(std::abs(distortion_percent(d.lens, lens.projection, bundle).value()), 5.0);
+        EXPECT_FALSE(distortion_percent(d.lens, optics::Projection::rectilinear, bundle, d.lens.image_z));
+        EXPECT_LT(std::abs(distortion_percent(d.lens, lens.projection, bundle, d.lens.image_z).value()), 5.0);
     }
 }
 

@@ -90,7 +90,9 @@ constexpr Case kCases[] = {{"tessar", 8.0, 0.0},
                            {"double-gauss-tronnier", 8.0, 18.0},
                            {"muller-fisheye", 0.0, 70.0},
                            {"fisheye-220", 8.0, 95.0},
-                           {"muller-fisheye", 5.6, 75.5}};  // whose chief ray a rim clips
+                           {"muller-fisheye", 5.6, 75.5},  // whose chief ray a rim clips
+                           {kMirror, 0.0, 0.3},
+                           {kSensorInGlass, 12.0, 12.0}};
 
 class PsfOfLens : public testing::TestWithParam<Case> {};
 INSTANTIATE_TEST_SUITE_P(Cases, PsfOfLens, testing::ValuesIn(kCases));

@@ -287,12 +287,36 @@ std::vector<RayCase> ray_cases() {
         return optics::at_wavelength<long double>(formats::load_lens(name), spectral::kLineD);
     };
     const long double infinity = std::numeric_limits<long double>::infinity();
-    return {{"tessar", shipped("tessar"), 0.3L, infinity},
-            {"triplet", shipped("triplet-cooke"), 0.3L, infinity},
-            {"triplet at 150 mm", shipped("triplet-cooke"), 0.3L, 150.0L},
-            {"fisheye", shipped("muller-fisheye"), 0.5L, infinity},
-            {"figured lens", lens_of<long double>(figured_lens(3, 5.0)), 0.2L, infinity},
-            {"figured lens, stop behind, at 300 mm", lens_of<long double>(figured_lens(6, 5.0)), 0.2L, 300.0L}};
+    return {
+        {"tessar", shipped("tessar"), 0.3L, infinity},
+        {"triplet", shipped("triplet-cooke"), 0.3L, infinity},
+        {"triplet at 150 mm", shipped("triplet-cooke"), 0.3L, 150.0L},
+        {"fisheye", shipped("muller-fisheye"), 0.5L, infinity},
+        {"figured lens", lens_of<long double>(figured_lens(3, 5.0)), 0.2L, infinity},
+        {"figured lens, stop behind, at 300 mm", lens_of<long double>(figured_lens(6, 5.0)), 0.2L, 300.0L},
+        {"spherical mirror, stop in front",
+         lens_of<long double>({{.thickness = 80.0, .semi_diameter = 20.0, .is_stop = true},
+                               {.radius = -200.0, .thickness = -100.0, .index = -1.0}}),
+         0.2L, infinity},
+        {"Mangin's mirror",
+         lens_of<long double>(
+             {{.radius = -150.0, .thickness = 8.0, .index = 1.5168, .semi_diameter = 30.0, .is_stop = true},
+              {.radius = -240.0, .thickness = -8.0, .index = -1.5168},
+              {.radius = -150.0, .thickness = -160.0, .index = -1.0}}),
+         0.1L, infinity},
+        {"two mirrors, at 5 m",
+         lens_of<long double>({{.radius = -1000.0,
+                                .thickness = -350.0,
+                                .index = -1.0,
+                                .conic = -1.0,
+                                .semi_diameter = 50.0,
+                                .is_stop = true},
+                               {.radius = -400.0, .thickness = 600.0, .index = 1.0, .conic = -2.0}}),
+         0.05L, 5000.0L},
+        {"sensor in glass",
+         lens_of<long double>({{.radius = 50.0, .thickness = 5.0, .index = 1.6, .semi_diameter = 8.0, .is_stop = true},
+                               {.radius = -80.0, .thickness = 100.0, .index = 1.5}}),
+         0.2L, infinity}};
 }
 
 // What third-order theory is: with pupil and field both scaled by t, a real ray's error is t³ times the sums'

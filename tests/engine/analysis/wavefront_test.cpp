@@ -14,6 +14,7 @@
 #include "engine/formats/prescription/load_lens.h"
 #include "engine/optics/convert_lens.h"
 #include "engine/spectral/wavelengths.h"
+#include "tests/engine/analysis/analysis_field.h"
 #include "tests/engine/perfect_lens.h"
 
 namespace lensproof::analysis::wavefront_test {
@@ -97,10 +98,14 @@ TEST(Wavefront, DefocusIsPositiveBehindTheFocus) {
 // Hamilton: with paths up to the feet of the perpendiculars from C, dW = ε · dL, ε being where the ray meets the plane
 // through C, L its direction cosines. Central differences of step h leave h²/6 of third derivatives, 1e-6 of W here.
 TEST(Wavefront, GradientIsTheTransverseAberration) {
-    const optics::Lens lens = formats::load_lens("tessar");
-    const optics::TraceLens<double> traced = optics::at_wavelength<double>(lens, spectral::kLineD);
-    for (const double field : {0.0, 7.0, 15.0}) {
-        const optics::FieldBundle bundle = bundle_at(lens, field * kDegree);
+    for (const Case& c : {Case{"tessar", 0.0, 0.0},
+                          {"tessar", 0.0, 7.0},
+                          {"tessar", 0.0, 15.0},
+                          {kMirror, 0.0, 0.5},
+                          {kSensorInGlass, 0.0, 7.0}}) {
+        const optics::Lens lens = lens_of(c);
+        const optics::TraceLens<double> traced = optics::at_wavelength<double>(lens, spectral::kLineD);
+        const optics::FieldBundle bundle = bundle_at(lens, c.field_deg * kDegree);
         ReferenceSphere plane = reference_sphere(traced, bundle).value();
         plane.curvature = 0.0;
         constexpr double kStep = 1e-3;

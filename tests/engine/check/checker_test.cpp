@@ -95,7 +95,7 @@ std::vector<Defect> defects_of_the_tessar() {
          [](P& p) {
              p.stated = {};
              p.surfaces[7].thickness_mm = 0;
-             p.surfaces[7].medium.glass = "BK7";
+             p.surfaces[7].coating = "none such";
          },
          "not-traceable", error, 0},
         {"focal length off", [](P& p) { p.stated.efl_mm = 98.0; }, "focal-length", error, 0},
@@ -443,6 +443,42 @@ TEST(Checker, TheLibraryHasNoErrors) {
                 << name << " surface " << finding.surface << " " << finding.code << ": " << finding.message;
         }
     }
+}
+
+// Cassegrain's telescope (Schroeder, Astronomical Optics, §2.5): its lengths run backwards between the mirrors, and
+// back again behind the second. What is wrong there is what would be wrong in a lens seen from its other side.
+TEST(Checker, KnowsWhereLightRunsBehindMirrors) {
+    optics::Prescription lens{.name = "Cassegrain", .surfaces = {}};
+    lens.surfaces = {{.radius_mm = -1000.0,
+                      .conic = -1.0,
+                      .thickness_mm = -350.0,
+                      .semi_diameter_mm = 50.0,
+                      .medium = {},
+                      .is_mirror = true,
+                      .is_stop = true},
+                     {.radius_mm = -400.0,
+                      .conic = -25.0 / 9.0,
+                      .thickness_mm = 600.0,
+                      .semi_diameter_mm = 20.0,
+                      .medium = {},
+                      .is_mirror = true}};
+    lens.stated.efl_mm = 2000.0;
+    lens.stated.bfl_mm = 600.0;
+    lens.stated.f_number = 20.0;
+    const CheckReport good = checked(lens);
+    EXPECT_TRUE(good.ok()) << said(good);
+    ASSERT_EQ(good.computed.size(), 1U);
+    EXPECT_NEAR(good.computed[0].paraxial.efl, 2000.0, 1e-9);
+    optics::Prescription forwards = lens;
+    forwards.surfaces[0].thickness_mm = 350.0;
+    EXPECT_NE(find(checked(forwards), "negative-thickness", 1), nullptr);
+    optics::Prescription touching = lens;
+    touching.surfaces[0].thickness_mm = -1e-8;
+    EXPECT_EQ(find(checked(touching), "negative-thickness", 1), nullptr);
+    optics::Prescription crossing = lens;
+    crossing.surfaces[0].thickness_mm = -0.5;  // at 20 mm the primary stands at z = -0.2, such a secondary at 0
+    crossing.surfaces[1].radius_mm = 400.0;
+    EXPECT_NE(find(checked(crossing), "surfaces-cross", 1), nullptr) << said(checked(crossing));
 }
 
 }  // namespace lensproof::check::checker_test

@@ -133,6 +133,8 @@ class FieldRows:
     def __init__(self, case, lenses, chiefs, first):
         self.case, self.lenses, self.chiefs, self.first = case, lenses, chiefs, first
         self.pupil = float(first[D]["entrance_pupil_diameter_mm"])
+        reference = case["wavelengths"][0]
+        self.paraxial_image_z = lenses[reference].surfaces[-1].z + first[reference]["bfl_mm"]
         self.beams = {w: areas.Beamlens(lens) for w, lens in lenses.items()}
         self.axial = {}
         self.worst = 0.0  # relative difference of the two last rules of any quadrature
@@ -180,7 +182,8 @@ class FieldRows:
         if f:
             ideal = projected(lens.projection, mp.radians(f))
             if not (lens.projection == "rectilinear" and f >= 90):
-                row["distortion_percent"] = number(100 * (y / (self.first[w]["efl_mm"] * ideal) - 1))
+                in_focus, _ = exact_rays.at_plane(traced.last, self.paraxial_image_z)
+                row["distortion_percent"] = number(100 * (in_focus[1] / (self.first[w]["efl_mm"] * ideal) - 1))
         row.update({k: number(v) for k, v in self.areas_at(f, w, chief, traced.last).items()})
         return row
 

@@ -80,13 +80,14 @@ template <class Abi>
     using Numbers = Pack<double, Abi>;
     const Numbers z(film_z);
     const Numbers to_pupil_z(pupil_z - film_z);
+    const Numbers heading(pupil_z < film_z ? 1.0 : -1.0);  // reverse rays have z < 0 (optics::reverse_ray)
     for (int i = 0; i < starts.size; i += Numbers::kLanes) {
         const Numbers x = Numbers::load(starts.film_x.data() + i);
         const Numbers y = Numbers::load(starts.film_y.data() + i);
         const Vec3<Numbers> to_pupil{Numbers::load(starts.pupil_x.data() + i) - x,
                                      Numbers::load(starts.pupil_y.data() + i) - y, to_pupil_z};
         const Numbers per_distance2 = Numbers(1.0) / dot(to_pupil, to_pupil);
-        const Vec3<Numbers> direction = sqrt(per_distance2) * to_pupil;
+        const Vec3<Numbers> direction = heading * sqrt(per_distance2) * to_pupil;
         const Numbers etendue = direction.z * direction.z * per_distance2 * Numbers::load(starts.pupil_area.data() + i);
         etendue.store(starts.etendue.data() + i);
         x.store(rays.origin.x.data() + i);

@@ -81,7 +81,7 @@ TEST_F(PrescriptionFile, EveryOtherDefectIsAnInputError) {
           std::string(kHead) + kStop + "[[surfaces]]\nn_d = 1.5\nthickness_mm = -1\nsemi_diameter_mm = 1\n" + row,
           std::string(kHead) + kStop + "[[surfaces]]\nthickness_mm = \"1\"\nsemi_diameter_mm = 1\n",
           std::string(kHead) + "projection = \"square\"\n" + kStop,
-          std::string(kHead) + kStop + row + "glass = \"BK7\"\n"}) {
+          std::string(kHead) + kStop + row + "mirror = true\nglass = \"BK7\"\n"}) {
         const std::string said = complaint(write("defect.toml", text));
         EXPECT_TRUE(says(said, "defect.toml")) << text;
     }

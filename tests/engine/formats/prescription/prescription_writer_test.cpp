@@ -146,6 +146,32 @@ TEST(TomlWriter, ReadsBackToTheSamePrescription) {
     EXPECT_EQ(back.preferred_makers, lens.preferred_makers);
 }
 
+// Behind a mirror is what is in front of it, which is written once.
+TEST(TomlWriter, WritesMirrors) {
+    optics::Prescription lens{.name = "Mangin", .source = "made up", .surfaces = {}};
+    lens.surfaces = {
+        {.radius_mm = -150.0,
+         .thickness_mm = 8.0,
+         .semi_diameter_mm = 30.0,
+         .medium = {.glass = "N-BK7", .n_d = {}, .V_d = {}, .indices = {}},
+         .is_stop = true},
+        {.radius_mm = -240.0, .thickness_mm = -8.0, .semi_diameter_mm = 31.0, .medium = {}, .is_mirror = true},
+        {.radius_mm = -150.0, .thickness_mm = -160.0, .semi_diameter_mm = 30.0, .medium = {}}};
+    optics::set_mirror_media(lens.surfaces);
+    const auto expect_same = [&](const optics::Prescription& back) {
+        ASSERT_EQ(back.surfaces.size(), 3U);
+        for (std::size_t i = 0; i < 3; ++i) {
+            EXPECT_EQ(back.surfaces[i].is_mirror, i == 1);
+            EXPECT_EQ(back.surfaces[i].radius_mm, lens.surfaces[i].radius_mm);
+            EXPECT_EQ(back.surfaces[i].thickness_mm, lens.surfaces[i].thickness_mm);
+            EXPECT_EQ(back.surfaces[i].medium, lens.surfaces[i].medium);
+        }
+    };
+    expect_same(parse_toml_prescription(to_toml(lens).text, "a.toml"));
+    expect_same(parse_zmx(to_zmx(lens).text, "a.zmx"));
+    EXPECT_TRUE(says(lensproof::complaint_about([&] { to_csv(lens); }), "which a plain table of radii cannot say"));
+}
+
 TEST(TomlWriter, KeepsATexturedStopAndReplacesWhatIsNotUtf8) {
     optics::Prescription lens = everything();
     lens.stop_shape = optics::TexturedStop{.image = "sto\\p.png"};
