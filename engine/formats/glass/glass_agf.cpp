@@ -150,8 +150,8 @@ class AgfReader {
 
     void take(const Record& record) {
         const std::string_view keyword = record.keyword;
-        if (keyword == "CC" || keyword == "ED" || keyword == "OD") {
-            return;  // a comment; expansion and density; price and chemistry
+        if (keyword == "CC" || keyword == "ED" || keyword == "OD" || keyword == "MD" || keyword == "BD") {
+            return;  // a comment; expansion and density; price and chemistry; mechanics; bubbles: none bears on rays
         }
         if (keyword == "NM") {
             finish_glass();

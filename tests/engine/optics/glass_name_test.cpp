@@ -42,7 +42,8 @@ TEST(GlassName, IsUnderstoodAsLensPeopleWriteIt) {
         {"SF7_NIKON", "HIKARI SF7"},     {"SK18A", "SCHOTT SK18A"},
         {"LAK9_HIKARI", "HIKARI LAK9"},  {"LLF7", "SCHOTT LLF7"},
         {"SK16", "SCHOTT SK16"},         {"H-K9L", "CDGM H-K9L"},
-        {"SILICA", "MATERIALS SILICA"}};
+        {"SILICA", "MATERIALS SILICA"},  {"F_SILICA", "MATERIALS F_SILICA"},
+        {"ACRYLIC", "MATERIALS ACRYLIC"}};
     for (const auto& [name, expected] : table) {
         EXPECT_EQ(meaning(name), expected) << name;
     }

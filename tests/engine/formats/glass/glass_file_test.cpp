@@ -46,7 +46,7 @@ std::string utf16(const std::string& text, bool big_endian, bool mark) {
 
 /// One glass with formula `number` and coefficients `cd`, in a range around 1 µm.
 double agf_index(int number, const std::string& cd, double um) {
-    const std::string text = fmt::format("NM TEST {} 0 1 0 0 0 0\nCD {}\nLD 0.9 2.1\n", number, cd);
+    const std::string text = fmt::format("NM TEST {} 0 1 0 0 0 0\nMD 82 0.2\nBD 0\nCD {}\nLD 0.9 2.1\n", number, cd);
     const GlassFile file = parse_agf(text, "t.agf");
     EXPECT_TRUE(file.notes.empty()) << file.notes.front();
     return optics::refractive_index(file.glasses.at(0).formula, 1e3 * um);
