@@ -101,9 +101,16 @@ bool CheckReport::ok() const {
     return std::ranges::none_of(findings, is_error);
 }
 
+ReportSection CheckReport::section(std::size_t i) const {
+    if (i < remarks) {
+        return ReportSection::file;
+    }
+    return is_custom_of_manufacture(findings[i]) ? ReportSection::manufacture : ReportSection::lens;
+}
+
 CheckReport check_prescription(const optics::Prescription& prescription, const optics::StatedData& claims,
                                const optics::GlassCatalogue& glasses, const CheckSettings& settings) {
-    CheckReport report{.findings = prescription.remarks, .computed = {}};
+    CheckReport report{.findings = prescription.remarks, .computed = {}, .remarks = prescription.remarks.size()};
     if (prescription.surfaces.empty()) {
         report.findings.push_back({"no-surface", error, 0, "the prescription holds no surface"});
         return report;

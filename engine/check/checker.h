@@ -1,7 +1,9 @@
 // engine/check/checker.h — the sanity checker: what is wrong with a prescription, before anything is rendered with it.
 #pragma once
+#include <array>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "engine/optics/lens.h"
@@ -24,9 +26,22 @@ struct ComputedData {
     double wavelength_nm = spectral::kLineD;
 };
 
+/// What a finding speaks of: the file as its reader took it; the lens, and whether it is another than was meant or
+/// none; how glass is made.
+enum class ReportSection { file, lens, manufacture };
+
+constexpr std::string_view section_name(ReportSection section) {
+    constexpr std::array<std::string_view, 3> kNames = {"file", "lens", "manufacture"};
+    return kNames[static_cast<std::size_t>(section)];
+}
+
 struct CheckReport {
     std::vector<optics::Finding> findings;  // the reader's remarks first, then errors, warnings and infos
     std::vector<ComputedData> computed;     // a position of the zoom each; empty where nothing could be computed
+    std::size_t remarks = 0;                // how many of the findings are the reader's
+
+    /// Of findings[i].
+    [[nodiscard]] ReportSection section(std::size_t i) const;
 
     /// Whether no finding is an error.
     [[nodiscard]] bool ok() const;

@@ -13,6 +13,9 @@ void check_table(const CheckedLens& checked, Findings& findings);
 /// Surfaces against each other: edges, centres, crossings, cement, aspheres.
 void check_geometry(const CheckedLens& checked, Findings& findings);
 
+/// Whether a finding of check_geometry is one that only settings.manufacture brings about.
+bool is_custom_of_manufacture(const optics::Finding& finding);
+
 /// Glasses: names, indices, dispersion, ranges.
 void check_glasses(const CheckedLens& checked, Findings& findings);
 

@@ -2,7 +2,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <string_view>
 
 #include "engine/base/bisect.h"
 #include "engine/check/checks.h"
@@ -298,6 +300,14 @@ void check_asphere(const CheckedLens& checked, int i, Findings& findings) {
 }
 
 }  // namespace
+
+bool is_custom_of_manufacture(const optics::Finding& finding) {
+    constexpr std::array<std::string_view, 5> kCustoms = {"steep-surface", "nearly-flat", "centre-thickness", "air-gap",
+                                                          "centring"};
+    // A negative edge is said of every table.
+    const bool is_thin_edge = finding.code == "edge-thickness" && finding.limit > 0.0;
+    return is_thin_edge || std::ranges::find(kCustoms, finding.code) != kCustoms.end();
+}
 
 void check_geometry(const CheckedLens& checked, Findings& findings) {
     for (int i = 0; i < checked.size(); ++i) {

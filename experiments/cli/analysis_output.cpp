@@ -9,6 +9,7 @@
 #include "engine/base/angle.h"
 #include "engine/base/json.h"
 #include "experiments/cli/command.h"
+#include "experiments/cli/findings_text.h"
 
 namespace lensproof::cli {
 
@@ -237,12 +238,10 @@ Json analysis_json(const optics::Lens& lens, const analysis::AnalysisSettings& s
 std::string analysis_text(const optics::Lens& lens, const analysis::AnalysisSettings& settings,
                           const analysis::LensAnalysis& analysis) {
     std::string text = lens.name + "\n";
-    for (const optics::Finding& finding : lens.findings) {
-        text += finding_text(finding);
-    }
-    text +=
-        fmt::format("At {} nm, object at {}:\n", settings.reference_wavelength_nm,
-                    std::isinf(settings.object_distance) ? "infinity" : fmt::format("{} mm", settings.object_distance));
+    text += findings_text(lens.findings);
+    text += fmt::format(
+        "At {:.7g} nm, object at {}:\n", settings.reference_wavelength_nm,
+        std::isinf(settings.object_distance) ? "infinity" : fmt::format("{:.7g} mm", settings.object_distance));
     text += paraxial_text(lens, analysis);
     const double largest = analysis::largest_field_deg(settings);
     text += fmt::format("Paraxial rays, the chief ray for {:.4g} deg, slopes behind the surfaces:\n", largest) +

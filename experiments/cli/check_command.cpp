@@ -15,6 +15,7 @@
 #include "engine/formats/prescription/load_lens.h"
 #include "engine/formats/prescription/prescription_file.h"
 #include "experiments/cli/command.h"
+#include "experiments/cli/findings_text.h"
 #include "experiments/cli/terminal.h"
 #include "experiments/draw/lens_section.h"
 
@@ -99,8 +100,10 @@ Json computed_json(const check::ComputedData& computed) {
 
 Json report_json(const std::string& lens, const optics::Prescription& prescription, const check::CheckReport& report) {
     Json json{{"lens", lens}, {"file", prescription.file.string()}, {"ok", report.ok()}, {"findings", Json::list()}};
-    for (const optics::Finding& finding : report.findings) {
-        json["findings"].push_back(finding_json(finding));
+    for (std::size_t i = 0; i < report.findings.size(); ++i) {
+        Json finding = finding_json(report.findings[i]);
+        finding["section"] = check::section_name(report.section(i));
+        json["findings"].push_back(finding);
     }
     if (!report.computed.empty()) {
         json["computed"] = computed_json(report.computed.front());
@@ -111,6 +114,19 @@ Json report_json(const std::string& lens, const optics::Prescription& prescripti
         }
     }
     return json;
+}
+
+/// Nothing where nothing was found.
+void print_section(const check::CheckReport& report, check::ReportSection section, std::string_view heading) {
+    std::vector<optics::Finding> findings;
+    for (std::size_t i = 0; i < report.findings.size(); ++i) {
+        if (report.section(i) == section) {
+            findings.push_back(report.findings[i]);
+        }
+    }
+    if (!findings.empty()) {
+        print("{}:\n{}", heading, findings_text(findings));
+    }
 }
 
 void print_report(const std::string& lens, const check::CheckReport& report) {
@@ -129,9 +145,9 @@ void print_report(const std::string& lens, const check::CheckReport& report) {
         }
     }
     print("\n");
-    for (const optics::Finding& finding : report.findings) {
-        print("{}", finding_text(finding));
-    }
+    print_section(report, check::ReportSection::file, "the file as read");
+    print_section(report, check::ReportSection::lens, "the lens");
+    print_section(report, check::ReportSection::manufacture, "advice for manufacture");
 }
 
 /// The section at the position that is checked, or at the first, with what was found there.
@@ -198,6 +214,9 @@ void add_check_command(Program& program) {
     Command command = program.add_command("check", "Say what is wrong with prescriptions");
     command.footer(
         "Example: lensproof check tessar my.zmx --stated efl_mm=100,f_number=2.8 --json -\n"
+        "What is found stands in three sections: the file as read (remarks of its reader), the lens (what makes it "
+        "another than was meant, or none), and advice for manufacture (with --manufacture). What many surfaces share "
+        "is one line; the JSON has each by itself, with its \"section\": file, lens or manufacture.\n"
         "Exit status 1 when any finding is an error; 2 when any file cannot be read, and then none is judged.");
     command.add_option("LENS", options->lenses, "Prescription files, or names of lenses that ship").required();
     command

@@ -182,12 +182,6 @@ void print_findings(const CommonOptions& options, const optics::Lens& lens) {
     }
 }
 
-std::string finding_text(const optics::Finding& finding) {
-    const std::string where = finding.surface > 0 ? fmt::format("surface {}", finding.surface) : "lens";
-    return fmt::format("  {:7} {:10} {}: {}\n", optics::severity_name(finding.severity), where, finding.code,
-                       finding.message);
-}
-
 bool prints_text(const CommonOptions& options) {
     return options.json_file != "-";
 }

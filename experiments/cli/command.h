@@ -68,9 +68,6 @@ Json findings_json(const std::vector<optics::Finding>& findings);
 /// Says on standard error, unless --quiet, what there is to know of a lens: "lensproof: NAME: warning, surface 3: …".
 void print_findings(const CommonOptions& options, const optics::Lens& lens);
 
-/// "  warning surface 3  glass-unknown: …", a line.
-std::string finding_text(const optics::Finding& finding);
-
 /// Whether a person-readable result may go to standard output (not when the JSON goes there).
 bool prints_text(const CommonOptions& options);
 

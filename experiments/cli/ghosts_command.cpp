@@ -12,6 +12,7 @@
 #include "engine/base/input_error.h"
 #include "engine/base/write_file.h"
 #include "experiments/cli/command.h"
+#include "experiments/cli/findings_text.h"
 #include "experiments/cli/ghost_image.h"
 #include "experiments/cli/ghost_options.h"
 #include "experiments/cli/lens_options.h"
@@ -172,9 +173,7 @@ std::string survey_text(const GhostsOptions& options, const optics::Lens& lens, 
     std::string text =
         fmt::format("{} at {:g} nm, a distant light {:g}° from the axis, image circle {:.4g} mm\n", lens.name,
                     settings.reference_wavelength_nm, settings.source_angle / kDegree, 2.0 * settings.image_radius);
-    for (const optics::Finding& finding : lens.findings) {
-        text += finding_text(finding);
-    }
+    text += findings_text(lens.findings);
     text += fmt::format("{:>14}{:>11}{:>8}{:>10}{:>9}{:>9}{:>9}{:>8}{:>11}{:>11}{:>11}\n", "reflected at", "energy",
                         "± rms", "peak", "x mm", "y mm", "rms mm", "land %", "focus mm", "pupil mm", "margin. mm");
     for (std::size_t i = 0; i < listed(options, survey); ++i) {

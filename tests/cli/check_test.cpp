@@ -2,7 +2,9 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <map>
 #include <nlohmann/json.hpp>
+#include <sstream>
 
 #include "tests/cli/program.h"
 #include "tests/complaint.h"
@@ -122,6 +124,62 @@ TEST(Check, SpeaksOfManufactureWhenAskedTo) {
     EXPECT_EQ(infos(report, "steep-surface"), 0);
     EXPECT_GT(infos(customs, "steep-surface"), 0);
     EXPECT_EQ(report["lenses"][0]["computed"], customs["lenses"][0]["computed"]);
+}
+
+// Sixteen surfaces, three of them coated, no semi-diameters: what the reader says stands before what the table is, and
+// what surfaces share is said once.
+TEST(Check, SaysInSectionsAndOnceWhatSurfacesShare) {
+    const Workplace place;
+    std::string rows;
+    for (int i = 1; i <= 16; ++i) {
+        rows += "SURF " + std::to_string(i) + "\n" + (i == 1 ? "  STOP\n" : "") + "  CURV 0.001\n  DISZ 3\n" +
+                (i % 2 == 1 ? "  GLAS N-BK7\n" : "") + (i == 1 || i == 2 || i == 5 ? "  COAT AR\n" : "");
+    }
+    place.file("sixteen.zmx", "VERS 140124\nMODE SEQ\nUNIT MM X W X CM MR CPMM\nENPD 10\nSURF 0\n  DISZ INFINITY\n" +
+                                  rows + "SURF 17\n  DISZ 0\n");
+    const std::string text = place.run({"check", "sixteen.zmx", "--manufacture"}).out;
+    const auto lines_with = [&](const std::string& word) {
+        std::istringstream lines(text);
+        std::vector<std::string> found;
+        for (std::string line; std::getline(lines, line);) {
+            if (says(line, word)) {
+                found.push_back(line);
+            }
+        }
+        return found;
+    };
+    ASSERT_EQ(lines_with("coating: ").size(), 1U) << text;
+    EXPECT_TRUE(says(lines_with("coating: ")[0], "3 surfaces")) << text;
+    EXPECT_TRUE(says(lines_with("coating: ")[0], "(surfaces 1, 2, 5)")) << text;
+    ASSERT_EQ(lines_with("semi-diameter-missing: ").size(), 1U) << text;
+    EXPECT_TRUE(says(lines_with("semi-diameter-missing: ")[0], "(surfaces 1–16)")) << text;
+    const auto at = [&](const char* words) { return text.find(words); };
+    EXPECT_LT(at("\nthe file as read:\n"), at("coating: "));
+    EXPECT_LT(at("coating: "), at("\nthe lens:\n"));
+    EXPECT_LT(at("\nthe lens:\n"), at("semi-diameter-missing: "));
+    EXPECT_LT(at("semi-diameter-missing: "), at("\nadvice for manufacture:\n"));
+    EXPECT_LT(at("\nadvice for manufacture:\n"), at("nearly-flat: "));
+
+    // The JSON has them all.
+    const Json report =
+        Json::parse(place.run({"check", "sixteen.zmx", "--manufacture", "--json", "-"}).out)["lenses"][0];
+    std::map<std::pair<std::string, std::string>, int> count;
+    for (const Json& finding : report["findings"]) {
+        ++count[{finding["section"].get<std::string>(), finding["code"].get<std::string>()}];
+    }
+    EXPECT_EQ((count[{"file", "coating"}]), 3);
+    EXPECT_EQ((count[{"lens", "semi-diameter-missing"}]), 16);
+    EXPECT_GT((count[{"manufacture", "nearly-flat"}]), 0);
+    EXPECT_EQ((count[{"lens", "nearly-flat"}]), 0);
+}
+
+// A section without findings has no heading.
+TEST(Check, SaysNothingOfEmptySections) {
+    const Workplace place;
+    const std::string text = place.run({"check", "tessar"}).out;
+    EXPECT_FALSE(says(text, "as read")) << text;
+    EXPECT_TRUE(says(text, "the lens:")) << text;
+    EXPECT_FALSE(says(text, "manufacture")) << text;
 }
 
 }  // namespace lensproof::check_test

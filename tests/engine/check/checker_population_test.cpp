@@ -118,7 +118,7 @@ TEST(CheckerPopulation, CoverGlassesThatPatentsLeaveOutAreNamed) {
     }
 }
 
-// Customs of manufacture add infos, and change nothing else.
+// Customs of manufacture add infos, each in their section, and change nothing else.
 TEST(CheckerPopulation, ManufactureAddsInfosAlone) {
     int more = 0;
     for (const std::string& name : formats::shipped_lens_names()) {
@@ -130,6 +130,14 @@ TEST(CheckerPopulation, ManufactureAddsInfosAlone) {
         without.add(name, report);
         with.add(name, customs);
         EXPECT_EQ(without.said, with.said);
+        for (std::size_t i = 0; i < customs.findings.size(); ++i) {
+            const bool is_added = std::ranges::none_of(report.findings, [&](const optics::Finding& finding) {
+                return finding.code == customs.findings[i].code && finding.surface == customs.findings[i].surface &&
+                       finding.message == customs.findings[i].message;
+            });
+            EXPECT_EQ(is_added, customs.section(i) == ReportSection::manufacture)
+                << name << ": " << customs.findings[i].message;
+        }
         more += customs.findings.size() > report.findings.size() ? 1 : 0;
     }
     EXPECT_GT(more, 20);
