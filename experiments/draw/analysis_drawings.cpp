@@ -9,7 +9,7 @@ double pixel_um(const analysis::PsfMap& psf) {
 }
 
 std::string psf_file_name(const analysis::PsfMap& psf) {
-    return fmt::format("psf_{}deg.exr", psf.field_deg);
+    return fmt::format("psf_{:.6g}deg.exr", psf.field_deg);
 }
 
 std::optional<formats::Image> psf_image(const analysis::PsfMap& psf) {

@@ -13,7 +13,7 @@ namespace lensproof::draw {
 /// How wide a pixel of the PSF is.
 double pixel_um(const analysis::PsfMap& psf);
 
-/// "psf_12deg.exr"
+/// "psf_12deg.exr": the field to six digits, so that a field whose arithmetic ends in 24.000000000000004 is 24.
 std::string psf_file_name(const analysis::PsfMap& psf);
 
 /// The PSF as a picture of one channel "Y", y upwards, in units of the perfect lens's peak; `pixel_um`, `field_deg` and

@@ -9,6 +9,7 @@
 #include "engine/base/file.h"
 #include "engine/base/infinity.h"
 #include "engine/base/input_error.h"
+#include "experiments/draw/analysis_drawings.h"
 #include "tests/experiments/draw/svg_checks.h"
 
 namespace lensproof::draw::analysis_plots_test {
@@ -244,6 +245,15 @@ TEST(AnalysisPlots, FilesAreWrittenIntoANewFolder) {
     EXPECT_TRUE(std::filesystem::exists(folder / "psf.svg"));
     EXPECT_THROW(write_plots(folder / "mtf.svg", {}), InputError);
     std::filesystem::remove_all(folder.parent_path());
+}
+
+// Degrees times π/180 and back, or nine tenths of a field, end in digits that no one typed.
+TEST(AnalysisPlots, FileNamesHoldRoundedNumbers) {
+    const auto name = [](double field_deg) { return psf_file_name({.field_deg = field_deg}); };
+    EXPECT_EQ(name(24.000000000000004), "psf_24deg.exr");
+    EXPECT_EQ(name(1.8000000000000003), "psf_1.8deg.exr");
+    EXPECT_EQ(name(77.95), "psf_77.95deg.exr");
+    EXPECT_EQ(name(-20.0), "psf_-20deg.exr");
 }
 
 }  // namespace lensproof::draw::analysis_plots_test
