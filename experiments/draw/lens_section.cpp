@@ -295,13 +295,22 @@ double round_length(double most) {
     return most >= 5.0 * decade ? 5.0 * decade : (most >= 2.0 * decade ? 2.0 * decade : decade);
 }
 
-/// Scale, tints, fields and what is to be said of the rays; returns the free y below.
+/// Scale, tints, fields and what is to be said of the rays, in as many rows as it takes; returns the free y below.
 double draw_legend(Svg& svg, const SectionView& view, const SectionGeometry& geometry, const SectionRays& rays,
-                   double top) {
+                   double top, double page_width) {
     constexpr double kLongestBar = 160.0;
-    const double y = top + 18.0;
+    constexpr double kRow = 18.0;
+    constexpr double kFieldSample = 32.0;  // of a field's line: long enough for its dashes
+    double y = top + kRow;
     double x = kMargin;
+    const auto make_room = [&](double width) {
+        if (x > kMargin && x + width > page_width - kMargin) {
+            x = kMargin;
+            y += kRow;
+        }
+    };
     const auto words = [&](const std::string& text, const char* colour = kQuiet) {
+        make_room(svg_text_width(text, kSectionTextSize));
         svg.text({x, y + 4.0}, text, {.size = kSectionTextSize, .fill = colour});
         x += svg_text_width(text, kSectionTextSize) + 14.0;
     };
@@ -322,9 +331,14 @@ double draw_legend(Svg& svg, const SectionView& view, const SectionGeometry& geo
     }
     x += 12.0;
     for (std::size_t i = 0; i < rays.bundles.size(); ++i) {
-        svg.line({x, y}, {x + 22.0, y}, {.stroke = kFieldColours[i % kFieldColours.size()], .width = 2.0});
-        x += 28.0;
-        words(fmt::format("{:.4g}°", std::round(10.0 * rays.bundles[i].field_angle / kDegree) / 10.0 + 0.0));
+        const std::string angle =
+            fmt::format("{:.4g}°", std::round(100.0 * rays.bundles[i].field_angle / kDegree) / 100.0 + 0.0);
+        make_room(kFieldSample + 6.0 + svg_text_width(angle, kSectionTextSize));
+        const FieldLine line = field_line(i);
+        svg.line({x, y}, {x + kFieldSample, y},
+                 {.stroke = line.colour, .width = 2.0, .dashes = line.dashes, .class_name = "field"});
+        x += kFieldSample + 6.0;
+        words(angle);
     }
     if (!(view.sensor_half_height > 0.0)) {
         words(fmt::format("sensor at z = {:.6g} mm, off the page", geometry.image_z));
@@ -395,7 +409,7 @@ std::string lens_section_svg(const optics::Prescription& prescription, const opt
     const double names_top = view.corner.y + view.scale * (view.box.y_max - lowest_under_glass(glass, rays));
     const double names_end = draw_glass_names(svg, view, geometry, names_top, options.width_px);
     double y = std::max(names_end, view.corner.y + view.scale * view.box.height());
-    y = draw_legend(svg, view, geometry, rays, y + 4.0);
+    y = draw_legend(svg, view, geometry, rays, y + 4.0, options.width_px);
     y = draw_findings(svg, sorted, options, y);
     return svg.document(options.width_px, y + 0.5 * kMargin);
 }

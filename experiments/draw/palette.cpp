@@ -30,6 +30,15 @@ constexpr std::array<LineColour, 12> kLineColours = {{{250.0, {0x33, 0x10, 0x4d}
 
 }  // namespace
 
+FieldLine field_line(std::size_t index) {
+    static constexpr std::array kColours = {"#2c0ea5", "#a79308", "#a10d4c", "#cb1eaf",
+                                            "#65015d", "#6b510d", "#5b5efd", "#d07f5f"};
+    constexpr std::size_t kTellApartInGrey = kColours.size() / 2;
+    const bool is_again = index >= kColours.size();
+    const bool is_dashed = index >= kTellApartInGrey;
+    return {.colour = kColours[index % kColours.size()], .dashes = is_again ? "2 4" : is_dashed ? "10 4" : ""};
+}
+
 std::string series_colour(std::size_t index) {
     static constexpr std::array kColours = {"#0072b2", "#c64b00", "#008a64", "#a3478c",
                                             "#a87900", "#2f8fc4", "#7a4a2b", "#6b7280"};

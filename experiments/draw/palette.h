@@ -11,9 +11,17 @@ inline constexpr const char* kQuiet = "#5f6672";
 inline constexpr const char* kFaint = "#c3c8d0";
 inline constexpr const char* kGridLine = "#e4e7ec";
 
-/// Okabe & Ito's blue, green and purple, the last one darkened: told apart by the colour-blind, and none is a
-/// finding's.
-inline constexpr std::array kFieldColours = {"#0072b2", "#009e73", "#a3478c"};
+/// How the rays of a field are drawn.
+struct FieldLine {
+    const char* colour;
+    const char* dashes;  // as SvgStyle has them; empty: a solid line
+};
+
+/// Of the field with that index from 0. Eight colours that trichromats and dichromats of each kind tell apart (in
+/// CIELAB 23 at least, simulated after Machado, Oliveira & Fernandes 2009), none of them a finding's. Printed in grey,
+/// four of them are told apart by their lightness, and those beyond them by dashes: from the fifth on lines are dashed,
+/// from the ninth dotted in the colours of the first.
+FieldLine field_line(std::size_t index);
 
 /// Colours of curves that have no natural one, in turn: blue, vermilion, green, purple, ochre, sky blue, brown and
 /// grey after Okabe & Ito (Color Universal Design, 2008), darkened to at least 3:1 contrast on white.

@@ -102,10 +102,11 @@ void draw_block(Svg& svg, SvgPoint at, const char* colour) {
     svg.line({at.x - kArm, at.y + kArm}, {at.x + kArm, at.y - kArm}, style);
 }
 
-void draw_ray(Svg& svg, const SectionView& view, const SectionRay& ray, const char* colour, bool is_marginal) {
+void draw_ray(Svg& svg, const SectionView& view, const SectionRay& ray, const FieldLine& line, bool is_marginal) {
     // Piece by piece where the box cuts it, in one stroke where it does not.
-    const SvgStyle style{.stroke = colour,
+    const SvgStyle style{.stroke = line.colour,
                          .width = is_marginal || ray.is_chief ? 1.1 : 0.7,
+                         .dashes = line.dashes,
                          .opacity = is_marginal || ray.is_chief ? 1.0 : 0.6,
                          .class_name = ray.passes ? (ray.is_chief ? "ray chief" : "ray") : "ray blocked"};
     SectionLine run;
@@ -121,7 +122,7 @@ void draw_ray(Svg& svg, const SectionView& view, const SectionRay& ray, const ch
     }
     svg.path(view.to_page(run), style);
     if (!ray.passes && !run.empty()) {
-        draw_block(svg, view.to_page(run.back()), colour);
+        draw_block(svg, view.to_page(run.back()), line.colour);
     }
 }
 
@@ -132,7 +133,7 @@ void draw_rays(Svg& svg, const SectionView& view, const SectionRays& rays) {
         for (const SectionRay& ray : bundle) {
             const bool is_marginal =
                 &ray == &bundle.front() || (bundle.size() > 1 && &ray == &bundle[bundle.size() - 2]);
-            draw_ray(svg, view, ray, kFieldColours[field % kFieldColours.size()], is_marginal);
+            draw_ray(svg, view, ray, field_line(field), is_marginal);
         }
         svg.close_group();
     }

@@ -5,7 +5,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdio>
 #include <optional>
+#include <set>
+#include <string>
 
 #include "engine/base/angle.h"
 #include "engine/base/infinity.h"
@@ -153,6 +156,39 @@ TEST(LensSection, ShowsEveryElementTheStopAndThreeBundles) {
         EXPECT_EQ(count(svg, "class=\"ray\"") + count(svg, "class=\"ray chief\""), 15U);
         EXPECT_EQ(count(svg, "class=\"marked"), 0U);
     }
+}
+
+// Nine of them on a narrow page: the legend has a line and an angle for each, in more rows than one, and none ends
+// beyond the page.
+TEST(LensSection, EachOfManyFieldsHasALineOfItsOwnAndItsAngleInTheLegend) {
+    const optics::Prescription prescription = shipped("tessar");
+    const optics::Lens lens = optics::make_lens(prescription, formats::shipped_glasses());
+    const LensSectionOptions options{.width_px = 500.0, .fields_deg = {0, 3, 6, 9, 12, 15, 18, 21, 24.25}};
+    const std::string svg = lens_section_svg(prescription, &lens, {}, options);
+    std::set<std::string> lines;
+    std::set<double> heights;
+    for (std::size_t at = svg.find("class=\"field\""); at != std::string::npos;
+         at = svg.find("class=\"field\"", at + 1)) {
+        const std::size_t begin = svg.rfind('<', at);
+        const std::string element = svg.substr(begin, svg.find('>', begin) - begin);
+        const auto value = [&](const std::string& key) {
+            const std::size_t from = element.find(" " + key + "=\"");
+            return from == std::string::npos
+                       ? ""
+                       : element.substr(from + key.size() + 3,
+                                        element.find('"', from + key.size() + 3) - from - key.size() - 3);
+        };
+        lines.insert(value("stroke") + " " + value("stroke-dasharray"));
+        double x1 = 0.0;
+        double y1 = 0.0;
+        double x2 = 0.0;
+        ASSERT_EQ(std::sscanf(value("d").c_str(), "M%lf %lf %lf", &x1, &y1, &x2), 3) << element;
+        heights.insert(y1);
+        EXPECT_LT(x2, options.width_px) << element;
+    }
+    EXPECT_EQ(lines.size(), 9U);
+    EXPECT_GT(heights.size(), 1U);
+    EXPECT_NE(svg.find(">24.25°</text>"), std::string::npos);
 }
 
 TEST(LensSection, IsTheSameBytesEveryTime) {
