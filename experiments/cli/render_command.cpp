@@ -175,6 +175,8 @@ void add_render_command(Program& program) {
         "         lensproof render SCENE --noise 0.01 --time 3600 --preview now.png --checkpoint chart.checkpoint\n"
         "         lensproof render SCENE --spp 1024 --shard 2/5 -o part2.exr; lensproof merge part*.exr -o chart.exr\n"
         "         lensproof render SCENE --passes imaged,direct,ghosts -o flare.exr\n"
+        "The JSON says under \"run\" how long it took, how fast it was and why it ended: samples, noise, time or "
+        "interrupted.\n"
         "Ctrl-C ends a render with a checkpoint written and exit status 3; a second one at once.");
     command.add_option("SCENE", options->scene, "A scene file").required();
     add_render_job_options(command, *options);

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <ctime>
 #include <set>
 
 #include "engine/base/input_error.h"
@@ -77,6 +78,7 @@ class RenderWatch {
         : options_(options), identity_(identity), bar_("rendering", options.common.quiet) {}
 
     void look(States passes, const render::RenderReport& report) {
+        latest_ = report;
         bar_.update(report.done, report.seconds_left, speed(report));
         // Drawing takes a twentieth of the time at most.
         if (!options_.preview.empty() && seconds_since(preview_) > std::max(1.0, 20.0 * preview_cost_s_)) {
@@ -100,6 +102,9 @@ class RenderWatch {
             write_preview(passes);
         }
     }
+
+    /// Of this run; nothing where nothing was left to render.
+    [[nodiscard]] const render::RenderReport& latest() const { return latest_; }
 
   private:
     void write_preview(States passes) {
@@ -133,11 +138,60 @@ class RenderWatch {
     const RenderJobOptions& options_;
     const render::RenderIdentity& identity_;
     ProgressBar bar_;
+    render::RenderReport latest_;
     Clock::time_point preview_ = Clock::now() - std::chrono::hours(1);  // the first at once
     double preview_cost_s_ = 0.0;
     Clock::time_point checkpoint_ = Clock::now();
     std::set<std::string> failing_;
 };
+
+/// Wall clock and processors' time since it was made.
+class Stopwatch {
+  public:
+    [[nodiscard]] double wall_s() const { return seconds_since(begin_); }
+    [[nodiscard]] double cpu_s() const { return static_cast<double>(std::clock() - cpu_begin_) / CLOCKS_PER_SEC; }
+
+  private:
+    Clock::time_point begin_ = Clock::now();
+    std::clock_t cpu_begin_ = std::clock();
+};
+
+/// Why a render has no more samples.
+std::string end_name(render::RenderEnd end, States passes, const RenderJobOptions& options) {
+    if (end != render::RenderEnd::complete) {
+        return end == render::RenderEnd::interrupted ? "interrupted" : "time";
+    }
+    if (!(options.noise > 0.0)) {
+        return "samples";
+    }
+    const render::Picture picture = render::picture_of(passes);
+    const std::vector<render::PixelRect> tiles = render::film_tiles(picture.width(), picture.height());
+    const double dark = render::kDarkFraction * render::mean_brightness(picture);
+    const double noise = goal_of(options).noise;
+    for (std::size_t i = 0; i < tiles.size(); ++i) {
+        const bool has_all = std::ranges::all_of(
+            passes, [&](const render::RenderState& state) { return state.tiles[i].done == state.range.end; });
+        if (has_all && render::tile_error(picture, tiles[i], dark) > noise) {
+            return "samples";  // before it was good enough
+        }
+    }
+    return "noise";
+}
+
+/// How long this run took, how fast it was, and why it ended.
+Json run_json(const Stopwatch& stopwatch, const render::RenderReport& latest, const std::string& end) {
+    const double wall_s = stopwatch.wall_s();
+    Json json{{"ended_by", end},
+              {"wall_seconds", wall_s},
+              {"cpu_seconds", stopwatch.cpu_s()},
+              {"samples", latest.samples},
+              {"samples_per_second", wall_s > 0.0 ? static_cast<double>(latest.samples) / wall_s : 0.0}};
+    if (latest.rays > 0) {
+        json["rays"] = latest.rays;
+        json["rays_per_second"] = wall_s > 0.0 ? static_cast<double>(latest.rays) / wall_s : 0.0;
+    }
+    return json;
+}
 
 /// Samples a pixel, the mean over a film.
 double mean_samples(const render::RenderState& state) {
@@ -175,7 +229,7 @@ std::vector<fs::path> places_for(const fs::path& file, const RenderJobOptions& o
 }
 
 /// Saves what there is, and says how to go on.
-int end_early(States passes, const render::RenderIdentity& identity, const RenderJobOptions& options,
+int end_early(Json json, States passes, const render::RenderIdentity& identity, const RenderJobOptions& options,
               const RenderFiles& files) {
     const std::string checkpoint = options.checkpoint.empty() ? files.exr.string() + ".checkpoint" : options.checkpoint;
     const Delivery delivery = write_somewhere(places_for(checkpoint, options, files), [&](const fs::path& place) {
@@ -188,6 +242,10 @@ int end_early(States passes, const render::RenderIdentity& identity, const Rende
         "lensproof: interrupted after {:.1f} samples a pixel of {}; the same command with --checkpoint {} goes "
         "on from there\n",
         mean_samples(passes.front()), passes.front().range.end - passes.front().range.first, delivery.place.string());
+    json["samples_per_pixel"] = mean_samples(passes.front());
+    json["seed"] = options.common.seed;
+    json["checkpoint"] = delivery.place.string();
+    write_json_result(options.common, json);
     return kInternalFailure;
 }
 
@@ -213,9 +271,8 @@ render::FilmNotes notes_of(const RenderJob& job, const RenderJobOptions& options
     return notes;
 }
 
-void report(const RenderJob& job, States passes, const RenderJobOptions& options, const RenderFiles& files,
+void report(Json json, States passes, const RenderJobOptions& options, const RenderFiles& files,
             const std::optional<RawFiles>& raw) {
-    Json json = job.json;
     const render::Picture picture = render::picture_of(passes);
     json["samples_per_pixel"] = mean_samples(passes.front());
     if (passes.size() > 1) {
@@ -288,7 +345,9 @@ int run_render_job(const RenderJob& job, const RenderJobOptions& options) {
         }
     }
     const Interruption interruption;
+    const Stopwatch stopwatch;
     render::RenderEnd end{};
+    Json json = job.json;
     {
         RenderWatch watch(options, identity);
         const render::RenderControl control{
@@ -300,9 +359,10 @@ int run_render_job(const RenderJob& job, const RenderJobOptions& options) {
         if (end != render::RenderEnd::interrupted) {
             watch.look_last(passes);
         }
+        json["run"] = run_json(stopwatch, watch.latest(), end_name(end, passes, options));
     }
     if (end == render::RenderEnd::interrupted) {
-        return end_early(passes, identity, options, files);
+        return end_early(std::move(json), passes, identity, options, files);
     }
     const render::FilmNotes notes = notes_of(job, options, identity);
     const render::Picture picture = render::picture_of(passes);
@@ -311,7 +371,7 @@ int run_render_job(const RenderJob& job, const RenderJobOptions& options) {
     const Delivery png =
         write_somewhere({files.png, fs::path(exr.place).replace_extension(".png")},
                         [&](const fs::path& place) { formats::write_png(render::film_rgb(picture), place); });
-    report(job, passes, options, {.exr = exr.place, .png = png.place},
+    report(std::move(json), passes, options, {.exr = exr.place, .png = png.place},
            write_raw_files(picture, notes, exr.place, options.common.threads));
     check_place(exr);
     check_place(png);

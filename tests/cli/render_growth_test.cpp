@@ -104,6 +104,45 @@ TEST(RenderGrowth, EndsInTime) {
     EXPECT_GT(result["samples_per_pixel"], 0.0);
     EXPECT_LT(result["samples_per_pixel"], 1 << 20);
     EXPECT_TRUE(place.has("out.exr"));
+    EXPECT_EQ(result["run"]["ended_by"], "time");
+    EXPECT_GE(result["run"]["wall_seconds"], 0.2);
+}
+
+// How long, how fast, and why no longer. 64 × 48 pixels of 32 samples each are 98304; a processor's time is no more
+// than the threads had.
+TEST(RenderGrowth, SaysHowLongItTookAndWhyItEnded) {
+    const Workplace place;
+    place.file("scene.toml", growing_scene());
+    const Json run =
+        rendered(place, {"--spp", "32", "-o", "out.exr", "--threads", "1", "--checkpoint", "state"})["run"];
+    EXPECT_EQ(run["ended_by"], "samples");
+    EXPECT_EQ(run["samples"], 98304);
+    const double wall_s = run["wall_seconds"];
+    EXPECT_GT(wall_s, 0.0);
+    EXPECT_NEAR(run["samples_per_second"].get<double>() * wall_s, 98304.0, 1e-3);
+    EXPECT_GT(run["cpu_seconds"], 0.0);
+    EXPECT_LT(run["cpu_seconds"].get<double>(), wall_s + 0.1);  // of the main thread, which waits and looks
+    // From its checkpoint there is nothing more to do.
+    EXPECT_EQ(rendered(place, {"--spp", "32", "-o", "out.exr", "--checkpoint", "state"})["run"]["samples"], 0);
+    // An end by the noise says so; where the samples run out first, it says that.
+    EXPECT_EQ(rendered(place, {"--noise", "0.5", "-o", "out.exr"})["run"]["ended_by"], "noise");
+    EXPECT_EQ(rendered(place, {"--noise", "1e-6", "--spp", "64", "-o", "out.exr"})["run"]["ended_by"], "samples");
+}
+
+// One that a signal ended has a result, too: what there is, and where it goes on.
+TEST(RenderGrowth, AnInterruptedRenderSaysSoInItsJson) {
+    const Workplace place;
+    place.file("scene.toml", growing_scene());
+    RunningProgram program(
+        {"render", "scene.toml", "--spp", "1000000", "-o", "out.exr", "--preview", "now.png", "--json", "out.json"},
+        place.path());
+    wait_for(place.path() / "now.png", program);
+    program.send(SIGTERM);
+    EXPECT_EQ(program.wait(), 3);
+    const Json result = Json::parse(place.content("out.json"));
+    EXPECT_EQ(result["run"]["ended_by"], "interrupted");
+    EXPECT_EQ(result["checkpoint"], "out.exr.checkpoint");
+    EXPECT_FALSE(result.contains("exr"));
 }
 
 // A flat field, where all tiles are alike: the error that was asked for, and less where less was.
