@@ -105,7 +105,10 @@ TEST(Analyze, SaysWhichGlassIsTracedByItsFiguresAlone) {
     EXPECT_EQ(findings[0]["code"], "glass-unknown");
     EXPECT_EQ(findings[0]["severity"], "warning");
     EXPECT_EQ(findings[0]["surface"], 1);
-    const Json checked = Json::parse(place.run({"check", "unknown.toml", "--json", "-"}).out)["lenses"][0]["findings"];
+    Json checked = Json::parse(place.run({"check", "unknown.toml", "--json", "-"}).out)["lenses"][0]["findings"];
+    for (Json& finding : checked) {
+        finding.erase("section");  // a report's alone
+    }
     EXPECT_NE(std::find(checked.begin(), checked.end(), findings[0]), checked.end()) << "in check's own words";
     const std::string text = place.run({"analyze", "unknown.toml"}).out;
     for (const char* word : {"XBK77", "surface 1", "n_d = 1.517 and V_d = 64.2"}) {
