@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <set>
@@ -67,7 +68,9 @@ TEST(Palette, EightFieldsAreToldApartByEveryEye) {
         for (std::size_t i = 0; i < kFields; ++i) {
             for (std::size_t k = 0; k < i; ++k) {
                 const auto seen = [&](std::size_t field) {
-                    return lab(product(eye, linear_rgb(field_line(field).colour)));
+                    Triple linear = product(eye, linear_rgb(field_line(field).colour));
+                    std::ranges::for_each(linear, [](double& part) { part = std::clamp(part, 0.0, 1.0); });
+                    return lab(linear);
                 };
                 EXPECT_GT(distance(seen(i), seen(k)), 23.0) << i << " and " << k << ", eye " << &eye - kEyes.data();
             }
