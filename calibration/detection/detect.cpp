@@ -99,14 +99,62 @@ bool find_bent(const cv::Mat& picture, const std::vector<Finder>& finders, Point
     return false;
 }
 
-bool find_board(const cv::Mat& picture, cv::Size grid, Points& points) {
+/// The inner corners of the largest checkerboard in the picture, counted as nearly as `grid` as they can be; none where
+/// there is none of at least 4 × 3.
+std::optional<cv::Size> board_seen(const cv::Mat& picture, cv::Size grid) {
+    constexpr int kFewest = 12;
+    Points points;
+    cv::Mat squares;
+    const int flags = cv::CALIB_CB_NORMALIZE_IMAGE | cv::CALIB_CB_LARGER;
+    if (!cv::findChessboardCornersSB(picture, {3, 3}, points, flags, squares) || squares.size().area() < kFewest) {
+        return std::nullopt;
+    }
+    const cv::Size seen = squares.size();
+    const cv::Size turned(seen.height, seen.width);
+    const auto off = [&](cv::Size size) {
+        return std::abs(size.width - grid.width) + std::abs(size.height - grid.height);
+    };
+    return off(turned) < off(seen) ? turned : seen;
+}
+
+/// "9 × 6 inner corners (squares = [10, 7])", as a chart's file counts.
+std::string corners_in_words(cv::Size grid) {
+    return size_in_words(grid) + " inner corners (squares = [" + std::to_string(grid.width + 1) + ", " +
+           std::to_string(grid.height + 1) + "])";
+}
+
+bool is_larger(cv::Size board, cv::Size grid) {
+    return board.width >= grid.width && board.height >= grid.height && board != grid;
+}
+
+/// That the picture shows a board of another count than the chart's.
+std::string other_board(cv::Size seen, cv::Size grid) {
+    const std::string of_chart = corners_in_words(grid) + " of the chart";
+    return is_larger(seen, grid) ? "a checkerboard of " + corners_in_words(seen) + " found, more than the " + of_chart
+                                 : "a checkerboard of " + corners_in_words(seen) + " found, not the " + of_chart +
+                                       ": is its count another, or a part of it hidden?";
+}
+
+/// Finds the board, or says why not. All of OpenCV's detectors but the first take a part of a larger board for the
+/// whole at times, so that one is looked for before them.
+std::string find_board(const cv::Mat& picture, cv::Size grid, Points& points) {
     const Finder sector_based = [grid](const cv::Mat& p, Points& found) {
         return find_sector_based(p, grid, found, 0);
     };
     const Finder classic = [grid](const cv::Mat& p, Points& found) { return find_classic(p, grid, found); };
-    return sector_based(picture, points) || classic(picture, points) ||
-           find_sector_based(picture, grid, points, cv::CALIB_CB_EXHAUSTIVE) ||
-           find_bent(picture, {sector_based, classic}, points);
+    if (sector_based(picture, points)) {
+        return "";
+    }
+    const std::optional<cv::Size> seen = board_seen(picture, grid);
+    if (seen && is_larger(*seen, grid)) {
+        return other_board(*seen, grid);
+    }
+    if (classic(picture, points) || find_sector_based(picture, grid, points, cv::CALIB_CB_EXHAUSTIVE) ||
+        find_bent(picture, {sector_based, classic}, points)) {
+        return "";
+    }
+    return seen && *seen != grid ? other_board(*seen, grid)
+                                 : "no checkerboard of " + size_in_words(grid) + " inner corners found";
 }
 
 // One of the eight ways to number a grid: where the first point is, and whether rows and columns are swapped.
@@ -190,9 +238,10 @@ std::optional<Points> numbered_as_chart(const cv::Mat& picture, const Points& po
 // A checkerboard, which is seen as a whole or not at all.
 ChartSearch find_checkerboard(const cv::Mat& picture, cv::Size grid) {
     Points points;
-    if (!find_board(picture, grid, points) || points.size() != static_cast<std::size_t>(grid.area())) {
-        return {.reason = "no checkerboard of " + size_in_words(grid) + " inner corners found"};
+    if (std::string reason = find_board(picture, grid, points); !reason.empty()) {
+        return {.reason = std::move(reason)};
     }
+    CV_Assert(points.size() == static_cast<std::size_t>(grid.area()));
     Numbering numbering = Numbering::certain;
     const auto numbered = numbered_as_chart(picture, points, grid, numbering);
     if (!numbered) {

@@ -48,9 +48,9 @@ void write_jpeg(const std::filesystem::path& file, const formats::Image& linear,
 }
 
 /// The chart in grey; its light is 0.7 of full scale.
-formats::Image photograph(const calibration::Pose& pose, unsigned seed) {
+formats::Image photograph(const calibration::Pose& pose, unsigned seed, const scene::Chart& chart = kBoard) {
     formats::Image image = formats::make_image(640, 480, {"Y"});
-    paint(image, 0, perspective_camera(), pose, kBoard, 4, [](const Vec2d&) { return 0.7; });
+    paint(image, 0, perspective_camera(), pose, chart, 4, [](const Vec2d&) { return 0.7; });
     add_noise(image, 0.004, seed);
     return image;
 }
@@ -206,6 +206,48 @@ TEST(PhotoFolder, WhereNoPictureDoesEachReasonIsGiven) {
     std::filesystem::create_directory(place.path() / "empty");
     expect_refused(place, {"measure", "empty", "--chart", "board.toml"}, {"empty", "no picture"});
     expect_refused(place, {"measure", "photos", "--chart", "board.toml", "--transfer", "gamma:x"}, {"--transfer"});
+}
+
+/// Views of a chart, tilted.
+void take_photos(const Workplace& place, const scene::Chart& chart) {
+    std::filesystem::create_directory(place.path() / "photos");
+    unsigned seed = 1;
+    for (const calibration::Pose& pose : tilted_poses(600.0, 0.35, 30.0)) {
+        write_jpeg(place.path() / "photos" / ("view" + std::to_string(seed) + ".jpg"), photograph(pose, seed, chart),
+                   {});
+        ++seed;
+    }
+}
+
+TEST(PhotoFolder, AWrongCountOfSquaresIsAnsweredWithTheOneSeen) {
+    const Workplace place;
+    take_photos(place, kBoard);
+    for (const char* wrong : {"[9, 7]", "[8, 7]"}) {
+        place.file("wrong.toml", with(kBoardFile, "[10, 7]", wrong));
+        const Outcome outcome = place.run({"measure", "photos", "--chart", "wrong.toml"});
+        EXPECT_EQ(outcome.status, 2) << outcome.out;
+        EXPECT_TRUE(says(outcome.err, "a checkerboard of 9 × 6 inner corners (squares = [10, 7]) found"));
+        EXPECT_TRUE(says(outcome.err, std::string("(squares = ") + wrong + ") of the chart"));
+    }
+}
+
+// 8 × 6 inner corners look the same after a half turn.
+TEST(PhotoFolder, WhatEveryPictureLeavesOpenIsSaidOnce) {
+    const Workplace place;
+    take_photos(place, {.pattern = scene::Checkerboard{9, 7, 30.0}});
+    place.file("board.toml", with(kBoardFile, "[10, 7]", "[9, 7]"));
+    const Outcome outcome =
+        place.run({"measure", "photos", "--chart", "board.toml", "--no-self-test", "--json", "profile.json"});
+    ASSERT_EQ(outcome.status, 0) << outcome.err;
+    const std::string remark = "the chart looks the same after a half turn";
+    const Json pictures = Json::parse(place.content("profile.json"))["pictures"];
+    for (const Json& picture : pictures) {
+        EXPECT_TRUE(says(picture["reason"].get<std::string>(), remark));
+    }
+    const std::size_t first = outcome.out.find(remark);
+    ASSERT_NE(first, std::string::npos) << outcome.out;
+    EXPECT_EQ(outcome.out.find(remark, first + 1), std::string::npos) << outcome.out;
+    EXPECT_TRUE(says(outcome.out, "in " + std::to_string(pictures.size()) + " pictures " + remark));
 }
 
 }  // namespace lensproof::photo_folder_test

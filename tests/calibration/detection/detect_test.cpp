@@ -7,6 +7,7 @@
 #include "calibration/detection/refine.h"
 #include "engine/base/input_error.h"
 #include "tests/calibration/synthetic.h"
+#include "tests/complaint.h"
 
 namespace lensproof::calibration::detect_test {
 
@@ -151,6 +152,24 @@ TEST(CalibrationDetect, AChartNotFoundHasItsReason) {
     add_noise(noise, 0.1, 4);
     EXPECT_EQ(detect(noise, kBoard).reason, "no checkerboard of 9 × 6 inner corners found");
     EXPECT_EQ(detect(noise, kDiscs).reason, "no grid of 8 × 6 discs found");
+}
+
+// The board has 10 × 7 squares. Most of OpenCV's detectors would take a part of it for a smaller chart.
+TEST(CalibrationDetect, ABoardOfAnotherCountIsNamed) {
+    const BrownConrady camera = perspective_camera();
+    const auto reason = [](const formats::Image& image, int columns, int rows) {
+        return detect(image, {.pattern = scene::Checkerboard{columns, rows, 30.0}}).reason;
+    };
+    const std::string lying = "9 × 6 inner corners (squares = [10, 7]) found";
+    for (const Pose& pose : tilted_poses(600.0, 0.35, 30.0)) {
+        const formats::Image image = picture(camera, pose, kBoard, 0.002);
+        EXPECT_TRUE(says(reason(image, 9, 7), lying));
+        EXPECT_TRUE(says(reason(image, 8, 7), lying));
+        EXPECT_TRUE(says(reason(image, 8, 5), lying));
+        EXPECT_TRUE(says(reason(image, 6, 9), "6 × 9 inner corners (squares = [7, 10]) found"));
+        EXPECT_EQ(reason(image, 7, 10), "");
+    }
+    EXPECT_TRUE(says(reason(picture(camera, tilted_poses(600.0, 0.35, 30.0).front(), kBoard, 0.002), 11, 7), lying));
 }
 
 // What cannot be measured is said to be missing: a corner under a NaN, one painted over, one at the picture's edge.
