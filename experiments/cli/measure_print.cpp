@@ -3,7 +3,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <map>
+#include <string>
 
+#include "calibration/detection/numbering.h"
 #include "experiments/cli/measure_parts.h"
 #include "experiments/cli/terminal.h"
 
@@ -71,6 +75,33 @@ void print_sharpness(const calibration::Profile& profile) {
     }
 }
 
+/// What the pictures leave open of which point is which, and how many leave it open: where several do, it is said once
+/// for all of them.
+std::map<std::string, std::ptrdiff_t> shared_remarks(const calibration::Profile& profile) {
+    using enum calibration::Numbering;
+    std::map<std::string, std::ptrdiff_t> shared;
+    for (const calibration::Numbering numbering : {half_turn, quarter_turn, whole_pitches}) {
+        const std::string words = numbering_in_words(numbering);
+        const auto count = std::ranges::count_if(
+            profile.pictures, [&](const calibration::PictureAccount& p) { return p.reason.ends_with(words); });
+        if (count > 1) {
+            shared[words] = count;
+        }
+    }
+    return shared;
+}
+
+/// A picture's reason without what is said of several at once.
+std::string own_reason(std::string reason, const std::map<std::string, std::ptrdiff_t>& shared) {
+    for (const auto& [words, count] : shared) {
+        if (reason.ends_with(words)) {
+            reason.resize(reason.size() - words.size());
+            reason.resize(reason.ends_with("; ") ? reason.size() - 2 : reason.size());
+        }
+    }
+    return reason;
+}
+
 /// A line for each picture: used or left out, and why.
 void print_account(const calibration::Profile& profile) {
     const auto used =
@@ -80,14 +111,19 @@ void print_account(const calibration::Profile& profile) {
     for (const calibration::PictureAccount& picture : profile.pictures) {
         widest = std::max(widest, picture.image.size());
     }
+    const std::map<std::string, std::ptrdiff_t> shared = shared_remarks(profile);
     for (const calibration::PictureAccount& picture : profile.pictures) {
+        const std::string reason = own_reason(picture.reason, shared);
         const std::string held = picture.orientation == 1
                                      ? ""
                                      : fmt::format("EXIF orientation {} not applied: the sensor's rows count{}",
-                                                   picture.orientation, picture.reason.empty() ? "" : "; ");
-        const std::string line = fmt::format("  {:8}  {:{}}  {}{}", picture.used ? "used" : "left out", picture.image,
-                                             widest, held, picture.reason);
+                                                   picture.orientation, reason.empty() ? "" : "; ");
+        const std::string line =
+            fmt::format("  {:8}  {:{}}  {}{}", picture.used ? "used" : "left out", picture.image, widest, held, reason);
         print("{}\n", line.substr(0, line.find_last_not_of(' ') + 1));
+    }
+    for (const auto& [words, count] : shared) {
+        print("in {} pictures {}\n", count, words);
     }
     for (const std::string& suspicion : profile.source.suspicions) {
         print("correction suspected: {}\n", suspicion);
