@@ -142,15 +142,17 @@ std::string find_board(const cv::Mat& picture, cv::Size grid, Points& points) {
         return find_sector_based(p, grid, found, 0);
     };
     const Finder classic = [grid](const cv::Mat& p, Points& found) { return find_classic(p, grid, found); };
-    if (sector_based(picture, points)) {
+    if (sector_based(picture, points) && points.size() == static_cast<std::size_t>(grid.area())) {
         return "";
     }
     const std::optional<cv::Size> seen = board_seen(picture, grid);
     if (seen && is_larger(*seen, grid)) {
         return other_board(*seen, grid);
     }
-    if (classic(picture, points) || find_sector_based(picture, grid, points, cv::CALIB_CB_EXHAUSTIVE) ||
-        find_bent(picture, {sector_based, classic}, points)) {
+    const bool is_found = classic(picture, points) ||
+                          find_sector_based(picture, grid, points, cv::CALIB_CB_EXHAUSTIVE) ||
+                          find_bent(picture, {sector_based, classic}, points);
+    if (is_found && points.size() == static_cast<std::size_t>(grid.area())) {
         return "";
     }
     return seen && *seen != grid ? other_board(*seen, grid)
@@ -241,7 +243,6 @@ ChartSearch find_checkerboard(const cv::Mat& picture, cv::Size grid) {
     if (std::string reason = find_board(picture, grid, points); !reason.empty()) {
         return {.reason = std::move(reason)};
     }
-    CV_Assert(points.size() == static_cast<std::size_t>(grid.area()));
     Numbering numbering = Numbering::certain;
     const auto numbered = numbered_as_chart(picture, points, grid, numbering);
     if (!numbered) {

@@ -265,8 +265,8 @@ struct Prescription {
     [[nodiscard]] double reference_wavelength_nm() const;
     /// The aperture that governs; where the stop says nothing, the one that is claimed.
     [[nodiscard]] SystemAperture governing_aperture() const;
-    /// Of the surfaces; the stop may have blades all the same.
     [[nodiscard]] bool has_mirrors() const { return std::ranges::any_of(surfaces, &PrescribedSurface::is_mirror); }
+    /// Of the surfaces; the stop may have blades all the same.
     [[nodiscard]] bool is_rotationally_symmetric() const;
 };
 
