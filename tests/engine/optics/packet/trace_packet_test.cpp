@@ -181,6 +181,22 @@ TEST(TracePacket, TracesBladesCoatingsAndTurnedGroups) {
     }
 }
 
+// Mangin's mirror: glass that light crosses twice, there with the other sign.
+TEST(TracePacket, TracesMirrors) {
+    StatedMedium glass;
+    glass.n_d = 1.5168;
+    Prescription mangin{.name = "Mangin", .surfaces = {}};
+    mangin.surfaces = {
+        {.radius_mm = -150.0, .thickness_mm = 8.0, .semi_diameter_mm = 30.0, .medium = glass, .is_stop = true},
+        {.radius_mm = -240.0, .thickness_mm = -8.0, .semi_diameter_mm = 29.0, .medium = {}, .is_mirror = true},
+        {.radius_mm = -150.0, .thickness_mm = -160.0, .semi_diameter_mm = 29.0, .medium = {}}};
+    set_mirror_media(mangin.surfaces);
+    const Lens lens = make_lens(mangin, {});
+    const Fates fates = compare<Direction::forward>(at_three(lens), rays_at(lens, 400, 0.3));
+    EXPECT_GT(fates[static_cast<std::size_t>(RayStatus::ok)], 20);
+    EXPECT_GT(fates[static_cast<std::size_t>(RayStatus::clipped)], 20);
+}
+
 // A shaped, displaced surface.
 TEST(TracePacket, TracesWhatIsNoSphere) {
     const Lens lens = formats::load_lens("tessar");
