@@ -211,7 +211,10 @@ TEST(BadLens, NamesTheLineTheKeyAndWhatItHolds) {
         {"unknown glass", "BK7", "UNOBTAINIUM", {":5:", "glass", "UNOBTAINIUM", "lensproof glasses"}},
         {"unknown key", "radius_mm =  50.0", "radus_mm = 50.0", {":5:", "radus_mm", "not a key", "thickness_mm"}},
         {"no stop", "stop = true", "radius_mm = inf", {"0 aperture stops"}},
-        {"glass to the end", "semi_diameter_mm =  8.0", "semi_diameter_mm = 8.0, glass = 'BK7'", {"BK7", "air"}},
+        {"a mirror of glass",
+         "semi_diameter_mm =  8.0",
+         "semi_diameter_mm = 8.0, mirror = true, glass = 'BK7'",
+         {"glass", "stands on a mirror"}},
         {"cut off", "]\n", "", {"not TOML"}},
         {"a key twice", "name = ", "name = 'x'\nname = ", {":2:", "not TOML"}},
     };
