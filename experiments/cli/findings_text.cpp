@@ -13,9 +13,8 @@ namespace {
 
 /// What a reader's remark says, without where it stands in the file: "line 7, surface 2 of the file: " or "line 7: ".
 std::string_view without_place(std::string_view message) {
-    constexpr std::string_view kDigits = "0123456789";
     const auto skip = [](std::string_view& text, std::string_view word) {
-        const std::size_t end = text.starts_with(word) ? text.find_first_not_of(kDigits, word.size()) : text.npos;
+        const std::size_t end = text.starts_with(word) ? text.find_first_not_of("0123456789", word.size()) : text.npos;
         const bool has_number = end != text.npos && end > word.size();
         text.remove_prefix(has_number ? end : 0);
         return has_number;
@@ -72,7 +71,7 @@ std::string findings_text(const std::vector<optics::Finding>& findings) {
             }
         }
         std::ranges::sort(surfaces);
-        surfaces.erase(std::ranges::unique(surfaces).begin(), surfaces.end());
+        surfaces.erase(std::unique(surfaces.begin(), surfaces.end()), surfaces.end());
         if (surfaces.size() > 1) {
             text += line(*finding, fmt::format("{} surfaces", surfaces.size()), without_place(finding->message)) +
                     fmt::format(" (surfaces {})\n", ranges_text(surfaces));
