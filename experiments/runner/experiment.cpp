@@ -15,6 +15,7 @@
 #include "experiments/studies/pupil_passage/passage_study.h"
 #include "experiments/studies/stability/stability_study.h"
 #include "experiments/studies/stray_light/stray_study.h"
+#include "experiments/studies/tradeoff/tradeoff_study.h"
 #include "experiments/studies/twins/twins_study.h"
 
 namespace lensproof::runner {
@@ -37,6 +38,7 @@ constexpr std::array kStudies = {
     StudyKind{"[[pupil_passage]]", studies::read_pupil_passage},
     StudyKind{"[[stray_light]]", studies::read_stray_light},
     StudyKind{"[[edge_diffraction]]", studies::read_edge_diffraction},
+    StudyKind{"[[tradeoff]]", studies::read_tradeoff},
     StudyKind{"[measurement_floor]", studies::read_measurement_floor},
     StudyKind{"[[photographed_lenses]]", studies::read_photographed_lenses},
 };

@@ -1,0 +1,358 @@
+#include "experiments/studies/tradeoff/field_probe.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <functional>
+#include <numeric>
+#include <optional>
+
+#include "engine/base/angle.h"
+#include "engine/base/parallel.h"
+#include "engine/render/sampling/sampler.h"
+
+namespace lensproof::studies {
+
+void fields(JsonArchive& json, FieldError& error) {
+    json.field("image_height", error.image_height)
+        .field("position_um", error.position_um)
+        .field("image_px", error.image_px)
+        .field("blur_px", error.blur_px)
+        .field("exposure_ev", error.exposure_ev);
+}
+
+void fields(JsonArchive& json, FieldErrors& errors) {
+    json.field("at", errors.at).field("frame", errors.frame).field("lost", errors.lost);
+}
+
+namespace {
+
+constexpr double kFarthestInFocus = 80.0 * kDegree;
+
+/// Sums over the rays of a point: weights, where they land from the point's pixel, and squares of that.
+struct Landing {
+    double light = 0.0;
+    Vec2d moment;
+    double second_moment = 0.0;
+
+    void add(double weight, Vec2d from_pixel) {
+        light += weight;
+        moment = moment + weight * from_pixel;
+        second_moment += weight * (from_pixel.x * from_pixel.x + from_pixel.y * from_pixel.y);
+    }
+    void add(const Landing& more) {
+        light += more.light;
+        moment = moment + more.moment;
+        second_moment += more.second_moment;
+    }
+    [[nodiscard]] Vec2d centroid() const { return (1.0 / light) * moment; }
+    [[nodiscard]] double spread() const {
+        const Vec2d c = centroid();
+        return std::sqrt(std::max(0.0, second_moment / light - (c.x * c.x + c.y * c.y)));
+    }
+};
+
+using Landings = std::array<Landing, 3>;  // in R, G and B
+
+/// Of both cameras, at one point.
+struct PointSums {
+    Landings exact;
+    Landings model;
+    double ray_square = 0.0;  // px², times weights
+    double ray_light = 0.0;
+    double lost_light = 0.0;
+    double even_exact = 0.0;
+    double even_model = 0.0;
+
+    PointSums& operator+=(const PointSums& more) {
+        for (std::size_t c = 0; c < 3; ++c) {
+            exact[c].add(more.exact[c]);
+            model[c].add(more.model[c]);
+        }
+        ray_square += more.ray_square;
+        ray_light += more.ray_light;
+        lost_light += more.lost_light;
+        even_exact += more.even_exact;
+        even_model += more.even_model;
+        return *this;
+    }
+};
+
+/// A camera's answers about one point of light, by a number in [0, 1) for the wavelength.
+class PointCamera {
+  public:
+    PointCamera(const render::Camera& camera, const ProbePoint& point) : camera_(&camera), point_(&point) {
+        const auto one = sample(0.5, 0.1, 0.3);
+        const auto other = sample(0.5, 0.8, 0.7);
+        is_pinhole_ =
+            one && other && one->ray.direction == other->ray.direction && one->ray.origin == other->ray.origin;
+    }
+
+    [[nodiscard]] std::optional<render::LensSample> sample(double x, double u, double v) const {
+        return camera_->sample(point_->origin, path(x), u, v);
+    }
+    /// Where the ray lands, px from the point's pixel, and how much of it.
+    struct Arrival {
+        Vec2d at;
+        double transmittance = 0.0;
+    };
+    [[nodiscard]] Arrival arrival(const Ray<double>& ray, double x) const {
+        const render::FilmImportance film = camera_->importance(ray, path(x));
+        return {film.at_px[0] - point_->at_px, film.transmittance[0]};
+    }
+    /// The same of a ray of the point that another camera drew.
+    [[nodiscard]] Arrival arrival_of_other(const Ray<double>& ray, double x) const {
+        if (is_pinhole_) {
+            const auto own = sample(x, 0.5, 0.5);
+            return own ? arrival(own->ray, x) : Arrival{};
+        }
+        return arrival(ray, x);
+    }
+    /// R, G and B of light at that wavelength; what a response takes off a colour does not count.
+    [[nodiscard]] std::array<double, 3> weights(double x) const {
+        const Vec3d& rgb = camera_->film().rgb_weights[path(x).index[0]];
+        return {std::max(0.0, rgb.x), std::max(0.0, rgb.y), std::max(0.0, rgb.z)};
+    }
+    /// What an even world of radiance 1 at all wavelengths gives to the pixel in green.
+    [[nodiscard]] double even_light(const ProbeSettings& settings, int repetition) const {
+        render::CameraPaths paths =
+            camera_->paths(settings.seed + static_cast<std::uint64_t>(repetition), render::PathCarry::hero);
+        paths.start({.first_pixel = point_->pixel,
+                     .pixels = 1,
+                     .first_sample = 0,
+                     .samples = static_cast<std::uint32_t>(settings.rays)});
+        render::CameraPathBuffer buffer;
+        double light = 0.0;
+        while (paths.fill(buffer)) {
+            for (std::size_t i = 0; i < static_cast<std::size_t>(buffer.size); ++i) {
+                light += buffer.weight[i] * camera_->film().rgb_weights[buffer.wavelength[i]].y;
+            }
+        }
+        return light / settings.rays;
+    }
+
+  private:
+    [[nodiscard]] spectral::PathWavelengths path(double x) const {
+        const int size = camera_->grid().size();
+        return camera_->grid().path(std::min(size - 1, static_cast<int>(x * size)));
+    }
+
+    const render::Camera* camera_;
+    const ProbePoint* point_;
+    bool is_pinhole_ = false;
+};
+
+void add_exact_ray(const PointCamera& exact, const PointCamera& model, double x, double u, double v, PointSums& sums) {
+    const auto drawn = exact.sample(x, u, v);
+    if (!drawn) {
+        return;
+    }
+    const PointCamera::Arrival there = exact.arrival(drawn->ray, x);
+    if (!(there.transmittance > 0.0)) {
+        return;
+    }
+    const double light = there.transmittance / drawn->pdf.hero;
+    const auto weights = exact.weights(x);
+    for (std::size_t c = 0; c < 3; ++c) {
+        sums.exact[c].add(light * weights[c], there.at);
+    }
+    const double all = light * (weights[0] + weights[1] + weights[2]);
+    const PointCamera::Arrival here = model.arrival_of_other(drawn->ray, x);
+    if (!(here.transmittance > 0.0)) {
+        sums.lost_light += all;
+        return;
+    }
+    const Vec2d off = here.at - there.at;
+    sums.ray_square += all * (off.x * off.x + off.y * off.y);
+    sums.ray_light += all;
+}
+
+void add_model_ray(const PointCamera& model, double x, double u, double v, PointSums& sums) {
+    if (const auto drawn = model.sample(x, u, v)) {
+        const PointCamera::Arrival here = model.arrival(drawn->ray, x);
+        const auto weights = model.weights(x);
+        for (std::size_t c = 0; here.transmittance > 0.0 && c < 3; ++c) {
+            sums.model[c].add(here.transmittance / drawn->pdf.hero * weights[c], here.at);
+        }
+    }
+}
+
+PointSums probe(const render::Camera& exact_camera, const render::Camera& model_camera, const ProbePoint& point,
+                const ProbeSettings& settings, int repetition) {
+    const PointCamera exact(exact_camera, point);
+    const PointCamera model(model_camera, point);
+    const render::PixelSampler numbers(settings.seed + static_cast<std::uint64_t>(repetition), point.pixel);
+    PointSums sums;
+    for (int i = 0; i < settings.rays; ++i) {
+        const auto number = numbers.point(static_cast<std::uint32_t>(i));
+        add_exact_ray(exact, model, number[0], number[1], number[2], sums);
+        add_model_ray(model, number[0], number[1], number[2], sums);
+    }
+    sums.even_exact = exact.even_light(settings, repetition);
+    sums.even_model = model.even_light(settings, repetition);
+    return sums;
+}
+
+/// Squares of the four errors at a point, in px² and EV². Nothing where one of the cameras sees no light.
+struct Squares {
+    double position = 0.0;
+    double image = 0.0;
+    double blur = 0.0;
+    double exposure = 0.0;
+    double signed_blur = 0.0;
+    double signed_exposure = 0.0;
+
+    Squares& operator+=(const Squares& more) {
+        position += more.position;
+        image += more.image;
+        blur += more.blur;
+        exposure += more.exposure;
+        return *this;
+    }
+};
+
+Squares squares_of(const PointSums& sums) {
+    Squares squares;
+    if (sums.ray_light > 0.0) {
+        squares.position = sums.ray_square / sums.ray_light;
+    }
+    double channels = 0.0;
+    for (std::size_t c = 0; c < 3; ++c) {
+        if (sums.exact[c].light > 0.0 && sums.model[c].light > 0.0) {
+            const Vec2d off = sums.model[c].centroid() - sums.exact[c].centroid();
+            squares.image += off.x * off.x + off.y * off.y;
+            channels += 1.0;
+        }
+    }
+    squares.image /= std::max(1.0, channels);
+    if (sums.exact[1].light > 0.0 && sums.model[1].light > 0.0) {
+        squares.signed_blur = sums.model[1].spread() - sums.exact[1].spread();
+    }
+    if (sums.even_exact > 0.0 && sums.even_model > 0.0) {
+        squares.signed_exposure = std::log2(sums.even_model / sums.even_exact);
+    }
+    squares.blur = squares.signed_blur * squares.signed_blur;
+    squares.exposure = squares.signed_exposure * squares.signed_exposure;
+    return squares;
+}
+
+/// By repetition and point.
+using Probed = std::vector<std::vector<PointSums>>;
+
+/// `statistic` of what all repetitions found together, by the jackknife over them.
+Measured jackknifed(const Probed& probed, const std::function<double(const std::vector<PointSums>&)>& statistic) {
+    const auto pooled = [&](std::size_t left_out) {
+        std::vector<PointSums> all(probed.front().size());
+        for (std::size_t r = 0; r < probed.size(); ++r) {
+            for (std::size_t p = 0; r != left_out && p < all.size(); ++p) {
+                all[p] += probed[r][p];
+            }
+        }
+        return statistic(all);
+    };
+    const auto n = static_cast<double>(probed.size());
+    std::vector<double> without;
+    for (std::size_t r = 0; r < probed.size(); ++r) {
+        without.push_back(pooled(r));
+    }
+    const double mean = std::accumulate(without.begin(), without.end(), 0.0) / n;
+    double variance = 0.0;
+    for (const double value : without) {
+        variance += (n - 1.0) / n * (value - mean) * (value - mean);
+    }
+    return {n * pooled(probed.size()) - (n - 1.0) * mean, std::sqrt(variance)};
+}
+
+Measured scaled(Measured measured, double factor) {
+    return {factor * measured.value, factor * measured.standard_error};
+}
+
+}  // namespace
+
+Measured root(const Measured& square) {
+    const double value = std::sqrt(std::max(0.0, square.value));
+    // To first order; where that does not hold, the root of what the square may be.
+    const double largest = std::sqrt(std::max(0.0, square.value) + square.standard_error) - value;
+    return {value, value > 0.0 ? std::min(square.standard_error / (2.0 * value), largest) : largest};
+}
+
+std::vector<ProbePoint> probe_points(const render::Camera& exact, int count) {
+    const render::Sensor& sensor = exact.sensor();
+    const double aspect = static_cast<double>(sensor.width) / sensor.height;
+    const int across = std::clamp(static_cast<int>(std::lround(std::sqrt(count * aspect))), 1, sensor.width);
+    const int down = std::clamp(static_cast<int>(std::lround(count / static_cast<double>(across))), 1, sensor.height);
+    const double focus_z = -exact.settings().focus_distance_mm;
+    render::CameraPaths paths = exact.paths(0, render::PathCarry::hero);
+    std::vector<ProbePoint> points;
+    for (int row = 0; row < down; ++row) {
+        for (int column = 0; column < across; ++column) {
+            const int u = static_cast<int>((column + 0.5) * sensor.width / across);
+            const int v = static_cast<int>((row + 0.5) * sensor.height / down);
+            ProbePoint point{.pixel = static_cast<std::uint32_t>(v * sensor.width + u),
+                             .at_px = {static_cast<double>(u), static_cast<double>(v)}};
+            paths.start({.first_pixel = point.pixel, .pixels = 1, .first_sample = 0, .samples = 64});
+            render::CameraPathBuffer buffer(64);
+            if (!paths.fill(buffer) || buffer.size == 0) {
+                continue;
+            }
+            const Ray<double> out = buffer.ray(0);
+            const bool is_far = !std::isfinite(focus_z) || -out.direction.z < std::cos(kFarthestInFocus);
+            const double distance = is_far ? 0.0 : (focus_z - out.origin.z) / out.direction.z;
+            const Ray<double> in_world = exact.to_world({out.origin + distance * out.direction, -1.0 * out.direction});
+            point.origin = {.at = is_far ? in_world.direction : in_world.origin, .is_far = is_far};
+            const Vec2d from_axis = point.at_px - sensor.axis();
+            point.image_height =
+                std::hypot(from_axis.x, from_axis.y) * sensor.pixel_pitch_mm / sensor.half_diagonal_mm();
+            points.push_back(point);
+        }
+    }
+    return points;
+}
+
+FieldErrors field_errors(const render::Camera& exact, const render::Camera& model,
+                         const std::vector<ProbePoint>& points, const ProbeSettings& settings) {
+    Probed probed(static_cast<std::size_t>(settings.repetitions), std::vector<PointSums>(points.size()));
+    parallel_for(static_cast<int>(points.size()), settings.threads, [&](int p) {
+        for (int r = 0; r < settings.repetitions; ++r) {
+            probed[static_cast<std::size_t>(r)][static_cast<std::size_t>(p)] =
+                probe(exact, model, points[static_cast<std::size_t>(p)], settings, r);
+        }
+    });
+    const double um = 1e3 * exact.sensor().pixel_pitch_mm;
+    const auto of_point = [&](std::size_t p, double Squares::*what) {
+        return jackknifed(probed, [&](const std::vector<PointSums>& all) { return squares_of(all[p]).*what; });
+    };
+    const auto of_frame = [&](double Squares::*what) {
+        return jackknifed(probed, [&](const std::vector<PointSums>& all) {
+            Squares sum;
+            for (const PointSums& at : all) {
+                sum += squares_of(at);
+            }
+            return sum.*what / static_cast<double>(std::max<std::size_t>(1, all.size()));
+        });
+    };
+    FieldErrors errors;
+    for (std::size_t p = 0; p < points.size(); ++p) {
+        errors.at.push_back({.image_height = points[p].image_height,
+                             .position_um = scaled(root(of_point(p, &Squares::position)), um),
+                             .image_px = root(of_point(p, &Squares::image)),
+                             .blur_px = of_point(p, &Squares::signed_blur),
+                             .exposure_ev = of_point(p, &Squares::signed_exposure)});
+    }
+    errors.frame = {.image_height = 0.0,
+                    .position_um = scaled(root(of_frame(&Squares::position)), um),
+                    .image_px = root(of_frame(&Squares::image)),
+                    .blur_px = root(of_frame(&Squares::blur)),
+                    .exposure_ev = root(of_frame(&Squares::exposure))};
+    double light = 0.0;
+    for (const std::vector<PointSums>& repetition : probed) {
+        for (const PointSums& at : repetition) {
+            errors.lost += at.lost_light;
+            light += at.lost_light + at.ray_light;
+        }
+    }
+    errors.lost = light > 0.0 ? errors.lost / light : 0.0;
+    return errors;
+}
+
+}  // namespace lensproof::studies

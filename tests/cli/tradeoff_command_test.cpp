@@ -1,0 +1,113 @@
+// tests/cli/tradeoff_command_test.cpp — `lensproof tradeoff` as a user meets it: its JSON, its drawings, what it
+// refuses.
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "tests/cli/program.h"
+#include "tests/complaint.h"
+
+namespace lensproof::tradeoff_command_test {
+
+using Json = nlohmann::json;
+
+constexpr const char* kScene = R"([camera]
+lens = "tessar"
+f_number = 4.5
+focus_distance_mm = 3000.0
+position_mm = [0.0, 0.0, 0.0]
+look_at_mm = [0.0, 0.0, 3000.0]
+sensor_mm = [60.0, 40.0]
+pixels = [600, 400]
+shutter_s = 0.01
+iso = 100.0
+response = "cie-1931"
+[render]
+layers = 8
+strata_per_layer = 1
+max_bounces = 1
+[[materials]]
+name = "grey"
+kind = "diffuse"
+reflectance = 0.5
+[[objects]]
+name = "wall"
+shape = "chart"
+chart = { kind = "checkerboard", squares = [24, 16], square_mm = 100.0 }
+rotate_deg = [0.0, 180.0, 0.0]
+translate_mm = [0.0, 0.0, 3000.0]
+[[lights]]
+kind = "sphere"
+position_mm = [0.0, 1500.0, 1000.0]
+radius_mm = 200.0
+luminance_cd_m2 = 100000.0
+)";
+
+const std::vector<std::string> kQuick = {"tradeoff", "scene.toml", "--pixels", "600", "--spp", "16", "--seeds", "2"};
+
+std::vector<std::string> with(std::vector<std::string> arguments, const std::vector<std::string>& more) {
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return arguments;
+}
+
+TEST(TradeoffCommand, ReportsWhatTheContractSays) {
+    const Workplace place;
+    place.file("scene.toml", kScene);
+    const Json result =
+        place.json(with(kQuick, {"--rungs", "thin-lens,pinhole", "--plot", "front.svg", "--report", "page.html"}));
+    EXPECT_EQ(result["reference"], "exact-double");
+    ASSERT_EQ(result["rungs"].size(), 3U);
+    for (const Json& rung : result["rungs"]) {
+        for (const char* key : {"position_rms_um", "image_rms_px", "exposure_ev", "ciede2000_mean", "flip"}) {
+            EXPECT_GE(rung["error"][key].get<double>(), 0.0);
+            EXPECT_GE(rung["error"][std::string(key) + "_standard_error"].get<double>(), 0.0);
+        }
+        EXPECT_GT(rung["cost"]["ns_per_path"].get<double>(), 0.0);
+        EXPECT_GT(rung["cost"]["seconds"].get<double>(), 0.0);
+        EXPECT_TRUE(rung["cost"]["memory_mib"].is_number());
+        EXPECT_TRUE(rung["pareto"].is_boolean());
+    }
+    const Json& exact = result["rungs"][0];
+    EXPECT_EQ(exact["model"], "exact-double");
+    EXPECT_EQ(exact["error"]["position_rms_um"], 0.0);
+    EXPECT_TRUE(exact["pareto"]);
+    // The Tessar's corner is vignetted, and its rays are not those of a thin lens.
+    EXPECT_GT(result["rungs"][1]["error"]["exposure_ev"].get<double>(), 0.05);
+    EXPECT_GT(result["rungs"][1]["error"]["position_rms_um"].get<double>(), 5.0);
+    EXPECT_NE(place.content("front.svg").find("</svg>"), std::string::npos);
+    EXPECT_NE(place.content("page.html").find("thin-lens"), std::string::npos);
+}
+
+TEST(TradeoffCommand, ErrorsAreTheSameForAnyNumberOfThreads) {
+    const Workplace place;
+    place.file("scene.toml", kScene);
+    const auto errors = [&](const char* threads) {
+        Json result = place.json(with(kQuick, {"--rungs", "thin-lens", "--threads", threads}));
+        for (Json& rung : result["rungs"]) {
+            rung.erase("cost");  // times
+            rung.erase("pareto");
+            rung["error"].erase("ciede2000_mean_at_equal_time");
+        }
+        return result;
+    };
+    EXPECT_EQ(errors("1"), errors("2"));
+}
+
+TEST(TradeoffCommand, RefusesWhatItCannotHoldAgainstALens) {
+    const Workplace place;
+    place.file("scene.toml", kScene);
+    const Outcome unknown = place.run(with(kQuick, {"--rungs", "thick-lens"}));
+    EXPECT_EQ(unknown.status, 2);
+    EXPECT_NE(unknown.err.find("thick-lens"), std::string::npos);
+    std::string no_lens = kScene;
+    no_lens.replace(no_lens.find("lens = \"tessar\""), 15, "model = \"thin-lens\"\nfocal_length_mm = 50.0");
+    place.file("no_lens.toml", no_lens);
+    const Outcome bare = place.run({"tradeoff", "no_lens.toml"});
+    EXPECT_EQ(bare.status, 2);
+    EXPECT_NE(bare.err.find("no_lens.toml"), std::string::npos);
+    EXPECT_NE(bare.err.find("focal length in the place of a lens"), std::string::npos);
+    EXPECT_EQ(place.run({"tradeoff", "scene.toml", "--seeds", "1"}).status, 2);
+    EXPECT_EQ(place.run({"tradeoff", "missing.toml"}).status, 2);
+}
+
+}  // namespace lensproof::tradeoff_command_test
