@@ -1,6 +1,7 @@
 #include "engine/render/camera/camera_paths.h"
 
 #include <algorithm>
+#include <cmath>
 #include <stdexcept>
 #include <utility>
 
@@ -20,6 +21,16 @@ void CameraPathBuffer::leave_heroes_alone() {
     for (std::size_t i = 0; i < weights.size(); ++i) {
         weights[i] = {hero_weight(i)};
     }
+}
+
+Vec2d path_pixel(const CameraPathBuffer& paths, std::size_t path, const Sensor& sensor, bool is_box) {
+    if (is_box) {
+        const auto width = static_cast<std::uint32_t>(sensor.width);
+        const std::uint32_t row = paths.pixel[path] / width;
+        return {static_cast<double>(paths.pixel[path] % width), static_cast<double>(row)};
+    }
+    const Vec2d at = sensor.pixel({paths.film_x[path], paths.film_y[path]});
+    return {std::floor(at.x + 0.5), std::floor(at.y + 0.5)};
 }
 
 FilmSamples::FilmSamples(FilmSampling film, int wavelengths, std::optional<optics::SimdLevel> level)

@@ -60,6 +60,10 @@ struct CameraPathBuffer {
     void leave_heroes_alone();
 };
 
+/// The centre of the pixel that a path belongs to. `is_box`: pixels are the filter; else that in which its film point
+/// lies.
+Vec2d path_pixel(const CameraPathBuffer& paths, std::size_t path, const Sensor& sensor, bool is_box);
+
 /// Samples of consecutive pixels: of each pixel the same.
 struct CameraPathRange {
     std::uint32_t first_pixel = 0;

@@ -3,16 +3,20 @@
 #include <cmath>
 
 #include "engine/base/infinity.h"
+#include "engine/optics/convert_lens.h"
 #include "engine/pupil/kept_maps.h"
 
 namespace lensproof::render {
 
 ExactCamera::ExactCamera(const optics::Lens& lens, const std::vector<double>& wavelengths_nm, double film_radius_mm,
-                         const Cache& cache, bool meets_light_paths)
+                         const Cache& cache, bool meets_light_paths, TracePrecision precision)
     : lens_(optics::at_wavelengths<double>(lens, wavelengths_nm)),
       pupil_(pupil::kept_pupil_map(cache, lens_.at(), lens.is_rotationally_symmetric, film_radius_mm)),
       slices_(pupil_, lens_.wavelengths()),
       front_(pupil::front_sphere(lens_.at().front())) {
+    if (precision == TracePrecision::in_float) {
+        in_float_ = optics::at_wavelengths<float>(lens, wavelengths_nm);
+    }
     if (meets_light_paths) {
         // Drawn over the whole front in a fifth of all cases, since the map is that of far light.
         entrance_ = pupil::kept_entrance_map(cache, lens_.at(), lens.is_rotationally_symmetric, kInfinity,
@@ -22,16 +26,35 @@ ExactCamera::ExactCamera(const optics::Lens& lens, const std::vector<double>& wa
 
 ExactCamera::Paths::Paths(const ExactCamera& camera, const FilmSampling& film, const spectral::SpectralGrid& grid,
                           PathCarry carry)
-    : paths_(film, camera.lens_, camera.slices_),
-      shared_(grid, camera.lens_, camera.slices_, film.sensor, film.filter.is_box()),
-      carry_(carry),
-      is_shared_(film.filter.is_box()) {}
+    : traced_(traced(camera, film, grid)), carry_(carry), is_shared_(film.filter.is_box()) {}
+
+ExactCamera::Paths::TracedInEither ExactCamera::Paths::traced(const ExactCamera& camera, const FilmSampling& film,
+                                                              const spectral::SpectralGrid& grid) {
+    const auto in = [&]<class T>(const optics::SpectralLens<T>& lens) -> TracedInEither {
+        return Traced<T>{.paths = {film, lens, camera.slices_},
+                         .shared = {grid, lens, camera.slices_, film.sensor, film.filter.is_box()}};
+    };
+    return camera.in_float_ ? in(*camera.in_float_) : in(camera.lens_);
+}
+
+void ExactCamera::Paths::start(const CameraPathRange& range) {
+    std::visit([&](auto& traced) { traced.paths.start(range); }, traced_);
+}
+
+std::int64_t ExactCamera::Paths::started() const {
+    return std::visit([](const auto& traced) { return traced.paths.started(); }, traced_);
+}
 
 bool ExactCamera::Paths::fill(CameraPathBuffer& buffer) {
-    const bool is_filled = paths_.fill(buffer);
-    if (carry_ == PathCarry::wavelengths_and_pdfs || (carry_ == PathCarry::wavelengths && is_shared_)) {
-        shared_.weigh(buffer);
-    }
+    const bool is_filled = std::visit(
+        [&](auto& traced) {
+            const bool is_any = traced.paths.fill(buffer);
+            if (carry_ == PathCarry::wavelengths_and_pdfs || (carry_ == PathCarry::wavelengths && is_shared_)) {
+                traced.shared.weigh(buffer);
+            }
+            return is_any;
+        },
+        traced_);
     if (carry_ != PathCarry::hero && !is_shared_) {
         buffer.leave_heroes_alone();
     }
@@ -57,20 +80,27 @@ PathPdf ExactCamera::beam_pdf(const pupil::EntranceBeam& beam, Vec2d offset,
         [&](std::size_t i) { return mm2 * entrance_->pdf(far_beam, band_position(path.index[i]), offset); });
 }
 
-FilmImportance ExactCamera::importance(const Sensor& sensor, const Ray<double>& ray,
-                                       const spectral::PathWavelengths& path) const {
+template <class T>
+FilmImportance ExactCamera::traced_importance(const optics::SpectralLens<T>& lens, const Sensor& sensor,
+                                              const Ray<double>& ray, const spectral::PathWavelengths& path) const {
     FilmImportance found;
     for (std::size_t i = 0; i < spectral::kWavelengthsPerPath; ++i) {
-        const optics::TraceLens<double>& at = lens_.at(path.index[i]);
-        const optics::TracedRay<double> traced = optics::trace<optics::Direction::forward>(at, ray);
+        const optics::TraceLens<T>& at = lens.at(path.index[i]);
+        const optics::TracedRay<T> traced = optics::trace<optics::Direction::forward>(at, optics::convert_ray<T>(ray));
         if (traced.status == optics::RayStatus::ok) {
-            const FilmMeeting film = meet_film(pupil_, at.image_z, band_position(path.index[i]), traced.ray);
+            const FilmMeeting film = meet_film(pupil_, lens_.at(0).image_z, band_position(path.index[i]),
+                                               optics::convert_ray<double>(traced.ray));
             found.at_px[i] = sensor.pixel(film.point);
             found.transmittance[i] = traced.transmittance;
             found.pdf[i] = film.pdf;
         }
     }
     return found;
+}
+
+FilmImportance ExactCamera::importance(const Sensor& sensor, const Ray<double>& ray,
+                                       const spectral::PathWavelengths& path) const {
+    return in_float_ ? traced_importance(*in_float_, sensor, ray, path) : traced_importance(lens_, sensor, ray, path);
 }
 
 std::optional<LensSample> ExactCamera::sample(const LightOrigin& from, const spectral::PathWavelengths& path, double u,

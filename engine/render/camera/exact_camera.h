@@ -2,6 +2,7 @@
 #pragma once
 #include <cstdint>
 #include <optional>
+#include <variant>
 #include <vector>
 
 #include "engine/base/cache.h"
@@ -13,14 +14,21 @@
 
 namespace lensproof::render {
 
+/// What rays through a lens are traced in.
+enum class TracePrecision { in_double, in_float };
+
 /// A lens, a stratum of the grid each, with maps of where light passes it. It answers what camera.h asks, in lens
 /// space: rays are drawn over the lens's front (EntranceMap) and traced forward, each wavelength by itself.
+///
+/// In float every ray through the glass is, outwards and inwards, in packets twice as wide; it leaves the lens some
+/// ulps of a float beside the one in double, and now and then another's fate at a rim. Maps, what is drawn from them
+/// and the scene are in double.
 class ExactCamera {
   public:
     /// Of film points within `film_radius_mm` of the axis. `meets_light_paths`: else `sample` and `pdf` must not be
     /// asked. `cache`: for the maps; the same come from any.
     ExactCamera(const optics::Lens& lens, const std::vector<double>& wavelengths_nm, double film_radius_mm,
-                const Cache& cache, bool meets_light_paths);
+                const Cache& cache, bool meets_light_paths, TracePrecision precision = TracePrecision::in_double);
     ExactCamera(const ExactCamera&) = delete;  // slices refer to the map
     ExactCamera& operator=(const ExactCamera&) = delete;
 
@@ -28,13 +36,21 @@ class ExactCamera {
       public:
         Paths(const ExactCamera& camera, const FilmSampling& film, const spectral::SpectralGrid& grid, PathCarry carry);
 
-        void start(const CameraPathRange& range) { paths_.start(range); }
+        void start(const CameraPathRange& range);
         bool fill(CameraPathBuffer& buffer);
-        [[nodiscard]] std::int64_t started() const { return paths_.started(); }
+        [[nodiscard]] std::int64_t started() const;
 
       private:
-        LensPaths paths_;
-        SharedRays shared_;
+        template <class T>
+        struct Traced {
+            BasicLensPaths<T> paths;
+            BasicSharedRays<T> shared;
+        };
+        using TracedInEither = std::variant<Traced<double>, Traced<float>>;
+        static TracedInEither traced(const ExactCamera& camera, const FilmSampling& film,
+                                     const spectral::SpectralGrid& grid);
+
+        TracedInEither traced_;
         PathCarry carry_;
         bool is_shared_;  // wider filters than the box draw film points unevenly: the hero stays alone
     };
@@ -47,6 +63,9 @@ class ExactCamera {
                               const spectral::PathWavelengths& path) const;
 
     [[nodiscard]] const optics::SpectralLens<double>& lens() const { return lens_; }
+    [[nodiscard]] TracePrecision precision() const {
+        return in_float_ ? TracePrecision::in_float : TracePrecision::in_double;
+    }
 
   private:
     [[nodiscard]] std::optional<pupil::EntranceBeam> beam_of(const LightOrigin& from) const;
@@ -54,7 +73,12 @@ class ExactCamera {
     [[nodiscard]] PathPdf beam_pdf(const pupil::EntranceBeam& beam, Vec2d offset,
                                    const spectral::PathWavelengths& path) const;
 
+    template <class T>
+    [[nodiscard]] FilmImportance traced_importance(const optics::SpectralLens<T>& lens, const Sensor& sensor,
+                                                   const Ray<double>& ray, const spectral::PathWavelengths& path) const;
+
     optics::SpectralLens<double> lens_;
+    std::optional<optics::SpectralLens<float>> in_float_;
     pupil::PupilMap pupil_;
     pupil::PupilSlices slices_;
     /// For far light, with a large defensive fraction: where near points' light enters lies a little beside its

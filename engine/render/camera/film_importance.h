@@ -57,4 +57,9 @@ struct FilmImportance {
     [[nodiscard]] double shared_pdf(std::size_t wavelength) const;
 };
 
+/// What a camera path that carries all of its wavelengths counts at each, by the balance heuristic of SharedRays, in
+/// the pixel about `centre_px`, where its hero's film point lies; and `drawn`, with which pdfs it was.
+std::array<float, spectral::kWavelengthsPerPath> shared_weights(const FilmImportance& film, Vec2d centre_px,
+                                                                PathPdf& drawn);
+
 }  // namespace lensproof::render

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <functional>
+#include <type_traits>
 #include <utility>
 
 namespace lensproof::render {
@@ -30,7 +31,8 @@ struct Survivors {
     }
 };
 
-Survivors find_survivors(const PathStarts& starts, const optics::RayBatch<double>& rays) {
+template <class T>
+Survivors find_survivors(const PathStarts& starts, const optics::RayBatch<T>& rays) {
     Survivors survivors;
     for (std::size_t i = 0; i < static_cast<std::size_t>(rays.size); ++i) {
         survivors.path[static_cast<std::size_t>(survivors.count)] = static_cast<std::uint16_t>(i);
@@ -39,33 +41,66 @@ Survivors find_survivors(const PathStarts& starts, const optics::RayBatch<double
     return survivors;
 }
 
+/// Rays as aimed, rounded.
+void narrow(const optics::RayBatch<double>& from, optics::RayBatch<float>& to) {
+    const auto round = [&](const auto& column, auto& rounded) {
+        std::transform(column.begin(), column.begin() + from.size, rounded.begin(),
+                       [](double number) { return static_cast<float>(number); });
+    };
+    round(from.origin.x, to.origin.x);
+    round(from.origin.y, to.origin.y);
+    round(from.origin.z, to.origin.z);
+    round(from.direction.x, to.direction.x);
+    round(from.direction.y, to.direction.y);
+    round(from.direction.z, to.direction.z);
+    std::copy_n(from.wavelength.begin(), from.size, to.wavelength.begin());
+    to.size = from.size;
+}
+
+/// Of paths from `first` on, which float leaves with a length of 1 to its own digits.
+void normalize_directions(CameraPathBuffer& buffer, int first) {
+    for (auto i = static_cast<std::size_t>(first); i < static_cast<std::size_t>(buffer.size); ++i) {
+        const Vec3d unit = normalized(buffer.ray(i).direction);
+        buffer.direction.x[i] = unit.x;
+        buffer.direction.y[i] = unit.y;
+        buffer.direction.z[i] = unit.z;
+    }
+}
+
 }  // namespace
 
-LensPaths::LensPaths(FilmSampling film, const optics::SpectralLens<double>& lens, const pupil::PupilSlices& pupil,
-                     std::optional<optics::SimdLevel> level)
+template <class T>
+BasicLensPaths<T>::BasicLensPaths(FilmSampling film, const optics::SpectralLens<T>& lens,
+                                  const pupil::PupilSlices& pupil, std::optional<optics::SimdLevel> level)
     : samples_(std::move(film), lens.wavelengths(), level),
       lens_(&lens),
       pupil_(&pupil),
       kernels_(&path_kernels(level)),
       tracing_{.carry = optics::Carry::transmittance, .level = level},
-      rays_(kPathChunk) {}
+      aimed_(kPathChunk) {
+    if constexpr (!std::is_same_v<T, double>) {
+        narrowed_.emplace(kPathChunk);
+    }
+}
 
-bool LensPaths::fill(CameraPathBuffer& buffer) {
+template <class T>
+bool BasicLensPaths<T>::fill(CameraPathBuffer& buffer) {
     return samples_.fill(buffer, [&](PathStarts& starts) {
         const int lit = draw_pupil_points(starts);
         started_ += lit;
         if (lit == 0) {  // the film gets no light, and nothing is traced
             return;
         }
-        kernels_->aim_rays(lens_->at(0).image_z, pupil_->map().plane_z(), starts, rays_);
+        kernels_->aim_rays(lens_->at(0).image_z, pupil_->map().plane_z(), starts, aimed_);
         std::transform(starts.etendue.begin(), starts.etendue.begin() + starts.size, starts.filter_weight.begin(),
                        starts.etendue.begin(), std::multiplies<>());
-        optics::trace_batch<optics::Direction::reverse>(*lens_, rays_, tracing_);
+        trace();
         move_survivors(starts, buffer);
     });
 }
 
-int LensPaths::draw_pupil_points(PathStarts& starts) const {
+template <class T>
+int BasicLensPaths<T>::draw_pupil_points(PathStarts& starts) const {
     const pupil::PupilSliceTables* tables = pupil_->tables();
     if (tables != nullptr) {
         kernels_->draw_pupil_points(*tables, starts);
@@ -80,25 +115,48 @@ int LensPaths::draw_pupil_points(PathStarts& starts) const {
     return lit;
 }
 
-void LensPaths::move_survivors(const PathStarts& starts, CameraPathBuffer& buffer) {
-    for (std::size_t i = 0; i < static_cast<std::size_t>(rays_.size); ++i) {
-        rays_.transmittance[i] *= starts.etendue[i];
+template <class T>
+void BasicLensPaths<T>::trace() {
+    if constexpr (std::is_same_v<T, double>) {
+        optics::trace_batch<optics::Direction::reverse>(*lens_, aimed_, tracing_);
+    } else {
+        narrow(aimed_, *narrowed_);
+        optics::trace_batch<optics::Direction::reverse>(*lens_, *narrowed_, tracing_);
     }
-    const Survivors survivors = find_survivors(starts, rays_);
-    const auto append = [&](const auto& from, auto& to) { survivors.copy(from.data(), to.data() + buffer.size); };
-    append(starts.pixel, buffer.pixel);
-    append(starts.sample, buffer.sample);
-    append(starts.wavelength, buffer.wavelength);
-    append(starts.film_x, buffer.film_x);
-    append(starts.film_y, buffer.film_y);
-    append(rays_.transmittance, buffer.weight);
-    append(rays_.origin.x, buffer.origin.x);
-    append(rays_.origin.y, buffer.origin.y);
-    append(rays_.origin.z, buffer.origin.z);
-    append(rays_.direction.x, buffer.direction.x);
-    append(rays_.direction.y, buffer.direction.y);
-    append(rays_.direction.z, buffer.direction.z);
-    buffer.size += survivors.count;
 }
+
+template <class T>
+void BasicLensPaths<T>::move_survivors(PathStarts& starts, CameraPathBuffer& buffer) {
+    const auto move = [&](const auto& rays) {
+        for (std::size_t i = 0; i < static_cast<std::size_t>(rays.size); ++i) {
+            starts.etendue[i] *= rays.transmittance[i];
+        }
+        const Survivors survivors = find_survivors(starts, rays);
+        const auto append = [&](const auto& from, auto& to) { survivors.copy(from.data(), to.data() + buffer.size); };
+        append(starts.pixel, buffer.pixel);
+        append(starts.sample, buffer.sample);
+        append(starts.wavelength, buffer.wavelength);
+        append(starts.film_x, buffer.film_x);
+        append(starts.film_y, buffer.film_y);
+        append(starts.etendue, buffer.weight);
+        append(rays.origin.x, buffer.origin.x);
+        append(rays.origin.y, buffer.origin.y);
+        append(rays.origin.z, buffer.origin.z);
+        append(rays.direction.x, buffer.direction.x);
+        append(rays.direction.y, buffer.direction.y);
+        append(rays.direction.z, buffer.direction.z);
+        return survivors.count;
+    };
+    const int first = buffer.size;
+    if constexpr (std::is_same_v<T, double>) {
+        buffer.size += move(aimed_);
+    } else {
+        buffer.size += move(*narrowed_);
+        normalize_directions(buffer, first);
+    }
+}
+
+template class BasicLensPaths<float>;
+template class BasicLensPaths<double>;
 
 }  // namespace lensproof::render

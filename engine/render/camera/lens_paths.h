@@ -10,12 +10,15 @@
 namespace lensproof::render {
 
 /// Fills buffers with the paths of a range. For one thread; a copy is for another.
-class LensPaths {
+///
+/// T: double, or float, in which the rays are then traced; all else is double.
+template <class T>
+class BasicLensPaths {
   public:
     /// `lens` at the wavelengths that samples spread evenly over, `pupil` at those too; both outlive this. `level`:
     /// that of `trace_batch`.
-    LensPaths(FilmSampling film, const optics::SpectralLens<double>& lens, const pupil::PupilSlices& pupil,
-              std::optional<optics::SimdLevel> level = {});
+    BasicLensPaths(FilmSampling film, const optics::SpectralLens<T>& lens, const pupil::PupilSlices& pupil,
+                   std::optional<optics::SimdLevel> level = {});
 
     /// As `FilmSamples` has them.
     void start(const CameraPathRange& range) { samples_.start(range); }
@@ -28,15 +31,21 @@ class LensPaths {
   private:
     /// Returns how many samples start a path.
     int draw_pupil_points(PathStarts& starts) const;
-    void move_survivors(const PathStarts& starts, CameraPathBuffer& buffer);
+    void trace();
+    void move_survivors(PathStarts& starts, CameraPathBuffer& buffer);
 
     FilmSamples samples_;
-    const optics::SpectralLens<double>* lens_;
+    const optics::SpectralLens<T>* lens_;
     const pupil::PupilSlices* pupil_;
     const PathKernels* kernels_;
     optics::BatchSettings tracing_;
-    optics::RayBatch<double> rays_;
+    optics::RayBatch<double> aimed_;
+    std::optional<optics::RayBatch<T>> narrowed_;  // what is traced, of another T than double
     std::int64_t started_ = 0;
 };
+using LensPaths = BasicLensPaths<double>;
+
+extern template class BasicLensPaths<float>;
+extern template class BasicLensPaths<double>;
 
 }  // namespace lensproof::render

@@ -1,7 +1,8 @@
 #include "engine/render/camera/shared_rays.h"
 
 #include <algorithm>
-#include <cmath>
+
+#include "engine/optics/convert_lens.h"
 
 namespace lensproof::render {
 
@@ -16,7 +17,8 @@ FilmMeeting meet_film(const pupil::PupilMap& pupil, double film_z, double band_p
     return {.point = film, .pdf = per_mm2 * distance * distance / (behind.direction.z * behind.direction.z)};
 }
 
-void SharedRays::weigh(CameraPathBuffer& paths) {
+template <class T>
+void BasicSharedRays<T>::weigh(CameraPathBuffer& paths) {
     paths.weights.resize(static_cast<std::size_t>(paths.size));
     paths.pdf.resize(paths.weights.size());
     for (int first = 0; first < paths.size; first += kBlock) {
@@ -25,47 +27,27 @@ void SharedRays::weigh(CameraPathBuffer& paths) {
         for (int i = 0; i < count; ++i) {
             const auto path = static_cast<std::size_t>(first) + static_cast<std::size_t>(i);
             const spectral::PathWavelengths strata = grid_.path(paths.wavelength[path]);
-            const Vec2d centre = pixel_of(paths, path);
-            std::array<double, spectral::kWavelengthsPerPath> transmittance{};
-            PathPdf& pdf = paths.pdf[path] = {};
+            FilmImportance film;
             for (std::size_t m = 0; m < spectral::kWavelengthsPerPath; ++m) {
                 const std::size_t ray = static_cast<std::size_t>(i) * spectral::kWavelengthsPerPath + m;
                 if (rays_.status[ray] != optics::RayStatus::ok) {
                     continue;
                 }
                 const double band = static_cast<double>(strata.index[m]) / (lens_->wavelengths() - 1);
-                const FilmMeeting film =
-                    meet_film(pupil_->map(), lens_->at(0).image_z, band, rays_.ray(static_cast<int>(ray)));
-                const Vec2d pixel = sensor_.pixel(film.point);
-                const double across = pixel.x - centre.x;
-                const double down = pixel.y - centre.y;
-                // The hero's point lies in the pixel, wherever rounding may see it.
-                if (m == 0 || (across >= -0.5 && across < 0.5 && down >= -0.5 && down < 0.5)) {
-                    transmittance[m] = rays_.transmittance[ray];
-                    pdf.shared += film.pdf / spectral::kWavelengthsPerPath;
-                    pdf.hero = m == 0 ? film.pdf : pdf.hero;
-                }
+                const FilmMeeting meeting = meet_film(pupil_->map(), lens_->at(0).image_z, band,
+                                                      optics::convert_ray<double>(rays_.ray(static_cast<int>(ray))));
+                film.at_px[m] = sensor_.pixel(meeting.point);
+                film.transmittance[m] = rays_.transmittance[ray];
+                film.pdf[m] = meeting.pdf;
             }
-            for (std::size_t m = 0; m < spectral::kWavelengthsPerPath; ++m) {
-                paths.weights[path][m] = pdf.shared > 0.0 ? static_cast<float>(transmittance[m] / pdf.shared) : 0.0F;
-            }
+            paths.weights[path] = shared_weights(film, path_pixel(paths, path, sensor_, is_box_), paths.pdf[path]);
         }
     }
 }
 
-/// The centre of the pixel that the path belongs to.
-Vec2d SharedRays::pixel_of(const CameraPathBuffer& paths, std::size_t path) const {
-    if (is_box_) {
-        const auto width = static_cast<std::uint32_t>(sensor_.width);
-        const std::uint32_t row = paths.pixel[path] / width;
-        return {static_cast<double>(paths.pixel[path] % width), static_cast<double>(row)};
-    }
-    const Vec2d at = sensor_.pixel({paths.film_x[path], paths.film_y[path]});
-    return {std::floor(at.x + 0.5), std::floor(at.y + 0.5)};
-}
-
 /// From the ray outside forward through the lens, at each wavelength.
-void SharedRays::trace(const CameraPathBuffer& paths, int first, int count) {
+template <class T>
+void BasicSharedRays<T>::trace(const CameraPathBuffer& paths, int first, int count) {
     rays_.size = count * spectral::kWavelengthsPerPath;
     for (int i = 0; i < count; ++i) {
         const auto path = static_cast<std::size_t>(first) + static_cast<std::size_t>(i);
@@ -74,11 +56,14 @@ void SharedRays::trace(const CameraPathBuffer& paths, int first, int count) {
         const spectral::PathWavelengths strata = grid_.path(paths.wavelength[path]);
         for (int m = 0; m < spectral::kWavelengthsPerPath; ++m) {
             const int ray = i * spectral::kWavelengthsPerPath + m;
-            rays_.set(ray, in);
+            rays_.set(ray, optics::convert_ray<T>(in));
             rays_.wavelength[static_cast<std::size_t>(ray)] = strata.index[static_cast<std::size_t>(m)];
         }
     }
     optics::trace_batch<optics::Direction::forward>(*lens_, rays_, {.carry = optics::Carry::transmittance});
 }
+
+template class BasicSharedRays<float>;
+template class BasicSharedRays<double>;
 
 }  // namespace lensproof::render

@@ -26,12 +26,15 @@ FilmMeeting meet_film(const pupil::PupilMap& pupil, double film_z, double band_p
 /// pdfs are per etendue, which is the same on both sides of the lens. Nothing crosses a pixel's border: what a
 /// wavelength brings elsewhere, that pixel's own paths bring. A lens whose colours part by more than a pixel leaves the
 /// hero alone, with w = 4 τ / p.
-class SharedRays {
+///
+/// T: double or float, in which the rays are traced.
+template <class T>
+class BasicSharedRays {
   public:
     /// Lens and pupil outlive it. `lens` at the strata of `grid`. `is_box`: pixels are the filter, as w needs it; else
     /// the pixel of a path is the one that its film point lies in, and w is for its pdfs alone.
-    SharedRays(const spectral::SpectralGrid& grid, const optics::SpectralLens<double>& lens,
-               const pupil::PupilSlices& pupil, const Sensor& sensor, bool is_box)
+    BasicSharedRays(const spectral::SpectralGrid& grid, const optics::SpectralLens<T>& lens,
+                    const pupil::PupilSlices& pupil, const Sensor& sensor, bool is_box)
         : grid_(grid),
           lens_(&lens),
           pupil_(&pupil),
@@ -47,14 +50,17 @@ class SharedRays {
     static constexpr int kBlock = 64;  // paths; their rays stay in the first-level cache
 
     void trace(const CameraPathBuffer& paths, int first, int count);
-    [[nodiscard]] Vec2d pixel_of(const CameraPathBuffer& paths, std::size_t path) const;
 
     spectral::SpectralGrid grid_;
-    const optics::SpectralLens<double>* lens_;
+    const optics::SpectralLens<T>* lens_;
     const pupil::PupilSlices* pupil_;
     Sensor sensor_;
     bool is_box_;
-    optics::RayBatch<double> rays_;
+    optics::RayBatch<T> rays_;
 };
+using SharedRays = BasicSharedRays<double>;
+
+extern template class BasicSharedRays<float>;
+extern template class BasicSharedRays<double>;
 
 }  // namespace lensproof::render
