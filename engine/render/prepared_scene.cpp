@@ -49,7 +49,6 @@ std::vector<Render> PreparedScene::render(const std::vector<std::string>& passes
 std::map<std::string, std::string> PreparedScene::metadata() const {
     std::map<std::string, std::string> metadata = camera_.metadata();
     if (std::holds_alternative<scene::Scene>(world_)) {
-        metadata["lensproof:lensModel"] = name_of(camera_.settings().model);
         metadata["lensproof:maxBounces"] = fmt::format("{}", max_bounces_);
     }
     return metadata;

@@ -81,7 +81,8 @@ TEST(BothPaths, MakeTheImageWhereWavelengthsPart) {
 
 TEST(BothPaths, MakeTheImageOfIdealCameras) {
     for (const render::LensModel model :
-         {render::LensModel::pinhole, render::LensModel::thin_lens, render::LensModel::paraxial}) {
+         {render::LensModel::pinhole, render::LensModel::thin_lens, render::LensModel::paraxial,
+          render::LensModel::pinhole_profile, render::LensModel::thin_lens_profile}) {
         SceneParts parts = matt_scene();
         Studio::Setup setup = double_gauss();
         setup.model = model;

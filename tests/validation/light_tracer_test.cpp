@@ -70,13 +70,15 @@ SceneParts lit_wall() {
 }
 
 // Into ideal cameras light paths go through their pupils, whose importance is a closed form: the pinhole's, that of the
-// thin lens, and the paraxial lens's at each wavelength.
+// thin lens, and the paraxial lens's at each wavelength; with a lens's profile, its etendue and the inverse of its
+// curves.
 TEST(LightTracer, MakesTheImageOfIdealCameras) {
     for (const render::LensModel model :
-         {render::LensModel::pinhole, render::LensModel::thin_lens, render::LensModel::paraxial}) {
+         {render::LensModel::pinhole, render::LensModel::thin_lens, render::LensModel::paraxial,
+          render::LensModel::pinhole_profile, render::LensModel::thin_lens_profile}) {
         SceneParts parts = lit_wall();
         const Studio studio({.lens = "double-gauss-tronnier", .model = model, .sensor = kSensor, .grid = kGrid}, parts);
-        expect_same_image(studio.by_camera(512), studio.by_lights(2000));
+        expect_same_image(studio.by_camera(512), studio.by_lights(4000));
     }
 }
 

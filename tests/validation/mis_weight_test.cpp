@@ -237,12 +237,14 @@ SceneParts room(int light, const Surfaces& surfaces) {
 
 // What a camera path would have counted by running into the light, and by sampling it, and a light path by its joint,
 // each computed by its own recursion from its own end, sum to one: of paths of one to four points over every kind of
-// light, through the lens and every ideal camera. 1e-9: some dozens of roundings, in angles too, of points that lie
+// light, through the lens and every other camera. 1e-9: some dozens of roundings, in angles too, of points that lie
 // 1e-12 beside each other.
 TEST(MisWeight, WeightsOfAPathSumToOne) {
     const Surfaces surfaces;
-    for (const render::LensModel model : {render::LensModel::exact, render::LensModel::pinhole,
-                                          render::LensModel::thin_lens, render::LensModel::paraxial}) {
+    for (const render::LensModel model :
+         {render::LensModel::exact, render::LensModel::exact_float, render::LensModel::pinhole,
+          render::LensModel::thin_lens, render::LensModel::paraxial, render::LensModel::pinhole_profile,
+          render::LensModel::thin_lens_profile}) {
         int counted = 0;
         int with_all = 0;
         for (int light = 0; light < 6; ++light) {

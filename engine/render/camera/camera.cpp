@@ -79,11 +79,17 @@ spectral::SpectralGrid Camera::make_grid(const SpectralSampling& sampling) {
 
 Camera::Optics Camera::make_optics(const Cache& cache, bool meets_light_paths) const {
     const std::vector<double> wavelengths = grid_.strata.midpoints();
-    if (settings_.model == LensModel::exact) {
-        // Pixels are areas: the corner of what the corner pixel's filter reaches is the farthest point sampled.
-        const double film_radius_mm = sensor().half_diagonal_mm(film_.filter.radius_px() - 0.5);
+    // Pixels are areas: the corner of what the corner pixel's filter reaches is the farthest point sampled.
+    const double film_radius_mm = sensor().half_diagonal_mm(film_.filter.radius_px() - 0.5);
+    if (traces_surfaces(settings_.model)) {
         return Optics(std::in_place_type<ExactCamera>, lens_.value(), wavelengths, film_radius_mm, cache,
-                      meets_light_paths);
+                      meets_light_paths,
+                      settings_.model == LensModel::exact ? TracePrecision::in_double : TracePrecision::in_float);
+    }
+    if (settings_.model == LensModel::thin_lens_profile || settings_.model == LensModel::pinhole_profile) {
+        return Optics(std::in_place_type<ProfileCamera>, traced_profile(lens_.value(), wavelengths, film_radius_mm),
+                      ProfileOpening{.is_pinhole = settings_.model == LensModel::pinhole_profile,
+                                     .focus_z = -settings_.focus_distance_mm});
     }
     std::vector<GaussianOptics> at;
     std::ranges::transform(wavelengths, std::back_inserter(at), [&](double nm) {
@@ -144,6 +150,11 @@ std::string Camera::hash() const {
             optics::append_lens_bytes(bytes, lens);
         }
         append_barrel_bytes(bytes, *lens_);
+        if (exact->precision() == TracePrecision::in_float) {
+            bytes += "in float";
+        }
+    } else if (const auto* profile = std::get_if<ProfileCamera>(&optics_)) {
+        bytes = profile->bytes();
     } else {
         for (const GaussianOptics& at : std::get<IdealCamera>(optics_).at()) {
             bytes += fmt::format("{} {} {} {} {} {} {} {} {} {}\n", at.film_z, at.pupil_z, at.pupil_radius_mm,

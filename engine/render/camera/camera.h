@@ -12,6 +12,7 @@
 #include "engine/render/camera/camera_settings.h"
 #include "engine/render/camera/exact_camera.h"
 #include "engine/render/camera/ideal_camera.h"
+#include "engine/render/camera/profile_camera.h"
 #include "engine/render/film/film.h"
 
 namespace lensproof::render {
@@ -28,7 +29,7 @@ struct EntranceRatio {
 /// Fills buffers with the camera paths of a range. For one thread; a copy is for another. Outlived by its camera.
 class CameraPaths {
   public:
-    using Optics = std::variant<ExactCamera::Paths, IdealCamera::Paths>;
+    using Optics = std::variant<ExactCamera::Paths, IdealCamera::Paths, ProfileCamera::Paths>;
     explicit CameraPaths(Optics optics) : optics_(std::move(optics)) {}
 
     /// Begins a range. What was left of the one before is dropped.
@@ -60,13 +61,14 @@ class CameraPaths {
 ///
 /// Etendue is the same on both sides of a lens, so both pdfs of a ray can be set against each other (`entrance_ratio`).
 /// Nothing, or a pdf of 0: no light of the origin may come in, or `sample` cannot draw it: from points inside the
-/// sphere about a lens's front, or behind an ideal camera's front. A transmittance of 0: the ray does not arrive. Rays
-/// are in lens space, mm, as CameraPathBuffer has them; origins in the world.
+/// sphere about a lens's front, near a profile camera, or behind an ideal camera's front. A transmittance of 0: the ray
+/// does not arrive. Rays are in lens space, mm, as CameraPathBuffer has them; origins in the world.
 class Camera {
   public:
     /// Loads the lens. `sampling`: clamped to where its glasses are known. `cache`: for what is found by tracing it;
     /// the same pictures come from any. `meets_light_paths`: else `sample` and `pdf` must not be asked. Throws
-    /// InputError as `camera_lens` and `gaussian_optics` do, and for a picture of more values than fit.
+    /// InputError as `camera_lens`, `gaussian_optics` and `traced_profile` do, and for a picture of more values than
+    /// fit.
     Camera(const CameraSettings& settings, const SpectralSampling& sampling, const PixelFilter& filter,
            const Cache& cache, bool meets_light_paths = false);
     /// The same with a lens, stopped down and focused, in the place of the one that the settings name; none where they
@@ -90,7 +92,7 @@ class Camera {
     [[nodiscard]] const CameraSettings& settings() const { return settings_; }
     [[nodiscard]] const Sensor& sensor() const { return settings_.sensor; }
     [[nodiscard]] const std::optional<optics::Lens>& lens() const { return lens_; }
-    /// Of the exact model alone.
+    /// Of the exact models alone.
     [[nodiscard]] const ExactCamera& exact() const { return std::get<ExactCamera>(optics_); }
     /// From the frame of pose.h to the world; and a ray from lens space there.
     [[nodiscard]] const AffineMap& pose() const { return pose_; }
@@ -117,7 +119,7 @@ class Camera {
     [[nodiscard]] const std::optional<spectral::RgbSpace>& colours() const { return colours_; }
 
   private:
-    using Optics = std::variant<ExactCamera, IdealCamera>;
+    using Optics = std::variant<ExactCamera, IdealCamera, ProfileCamera>;
     [[nodiscard]] spectral::SpectralGrid make_grid(const SpectralSampling& sampling);
     [[nodiscard]] FilmLayout make_film(int layers, const PixelFilter& filter) const;
     [[nodiscard]] Optics make_optics(const Cache& cache, bool meets_light_paths) const;

@@ -51,6 +51,7 @@ std::vector<Vec3d> Camera::albedo_weights() const {
 
 std::map<std::string, std::string> Camera::metadata() const {
     return {{"lensproof:lens", lens_ ? lens_->name : fmt::format("{} mm", settings_.focal_length_mm.value_or(0.0))},
+            {"lensproof:model", name_of(settings_.model)},
             {"lensproof:fNumber", fmt::format("{}", settings_.f_number)},
             {"lensproof:focusDistance_mm", fmt::format("{}", settings_.focus_distance_mm)},
             {"lensproof:pixelPitch_um", fmt::format("{}", 1e3 * sensor().pixel_pitch_mm)},

@@ -21,6 +21,7 @@ namespace {
 
 constexpr Bounds kSensorSide{.min = 0.0, .max = 1e4, .min_excluded = true};
 constexpr double kMostPixels = 200e6;
+constexpr const char* kExactInDouble = "exact-double";
 
 Sensor read_sensor(TomlTable& table) {
     const std::vector<double> size = table.numbers("sensor_mm", 2, kSensorSide);
@@ -92,24 +93,59 @@ void read_place(TomlTable& table, CameraSettings& camera) {
 /// The model, and a focal length that stands in the place of a lens.
 void read_model(TomlTable& table, CameraSettings& camera) {
     if (table.has("model")) {
-        const std::vector<std::string>& names = lens_model_names();
-        camera.model = static_cast<LensModel>(std::ranges::find(names, table.choice("model", names)) - names.begin());
+        camera.model = lens_model_named(table.choice("model", known_lens_models())).value();
     }
     camera.focal_length_mm = table.optional_number("focal_length_mm", kPositive);
-    if (camera.focal_length_mm && (camera.model == LensModel::exact || camera.model == LensModel::paraxial)) {
-        table.fail("focal_length_mm", "is for the models thin-lens and pinhole; here the lens says it");
+}
+
+void check_model(TomlTable& table, const CameraSettings& camera) {
+    if (const auto conflict = model_conflict(camera)) {
+        table.fail(conflict->key, conflict->message);
     }
 }
 
 }  // namespace
 
 const std::vector<std::string>& lens_model_names() {
-    static const std::vector<std::string> names = {"exact", "paraxial", "thin-lens", "pinhole"};
+    static const std::vector<std::string> names = {"exact",       "paraxial",          "thin-lens",      "pinhole",
+                                                   "exact-float", "thin-lens-profile", "pinhole-profile"};
     return names;
 }
 
 const std::string& name_of(LensModel model) {
     return lens_model_names()[static_cast<std::size_t>(model)];
+}
+
+std::optional<LensModel> lens_model_named(const std::string& name) {
+    if (name == kExactInDouble) {
+        return LensModel::exact;
+    }
+    const std::vector<std::string>& names = lens_model_names();
+    const auto found = std::ranges::find(names, name);
+    return found != names.end() ? std::optional(static_cast<LensModel>(found - names.begin())) : std::nullopt;
+}
+
+std::vector<std::string> known_lens_models() {
+    std::vector<std::string> names = lens_model_names();
+    names.emplace_back(kExactInDouble);
+    return names;
+}
+
+std::optional<ModelConflict> model_conflict(const CameraSettings& camera) {
+    const std::string& name = name_of(camera.model);
+    if (camera.focal_length_mm && camera.model != LensModel::thin_lens && camera.model != LensModel::pinhole) {
+        return ModelConflict{"focal_length_mm", "is for the models thin-lens and pinhole; here the lens says it"};
+    }
+    if (camera.blades && !traces_surfaces(camera.model)) {
+        return ModelConflict{"blades", fmt::format("stands beside model = \"{}\", whose pupil is round; expected the "
+                                                   "exact model",
+                                                   name)};
+    }
+    if (camera.barrel && !traces_surfaces(camera.model)) {
+        return ModelConflict{
+            "barrel", fmt::format("stands beside model = \"{}\", which has no walls; expected the exact model", name)};
+    }
+    return std::nullopt;
 }
 
 AffineMap camera_to_world(const CameraSettings& camera) {
@@ -135,16 +171,9 @@ CameraSettings read_placed_camera(TomlTable& table) {
     camera.lens = camera.focal_length_mm && !table.has("lens") ? "" : formats::read_lens_name(table);
     read_exposure(table, camera);
     camera.white_balance = scene::read_illuminant(table, "white_balance");
+    check_model(table, camera);
     if (camera.focal_length_mm && !camera.lens.empty()) {
         table.fail("focal_length_mm", "stands beside lens, expected one or the other");
-    }
-    if (camera.blades && camera.model != LensModel::exact) {
-        table.fail("blades", fmt::format("stands beside model = \"{}\", whose pupil is round; expected the exact model",
-                                         name_of(camera.model)));
-    }
-    if (camera.barrel && camera.model != LensModel::exact) {
-        table.fail("barrel", fmt::format("stands beside model = \"{}\", which has no walls; expected the exact model",
-                                         name_of(camera.model)));
     }
     table.finish();
     return camera;

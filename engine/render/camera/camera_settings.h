@@ -15,18 +15,30 @@ namespace lensproof::render {
 
 /// What stands for the lens. All are made from a lens and its settings, expose alike, and so can be compared:
 ///
-///   exact       the lens itself, surface by surface
-///   paraxial    its Gaussian optics at each wavelength: pupils, principal planes, axial and lateral colour of first
-///               order; no other aberration, no rims but the stop
-///   thin-lens   focal length and entrance pupil of the reference line, at the front principal plane
-///   pinhole     the thin lens's centre alone, with the light of its whole opening: no blur
+///   exact              the lens itself, surface by surface; "exact-double" too
+///   exact-float        the same in float
+///   paraxial           its Gaussian optics at each wavelength: pupils, principal planes, axial and lateral colour of
+///                      first order; no other aberration, no rims but the stop
+///   thin-lens-profile  a thin lens with the distortion, the lateral colour and the brightness over the field that the
+///                      lens has, and a pupil that moves with the field as the lens's does
+///   thin-lens          focal length and entrance pupil of the reference line, at the front principal plane
+///   pinhole-profile    the centre of the pupil of thin-lens-profile alone
+///   pinhole            the thin lens's centre alone, with the light of its whole opening: no blur
 ///
-/// The last three pass what the lens passes along its axis.
-enum class LensModel { exact, paraxial, thin_lens, pinhole };
+/// Paraxial, thin lens and pinhole pass what the lens passes along its axis; the profiles what it passes anywhere.
+enum class LensModel { exact, paraxial, thin_lens, pinhole, exact_float, thin_lens_profile, pinhole_profile };
 
-/// "exact", "paraxial", "thin-lens", "pinhole", in the order of the enumeration.
+/// "exact", …, in the order of the enumeration; and what a name means, "exact-double" too: nothing for others.
 const std::vector<std::string>& lens_model_names();
 const std::string& name_of(LensModel model);
+std::optional<LensModel> lens_model_named(const std::string& name);
+/// All names that scenes and commands know.
+std::vector<std::string> known_lens_models();
+
+/// Whether its rays are traced through the lens, surface by surface.
+constexpr bool traces_surfaces(LensModel model) {
+    return model == LensModel::exact || model == LensModel::exact_float;
+}
 
 struct CameraSettings {
     std::string lens;  // a file, or the name of a lens that ships; empty where a focal length stands for it
@@ -63,6 +75,13 @@ CameraSettings read_camera_settings(TomlTable& table);
 /// The same of a camera that stands in a world: position_mm, look_at_mm, and up, model, focal_length_mm in the place of
 /// a lens, white_balance (optional).
 CameraSettings read_placed_camera(TomlTable& table);
+
+/// What in a camera's settings makes no sense beside its model: the key, and what is wrong with it.
+struct ModelConflict {
+    std::string key;
+    std::string message;
+};
+std::optional<ModelConflict> model_conflict(const CameraSettings& camera);
 
 /// The camera's lens, which it has to have: loaded, given its blades, stopped down and focused.
 optics::Lens camera_lens(const CameraSettings& camera);

@@ -1,0 +1,359 @@
+#include "engine/render/camera/profile_camera.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "engine/base/angle.h"
+#include "engine/base/bytes.h"
+#include "engine/base/infinity.h"
+#include "engine/base/input_error.h"
+
+namespace lensproof::render {
+
+namespace {
+
+// Rays that were made through a pupil's edge lie in it, wherever rounding may see them.
+constexpr double kEdge = 1.0 + 1e-9;
+
+double square(double x) {
+    return x * x;
+}
+
+/// The point of the unit disc that (u, v) in the unit square maps to.
+Vec2d in_unit_disc(double u, double v) {
+    const double radius = std::sqrt(u);
+    const double angle = 2.0 * kPi * v;
+    return {radius * std::cos(angle), radius * std::sin(angle)};
+}
+
+}  // namespace
+
+Vec3d ProfileCamera::Chief::across(Vec2d q) const {
+    return {-azimuth.y * q.x + cosine * azimuth.x * q.y, azimuth.x * q.x + cosine * azimuth.y * q.y, -sine * q.y};
+}
+
+Vec2d ProfileCamera::Chief::across(const Vec3d& from_centre) const {
+    return {azimuth.x * from_centre.y - azimuth.y * from_centre.x,
+            cosine * (azimuth.x * from_centre.x + azimuth.y * from_centre.y) - sine * from_centre.z};
+}
+
+ProfileCamera::ProfileCamera(LensProfile profile, const ProfileOpening& opening)
+    : profile_(std::move(profile)), opening_(opening) {
+    constexpr int kLooks = 1024;
+    const double last_field = profile_.pupil_z.end();
+    const double axial_z = profile_.pupil_z.at(0.0).value;
+    double farthest_pupil = 0.0;
+    double nearest_focus = kInfinity;
+    for (int i = 0; i <= kLooks; ++i) {
+        const RadialCurve::At pupil = profile_.pupil_z.at(last_field * i / kLooks);
+        steepest_pupil_ = std::max(steepest_pupil_, std::abs(pupil.slope));
+        farthest_pupil = std::max(farthest_pupil, std::abs(pupil.value - axial_z));
+        nearest_focus = std::min(nearest_focus, pupil.value - opening_.focus_z);
+    }
+    for (std::size_t k = 0; k < profile_.at.size(); ++k) {
+        const auto wavelength = static_cast<std::uint16_t>(k);
+        axial_radius_.push_back(std::sqrt(film_point(wavelength, 0.0).pupil_area / kPi));
+        for (int i = 0; i <= kLooks; ++i) {
+            const Vec2d axes =
+                semi_axes(wavelength, film_point(wavelength, profile_.at[k].field_angle.end() * i / kLooks));
+            widest_radius_ = std::max({widest_radius_, axes.x, axes.y});
+        }
+    }
+    constexpr double kBetweenLooks = 1.01;
+    widest_radius_ = opening_.is_pinhole ? 0.0 : widest_radius_ * kBetweenLooks;
+    steepest_pupil_ *= kBetweenLooks;
+    lead_mm_ = std::max(0.0, axial_z - profile_.front_z);
+    const double reach = steepest_pupil_ + widest_radius_;
+    near_mm_ = 4.0 * reach + farthest_pupil + lead_mm_;
+    if (!opening_.is_pinhole) {
+        largest_vergence_ = 1.0 / nearest_focus;
+        if (!(nearest_focus > reach)) {
+            throw InputError(fmt::format(
+                "the focus lies {:.4g} mm before a pupil; the model thin-lens-profile needs more than {:.4g} mm",
+                nearest_focus, reach));
+        }
+    }
+}
+
+/// Of fields beyond the profile's, as at its end: light aims there too.
+RadialCurve::At ProfileCamera::pupil_at(double angle) const {
+    const double end = profile_.pupil_z.end();
+    return angle < end ? profile_.pupil_z.at(angle) : RadialCurve::At{profile_.pupil_z.at(end).value, 0.0};
+}
+
+ProfileCamera::Chief ProfileCamera::chief_at(double angle, Vec2d azimuth) const {
+    const RadialCurve::At pupil = pupil_at(angle);
+    return {.azimuth = azimuth,
+            .angle = angle,
+            .sine = std::sin(angle),
+            .cosine = std::cos(angle),
+            .pupil_z = pupil.value,
+            .pupil_slope = pupil.slope};
+}
+
+ProfileCamera::Chief ProfileCamera::chief_along(const Vec3d& outwards) const {
+    const double sine = std::hypot(outwards.x, outwards.y);
+    const Vec2d azimuth = sine > 0.0 ? Vec2d{-outwards.x, -outwards.y} / sine : Vec2d{1.0, 0.0};
+    return chief_at(std::atan2(sine, -outwards.z), azimuth);
+}
+
+/// Newton's steps for the angle θ at which the point is seen from z_e(θ); its angle changes by sin θ / t a mm of z_e,
+/// so that beyond all t_c there is one and it is found.
+ProfileCamera::Chief ProfileCamera::chief_through(const Vec3d& point) const {
+    const double height = std::hypot(point.x, point.y);
+    const Vec2d azimuth = height > 0.0 ? Vec2d{-point.x, -point.y} / height : Vec2d{1.0, 0.0};
+    double angle = std::atan2(height, pupil_at(0.0).value - point.z);
+    constexpr int kMostSteps = 40;
+    for (int step = 0; step < kMostSteps; ++step) {
+        const RadialCurve::At pupil = pupil_at(angle);
+        const double depth = pupil.value - point.z;
+        const double per_angle = pupil.slope * height / (height * height + depth * depth);
+        const double next = angle + (std::atan2(height, depth) - angle) / (1.0 + per_angle);
+        const bool is_found = std::abs(next - angle) <= 4e-16 * angle;
+        angle = std::clamp(next, 0.0, kPi);
+        if (is_found) {
+            break;
+        }
+    }
+    return chief_at(angle, azimuth);
+}
+
+std::optional<ProfileCamera::Chief> ProfileCamera::chief_of(const LightOrigin& from) const {
+    if (from.is_far) {
+        return chief_along(-1.0 * from.at);
+    }
+    const Vec3d axial{0.0, 0.0, pupil_at(0.0).value};
+    return length(from.at - axial) > near_mm_ ? std::optional(chief_through(from.at)) : std::nullopt;
+}
+
+double ProfileCamera::focus_vergence(const Chief& chief) const {
+    return !opening_.is_pinhole && chief.cosine > 0.0 ? 1.0 / (chief.pupil_z - opening_.focus_z) : 0.0;
+}
+
+/// K of profile_camera.h.
+double ProfileCamera::etendue(const FilmPoint& point, const Chief& chief, Vec2d offset) const {
+    const double k = focus_vergence(chief);
+    const double v = k * chief.cosine;
+    const double q_z = -chief.sine * offset.y;
+    return point.solid_angle * (1.0 + v * chief.pupil_slope * chief.sine) * (1.0 + k * q_z) /
+           square(1.0 + v * v * dot(offset, offset));
+}
+
+/// A film point within the profile's end.
+ProfileCamera::FilmPoint ProfileCamera::film_point(std::uint16_t wavelength, double radius) const {
+    const RadialProfile& at = profile_.at[wavelength];
+    const RadialCurve::At angle = at.field_angle.at(radius);
+    FilmPoint point{.radius = radius, .illumination = at.illumination.at(radius).value};
+    point.solid_angle = (radius > 0.0 ? std::sin(angle.value) / radius : angle.slope) * angle.slope;
+    point.pupil_area = point.illumination / (at.transmittance * point.solid_angle);
+    return point;
+}
+
+/// Sagittal and tangential.
+Vec2d ProfileCamera::semi_axes(std::uint16_t wavelength, const FilmPoint& point) const {
+    return {axial_radius_[wavelength], point.pupil_area / (kPi * axial_radius_[wavelength])};
+}
+
+ProfileCamera::Paths::Paths(const ProfileCamera& camera, const FilmSampling& film, const spectral::SpectralGrid& grid,
+                            PathCarry carry)
+    : samples_(film, static_cast<int>(camera.profile_.at.size())),
+      camera_(&camera),
+      sensor_(film.sensor),
+      grid_(grid),
+      carry_(carry),
+      is_box_(film.filter.is_box()) {}
+
+bool ProfileCamera::Paths::fill(CameraPathBuffer& buffer) {
+    if (carry_ != PathCarry::hero) {
+        buffer.weights.resize(static_cast<std::size_t>(buffer.capacity));
+        buffer.pdf.resize(buffer.weights.size());
+    }
+    const bool is_filled = samples_.fill(buffer, [&](const PathStarts& starts) {
+        for (int i = 0; i < starts.size; ++i) {
+            append(starts, static_cast<std::size_t>(i), buffer);
+        }
+    });
+    if (carry_ != PathCarry::hero && !is_box_) {
+        buffer.leave_heroes_alone();
+    }
+    return is_filled;
+}
+
+void ProfileCamera::Paths::append(const PathStarts& starts, std::size_t sample, CameraPathBuffer& buffer) {
+    const std::uint16_t wavelength = starts.wavelength[sample];
+    const RadialProfile& profile = camera_->profile_.at[wavelength];
+    const Vec2d film{starts.film_x[sample], starts.film_y[sample]};
+    const double radius = length(film);
+    if (!(radius < profile.field_angle.end())) {
+        return;
+    }
+    const FilmPoint point = camera_->film_point(wavelength, radius);
+    if (!(point.illumination > 0.0)) {
+        return;
+    }
+    ++started_;
+    Meeting meeting{.chief = camera_->chief_at(profile.field_angle.at(radius).value,
+                                               radius > 0.0 ? film / radius : Vec2d{1.0, 0.0}),
+                    .offset = {}};
+    const Chief& chief = meeting.chief;
+    if (!camera_->opening_.is_pinhole) {
+        const Vec2d in_disc = in_unit_disc(starts.pupil_u[sample], starts.pupil_v[sample]);
+        const Vec2d axes = camera_->semi_axes(wavelength, point);
+        meeting.offset = {axes.x * cross(chief.azimuth, in_disc), axes.y * dot(chief.azimuth, in_disc)};
+    }
+    const Vec3d from_centre = chief.across(meeting.offset);
+    const double vergence = camera_->focus_vergence(chief) * chief.cosine;
+    const Vec3d direction = normalized(chief.outwards() - vergence * from_centre);
+    const Vec3d origin = chief.centre() + from_centre + camera_->lead_mm_ * direction;
+
+    const auto at = static_cast<std::size_t>(buffer.size++);
+    buffer.pixel[at] = starts.pixel[sample];
+    buffer.sample[at] = starts.sample[sample];
+    buffer.wavelength[at] = wavelength;
+    buffer.film_x[at] = film.x;
+    buffer.film_y[at] = film.y;
+    buffer.weight[at] = point.illumination * starts.filter_weight[sample];
+    buffer.origin.x[at] = origin.x;
+    buffer.origin.y[at] = origin.y;
+    buffer.origin.z[at] = origin.z;
+    buffer.direction.x[at] = direction.x;
+    buffer.direction.y[at] = direction.y;
+    buffer.direction.z[at] = direction.z;
+    if (carry_ == PathCarry::wavelengths_and_pdfs || (carry_ == PathCarry::wavelengths && is_box_)) {
+        const FilmImportance shared = camera_->film(sensor_, meeting, grid_.path(wavelength));
+        buffer.weights[at] = shared_weights(shared, path_pixel(buffer, at, sensor_, is_box_), buffer.pdf[at]);
+    }
+}
+
+FilmImportance ProfileCamera::film(const Sensor& sensor, const Meeting& meeting,
+                                   const spectral::PathWavelengths& path) const {
+    FilmImportance found;
+    for (std::size_t i = 0; i < spectral::kWavelengthsPerPath; ++i) {
+        const std::uint16_t wavelength = path.index[i];
+        const std::optional<double> radius = profile_.at[wavelength].field_angle.where(meeting.chief.angle);
+        if (!radius) {
+            continue;
+        }
+        const FilmPoint point = film_point(wavelength, *radius);
+        if (!(point.illumination > 0.0)) {
+            continue;
+        }
+        if (!opening_.is_pinhole) {
+            const Vec2d axes = semi_axes(wavelength, point);
+            if (square(meeting.offset.x / axes.x) + square(meeting.offset.y / axes.y) > kEdge) {
+                continue;
+            }
+        }
+        found.at_px[i] = sensor.pixel(*radius * meeting.chief.azimuth);
+        found.pdf[i] = 1.0 / (point.pupil_area * etendue(point, meeting.chief, meeting.offset));
+        found.transmittance[i] = point.illumination * found.pdf[i];
+    }
+    return found;
+}
+
+/// Which chief ray a ray into the camera crosses in its focus, and where it passes the pupil.
+std::optional<ProfileCamera::Meeting> ProfileCamera::meet(const Ray<double>& ray) const {
+    const Vec3d outwards = -1.0 * ray.direction;
+    if (opening_.is_pinhole) {
+        return Meeting{.chief = chief_along(outwards), .offset = {}};
+    }
+    const bool has_focus = std::isfinite(opening_.focus_z) && outwards.z < 0.0;
+    const Chief chief = has_focus
+                            ? chief_through(ray.origin + (opening_.focus_z - ray.origin.z) / outwards.z * outwards)
+                            : chief_along(outwards);
+    const double towards = dot(outwards, chief.outwards());
+    if (!(towards > 0.0)) {
+        return std::nullopt;
+    }
+    const double along = dot(chief.centre() - ray.origin, chief.outwards()) / towards;
+    return Meeting{.chief = chief, .offset = chief.across(ray.origin + along * outwards - chief.centre())};
+}
+
+FilmImportance ProfileCamera::importance(const Sensor& sensor, const Ray<double>& ray,
+                                         const spectral::PathWavelengths& path) const {
+    const std::optional<Meeting> meeting = meet(ray);
+    return meeting ? film(sensor, *meeting, path) : FilmImportance{};
+}
+
+/// The chief ray of a ray from the origin differs from the origin's own by angles of no more than v R at the focus and
+/// (R + s) / t at the origin, R being the widest pupil and s how far it is moved by that; and a ball about the pupil is
+/// seen somewhat larger from near by.
+ProfileCamera::Disc ProfileCamera::disc_of(const LightOrigin& from, const Chief& chief) const {
+    const double distance = from.is_far ? kInfinity : length(from.at - chief.centre());
+    const double turn = widest_radius_ * (largest_vergence_ + 1.0 / distance);
+    const double ball = widest_radius_ + steepest_pupil_ * turn / (1.0 - steepest_pupil_ / distance);
+    return {.chief = chief, .radius = ball / std::sqrt(1.0 - square(ball / distance)), .distance = distance};
+}
+
+/// 0 where the film does not see so far.
+double ProfileCamera::pinhole_pdf(const Disc& disc, std::uint16_t wavelength) const {
+    const std::optional<double> radius = profile_.at[wavelength].field_angle.where(disc.chief.angle);
+    const FilmPoint point = radius ? film_point(wavelength, *radius) : FilmPoint{};
+    if (!(point.illumination > 0.0)) {
+        return 0.0;
+    }
+    const double t = disc.distance;
+    return std::isfinite(t) ? t * (t + disc.chief.pupil_slope * disc.chief.sine) / point.pupil_area
+                            : 1.0 / point.pupil_area;
+}
+
+std::optional<LensSample> ProfileCamera::sample(const LightOrigin& from, const spectral::PathWavelengths& path,
+                                                double u, double v) const {
+    const std::optional<Chief> chief = chief_of(from);
+    if (!chief) {
+        return std::nullopt;
+    }
+    const Disc disc = disc_of(from, *chief);
+    const Vec2d offset = disc.radius * in_unit_disc(u, v);
+    const Vec3d in_pupil = chief->centre() + chief->across(offset);
+    const Vec3d outwards = from.is_far ? -1.0 * from.at : normalized(from.at - in_pupil);
+    const Vec3d start = in_pupil + lead_mm_ * outwards;
+    const Ray<double> ray{start, -1.0 * outwards};
+    const LensSample in{
+        .ray = ray, .direction = ray.direction, .end = start, .pdf = pdf(from, {start, outwards}, path)};
+    return in.pdf.hero > 0.0 ? std::optional(in) : std::nullopt;
+}
+
+PathPdf ProfileCamera::pdf(const LightOrigin& from, const Ray<double>& outwards,
+                           const spectral::PathWavelengths& path) const {
+    const std::optional<Chief> chief = chief_of(from);
+    if (!chief) {
+        return {};
+    }
+    const Disc disc = disc_of(from, *chief);
+    if (opening_.is_pinhole) {
+        return over_heroes([&](std::size_t i) { return pinhole_pdf(disc, path.index[i]); });
+    }
+    const double towards = dot(outwards.direction, chief->outwards());
+    const double along = dot(chief->centre() - outwards.origin, chief->outwards()) / towards;
+    const Vec2d offset = chief->across(outwards.origin + along * outwards.direction - chief->centre());
+    if (!(towards > 0.0) || dot(offset, offset) > square(disc.radius) * kEdge) {
+        return {};
+    }
+    const double per_mm2 = 1.0 / (kPi * square(disc.radius));
+    const double distance2 = square(disc.distance) + dot(offset, offset);
+    const double pdf = from.is_far ? per_mm2 : per_mm2 * distance2 / towards;
+    return {.shared = pdf, .hero = pdf};
+}
+
+std::string ProfileCamera::bytes() const {
+    std::string bytes;
+    append_bytes(bytes, opening_.is_pinhole, opening_.focus_z, profile_.front_z);
+    const auto append = [&](const RadialCurve& curve) {
+        append_bytes(bytes, curve.end());
+        for (const RadialCurve::At& node : curve.nodes()) {
+            append_bytes(bytes, node.value, node.slope);
+        }
+    };
+    append(profile_.pupil_z);
+    for (const RadialProfile& at : profile_.at) {
+        append(at.field_angle);
+        append(at.illumination);
+        append_bytes(bytes, at.transmittance);
+    }
+    return bytes;
+}
+
+}  // namespace lensproof::render

@@ -1,0 +1,145 @@
+// engine/render/camera/profile_camera.h — a pinhole and a thin lens with a lens's own radial profile.
+#pragma once
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "engine/render/camera/camera_paths.h"
+#include "engine/render/camera/film_importance.h"
+#include "engine/render/camera/lens_profile.h"
+
+namespace lensproof::render {
+
+/// What opens a profile camera.
+struct ProfileOpening {
+    bool is_pinhole = false;
+    double focus_z = 0.0;  // of the plane of focus of a thin lens, lens space; −inf: far off
+};
+
+/// A LensProfile as a camera: each film point has its chief ray, which leaves the centre of the pupil of that field,
+/// and the light that the profile says, evenly over the pupil. It answers what camera.h asks, in lens space.
+///
+///   pinhole     the chief ray alone.
+///   thin lens   rays of one film point cross where its chief ray meets the plane of focus; from 90° on, which that
+///               plane does not see, they are parallel. The pupil is an ellipse across the chief ray. Its area is what
+///               etendue says: illumination E at film radius r takes A = E / (τ J) of light's cross-section where chief
+///               rays fill the solid angle J = sin θ θ′ / r a film area. Sagittally it is as wide as on the axis: a
+///               disc across the axis when E falls as cos⁴, a narrower one where rims vignette.
+///
+/// With angles (no tangents), so that a field may pass 90°. Of a film point x and a point q of the pupil (from its
+/// centre z_e, across the chief ray), v being the reciprocal distance to the focus along that ray and κ that along the
+/// axis (v = κ cos θ), rays outside fill the etendue
+///
+///     K dx dq,   K = sin θ / r · (θ′ + v z_e′ sin θ) (1 + κ q_z) / (1 + v² q²)²:
+///
+/// dx to the plane of focus along the chief rays, which turn about a moving pupil, and dq to the directions there. So
+/// what light brings is E / A over K of its etendue, and camera paths draw it with 1 / (A K). A pinhole counts for all
+/// of A at q = 0 and v = 0; light of a point at distance t from it sees the pupil's centre move, by t_c = −dz_e/dθ sin
+/// θ of the distance tangentially, so that its pdf is t (t − t_c) / A per solid angle.
+///
+/// Light that comes in aims at a disc that holds the pupils of all film points which it may reach. From points nearer
+/// than some of the lens's own size, `near_mm`, chief rays may cross: none is drawn.
+class ProfileCamera {
+  public:
+    /// Throws InputError for a focus among the pupils.
+    ProfileCamera(LensProfile profile, const ProfileOpening& opening);
+
+    /// The same samples on the film as an exact camera's. Held by it: the camera.
+    class Paths {
+      public:
+        Paths(const ProfileCamera& camera, const FilmSampling& film, const spectral::SpectralGrid& grid,
+              PathCarry carry);
+
+        void start(const CameraPathRange& range) { samples_.start(range); }
+        bool fill(CameraPathBuffer& buffer);
+        /// Samples where the film gets no light are none.
+        [[nodiscard]] std::int64_t started() const { return started_; }
+
+      private:
+        void append(const PathStarts& starts, std::size_t sample, CameraPathBuffer& buffer);
+
+        FilmSamples samples_;
+        const ProfileCamera* camera_;
+        std::int64_t started_ = 0;
+        Sensor sensor_;
+        spectral::SpectralGrid grid_;
+        PathCarry carry_;
+        bool is_box_;  // wider filters draw film points unevenly: the hero stays alone
+    };
+
+    [[nodiscard]] FilmImportance importance(const Sensor& sensor, const Ray<double>& ray,
+                                            const spectral::PathWavelengths& path) const;
+    [[nodiscard]] std::optional<LensSample> sample(const LightOrigin& from, const spectral::PathWavelengths& path,
+                                                   double u, double v) const;
+    [[nodiscard]] PathPdf pdf(const LightOrigin& from, const Ray<double>& outwards,
+                              const spectral::PathWavelengths& path) const;
+
+    [[nodiscard]] const LensProfile& profile() const { return profile_; }
+    /// From the pupil on the axis: no point nearer sends light by `sample`.
+    [[nodiscard]] double near_mm() const { return near_mm_; }
+    /// All that rays meet in it, as bytes.
+    [[nodiscard]] std::string bytes() const;
+
+  private:
+    /// A chief ray, seen from its pupil's centre.
+    struct Chief {
+        Vec2d azimuth;  // of the film point, of unit length
+        double angle = 0.0;
+        double sine = 0.0;
+        double cosine = 1.0;
+        double pupil_z = 0.0;
+        double pupil_slope = 0.0;  // dz_e/dθ
+
+        [[nodiscard]] Vec3d centre() const { return {0.0, 0.0, pupil_z}; }
+        [[nodiscard]] Vec3d outwards() const { return {-sine * azimuth.x, -sine * azimuth.y, -cosine}; }
+        /// From coordinates across the ray, sagittal and tangential, and back.
+        [[nodiscard]] Vec3d across(Vec2d q) const;
+        [[nodiscard]] Vec2d across(const Vec3d& from_centre) const;
+    };
+    /// A film point at one wavelength.
+    struct FilmPoint {
+        double radius = 0.0;
+        double illumination = 0.0;
+        double solid_angle = 0.0;  // J, sr/mm²
+        double pupil_area = 0.0;   // A, mm²
+    };
+    /// A ray outside, as all wavelengths share it.
+    struct Meeting {
+        Chief chief;
+        Vec2d offset;  // q, mm
+    };
+    struct Disc {
+        Chief chief;
+        double radius = 0.0;
+        double distance = 0.0;  // of the origin from its centre
+    };
+
+    [[nodiscard]] RadialCurve::At pupil_at(double angle) const;
+    [[nodiscard]] Chief chief_at(double angle, Vec2d azimuth) const;
+    [[nodiscard]] Chief chief_along(const Vec3d& outwards) const;
+    [[nodiscard]] Chief chief_through(const Vec3d& point) const;
+    /// Through an origin that light may be drawn from.
+    [[nodiscard]] std::optional<Chief> chief_of(const LightOrigin& from) const;
+    [[nodiscard]] double focus_vergence(const Chief& chief) const;  // κ, 0 from 90° on
+    [[nodiscard]] double etendue(const FilmPoint& point, const Chief& chief, Vec2d offset) const;
+    [[nodiscard]] FilmPoint film_point(std::uint16_t wavelength, double radius) const;
+    [[nodiscard]] std::optional<Meeting> meet(const Ray<double>& ray) const;
+    [[nodiscard]] FilmImportance film(const Sensor& sensor, const Meeting& meeting,
+                                      const spectral::PathWavelengths& path) const;
+    [[nodiscard]] Disc disc_of(const LightOrigin& from, const Chief& chief) const;
+    [[nodiscard]] double pinhole_pdf(const Disc& disc, std::uint16_t wavelength) const;
+    [[nodiscard]] Vec2d semi_axes(std::uint16_t wavelength, const FilmPoint& point) const;
+
+    LensProfile profile_;
+    ProfileOpening opening_;
+    std::vector<double> axial_radius_;  // of the pupil, a wavelength each
+    double widest_radius_ = 0.0;        // of all pupils' semi-axes
+    double steepest_pupil_ = 0.0;       // |dz_e/dθ|
+    double largest_vergence_ = 0.0;     // κ
+    double near_mm_ = 0.0;
+    double lead_mm_ = 0.0;  // from pupil to front: rays begin so far out
+};
+
+}  // namespace lensproof::render

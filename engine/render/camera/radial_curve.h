@@ -1,0 +1,78 @@
+// engine/render/camera/radial_curve.h — a number over a radius or an angle, from 0 to an end, and back.
+#pragma once
+#include <algorithm>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+namespace lensproof::render {
+
+/// Cubic between nodes that lie evenly from 0 to the end, value and slope being continuous (Hermite's form): what is
+/// derived from the slope is right for this very curve, however well it follows what it was made of. Of smooth data
+/// with slopes of fourth order, N steps of h err by h⁴ f⁗ / 384.
+class RadialCurve {
+  public:
+    struct At {
+        double value = 0.0;
+        double slope = 0.0;
+    };
+
+    /// 0, up to an end of 0.
+    RadialCurve() : nodes_(2) {}
+    /// Of so many nodes, two at least.
+    RadialCurve(double end, const std::vector<At>& nodes);
+
+    [[nodiscard]] double end() const { return end_; }
+
+    /// x: from 0 to the end.
+    [[nodiscard]] At at(double x) const {
+        const double step = x * per_step_;
+        const int i = std::min(static_cast<int>(step), static_cast<int>(nodes_.size()) - 2);
+        const Piece piece = piece_at(i);
+        const double t = step - i;
+        return {piece.value(t), piece.slope(t) * per_step_};
+    }
+
+    /// Where a curve that rises has this value; nothing where it has not.
+    [[nodiscard]] std::optional<double> where(double value) const;
+
+    [[nodiscard]] std::vector<At> nodes() const;
+
+  private:
+    /// a + t (b + t (c + t d)), t from 0 to 1.
+    struct Piece {
+        double a;
+        double b;
+        double c;
+        double d;
+        [[nodiscard]] double value(double t) const { return a + t * (b + t * (c + t * d)); }
+        [[nodiscard]] double slope(double t) const { return b + t * (2.0 * c + t * 3.0 * d); }
+    };
+    [[nodiscard]] Piece piece_at(int i) const {
+        const At& from = nodes_[static_cast<std::size_t>(i)];
+        const At& to = nodes_[static_cast<std::size_t>(i) + 1];
+        const double rise = to.value - from.value;
+        return {.a = from.value,
+                .b = from.slope,
+                .c = 3.0 * rise - 2.0 * from.slope - to.slope,
+                .d = from.slope + to.slope - 2.0 * rise};
+    }
+
+    double end_ = 0.0;
+    double per_step_ = 0.0;
+    std::vector<At> nodes_;             // slopes per step
+    std::vector<std::int32_t> guides_;  // for even steps in value, of a curve that rises, the last node below
+    double guides_per_value_ = 0.0;
+};
+
+/// What the values of a curve are to the other side of 0.
+enum class Parity { even, odd };
+
+/// Through values at even steps, five at least, of what is smooth: slopes by differences of fourth order.
+RadialCurve smooth_curve(double end, const std::vector<double>& values, Parity parity);
+
+/// Through values at even steps, without a value beyond its neighbours' (Steffen 1990, A simple method for monotonic
+/// interpolation, eq. 11): for what has bends. Even.
+RadialCurve monotone_curve(double end, const std::vector<double>& values);
+
+}  // namespace lensproof::render
