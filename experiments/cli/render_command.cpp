@@ -46,6 +46,15 @@ auto said_of_scene(const RenderJobOptions& options, const Make& make) {
     }
 }
 
+/// The scene with another model of its lens.
+void take_model(const std::string& name, const std::string& file, render::SceneSetup& setup) {
+    setup.camera.model = render::lens_model_named(name).value();
+    if (const auto conflict = render::model_conflict(setup.camera)) {
+        throw InputError(fmt::format("--model is \"{}\", but in {} the camera's {} {}", name, file, conflict->key,
+                                     conflict->message));
+    }
+}
+
 /// Of the file and, where it is not a chart's, all files that it names.
 std::string scene_hash(const render::SceneSetup& setup, const std::string& file) {
     std::string hashes = hash_text(read_file(file));
@@ -105,11 +114,14 @@ Json audit_json(const render::PreparedScene& scene, const RenderJobOptions& opti
     return json;
 }
 
-int run_render(const RenderJobOptions& options, const std::string& paths, const std::vector<std::string>& passes,
-               bool is_audited) {
+int run_render(const RenderJobOptions& options, const std::string& model, const std::string& paths,
+               const std::vector<std::string>& passes, bool is_audited) {
     const RenderFiles files = render_files(options);  // before long work
     check_passes(passes, options);
-    const render::SceneSetup setup = render::read_scene_setup(options.scene);
+    render::SceneSetup setup = render::read_scene_setup(options.scene);
+    if (!model.empty()) {
+        take_model(model, options.scene, setup);
+    }
     if (paths != "camera" && setup.chart) {
         throw InputError("--paths light and both are for scenes with lights, not for a [chart] in an even world");
     }
@@ -157,6 +169,7 @@ int run_render(const RenderJobOptions& options, const std::string& paths, const 
     job.sensor = setup.sensor;
     job.json["scene"] = options.scene;
     job.json["lens"] = lens ? lens->id : "";
+    job.json["model"] = render::name_of(setup.camera.model);
     job.json["findings"] = findings_json(lens ? lens->findings : std::vector<optics::Finding>());
     if (is_audited) {
         job.json["energy"] = audit_json(*scene, options);
@@ -180,6 +193,12 @@ void add_render_command(Program& program) {
         "Ctrl-C ends a render with a checkpoint written and exit status 3; a second one at once.");
     command.add_option("SCENE", options->scene, "A scene file").required();
     add_render_job_options(command, *options);
+    const auto model = std::make_shared<std::string>();
+    command
+        .add_option("--model", *model,
+                    fmt::format("What stands for the lens, in place of the scene's model: {}",
+                                fmt::join(render::known_lens_models(), ", ")))
+        .check(one_of(render::known_lens_models()));
     const auto paths = std::make_shared<std::string>("camera");
     command
         .add_option("--paths", *paths,
@@ -199,7 +218,9 @@ void add_render_command(Program& program) {
     command.add_flag("--audit", *is_audited,
                      "Also say where the light goes that comes into the lens: imaged, ghosts, barrel, beside the film, "
                      "out of the front, clipped, absorbed");
-    command.runs([options, paths, passes, is_audited] { return run_render(*options, *paths, *passes, *is_audited); });
+    command.runs([options, model, paths, passes, is_audited] {
+        return run_render(*options, *model, *paths, *passes, *is_audited);
+    });
 }
 
 }  // namespace lensproof::cli
