@@ -1,5 +1,7 @@
 // engine/polynomial/exit_chart.h — rays in front of a lens as four numbers, without a singular one among them.
 #pragma once
+#include <cmath>
+
 #include "engine/base/ray.h"
 #include "engine/base/vec.h"
 

@@ -146,6 +146,7 @@ std::vector<double> band_of(const std::vector<double>& wavelengths_nm) {
     const double from = 1.0 / (most * most);
     const double to = 1.0 / (least * least);
     std::vector<double> band;
+    band.reserve(wavelengths_nm.size());
     for (const double nm : wavelengths_nm) {
         band.push_back(to > from ? 2.0 * (1.0 / (nm * nm) - from) / (to - from) - 1.0 : 0.0);
     }
@@ -330,55 +331,6 @@ void require_round(const optics::Lens& lens) {
 }
 
 }  // namespace
-
-PolynomialError measured_error(const PolynomialLens& polynomial, const std::vector<optics::TraceLens<double>>& lenses,
-                               const pupil::PupilMap& pupil, std::uint64_t first, int count) {
-    constexpr std::size_t kRings = 8;
-    const PolynomialFrame& frame = polynomial.frame();
-    const RaySampler sampler(lenses, pupil, frame.film_radius_mm, frame.front_curvature);
-    std::vector<double> misses;
-    double squares = 0.0;
-    double beside = 0.0;
-    std::array<double, kRings> exact{};
-    std::array<double, kRings> found{};
-    for (const RaySample& ray : sampler.samples(first, count)) {
-        const PolynomialExit out = polynomial.exit(ray.film, ray.pupil, ray.wavelength);
-        const double fraction = dot(ray.film, ray.film) / (frame.film_radius_mm * frame.film_radius_mm);
-        const std::size_t ring = std::min(kRings - 1, static_cast<std::size_t>(kRings * fraction));
-        found[ring] += ray.etendue * out.transmittance;
-        if (!ray.passes) {
-            continue;
-        }
-        exact[ring] += ray.etendue * ray.transmittance;
-        const ExitPoint<double> exit = exit_point(out.ray, frame.front_curvature);
-        const std::optional<Vec2d> landing = sampler.landing(exit, ray.wavelength);
-        const double miss = landing ? length(*landing - ray.film) : frame.film_radius_mm;
-        const Vec2d aside = exit.u - ray.exit.u;
-        misses.push_back(1e3 * miss);
-        squares += 1e6 * miss * miss;
-        beside += 4e6 * dot(aside, aside);  // u is half a length
-    }
-    PolynomialError error;
-    if (misses.empty()) {
-        return error;
-    }
-    const auto rays = static_cast<double>(misses.size());
-    const auto kept = static_cast<std::ptrdiff_t>(0.999 * (rays - 1.0));
-    std::ranges::nth_element(misses, misses.begin() + kept);
-    error = {.rms_um = std::sqrt(squares / rays),
-             .bound_um = kSpare * misses[static_cast<std::size_t>(kept)],
-             .entry_rms_um = std::sqrt(beside / rays)};
-    double sum_exact = 0.0;
-    double sum_found = 0.0;
-    for (std::size_t i = 0; i < kRings; ++i) {
-        sum_exact += exact[i];
-        sum_found += found[i];
-        const double off = exact[i] > 0.0 ? found[i] / exact[i] - 1.0 : 0.0;
-        error.worst_irradiance = std::abs(off) > std::abs(error.worst_irradiance) ? off : error.worst_irradiance;
-    }
-    error.irradiance = sum_found / sum_exact - 1.0;
-    return error;
-}
 
 PolynomialLens fit_polynomial(const optics::Lens& lens, const std::vector<double>& wavelengths_nm,
                               const pupil::PupilMap& pupil, double film_radius_mm, const FitSettings& settings) {

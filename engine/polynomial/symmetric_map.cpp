@@ -74,7 +74,7 @@ std::uint16_t SymmetricMap::index_of(const Exponents& exponents) {
 
 int SymmetricMap::degree() const {
     int most = 0;
-    for (int i = 0; i < first_term_[static_cast<std::size_t>(2 * vectors_)]; ++i) {
+    for (int i = 0; i < first_term_[2 * static_cast<std::size_t>(vectors_)]; ++i) {
         const Exponents& of = exponents_[term_monomial_[static_cast<std::size_t>(i)]];
         most = std::max(most, 2 * (of[0] + of[1] + of[2]) + 1);
     }
