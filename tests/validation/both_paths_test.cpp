@@ -91,6 +91,14 @@ TEST(BothPaths, MakeTheImageOfIdealCameras) {
     }
 }
 
+TEST(BothPaths, MakeTheImageOfPolynomials) {
+    SceneParts parts = matt_scene();
+    Studio::Setup setup = double_gauss();
+    setup.model = render::LensModel::polynomial;
+    const Studio studio(setup, parts);
+    expect_same_image(studio.by_both(2048), studio.by_camera(4096));
+}
+
 /// Sums over columns of the film.
 render::PixelEstimate sum_of(const render::Film& film, int first, int end) {
     render::PixelEstimate sum;

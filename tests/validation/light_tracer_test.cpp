@@ -82,4 +82,14 @@ TEST(LightTracer, MakesTheImageOfIdealCameras) {
     }
 }
 
+// Into polynomials light goes by their inverse, weighed with its own etendue, over which errors of the polynomials
+// cancel: these pictures agree however wrong both may be.
+TEST(LightTracer, MakesTheImageOfPolynomials) {
+    SceneParts parts = lit_wall();
+    const Studio studio(
+        {.lens = "double-gauss-tronnier", .model = render::LensModel::polynomial, .sensor = kSensor, .grid = kGrid},
+        parts);
+    expect_same_image(studio.by_camera(6000), studio.by_lights(5000));
+}
+
 }  // namespace lensproof::light_tracer_test

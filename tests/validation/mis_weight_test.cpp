@@ -244,7 +244,7 @@ TEST(MisWeight, WeightsOfAPathSumToOne) {
     for (const render::LensModel model :
          {render::LensModel::exact, render::LensModel::exact_float, render::LensModel::pinhole,
           render::LensModel::thin_lens, render::LensModel::paraxial, render::LensModel::pinhole_profile,
-          render::LensModel::thin_lens_profile}) {
+          render::LensModel::thin_lens_profile, render::LensModel::polynomial}) {
         int counted = 0;
         int with_all = 0;
         for (int light = 0; light < 6; ++light) {

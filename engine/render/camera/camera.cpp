@@ -81,6 +81,10 @@ Camera::Optics Camera::make_optics(const Cache& cache, bool meets_light_paths) c
     const std::vector<double> wavelengths = grid_.strata.midpoints();
     // Pixels are areas: the corner of what the corner pixel's filter reaches is the farthest point sampled.
     const double film_radius_mm = sensor().half_diagonal_mm(film_.filter.radius_px() - 0.5);
+    if (settings_.model == LensModel::polynomial) {
+        return Optics(std::in_place_type<PolynomialCamera>, lens_.value(), wavelengths, film_radius_mm, cache,
+                      meets_light_paths);
+    }
     if (traces_surfaces(settings_.model)) {
         return Optics(std::in_place_type<ExactCamera>, lens_.value(), wavelengths, film_radius_mm, cache,
                       meets_light_paths,
@@ -145,7 +149,9 @@ EntranceRatio Camera::entrance_ratio(const PathPdf& entrance, const PathPdf& dra
 
 std::string Camera::hash() const {
     std::string bytes;
-    if (const auto* exact = std::get_if<ExactCamera>(&optics_)) {
+    const auto* polynomial = std::get_if<PolynomialCamera>(&optics_);
+    const auto* exact = polynomial != nullptr ? &polynomial->exact() : std::get_if<ExactCamera>(&optics_);
+    if (exact != nullptr) {
         for (const optics::TraceLens<double>& lens : exact->lens().at()) {
             optics::append_lens_bytes(bytes, lens);
         }
@@ -153,6 +159,7 @@ std::string Camera::hash() const {
         if (exact->precision() == TracePrecision::in_float) {
             bytes += "in float";
         }
+        bytes += polynomial != nullptr ? polynomial->polynomial().serialized() : "";
     } else if (const auto* profile = std::get_if<ProfileCamera>(&optics_)) {
         bytes = profile->bytes();
     } else {

@@ -12,6 +12,7 @@
 #include "engine/render/camera/camera_settings.h"
 #include "engine/render/camera/exact_camera.h"
 #include "engine/render/camera/ideal_camera.h"
+#include "engine/render/camera/polynomial_camera.h"
 #include "engine/render/camera/profile_camera.h"
 #include "engine/render/film/film.h"
 
@@ -29,7 +30,7 @@ struct EntranceRatio {
 /// Fills buffers with the camera paths of a range. For one thread; a copy is for another. Outlived by its camera.
 class CameraPaths {
   public:
-    using Optics = std::variant<ExactCamera::Paths, IdealCamera::Paths, ProfileCamera::Paths>;
+    using Optics = std::variant<ExactCamera::Paths, PolynomialCamera::Paths, IdealCamera::Paths, ProfileCamera::Paths>;
     explicit CameraPaths(Optics optics) : optics_(std::move(optics)) {}
 
     /// Begins a range. What was left of the one before is dropped.
@@ -67,8 +68,8 @@ class Camera {
   public:
     /// Loads the lens. `sampling`: clamped to where its glasses are known. `cache`: for what is found by tracing it;
     /// the same pictures come from any. `meets_light_paths`: else `sample` and `pdf` must not be asked. Throws
-    /// InputError as `camera_lens`, `gaussian_optics` and `traced_profile` do, and for a picture of more values than
-    /// fit.
+    /// InputError as `camera_lens`, `gaussian_optics`, `traced_profile` and `polynomial::fit_polynomial` do, and for a
+    /// picture of more values than fit.
     Camera(const CameraSettings& settings, const SpectralSampling& sampling, const PixelFilter& filter,
            const Cache& cache, bool meets_light_paths = false);
     /// The same with a lens, stopped down and focused, in the place of the one that the settings name; none where they
@@ -119,7 +120,7 @@ class Camera {
     [[nodiscard]] const std::optional<spectral::RgbSpace>& colours() const { return colours_; }
 
   private:
-    using Optics = std::variant<ExactCamera, IdealCamera, ProfileCamera>;
+    using Optics = std::variant<ExactCamera, PolynomialCamera, IdealCamera, ProfileCamera>;
     [[nodiscard]] spectral::SpectralGrid make_grid(const SpectralSampling& sampling);
     [[nodiscard]] FilmLayout make_film(int layers, const PixelFilter& filter) const;
     [[nodiscard]] Optics make_optics(const Cache& cache, bool meets_light_paths) const;

@@ -107,8 +107,8 @@ void check_model(TomlTable& table, const CameraSettings& camera) {
 }  // namespace
 
 const std::vector<std::string>& lens_model_names() {
-    static const std::vector<std::string> names = {"exact",       "paraxial",          "thin-lens",      "pinhole",
-                                                   "exact-float", "thin-lens-profile", "pinhole-profile"};
+    static const std::vector<std::string> names = {"exact",   "polynomial",  "paraxial",          "thin-lens",
+                                                   "pinhole", "exact-float", "thin-lens-profile", "pinhole-profile"};
     return names;
 }
 

@@ -17,6 +17,7 @@ namespace lensproof::render {
 ///
 ///   exact              the lens itself, surface by surface; "exact-double" too
 ///   exact-float        the same in float
+///   polynomial         sparse polynomials of its traced rays, of known error (engine/polynomial)
 ///   paraxial           its Gaussian optics at each wavelength: pupils, principal planes, axial and lateral colour of
 ///                      first order; no other aberration, no rims but the stop
 ///   thin-lens-profile  a thin lens with the distortion, the lateral colour and the brightness over the field that the
@@ -26,7 +27,16 @@ namespace lensproof::render {
 ///   pinhole            the thin lens's centre alone, with the light of its whole opening: no blur
 ///
 /// Paraxial, thin lens and pinhole pass what the lens passes along its axis; the profiles what it passes anywhere.
-enum class LensModel { exact, paraxial, thin_lens, pinhole, exact_float, thin_lens_profile, pinhole_profile };
+enum class LensModel {
+    exact,
+    polynomial,
+    paraxial,
+    thin_lens,
+    pinhole,
+    exact_float,
+    thin_lens_profile,
+    pinhole_profile
+};
 
 /// "exact", …, in the order of the enumeration; and what a name means, "exact-double" too: nothing for others.
 const std::vector<std::string>& lens_model_names();

@@ -63,6 +63,7 @@ class ExactCamera {
                               const spectral::PathWavelengths& path) const;
 
     [[nodiscard]] const optics::SpectralLens<double>& lens() const { return lens_; }
+    [[nodiscard]] const pupil::PupilSlices& pupil() const { return slices_; }
     [[nodiscard]] TracePrecision precision() const {
         return in_float_ ? TracePrecision::in_float : TracePrecision::in_double;
     }
