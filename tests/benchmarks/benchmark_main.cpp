@@ -122,6 +122,7 @@ int main(int argc, char** argv) {
     lensproof::register_render_benchmarks();
     lensproof::register_scene_benchmarks();
     lensproof::register_camera_path_benchmarks();
+    lensproof::register_polynomial_benchmarks();
     lensproof::register_bsdf_benchmarks();
     lensproof::register_measure_benchmarks();
     lensproof::register_analysis_benchmarks();

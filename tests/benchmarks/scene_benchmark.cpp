@@ -160,7 +160,7 @@ void time_camera_paths(benchmark::State& state, render::LensModel model, MakeSce
 void register_scene_benchmarks() {
     using enum render::LensModel;
     for (const render::LensModel model :
-         {exact, exact_float, paraxial, thin_lens_profile, thin_lens, pinhole_profile, pinhole}) {
+         {exact, exact_float, polynomial, paraxial, thin_lens_profile, thin_lens, pinhole_profile, pinhole}) {
         benchmark::RegisterBenchmark(("scene/" + render::name_of(model)).c_str(), [model](benchmark::State& state) {
             time_camera_paths(state, model, lit_by_lamp);
         })->Unit(benchmark::kMillisecond);
