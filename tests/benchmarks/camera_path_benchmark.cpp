@@ -2,9 +2,11 @@
 #include <fmt/format.h>
 
 #include <memory>
+#include <string>
 
 #include "engine/formats/prescription/load_lens.h"
 #include "engine/optics/focus.h"
+#include "engine/render/camera/camera.h"
 #include "engine/render/camera/lens_paths.h"
 #include "engine/render/integrators/chart_tracer.h"
 #include "engine/render/sampling/sampler.h"
@@ -161,6 +163,29 @@ void time_buffers(benchmark::State& state, const Setting& setting, optics::SimdL
     count_paths(state, valid, producer.started() / static_cast<std::int64_t>(state.iterations()));
 }
 
+/// A whole camera, whichever stands for the lens: paths that carry four wavelengths, as a render has them.
+void time_model(benchmark::State& state, render::LensModel model) {
+    const render::Camera camera({.lens = "double-gauss-tronnier",
+                                 .f_number = 2.0,
+                                 .focus_distance_mm = 2000.0,
+                                 .sensor = {.width = 40, .height = 30, .pixel_pitch_mm = 21.6 / 25.0},
+                                 .response = "luminance",
+                                 .model = model},
+                                {.layers = 64, .strata_per_layer = 1}, {}, {});
+    render::CameraPaths producer = camera.paths(0, render::PathCarry::wavelengths);
+    render::CameraPathBuffer paths;
+    std::int64_t valid = 0;
+    while (state.KeepRunning()) {
+        valid = 0;
+        producer.start({.pixels = 40 * 30, .samples = kSamples});
+        while (producer.fill(paths)) {
+            valid += paths.size;
+            benchmark::ClobberMemory();
+        }
+    }
+    count_paths(state, valid, producer.started() / static_cast<std::int64_t>(state.iterations()));
+}
+
 /// What a start without a cache costs: the map and its tables.
 void time_set_up(benchmark::State& state, const Setting& setting) {
     const PathScene scene(setting);
@@ -193,6 +218,12 @@ void register_camera_path_benchmarks() {
     for (const optics::SimdLevel level : optics::available_simd_levels()) {
         benchmark::RegisterBenchmark(fmt::format("sampler/points/{}", optics::simd_name(level)).c_str(),
                                      [level](benchmark::State& state) { time_points_in_columns(state, level); });
+    }
+    for (const std::string& name : render::lens_model_names()) {
+        const render::LensModel model = render::lens_model_named(name).value();
+        benchmark::RegisterBenchmark(("camera_paths/model/" + name).c_str(), [model](benchmark::State& state) {
+            time_model(state, model);
+        })->Unit(benchmark::kMillisecond);
     }
     for (const Setting& setting : kSettings) {
         benchmark::RegisterBenchmark(fmt::format("camera_paths/{}/set_up", setting.lens).c_str(),

@@ -114,7 +114,7 @@ TEST(ProfileCamera, PinholeSeesWhatChiefRaysSee) {
             const spectral::PathWavelengths path = grid.path(hero);
             for (std::size_t m = 0; m < spectral::kWavelengthsPerPath; ++m) {
                 const optics::ChiefRays chiefs(lens, kWavelengths[path.index[m]], optics::Rims::follow);
-                const render::RadialCurve& angles = camera.profile().at[path.index[m]].field_angle;
+                const render::RisingCurve& angles = camera.profile().at[path.index[m]].field_angle;
                 const double field = angles.at(angles.end()).value;
                 for (const double part : {0.05, 0.3, 0.6, 0.9, 0.99}) {
                     const double angle = part * field;
@@ -122,7 +122,7 @@ TEST(ProfileCamera, PinholeSeesWhatChiefRaysSee) {
                     const Vec3d near = Vec3d{0.0, 0.0, 0.0} - 2000.0 * far;
                     const auto of_far = chiefs.at_field(angle);
                     const auto of_near = chiefs.from_point(near);
-                    const double slope = angles.at(angles.where(angle).value()).slope;
+                    const double slope = angles.where(angle).value().slope;
                     if (!of_far || !of_near) {
                         continue;
                     }
@@ -170,7 +170,9 @@ render::LensProfile thin_profile(const render::GaussianOptics& thin) {
         angle.push_back({std::atan(r / d), cos2 / d});
         light.push_back({on_axis * cos2 * cos2, -4.0 * on_axis * cos2 * cos2 * cos2 * r / (d * d)});
     }
-    return {.at = {{.field_angle = {kRadius, angle}, .illumination = {kRadius, light}, .transmittance = 1.0}},
+    return {.at = {{.field_angle = render::RisingCurve({kRadius, angle}),
+                    .illumination = {kRadius, light},
+                    .transmittance = 1.0}},
             .pupil_z = {1.0, std::vector<render::RadialCurve::At>(2)},
             .front_z = 0.0};
 }
@@ -234,7 +236,7 @@ TEST(ProfileCamera, EtendueOutsideIsThatOfTheFilm) {
           Case{"fisheye-220", 8.0, 11.7, 1e6}}) {
         const optics::Lens lens = lens_at(name, f_number, focus);
         const render::ProfileCamera camera = camera_of(lens, film_radius, false, focus);
-        const render::RadialCurve& angles = camera.profile().at[8].field_angle;
+        const render::RisingCurve& angles = camera.profile().at[8].field_angle;
         const double end = angles.end();
         const double field = std::min(kPi, angles.at(end).value + 0.1);
         const spectral::PathWavelengths path{{8, 8, 8, 8}};

@@ -170,7 +170,7 @@ RadialProfile radial_profile(const optics::Lens& lens, double nm, const TracedLi
     for (int i = 1; i <= kSteps; ++i) {
         angles.push_back(family.where(end_mm * i / kSteps, height_of).field_angle);
     }
-    return {.field_angle = smooth_curve(end_mm, angles, Parity::odd),
+    return {.field_angle = RisingCurve(smooth_curve(end_mm, angles, Parity::odd)),
             .illumination = illumination_curve(light, end_mm),
             .transmittance = light.transmittance};
 }

@@ -11,7 +11,7 @@ namespace lensproof::render {
 /// At one wavelength, over the film point's distance from the axis, mm, up to where the light ends: beyond, there is
 /// none.
 struct RadialProfile {
-    RadialCurve field_angle;  // of the chief ray, rad: rising from 0, past 90° where the lens sees so far
+    RisingCurve field_angle;  // of the chief ray, rad: rising from 0, past 90° where the lens sees so far
     /// Of an even world, the film's irradiance over its radiance, sr: vignetting, cos⁴ and losses are in it.
     RadialCurve illumination;
     double transmittance = 1.0;  // of the light on the axis

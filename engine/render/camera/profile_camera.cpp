@@ -54,10 +54,16 @@ ProfileCamera::ProfileCamera(LensProfile profile, const ProfileOpening& opening)
     }
     for (std::size_t k = 0; k < profile_.at.size(); ++k) {
         const auto wavelength = static_cast<std::uint16_t>(k);
-        axial_radius_.push_back(std::sqrt(film_point(wavelength, 0.0).pupil_area / kPi));
+        const RadialProfile& at = profile_.at[k];
         for (int i = 0; i <= kLooks; ++i) {
-            const Vec2d axes =
-                semi_axes(wavelength, film_point(wavelength, profile_.at[k].field_angle.end() * i / kLooks));
+            const double radius = at.field_angle.end() * i / kLooks;
+            const RadialCurve::At angle = at.field_angle.at(radius);
+            const double area =
+                pupil_area(wavelength, radius, angle.slope, std::sin(angle.value), at.illumination.at(radius).value);
+            if (i == 0) {
+                axial_radius_.push_back(std::sqrt(area / kPi));
+            }
+            const Vec2d axes = semi_axes(wavelength, area);
             widest_radius_ = std::max({widest_radius_, axes.x, axes.y});
         }
     }
@@ -132,28 +138,21 @@ double ProfileCamera::focus_vergence(const Chief& chief) const {
     return !opening_.is_pinhole && chief.cosine > 0.0 ? 1.0 / (chief.pupil_z - opening_.focus_z) : 0.0;
 }
 
-/// K of profile_camera.h.
-double ProfileCamera::etendue(const FilmPoint& point, const Chief& chief, Vec2d offset) const {
+double ProfileCamera::per_etendue(const Chief& chief, Vec2d offset) const {
     const double k = focus_vergence(chief);
     const double v = k * chief.cosine;
     const double q_z = -chief.sine * offset.y;
-    return point.solid_angle * (1.0 + v * chief.pupil_slope * chief.sine) * (1.0 + k * q_z) /
-           square(1.0 + v * v * dot(offset, offset));
+    return square(1.0 + v * v * dot(offset, offset)) / ((1.0 + v * chief.pupil_slope * chief.sine) * (1.0 + k * q_z));
 }
 
-/// A film point within the profile's end.
-ProfileCamera::FilmPoint ProfileCamera::film_point(std::uint16_t wavelength, double radius) const {
-    const RadialProfile& at = profile_.at[wavelength];
-    const RadialCurve::At angle = at.field_angle.at(radius);
-    FilmPoint point{.radius = radius, .illumination = at.illumination.at(radius).value};
-    point.solid_angle = (radius > 0.0 ? std::sin(angle.value) / radius : angle.slope) * angle.slope;
-    point.pupil_area = point.illumination / (at.transmittance * point.solid_angle);
-    return point;
+double ProfileCamera::pupil_area(std::uint16_t wavelength, double radius, double angle_slope, double sine,
+                                 double illumination) const {
+    const double solid_angle = (radius > 0.0 ? sine / radius : angle_slope) * angle_slope;
+    return illumination / (profile_.at[wavelength].transmittance * solid_angle);
 }
 
-/// Sagittal and tangential.
-Vec2d ProfileCamera::semi_axes(std::uint16_t wavelength, const FilmPoint& point) const {
-    return {axial_radius_[wavelength], point.pupil_area / (kPi * axial_radius_[wavelength])};
+Vec2d ProfileCamera::semi_axes(std::uint16_t wavelength, double area) const {
+    return {axial_radius_[wavelength], area / (kPi * axial_radius_[wavelength])};
 }
 
 ProfileCamera::Paths::Paths(const ProfileCamera& camera, const FilmSampling& film, const spectral::SpectralGrid& grid,
@@ -189,18 +188,19 @@ void ProfileCamera::Paths::append(const PathStarts& starts, std::size_t sample, 
     if (!(radius < profile.field_angle.end())) {
         return;
     }
-    const FilmPoint point = camera_->film_point(wavelength, radius);
-    if (!(point.illumination > 0.0)) {
+    const double illumination = profile.illumination.at(radius).value;
+    if (!(illumination > 0.0)) {
         return;
     }
     ++started_;
-    Meeting meeting{.chief = camera_->chief_at(profile.field_angle.at(radius).value,
-                                               radius > 0.0 ? film / radius : Vec2d{1.0, 0.0}),
+    const RadialCurve::At angle = profile.field_angle.at(radius);
+    Meeting meeting{.chief = camera_->chief_at(angle.value, radius > 0.0 ? film / radius : Vec2d{1.0, 0.0}),
                     .offset = {}};
     const Chief& chief = meeting.chief;
     if (!camera_->opening_.is_pinhole) {
         const Vec2d in_disc = in_unit_disc(starts.pupil_u[sample], starts.pupil_v[sample]);
-        const Vec2d axes = camera_->semi_axes(wavelength, point);
+        const double area = camera_->pupil_area(wavelength, radius, angle.slope, chief.sine, illumination);
+        const Vec2d axes = camera_->semi_axes(wavelength, area);
         meeting.offset = {axes.x * cross(chief.azimuth, in_disc), axes.y * dot(chief.azimuth, in_disc)};
     }
     const Vec3d from_centre = chief.across(meeting.offset);
@@ -214,7 +214,7 @@ void ProfileCamera::Paths::append(const PathStarts& starts, std::size_t sample, 
     buffer.wavelength[at] = wavelength;
     buffer.film_x[at] = film.x;
     buffer.film_y[at] = film.y;
-    buffer.weight[at] = point.illumination * starts.filter_weight[sample];
+    buffer.weight[at] = illumination * starts.filter_weight[sample];
     buffer.origin.x[at] = origin.x;
     buffer.origin.y[at] = origin.y;
     buffer.origin.z[at] = origin.z;
@@ -230,25 +230,26 @@ void ProfileCamera::Paths::append(const PathStarts& starts, std::size_t sample, 
 FilmImportance ProfileCamera::film(const Sensor& sensor, const Meeting& meeting,
                                    const spectral::PathWavelengths& path) const {
     FilmImportance found;
+    const Chief& chief = meeting.chief;
+    const double g = per_etendue(chief, meeting.offset);
     for (std::size_t i = 0; i < spectral::kWavelengthsPerPath; ++i) {
         const std::uint16_t wavelength = path.index[i];
-        const std::optional<double> radius = profile_.at[wavelength].field_angle.where(meeting.chief.angle);
-        if (!radius) {
-            continue;
-        }
-        const FilmPoint point = film_point(wavelength, *radius);
-        if (!(point.illumination > 0.0)) {
+        const RadialProfile& at = profile_.at[wavelength];
+        const auto place = at.field_angle.where(chief.angle);
+        const double illumination = place ? at.illumination.at(place->x).value : 0.0;
+        if (!(illumination > 0.0)) {
             continue;
         }
         if (!opening_.is_pinhole) {
-            const Vec2d axes = semi_axes(wavelength, point);
+            const Vec2d axes =
+                semi_axes(wavelength, pupil_area(wavelength, place->x, place->slope, chief.sine, illumination));
             if (square(meeting.offset.x / axes.x) + square(meeting.offset.y / axes.y) > kEdge) {
                 continue;
             }
         }
-        found.at_px[i] = sensor.pixel(*radius * meeting.chief.azimuth);
-        found.pdf[i] = 1.0 / (point.pupil_area * etendue(point, meeting.chief, meeting.offset));
-        found.transmittance[i] = point.illumination * found.pdf[i];
+        found.at_px[i] = sensor.pixel(place->x * chief.azimuth);
+        found.transmittance[i] = at.transmittance * g;
+        found.pdf[i] = found.transmittance[i] / illumination;
     }
     return found;
 }
@@ -289,14 +290,15 @@ ProfileCamera::Disc ProfileCamera::disc_of(const LightOrigin& from, const Chief&
 
 /// 0 where the film does not see so far.
 double ProfileCamera::pinhole_pdf(const Disc& disc, std::uint16_t wavelength) const {
-    const std::optional<double> radius = profile_.at[wavelength].field_angle.where(disc.chief.angle);
-    const FilmPoint point = radius ? film_point(wavelength, *radius) : FilmPoint{};
-    if (!(point.illumination > 0.0)) {
+    const RadialProfile& at = profile_.at[wavelength];
+    const auto place = at.field_angle.where(disc.chief.angle);
+    const double illumination = place ? at.illumination.at(place->x).value : 0.0;
+    if (!(illumination > 0.0)) {
         return 0.0;
     }
+    const double area = pupil_area(wavelength, place->x, place->slope, disc.chief.sine, illumination);
     const double t = disc.distance;
-    return std::isfinite(t) ? t * (t + disc.chief.pupil_slope * disc.chief.sine) / point.pupil_area
-                            : 1.0 / point.pupil_area;
+    return std::isfinite(t) ? t * (t + disc.chief.pupil_slope * disc.chief.sine) / area : 1.0 / area;
 }
 
 std::optional<LensSample> ProfileCamera::sample(const LightOrigin& from, const spectral::PathWavelengths& path,
@@ -349,7 +351,7 @@ std::string ProfileCamera::bytes() const {
     };
     append(profile_.pupil_z);
     for (const RadialProfile& at : profile_.at) {
-        append(at.field_angle);
+        append(at.field_angle.curve());
         append(at.illumination);
         append_bytes(bytes, at.transmittance);
     }

@@ -32,12 +32,12 @@ struct ProfileOpening {
 /// centre z_e, across the chief ray), v being the reciprocal distance to the focus along that ray and κ that along the
 /// axis (v = κ cos θ), rays outside fill the etendue
 ///
-///     K dx dq,   K = sin θ / r · (θ′ + v z_e′ sin θ) (1 + κ q_z) / (1 + v² q²)²:
+///     K dx dq,   K = J / g,   1 / g = (1 + v dz_e/dθ sin θ) (1 + κ q_z) / (1 + v² q²)²:
 ///
 /// dx to the plane of focus along the chief rays, which turn about a moving pupil, and dq to the directions there. So
-/// what light brings is E / A over K of its etendue, and camera paths draw it with 1 / (A K). A pinhole counts for all
-/// of A at q = 0 and v = 0; light of a point at distance t from it sees the pupil's centre move, by t_c = −dz_e/dθ sin
-/// θ of the distance tangentially, so that its pdf is t (t − t_c) / A per solid angle.
+/// what light brings is E / A over K of its etendue, which is τ g, and camera paths draw it with 1 / (A K) = τ g / E. A
+/// pinhole counts for all of A at q = 0 and v = 0; light of a point at distance t from it sees the pupil's centre move,
+/// by t_c = −dz_e/dθ sin θ of the distance tangentially, so that its pdf is t (t − t_c) / A per solid angle.
 ///
 /// Light that comes in aims at a disc that holds the pupils of all film points which it may reach. From points nearer
 /// than some of the lens's own size, `near_mm`, chief rays may cross: none is drawn.
@@ -98,13 +98,6 @@ class ProfileCamera {
         [[nodiscard]] Vec3d across(Vec2d q) const;
         [[nodiscard]] Vec2d across(const Vec3d& from_centre) const;
     };
-    /// A film point at one wavelength.
-    struct FilmPoint {
-        double radius = 0.0;
-        double illumination = 0.0;
-        double solid_angle = 0.0;  // J, sr/mm²
-        double pupil_area = 0.0;   // A, mm²
-    };
     /// A ray outside, as all wavelengths share it.
     struct Meeting {
         Chief chief;
@@ -122,15 +115,18 @@ class ProfileCamera {
     [[nodiscard]] Chief chief_through(const Vec3d& point) const;
     /// Through an origin that light may be drawn from.
     [[nodiscard]] std::optional<Chief> chief_of(const LightOrigin& from) const;
-    [[nodiscard]] double focus_vergence(const Chief& chief) const;  // κ, 0 from 90° on
-    [[nodiscard]] double etendue(const FilmPoint& point, const Chief& chief, Vec2d offset) const;
-    [[nodiscard]] FilmPoint film_point(std::uint16_t wavelength, double radius) const;
+    [[nodiscard]] double focus_vergence(const Chief& chief) const;             // κ, 0 from 90° on
+    [[nodiscard]] double per_etendue(const Chief& chief, Vec2d offset) const;  // g
+    /// A, mm², of a film point at this radius, where the profile's curves are so.
+    [[nodiscard]] double pupil_area(std::uint16_t wavelength, double radius, double angle_slope, double sine,
+                                    double illumination) const;
     [[nodiscard]] std::optional<Meeting> meet(const Ray<double>& ray) const;
     [[nodiscard]] FilmImportance film(const Sensor& sensor, const Meeting& meeting,
                                       const spectral::PathWavelengths& path) const;
     [[nodiscard]] Disc disc_of(const LightOrigin& from, const Chief& chief) const;
     [[nodiscard]] double pinhole_pdf(const Disc& disc, std::uint16_t wavelength) const;
-    [[nodiscard]] Vec2d semi_axes(std::uint16_t wavelength, const FilmPoint& point) const;
+    /// Sagittal and tangential, of a pupil of that area.
+    [[nodiscard]] Vec2d semi_axes(std::uint16_t wavelength, double area) const;
 
     LensProfile profile_;
     ProfileOpening opening_;

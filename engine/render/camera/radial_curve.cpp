@@ -1,6 +1,8 @@
 #include "engine/render/camera/radial_curve.h"
 
-#include <cmath>
+#include <utility>
+
+#include "engine/base/bisect.h"
 
 namespace lensproof::render {
 
@@ -8,49 +10,33 @@ RadialCurve::RadialCurve(double end, const std::vector<At>& nodes)
     : end_(end), per_step_(end > 0.0 ? static_cast<double>(nodes.size() - 1) / end : 0.0), nodes_(nodes) {
     const double step = end / static_cast<double>(nodes.size() - 1);
     std::ranges::for_each(nodes_, [&](At& node) { node.slope *= step; });
-    const auto below = [](const At& a, const At& b) { return a.value < b.value; };
-    const double range = nodes.back().value - nodes.front().value;
-    if (!std::ranges::is_sorted(nodes_, below) || !(range > 0.0)) {
-        return;
-    }
-    const std::size_t guides = 2 * nodes_.size();
-    guides_per_value_ = static_cast<double>(guides) / range;
-    std::int32_t node = 0;
-    for (std::size_t i = 0; i < guides; ++i) {
-        const double value = nodes.front().value + static_cast<double>(i) / guides_per_value_;
-        while (node + 2 < static_cast<std::int32_t>(nodes_.size()) &&
-               nodes_[static_cast<std::size_t>(node) + 1].value <= value) {
-            ++node;
-        }
-        guides_.push_back(node);
-    }
 }
 
-std::optional<double> RadialCurve::where(double value) const {
-    if (guides_.empty() || !(value >= nodes_.front().value && value <= nodes_.back().value)) {
-        return std::nullopt;
+RisingCurve::RisingCurve(RadialCurve curve) : curve_(std::move(curve)) {
+    const std::size_t steps = curve_.nodes().size() - 1;
+    const double end = curve_.at(curve_.end()).value;
+    std::vector<RadialCurve::At> nodes;
+    for (std::size_t i = 0; i <= steps; ++i) {
+        const Place place = searched(i == steps ? end : end * static_cast<double>(i) / static_cast<double>(steps));
+        nodes.push_back({place.x, 1.0 / place.slope});
     }
-    const auto guide = static_cast<std::size_t>((value - nodes_.front().value) * guides_per_value_);
-    std::int32_t node = guides_[std::min(guide, guides_.size() - 1)];
-    while (node + 2 < static_cast<std::int32_t>(nodes_.size()) &&
-           nodes_[static_cast<std::size_t>(node) + 1].value < value) {
-        ++node;
-    }
-    // Newton's steps from the chord: of pieces that are nearly straight, three take it down to the last digits.
-    const Piece piece = piece_at(node);
-    const double rise = piece.b + piece.c + piece.d;
-    double t = (value - piece.a) / rise;
-    constexpr int kMostSteps = 30;
+    inverse_ = {end, nodes};
+}
+
+/// By halving, and what is left by Newton's steps.
+RisingCurve::Place RisingCurve::searched(double value) const {
+    constexpr int kHalvings = 20;
+    double x = bisected({0.0, curve_.end()}, kHalvings, [&](double at) { return curve_.at(at).value <= value; }).inside;
+    constexpr int kMostSteps = 8;
     for (int step = 0; step < kMostSteps; ++step) {
-        const double slope = piece.slope(t);
-        const double next = std::clamp(t - (piece.value(t) - value) / (slope > 0.0 ? slope : rise), 0.0, 1.0);
-        const bool is_found = std::abs(next - t) <= 1e-15 * t;
-        t = next;
-        if (is_found) {
+        const RadialCurve::At here = curve_.at(x);
+        const double next = std::clamp(x - (here.value - value) / here.slope, 0.0, curve_.end());
+        if (next == x) {
             break;
         }
+        x = next;
     }
-    return (node + t) / per_step_;
+    return {x, curve_.at(x).slope};
 }
 
 std::vector<RadialCurve::At> RadialCurve::nodes() const {

@@ -1,7 +1,7 @@
 // engine/render/camera/radial_curve.h — a number over a radius or an angle, from 0 to an end, and back.
 #pragma once
 #include <algorithm>
-#include <cstdint>
+#include <cmath>
 #include <optional>
 #include <vector>
 
@@ -33,9 +33,6 @@ class RadialCurve {
         return {piece.value(t), piece.slope(t) * per_step_};
     }
 
-    /// Where a curve that rises has this value; nothing where it has not.
-    [[nodiscard]] std::optional<double> where(double value) const;
-
     [[nodiscard]] std::vector<At> nodes() const;
 
   private:
@@ -60,9 +57,42 @@ class RadialCurve {
 
     double end_ = 0.0;
     double per_step_ = 0.0;
-    std::vector<At> nodes_;             // slopes per step
-    std::vector<std::int32_t> guides_;  // for even steps in value, of a curve that rises, the last node below
-    double guides_per_value_ = 0.0;
+    std::vector<At> nodes_;  // slopes per step
+};
+
+/// One that rises all the way, from 0: back, too, to the last digits.
+class RisingCurve {
+  public:
+    RisingCurve() = default;
+    explicit RisingCurve(RadialCurve curve);
+
+    [[nodiscard]] const RadialCurve& curve() const { return curve_; }
+    [[nodiscard]] double end() const { return curve_.end(); }
+    [[nodiscard]] RadialCurve::At at(double x) const { return curve_.at(x); }
+
+    struct Place {
+        double x = 0.0;
+        double slope = 0.0;
+    };
+    /// Where it has this value, and its slope there; nothing where it has not.
+    [[nodiscard]] std::optional<Place> where(double value) const {
+        if (!(value >= 0.0 && value <= inverse_.end())) {
+            return std::nullopt;
+        }
+        // The inverse's curve errs by some 1e-9, its slope by less than the square root: one step of Newton's is
+        // enough.
+        const RadialCurve::At near = inverse_.at(value);
+        const RadialCurve::At there = curve_.at(std::clamp(near.value, 0.0, curve_.end()));
+        const double change = (there.value - value) * near.slope;
+        constexpr double kSmall = 1e-6;
+        return std::abs(change) <= kSmall * near.value ? Place{near.value - change, there.slope} : searched(value);
+    }
+
+  private:
+    [[nodiscard]] Place searched(double value) const;
+
+    RadialCurve curve_;
+    RadialCurve inverse_;
 };
 
 /// What the values of a curve are to the other side of 0.
