@@ -63,6 +63,30 @@ TEST(RenderScene, IsOneImageFromEitherEnd) {
     EXPECT_EQ(alike.status, 1) << alike.out;
 }
 
+// --model stands in the place of the scene's; files say which it was. 0.02 is the noise of both; a pinhole's picture of
+// this scene is a sharper one.
+TEST(RenderScene, TakesAnotherModelThanTheScenes) {
+    const Workplace place;
+    place.file("scene.toml", lamp_over_floor(kLens));
+    place.file("pinhole.toml", lamp_over_floor(kLens + "\nmodel = \"pinhole-profile\""));
+    place.file("blades.toml", lamp_over_floor(kLens + "\nblades = 6"));
+    const auto render = [&](const char* scene, const char* model, const char* picture) {
+        return place.run({"render", scene, "--model", model, "--spp", "16", "--json", "-", "-o", picture});
+    };
+    const Outcome pinhole = render("scene.toml", "pinhole-profile", "a.exr");
+    ASSERT_EQ(pinhole.status, 0) << pinhole.err;
+    EXPECT_EQ(nlohmann::json::parse(pinhole.out).at("model"), "pinhole-profile");
+    ASSERT_EQ(place.run({"render", "pinhole.toml", "--spp", "16", "-o", "b.exr"}).status, 0);
+    EXPECT_EQ(place.run({"compare", "a.exr", "b.exr", "--rms-limit", "0"}).status, 0);
+    const Outcome exact = render("pinhole.toml", "exact-double", "c.exr");
+    EXPECT_EQ(nlohmann::json::parse(exact.out).at("model"), "exact");
+    const Outcome blades = render("blades.toml", "thin-lens-profile", "d.exr");
+    EXPECT_EQ(blades.status, 2);
+    EXPECT_TRUE(says(blades.err, "--model is \"thin-lens-profile\", but in blades.toml the camera's blades"));
+    EXPECT_EQ(render("blades.toml", "exact-float", "e.exr").status, 0);
+    EXPECT_EQ(render("scene.toml", "fish", "f.exr").status, 2);
+}
+
 TEST(RenderScene, IsTheSameForAnyNumberOfThreads) {
     const Workplace place;
     place.file("scene.toml", lamp_over_floor(kLens));
