@@ -86,6 +86,7 @@ void add_convert_command(Program& program);
 void add_export_command(Program& program);
 void add_run_command(Program& program);
 void add_tradeoff_command(Program& program);
+void add_plan_command(Program& program);
 void add_lenses_command(Program& program);
 void add_glasses_command(Program& program);
 void add_coatings_command(Program& program);

@@ -84,6 +84,7 @@ int run(int argc, char** argv) {
     add_export_command(program);
     add_run_command(program);
     add_tradeoff_command(program);
+    add_plan_command(program);
     add_lenses_command(program);
     add_glasses_command(program);
     add_coatings_command(program);

@@ -12,6 +12,7 @@
 #include "engine/base/input_error.h"
 #include "engine/render/prepared_scene.h"
 #include "engine/scene/scene_build.h"
+#include "experiments/cli/planned_render.h"
 #include "experiments/cli/raw_files.h"
 #include "experiments/cli/render_job.h"
 #include "experiments/cli/terminal.h"
@@ -114,14 +115,44 @@ Json audit_json(const render::PreparedScene& scene, const RenderJobOptions& opti
     return json;
 }
 
-int run_render(const RenderJobOptions& options, const std::string& model, const std::string& paths,
-               const std::vector<std::string>& passes, bool is_audited) {
-    const RenderFiles files = render_files(options);  // before long work
-    check_passes(passes, options);
-    render::SceneSetup setup = render::read_scene_setup(options.scene);
-    if (!model.empty()) {
-        take_model(model, options.scene, setup);
+struct RenderWishes {
+    std::string model;      // empty: the scene's; "auto": as a plan has it
+    std::string tolerance;  // of the plan
+    std::string paths = "camera";
+    std::vector<std::string> passes;
+    bool is_audited = false;
+};
+
+/// Takes a plan's model, bounces and wavelengths for the scene, and its passes for what is wished. Throws InputError
+/// where both say what to render.
+studies::Plan take_plan(const RenderJobOptions& options, RenderWishes& wishes, render::SceneSetup& setup) {
+    if (!wishes.passes.empty()) {
+        throw InputError("--model auto decides which passes are rendered, expected no --passes beside it");
     }
+    studies::Plan plan = plan_of(setup, options.scene, wishes.tolerance, options.common);
+    setup = studies::planned_setup(std::move(setup), plan.render);
+    if (!plan.render.passes.empty()) {
+        wishes.passes = {"imaged", "direct"};
+        wishes.passes.insert(wishes.passes.end(), plan.render.passes.begin(), plan.render.passes.end());
+    }
+    print_message("lensproof: planned: {}\n", plan_text(plan));
+    return plan;
+}
+
+int run_render(const RenderJobOptions& options, RenderWishes wishes) {
+    const RenderFiles files = render_files(options);  // before long work
+    check_passes(wishes.passes, options);
+    if ((wishes.model == "auto") == wishes.tolerance.empty()) {
+        throw InputError("--model auto and --tolerance go together, expected both or neither");
+    }
+    render::SceneSetup setup = render::read_scene_setup(options.scene);
+    Json plan;
+    if (wishes.model == "auto") {
+        plan = studies::plan_json(take_plan(options, wishes, setup));
+    } else if (!wishes.model.empty()) {
+        take_model(wishes.model, options.scene, setup);
+    }
+    const auto& [model, tolerance, paths, passes, is_audited] = wishes;
     if (paths != "camera" && setup.chart) {
         throw InputError("--paths light and both are for scenes with lights, not for a [chart] in an even world");
     }
@@ -170,6 +201,10 @@ int run_render(const RenderJobOptions& options, const std::string& model, const 
     job.json["scene"] = options.scene;
     job.json["lens"] = lens ? lens->id : "";
     job.json["model"] = render::name_of(setup.camera.model);
+    if (wishes.model == "auto") {
+        job.json["plan"] = plan;
+        job.notes.metadata["lensproof:plan"] = plan.dump();
+    }
     job.json["findings"] = findings_json(lens ? lens->findings : std::vector<optics::Finding>());
     if (is_audited) {
         job.json["energy"] = audit_json(*scene, options);
@@ -193,34 +228,36 @@ void add_render_command(Program& program) {
         "Ctrl-C ends a render with a checkpoint written and exit status 3; a second one at once.");
     command.add_option("SCENE", options->scene, "A scene file").required();
     add_render_job_options(command, *options);
-    const auto model = std::make_shared<std::string>();
+    const auto wishes = std::make_shared<RenderWishes>();
+    std::vector<std::string> models = render::known_lens_models();
+    models.emplace_back("auto");
     command
-        .add_option("--model", *model,
-                    fmt::format("What stands for the lens, in place of the scene's model: {}",
+        .add_option("--model", wishes->model,
+                    fmt::format("What stands for the lens, in place of the scene's model: {}; auto: what --tolerance "
+                                "needs, as `plan` says",
                                 fmt::join(render::known_lens_models(), ", ")))
-        .check(one_of(render::known_lens_models()));
-    const auto paths = std::make_shared<std::string>("camera");
+        .check(one_of(models));
     command
-        .add_option("--paths", *paths,
+        .add_option("--tolerance", wishes->tolerance,
+                    "What may be wrong, for --model auto: such as 0.5px,0.02ev,1de, or visible")
+        .type_name("T");
+    command
+        .add_option("--paths", wishes->paths,
                     "Where paths begin: camera (the default); light, which finds what shines through glass and cannot "
                     "see mirrors; or both, each counted by how well it makes what it finds. One image by each")
         .check(one_of({"camera", "light", "both"}));
-    const auto passes = std::make_shared<std::vector<std::string>>();
     command
-        .add_option("--passes", *passes,
+        .add_option("--passes", wishes->passes,
                     "Classes of light paths, each a film of its own, whose sum is the picture (default: imaged and "
                     "direct in one film): " +
                         pass_list())
         .check(one_of(pass_names()))
         .separated_by(',')
         .takes_one_argument();
-    const auto is_audited = std::make_shared<bool>(false);
-    command.add_flag("--audit", *is_audited,
+    command.add_flag("--audit", wishes->is_audited,
                      "Also say where the light goes that comes into the lens: imaged, ghosts, barrel, beside the film, "
                      "out of the front, clipped, absorbed");
-    command.runs([options, model, paths, passes, is_audited] {
-        return run_render(*options, *model, *paths, *passes, *is_audited);
-    });
+    command.runs([options, wishes] { return run_render(*options, *wishes); });
 }
 
 }  // namespace lensproof::cli

@@ -1,7 +1,6 @@
 #include "experiments/studies/tradeoff/field_probe.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <functional>
 #include <numeric>
@@ -307,6 +306,31 @@ std::vector<ProbePoint> probe_points(const render::Camera& exact, int count) {
         }
     }
     return points;
+}
+
+std::vector<PointLook> look_at_points(const render::Camera& camera, const std::vector<ProbePoint>& points,
+                                      const ProbeSettings& settings) {
+    std::vector<PointLook> looks(points.size());
+    parallel_for(static_cast<int>(points.size()), settings.threads, [&](int p) {
+        const ProbePoint& point = points[static_cast<std::size_t>(p)];
+        const PointCamera there(camera, point);
+        const render::PixelSampler numbers(settings.seed, point.pixel);
+        PointSums sums;
+        for (int i = 0; i < settings.rays; ++i) {
+            const auto number = numbers.point(static_cast<std::uint32_t>(i));
+            add_model_ray(there, number[0], number[1], number[2], sums);
+        }
+        PointLook& look = looks[static_cast<std::size_t>(p)];
+        for (std::size_t c = 0; c < 3; ++c) {
+            look.light[c] = sums.model[c].light;
+            if (look.light[c] > 0.0) {
+                look.centroid[c] = sums.model[c].centroid();
+                look.spread_px[c] = sums.model[c].spread();
+            }
+        }
+        look.even_light = there.even_light(settings, 0);
+    });
+    return looks;
 }
 
 FieldErrors field_errors(const render::Camera& exact, const render::Camera& model,

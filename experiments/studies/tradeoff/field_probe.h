@@ -1,6 +1,7 @@
 // experiments/studies/tradeoff/field_probe.h — where a camera's light lands, over the frame, beside where its lens lets
 // it land.
 #pragma once
+#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -28,6 +29,17 @@ struct ProbeSettings {
     std::uint64_t seed = 0;
     int threads = 0;
 };
+
+/// What a camera makes of a point of light: of its image in R, G and B where it lies, px from the point's pixel, and
+/// its rms radius; and what an even world gives to the pixel in green. Light of 0 where there is none.
+struct PointLook {
+    std::array<double, 3> light{};
+    std::array<Vec2d, 3> centroid{};
+    std::array<double, 3> spread_px{};
+    double even_light = 0.0;
+};
+std::vector<PointLook> look_at_points(const render::Camera& camera, const std::vector<ProbePoint>& points,
+                                      const ProbeSettings& settings);
 
 /// What a model does otherwise than the exact camera at a point of the frame, and over the frame.
 struct FieldError {

@@ -7,6 +7,7 @@
 #include "calibration/comparison/colour_planes.h"
 #include "calibration/comparison/flip.h"
 #include "calibration/comparison/overlap.h"
+#include "engine/render/progressive.h"
 
 namespace lensproof::studies {
 
@@ -62,6 +63,28 @@ SeenDifference seen_difference(const Image& with_bias, const Image& noise_alone)
 }
 
 }  // namespace
+
+double relative_noise(const std::vector<Image>& pictures) {
+    const std::size_t pixels = pictures.front().pixels.size() / pictures.front().channels.size();
+    const auto n = static_cast<double>(pictures.size());
+    std::vector<double> mean(pixels);
+    std::vector<double> square(pixels);
+    double whole = 0.0;
+    for (const Image& picture : pictures) {
+        for (std::size_t i = 0; i < pixels; ++i) {
+            const double y = calibration::luminance(calibration::rgb_at(picture, i));
+            mean[i] += y / n;
+            square[i] += y * y / n;
+            whole += y / (n * static_cast<double>(pixels));
+        }
+    }
+    double sum = 0.0;
+    for (std::size_t i = 0; i < pixels; ++i) {
+        const double least = std::max(mean[i], render::kDarkFraction * whole);
+        sum += least > 0.0 ? std::max(0.0, square[i] - mean[i] * mean[i]) * n / (n - 1.0) / (least * least) : 0.0;
+    }
+    return std::sqrt(sum / static_cast<double>(pixels));
+}
 
 PictureErrors picture_errors(const std::vector<Image>& model, const std::vector<Image>& reference, int threads) {
     const auto n = static_cast<float>(model.size());

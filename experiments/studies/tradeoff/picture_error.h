@@ -34,4 +34,9 @@ void fields(JsonArchive& json, PictureErrors& errors);
 PictureErrors picture_errors(const std::vector<formats::Image>& model, const std::vector<formats::Image>& reference,
                              int threads);
 
+/// A picture's noise as its seeds show it: root mean square over pixels of the standard error of the luminance over its
+/// mean, where a pixel darker than a hundredth of the picture's mean counts as that bright (as render::RenderGoal has
+/// it).
+double relative_noise(const std::vector<formats::Image>& pictures);
+
 }  // namespace lensproof::studies

@@ -1,17 +1,17 @@
 #include "experiments/studies/tradeoff/rungs.h"
 
+#include <fmt/format.h>
 #include <malloc.h>
 
 #include <algorithm>
 #include <cmath>
-#include <ctime>
 #include <memory>
 
-#include "calibration/comparison/colour_planes.h"
 #include "engine/base/input_error.h"
 #include "engine/formats/image/image_json.h"
 #include "engine/render/film/film_image.h"
 #include "engine/render/prepared_scene.h"
+#include "experiments/studies/tradeoff/processor_time.h"
 
 namespace lensproof::studies {
 
@@ -36,13 +36,6 @@ void fields(JsonArchive& json, MeasuredRung& rung) {
 namespace {
 
 using formats::Image;
-
-/// Of the processor: of the process, or of this thread alone.
-double processor_seconds(clockid_t clock) {
-    timespec now{};
-    clock_gettime(clock, &now);
-    return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
-}
 
 double heap_mib() {
     const struct mallinfo2 heap = mallinfo2();
@@ -88,29 +81,6 @@ struct SeedPictures {
     double memory_mib = 0.0;
 };
 
-/// A pixel darker than a hundredth of the picture's mean counts as that bright (RenderGoal).
-double relative_noise(const std::vector<Image>& pictures) {
-    const std::size_t pixels = pictures.front().pixels.size() / pictures.front().channels.size();
-    const auto n = static_cast<double>(pictures.size());
-    std::vector<double> mean(pixels);
-    std::vector<double> square(pixels);
-    double whole = 0.0;
-    for (const Image& picture : pictures) {
-        for (std::size_t i = 0; i < pixels; ++i) {
-            const double y = calibration::luminance(calibration::rgb_at(picture, i));
-            mean[i] += y / n;
-            square[i] += y * y / n;
-            whole += y / (n * static_cast<double>(pixels));
-        }
-    }
-    double sum = 0.0;
-    for (std::size_t i = 0; i < pixels; ++i) {
-        const double least = std::max(mean[i], render::kDarkFraction * whole);
-        sum += least > 0.0 ? std::max(0.0, square[i] - mean[i] * mean[i]) * n / (n - 1.0) / (least * least) : 0.0;
-    }
-    return std::sqrt(sum / static_cast<double>(pixels));
-}
-
 SeedPictures render_seeds(const render::SceneSetup& setup, const TradeoffSettings& settings) {
     SeedPictures pictures;
     const double before = heap_mib();
@@ -118,10 +88,10 @@ SeedPictures render_seeds(const render::SceneSetup& setup, const TradeoffSetting
     pictures.memory_mib = heap_mib() - before;
     for (int seed = 0; seed < settings.seeds; ++seed) {
         const render::Render render = scene.render(settings.probe.seed + static_cast<std::uint64_t>(seed), false);
-        const double start = processor_seconds(CLOCK_PROCESS_CPUTIME_ID);
+        const double start = processor_seconds();
         const render::Film film = render::render_film(
             render, {.first = 0, .end = static_cast<std::uint32_t>(settings.samples)}, settings.probe.threads);
-        pictures.seconds += processor_seconds(CLOCK_PROCESS_CPUTIME_ID) - start;
+        pictures.seconds += processor_seconds() - start;
         pictures.rgb.push_back(render::film_rgb(film));
     }
     pictures.noise = relative_noise(pictures.rgb);
@@ -196,17 +166,18 @@ bool beats(const MeasuredRung& a, const MeasuredRung& b) {
 }  // namespace
 
 const std::vector<Rung>& ladder() {
+    using render::LensModel;
     static const std::vector<Rung> rungs = [] {
         std::vector<Rung> all;
-        const std::vector<std::string>& names = render::lens_model_names();
-        for (std::size_t i = 0; i < names.size(); ++i) {
-            const auto model = static_cast<render::LensModel>(i);
-            all.push_back({.name = model == render::LensModel::exact ? kReferenceRung : names[i], .model = model});
+        for (const LensModel model :
+             {LensModel::pinhole, LensModel::pinhole_profile, LensModel::thin_lens, LensModel::thin_lens_profile,
+              LensModel::paraxial, LensModel::polynomial, LensModel::exact_float}) {
+            all.push_back({.name = render::name_of(model), .model = model});
         }
-        for (const int wavelengths : {4, 8, 16}) {
-            all.push_back({.name = "exact-double-" + std::to_string(wavelengths) + "-wavelengths",
-                           .model = render::LensModel::exact,
-                           .wavelengths = wavelengths});
+        all.push_back({.name = kReferenceRung});
+        for (const int wavelengths : {16, 8, 4}) {
+            all.push_back(
+                {.name = fmt::format("{}-{}-wavelengths", kReferenceRung, wavelengths), .wavelengths = wavelengths});
         }
         return all;
     }();
@@ -215,7 +186,7 @@ const std::vector<Rung>& ladder() {
 
 render::SceneSetup on_rung(render::SceneSetup setup, const Rung& rung) {
     setup.camera.model = rung.model;
-    if (rung.model != render::LensModel::exact) {
+    if (!render::traces_surfaces(rung.model)) {
         setup.camera.blades.reset();
         setup.camera.barrel.reset();
     }

@@ -22,7 +22,7 @@ struct Rung {
     std::optional<int> wavelengths = std::nullopt;
 };
 
-/// Every model, the reference last but for the reference's own with fewer wavelengths.
+/// From the simplest to the reference, and that with fewer wavelengths.
 const std::vector<Rung>& ladder();
 
 /// The scene with the rung's camera. What only the exact lens has, blades and walls, is left out where it is not one.

@@ -62,8 +62,9 @@ TEST(FieldProbe, AStopIsAnExposure) {
 }
 
 // Seen from a pinhole the image of a lens's point is as wide as the lens makes it: focused at 2 m, a star is a disc of
-// the diameter f/N · f/(s − f), whose rms radius is that over √8. A thin lens is no aplanat: across its pupil, f/8 to each
-// side, light varies as cos⁴, by 4 tan θ/8 at most, which moves a disc's centre by an eighth of that of its diameter.
+// the diameter f/N · f/(s − f), whose rms radius is that over √8. A thin lens is no aplanat: across its pupil, f/8 to
+// each side, light varies as cos⁴, by 4 tan θ/8 at most, which moves a disc's centre by an eighth of that of its
+// diameter.
 TEST(FieldProbe, APinholeHasNoBlur) {
     CameraSettings near_focus = thin_lens(50.0, 4.0);
     near_focus.focus_distance_mm = 2000.0;

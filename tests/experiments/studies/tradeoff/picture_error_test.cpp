@@ -56,9 +56,9 @@ TEST(PictureError, NoiseAloneIsNoBias) {
     EXPECT_NEAR(found.exposure_ev.value, 0.0, 4.0 * found.exposure_ev.standard_error);
 }
 
-// An exposure of 8 % under more noise than that comes out as without noise. Of noise n, n² scatters by n² √(2/3/3072) in
-// each of two terms: with n twice the bias b by 0.08 b², that is b by 4 %; three times that, and 5 % because n is not
-// normal.
+// An exposure of 8 % under more noise than that comes out as without noise. Of noise n, n² scatters by n² √(2/3/3072)
+// in each of two terms: with n twice the bias b by 0.08 b², that is b by 4 %; three times that, and 5 % because n is
+// not normal.
 TEST(PictureError, FindsABiasBelowTheNoise) {
     const double expected = mean_ciede2000(picture(1.08, 0.0, 0), picture(1.0, 0.0, 0));
     const PictureErrors found = picture_errors(pictures(1.08, 0.06, 1), pictures(1.0, 0.06, 101), 1);

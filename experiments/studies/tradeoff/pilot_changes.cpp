@@ -1,0 +1,115 @@
+#include "experiments/studies/tradeoff/pilot_changes.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace lensproof::studies {
+
+using formats::Image;
+
+RadialMean::RadialMean(std::vector<Sample> samples, int rings) {
+    std::ranges::sort(samples, {}, &Sample::image_height);
+    const std::size_t count = samples.size();
+    const std::size_t parts = std::min(count, static_cast<std::size_t>(rings));
+    for (std::size_t ring = 0; ring < parts; ++ring) {
+        Sample mean;
+        const std::size_t first = ring * count / parts;
+        const std::size_t end = (ring + 1) * count / parts;
+        for (std::size_t i = first; i < end; ++i) {
+            mean.image_height += samples[i].image_height / static_cast<double>(end - first);
+            mean.value += samples[i].value / static_cast<double>(end - first);
+        }
+        rings_.push_back(mean);
+    }
+}
+
+double RadialMean::at(double image_height) const {
+    if (rings_.empty()) {
+        return 0.0;
+    }
+    const auto beyond = std::ranges::upper_bound(rings_, image_height, {}, &Sample::image_height);
+    if (beyond == rings_.begin() || beyond == rings_.end()) {
+        return beyond == rings_.end() ? rings_.back().value : rings_.front().value;
+    }
+    const Sample& below = *(beyond - 1);
+    const double part = (image_height - below.image_height) / (beyond->image_height - below.image_height);
+    return below.value + part * (beyond->value - below.value);
+}
+
+Image with_gain(const Image& picture, const PixelGain& gain) {
+    Image changed = picture;
+    for (int y = 0; y < picture.height; ++y) {
+        for (int x = 0; x < picture.width; ++x) {
+            const Vec3d factor = gain(x, y);
+            changed.at(x, y, 0) *= static_cast<float>(factor.x);
+            changed.at(x, y, 1) *= static_cast<float>(factor.y);
+            changed.at(x, y, 2) *= static_cast<float>(factor.z);
+        }
+    }
+    return changed;
+}
+
+Image with_shift(const Image& picture, const PixelShift& shift) {
+    Image changed = picture;
+    for (int y = 0; y < picture.height; ++y) {
+        for (int x = 0; x < picture.width; ++x) {
+            for (int c = 0; c < 3; ++c) {
+                const Vec2d by = shift(x, y, c);
+                const double u = std::clamp(x + by.x, 0.0, picture.width - 1.0);
+                const double v = std::clamp(y + by.y, 0.0, picture.height - 1.0);
+                const int left = std::min(static_cast<int>(u), std::max(0, picture.width - 2));
+                const int top = std::min(static_cast<int>(v), std::max(0, picture.height - 2));
+                const int right = std::min(left + 1, picture.width - 1);
+                const int bottom = std::min(top + 1, picture.height - 1);
+                const double s = u - left;
+                const double t = v - top;
+                const auto value = [&](int px, int py) { return static_cast<double>(picture.at(px, py, c)); };
+                changed.at(x, y, c) =
+                    static_cast<float>((1.0 - t) * ((1.0 - s) * value(left, top) + s * value(right, top)) +
+                                       t * ((1.0 - s) * value(left, bottom) + s * value(right, bottom)));
+            }
+        }
+    }
+    return changed;
+}
+
+Image with_spread(const Image& picture, const PixelSpread& spread) {
+    constexpr double kLeast = 0.05;  // px: below, neighbours get less than float's rounding of what stays
+    constexpr int kMost = 24;
+    Image changed = formats::make_image(picture.width, picture.height, picture.channels);
+    std::vector<double> weights;
+    for (int y = 0; y < picture.height; ++y) {
+        for (int x = 0; x < picture.width; ++x) {
+            const double sigma = std::max(0.0, spread(x, y)) / std::numbers::sqrt2;
+            const int reach = sigma < kLeast ? 0 : std::min(kMost, static_cast<int>(std::ceil(3.0 * sigma)));
+            // Of the pixels that the Gaussian falls on, so that narrow ones are no narrower than they are.
+            const auto share = [&](int offset) {
+                return reach == 0 ? 1.0
+                                  : 0.5 * (std::erf((offset + 0.5) / (sigma * std::numbers::sqrt2)) -
+                                           std::erf((offset - 0.5) / (sigma * std::numbers::sqrt2)));
+            };
+            weights.clear();
+            double sum = 0.0;
+            for (int offset = -reach; offset <= reach; ++offset) {
+                weights.push_back(share(offset));
+                sum += weights.back();
+            }
+            for (int dy = -reach; dy <= reach; ++dy) {
+                for (int dx = -reach; dx <= reach; ++dx) {
+                    const int to_x = std::clamp(x + dx, 0, picture.width - 1);
+                    const int to_y = std::clamp(y + dy, 0, picture.height - 1);
+                    const double weight = weights[static_cast<std::size_t>(dx + reach)] *
+                                          weights[static_cast<std::size_t>(dy + reach)] / (sum * sum);
+                    for (int c = 0; c < 3; ++c) {
+                        changed.at(to_x, to_y, c) +=
+                            static_cast<float>(weight * static_cast<double>(picture.at(x, y, c)));
+                    }
+                }
+            }
+        }
+    }
+    return changed;
+}
+
+}  // namespace lensproof::studies

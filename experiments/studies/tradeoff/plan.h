@@ -1,0 +1,64 @@
+// experiments/studies/tradeoff/plan.h — which effects of its lens and its light a picture needs at a tolerance, and the
+// cheapest way to render them.
+#pragma once
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "engine/base/json.h"
+#include "experiments/studies/tradeoff/effects.h"
+#include "experiments/studies/tradeoff/rungs.h"
+
+namespace lensproof::studies {
+
+/// What may be wrong in a picture: where light is, rms over the frame; how bright, rms; in which colours, mean
+/// CIEDE2000. Infinite where nothing is asked.
+struct Tolerance {
+    double px = std::numeric_limits<double>::infinity();
+    double ev = std::numeric_limits<double>::infinity();
+    double ciede2000 = std::numeric_limits<double>::infinity();
+};
+
+/// "0.5px,0.02ev,1de", each at most once and in any order, or "visible": a pixel, 0.03 EV (a contrast of 2 %, Weber's
+/// fraction in daylight), one CIEDE2000. Throws InputError naming what is wrong.
+Tolerance parse_tolerance(const std::string& text);
+
+/// How a picture is to be rendered.
+struct PlannedRender {
+    Rung rung;
+    int max_bounces = 0;
+    std::vector<std::string> passes;  // beside imaged and direct
+};
+
+/// An effect with what was decided of it.
+struct PlannedEffect {
+    Effect effect;
+    bool is_modelled = false;
+    double saves_percent = 0.0;  // of the full model's time, where it is left out
+    std::string why;
+};
+
+struct Plan {
+    Tolerance tolerance;
+    std::vector<PlannedEffect> effects;
+    PlannedRender render;
+    /// What the planned render gets wrong against the full model, by pictures of other seeds than those that the
+    /// effects were found by. Passes are not in it. A model is refused where it surely errs by more than the tolerance.
+    Contribution checked;
+    std::vector<std::string> refused;  // cheaper models that the check refused, and why
+    double noise_ev = 0.0;             // of a pixel, rms, with the scene's own samples
+    double speed_up = 1.0;             // a sample's time with the full model over that with the planned one
+    double probe_seconds = 0.0;
+};
+
+/// Plans a scene's render from a pilot of a few thousand pixels. Throws InputError where the scene's camera has no
+/// lens.
+Plan plan_render(const render::SceneSetup& setup, const Tolerance& tolerance, const PilotSettings& settings);
+
+/// The scene as it is to be rendered.
+render::SceneSetup planned_setup(render::SceneSetup setup, const PlannedRender& planned);
+
+/// As the command line's contract has it.
+Json plan_json(const Plan& plan);
+
+}  // namespace lensproof::studies

@@ -1,0 +1,120 @@
+// tests/experiments/studies/tradeoff/plan_test.cpp — what a plan decides, and that its renders keep their tolerance.
+#include "experiments/studies/tradeoff/plan.h"
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "tests/complaint.h"
+
+namespace lensproof::studies::plan_test {
+
+/// A lens before a chequered wall in the plane of focus, under a lamp.
+render::SceneSetup wall(const std::string& lens, double f_number, double half_field_mm, double luminance = 1e5) {
+    const std::string text = fmt::format(R"([camera]
+lens = "{}"
+f_number = {}
+focus_distance_mm = 3000.0
+position_mm = [0.0, 0.0, 0.0]
+look_at_mm = [0.0, 0.0, 3000.0]
+sensor_mm = [{}, {}]
+pixels = [150, 100]
+shutter_s = 0.01
+iso = 100.0
+response = "cie-1931"
+[render]
+layers = 16
+strata_per_layer = 1
+max_bounces = 3
+[[materials]]
+name = "grey"
+kind = "diffuse"
+reflectance = 0.3
+[[objects]]
+name = "wall"
+shape = "chart"
+chart = {{ kind = "checkerboard", squares = [48, 32], square_mm = 100.0 }}
+rotate_deg = [0.0, 180.0, 0.0]
+translate_mm = [0.0, 0.0, 3000.0]
+[[lights]]
+kind = "sphere"
+position_mm = [0.0, 1500.0, 1000.0]
+radius_mm = 300.0
+luminance_cd_m2 = {}
+)",
+                                         lens, f_number, 3.0 * half_field_mm, 2.0 * half_field_mm, luminance);
+    return render::parse_scene_setup(text, "wall.toml");
+}
+
+const PlannedEffect& effect(const Plan& plan, const std::string& name) {
+    return *std::ranges::find_if(plan.effects,
+                                 [&](const PlannedEffect& planned) { return planned.effect.name == name; });
+}
+
+TEST(Plan, ToleranceIsReadWithItsUnits) {
+    const Tolerance all = parse_tolerance("0.02ev,1e-1px,2de");
+    EXPECT_EQ(all.px, 0.1);
+    EXPECT_EQ(all.ev, 0.02);
+    EXPECT_EQ(all.ciede2000, 2.0);
+    EXPECT_TRUE(std::isinf(parse_tolerance("1px").ev));
+    EXPECT_EQ(parse_tolerance("visible").ciede2000, 1.0);
+    for (const char* wrong : {"", "1", "0.5px,", "-1px", "0ev", "px", "1mm", "1px,2px", "infpx", "nande", "1 de px"}) {
+        EXPECT_TRUE(says(complaint_about([&] { parse_tolerance(wrong); }), "--tolerance")) << wrong;
+    }
+}
+
+// What may be anything is rendered by what is cheapest; what may be nothing by the lens itself.
+TEST(Plan, ToleratesAllOrNothing) {
+    const render::SceneSetup scene = wall("tessar", 4.5, 20.0);
+    const Plan anything = plan_render(scene, {.px = 1e6}, {});
+    EXPECT_EQ(anything.render.rung.name, "pinhole");
+    EXPECT_EQ(anything.render.rung.wavelengths, 4);
+    EXPECT_EQ(anything.render.max_bounces, 1);
+    EXPECT_TRUE(anything.render.passes.empty());
+    EXPECT_GT(anything.speed_up, 1.0);
+    const Plan nothing = plan_render(scene, {.px = 1e-9, .ev = 1e-9, .ciede2000 = 1e-9}, {});
+    EXPECT_EQ(nothing.render.rung.name, kReferenceRung);
+    EXPECT_FALSE(nothing.render.rung.wavelengths);
+    EXPECT_TRUE(effect(nothing, "aberration-blur").is_modelled);
+}
+
+// The Tessar's light falls off: a plan that is held to exposures alone takes a pinhole that knows it, and one that is
+// held to places alone a pinhole without.
+TEST(Plan, TakesWhatTheToleranceAsksFor) {
+    const render::SceneSetup scene = wall("tessar", 2.8, 20.0);
+    const Plan exposure = plan_render(scene, {.ev = 0.2}, {});
+    ASSERT_GT(effect(exposure, "vignetting").effect.contribution.ev.value, 0.1);
+    EXPECT_TRUE(effect(exposure, "vignetting").is_modelled);
+    EXPECT_FALSE(effect(exposure, "defocus").is_modelled);
+    EXPECT_FALSE(effect(plan_render(scene, {.px = 30.0}, {}), "vignetting").is_modelled);
+}
+
+// Against the full model with seeds that no plan saw: no more than the tolerance and three standard errors.
+TEST(Plan, RendersKeepTheirTolerance) {
+    const Tolerance tolerance{.px = 2.0, .ev = 0.1, .ciede2000 = 3.0};
+    for (const render::SceneSetup& scene :
+         {wall("tessar", 4.5, 10.0), wall("double-gauss-lowenthal", 4.0, 8.0), wall("muller-fisheye", 8.0, 2.0)}) {
+        const Plan plan = plan_render(scene, tolerance, {});
+        TradeoffSettings settings{.pixels = 1500, .samples = 32, .seeds = 2, .points = 24};
+        settings.probe = {.rays = 64, .repetitions = 2, .seed = 1000};
+        Rung rung = plan.render.rung;
+        const std::vector<MeasuredRung> measured =
+            measure_tradeoff(scene, {rung}, settings, [](const std::string&, double) {});
+        ASSERT_EQ(measured.front().not_applicable, "") << scene.camera.lens;
+        const auto least = [](const Measured& found) { return found.value - 3.0 * found.standard_error; };
+        EXPECT_LE(least(measured.front().field.frame.image_px), tolerance.px) << scene.camera.lens;
+        EXPECT_LE(least(measured.front().field.frame.exposure_ev), tolerance.ev) << scene.camera.lens;
+        EXPECT_LE(least(measured.front().picture.ciede2000.bias), tolerance.ciede2000) << scene.camera.lens;
+    }
+}
+
+TEST(Plan, NeedsALens) {
+    render::SceneSetup scene = wall("tessar", 4.5, 20.0);
+    scene.camera.lens.clear();
+    scene.camera.focal_length_mm = 50.0;
+    EXPECT_TRUE(says(complaint_about([&] { plan_render(scene, {.px = 1.0}, {}); }), "in the place of a lens"));
+}
+
+}  // namespace lensproof::studies::plan_test
