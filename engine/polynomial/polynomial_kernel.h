@@ -88,9 +88,9 @@ class ExitKernel {
         one.store(products);
         for (int k = 1; k < tables_.monomial_count; ++k) {
             const SymmetricMap::Monomial of = tables_.monomials[k];
-            (Numbers::load(products + of.parent * kRays) *
-             Numbers::load(invariants + static_cast<int>(of.factor) * kLanes))
-                .store(products + k * kRays);
+            (Numbers::load(products + std::ptrdiff_t{of.parent} * kRays) *
+             Numbers::load(invariants + static_cast<std::ptrdiff_t>(of.factor) * kLanes))
+                .store(products + std::ptrdiff_t{k} * kRays);
         }
         return at;
     }

@@ -152,14 +152,15 @@ int run_render(const RenderJobOptions& options, RenderWishes wishes) {
     } else if (!wishes.model.empty()) {
         take_model(wishes.model, options.scene, setup);
     }
-    const auto& [model, tolerance, paths, passes, is_audited] = wishes;
+    const std::string& paths = wishes.paths;
+    const std::vector<std::string>& passes = wishes.passes;
     if (paths != "camera" && setup.chart) {
         throw InputError("--paths light and both are for scenes with lights, not for a [chart] in an even world");
     }
     if (!passes.empty() && setup.chart) {
         throw InputError("--passes is for scenes with lights, not for a [chart] in an even world");
     }
-    if (is_audited && setup.chart) {
+    if (wishes.is_audited && setup.chart) {
         throw InputError("--audit is for scenes with lights, not for a [chart] in an even world");
     }
     if (paths == "light" && (options.noise > 0.0 || options.has_features)) {
@@ -206,7 +207,7 @@ int run_render(const RenderJobOptions& options, RenderWishes wishes) {
         job.notes.metadata["lensproof:plan"] = plan.dump();
     }
     job.json["findings"] = findings_json(lens ? lens->findings : std::vector<optics::Finding>());
-    if (is_audited) {
+    if (wishes.is_audited) {
         job.json["energy"] = audit_json(*scene, options);
     }
     return run_render_job(job, options);

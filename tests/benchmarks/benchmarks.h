@@ -20,9 +20,10 @@ void register_render_benchmarks();
 /// Counters: valid paths per second, seconds a valid path, and passage.
 void register_camera_path_benchmarks();
 
-/// polynomial/LENS/MODEL/…: buffers of camera paths of the exact model and of the polynomial one, which carry their hero
-/// alone or are asked for all wavelengths (of which the polynomial one has the hero; counter: seconds a valid path).
-/// polynomial/LENS/fit: what polynomials take to find, how many terms of which degree they have, and their error.
+/// polynomial/LENS/MODEL/…: buffers of camera paths of the exact model and of the polynomial one, which carry their
+/// hero alone or are asked for all wavelengths (of which the polynomial one has the hero; counter: seconds a valid
+/// path). polynomial/LENS/fit: what polynomials take to find, how many terms of which degree they have, and their
+/// error.
 void register_polynomial_benchmarks();
 
 /// scene/MODEL: camera paths of up to five bounces through a scene of a checkered wall, a sphere and an area light,

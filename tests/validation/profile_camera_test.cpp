@@ -350,7 +350,10 @@ Seen irradiance(const render::Camera& camera, std::uint32_t pixel, std::uint32_t
 // 1e-3 of the axis's is the curve's, above, but in a fisheye's last pixel; the standard error is that of both, far
 // above what so even samples err by.
 TEST(ProfileCamera, ExposesAsTheLensDoes) {
-    for (const auto& [name, f_number, film_radius] : {kSettings[1], kSettings[2], kSettings[5], kSettings[6]}) {
+    for (const Setting& setting : {kSettings[1], kSettings[2], kSettings[5], kSettings[6]}) {
+        const char* name = setting.lens;
+        const double f_number = setting.f_number;
+        const double film_radius = setting.film_radius_mm;
         const render::Sensor sensor{
             .width = 41, .height = 1, .pixel_pitch_mm = 2.0 * film_radius / std::hypot(41.0, 1.0)};
         const auto camera = [&](render::LensModel model) {

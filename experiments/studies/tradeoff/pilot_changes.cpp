@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <numeric>
 
 namespace lensproof::studies {
 
@@ -90,22 +91,22 @@ Image with_spread(const Image& picture, const PixelSpread& spread) {
                                            std::erf((offset - 0.5) / (sigma * std::numbers::sqrt2)));
             };
             weights.clear();
-            double sum = 0.0;
             for (int offset = -reach; offset <= reach; ++offset) {
                 weights.push_back(share(offset));
-                sum += weights.back();
             }
-            for (int dy = -reach; dy <= reach; ++dy) {
-                for (int dx = -reach; dx <= reach; ++dx) {
-                    const int to_x = std::clamp(x + dx, 0, picture.width - 1);
-                    const int to_y = std::clamp(y + dy, 0, picture.height - 1);
-                    const double weight = weights[static_cast<std::size_t>(dx + reach)] *
-                                          weights[static_cast<std::size_t>(dy + reach)] / (sum * sum);
+            const double sum = std::accumulate(weights.begin(), weights.end(), 0.0);
+            int to_y = y - reach;
+            for (const double down : weights) {
+                int to_x = x - reach;
+                for (const double across : weights) {
+                    const double weight = down * across / (sum * sum);
                     for (int c = 0; c < 3; ++c) {
-                        changed.at(to_x, to_y, c) +=
-                            static_cast<float>(weight * static_cast<double>(picture.at(x, y, c)));
+                        changed.at(std::clamp(to_x, 0, picture.width - 1), std::clamp(to_y, 0, picture.height - 1),
+                                   c) += static_cast<float>(weight * static_cast<double>(picture.at(x, y, c)));
                     }
+                    ++to_x;
                 }
+                ++to_y;
             }
         }
     }
