@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <iterator>
+#include <limits>
 
 #include "engine/base/file.h"
 #include "engine/base/input_error.h"
@@ -132,23 +133,26 @@ draw::PlotChart pareto_chart(const RungError& error, const std::vector<MeasuredR
                                 .unit = "s",
                                 .scale = draw::AxisScale::logarithmic},
                           .y = {.label = "Error", .unit = error.unit, .scale = draw::AxisScale::logarithmic}};
-    draw::ChartCurve front{.label = "front: no rung is cheaper and no worse",
+    draw::ChartCurve front{.label = "front: nothing cheaper errs less",
                            .points = {},
                            .colour = draw::kQuiet,
                            .line = draw::CurveLine::dashed};
     for (std::size_t i = 0; i < rungs.size(); ++i) {
-        const Vec2d at{rungs[i].cost.seconds, shown(error.of(rungs[i]))};
+        front.points.push_back({rungs[i].cost.seconds, shown(error.of(rungs[i]))});
         chart.curves.push_back({.label = rungs[i].name,
-                                .points = {at},
+                                .points = {front.points.back()},
                                 .colour = draw::series_colour(i),
                                 .line = draw::CurveLine::none,
                                 .marker = static_cast<draw::CurveMarker>(1 + i % 7),
                                 .marker_size = 9.0});
-        if (rungs[i].is_pareto) {
-            front.points.push_back(at);
-        }
     }
     std::ranges::sort(front.points, {}, &Vec2d::x);
+    double least = std::numeric_limits<double>::infinity();
+    std::erase_if(front.points, [&](const Vec2d& at) {
+        const bool is_beaten = at.y >= least;
+        least = std::min(least, at.y);
+        return is_beaten;
+    });
     chart.curves.insert(chart.curves.begin(), std::move(front));
     return chart;
 }

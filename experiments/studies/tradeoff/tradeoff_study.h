@@ -49,8 +49,7 @@ findings::Study read_tradeoff(findings::ExperimentFile& file);
 /// place of numbers.
 Json tradeoff_json(const std::vector<MeasuredRung>& rungs);
 
-/// Error against cost, a panel for each of image_rms_px, exposure_ev and ciede2000_mean, with the front that no other
-/// rung beats. SVG.
+/// Error against cost, a panel for each of image_rms_px, exposure_ev and ciede2000_mean with its own front. SVG.
 std::string pareto_svg(const std::string& title, const std::vector<MeasuredRung>& rungs, double noise);
 
 /// A subject a rung, with its picture; the fronts; the errors over the image height; with an entry of the table
