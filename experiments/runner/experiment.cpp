@@ -15,6 +15,7 @@
 #include "experiments/studies/pupil_passage/passage_study.h"
 #include "experiments/studies/stability/stability_study.h"
 #include "experiments/studies/stray_light/stray_study.h"
+#include "experiments/studies/tradeoff/account_study.h"
 #include "experiments/studies/tradeoff/tradeoff_study.h"
 #include "experiments/studies/twins/twins_study.h"
 
@@ -39,6 +40,7 @@ constexpr std::array kStudies = {
     StudyKind{"[[stray_light]]", studies::read_stray_light},
     StudyKind{"[[edge_diffraction]]", studies::read_edge_diffraction},
     StudyKind{"[[tradeoff]]", studies::read_tradeoff},
+    StudyKind{"[[planned]]", studies::read_planned},
     StudyKind{"[measurement_floor]", studies::read_measurement_floor},
     StudyKind{"[[photographed_lenses]]", studies::read_photographed_lenses},
 };

@@ -41,7 +41,8 @@ struct LeftOut {
     }
 };
 
-/// What a check finds, less what may be noise: whether it is too much.
+}  // namespace
+
 Contribution surely(const Contribution& found) {
     const auto least = [](const Measured& measured) {
         return Measured{std::max(0.0, measured.value - kCovered * measured.standard_error), 0.0};
@@ -54,6 +55,8 @@ bool keeps(const Contribution& found, const Tolerance& tolerance) {
     alone.add(found);
     return alone.keeps(tolerance);
 }
+
+namespace {
 
 /// What keeps a contribution from being left out: "0.8 px of 0.5".
 std::string excess(const Contribution& found, const Tolerance& tolerance) {
@@ -383,6 +386,13 @@ Tolerance parse_tolerance(const std::string& text) {
         (unit == "px" ? tolerance.px : unit == "ev" ? tolerance.ev : tolerance.ciede2000) = *number;
     }
     return tolerance;
+}
+
+PlannedCheck check_plan(const render::SceneSetup& setup, const PlannedRender& planned, const PilotSettings& settings) {
+    const Pilot pilot(setup, settings);
+    const Pilot::Pictures full = pilot.render(pilot.setup(), settings.seeds);
+    const Checked checked = check(pilot, planned, full.rgb);
+    return {.error = checked.error, .speed_up = full.ns_per_sample / checked.ns_per_sample};
 }
 
 Plan plan_render(const render::SceneSetup& setup, const Tolerance& tolerance, const PilotSettings& settings) {

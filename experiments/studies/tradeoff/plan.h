@@ -55,6 +55,19 @@ struct Plan {
 /// lens.
 Plan plan_render(const render::SceneSetup& setup, const Tolerance& tolerance, const PilotSettings& settings);
 
+/// What a found contribution surely is, less two standard errors; and whether a contribution is within a tolerance,
+/// with two standard errors of it.
+Contribution surely(const Contribution& found);
+bool keeps(const Contribution& found, const Tolerance& tolerance);
+
+/// What a planned render gets wrong against the full model, and how much faster its samples are, by pictures of the
+/// settings' seeds and rays of their own.
+struct PlannedCheck {
+    Contribution error;
+    double speed_up = 1.0;
+};
+PlannedCheck check_plan(const render::SceneSetup& setup, const PlannedRender& planned, const PilotSettings& settings);
+
 /// The scene as it is to be rendered.
 render::SceneSetup planned_setup(render::SceneSetup setup, const PlannedRender& planned);
 

@@ -1,0 +1,251 @@
+#include "experiments/studies/tradeoff/account_study.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <limits>
+
+#include "engine/base/file.h"
+#include "engine/base/input_error.h"
+#include "engine/formats/prescription/prescription_file.h"
+#include "engine/scene/scene_build.h"
+#include "experiments/draw/chart.h"
+#include "experiments/draw/palette.h"
+
+namespace lensproof::studies {
+
+static void fields(JsonArchive& json, Contribution& contribution) {
+    json.field("px", contribution.px).field("ev", contribution.ev).field("ciede2000", contribution.ciede2000);
+}
+
+void fields(JsonArchive& json, PlannedOutcome& outcome) {
+    json.field("name", outcome.name)
+        .field("model", outcome.model)
+        .field("predicted", outcome.predicted)
+        .field("measured", outcome.measured)
+        .field("speed_up", outcome.speed_up)
+        .field("probe_seconds", outcome.probe_seconds)
+        .field("refused", outcome.refused);
+}
+
+namespace {
+
+struct PlannedSet {
+    std::string name;
+    std::string title;
+    std::string stated_tolerance;
+    Tolerance tolerance;
+    std::vector<PlannedCase> cases;
+};
+
+PlannedCase read_case(TomlTable& table, const TomlTable& scene, const std::filesystem::path& file) {
+    PlannedCase planned{.name = findings::read_name(table)};
+    const std::optional<TomlTable> changed = table.optional_table("scene");
+    const TomlTable whole = changed ? scene.overlaid(*changed) : scene;
+    planned.setup = render::read_scene_setup(whole);
+    planned.stated = whole.stated();
+    planned.files = {file};
+    if (!planned.setup.chart) {
+        std::ranges::move(scene::named_files(planned.setup.scene), std::back_inserter(planned.files));
+    }
+    if (!planned.setup.camera.lens.empty()) {
+        std::ranges::move(formats::files_of_lens(planned.setup.camera.lens), std::back_inserter(planned.files));
+    }
+    table.finish();
+    return planned;
+}
+
+PlannedSet read_set(TomlTable& table, findings::ExperimentFile& file) {
+    PlannedSet set{.name = findings::read_name(table)};
+    set.title = table.text_or("title", set.name);
+    file.add_subject(table, "name", set.name);
+    const std::filesystem::path scene_file = referred_file(table.file(), table.text("scene"));
+    const TomlTable scene = TomlTable::read(scene_file);
+    set.stated_tolerance = table.text("tolerance");
+    try {
+        set.tolerance = parse_tolerance(set.stated_tolerance);
+    } catch (const InputError& error) {
+        table.fail("tolerance", error.what());
+    }
+    for (TomlTable& one : table.tables("cases")) {
+        set.cases.push_back(read_case(one, scene, scene_file));
+    }
+    if (set.cases.empty()) {
+        table.fail("cases", "has no table, expected one at least");
+    }
+    table.finish();
+    return set;
+}
+
+/// The largest of the parts, over what may be.
+double over_tolerance(const Contribution& found, const Tolerance& tolerance) {
+    return std::max(
+        {found.px.value / tolerance.px, found.ev.value / tolerance.ev, found.ciede2000.value / tolerance.ciede2000});
+}
+
+std::string account_svg(const PlannedSet& set, const std::vector<PlannedOutcome>& outcomes) {
+    draw::PlotChart chart{
+        .title = set.title,
+        .caption = fmt::format("Planned at {}: the part of the error that comes nearest to what may be, over that",
+                               set.stated_tolerance),
+        .x = {.label = "The full model's time over the planned one's, a sample", .scale = draw::AxisScale::logarithmic},
+        .y = {.label = "Measured error over tolerance", .holds_zero = true}};
+    chart.references.push_back({.direction = draw::ReferenceDirection::horizontal, .at = 1.0, .label = "tolerance"});
+    std::vector<std::string> models;
+    for (const PlannedOutcome& outcome : outcomes) {
+        if (!outcome.refused.empty()) {
+            continue;
+        }
+        auto model = std::ranges::find(models, outcome.model);
+        if (model == models.end()) {
+            models.push_back(outcome.model);
+            model = models.end() - 1;
+        }
+        const auto index = static_cast<std::size_t>(model - models.begin());
+        chart.curves.push_back({.label = outcome.model,
+                                .points = {{outcome.speed_up, over_tolerance(outcome.measured, set.tolerance)}},
+                                .colour = draw::series_colour(index),
+                                .line = draw::CurveLine::none,
+                                .marker = static_cast<draw::CurveMarker>(1 + index % 7),
+                                .marker_size = 8.0});
+    }
+    return draw::chart_svg(chart);
+}
+
+Json part_json(const Contribution& found) {
+    return {{"px", found.px.value},
+            {"px_standard_error", found.px.standard_error},
+            {"ev", found.ev.value},
+            {"ev_standard_error", found.ev.standard_error},
+            {"ciede2000", found.ciede2000.value},
+            {"ciede2000_standard_error", found.ciede2000.standard_error}};
+}
+
+findings::Findings account_findings(const PlannedSet& set, const std::vector<PlannedOutcome>& outcomes) {
+    findings::Findings found{.subjects_title = "Plans"};
+    std::vector<double> speed_ups;
+    double kept = 0.0;
+    Json rows = Json::list();
+    for (const PlannedOutcome& outcome : outcomes) {
+        if (!outcome.refused.empty()) {
+            rows.push_back({{"name", outcome.name}, {"refused", outcome.refused}});
+            continue;
+        }
+        const bool keeps = keeps_tolerance(outcome, set.tolerance);
+        kept += keeps ? 1.0 : 0.0;
+        speed_ups.push_back(outcome.speed_up);
+        rows.push_back({{"name", outcome.name},
+                        {"model", outcome.model},
+                        {"keeps", keeps},
+                        {"predicted", part_json(outcome.predicted)},
+                        {"measured", part_json(outcome.measured)},
+                        {"speed_up", outcome.speed_up},
+                        {"probe_seconds", outcome.probe_seconds}});
+    }
+    const auto planned = static_cast<double>(speed_ups.size());
+    const double share = planned > 0.0 ? kept / planned : std::nan("");
+    std::ranges::sort(speed_ups);
+    constexpr double kWanted = 0.95;
+    found.checks.push_back({.id = set.name + "-kept",
+                            .group = set.title,
+                            .subject = set.name,
+                            .label = fmt::format("plans that keep {}", set.stated_tolerance),
+                            .value = 100.0 * share,
+                            .sigma = 100.0 * std::sqrt(share * (1.0 - share) / planned),
+                            .unit = "%",
+                            .limit = 100.0 * kWanted,
+                            .expectation = findings::Expectation::at_least,
+                            .explanation = "Against the full model with other seeds, by two standard errors."});
+    constexpr double kSlowest = 0.95;  // of a time that differs from run to run
+    found.checks.push_back({.id = set.name + "-slowest",
+                            .group = set.title,
+                            .subject = set.name,
+                            .label = "the least that a plan makes faster",
+                            .value = speed_ups.empty() ? std::nan("") : speed_ups.front(),
+                            .limit = kSlowest,
+                            .expectation = findings::Expectation::at_least,
+                            .explanation = "The full model's time over the planned one's, a sample."});
+    findings::Subject subject{.id = set.name, .kind = "plans", .label = set.title};
+    subject.facts = {{"plans", fmt::format("{}, of {} cases", speed_ups.size(), outcomes.size())},
+                     {"times as fast, the median",
+                      speed_ups.empty() ? "none" : fmt::format("{:.2f}", speed_ups[speed_ups.size() / 2])}};
+    constexpr draw::ChartSize kSize{};
+    subject.pictures.push_back({.name = set.name + "/account.svg",
+                                .caption = "Error and time, a mark a case",
+                                .width = kSize.width,
+                                .height = kSize.height,
+                                .bytes = account_svg(set, outcomes)});
+    found.subjects.push_back(std::move(subject));
+    found.tables = {
+        {"planned", Json{{"name", set.name}, {"tolerance", set.stated_tolerance}, {"cases", std::move(rows)}}}};
+    return found;
+}
+
+}  // namespace
+
+bool keeps_tolerance(const PlannedOutcome& outcome, const Tolerance& tolerance) {
+    return keeps(surely(outcome.measured), tolerance);
+}
+
+PlannedOutcome hold_to_account(const PlannedCase& planned, const Tolerance& tolerance, const PilotSettings& settings) {
+    PlannedOutcome outcome{.name = planned.name};
+    try {
+        const Plan plan = plan_render(planned.setup, tolerance, settings);
+        PilotSettings other = settings;
+        constexpr std::uint64_t kOtherSeeds = 1000;
+        other.probe.seed += kOtherSeeds;
+        other.samples *= 4;
+        const PlannedCheck found = check_plan(planned.setup, plan.render, other);
+        outcome.model = plan.render.rung.name;
+        outcome.predicted = plan.checked;
+        outcome.measured = found.error;
+        outcome.speed_up = found.speed_up;
+        outcome.probe_seconds = plan.probe_seconds;
+    } catch (const InputError& error) {
+        outcome.refused = error.what();
+    }
+    return outcome;
+}
+
+findings::Study read_planned(findings::ExperimentFile& file) {
+    std::vector<PlannedSet> sets;
+    for (TomlTable& table : file.top.tables("planned")) {
+        sets.push_back(read_set(table, file));
+    }
+    if (sets.empty()) {
+        return {};
+    }
+    return [sets = std::move(sets)](const findings::RunSettings& settings, const findings::RunProgress& progress,
+                                    const findings::Findings&) {
+        findings::Findings found{.subjects_title = "Plans"};
+        Json table = Json::list();
+        for (const PlannedSet& set : sets) {
+            PilotSettings own;
+            own.probe.seed = settings.seed;
+            own.probe.threads = settings.threads;
+            own.cache = settings.cache;
+            std::vector<PlannedOutcome> outcomes;
+            for (const PlannedCase& planned : set.cases) {
+                progress(fmt::format("{}: {}", set.name, planned.name),
+                         static_cast<double>(outcomes.size()) / static_cast<double>(set.cases.size()));
+                outcomes.push_back(settings.steps.step("planned",
+                                                       {.settings = {{"scene", planned.stated},
+                                                                     {"name", planned.name},
+                                                                     {"tolerance", set.stated_tolerance},
+                                                                     {"seed", settings.seed}},
+                                                        .files = planned.files},
+                                                       [&] { return hold_to_account(planned, set.tolerance, own); }));
+            }
+            findings::Findings more = account_findings(set, outcomes);
+            table.push_back(std::move(more.tables.front().second));
+            more.tables.clear();
+            findings::append(found, std::move(more));
+        }
+        found.tables.emplace_back("planned", std::move(table));
+        return found;
+    };
+}
+
+}  // namespace lensproof::studies

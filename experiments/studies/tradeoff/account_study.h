@@ -1,0 +1,44 @@
+// experiments/studies/tradeoff/account_study.h — [[planned]]: plans held to account, over many scenes and lenses.
+#pragma once
+#include <string>
+#include <vector>
+
+#include "engine/base/toml.h"
+#include "experiments/findings/study.h"
+#include "experiments/studies/tradeoff/plan.h"
+
+namespace lensproof::studies {
+
+/// A scene with something in it changed, to be planned.
+struct PlannedCase {
+    std::string name;
+    std::string stated;  // the whole scene, as both files state it
+    render::SceneSetup setup;
+    std::vector<std::filesystem::path> files;
+};
+
+/// What a plan said of a case, and what came of it: the planned render against the full model with seeds that the plan
+/// has not seen and four times its samples. Passes are not in it.
+struct PlannedOutcome {
+    std::string name;
+    std::string model;
+    Contribution predicted;  // by the plan's own check
+    Contribution measured;
+    double speed_up = 1.0;
+    double probe_seconds = 0.0;
+    std::string refused;  // why there is no plan; else empty
+};
+void fields(JsonArchive& json, PlannedOutcome& outcome);
+
+PlannedOutcome hold_to_account(const PlannedCase& planned, const Tolerance& tolerance, const PilotSettings& settings);
+
+/// Whether the measured error keeps the tolerance, as far as it is known: no part of it surely exceeds (by two standard
+/// errors) what may be.
+bool keeps_tolerance(const PlannedOutcome& outcome, const Tolerance& tolerance);
+
+/// The tables: name, title (optional), scene, tolerance, cases = [{ name, scene = { … } }], each of which is put over
+/// the scene. Findings: how many keep the tolerance, with the binomial's standard error; that none is slower than the
+/// full model by more than a twentieth; a table "planned" of all.
+findings::Study read_planned(findings::ExperimentFile& file);
+
+}  // namespace lensproof::studies
