@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <iterator>
 #include <memory>
+#include <optional>
 #include <utility>
 
 #include "engine/base/cache.h"
@@ -146,9 +147,9 @@ int run_render(const RenderJobOptions& options, RenderWishes wishes) {
         throw InputError("--model auto and --tolerance go together, expected both or neither");
     }
     render::SceneSetup setup = render::read_scene_setup(options.scene);
-    Json plan;
+    std::optional<studies::Plan> plan;
     if (wishes.model == "auto") {
-        plan = studies::plan_json(take_plan(options, wishes, setup));
+        plan = take_plan(options, wishes, setup);
     } else if (!wishes.model.empty()) {
         take_model(wishes.model, options.scene, setup);
     }
@@ -194,7 +195,8 @@ int run_render(const RenderJobOptions& options, RenderWishes wishes) {
                     {"lens", scene->camera().hash()},
                     {"settings", fmt::format("{} filter, {} features{}", filter.name(),
                                              options.has_features ? "with" : "no", scene->integrator().description) +
-                                     (passes.empty() ? "" : fmt::format(", passes {}", fmt::join(passes, " and ")))}};
+                                     (passes.empty() ? "" : fmt::format(", passes {}", fmt::join(passes, " and "))) +
+                                     (plan ? fmt::format(", at most {} scatterings", setup.max_bounces) : "")}};
     job.notes.metadata = scene->metadata();
     job.notes.colours = scene->camera().colours();
     job.samples = static_cast<std::uint32_t>(setup.samples_per_pixel);
@@ -202,9 +204,9 @@ int run_render(const RenderJobOptions& options, RenderWishes wishes) {
     job.json["scene"] = options.scene;
     job.json["lens"] = lens ? lens->id : "";
     job.json["model"] = render::name_of(setup.camera.model);
-    if (wishes.model == "auto") {
-        job.json["plan"] = plan;
-        job.notes.metadata["lensproof:plan"] = plan.dump();
+    if (plan) {
+        job.json["plan"] = studies::plan_json(*plan);
+        job.notes.metadata["lensproof:plan"] = studies::plan_json(*plan, studies::PlanTimes::left_out).dump();
     }
     job.json["findings"] = findings_json(lens ? lens->findings : std::vector<optics::Finding>());
     if (wishes.is_audited) {

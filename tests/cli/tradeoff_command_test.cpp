@@ -144,6 +144,17 @@ TEST(PlanCommand, ARenderActsOnIt) {
     EXPECT_NE(place.content("auto.exr").find("lensproof:plan"), std::string::npos);
 }
 
+TEST(PlanCommand, APlannedPictureHasTheSameBytesInEveryRun) {
+    const Workplace place;
+    place.file("scene.toml", kScene);
+    for (const char* threads : {"1", "2"}) {
+        const Outcome outcome = place.run({"render", "scene.toml", "--model", "auto", "--tolerance", "2px,0.2ev,5de",
+                                           "--spp", "1", "--threads", threads, "-o", std::string(threads) + ".exr"});
+        EXPECT_EQ(outcome.status, 0) << outcome.err;
+    }
+    EXPECT_EQ(place.content("1.exr"), place.content("2.exr"));
+}
+
 TEST(PlanCommand, RefusesTolerancesThatSayNothing) {
     const Workplace place;
     place.file("scene.toml", kScene);

@@ -412,7 +412,7 @@ render::SceneSetup planned_setup(render::SceneSetup setup, const PlannedRender& 
     return on_rung(std::move(setup), planned.rung);
 }
 
-Json plan_json(const Plan& plan) {
+Json plan_json(const Plan& plan, PlanTimes times) {
     const auto parts = [](const Contribution& of, double Measured::*what) {
         return Json{{"px", of.px.*what}, {"ev", of.ev.*what}, {"ciede2000", of.ciede2000.*what}};
     };
@@ -426,20 +426,25 @@ Json plan_json(const Plan& plan) {
               {"effects", Json::list()}};
     json["wavelengths"] = plan.render.rung.wavelengths ? Json(*plan.render.rung.wavelengths) : Json(nullptr);
     for (const PlannedEffect& planned : plan.effects) {
-        json["effects"].push_back({{"effect", planned.effect.name},
-                                   {"contribution", parts(planned.effect.contribution, &Measured::value)},
-                                   {"standard_error", parts(planned.effect.contribution, &Measured::standard_error)},
-                                   {"is_bound", planned.effect.is_bound},
-                                   {"decision", planned.is_modelled ? "model" : "leave-out"},
-                                   {"saves_percent", planned.is_modelled ? 0.0 : planned.saves_percent},
-                                   {"why", planned.why}});
+        Json effect{{"effect", planned.effect.name},
+                    {"contribution", parts(planned.effect.contribution, &Measured::value)},
+                    {"standard_error", parts(planned.effect.contribution, &Measured::standard_error)},
+                    {"is_bound", planned.effect.is_bound},
+                    {"decision", planned.is_modelled ? "model" : "leave-out"},
+                    {"why", planned.why}};
+        if (times == PlanTimes::told) {
+            effect["saves_percent"] = planned.is_modelled ? 0.0 : planned.saves_percent;
+        }
+        json["effects"].push_back(std::move(effect));
     }
     json["checked"] = {{"error", parts(plan.checked, &Measured::value)},
                        {"standard_error", parts(plan.checked, &Measured::standard_error)}};
     json["refused"] = plan.refused;
     json["noise_ev"] = plan.noise_ev;
-    json["speed_up"] = plan.speed_up;
-    json["probe_seconds"] = plan.probe_seconds;
+    if (times == PlanTimes::told) {
+        json["speed_up"] = plan.speed_up;
+        json["probe_seconds"] = plan.probe_seconds;
+    }
     return json;
 }
 

@@ -71,7 +71,9 @@ PlannedCheck check_plan(const render::SceneSetup& setup, const PlannedRender& pl
 /// The scene as it is to be rendered.
 render::SceneSetup planned_setup(render::SceneSetup setup, const PlannedRender& planned);
 
-/// As the command line's contract has it.
-Json plan_json(const Plan& plan);
+/// As the command line's contract has it; without what was timed (probe_seconds, speed_up, saves_percent) it is the
+/// same in every run, and may stand in a picture's file.
+enum class PlanTimes { told, left_out };
+Json plan_json(const Plan& plan, PlanTimes times = PlanTimes::told);
 
 }  // namespace lensproof::studies

@@ -91,22 +91,19 @@ TEST(Plan, TakesWhatTheToleranceAsksFor) {
     EXPECT_FALSE(effect(plan_render(scene, {.px = 30.0}, {}), "vignetting").is_modelled);
 }
 
-// Against the full model with seeds that no plan saw: no more than the tolerance and three standard errors.
+// Against the full model with seeds that no plan saw: no more than the tolerance and two standard errors, which are
+// small enough beside it for a model that lacks what matters to be found out.
 TEST(Plan, RendersKeepTheirTolerance) {
     const Tolerance tolerance{.px = 2.0, .ev = 0.1, .ciede2000 = 3.0};
+    PilotSettings other{.samples = 64};
+    other.probe.seed = 1000;
     for (const render::SceneSetup& scene :
          {wall("tessar", 4.5, 10.0), wall("double-gauss-lowenthal", 4.0, 8.0), wall("muller-fisheye", 8.0, 2.0)}) {
-        const Plan plan = plan_render(scene, tolerance, {});
-        TradeoffSettings settings{.pixels = 1500, .samples = 32, .seeds = 2, .points = 24};
-        settings.probe = {.rays = 64, .repetitions = 2, .seed = 1000};
-        Rung rung = plan.render.rung;
-        const std::vector<MeasuredRung> measured =
-            measure_tradeoff(scene, {rung}, settings, [](const std::string&, double) {});
-        ASSERT_EQ(measured.front().not_applicable, "") << scene.camera.lens;
-        const auto least = [](const Measured& found) { return found.value - 3.0 * found.standard_error; };
-        EXPECT_LE(least(measured.front().field.frame.image_px), tolerance.px) << scene.camera.lens;
-        EXPECT_LE(least(measured.front().field.frame.exposure_ev), tolerance.ev) << scene.camera.lens;
-        EXPECT_LE(least(measured.front().picture.ciede2000.bias), tolerance.ciede2000) << scene.camera.lens;
+        const Contribution found = check_plan(scene, plan_render(scene, tolerance, {}).render, other).error;
+        EXPECT_TRUE(keeps(surely(found), tolerance)) << scene.camera.lens;
+        EXPECT_LT(found.px.standard_error, 0.2 * tolerance.px) << scene.camera.lens;
+        EXPECT_LT(found.ev.standard_error, 0.2 * tolerance.ev) << scene.camera.lens;
+        EXPECT_LT(found.ciede2000.standard_error, 0.5 * tolerance.ciede2000) << scene.camera.lens;
     }
 }
 
