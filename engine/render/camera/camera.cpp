@@ -51,12 +51,13 @@ Camera::Camera(const CameraSettings& settings, const SpectralSampling& sampling,
 Camera::Camera(const CameraSettings& settings, std::optional<optics::Lens> lens, const SpectralSampling& sampling,
                const PixelFilter& filter, const Cache& cache, bool meets_light_paths)
     : settings_(settings),
+      cache_(cache),
       pose_(camera_to_world(settings)),
       lens_(std::move(lens)),
       grid_(make_grid(sampling)),
       film_(make_film(sampling.layers, filter)),
       colours_(spectral::rgb_space(settings.response, spectral::illuminant(settings.white_balance))),
-      optics_(make_optics(cache, meets_light_paths)) {}
+      optics_(make_optics(meets_light_paths)) {}
 
 spectral::SpectralGrid Camera::make_grid(const SpectralSampling& sampling) {
     SpectralSampling band = sampling;
@@ -77,21 +78,22 @@ spectral::SpectralGrid Camera::make_grid(const SpectralSampling& sampling) {
     return {spectral::wavelength_strata(band.min_nm, band.max_nm, sampling.strata())};
 }
 
-Camera::Optics Camera::make_optics(const Cache& cache, bool meets_light_paths) const {
+Camera::Optics Camera::make_optics(bool meets_light_paths) const {
     const std::vector<double> wavelengths = grid_.strata.midpoints();
     // Pixels are areas: the corner of what the corner pixel's filter reaches is the farthest point sampled.
     const double film_radius_mm = sensor().half_diagonal_mm(film_.filter.radius_px() - 0.5);
     if (settings_.model == LensModel::polynomial) {
-        return Optics(std::in_place_type<PolynomialCamera>, lens_.value(), wavelengths, film_radius_mm, cache,
+        return Optics(std::in_place_type<PolynomialCamera>, lens_.value(), wavelengths, film_radius_mm, cache_,
                       meets_light_paths);
     }
     if (traces_surfaces(settings_.model)) {
-        return Optics(std::in_place_type<ExactCamera>, lens_.value(), wavelengths, film_radius_mm, cache,
+        return Optics(std::in_place_type<ExactCamera>, lens_.value(), wavelengths, film_radius_mm, cache_,
                       meets_light_paths,
                       settings_.model == LensModel::exact ? TracePrecision::in_double : TracePrecision::in_float);
     }
     if (settings_.model == LensModel::thin_lens_profile || settings_.model == LensModel::pinhole_profile) {
-        return Optics(std::in_place_type<ProfileCamera>, traced_profile(lens_.value(), wavelengths, film_radius_mm),
+        return Optics(std::in_place_type<ProfileCamera>,
+                      kept_profile(cache_, lens_.value(), wavelengths, film_radius_mm),
                       ProfileOpening{.is_pinhole = settings_.model == LensModel::pinhole_profile,
                                      .focus_z = -settings_.focus_distance_mm});
     }

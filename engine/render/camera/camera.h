@@ -104,6 +104,8 @@ class Camera {
     /// And an origin of light from there.
     [[nodiscard]] LightOrigin in_lens_space(const LightOrigin& from) const;
     [[nodiscard]] const spectral::SpectralGrid& grid() const { return grid_; }
+    /// For what is found by tracing its lens.
+    [[nodiscard]] const Cache& cache() const { return cache_; }
     /// Says so where wavelengths were clamped to the range of the lens's glasses; else empty.
     [[nodiscard]] const std::string& clamp_note() const { return clamp_note_; }
 
@@ -123,9 +125,10 @@ class Camera {
     using Optics = std::variant<ExactCamera, PolynomialCamera, IdealCamera, ProfileCamera>;
     [[nodiscard]] spectral::SpectralGrid make_grid(const SpectralSampling& sampling);
     [[nodiscard]] FilmLayout make_film(int layers, const PixelFilter& filter) const;
-    [[nodiscard]] Optics make_optics(const Cache& cache, bool meets_light_paths) const;
+    [[nodiscard]] Optics make_optics(bool meets_light_paths) const;
 
     CameraSettings settings_;
+    Cache cache_;
     AffineMap pose_;
     std::optional<optics::Lens> lens_;
     std::string clamp_note_;

@@ -1,8 +1,12 @@
 // engine/render/camera/lens_profile.h — what a round lens does to chief rays and to brightness, as curves over the
 // film's radius.
 #pragma once
+#include <optional>
+#include <string>
+#include <string_view>
 #include <vector>
 
+#include "engine/base/cache.h"
 #include "engine/optics/lens.h"
 #include "engine/render/camera/radial_curve.h"
 
@@ -25,6 +29,9 @@ struct LensProfile {
     /// that their rays outside are the same. Beyond its end as there.
     RadialCurve pupil_z;
     double front_z = 0.0;  // of the first vertex
+
+    [[nodiscard]] std::string serialized() const;
+    static std::optional<LensProfile> deserialized(std::string_view bytes);
 };
 
 /// Of a lens, stopped down and focused, at these wavelengths, which lie evenly, for film points within `film_radius_mm`
@@ -40,5 +47,9 @@ struct LensProfile {
 /// Throws InputError for lenses that are not rotationally symmetric, with mirrors, with an entrance pupil at infinity,
 /// or without light on the axis.
 LensProfile traced_profile(const optics::Lens& lens, const std::vector<double>& wavelengths_nm, double film_radius_mm);
+
+/// The same from the cache, by all that it follows from; to the last bit what tracing gives.
+LensProfile kept_profile(const Cache& cache, const optics::Lens& lens, const std::vector<double>& wavelengths_nm,
+                         double film_radius_mm);
 
 }  // namespace lensproof::render

@@ -342,20 +342,8 @@ PathPdf ProfileCamera::pdf(const LightOrigin& from, const Ray<double>& outwards,
 
 std::string ProfileCamera::bytes() const {
     std::string bytes;
-    append_bytes(bytes, opening_.is_pinhole, opening_.focus_z, profile_.front_z);
-    const auto append = [&](const RadialCurve& curve) {
-        append_bytes(bytes, curve.end());
-        for (const RadialCurve::At& node : curve.nodes()) {
-            append_bytes(bytes, node.value, node.slope);
-        }
-    };
-    append(profile_.pupil_z);
-    for (const RadialProfile& at : profile_.at) {
-        append(at.field_angle.curve());
-        append(at.illumination);
-        append_bytes(bytes, at.transmittance);
-    }
-    return bytes;
+    append_bytes(bytes, opening_.is_pinhole, opening_.focus_z);
+    return bytes + profile_.serialized();
 }
 
 }  // namespace lensproof::render

@@ -1,8 +1,11 @@
 #include "engine/render/camera/radial_curve.h"
 
+#include <cmath>
+#include <cstdint>
 #include <utility>
 
 #include "engine/base/bisect.h"
+#include "engine/base/bytes.h"
 
 namespace lensproof::render {
 
@@ -13,7 +16,7 @@ RadialCurve::RadialCurve(double end, const std::vector<At>& nodes)
 }
 
 RisingCurve::RisingCurve(RadialCurve curve) : curve_(std::move(curve)) {
-    const std::size_t steps = curve_.nodes().size() - 1;
+    const std::size_t steps = curve_.steps();
     const double end = curve_.at(curve_.end()).value;
     std::vector<RadialCurve::At> nodes;
     for (std::size_t i = 0; i <= steps; ++i) {
@@ -39,10 +42,29 @@ RisingCurve::Place RisingCurve::searched(double value) const {
     return {x, curve_.at(x).slope};
 }
 
-std::vector<RadialCurve::At> RadialCurve::nodes() const {
-    std::vector<At> nodes = nodes_;
-    std::ranges::for_each(nodes, [&](At& node) { node.slope *= per_step_; });
-    return nodes;
+void RadialCurve::append_to(std::string& bytes) const {
+    append_bytes(bytes, end_, static_cast<std::uint32_t>(nodes_.size()));
+    for (const At& node : nodes_) {
+        append_bytes(bytes, node.value, node.slope);
+    }
+}
+
+std::optional<RadialCurve> RadialCurve::taken_from(std::string_view& bytes) {
+    const auto end = take_bytes<double>(bytes);
+    const auto count = take_bytes<std::uint32_t>(bytes);
+    if (!end || !(*end >= 0.0) || !std::isfinite(*end) || !count || *count < 2 || *count > bytes.size()) {
+        return std::nullopt;
+    }
+    RadialCurve curve(*end, std::vector<At>(*count));
+    for (At& node : curve.nodes_) {
+        const auto value = take_bytes<double>(bytes);
+        const auto slope = take_bytes<double>(bytes);
+        if (!value || !slope || !std::isfinite(*value) || !std::isfinite(*slope)) {
+            return std::nullopt;
+        }
+        node = {*value, *slope};
+    }
+    return curve;
 }
 
 RadialCurve smooth_curve(double end, const std::vector<double>& values, Parity parity) {

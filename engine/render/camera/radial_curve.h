@@ -2,7 +2,10 @@
 #pragma once
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <optional>
+#include <string>
+#include <string_view>
 #include <vector>
 
 namespace lensproof::render {
@@ -33,7 +36,11 @@ class RadialCurve {
         return {piece.value(t), piece.slope(t) * per_step_};
     }
 
-    [[nodiscard]] std::vector<At> nodes() const;
+    [[nodiscard]] std::size_t steps() const { return nodes_.size() - 1; }
+
+    /// As bytes, to the last bit; and from the front of such, nothing where there is no curve.
+    void append_to(std::string& bytes) const;
+    static std::optional<RadialCurve> taken_from(std::string_view& bytes);
 
   private:
     /// a + t (b + t (c + t d)), t from 0 to 1.
