@@ -25,7 +25,8 @@ Vec2d in_disc(const pupil::EntranceBeam& beam, double u, double v) {
 GhostEntrance::GhostEntrance(const Camera& camera)
     : front_(camera),
       mirrors_(camera.settings().mirrors),
-      guide_(std::make_shared<const GhostGuide>(*camera.lens(), front_.middle(), mirrors_, front_.film_radius_mm())) {}
+      guide_(std::make_shared<const GhostGuide>(*camera.lens(), front_.middle(), mirrors_, front_.film_radius_mm(),
+                                                camera.cache())) {}
 
 std::optional<GhostEntrance::Way> GhostEntrance::draw_way(const pupil::EntranceBeam& beam, bool of_beam,
                                                           PathSampler& numbers) const {

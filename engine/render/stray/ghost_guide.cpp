@@ -2,12 +2,16 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <utility>
 
 #include "engine/analysis/ghost_light.h"
 #include "engine/analysis/ghost_orders.h"
 #include "engine/base/angle.h"
+#include "engine/base/bytes.h"
+#include "engine/optics/lens_bytes.h"
 #include "engine/optics/paraxial.h"
+#include "ghost_digest.h"
 
 namespace lensproof::render {
 
@@ -34,10 +38,11 @@ struct GhostGuide::Place {
 };
 
 GhostGuide::GhostGuide(const optics::Lens& lens, optics::TraceLens<double> traced,
-                       const optics::StrayMirrors<double>& mirrors, double film_radius_mm)
+                       const optics::StrayMirrors<double>& mirrors, double film_radius_mm, const Cache& cache)
     : lens_(std::move(traced)),
       mirrors_(mirrors),
       film_radius_mm_(film_radius_mm),
+      cache_(cache),
       is_known_(lens.is_rotationally_symmetric) {
     const analysis::FrontBeam along_axis(lens_, 0.0);
     const double diameter = optics::paraxial_data(lens_).entrance_pupil_diameter;
@@ -52,24 +57,86 @@ GhostGuide::GhostGuide(const optics::Lens& lens, optics::TraceLens<double> trace
     }
 }
 
-void GhostGuide::look_at(Angle& angle, double radians) const {
+std::string GhostGuide::Known::serialized() const {
+    std::string bytes;
+    append_bytes(bytes, static_cast<std::uint32_t>(regions.size()), static_cast<std::uint32_t>(cumulative.size()));
+    for (const double share : cumulative) {
+        append_bytes(bytes, share);
+    }
+    for (const analysis::GhostRegion& region : regions) {
+        append_bytes(bytes, region.across, region.cell, region.corner.x, region.corner.y, region.search_rays,
+                     static_cast<std::uint32_t>(region.cells.size()));
+        for (const analysis::GhostRegion::Cell& cell : region.cells) {
+            append_bytes(bytes, cell.x, cell.y);
+        }
+    }
+    return bytes;
+}
+
+std::optional<GhostGuide::Known> GhostGuide::Known::deserialized(std::string_view bytes) {
+    bool is_whole = true;
+    const auto take = [&]<class Number>(Number& number) {
+        const auto taken = take_bytes<Number>(bytes);
+        is_whole = is_whole && taken;
+        number = taken.value_or(Number{});
+    };
+    const auto take_count = [&](std::size_t bytes_each) {
+        std::uint32_t count = 0;
+        take(count);
+        is_whole = is_whole && count <= bytes.size() / bytes_each;
+        return is_whole ? count : 0;
+    };
+    Known known;
+    known.regions.resize(take_count(1));
+    known.cumulative.resize(take_count(sizeof(double)));
+    std::ranges::for_each(known.cumulative, take);
+    for (analysis::GhostRegion& region : known.regions) {
+        take(region.across);
+        take(region.cell);
+        take(region.corner.x);
+        take(region.corner.y);
+        take(region.search_rays);
+        region.cells.resize(take_count(2 * sizeof(int)));
+        for (auto& [x, y] : region.cells) {
+            take(x);
+            take(y);
+            region.held.insert(analysis::GhostRegion::key(x, y));
+        }
+    }
+    return is_whole && bytes.empty() ? std::optional(std::move(known)) : std::nullopt;
+}
+
+std::string GhostGuide::key_of(double radians) const {
+    std::string key(kGhostDigest);
+    append_bytes(key, radians, mirrors_.sensor, mirrors_.blades, film_radius_mm_, pupil_area_);
+    optics::append_lens_bytes(key, lens_);
+    return key;
+}
+
+GhostGuide::Known GhostGuide::traced(double radians) const {
     const analysis::GhostScene scene{.lens = lens_,
                                      .beam = analysis::FrontBeam(lens_, radians),
                                      .mirrors = mirrors_,
                                      .image_radius = film_radius_mm_,
                                      .pupil_area = pupil_area_ * std::max(0.1, std::cos(radians))};
+    Known known;
     double sum = 0.0;
     for (const optics::GhostPath& path : paths_) {
-        analysis::GhostRegion& region = angle.regions.emplace_back(analysis::ghost_region(scene, path));
+        analysis::GhostRegion& region = known.regions.emplace_back(analysis::ghost_region(scene, path));
         sum += region.cells.empty() ? 0.0 : analysis::measure_ghost(scene, path, region, {.rays = kRaysOfGhost}).energy;
-        angle.cumulative.push_back(sum);
+        known.cumulative.push_back(sum);
     }
-    for (double& share : angle.cumulative) {
+    for (double& share : known.cumulative) {
         share /= sum;
     }
     if (!(sum > 0.0)) {
-        angle.cumulative.clear();
+        known.cumulative.clear();
     }
+    return known;
+}
+
+void GhostGuide::look_at(Angle& angle, double radians) const {
+    angle.known = kept<Known>(cache_, "ghosts", key_of(radians), [&] { return traced(radians); });
     const pupil::BoundingSphere front = pupil::front_sphere(lens_);
     const pupil::EntranceBeam beam = pupil::beam_along(front, {0.0, std::sin(radians), std::cos(radians)});
     angle.centre = {dot(front.centre, beam.across[0]), dot(front.centre, beam.across[1])};
@@ -81,7 +148,7 @@ const GhostGuide::Angle* GhostGuide::angle(std::size_t steps) const {
     }
     Angle& found = *angles_[steps];
     std::call_once(found.once, [&] { look_at(found, static_cast<double>(steps) * kStep); });
-    return found.cumulative.empty() ? nullptr : &found;
+    return found.known.cumulative.empty() ? nullptr : &found;
 }
 
 GhostGuide::Place GhostGuide::place_of(const pupil::EntranceBeam& beam) const {
@@ -103,9 +170,10 @@ std::optional<GhostGuide::Draw> GhostGuide::draw(const pupil::EntranceBeam& beam
         return std::nullopt;
     }
     const double rest = takes_next ? numbers[0] / place.above : (numbers[0] - place.above) / (1.0 - place.above);
-    const auto found = std::ranges::upper_bound(at->cumulative, rest);
-    const auto ghost = std::min(static_cast<std::size_t>(found - at->cumulative.begin()), at->cumulative.size() - 1);
-    const analysis::GhostRegion& region = at->regions[ghost];
+    const auto found = std::ranges::upper_bound(at->known.cumulative, rest);
+    const auto ghost =
+        std::min(static_cast<std::size_t>(found - at->known.cumulative.begin()), at->known.cumulative.size() - 1);
+    const analysis::GhostRegion& region = at->known.regions[ghost];
     if (region.cells.empty()) {
         return std::nullopt;
     }
@@ -124,9 +192,9 @@ double GhostGuide::pdf(const pupil::EntranceBeam& beam, const Draw& drawn) const
     double pdf = 0.0;
     for (const auto& [steps, share] : {std::pair{place.below, 1.0 - place.above}, {place.below + 1, place.above}}) {
         const Angle* at = share > 0.0 ? angle(steps) : nullptr;
-        if (at != nullptr && at->regions[drawn.ghost].contains(meridional + at->centre)) {
-            const double before = drawn.ghost > 0 ? at->cumulative[drawn.ghost - 1] : 0.0;
-            pdf += share * (at->cumulative[drawn.ghost] - before) / at->regions[drawn.ghost].area();
+        if (at != nullptr && at->known.regions[drawn.ghost].contains(meridional + at->centre)) {
+            const double before = drawn.ghost > 0 ? at->known.cumulative[drawn.ghost - 1] : 0.0;
+            pdf += share * (at->known.cumulative[drawn.ghost] - before) / at->known.regions[drawn.ghost].area();
         }
     }
     return pdf;
@@ -137,7 +205,7 @@ double GhostGuide::probability(const pupil::EntranceBeam& beam, std::size_t ghos
     double probability = 0.0;
     for (const auto& [steps, share] : {std::pair{place.below, 1.0 - place.above}, {place.below + 1, place.above}}) {
         if (const Angle* at = share > 0.0 ? angle(steps) : nullptr; at != nullptr) {
-            probability += share * (at->cumulative[ghost] - (ghost > 0 ? at->cumulative[ghost - 1] : 0.0));
+            probability += share * (at->known.cumulative[ghost] - (ghost > 0 ? at->known.cumulative[ghost - 1] : 0.0));
         }
     }
     return probability;

@@ -5,9 +5,12 @@
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <string>
+#include <string_view>
 #include <vector>
 
 #include "engine/analysis/ghost_region.h"
+#include "engine/base/cache.h"
 #include "engine/optics/lens.h"
 #include "engine/pupil/entrance_beam.h"
 
@@ -15,14 +18,14 @@ namespace lensproof::render {
 
 /// For light of each field angle, 2.5° apart: the energy of every ghost of two reflections, and the region of the
 /// front from which it reaches the film (analysis/ghost_region.h). An angle is looked at when light first comes from
-/// there, by whichever thread; between two of them either is taken, the nearer one more often.
+/// there, by whichever thread, or read from the cache; between two of them either is taken, the nearer one more often.
 ///
 /// Of a lens that is not rotationally symmetric it knows nothing.
 class GhostGuide {
   public:
     /// `traced`: at the wavelength in the middle of the band. For light that lands within `film_radius_mm` of the axis.
     GhostGuide(const optics::Lens& lens, optics::TraceLens<double> traced, const optics::StrayMirrors<double>& mirrors,
-               double film_radius_mm);
+               double film_radius_mm, const Cache& cache);
 
     [[nodiscard]] const std::vector<optics::GhostPath>& paths() const { return paths_; }
     [[nodiscard]] bool is_known() const { return is_known_; }
@@ -39,20 +42,30 @@ class GhostGuide {
     [[nodiscard]] double probability(const pupil::EntranceBeam& beam, std::size_t ghost) const;
 
   private:
-    struct Angle {  // what is known of one
-        std::once_flag once;
+    struct Known {                                   // of an angle
         std::vector<analysis::GhostRegion> regions;  // a ghost each, in its FrontBeam's plane
         std::vector<double> cumulative;              // of the energies' shares; empty where there is none
-        Vec2d centre;                                // of the front sphere there
+
+        [[nodiscard]] std::string serialized() const;
+        static std::optional<Known> deserialized(std::string_view bytes);
+    };
+    struct Angle {
+        std::once_flag once;
+        Known known;
+        Vec2d centre;  // of the front sphere there
     };
     struct Place;
     [[nodiscard]] Place place_of(const pupil::EntranceBeam& beam) const;
     [[nodiscard]] const Angle* angle(std::size_t steps) const;
     void look_at(Angle& angle, double radians) const;
+    [[nodiscard]] Known traced(double radians) const;
+    /// Everything that an angle's regions follow from.
+    [[nodiscard]] std::string key_of(double radians) const;
 
     optics::TraceLens<double> lens_;
     optics::StrayMirrors<double> mirrors_;
     double film_radius_mm_;
+    Cache cache_;
     double pupil_area_ = 0.0;
     bool is_known_;
     std::vector<optics::GhostPath> paths_;
