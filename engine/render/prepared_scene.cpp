@@ -2,8 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <utility>
 
+#include "engine/base/hash.h"
 #include "engine/render/integrators/chart_tracer.h"
 #include "engine/scene/scene_build.h"
 
@@ -11,20 +13,22 @@ namespace lensproof::render {
 
 PreparedScene::PreparedScene(const SceneSetup& setup, const PixelFilter& filter, const Cache& cache,
                              const Integrator& integrator)
-    : integrator_(setup.chart ? &integrator_named("chart") : &integrator),
+    : setup_(setup),
+      filter_(filter),
+      cache_(cache),
+      integrator_(setup.chart ? &integrator_named("chart") : &integrator),
       camera_(setup.camera, setup.spectral, filter, cache, integrator_->has_splats),
-      max_bounces_(setup.max_bounces),
-      world_(make_world(setup, cache)) {
+      world_(make_world()) {
     if (!camera_.clamp_note().empty()) {
         remarks_.push_back(camera_.clamp_note());
     }
 }
 
-World PreparedScene::make_world(const SceneSetup& setup, const Cache& cache) {
-    if (setup.chart) {
-        return even_chart(setup.chart->chart, setup.chart->placement, setup.chart->luminance_cd_m2, camera_);
+World PreparedScene::make_world() {
+    if (setup_.chart) {
+        return even_chart(setup_.chart->chart, setup_.chart->placement, setup_.chart->luminance_cd_m2, camera_);
     }
-    scene::BuiltScene built = scene::build_scene(setup.scene, camera_.grid(), cache);
+    scene::BuiltScene built = scene::build_scene(setup_.scene, camera_.grid(), cache_);
     remarks_ = std::move(built.remarks);
     return std::move(built.scene);
 }
@@ -34,7 +38,7 @@ View PreparedScene::view(std::uint64_t seed, bool has_features) const {
             .camera = &camera_,
             .seed = seed,
             .has_features = has_features,
-            .paths = {.max_bounces = max_bounces_}};
+            .paths = {.max_bounces = setup_.max_bounces}};
 }
 
 Render PreparedScene::render(std::uint64_t seed, bool has_features) const {
@@ -42,14 +46,35 @@ Render PreparedScene::render(std::uint64_t seed, bool has_features) const {
 }
 
 std::vector<Render> PreparedScene::render(const std::vector<std::string>& passes, std::uint64_t seed,
-                                          bool has_features) const {
-    return renders_of(passes, view(seed, has_features), *integrator_);
+                                          bool has_features) {
+    View straight = view(seed, has_features);
+    if (std::ranges::any_of(passes, [](const std::string& name) { return !pass_named(name).goes_straight; })) {
+        straight.stray_camera = &stray_camera();
+    }
+    return renders_of(passes, straight, *integrator_);
+}
+
+const Camera& PreparedScene::stray_camera() {
+    const bool has_lens = camera_.lens().has_value();
+    if (setup_.camera.model == LensModel::exact || !has_lens) {
+        return camera_;
+    }
+    if (!stray_camera_) {
+        CameraSettings settings = setup_.stray_camera.value_or(setup_.camera);
+        settings.model = LensModel::exact;
+        stray_camera_.emplace(settings, setup_.spectral, filter_, cache_, integrator_->has_splats);
+    }
+    return *stray_camera_;
+}
+
+std::string PreparedScene::camera_hash() const {
+    return stray_camera_ ? hash_text(camera_.hash() + stray_camera_->hash()) : camera_.hash();
 }
 
 std::map<std::string, std::string> PreparedScene::metadata() const {
     std::map<std::string, std::string> metadata = camera_.metadata();
     if (std::holds_alternative<scene::Scene>(world_)) {
-        metadata["lensproof:maxBounces"] = fmt::format("{}", max_bounces_);
+        metadata["lensproof:maxBounces"] = fmt::format("{}", setup_.max_bounces);
     }
     return metadata;
 }

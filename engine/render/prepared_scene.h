@@ -2,6 +2,7 @@
 #pragma once
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -25,9 +26,10 @@ class PreparedScene {
     PreparedScene& operator=(const PreparedScene&) = delete;
 
     [[nodiscard]] Render render(std::uint64_t seed, bool has_features) const;
-    /// What passes have of that, by their names (renders_of). Throws InputError where the camera has none of it.
+    /// What passes have of that, by their names (renders_of): light goes astray in the lens itself, whatever model of
+    /// it makes the image. Throws InputError where the camera has no such light, and as `Camera` does.
     [[nodiscard]] std::vector<Render> render(const std::vector<std::string>& passes, std::uint64_t seed,
-                                             bool has_features) const;
+                                             bool has_features);
 
     /// Where the light goes that comes into the camera. Throws InputError where that is not known (FateEntrance).
     [[nodiscard]] EnergyAudit audit(std::uint64_t seed, std::uint32_t paths) const {
@@ -35,6 +37,8 @@ class PreparedScene {
     }
 
     [[nodiscard]] const Camera& camera() const { return camera_; }
+    /// Of all that rays have met in cameras, in any render so far.
+    [[nodiscard]] std::string camera_hash() const;
     [[nodiscard]] const Integrator& integrator() const { return *integrator_; }
 
     /// What was repaired or left out, and that wavelengths were clamped to the glasses' range: a sentence each.
@@ -45,11 +49,15 @@ class PreparedScene {
 
   private:
     [[nodiscard]] View view(std::uint64_t seed, bool has_features) const;
-    [[nodiscard]] World make_world(const SceneSetup& setup, const Cache& cache);
+    [[nodiscard]] World make_world();
+    [[nodiscard]] const Camera& stray_camera();
 
+    SceneSetup setup_;
+    PixelFilter filter_;
+    Cache cache_;
     const Integrator* integrator_;
     Camera camera_;
-    int max_bounces_;
+    std::optional<Camera> stray_camera_;  // where it is another, once a pass has asked for it
     std::vector<std::string> remarks_;
     World world_;
 };

@@ -19,6 +19,8 @@ struct ChartView {
 
 struct SceneSetup {
     CameraSettings camera;
+    /// In whose lens light goes astray, where `camera` is a simpler model of it; none: `camera`'s own, traced exactly.
+    std::optional<CameraSettings> stray_camera;
     scene::SceneDescription scene;
     std::optional<ChartView> chart;  // in the place of the scene
     SpectralSampling spectral;

@@ -192,7 +192,7 @@ int run_render(const RenderJobOptions& options, RenderWishes wishes) {
             said_of_scene(options, [&] { return scene->render(passes, options.common.seed, options.has_features); });
     }
     job.identity = {{"scene", scene_hash(setup, options.scene)},
-                    {"lens", scene->camera().hash()},
+                    {"lens", scene->camera_hash()},
                     {"settings", fmt::format("{} filter, {} features{}", filter.name(),
                                              options.has_features ? "with" : "no", scene->integrator().description) +
                                      (passes.empty() ? "" : fmt::format(", passes {}", fmt::join(passes, " and "))) +

@@ -90,11 +90,13 @@ const Pass& pass_named(const std::string& name) {
 
 std::vector<Render> renders_of(const std::vector<std::string>& names, const View& view, const Integrator& integrator) {
     const bool is_diffracted = std::ranges::find(names, "diffracted") != names.end();
-    const double straight = is_diffracted ? DiffractedEntrance(*view.camera).geometric_share() : 1.0;
+    View stray = view;
+    stray.camera = view.stray_camera != nullptr ? view.stray_camera : view.camera;
+    const double straight = is_diffracted ? DiffractedEntrance(*stray.camera).geometric_share() : 1.0;
     std::vector<Render> renders;
     for (const std::string& name : names) {
         const Pass& pass = pass_named(name);
-        renders.push_back(pass.render(view, integrator));
+        renders.push_back(pass.render(pass.goes_straight ? view : stray, integrator));
         renders.back().film.light_share = pass.goes_straight ? straight : 1.0;
     }
     double bytes = 0.0;

@@ -32,8 +32,9 @@ struct Pass {
 const std::vector<Pass>& passes();
 
 /// Passes that are to be added up: where "diffracted" is one of them, those that go straight through the stop are less
-/// by what its edges take. Throws InputError where the camera has none of a pass's light, and where their films
-/// together take more memory than may be (kMostFilmBytes), std::out_of_range as `pass_named`.
+/// by what its edges take. All others go through the view's stray camera. Throws InputError where that has none of a
+/// pass's light, and where their films together take more memory than may be (kMostFilmBytes), std::out_of_range as
+/// `pass_named`.
 std::vector<Render> renders_of(const std::vector<std::string>& names, const View& view, const Integrator& integrator);
 
 /// Throws std::out_of_range for a name that is none of them.

@@ -22,10 +22,11 @@ struct EvenChart {
 
 using World = std::variant<scene::Scene, EvenChart>;
 
-/// What is seen, and by what. Held by pointer: both outlive the render.
+/// What is seen, and by what. Held by pointer: they outlive the render.
 struct View {
     const World* world = nullptr;
     const Camera* camera = nullptr;
+    const Camera* stray_camera = nullptr;  // in which light goes astray; none: the camera
     std::uint64_t seed = 0;
     bool has_features = false;  // the film keeps depth, albedo and normals too
     PathSettings paths;

@@ -129,7 +129,7 @@ class VariantSteps {
         return fmt::format("{}, {}: {}", scene_.name, variant_.name, what);
     }
 
-    const render::PreparedScene& prepared() {
+    render::PreparedScene& prepared() {
         if (!prepared_) {
             progress_(name_of("loading"), 0.0);
             prepared_ = std::make_unique<render::PreparedScene>(variant_.setup, render::PixelFilter{}, settings_.cache);

@@ -185,11 +185,12 @@ const std::vector<Rung>& ladder() {
 }
 
 render::SceneSetup on_rung(render::SceneSetup setup, const Rung& rung) {
-    setup.camera.model = rung.model;
     if (!render::traces_surfaces(rung.model)) {
+        setup.stray_camera = setup.camera;
         setup.camera.blades.reset();
         setup.camera.barrel.reset();
     }
+    setup.camera.model = rung.model;
     if (rung.wavelengths) {
         setup.spectral.layers = *rung.wavelengths;
         setup.spectral.strata_per_layer = 1;

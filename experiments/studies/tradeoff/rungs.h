@@ -25,7 +25,7 @@ struct Rung {
 /// From the simplest to the reference, and that with fewer wavelengths.
 const std::vector<Rung>& ladder();
 
-/// The scene with the rung's camera. What only the exact lens has, blades and walls, is left out where it is not one.
+/// The scene with the rung's camera. What only the exact lens has, blades and walls, its stray camera keeps.
 render::SceneSetup on_rung(render::SceneSetup setup, const Rung& rung);
 
 /// `setup` at about so many pixels, of the same frame; no more than it has.

@@ -1,0 +1,73 @@
+#include "engine/render/prepared_scene.h"
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "engine/render/film/film_image.h"
+#include "tests/complaint.h"
+#include "tests/test_folder.h"
+
+namespace lensproof::render {
+namespace {
+
+/// A sun beside the picture and nothing else: all that reaches the film has gone astray. `camera`: lines of its table.
+SceneSetup under_a_sun(const std::string& camera) {
+    return parse_scene_setup(camera + R"(
+f_number = 5.6
+focus_distance_mm = inf
+position_mm = [0, 0, 0]
+look_at_mm = [0, 0, 1]
+sensor_mm = [36, 24]
+pixels = [12, 8]
+shutter_s = 0.01
+iso = 100
+response = "luminance"
+[render]
+layers = 4
+strata_per_layer = 1
+[[lights]]
+kind = "sun"
+direction = [-0.3, 0.6, 1.0]
+illuminance_lx = 1e5
+)",
+                             "sun.toml");
+}
+
+/// The picture of its ghosts.
+std::vector<float> astray(const std::string& camera, const Cache& cache) {
+    PreparedScene scene(under_a_sun(camera), PixelFilter{}, cache);
+    return film_rgb(render_film(scene.render({"ghosts"}, 1, false).front(), {.first = 0, .end = 64}, 1)).pixels;
+}
+
+// Whatever stands for the lens where light goes straight, it goes astray in the lens: the same paths, the same bits;
+// and so it does where the lens's ghosts are known from the cache.
+TEST(PreparedScene, LightGoesAstrayInTheLensBesideAnyModelOfIt) {
+    const TestFolder folder;
+    const Cache cache(folder.path());
+    const std::string camera = "[camera]\nlens = \"tessar\"\n";
+    const std::vector<float> exact = astray(camera, Cache());
+    EXPECT_GT(std::ranges::count_if(exact, [](float light) { return light > 0.0F; }), 20);
+    EXPECT_EQ(astray(camera, cache), exact);
+    for (const char* model : {"thin-lens", "pinhole-profile", "exact-float"}) {
+        EXPECT_EQ(astray(camera + fmt::format("model = \"{}\"\n", model), cache), exact) << model;
+    }
+    EXPECT_TRUE(says(complaint_about([&] { astray("[camera]\nmodel = \"thin-lens\"\nfocal_length_mm = 50\n", cache); }),
+                     "expected \"exact\""));
+}
+
+// What the edges of the stop turn aside is missing where light goes straight, whatever model brings it there.
+TEST(PreparedScene, WhatIsDiffractedIsMissingInAnyModelsImage) {
+    const auto straight_share = [](const std::string& model) {
+        PreparedScene scene(under_a_sun("[camera]\nlens = \"tessar\"\n" + model), PixelFilter{}, Cache());
+        const std::vector<Render> renders = scene.render({"imaged", "diffracted"}, 1, false);
+        return renders.front().film.light_share;
+    };
+    const double exact = straight_share("");
+    EXPECT_LT(exact, 1.0);
+    EXPECT_EQ(straight_share("model = \"thin-lens\"\n"), exact);
+}
+
+}  // namespace
+}  // namespace lensproof::render
