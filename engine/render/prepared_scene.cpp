@@ -45,9 +45,10 @@ Render PreparedScene::render(std::uint64_t seed, bool has_features) const {
     return integrator_->render(view(seed, has_features));
 }
 
-std::vector<Render> PreparedScene::render(const std::vector<std::string>& passes, std::uint64_t seed,
-                                          bool has_features) {
+std::vector<Render> PreparedScene::render(const std::vector<std::string>& passes, std::uint64_t seed, bool has_features,
+                                          bool guides_ghosts) {
     View straight = view(seed, has_features);
+    straight.guides_ghosts = guides_ghosts;
     if (std::ranges::any_of(passes, [](const std::string& name) { return !pass_named(name).goes_straight; })) {
         straight.stray_camera = &stray_camera();
     }

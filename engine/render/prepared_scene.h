@@ -29,7 +29,7 @@ class PreparedScene {
     /// What passes have of that, by their names (renders_of): light goes astray in the lens itself, whatever model of
     /// it makes the image. Throws InputError where the camera has no such light, and as `Camera` does.
     [[nodiscard]] std::vector<Render> render(const std::vector<std::string>& passes, std::uint64_t seed,
-                                             bool has_features);
+                                             bool has_features, bool guides_ghosts = true);
 
     /// Where the light goes that comes into the camera. Throws InputError where that is not known (FateEntrance).
     [[nodiscard]] EnergyAudit audit(std::uint64_t seed, std::uint32_t paths) const {

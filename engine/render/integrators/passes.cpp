@@ -46,7 +46,7 @@ Render by_chance(const View& view, Ways ways, std::uint64_t salt) {
 }
 
 Render ghosts(const View& view, const Integrator& /*integrator*/) {
-    return astray(view, GhostEntrance(*view.camera), 0x3c6ef372fe94f82bULL);
+    return astray(view, GhostEntrance(*view.camera, view.guides_ghosts), 0x3c6ef372fe94f82bULL);
 }
 
 Render faint_ghosts(const View& view, const Integrator& /*integrator*/) {

@@ -29,6 +29,8 @@ struct View {
     const Camera* stray_camera = nullptr;  // in which light goes astray; none: the camera
     std::uint64_t seed = 0;
     bool has_features = false;  // the film keeps depth, albedo and normals too
+    /// Ghosts are searched for where they enter, which takes seconds for a lens; else at once, with more noise.
+    bool guides_ghosts = true;
     PathSettings paths;
 
     [[nodiscard]] const scene::Scene& scene() const { return std::get<scene::Scene>(*world); }

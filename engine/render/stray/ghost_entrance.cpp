@@ -22,11 +22,11 @@ Vec2d in_disc(const pupil::EntranceBeam& beam, double u, double v) {
 
 }  // namespace
 
-GhostEntrance::GhostEntrance(const Camera& camera)
+GhostEntrance::GhostEntrance(const Camera& camera, bool is_guided)
     : front_(camera),
       mirrors_(camera.settings().mirrors),
       guide_(std::make_shared<const GhostGuide>(*camera.lens(), front_.middle(), mirrors_, front_.film_radius_mm(),
-                                                camera.cache())) {}
+                                                is_guided, camera.cache())) {}
 
 std::optional<GhostEntrance::Way> GhostEntrance::draw_way(const pupil::EntranceBeam& beam, bool of_beam,
                                                           PathSampler& numbers) const {

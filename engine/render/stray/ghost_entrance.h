@@ -19,8 +19,8 @@ class GhostEntrance {
     using Entry = render::Entry;
     static constexpr bool shows_points = true;  // spread by what follows, other than their image
 
-    /// Throws InputError for an ideal camera. The camera outlives it.
-    explicit GhostEntrance(const Camera& camera);
+    /// `is_guided`: else any of either is drawn. Throws InputError for an ideal camera. The camera outlives it.
+    explicit GhostEntrance(const Camera& camera, bool is_guided = true);
 
     [[nodiscard]] std::optional<Entry> draw(const LightOrigin& from, const spectral::PathWavelengths& path,
                                             bool is_hero_alone, PathSampler& numbers) const;

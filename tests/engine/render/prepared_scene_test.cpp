@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "engine/render/film/film_image.h"
 #include "tests/complaint.h"
@@ -55,6 +56,29 @@ TEST(PreparedScene, LightGoesAstrayInTheLensBesideAnyModelOfIt) {
     }
     EXPECT_TRUE(says(complaint_about([&] { astray("[camera]\nmodel = \"thin-lens\"\nfocal_length_mm = 50\n", cache); }),
                      "expected \"exact\""));
+}
+
+// Where ghosts are searched for decides how noisy they are, and nothing else: both ways gather the same light, within
+// three of their errors, which are small beside it.
+TEST(PreparedScene, GhostsAreTheSameWithoutASearch) {
+    PreparedScene scene(under_a_sun("[camera]\nlens = \"tessar\"\n"), PixelFilter{}, Cache());
+    const auto gathered = [&](bool is_guided, std::uint32_t samples) {
+        const Film film =
+            render_film(scene.render({"ghosts"}, 1, false, is_guided).front(), {.first = 0, .end = samples}, 1);
+        PixelEstimate sum{};
+        for (int y = 0; y < film.height(); ++y) {
+            for (int x = 0; x < film.width(); ++x) {
+                sum.rgb = sum.rgb + film.light_estimate(x, y).rgb;
+                sum.variance = sum.variance + film.light_estimate(x, y).variance;
+            }
+        }
+        return sum;
+    };
+    const PixelEstimate guided = gathered(true, 1024);
+    const PixelEstimate even = gathered(false, 16384);
+    const double error = std::sqrt(guided.variance.x + even.variance.x);
+    EXPECT_LT(error, 0.05 * guided.rgb.x);
+    EXPECT_NEAR(even.rgb.x, guided.rgb.x, 3.0 * error);
 }
 
 // What the edges of the stop turn aside is missing where light goes straight, whatever model brings it there.
