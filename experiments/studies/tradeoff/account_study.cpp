@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <iterator>
 #include <limits>
@@ -16,10 +17,6 @@
 
 namespace lensproof::studies {
 
-static void fields(JsonArchive& json, Contribution& contribution) {
-    json.field("px", contribution.px).field("ev", contribution.ev).field("ciede2000", contribution.ciede2000);
-}
-
 void fields(JsonArchive& json, PlannedOutcome& outcome) {
     json.field("name", outcome.name)
         .field("model", outcome.model)
@@ -27,6 +24,7 @@ void fields(JsonArchive& json, PlannedOutcome& outcome) {
         .field("measured", outcome.measured)
         .field("speed_up", outcome.speed_up)
         .field("probe_seconds", outcome.probe_seconds)
+        .field("effects", outcome.effects)
         .field("refused", outcome.refused);
 }
 
@@ -79,12 +77,6 @@ PlannedSet read_set(TomlTable& table, findings::ExperimentFile& file) {
     return set;
 }
 
-/// The largest of the parts, over what may be.
-double over_tolerance(const Contribution& found, const Tolerance& tolerance) {
-    return std::max(
-        {found.px.value / tolerance.px, found.ev.value / tolerance.ev, found.ciede2000.value / tolerance.ciede2000});
-}
-
 std::string account_svg(const PlannedSet& set, const std::vector<PlannedOutcome>& outcomes) {
     draw::PlotChart chart{
         .title = set.title,
@@ -123,6 +115,83 @@ Json part_json(const Contribution& found) {
             {"ciede2000_standard_error", found.ciede2000.standard_error}};
 }
 
+Json effects_json(const std::vector<EffectAccount>& accounts) {
+    Json rows = Json::list();
+    for (const EffectAccount& account : accounts) {
+        rows.push_back({{"effects", account.effects},
+                        {"is_bound", account.is_bound},
+                        {"predicted", part_json(account.predicted)},
+                        {"measured", part_json(account.measured)}});
+    }
+    return rows;
+}
+
+/// A part of a contribution, and how the charts call it.
+struct Part {
+    const char* name;
+    const char* unit;
+    Measured Contribution::*of;
+};
+constexpr std::array kParts = {Part{"px", "px", &Contribution::px}, Part{"ev", "EV", &Contribution::ev},
+                               Part{"ciede2000", "CIEDE2000", &Contribution::ciede2000}};
+
+/// Predictions of a part whose error bars hold what was measured, of all that are more than nothing.
+std::string coverage(const std::vector<PlannedOutcome>& outcomes, const Part& part, bool of_bounds) {
+    int all = 0;
+    int held = 0;
+    for (const PlannedOutcome& outcome : outcomes) {
+        for (const EffectAccount& account : outcome.effects) {
+            const Measured& predicted = account.predicted.*part.of;
+            if (account.is_bound == of_bounds && predicted.value > 0.0) {
+                ++all;
+                held += covers(predicted, account.measured.*part.of, of_bounds) ? 1 : 0;
+            }
+        }
+    }
+    return fmt::format("{} of {}", held, all);
+}
+
+std::string scatter_svg(const PlannedSet& set, const std::vector<PlannedOutcome>& outcomes, const Part& part) {
+    draw::PlotChart chart{
+        .title = fmt::format("{}: what effects contribute", set.title),
+        .caption =
+            "Each case's, predicted by the plan and measured by renders with other seeds; what "
+            "is 0 cannot be shown here",
+        .x = {.label = fmt::format("Predicted, {}", part.unit), .scale = draw::AxisScale::logarithmic},
+        .y = {.label = fmt::format("Measured, {}", part.unit), .scale = draw::AxisScale::logarithmic}};
+    std::vector<std::pair<std::string, std::vector<Vec2d>>> by_effect;
+    double least = std::numeric_limits<double>::infinity();
+    double most = 0.0;
+    for (const PlannedOutcome& outcome : outcomes) {
+        for (const EffectAccount& account : outcome.effects) {
+            const double x = (account.predicted.*part.of).value;
+            const double y = (account.measured.*part.of).value;
+            if (!(x > 0.0 && y > 0.0)) {
+                continue;
+            }
+            const std::string label = account.effects + (account.is_bound ? " (at most)" : "");
+            auto found = std::ranges::find(by_effect, label, &decltype(by_effect)::value_type::first);
+            if (found == by_effect.end()) {
+                found = by_effect.insert(by_effect.end(), {label, {}});
+            }
+            found->second.push_back({x, y});
+            least = std::min({least, x, y});
+            most = std::max({most, x, y});
+        }
+    }
+    if (most > 0.0) {
+        chart.curves.push_back({.label = "as predicted", .points = {{least, least}, {most, most}}});
+    }
+    for (std::size_t i = 0; i < by_effect.size(); ++i) {
+        chart.curves.push_back({.label = by_effect[i].first,
+                                .points = by_effect[i].second,
+                                .colour = draw::series_colour(i),
+                                .line = draw::CurveLine::none,
+                                .marker = static_cast<draw::CurveMarker>(1 + i % 7)});
+    }
+    return draw::chart_svg(chart);
+}
+
 findings::Findings account_findings(const PlannedSet& set, const std::vector<PlannedOutcome>& outcomes) {
     findings::Findings found{.subjects_title = "Plans"};
     std::vector<double> speed_ups;
@@ -141,6 +210,7 @@ findings::Findings account_findings(const PlannedSet& set, const std::vector<Pla
                         {"keeps", keeps},
                         {"predicted", part_json(outcome.predicted)},
                         {"measured", part_json(outcome.measured)},
+                        {"effects", effects_json(outcome.effects)},
                         {"speed_up", outcome.speed_up},
                         {"probe_seconds", outcome.probe_seconds}});
     }
@@ -177,6 +247,17 @@ findings::Findings account_findings(const PlannedSet& set, const std::vector<Pla
                                 .width = kSize.width,
                                 .height = kSize.height,
                                 .bytes = account_svg(set, outcomes)});
+    for (const Part& part : kParts) {
+        subject.facts.push_back(
+            {fmt::format("predictions in {} that hold what was measured, by two standard errors", part.unit),
+             coverage(outcomes, part, false)});
+        subject.facts.push_back({fmt::format("bounds in {} that hold it", part.unit), coverage(outcomes, part, true)});
+        subject.pictures.push_back({.name = fmt::format("{}/effects-{}.svg", set.name, part.name),
+                                    .caption = fmt::format("Contributions in {}, predicted and measured", part.unit),
+                                    .width = kSize.width,
+                                    .height = kSize.height,
+                                    .bytes = scatter_svg(set, outcomes, part)});
+    }
     found.subjects.push_back(std::move(subject));
     found.tables = {
         {"planned", Json{{"name", set.name}, {"tolerance", set.stated_tolerance}, {"cases", std::move(rows)}}}};
@@ -197,12 +278,14 @@ PlannedOutcome hold_to_account(const PlannedCase& planned, const Tolerance& tole
         constexpr std::uint64_t kOtherSeeds = 1000;
         other.probe.seed += kOtherSeeds;
         other.samples *= 4;
-        const PlannedCheck found = check_plan(planned.setup, plan.render, other);
+        other.stray_samples *= 8;
+        const PlannedCheck found = check_plan(planned.setup, plan.render, accountable_passes(plan), other);
         outcome.model = plan.render.rung.name;
         outcome.predicted = plan.checked;
         outcome.measured = found.error;
-        outcome.speed_up = found.speed_up;
+        outcome.speed_up = found.full_ns_per_sample / found.ns_per_sample;
         outcome.probe_seconds = plan.probe_seconds;
+        outcome.effects = account_effects(planned.setup, plan, other);
     } catch (const InputError& error) {
         outcome.refused = error.what();
     }

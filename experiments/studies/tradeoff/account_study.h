@@ -5,6 +5,7 @@
 
 #include "engine/base/toml.h"
 #include "experiments/findings/study.h"
+#include "experiments/studies/tradeoff/effect_account.h"
 #include "experiments/studies/tradeoff/plan.h"
 
 namespace lensproof::studies {
@@ -18,7 +19,8 @@ struct PlannedCase {
 };
 
 /// What a plan said of a case, and what came of it: the planned render against the full model with seeds that the plan
-/// has not seen and four times its samples. Passes are not in it.
+/// has not seen and more samples. The full model's stray light is in it, but for what only a bound speaks of: faint
+/// ghosts and diffraction, unless the plan renders them.
 struct PlannedOutcome {
     std::string name;
     std::string model;
@@ -26,6 +28,7 @@ struct PlannedOutcome {
     Contribution measured;
     double speed_up = 1.0;
     double probe_seconds = 0.0;
+    std::vector<EffectAccount> effects;
     std::string refused;  // why there is no plan; else empty
 };
 void fields(JsonArchive& json, PlannedOutcome& outcome);
@@ -38,7 +41,8 @@ bool keeps_tolerance(const PlannedOutcome& outcome, const Tolerance& tolerance);
 
 /// The tables: name, title (optional), scene, tolerance, cases = [{ name, scene = { … } }], each of which is put over
 /// the scene. Findings: how many keep the tolerance, with the binomial's standard error; that none is slower than the
-/// full model by more than a twentieth; a table "planned" of all.
+/// full model by more than a twentieth; each effect's contribution as predicted against the measured one, and how many
+/// error bars hold it; a table "planned" of all.
 findings::Study read_planned(findings::ExperimentFile& file);
 
 }  // namespace lensproof::studies

@@ -2,113 +2,24 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
-#include <iterator>
-#include <limits>
+#include <optional>
+#include <utility>
 
-#include "engine/optics/ghost_path.h"
 #include "engine/optics/paraxial.h"
 #include "engine/optics/trace.h"
-#include "engine/render/film/film_image.h"
 #include "engine/spectral/wavelengths.h"
-#include "experiments/studies/tradeoff/pilot_changes.h"
-#include "experiments/studies/tradeoff/processor_time.h"
+#include "experiments/studies/tradeoff/effect_kinds.h"
 #include "experiments/studies/tradeoff/rungs.h"
 
 namespace lensproof::studies {
 
-using formats::Image;
-
-Pilot::Pilot(const render::SceneSetup& setup, const PilotSettings& settings)
-    : setup_(on_rung(setup, {.name = kReferenceRung})),
-      small_(with_pixels(setup_, settings.pixels)),
-      settings_(settings),
-      camera_(std::make_unique<render::Camera>(setup_.camera, setup_.spectral, render::PixelFilter{}, settings.cache,
-                                               true)),
-      points_(probe_points(*camera_, settings.points)),
-      full_(render(setup_, 0)) {
-    find_depth();
-}
-
-Pilot::Pictures Pilot::render(const render::SceneSetup& setup, int first_seed) const {
-    const render::PreparedScene scene(with_pixels(setup, settings_.pixels), render::PixelFilter{}, settings_.cache);
-    Pictures pictures;
-    const double start = processor_seconds();
-    for (int seed = 0; seed < settings_.seeds; ++seed) {
-        const render::Film film = render::render_film(
-            scene.render(settings_.probe.seed + static_cast<std::uint64_t>(first_seed + seed), false),
-            {.first = 0, .end = static_cast<std::uint32_t>(settings_.samples)}, settings_.probe.threads);
-        pictures.rgb.push_back(render::film_rgb(film));
-    }
-    const double samples = static_cast<double>(width()) * height() * settings_.samples * settings_.seeds;
-    pictures.ns_per_sample = 1e9 * (processor_seconds() - start) / samples;
-    return pictures;
-}
-
-void Pilot::find_depth() {
-    depth_.assign(static_cast<std::size_t>(width()) * static_cast<std::size_t>(height()),
-                  std::numeric_limits<double>::quiet_NaN());
-    if (setup_.chart) {
-        std::ranges::fill(depth_, setup_.chart->placement.distance_mm);
-        return;
-    }
-    render::SceneSetup sharp = small_;
-    sharp.max_bounces = 0;
-    const render::PreparedScene scene(sharp, render::PixelFilter{}, settings_.cache);
-    const render::Film film =
-        render::render_film(scene.render(settings_.probe.seed, true), {.first = 0, .end = 4}, settings_.probe.threads);
-    for (int y = 0; y < height(); ++y) {
-        for (int x = 0; x < width(); ++x) {
-            if (film.coverage(x, y) > 0.0) {
-                depth_[index(x, y)] = film.features(x, y).depth_mm;
-            }
-        }
-    }
-}
-
-double Pilot::image_height(int x, int y) const {
-    const render::Sensor& sensor = small_.camera.sensor;
-    return std::hypot(x - sensor.axis().x, y - sensor.axis().y) * sensor.pixel_pitch_mm / sensor.half_diagonal_mm();
-}
-
-Vec2d Pilot::outwards(int x, int y) const {
-    const Vec2d from = Vec2d{static_cast<double>(x), static_cast<double>(y)} - small_.camera.sensor.axis();
-    const double distance = std::hypot(from.x, from.y);
-    return distance > 0.0 ? (1.0 / distance) * from : Vec2d{};
-}
-
-double Pilot::noise_of_sample() const {
-    return relative_noise(full_.rgb) * std::sqrt(static_cast<double>(settings_.samples));
-}
-
 namespace {
 
-Measured rms(const std::vector<double>& values) {
-    double sum = 0.0;
-    double fourth = 0.0;
-    for (const double value : values) {
-        sum += value * value;
-        fourth += value * value * value * value;
-    }
-    const auto n = static_cast<double>(std::max<std::size_t>(1, values.size()));
-    return root({sum / n, std::sqrt(std::max(0.0, fourth / n - std::pow(sum / n, 2)) / n)});
-}
-
-/// What the pilot's picture loses or gains by a change that is done to each of its seeds.
-Measured seen(const Pilot& pilot, const std::function<Image(const Image&)>& change) {
-    std::vector<Image> changed;
-    std::ranges::transform(pilot.full().rgb, std::back_inserter(changed), change);
-    return picture_errors(changed, pilot.full().rgb, pilot.settings().probe.threads).ciede2000.bias;
-}
-
-/// Of light along the axis, at each stratum: what surfaces and glass leave, the glass alone, and what of it comes by
-/// two reflections and by four at most.
+/// R, G, B of light along the axis: through a lens without losses, through its surfaces and glass, and the glass alone.
 struct AxialLight {
-    Vec3d white;  // R, G, B of a lens without losses
+    Vec3d white;
     Vec3d all;
-    Vec3d glass;  // absorption alone
-    double ghosts = 0.0;
-    double faint_ghosts = 0.0;
+    Vec3d glass;
 };
 
 double glass_transmittance(const optics::Lens& lens, double wavelength_nm) {
@@ -119,25 +30,6 @@ double glass_transmittance(const optics::Lens& lens, double wavelength_nm) {
             optics::internal_transmittance(lens.surfaces[i].medium, wavelength_nm, std::abs(thickness)).value_or(1.0);
     }
     return transmittance;
-}
-
-/// The light of all pairs of surfaces over that which goes straight through.
-double axial_ghosts(const optics::TraceLens<double>& lens, const optics::StrayMirrors<double>& mirrors) {
-    const Ray<double> axis{{0.0, 0.0, lens.surfaces.front().vertex_z - 1.0}, {0.0, 0.0, 1.0}};
-    const auto straight = optics::trace<optics::Direction::forward>(lens, axis);
-    const int surfaces = static_cast<int>(lens.surfaces.size());
-    double sum = 0.0;
-    for (int last = 1; last <= surfaces; ++last) {
-        for (int first = 0; first < last; ++first) {
-            const optics::GhostPath path{last, first};
-            if (optics::path_fault(path, surfaces).empty()) {
-                const auto ghost =
-                    optics::trace_ghost<optics::Direction::forward, optics::Rims::follow>(lens, path, axis, mirrors);
-                sum += ghost.status == optics::RayStatus::ok ? ghost.transmittance : 0.0;
-            }
-        }
-    }
-    return straight.transmittance > 0.0 ? sum / straight.transmittance : 0.0;
 }
 
 AxialLight axial_light(const Pilot& pilot) {
@@ -156,11 +48,6 @@ AxialLight axial_light(const Pilot& pilot) {
         light.all = light.all + all * rgb;
         light.glass = light.glass + glass_transmittance(lens, nm) * rgb;
     }
-    if (!lens.has_mirrors()) {
-        light.ghosts =
-            axial_ghosts(optics::at_wavelength<double>(lens, spectral::kLineD), pilot.setup().camera.mirrors);
-        light.faint_ghosts = light.ghosts * light.ghosts;
-    }
     return light;
 }
 
@@ -169,71 +56,11 @@ Vec3d ratio(const Vec3d& a, const Vec3d& b) {
     return {over(a.x, b.x), over(a.y, b.y), over(a.z, b.z)};
 }
 
-/// One constant gain for all of the picture.
-Effect gain_effect(const Pilot& pilot, const std::string& name, const Vec3d& gain) {
-    return {.name = name,
-            .contribution = {
-                .px = {}, .ev = {std::abs(std::log2(gain.y)), 0.0}, .ciede2000 = seen(pilot, [&](const Image& picture) {
-                                                                        return with_gain(
-                                                                            picture, [&](int, int) { return gain; });
-                                                                    })}};
-}
-
 void add_losses(const Pilot& pilot, const AxialLight& light, std::vector<Effect>& effects) {
     const Vec3d surfaces = ratio(light.glass, light.all);  // without Fresnel's losses there would be so much more
     effects.push_back(gain_effect(pilot, "fresnel-loss", {surfaces.y, surfaces.y, surfaces.y}));
     effects.push_back(gain_effect(pilot, "coating-colour", {surfaces.x / surfaces.y, 1.0, surfaces.z / surfaces.y}));
     effects.push_back(gain_effect(pilot, "absorption", ratio(light.white, light.glass)));
-}
-
-/// Light of ghosts as an even veil, as bright as the share of the picture's mean.
-Effect veil_effect(const Pilot& pilot, const std::string& name, double share) {
-    Vec3d mean;
-    const Image& first = pilot.full().rgb.front();
-    const double pixels = static_cast<double>(first.width) * first.height;
-    std::vector<double> luminances;
-    for (int y = 0; y < first.height; ++y) {
-        for (int x = 0; x < first.width; ++x) {
-            mean = mean + (1.0 / pixels) * Vec3d{static_cast<double>(first.at(x, y, 0)),
-                                                 static_cast<double>(first.at(x, y, 1)),
-                                                 static_cast<double>(first.at(x, y, 2))};
-        }
-    }
-    // Where there is light: what a veil does to a black corner is told by the colours.
-    double squares = 0.0;
-    double light = 0.0;
-    for (int y = 0; y < first.height; ++y) {
-        for (int x = 0; x < first.width; ++x) {
-            const auto green = static_cast<double>(first.at(x, y, 1));
-            if (green > 0.0) {
-                squares += green * std::pow(std::log2(1.0 + share * mean.y / green), 2);
-                light += green;
-            }
-        }
-    }
-    Effect effect{.name = name, .is_bound = true};
-    effect.contribution.ev = {light > 0.0 ? std::sqrt(squares / light) : 0.0, 0.0};
-    effect.contribution.ciede2000 = seen(pilot, [&](Image picture) {
-        for (std::size_t i = 0; i + 2 < picture.pixels.size(); i += 3) {
-            picture.pixels[i] += static_cast<float>(share * mean.x);
-            picture.pixels[i + 1] += static_cast<float>(share * mean.y);
-            picture.pixels[i + 2] += static_cast<float>(share * mean.z);
-        }
-        return picture;
-    });
-    return effect;
-}
-
-/// How a blur of that rms radius, in the scene's pixels, is seen.
-Effect blur_effect(const Pilot& pilot, const std::string& name, const PixelSpread& spread_px) {
-    std::vector<double> all;
-    for (int y = 0; y < pilot.height(); ++y) {
-        for (int x = 0; x < pilot.width(); ++x) {
-            all.push_back(spread_px(x, y));
-        }
-    }
-    const auto blurred = [&](const Image& picture) { return with_spread(picture, spread_px); };
-    return {.name = name, .contribution = {.px = rms(all), .ev = {}, .ciede2000 = seen(pilot, blurred)}};
 }
 
 /// A number of the probe's points over the image height.
@@ -253,29 +80,6 @@ double outward(const Pilot& pilot, std::size_t point, const Vec2d& shift) {
     const Vec2d from = pilot.points()[point].at_px - pilot.setup().camera.sensor.axis();
     const double distance = std::hypot(from.x, from.y);
     return distance > 0.0 ? (shift.x * from.x + shift.y * from.y) / distance : 0.0;
-}
-
-/// Radial shifts of R, G and B.
-Effect shift_effect(const Pilot& pilot, const std::string& name, const std::array<RadialMean, 3>& shift_px) {
-    std::vector<double> all;
-    for (int y = 0; y < pilot.height(); ++y) {
-        for (int x = 0; x < pilot.width(); ++x) {
-            double square = 0.0;
-            for (const RadialMean& shift : shift_px) {
-                square += std::pow(shift.at(pilot.image_height(x, y)), 2) / 3.0;
-            }
-            all.push_back(std::sqrt(square));
-        }
-    }
-    return {.name = name,
-            .contribution = {.px = rms(all), .ev = {}, .ciede2000 = seen(pilot, [&](const Image& picture) {
-                                                           return with_shift(picture, [&](int x, int y, int c) {
-                                                               const double by =
-                                                                   shift_px[static_cast<std::size_t>(c)].at(
-                                                                       pilot.image_height(x, y));
-                                                               return by * pilot.outwards(x, y);
-                                                           });
-                                                       })}};
 }
 
 void add_geometry(const Pilot& pilot, const std::vector<PointLook>& exact, const std::vector<PointLook>& thin,
@@ -325,33 +129,6 @@ Effect defocus(const Pilot& pilot) {
                        });
 }
 
-/// The rms width of an Airy disc does not exist; its core is a Gaussian's of σ = 0.42 λN.
-Effect diffraction(const Pilot& pilot) {
-    constexpr double kSigma = 0.42;
-    const double um = kSigma * 0.55 * pilot.setup().camera.f_number;
-    const double px = std::sqrt(2.0) * 1e-3 * um / pilot.setup().camera.sensor.pixel_pitch_mm;
-    return blur_effect(pilot, "diffraction", [px](int, int) { return px; });
-}
-
-/// Brightness over the frame that falls as `light` says, 1 on the axis: without it the picture would be brighter.
-Effect falloff_effect(const Pilot& pilot, const std::string& name, const RadialMean& light) {
-    std::vector<double> ev;
-    for (int y = 0; y < pilot.height(); ++y) {
-        for (int x = 0; x < pilot.width(); ++x) {
-            ev.push_back(std::log2(std::max(1e-3, light.at(pilot.image_height(x, y)))));
-        }
-    }
-    return {.name = name,
-            .contribution = {.px = {}, .ev = rms(ev), .ciede2000 = seen(pilot, [&](const Image& picture) {
-                                                          return with_gain(picture, [&](int x, int y) {
-                                                              const double gain =
-                                                                  1.0 /
-                                                                  std::max(1e-3, light.at(pilot.image_height(x, y)));
-                                                              return Vec3d{gain, gain, gain};
-                                                          });
-                                                      })}};
-}
-
 void add_falloff(const Pilot& pilot, const std::vector<PointLook>& exact, const std::vector<PointLook>& thin,
                  std::vector<Effect>& effects) {
     const auto nearest = std::ranges::min_element(pilot.points(), {}, &ProbePoint::image_height);
@@ -359,45 +136,15 @@ void add_falloff(const Pilot& pilot, const std::vector<PointLook>& exact, const 
     const RadialMean cos4 = over_heights(pilot, [&](std::size_t i) -> std::optional<double> {
         return thin[i].even_light > 0.0 ? std::optional(thin[i].even_light / thin[middle].even_light) : std::nullopt;
     });
+    // Both pass the same along the axis.
     const RadialMean rims = over_heights(pilot, [&](std::size_t i) -> std::optional<double> {
-        const double of_thin = thin[i].even_light / thin[middle].even_light;
-        return of_thin > 0.0 ? std::optional(exact[i].even_light / exact[middle].even_light / of_thin) : std::nullopt;
+        return thin[i].even_light > 0.0 ? std::optional(exact[i].even_light / thin[i].even_light) : std::nullopt;
     });
     effects.push_back(falloff_effect(pilot, "vignetting", rims));
     effects.push_back(falloff_effect(pilot, "cos4", cos4));
 }
 
-/// By a pass of its own where the lens's walls are not black.
-Effect barrel(const Pilot& pilot) {
-    Effect effect{.name = "barrel", .contribution = {}};
-    const PilotSettings& settings = pilot.settings();
-    if (pilot.setup().chart || pilot.camera().lens()->barrel.is_black()) {
-        return effect;
-    }
-    const render::PreparedScene scene(with_pixels(pilot.setup(), settings.pixels), render::PixelFilter{},
-                                      settings.cache);
-    std::vector<Image> with;
-    for (int seed = 0; seed < settings.seeds; ++seed) {
-        const std::vector<render::Render> passes =
-            scene.render(std::vector<std::string>{"imaged", "barrel"},
-                         settings.probe.seed + static_cast<std::uint64_t>(seed), false);
-        const Image light = render::film_rgb(render::render_film(
-            passes[1], {.first = 0, .end = static_cast<std::uint32_t>(settings.samples)}, settings.probe.threads));
-        with.push_back(pilot.full().rgb[static_cast<std::size_t>(seed)]);
-        std::ranges::transform(with.back().pixels, light.pixels, with.back().pixels.begin(), std::plus<>());
-    }
-    effect.contribution = difference(pilot, with);
-    return effect;
-}
-
 }  // namespace
-
-Contribution difference(const Pilot& pilot, const std::vector<Image>& without) {
-    const PictureErrors found = picture_errors(without, pilot.full().rgb, pilot.settings().probe.threads);
-    return {.px = {},
-            .ev = {std::abs(found.exposure_ev.value), found.exposure_ev.standard_error},
-            .ciede2000 = found.ciede2000.bias};
-}
 
 std::vector<Effect> lens_effects(const Pilot& pilot) {
     const PilotSettings& settings = pilot.settings();
@@ -407,16 +154,11 @@ std::vector<Effect> lens_effects(const Pilot& pilot) {
                                      true);
     const std::vector<PointLook> exact = look_at_points(pilot.camera(), pilot.points(), settings.probe);
     const std::vector<PointLook> thin = look_at_points(thin_camera, pilot.points(), settings.probe);
-    const AxialLight light = axial_light(pilot);
     std::vector<Effect> effects;
     add_geometry(pilot, exact, thin, effects);
     effects.push_back(defocus(pilot));
-    effects.push_back(diffraction(pilot));
     add_falloff(pilot, exact, thin, effects);
-    add_losses(pilot, light, effects);
-    effects.push_back(veil_effect(pilot, "ghosts", light.ghosts));
-    effects.push_back(veil_effect(pilot, "faint-ghosts", light.faint_ghosts));
-    effects.push_back(barrel(pilot));
+    add_losses(pilot, axial_light(pilot), effects);
     return effects;
 }
 

@@ -1,76 +1,19 @@
 #include "experiments/studies/tradeoff/plan.h"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
 #include <chrono>
 #include <cmath>
 #include <iterator>
-#include <optional>
+#include <span>
 
 #include "engine/base/input_error.h"
-#include "engine/base/text.h"
 
 namespace lensproof::studies {
 
 namespace {
-
-using formats::Image;
-
-constexpr double kCovered = 2.0;  // standard errors that a contribution is taken to be larger by
-
-double at_most(const Measured& measured) {
-    return measured.value + kCovered * measured.standard_error;
-}
-
-/// What is left out so far: places and colours add up as independent errors do, exposures as they are.
-struct LeftOut {
-    double px = 0.0;
-    double ev = 0.0;
-    double ciede2000 = 0.0;
-
-    void add(const Contribution& more) {
-        px = std::hypot(px, at_most(more.px));
-        ev += at_most(more.ev);
-        ciede2000 = std::hypot(ciede2000, at_most(more.ciede2000));
-    }
-    [[nodiscard]] bool keeps(const Tolerance& tolerance) const {
-        return px <= tolerance.px && ev <= tolerance.ev && ciede2000 <= tolerance.ciede2000;
-    }
-};
-
-}  // namespace
-
-Contribution surely(const Contribution& found) {
-    const auto least = [](const Measured& measured) {
-        return Measured{std::max(0.0, measured.value - kCovered * measured.standard_error), 0.0};
-    };
-    return {least(found.px), least(found.ev), least(found.ciede2000)};
-}
-
-bool keeps(const Contribution& found, const Tolerance& tolerance) {
-    LeftOut alone;
-    alone.add(found);
-    return alone.keeps(tolerance);
-}
-
-namespace {
-
-/// What keeps a contribution from being left out: "0.8 px of 0.5".
-std::string excess(const Contribution& found, const Tolerance& tolerance) {
-    std::vector<std::string> parts;
-    const auto add = [&](const Measured& measured, double limit, const char* unit) {
-        if (at_most(measured) > limit) {
-            parts.push_back(fmt::format("{:.2g} {} where {:g} may be", at_most(measured), unit, limit));
-        }
-    };
-    add(found.px, tolerance.px, "px");
-    add(found.ev, tolerance.ev, "EV");
-    add(found.ciede2000, tolerance.ciede2000, "CIEDE2000");
-    return fmt::format("{}", fmt::join(parts, ", "));
-}
 
 /// A way to render that leaves effects out, and which it has.
 struct Candidate {
@@ -109,53 +52,31 @@ bool is_reference(const Candidate& candidate) {
     return candidate.rung.name == kReferenceRung;
 }
 
-/// Renders of the scene with fewer bounces or wavelengths, from the fewest on, until one keeps the tolerance.
+/// Fewer bounces or wavelengths.
 struct Reduced {
     int value = 0;         // that is enough
     Contribution without;  // of the largest value that is not, or of the least of all where that is enough
     double ns_per_sample = 0.0;
 };
 
-template <class With>
-Reduced enough_of(const Pilot& pilot, const std::vector<int>& values, int all, const Tolerance& tolerance,
-                  const With& with) {
-    Reduced found{.value = all, .without = {}, .ns_per_sample = pilot.full().ns_per_sample};
-    for (const int value : values) {
-        if (value >= all) {
-            break;
-        }
-        const Pilot::Pictures pictures = pilot.render(with(value), 0);
-        const Contribution without = difference(pilot, pictures.rgb);
-        found.without = without;
-        if (keeps(without, tolerance)) {
-            found.value = value;
-            found.ns_per_sample = pictures.ns_per_sample;
-            break;
-        }
-    }
-    return found;
-}
-
-/// What a candidate gets wrong, and what a sample of it costs.
-struct Checked {
-    Contribution error;
-    double ns_per_sample = 0.0;
-};
-
-Checked check(const Pilot& pilot, const PlannedRender& planned, const std::vector<Image>& full) {
+/// Of a planned render: its stray passes are in it where `full` has any.
+PlannedCheck check(const Pilot& pilot, const PlannedRender& planned, const std::vector<std::string>& passes,
+                   const Pilot::Pictures& full) {
     const PilotSettings& settings = pilot.settings();
     const render::SceneSetup setup = planned_setup(pilot.setup(), planned);
     const render::Camera camera(setup.camera, setup.spectral, render::PixelFilter{}, settings.cache, true);
     const FieldErrors field = field_errors(pilot.camera(), camera, pilot.points(), settings.probe);
-    const Pilot::Pictures pictures = pilot.render(setup, settings.seeds);  // as those of the full model
-    const PictureErrors found = picture_errors(pictures.rgb, full, settings.probe.threads);
+    const Pilot::Pictures pictures = pilot.render(setup, passes, settings.seeds);  // as those of the full model
+    const PictureErrors found = picture_errors(pictures.rgb, full.rgb, settings.probe.threads);
     const Measured& image = field.frame.image_px;
     const Measured& blur = field.frame.blur_px;
+    const Measured whole = {std::abs(found.exposure_ev.value), found.exposure_ev.standard_error};
     return {
         .error = {.px = {std::hypot(image.value, blur.value), std::hypot(image.standard_error, blur.standard_error)},
-                  .ev = field.frame.exposure_ev,
+                  .ev = std::ranges::max(field.frame.exposure_ev, whole, {}, &Measured::value),
                   .ciede2000 = found.ciede2000.bias},
-        .ns_per_sample = pictures.ns_per_sample};
+        .ns_per_sample = pictures.ns_per_sample,
+        .full_ns_per_sample = full.ns_per_sample};
 }
 
 /// Parts of a time that are saved.
@@ -175,24 +96,52 @@ class Planner {
         for (Effect& effect : lens_effects(pilot_)) {
             plan(std::move(effect));
         }
+        std::vector<Effect> stray = stray_effects(pilot_);
+        full_ns_ = pilot_.full().ns_per_sample;
+        for (const Effect& effect : stray) {
+            full_ns_ += effect.ns_per_sample;
+        }
+        decide_stray_light(std::move(stray));
+        const auto cheapest = std::ranges::find_if(candidates(), [&](const Candidate& candidate) {
+            return is_reference(candidate) || without(candidate).keeps(tolerance_);
+        });
+        budget_ = without(*cheapest);
         choose_wavelengths();
         choose_bounces();
-        decide_stray_light();
-        choose_camera();
+        choose_camera({cheapest, candidates().end()});
         plan_.noise_ev = std::log2(1.0 + pilot_.noise_of_sample() /
                                              std::sqrt(static_cast<double>(pilot_.setup().samples_per_pixel)));
         return std::move(plan_);
     }
 
   private:
+    /// Renders of the scene with less of something, from the least on, until what that leaves out may be left out too.
+    template <class With>
+    Reduced enough_of(const std::vector<int>& values, int all, const With& with) {
+        Reduced found{.value = all, .without = {}, .ns_per_sample = pilot_.full().ns_per_sample};
+        for (const int value : values) {
+            if (value >= all) {
+                break;
+            }
+            const Pilot::Pictures pictures = pilot_.render(with(value), {}, 0);
+            found.without = difference(pilot_, pictures.rgb);
+            LeftOut more = budget_;
+            more.add(found.without);
+            if (more.keeps(tolerance_)) {
+                budget_ = more;
+                return {.value = value, .without = found.without, .ns_per_sample = pictures.ns_per_sample};
+            }
+        }
+        return found;
+    }
+
     void choose_wavelengths() {
         const int all = pilot_.setup().spectral.strata();
-        const Reduced found = enough_of(pilot_, {4, 8, 16, 32}, all, tolerance_, [&](int count) {
+        const Reduced found = enough_of({4, 8, 16, 32}, all, [&](int count) {
             return on_rung(pilot_.setup(), {.name = kReferenceRung, .wavelengths = count});
         });
         if (found.value < all) {
             plan_.render.rung.wavelengths = found.value;
-            budget_.add(found.without);
         }
         plan_reduced("wavelengths", found, all, "wavelengths");
     }
@@ -204,15 +153,12 @@ class Planner {
                 "a chart in an even world is lit without scattering";
             return;
         }
-        const Reduced found = enough_of(pilot_, {1, 2, 3, 4, 6, 8}, all, tolerance_, [&](int bounces) {
+        const Reduced found = enough_of({1, 2, 3, 4, 6, 8}, all, [&](int bounces) {
             render::SceneSetup setup = pilot_.setup();
             setup.max_bounces = bounces;
             return setup;
         });
         plan_.render.max_bounces = found.value;
-        if (found.value < all) {
-            budget_.add(found.without);
-        }
         plan_reduced("global-illumination", found, all, "scatterings on a path");
     }
 
@@ -224,60 +170,51 @@ class Planner {
     void plan_reduced(const std::string& name, const Reduced& found, int all, const std::string& what) {
         PlannedEffect& planned = plan({.name = name, .contribution = found.without});
         planned.is_modelled = found.value == all;
-        planned.saves_percent = saved_percent(pilot_.full().ns_per_sample, found.ns_per_sample);
+        planned.saves_percent = saved_percent(full_ns_, full_ns_ - pilot_.full().ns_per_sample + found.ns_per_sample);
         const std::string more = excess(found.without, tolerance_);
         planned.why = found.value < all ? fmt::format("{} {} are enough of {}", found.value, what, all)
-                      : more.empty()    ? fmt::format("there are but {}", all)
-                                        : fmt::format("fewer than {} err by {}", all, more);
+                      : !more.empty()
+                          ? fmt::format("fewer than {} err by {}", all, more)
+                          : fmt::format("there are but {}, or fewer are too few beside what is left out already", all);
     }
 
-    /// Light that does not go straight: a pass each, which a render has or has not.
-    void decide_stray_light() {
-        constexpr double kOfTwoPasses = 50.0;
-        const bool can = !pilot_.setup().chart && !pilot_.camera().lens()->has_mirrors();
-        const std::vector<std::pair<std::string, std::string>> passes = {{"ghosts", "ghosts"},
-                                                                         {"faint-ghosts", "faint-ghosts"},
-                                                                         {"barrel", "barrel"},
-                                                                         {"diffraction", "diffracted"}};
-        for (PlannedEffect& planned : plan_.effects) {
-            const auto pass =
-                std::ranges::find(passes, planned.effect.name, &std::pair<std::string, std::string>::first);
-            if (pass == passes.end()) {
-                continue;
-            }
+    /// Light that does not go straight: a pass each, which a render has or has not. The faintest are left out first.
+    void decide_stray_light(std::vector<Effect> stray) {
+        std::ranges::stable_sort(stray, {},
+                                 [&](const Effect& effect) { return over_tolerance(effect.contribution, tolerance_); });
+        for (Effect& effect : stray) {
+            PlannedEffect& planned = plan(std::move(effect));
+            const Effect& found = planned.effect;
             LeftOut with = budget_;
-            with.add(planned.effect.contribution);
-            planned.saves_percent = kOfTwoPasses;
+            with.add(found.contribution);
+            planned.saves_percent = saved_percent(full_ns_, full_ns_ - found.ns_per_sample);
             if (with.keeps(tolerance_)) {
                 budget_ = with;
-                planned.why = fmt::format("at most {}; a pass of its own would take as many samples again",
-                                          words(planned.effect.contribution));
-            } else if (!can) {
+                planned.why = fmt::format("at most {}", words_of(found.contribution));
+            } else if (found.pass.empty()) {
                 planned.why =
-                    "it would matter, and has no pass here: charts in an even world and lenses with mirrors have none";
+                    fmt::format("{}, but it has no pass here: {}", words_of(found.contribution), found.no_pass);
             } else {
                 planned.is_modelled = true;
-                plan_.render.passes.push_back(pass->second);
-                const std::string more = excess(planned.effect.contribution, tolerance_);
-                planned.why = more.empty() ? fmt::format("it may be {}, too much beside what is left out already",
-                                                         words(planned.effect.contribution))
-                                           : fmt::format("it may be {}", more);
+                plan_.render.passes.push_back(found.pass);
+                const std::string more = excess(found.contribution, tolerance_);
+                planned.why = more.empty() ? fmt::format("{}, too much beside what is left out already",
+                                                         words_of(found.contribution))
+                                           : more;
             }
         }
     }
 
-    /// The cheapest camera whose missing effects are within what is left, and which the check does not refuse.
-    void choose_camera() {
-        const Pilot::Pictures full = pilot_.render(pilot_.setup(), pilot_.settings().seeds);
-        for (const Candidate& candidate : candidates()) {
+    /// The cheapest of these cameras that the check does not refuse.
+    void choose_camera(std::span<const Candidate> cameras) {
+        const Pilot::Pictures full = pilot_.render(pilot_.setup(), {}, pilot_.settings().seeds);
+        const double stray_ns = kept_stray_ns();
+        for (const Candidate& candidate : cameras) {
             PlannedRender planned = plan_.render;
             planned.rung.model = candidate.rung.model;
             planned.rung.name = candidate.rung.name;
-            if (!is_reference(candidate) && (!planned.passes.empty() || !is_predicted(candidate))) {
-                continue;
-            }
             try {
-                const Checked checked = check(pilot_, planned, full.rgb);
+                const PlannedCheck checked = check(pilot_, planned, {}, full);
                 if (!is_reference(candidate) && !keeps(surely(checked.error), tolerance_)) {
                     plan_.refused.push_back(
                         fmt::format("{}: {}", candidate.rung.name, excess(surely(checked.error), tolerance_)));
@@ -285,8 +222,9 @@ class Planner {
                 }
                 plan_.render = planned;
                 plan_.checked = checked.error;
-                plan_.speed_up = full.ns_per_sample / checked.ns_per_sample;
-                say_of_camera(candidate, saved_percent(full.ns_per_sample, checked.ns_per_sample));
+                plan_.speed_up = full_ns_ / (checked.ns_per_sample + stray_ns);
+                say_of_camera(candidate,
+                              saved_percent(full_ns_, full_ns_ - full.ns_per_sample + checked.ns_per_sample));
                 return;
             } catch (const InputError& error) {  // this lens has no such model
                 plan_.refused.push_back(fmt::format("{}: {}", candidate.rung.name, error.what()));
@@ -294,14 +232,24 @@ class Planner {
         }
     }
 
-    [[nodiscard]] bool is_predicted(const Candidate& candidate) const {
+    /// Of the passes that are rendered, a sample.
+    [[nodiscard]] double kept_stray_ns() const {
+        double ns = 0.0;
+        for (const PlannedEffect& planned : plan_.effects) {
+            ns += planned.is_modelled ? planned.effect.ns_per_sample : 0.0;
+        }
+        return ns;
+    }
+
+    /// What is left out so far, and what that camera lacks.
+    [[nodiscard]] LeftOut without(const Candidate& candidate) const {
         LeftOut left_out = budget_;
         for (const PlannedEffect& planned : plan_.effects) {
             if (belongs_to_camera(planned.effect.name) && std::ranges::count(candidate.has, planned.effect.name) == 0) {
                 left_out.add(planned.effect.contribution);
             }
         }
-        return left_out.keeps(tolerance_);
+        return left_out;
     }
 
     void say_of_camera(const Candidate& candidate, double saves_percent) {
@@ -312,87 +260,40 @@ class Planner {
             }
             if (!belongs_to_camera(name)) {  // losses on the axis and cos⁴, which every camera here has
                 planned.is_modelled = true;
-                planned.why = fmt::format("{}, and no model is cheaper without it", words(planned.effect.contribution));
+                planned.why =
+                    fmt::format("{}, and no model is cheaper without it", words_of(planned.effect.contribution));
                 continue;
             }
             planned.is_modelled = std::ranges::count(candidate.has, name) > 0;
             if (!planned.is_modelled) {
                 planned.saves_percent = saves_percent;
                 planned.why =
-                    fmt::format("{}, which {} may lack", words(planned.effect.contribution), candidate.rung.name);
+                    fmt::format("{}, which {} may lack", words_of(planned.effect.contribution), candidate.rung.name);
             } else {
                 const std::string more = excess(planned.effect.contribution, tolerance_);
                 planned.why = more.empty() ? fmt::format("{}; {} has it with what else is needed",
-                                                         words(planned.effect.contribution), candidate.rung.name)
+                                                         words_of(planned.effect.contribution), candidate.rung.name)
                                            : more;
             }
         }
     }
 
-    /// The largest of a contribution's parts, each by what is tolerated.
-    [[nodiscard]] std::string words(const Contribution& found) const {
-        std::vector<std::string> parts;
-        const auto add = [&](const Measured& measured, const char* unit) {
-            if (at_most(measured) > 0.0) {
-                parts.push_back(fmt::format("{:.2g} {}", at_most(measured), unit));
-            }
-        };
-        add(found.px, "px");
-        add(found.ev, "EV");
-        add(found.ciede2000, "CIEDE2000");
-        return parts.empty() ? "nothing" : fmt::format("{}", fmt::join(parts, ", "));
-    }
-
     Pilot pilot_;
     Tolerance tolerance_;
     LeftOut budget_;
+    double full_ns_ = 0.0;  // of a sample with all passes
     Plan plan_;
 };
 
-Json limit_json(double limit) {
-    return std::isfinite(limit) ? Json(limit) : Json(nullptr);
-}
-
 }  // namespace
 
-Tolerance parse_tolerance(const std::string& text) {
-    if (text == "visible") {
-        return {.px = 1.0, .ev = 0.03, .ciede2000 = 1.0};
-    }
-    const auto refuse = [&](const std::string& part) {
-        throw InputError(
-            fmt::format("--tolerance is \"{}\": {}, expected numbers above 0 with px, ev and de, such as "
-                        "0.5px,0.02ev,1de, or visible",
-                        text, part));
-    };
-    Tolerance tolerance;
-    std::vector<std::string> seen;
-    for (std::size_t begin = 0; begin <= text.size();) {
-        const std::size_t end = std::min(text.find(',', begin), text.size());
-        const std::string part = text.substr(begin, end - begin);
-        begin = end + 1;
-        const std::string unit = part.substr(part.size() - std::min<std::size_t>(2, part.size()));
-        const std::optional<double> number = parse_number(part.substr(0, part.size() - unit.size()));
-        if (unit != "px" && unit != "ev" && unit != "de") {
-            refuse(fmt::format("\"{}\" has no unit that is known", part));
-        }
-        if (!number || !std::isfinite(*number) || !(*number > 0.0)) {
-            refuse(fmt::format("\"{}\" is no number above 0 and a unit", part));
-        }
-        if (std::ranges::count(seen, unit) > 0) {
-            refuse(fmt::format("{} stands twice", unit));
-        }
-        seen.push_back(unit);
-        (unit == "px" ? tolerance.px : unit == "ev" ? tolerance.ev : tolerance.ciede2000) = *number;
-    }
-    return tolerance;
-}
-
-PlannedCheck check_plan(const render::SceneSetup& setup, const PlannedRender& planned, const PilotSettings& settings) {
+PlannedCheck check_plan(const render::SceneSetup& setup, const PlannedRender& planned,
+                        const std::vector<std::string>& passes, const PilotSettings& settings) {
     const Pilot pilot(setup, settings);
-    const Pilot::Pictures full = pilot.render(pilot.setup(), settings.seeds);
-    const Checked checked = check(pilot, planned, full.rgb);
-    return {.error = checked.error, .speed_up = full.ns_per_sample / checked.ns_per_sample};
+    std::vector<std::string> kept;
+    std::ranges::copy_if(passes, std::back_inserter(kept),
+                         [&](const std::string& pass) { return std::ranges::count(planned.passes, pass) > 0; });
+    return check(pilot, planned, kept, pilot.render(pilot.setup(), passes, settings.seeds));
 }
 
 Plan plan_render(const render::SceneSetup& setup, const Tolerance& tolerance, const PilotSettings& settings) {
@@ -407,45 +308,19 @@ Plan plan_render(const render::SceneSetup& setup, const Tolerance& tolerance, co
     return plan;
 }
 
+std::vector<std::string> accountable_passes(const Plan& plan) {
+    std::vector<std::string> passes;
+    for (const PlannedEffect& planned : plan.effects) {
+        if (!planned.effect.pass.empty() && (planned.is_modelled || !planned.effect.is_bound)) {
+            passes.push_back(planned.effect.pass);
+        }
+    }
+    return passes;
+}
+
 render::SceneSetup planned_setup(render::SceneSetup setup, const PlannedRender& planned) {
     setup.max_bounces = planned.max_bounces;
     return on_rung(std::move(setup), planned.rung);
-}
-
-Json plan_json(const Plan& plan, PlanTimes times) {
-    const auto parts = [](const Contribution& of, double Measured::*what) {
-        return Json{{"px", of.px.*what}, {"ev", of.ev.*what}, {"ciede2000", of.ciede2000.*what}};
-    };
-    Json json{{"tolerance",
-               {{"px", limit_json(plan.tolerance.px)},
-                {"ev", limit_json(plan.tolerance.ev)},
-                {"ciede2000", limit_json(plan.tolerance.ciede2000)}}},
-              {"model", plan.render.rung.name},
-              {"max_bounces", plan.render.max_bounces},
-              {"passes", plan.render.passes},
-              {"effects", Json::list()}};
-    json["wavelengths"] = plan.render.rung.wavelengths ? Json(*plan.render.rung.wavelengths) : Json(nullptr);
-    for (const PlannedEffect& planned : plan.effects) {
-        Json effect{{"effect", planned.effect.name},
-                    {"contribution", parts(planned.effect.contribution, &Measured::value)},
-                    {"standard_error", parts(planned.effect.contribution, &Measured::standard_error)},
-                    {"is_bound", planned.effect.is_bound},
-                    {"decision", planned.is_modelled ? "model" : "leave-out"},
-                    {"why", planned.why}};
-        if (times == PlanTimes::told) {
-            effect["saves_percent"] = planned.is_modelled ? 0.0 : planned.saves_percent;
-        }
-        json["effects"].push_back(std::move(effect));
-    }
-    json["checked"] = {{"error", parts(plan.checked, &Measured::value)},
-                       {"standard_error", parts(plan.checked, &Measured::standard_error)}};
-    json["refused"] = plan.refused;
-    json["noise_ev"] = plan.noise_ev;
-    if (times == PlanTimes::told) {
-        json["speed_up"] = plan.speed_up;
-        json["probe_seconds"] = plan.probe_seconds;
-    }
-    return json;
 }
 
 }  // namespace lensproof::studies

@@ -1,7 +1,6 @@
 // experiments/studies/tradeoff/plan.h — which effects of its lens and its light a picture needs at a tolerance, and the
 // cheapest way to render them.
 #pragma once
-#include <limits>
 #include <string>
 #include <vector>
 
@@ -10,18 +9,6 @@
 #include "experiments/studies/tradeoff/rungs.h"
 
 namespace lensproof::studies {
-
-/// What may be wrong in a picture: where light is, rms over the frame; how bright, rms; in which colours, mean
-/// CIEDE2000. Infinite where nothing is asked.
-struct Tolerance {
-    double px = std::numeric_limits<double>::infinity();
-    double ev = std::numeric_limits<double>::infinity();
-    double ciede2000 = std::numeric_limits<double>::infinity();
-};
-
-/// "0.5px,0.02ev,1de", each at most once and in any order, or "visible": a pixel, 0.03 EV (a contrast of 2 %, Weber's
-/// fraction in daylight), one CIEDE2000. Throws InputError naming what is wrong.
-Tolerance parse_tolerance(const std::string& text);
 
 /// How a picture is to be rendered.
 struct PlannedRender {
@@ -47,26 +34,27 @@ struct Plan {
     Contribution checked;
     std::vector<std::string> refused;  // cheaper models that the check refused, and why
     double noise_ev = 0.0;             // of a pixel, rms, with the scene's own samples
-    double speed_up = 1.0;             // a sample's time with the full model over that with the planned one
+    double speed_up = 1.0;             // a sample's time with the full model, all its passes, over the planned one's
     double probe_seconds = 0.0;
 };
+
+/// The full model's passes of stray light that a plan is held to: all but those that it leaves out for a bound.
+std::vector<std::string> accountable_passes(const Plan& plan);
 
 /// Plans a scene's render from a pilot of a few thousand pixels. Throws InputError where the scene's camera has no
 /// lens.
 Plan plan_render(const render::SceneSetup& setup, const Tolerance& tolerance, const PilotSettings& settings);
 
-/// What a found contribution surely is, less two standard errors; and whether a contribution is within a tolerance,
-/// with two standard errors of it.
-Contribution surely(const Contribution& found);
-bool keeps(const Contribution& found, const Tolerance& tolerance);
-
-/// What a planned render gets wrong against the full model, and how much faster its samples are, by pictures of the
-/// settings' seeds and rays of their own.
+/// What a planned render gets wrong against the full model, by pictures of the settings' seeds and rays of their own;
+/// and what a sample of both takes, ns of one core. `passes`: of stray light that the full model has; of them the plan
+/// has what it decided.
 struct PlannedCheck {
     Contribution error;
-    double speed_up = 1.0;
+    double ns_per_sample = 0.0;
+    double full_ns_per_sample = 0.0;
 };
-PlannedCheck check_plan(const render::SceneSetup& setup, const PlannedRender& planned, const PilotSettings& settings);
+PlannedCheck check_plan(const render::SceneSetup& setup, const PlannedRender& planned,
+                        const std::vector<std::string>& passes, const PilotSettings& settings);
 
 /// The scene as it is to be rendered.
 render::SceneSetup planned_setup(render::SceneSetup setup, const PlannedRender& planned);

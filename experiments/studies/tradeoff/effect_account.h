@@ -1,0 +1,31 @@
+// experiments/studies/tradeoff/effect_account.h — what a plan predicted of each effect, against renders with it and
+// without.
+#pragma once
+#include <string>
+#include <vector>
+
+#include "experiments/studies/tradeoff/plan.h"
+
+namespace lensproof::studies {
+
+/// One effect, or some that no two models tell apart: then their contributions together.
+struct EffectAccount {
+    std::string effects;
+    bool is_bound = false;  // the prediction is
+    Contribution predicted;
+    Contribution measured;
+};
+void fields(JsonArchive& json, Contribution& contribution);
+void fields(JsonArchive& json, EffectAccount& account);
+
+/// By pictures of the settings' seeds, which the plan has not seen: defocus as what a thin lens makes otherwise than a
+/// pinhole; distortion, lateral colour and vignetting as what the profile makes of a pinhole; aberrations as what the
+/// lens itself makes otherwise than a thin lens with its profile; stray light by its passes; and fewer wavelengths and
+/// scatterings, where the plan has fewer. Effects that nothing renders apart are not in it: cos⁴ and losses.
+std::vector<EffectAccount> account_effects(const render::SceneSetup& setup, const Plan& plan,
+                                           const PilotSettings& settings);
+
+/// Whether the measured value is the predicted one within two standard errors of both; of a bound, no more than it.
+bool covers(const Measured& predicted, const Measured& measured, bool is_bound);
+
+}  // namespace lensproof::studies

@@ -1,0 +1,103 @@
+#include "experiments/studies/tradeoff/effect_kinds.h"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <iterator>
+
+#include "experiments/studies/tradeoff/picture_error.h"
+
+namespace lensproof::studies {
+
+using formats::Image;
+
+namespace {
+
+Measured rms(const std::vector<double>& values) {
+    double sum = 0.0;
+    double fourth = 0.0;
+    for (const double value : values) {
+        sum += value * value;
+        fourth += value * value * value * value;
+    }
+    const auto n = static_cast<double>(std::max<std::size_t>(1, values.size()));
+    return root({sum / n, std::sqrt(std::max(0.0, fourth / n - std::pow(sum / n, 2)) / n)});
+}
+
+/// What the pilot's picture loses or gains by a change that is done to each of its seeds.
+Measured seen(const Pilot& pilot, const std::function<Image(const Image&)>& change) {
+    std::vector<Image> changed;
+    std::ranges::transform(pilot.full().rgb, std::back_inserter(changed), change);
+    return picture_errors(changed, pilot.full().rgb, pilot.settings().probe.threads).ciede2000.bias;
+}
+
+}  // namespace
+
+Contribution difference(const Pilot& pilot, const std::vector<Image>& without) {
+    const PictureErrors found = picture_errors(without, pilot.full().rgb, pilot.settings().probe.threads);
+    return {.px = {},
+            .ev = {std::abs(found.exposure_ev.value), found.exposure_ev.standard_error},
+            .ciede2000 = found.ciede2000.bias};
+}
+
+Effect gain_effect(const Pilot& pilot, const std::string& name, const Vec3d& gain) {
+    return {.name = name,
+            .contribution = {
+                .px = {}, .ev = {std::abs(std::log2(gain.y)), 0.0}, .ciede2000 = seen(pilot, [&](const Image& picture) {
+                                                                        return with_gain(
+                                                                            picture, [&](int, int) { return gain; });
+                                                                    })}};
+}
+
+Effect falloff_effect(const Pilot& pilot, const std::string& name, const RadialMean& light) {
+    std::vector<double> ev;
+    for (int y = 0; y < pilot.height(); ++y) {
+        for (int x = 0; x < pilot.width(); ++x) {
+            ev.push_back(std::log2(std::max(1e-3, light.at(pilot.image_height(x, y)))));
+        }
+    }
+    return {.name = name,
+            .contribution = {.px = {}, .ev = rms(ev), .ciede2000 = seen(pilot, [&](const Image& picture) {
+                                                          return with_gain(picture, [&](int x, int y) {
+                                                              const double gain =
+                                                                  1.0 /
+                                                                  std::max(1e-3, light.at(pilot.image_height(x, y)));
+                                                              return Vec3d{gain, gain, gain};
+                                                          });
+                                                      })}};
+}
+
+Effect shift_effect(const Pilot& pilot, const std::string& name, const std::array<RadialMean, 3>& shift_px) {
+    std::vector<double> all;
+    for (int y = 0; y < pilot.height(); ++y) {
+        for (int x = 0; x < pilot.width(); ++x) {
+            double square = 0.0;
+            for (const RadialMean& shift : shift_px) {
+                square += std::pow(shift.at(pilot.image_height(x, y)), 2) / 3.0;
+            }
+            all.push_back(std::sqrt(square));
+        }
+    }
+    return {.name = name,
+            .contribution = {.px = rms(all), .ev = {}, .ciede2000 = seen(pilot, [&](const Image& picture) {
+                                                           return with_shift(picture, [&](int x, int y, int c) {
+                                                               const double by =
+                                                                   shift_px[static_cast<std::size_t>(c)].at(
+                                                                       pilot.image_height(x, y));
+                                                               return by * pilot.outwards(x, y);
+                                                           });
+                                                       })}};
+}
+
+Effect blur_effect(const Pilot& pilot, const std::string& name, const PixelSpread& spread_px) {
+    std::vector<double> all;
+    for (int y = 0; y < pilot.height(); ++y) {
+        for (int x = 0; x < pilot.width(); ++x) {
+            all.push_back(spread_px(x, y));
+        }
+    }
+    const auto blurred = [&](const Image& picture) { return with_spread(picture, spread_px); };
+    return {.name = name, .contribution = {.px = rms(all), .ev = {}, .ciede2000 = seen(pilot, blurred)}};
+}
+
+}  // namespace lensproof::studies

@@ -1,0 +1,24 @@
+// experiments/studies/tradeoff/effect_kinds.h — what an effect makes of a picture: a gain, a shift, a blur, more light.
+#pragma once
+#include <array>
+#include <string>
+#include <vector>
+
+#include "experiments/studies/tradeoff/effects.h"
+#include "experiments/studies/tradeoff/pilot_changes.h"
+
+namespace lensproof::studies {
+
+/// One constant gain for all of the picture.
+Effect gain_effect(const Pilot& pilot, const std::string& name, const Vec3d& gain);
+
+/// Brightness over the frame that falls as `light` says, 1 on the axis: without it the picture would be brighter.
+Effect falloff_effect(const Pilot& pilot, const std::string& name, const RadialMean& light);
+
+/// Radial shifts of R, G and B, in the scene's pixels.
+Effect shift_effect(const Pilot& pilot, const std::string& name, const std::array<RadialMean, 3>& shift_px);
+
+/// How a blur of that rms radius, in the scene's pixels, is seen.
+Effect blur_effect(const Pilot& pilot, const std::string& name, const PixelSpread& spread_px);
+
+}  // namespace lensproof::studies

@@ -1,0 +1,164 @@
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <numbers>
+#include <utility>
+
+#include "engine/base/angle.h"
+#include "engine/base/input_error.h"
+#include "engine/optics/ghost_path.h"
+#include "engine/optics/trace.h"
+#include "engine/spectral/wavelengths.h"
+#include "experiments/studies/tradeoff/effect_kinds.h"
+#include "experiments/studies/tradeoff/picture_error.h"
+
+namespace lensproof::studies {
+
+using formats::Image;
+
+namespace {
+
+constexpr const char* kNone = "charts in an even world and lenses with mirrors have none";
+
+/// The light of all pairs of surfaces over that which goes straight through.
+double axial_ghosts(const optics::TraceLens<double>& lens, const optics::StrayMirrors<double>& mirrors) {
+    const Ray<double> axis{{0.0, 0.0, lens.surfaces.front().vertex_z - 1.0}, {0.0, 0.0, 1.0}};
+    const auto straight = optics::trace<optics::Direction::forward>(lens, axis);
+    const int surfaces = static_cast<int>(lens.surfaces.size());
+    double sum = 0.0;
+    for (int last = 1; last <= surfaces; ++last) {
+        for (int first = 0; first < last; ++first) {
+            const optics::GhostPath path{last, first};
+            if (optics::path_fault(path, surfaces).empty()) {
+                const auto ghost =
+                    optics::trace_ghost<optics::Direction::forward, optics::Rims::follow>(lens, path, axis, mirrors);
+                sum += ghost.status == optics::RayStatus::ok ? ghost.transmittance : 0.0;
+            }
+        }
+    }
+    return straight.transmittance > 0.0 ? sum / straight.transmittance : 0.0;
+}
+
+/// The share of the picture's mean.
+struct Veil {
+    Measured share;
+    double ns_per_sample = 0.0;  // of the pass that renders it
+};
+
+/// As an even veil over the picture: what is more of it may be seen by so much, with the share's own error.
+Effect veil_effect(const Pilot& pilot, const std::string& name, const Veil& veil) {
+    const auto with = [&](double share) {
+        std::vector<Image> veiled = pilot.full().rgb;
+        for (Image& picture : veiled) {
+            const std::size_t colours = picture.channels.size();
+            std::vector<double> mean(colours);
+            for (std::size_t i = 0; i < picture.pixels.size(); ++i) {
+                mean[i % colours] += static_cast<double>(picture.pixels[i]) * static_cast<double>(colours) /
+                                     static_cast<double>(picture.pixels.size());
+            }
+            for (std::size_t i = 0; i < picture.pixels.size(); ++i) {
+                picture.pixels[i] += static_cast<float>(share * mean[i % colours]);
+            }
+        }
+        return difference(pilot, veiled);
+    };
+    const double error = veil.share.standard_error;
+    Effect effect{.name = name, .contribution = with(veil.share.value), .ns_per_sample = veil.ns_per_sample};
+    const Contribution more = error > 0.0 ? with(veil.share.value + error) : effect.contribution;
+    const auto widen = [](Measured& part, const Measured& of_more) {
+        part.standard_error = std::hypot(part.standard_error, of_more.value - part.value);
+    };
+    widen(effect.contribution.ev, more.ev);
+    widen(effect.contribution.ciede2000, more.ciede2000);
+    return effect;
+}
+
+/// Of a pass: its light over all that goes straight.
+Veil veil_of(const Pilot& pilot, const std::string& pass) {
+    const Pilot::Pictures with = pilot.with_pass(pass);
+    const Measured ev = picture_errors(with.rgb, pilot.full().rgb, pilot.settings().probe.threads).exposure_ev;
+    const double gain = std::exp2(ev.value);
+    return {.share = {gain - 1.0, std::numbers::ln2 * gain * ev.standard_error}, .ns_per_sample = with.ns_per_sample};
+}
+
+std::vector<Effect> found_by_passes(const Pilot& pilot) {
+    const Veil ghosts = veil_of(pilot, "ghosts");
+    const double most = ghosts.share.value + 2.0 * ghosts.share.standard_error;
+    std::vector<Effect> effects = {veil_effect(pilot, "ghosts", ghosts),
+                                   veil_effect(pilot, "faint-ghosts", {{most * most, 0.0}, ghosts.ns_per_sample})};
+    effects[1].is_bound = true;
+    effects.push_back(pilot.camera().lens()->barrel.is_black()
+                          ? Effect{.name = "barrel", .contribution = {}}
+                          : veil_effect(pilot, "barrel", veil_of(pilot, "barrel")));
+    for (Effect& effect : effects) {
+        effect.pass = effect.ns_per_sample > 0.0 ? effect.name : "";
+    }
+    return effects;
+}
+
+/// Where no pass renders it: what pairs of surfaces reflect along the axis, as if all of it fell on the film.
+std::vector<Effect> bounds(const Pilot& pilot, const std::string& no_pass) {
+    const optics::Lens& lens = pilot.camera().lens().value();
+    const double share = lens.has_mirrors() ? 0.0
+                                            : axial_ghosts(optics::at_wavelength<double>(lens, spectral::kLineD),
+                                                           pilot.setup().camera.mirrors);
+    std::vector<Effect> effects = {veil_effect(pilot, "ghosts", {{share, 0.0}}),
+                                   veil_effect(pilot, "faint-ghosts", {{share * share, 0.0}}),
+                                   {.name = "barrel", .contribution = {}}};
+    for (Effect& effect : effects) {
+        effect.is_bound = true;
+        effect.no_pass = no_pass;
+    }
+    return effects;
+}
+
+std::vector<Effect> ghosts_and_barrel(const Pilot& pilot) {
+    if (!pilot.has_passes()) {
+        return bounds(pilot, kNone);
+    }
+    try {
+        return found_by_passes(pilot);
+    } catch (const InputError& error) {
+        return bounds(pilot, error.what());
+    }
+}
+
+/// What the edges of the stop send farther than a pixel, of a distant point's light: P λ f / (2 π² A r), P being the
+/// stop's perimeter and A its area (Keller's law; integrated over streaks and between them), as an even veil. A
+/// polygon's perimeter is 1 / cos(π/n) of the circle's around it for the same area.
+Effect diffraction_veil(const Pilot& pilot, double ns_per_sample) {
+    const render::CameraSettings& camera = pilot.setup().camera;
+    constexpr double kLambda_mm = 550e-6;
+    const double polygon = camera.blades ? 1.0 / std::cos(kPi / camera.blades->blades) : 1.0;
+    const double beyond =
+        4.0 * polygon * kLambda_mm * camera.f_number / (2.0 * kPi * kPi * camera.sensor.pixel_pitch_mm);
+    Effect effect = veil_effect(pilot, "diffraction", {{std::min(1.0, beyond), 0.0}, ns_per_sample});
+    effect.contribution.ev = {};  // light that is moved
+    effect.is_bound = true;
+    return effect;
+}
+
+/// The rms width of an Airy disc does not exist; its core is a Gaussian's of σ = 0.42 λN.
+Contribution airy_core(const Pilot& pilot) {
+    constexpr double kSigma = 0.42;
+    const double um = kSigma * 0.55 * pilot.setup().camera.f_number;
+    const double px = std::numbers::sqrt2 * 1e-3 * um / pilot.setup().camera.sensor.pixel_pitch_mm;
+    return blur_effect(pilot, "diffraction", [px](int, int) { return px; }).contribution;
+}
+
+}  // namespace
+
+std::vector<Effect> stray_effects(const Pilot& pilot) {
+    std::vector<Effect> effects = ghosts_and_barrel(pilot);
+    effects.push_back(diffraction_veil(pilot, effects.front().ns_per_sample));
+    Effect& diffraction = effects.back();
+    const Contribution core = airy_core(pilot);
+    diffraction.contribution.px = core.px;
+    diffraction.contribution.ciede2000 =
+        std::ranges::max(diffraction.contribution.ciede2000, core.ciede2000, {}, &Measured::value);
+    diffraction.no_pass = pilot.has_passes() ? pilot.why_no_pass("diffracted") : kNone;
+    diffraction.pass = diffraction.no_pass.empty() ? "diffracted" : "";
+    return effects;
+}
+
+}  // namespace lensproof::studies
