@@ -18,7 +18,8 @@ class PathWalk {
     PathRadiance walk(Ray<double> ray) {
         spectral::SpectralSample throughput(1.0F);
         for (int bounce = 0;; ++bounce) {
-            const scene::MapPlace ahead = scene_.lights.expect_infinity(ray.direction);
+            // Camera rays mostly meet something, and otherwise look up what their neighbours have.
+            const scene::MapPlace ahead = bounce > 0 ? scene_.lights.expect_infinity(ray.direction) : scene::MapPlace{};
             const auto hit = scene::intersect(*scene_.geometry, ray.origin, ray.direction, 0.0, kInfinity);
             ++result_.rays;
             if (bounce == 0 && drawn_ != nullptr) {

@@ -15,8 +15,8 @@ class Environment {
     /// `picture`: radiance, W·m⁻²·sr⁻¹·nm⁻¹. Throws InputError for one without light.
     Environment(ImageTexture picture, const Vec3d& up, double rotate_deg);
 
-    /// A direction drawn about as often as light comes from there: a cell of one or some pixels by its brightness and
-    /// solid angle, evenly within it (Pharr, Jakob & Humphreys, Physically Based Rendering, 4th ed., §12.5). What
+    /// A direction drawn about as often as light comes from there: a cell of some pixels by its brightness and solid
+    /// angle, evenly within it (Pharr, Jakob & Humphreys, Physically Based Rendering, 4th ed., §12.5). What
     /// `radiance_at` reads of the picture at `uv` is on its way from memory.
     struct Draw {
         Vec3d direction;
@@ -29,7 +29,7 @@ class Environment {
     }
 
     /// Asks memory for what `draw` will read.
-    void expect_draw(double u1, double u2) const { cells_.expect(u1, u2); }
+    void expect_draw(double u1, double u2) const { places_.expect(u1, u2); }
 
     /// Where the picture shows a direction; asks memory for what `seen` will read there.
     [[nodiscard]] Vec2d expect(const Vec3d& direction) const;
@@ -51,15 +51,9 @@ class Environment {
     /// Of a direction in the picture's frame.
     [[nodiscard]] static Vec2d uv_of(const Vec3d& local);
 
-    struct Cell {
-        std::size_t column = 0;
-        std::size_t row = 0;
-    };
-    [[nodiscard]] Cell cell_at(const Vec2d& uv) const;
-
     ImageTexture picture_;
     Basis frame_;
-    PixelDistribution cells_;
+    PixelDistribution places_;
     double mean_power_ = 0.0;
 };
 

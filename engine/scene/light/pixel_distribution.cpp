@@ -1,123 +1,216 @@
 #include "engine/scene/light/pixel_distribution.h"
 
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 
 namespace lensproof::scene {
 
 namespace {
 
-constexpr double kWhole = 0x1p32;
+constexpr std::uint32_t kChances = 0xFFFF'FFFF;   // of rows, and of a row's blocks
+constexpr std::uint32_t kChancesABlock = 0xFFFF;  // of its cells
+constexpr std::size_t kMostBlocks = 256;          // along either axis
+constexpr std::size_t kMostWithCells = 8192;
+constexpr double kBelowOne = 1.0 - 0x1p-53;
 
-/// A guide for every cache line of sums.
-constexpr std::size_t kStepsAGuide = 16;
+/// `pixels` along an axis in `count` parts: each touches the pixels in [begin, end).
+struct Parts {
+    std::size_t count = 0;
+    std::size_t pixels = 0;
 
-std::size_t guide_cells(std::size_t steps) {
-    return std::max(std::size_t{1}, steps / kStepsAGuide);
-}
-
-/// What lies before each step, of 2³² in all; a step that weighs anything has one of them before the rest goes by
-/// weight, and what rounding leaves is the last step's.
-template <class Weight>
-void fill_sums(std::span<const Weight> weights, std::span<std::uint32_t> sums) {
-    const double total = std::accumulate(weights.begin(), weights.end(), 0.0);
-    const auto is_lit = [](Weight weight) { return weight > Weight(0); };
-    const auto lit = static_cast<double>(std::count_if(weights.begin(), weights.end(), is_lit));
-    const double shared = kWhole - 1.0 - lit;
-    std::uint32_t lit_before = 0;
-    double before = 0.0;
-    for (std::size_t i = 0; i < weights.size(); ++i) {
-        const double share = total > 0.0 ? std::min(before / total, 1.0) : 0.0;
-        sums[i] = lit_before + static_cast<std::uint32_t>(share * shared);
-        before += weights[i];
-        lit_before += is_lit(weights[i]) ? 1U : 0U;
-    }
-}
-
-/// For each cell of equal width the step that it begins in, and the last step behind them.
-void fill_guides(std::span<const std::uint32_t> sums, std::span<std::uint32_t> guides) {
-    const auto last = static_cast<std::uint32_t>(sums.size() - 1);
-    std::uint32_t step = 0;
-    for (std::size_t cell = 0; cell + 1 < guides.size(); ++cell) {
-        const double begin = kWhole * static_cast<double>(cell) / static_cast<double>(guides.size() - 1);
-        while (step < last && sums[step + 1] <= begin) {
-            ++step;
-        }
-        guides[cell] = step;
-    }
-    guides.back() = last;
-}
-
-double width_of(std::span<const std::uint32_t> sums, std::size_t step) {
-    return (step + 1 < sums.size() ? sums[step + 1] : kWhole) - sums[step];
-}
-
-struct Step {
-    std::size_t index = 0;
-    double fraction = 0.0;
-    double width = 0.0;
+    [[nodiscard]] std::size_t begin(std::size_t part) const { return part * pixels / count; }
+    [[nodiscard]] std::size_t end(std::size_t part) const { return ((part + 1) * pixels + count - 1) / count; }
 };
 
-std::size_t guide_at(std::span<const std::uint32_t> guides, double u) {
-    const auto cells = static_cast<double>(guides.size() - 1);
-    return static_cast<std::size_t>(std::clamp(u * cells, 0.0, cells - 1.0));
+std::vector<double> mean_squares(const Parts& across, const Parts& down,
+                                 const PixelDistribution::SquaresOfRow& squares_of_row) {
+    std::vector<double> means;
+    means.reserve(across.count * down.count);
+    std::vector<double> sums(across.pixels);
+    for (std::size_t row = 0; row < down.count; ++row) {
+        std::ranges::fill(sums, 0.0);
+        for (std::size_t y = down.begin(row); y < down.end(row); ++y) {
+            const std::vector<double> squares = squares_of_row(static_cast<int>(y));
+            std::ranges::transform(sums, squares, sums.begin(), std::plus());
+        }
+        for (std::size_t column = 0; column < across.count; ++column) {
+            const auto begin = sums.begin() + static_cast<std::ptrdiff_t>(across.begin(column));
+            const auto end = sums.begin() + static_cast<std::ptrdiff_t>(across.end(column));
+            const auto touched =
+                static_cast<double>(end - begin) * static_cast<double>(down.end(row) - down.begin(row));
+            means.push_back(std::accumulate(begin, end, 0.0) / touched);
+        }
+    }
+    return means;
 }
 
-/// Searched for without branches, which no processor could foresee: each step halves what is left between two guides.
-Step step_at(std::span<const std::uint32_t> sums, std::span<const std::uint32_t> guides, double u) {
-    const std::size_t cell = guide_at(guides, u);
-    const double at = kWhole * std::min(u, 1.0 - 0x1p-53);
-    const auto whole = static_cast<std::uint32_t>(at);
-    std::size_t index = guides[cell];
-    for (std::size_t left = guides[cell + 1] - index; left > 0; left /= 2) {
-        const std::size_t half = (left + 1) / 2;
-        index += sums[index + half] <= whole ? half : 0;
+/// Chances by weight, `all` of them; what weighs anything has one before the rest goes by weight, the first has them
+/// where nothing does. Of running sums, so that roundings do not add up.
+std::vector<std::uint32_t> chances(std::span<const double> weights, std::uint32_t all) {
+    const double total = std::accumulate(weights.begin(), weights.end(), 0.0);
+    const auto is_lit = [](double weight) { return weight > 0.0; };
+    const auto lit = static_cast<std::uint32_t>(std::ranges::count_if(weights, is_lit));
+    std::vector<std::uint32_t> chances;
+    chances.reserve(weights.size());
+    double sum = 0.0;
+    std::uint32_t before = 0;
+    std::uint32_t last_lit = 0;
+    for (const double weight : weights) {
+        sum += weight;
+        const auto up_to = static_cast<std::uint32_t>((total > 0.0 ? std::min(sum / total, 1.0) : 0.0) * (all - lit));
+        last_lit = is_lit(weight) ? static_cast<std::uint32_t>(chances.size()) : last_lit;
+        chances.push_back(up_to - before + (is_lit(weight) ? 1 : 0));
+        before = up_to;
     }
-    const double width = width_of(sums, index);
-    return {.index = index, .fraction = std::clamp((at - sums[index]) / width, 0.0, 1.0), .width = width};
+    chances[last_lit] += all - lit - before;
+    return chances;
+}
+
+/// The blocks whose weights fall most where they have cells, at most as many as may have them.
+std::vector<std::size_t> worth_cells(std::span<const double> whole, std::span<const double> in_cells) {
+    std::vector<std::size_t> best;
+    for (std::size_t block = 0; block < whole.size(); ++block) {
+        if (in_cells[block] < whole[block]) {
+            best.push_back(block);
+        }
+    }
+    std::ranges::stable_sort(best, std::greater(), [&](std::size_t block) { return whole[block] - in_cells[block]; });
+    best.resize(std::min(best.size(), kMostWithCells));
+    return best;
 }
 
 }  // namespace
 
-PixelDistribution::PixelDistribution(int width, const std::vector<float>& weights,
-                                     const std::vector<double>& row_factors)
-    : width_(static_cast<std::size_t>(width)), rows_(row_factors.size()), pixels_(weights.size()) {
-    pixel_guides_.resize(height() * (guide_cells(width_) + 1));
-    const std::size_t guides = pixel_guides_.size() / height();
-    std::vector<double> row_weights;
-    for (std::size_t row = 0; row < height(); ++row) {
-        const std::span<const float> of_row = std::span(weights).subspan(row * width_, width_);
-        const std::span<std::uint32_t> sums = std::span(pixels_).subspan(row * width_, width_);
-        fill_sums(of_row, sums);
-        fill_guides(sums, std::span(pixel_guides_).subspan(row * guides, guides));
-        row_weights.push_back(row_factors[row] * std::accumulate(of_row.begin(), of_row.end(), 0.0));
+/// The step that a number falls in, and how far into it.
+struct PixelDistribution::Found {
+    std::size_t step = 0;
+    double fraction = 0.0;  // in [0, 1)
+    double width = 0.0;
+};
+
+PixelDistribution::PixelDistribution(int width, int height, const SquaresOfRow& squares_of_row) {
+    const auto blocks_over = [](int pixels, std::size_t cells) {
+        return std::min((static_cast<std::size_t>(pixels) + cells - 1) / cells, kMostBlocks);
+    };
+    columns_ = blocks_over(width, kAcross);
+    rows_.resize(blocks_over(height, kDown));
+    const std::vector<double> squares =
+        mean_squares({.count = columns_ * kAcross, .pixels = static_cast<std::size_t>(width)},
+                     {.count = rows_.size() * kDown, .pixels = static_cast<std::size_t>(height)}, squares_of_row);
+    blocks_.resize(columns_ * rows_.size());
+    const auto cell_weights = [&](std::size_t block) {
+        std::array<double, kCells> weights{};
+        for (std::size_t i = 0; i < kCells; ++i) {
+            const std::size_t row = block / columns_ * kDown + i / kAcross;
+            weights[i] = std::sqrt(squares[(row * columns_ + block % columns_) * kAcross + i % kAcross]);
+        }
+        return weights;
+    };
+    // Of blocks as a whole and in cells. The root of ∫ f²/p is the sum of all weights.
+    std::vector<double> weights;
+    std::vector<double> in_cells;
+    for (std::size_t block = 0; block < blocks_.size(); ++block) {
+        const std::array<double, kCells> cells = cell_weights(block);
+        weights.push_back(std::sqrt(std::inner_product(cells.begin(), cells.end(), cells.begin(), 0.0) / kCells));
+        in_cells.push_back(std::min(std::accumulate(cells.begin(), cells.end(), 0.0) / kCells, weights.back()));
     }
-    fill_sums<double>(row_weights, rows_);
-    row_guides_.resize(guide_cells(height()) + 1);
-    fill_guides(rows_, row_guides_);
+    const auto add_cells = [&](const std::array<double, kCells>& of) {
+        const std::vector<std::uint32_t> falls = chances(of, kChancesABlock);
+        std::exclusive_scan(falls.begin(), falls.end(), cells_.emplace_back().begin(), 0U);
+    };
+    std::array<double, kCells> even{};
+    even.fill(1.0);
+    add_cells(even);
+    for (const std::size_t block : worth_cells(weights, in_cells)) {
+        blocks_[block].cells = static_cast<std::uint16_t>(cells_.size());
+        add_cells(cell_weights(block));
+        weights[block] = in_cells[block];
+    }
+    std::vector<double> row_weights;
+    for (std::size_t row = 0; row < rows_.size(); ++row) {
+        const auto of_row = std::span(weights).subspan(row * columns_, columns_);
+        fill(std::span(blocks_).subspan(row * columns_, columns_), of_row);
+        row_weights.push_back(std::accumulate(of_row.begin(), of_row.end(), 0.0));
+    }
+    fill(rows_, row_weights);
 }
 
-PixelDistribution::Draw PixelDistribution::draw(double u1, double u2) const {
-    const Step row = step_at(rows_, row_guides_, u1);
-    const Step pixel = step_at(pixels_of(row.index), guides_of(row.index), u2);
-    return {.column = pixel.index,
-            .row = row.index,
-            .x = (static_cast<double>(pixel.index) + pixel.fraction) / static_cast<double>(width_),
-            .y = (static_cast<double>(row.index) + row.fraction) / static_cast<double>(height()),
-            .probability = row.width * pixel.width * 0x1p-64};
+void PixelDistribution::fill(std::span<Step> steps, std::span<const double> weights) {
+    const std::vector<std::uint32_t> falls = chances(weights, kChances);
+    std::uint32_t before = 0;
+    for (std::size_t i = 0; i < steps.size(); ++i) {
+        steps[i].before = before;
+        before += falls[i];
+    }
+    std::size_t step = 0;
+    for (std::size_t part = 0; part < steps.size(); ++part) {
+        const double begin = double{kChances} * static_cast<double>(part) / static_cast<double>(steps.size());
+        while (step + 1 < steps.size() && steps[step + 1].before <= begin) {
+            ++step;
+        }
+        steps[part].guide = static_cast<std::uint16_t>(step);
+    }
+}
+
+std::size_t PixelDistribution::part_at(std::size_t steps, double u) {
+    return std::min(static_cast<std::size_t>(u * static_cast<double>(steps)), steps - 1);
+}
+
+double PixelDistribution::width_of(std::span<const Step> steps, std::size_t step) {
+    return (step + 1 < steps.size() ? steps[step + 1].before : kChances) - steps[step].before;
+}
+
+double PixelDistribution::width_of(const Cells& sums, std::size_t cell) {
+    return (cell + 1 < kCells ? sums[cell + 1] : kChancesABlock) - sums[cell];
+}
+
+PixelDistribution::Found PixelDistribution::find(std::span<const Step> steps, double u) {
+    const double at = kChances * u;
+    std::size_t step = steps[part_at(steps.size(), u)].guide;
+    while (step + 1 < steps.size() && steps[step + 1].before <= at) {
+        ++step;
+    }
+    const double width = width_of(steps, step);
+    return {.step = step, .fraction = std::clamp((at - steps[step].before) / width, 0.0, kBelowOne), .width = width};
 }
 
 void PixelDistribution::expect(double u1, double u2) const {
-    const std::size_t row = step_at(rows_, row_guides_, u1).index;
-    const std::span<const std::uint32_t> guides = guides_of(row);
-    const std::size_t cell = guide_at(guides, u2);
-    const std::span<const std::uint32_t> sums = pixels_of(row);
-    __builtin_prefetch(&sums[guides[cell]]);
-    __builtin_prefetch(&sums[guides[cell + 1]]);
+    __builtin_prefetch(&blocks_of(find(rows_, u1).step)[part_at(columns_, u2)]);
 }
 
-double PixelDistribution::probability(std::size_t column, std::size_t row) const {
-    return width_of(rows_, row) * width_of(pixels_of(row), column) * 0x1p-64;
+PixelDistribution::Draw PixelDistribution::draw(double u1, double u2) const {
+    const Found row = find(rows_, u1);
+    const std::span<const Step> blocks = blocks_of(row.step);
+    const Found block = find(blocks, u2);
+    const Cells& sums = cells_[blocks[block.step].cells];
+    const double at = kChancesABlock * block.fraction;
+    const auto whole = static_cast<std::uint16_t>(at);
+    std::size_t cell = 0;
+    for (std::size_t i = 1; i < kCells; ++i) {
+        cell += sums[i] <= whole ? 1 : 0;
+    }
+    const double width = width_of(sums, cell);
+    const double across = std::clamp((at - sums[cell]) / width, 0.0, kBelowOne);
+    const double x = static_cast<double>(block.step * kAcross + cell % kAcross) + across;
+    const std::size_t cell_row = row.step * kDown + cell / kAcross;
+    const double y = static_cast<double>(cell_row) + row.fraction;
+    return {.at = {x / static_cast<double>(columns_ * kAcross), y / static_cast<double>(rows_.size() * kDown)},
+            .pdf = density(row.width, block.width, width)};
+}
+
+double PixelDistribution::pdf(const Vec2d& at) const {
+    const std::size_t x = part_at(columns_ * kAcross, at.x);
+    const std::size_t y = part_at(rows_.size() * kDown, at.y);
+    const std::span<const Step> blocks = blocks_of(y / kDown);
+    const Cells& sums = cells_[blocks[x / kAcross].cells];
+    return density(width_of(rows_, y / kDown), width_of(blocks, x / kAcross),
+                   width_of(sums, y % kDown * kAcross + x % kAcross));
+}
+
+double PixelDistribution::density(double row_width, double block_width, double cell_width) const {
+    constexpr double kAll = double{kChances} * double{kChances} * double{kChancesABlock} / kCells;
+    return row_width * block_width * cell_width * (static_cast<double>(blocks_.size()) / kAll);
 }
 
 }  // namespace lensproof::scene

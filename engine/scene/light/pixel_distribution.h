@@ -1,63 +1,75 @@
-// engine/scene/light/pixel_distribution.h — pixels drawn as often as they weigh.
+// engine/scene/light/pixel_distribution.h — places of a picture, drawn where it is bright.
 #pragma once
+#include <array>
+#include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <vector>
 
 #include "engine/base/large_pages.h"
+#include "engine/base/vec.h"
 
 namespace lensproof::scene {
 
-/// The pixels of a picture, each drawn with a probability in proportion to its weight, a row by the first number and a
-/// pixel of it by the second, so that even points stay even.
+/// A density over a picture, the unit square from its top left corner (x to the right, y down), even within cells. The
+/// first number draws a row of blocks and the second a block of it, so that even points stay even, and a cell of that.
+///
+/// A draw must not wait for memory: of a picture of any size there are at most 256 × 256 blocks, in half a MiB, and 8 ×
+/// 4 cells, of 64 bytes together, in those 8192 at most where these lower the variance most. Of all densities over the
+/// same cells it has the least variance: ∫ f²/p is least where p goes as the root of the mean square of f.
 ///
 /// By inversion of running sums with guide tables (H.-C. Chen, Y. Asau, "On Generating Random Variates from an
-/// Empirical Distribution", AIIE Transactions 6, 1974). Sums are whole numbers of 2⁻³²: their differences are exactly
-/// the probabilities drawn with and add up to exactly 1, in half the memory of doubles. Whatever weighs anything has at
-/// least 2⁻³² of its row, and whatever has a weight has a row of at least 2⁻³².
+/// Empirical Distribution", AIIE Transactions 6, 1974). Sums are whole numbers: their differences are exactly the
+/// probabilities drawn with and add up to exactly 1. What weighs anything has at least 2⁻³² of all rows, 2⁻³² of its
+/// row's blocks, 2⁻¹⁶ of its block's cells.
 class PixelDistribution {
   public:
-    PixelDistribution() = default;
-    /// `weights`: row after row, none negative, one at least positive; those of each row are multiplied
-    /// by its factor.
-    PixelDistribution(int width, const std::vector<float>& weights, const std::vector<double>& row_factors);
+    /// The mean square of the picture in each pixel of a row.
+    using SquaresOfRow = std::function<std::vector<double>(int row)>;
 
-    /// Where two numbers in [0, 1) fall: a pixel and how far into it, evenly, and its probability.
+    PixelDistribution() = default;
+    /// Of a picture that is not black.
+    PixelDistribution(int width, int height, const SquaresOfRow& squares_of_row);
+
+    /// Where two numbers in [0, 1) fall, and the density there.
     struct Draw {
-        std::size_t column = 0;
-        std::size_t row = 0;
-        double x = 0.0;  // of the picture's width, from its left
-        double y = 0.0;  // of its height, from its top
-        double probability = 0.0;
+        Vec2d at;
+        double pdf = 0.0;
     };
     [[nodiscard]] Draw draw(double u1, double u2) const;
     /// Asks memory for what `draw` will read of these numbers.
     void expect(double u1, double u2) const;
-    [[nodiscard]] double probability(std::size_t column, std::size_t row) const;
-    void expect_probability(std::size_t column, std::size_t row) const {
-        __builtin_prefetch(&pixels_[row * width_ + column]);
-    }
-
-    [[nodiscard]] std::size_t width() const { return width_; }
-    [[nodiscard]] std::size_t height() const { return rows_.size(); }
+    [[nodiscard]] double pdf(const Vec2d& at) const;
 
   private:
-    using Sums = std::vector<std::uint32_t, LargePages<std::uint32_t>>;
+    static constexpr std::size_t kAcross = 8;
+    static constexpr std::size_t kDown = 4;
+    static constexpr std::size_t kCells = kAcross * kDown;
 
-    [[nodiscard]] std::span<const std::uint32_t> pixels_of(std::size_t row) const {
-        return std::span(pixels_).subspan(row * width_, width_);
+    /// A row, or a block of a row.
+    struct Step {
+        std::uint32_t before = 0;  // the sum of those before it
+        std::uint16_t guide = 0;   // of as many equal parts of the whole as there are steps, where this one begins
+        std::uint16_t cells = 0;   // index; of a block
+    };
+    using Cells = std::array<std::uint16_t, kCells>;  // the sum of those before each, row by row
+
+    struct Found;
+    [[nodiscard]] static std::size_t part_at(std::size_t steps, double u);
+    [[nodiscard]] static Found find(std::span<const Step> steps, double u);
+    [[nodiscard]] static double width_of(std::span<const Step> steps, std::size_t step);
+    [[nodiscard]] static double width_of(const Cells& sums, std::size_t cell);
+    static void fill(std::span<Step> steps, std::span<const double> weights);
+    [[nodiscard]] double density(double row_width, double block_width, double cell_width) const;
+    [[nodiscard]] std::span<const Step> blocks_of(std::size_t row) const {
+        return std::span(blocks_).subspan(row * columns_, columns_);
     }
 
-    [[nodiscard]] std::span<const std::uint32_t> guides_of(std::size_t row) const {
-        const std::size_t count = pixel_guides_.size() / height();
-        return std::span(pixel_guides_).subspan(row * count, count);
-    }
-
-    std::size_t width_ = 0;
-    Sums rows_;    // the sum of all before each
-    Sums pixels_;  // the same within each row, row after row
-    Sums row_guides_;
-    Sums pixel_guides_;  // of each row
+    std::size_t columns_ = 0;
+    std::vector<Step> rows_;
+    std::vector<Step, LargePages<Step>> blocks_;   // row after row
+    std::vector<Cells, LargePages<Cells>> cells_;  // the first even, for blocks that have none of their own
 };
 
 }  // namespace lensproof::scene
