@@ -13,90 +13,11 @@
 #include "engine/formats/prescription/prescription_forms.h"
 #include "engine/formats/prescription/surface_chain.h"
 #include "engine/formats/prescription/zmx_file.h"
+#include "engine/formats/prescription/zmx_shape.h"
 
 namespace lensproof::formats {
 
 namespace {
-
-/// A coefficient of r^power, mm.
-double in_mm(double coefficient, int power, double unit_mm) {
-    return coefficient * std::pow(unit_mm, 1 - power);
-}
-
-void surface_type_error(Remarks& remarks, const ZmxSurface& surface, int number, const std::string& what) {
-    remarks.add_once(fmt::format("{}", number), "surface-type", optics::Severity::error, number,
-                     fmt::format("line {}, surface {} of the file: {}", surface.line, number, what));
-}
-
-/// Sets the coefficient of r^power, for which there is a place up to the highest power.
-void set_term(optics::PrescribedSurface& row, int power, double coefficient, double unit_mm, const ZmxSurface& surface,
-              int number, Remarks& remarks) {
-    if (coefficient == 0.0) {
-        return;
-    }
-    if (power > optics::kHighestPower) {
-        surface_type_error(remarks, surface, number,
-                           fmt::format("the {} has a term {} r^{}, which is left out: powers to r^{} are known",
-                                       surface.type, coefficient, power, optics::kHighestPower));
-        return;
-    }
-    row.term(power) = in_mm(coefficient, power, unit_mm);
-}
-
-/// The shape beyond the conic. OpticStudio's help, "Even Asphere", "Odd Asphere", "Extended Asphere", "Extended Odd
-/// Asphere", "Toroidal".
-void read_shape(optics::PrescribedSurface& row, const ZmxSurface& surface, int number, double unit_mm,
-                Remarks& remarks) {
-    constexpr int kParameterTerms = 8;
-    const auto set = [&](int power, double coefficient) {
-        set_term(row, power, coefficient, unit_mm, surface, number, remarks);
-    };
-    const auto normalized_terms = [&](int step) {
-        const double radius = surface.extra_value(2);
-        for (const auto& [index, value] : surface.extra) {
-            if (index >= 3 && value != 0.0) {
-                const int power = step * (index - 2);
-                set(power, radius == 0.0 ? value : value / std::pow(radius, power));
-            }
-        }
-    };
-    if (surface.type == "STANDARD") {
-        return;
-    }
-    if (surface.type == "EVENASPH" || surface.type == "ODDASPHE") {
-        const int step = surface.type == "EVENASPH" ? 2 : 1;
-        for (int i = 1; i <= kParameterTerms; ++i) {
-            set(step * i, surface.parameter(i));
-        }
-        std::vector<std::string> beyond;
-        for (const auto& [index, value] : surface.parameters) {
-            if (index > kParameterTerms && value != 0.0) {
-                beyond.push_back(fmt::format("PARM {} = {}", index, value));
-            }
-        }
-        if (!beyond.empty()) {
-            surface_type_error(remarks, surface, number,
-                               fmt::format("{} of the {}, which has {} terms, is left out", fmt::join(beyond, ", "),
-                                           surface.type, kParameterTerms));
-        }
-    } else if (surface.type == "XASPHERE") {
-        normalized_terms(2);
-    } else if (surface.type == "XOSPHERE") {
-        normalized_terms(1);
-    } else if (surface.type == "TOROIDAL") {
-        const double radius_of_rotation = surface.parameter(1);
-        row.radius_x_mm = radius_of_rotation == 0.0 ? kInfinity : radius_of_rotation * unit_mm;
-        for (int i = 2; i <= kParameterTerms; ++i) {
-            set(2 * (i - 1), surface.parameter(i));
-        }
-        if (surface.parameter(13) != 0.0 || surface.extra_value(1) != 0.0) {
-            surface_type_error(remarks, surface, number, "the toroid's Zernike terms are left out");
-        }
-    } else {
-        surface_type_error(remarks, surface, number,
-                           fmt::format("the type {} is not known; the surface is taken as a conic", surface.type));
-    }
-}
 
 optics::PrescribedSurface read_row(const ZmxFile& file, int number, const std::filesystem::path& path,
                                    Remarks& remarks) {
@@ -112,7 +33,7 @@ optics::PrescribedSurface read_row(const ZmxFile& file, int number, const std::f
         row.radius_mm = unit / surface.curvature;
     }
     row.conic = surface.conic;
-    read_shape(row, surface, number, unit, remarks);
+    read_zmx_shape(row, surface, number, unit, remarks);
     row.thickness_mm = surface.thickness * unit;
     row.semi_diameter_mm = length(surface.aperture ? surface.aperture : surface.semi_diameter);
     if (surface.mechanical && surface.mechanical > surface.semi_diameter.value_or(0.0)) {

@@ -95,7 +95,9 @@ VERDICTS = {
     ("US05831776-1.zmx", "rayoptics", "fields_deg"): ("sends its chief ray past the stop's centre by 0.5 mm",),
 }
 # What our own reader names where it refuses a file for another reason than a surface that is beyond centred lenses.
-REFUSALS = {("ZMXFILES/LENS.ZMX",): ["no semi-diameter is stated"]}
+REFUSALS = {("ZMXFILES/LENS.ZMX",): ["no semi-diameter is stated"],
+            ("zemax/tests/ASL5040-UV-Zemax(ZMX).zmx",): ["C79-80"],  # the maker's own name of fused silica
+            ("specifications/ASL5040-UV-Zemax(ZMX).zmx",): ["FusedSilica"]}
 
 
 class Misread(Exception):
