@@ -17,6 +17,7 @@
 #include "experiments/cli/raw_files.h"
 #include "experiments/cli/render_job.h"
 #include "experiments/cli/terminal.h"
+#include "experiments/studies/tradeoff/spot_check.h"
 
 namespace lensproof::cli {
 
@@ -130,13 +131,19 @@ studies::Plan take_plan(const RenderJobOptions& options, RenderWishes& wishes, r
     if (!wishes.passes.empty()) {
         throw InputError("--model auto decides which passes are rendered, expected no --passes beside it");
     }
-    studies::Plan plan = plan_of(setup, options.scene, wishes.tolerance, options.common);
+    const studies::Plan pilot = plan_of(setup, options.scene, wishes.tolerance, options.common);
+    studies::Plan plan = studies::spot_checked(
+        pilot, setup, {.seed = options.common.seed, .threads = options.common.threads, .cache = Cache::standard()});
     setup = studies::planned_setup(std::move(setup), plan.render);
     if (!plan.render.passes.empty()) {
         wishes.passes = {"imaged", "direct"};
         wishes.passes.insert(wishes.passes.end(), plan.render.passes.begin(), plan.render.passes.end());
     }
-    print_message("lensproof: planned: {}\n", plan_text(plan));
+    print_message("lensproof: planned: {}\n", plan_text(pilot));
+    for (std::size_t i = pilot.refused.size(); i < plan.refused.size(); ++i) {
+        print_message("lensproof: revised: {}; {} takes its place\n", plan.refused[i],
+                      i + 1 < plan.refused.size() ? "the next" : plan.render.rung.name);
+    }
     return plan;
 }
 

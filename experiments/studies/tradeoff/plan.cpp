@@ -308,6 +308,21 @@ Plan plan_render(const render::SceneSetup& setup, const Tolerance& tolerance, co
     return plan;
 }
 
+std::vector<PlannedRender> dearer_renders(const PlannedRender& planned, const render::SceneSetup& full) {
+    std::vector<PlannedRender> dearer;
+    const auto own = std::ranges::find(candidates(), planned.rung.name,
+                                       [](const Candidate& candidate) { return candidate.rung.name; });
+    for (const Candidate& candidate : std::span(own + 1, candidates().end())) {
+        dearer.push_back(planned);
+        dearer.back().rung.name = candidate.rung.name;
+        dearer.back().rung.model = candidate.rung.model;
+    }
+    PlannedRender& whole = dearer.emplace_back(planned);
+    whole.rung = {.name = kReferenceRung};
+    whole.max_bounces = full.max_bounces;
+    return dearer;
+}
+
 std::vector<std::string> accountable_passes(const Plan& plan) {
     std::vector<std::string> passes;
     for (const PlannedEffect& planned : plan.effects) {

@@ -15,6 +15,22 @@ struct PlannedRender {
     Rung rung;
     int max_bounces = 0;
     std::vector<std::string> passes;  // beside imaged and direct
+
+    /// Whether it has fewer wavelengths or scatterings than the scene.
+    [[nodiscard]] bool is_reduced(const render::SceneSetup& setup) const {
+        return rung.wavelengths.has_value() || max_bounces < setup.max_bounces;
+    }
+};
+
+/// What may take a render's place where it errs by too much, from the cheapest on: the cameras that err less, and at
+/// last the full model's straight light.
+std::vector<PlannedRender> dearer_renders(const PlannedRender& planned, const render::SceneSetup& full);
+
+/// What a plan gets wrong at some of the scene's own pixels (spot_check.h).
+struct Spots {
+    int pixels = 0;  // 0: not looked at
+    Contribution error;
+    bool is_revised = false;
 };
 
 /// An effect with what was decided of it.
@@ -33,8 +49,9 @@ struct Plan {
     /// effects were found by. Passes are not in it. A model is refused where it surely errs by more than the tolerance.
     Contribution checked;
     std::vector<std::string> refused;  // cheaper models that the check refused, and why
-    double noise_ev = 0.0;             // of a pixel, rms, with the scene's own samples
-    double speed_up = 1.0;             // a sample's time with the full model, all its passes, over the planned one's
+    Spots spots;
+    double noise_ev = 0.0;  // of a pixel, rms, with the scene's own samples
+    double speed_up = 1.0;  // a sample's time with the full model, all its passes, over the planned one's
     double probe_seconds = 0.0;
 };
 

@@ -40,6 +40,12 @@ Json plan_json(const Plan& plan, PlanTimes times) {
     }
     json["checked"] = {{"error", parts(plan.checked, &Measured::value)},
                        {"standard_error", parts(plan.checked, &Measured::standard_error)}};
+    if (plan.spots.pixels > 0) {
+        json["spots"] = {{"pixels", plan.spots.pixels},
+                         {"error", parts(plan.spots.error, &Measured::value)},
+                         {"standard_error", parts(plan.spots.error, &Measured::standard_error)},
+                         {"is_revised", plan.spots.is_revised}};
+    }
     json["refused"] = plan.refused;
     json["noise_ev"] = plan.noise_ev;
     if (times == PlanTimes::told) {

@@ -1,7 +1,6 @@
 // tests/experiments/studies/tradeoff/plan_test.cpp — what a plan decides, and that its renders keep their tolerance.
 #include "experiments/studies/tradeoff/plan.h"
 
-#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -9,45 +8,9 @@
 
 #include "experiments/studies/tradeoff/effect_account.h"
 #include "tests/complaint.h"
+#include "tests/experiments/studies/tradeoff/wall_scene.h"
 
 namespace lensproof::studies::plan_test {
-
-/// A lens before a chequered wall in the plane of focus, under a lamp.
-render::SceneSetup wall(const std::string& lens, double f_number, double half_field_mm, double luminance = 1e5) {
-    const std::string text = fmt::format(R"([camera]
-lens = "{}"
-f_number = {}
-focus_distance_mm = 3000.0
-position_mm = [0.0, 0.0, 0.0]
-look_at_mm = [0.0, 0.0, 3000.0]
-sensor_mm = [{}, {}]
-pixels = [150, 100]
-shutter_s = 0.01
-iso = 100.0
-response = "cie-1931"
-[render]
-layers = 16
-strata_per_layer = 1
-max_bounces = 3
-[[materials]]
-name = "grey"
-kind = "diffuse"
-reflectance = 0.3
-[[objects]]
-name = "wall"
-shape = "chart"
-chart = {{ kind = "checkerboard", squares = [48, 32], square_mm = 100.0 }}
-rotate_deg = [0.0, 180.0, 0.0]
-translate_mm = [0.0, 0.0, 3000.0]
-[[lights]]
-kind = "sphere"
-position_mm = [0.0, 1500.0, 1000.0]
-radius_mm = 300.0
-luminance_cd_m2 = {}
-)",
-                                         lens, f_number, 3.0 * half_field_mm, 2.0 * half_field_mm, luminance);
-    return render::parse_scene_setup(text, "wall.toml");
-}
 
 const PlannedEffect& effect(const Plan& plan, const std::string& name) {
     return *std::ranges::find_if(plan.effects,

@@ -1,0 +1,24 @@
+// experiments/studies/tradeoff/spot_check.h — a plan held to the scene's own pixels, and revised where it misses.
+#pragma once
+#include <string>
+
+#include "experiments/studies/tradeoff/plan.h"
+
+namespace lensproof::studies {
+
+struct SpotCheckSettings {
+    int across = 16;   // of a window, px
+    int windows = 24;  // about so many, evenly over the frame
+    int samples = 16;  // of a pixel and a seed
+    std::uint64_t seed = 0;
+    int threads = 0;
+    Cache cache{};
+};
+
+/// Renders windows of the scene's frame, at its own pixels, as planned and with the full model, two seeds each, and
+/// takes the plan's next camera until the two differ, as far as is sure, by no more than the tolerance: at last the
+/// lens itself with all wavelengths and scatterings. A pilot sees no detail finer than its pixels; this does. Stray
+/// light is not in it, nor px, which no picture tells. The plan says what was found (`spots`), and what was refused.
+Plan spot_checked(Plan plan, const render::SceneSetup& setup, const SpotCheckSettings& settings);
+
+}  // namespace lensproof::studies
