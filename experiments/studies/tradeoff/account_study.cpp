@@ -5,13 +5,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <iterator>
 #include <limits>
 
 #include "engine/base/file.h"
 #include "engine/base/input_error.h"
-#include "engine/formats/prescription/prescription_file.h"
-#include "engine/scene/scene_build.h"
 #include "experiments/draw/chart.h"
 #include "experiments/draw/palette.h"
 
@@ -35,25 +32,8 @@ struct PlannedSet {
     std::string title;
     std::string stated_tolerance;
     Tolerance tolerance;
-    std::vector<PlannedCase> cases;
+    std::vector<SceneCase> cases;
 };
-
-PlannedCase read_case(TomlTable& table, const TomlTable& scene, const std::filesystem::path& file) {
-    PlannedCase planned{.name = findings::read_name(table)};
-    const std::optional<TomlTable> changed = table.optional_table("scene");
-    const TomlTable whole = changed ? scene.overlaid(*changed) : scene;
-    planned.setup = render::read_scene_setup(whole);
-    planned.stated = whole.stated();
-    planned.files = {file};
-    if (!planned.setup.chart) {
-        std::ranges::move(scene::named_files(planned.setup.scene), std::back_inserter(planned.files));
-    }
-    if (!planned.setup.camera.lens.empty()) {
-        std::ranges::move(formats::files_of_lens(planned.setup.camera.lens), std::back_inserter(planned.files));
-    }
-    table.finish();
-    return planned;
-}
 
 PlannedSet read_set(TomlTable& table, findings::ExperimentFile& file) {
     PlannedSet set{.name = findings::read_name(table)};
@@ -68,7 +48,7 @@ PlannedSet read_set(TomlTable& table, findings::ExperimentFile& file) {
         table.fail("tolerance", error.what());
     }
     for (TomlTable& one : table.tables("cases")) {
-        set.cases.push_back(read_case(one, scene, scene_file));
+        set.cases.push_back(read_scene_case(one, scene, scene_file));
     }
     if (set.cases.empty()) {
         table.fail("cases", "has no table, expected one at least");
@@ -270,7 +250,7 @@ bool keeps_tolerance(const PlannedOutcome& outcome, const Tolerance& tolerance) 
     return keeps(surely(outcome.measured), tolerance);
 }
 
-PlannedOutcome hold_to_account(const PlannedCase& planned, const Tolerance& tolerance, const PilotSettings& settings) {
+PlannedOutcome hold_to_account(const SceneCase& planned, const Tolerance& tolerance, const PilotSettings& settings) {
     PlannedOutcome outcome{.name = planned.name};
     try {
         const Plan plan = plan_render(planned.setup, tolerance, settings);
@@ -310,7 +290,7 @@ findings::Study read_planned(findings::ExperimentFile& file) {
             own.probe.threads = settings.threads;
             own.cache = settings.cache;
             std::vector<PlannedOutcome> outcomes;
-            for (const PlannedCase& planned : set.cases) {
+            for (const SceneCase& planned : set.cases) {
                 progress(fmt::format("{}: {}", set.name, planned.name),
                          static_cast<double>(outcomes.size()) / static_cast<double>(set.cases.size()));
                 outcomes.push_back(settings.steps.step("planned",

@@ -3,20 +3,12 @@
 #include <string>
 #include <vector>
 
-#include "engine/base/toml.h"
 #include "experiments/findings/study.h"
 #include "experiments/studies/tradeoff/effect_account.h"
 #include "experiments/studies/tradeoff/plan.h"
+#include "experiments/studies/tradeoff/scene_case.h"
 
 namespace lensproof::studies {
-
-/// A scene with something in it changed, to be planned.
-struct PlannedCase {
-    std::string name;
-    std::string stated;  // the whole scene, as both files state it
-    render::SceneSetup setup;
-    std::vector<std::filesystem::path> files;
-};
 
 /// What a plan said of a case, and what came of it: the planned render against the full model with seeds that the plan
 /// has not seen and more samples. The full model's stray light is in it, but for what only a bound speaks of: faint
@@ -33,7 +25,7 @@ struct PlannedOutcome {
 };
 void fields(JsonArchive& json, PlannedOutcome& outcome);
 
-PlannedOutcome hold_to_account(const PlannedCase& planned, const Tolerance& tolerance, const PilotSettings& settings);
+PlannedOutcome hold_to_account(const SceneCase& planned, const Tolerance& tolerance, const PilotSettings& settings);
 
 /// Whether the measured error keeps the tolerance, as far as it is known: no part of it surely exceeds (by two standard
 /// errors) what may be.
