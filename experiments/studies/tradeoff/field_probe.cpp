@@ -9,6 +9,7 @@
 #include "engine/base/angle.h"
 #include "engine/base/parallel.h"
 #include "engine/render/sampling/sampler.h"
+#include "experiments/studies/tradeoff/point_sums.h"
 
 namespace lensproof::studies {
 
@@ -17,7 +18,10 @@ void fields(JsonArchive& json, FieldError& error) {
         .field("position_um", error.position_um)
         .field("image_px", error.image_px)
         .field("blur_px", error.blur_px)
-        .field("exposure_ev", error.exposure_ev);
+        .field("exposure_ev", error.exposure_ev)
+        .field("mtf_tangential", error.mtf_tangential)
+        .field("mtf_sagittal", error.mtf_sagittal)
+        .field("mtf", error.mtf);
 }
 
 void fields(JsonArchive& json, FieldErrors& errors) {
@@ -27,55 +31,7 @@ void fields(JsonArchive& json, FieldErrors& errors) {
 namespace {
 
 constexpr double kFarthestInFocus = 80.0 * kDegree;
-
-/// Sums over the rays of a point: weights, where they land from the point's pixel, and squares of that.
-struct Landing {
-    double light = 0.0;
-    Vec2d moment;
-    double second_moment = 0.0;
-
-    void add(double weight, Vec2d from_pixel) {
-        light += weight;
-        moment = moment + weight * from_pixel;
-        second_moment += weight * (from_pixel.x * from_pixel.x + from_pixel.y * from_pixel.y);
-    }
-    void add(const Landing& more) {
-        light += more.light;
-        moment = moment + more.moment;
-        second_moment += more.second_moment;
-    }
-    [[nodiscard]] Vec2d centroid() const { return (1.0 / light) * moment; }
-    [[nodiscard]] double spread() const {
-        const Vec2d c = centroid();
-        return std::sqrt(std::max(0.0, second_moment / light - (c.x * c.x + c.y * c.y)));
-    }
-};
-
-using Landings = std::array<Landing, 3>;  // in R, G and B
-
-/// Of both cameras, at one point.
-struct PointSums {
-    Landings exact;
-    Landings model;
-    double ray_square = 0.0;  // px², times weights
-    double ray_light = 0.0;
-    double lost_light = 0.0;
-    double even_exact = 0.0;
-    double even_model = 0.0;
-
-    PointSums& operator+=(const PointSums& more) {
-        for (std::size_t c = 0; c < 3; ++c) {
-            exact[c].add(more.exact[c]);
-            model[c].add(more.model[c]);
-        }
-        ray_square += more.ray_square;
-        ray_light += more.ray_light;
-        lost_light += more.lost_light;
-        even_exact += more.even_exact;
-        even_model += more.even_model;
-        return *this;
-    }
-};
+constexpr double kNyquist = 0.5;  // cycles a pixel
 
 /// A camera's answers about one point of light, by a number in [0, 1) for the wavelength.
 class PointCamera {
@@ -106,6 +62,11 @@ class PointCamera {
             return own ? arrival(own->ray, x) : Arrival{};
         }
         return arrival(ray, x);
+    }
+    /// Of lines at the pixels' Nyquist frequency, from the point's pixel to `at`: along the image height and across it.
+    [[nodiscard]] Vec2d cycles(Vec2d at) const {
+        const Vec2d out = point_->outwards;
+        return kNyquist * Vec2d{out.x * at.x + out.y * at.y, out.x * at.y - out.y * at.x};
     }
     /// R, G and B of light at that wavelength; what a response takes off a colour does not count.
     [[nodiscard]] std::array<double, 3> weights(double x) const {
@@ -155,6 +116,7 @@ void add_exact_ray(const PointCamera& exact, const PointCamera& model, double x,
     for (std::size_t c = 0; c < 3; ++c) {
         sums.exact[c].add(light * weights[c], there.at);
     }
+    sums.exact_modulation.add(light * weights[1], exact.cycles(there.at));
     const double all = light * (weights[0] + weights[1] + weights[2]);
     const PointCamera::Arrival here = model.arrival_of_other(drawn->ray, x);
     if (!(here.transmittance > 0.0)) {
@@ -169,10 +131,15 @@ void add_exact_ray(const PointCamera& exact, const PointCamera& model, double x,
 void add_model_ray(const PointCamera& model, double x, double u, double v, PointSums& sums) {
     if (const auto drawn = model.sample(x, u, v)) {
         const PointCamera::Arrival here = model.arrival(drawn->ray, x);
-        const auto weights = model.weights(x);
-        for (std::size_t c = 0; here.transmittance > 0.0 && c < 3; ++c) {
-            sums.model[c].add(here.transmittance / drawn->pdf.hero * weights[c], here.at);
+        if (!(here.transmittance > 0.0)) {
+            return;
         }
+        const double light = here.transmittance / drawn->pdf.hero;
+        const auto weights = model.weights(x);
+        for (std::size_t c = 0; c < 3; ++c) {
+            sums.model[c].add(light * weights[c], here.at);
+        }
+        sums.model_modulation.add(light * weights[1], model.cycles(here.at));
     }
 }
 
@@ -192,7 +159,7 @@ PointSums probe(const render::Camera& exact_camera, const render::Camera& model_
     return sums;
 }
 
-/// Squares of the four errors at a point, in px² and EV². Nothing where one of the cameras sees no light.
+/// Squares of the errors at a point, in px² and EV². Nothing where one of the cameras sees no light.
 struct Squares {
     double position = 0.0;
     double image = 0.0;
@@ -200,12 +167,20 @@ struct Squares {
     double exposure = 0.0;
     double signed_blur = 0.0;
     double signed_exposure = 0.0;
+    double mtf_tangential = 0.0;
+    double mtf_sagittal = 0.0;
+    double signed_tangential = 0.0;
+    double signed_sagittal = 0.0;
+    double mtf = 0.0;
 
     Squares& operator+=(const Squares& more) {
         position += more.position;
         image += more.image;
         blur += more.blur;
         exposure += more.exposure;
+        mtf_tangential += more.mtf_tangential;
+        mtf_sagittal += more.mtf_sagittal;
+        mtf += more.mtf;
         return *this;
     }
 };
@@ -226,12 +201,17 @@ Squares squares_of(const PointSums& sums) {
     squares.image /= std::max(1.0, channels);
     if (sums.exact[1].light > 0.0 && sums.model[1].light > 0.0) {
         squares.signed_blur = sums.model[1].spread() - sums.exact[1].spread();
+        squares.signed_tangential = sums.model_modulation.mtf(0) - sums.exact_modulation.mtf(0);
+        squares.signed_sagittal = sums.model_modulation.mtf(1) - sums.exact_modulation.mtf(1);
     }
     if (sums.even_exact > 0.0 && sums.even_model > 0.0) {
         squares.signed_exposure = std::log2(sums.even_model / sums.even_exact);
     }
     squares.blur = squares.signed_blur * squares.signed_blur;
     squares.exposure = squares.signed_exposure * squares.signed_exposure;
+    squares.mtf_tangential = squares.signed_tangential * squares.signed_tangential;
+    squares.mtf_sagittal = squares.signed_sagittal * squares.signed_sagittal;
+    squares.mtf = 0.5 * (squares.mtf_tangential + squares.mtf_sagittal);
     return squares;
 }
 
@@ -300,8 +280,9 @@ std::vector<ProbePoint> probe_points(const render::Camera& exact, int count) {
             const Ray<double> in_world = exact.to_world({out.origin + distance * out.direction, -1.0 * out.direction});
             point.origin = {.at = is_far ? in_world.direction : in_world.origin, .is_far = is_far};
             const Vec2d from_axis = point.at_px - sensor.axis();
-            point.image_height =
-                std::hypot(from_axis.x, from_axis.y) * sensor.pixel_pitch_mm / sensor.half_diagonal_mm();
+            const double radius = std::hypot(from_axis.x, from_axis.y);
+            point.image_height = radius * sensor.pixel_pitch_mm / sensor.half_diagonal_mm();
+            point.outwards = radius > 0.0 ? (1.0 / radius) * from_axis : Vec2d{1.0, 0.0};
             points.push_back(point);
         }
     }
@@ -361,13 +342,19 @@ FieldErrors field_errors(const render::Camera& exact, const render::Camera& mode
                              .position_um = scaled(root(of_point(p, &Squares::position)), um),
                              .image_px = root(of_point(p, &Squares::image)),
                              .blur_px = of_point(p, &Squares::signed_blur),
-                             .exposure_ev = of_point(p, &Squares::signed_exposure)});
+                             .exposure_ev = of_point(p, &Squares::signed_exposure),
+                             .mtf_tangential = of_point(p, &Squares::signed_tangential),
+                             .mtf_sagittal = of_point(p, &Squares::signed_sagittal),
+                             .mtf = root(of_point(p, &Squares::mtf))});
     }
     errors.frame = {.image_height = 0.0,
                     .position_um = scaled(root(of_frame(&Squares::position)), um),
                     .image_px = root(of_frame(&Squares::image)),
                     .blur_px = root(of_frame(&Squares::blur)),
-                    .exposure_ev = root(of_frame(&Squares::exposure))};
+                    .exposure_ev = root(of_frame(&Squares::exposure)),
+                    .mtf_tangential = root(of_frame(&Squares::mtf_tangential)),
+                    .mtf_sagittal = root(of_frame(&Squares::mtf_sagittal)),
+                    .mtf = root(of_frame(&Squares::mtf))};
     double light = 0.0;
     for (const std::vector<PointSums>& repetition : probed) {
         for (const PointSums& at : repetition) {

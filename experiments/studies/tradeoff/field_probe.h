@@ -15,6 +15,7 @@ struct ProbePoint {
     std::uint32_t pixel = 0;  // row by row from the top left
     Vec2d at_px;
     double image_height = 0.0;   // of the half-diagonal, about the axis
+    Vec2d outwards;              // unit vector from the axis
     render::LightOrigin origin;  // in the world
 };
 
@@ -50,6 +51,11 @@ struct FieldError {
     Measured image_px;     // the centroid of the point's image: root mean square over R, G and B
     Measured blur_px;      // rms radius of the point's image, less the exact one's; of the frame, rms
     Measured exposure_ev;  // what an even world gives to the pixel, over the exact one's; of the frame, rms
+    /// The geometric MTF of the point's image in green at the pixels' Nyquist frequency, less the exact one's: along
+    /// the image height, and across it; of the frame, rms. `mtf`: root mean square of both.
+    Measured mtf_tangential;
+    Measured mtf_sagittal;
+    Measured mtf;
 };
 void fields(JsonArchive& json, FieldError& error);
 
