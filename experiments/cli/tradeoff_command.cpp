@@ -14,6 +14,7 @@
 #include "experiments/draw/report/report.h"
 #include "experiments/runner/provenance.h"
 #include "experiments/runner/report_content.h"
+#include "experiments/studies/tradeoff/tradeoff_findings.h"
 #include "experiments/studies/tradeoff/tradeoff_study.h"
 
 namespace lensproof::cli {
@@ -30,14 +31,14 @@ struct TradeoffOptions {
 };
 
 studies::TradeoffScene scene_of(const TradeoffOptions& options) {
+    const std::string title = std::filesystem::path(options.scene).stem().string();
     studies::TradeoffScene scene{.name = "tradeoff",
-                                 .title = std::filesystem::path(options.scene).stem().string(),
-                                 .file = options.scene,
-                                 .stated = {},
+                                 .title = title,
+                                 .picture = title,
                                  .setup = render::read_scene_setup(options.scene),
                                  .rungs = studies::rungs_named(options.rungs),
-                                 .settings = options.settings,
-                                 .checks = {}};
+                                 .settings = options.settings};
+    scene.lens = scene.setup.camera.lens;
     scene.settings.probe.seed = options.common.seed;
     scene.settings.probe.threads = options.common.threads;
     scene.settings.cache = Cache::standard();
@@ -57,7 +58,7 @@ std::string command_of(const TradeoffOptions& options) {
 
 std::string page(const TradeoffOptions& options, const studies::TradeoffScene& scene,
                  const std::vector<studies::MeasuredRung>& rungs) {
-    const findings::Findings found = studies::tradeoff_findings(scene, rungs);
+    const findings::Findings found = studies::tradeoff_findings({{scene, rungs}});
     Json report = runner::report_json(
         {.title = "What each model costs and gets wrong: " + scene.title,
          .summary = "Each model of the camera against the lens itself, traced surface by surface in double: where it "

@@ -225,8 +225,11 @@ void compare_rungs(std::vector<MeasuredRung>& rungs) {
     // Noise falls with the root of the samples; that of a difference is both pictures'.
     for (MeasuredRung& rung : rungs) {
         const double samples = rung.cost.samples * reference->cost.seconds / rung.cost.seconds;
-        rung.ciede2000_at_equal_time = std::hypot(
-            rung.picture.ciede2000.bias.value, rung.picture.ciede2000.noise * std::sqrt(0.5 * rung.samples / samples));
+        const auto at_equal_time = [&](const SeenDifference& seen) {
+            return std::hypot(seen.bias.value, seen.noise * std::sqrt(0.5 * rung.samples / samples));
+        };
+        rung.ciede2000_at_equal_time = at_equal_time(rung.picture.ciede2000);
+        rung.flip_at_equal_time = at_equal_time(rung.picture.flip);
     }
 }
 

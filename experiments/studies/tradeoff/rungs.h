@@ -58,8 +58,10 @@ struct MeasuredRung {
     FieldErrors field;
     PictureErrors picture;
     RungCost cost;
-    /// Mean CIEDE2000 of bias and of the rung's own noise after the time that the reference takes to the wanted noise.
+    /// Mean difference of bias and of the rung's own noise after the time that the reference takes to the wanted noise.
+    /// Place, width and brightness of images are free of the pictures' noise, and the same at any time.
     double ciede2000_at_equal_time = 0.0;
+    double flip_at_equal_time = 0.0;
     bool is_pareto = false;
 };
 void fields(JsonArchive& json, MeasuredRung& rung);
