@@ -16,6 +16,7 @@
 #include "experiments/studies/stability/stability_study.h"
 #include "experiments/studies/stray_light/stray_study.h"
 #include "experiments/studies/tradeoff/account_study.h"
+#include "experiments/studies/tradeoff/ring_study.h"
 #include "experiments/studies/tradeoff/tradeoff_study.h"
 #include "experiments/studies/twins/twins_study.h"
 
@@ -41,6 +42,7 @@ constexpr std::array kStudies = {
     StudyKind{"[[edge_diffraction]]", studies::read_edge_diffraction},
     StudyKind{"[[tradeoff]]", studies::read_tradeoff},
     StudyKind{"[[planned]]", studies::read_planned},
+    StudyKind{"[[analysis_rings]]", studies::read_analysis_rings},
     StudyKind{"[measurement_floor]", studies::read_measurement_floor},
     StudyKind{"[[photographed_lenses]]", studies::read_photographed_lenses},
 };
