@@ -74,8 +74,8 @@ std::string page(const TradeoffOptions& options, const studies::TradeoffScene& s
 }
 
 void print_rungs(const std::vector<studies::MeasuredRung>& rungs, const TradeoffOptions& options) {
-    print("{:<29}{:>19}{:>19}{:>19}{:>19}{:>10}{:>9}{:>10}{:>9}\n", "model", "rays µm", "image px", "exposure EV",
-          "CIEDE2000", "FLIP", "ns/path", "seconds", "MiB");
+    print("{:<29}{:>19}{:>19}{:>19}{:>19}{:>19}{:>10}{:>9}{:>10}{:>9}\n", "model", "rays µm", "image px", "MTF",
+          "exposure EV", "CIEDE2000", "FLIP", "ns/path", "seconds", "MiB");
     const auto with_error = [](const studies::Measured& measured) {
         return fmt::format("{:.3g} ± {:.1g}", measured.value, measured.standard_error);
     };
@@ -85,13 +85,16 @@ void print_rungs(const std::vector<studies::MeasuredRung>& rungs, const Tradeoff
             continue;
         }
         const studies::FieldError& frame = rung.field.frame;
-        print("{:<29}{:>19}{:>19}{:>19}{:>19}{:>10.3g}{:>9.0f}{:>10.3g}{:>9.3g}{}\n", rung.name,
-              with_error(frame.position_um), with_error(frame.image_px), with_error(frame.exposure_ev),
-              with_error(rung.picture.ciede2000.bias), rung.picture.flip.bias.value, rung.cost.ns_per_path,
-              rung.cost.seconds, rung.cost.memory_mib, rung.is_pareto ? "  *" : "");
+        print("{:<29}{:>19}{:>19}{:>19}{:>19}{:>19}{:>10.3g}{:>9.0f}{:>10.3g}{:>9.3g}{}\n", rung.name,
+              with_error(frame.position_um), with_error(frame.image_px), with_error(frame.mtf),
+              with_error(frame.exposure_ev), with_error(rung.picture.ciede2000.bias), rung.picture.flip.bias.value,
+              rung.cost.ns_per_path, rung.cost.seconds, rung.cost.memory_mib, rung.is_pareto ? "  *" : "");
     }
-    print("* no other model is cheaper and no worse; seconds of one core, for the scene's own frame to {:g} % noise\n",
-          100.0 * options.settings.noise);
+    print(
+        "* no other model is cheaper and no worse; seconds of one core, for the scene's own frame to {:g} % noise; MTF "
+        "at the pixels' Nyquist "
+        "frequency\n",
+        100.0 * options.settings.noise);
 }
 
 int run_tradeoff(const TradeoffOptions& options) {

@@ -61,7 +61,7 @@ std::string largest_error(const MeasuredRung& rung, const Tolerance& tolerance) 
         Part{error.ev, tolerance.ev, "EV"}, Part{error.ciede2000, tolerance.ciede2000, "CIEDE2000"}};
     const Part& largest =
         *std::ranges::max_element(parts, {}, [](const Part& part) { return part.error.value / part.limit; });
-    return fmt::format("{:.2g} ± {:.1g} {}", largest.error.value, largest.error.standard_error, largest.unit);
+    return fmt::format("{:.3g} ± {:.1g} {}", largest.error.value, largest.error.standard_error, largest.unit);
 }
 
 }  // namespace lensproof::studies
