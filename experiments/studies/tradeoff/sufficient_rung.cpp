@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 
 namespace lensproof::studies {
 
@@ -41,9 +42,11 @@ SufficientRung sufficient_rung(const std::vector<MeasuredRung>& rungs, const Tol
     std::erase_if(cheaper, [&](const MeasuredRung& rung) {
         return !rung.not_applicable.empty() || rung.cost.seconds >= found->cost.seconds;
     });
+    Contribution known = asked_of(*found);
+    known.ciede2000.standard_error = std::hypot(known.ciede2000.standard_error, reference.picture.ciede2000.bias.value);
     const auto nearest = std::ranges::min_element(cheaper, {}, excess);
     return {.rung = *found,
-            .is_sure = keeps(asked_of(*found), tolerance),
+            .is_sure = found == &reference || keeps(known, tolerance),
             .speed_up = reference.cost.seconds / found->cost.seconds,
             .cheaper = nearest == cheaper.end() ? std::nullopt : std::optional(*nearest)};
 }

@@ -18,7 +18,9 @@ Contribution asked_of(const MeasuredRung& rung);
 /// ones that which exceeds it by the smallest factor.
 struct SufficientRung {
     MeasuredRung rung;
-    bool is_sure = false;   // it keeps the tolerance with two standard errors
+    /// It keeps the tolerance with two standard errors. To CIEDE2000's is added what the reference seems to differ by
+    /// from itself with other seeds: blocks of a picture do not show noise that is the same all over it.
+    bool is_sure = false;
     double speed_up = 1.0;  // the reference's time to the wanted noise, over the rung's
     std::optional<MeasuredRung> cheaper;
 };
