@@ -63,6 +63,7 @@ const Camera& PreparedScene::stray_camera() {
     if (!stray_camera_) {
         CameraSettings settings = setup_.stray_camera.value_or(setup_.camera);
         settings.model = LensModel::exact;
+        settings.sensor = setup_.camera.sensor;
         stray_camera_.emplace(settings, setup_.spectral, filter_, cache_, integrator_->has_splats);
     }
     return *stray_camera_;

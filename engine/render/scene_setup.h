@@ -20,6 +20,7 @@ struct ChartView {
 struct SceneSetup {
     CameraSettings camera;
     /// In whose lens light goes astray, where `camera` is a simpler model of it; none: `camera`'s own, traced exactly.
+    /// Its sensor is `camera`'s.
     std::optional<CameraSettings> stray_camera;
     scene::SceneDescription scene;
     std::optional<ChartView> chart;  // in the place of the scene

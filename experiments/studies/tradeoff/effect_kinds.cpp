@@ -13,6 +13,15 @@ using formats::Image;
 
 namespace {
 
+/// What the pilot's picture loses or gains by a change that is done to each of its seeds.
+Measured seen(const Pilot& pilot, const std::function<Image(const Image&)>& change) {
+    std::vector<Image> changed;
+    std::ranges::transform(pilot.full().rgb, std::back_inserter(changed), change);
+    return picture_errors(changed, pilot.full().rgb, pilot.settings().probe.threads).ciede2000.bias;
+}
+
+}  // namespace
+
 Measured rms(const std::vector<double>& values) {
     double sum = 0.0;
     double fourth = 0.0;
@@ -23,15 +32,6 @@ Measured rms(const std::vector<double>& values) {
     const auto n = static_cast<double>(std::max<std::size_t>(1, values.size()));
     return root({sum / n, std::sqrt(std::max(0.0, fourth / n - std::pow(sum / n, 2)) / n)});
 }
-
-/// What the pilot's picture loses or gains by a change that is done to each of its seeds.
-Measured seen(const Pilot& pilot, const std::function<Image(const Image&)>& change) {
-    std::vector<Image> changed;
-    std::ranges::transform(pilot.full().rgb, std::back_inserter(changed), change);
-    return picture_errors(changed, pilot.full().rgb, pilot.settings().probe.threads).ciede2000.bias;
-}
-
-}  // namespace
 
 Contribution difference(const Pilot& pilot, const std::vector<Image>& without) {
     const PictureErrors found = picture_errors(without, pilot.full().rgb, pilot.settings().probe.threads);

@@ -9,6 +9,9 @@
 
 namespace lensproof::studies {
 
+/// The root of the mean square of values over a frame.
+Measured rms(const std::vector<double>& values);
+
 /// One constant gain for all of the picture.
 Effect gain_effect(const Pilot& pilot, const std::string& name, const Vec3d& gain);
 

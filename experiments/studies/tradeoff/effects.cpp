@@ -144,6 +144,35 @@ void add_falloff(const Pilot& pilot, const std::vector<PointLook>& exact, const 
     effects.push_back(falloff_effect(pilot, "cos4", cos4));
 }
 
+/// What the electronics behind the film do, where a scene has any: a pixel's noise, rms, of electrons, their reading
+/// and rounding (RawSensor), and what is beyond saturation, cut.
+Effect sensor(const Pilot& pilot) {
+    Effect effect{.name = "sensor", .contribution = {}};
+    if (!pilot.setup().sensor) {
+        return effect;
+    }
+    const render::RawSensor& raw = *pilot.setup().sensor;
+    const double saturated = raw.full_well_electrons * raw.base_iso / raw.camera.exposure.iso;
+    const double dark = raw.dark_current_electrons_per_s * raw.camera.exposure.time_s;
+    const double step = saturated / std::max(1, raw.white_level_dn - raw.black_level_dn);
+    const double fixed = dark + raw.read_noise_electrons * raw.read_noise_electrons + step * step / 12.0;
+    const std::array neutral = {raw.neutral.x, raw.neutral.y, raw.neutral.z};
+    std::vector<double> ev;
+    std::vector<formats::Image> cut = pilot.full().rgb;
+    for (formats::Image& picture : cut) {
+        for (std::size_t i = 0; i < picture.pixels.size(); ++i) {
+            const double electrons = static_cast<double>(picture.pixels[i]) * neutral[i % 3] * saturated;
+            if (electrons >= 1.0) {
+                ev.push_back(std::log2(1.0 + std::sqrt(electrons + fixed) / electrons));
+            }
+            picture.pixels[i] = std::min(picture.pixels[i], static_cast<float>(1.0 / neutral[i % 3]));
+        }
+    }
+    effect.contribution = difference(pilot, cut);
+    effect.contribution.ev = rms(ev);
+    return effect;
+}
+
 }  // namespace
 
 std::vector<Effect> lens_effects(const Pilot& pilot) {
@@ -159,6 +188,7 @@ std::vector<Effect> lens_effects(const Pilot& pilot) {
     effects.push_back(defocus(pilot));
     add_falloff(pilot, exact, thin, effects);
     add_losses(pilot, axial_light(pilot), effects);
+    effects.push_back(sensor(pilot));
     return effects;
 }
 

@@ -20,9 +20,9 @@ struct Effect {
 };
 
 /// What the full model has and a lens without it has not: distortion, lateral-colour, aberration-blur, axial-colour,
-/// defocus, vignetting, cos4, fresnel-loss, coating-colour, absorption. Each is done to the pilot's pictures, or taken
-/// from them. Pictures have much the same detail at every scale (Ruderman 1994), so that a shift or a blur of so many
-/// of the scene's pixels is done to as many of the pilot's.
+/// defocus, vignetting, cos4, fresnel-loss, coating-colour, absorption, sensor. Each is done to the pilot's pictures,
+/// or taken from them. Pictures have much the same detail at every scale (Ruderman 1994), so that a shift or a blur of
+/// so many of the scene's pixels is done to as many of the pilot's.
 std::vector<Effect> lens_effects(const Pilot& pilot);
 
 /// Light that goes astray: ghosts, faint-ghosts, barrel, diffraction. By a few samples of the first's and the third's

@@ -258,8 +258,14 @@ class Planner {
             if (!planned.why.empty()) {
                 continue;
             }
+            planned.is_modelled = true;
+            if (name == "sensor") {
+                planned.why = pilot_.setup().sensor ? words_of(planned.effect.contribution) +
+                                                          "; it works on the finished film, and takes no samples"
+                                                    : "the scene has no [sensor]";
+                continue;
+            }
             if (!belongs_to_camera(name)) {  // losses on the axis and cos⁴, which every camera here has
-                planned.is_modelled = true;
                 planned.why =
                     fmt::format("{}, and no model is cheaper without it", words_of(planned.effect.contribution));
                 continue;

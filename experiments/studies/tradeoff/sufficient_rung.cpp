@@ -8,17 +8,6 @@
 
 namespace lensproof::studies {
 
-namespace {
-
-/// The largest of the errors, over what may be.
-double over_tolerance(const MeasuredRung& rung, const Tolerance& tolerance) {
-    const Contribution error = asked_of(rung);
-    return std::max(
-        {error.px.value / tolerance.px, error.ev.value / tolerance.ev, error.ciede2000.value / tolerance.ciede2000});
-}
-
-}  // namespace
-
 Contribution asked_of(const MeasuredRung& rung) {
     if (rung.name == kReferenceRung) {
         return {};
@@ -31,7 +20,7 @@ Contribution asked_of(const MeasuredRung& rung) {
 
 SufficientRung sufficient_rung(const std::vector<MeasuredRung>& rungs, const Tolerance& tolerance) {
     const MeasuredRung& reference = *std::ranges::find(rungs, kReferenceRung, &MeasuredRung::name);
-    const auto excess = [&](const MeasuredRung& rung) { return over_tolerance(rung, tolerance); };
+    const auto excess = [&](const MeasuredRung& rung) { return over_tolerance(asked_of(rung), tolerance); };
     const MeasuredRung* found = &reference;
     for (const MeasuredRung& rung : rungs) {
         if (rung.not_applicable.empty() && excess(rung) <= 1.0 && rung.cost.seconds < found->cost.seconds) {

@@ -86,6 +86,34 @@ TEST(EffectAccount, MeasuresWhatWasPredicted) {
     EXPECT_NE(std::ranges::find(accounts, "ghosts", &EffectAccount::effects), accounts.end());
 }
 
+// A simpler camera's stray light has a camera of its own, on the pilot's film as well: the time of a sample is not that
+// of the scene's larger film, nor is the light another.
+TEST(Plan, StrayLightBesideASimplerCameraIsOnTheSameFilm) {
+    const render::SceneSetup scene = wall("tessar", 4.5, 10.0);
+    const PlannedRender planned{.rung = *std::ranges::find(ladder(), "pinhole-profile", &Rung::name),
+                                .max_bounces = scene.max_bounces,
+                                .passes = {"ghosts"}};
+    PilotSettings settings{.pixels = 400};
+    settings.stray_samples = 64;
+    const Contribution error = check_plan(scene, planned, {"ghosts"}, settings).error;
+    EXPECT_LT(error.ev.value, 0.02 + 2.0 * error.ev.standard_error);
+}
+
+// Where nothing but the electrons' own number is uncertain, noise falls with the root of how many fill the well.
+TEST(Plan, TheSensorsNoiseIsThatOfItsElectrons) {
+    const auto noise_ev = [](double full_well) {
+        render::SceneSetup scene = wall("tessar", 4.5, 10.0);
+        scene.sensor = render::RawSensor{.full_well_electrons = full_well,
+                                         .white_level_dn = 1 << 30,
+                                         .camera = {.exposure = scene.camera.exposure},
+                                         .neutral = {1.0, 1.0, 1.0}};
+        return effect(plan_render(scene, {.px = 1e6}, {}), "sensor").effect.contribution.ev.value;
+    };
+    const double many = noise_ev(1e8);
+    EXPECT_GT(many, 0.0);
+    EXPECT_NEAR(noise_ev(1e6) / many, 10.0, 0.1);  // log2(1 + x) is x / ln 2 to half of x, here a hundredth at most
+}
+
 TEST(EffectAccount, CoversWithinTwoErrorsOfBoth) {
     EXPECT_TRUE(covers({1.0, 0.3}, {1.9, 0.4}, false));
     EXPECT_FALSE(covers({1.0, 0.3}, {2.1, 0.4}, false));
