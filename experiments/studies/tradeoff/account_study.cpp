@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <boost/math/distributions/binomial.hpp>
 #include <cmath>
 #include <limits>
 
@@ -132,11 +133,11 @@ std::string coverage(const std::vector<PlannedOutcome>& outcomes, const Part& pa
 }
 
 std::string scatter_svg(const PlannedSet& set, const std::vector<PlannedOutcome>& outcomes, const Part& part) {
+    constexpr double kLeast = 1e-4;
     draw::PlotChart chart{
         .title = fmt::format("{}: what effects contribute", set.title),
-        .caption =
-            "Each case's, predicted by the plan and measured by renders with other seeds; what "
-            "is 0 cannot be shown here",
+        .caption = fmt::format("Predicted by the plan, and measured by renders with other seeds. Not shown: below {:g}",
+                               kLeast),
         .x = {.label = fmt::format("Predicted, {}", part.unit), .scale = draw::AxisScale::logarithmic},
         .y = {.label = fmt::format("Measured, {}", part.unit), .scale = draw::AxisScale::logarithmic}};
     std::vector<std::pair<std::string, std::vector<Vec2d>>> by_effect;
@@ -146,7 +147,7 @@ std::string scatter_svg(const PlannedSet& set, const std::vector<PlannedOutcome>
         for (const EffectAccount& account : outcome.effects) {
             const double x = (account.predicted.*part.of).value;
             const double y = (account.measured.*part.of).value;
-            if (!(x > 0.0 && y > 0.0)) {
+            if (!(x >= kLeast && y >= kLeast)) {
                 continue;
             }
             const std::string label = account.effects + (account.is_bound ? " (at most)" : "");
@@ -160,7 +161,8 @@ std::string scatter_svg(const PlannedSet& set, const std::vector<PlannedOutcome>
         }
     }
     if (most > 0.0) {
-        chart.curves.push_back({.label = "as predicted", .points = {{least, least}, {most, most}}});
+        chart.curves.push_back(
+            {.label = "as predicted", .points = {{least, least}, {most, most}}, .colour = "#8a909b"});
     }
     for (std::size_t i = 0; i < by_effect.size(); ++i) {
         chart.curves.push_back({.label = by_effect[i].first,
@@ -197,17 +199,27 @@ findings::Findings account_findings(const PlannedSet& set, const std::vector<Pla
     const auto planned = static_cast<double>(speed_ups.size());
     const double share = planned > 0.0 ? kept / planned : std::nan("");
     std::ranges::sort(speed_ups);
+    using Binomial = boost::math::binomial_distribution<>;
+    constexpr double kEachSide = 0.025;
+    const std::string interval =
+        planned > 0.0
+            ? fmt::format("{:.1f} to {:.1f} %", 100.0 * Binomial::find_lower_bound_on_p(planned, kept, kEachSide),
+                          100.0 * Binomial::find_upper_bound_on_p(planned, kept, kEachSide))
+            : "unknown";
     constexpr double kWanted = 0.95;
-    found.checks.push_back({.id = set.name + "-kept",
-                            .group = set.title,
-                            .subject = set.name,
-                            .label = fmt::format("plans that keep {}", set.stated_tolerance),
-                            .value = 100.0 * share,
-                            .sigma = 100.0 * std::sqrt(share * (1.0 - share) / planned),
-                            .unit = "%",
-                            .limit = 100.0 * kWanted,
-                            .expectation = findings::Expectation::at_least,
-                            .explanation = "Against the full model with other seeds, by two standard errors."});
+    found.checks.push_back(
+        {.id = set.name + "-kept",
+         .group = set.title,
+         .subject = set.name,
+         .label = fmt::format("plans that keep {}", set.stated_tolerance),
+         .value = 100.0 * share,
+         .sigma = 100.0 * std::sqrt(share * (1.0 - share) / planned),
+         .unit = "%",
+         .limit = 100.0 * kWanted,
+         .expectation = findings::Expectation::at_least,
+         .explanation = fmt::format("Against the full model with other seeds, by two standard errors. Of "
+                                    "all such pictures it may be {} (Clopper and Pearson, 95 %).",
+                                    interval)});
     constexpr double kSlowest = 0.95;  // of a time that differs from run to run
     found.checks.push_back({.id = set.name + "-slowest",
                             .group = set.title,
@@ -218,7 +230,8 @@ findings::Findings account_findings(const PlannedSet& set, const std::vector<Pla
                             .expectation = findings::Expectation::at_least,
                             .explanation = "The full model's time over the planned one's, a sample."});
     findings::Subject subject{.id = set.name, .kind = "plans", .label = set.title};
-    subject.facts = {{"plans", fmt::format("{}, of {} cases", speed_ups.size(), outcomes.size())},
+    subject.facts = {{"plans that keep their tolerance, of all such pictures, 95 % interval", interval},
+                     {"plans", fmt::format("{}, of {} cases", speed_ups.size(), outcomes.size())},
                      {"times as fast, the median",
                       speed_ups.empty() ? "none" : fmt::format("{:.2f}", speed_ups[speed_ups.size() / 2])}};
     constexpr draw::ChartSize kSize{};
