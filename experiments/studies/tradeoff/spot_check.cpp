@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <vector>
 
@@ -78,12 +79,17 @@ std::vector<Image> render_seeds(const render::SceneSetup& setup, const std::vect
 }  // namespace
 
 Plan spot_checked(Plan plan, const render::SceneSetup& setup, const SpotCheckSettings& settings) {
+    const auto start = std::chrono::steady_clock::now();
     const render::SceneSetup full = on_rung(setup, {.name = kReferenceRung});
+    const auto is_full = [&] { return plan.render.rung.name == kReferenceRung && !plan.render.is_reduced(full); };
+    if (is_full()) {
+        return plan;
+    }
     const std::vector<render::PixelRect> windows = windows_of(setup.camera.sensor, settings);
     const std::vector<Image> judge = render_seeds(full, windows, settings.seed, settings);
-    std::vector<PlannedRender> others = dearer_renders(plan.render, full);
+    const std::vector<PlannedRender> others = dearer_renders(plan.render, full);
     plan.spots.pixels = static_cast<int>(windows.size()) * windows.front().pixels();
-    for (std::size_t i = 0; plan.render.rung.name != kReferenceRung || plan.render.is_reduced(full); ++i) {
+    for (std::size_t i = 0; !is_full(); ++i) {
         try {
             const std::vector<Image> planned =
                 render_seeds(planned_setup(setup, plan.render), windows, settings.seed + 2, settings);
@@ -103,6 +109,7 @@ Plan spot_checked(Plan plan, const render::SceneSetup& setup, const SpotCheckSet
         plan.spots.error = {};
         plan.render = others.at(i);
     }
+    plan.probe_seconds += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     return plan;
 }
 

@@ -87,11 +87,15 @@ std::vector<Effect> found_by_passes(const Pilot& pilot) {
     std::vector<Effect> effects = {veil_effect(pilot, "ghosts", ghosts),
                                    veil_effect(pilot, "faint-ghosts", {{most * most, 0.0}, ghosts.ns_per_sample})};
     effects[1].is_bound = true;
-    effects.push_back(pilot.camera().lens()->barrel.is_black()
-                          ? Effect{.name = "barrel", .contribution = {}}
-                          : veil_effect(pilot, "barrel", veil_of(pilot, "barrel")));
+    const bool is_black = pilot.camera().lens()->barrel.is_black();
+    if (!is_black) {
+        effects.push_back(veil_effect(pilot, "barrel", veil_of(pilot, "barrel")));
+    }
     for (Effect& effect : effects) {
-        effect.pass = effect.ns_per_sample > 0.0 ? effect.name : "";
+        effect.pass = effect.name;
+    }
+    if (is_black) {
+        effects.push_back({.name = "barrel", .contribution = {}});
     }
     return effects;
 }
@@ -124,8 +128,8 @@ std::vector<Effect> ghosts_and_barrel(const Pilot& pilot) {
 }
 
 /// What the edges of the stop send farther than a pixel, of a distant point's light: P λ f / (2 π² A r), P being the
-/// stop's perimeter and A its area (Keller's law; integrated over streaks and between them), as an even veil. A
-/// polygon's perimeter is 1 / cos(π/n) of the circle's around it for the same area.
+/// stop's perimeter and A its area (Keller's law; integrated over streaks and between them), as an even veil. P / A
+/// of a polygon is that of the circle around it over cos(π/n).
 Effect diffraction_veil(const Pilot& pilot, double ns_per_sample) {
     const render::CameraSettings& camera = pilot.setup().camera;
     constexpr double kLambda_mm = 550e-6;
