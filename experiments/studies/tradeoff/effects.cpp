@@ -5,6 +5,7 @@
 #include <optional>
 #include <utility>
 
+#include "engine/analysis/seidel.h"
 #include "engine/optics/paraxial.h"
 #include "engine/optics/trace.h"
 #include "engine/spectral/wavelengths.h"
@@ -129,6 +130,34 @@ Effect defocus(const Pilot& pilot) {
                        });
 }
 
+/// What blurs in third order, rms over the pupil: transverse aberrations are ∂W/∂ρ / n'u' of
+/// W = S1 ρ⁴/8 + S2 η ρ³ cos φ/2 + S3 η² ρ² cos² φ/2 + (S3 + S4) η² ρ²/4 (Welford, Aberrations of Optical Systems,
+/// ch. 8), spherical aberration at its best focus, and astigmatism about the medial surface.
+void add_third_order(const Pilot& pilot, std::vector<Effect>& effects) {
+    const optics::Lens& lens = pilot.camera().lens().value();
+    const render::Sensor& sensor = pilot.setup().camera.sensor;
+    const auto at = [&](double nm) { return optics::at_wavelength<double>(lens, nm); };
+    const optics::TraceLens<double> reference = at(spectral::kLineD);
+    const double field = std::atan(sensor.half_diagonal_mm() / std::abs(optics::paraxial_data(reference).efl));
+    const auto sums = analysis::seidel_sums(reference, at(spectral::kLineF), at(spectral::kLineC), field,
+                                            pilot.setup().camera.focus_distance_mm);
+    if (!sums) {
+        return;
+    }
+    const auto& total = sums->total;
+    const double px = 1.0 / (2.0 * std::abs(sums->image_slope) * sensor.pixel_pitch_mm);
+    const auto add = [&](const char* name, double at_corner, int power_of_field) {
+        effects.push_back(blur_effect(pilot, name, [&](int x, int y) {
+            return px * std::abs(at_corner) * std::pow(pilot.image_height(x, y), power_of_field);
+        }));
+        effects.back().part_of = "aberration-blur";
+    };
+    add("spherical-aberration", total.s1 / 6.0, 0);
+    add("coma", std::sqrt(2.0 / 3.0) * total.s2, 1);
+    add("astigmatism", std::sqrt(0.5) * total.s3, 2);
+    add("field-curvature", std::sqrt(0.5) * (2.0 * total.s3 + total.s4), 2);
+}
+
 void add_falloff(const Pilot& pilot, const std::vector<PointLook>& exact, const std::vector<PointLook>& thin,
                  std::vector<Effect>& effects) {
     const auto nearest = std::ranges::min_element(pilot.points(), {}, &ProbePoint::image_height);
@@ -185,6 +214,7 @@ std::vector<Effect> lens_effects(const Pilot& pilot) {
     const std::vector<PointLook> thin = look_at_points(thin_camera, pilot.points(), settings.probe);
     std::vector<Effect> effects;
     add_geometry(pilot, exact, thin, effects);
+    add_third_order(pilot, effects);
     effects.push_back(defocus(pilot));
     add_falloff(pilot, exact, thin, effects);
     add_losses(pilot, axial_light(pilot), effects);

@@ -16,13 +16,15 @@ struct Effect {
     bool is_bound = false;       // the contribution is at most that
     std::string pass;            // of its own; empty: camera, wavelengths or paths make it
     double ns_per_sample = 0.0;  // of that pass
+    std::string part_of;         // another effect that has it, too; else empty
     std::string no_pass;         // why this lens has none, though light goes astray in it; else empty
 };
 
 /// What the full model has and a lens without it has not: distortion, lateral-colour, aberration-blur, axial-colour,
 /// defocus, vignetting, cos4, fresnel-loss, coating-colour, absorption, sensor. Each is done to the pilot's pictures,
-/// or taken from them. Pictures have much the same detail at every scale (Ruderman 1994), so that a shift or a blur of
-/// so many of the scene's pixels is done to as many of the pilot's.
+/// or taken from them. Of the blur, what it is made of in third order: spherical-aberration, coma, astigmatism and
+/// field-curvature, which wide fields and apertures exceed. Pictures have much the same detail at every scale (Ruderman
+/// 1994), so that a shift or a blur of so many of the scene's pixels is done to as many of the pilot's.
 std::vector<Effect> lens_effects(const Pilot& pilot);
 
 /// Light that goes astray: ghosts, faint-ghosts, barrel, diffraction. By a few samples of the first's and the third's

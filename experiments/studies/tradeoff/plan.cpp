@@ -265,6 +265,11 @@ class Planner {
                                                     : "the scene has no [sensor]";
                 continue;
             }
+            if (const std::string& whole = planned.effect.part_of; !whole.empty()) {
+                planned.is_modelled = std::ranges::count(candidate.has, whole) > 0;
+                planned.why = fmt::format("{}, a part of {}", words_of(planned.effect.contribution), whole);
+                continue;
+            }
             if (!belongs_to_camera(name)) {  // losses on the axis and cos⁴, which every camera here has
                 planned.why =
                     fmt::format("{}, and no model is cheaper without it", words_of(planned.effect.contribution));

@@ -99,6 +99,22 @@ TEST(Plan, StrayLightBesideASimplerCameraIsOnTheSameFilm) {
     EXPECT_LT(error.ev.value, 0.02 + 2.0 * error.ev.standard_error);
 }
 
+// A ray's transverse aberration in third order goes with the cube, the square and the first power of the aperture, and
+// so do the parts of a blur; a plan has them or not as it has all of it.
+TEST(Plan, BlursPartsGoWithTheAperture) {
+    const Plan open = plan_render(wall("tessar", 5.6, 10.0), {.px = 1e-9}, {});
+    const Plan closed = plan_render(wall("tessar", 11.2, 10.0), {.px = 1e-9}, {});
+    const auto ratio = [&](const char* name) {
+        return effect(open, name).effect.contribution.px.value / effect(closed, name).effect.contribution.px.value;
+    };
+    EXPECT_NEAR(ratio("spherical-aberration"), 8.0, 1e-6);
+    EXPECT_NEAR(ratio("coma"), 4.0, 1e-6);
+    EXPECT_NEAR(ratio("astigmatism"), 2.0, 1e-6);
+    EXPECT_NEAR(ratio("field-curvature"), 2.0, 1e-6);
+    EXPECT_TRUE(effect(open, "coma").is_modelled);
+    EXPECT_FALSE(effect(plan_render(wall("tessar", 5.6, 10.0), {.px = 1e6}, {}), "coma").is_modelled);
+}
+
 // Where nothing but the electrons' own number is uncertain, noise falls with the root of how many fill the well.
 TEST(Plan, TheSensorsNoiseIsThatOfItsElectrons) {
     const auto noise_ev = [](double full_well) {
