@@ -114,7 +114,8 @@ TEST(RenderPasses, RefuseWhatDoesNotAddUp) {
     expect_no_render("everything,ghosts", {"--passes", "everything"});
     expect_refused(place, {"render", "scene.toml", "--passes", "ghosts", "--features", "-o", "a.exr"},
                    {"--features", "imaged"});
-    place.file("scene.toml", with(lamps(), "lens = \"triplet-cooke\"", "model = \"thin-lens\"\nfocal_length_mm = 50.0"));
+    place.file("scene.toml",
+               with(lamps(), "lens = \"triplet-cooke\"", "model = \"thin-lens\"\nfocal_length_mm = 50.0"));
     expect_no_render("ghosts", {"scene.toml", "camera", "thin-lens", "exact"});
     place.file("scene.toml", with(lamps(), "pixels = [12, 8]", "pixels = [12000, 8000]"));
     expect_no_render("imaged,direct,ghosts", {"3 passes", "GB"});  // each by itself would do
