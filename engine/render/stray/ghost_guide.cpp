@@ -38,13 +38,13 @@ struct GhostGuide::Place {
 };
 
 GhostGuide::GhostGuide(const optics::Lens& lens, optics::TraceLens<double> traced,
-                       const optics::StrayMirrors<double>& mirrors, double film_radius_mm, bool is_wanted,
+                       const optics::StrayMirrors<double>& mirrors, double film_radius_mm, bool searches,
                        const Cache& cache)
     : lens_(std::move(traced)),
       mirrors_(mirrors),
       film_radius_mm_(film_radius_mm),
       cache_(cache),
-      is_known_(is_wanted && lens.is_rotationally_symmetric) {
+      is_known_(searches && lens.is_rotationally_symmetric) {
     const analysis::FrontBeam along_axis(lens_, 0.0);
     const double diameter = optics::paraxial_data(lens_).entrance_pupil_diameter;
     pupil_area_ = std::min(0.25 * kPi * diameter * diameter, along_axis.area());

@@ -20,13 +20,12 @@ namespace lensproof::render {
 /// front from which it reaches the film (analysis/ghost_region.h). An angle is looked at when light first comes from
 /// there, by whichever thread, or read from the cache; between two of them either is taken, the nearer one more often.
 ///
-/// Of a lens that is not rotationally symmetric it knows nothing, nor where it is not wanted, but which ghosts there
-/// are.
+/// Of a lens that is not rotationally symmetric, and where it does not search, it knows but which ghosts there are.
 class GhostGuide {
   public:
     /// `traced`: at the wavelength in the middle of the band. For light that lands within `film_radius_mm` of the axis.
     GhostGuide(const optics::Lens& lens, optics::TraceLens<double> traced, const optics::StrayMirrors<double>& mirrors,
-               double film_radius_mm, bool is_wanted, const Cache& cache);
+               double film_radius_mm, bool searches, const Cache& cache);
 
     [[nodiscard]] const std::vector<optics::GhostPath>& paths() const { return paths_; }
     [[nodiscard]] bool is_known() const { return is_known_; }

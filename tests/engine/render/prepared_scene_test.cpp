@@ -58,6 +58,19 @@ TEST(PreparedScene, LightGoesAstrayInTheLensBesideAnyModelOfIt) {
                      "expected \"exact\""));
 }
 
+// They add up, pixel by pixel: a camera of its own has no film of its own.
+TEST(PreparedScene, StrayLightIsOnTheFilmOfTheImage) {
+    SceneSetup setup = under_a_sun("[camera]\nlens = \"tessar\"\nmodel = \"thin-lens\"\n");
+    setup.stray_camera = setup.camera;
+    setup.stray_camera->sensor.width *= 2;
+    setup.stray_camera->sensor.height *= 2;
+    setup.stray_camera->sensor.pixel_pitch_mm *= 0.5;
+    PreparedScene scene(setup, PixelFilter{}, Cache());
+    const std::vector<Render> renders = scene.render({"imaged", "ghosts"}, 1, false, false);
+    EXPECT_EQ(renders.back().film.width, renders.front().film.width);
+    EXPECT_EQ(renders.back().film.height, renders.front().film.height);
+}
+
 // Where ghosts are searched for decides how noisy they are, and nothing else: both ways gather the same light, within
 // three of their errors, which are small beside it.
 TEST(PreparedScene, GhostsAreTheSameWithoutASearch) {
