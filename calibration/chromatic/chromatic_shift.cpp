@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
+#include <numeric>
 #include <string>
 
 #include "calibration/statistics/linear_fit.h"
@@ -39,6 +41,39 @@ Curve odd_curve(const std::vector<double>& terms, const ChromaticShift& shift, s
     return curve;
 }
 
+// A row for each direction in which a pair is known.
+LinearProblem problem_of(const std::vector<ChromaticPair>& pairs,
+                         const std::function<Vec2d(const ChromaticPair&)>& offset) {
+    const auto rows = static_cast<Eigen::Index>(
+        std::transform_reduce(pairs.begin(), pairs.end(), std::size_t{0}, std::plus<>(),
+                              [](const ChromaticPair& pair) { return pair.normal ? std::size_t{1} : std::size_t{2}; }));
+    LinearProblem problem{.a = Eigen::MatrixXd::Zero(rows, kUnknowns),
+                          .y = Eigen::VectorXd(rows),
+                          .row_sigma = Eigen::VectorXd::Ones(rows),
+                          .group = {}};
+    for (std::size_t i = 0; i < pairs.size(); ++i) {
+        const ChromaticPair& pair = pairs[i];
+        const Vec2d q = offset(pair);
+        const double rho2 = q.x * q.x + q.y * q.y;
+        const Vec2d apart{pair.channel_px.x - pair.green_px.x, pair.channel_px.y - pair.green_px.y};
+        const auto add = [&](const Vec2d& n) {
+            const double radial = n.x * q.x + n.y * q.y;
+            const double tangential = n.y * q.x - n.x * q.y;
+            const auto row = static_cast<Eigen::Index>(problem.group.size());
+            problem.a.row(row) << radial, radial * rho2, radial * rho2 * rho2, tangential, tangential * rho2, n.x, n.y;
+            problem.y(row) = n.x * apart.x + n.y * apart.y;
+            problem.group.push_back(static_cast<int>(i));
+        };
+        if (pair.normal) {
+            add(*pair.normal);
+        } else {
+            add({1.0, 0.0});
+            add({0.0, 1.0});
+        }
+    }
+    return problem;
+}
+
 }  // namespace
 
 ChromaticShift fit_chromatic_shift(const std::vector<ChromaticPair>& pairs, const Vec2d& centre_px,
@@ -47,25 +82,11 @@ ChromaticShift fit_chromatic_shift(const std::vector<ChromaticPair>& pairs, cons
         throw InputError("chromatic shift: " + std::to_string(pairs.size()) +
                          " points found in both channels: expected at least " + std::to_string(kFewestPairs));
     }
-    const auto rows = static_cast<Eigen::Index>(2 * pairs.size());
-    LinearProblem problem{.a = Eigen::MatrixXd::Zero(rows, kUnknowns),
-                          .y = Eigen::VectorXd(rows),
-                          .row_sigma = Eigen::VectorXd::Ones(rows),
-                          .group = std::vector<int>(static_cast<std::size_t>(rows))};
     const auto offset = [&](const ChromaticPair& pair) {
         return Vec2d{(pair.green_px.x - centre_px.x) / half_diagonal_px,
                      (pair.green_px.y - centre_px.y) / half_diagonal_px};
     };
-    for (std::size_t i = 0; i < pairs.size(); ++i) {
-        const Vec2d q = offset(pairs[i]);
-        const double rho2 = q.x * q.x + q.y * q.y;
-        const auto row = static_cast<Eigen::Index>(2 * i);
-        problem.a.row(row) << q.x, q.x * rho2, q.x * rho2 * rho2, -q.y, -q.y * rho2, 1.0, 0.0;
-        problem.a.row(row + 1) << q.y, q.y * rho2, q.y * rho2 * rho2, q.x, q.x * rho2, 0.0, 1.0;
-        problem.y(row) = pairs[i].channel_px.x - pairs[i].green_px.x;
-        problem.y(row + 1) = pairs[i].channel_px.y - pairs[i].green_px.y;
-        problem.group[2 * i] = problem.group[2 * i + 1] = static_cast<int>(i);
-    }
+    const LinearProblem problem = problem_of(pairs, offset);
     const auto fit = fit_linear(problem, kOutlierSigmas, kLeastSigma_px);
     if (!fit) {
         throw InputError("chromatic shift: the " + std::to_string(pairs.size()) +
@@ -77,12 +98,13 @@ ChromaticShift fit_chromatic_shift(const std::vector<ChromaticPair>& pairs, cons
     shift.translation_px = {fit->parameters(5), fit->parameters(6)};
     std::copy_n(fit->covariance.data(), kUnknowns * kUnknowns, shift.covariance.begin());
     shift.rms_px = std::sqrt(fit->chi_squared / fit->rows_used);
-    shift.pairs_used = fit->rows_used / 2;
     double covered = 0.0;
-    for (std::size_t i = 0; i < pairs.size(); ++i) {
-        if (fit->used[2 * i]) {
+    for (std::size_t row = 0; row < problem.group.size(); ++row) {
+        const auto i = static_cast<std::size_t>(problem.group[row]);
+        if (fit->used[row] && (row == 0 || problem.group[row - 1] != problem.group[row])) {
             const Vec2d q = offset(pairs[i]);
             covered = std::max(covered, std::hypot(q.x, q.y));
+            ++shift.pairs_used;
         }
     }
     shift.radial = odd_curve({shift.radial_px.begin(), shift.radial_px.end()}, shift, 0, covered);

@@ -1,6 +1,7 @@
 // calibration/chromatic/chromatic_shift.h — how far red or blue lies from green.
 #pragma once
 #include <array>
+#include <optional>
 #include <vector>
 
 #include "calibration/statistics/curve.h"
@@ -12,6 +13,8 @@ namespace lensproof::calibration {
 struct ChromaticPair {
     Vec2d green_px;
     Vec2d channel_px;
+    /// The only direction (a unit vector) in which the two are known: an edge's normal. None: both are.
+    std::optional<Vec2d> normal = std::nullopt;
 };
 
 /// Displacement of a channel against green at q = (green − centre) / half-diagonal, ρ = |q|, with q⊥ = (−q_y, q_x):
@@ -25,7 +28,7 @@ struct ChromaticShift {
     std::array<double, 2> tangential_px{};  // s1, s3
     Vec2d translation_px;
     std::array<double, 49> covariance{};  // of c1, c3, c5, s1, s3, t_x, t_y
-    double rms_px = 0.0;                  // of one coordinate of one pair
+    double rms_px = 0.0;                  // of one coordinate of one pair, or of an edge
     int pairs_used = 0;
     Curve radial;      // Δr, px; sampled as far as pairs reach
     Curve tangential;  // Δt, px

@@ -56,4 +56,16 @@ int reference_channel(const formats::Image& image) {
     return green >= 0 ? green : image.channel_count() / 2;
 }
 
+bool all_channels_alike(const formats::Image& image) {
+    const auto count = static_cast<std::size_t>(image.channel_count());
+    for (std::size_t i = 0; i < image.pixels.size(); i += count) {
+        for (std::size_t c = 1; c < count; ++c) {
+            if (image.pixels[i + c] != image.pixels[i]) {
+                return false;
+            }
+        }
+    }
+    return true;
+}
+
 }  // namespace lensproof::calibration

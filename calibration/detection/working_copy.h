@@ -13,6 +13,9 @@ cv::Mat channel_plane(const formats::Image& image, int channel);
 /// pictures become usable), sRGB-encoded. Empty when the picture holds no light or no contrast at all.
 cv::Mat detector_copy(const formats::Image& image);
 
+/// Whether all channels hold the same in every pixel: a grey picture.
+bool all_channels_alike(const formats::Image& image);
+
 /// The channel that geometry is measured in: green where there is one, else the only or middle channel.
 int reference_channel(const formats::Image& image);
 

@@ -23,11 +23,11 @@ double pitch_mm(const NamedProfile& named) {
     return *named.profile.pixel_pitch_um * 1e-3;
 }
 
-/// The points that the profile's own fit used.
+/// The points that the profile's own fit used. The view has to have a pose.
 SeenView seen_view(const ProfileView& from, const ProfileGeometry& geometry, int profile) {
-    SeenView view{.image = from.image, .profile = profile, .pose = pose_parameters(from.pose), .points = {}};
+    SeenView view{.image = from.image, .profile = profile, .pose = pose_parameters(*from.pose), .points = {}};
     for (const ProfilePoint& point : from.points) {
-        const auto ideal = predict(geometry.model, from.pose, point.chart_mm, 0.0, geometry.board);
+        const auto ideal = predict(geometry.model, *from.pose, point.chart_mm, 0.0, geometry.board);
         if (point.used && ideal) {
             const double height = geometry.board ? board_height(geometry.board->frame, geometry.board->height_mm.data(),
                                                                 point.chart_mm.x, point.chart_mm.y)
@@ -171,7 +171,7 @@ SeenPoints seen_points(const std::vector<NamedProfile>& profiles) {
         require_same_camera(first, named);
         std::vector<SeenView> views;
         for (const ProfileView& view : named.profile.views) {
-            if (named.profile.geometry && view.found) {
+            if (named.profile.geometry && view.found && view.pose) {
                 views.push_back(seen_view(view, *named.profile.geometry, index));
             }
         }

@@ -4,7 +4,10 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <utility>
+
+#include "engine/base/infinity.h"
 
 namespace lensproof::calibration {
 namespace {
@@ -118,6 +121,33 @@ std::optional<Vec3d> unproject_newton(const Model& model, const Vec2d& pixel, do
     return std::nullopt;
 }
 
+constexpr double kRadiiPerPixel = 4.0;  // in the table of field angles
+
+// The direction that `pixel` shows; `angle_of` says at which field angle the model images a radius, if at any.
+template <class AngleOf>
+std::optional<Vec3d> unproject_with(const CameraModel& model, const Vec2d& pixel, const AngleOf& angle_of) {
+    const Vec2d centre = centre_px(model);
+    const double dx = pixel.x - centre.x;
+    const double dy = (pixel.y - centre.y) / (1.0 + stretch_y(model));
+    const double radius = std::hypot(dx, dy);
+    const auto angle = angle_of(radius);
+    if (!angle) {
+        return std::nullopt;
+    }
+    const double azimuth_x = radius > 0.0 ? dx / radius : 1.0;
+    const double azimuth_y = radius > 0.0 ? dy / radius : 0.0;
+    return std::visit(
+        [&]<class Model>(const Model& m) -> std::optional<Vec3d> {
+            if constexpr (!Model::tangential_terms.empty()) {
+                if (m.parameters[6] != 0.0 || m.parameters[7] != 0.0) {
+                    return unproject_newton(m, pixel, std::tan(*angle) * azimuth_x, std::tan(*angle) * azimuth_y);
+                }
+            }
+            return direction(*angle, azimuth_x, azimuth_y);
+        },
+        model);
+}
+
 }  // namespace
 
 std::vector<std::string> model_kind_names() {
@@ -215,27 +245,30 @@ std::optional<double> field_angle_rad(const CameraModel& model, double radius) {
     return bracket ? std::optional(angle_within(model, radius, *bracket)) : std::nullopt;
 }
 
-std::optional<Vec3d> unproject(const CameraModel& model, const Vec2d& pixel) {
-    const Vec2d centre = centre_px(model);
-    const double dx = pixel.x - centre.x;
-    const double dy = (pixel.y - centre.y) / (1.0 + stretch_y(model));
-    const double radius = std::hypot(dx, dy);
-    const auto angle = field_angle_rad(model, radius);
-    if (!angle) {
+FieldAngles::FieldAngles(const CameraModel& model, double largest_radius_px) {
+    const auto count = static_cast<std::size_t>(std::ceil(kRadiiPerPixel * largest_radius_px)) + 2;
+    angles_.reserve(count);
+    for (std::size_t i = 0; i < count; ++i) {
+        angles_.push_back(field_angle_rad(model, static_cast<double>(i) / kRadiiPerPixel).value_or(kNaN));
+    }
+}
+
+std::optional<double> FieldAngles::at(double radius_px) const {
+    const double place = kRadiiPerPixel * radius_px;
+    if (!(place >= 0.0 && place < static_cast<double>(angles_.size() - 1))) {
         return std::nullopt;
     }
-    const double azimuth_x = radius > 0.0 ? dx / radius : 1.0;
-    const double azimuth_y = radius > 0.0 ? dy / radius : 0.0;
-    return std::visit(
-        [&]<class Model>(const Model& m) -> std::optional<Vec3d> {
-            if constexpr (!Model::tangential_terms.empty()) {
-                if (m.parameters[6] != 0.0 || m.parameters[7] != 0.0) {
-                    return unproject_newton(m, pixel, std::tan(*angle) * azimuth_x, std::tan(*angle) * azimuth_y);
-                }
-            }
-            return direction(*angle, azimuth_x, azimuth_y);
-        },
-        model);
+    const auto i = static_cast<std::size_t>(place);
+    const double angle = std::lerp(angles_[i], angles_[i + 1], place - static_cast<double>(i));
+    return std::isnan(angle) ? std::nullopt : std::optional(angle);
+}
+
+std::optional<Vec3d> unproject(const CameraModel& model, const Vec2d& pixel) {
+    return unproject_with(model, pixel, [&](double radius) { return field_angle_rad(model, radius); });
+}
+
+std::optional<Vec3d> unproject(const CameraModel& model, const Vec2d& pixel, const FieldAngles& angles) {
+    return unproject_with(model, pixel, [&](double radius) { return angles.at(radius); });
 }
 
 }  // namespace lensproof::calibration

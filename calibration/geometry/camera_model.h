@@ -79,8 +79,23 @@ double radius_px(const CameraModel& model, double angle_rad);
 /// beyond the first maximum of r(θ), where the model folds back, and beyond 90° (perspective) or 180° (fisheye).
 std::optional<double> field_angle_rad(const CameraModel& model, double radius_px);
 
+/// `field_angle_rad` in a table, for millions of radii: linear between radii a quarter of a pixel apart. At a radius of
+/// r px this is off by 8e-3 θ''(r), which is 2e-5 px in the picture of a lens of 300 px and less in longer ones.
+class FieldAngles {
+  public:
+    FieldAngles(const CameraModel& model, double largest_radius_px);
+
+    /// None where the model has none, and beyond the table.
+    [[nodiscard]] std::optional<double> at(double radius_px) const;
+
+  private:
+    std::vector<double> angles_;  // NaN: none
+};
+
 /// The unit direction that `pixel` shows, on the same branch as `field_angle_rad`.
 std::optional<Vec3d> unproject(const CameraModel& model, const Vec2d& pixel);
+/// The same with the model's angles from a table.
+std::optional<Vec3d> unproject(const CameraModel& model, const Vec2d& pixel, const FieldAngles& angles);
 
 /// The angle that the model's undistorted projection with this focal length images at `radius_px`; above π for none.
 double undistorted_angle_rad(ModelKind kind, double focal_px, double radius_px);

@@ -267,10 +267,10 @@ class Fit {
     [[nodiscard]] InputError undetermined(const std::string& what) const {
         std::string help = "add views of the chart tilted by 20° or more and reaching into the corners";
         if (!options_.known_focal_px) {
-            help += ", or state the focal length";
+            help += ", or state the focal length (--focal-length)";
         }
         if (!options_.fix_centre) {
-            help += ", or fix the centre";
+            help += ", or hold the centre at the picture's middle (--fix-centre)";
         }
         return InputError("fitting a camera model: " + std::to_string(bundle_.views.size()) +
                           (bundle_.views.size() == 1 ? " view does" : " views do") + " not determine " + what + ": " +

@@ -10,6 +10,7 @@
 #include "calibration/chromatic/chromatic_shift.h"
 #include "calibration/geometry/geometry_curves.h"
 #include "calibration/geometry/model_choice.h"
+#include "calibration/geometry/plane_distortion.h"
 #include "calibration/light/light_gradient.h"
 #include "calibration/light/vignetting.h"
 #include "calibration/measure/measure_bands.h"
@@ -36,6 +37,10 @@ std::vector<ChartView> charts_in(const Observations& seen) {
         }
     }
     return charts;
+}
+
+Vec2d middle_px(const Observations& seen) {
+    return {(seen.width - 1) / 2.0, (seen.height - 1) / 2.0};
 }
 
 Geometry fit(const MeasureInput& input, const Observations& seen, const std::vector<ChartView>& charts) {
@@ -81,6 +86,30 @@ void add_geometry(Profile& profile, Observations& seen, const std::vector<ChartV
     profile.curves[kQuantities.equidistant_distortion.key()] = equidistant_distortion_curve(geometry, half_diagonal);
 }
 
+// What flat charts tell though they do not tell the camera.
+void add_plane_distortion(Profile& profile, Observations& seen, const std::vector<ChartView>& charts) {
+    const PlaneDistortion distortion = fit_plane_distortion(charts, seen.width, seen.height);
+    auto residuals = distortion.residuals.begin();
+    for (PictureObservation& picture : seen.pictures) {
+        if (!picture.shows_chart()) {
+            continue;
+        }
+        for (const PointResidual& r : *residuals) {
+            const auto i = static_cast<std::size_t>(r.index);
+            picture.view->points.push_back({picture.points.chart_mm[i], picture.points.image_px[i],
+                                            r.measured_minus_model_px, r.used, picture.point_errors_px[i]});
+        }
+        ++residuals;
+    }
+    FittedTerms& terms = profile.terms[kPlaneDistortionTerms()];
+    for (std::size_t i = 1; i <= distortion.coefficients.size(); ++i) {
+        terms.names.push_back("k" + std::to_string(i));
+    }
+    terms.values = distortion.coefficients;
+    terms.covariance = distortion.covariance;
+    profile.curves[kQuantities.distortion.key()] = distortion_curve(distortion, half_diagonal_px(profile));
+}
+
 // What nobody may overlook of a fit that was made.
 void add_warnings(Profile& profile, const std::vector<ChartView>& charts, const GeometryFit& geometry) {
     double worst = 0.0;
@@ -103,6 +132,29 @@ void add_warnings(Profile& profile, const std::vector<ChartView>& charts, const 
     }
 }
 
+// Measures the camera; of charts that do not tell it, what needs none. Returns the optical centre.
+Vec2d measure_geometry(Profile& profile, Observations& seen, const MeasureInput& input,
+                       const std::vector<ChartView>& charts) {
+    try {
+        Geometry geometry = fit(input, seen, charts);
+        add_geometry(profile, seen, charts, geometry.fit);
+        add_warnings(profile, charts, geometry.fit);
+        profile.geometry->choice = std::move(geometry.choice);
+        return centre_px(profile.geometry->model);
+    } catch (const InputError& e) {
+        if (input.model) {
+            throw;
+        }
+        profile.not_measured[part::kGeometry] = e.what();
+    }
+    try {
+        add_plane_distortion(profile, seen, charts);
+    } catch (const InputError& e) {
+        profile.not_measured[part::kDistortion] = e.what();
+    }
+    return middle_px(seen);
+}
+
 // By channel, of the flat fields where there are any, else of the charts' white.
 std::map<std::string, std::vector<LightGroup>> light_in(const Observations& seen) {
     std::map<std::string, std::vector<LightGroup>> flat_fields;
@@ -116,7 +168,11 @@ std::map<std::string, std::vector<LightGroup>> light_in(const Observations& seen
 }
 
 void add_vignetting(Profile& profile, const Observations& seen, const Vec2d& centre) {
-    for (const auto& [channel, samples] : light_in(seen)) {
+    const std::map<std::string, std::vector<LightGroup>> light = light_in(seen);
+    if (light.empty()) {
+        profile.not_measured[part::kVignetting] = "no chart's white and no even surface was seen";
+    }
+    for (const auto& [channel, samples] : light) {
         try {
             Vignetting vignetting = fit_vignetting(samples, centre, half_diagonal_px(profile));
             profile.vignetting_models[channel] = fit_vignetting_models(vignetting);
@@ -159,7 +215,7 @@ void add_chromatic_shifts(Profile& profile, const Observations& seen, const Vec2
         }
     }
     if (pairs_in.empty()) {
-        profile.not_measured[part::kChromaticShift] = "no chart was found in a picture in colour";
+        profile.not_measured[part::kChromaticShift] = "no chart and no edges were found in a picture in colour";
         return;
     }
     for (const auto& [channel, pairs] : pairs_in) {
@@ -196,22 +252,21 @@ Profile measure(const MeasureInput& input) {
     profile.channels = seen.channels;
     profile.pixel_pitch_um = input.pixel_pitch_um;
 
-    Vec2d centre{(seen.width - 1) / 2.0, (seen.height - 1) / 2.0};
+    Vec2d centre = middle_px(seen);
     if (charts.empty()) {
-        profile.not_measured[part::kGeometry] = shows_star(input)     ? "a Siemens star has but one point"
-                                                : input.edges.empty() ? "there are flat fields only"
-                                                                      : "there is no chart";
+        profile.not_measured[part::kGeometry] = shows_star(input)    ? "a Siemens star has but one point"
+                                                : shows_edges(input) ? "there is no chart"
+                                                                     : "there are flat fields only";
     } else {
-        Geometry geometry = fit(input, seen, charts);
-        centre = centre_px(geometry.fit.model);
-        add_geometry(profile, seen, charts, geometry.fit);
-        add_warnings(profile, charts, geometry.fit);
-        profile.geometry->choice = std::move(geometry.choice);
+        centre = measure_geometry(profile, seen, input, charts);
     }
     add_sharpness(profile, seen.sharpness, centre);
     add_vignetting(profile, seen, centre);
     add_light_gradients(profile, seen, centre);
     add_chromatic_shifts(profile, seen, centre);
+    if (!charts.empty() && !profile.geometry && profile.curves.empty()) {
+        throw InputError(profile.not_measured[part::kGeometry]);
+    }
     for (PictureObservation& picture : seen.pictures) {
         profile.pictures.push_back(std::move(picture.account));
         if (picture.view) {

@@ -13,7 +13,8 @@
 
 namespace lensproof::calibration {
 
-/// `edges`: what is to be measured is the edges in `MeasureInput::edges`; no chart is looked for.
+/// `edges`: what is to be measured is the edges in `MeasureInput::edges`, or whatever edges there are; no chart is
+/// looked for.
 enum class PictureRole { chart, flat_field, edges };
 
 /// A picture to measure. It is loaded when its turn comes and forgotten after, so a large set needs no large memory.
@@ -37,21 +38,29 @@ struct MeasureInput {
     GeometryOptions geometry;  // `model` and `disc_diameter_mm` are filled in by `measure`
     ProfileSource source;      // `images` is filled in
     std::optional<double> pixel_pitch_um;
-    /// In pictures of the role `edges`: rectangles with one edge each; one without a size is the whole picture.
+    /// In pictures of the role `edges`: rectangles with one edge each; one without a size is the whole picture. None:
+    /// edges are looked for (calibration/sharpness/find_edges.h).
     std::vector<PixelRectangle> edges;
+    bool with_sharpness = true;  // whether the edges of charts are looked at
+    /// Told before each picture which part of them has been looked at, 0 to 1.
+    std::function<void(double)> progress = nullptr;
     /// Where the focus stood in which picture (by name), mm, for field curvature; empty: not known.
     std::map<std::string, double> focus_position_mm;
 };
 
 /// Finds the chart, and fits camera model, chromatic shift, vignetting and sharpness.
 ///
-/// Siemens stars, of which a picture may show several, give sharpness alone.
+/// Siemens stars, of which a picture may show several, give sharpness alone; edges also the chromatic shift, where they
+/// were looked for. Charts that do not tell a camera (one that faces it), where no model was asked for, give what needs
+/// none: their distortion about the picture's middle (calibration/geometry/plane_distortion.h), chromatic shift,
+/// vignetting and sharpness.
 ///
 /// A picture that cannot be loaded, is of another size or other channels than those before it, is the same as one
 /// before it, shows no chart, or shows it blurred, is left out; `pictures` in the profile says why. Vignetting comes
 /// from the flat fields where there are any, else from the charts' white. Throws InputError for no pictures, where none
-/// can be used (with each one's reason), and whatever `fit_geometry` refuses. Vignetting, chromatic shift and sharpness
-/// that fail are not errors; the profile says why.
+/// can be used (with each one's reason), and whatever `fit_geometry` refuses of a model that was asked for, or where
+/// nothing else can be measured. Vignetting, chromatic shift and sharpness that fail are not errors; the profile says
+/// why.
 Profile measure(const MeasureInput& input);
 
 }  // namespace lensproof::calibration

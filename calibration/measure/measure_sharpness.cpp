@@ -4,8 +4,10 @@
 #include <cmath>
 
 #include "calibration/sharpness/chart_edges.h"
+#include "calibration/sharpness/find_edges.h"
 #include "calibration/sharpness/sharpness_field.h"
 #include "calibration/statistics/order_statistics.h"
+#include "engine/base/angle.h"
 #include "engine/base/input_error.h"
 
 namespace lensproof::calibration {
@@ -102,6 +104,21 @@ void add_best_focus(Profile& profile, const std::string& channel, const std::vec
         .covariance = {focus.axis_standard_error_mm * focus.axis_standard_error_mm}};
 }
 
+// The edge, if it is worth listing; else its refusal is counted.
+std::optional<EdgeMtf> measured_edge(SharpnessObservations& seen, const formats::Image& image, int channel,
+                                     const EdgeRegion& region) {
+    auto result = measure_edge(image, channel, region);
+    if (const auto* refusal = std::get_if<EdgeRefusal>(&result)) {
+        ++seen.refusals[refusal->reason];
+        return std::nullopt;
+    }
+    if (const char* reason = too_uncertain(std::get<EdgeMtf>(result))) {
+        ++seen.refusals[reason];
+        return std::nullopt;
+    }
+    return std::get<EdgeMtf>(std::move(result));
+}
+
 InputError refused(const std::string& name, const std::string& channel, const PixelRectangle& r,
                    const std::string& reason) {
     return InputError(name + ": the rectangle " + std::to_string(r.x) + "," + std::to_string(r.y) + "," +
@@ -115,15 +132,47 @@ void observe_chart_edges(SharpnessObservations& seen, const formats::Image& imag
                          const ChartPoints& points, const scene::Chart& chart) {
     std::vector<ProfileEdge>& own = seen.edges[image.channels[static_cast<std::size_t>(channel)]];
     for (const EdgeRegion& region : chart_edges(points, chart)) {
-        const auto result = measure_edge(image, channel, region);
-        if (const auto* refusal = std::get_if<EdgeRefusal>(&result)) {
-            ++seen.refusals[refusal->reason];
-        } else if (const char* reason = too_uncertain(std::get<EdgeMtf>(result))) {
-            ++seen.refusals[reason];
-        } else {
-            own.push_back({name, std::get<EdgeMtf>(result)});
+        if (auto edge = measured_edge(seen, image, channel, region)) {
+            own.push_back({name, std::move(*edge)});
         }
     }
+}
+
+std::map<std::string, std::vector<ChromaticPair>> observe_any_edges(SharpnessObservations& seen,
+                                                                    const formats::Image& image,
+                                                                    const std::vector<int>& channels, int reference,
+                                                                    const std::string& name) {
+    SharpnessObservations own;
+    bool any = false;
+    std::map<std::string, std::vector<ChromaticPair>> pairs;
+    const std::vector<EdgeRegion> regions = find_edges(image, reference);
+    for (const EdgeRegion& region : regions) {
+        const auto expected = measured_edge(own, image, reference, region);
+        if (!expected) {
+            continue;
+        }
+        any = true;
+        const double angle = radians(expected->normal_deg);
+        for (const int channel : channels) {
+            const std::string& label = image.channels[static_cast<std::size_t>(channel)];
+            const auto edge = channel == reference ? expected : measured_edge(own, image, channel, region);
+            if (edge) {
+                seen.edges[label].push_back({name, *edge});
+            }
+            if (edge && channel != reference) {
+                pairs[label].push_back({expected->centre_px, edge->centre_px, Vec2d{std::cos(angle), std::sin(angle)}});
+            }
+        }
+    }
+    for (const auto& [reason, count] : own.refusals) {
+        seen.refusals[reason] += count;
+    }
+    if (!any) {
+        throw InputError(name + ": none of " + std::to_string(regions.size()) + " edges can be measured" +
+                         (own.refusals.empty() ? ": expected straight edges between even tones"
+                                               : " (" + listed(own.refusals) + ")"));
+    }
+    return pairs;
 }
 
 void observe_edges(SharpnessObservations& seen, const formats::Image& image, int channel, const std::string& name,

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "calibration/chromatic/chromatic_shift.h"
 #include "calibration/detection/refine.h"
 #include "calibration/profile/profile.h"
 #include "calibration/sharpness/profile_edge.h"
@@ -25,6 +26,13 @@ struct SharpnessObservations {
 /// Measures the chart's edges (`chart_edges`) in one channel of a picture.
 void observe_chart_edges(SharpnessObservations& seen, const formats::Image& image, int channel, const std::string& name,
                          const ChartPoints& points, const scene::Chart& chart);
+
+/// Measures what edges there are, in all `channels`, and lists those that can be measured. Returns by channel the pairs
+/// with `reference`, each known along its edge's normal. Throws InputError saying why there is none.
+std::map<std::string, std::vector<ChromaticPair>> observe_any_edges(SharpnessObservations& seen,
+                                                                    const formats::Image& image,
+                                                                    const std::vector<int>& channels, int reference,
+                                                                    const std::string& name);
 
 /// Measures the one edge in each rectangle in one channel; one without width and height is the whole picture.
 /// Throws InputError naming the picture, the rectangle and why its edge cannot be measured.

@@ -44,18 +44,6 @@ void check_alike(const Observations& seen, const formats::Image& image, const st
     }
 }
 
-bool all_channels_alike(const formats::Image& image) {
-    const auto count = static_cast<std::size_t>(image.channel_count());
-    for (std::size_t i = 0; i < image.pixels.size(); i += count) {
-        for (std::size_t c = 1; c < count; ++c) {
-            if (image.pixels[i + c] != image.pixels[i]) {
-                return false;
-            }
-        }
-    }
-    return true;
-}
-
 // Why what was refined does not do; empty where it does.
 std::string too_few(const ChartPoints& refined, const ChartPoints& detected) {
     const int count = count_found(refined);
@@ -68,7 +56,8 @@ std::string too_few(const ChartPoints& refined, const ChartPoints& detected) {
 
 // What the fits keep of a chart that was found: its points, and what each channel shows there.
 void observe_channels(Observations& seen, PictureObservation& own, const formats::Image& image, const Picture& picture,
-                      const scene::Chart& chart, const ChartPoints& points) {
+                      const MeasureInput& input, const ChartPoints& points) {
+    const scene::Chart& chart = input.chart;
     const int reference = reference_channel(image);
     const std::vector<Vec2d> features = scene::feature_points(chart);
     own.reference_channel = image.channels[reference];
@@ -87,7 +76,7 @@ void observe_channels(Observations& seen, PictureObservation& own, const formats
         if (picture.use_light) {
             own.light[channel_name] = chart_white_samples(image, channel, points, chart);
         }
-        if (channel == reference || !grey) {
+        if (input.with_sharpness && (channel == reference || !grey)) {
             observe_chart_edges(seen.sharpness, image, channel, picture.name, points, chart);
         }
         if (channel == reference || grey) {
@@ -103,7 +92,8 @@ void observe_channels(Observations& seen, PictureObservation& own, const formats
 }
 
 void observe_chart(Observations& seen, PictureObservation& own, const formats::Image& image, const Picture& picture,
-                   const scene::Chart& chart) {
+                   const MeasureInput& input) {
+    const scene::Chart& chart = input.chart;
     ProfileView& view = own.view.emplace();
     PictureAccount& account = own.account;
     view.image = picture.name;
@@ -132,7 +122,7 @@ void observe_chart(Observations& seen, PictureObservation& own, const formats::I
     view.numbering = numbering_key(detection.numbering);
     const std::string open = numbering_in_words(detection.numbering);
     account.reason += (account.reason.empty() || open.empty() ? "" : "; ") + open;
-    observe_channels(seen, own, image, picture, chart, points);
+    observe_channels(seen, own, image, picture, input, points);
 }
 
 // The picture, checked against those before it. Throws InputError for one that is not to be used.
@@ -194,7 +184,15 @@ void observe_picture(Observations& seen, PictureObservation& own, const Picture&
         return;
     }
     if (picture.role == PictureRole::chart) {
-        observe_chart(seen, own, image, picture, input.chart);
+        observe_chart(seen, own, image, picture, input);
+        return;
+    }
+    if (picture.role == PictureRole::edges && input.edges.empty()) {
+        own.reference_channel = image.channels[static_cast<std::size_t>(reference_channel(image))];
+        own.chromatic_pairs = observe_any_edges(seen.sharpness, image, channels_that_differ(image),
+                                                reference_channel(image), picture.name);
+        account.used = true;
+        account.reason = picture.remark;
         return;
     }
     if (picture.role == PictureRole::edges) {
@@ -217,6 +215,10 @@ bool shows_star(const MeasureInput& input) {
     return std::holds_alternative<scene::SiemensStar>(input.chart.pattern);
 }
 
+bool shows_edges(const MeasureInput& input) {
+    return std::ranges::any_of(input.pictures, [](const Picture& p) { return p.role == PictureRole::edges; });
+}
+
 bool looks_for_charts(const Observations& seen) {
     return std::ranges::any_of(seen.pictures, [](const auto& picture) { return picture.view.has_value(); });
 }
@@ -225,6 +227,9 @@ Observations observe(const MeasureInput& input) {
     Observations seen;
     seen.sharpness.focus_position_mm = input.focus_position_mm;
     for (const Picture& picture : input.pictures) {
+        if (input.progress) {
+            input.progress(static_cast<double>(seen.pictures.size()) / static_cast<double>(input.pictures.size()));
+        }
         const bool is_chart = picture.role == PictureRole::chart && !shows_star(input);
         PictureObservation own;
         own.account = {.image = picture.name,
@@ -251,8 +256,8 @@ InputError none_usable(const MeasureInput& input, const Observations& seen) {
     const std::size_t count = seen.pictures.size();
     const std::string what = looks_for_charts(seen) ? "no " + describe(input.chart) + " found in any"
                              : shows_star(input)    ? "no Siemens star measured in any"
-                             : input.edges.empty()  ? "no flat field"
-                                                    : "no edge";
+                             : shows_edges(input)   ? "no edge measured in any"
+                                                    : "no flat field";
     std::string text =
         input.name + ": " + what + " of " + std::to_string(count) + (count == 1 ? " picture" : " pictures");
     for (std::size_t i = 0; i < std::min(count, kMostNamed); ++i) {

@@ -48,6 +48,9 @@ InputError none_usable(const MeasureInput& input, const Observations& seen);
 /// Whether a chart was looked for in any picture.
 bool looks_for_charts(const Observations& seen);
 
+/// Whether any picture is to show edges without a chart.
+bool shows_edges(const MeasureInput& input);
+
 /// Whether the chart is a Siemens star, which has no points to measure a camera by.
 bool shows_star(const MeasureInput& input);
 

@@ -73,7 +73,7 @@ struct ProfileView {
     bool found = false;
     std::string reason;                   // why not (JSON key "reason"); empty where found
     std::optional<PictureTraits> traits;  // of the channel that geometry is measured in; where found
-    Pose pose;
+    std::optional<Pose> pose;             // where the geometry was measured
     std::vector<ProfilePoint> points;
     /// How sure it is which point is which: "certain", "half-turn", "quarter-turn" or "whole-pitches" (JSON key
     /// "numbering", calibration/detection/numbering.h); empty where it is not known.

@@ -38,12 +38,11 @@ static void fields(JsonArchive& json, ProfileView& view) {
         json.optional("reason", view.reason);
         return;
     }
-    json.optional("traits", view.traits)
-        .optional("numbering", view.numbering)
-        .field("rotation_vector_rad", view.pose.rotation_rad)
-        .field("translation_mm", view.pose.translation_mm)
-        .field("points", view.points)
-        .optional("lines", view.lines);
+    json.optional("traits", view.traits).optional("numbering", view.numbering);
+    if (json.present("rotation_vector_rad", view.pose)) {
+        json.field("rotation_vector_rad", view.pose->rotation_rad).field("translation_mm", view.pose->translation_mm);
+    }
+    json.field("points", view.points).optional("lines", view.lines);
 }
 
 static void fields(JsonArchive& json, FittedTerms& terms) {

@@ -82,10 +82,13 @@ inline constexpr ChannelText kMeanShiftTerms{"chromatic_shift_mean_{}"};
 inline constexpr ChannelText kVignettingTerms{"vignetting_{}"};
 inline constexpr ChannelText kSharpnessTerms{"sharpness_{}"};
 inline constexpr ChannelText kBestFocusTerms{"best_focus_{}"};
+/// Of charts that tell no camera (calibration/geometry/plane_distortion.h).
+inline constexpr ChannelText kPlaneDistortionTerms{"plane_distortion"};
 
 /// What a profile consists of, in Profile::not_measured.
 namespace part {
 inline constexpr const char* kGeometry = "geometry";
+inline constexpr const char* kDistortion = "distortion";
 inline constexpr const char* kVignetting = "vignetting";
 inline constexpr const char* kChromaticShift = "chromatic_shift";
 inline constexpr const char* kSharpness = "sharpness_over_the_field";

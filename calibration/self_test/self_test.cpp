@@ -14,6 +14,7 @@ namespace {
 
 constexpr double kPixelBox_px2 = 1.0 / 12.0;  // variance of a pixel's own box, which the simulation adds by itself
 constexpr double kUsualBlur_px = 0.5;
+constexpr std::size_t kFewestViews = 6;  // that are simulated, of as many
 
 // The curve between its samples, and straight on beyond them: held at its end it would have a kink that the measured
 // lens has not, which smooth fits round off.
@@ -38,7 +39,13 @@ std::optional<int> quality_of(const MeasureInput& input, const std::string& name
     return picture == input.pictures.end() ? std::nullopt : picture->jpeg_quality;
 }
 
-SimulatedCamera camera_of(const Profile& profile, const PictureTraits& traits, std::optional<int> jpeg_quality) {
+// What of a simulated picture its own photo says.
+struct PhotoTraits {
+    std::optional<int> jpeg_quality;
+    bool is_grey = false;
+};
+
+SimulatedCamera camera_of(const Profile& profile, const PictureTraits& traits, const PhotoTraits& photo) {
     SimulatedCamera camera{.model = profile.geometry->model,
                            .width_px = profile.width_px,
                            .height_px = profile.height_px,
@@ -47,12 +54,13 @@ SimulatedCamera camera_of(const Profile& profile, const PictureTraits& traits, s
                            .blur_px = kUsualBlur_px,
                            .read_noise = traits.noise,
                            .shot_noise = 0.0,
+                           .is_grey = photo.is_grey,
                            .jpeg_quality = {},
                            .threads = 0,
                            .board = profile.geometry->board,
                            .light_gradient_per_mm = traits.light_gradient_per_mm.value_or(Vec2d{})};
     if (profile.channels.size() == 1 || profile.channels.size() == 3) {  // what a JPEG holds
-        camera.jpeg_quality = jpeg_quality;
+        camera.jpeg_quality = photo.jpeg_quality;
     }
     for (const std::string& name : profile.channels) {
         camera.channels.push_back({.name = name,
@@ -66,8 +74,9 @@ SimulatedCamera camera_of(const Profile& profile, const PictureTraits& traits, s
 }
 
 // A flat field has its own exposure and noise, those of its own picture.
-SimulatedCamera flat_field_camera(const Profile& profile, const PictureTraits& charts, const Picture& picture) {
-    SimulatedCamera camera = camera_of(profile, charts, picture.jpeg_quality);
+SimulatedCamera flat_field_camera(const Profile& profile, const PictureTraits& charts, const Picture& picture,
+                                  bool is_grey) {
+    SimulatedCamera camera = camera_of(profile, charts, {picture.jpeg_quality, is_grey});
     const formats::Image image = picture.load();
     const FlatFieldTraits own = flat_field_traits(image, reference_channel(image));
     if (own.white > 0.0) {
@@ -90,26 +99,48 @@ bool is_used(const Profile& profile, const Picture& picture) {
     return account != profile.pictures.end() && account->used;
 }
 
+// Of many views every second one, evenly: to simulate and measure a picture takes up to twice as long as to measure it.
+std::vector<const ProfileView*> sampled_views(const Profile& profile) {
+    std::vector<const ProfileView*> all;
+    for (const ProfileView& view : profile.views) {
+        if (view.found && view.traits && view.pose) {
+            all.push_back(&view);
+        }
+    }
+    const std::size_t count = std::min(all.size(), std::max(kFewestViews, (all.size() + 1) / 2));
+    std::vector<const ProfileView*> sampled;
+    for (std::size_t i = 0; i < count; ++i) {
+        sampled.push_back(all[i * all.size() / count]);
+    }
+    return sampled;
+}
+
+// Whether the pictures' channels are copies of each other, as in the first that was used.
+bool are_grey(const MeasureInput& input, const Profile& profile) {
+    const auto used =
+        std::ranges::find_if(input.pictures, [&](const Picture& picture) { return is_used(profile, picture); });
+    return used != input.pictures.end() && all_channels_alike(used->load());
+}
+
 std::vector<Picture> simulated_pictures(const MeasureInput& input, const Profile& profile) {
     std::vector<Picture> pictures;
+    const bool is_grey = profile.not_measured.contains(part::kChromaticShift) && are_grey(input, profile);
     std::uint32_t seed = 0;
     PictureTraits last;
-    for (const ProfileView& view : profile.views) {
-        if (view.found && view.traits) {
-            last = *view.traits;
-            pictures.push_back(
-                {view.image, PictureRole::chart,
-                 [camera = camera_of(profile, last, quality_of(input, view.image)), pose = view.pose,
-                  chart = chart_of(input.chart, last), seed] { return simulate_chart(camera, pose, chart, seed); }});
-            ++seed;
-        }
+    for (const ProfileView* view : sampled_views(profile)) {
+        last = *view->traits;
+        pictures.push_back(
+            {view->image, PictureRole::chart,
+             [camera = camera_of(profile, last, {quality_of(input, view->image), is_grey}), pose = *view->pose,
+              chart = chart_of(input.chart, last), seed] { return simulate_chart(camera, pose, chart, seed); }});
+        ++seed;
     }
     for (const Picture& picture : input.pictures) {
         if (picture.role == PictureRole::flat_field && !pictures.empty() && is_used(profile, picture)) {
-            pictures.push_back(
-                {picture.name, PictureRole::flat_field, [camera = flat_field_camera(profile, last, picture), seed] {
-                     return simulate_flat_field(camera, seed);
-                 }});
+            pictures.push_back({picture.name, PictureRole::flat_field,
+                                [camera = flat_field_camera(profile, last, picture, is_grey), seed] {
+                                    return simulate_flat_field(camera, seed);
+                                }});
             ++seed;
         }
     }
@@ -119,7 +150,7 @@ std::vector<Picture> simulated_pictures(const MeasureInput& input, const Profile
 void add_points(SelfTest& result, const MeasureInput& input, const Profile& truth, const Profile& again) {
     std::map<std::string, Pose> poses;
     for (const ProfileView& view : truth.views) {
-        poses[view.image] = view.pose;
+        poses[view.image] = view.pose.value_or(Pose{});
     }
     double squares = 0.0;
     Vec2d sum;
@@ -151,6 +182,7 @@ SelfTest self_test(const MeasureInput& input, const Profile& profile) {
         simulated.geometry.radial_terms = choice->candidates[static_cast<std::size_t>(choice->chosen)].radial_terms;
     }
     simulated.pictures = simulated_pictures(input, profile);
+    simulated.with_sharpness = false;
     const Profile again = measure(simulated);
     SelfTest result;
     result.pictures = static_cast<int>(simulated.pictures.size());

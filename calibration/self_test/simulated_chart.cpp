@@ -7,33 +7,101 @@
 #include <opencv2/imgproc.hpp>
 #include <random>
 
+#include "engine/base/infinity.h"
 #include "engine/base/parallel.h"
 #include "engine/formats/image/jpeg.h"
 
 namespace lensproof::calibration {
 namespace {
 
-constexpr int kSubpixels = 4;       // along a pixel's side: the grid that the blur acts on
-constexpr int kPlaces = 4;          // looked at in each
-constexpr int kKnot_px = 2;         // between exact points of the map to the chart
-constexpr int kBandRows = 64;       // of pixels, made at a time
-constexpr double kBlurReach = 4.0;  // standard deviations
-constexpr int kBoardRounds = 6;     // each gains what slope and obliquity leave of the height: 0.1 and less
+constexpr int kSubpixels = 4;               // along a pixel's side: the grid that the blur acts on
+constexpr int kPlaces = 4;                  // looked at in each
+constexpr int kKnot_px = 2;                 // between exact points of the map to the chart
+constexpr int kBandRows = 64;               // of pixels, made at a time
+constexpr double kBlurReach = 4.0;          // standard deviations
+constexpr double kFarthestRadius_px = 1e5;  // from the principal point
+constexpr int kBoardRounds = 6;             // each gains what slope and obliquity leave of the height: 0.1 and less
+
+// A polynomial says nothing beyond the points that it was fitted to: there the surface goes straight on.
+double height_mm(const BoardShape& board, const Vec2d& chart_mm) {
+    const auto held = [](double value, double middle, double half) {
+        return std::clamp(value, middle - half, middle + half);
+    };
+    const auto at = [&](double x, double y) { return board_height(board.frame, board.height_mm.data(), x, y); };
+    const BoardFrame& frame = board.frame;
+    const double x = held(chart_mm.x, frame.centre_mm.x, frame.half_size_mm.x);
+    const double y = held(chart_mm.y, frame.centre_mm.y, frame.half_size_mm.y);
+    double height = at(x, y);
+    constexpr double kStep = 1e-4;  // of half the frame: the slope to a relative 1e-4
+    if (x != chart_mm.x) {
+        const double step = kStep * frame.half_size_mm.x;
+        height += (at(x + step, y) - at(x - step, y)) / (2.0 * step) * (chart_mm.x - x);
+    }
+    if (y != chart_mm.y) {
+        const double step = kStep * frame.half_size_mm.y;
+        height += (at(x, y + step) - at(x, y - step)) / (2.0 * step) * (chart_mm.y - y);
+    }
+    return height;
+}
+
+// Where a direction meets the chart.
+std::optional<Vec2d> chart_point(const Vec3d& direction, const Pose& pose, const std::optional<BoardShape>& board) {
+    const Vec3d origin = pose.translation_mm;
+    const Vec3d x_axis = to_camera(pose, {1.0, 0.0}) - origin;
+    const Vec3d y_axis = to_camera(pose, {0.0, 1.0}) - origin;
+    const Vec3d normal = cross(x_axis, y_axis);
+    const double towards = dot(direction, normal);
+    const auto meets = [&](double height_mm) -> std::optional<Vec2d> {
+        const double distance = towards != 0.0 ? (dot(origin, normal) + height_mm) / towards : -1.0;
+        if (!(distance > 0.0)) {
+            return std::nullopt;
+        }
+        const Vec3d offset = distance * direction - origin;
+        return Vec2d{dot(offset, x_axis), dot(offset, y_axis)};
+    };
+    std::optional<Vec2d> place = meets(0.0);
+    for (int i = 0; board && place && i < kBoardRounds; ++i) {
+        place = meets(height_mm(*board, *place));
+    }
+    return place;
+}
+
+struct Frame {
+    const SimulatedCamera& camera;
+    double half_diagonal;
+    Vec2d centre;
+    FieldAngles angles;
+
+    [[nodiscard]] double light(const SimulatedChannel& channel, int x, int y) const {
+        return camera.white * channel.vignetting(std::hypot(x - centre.x, y - centre.y) / half_diagonal);
+    }
+};
+
+Frame frame_of(const SimulatedCamera& camera) {
+    // A principal point may lie anywhere, a stretched picture reach farther, and a band's knots beyond the frame.
+    const Vec2d centre = centre_px(camera.model);
+    const double farthest =
+        std::hypot(std::max(centre.x, camera.width_px - centre.x), std::max(centre.y, camera.height_px - centre.y)) /
+            std::min(1.0, 1.0 + stretch_y(camera.model)) +
+        16.0 * camera.blur_px + 64.0;
+    return {camera, 0.5 * std::hypot(camera.width_px, camera.height_px), centre,
+            FieldAngles(camera.model, std::min(farthest, kFarthestRadius_px))};
+}
 
 // Directions are mapped knot by knot; in a cell of four knots bilinearly.
 class ChartMap {
   public:
-    ChartMap(const SimulatedCamera& camera, const SimulatedChannel& channel, const Pose& pose, double half_diagonal,
-             int first_x, int first_y, int columns, int rows)
+    ChartMap(const Frame& frame, const SimulatedChannel& channel, const Pose& pose, int first_x, int first_y,
+             int columns, int rows)
         : first_x_(first_x), first_y_(first_y), columns_(columns / kKnot_px + 2), rows_(rows / kKnot_px + 2) {
         knots_.reserve(static_cast<std::size_t>(columns_) * rows_);
-        const Vec2d centre = centre_px(camera.model);
+        const SimulatedCamera& camera = frame.camera;
         for (int j = 0; j < rows_; ++j) {
             for (int i = 0; i < columns_; ++i) {
                 const Vec2d pixel{first_x + kKnot_px * i - 0.5, first_y + kKnot_px * j - 0.5};
-                knots_.push_back(chart_point(camera.model, pose,
-                                             without_shift(pixel, centre, channel.radial_shift_px, half_diagonal),
-                                             camera.board));
+                const auto direction =
+                    unproject(camera.model, without_shift(pixel, frame, channel.radial_shift_px), frame.angles);
+                knots_.push_back(direction ? chart_point(*direction, pose, camera.board) : std::nullopt);
             }
         }
     }
@@ -57,8 +125,8 @@ class ChartMap {
         return cell_at((x - first_x_) / kKnot_px, (y - first_y_) / kKnot_px);
     }
 
-    /// Marks the cells that no edge is near: five by five cells around are of one tone at all knots and middles, which
-    /// no part of the chart that is four pixels wide slips through.
+    /// Marks the cells that no edge is near: three by three cells around are of one tone at all knots and middles,
+    /// which no part of the chart slips through: none is narrower than both diagonals of a cell.
     void find_even_cells(const scene::Chart& chart) {
         const double narrowest = scene::traits(chart).narrowest_mm;
         for (int j = 0; j + 1 < rows_; ++j) {
@@ -66,7 +134,7 @@ class ChartMap {
                 even_.at<unsigned char>(j, i) = is_one_tone(cell_at(i, j), chart, narrowest) ? 1 : 0;
             }
         }
-        cv::erode(even_, even_, cv::Mat::ones(5, 5, CV_8U), {-1, -1}, 1, cv::BORDER_CONSTANT, cv::Scalar(0));
+        cv::erode(even_, even_, cv::Mat::ones(3, 3, CV_8U), {-1, -1}, 1, cv::BORDER_CONSTANT, cv::Scalar(0));
     }
 
   private:
@@ -94,17 +162,18 @@ class ChartMap {
     }
 
     // The pixel of the camera model whose light a shift by `shift_px` brings to `pixel`.
-    static Vec2d without_shift(const Vec2d& pixel, const Vec2d& centre, const std::function<double(double)>& shift_px,
-                               double half_diagonal) {
-        const double x = pixel.x - centre.x;
-        const double y = pixel.y - centre.y;
+    static Vec2d without_shift(const Vec2d& pixel, const Frame& frame, const std::function<double(double)>& shift_px) {
+        const double x = pixel.x - frame.centre.x;
+        const double y = pixel.y - frame.centre.y;
         const double radius = std::hypot(x, y);
         double unshifted = radius;
-        for (int i = 0; i < 8; ++i) {  // shifts change slowly with the radius, so each round gains two digits
-            unshifted = radius - shift_px(unshifted / half_diagonal);
+        double before = kNaN;
+        for (int i = 0; i < 8 && unshifted != before; ++i) {  // shifts change slowly, so each round gains two digits
+            before = unshifted;
+            unshifted = radius - shift_px(unshifted / frame.half_diagonal);
         }
         const double scale = radius > 0.0 ? unshifted / radius : 1.0;
-        return {centre.x + scale * x, centre.y + scale * y};
+        return {frame.centre.x + scale * x, frame.centre.y + scale * y};
     }
 
     int first_x_;
@@ -170,20 +239,6 @@ void shade(cv::Mat& plane, int i, int j, const ChartMap::Cell& cell, const Vec2d
     plane(cv::Rect(i, j, kSubpixels, kSubpixels)) *= light;
 }
 
-struct Frame {
-    const SimulatedCamera& camera;
-    double half_diagonal;
-    Vec2d centre;
-
-    [[nodiscard]] double light(const SimulatedChannel& channel, int x, int y) const {
-        return camera.white * channel.vignetting(std::hypot(x - centre.x, y - centre.y) / half_diagonal);
-    }
-};
-
-Frame frame_of(const SimulatedCamera& camera) {
-    return {camera, 0.5 * std::hypot(camera.width_px, camera.height_px), centre_px(camera.model)};
-}
-
 // Rows [first, last) of one channel.
 void paint_band(formats::Image& image, int channel, int first, int last, const Frame& frame, const Pose& pose,
                 const scene::Chart& chart) {
@@ -192,7 +247,7 @@ void paint_band(formats::Image& image, int channel, int first, int last, const F
     const int margin = kKnot_px * (1 + static_cast<int>(std::ceil(kBlurReach * camera.blur_px / kKnot_px)));
     const int columns = camera.width_px + 2 * margin;
     const int rows = last - first + 2 * margin;
-    ChartMap map(camera, camera.channels[channel], pose, frame.half_diagonal, -margin, first - margin, columns, rows);
+    ChartMap map(frame, camera.channels[channel], pose, -margin, first - margin, columns, rows);
     map.find_even_cells(chart);
     cv::Mat fine(rows * kSubpixels, columns * kSubpixels, CV_32F);
     const bool is_uneven = camera.light_gradient_per_mm.x != 0.0 || camera.light_gradient_per_mm.y != 0.0;
@@ -220,12 +275,24 @@ void paint_band(formats::Image& image, int channel, int first, int last, const F
     }
 }
 
+// Of a grey picture all channels but the first are copies.
+int made_channels(const SimulatedCamera& camera) {
+    return camera.is_grey ? 1 : static_cast<int>(camera.channels.size());
+}
+
+void copy_first_channel(formats::Image& image) {
+    const auto count = static_cast<std::size_t>(image.channel_count());
+    for (std::size_t i = 0; i < image.pixels.size(); i += count) {
+        std::fill_n(image.pixels.begin() + static_cast<std::ptrdiff_t>(i + 1), count - 1, image.pixels[i]);
+    }
+}
+
 void add_noise(formats::Image& image, int row, const SimulatedCamera& camera, std::uint32_t seed) {
     std::seed_seq sequence{seed, static_cast<std::uint32_t>(row)};
     std::mt19937 engine(sequence);
     const auto uniform = [&] { return (static_cast<double>(engine()) + 0.5) / 4294967296.0; };
     for (int x = 0; x < image.width; ++x) {
-        for (int c = 0; c < image.channel_count(); ++c) {
+        for (int c = 0; c < made_channels(camera); ++c) {
             float& value = image.at(x, row, c);
             const double variance =
                 camera.read_noise * camera.read_noise + camera.shot_noise * camera.shot_noise * value;
@@ -234,28 +301,6 @@ void add_noise(formats::Image& image, int row, const SimulatedCamera& camera, st
             value += static_cast<float>(std::sqrt(std::max(variance, 0.0)) * normal);
         }
     }
-}
-
-// A polynomial says nothing beyond the points that it was fitted to: there the surface goes straight on.
-double height_mm(const BoardShape& board, const Vec2d& chart_mm) {
-    const auto held = [](double value, double middle, double half) {
-        return std::clamp(value, middle - half, middle + half);
-    };
-    const auto at = [&](double x, double y) { return board_height(board.frame, board.height_mm.data(), x, y); };
-    const BoardFrame& frame = board.frame;
-    const double x = held(chart_mm.x, frame.centre_mm.x, frame.half_size_mm.x);
-    const double y = held(chart_mm.y, frame.centre_mm.y, frame.half_size_mm.y);
-    double height = at(x, y);
-    constexpr double kStep = 1e-4;  // of half the frame: the slope to a relative 1e-4
-    if (x != chart_mm.x) {
-        const double step = kStep * frame.half_size_mm.x;
-        height += (at(x + step, y) - at(x - step, y)) / (2.0 * step) * (chart_mm.x - x);
-    }
-    if (y != chart_mm.y) {
-        const double step = kStep * frame.half_size_mm.y;
-        height += (at(x, y + step) - at(x, y - step)) / (2.0 * step) * (chart_mm.y - y);
-    }
-    return height;
 }
 
 formats::Image empty_picture(const SimulatedCamera& camera) {
@@ -271,6 +316,9 @@ formats::Image with_noise_and_compression(formats::Image image, const SimulatedC
     if (camera.read_noise > 0.0 || camera.shot_noise > 0.0) {
         parallel_for(image.height, camera.threads, [&](int row) { add_noise(image, row, camera, seed); });
     }
+    if (camera.is_grey) {
+        copy_first_channel(image);
+    }
     return camera.jpeg_quality ? formats::after_jpeg(image, *camera.jpeg_quality) : image;
 }
 
@@ -279,27 +327,7 @@ formats::Image with_noise_and_compression(formats::Image image, const SimulatedC
 std::optional<Vec2d> chart_point(const CameraModel& model, const Pose& pose, const Vec2d& pixel,
                                  const std::optional<BoardShape>& board) {
     const auto direction = unproject(model, pixel);
-    if (!direction) {
-        return std::nullopt;
-    }
-    const Vec3d origin = pose.translation_mm;
-    const Vec3d x_axis = to_camera(pose, {1.0, 0.0}) - origin;
-    const Vec3d y_axis = to_camera(pose, {0.0, 1.0}) - origin;
-    const Vec3d normal = cross(x_axis, y_axis);
-    const double towards = dot(*direction, normal);
-    const auto meets = [&](double height_mm) -> std::optional<Vec2d> {
-        const double distance = towards != 0.0 ? (dot(origin, normal) + height_mm) / towards : -1.0;
-        if (!(distance > 0.0)) {
-            return std::nullopt;
-        }
-        const Vec3d offset = distance * *direction - origin;
-        return Vec2d{dot(offset, x_axis), dot(offset, y_axis)};
-    };
-    std::optional<Vec2d> place = meets(0.0);
-    for (int i = 0; board && place && i < kBoardRounds; ++i) {
-        place = meets(height_mm(*board, *place));
-    }
-    return place;
+    return direction ? chart_point(*direction, pose, board) : std::nullopt;
 }
 
 formats::Image simulate_chart(const SimulatedCamera& camera, const Pose& pose, const scene::Chart& chart,
@@ -307,10 +335,10 @@ formats::Image simulate_chart(const SimulatedCamera& camera, const Pose& pose, c
     formats::Image image = empty_picture(camera);
     const Frame frame = frame_of(camera);
     const int bands = (camera.height_px + kBandRows - 1) / kBandRows;
-    parallel_for(bands * image.channel_count(), camera.threads, [&](int i) {
-        const int first = i / image.channel_count() * kBandRows;
-        paint_band(image, i % image.channel_count(), first, std::min(first + kBandRows, camera.height_px), frame, pose,
-                   chart);
+    const int channels = made_channels(camera);
+    parallel_for(bands * channels, camera.threads, [&](int i) {
+        const int first = i / channels * kBandRows;
+        paint_band(image, i % channels, first, std::min(first + kBandRows, camera.height_px), frame, pose, chart);
     });
     return with_noise_and_compression(std::move(image), camera, seed);
 }
@@ -320,7 +348,7 @@ formats::Image simulate_flat_field(const SimulatedCamera& camera, std::uint32_t 
     const Frame frame = frame_of(camera);
     parallel_for(camera.height_px, camera.threads, [&](int y) {
         for (int x = 0; x < camera.width_px; ++x) {
-            for (int c = 0; c < image.channel_count(); ++c) {
+            for (int c = 0; c < made_channels(camera); ++c) {
                 image.at(x, y, c) = static_cast<float>(frame.light(camera.channels[c], x, y));
             }
         }

@@ -36,6 +36,7 @@ struct SimulatedCamera {
     /// Noise has the variance `read_noise`² + `shot_noise`² · value, in units of full scale.
     double read_noise = 0.0;
     double shot_noise = 0.0;
+    bool is_grey = false;             // every channel shows what the first does, noise included
     std::optional<int> jpeg_quality;  // 1 to 100, 8-bit sRGB with halved colour resolution; none: floats as they are
     int threads = 0;                  // 0: one a core; they change nothing but the time
     std::optional<BoardShape> board = std::nullopt;  // none: the chart is flat

@@ -22,7 +22,9 @@ void fields(JsonArchive& json, ProfileEdge& edge, const std::optional<double>& p
         .field("centre_px", e.centre_px)
         .field("normal_deg", e.normal_deg)
         .field("rise_px", e.rise_px)
-        .field("bend_px", e.bend_px);
+        .field("bend_px", e.bend_px)
+        .added("length_px", e.length_px)
+        .added("width_px", e.width_px);
     mtf_fields(json, "mtf50", e.mtf50, pixel_pitch_um);
     mtf_fields(json, "mtf10", e.mtf10, pixel_pitch_um);
     json.optional_group("curve", !e.mtf.empty(), [&](JsonArchive& curve) {

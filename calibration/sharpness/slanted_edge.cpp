@@ -304,6 +304,8 @@ std::variant<EdgeMtf, EdgeRefusal> measure_edge(const formats::Image& image, int
                    .normal_deg = degrees(std::atan2(edge.normal.y, edge.normal.x)),
                    .rise_px = edge.rise_px,
                    .bend_px = edge.bend_px,
+                   .length_px = 2.0 * region.half_length_px,
+                   .width_px = 2.0 * region.half_width_px,
                    .mtf = {},
                    .mtf_standard_error = {},
                    .mtf50 = measured.falls_to(0.5),

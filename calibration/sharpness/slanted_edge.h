@@ -34,6 +34,8 @@ struct EdgeMtf {
     double normal_deg = 0.0;  // direction from dark to bright, from +x towards +y, in (-180, 180]
     double rise_px = 0.0;     // from 10 % to 90 %
     double bend_px = 0.0;     // largest distance of the edge from a straight line
+    double length_px = 0.0;   // of the part that was measured, along the edge,
+    double width_px = 0.0;    // and across it
     std::vector<double> mtf;  // at 0, kMtfStep, 2 kMtfStep, … 1 cycle per pixel
     std::vector<double> mtf_standard_error;
     std::optional<MtfFrequency> mtf50;  // none: not below 1 cycle per pixel

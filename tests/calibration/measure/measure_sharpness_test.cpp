@@ -57,6 +57,47 @@ MeasureInput only_edges(std::vector<Picture> pictures, std::vector<PixelRectangl
     return input;
 }
 
+// Edges of a picture that nobody described: sharpness as it was made, and the shift of red that was put in, from how
+// far the edges lie apart along their normals; one edge is placed to some 0.02 px at this noise, a hundred to a tenth.
+TEST(CalibrationMeasureSharpness, EdgesThatAreFoundTellSharpnessAndShift) {
+    SimulatedCamera camera{.model = BrownConrady{{820.0, 319.5, 239.5, 0, 0, 0, 0, 0}},
+                           .width_px = 640,
+                           .height_px = 480,
+                           .channels = {{.name = "R"}, {.name = "G"}, {.name = "B"}}};
+    camera.blur_px = 0.8;
+    camera.read_noise = 0.004;
+    camera.channels[0].radial_shift_px = [](double height) { return 1.2 * height - 0.5 * std::pow(height, 3); };
+    const scene::Chart chart{.pattern = scene::SlantedEdges{7, 5, 60.0, 34.0, 6.0}};
+    const Pose pose{{0.02, -0.03, 0.0}, {0.0, 0.0, 600.0}};
+    const auto load = [=] { return simulate_chart(camera, pose, chart, 11); };
+    const Profile profile = measure(only_edges({{"scene", PictureRole::edges, load}}, {}));
+    EXPECT_EQ(profile.not_measured.at("geometry"), "there is no chart");
+    const double truth = true_frequency(gaussian_blur(0.8), 6.0, 0.5);
+    EXPECT_NEAR(sample(profile.curves.at("mtf50_tangential_G"), 0.4)->value / truth, 1.0, 0.02);
+    const Curve& red = profile.curves.at("chromatic_shift_R_px");
+    for (const double height : {0.2, 0.5, 0.7}) {
+        EXPECT_NEAR(sample(red, height)->value, 1.2 * height - 0.5 * std::pow(height, 3), 0.02) << height;
+    }
+    EXPECT_NEAR(sample(profile.curves.at("chromatic_shift_B_px"), 0.5)->value, 0.0, 0.02);
+    for (const ProfileEdge& listed : profile.sharpness.at("G")) {
+        EXPECT_GT(listed.edge.length_px, 0.0);
+        EXPECT_GT(listed.edge.width_px, 0.0);
+    }
+}
+
+TEST(CalibrationMeasureSharpness, NoEdgeInAnyPictureIsRefusedWithWhatWasSeen) {
+    const auto blank = [] { return formats::make_image(64, 48, {"Y"}); };
+    try {
+        measure(only_edges({{"blank", PictureRole::edges, blank}}, {}));
+        FAIL();
+    } catch (const InputError& e) {
+        EXPECT_EQ(
+            std::string(e.what()),
+            "edge: no edge measured in any of 1 picture: blank: none of 0 edges can be measured: expected straight "
+            "edges between even tones");
+    }
+}
+
 TEST(CalibrationMeasureSharpness, APictureThatIsOnlyAnEdgeIsEnough) {
     const Blur blur = gaussian_blur(1.0);
     const EdgePicture edge{.normal_deg = 5.0};

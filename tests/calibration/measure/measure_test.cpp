@@ -107,6 +107,41 @@ TEST(CalibrationMeasure, FlatFieldsAloneGiveVignettingAlone) {
     EXPECT_EQ(profile.not_measured.at("chromatic_shift"), "the pictures are grey");
 }
 
+// One photo of a chart that faces the camera tells no camera, but what needs none: distortion against the lens's own,
+// chromatic shift (within 0.03 px as above) and light. A model that was asked for is refused.
+TEST(CalibrationMeasure, AChartThatFacesTheCameraTellsWhatNeedsNoCamera) {
+    SimulatedCamera camera{.model = BrownConrady{{820.0, 319.5, 239.5, -0.24, 0.09, 0.0, 0.0, 0.0}},
+                           .width_px = 640,
+                           .height_px = 480,
+                           .channels = {{.name = "R"}, {.name = "G"}, {.name = "B"}}};
+    camera.read_noise = 0.003;
+    camera.channels[0].radial_shift_px = [](double height) { return 0.8 * height; };
+    for (SimulatedChannel& channel : camera.channels) {
+        channel.vignetting = [](double height) { return 1.0 - 0.3 * height * height; };
+    }
+    const Pose facing{{0.0, 0.0, 0.0}, {0.0, 0.0, 430.0}};
+    MeasureInput input =
+        input_with({{"facing", PictureRole::chart, [=] { return simulate_chart(camera, facing, kBoard, 5); }}});
+    EXPECT_THROW(measure(input), InputError);
+    input.model.reset();
+    const Profile profile = measure(input);
+    EXPECT_FALSE(profile.geometry);
+    EXPECT_NE(profile.not_measured.at("geometry").find("focal length"), std::string::npos);
+    ASSERT_EQ(profile.views.size(), 1u);
+    EXPECT_FALSE(profile.views[0].pose);
+    EXPECT_EQ(profile.views[0].points.size(), 54u);
+    const double radius = 0.6 * 400.0;
+    const double exact = 100.0 * (radius / (820.0 * std::tan(*field_angle_rad(camera.model, radius))) - 1.0);
+    const Banded distortion = *sample(profile.curves.at("distortion_percent"), 0.6);
+    EXPECT_LT(distortion.upper_95 - distortion.lower_95, 0.1);
+    EXPECT_NEAR(distortion.value, exact, 4.0 * (distortion.upper_95 - distortion.lower_95) / (2.0 * k95));
+    EXPECT_NEAR(sample(profile.curves.at("chromatic_shift_R_px"), 0.6)->value, 0.8 * 0.6, 0.03);
+    EXPECT_NEAR(sample(profile.curves.at("vignetting_G"), 0.5)->value, 1.0 - 0.3 * 0.25, 0.01);
+    EXPECT_FALSE(profile.not_measured.contains("vignetting"));
+    const std::string text = to_json(profile).dump();
+    EXPECT_EQ(to_json(parse_profile(text, "memory")).dump(), text);
+}
+
 // A board in the middle of the frame, and a model that can do anything outside: the profile says so, in its first
 // warning. With the board all over the frame there is nothing to warn of.
 TEST(CalibrationMeasure, AProfileThatDoesNotKnowTheCornersSaysSo) {

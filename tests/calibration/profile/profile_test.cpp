@@ -31,7 +31,7 @@ Profile example() {
     profile.geometry = geometry;
     profile.views = {{.image = "a.jpg",
                       .found = true,
-                      .pose = {{0.1, 0.2, 0.3}, {1, 2, 3e5}},
+                      .pose = Pose{{0.1, 0.2, 0.3}, {1, 2, 3e5}},
                       .points = {{{30, 30}, {100.1, 1e-300}, {-0.01, 0.02}, false}}},
                      {.image = "b", .found = false, .reason = "no contrast", .pose = {}, .points = {}}};
     profile.curves["field_angle_deg"] = {{0.0, 0.5}, {0.0, 10.0 / 3.0}, {0.0, 3.3}, {0.0, 3.4}, 0.7};
