@@ -246,4 +246,17 @@ std::optional<CsvRow> CsvTable::next() {
     return row;
 }
 
+std::string csv_cell(std::string text) {
+    std::ranges::replace(text, '\n', ' ');
+    std::ranges::replace(text, '\r', ' ');
+    if (text.find_first_of(",\" ") == std::string::npos) {
+        return text;
+    }
+    std::string cell = "\"";
+    for (const char letter : text) {
+        cell += letter == '"' ? "\"\"" : std::string(1, letter);
+    }
+    return cell + '"';
+}
+
 }  // namespace lensproof

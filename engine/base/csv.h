@@ -11,6 +11,9 @@
 
 namespace lensproof {
 
+/// A text as a cell: without line ends, in quotes where it needs them.
+std::string csv_cell(std::string text);
+
 /// One row of a `CsvTable`; its cells are asked for by column. All members throw InputError
 /// `file:line: column is "cell", expected …`, and for a column that the table does not have.
 class CsvRow {

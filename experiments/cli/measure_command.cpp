@@ -15,10 +15,13 @@
 #include "engine/base/write_file.h"
 #include "engine/scene/chart/chart_file.h"
 #include "experiments/cli/measure_parts.h"
+#include "experiments/cli/progress.h"
 
 namespace lensproof::cli {
 
 namespace {
+
+constexpr const char* kAnyEdges = "auto";
 
 // "x,y,width,height" or "whole".
 calibration::PixelRectangle parse_rectangle(const std::string& text) {
@@ -38,14 +41,18 @@ calibration::PixelRectangle parse_rectangle(const std::string& text) {
     const bool is_rectangle = numbers.size() == 4 && std::count(text.begin(), text.end(), ',') == 3 &&
                               numbers[0] >= 0 && numbers[1] >= 0 && numbers[2] > 0 && numbers[3] > 0;
     if (!is_rectangle) {
-        throw InputError(fmt::format("--edge: found \"{}\", expected x,y,width,height in pixels, or whole", text));
+        throw InputError(fmt::format("--edge: found \"{}\", expected x,y,width,height in pixels, whole or auto", text));
     }
     return {numbers[0], numbers[1], numbers[2], numbers[3]};
 }
 
 void add_sharpness_input(calibration::MeasureInput& input, const MeasureOptions& options) {
     for (const std::string& edge : options.edges) {
-        input.edges.push_back(parse_rectangle(edge));
+        if (edge != kAnyEdges) {
+            input.edges.push_back(parse_rectangle(edge));
+        } else if (options.edges.size() > 1) {
+            throw InputError(fmt::format("--edge: \"{}\" beside others: expected it alone, or rectangles", kAnyEdges));
+        }
     }
     std::vector<std::string> names;
     for (calibration::Picture& picture : input.pictures) {
@@ -99,8 +106,11 @@ std::vector<std::filesystem::path> expanded(const std::vector<std::string>& name
 }
 
 int run_measure(const MeasureOptions& options) {
-    if (!options.output.empty()) {
+    if (!options.output.empty() && !options.each) {
         check_output_name(options.output);
+    }
+    if (!options.plots_folder.empty()) {
+        check_output_name(std::filesystem::path(options.plots_folder) / "edges.csv");
     }
     check_json_name(options.common);
     const calibration::ProfileSource source{
@@ -112,11 +122,28 @@ int run_measure(const MeasureOptions& options) {
         write_and_print(options, run_bands(options, source));
         return kDone;
     }
-    calibration::MeasureInput input;
-    input.name = options.images.front();
     if (options.chart.empty() == options.edges.empty()) {
         throw InputError("measure: expected --chart FILE, or --edge for pictures of edges without a chart");
     }
+    const std::vector<std::filesystem::path> pictures = expanded(options.images);
+    if (options.each) {
+        return measure_each(options, source, pictures);
+    }
+    calibration::MeasureInput input = measure_input(options, source, options.images.front(), pictures);
+    const calibration::Profile profile = measure_pictures(options, input);
+    write_and_print(options, profile);
+    if (!options.plots_folder.empty()) {
+        write_measure_plots(options.plots_folder, profile, input);
+    }
+    return kDone;
+}
+
+}  // namespace
+
+calibration::MeasureInput measure_input(const MeasureOptions& options, const calibration::ProfileSource& source,
+                                        const std::string& name, const std::vector<std::filesystem::path>& pictures) {
+    calibration::MeasureInput input;
+    input.name = name;
     if (options.edges.empty()) {
         input.chart = chart_to_find(options.chart);
     }
@@ -124,22 +151,37 @@ int run_measure(const MeasureOptions& options) {
     input.source = source;
     input.geometry.fit_board_shape = options.fit_board_shape;
     input.geometry.fit_stretch = options.aspect == "free";
+    input.geometry.fix_centre = options.fix_centre;
     if (options.pixel_pitch_um > 0.0) {
         input.pixel_pitch_um = options.pixel_pitch_um;
     }
-    const calibration::PhotoSurvey survey = calibration::survey_photos(
-        expanded(options.images), expanded(options.flat_fields), formats::parse_transfer_curve(options.transfer));
+    const calibration::PhotoSurvey survey = calibration::survey_photos(pictures, expanded(options.flat_fields),
+                                                                       formats::parse_transfer_curve(options.transfer));
     calibration::take_survey(input, survey);
-    add_sharpness_input(input, options);
-    calibration::Profile profile = calibration::measure_surveyed(input);
-    if (!options.no_self_test) {
-        calibration::add_self_test(profile, input);
+    if (options.focal_length_mm > 0.0) {
+        if (!input.pixel_pitch_um) {
+            throw InputError("--focal-length: the pixel pitch is not known: expected --pixel-pitch beside it");
+        }
+        input.geometry.known_focal_px = options.focal_length_mm * 1e3 / *input.pixel_pitch_um;
     }
-    write_and_print(options, profile);
-    return kDone;
+    add_sharpness_input(input, options);
+    return input;
 }
 
-}  // namespace
+calibration::Profile measure_pictures(const MeasureOptions& options, calibration::MeasureInput input) {
+    // The fit between the pictures and the self-test's takes its part, and tells nothing of how far it is.
+    constexpr double kLooking = 0.35;
+    constexpr double kMeasured = 0.5;
+    ProgressBar progress("measuring", options.common.quiet || options.each);
+    const double all = options.no_self_test ? kMeasured : 1.0;
+    input.progress = [&](double done) { progress.update(kLooking * done / all); };
+    calibration::Profile profile = calibration::measure_surveyed(input);
+    if (!options.no_self_test) {
+        input.progress = [&](double done) { progress.update(kMeasured + (1.0 - kMeasured) * done); };
+        calibration::add_self_test(profile, input);
+    }
+    return profile;
+}
 
 scene::Chart chart_to_find(const std::string& file) {
     scene::Chart chart = scene::read_chart_file(file);
@@ -168,14 +210,22 @@ void add_measure_command(Program& program) {
                        "Pictures of the chart (JPEG, PNG, TIFF, EXR, RAW, …), or folders of them");
     command.add_option("--chart", options->chart, "TOML file with a [chart] table").type_name("FILE");
     command
-        .add_option("--edge", options->edges,
-                    "Instead of a chart: a rectangle x,y,width,height (px) that holds one slanted edge; or whole")
+        .add_option(
+            "--edge", options->edges,
+            "Instead of a chart: a rectangle x,y,width,height (px) that holds one slanted edge; whole; or auto for "
+            "all edges that are found")
         .takes_one_argument()
         .type_name("RECTANGLE");
     command
         .add_option("--focus-positions", options->focus_positions_mm,
                     "Where the focus stood in each IMAGE, mm, for field curvature")
         .separated_by(',');
+    command
+        .add_option("--plots", options->plots_folder,
+                    "Folder for edges.csv, maps of the sharpness over the frame and pictures with their edges marked")
+        .type_name("DIR");
+    command.add_flag("--each", options->each,
+                     "Measure each picture by itself; -o and --plots are then folders, with a summary.csv in -o");
     command.add_option("--flat-field", options->flat_fields, "Pictures of an even surface, for vignetting")
         .type_name("FILE");
     std::vector<std::string> models = calibration::model_kind_names();
@@ -191,6 +241,11 @@ void add_measure_command(Program& program) {
     command.add_flag("--board-shape", options->fit_board_shape, "Fit how far the chart is from flat, with the lens");
     command.add_option("--pixel-pitch", options->pixel_pitch_um, "Pixel pitch in µm, for lengths in mm")
         .check(kPositiveOption);
+    command
+        .add_option("--focal-length", options->focal_length_mm,
+                    "Hold the focal length at this many mm, which a chart that faces the camera cannot tell")
+        .check(kPositiveOption);
+    command.add_flag("--fix-centre", options->fix_centre, "Hold the optical centre at the picture's middle");
     command.add_option("--lens", options->lens, "The lens's name, noted in the profile").shows_default();
     command.add_option("--camera", options->camera, "The camera's name, noted in the profile").shows_default();
     command.add_option("--kind", options->kind, "photo or render, noted in the profile")

@@ -23,8 +23,12 @@ struct MeasureOptions {
     std::string kind = "photo";
     std::string transfer;
     double pixel_pitch_um = 0.0;
+    double focal_length_mm = 0.0;
+    bool fix_centre = false;
     bool no_self_test = false;
-    std::vector<std::string> edges;
+    std::vector<std::string> edges;  // rectangles, or one "auto"
+    std::string plots_folder;
+    bool each = false;
     std::vector<double> focus_positions_mm;
     bool fit_board_shape = false;
     std::string aspect = "square";
@@ -37,8 +41,25 @@ struct MeasureOptions {
 /// The chart of a file that has one. Throws InputError for a kind that is not measured.
 scene::Chart chart_to_find(const std::string& file);
 
+/// What the options say of these pictures. Throws InputError for an unusable one.
+calibration::MeasureInput measure_input(const MeasureOptions& options, const calibration::ProfileSource& source,
+                                        const std::string& name, const std::vector<std::filesystem::path>& pictures);
+
+/// The profile, with the self-test that the options ask for, behind a progress bar.
+calibration::Profile measure_pictures(const MeasureOptions& options, calibration::MeasureInput input);
+
+/// `--each`: every picture by itself, and a line for each. Returns the exit status. Throws InputError where none can be
+/// measured.
+int measure_each(const MeasureOptions& options, const calibration::ProfileSource& source,
+                 const std::vector<std::filesystem::path>& pictures);
+
 /// `--bands`: one scene in narrow bands.
 calibration::Profile run_bands(const MeasureOptions& options, const calibration::ProfileSource& source);
+
+/// Writes into `folder`, which is made where it is missing: a CSV of the edges, for each channel a map of the sharpness
+/// over the frame, and each picture with its edges marked. Throws InputError where there are no edges.
+void write_measure_plots(const std::filesystem::path& folder, const calibration::Profile& profile,
+                         const calibration::MeasureInput& input);
 
 /// The profile as text on standard output.
 void print_profile(const calibration::Profile& profile);

@@ -136,6 +136,10 @@ void print_profile(const calibration::Profile& profile) {
     for (const std::string& warning : profile.warnings) {
         print("warning: {}\n", warning);
     }
+    const auto camera = profile.not_measured.find(calibration::part::kGeometry);
+    if (camera != profile.not_measured.end() && !profile.views.empty()) {
+        print("no camera: {}; what needs none is measured about the picture's middle\n", camera->second);
+    }
     print_account(profile);
     if (profile.geometry) {
         const calibration::ProfileGeometry& geometry = *profile.geometry;

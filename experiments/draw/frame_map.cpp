@@ -33,30 +33,6 @@ double value_at(const FrameMap& map, double column, double row) {
     return std::lerp(std::lerp(knot(0, 0), knot(1, 0), u), std::lerp(knot(0, 1), knot(1, 1), u), v);
 }
 
-HeatMap heat_map(const FrameMap& knots, const AxisRange& range) {
-    const double width = knots.width_px;
-    const double height = knots.height_px;
-    HeatMap map{.columns = kFineColumns,
-                .rows = std::max<std::size_t>(2, std::lround(kFineColumns * height / width)),
-                .x = {-0.5, width - 0.5},
-                .y = {-0.5, height - 0.5},
-                .colours = ColourMap::sequential,
-                .scale = AxisScale::logarithmic,
-                .range = range,
-                .label = knots.label,
-                .unit = knots.unit};
-    map.values.reserve(map.columns * map.rows);
-    for (std::size_t j = 0; j < map.rows; ++j) {
-        for (std::size_t i = 0; i < map.columns; ++i) {
-            const auto place = [](std::size_t at, std::size_t count, int knots_there) {
-                return (static_cast<double>(at) + 0.5) / static_cast<double>(count) * (knots_there - 1);
-            };
-            map.values.push_back(value_at(knots, place(i, map.columns, knots.columns), place(j, map.rows, knots.rows)));
-        }
-    }
-    return map;
-}
-
 /// Where the values are extrapolated, if there is a hull at all.
 ChartCurve hatching_outside(const FrameMap& map, const std::string& colour) {
     const double right = map.width_px - 0.5;
@@ -89,13 +65,37 @@ ChartCurve outline(std::vector<Vec2d> hull) {
             .width = 1.8};
 }
 
-PlotChart empty_frame(const FrameMap& map, const std::string& title) {
+}  // namespace
+
+PlotChart frame_chart(const FrameMap& map, const std::string& title) {
     return {.title = title,
             .x = {.label = "x", .unit = "px", .low = -0.5, .high = map.width_px - 0.5},
             .y = {.label = "y", .unit = "px", .low = map.height_px - 0.5, .high = -0.5}};
 }
 
-}  // namespace
+HeatMap frame_heat_map(const FrameMap& knots, const AxisRange& range, AxisScale scale) {
+    const double width = knots.width_px;
+    const double height = knots.height_px;
+    HeatMap map{.columns = kFineColumns,
+                .rows = std::max<std::size_t>(2, std::lround(kFineColumns * height / width)),
+                .x = {-0.5, width - 0.5},
+                .y = {-0.5, height - 0.5},
+                .colours = ColourMap::sequential,
+                .scale = scale,
+                .range = range,
+                .label = knots.label,
+                .unit = knots.unit};
+    map.values.reserve(map.columns * map.rows);
+    for (std::size_t j = 0; j < map.rows; ++j) {
+        for (std::size_t i = 0; i < map.columns; ++i) {
+            const auto place = [](std::size_t at, std::size_t count, int knots_there) {
+                return (static_cast<double>(at) + 0.5) / static_cast<double>(count) * (knots_there - 1);
+            };
+            map.values.push_back(value_at(knots, place(i, map.columns, knots.columns), place(j, map.rows, knots.rows)));
+        }
+    }
+    return map;
+}
 
 AxisRange common_range(const std::vector<const FrameMap*>& maps) {
     AxisRange range{kInfinity, 0.0};
@@ -115,10 +115,10 @@ AxisRange common_range(const std::vector<const FrameMap*>& maps) {
 std::string frame_map_svg(const FrameMap& map, const AxisRange& range, const std::string& colour) {
     const double width = map.width_px;
     const double height = map.height_px;
-    PlotChart values = empty_frame(map, map.heading);
-    values.map = heat_map(map, range);
+    PlotChart values = frame_chart(map, map.heading);
+    values.map = frame_heat_map(map, range, AxisScale::logarithmic);
     values.curves = {hatching_outside(map, kHatchOnColours), outline(map.hull)};
-    PlotChart coverage = empty_frame(map, fmt::format("From {} points", map.points.size()));
+    PlotChart coverage = frame_chart(map, fmt::format("From {} points", map.points.size()));
     coverage.curves = {hatching_outside(map, kHatchOnPaper),
                        outline(map.hull),
                        {.label = "points used",

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "engine/base/vec.h"
+#include "experiments/draw/chart.h"
 #include "experiments/draw/ticks.h"
 
 namespace lensproof::draw {
@@ -28,6 +29,12 @@ struct FrameMap {
 /// The maps' values from the smallest inside the points' hulls to the largest, ten times that inside the hulls at most:
 /// one range for all drawings, so that colours compare. 0.001 to 1 where there is no value.
 AxisRange common_range(const std::vector<const FrameMap*>& maps);
+
+/// A chart with the frame as its axes and nothing in it.
+PlotChart frame_chart(const FrameMap& map, const std::string& title);
+
+/// The values between the knots, and none where one of the knots around has none.
+HeatMap frame_heat_map(const FrameMap& knots, const AxisRange& range, AxisScale scale);
 
 /// As SVG: left the values as colours, logarithmic over `range`, right the points in `colour` (CSS); in both the hull
 /// as an outline, and what lies outside it, where the values are extrapolated, hatched.

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "engine/base/csv.h"
 #include "engine/base/input_error.h"
 #include "engine/base/text.h"
 #include "engine/formats/prescription/axial_terms.h"
@@ -37,20 +38,6 @@ std::string index_cell(const optics::StatedMedium& medium, double wavelength_nm)
 
 std::string cell_of(const std::optional<double>& value) {
     return value ? fmt::format("{}", *value) : "";
-}
-
-/// A text as a cell: without line ends, in quotes where it needs them.
-std::string text_cell(std::string text) {
-    std::ranges::replace(text, '\n', ' ');
-    std::ranges::replace(text, '\r', ' ');
-    if (text.find_first_of(",\" ") == std::string::npos) {
-        return text;
-    }
-    std::string cell = "\"";
-    for (const char letter : text) {
-        cell += letter == '"' ? "\"\"" : std::string(1, letter);
-    }
-    return cell + '"';
 }
 
 std::string comment_lines(const std::string& key, std::string_view text) {
@@ -92,7 +79,7 @@ struct Needs {
 
     [[nodiscard]] std::string cells(const optics::PrescribedSurface& row) const {
         std::string text;
-        text += glass ? "," + text_cell(row.medium.glass) : "";
+        text += glass ? "," + csv_cell(row.medium.glass) : "";
         if (lines) {
             const bool fits = fits_line_columns(row.medium);
             for (const double line : {spectral::kLineC, spectral::kLineF, spectral::kLineG}) {
