@@ -108,7 +108,7 @@ class ChartMap {
 
     struct Cell {
         const std::optional<Vec2d>*top, *bottom;  // two knots each
-        bool is_even;                             // the whole cell is as its top left knot
+        float even_tone;                          // of the whole cell; NaN where it has an edge, or one is near
 
         [[nodiscard]] bool is_complete() const { return top[0] && top[1] && bottom[0] && bottom[1]; }
         /// At (u, v) of the cell, each from 0 to 1.
@@ -129,19 +129,40 @@ class ChartMap {
     /// which no part of the chart slips through: none is narrower than both diagonals of a cell.
     void find_even_cells(const scene::Chart& chart) {
         const double narrowest = scene::traits(chart).narrowest_mm;
+        cv::Mat even = cv::Mat::zeros(rows_, columns_, CV_8U);  // by a cell's top left knot
         for (int j = 0; j + 1 < rows_; ++j) {
             for (int i = 0; i + 1 < columns_; ++i) {
-                even_.at<unsigned char>(j, i) = is_one_tone(cell_at(i, j), chart, narrowest) ? 1 : 0;
+                even.at<unsigned char>(j, i) = is_one_tone(cell_at(i, j), chart, narrowest) ? 1 : 0;
             }
         }
-        cv::erode(even_, even_, cv::Mat::ones(3, 3, CV_8U), {-1, -1}, 1, cv::BORDER_CONSTANT, cv::Scalar(0));
+        cv::erode(even, even, cv::Mat::ones(3, 3, CV_8U), {-1, -1}, 1, cv::BORDER_CONSTANT, cv::Scalar(0));
+        for (int j = 0; j + 1 < rows_; ++j) {
+            for (int i = 0; i + 1 < columns_; ++i) {
+                if (even.at<unsigned char>(j, i) != 0) {
+                    const Vec2d& knot = *cell_at(i, j).top[0];
+                    even_tones_.at<float>(j, i) = static_cast<float>(scene::reflectance(chart, knot.x, knot.y));
+                }
+            }
+        }
+    }
+
+    /// The tone of all cells of the pixels from `first` to `last`, inclusive; none where they differ or have edges.
+    [[nodiscard]] std::optional<float> only_tone(const cv::Point& first, const cv::Point& last) const {
+        const float tone = cell(first.x, first.y).even_tone;
+        for (int y = first.y; y <= last.y; y += kKnot_px) {
+            for (int x = first.x; x <= last.x; x += kKnot_px) {
+                if (cell(x, y).even_tone != tone) {  // NaN differs from itself
+                    return std::nullopt;
+                }
+            }
+        }
+        return tone;
     }
 
   private:
     [[nodiscard]] Cell cell_at(int i, int j) const {
         const std::size_t first = static_cast<std::size_t>(j) * columns_ + i;
-        return {&knots_[first], &knots_[first + static_cast<std::size_t>(columns_)],
-                even_.at<unsigned char>(j, i) != 0};
+        return {&knots_[first], &knots_[first + static_cast<std::size_t>(columns_)], even_tones_.at<float>(j, i)};
     }
 
     static bool is_one_tone(const Cell& cell, const scene::Chart& chart, double narrowest_mm) {
@@ -181,7 +202,7 @@ class ChartMap {
     int columns_;
     int rows_;
     std::vector<std::optional<Vec2d>> knots_;
-    cv::Mat even_ = cv::Mat::zeros(rows_, columns_, CV_8U);  // by a cell's top left knot
+    cv::Mat even_tones_ = cv::Mat(rows_, columns_, CV_32F, cv::Scalar(kNaN));  // by a cell's top left knot
 };
 
 // A number in [0, 1) that looks random, of a pixel.
@@ -205,8 +226,8 @@ void look(cv::Mat& plane, int i, int j, const ChartMap& map, int x, int y, const
         fill(plane, i, j, 0.0F);
         return;
     }
-    if (cell.is_even) {
-        fill(plane, i, j, static_cast<float>(scene::reflectance(chart, cell.top[0]->x, cell.top[0]->y)));
+    if (!std::isnan(cell.even_tone)) {
+        fill(plane, i, j, cell.even_tone);
         return;
     }
     constexpr std::array<int, kPlaces> kOrder = {2, 0, 3, 1};
@@ -229,14 +250,74 @@ void look(cv::Mat& plane, int i, int j, const ChartMap& map, int x, int y, const
     }
 }
 
-// The light in the middle of a pixel's cell, which over its 2 px is as good as even.
-void shade(cv::Mat& plane, int i, int j, const ChartMap::Cell& cell, const Vec2d& gradient_per_mm) {
+// The light in the middle of a pixel's cell, which over its 2 px is as good as even, over that of the chart's middle.
+double chart_light(const ChartMap::Cell& cell, const Vec2d& gradient_per_mm) {
     if (!cell.is_complete()) {
-        return;
+        return 1.0;
     }
     const Vec2d place = cell.at(0.5, 0.5);
-    const auto light = static_cast<float>(std::exp(gradient_per_mm.x * place.x + gradient_per_mm.y * place.y));
-    plane(cv::Rect(i, j, kSubpixels, kSubpixels)) *= light;
+    return std::exp(gradient_per_mm.x * place.x + gradient_per_mm.y * place.y);
+}
+
+// By hand, because it is done for every pixel and a matrix's own product takes longer to begin than to do.
+void shade(cv::Mat& plane, int i, int j, double light) {
+    for (int b = 0; b < kSubpixels; ++b) {
+        float* row = plane.ptr<float>(j + b) + i;
+        for (int a = 0; a < kSubpixels; ++a) {
+            row[a] *= static_cast<float>(light);
+        }
+    }
+}
+
+// One channel of a part of the picture: what is to be painted, with the map of it and of `margin` pixels around.
+struct Part {
+    cv::Rect pixels;
+    int margin;
+    const ChartMap& map;
+    const Frame& frame;
+    const scene::Chart& chart;
+
+    [[nodiscard]] bool is_uneven() const {
+        const Vec2d& gradient = frame.camera.light_gradient_per_mm;
+        return gradient.x != 0.0 || gradient.y != 0.0;
+    }
+};
+
+// The reflectance of each pixel, by the light on the chart, blurred.
+cv::Mat blurred(const Part& part) {
+    const int columns = part.pixels.width + 2 * part.margin;
+    const int rows = part.pixels.height + 2 * part.margin;
+    cv::Mat fine(rows * kSubpixels, columns * kSubpixels, CV_32F);
+    for (int y = 0; y < rows; ++y) {
+        for (int x = 0; x < columns; ++x) {
+            const cv::Point at(x + part.pixels.x - part.margin, y + part.pixels.y - part.margin);
+            look(fine, x * kSubpixels, y * kSubpixels, part.map, at.x, at.y, part.chart);
+            if (part.is_uneven()) {
+                shade(fine, x * kSubpixels, y * kSubpixels,
+                      chart_light(part.map.cell(at.x, at.y), part.frame.camera.light_gradient_per_mm));
+            }
+        }
+    }
+    if (part.frame.camera.blur_px > 0.0) {
+        const double sigma = part.frame.camera.blur_px * kSubpixels;
+        const int side = 2 * static_cast<int>(std::ceil(kBlurReach * sigma)) + 1;
+        cv::GaussianBlur(fine, fine, {side, side}, sigma, sigma, cv::BORDER_REPLICATE);
+    }
+    cv::Mat pixels;
+    cv::resize(fine, pixels, {columns, rows}, 0.0, 0.0, cv::INTER_AREA);  // means of whole blocks
+    return pixels(cv::Rect(part.margin, part.margin, part.pixels.width, part.pixels.height));
+}
+
+// The same where no edge is near: blur changes nothing, nor does it the light, which is smooth.
+cv::Mat of_one_tone(const Part& part, float tone) {
+    cv::Mat pixels(part.pixels.height, part.pixels.width, CV_32F, cv::Scalar(tone));
+    for (int y = 0; part.is_uneven() && y < pixels.rows; ++y) {
+        for (int x = 0; x < pixels.cols; ++x) {
+            pixels.at<float>(y, x) *= static_cast<float>(chart_light(
+                part.map.cell(part.pixels.x + x, part.pixels.y + y), part.frame.camera.light_gradient_per_mm));
+        }
+    }
+    return pixels;
 }
 
 // Rows [first, last) of one channel.
@@ -245,32 +326,23 @@ void paint_band(formats::Image& image, int channel, int first, int last, const F
     const SimulatedCamera& camera = frame.camera;
     // Whole cells of knots, so that every pixel's cell begins at an even place.
     const int margin = kKnot_px * (1 + static_cast<int>(std::ceil(kBlurReach * camera.blur_px / kKnot_px)));
-    const int columns = camera.width_px + 2 * margin;
-    const int rows = last - first + 2 * margin;
-    ChartMap map(frame, camera.channels[channel], pose, -margin, first - margin, columns, rows);
+    ChartMap map(frame, camera.channels[channel], pose, -margin, first - margin, camera.width_px + 2 * margin,
+                 last - first + 2 * margin);
     map.find_even_cells(chart);
-    cv::Mat fine(rows * kSubpixels, columns * kSubpixels, CV_32F);
-    const bool is_uneven = camera.light_gradient_per_mm.x != 0.0 || camera.light_gradient_per_mm.y != 0.0;
-    for (int y = 0; y < rows; ++y) {
-        for (int x = 0; x < columns; ++x) {
-            look(fine, x * kSubpixels, y * kSubpixels, map, x - margin, y + first - margin, chart);
-            if (is_uneven) {
-                shade(fine, x * kSubpixels, y * kSubpixels, map.cell(x - margin, y + first - margin),
-                      camera.light_gradient_per_mm);
+    for (int left = 0; left < camera.width_px; left += kBandRows) {
+        const Part part{.pixels = {left, first, std::min(kBandRows, camera.width_px - left), last - first},
+                        .margin = margin,
+                        .map = map,
+                        .frame = frame,
+                        .chart = chart};
+        const cv::Point reach(margin, margin);
+        const auto tone = map.only_tone(part.pixels.tl() - reach, part.pixels.br() - cv::Point(1, 1) + reach);
+        const cv::Mat pixels = tone ? of_one_tone(part, *tone) : blurred(part);
+        for (int y = 0; y < pixels.rows; ++y) {
+            for (int x = 0; x < pixels.cols; ++x) {
+                image.at(left + x, first + y, channel) = static_cast<float>(
+                    pixels.at<float>(y, x) * frame.light(camera.channels[channel], left + x, first + y));
             }
-        }
-    }
-    if (camera.blur_px > 0.0) {
-        const double sigma = camera.blur_px * kSubpixels;
-        const int side = 2 * static_cast<int>(std::ceil(kBlurReach * sigma)) + 1;
-        cv::GaussianBlur(fine, fine, {side, side}, sigma, sigma, cv::BORDER_REPLICATE);
-    }
-    cv::Mat pixels;
-    cv::resize(fine, pixels, {columns, rows}, 0.0, 0.0, cv::INTER_AREA);  // means of whole blocks
-    for (int y = first; y < last; ++y) {
-        for (int x = 0; x < camera.width_px; ++x) {
-            image.at(x, y, channel) = static_cast<float>(pixels.at<float>(y - first + margin, x + margin) *
-                                                         frame.light(camera.channels[channel], x, y));
         }
     }
 }
