@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "engine/scene/chart/chart_file.h"
 #include "engine/scene/scene_file.h"
 #include "engine/scene/spectra/spectrum_keys.h"
@@ -15,7 +17,11 @@ void read_scene_tables(TomlTable& top, SceneSetup& setup) {
     TomlTable camera = top.table("camera");
     setup.camera = read_placed_camera(camera);
     setup.scene = scene::read_scene(top);
-    if (setup.scene.lights.empty()) {
+    const bool may_emit = std::ranges::any_of(setup.scene.objects, [](const scene::ObjectDescription& object) {
+        const auto* mesh = std::get_if<scene::MeshFromFile>(&object.shape);
+        return mesh != nullptr && mesh->options.by_material;  // whose materials may: it is known when they are read
+    });
+    if (setup.scene.lights.empty() && !may_emit) {
         top.fail("lights", "there is no light, expected [[lights]]");
     }
 }

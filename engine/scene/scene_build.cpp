@@ -2,11 +2,14 @@
 
 #include <fmt/format.h>
 
+#include <map>
 #include <memory>
 #include <set>
+#include <tuple>
 #include <utility>
 
 #include "engine/base/input_error.h"
+#include "engine/scene/mesh_materials.h"
 #include "engine/scene/scene_shapes.h"
 #include "engine/scene/spectra/scene_spectra.h"
 
@@ -40,6 +43,10 @@ class SceneBuilder {
         for (const LightDescription& light : description_.lights) {
             said_of(light.where, [&] { add_light(light); });
         }
+        add_own_materials();
+        if (lights_.empty() && !own_materials_.empty()) {
+            throw InputError("there is no light: expected [[lights]], or a mesh's file with a material that emits");
+        }
         BuiltScene built{.scene = {.grid = spectra_.grid(),
                                    .geometry = std::make_unique<SceneGeometry>(std::move(shapes_), std::move(objects_)),
                                    .materials = std::move(materials_),
@@ -58,6 +65,8 @@ class SceneBuilder {
         shapes_ = std::move(loaded.shapes);
         objects_ = std::move(loaded.objects);
         remarks_ = std::move(loaded.remarks);
+        first_object_ = std::move(loaded.first_object);
+        own_materials_ = std::move(loaded.own_materials);
         for (const std::size_t object : loaded.own_charts) {
             const auto& chart = chart_of(description_.objects[object]);
             add_own(DiffuseMaterial{
@@ -71,10 +80,42 @@ class SceneBuilder {
     }
 
     /// Returns the material's index.
-    std::uint32_t add_own(DiffuseMaterial material) {
-        materials_.push_back({std::move(material)});
-        absorption_.emplace_back();
+    std::uint32_t add_own(DiffuseMaterial material) { return add_material({std::move(material)}, {}); }
+
+    std::uint32_t add_material(Material material, std::optional<spectral::GridSpectrum> absorption) {
+        materials_.push_back(std::move(material));
+        absorption_.push_back(std::move(absorption));
         return static_cast<std::uint32_t>(materials_.size() - 1);
+    }
+
+    /// What glTF files say of meshes that the scene file gives no material, each file's and material's once. A light of
+    /// the scene file takes the place of what an object emits.
+    void add_own_materials() {
+        std::map<std::filesystem::path, MeshMaterials> files;
+        std::map<std::tuple<std::filesystem::path, std::size_t, double>, std::uint32_t> made;
+        for (const OwnMaterial& own : own_materials_) {
+            const std::filesystem::path& file = own.mesh->file;
+            const auto [of_file, is_new_file] = files.try_emplace(file, file);
+            MeshMaterials& materials = of_file->second;
+            if (is_new_file) {
+                remarks_.insert(remarks_.end(), materials.remarks().begin(), materials.remarks().end());
+            }
+            const double mm_per_unit = own.mesh->options.mm_per_unit.value_or(kGltfUnitMm);
+            const auto [index, is_new] = made.try_emplace({file, own.material, mm_per_unit}, 0);
+            if (is_new) {
+                index->second = add_material(materials.material(own.material, spectra_),
+                                             materials.absorption(own.material, mm_per_unit, spectra_));
+            }
+            objects_[own.object].material = index->second;
+            const auto object = static_cast<std::uint32_t>(own.object);
+            if (shining_objects_.contains(object)) {
+                continue;
+            }
+            if (std::optional<AreaLight> light = materials.light(own.material, own.mesh->cd_m2_per_unit, spectra_)) {
+                light->object = object;
+                lights_.emplace_back(*std::move(light));
+            }
+        }
     }
 
     /// Returns the object's index.
@@ -88,6 +129,20 @@ class SceneBuilder {
     }
 
     void add_light(const LightDescription& description) {
+        const auto* area = std::get_if<AreaLightDescription>(&description.kind);
+        if (area == nullptr) {
+            add_one_light(description);
+            return;
+        }
+        // An object of several materials shines with each of its parts.
+        for (std::size_t i = first_object_[area->object]; i < first_object_[area->object + 1]; ++i) {
+            LightDescription of_part = description;
+            std::get<AreaLightDescription>(of_part.kind).object = i;
+            add_one_light(of_part);
+        }
+    }
+
+    void add_one_light(const LightDescription& description) {
         const LightMaker maker{.spectra = spectra_, .add_black_ball = [&](const Vec3d& centre_mm, double radius_mm) {
                                    return add_black_ball(centre_mm, radius_mm);
                                }};
@@ -102,6 +157,8 @@ class SceneBuilder {
     SceneSpectra spectra_;
     std::vector<Shape> shapes_;
     std::vector<SceneObject> objects_;
+    std::vector<std::size_t> first_object_;  // of each that is described
+    std::vector<OwnMaterial> own_materials_;
     std::vector<Material> materials_;
     std::vector<std::optional<spectral::GridSpectrum>> absorption_;  // a material each
     std::vector<LightSource> lights_;
@@ -124,6 +181,9 @@ std::vector<std::filesystem::path> named_files(const SceneDescription& descripti
     for (const ObjectDescription& object : description.objects) {
         if (const auto* mesh = std::get_if<MeshFromFile>(&object.shape)) {
             files.insert(mesh->file);
+            if (is_gltf(mesh->file)) {
+                insert(gltf_references(mesh->file, mesh->options.by_material));
+            }
         }
     }
     for (const LightDescription& light : description.lights) {

@@ -21,6 +21,7 @@ namespace lensproof::scene {
 struct MeshFromFile {
     std::filesystem::path file;
     MeshOptions options;
+    double cd_m2_per_unit = 1.0;  // of what the file's own materials emit
 };
 
 /// A chart on a quad that is large enough for its pattern and a margin.
@@ -41,7 +42,8 @@ struct ObjectDescription {
     std::string name;  // may be empty
     ShapeDescription shape;
     AffineMap to_world;
-    /// An index of `SceneDescription::materials`. Nothing: a chart that is its own material, with its two reflectances.
+    /// An index of `SceneDescription::materials`. Nothing: a chart that is its own material, with its two reflectances,
+    /// or a glTF file's mesh with the file's materials (`MeshOptions::by_material`).
     std::optional<std::size_t> material;
     std::string where;
 };

@@ -13,6 +13,7 @@ constexpr Bounds kLength{.min = 0.0, .max = 1e12, .min_excluded = true};
 constexpr Bounds kAngle{.min = -3600.0, .max = 3600.0};
 constexpr Bounds kCoordinate{.min = -1e12, .max = 1e12};
 constexpr Bounds kFactor{.min = -1e9, .max = 1e9};
+constexpr Bounds kPositiveFactor{.min = 0.0, .max = 1e15, .min_excluded = true};
 
 AffineMap read_matrix(TomlTable& table) {
     const std::vector<std::vector<double>> rows = table.number_lists("matrix");
@@ -52,6 +53,13 @@ AffineMap read_steps(TomlTable& table) {
 
 MeshFromFile read_mesh_shape(TomlTable& table) {
     MeshFromFile mesh{.file = read_file_name(table, "file")};
+    mesh.options.by_material = is_gltf(mesh.file) && !table.has("material");
+    if (mesh.options.by_material) {
+        mesh.cd_m2_per_unit = table.number_or("cd_m2_per_unit", mesh.cd_m2_per_unit, kPositiveFactor);
+    } else if (table.has("cd_m2_per_unit")) {
+        table.fail("cd_m2_per_unit",
+                   "is for a glTF file's own materials, expected a .gltf or .glb file and no material");
+    }
     mesh.options.mm_per_unit = table.optional_number("mm_per_unit", kLength);
     mesh.options.part = table.text_or("part", "");
     if (table.has("normals")) {
@@ -164,7 +172,8 @@ std::vector<ObjectDescription> read_objects(TomlTable& top, const NameIndex& mat
             object.material = materials.find(table, "material");
         } else if (instance != nullptr) {
             object.material = objects[instance->object].material;
-        } else if (!std::holds_alternative<ChartOnQuad>(shape)) {
+        } else if (const auto* mesh = std::get_if<MeshFromFile>(&shape);
+                   !std::holds_alternative<ChartOnQuad>(shape) && (mesh == nullptr || !mesh->options.by_material)) {
             table.text("material");  // is missing
         }
         table.finish();

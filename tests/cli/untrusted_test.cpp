@@ -4,6 +4,7 @@
 
 #include "engine/formats/image/image.h"
 #include "tests/cli/program.h"
+#include "tests/engine/scene/gltf_cases.h"
 
 namespace lensproof::untrusted_test {
 
@@ -98,6 +99,31 @@ TEST(Untrusted, MeshesReadNothingElse) {
   "bufferViews": [{"buffer": 0, "byteLength": 36}], "buffers": [{"byteLength": 36, "uri": "../else.bin"}]})");
     place.file("in/scene.toml", with(kScene, "m.obj", "m.gltf"));
     expect_refused(place, {"render", "in/scene.toml", "-o", "a.exr", "--untrusted"}, {"m.gltf"});
+}
+
+// A picture that a mesh's material names is another file that is referred to.
+TEST(Untrusted, MaterialsOfMeshesLeadNowhereElse) {
+    const Workplace place;
+    put_scene(place);
+    std::filesystem::copy_file(place.path() / "in/picture.png", place.path() / "else.png");
+    std::filesystem::create_symlink("../else.png", place.path() / "in/link.png");
+    place.file("in/scene.toml", with(with(kScene, "m.obj", "m.gltf"), "material = \"wall\"\n", ""));
+    const auto mesh_with = [&](const std::string& picture) {
+        place.file("in/m.gltf",
+                   scene::test::squares_gltf(R"("textures": [{"source": 0}], "images": [{"uri": ")" + picture +
+                                             R"("}], "materials": [{}, {"pbrMetallicRoughness": {"baseColorTexture":
+                                             {"index": 0}}}])"));
+    };
+    for (const std::string picture : {"../else.png", "link.png"}) {
+        mesh_with(picture);
+        expect_refused(place, {"render", "in/scene.toml", "-o", "a.exr", "--untrusted"},
+                       {"m.gltf", picture, "--untrusted"});
+    }
+    mesh_with("picture.png");
+    const Outcome trusted = place.run({"render", "in/scene.toml", "-o", "a.exr"});
+    ASSERT_EQ(trusted.status, 0) << trusted.err;
+    ASSERT_EQ(place.run({"render", "in/scene.toml", "-o", "b.exr", "--untrusted"}).status, 0);
+    EXPECT_EQ(place.content("b.exr"), place.content("a.exr"));
 }
 
 }  // namespace lensproof::untrusted_test

@@ -101,8 +101,8 @@ void light_keeps_its_brightness_and_colour() {
     const auto lamp_of = [&](const std::vector<float>& rgb) {
         formats::Image image = formats::make_image(1, 1, {"R", "G", "B"});
         image.pixels = rgb;
-        return spectrum_at(scene::emission_texture(image, "lamp.exr", scene::Wrap::repeat, scene::Wrap::clamp, white,
-                                                   grid(), uplift()),
+        return spectrum_at(scene::emission_texture(image, "lamp.exr", {1, 1, scene::Wrap::repeat, scene::Wrap::clamp},
+                                                   scene::kAsItIs, white, grid(), uplift()),
                            {0.3, 0.7});
     };
     const std::vector<float> same = lamp_of({1.0F, 1.0F, 1.0F});
@@ -124,16 +124,16 @@ void missing_and_colourless_pictures_are_named() {
     EXPECT_NE(missing.find("no-such-picture.png"), std::string::npos) << missing;
     for (const auto& channels : {std::vector<std::string>{"R", "G"}, {"S0.550,000000nm", "S0.600,000000nm"}}) {
         const std::string two = complaint_about([&] {
-            scene::reflectance_texture(formats::make_image(2, 2, channels), "two.exr", scene::Wrap::repeat, grid(),
+            scene::reflectance_texture(formats::make_image(2, 2, channels), "two.exr", {2, 2}, scene::kAsItIs, grid(),
                                        uplift());
         });
         EXPECT_NE(two.find("two.exr"), std::string::npos) << two;
         EXPECT_NE(two.find("expected R, G and B, or Y"), std::string::npos) << two;
     }
     EXPECT_THROW(
-        scene::reflectance_texture(formats::make_image(0, 0, {"Y"}), "none.exr", scene::Wrap::repeat, grid(), uplift()),
+        scene::reflectance_texture(formats::make_image(0, 0, {"Y"}), "none.exr", {}, scene::kAsItIs, grid(), uplift()),
         InputError);
-    EXPECT_NO_THROW(scene::reflectance_texture(formats::make_image(2, 2, {"Y"}), "grey.exr", scene::Wrap::repeat,
+    EXPECT_NO_THROW(scene::reflectance_texture(formats::make_image(2, 2, {"Y"}), "grey.exr", {2, 2}, scene::kAsItIs,
                                                grid(), uplift()));
 }
 

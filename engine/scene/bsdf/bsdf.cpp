@@ -16,8 +16,12 @@ bool is_delta(const ConductorBsdf& bsdf) {
     return bsdf.roughness.is_smooth();
 }
 
+bool is_delta(const PaneBsdf&) {
+    return true;
+}
+
 bool is_delta(const PlasticBsdf& bsdf) {
-    return bsdf.coat->roughness().is_smooth() && spectral::is_black(bsdf.base);
+    return bsdf.roughness.is_smooth() && spectral::is_black(bsdf.base);
 }
 
 bool is_delta(const MixBsdf& bsdf) {
@@ -34,8 +38,20 @@ spectral::SpectralSample normal_albedo(const ConductorBsdf& bsdf) {
     return conductor_reflectance(bsdf.n, bsdf.k, 1.0);
 }
 
-spectral::SpectralSample normal_albedo(const DielectricBsdf&) {
-    return spectral::SpectralSample(1.0F);
+/// Of what reflects as much and tints the rest.
+spectral::SpectralSample with_tint(const spectral::SpectralSample& reflected, const spectral::SpectralSample& tint) {
+    const spectral::SpectralSample all(1.0F);
+    return all - (all - reflected) * (all - tint);
+}
+
+spectral::SpectralSample normal_albedo(const DielectricBsdf& bsdf) {
+    return with_tint(spectral::for_each_wavelength(
+                         [](float eta) { return static_cast<float>(dielectric_reflectance(eta, 1.0)); }, bsdf.eta),
+                     bsdf.tint);
+}
+
+spectral::SpectralSample normal_albedo(const PaneBsdf& bsdf) {
+    return with_tint(pane_reflectance(bsdf, 1.0), bsdf.tint);
 }
 
 spectral::SpectralSample normal_albedo(const PlasticBsdf& bsdf) {

@@ -153,7 +153,7 @@ std::optional<BsdfSample> sample_smooth(const DielectricBsdf& bsdf, const Vec3d&
     if (!down || down->z == 0.0) {
         return std::nullopt;
     }
-    const spectral::SpectralSample weight(transmission_scale(eta, transport));
+    const spectral::SpectralSample weight = transmission_scale(eta, transport) * bsdf.tint;
     return BsdfSample{.wi = wo.z > 0.0 ? *down : Vec3d{down->x, down->y, -down->z},
                       .weight = is_dispersive(bsdf) ? spectral::hero_alone(weight) : weight,
                       .is_delta = true,
@@ -213,7 +213,9 @@ spectral::SpectralSample evaluate(const DielectricBsdf& bsdf, const Vec3d& wo, c
     const RoughPair pair(bsdf, wo, wi);
     // Importance, which refraction does not spread, passes η² times as much.
     const bool spreads = transport == Transport::radiance || pair.is_reflection();
-    return for_each_index(bsdf, wo, [&](double eta) { return pair.at(eta).value * (spreads ? 1.0 : eta * eta); });
+    const spectral::SpectralSample value =
+        for_each_index(bsdf, wo, [&](double eta) { return pair.at(eta).value * (spreads ? 1.0 : eta * eta); });
+    return pair.is_reflection() ? value : value * bsdf.tint;
 }
 
 double pdf(const DielectricBsdf& bsdf, const Vec3d& wo, const Vec3d& wi, Transport) {
@@ -243,6 +245,37 @@ std::optional<BsdfSample> sample(const DielectricBsdf& bsdf, const Vec3d& wo, do
     return BsdfSample{.wi = *wi,
                       .weight = static_cast<float>(1.0 / drawn_with) * evaluate(bsdf, wo, *wi, transport),
                       .pdf = drawn_with};
+}
+
+spectral::SpectralSample pane_reflectance(const PaneBsdf& pane, double cos_incidence) {
+    return spectral::for_each_wavelength(
+        [&](float eta) {
+            const double reflectance = dielectric_reflectance(eta, std::min(cos_incidence, 1.0));
+            return static_cast<float>(2.0 * reflectance / (1.0 + reflectance));
+        },
+        pane.eta);
+}
+
+spectral::SpectralSample evaluate(const PaneBsdf&, const Vec3d&, const Vec3d&, Transport) {
+    return {};
+}
+
+double pdf(const PaneBsdf&, const Vec3d&, const Vec3d&, Transport) {
+    return 0.0;
+}
+
+std::optional<BsdfSample> sample(const PaneBsdf& bsdf, const Vec3d& wo, double u_lobe, double, double, Transport) {
+    if (wo.z == 0.0) {
+        return std::nullopt;
+    }
+    const spectral::SpectralSample reflectance = pane_reflectance(bsdf, std::abs(wo.z));
+    const float hero = reflectance[0];
+    if (u_lobe < hero) {
+        return BsdfSample{.wi = {-wo.x, -wo.y, wo.z}, .weight = (1.0F / hero) * reflectance, .is_delta = true};
+    }
+    return BsdfSample{.wi = -1.0 * wo,
+                      .weight = (1.0F / (1.0F - hero)) * (spectral::SpectralSample(1.0F) - reflectance) * bsdf.tint,
+                      .is_delta = true};
 }
 
 }  // namespace lensproof::scene

@@ -20,6 +20,14 @@ struct DielectricBsdf {
     spectral::SpectralSample eta;            // positive
     Roughness roughness;                     // `resolvable`
     const BoundaryLosses* losses = nullptr;  // of this roughness and such indices; outlives it
+    spectral::SpectralSample tint{1.0F};     // of light that passes, from either side
+};
+
+/// A pane of such a medium, thinner than can be seen, both of whose smooth faces are met at once: of what they reflect
+/// to and fro R' = 2R / (1 + R) comes back, and the rest goes on as it came. The same from either side.
+struct PaneBsdf {
+    spectral::SpectralSample eta;
+    spectral::SpectralSample tint{1.0F};  // of light that passes
 };
 
 // As in bsdf.h.
@@ -27,6 +35,14 @@ spectral::SpectralSample evaluate(const DielectricBsdf& bsdf, const Vec3d& wo, c
 double pdf(const DielectricBsdf& bsdf, const Vec3d& wo, const Vec3d& wi, Transport transport);
 std::optional<BsdfSample> sample(const DielectricBsdf& bsdf, const Vec3d& wo, double u_lobe, double u1, double u2,
                                  Transport transport);
+
+spectral::SpectralSample evaluate(const PaneBsdf& bsdf, const Vec3d& wo, const Vec3d& wi, Transport transport);
+double pdf(const PaneBsdf& bsdf, const Vec3d& wo, const Vec3d& wi, Transport transport);
+std::optional<BsdfSample> sample(const PaneBsdf& bsdf, const Vec3d& wo, double u_lobe, double u1, double u2,
+                                 Transport transport);
+
+/// What a pane reflects at `cos_incidence` in [0, 1].
+spectral::SpectralSample pane_reflectance(const PaneBsdf& pane, double cos_incidence);
 
 /// Whether light meets the boundary as if it were smooth: as it is, or as the indices match and nothing bends.
 bool is_delta(const DielectricBsdf& bsdf);

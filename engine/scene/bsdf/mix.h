@@ -11,7 +11,7 @@
 
 namespace lensproof::scene {
 
-using SimpleBsdf = std::variant<DiffuseBsdf, ConductorBsdf, DielectricBsdf, PlasticBsdf>;
+using SimpleBsdf = std::variant<DiffuseBsdf, ConductorBsdf, DielectricBsdf, PlasticBsdf, PaneBsdf>;
 
 /// How many surfaces a mix may have.
 inline constexpr std::size_t kMostMixed = 4;

@@ -30,8 +30,8 @@ ScatteredBack scattered(const PlasticBsdf& bsdf, const Vec3d& wo, const Vec3d& w
     const double p_coat = coat_probability(bsdf, reflectance_o);
     ScatteredBack result{.value = base_value(bsdf, reflectance_o, wi.z),
                          .pdf = (1.0 - p_coat) * wi.z * std::numbers::inv_pi};
-    if (!coat.roughness().is_smooth()) {
-        const GgxReflection facets = ggx_reflection(coat.roughness(), wo, wi);
+    if (!bsdf.roughness.is_smooth()) {
+        const GgxReflection facets = ggx_reflection(bsdf.roughness, wo, wi);
         const double reflectance = dielectric_reflectance(coat.eta(), facets.cos_facet);
         result.value += spectral::SpectralSample(static_cast<float>(facets.value * reflectance));
         result.pdf += p_coat * facets.pdf;
@@ -46,7 +46,8 @@ PlasticBsdf plastic_bsdf(const spectral::SpectralSample& albedo, const Dielectri
     // As albedo · (…) this way round it is exactly 1 where the albedo is.
     return {.base = spectral::for_each_wavelength(
                 [&](float rho) { return rho * ((1.0F - below) / ((1.0F - below) + (1.0F - rho) * below)); }, albedo),
-            .coat = &coat};
+            .coat = &coat,
+            .roughness = coat.roughness()};
 }
 
 spectral::SpectralSample evaluate(const PlasticBsdf& bsdf, const Vec3d& wo, const Vec3d& wi, Transport) {
@@ -63,7 +64,7 @@ std::optional<BsdfSample> sample(const PlasticBsdf& bsdf, const Vec3d& wo, doubl
         return std::nullopt;
     }
     const Vec3d from = upwards(wo);
-    const Roughness& roughness = bsdf.coat->roughness();
+    const Roughness& roughness = bsdf.roughness;
     const double reflectance = bsdf.coat->reflectance(from.z);
     const double p_coat = coat_probability(bsdf, reflectance);
     const bool at_coat = u_lobe < p_coat;

@@ -17,6 +17,7 @@ namespace lensproof::scene {
 struct PlasticBsdf {
     spectral::SpectralSample base;         // ρ (1 − F̄) / (1 − ρ F̄), in [0, 1]
     const DielectricCoat* coat = nullptr;  // outlives it
+    Roughness roughness;  // `resolvable`: the coat's own, or near it where that varies over the surface
 };
 
 /// With a base of albedo ρ in [0, 1].

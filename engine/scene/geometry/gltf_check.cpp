@@ -3,14 +3,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <fstream>
 #include <map>
 #include <string>
 #include <vector>
 
-#include "engine/base/file.h"
 #include "engine/base/input_error.h"
 #include "engine/base/json.h"
+#include "engine/scene/geometry/gltf_document.h"
 
 namespace lensproof::scene {
 
@@ -18,25 +17,6 @@ namespace {
 
 constexpr std::size_t kDeepest = 256;
 constexpr std::size_t kMostNodes = 250'000;
-
-/// The JSON of a file: all of it, or the first chunk of the binary form, which follows five words: magic, version,
-/// length, and the chunk's length and kind (version 1 has its length in the same place). The rest is not read.
-std::string json_of(const std::filesystem::path& file) {
-    constexpr std::size_t kWord = 4;
-    std::ifstream stream(file, std::ios::binary);
-    std::string head(5 * kWord, '\0');
-    if (!stream.read(head.data(), static_cast<std::streamsize>(head.size())) || !head.starts_with("glTF")) {
-        return read_file(file);
-    }
-    std::size_t length = 0;
-    for (std::size_t i = kWord; i-- > 0;) {
-        length = length << 8U | static_cast<unsigned char>(head[3 * kWord + i]);
-    }
-    std::string json(std::min<std::size_t>(length, std::filesystem::file_size(file)), '\0');
-    stream.read(json.data(), static_cast<std::streamsize>(json.size()));
-    json.resize(static_cast<std::size_t>(stream.gcount()));
-    return json;
-}
 
 /// The nodes as a list of those below each. Version 1 names them, version 2 numbers them.
 class NodeTree {
@@ -148,7 +128,7 @@ class NodeTree {
 }  // namespace
 
 void check_gltf(const std::filesystem::path& file) {
-    NodeTree(Json::parse(json_of(file), file.string()), file.string()).check();
+    NodeTree(gltf_json(file), file.string()).check();
 }
 
 }  // namespace lensproof::scene

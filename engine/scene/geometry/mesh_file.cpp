@@ -1,15 +1,19 @@
 #include "engine/scene/geometry/mesh_file.h"
 
 #include <assimp/DefaultIOSystem.h>
+#include <assimp/MemoryIOWrapper.h>
 #include <assimp/postprocess.h>
 #include <assimp/scene.h>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <assimp/Importer.hpp>
+#include <charconv>
 #include <cstdint>
 #include <exception>
 #include <filesystem>
+#include <map>
 #include <set>
 #include <system_error>
 
@@ -20,6 +24,7 @@
 #include "engine/base/text.h"
 #include "engine/scene/geometry/confined_mesh.h"
 #include "engine/scene/geometry/gltf_check.h"
+#include "engine/scene/geometry/mesh_material.h"
 #include "engine/scene/geometry/mesh_normals.h"
 #include "engine/scene/geometry/ply_check.h"
 
@@ -30,11 +35,6 @@ namespace {
 constexpr std::size_t kMost = std::size_t{1} << 31;
 /// With meshes that stand there more than once, each time for itself: a gigabyte of positions and normals.
 constexpr std::size_t kMostRepeated = std::size_t{1} << 25;
-
-bool is_gltf(const std::filesystem::path& file) {
-    const std::string extension = lower_extension(file);
-    return extension == ".gltf" || extension == ".glb";
-}
 
 AffineMap affine(const aiMatrix4x4& m) {
     return {.linear = {Vec3d{m.a1, m.a2, m.a3}, Vec3d{m.b1, m.b2, m.b3}, Vec3d{m.c1, m.c2, m.c3}},
@@ -59,15 +59,18 @@ bool has(const aiScene& scene, const Asks& asks) {
 /// Puts the meshes of a tree of nodes together.
 class Collector {
   public:
-    Collector(const aiScene& scene, const MeshOptions& options, TriangleMesh& mesh)
+    /// `materials`: what they are, where parts are asked for by material.
+    Collector(const aiScene& scene, const MeshOptions& options, const std::vector<MeshMaterial>& materials,
+              std::string name)
         : scene_(&scene),
           options_(options),
-          mesh_(&mesh),
+          materials_(&materials),
+          name_(std::move(name)),
           // A mesh without normals among others that have them gets flat ones; without uvs, uvs of nothing.
           with_normals_(
               options.normals == MeshNormals::smooth ||
               (options.normals == MeshNormals::file && has(scene, [](const aiMesh& m) { return m.HasNormals(); }))),
-          with_uvs_(has(scene, [](const aiMesh& m) { return m.HasTextureCoords(0); })) {}
+          with_uvs_(options.by_material || has(scene, [](const aiMesh& m) { return m.HasTextureCoords(0); })) {}
 
     void collect(const aiNode& node, const AffineMap& above, bool is_meant) {
         const AffineMap map = composed(above, affine(node.mTransformation));
@@ -83,6 +86,8 @@ class Collector {
         }
     }
 
+    /// By their materials; of all of them one, of material 0, where parts are not asked for.
+    [[nodiscard]] std::map<std::size_t, TriangleMesh> take() { return std::move(meshes_); }
     [[nodiscard]] const std::set<std::string>& part_names() const { return names_; }
     [[nodiscard]] std::size_t lines_and_points() const { return lines_and_points_; }
 
@@ -97,16 +102,18 @@ class Collector {
             lines_and_points_ += from.mNumFaces;
             return;
         }
-        if (mesh_->positions.size() + 3 * std::size_t{from.mNumFaces} > kMost) {
-            throw InputError(fmt::format("{}: holds more than {} vertices", mesh_->name, kMost));
+        if (vertices_ + 3 * std::size_t{from.mNumFaces} > kMost) {
+            throw InputError(fmt::format("{}: holds more than {} vertices", name_, kMost));
         }
-        if (!added_.insert(&from).second && mesh_->positions.size() + from.mNumVertices > kMostRepeated) {
+        if (!added_.insert(&from).second && vertices_ + from.mNumVertices > kMostRepeated) {
             throw InputError(
                 fmt::format("{}: repeats meshes until they have more than {} vertices, instances in the "
                             "scene file would share them",
-                            mesh_->name, kMostRepeated));
+                            name_, kMostRepeated));
         }
-        TriangleMesh part = with_vertices(from, map);
+        const std::size_t material = material_of(from);
+        const UvMap uv = material < materials_->size() ? (*materials_)[material].uv : UvMap();
+        TriangleMesh part = with_vertices(from, map, uv);
         const bool is_mirrored = determinant(map.linear) < 0.0;
         for (unsigned i = 0; i < from.mNumFaces; ++i) {
             const unsigned* index = from.mFaces[i].mIndices;
@@ -117,10 +124,21 @@ class Collector {
         } else if (options_.normals == MeshNormals::smooth || part.normals.empty()) {
             part = with_smooth_normals(part, options_.normals == MeshNormals::smooth ? options_.crease_deg : 0.0);
         }
-        append(part);
+        append(part, meshes_[material]);
     }
 
-    TriangleMesh with_vertices(const aiMesh& from, const AffineMap& map) const {
+    /// By the name that gltf_with_numbered_materials has given it; one that Assimp made up has none.
+    std::size_t material_of(const aiMesh& mesh) const {
+        if (!options_.by_material) {
+            return 0;
+        }
+        const std::string name = scene_->mMaterials[mesh.mMaterialIndex]->GetName().C_Str();
+        std::size_t index = materials_->size();
+        std::from_chars(name.data(), name.data() + name.size(), index);
+        return std::min(index, materials_->size());
+    }
+
+    TriangleMesh with_vertices(const aiMesh& from, const AffineMap& map, const UvMap& uv) const {
         TriangleMesh part;
         const std::optional<AffineMap> back = inverse(map);
         for (unsigned i = 0; i < from.mNumVertices; ++i) {
@@ -131,28 +149,33 @@ class Collector {
                     converted<float>(back ? normalized(transposed_times(back->linear, normal)) : normal));
             }
             if (with_uvs_) {
-                const bool has_uv = from.HasTextureCoords(0);
-                part.uvs.push_back(has_uv ? Vec2<float>{from.mTextureCoords[0][i].x, from.mTextureCoords[0][i].y}
-                                          : Vec2<float>{});
+                const bool has_uv = from.HasTextureCoords(uv.set);
+                const aiVector3D at = has_uv ? from.mTextureCoords[uv.set][i] : aiVector3D();
+                part.uvs.push_back(uv == UvMap() || !has_uv ? Vec2<float>{at.x, at.y} : mapped(uv, {at.x, at.y}));
             }
         }
         return part;
     }
 
-    void append(const TriangleMesh& part) {
-        const auto first = static_cast<std::uint32_t>(mesh_->positions.size());
-        const auto add_all = [](auto& to, const auto& from) { to.insert(to.end(), from.begin(), from.end()); };
-        add_all(mesh_->positions, part.positions);
-        add_all(mesh_->normals, part.normals);
-        add_all(mesh_->uvs, part.uvs);
+    void append(const TriangleMesh& part, TriangleMesh& to) {
+        const auto first = static_cast<std::uint32_t>(to.positions.size());
+        const auto add_all = [](auto& all, const auto& more) { all.insert(all.end(), more.begin(), more.end()); };
+        add_all(to.positions, part.positions);
+        add_all(to.normals, part.normals);
+        add_all(to.uvs, part.uvs);
         for (const auto& [a, b, c] : part.triangles) {
-            mesh_->triangles.push_back({first + a, first + b, first + c});
+            to.triangles.push_back({first + a, first + b, first + c});
         }
+        to.name = name_;
+        vertices_ += part.positions.size();
     }
 
     const aiScene* scene_;
     MeshOptions options_;
-    TriangleMesh* mesh_;
+    const std::vector<MeshMaterial>* materials_;
+    std::string name_;
+    std::map<std::size_t, TriangleMesh> meshes_;
+    std::size_t vertices_ = 0;  // of all of them
     bool with_normals_;
     bool with_uvs_;
     std::set<std::string> names_;
@@ -170,6 +193,9 @@ bool has_empty_faces(const aiScene& scene) {
 /// The files that Assimp opens, or tries to: a mesh's own, and those that it names, materials and buffers.
 class RegularFiles : public Assimp::DefaultIOSystem {
   public:
+    /// `instead`: what `file` reads as, if it is not empty; outlives it.
+    RegularFiles(const std::filesystem::path& file, const std::string& instead) : file_(file), instead_(instead) {}
+
     /// The first that is a device or a pipe; none is opened.
     [[nodiscard]] const std::filesystem::path& refused() const { return refused_; }
 
@@ -178,6 +204,9 @@ class RegularFiles : public Assimp::DefaultIOSystem {
     }
 
     Assimp::IOStream* Open(const char* file, const char* mode) override {
+        if (!instead_.empty() && file_ == file) {
+            return new Assimp::MemoryIOStream(reinterpret_cast<const std::uint8_t*>(instead_.data()), instead_.size());
+        }
         return is_regular(file) ? DefaultIOSystem::Open(file, mode) : nullptr;
     }
 
@@ -193,15 +222,17 @@ class RegularFiles : public Assimp::DefaultIOSystem {
         return std::filesystem::is_regular_file(status);
     }
 
+    std::filesystem::path file_;
+    const std::string& instead_;
     mutable std::filesystem::path refused_;
 };
 
-const aiScene& read_scene(Assimp::Importer& importer, const std::filesystem::path& file) {
+const aiScene& read_scene(Assimp::Importer& importer, const std::filesystem::path& file, const std::string& instead) {
     const auto refuse = [&](std::string_view reason) {
         throw InputError(fmt::format("{}: cannot be read as {}: {}", file.string(), lower_extension(file).substr(1),
                                      printable(trimmed(reason))));
     };
-    auto* files = new RegularFiles;
+    auto* files = new RegularFiles(file, instead);
     importer.SetIOHandler(files);  // which it then owns
     const aiScene* scene = nullptr;
     try {
@@ -232,7 +263,8 @@ const aiScene& read_scene(Assimp::Importer& importer, const std::filesystem::pat
     return *scene;
 }
 
-std::vector<std::string> ignored(const std::string& name, const aiScene& scene, std::size_t lines_and_points) {
+std::vector<std::string> ignored(const std::string& name, const aiScene& scene, const MeshOptions& options,
+                                 std::size_t lines_and_points) {
     std::vector<std::string> remarks;
     const auto remark = [&](std::size_t count, const char* what) {
         if (count > 0) {
@@ -243,7 +275,14 @@ std::vector<std::string> ignored(const std::string& name, const aiScene& scene, 
     const auto made_up = std::count_if(scene.mMaterials, scene.mMaterials + scene.mNumMaterials, [](aiMaterial* m) {
         return m->GetName() == aiString(AI_DEFAULT_MATERIAL_NAME) || m->GetName().length == 0;
     });
-    remark(scene.mNumMaterials - static_cast<std::size_t>(made_up), "materials are ignored: the scene file says them");
+    if (options.by_material) {
+        const auto coloured = std::count_if(scene.mMeshes, scene.mMeshes + scene.mNumMeshes,
+                                            [](const aiMesh* mesh) { return mesh->HasVertexColors(0); });
+        remark(static_cast<std::size_t>(coloured), "meshes have colours at their vertices, which are ignored");
+    } else {
+        remark(scene.mNumMaterials - static_cast<std::size_t>(made_up),
+               "materials are ignored: the scene file says them");
+    }
     remark(lines_and_points, "lines and points are left out");
     remark(scene.mNumLights, "lights are ignored: the scene file says them");
     remark(scene.mNumCameras, "cameras are ignored: the scene file says one");
@@ -252,6 +291,11 @@ std::vector<std::string> ignored(const std::string& name, const aiScene& scene, 
 }
 
 }  // namespace
+
+bool is_gltf(const std::filesystem::path& file) {
+    const std::string extension = lower_extension(file);
+    return extension == ".gltf" || extension == ".glb";
+}
 
 MeshFile read_mesh(const std::filesystem::path& file, const MeshOptions& options) {
     return files_are_distrusted() ? read_mesh_confined(file, options) : read_mesh_here(file, options);
@@ -264,21 +308,33 @@ MeshFile read_mesh_here(const std::filesystem::path& file, const MeshOptions& op
         throw InputError(
             fmt::format("{}: is no form of mesh that is known, expected .gltf, .glb, .obj or .ply", file.string()));
     }
+    const bool by_material = options.by_material && is_gltf(file);
+    const std::vector<MeshMaterial> materials =
+        by_material ? read_gltf_materials(file).materials : std::vector<MeshMaterial>();
+    const std::string numbered = by_material ? gltf_with_numbered_materials(file) : std::string();
     Assimp::Importer importer;
-    const aiScene& scene = read_scene(importer, file);
-    MeshFile read{.mesh = {.name = file.string()}};
-    Collector collector(scene, options, read.mesh);
-    constexpr double kMetre = 1000.0;
-    const double scale = options.mm_per_unit.value_or(is_gltf(file) ? kMetre : 1.0);
+    const aiScene& scene = read_scene(importer, file, numbered);
+    Collector collector(scene, options, materials, file.string());
+    const double scale = options.mm_per_unit.value_or(is_gltf(file) ? kGltfUnitMm : 1.0);
     const AffineMap to_mm{.linear = {Vec3d{scale, 0, 0}, Vec3d{0, scale, 0}, Vec3d{0, 0, scale}}};
     collector.collect(*scene.mRootNode, to_mm, false);
-    if (read.mesh.triangles.empty()) {
+    std::map<std::size_t, TriangleMesh> meshes = collector.take();
+    if (meshes.empty()) {
         const std::string known = fmt::format("{}", fmt::join(collector.part_names(), ", "));
         throw InputError(options.part.empty() ? fmt::format("{}: holds no triangles", file.string())
                                               : fmt::format("{}: holds no triangles in a part '{}', the parts are: {}",
                                                             file.string(), options.part, printable(known)));
     }
-    read.remarks = ignored(read.mesh.name, scene, collector.lines_and_points());
+    MeshFile read{.mesh = {.name = file.string()},
+                  .parts = {},
+                  .remarks = ignored(file.string(), scene, options, collector.lines_and_points())};
+    for (auto& [material, mesh] : meshes) {
+        if (options.by_material) {
+            read.parts.push_back({std::move(mesh), material});
+        } else {
+            read.mesh = std::move(mesh);
+        }
+    }
     return read;
 }
 

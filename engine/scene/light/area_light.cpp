@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
+#include <vector>
 
 #include "engine/base/basis.h"
 
@@ -24,19 +26,38 @@ std::optional<ShiningSurface::Ball> ShiningSurface::ball_of(const SceneGeometry&
     const auto* sphere = std::get_if<Sphere>(&scene.shape(light.object));
     const AffineMap& map = scene.object(light.object).to_world;
     const Vec3d stretches = principal_stretches(map.linear);
-    if (light.is_two_sided || sphere == nullptr || stretches.x - stretches.z > 1e-12 * stretches.x) {
+    if (light.is_two_sided || light.picture != nullptr || sphere == nullptr ||
+        stretches.x - stretches.z > 1e-12 * stretches.x) {
         return {};
     }
     return Ball{map.translation, stretches.x * sphere->radius_mm};
 }
 
+double ShiningSurface::mean_radiance(const AreaLight& light) const {
+    if (light.picture == nullptr) {
+        return mean_of(light.radiance);
+    }
+    // The pixels next to evenly spread points, as a generalised golden ratio spreads them; half of it the whole
+    // picture's, so that no lit spot which they miss is left without.
+    const std::vector<float> means = mean_over_grid(*light.picture);
+    const ImageTexture& picture = *light.picture;
+    constexpr int kPoints = 4096;
+    double sum = 0.0;
+    for (int i = 0; i < kPoints; ++i) {
+        const double u1 = std::fmod(0.5 + i * 0.7548776662466927, 1.0);
+        const double u2 = std::fmod(0.5 + i * 0.5698402909980532, 1.0);
+        sum += means[nearest_texel(picture, sampler_.sample(u1, u2).uv)];
+    }
+    return 0.5 * sum / kPoints +
+           0.5 * std::accumulate(means.begin(), means.end(), 0.0) / static_cast<double>(means.size());
+}
+
 double ShiningSurface::power(const AreaLight& light) const {
-    return light.sides() * std::numbers::pi * mean_of(light.radiance) * sampler_.area_mm2() * kSquareMetresPerSquareMm;
+    return light.sides() * std::numbers::pi * mean_radiance(light) * sampler_.area_mm2() * kSquareMetresPerSquareMm;
 }
 
 std::optional<LightSample> ShiningSurface::sample(const AreaLight& light, const Vec3d& point,
                                                   const spectral::PathWavelengths& path, double u1, double u2) const {
-    const spectral::SpectralSample radiance = light.radiance(path);
     if (is_seen_as_cone(point)) {
         const Vec3d to_centre = ball_->centre - point;
         const double down = one_minus_cosine(ball_->radius_mm, dot(to_centre, to_centre));
@@ -50,7 +71,7 @@ std::optional<LightSample> ShiningSurface::sample(const AreaLight& light, const 
         const double pdf = 1.0 / (2.0 * std::numbers::pi * down);
         return LightSample{.direction = direction,
                            .end = point + (along - depth - clear) * direction,
-                           .value = scaled(radiance, 1.0 / pdf),
+                           .value = scaled(light.radiance(path), 1.0 / pdf),
                            .pdf = pdf,
                            .leaving_per_sample = light.leaving_pdf(1.0 / sampler_.area_mm2()) / pdf};
     }
@@ -66,7 +87,7 @@ std::optional<LightSample> ShiningSurface::sample(const AreaLight& light, const 
     return LightSample{
         .direction = direction,
         .end = ray_origin(on_light.point, on_light.geometric_normal, on_light.error_mm, -1.0 * direction),
-        .value = scaled(radiance, 1.0 / pdf),
+        .value = scaled(light.radiance_at(on_light.uv, path), 1.0 / pdf),
         .pdf = pdf,
         .leaving_per_sample = light.leaving_pdf(on_light.pdf_per_mm2) / pdf};
 }

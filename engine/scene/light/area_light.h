@@ -1,6 +1,7 @@
 // engine/scene/light/area_light.h — an object that shines.
 #pragma once
 #include <cstdint>
+#include <memory>
 #include <numbers>
 #include <optional>
 #include <string>
@@ -13,11 +14,16 @@
 
 namespace lensproof::scene {
 
-/// A surface that shines evenly: every point of it, in every direction on its outward side, or on both.
+/// A surface that shines in every direction on its outward side, or on both: evenly, or as a picture over its uvs.
 struct AreaLight {
     std::uint32_t object = 0;
-    spectral::GridSpectrum radiance;
+    spectral::GridSpectrum radiance;  // unused with a picture
     bool is_two_sided = false;
+    std::shared_ptr<const ImageTexture> picture;
+
+    [[nodiscard]] spectral::SpectralSample radiance_at(const Vec2d& uv, const spectral::PathWavelengths& path) const {
+        return picture != nullptr ? value_at(*picture, uv, path) : radiance(path);
+    }
 
     [[nodiscard]] double sides() const { return is_two_sided ? 2.0 : 1.0; }
     /// Per etendue, of a light path from a point that is drawn with this pdf per mm²: by the cosine about the normal,
@@ -25,14 +31,15 @@ struct AreaLight {
     [[nodiscard]] double leaving_pdf(double per_mm2) const { return per_mm2 / (sides() * std::numbers::pi); }
 };
 
-/// The surface of an area light, as points see it: evenly, and a sphere by the cone that a point has of it.
+/// The surface of an area light, as points see it: points are drawn evenly over it, and of a sphere by the cone that a
+/// point has of it.
 class ShiningSurface {
   public:
     /// `scene` has to outlive it.
     ShiningSurface(const SceneGeometry& scene, const AreaLight& light);
 
     [[nodiscard]] const SurfaceSampler& sampler() const { return sampler_; }
-    /// W·nm⁻¹, the mean over the grid.
+    /// W·nm⁻¹, the mean over the grid; of a picture about, and never 0 where it shines anywhere.
     [[nodiscard]] double power(const AreaLight& light) const;
     /// A point of it as `point` sees it; nothing where it shows its dark side.
     [[nodiscard]] std::optional<LightSample> sample(const AreaLight& light, const Vec3d& point,
@@ -49,6 +56,7 @@ class ShiningSurface {
         Vec3d centre;
         double radius_mm = 0.0;
     };
+    [[nodiscard]] double mean_radiance(const AreaLight& light) const;
     static std::optional<Ball> ball_of(const SceneGeometry& scene, const AreaLight& light);
 
     SurfaceSampler sampler_;

@@ -84,7 +84,7 @@ inline std::variant<ConstantLight, EnvironmentLight> make_light(const Environmen
     }
     const formats::Image image = formats::read_image(*light.image);
     return EnvironmentLight{std::make_shared<const Environment>(
-        emission_texture(image, *light.image, Wrap::repeat, Wrap::clamp,
+        emission_texture(image, *light.image, {image.width, image.height, Wrap::repeat, Wrap::clamp}, kAsItIs,
                          SceneSpectra::radiance_spectrum(light.emission), maker.spectra.grid(), maker.spectra.uplift()),
         light.up, light.rotate_deg)};
 }

@@ -126,7 +126,7 @@ Lights::Emission Lights::emitted(const SurfaceHit& hit, const Vec3d& from, const
         return {};
     }
     const double per_mm2 = entry.surface->sampler().pdf_per_mm2(hit);
-    return {.radiance = area.radiance(path),
+    return {.radiance = area.radiance_at(hit.uv, path),
             .pdf = entry.probability * entry.surface->pdf(hit.point, per_mm2, from, cosine),
             .start_pdf = entry.probability * per_mm2 / area.sides(),
             .leaving_pdf = entry.probability * area.leaving_pdf(per_mm2)};
@@ -161,7 +161,7 @@ LightStart Lights::start(const spectral::PathWavelengths& path, double u_light, 
                               start.point = drawn.point;
                               start.normal = is_back ? -1.0 * drawn.geometric_normal : drawn.geometric_normal;
                               start.error_mm = drawn.error_mm;
-                              start.value = scaled(area.radiance(path),
+                              start.value = scaled(area.radiance_at(drawn.uv, path),
                                                    area.sides() * kSquareMetresPerSquareMm / drawn.pdf_per_mm2);
                               start.pdf = drawn.pdf_per_mm2 / area.sides();
                           },

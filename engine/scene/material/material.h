@@ -3,12 +3,13 @@
 #include <variant>
 
 #include "engine/scene/bsdf/bsdf.h"
+#include "engine/scene/material/metallic_material.h"
 #include "engine/scene/material/mix_material.h"
 
 namespace lensproof::scene {
 
 struct Material {
-    std::variant<SimpleMaterial, MixMaterial> surface;
+    std::variant<SimpleMaterial, MixMaterial, MetallicMaterial> surface;
 };
 
 /// How the material scatters at texture coordinates `uv`, at a path's wavelengths. The material must outlive it.

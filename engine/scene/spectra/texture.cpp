@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "engine/base/input_error.h"
+#include "engine/formats/image/srgb.h"
 #include "engine/spectral/colour_checker.h"
 
 namespace lensproof::scene {
@@ -26,7 +27,9 @@ Neighbours neighbours(double at, int count, Wrap wrap) {
     if (!std::isfinite(at)) {
         return {};
     }
-    const double inside = wrap == Wrap::repeat ? at - std::floor(at) : std::clamp(at, 0.0, 1.0);
+    const double inside = wrap == Wrap::repeat   ? at - std::floor(at)
+                          : wrap == Wrap::mirror ? std::abs(at - 2.0 * std::round(0.5 * at))
+                                                 : std::clamp(at, 0.0, 1.0);
     const double pixel = inside * count - 0.5;
     const double floor = std::floor(pixel);
     const auto wrapped = [&](int index) {
@@ -92,7 +95,7 @@ std::array<int, 3> rgb_channels(const formats::Image& image, const std::filesyst
 /// The texture whose texels are `texel_of(rgb)`.
 template <class TexelOf>
 ImageTexture image_texture(const formats::Image& image, const std::filesystem::path& file, const TexelGrid& texels,
-                           const spectral::SpectralGrid& grid, const TexelOf& texel_of) {
+                           const Vec3d& factor, const spectral::SpectralGrid& grid, const TexelOf& texel_of) {
     const auto [r, g, b] = rgb_channels(image, file);
     ImageTexture texture{.grid = texels,
                          .texel = {},
@@ -101,7 +104,8 @@ ImageTexture image_texture(const formats::Image& image, const std::filesystem::p
     texture.texel.reserve(static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height));
     for (int y = 0; y < image.height; ++y) {
         for (int x = 0; x < image.width; ++x) {
-            texture.texel.push_back(texel_of(Vec3d{image.at(x, y, r), image.at(x, y, g), image.at(x, y, b)}));
+            texture.texel.push_back(texel_of(
+                Vec3d{factor.x * image.at(x, y, r), factor.y * image.at(x, y, g), factor.z * image.at(x, y, b)}));
         }
     }
     return texture;
@@ -127,6 +131,14 @@ void fetch(const ImageTexture& image, const Vec2d& uv) {
     }
 }
 
+std::size_t nearest_texel(const ImageTexture& image, const Vec2d& uv) {
+    const Vec2d at = repeated(image, uv);
+    const auto nearer = [](const Neighbours& n) { return n.fraction < 0.5F ? n.first : n.second; };
+    return nearer(neighbours(1.0 - at.y, image.grid.height, image.grid.wrap_v)) *
+               static_cast<std::size_t>(image.grid.width) +
+           nearer(neighbours(at.x, image.grid.width, image.grid.wrap_u));
+}
+
 std::vector<float> mean_over_grid(const ImageTexture& image) {
     const std::size_t count = image.white.value.size();
     std::vector<float> means;
@@ -148,25 +160,45 @@ spectral::SpectralSample value_at(const Texture& texture, const Vec2d& uv, const
     return std::visit([&](const auto& kind) { return value_at(kind, uv, path); }, texture.kind_);
 }
 
-ImageTexture reflectance_texture(const formats::Image& image, const std::filesystem::path& file, Wrap wrap,
-                                 const spectral::SpectralGrid& grid, const spectral::RgbUplift& uplift) {
-    return image_texture(image, file, {image.width, image.height, wrap, wrap}, grid,
+float value_at(const NumberTexture& numbers, const Vec2d& uv) {
+    return bilinear(numbers.grid, uv, [&](std::size_t index) { return numbers.value[index]; });
+}
+
+ImageTexture reflectance_texture(const formats::Image& image, const std::filesystem::path& file,
+                                 const TexelGrid& texels, const Vec3d& factor, const spectral::SpectralGrid& grid,
+                                 const spectral::RgbUplift& uplift) {
+    return image_texture(image, file, texels, factor, grid,
                          [&](const Vec3d& rgb) { return ImageTexture::Texel{.shape = uplift.reflectance(rgb)}; });
 }
 
 ImageTexture reflectance_texture(const std::filesystem::path& file, Wrap wrap, const spectral::SpectralGrid& grid,
                                  const spectral::RgbUplift& uplift) {
-    return reflectance_texture(formats::read_image(file), file, wrap, grid, uplift);
+    const formats::Image image = formats::read_image(file);
+    return reflectance_texture(image, file, {image.width, image.height, wrap, wrap}, kAsItIs, grid, uplift);
 }
 
-ImageTexture emission_texture(const formats::Image& image, const std::filesystem::path& file, Wrap wrap_u, Wrap wrap_v,
-                              const spectral::Spectrum& white, const spectral::SpectralGrid& grid,
+NumberTexture number_texture(const formats::Image& image, const std::filesystem::path& file, const TexelGrid& texels,
+                             std::size_t channel) {
+    const int from = rgb_channels(image, file)[channel];
+    NumberTexture numbers{.grid = texels, .value = {}};
+    numbers.value.reserve(static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height));
+    for (int y = 0; y < image.height; ++y) {
+        for (int x = 0; x < image.width; ++x) {
+            // What was stored in 8 or 16 bits, to the bit.
+            constexpr float kSteps = 65535.0F;
+            numbers.value.push_back(std::round(kSteps * formats::linear_to_srgb(image.at(x, y, from))) / kSteps);
+        }
+    }
+    return numbers;
+}
+
+ImageTexture emission_texture(const formats::Image& image, const std::filesystem::path& file, const TexelGrid& texels,
+                              const Vec3d& factor, const spectral::Spectrum& white, const spectral::SpectralGrid& grid,
                               const spectral::RgbUplift& uplift) {
-    ImageTexture texture =
-        image_texture(image, file, {image.width, image.height, wrap_u, wrap_v}, grid, [&](const Vec3d& rgb) {
-            const spectral::UpliftedLight light = spectral::uplifted_light(uplift, rgb);
-            return ImageTexture::Texel{.shape = light.shape, .scale = static_cast<float>(light.scale)};
-        });
+    ImageTexture texture = image_texture(image, file, texels, factor, grid, [&](const Vec3d& rgb) {
+        const spectral::UpliftedLight light = spectral::uplifted_light(uplift, rgb);
+        return ImageTexture::Texel{.shape = light.shape, .scale = static_cast<float>(light.scale)};
+    });
     texture.white = spectral::stratum_means(white, grid);
     return texture;
 }

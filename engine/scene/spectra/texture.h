@@ -17,8 +17,8 @@
 
 namespace lensproof::scene {
 
-/// What lies beyond a picture's edge: the picture again, or its edge's pixels for ever.
-enum class Wrap { repeat, clamp };
+/// What lies beyond a picture's edge: the picture again, its edge's pixels for ever, or its mirror image.
+enum class Wrap { repeat, clamp, mirror };
 
 /// A picture's size and how it goes on, to look up between its pixels' centres.
 struct TexelGrid {
@@ -40,6 +40,13 @@ struct ImageTexture {
     spectral::GridSpectrum abscissa;              // sigmoid_abscissa of the wavelengths
     spectral::GridSpectrum white;                 // 1 for reflectances
 };
+
+/// A picture of numbers, as they are stored; between pixels bilinear.
+struct NumberTexture {
+    TexelGrid grid;
+    std::vector<float> value;  // rows from the top
+};
+float value_at(const NumberTexture& numbers, const Vec2d& uv);
 
 /// A chart on a surface of width_mm × height_mm, its centre in the middle: `black`, `white`, or what the chart says
 /// between them; a colour checker's patches as they were measured.
@@ -74,22 +81,33 @@ spectral::SpectralSample value_at(const ImageTexture& image, const Vec2d& uv, co
 /// Asks memory for what `value_at` will read.
 void fetch(const ImageTexture& image, const Vec2d& uv);
 
+/// The index of the pixel that is nearest.
+std::size_t nearest_texel(const ImageTexture& image, const Vec2d& uv);
+
 /// The mean over the grid's wavelengths of each pixel, row after row.
 std::vector<float> mean_over_grid(const ImageTexture& image);
 
-/// A picture's channels R, G, B, or Y, as reflectances of these colours under D65. Throws InputError naming `file`
-/// where there are no such channels.
-ImageTexture reflectance_texture(const formats::Image& image, const std::filesystem::path& file, Wrap wrap,
-                                 const spectral::SpectralGrid& grid, const spectral::RgbUplift& uplift);
+inline constexpr Vec3d kAsItIs{1.0, 1.0, 1.0};  // no factor
+
+/// A picture's channels R, G, B, or Y, times `factor`, as reflectances of these colours under D65. Throws InputError
+/// naming `file` where there are no such channels.
+ImageTexture reflectance_texture(const formats::Image& image, const std::filesystem::path& file,
+                                 const TexelGrid& texels, const Vec3d& factor, const spectral::SpectralGrid& grid,
+                                 const spectral::RgbUplift& uplift);
 
 /// The same of a picture file. Throws InputError for a file that is missing, or as read_image says.
 ImageTexture reflectance_texture(const std::filesystem::path& file, Wrap wrap, const spectral::SpectralGrid& grid,
                                  const spectral::RgbUplift& uplift);
 
-/// A picture as light: where it is (1, 1, 1) it is `white`, a spectral radiance or whatever the owner means, and
-/// otherwise as bright and of the colour that its RGB say. Brightness has no limit.
-ImageTexture emission_texture(const formats::Image& image, const std::filesystem::path& file, Wrap wrap_u, Wrap wrap_v,
-                              const spectral::Spectrum& white, const spectral::SpectralGrid& grid,
+/// The picture's channel 0 (R), 1 (G) or 2 (B), or Y, as sRGB would store it: pictures of numbers that are no light.
+/// Throws as above.
+NumberTexture number_texture(const formats::Image& image, const std::filesystem::path& file, const TexelGrid& texels,
+                             std::size_t channel);
+
+/// A picture, times `factor`, as light: where that is (1, 1, 1) it is `white`, a spectral radiance or whatever the
+/// owner means, and otherwise as bright and of the colour that its RGB say. Brightness has no limit.
+ImageTexture emission_texture(const formats::Image& image, const std::filesystem::path& file, const TexelGrid& texels,
+                              const Vec3d& factor, const spectral::Spectrum& white, const spectral::SpectralGrid& grid,
                               const spectral::RgbUplift& uplift);
 
 /// The smooth reflectance of colour `rgb` (linear sRGB, under D65), exactly: a fit of its own. Out of [0, 1]: the

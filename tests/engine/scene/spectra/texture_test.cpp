@@ -52,6 +52,11 @@ TEST(Texture, GoesOnBeyondItsEdges) {
     EXPECT_NEAR(at(Wrap::repeat, 1.0 + 0.5 / 3, 0.75), 0.1, kFloatRounding);
     EXPECT_NEAR(at(Wrap::repeat, -7.0 + 0.5 / 3, 3.25), 0.4, 4 * kFloatRounding);
     EXPECT_NEAR(at(Wrap::repeat, 0.5, 1.0), 0.35, kFloatRounding);
+    // A mirror image begins with the edge's pixel once more.
+    EXPECT_NEAR(at(Wrap::mirror, 0.0, 0.75), 0.1, kFloatRounding);
+    EXPECT_NEAR(at(Wrap::mirror, 1.0 + 1.5 / 3, 0.75), 0.2, kFloatRounding);
+    EXPECT_NEAR(at(Wrap::mirror, -0.5 / 3, 0.75), 0.1, kFloatRounding);
+    EXPECT_NEAR(at(Wrap::mirror, -2.0 + 2.5 / 3, 1.25), 0.3, kFloatRounding);
     EXPECT_NEAR(at(Wrap::clamp, 0.0, 0.75), 0.1, kFloatRounding);
     EXPECT_NEAR(at(Wrap::clamp, 9.0, -9.0), 0.6, kFloatRounding);
     EXPECT_NEAR(at(Wrap::clamp, -1e300, 1e300), 0.1, kFloatRounding);
