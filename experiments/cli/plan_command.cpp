@@ -6,6 +6,7 @@
 
 #include "engine/base/cache.h"
 #include "engine/base/input_error.h"
+#include "engine/render/metering.h"
 #include "experiments/cli/command.h"
 #include "experiments/cli/planned_render.h"
 #include "experiments/cli/terminal.h"
@@ -100,8 +101,9 @@ void add_plan_command(Program& program) {
     add_common_options(command, options->common);
     command.runs([options] {
         check_json_name(options->common);
-        const Plan plan =
-            plan_of(render::read_scene_setup(options->scene), options->scene, options->tolerance, options->common);
+        render::SceneSetup setup = render::read_scene_setup(options->scene);
+        render::meter(setup, Cache::standard(), options->common.threads);
+        const Plan plan = plan_of(setup, options->scene, options->tolerance, options->common);
         if (prints_text(options->common)) {
             print_plan(plan);
         }

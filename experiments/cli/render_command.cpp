@@ -11,6 +11,7 @@
 #include "engine/base/file.h"
 #include "engine/base/hash.h"
 #include "engine/base/input_error.h"
+#include "engine/render/metering.h"
 #include "engine/render/prepared_scene.h"
 #include "engine/scene/scene_build.h"
 #include "experiments/cli/planned_render.h"
@@ -154,6 +155,8 @@ int run_render(const RenderJobOptions& options, RenderWishes wishes) {
         throw InputError("--model auto and --tolerance go together, expected both or neither");
     }
     render::SceneSetup setup = render::read_scene_setup(options.scene);
+    const bool is_metered =
+        said_of_scene(options, [&] { return render::meter(setup, Cache::standard(), options.common.threads); });
     std::optional<studies::Plan> plan;
     if (wishes.model == "auto") {
         plan = take_plan(options, wishes, setup);
@@ -206,6 +209,12 @@ int run_render(const RenderJobOptions& options, RenderWishes wishes) {
                                      (plan ? fmt::format(", at most {} scatterings", setup.max_bounces) : "")}};
     job.notes.metadata = scene->metadata();
     job.notes.colours = scene->camera().colours();
+    if (is_metered) {
+        job.notes.metadata["lensproof:exposure"] = "automatic";
+        const auto& [time_s, iso] = setup.camera.exposure;
+        job.json["exposure"] = {{"automatic", true}, {"shutter_s", time_s}, {"iso", iso}};
+        print_message("lensproof: exposed automatically: {:.3g} s at ISO {:g}\n", time_s, iso);
+    }
     job.samples = static_cast<std::uint32_t>(setup.samples_per_pixel);
     job.sensor = setup.sensor;
     job.json["scene"] = options.scene;

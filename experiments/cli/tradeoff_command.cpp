@@ -8,6 +8,7 @@
 #include "engine/base/cache.h"
 #include "engine/base/input_error.h"
 #include "engine/base/write_file.h"
+#include "engine/render/metering.h"
 #include "experiments/cli/command.h"
 #include "experiments/cli/progress.h"
 #include "experiments/cli/terminal.h"
@@ -38,6 +39,7 @@ studies::TradeoffScene scene_of(const TradeoffOptions& options) {
                                  .setup = render::read_scene_setup(options.scene),
                                  .rungs = studies::rungs_named(options.rungs),
                                  .settings = options.settings};
+    render::meter(scene.setup, Cache::standard(), options.common.threads);
     scene.lens = scene.setup.camera.lens;
     scene.settings.probe.seed = options.common.seed;
     scene.settings.probe.threads = options.common.threads;

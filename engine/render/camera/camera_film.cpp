@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <stdexcept>
 
 #include "engine/base/input_error.h"
 #include "engine/render/camera/camera.h"
@@ -10,6 +11,9 @@
 namespace lensproof::render {
 
 FilmLayout Camera::make_film(int layers, const PixelFilter& filter) const {
+    if (settings_.is_exposure_automatic) {
+        throw std::logic_error("a camera whose exposure nobody has metered");
+    }
     const spectral::WavelengthStrata& strata = grid_.strata;
     const spectral::Illuminant white = spectral::illuminant(settings_.white_balance);
     const spectral::SensorResponse response = spectral::sensor_response(settings_.response, settings_.exposure, white);

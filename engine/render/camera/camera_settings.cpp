@@ -7,6 +7,7 @@
 #include <limits>
 #include <utility>
 
+#include "engine/base/input_error.h"
 #include "engine/formats/prescription/barrel_toml.h"
 #include "engine/formats/prescription/load_lens.h"
 #include "engine/optics/focus.h"
@@ -71,8 +72,11 @@ void read_exposure(TomlTable& table, CameraSettings& camera) {
     camera.focus_distance_mm = table.infinity("focus_distance_mm") > 0 ? std::numeric_limits<double>::infinity()
                                                                        : table.number("focus_distance_mm", kPositive);
     camera.sensor = read_sensor(table);
-    camera.exposure.time_s = table.number("shutter_s", kPositive);
-    camera.exposure.iso = table.number("iso", kPositive);
+    if (camera.is_exposure_automatic) {
+        camera.exposure.iso = table.number_or("iso", camera.exposure.iso, kPositive);
+    } else {
+        camera.exposure = {.time_s = table.number("shutter_s", kPositive), .iso = table.number("iso", kPositive)};
+    }
     camera.response = table.choice("response", spectral::known_sensors());
 }
 
@@ -166,6 +170,13 @@ CameraSettings read_camera_settings(TomlTable& table) {
 
 CameraSettings read_placed_camera(TomlTable& table) {
     CameraSettings camera;
+    camera.is_exposure_automatic = !table.has("shutter_s");
+    if (table.has("exposure")) {
+        table.choice("exposure", {"auto"});
+        if (!camera.is_exposure_automatic) {
+            table.fail("exposure", "stands beside shutter_s, which says it; expected one or the other");
+        }
+    }
     read_place(table, camera);
     read_model(table, camera);
     camera.lens = camera.focal_length_mm && !table.has("lens") ? "" : formats::read_lens_name(table);

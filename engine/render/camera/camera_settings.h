@@ -62,6 +62,7 @@ struct CameraSettings {
     double focus_distance_mm = 0.0;  // from the first vertex; may be infinite
     Sensor sensor;
     spectral::Exposure exposure;
+    bool is_exposure_automatic = false;  // its time is not yet known: `meter` finds it (engine/render/metering.h)
     std::string response;
     std::string white_balance = "D65";  // the illuminant in which a white surface is R = G = B
     LensModel model = LensModel::exact;
@@ -82,8 +83,9 @@ AffineMap camera_to_world(const CameraSettings& camera);
 /// naming file, line and key; pixels have to be square.
 CameraSettings read_camera_settings(TomlTable& table);
 
-/// The same of a camera that stands in a world: position_mm, look_at_mm, and up, model, focal_length_mm in the place of
-/// a lens, white_balance (optional).
+/// The same of a camera that stands in a world, whose exposure may be automatic: without shutter_s, and with exposure =
+/// "auto" in its place or nothing, iso is 100 unless it is said. And: position_mm, look_at_mm, and up, model,
+/// focal_length_mm in the place of a lens, white_balance (optional).
 CameraSettings read_placed_camera(TomlTable& table);
 
 /// What in a camera's settings makes no sense beside its model: the key, and what is wrong with it.

@@ -10,6 +10,7 @@
 #include "engine/base/input_error.h"
 #include "engine/formats/prescription/prescription_file.h"
 #include "engine/render/integrators/passes.h"
+#include "engine/render/metering.h"
 #include "engine/scene/scene_build.h"
 
 namespace lensproof::studies {
@@ -35,6 +36,7 @@ StrayVariant read_variant(TomlTable& table, const TomlTable& scene, const StrayS
     const std::optional<TomlTable> changed = table.optional_table("scene");
     const TomlTable whole = changed ? scene.overlaid(*changed) : scene;
     variant.setup = render::read_scene_setup(whole);
+    render::expect_stated_exposure(variant.setup, scene.file());
     if (variant.setup.chart) {
         throw InputError(
             fmt::format("{}: is a [chart] in an even world, expected a scene with lights", scene.file().string()));

@@ -4,6 +4,7 @@
 #include <iterator>
 
 #include "engine/formats/prescription/prescription_file.h"
+#include "engine/render/metering.h"
 #include "engine/scene/scene_build.h"
 #include "experiments/findings/study.h"
 
@@ -11,6 +12,7 @@ namespace lensproof::studies {
 
 SceneCase scene_case(const TomlTable& scene, const std::filesystem::path& file) {
     SceneCase whole{.name = {}, .stated = scene.stated(), .setup = render::read_scene_setup(scene), .files = {file}};
+    render::expect_stated_exposure(whole.setup, file);
     if (!whole.setup.chart) {
         std::ranges::move(scene::named_files(whole.setup.scene), std::back_inserter(whole.files));
     }
