@@ -228,27 +228,6 @@ std::vector<fs::path> places_for(const fs::path& file, const RenderJobOptions& o
     return places;
 }
 
-/// Saves what there is, and says how to go on.
-int end_early(Json json, States passes, const render::RenderIdentity& identity, const RenderJobOptions& options,
-              const RenderFiles& files) {
-    const std::string checkpoint = options.checkpoint.empty() ? files.exr.string() + ".checkpoint" : options.checkpoint;
-    const Delivery delivery = write_somewhere(places_for(checkpoint, options, files), [&](const fs::path& place) {
-        render::write_checkpoint(place, identity, passes);
-    });
-    if (!delivery.complaint.empty()) {
-        print_message("lensproof: {}\n", delivery.complaint);
-    }
-    print_message(
-        "lensproof: interrupted after {:.1f} samples a pixel of {}; the same command with --checkpoint {} goes "
-        "on from there\n",
-        mean_samples(passes.front()), passes.front().range.end - passes.front().range.first, delivery.place.string());
-    json["samples_per_pixel"] = mean_samples(passes.front());
-    json["seed"] = options.common.seed;
-    json["checkpoint"] = delivery.place.string();
-    write_json_result(options.common, json);
-    return kInternalFailure;
-}
-
 render::FilmNotes notes_of(const RenderJob& job, const RenderJobOptions& options,
                            const render::RenderIdentity& identity) {
     render::FilmNotes notes = job.notes;
@@ -269,6 +248,47 @@ render::FilmNotes notes_of(const RenderJob& job, const RenderJobOptions& options
         notes.metadata[kShardNote] = shard_set_text({.indices = {shard.index}, .count = shard.count});
     }
     return notes;
+}
+
+/// The picture as far as it is, beside the checkpoint: no shard, as it lacks samples. That it cannot be written is
+/// said.
+Json write_so_far(States passes, render::FilmNotes notes, const fs::path& checkpoint) {
+    notes.metadata.erase(kShardNote);
+    notes.metadata["lensproof:interruptedAfter"] = fmt::format("{:.1f} samples a pixel", mean_samples(passes.front()));
+    const render::Picture picture = render::picture_of(passes);
+    const std::string exr = checkpoint.string() + ".exr";
+    const std::string png = checkpoint.string() + ".png";
+    try {
+        render::write_film_exr(picture, notes, exr);
+        formats::write_png(render::film_rgb(picture), png);
+    } catch (const std::exception& failure) {
+        print_message("lensproof: {}; there is no picture of what was rendered\n", failure.what());
+        return {};
+    }
+    print_message("lensproof: the picture so far is {}\n", exr);
+    return {{"exr", exr}, {"png", png}};
+}
+
+/// Saves what there is, and says how to go on.
+int end_early(Json json, States passes, const render::FilmNotes& notes, const RenderJobOptions& options,
+              const RenderFiles& files) {
+    const std::string checkpoint = options.checkpoint.empty() ? files.exr.string() + ".checkpoint" : options.checkpoint;
+    const Delivery delivery = write_somewhere(places_for(checkpoint, options, files), [&](const fs::path& place) {
+        render::write_checkpoint(place, notes.identity, passes);
+    });
+    if (!delivery.complaint.empty()) {
+        print_message("lensproof: {}\n", delivery.complaint);
+    }
+    print_message(
+        "lensproof: interrupted after {:.1f} samples a pixel of {}; the same command with --checkpoint {} goes "
+        "on from there\n",
+        mean_samples(passes.front()), passes.front().range.end - passes.front().range.first, delivery.place.string());
+    json["samples_per_pixel"] = mean_samples(passes.front());
+    json["seed"] = options.common.seed;
+    json["checkpoint"] = delivery.place.string();
+    json["so_far"] = write_so_far(passes, notes, delivery.place);
+    write_json_result(options.common, json);
+    return kInternalFailure;
 }
 
 void report(Json json, States passes, const RenderJobOptions& options, const RenderFiles& files,
@@ -361,10 +381,10 @@ int run_render_job(const RenderJob& job, const RenderJobOptions& options) {
         }
         json["run"] = run_json(stopwatch, watch.latest(), end_name(end, passes, options));
     }
-    if (end == render::RenderEnd::interrupted) {
-        return end_early(std::move(json), passes, identity, options, files);
-    }
     const render::FilmNotes notes = notes_of(job, options, identity);
+    if (end == render::RenderEnd::interrupted) {
+        return end_early(std::move(json), passes, notes, options, files);
+    }
     const render::Picture picture = render::picture_of(passes);
     const Delivery exr = write_somewhere(places_for(files.exr, options, files),
                                          [&](const fs::path& place) { render::write_film_exr(picture, notes, place); });

@@ -57,7 +57,7 @@ struct RenderJob {
 void report_left_out(const render::Picture& film, Json& json);
 
 /// Renders, writes the pictures and says where they are. Returns the exit status: kInternalFailure where a signal ended
-/// it before its goal, with a checkpoint written.
+/// it before its goal, with a checkpoint written and the picture so far beside it.
 int run_render_job(const RenderJob& job, const RenderJobOptions& options);
 
 }  // namespace lensproof::cli

@@ -1,4 +1,5 @@
 // tests/cli/render_growth_test.cpp — renders that grow: until when, through interruptions, in passing view.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <chrono>
@@ -7,6 +8,7 @@
 #include <nlohmann/json.hpp>
 #include <thread>
 
+#include "engine/render/film/film_exr.h"
 #include "tests/cli/program.h"
 #include "tests/complaint.h"
 
@@ -65,8 +67,8 @@ TEST(RenderGrowth, SurvivesKill9WithEveryByte) {
     }
 }
 
-// SIGTERM and Ctrl-C: status 3, no picture, and a checkpoint to go on from, though none was asked for. The preview says
-// that it has begun.
+// SIGTERM and Ctrl-C: status 3, no picture of the name asked for, and a checkpoint to go on from, though none was asked
+// for. The preview says that it has begun.
 TEST(RenderGrowth, EndsOnASignalWithACheckpoint) {
     const Workplace place;
     place.file("scene.toml", growing_scene());
@@ -143,6 +145,20 @@ TEST(RenderGrowth, AnInterruptedRenderSaysSoInItsJson) {
     EXPECT_EQ(result["run"]["ended_by"], "interrupted");
     EXPECT_EQ(result["checkpoint"], "out.exr.checkpoint");
     EXPECT_FALSE(result.contains("exr"));
+    // The picture so far: as many samples as are said, and no shard.
+    EXPECT_EQ(result["so_far"]["exr"], "out.exr.checkpoint.exr");
+    EXPECT_TRUE(place.has("out.exr.checkpoint.png"));
+    const render::FilmFile so_far = render::read_film_exr(place.path() / "out.exr.checkpoint.exr");
+    double samples = 0.0;
+    const render::Film& film = so_far.films.at(0).film;
+    for (int y = 0; y < film.height(); ++y) {
+        for (int x = 0; x < film.width(); ++x) {
+            samples += film.counts(x, y).samples;
+        }
+    }
+    EXPECT_NEAR(samples / (film.width() * film.height()), result["samples_per_pixel"].get<double>(), 1e-9);
+    EXPECT_EQ(so_far.notes.metadata.at("lensproof:interruptedAfter"),
+              fmt::format("{:.1f} samples a pixel", result["samples_per_pixel"].get<double>()));
 }
 
 // A flat field, where all tiles are alike: the error that was asked for, and less where less was.
