@@ -291,6 +291,24 @@ int end_early(Json json, States passes, const render::FilmNotes& notes, const Re
     return kInternalFailure;
 }
 
+/// The picture alone, in half floats, where it is asked for; what they cannot hold is said.
+std::optional<Delivery> write_half(const render::Picture& picture, const render::FilmNotes& notes,
+                                   const RenderJobOptions& options, const RenderFiles& files, Json& json) {
+    if (files.half.empty()) {
+        return {};
+    }
+    std::size_t clipped = 0;
+    Delivery delivery = write_somewhere(places_for(files.half, options, files), [&](const fs::path& place) {
+        clipped = render::write_half_exr(picture, notes, place);
+    });
+    if (clipped > 0) {
+        print_message("lensproof: {} numbers are larger than a half float's 65504, {} has that in their place\n",
+                      clipped, delivery.place.string());
+        json["half_clipped"] = clipped;
+    }
+    return delivery;
+}
+
 void report(Json json, States passes, const RenderJobOptions& options, const RenderFiles& files,
             const std::optional<RawFiles>& raw) {
     const render::Picture picture = render::picture_of(passes);
@@ -310,8 +328,14 @@ void report(Json json, States passes, const RenderJobOptions& options, const Ren
     report_left_out(picture, json);
     json["exr"] = files.exr.string();
     json["png"] = files.png.string();
+    if (!files.half.empty()) {
+        json["half"] = files.half.string();
+    }
     if (prints_text(options.common)) {
         print("{}\n{}\n", files.exr.string(), files.png.string());
+        if (!files.half.empty()) {
+            print("{}\n", files.half.string());
+        }
     }
     if (raw) {
         report_raw_files(*raw, json, options.common);
@@ -322,7 +346,7 @@ void report(Json json, States passes, const RenderJobOptions& options, const Ren
 }  // namespace
 
 RenderFiles render_files(const RenderJobOptions& options) {
-    RenderFiles files{.exr = options.output, .png = {}};
+    RenderFiles files{.exr = options.output, .png = {}, .half = options.half};
     const Shard shard = shard_of(options);
     if (options.output.empty()) {
         files.exr = fs::path(options.scene)
@@ -334,6 +358,13 @@ RenderFiles render_files(const RenderJobOptions& options) {
         throw InputError(fmt::format("--output is \"{}\", expected a name that ends in .exr", options.output));
     }
     files.png = fs::path(files.exr).replace_extension(".png");
+    if (!options.half.empty()) {
+        if (files.half.extension() != ".exr" || files.half == files.exr) {
+            throw InputError(fmt::format("--half is \"{}\", expected a name that ends in .exr, another than --output's",
+                                         options.half));
+        }
+        check_output_name(files.half);
+    }
     check_output_name(files.exr);
     check_output_name(files.png);
     check_json_name(options.common);
@@ -391,10 +422,14 @@ int run_render_job(const RenderJob& job, const RenderJobOptions& options) {
     const Delivery png =
         write_somewhere({files.png, fs::path(exr.place).replace_extension(".png")},
                         [&](const fs::path& place) { formats::write_png(render::film_rgb(picture), place); });
-    report(std::move(json), passes, options, {.exr = exr.place, .png = png.place},
+    const std::optional<Delivery> half = write_half(picture, notes, options, files, json);
+    report(std::move(json), passes, options, {.exr = exr.place, .png = png.place, .half = half ? half->place : ""},
            write_raw_files(picture, notes, exr.place, options.common.threads));
     check_place(exr);
     check_place(png);
+    if (half) {
+        check_place(*half);
+    }
     return kDone;
 }
 
@@ -409,6 +444,12 @@ void report_left_out(const render::Picture& film, Json& json) {
 void add_render_job_options(Command& command, RenderJobOptions& options) {
     const OptionCheck samples = in_range(1, static_cast<int>(render::kMostSamples));
     command.add_option("-o,--output", options.output, "EXR to write; a PNG appears beside it").type_name("FILE");
+    command
+        .add_option(
+            "--half", options.half,
+            "Also the picture alone as an EXR of one part, R, G and B in half floats: for programs that want no "
+            "more")
+        .type_name("FILE");
     command
         .add_option("--samples,--spp", options.samples,
                     "Samples a pixel, in place of the scene's; with --time or --noise, at most so many")

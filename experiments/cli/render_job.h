@@ -19,6 +19,7 @@ struct RenderJobOptions {
     CommonOptions common;
     std::string scene;
     std::string output;
+    std::string half;           // a file; empty: none
     std::uint32_t samples = 0;  // 0: the scene's; with --time or --noise as many as it takes
     double time_s = 0.0;        // 0: no limit
     double noise = 0.0;         // 0: none wanted
@@ -39,6 +40,7 @@ void add_render_job_options(Command& command, RenderJobOptions& options);
 struct RenderFiles {
     std::filesystem::path exr;
     std::filesystem::path png;
+    std::filesystem::path half;  // empty: none is asked for
 };
 RenderFiles render_files(const RenderJobOptions& options);
 

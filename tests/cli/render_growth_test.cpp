@@ -1,13 +1,16 @@
 // tests/cli/render_growth_test.cpp — renders that grow: until when, through interruptions, in passing view.
+#include <OpenImageIO/imageio.h>
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <chrono>
+#include <cmath>
 #include <csignal>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <thread>
 
+#include "engine/formats/image/image.h"
 #include "engine/render/film/film_exr.h"
 #include "tests/cli/program.h"
 #include "tests/complaint.h"
@@ -273,6 +276,39 @@ TEST(RenderGrowth, RefusesACheckpointOfAnotherRender) {
     bytes[bytes.size() / 2] = static_cast<char>(bytes[bytes.size() / 2] ^ 1);
     place.file("state", bytes);
     expect_refused(place, with_more({}), {"state", "damaged"});
+}
+
+// One part of half floats with the picture's numbers to their 11 bits, and what else the picture's file says; what is
+// larger than any half is said, and the largest.
+TEST(RenderGrowth, WritesHalfFloatsOnRequest) {
+    const Workplace place;
+    place.file("scene.toml", growing_scene());
+    const Json result = rendered(place, {"--spp", "16", "-o", "out.exr", "--half", "half.exr"});
+    EXPECT_EQ(result["half"], "half.exr");
+    EXPECT_FALSE(result.contains("half_clipped"));
+    const auto input = OIIO::ImageInput::open((place.path() / "half.exr").string());
+    ASSERT_TRUE(input);
+    EXPECT_EQ(input->spec().format, OIIO::TypeDesc::HALF);
+    EXPECT_EQ(input->spec().nchannels, 3);
+    EXPECT_FALSE(input->seek_subimage(1, 0)) << "a second part";
+    const formats::Image half = formats::read_image(place.path() / "half.exr");
+    const formats::Image whole = formats::read_image(place.path() / "out.exr");
+    ASSERT_EQ(half.pixels.size(), whole.pixels.size());
+    for (std::size_t i = 0; i < half.pixels.size(); ++i) {
+        EXPECT_NEAR(half.pixels[i], whole.pixels[i], std::abs(whole.pixels[i]) * 0x1p-11F + 0x1p-25F);
+    }
+    EXPECT_EQ(half.metadata.at("lensproof:samplesPerPixel"), "16");
+    place.file("bright.toml", with(growing_scene(), "iso = 100", "iso = 100000000"));
+    const Outcome bright = place.run(
+        {"render", "bright.toml", "--spp", "16", "-o", "bright.exr", "--half", "b.exr", "--json", "bright.json"});
+    ASSERT_EQ(bright.status, 0) << bright.err;
+    EXPECT_GT(Json::parse(place.content("bright.json"))["half_clipped"], 0);
+    EXPECT_TRUE(says(bright.err, "larger than a half float's 65504"));
+    for (const float value : formats::read_image(place.path() / "b.exr").pixels) {
+        EXPECT_LE(std::abs(value), 65504.0F);
+    }
+    expect_refused(place, {"render", "scene.toml", "-o", "out.exr", "--half", "out.exr"}, {"--half", "out.exr"});
+    expect_refused(place, {"render", "scene.toml", "-o", "out.exr", "--half", "half.png"}, {"--half", "half.png"});
 }
 
 }  // namespace lensproof::render_growth_test

@@ -201,4 +201,24 @@ void write_film_exr(const Picture& picture, const FilmNotes& notes, const std::f
     });
 }
 
+std::size_t write_half_exr(const Picture& picture, const FilmNotes& notes, const std::filesystem::path& file) {
+    constexpr double kLargest = 65504.0;
+    std::size_t clipped = 0;
+    const auto held = [&](double value) {
+        clipped += std::abs(value) > kLargest ? 1 : 0;
+        return std::clamp(value, -kLargest, kLargest);
+    };
+    const Part part{"rgb", kRgb, [&](int x, int y, std::vector<float>& values) {
+                        const Vec3d rgb = picture.estimate(x, y).rgb;
+                        append(values, {held(rgb.x), held(rgb.y), held(rgb.z)});
+                    }};
+    OIIO::ImageSpec spec = spec_of(part, picture, notes);
+    spec.set_format(OIIO::TypeDesc::HALF);
+    formats::write_exr_file(file, [&](OIIO::ImageOutput& output, const std::string& name) {
+        clipped = 0;
+        return output.open(name, spec) && write_rows(output, part, picture) && output.close();
+    });
+    return clipped;
+}
+
 }  // namespace lensproof::render

@@ -1,5 +1,6 @@
 // engine/render/film/film_exr.h — a film as a multi-part OpenEXR file, and back.
 #pragma once
+#include <cstddef>
 #include <filesystem>
 #include <map>
 #include <optional>
@@ -35,6 +36,10 @@ struct FilmNotes {
 /// The attribute "lensproof:leftOut" says how many samples were left out (`Film::left_out`), where any were, and
 /// "lensproof:digest" is a digest of all pixels of all parts, where the notes ask for one.
 void write_film_exr(const Picture& picture, const FilmNotes& notes, const std::filesystem::path& file);
+
+/// Writes the picture alone as an EXR of one part: R, G and B as half floats, with the same notes, but no digest.
+/// Returns how many numbers were beyond ±65504, the largest half, which stands in their place.
+std::size_t write_half_exr(const Picture& picture, const FilmNotes& notes, const std::filesystem::path& file);
 
 /// Films from their file, so that they add up: sums from means, variances and counts; of floats, so to 1e-7. Their
 /// layout knows sizes and layers but no strata. Throws InputError naming the file where it is not one of the above, or
