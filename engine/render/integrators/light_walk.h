@@ -99,12 +99,12 @@ class LightWalk {
             if (!turn) {
                 return;
             }
-            const auto& [scattered, onwards] = *turn;
+            const auto& [scattered, onwards, wo] = *turn;
             if (is_others && !scattered.is_delta) {
                 return;
             }
             throughput *=
-                scattered.weight * spectral::SpectralSample(shading_correction(vertex, onwards, scattered.wi));
+                scattered.weight * spectral::SpectralSample(shading_correction(vertex, wo, onwards, scattered.wi));
             if (scattered.is_dispersed && !is_hero_alone_) {
                 throughput = static_cast<float>(spectral::kWavelengthsPerPath) * spectral::hero_alone(throughput);
                 is_hero_alone_ = true;
@@ -123,9 +123,9 @@ class LightWalk {
 
     /// Light carries |cos| about the geometric normal where its paths' weights have that about the shading normal
     /// (Veach 1997, eq. 5.17).
-    static float shading_correction(const PathVertex& vertex, const Vec3d& wi_world, const Vec3d& wi) {
+    static float shading_correction(const PathVertex& vertex, const Vec3d& wo, const Vec3d& wi_world, const Vec3d& wi) {
         const double before =
-            std::abs(vertex.wo.z) / std::abs(dot(vertex.frame.to_world(vertex.wo), vertex.hit.geometric_normal));
+            std::abs(wo.z) / std::abs(dot(vertex.frame.to_world(vertex.wo), vertex.hit.geometric_normal));
         const double after = std::abs(dot(wi_world, vertex.hit.geometric_normal)) / std::abs(wi.z);
         return static_cast<float>(before * after);
     }
@@ -151,17 +151,18 @@ class LightWalk {
 
     void join_from_surface(const PathVertex& vertex, const spectral::SpectralSample& power) {
         join({vertex.hit.point, false}, [&](const Entry& in) -> Carried {
-            const Vec3d wi = vertex.frame.to_local(in.direction);
-            if (!vertex.is_consistent(in.direction, wi)) {
+            const auto [wi, wo, is_bent] = vertex.as_from(in.direction, vertex.frame.to_local(in.direction));
+            if (!vertex.is_consistent(in.direction, wi) || (is_bent && !vertex.is_consistent(vertex.backwards, wo))) {
                 return {};
             }
             const spectral::SpectralSample scattered =
-                scene::evaluate(vertex.bsdf, vertex.wo, wi, scene::Transport::importance);
+                scene::evaluate(vertex.bsdf, wo, wi, scene::Transport::importance);
             if (spectral::is_black(scattered) || is_blocked(scene::ray_origin(vertex.hit, in.direction), in.end)) {
                 return {};
             }
-            return {.light = power * scattered * spectral::SpectralSample(shading_correction(vertex, in.direction, wi)),
-                    .others = kIsWeighed ? weight_.others(light_turn(vertex, in.direction, wi, 0.0)) : 0.0};
+            return {
+                .light = power * scattered * spectral::SpectralSample(shading_correction(vertex, wo, in.direction, wi)),
+                .others = kIsWeighed ? weight_.others(light_turn(vertex, in.direction, wi, 0.0)) : 0.0};
         });
     }
 

@@ -51,21 +51,24 @@ struct PathTurn {
     double to_camera = 0.0;  // and a light path to the camera's
     double cos_light = 1.0;  // |cos| of these directions about the geometric normal
     double cos_camera = 1.0;
-    bool is_delta = false;  // at a mirror or smooth glass, without pdfs
+    bool is_delta = false;    // at a mirror or smooth glass, without pdfs
+    bool is_one_way = false;  // one that light paths do not make (shading_frame.h)
 };
 
 /// The turn at a vertex of a camera path, which goes on along `onwards` (world) and `wi` (local) with the pdf
 /// `to_light`.
 inline PathTurn camera_turn(const PathVertex& vertex, const Vec3d& onwards, const Vec3d& wi, double to_light) {
+    const PathVertex::Seen seen = vertex.as_from(onwards, wi);
     return {.to_light = to_light,
-            .to_camera = scene::pdf(vertex.bsdf, wi, vertex.wo, scene::Transport::importance),
+            .to_camera = scene::pdf(vertex.bsdf, seen.onwards, seen.backwards, scene::Transport::importance),
             .cos_light = std::abs(dot(onwards, vertex.hit.geometric_normal)),
             .cos_camera = vertex.cos_backwards};
 }
 
 /// The same of a light path, whose own pdf is `to_camera`.
 inline PathTurn light_turn(const PathVertex& vertex, const Vec3d& onwards, const Vec3d& wi, double to_camera) {
-    return {.to_light = scene::pdf(vertex.bsdf, wi, vertex.wo, scene::Transport::radiance),
+    const PathVertex::Seen seen = vertex.as_from(onwards, wi);
+    return {.to_light = scene::pdf(vertex.bsdf, seen.onwards, seen.backwards, scene::Transport::radiance),
             .to_camera = to_camera,
             .cos_light = vertex.cos_backwards,
             .cos_camera = std::abs(dot(onwards, vertex.hit.geometric_normal))};
@@ -89,7 +92,7 @@ class CameraMisWeight {
 
     void turn(const PathTurn& at) {
         if (at.is_delta) {
-            by_light_ *= is_first_ ? 0.0 : 1.0;
+            by_light_ *= is_first_ || at.is_one_way ? 0.0 : 1.0;
         } else {
             by_light_ *= arrives(at) * at.cos_light / at.to_light;
         }

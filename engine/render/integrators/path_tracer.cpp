@@ -95,8 +95,10 @@ class PathWalk {
 
     /// Only as much of a turn as weights need.
     [[nodiscard]] PathTurn turn_at(const PathVertex& vertex, const PathVertex::Turn& turn) const {
-        return turn.bsdf.is_delta ? PathTurn{.is_delta = true}
-                                  : turn_at(vertex, turn.onwards, turn.bsdf.wi, turn.bsdf.pdf);
+        return turn.bsdf.is_delta
+                   ? PathTurn{.is_delta = true,
+                              .is_one_way = drawn_ != nullptr && vertex.as_from(turn.onwards, turn.bsdf.wi).is_bent}
+                   : turn_at(vertex, turn.onwards, turn.bsdf.wi, turn.bsdf.pdf);
     }
     [[nodiscard]] PathTurn turn_at(const PathVertex& vertex, const Vec3d& onwards, const Vec3d& wi,
                                    double to_light) const {

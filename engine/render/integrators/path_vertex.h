@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "engine/base/basis.h"
+#include "engine/render/integrators/shading_frame.h"
 #include "engine/render/sampling/path_sampler.h"
 #include "engine/scene/scene.h"
 
@@ -24,16 +25,20 @@ struct PathSettings {
 /// A surface point on a path, with its scattering at the path's wavelengths.
 struct PathVertex {
     scene::SurfaceHit hit;
+    Vec3d backwards;       // world, towards where the path comes from
     Basis frame;           // z: the shading normal
+    bool is_bent;          // it, for a camera there
     Vec3d wo;              // local, towards where the path comes from
     double cos_backwards;  // |cos| of that about the geometric normal
     scene::Bsdf bsdf;
 
     /// `backwards`: world, unit length, towards where the path comes from. The scene outlives the vertex.
-    PathVertex(const scene::SurfaceHit& at, const Vec3d& backwards, const scene::Scene& scene,
+    PathVertex(const scene::SurfaceHit& at, const Vec3d& backwards_, const scene::Scene& scene,
                const spectral::PathWavelengths& path)
         : hit(at),
+          backwards(backwards_),
           frame(at.shading_normal, at.tangent),
+          is_bent(bend(frame, at, backwards)),
           wo(frame.to_local(backwards)),
           cos_backwards(std::abs(dot(backwards, at.geometric_normal))),
           bsdf(scene::bsdf_at(scene.materials[at.material], at.uv, path)) {}
@@ -44,13 +49,28 @@ struct PathVertex {
         return dot(world, hit.geometric_normal) * local.z > 0.0;
     }
 
+    /// Both directions in the frame of a path that comes from `onwards`, whose local direction here is `wi`.
+    struct Seen {
+        Vec3d onwards;
+        Vec3d backwards;
+        bool is_bent = false;  // the normal, from one of both: a mirror then sends paths from them different ways
+    };
+    [[nodiscard]] Seen as_from(const Vec3d& onwards, const Vec3d& wi) const {
+        Basis other(hit.shading_normal, hit.tangent);
+        if (!bend(other, hit, onwards) && !is_bent) {
+            return {wi, wo};
+        }
+        return {other.to_local(onwards), other.to_local(backwards), true};
+    }
+
     /// The ray that goes on from here.
     [[nodiscard]] Ray<double> ray(const Vec3d& onwards) const { return {scene::ray_origin(hit, onwards), onwards}; }
 
-    /// A direction that the path goes on in.
+    /// A direction that the path goes on in; of a path from a light, in the frame of one that comes from there.
     struct Turn {
         scene::BsdfSample bsdf;
         Vec3d onwards;  // world
+        Vec3d wo;       // local, where the path came from
     };
     /// Draws one by the first three of these numbers. Nothing where the path ends.
     [[nodiscard]] std::optional<Turn> turn(const std::array<double, PathSampler::kNumbers>& numbers,
@@ -60,7 +80,24 @@ struct PathVertex {
             return {};
         }
         const Vec3d onwards = frame.to_world(scattered->wi);
-        return is_consistent(onwards, scattered->wi) ? std::optional(Turn{*scattered, onwards}) : std::nullopt;
+        if (transport == scene::Transport::importance) {
+            if (const Seen seen = as_from(onwards, scattered->wi); seen.is_bent) {
+                return bent_turn(*scattered, onwards, seen);
+            }
+        }
+        return is_consistent(onwards, scattered->wi) ? std::optional(Turn{*scattered, onwards, wo}) : std::nullopt;
+    }
+
+  private:
+    /// Of a path from a light: drawn in its own frame, weighed in that of the camera's side.
+    [[nodiscard]] std::optional<Turn> bent_turn(scene::BsdfSample drawn, const Vec3d& onwards, const Seen& seen) const {
+        if (drawn.is_delta || !is_consistent(onwards, seen.onwards) || !is_consistent(backwards, seen.backwards)) {
+            return {};
+        }
+        drawn.wi = seen.onwards;
+        drawn.weight = static_cast<float>(1.0 / drawn.pdf) *
+                       scene::evaluate(bsdf, seen.backwards, seen.onwards, scene::Transport::importance);
+        return Turn{drawn, onwards, seen.backwards};
     }
 };
 
