@@ -13,6 +13,7 @@
 #include "engine/render/film/film_exr.h"
 #include "engine/render/film/film_image.h"
 #include "experiments/cli/command.h"
+#include "experiments/cli/denoised_files.h"
 #include "experiments/cli/raw_files.h"
 #include "experiments/cli/render_job.h"
 #include "experiments/cli/shard.h"
@@ -28,6 +29,7 @@ struct MergeOptions {
     std::string output;
     bool takes_some = false;
     bool has_digest = false;  // what is a shard still always has one
+    bool is_denoised = false;
 };
 
 /// A file and what its first look says.
@@ -114,6 +116,7 @@ int run_merge(const MergeOptions& options) {
         throw InputError(fmt::format("--output is \"{}\", expected a name that ends in .exr", options.output));
     }
     const std::filesystem::path png = std::filesystem::path(exr).replace_extension(".png");
+    check_denoise(options.is_denoised);
     check_output_name(exr);
     check_output_name(png);
     check_json_name(options.common);
@@ -144,6 +147,9 @@ int run_merge(const MergeOptions& options) {
     if (raw) {
         report_raw_files(*raw, json, options.common);
     }
+    if (options.is_denoised) {
+        write_denoised(picture, sum.notes, exr, json, options.common);
+    }
     write_json_result(options.common, json);
     return kDone;
 }
@@ -161,6 +167,7 @@ void add_merge_command(Program& program) {
     command.add_flag("--partial", options->takes_some,
                      "Take the shards that there are; the result merges further as a shard");
     command.add_flag("--digest", options->has_digest, "Also write a digest of all pixels, as shards have it");
+    add_denoise_option(command, options->is_denoised);
     add_common_options(command, options->common);
     command.runs([options] { return run_merge(*options); });
 }

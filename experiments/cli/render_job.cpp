@@ -15,6 +15,7 @@
 #include "engine/render/engine_version.h"
 #include "engine/render/film/film_image.h"
 #include "engine/render/pass_turns.h"
+#include "experiments/cli/denoised_files.h"
 #include "experiments/cli/interruption.h"
 #include "experiments/cli/progress.h"
 #include "experiments/cli/raw_files.h"
@@ -365,6 +366,7 @@ RenderFiles render_files(const RenderJobOptions& options) {
         }
         check_output_name(files.half);
     }
+    check_denoise(options.is_denoised);
     check_output_name(files.exr);
     check_output_name(files.png);
     check_json_name(options.common);
@@ -422,6 +424,9 @@ int run_render_job(const RenderJob& job, const RenderJobOptions& options) {
     const Delivery png =
         write_somewhere({files.png, fs::path(exr.place).replace_extension(".png")},
                         [&](const fs::path& place) { formats::write_png(render::film_rgb(picture), place); });
+    if (options.is_denoised) {
+        write_denoised(picture, notes, exr.place, json, options.common);
+    }
     const std::optional<Delivery> half = write_half(picture, notes, options, files, json);
     report(std::move(json), passes, options, {.exr = exr.place, .png = png.place, .half = half ? half->place : ""},
            write_raw_files(picture, notes, exr.place, options.common.threads));
@@ -473,6 +478,7 @@ void add_render_job_options(Command& command, RenderJobOptions& options) {
         .check(one_of(render::PixelFilter::known_names()))
         .shows_default();
     command.add_flag("--features", options.has_features, "Also write depth, albedo and normals");
+    add_denoise_option(command, options.is_denoised);
     command.add_flag("--digest", options.has_digest,
                      "Also write a digest of all pixels, by which `merge` knows damage; shards always have one");
     add_common_options(command, options.common);

@@ -30,6 +30,7 @@ struct RenderJobOptions {
     std::string filter = "box";
     bool has_features = false;
     bool has_digest = false;  // shards always have one
+    bool is_denoised = false;
 };
 
 /// Adds the options above, but those that name the scene.

@@ -10,6 +10,7 @@
 #include <nlohmann/json.hpp>
 #include <thread>
 
+#include "engine/formats/image/denoise.h"
 #include "engine/formats/image/image.h"
 #include "engine/render/film/film_exr.h"
 #include "tests/cli/program.h"
@@ -309,6 +310,36 @@ TEST(RenderGrowth, WritesHalfFloatsOnRequest) {
     }
     expect_refused(place, {"render", "scene.toml", "-o", "out.exr", "--half", "out.exr"}, {"--half", "out.exr"});
     expect_refused(place, {"render", "scene.toml", "-o", "out.exr", "--half", "half.png"}, {"--half", "half.png"});
+}
+
+// Where the program was built with a denoiser there is a second picture with less noise, of the same light within 2 %
+// (it is trained to keep it), and the first is as it would be without; else the option is refused.
+TEST(RenderGrowth, DenoisesOnlyOnRequest) {
+    const Workplace place;
+    place.file("scene.toml", growing_scene());
+    const std::vector<std::string> plain = {"render", "scene.toml", "--spp", "16", "-o", "out.exr"};
+    ASSERT_EQ(place.run(plain).status, 0);
+    const std::string picture = place.content("out.exr");
+    std::vector<std::string> more = plain;
+    more.emplace_back("--denoise");
+    if (!formats::denoiser()) {
+        expect_refused(place, more, {"--denoise", "built without Intel Open Image Denoise"});
+        return;
+    }
+    const Json result = place.json(more);
+    EXPECT_EQ(place.content("out.exr"), picture);
+    EXPECT_EQ(result["denoised"]["exr"], "out.denoised.exr");
+    const formats::Image clean = formats::read_image(place.path() / "out.denoised.exr");
+    const formats::Image noisy = formats::read_image(place.path() / "out.exr");
+    EXPECT_TRUE(says(clean.metadata.at("lensproof:denoised"), "Open Image Denoise"));
+    double light = 0.0;
+    double light_before = 0.0;
+    for (std::size_t i = 0; i < clean.pixels.size(); ++i) {
+        light += clean.pixels[i];
+        light_before += noisy.pixels[i];
+    }
+    EXPECT_NEAR(light, light_before, 0.02 * light_before);
+    EXPECT_NE(clean.pixels, noisy.pixels);
 }
 
 }  // namespace lensproof::render_growth_test
