@@ -164,7 +164,7 @@ std::vector<SurfaceShare> surface_shares(const GhostScene& scene, const GhostSur
 }  // namespace
 
 GhostScene ghost_scene(const optics::Lens& lens, const GhostSettings& settings, double wavelength_nm) {
-    optics::require_no_mirrors(lens, "a ghost");
+    optics::require_refraction_alone(lens, "a ghost");
     const optics::TraceLens<double> traced = optics::at_wavelength<double>(lens, wavelength_nm);
     const double diameter = optics::paraxial_data(optics::at_wavelength<double>(lens, settings.reference_wavelength_nm))
                                 .entrance_pupil_diameter;

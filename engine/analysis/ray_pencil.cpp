@@ -25,22 +25,37 @@ class LocalSurface {
     }
 
     [[nodiscard]] const Vec3d& normal() const { return normal_; }
+    [[nodiscard]] const optics::ThinElement<double>* thin() const {
+        return frame_ != nullptr && frame_->thin.kind != optics::ThinKind::none ? &frame_->thin : nullptr;
+    }
+    [[nodiscard]] Vec3d to_own(const Vec3d& v) const { return frame_ != nullptr ? frame_->to_own(v) : v; }
+    [[nodiscard]] Vec3d from_own(const Vec3d& v) const { return frame_ != nullptr ? frame_->from_own(v) : v; }
 
     [[nodiscard]] Vec3d normal_turn(const Vec3d& shift) const {
-        const Vec3d own = frame_ != nullptr ? frame_->to_own(shift) : shift;
+        const Vec3d own = to_own(shift);
         const Vec3d change =
             from_own((1.0 / steepness_) * Vec3d{dot(hessian_[0], own), dot(hessian_[1], own), dot(hessian_[2], own)});
         return change - dot(change, normal_) * normal_;
     }
 
   private:
-    [[nodiscard]] Vec3d from_own(const Vec3d& v) const { return frame_ != nullptr ? frame_->from_own(v) : v; }
-
     const optics::SpecialSurface<double>* frame_ = nullptr;
     std::array<Vec3d, 3> hessian_{};
     double steepness_ = 1.0;
     Vec3d normal_;
 };
+
+/// How the direction behind an ideal lens turns, n' δm' = n δm − φ σ in slopes m, where the one in front turns by
+/// `turn` and the point on it shifts by `shift`; in its own axes.
+Vec3d turn_behind_ideal_lens(const optics::TraceSurface<double>& surface, double power, const Vec3d& before,
+                             const Vec3d& after, const Vec3d& turn, const Vec3d& shift) {
+    const auto slope = [&](double turn_across, double across, double shift_across) {
+        const double change = (turn_across - across / before.z * turn.z) / before.z;
+        return (surface.index_before * change - power * shift_across) / surface.index_after;
+    };
+    const Vec3d turned{after.z * slope(turn.x, before.x, shift.x), after.z * slope(turn.y, before.y, shift.y), 0.0};
+    return turned - dot(turned, after) * after;
+}
 
 /// A 2 × 2 matrix by columns: how (x, y) across the chief ray depend on the offset's x and y.
 using Columns = std::array<Vec2d, 2>;
@@ -98,14 +113,26 @@ std::optional<RayPencil> ray_pencil(const optics::TraceLens<double>& lens, const
         const Vec3d& normal = local.normal();
         const double n1 = surface.index_before;
         const double n2 = surface.index_after;
-        const double bending = n2 * dot(after, normal) - n1 * dot(before, normal);
+        const optics::ThinElement<double>* const thin = local.thin();
+        const Vec3d own_point = optics::to_own_axes(lens, surface, event.ray.origin);
+        const bool is_phase = thin != nullptr && thin->kind == optics::ThinKind::phase;
+        const Vec3d gradient = is_phase ? local.from_own(optics::phase_gradient(*thin, own_point)) : Vec3d{};
+        const double bending = n2 * dot(after, normal) - n1 * dot(before, normal) - dot(gradient, normal);
         const double distance = dot(event.ray.origin - pencil.chief.origin, before);
         for (std::size_t i = 0; i < pencil.shift.size(); ++i) {
             const Vec3d arriving = pencil.shift[i] + distance * pencil.turn[i];
             const Vec3d on_surface = arriving - (dot(arriving, normal) / dot(before, normal)) * before;
-            const Vec3d turned = n1 * pencil.turn[i] + bending * local.normal_turn(on_surface);
+            Vec3d turned = n1 * pencil.turn[i] + bending * local.normal_turn(on_surface);
+            if (is_phase) {
+                turned =
+                    turned + local.from_own(optics::phase_gradient_turn(*thin, own_point, local.to_own(on_surface)));
+            }
             const double change = -dot(turned, after) / dot(normal, after);
-            pencil.turn[i] = (1.0 / n2) * (turned + change * normal);
+            pencil.turn[i] = thin != nullptr && !is_phase
+                                 ? local.from_own(turn_behind_ideal_lens(
+                                       surface, thin->power, local.to_own(before), local.to_own(after),
+                                       local.to_own(pencil.turn[i]), local.to_own(on_surface)))
+                                 : (1.0 / n2) * (turned + change * normal);
             pencil.shift[i] = on_surface - dot(on_surface, after) * after;
         }
         pencil.chief = event.ray;

@@ -22,7 +22,8 @@ struct RayPencil {
 /// where δN is by how much the normal turns over σ, and δΓ keeps Q' perpendicular to d'. In the meridional plane of a
 /// centred lens this is Coddington's pair of equations (Welford, Aberrations of Optical Systems, §9.4; Igehy, "Tracing
 /// ray differentials", 1999, for the general form), written with heights and angles in place of focal distances: a
-/// focus at infinity or on a surface is no special case. Nothing where the chief ray misses or is totally reflected.
+/// focus at infinity or on a surface is no special case. A phase W adds δ∇W to the right (n' d' = n d + ∇W + Γ N), an
+/// ideal lens turns slopes by its own law. Nothing where the chief ray misses or is totally reflected.
 std::optional<RayPencil> ray_pencil(const optics::TraceLens<double>& lens, const optics::FieldBundle& bundle);
 
 /// Where the pencil's rays focus, z in mm from the image plane, positive beyond it; infinite where they leave parallel.

@@ -52,6 +52,7 @@ struct SeidelSums {
 /// so that a small step of index keeps its digits and none gives exactly 0. A surface whose sag is that of the sphere
 /// of its vertex curvature plus G r⁴ + O(r⁶) adds 8 G Δn (y⁴, y³ ȳ, y² ȳ², 0, y ȳ³). A toroid counts as its profile in
 /// y–z turned about the axis; tilts and decentres are left out, and so are odd aspheric terms: r³ is of no third order.
+/// An ideal lens adds nothing. Nothing is known of a lens with kinoforms.
 ///
 /// The theory takes the field by its tangent, which grows without bound: for a fisheye the sums say little long before
 /// 90°. Nothing where there is no paraxial chief or marginal ray (paraxial.h): at and beyond 90°, with the entrance
@@ -121,7 +122,10 @@ std::optional<SeidelSums<T>> seidel_sums(const optics::TraceLens<T>& reference,
                                          const std::type_identity_t<T>& object_distance) {
     auto marginal = optics::paraxial_marginal_ray(reference, object_distance);
     auto chief = optics::paraxial_chief_ray(reference, field_angle);
-    if (!marginal || !chief) {
+    const bool has_kinoforms = std::ranges::any_of(reference.specials, [](const optics::SpecialSurface<T>& special) {
+        return special.thin.kind == optics::ThinKind::phase;
+    });
+    if (!marginal || !chief || has_kinoforms) {
         return std::nullopt;
     }
     SeidelSums<T> sums;
@@ -132,8 +136,11 @@ std::optional<SeidelSums<T>> seidel_sums(const optics::TraceLens<T>& reference,
             marginal->height += gap * marginal->slope;
             chief->height += gap * chief->slope;
         }
-        SeidelTerms<T> terms = seidel_detail::surface_terms(
-            surface, seidel_detail::departure_from_sphere(reference, surface), *marginal, *chief);
+        SeidelTerms<T> terms;
+        if (optics::paraxial_detail::thin_power(reference, surface) == T(0)) {
+            terms = seidel_detail::surface_terms(surface, seidel_detail::departure_from_sphere(reference, surface),
+                                                 *marginal, *chief);
+        }
         const optics::TraceSurface<T>& at_short = short_wavelength.surfaces[i];
         const optics::TraceSurface<T>& at_long = long_wavelength.surfaces[i];
         const T change = seidel_detail::dispersion(surface.index_after, at_short.index_after, at_long.index_after) -

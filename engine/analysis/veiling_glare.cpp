@@ -192,7 +192,7 @@ double tenth_of_field(const optics::Lens& lens, double wavelength_nm) {
 }
 
 VeilingGlare veiling_glare(const optics::Lens& lens, const VeilingGlareSettings& settings) {
-    optics::require_no_mirrors(lens, "veiling glare");
+    optics::require_refraction_alone(lens, "veiling glare");
     const GlarePaths paths(lens, settings);
     std::vector<Seen> batches(kBatches);
     parallel_for(kBatches, settings.threads,

@@ -80,11 +80,15 @@ std::optional<optics::Glass> stated_glass(const optics::PrescribedSurface& row, 
 optics::TraceLens<double> paraxial_lens(const ParaxialTable& table) {
     optics::TraceLens<double> lens{.surfaces = {}, .image_z = 0.0};
     lens.surfaces.reserve(table.curvature.size());
-    double index_before = 1.0;
+    double index_before = table.index_in_front;
     double z = 0.0;
     for (std::size_t i = 0; i < table.curvature.size(); ++i) {
         lens.surfaces.push_back(
             optics::make_trace_surface(table.curvature[i], z, kInfinity, index_before, table.index[i], false));
+        if (table.thin_power[i] != 0.0) {
+            lens.surfaces.back().special = static_cast<int>(lens.specials.size());
+            lens.specials.push_back({.thin = {.kind = optics::ThinKind::ideal_lens, .power = table.thin_power[i]}});
+        }
         index_before = table.index[i];
         z += table.gap[i];
     }
@@ -102,7 +106,7 @@ Focus paraxial_focus(const ParaxialTable& table, double object_distance_mm) {
 }
 
 bool CheckedLens::is_dummy(int i) const {
-    return table.index[i] == index_before(i);
+    return table.index[i] == index_before(i) && !row(i).is_thin_element();
 }
 
 CheckedLens make_checked_lens(const optics::Prescription& at_one_position, const optics::StatedData& claims,
@@ -115,13 +119,15 @@ CheckedLens make_checked_lens(const optics::Prescription& at_one_position, const
     checked.wavelength_nm = settings.wavelength_nm.value_or(at_one_position.reference_wavelength_nm());
     checked.known_glasses = &glasses;
     trace_if_possible(checked);
-    bool is_known = true;
+    checked.table.index_in_front = checked.traced ? checked.traced->surfaces.front().index_before : 1.0;
+    bool is_known = checked.traced || at_one_position.object_medium.is_air();
     double heading = 1.0;
     for (int i = 0; i < checked.size(); ++i) {
         const optics::PrescribedSurface& row = checked.row(i);
         checked.media.push_back(stated_glass(row, glasses, at_one_position.preferred_makers));
         checked.table.curvature.push_back(row.curvature() + 2.0 * row.asphere[0]);
         checked.table.gap.push_back(row.thickness_mm);
+        checked.table.thin_power.push_back(optics::thin_element(row, checked.wavelength_nm).first_order_power());
         heading = row.is_mirror ? -heading : heading;
         checked.headings.push_back(heading);
         // The traced lens knows of its surroundings, too.
@@ -129,11 +135,14 @@ CheckedLens make_checked_lens(const optics::Prescription& at_one_position, const
                                                      : heading * index_behind(row, checked.media.back(),
                                                                               settings.indices, checked.wavelength_nm));
         const bool is_last = i + 1 == checked.size();
-        is_known = is_known && std::isfinite(checked.table.curvature.back()) &&
+        is_known = is_known && std::isfinite(checked.table.curvature.back() + checked.table.thin_power.back()) &&
                    std::isfinite(checked.table.index.back()) && heading * checked.table.index.back() > 0.0 &&
                    (std::isfinite(row.thickness_mm) || is_last);
     }
-    if (is_known) {
+    const bool has_grating = std::ranges::any_of(at_one_position.surfaces, [](const optics::PrescribedSurface& row) {
+        return row.phase && row.phase->lines_per_mm != 0.0;
+    });
+    if (is_known && !has_grating) {  // which turns the axis
         checked.focus = paraxial_focus(checked.table, at_one_position.object_distance_mm);
     }
     for (int i = 0; i < checked.size(); ++i) {

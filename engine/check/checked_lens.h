@@ -14,9 +14,11 @@ using Findings = std::vector<optics::Finding>;
 
 /// The numbers that first-order data come from, a surface each. No stop is needed, and no aperture.
 struct ParaxialTable {
-    std::vector<double> curvature;  // 1/mm, at the vertex
-    std::vector<double> gap;        // mm, behind the surface
-    std::vector<double> index;      // behind the surface; negative behind an odd number of mirrors
+    std::vector<double> curvature;   // 1/mm, at the vertex
+    std::vector<double> gap;         // mm, behind the surface
+    std::vector<double> index;       // behind the surface; negative behind an odd number of mirrors
+    std::vector<double> thin_power;  // 1/mm, of an ideal lens or a kinoform there
+    double index_in_front = 1.0;     // of the first surface
 };
 
 /// Where a lens focuses; mm. Not finite where it does not.
@@ -60,7 +62,7 @@ struct CheckedLens {
     /// Whether light passes the surface unchanged: a stop's plane, or a dummy.
     [[nodiscard]] bool is_dummy(int i) const;
     /// Behind the surface, or in front of the first: the index.
-    [[nodiscard]] double index_before(int i) const { return i == 0 ? 1.0 : table.index[i - 1]; }
+    [[nodiscard]] double index_before(int i) const { return i == 0 ? table.index_in_front : table.index[i - 1]; }
 };
 
 CheckedLens make_checked_lens(const optics::Prescription& at_one_position, const optics::StatedData& claims,

@@ -36,9 +36,10 @@ void report_rays_not_asked(const CheckedLens& checked, Findings& findings) {
     const double object = checked.prescription.object_distance_mm;
     const bool claims_field = checked.claims.half_field_deg || checked.claims.image_circle_mm;
     if (!checked.prescription.is_rotationally_symmetric()) {
-        findings.push_back({"not-judged", info, 0,
-                            "a surface is tilted, shifted or toroidal, so no ray was traced: nothing is said about the "
-                            "axial beam, its focus and colour, nor about the field"});
+        findings.push_back(
+            {"not-judged", info, 0,
+             "a surface is tilted, shifted, toroidal or ruled, so no ray was traced: nothing is said about the "
+             "axial beam, its focus and colour, nor about the field"});
     } else if (std::isfinite(object) && claims_field) {
         findings.push_back({"not-judged", info, 0,
                             fmt::format("the table is set to an object {} mm away, and the field is judged from "
@@ -53,12 +54,14 @@ Findings check_position(const CheckedLens& checked) {
     check_geometry(checked, findings);
     check_glasses(checked, findings);
     check_first_order(checked, findings);
-    if (!checked.prescription.has_mirrors()) {
+    const bool refracts_alone = !checked.prescription.has_mirrors() && !checked.prescription.has_thin_elements() &&
+                                checked.prescription.object_medium.is_air();
+    if (refracts_alone) {
         check_conventions(checked, findings);
     }
     check_axial_rays(checked, findings);
     check_field_rays(checked, findings);
-    if (!checked.prescription.has_mirrors()) {
+    if (refracts_alone) {
         suggest_changes(checked, findings);
     }
     report_untraced(checked, findings);

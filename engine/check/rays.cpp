@@ -115,6 +115,8 @@ std::string words(const RayFate& fate) {
             return fmt::format("the rim of surface {} cuts it off", surface);
         case optics::RayStatus::stopped:
             return fmt::format("the stop, surface {}, holds it back", surface);
+        case optics::RayStatus::evanescent:
+            return fmt::format("surface {} has no such order at this angle", surface);
         case optics::RayStatus::ok:
             break;
     }

@@ -33,10 +33,6 @@ double edge_z(const LensSurface& surface) {
     return surface.vertex_z + (std::isfinite(height) ? height : 1.0 / shape.curvature);  // a hemisphere's equator
 }
 
-Glass medium_before(const Lens& lens, std::size_t i) {
-    return i > 0 ? lens.surfaces[i - 1].medium : constant_glass("air", 1.0);
-}
-
 bool is_glass(const Glass& medium) {
     return medium.formula != DispersionFormula(ConstantIndex{1.0});
 }
@@ -44,10 +40,12 @@ bool is_glass(const Glass& medium) {
 }  // namespace
 
 Barrel::Barrel(const Lens& lens) : finish_(lens.barrel) {
-    if ((!lens.is_rotationally_symmetric || lens.has_mirrors()) && finish_.is_black()) {
+    const bool is_known = lens.is_rotationally_symmetric && !lens.has_mirrors() && !lens.has_thin_elements() &&
+                          !is_glass(lens.object_medium);
+    if (!is_known && finish_.is_black()) {
         return;  // which ends all light just so
     }
-    require_no_mirrors(lens, "a barrel that scatters");
+    require_refraction_alone(lens, "a barrel that scatters");
     if (!lens.is_rotationally_symmetric) {
         throw InputError(
             fmt::format("{}: a barrel that scatters is known about one axis alone; some surface of this "
@@ -61,7 +59,7 @@ Barrel::Barrel(const Lens& lens) : finish_(lens.barrel) {
                         .inner = surface.semi_diameter,
                         .outer = rim_of(lens, at),
                         .finish = surface.is_stop ? finish_.blades : finish_.tube,
-                        .is_blades = surface.is_stop && medium_before(lens, at).formula == surface.medium.formula};
+                        .is_blades = surface.is_stop && lens.medium_before(at).formula == surface.medium.formula};
         };
         Cell cell{.front = ring(i),
                   .rear = ring(i + 1),

@@ -45,6 +45,7 @@ ChiefRay mirrored(ChiefRay ray) {
 
 ChiefRays::ChiefRays(const Lens& lens, double wavelength_nm, Rims rims)
     : whole_(at_wavelength<double>(lens, wavelength_nm)), rims_(rims), is_symmetric_(lens.is_rotationally_symmetric) {
+    require_no_gratings(lens, "the field of view");
     const auto stop = whole_.surfaces.begin() + lens.stop_index();
     front_ = {.surfaces = {whole_.surfaces.begin(), stop}, .image_z = 0.0, .specials = whole_.specials};
     rear_ = {.surfaces = {stop + 1, whole_.surfaces.end()}, .image_z = whole_.image_z, .specials = whole_.specials};

@@ -30,7 +30,8 @@ struct ChiefRay {
 /// no ray. The object keeps to the plane x = 0, the ray's place does not.
 class ChiefRays {
   public:
-    /// With Rims::follow the rays go on beyond the rims, as far as they meet every surface.
+    /// With Rims::follow the rays go on beyond the rims, as far as they meet every surface. Throws InputError for a
+    /// lens with a grating, which has no chief rays about one axis.
     ChiefRays(const Lens& lens, double wavelength_nm, Rims rims = Rims::clip);
 
     /// The chief ray that leaves the stop's centre at `stop_angle` from the axis in the plane x = 0, or nothing where a

@@ -45,6 +45,11 @@ SpecialSurface<To> convert_special(const SpecialSurface<From>& from) {
     }
     to.coating.is_mirror = from.coating.is_mirror;
     to.mask = from.mask;
+    to.thin = {.kind = from.thin.kind,
+               .power = static_cast<To>(from.thin.power),
+               .object_vergence = static_cast<To>(from.thin.object_vergence),
+               .linear = static_cast<To>(from.thin.linear)};
+    std::ranges::transform(from.thin.radial, to.thin.radial.begin(), convert_term);
     return to;
 }
 

@@ -28,8 +28,7 @@ TracedPath path_of(const TraceLens<T>& lens, const GhostPath& reflections, const
                                     ? trace<direction, rims>(lens, convert_ray<T>(ray), visit)
                                     : trace_ghost<direction, rims>(lens, reflections, convert_ray<T>(ray), {}, visit);
     path.fate = {traced.status, traced.surface};
-    const bool ends = traced.status == RayStatus::missed || traced.status == RayStatus::total_internal_reflection ||
-                      (rims == Rims::clip && traced.status != RayStatus::ok);
+    const bool ends = !gets_through(traced.status) || (rims == Rims::clip && traced.status != RayStatus::ok);
     path.arrives = !ends && (direction == Direction::reverse || traced.ray.direction.z > T(0));
     if (path.arrives && direction == Direction::forward) {
         path.points.push_back(convert_vector<double>(meet_plane(traced.ray, lens.image_z).point));

@@ -83,6 +83,7 @@ Lens with_f_number(Lens lens, double f_number, double wavelength_nm) {
 }
 
 Lens focused_at(Lens lens, double object_distance_mm, double wavelength_nm) {
+    lens.object_distance_mm = object_distance_mm;
     const TraceLens<double> traced = at_wavelength<double>(lens, wavelength_nm);
     const double image_distance = paraxial_image_distance(traced, object_distance_mm);
     const double front_focus = -paraxial_data(traced).ffl;

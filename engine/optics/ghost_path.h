@@ -116,7 +116,7 @@ std::pair<RayStatus, bool> run_to_surface(const TraceLens<T>& lens, int index, b
             from_vertex = from_vertex + to_vertex * direction;
         }
         meeting = intersect_from_near(from_vertex, direction, c, heading);
-        normal = heading * Vec3<T>{-c * meeting.point.x, -c * meeting.point.y, T(1) - c * meeting.point.z};
+        normal = normal_of_sphere(meeting.point, c, heading);
     }
     if (!meeting.hit) {
         return ended(RayStatus::missed);

@@ -14,6 +14,7 @@
 #include "engine/optics/air.h"
 #include "engine/optics/convert_lens.h"
 #include "engine/optics/frame.h"
+#include "engine/optics/paraxial.h"
 #include "engine/optics/unstated_rims.h"
 #include "engine/spectral/wavelengths.h"
 
@@ -29,6 +30,29 @@ constexpr double kSmallestRadius = 1e-3;
 void require(bool holds, const PrescribedSurface& row, const char* key, double found, const char* expected) {
     if (!holds) {
         throw InputError(fmt::format("{}.{} is {}, expected {}", row.where, key, found, expected));
+    }
+}
+
+/// An ideal lens is flat, and nothing else bends there; a phase is that of one order at a time.
+void require_thin_element(const PrescribedSurface& row) {
+    const double focal = row.ideal_focal_length_mm.value_or(kInfinity);
+    require(std::abs(focal) >= kSmallestRadius, row, "ideal_focal_length_mm", focal,
+            "a focal length of at least 0.001 mm");
+    if (row.ideal_focal_length_mm &&
+        (!row.is_flat() || row.conic != 0.0 || row.is_asphere() || row.radius_x_mm || row.is_mirror || row.phase)) {
+        throw InputError(
+            fmt::format("{} is an ideal lens, expected a flat surface that is no mirror and no grating", row.where));
+    }
+    if (!row.phase) {
+        return;
+    }
+    require(std::isfinite(row.phase->order), row, "diffraction_order", row.phase->order, "a number");
+    require(std::isfinite(row.phase->lines_per_mm) && std::abs(row.phase->lines_per_mm) <= 1e6, row,
+            "grating_lines_per_mm", row.phase->lines_per_mm, "lines a mm, up to 1e6");
+    require(row.phase->design_wavelength_nm > 0.0 && std::isfinite(row.phase->design_wavelength_nm), row, "kinoform_nm",
+            row.phase->design_wavelength_nm, "a wavelength in nm");
+    for (const double coefficient : row.phase->radial) {
+        require(std::isfinite(coefficient), row, "kinoform", coefficient, "a coefficient");
     }
 }
 
@@ -57,10 +81,16 @@ void require_traceable(const Prescription& prescription) {
             require(!length || (*length > 0.0 && *length <= kLargestLength), row, key, length.value_or(0.0),
                     "a length above 0, up to 1e7 mm");
         }
+        require_thin_element(row);
         require(!row.medium.n_d || (*row.medium.n_d >= 1.0 && *row.medium.n_d <= 5.0), row, "n_d",
                 row.medium.n_d.value_or(0.0), "a refractive index from 1 to 5");
         require(!row.medium.V_d || (*row.medium.V_d >= 1.0 && *row.medium.V_d <= 1000.0), row, "V_d",
                 row.medium.V_d.value_or(0.0), "an Abbe number from 1 to 1000");
+    }
+    const double in_front = prescription.object_medium.n_d.value_or(1.0);
+    if (!(in_front >= 1.0 && in_front <= 5.0)) {
+        throw InputError(fmt::format("{}: object_medium.n_d is {}, expected a refractive index from 1 to 5",
+                                     prescription.file.string(), in_front));
     }
     const auto stops = std::ranges::count_if(prescription.surfaces, &PrescribedSurface::is_stop);
     if (stops != 1) {
@@ -74,9 +104,8 @@ void require_traceable(const Prescription& prescription) {
 void require_forwards(const Prescription& prescription, const Lens& lens) {
     const std::vector<LensSurface>& surfaces = lens.surfaces;
     const auto is_dummy = [&](std::size_t i) {
-        return i < surfaces.size() && !surfaces[i].is_mirror &&
-               (i == 0 ? surfaces[0].medium.formula == DispersionFormula(ConstantIndex{1.0})
-                       : surfaces[i].medium.formula == surfaces[i - 1].medium.formula);
+        return i < surfaces.size() && !surfaces[i].is_mirror && !surfaces[i].is_thin_element() &&
+               surfaces[i].medium.formula == lens.medium_before(i).formula;
     };
     for (std::size_t i = 0; i < surfaces.size(); ++i) {
         const PrescribedSurface& row = prescription.surfaces[i];
@@ -99,6 +128,8 @@ LensSurface placed_surface(const PrescribedSurface& row, const Frame& frame) {
     surface.tube_behind = row.barrel_mm.value_or(0.0);
     surface.is_mirror = row.is_mirror;
     surface.is_stop = row.is_stop;
+    surface.ideal_focal_length_mm = row.ideal_focal_length_mm;
+    surface.phase = row.phase;
     surface.has_shape = row.conic != 0.0 || row.is_asphere() || row.radius_x_mm.has_value();
     surface.shape = prescribed_shape(row);
     return surface;
@@ -108,7 +139,11 @@ LensSurface placed_surface(const PrescribedSurface& row, const Frame& frame) {
 
 Glass resolved_medium(const PrescribedSurface& surface, const GlassCatalogue& glasses,
                       const std::vector<std::string>& preferred_makers) {
-    const StatedMedium& medium = surface.medium;
+    return resolved_medium(surface.medium, surface.where, glasses, preferred_makers);
+}
+
+Glass resolved_medium(const StatedMedium& medium, const std::string& where, const GlassCatalogue& glasses,
+                      const std::vector<std::string>& preferred_makers) {
     if (medium.is_air()) {
         return constant_glass("air", 1.0);
     }
@@ -133,7 +168,7 @@ Glass resolved_medium(const PrescribedSurface& surface, const GlassCatalogue& gl
         glass.max_wavelength_nm = kNormalLineMaxNm;
         return glass;
     }
-    throw InputError(fmt::format("{}.glass is \"{}\", which no catalogue has; {}. Or state n_d and V_d.", surface.where,
+    throw InputError(fmt::format("{}.glass is \"{}\", which no catalogue has; {}. Or state n_d and V_d.", where,
                                  printable(medium.glass), suggestion_text(match.suggestions)));
 }
 
@@ -173,9 +208,34 @@ double Lens::heading_behind(std::size_t i) const {
                                                                                                                  : -1.0;
 }
 
-void require_no_mirrors(const Lens& lens, std::string_view what) {
+void require_refraction_alone(const Lens& lens, std::string_view what) {
     if (lens.has_mirrors()) {
         throw InputError(fmt::format("{}: {} is not simulated in lenses with mirrors", lens.name, what));
+    }
+    require_air_in_front(lens, what);
+    require_no_thin_elements(lens, what);
+}
+
+void require_air_in_front(const Lens& lens, std::string_view what) {
+    if (lens.object_medium.formula != DispersionFormula(ConstantIndex{1.0})) {
+        throw InputError(fmt::format("{}: {} takes light from air, and the object lies in {}", lens.name, what,
+                                     lens.object_medium.name));
+    }
+}
+
+void require_no_thin_elements(const Lens& lens, std::string_view what) {
+    if (lens.has_thin_elements()) {
+        throw InputError(
+            fmt::format("{}: {} is not simulated in lenses with ideal lenses, gratings or kinoforms", lens.name, what));
+    }
+}
+
+void require_no_gratings(const Lens& lens, std::string_view what) {
+    if (lens.has_gratings()) {
+        throw InputError(
+            fmt::format("{}: {} counts along the axis, which a grating turns; `trace` follows rays through "
+                        "it",
+                        lens.name, what));
     }
 }
 
@@ -192,8 +252,14 @@ Lens make_lens(const Prescription& prescription, const GlassCatalogue& glasses, 
     lens.focus_groups = prescription.focus_groups;
     lens.surroundings = prescription.surroundings;
     lens.reference_wavelength_nm = prescription.reference_wavelength_nm();
+    lens.object_distance_mm = prescription.object_distance_mm;
     lens.is_rotationally_symmetric = prescription.is_rotationally_symmetric();
-    std::set<std::string> used;
+    const StatedMedium& in_front = prescription.object_medium;
+    lens.object_medium = overrides.contains(in_front.glass)
+                             ? constant_glass(in_front.glass, overrides.at(in_front.glass))
+                             : resolved_medium(in_front, prescription.file.string() + ": object_medium", glasses,
+                                               prescription.preferred_makers);
+    std::set<std::string> used{in_front.glass};
     const std::vector<Frame> frames = surface_frames(prescription);
     double barrel_before = kInfinity;
     for (const PrescribedSurface& row : prescription.surfaces) {
@@ -209,7 +275,7 @@ Lens make_lens(const Prescription& prescription, const GlassCatalogue& glasses, 
             }
         }
         LensSurface surface = placed_surface(row, frames[lens.surfaces.size()]);
-        const Glass before = lens.surfaces.empty() ? constant_glass("air", 1.0) : lens.surfaces.back().medium;
+        const Glass before = lens.medium_before(lens.surfaces.size());
         // A barrel is convex, so a path runs inside it where it does so at both ends.
         surface.semi_diameter = std::min({surface.semi_diameter, barrel_before, row.barrel_mm.value_or(kInfinity)});
         surface.medium = std::move(medium);
@@ -223,9 +289,11 @@ Lens make_lens(const Prescription& prescription, const GlassCatalogue& glasses, 
                 throw InputError(fmt::format("{}.coating is \"{}\", which the prescription does not hold", row.where,
                                              printable(row.coating)));
             }
-            if (row.is_mirror && std::holds_alternative<LayerStack>(coating->second)) {
-                throw InputError(fmt::format("{}: the mirror's coating {} has layers, expected a reflectance",
-                                             row.where, printable(row.coating)));
+            if ((row.is_mirror || surface.is_thin_element()) && std::holds_alternative<LayerStack>(coating->second)) {
+                throw InputError(
+                    fmt::format("{}: the coating {} of a mirror or a thin element has layers, expected a "
+                                "reflectance",
+                                row.where, printable(row.coating)));
             }
             surface.coating = resolved_coating(coating->second, glasses, before, surface.medium,
                                                fmt::format("{}: coating {}", prescription.file.string(), row.coating));
@@ -248,7 +316,7 @@ Lens make_lens(const Prescription& prescription, const GlassCatalogue& glasses, 
 }
 
 WavelengthRange wavelength_range(const Lens& lens) {
-    WavelengthRange range{0.0, kInfinity};
+    WavelengthRange range{lens.object_medium.min_wavelength_nm, lens.object_medium.max_wavelength_nm};
     for (const LensSurface& surface : lens.surfaces) {
         range.min_nm = std::max(range.min_nm, surface.medium.min_wavelength_nm);
         range.max_nm = std::min(range.max_nm, surface.medium.max_wavelength_nm);
@@ -282,7 +350,11 @@ double attenuation_of(const Glass& medium, double wavelength_nm) {
 
 TraceLens<double> traced_lens(const Lens& lens, double wavelength_nm) {
     TraceLens<double> traced{.surfaces = {}, .image_z = lens.image_z};
-    double index_before = 1.0;
+    if (!covers(lens.object_medium, wavelength_nm)) {
+        throw InputError(fmt::format("{}: {} nm is outside the range of {}, in which the object lies", lens.name,
+                                     wavelength_nm, lens.object_medium.name));
+    }
+    double index_before = index_in(lens.surroundings, lens.object_medium, wavelength_nm);
     double sign = 1.0;  // of indices and distances: the other one behind each mirror
     traced.attenuation = {0.0};
     for (const LensSurface& surface : lens.surfaces) {
@@ -307,7 +379,9 @@ TraceLens<double> traced_lens(const Lens& lens, double wavelength_nm) {
         if (is_masked) {
             special.mask = lens.stop_mask;
         }
-        if (special.has_shape || surface.is_misaligned() || !special.coating.is_bare() || is_masked) {
+        special.thin = thin_element(surface, wavelength_nm);
+        if (special.has_shape || special.thin.kind != ThinKind::none || surface.is_misaligned() ||
+            !special.coating.is_bare() || is_masked) {
             traced.surfaces.back().special = static_cast<int>(traced.specials.size());
             traced.specials.push_back(std::move(special));
         }
@@ -321,11 +395,35 @@ TraceLens<double> traced_lens(const Lens& lens, double wavelength_nm) {
     return traced;
 }
 
+/// Where ideal lenses have their object: the paraxial image of the lens's own in front of each, at the reference
+/// wavelength, so that all wavelengths have one lens.
+void set_object_vergences(const Lens& lens, TraceLens<double>& traced) {
+    if (std::ranges::all_of(lens.surfaces, [](const LensSurface& each) { return !each.ideal_focal_length_mm; })) {
+        return;
+    }
+    constexpr double kNearest = 1e-9;  // mm, to a lens in which the object's image stands: there no path is one
+    const TraceLens<double> reference = traced_lens(lens, lens.reference_wavelength_nm);
+    ParaxialRay ray = paraxial_detail::ray_from_axis(lens.object_distance_mm);
+    double z = reference.surfaces.front().vertex_z;
+    for (std::size_t i = 0; i < traced.surfaces.size(); ++i) {
+        ray.height += ray.slope * (reference.surfaces[i].vertex_z - z);
+        z = reference.surfaces[i].vertex_z;
+        if (lens.surfaces[i].ideal_focal_length_mm && ray.slope != 0.0) {
+            const double object_z = -ray.height / ray.slope;
+            traced.specials[traced.surfaces[i].special].thin.object_vergence =
+                1.0 / (std::abs(object_z) < kNearest ? kNearest : object_z);
+        }
+        ray = paraxial_detail::refracted(reference, ray, reference.surfaces[i]);
+    }
+}
+
 }  // namespace
 
 template <class T>
 TraceLens<T> at_wavelength(const Lens& lens, double wavelength_nm) {
-    return convert_lens<T>(traced_lens(lens, wavelength_nm));
+    TraceLens<double> traced = traced_lens(lens, wavelength_nm);
+    set_object_vergences(lens, traced);
+    return convert_lens<T>(traced);
 }
 
 template TraceLens<float> at_wavelength(const Lens&, double);

@@ -39,7 +39,7 @@ void append_coating(std::string& bytes, const TraceCoating<double>& coating) {
 }
 
 void append_special(std::string& bytes, const SpecialSurface<double>& special) {
-    const auto& [has_shape, shape, vertex, axes, coating, mask] = special;
+    const auto& [has_shape, shape, vertex, axes, coating, mask, thin] = special;
     append_bytes(bytes, has_shape, vertex.x, vertex.y);
     append_shape(bytes, shape);
     for (const Vec3d& axis : axes) {
@@ -47,6 +47,10 @@ void append_special(std::string& bytes, const SpecialSurface<double>& special) {
     }
     append_coating(bytes, coating);
     mask.append_to(bytes);
+    append_bytes(bytes, thin.kind, thin.power, thin.object_vergence, thin.linear);
+    for (const double coefficient : thin.radial) {
+        append_bytes(bytes, coefficient);
+    }
 }
 
 }  // namespace

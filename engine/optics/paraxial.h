@@ -110,19 +110,33 @@ T infinity() {
     return std::numeric_limits<T>::infinity();
 }
 
+/// What a surface's thin element adds, 1/mm.
 template <class T>
-T power(const TraceSurface<T>& surface) {
+T thin_power(const TraceLens<T>& lens, const TraceSurface<T>& surface) {
+    return surface.special < 0 ? T(0)
+                               : lens.specials[static_cast<std::size_t>(surface.special)].thin.first_order_power();
+}
+
+template <class T>
+T refracting_power(const TraceSurface<T>& surface) {
     return surface.curvature * (surface.index_after - surface.index_before);
 }
 
 template <class T>
-BasicParaxialRay<T> refracted(const BasicParaxialRay<T>& ray, const TraceSurface<T>& surface) {
-    return {ray.height, (surface.index_before * ray.slope - ray.height * power(surface)) / surface.index_after};
+T power(const TraceLens<T>& lens, const TraceSurface<T>& surface) {
+    return refracting_power(surface) + thin_power(lens, surface);
 }
 
 template <class T>
-BasicParaxialRay<T> refracted_backwards(const BasicParaxialRay<T>& ray, const TraceSurface<T>& surface) {
-    return {ray.height, (surface.index_after * ray.slope + ray.height * power(surface)) / surface.index_before};
+BasicParaxialRay<T> refracted(const TraceLens<T>& lens, const BasicParaxialRay<T>& ray,
+                              const TraceSurface<T>& surface) {
+    return {ray.height, (surface.index_before * ray.slope - ray.height * power(lens, surface)) / surface.index_after};
+}
+
+template <class T>
+BasicParaxialRay<T> refracted_backwards(const TraceLens<T>& lens, const BasicParaxialRay<T>& ray,
+                                        const TraceSurface<T>& surface) {
+    return {ray.height, (surface.index_after * ray.slope + ray.height * power(lens, surface)) / surface.index_before};
 }
 
 /// Where a ray in the plane of a vertex crosses the axis, from that vertex.
@@ -159,7 +173,7 @@ BasicParaxialRay<T> ray_from_stop_to_front(const TraceLens<T>& lens) {
     BasicParaxialRay<T> ray{T(0), T(1) / lens.surfaces[stop].index_before};
     for (int i = stop; i > 0; --i) {
         ray.height -= ray.slope * (lens.surfaces[i].vertex_z - lens.surfaces[i - 1].vertex_z);
-        ray = refracted_backwards(ray, lens.surfaces[i - 1]);
+        ray = refracted_backwards(lens, ray, lens.surfaces[i - 1]);
     }
     return ray;
 }
@@ -198,10 +212,10 @@ GaussianConstants<T> gaussian_constants(const TraceLens<T>& lens) {
         constants.height_change += gap * parallel.slope;
         parallel.height = T(1) + constants.height_change;
         through_vertex.height += gap * through_vertex.slope;
-        constants.power += parallel.height * power(surface);
-        constants.slope_change -= through_vertex.height * power(surface);
-        parallel = refracted(parallel, surface);
-        through_vertex = refracted(through_vertex, surface);
+        constants.power += parallel.height * power(lens, surface);
+        constants.slope_change -= through_vertex.height * power(lens, surface);
+        parallel = refracted(lens, parallel, surface);
+        through_vertex = refracted(lens, through_vertex, surface);
     }
     constants.reduced_path = through_vertex.height;
     return constants;
@@ -234,7 +248,8 @@ template <class T>
 T petzval_radius(const TraceLens<T>& lens) {
     T sum = T(0);
     for (const TraceSurface<T>& surface : lens.surfaces) {
-        sum += power(surface) / (surface.index_before * surface.index_after);
+        // Neither an ideal lens, by its nature, nor a kinoform, an element of infinite index, curves a flat image.
+        sum += refracting_power(surface) / (surface.index_before * surface.index_after);
     }
     return sum == T(0) ? infinity<T>() : T(-1 / (lens.surfaces.back().index_after * sum));
 }
@@ -255,7 +270,8 @@ BasicParaxialRay<T> trace_paraxial(const TraceLens<T>& lens, BasicParaxialRay<T>
     const int step = first <= last ? 1 : -1;
     for (int i = first;; i += step) {
         const TraceSurface<T>& surface = lens.surfaces[i];
-        ray = step > 0 ? paraxial_detail::refracted(ray, surface) : paraxial_detail::refracted_backwards(ray, surface);
+        ray = step > 0 ? paraxial_detail::refracted(lens, ray, surface)
+                       : paraxial_detail::refracted_backwards(lens, ray, surface);
         if (i == last) {
             return ray;
         }

@@ -49,8 +49,7 @@ PrescribedSurface PrescribedSurface::turned() const {
     return row;
 }
 
-void set_mirror_media(std::vector<PrescribedSurface>& surfaces) {
-    StatedMedium before;
+void set_mirror_media(std::vector<PrescribedSurface>& surfaces, StatedMedium before) {
     for (PrescribedSurface& row : surfaces) {
         row.medium = row.is_mirror ? before : row.medium;
         before = row.medium;
@@ -90,7 +89,8 @@ SystemAperture Prescription::governing_aperture() const {
 
 bool Prescription::is_rotationally_symmetric() const {
     const bool round_surfaces = std::ranges::all_of(surfaces, [](const PrescribedSurface& surface) {
-        return !surface.radius_x_mm && surface.misalignment == Misalignment{};
+        const bool has_lines = surface.phase && surface.phase->lines_per_mm != 0.0;
+        return !surface.radius_x_mm && !has_lines && surface.misalignment == Misalignment{};
     });
     const bool aligned_groups =
         std::ranges::all_of(groups, [](const MisalignedGroup& group) { return group.misalignment == Misalignment{}; });

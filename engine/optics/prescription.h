@@ -15,6 +15,7 @@
 #include "engine/base/vec.h"
 #include "engine/optics/finding.h"
 #include "engine/optics/projection.h"
+#include "engine/optics/thin_element.h"
 #include "engine/optics/wall_finish.h"
 
 namespace lensproof::optics {
@@ -56,6 +57,17 @@ struct Misalignment {
     bool operator==(const Misalignment&) const = default;
 };
 
+/// What a surface adds to the phase of light, in the order that is looked at (thin_element.h): the lines of a grating,
+/// parallel to its x and equally spaced along y, and a kinoform, the path Σ c_i r^(2i) at its design wavelength.
+struct PhaseElement {
+    double order = 1.0;
+    double lines_per_mm = 0.0;
+    std::array<double, kPhaseTerms> radial{};  // c_1, …, mm^(1−2i)
+    double design_wavelength_nm = 1.0;         // of those
+
+    bool operator==(const PhaseElement&) const = default;
+};
+
 /// One row of a prescription. Numbers are as stated, NaN and absurd ones included: the checker names those, and
 /// `make_lens` refuses them.
 struct PrescribedSurface {
@@ -73,10 +85,14 @@ struct PrescribedSurface {
     StatedMedium medium;                     // behind the surface; that in front of it at a mirror
     bool is_mirror = false;                  // what follows lies at the distances −thickness
     bool is_stop = false;
+    std::optional<double>
+        ideal_focal_length_mm;  // an ideal lens, in air: beside other media n/f is its power all the same
+    std::optional<PhaseElement> phase;
     std::string coating;        // a name in Prescription::coatings; empty: bare
     Misalignment misalignment;  // of this surface alone, about its vertex
     std::string where;          // "file:line: surfaces[3]", for messages
 
+    [[nodiscard]] bool is_thin_element() const { return ideal_focal_length_mm || phase; }
     [[nodiscard]] bool is_flat() const { return radius_mm == 0.0 || std::isinf(radius_mm); }
     [[nodiscard]] double curvature() const { return is_flat() ? 0.0 : 1.0 / radius_mm; }  // 1/mm
     /// The coefficient of r^power, 1 to kHighestPower.
@@ -89,8 +105,26 @@ struct PrescribedSurface {
     bool operator==(const PrescribedSurface&) const = default;
 };
 
-/// Gives each mirror the medium in front of it, which is the one behind it too.
-void set_mirror_media(std::vector<PrescribedSurface>& surfaces);
+/// Gives each mirror the medium in front of it, which is the one behind it too. `before`: in front of the first.
+void set_mirror_media(std::vector<PrescribedSurface>& surfaces, StatedMedium before = {});
+
+/// The thin element of a row or of a lens's surface at one wavelength, for an object at infinity.
+template <class Surface>
+ThinElement<double> thin_element(const Surface& surface, double wavelength_nm) {
+    if (surface.ideal_focal_length_mm) {
+        return {.kind = ThinKind::ideal_lens, .power = 1.0 / *surface.ideal_focal_length_mm};
+    }
+    ThinElement<double> element;
+    if (surface.phase) {
+        const PhaseElement& phase = *surface.phase;
+        element.kind = ThinKind::phase;
+        element.linear = phase.order * phase.lines_per_mm * wavelength_nm * 1e-6;
+        const double of_design = phase.order * wavelength_nm / phase.design_wavelength_nm;
+        std::ranges::transform(phase.radial, element.radial.begin(),
+                               [&](double coefficient) { return of_design * coefficient; });
+    }
+    return element;
+}
 
 /// What the source claims about the lens as a whole; each is optional.
 struct StatedData {
@@ -250,6 +284,7 @@ struct Prescription {
     std::vector<FocusGroup> focus_groups;  // empty: the lens focuses as a whole, that is, the sensor moves
     Surroundings surroundings = Surroundings::air;
     double object_distance_mm = kInfinity;  // that the table is set to
+    StatedMedium object_medium;             // in front of the first surface: not air where a lens is immersed
     SystemAperture aperture;
     DesignFields fields;                            // may be empty
     std::vector<double> wavelengths_nm;             // that a design program's file names, the
@@ -266,6 +301,9 @@ struct Prescription {
     /// The aperture that governs; where the stop says nothing, the one that is claimed.
     [[nodiscard]] SystemAperture governing_aperture() const;
     [[nodiscard]] bool has_mirrors() const { return std::ranges::any_of(surfaces, &PrescribedSurface::is_mirror); }
+    [[nodiscard]] bool has_thin_elements() const {
+        return std::ranges::any_of(surfaces, &PrescribedSurface::is_thin_element);
+    }
     /// Of the surfaces; the stop may have blades all the same.
     [[nodiscard]] bool is_rotationally_symmetric() const;
 };

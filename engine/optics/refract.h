@@ -45,8 +45,14 @@ Refraction<T> refract(const Vec3<T>& direction, const Vec3<T>& normal, const T& 
             .transmitted = transmitted};
 }
 
-/// The same at a point of the sphere of `intersect`, whose normal is heading · (−c x, −c y, 1 − c z): in fewer steps,
-/// for the inner loop.
+/// The normal at a point of the sphere of `intersect`.
+template <class T>
+Vec3<T> normal_of_sphere(const Vec3<T>& point, const T& c, const T& heading) {
+    return heading * Vec3<T>{-c * point.x, -c * point.y, T(1) - c * point.z};
+}
+
+/// The same at a point of that sphere, whose normal is heading · (−c x, −c y, 1 − c z): in fewer steps, for the inner
+/// loop.
 template <class T>
 Refraction<T> refract_at_sphere(const Vec3<T>& direction, const Vec3<T>& point, const T& c, const T& heading,
                                 const T& cos_incidence, const T& sin2_incidence, const T& index_ratio) {

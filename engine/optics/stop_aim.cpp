@@ -186,9 +186,11 @@ TracedRay<double> StopAim::onwards(const Vec2d& point, const Vec3d& direction) c
 
 bool has_plane_stop(const TraceLens<double>& lens, int stop_index) {
     const TraceSurface<double>& stop = lens.surfaces[static_cast<std::size_t>(stop_index)];
-    const bool is_flat =
-        stop.curvature == 0.0 && (stop.special < 0 || !lens.specials[static_cast<std::size_t>(stop.special)].has_shape);
-    return is_flat && stop.index_before == stop.index_after;
+    const SpecialSurface<double>* special =
+        stop.special < 0 ? nullptr : &lens.specials[static_cast<std::size_t>(stop.special)];
+    const bool is_plane =
+        stop.curvature == 0.0 && (special == nullptr || (!special->has_shape && special->thin.kind == ThinKind::none));
+    return is_plane && stop.index_before == stop.index_after;
 }
 
 }  // namespace lensproof::optics

@@ -36,7 +36,8 @@ double stop_semi_diameter(const Lens& lens, const Prescription& prescription, co
             return paraxial_conjugates(traced, prescription.object_distance_mm).working_f_number / aperture.value;
         case ApertureKind::object_numerical_aperture: {
             const double slope = paraxial_conjugates(traced, prescription.object_distance_mm).object_numerical_aperture;
-            return std::tan(std::asin(aperture.value)) / slope;
+            const double index = traced.surfaces.front().index_before;
+            return index * std::tan(std::asin(aperture.value / index)) / slope;
         }
         case ApertureKind::stop:
             break;

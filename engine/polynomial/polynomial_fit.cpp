@@ -313,6 +313,7 @@ class Fit {
 };
 
 void require_round(const optics::Lens& lens) {
+    optics::require_air_in_front(lens, "a polynomial");
     const auto refuse = [&](const char* why) {
         throw InputError(
             fmt::format("{}: {}; polynomials are fitted to rotationally symmetric lenses, expected the "
@@ -322,8 +323,8 @@ void require_round(const optics::Lens& lens) {
     if (!lens.is_rotationally_symmetric) {
         refuse("a surface of it is tilted, displaced or a cylinder");
     }
-    if (lens.has_mirrors()) {
-        refuse("it has mirrors");
+    if (lens.has_mirrors() || lens.has_thin_elements()) {
+        refuse("it has mirrors or thin elements");
     }
     if (!lens.stop_mask.is_full_circle()) {
         refuse("its stop has blades or a texture");

@@ -45,7 +45,7 @@ std::optional<RaySample> RaySampler::sample(std::uint64_t number) const {
             const auto surface = static_cast<std::size_t>(event.surface);
             found.rims[surface] = (point.x * point.x + point.y * point.y) / at.surfaces[surface].semi_diameter_squared;
         });
-    if (traced.status == optics::RayStatus::missed || traced.status == optics::RayStatus::total_internal_reflection) {
+    if (!optics::gets_through(traced.status)) {
         return std::nullopt;
     }
     const optics::Intersection<double> front = optics::intersect(traced.ray, front_curvature_, -1.0);
@@ -76,7 +76,7 @@ std::optional<Vec2d> RaySampler::landing(const ExitPoint<double>& exit, int wave
     const optics::TraceLens<double>& at = lens(wavelength);
     const auto traced = optics::trace<optics::Direction::forward, optics::Rims::follow>(
         at, Ray<double>{out.origin, -1.0 * out.direction});
-    if (traced.status == optics::RayStatus::missed || traced.status == optics::RayStatus::total_internal_reflection) {
+    if (!optics::gets_through(traced.status)) {
         return std::nullopt;
     }
     const Vec3d film = optics::meet_plane(traced.ray, at.image_z).point;

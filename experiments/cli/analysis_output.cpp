@@ -251,7 +251,9 @@ std::string analysis_text(const optics::Lens& lens, const analysis::AnalysisSett
                             has_odd_terms(lens) ? ", without the odd aspheric terms" : "") +
                 seidel_text(*analysis.seidel);
     } else {
-        text += fmt::format("No Seidel sums: paraxial rays have no field of {:.4g} deg\n", largest);
+        text += lens.has_kinoforms()
+                    ? "No Seidel sums: none are known of kinoforms\n"
+                    : fmt::format("No Seidel sums: paraxial rays have no field of {:.4g} deg\n", largest);
     }
     text += "Fields:\n" + fields_text(analysis.fields);
     return text;

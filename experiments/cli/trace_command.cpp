@@ -186,9 +186,8 @@ void trace_one(const optics::TraceLens<T>& lens, const GivenRay& given, const Wa
     const optics::TracedRay<T> traced = way.reflections.empty() ? optics::trace<direction, rims>(lens, ray, visit_event)
                                                                 : optics::trace_ghost<direction, rims>(
                                                                       lens, way.reflections, ray, mirrors, visit_event);
-    const bool ended = traced.status == optics::RayStatus::missed ||
-                       traced.status == optics::RayStatus::total_internal_reflection ||
-                       (rims == optics::Rims::clip && traced.status != optics::RayStatus::ok);
+    const bool ended =
+        !optics::gets_through(traced.status) || (rims == optics::Rims::clip && traced.status != optics::RayStatus::ok);
     if (ended || direction == optics::Direction::reverse) {
         return;
     }
@@ -296,6 +295,9 @@ int run_trace(const TraceOptions& options) {
                                           .coatings = options.coatings,
                                           .glasses = read_glass_catalogues(options.glass_catalogues)});
     print_findings(options.common, lens);
+    if (!options.sequence.empty() || options.polarised) {
+        optics::require_no_thin_elements(lens, options.polarised ? "polarised light" : "a ghost");
+    }
     Way way{.reflections = {}, .mirrors = {}, .polarised = options.polarised};
     if (!options.sequence.empty()) {
         way.reflections = parse_sequence(options.sequence, lens, options.mirrors);

@@ -56,14 +56,38 @@ void draw_stop(Svg& svg, const SectionView& view, const SectionSurface& surface)
     }
 }
 
+/// An ideal lens's symbol: a line with arrow heads, which point outwards where it collects light and inwards where it
+/// spreads it.
+void draw_ideal_lens(Svg& svg, const SectionView& view, const SectionSurface& surface) {
+    constexpr double kHead = 7.0;  // px
+    const SvgStyle style{.stroke = kInk, .width = 1.6, .class_name = "ideal-lens", .description = "ideal lens"};
+    svg.path(view.to_page(surface.curve), style);
+    for (const double side : {-1.0, 1.0}) {
+        const SvgPoint tip = view.to_page(side > 0.0 ? surface.curve.back() : surface.curve.front());
+        const SvgPoint out{side * surface.across.z, -side * surface.across.y};
+        const double back = surface.ideal_focal_length_mm > 0.0 ? -kHead : kHead;
+        for (const double beside : {-0.6 * kHead, 0.6 * kHead}) {
+            svg.line(tip, {tip.x + back * out.x - beside * out.y, tip.y + back * out.y + beside * out.x}, style);
+        }
+    }
+}
+
 void draw_surfaces(Svg& svg, const SectionView& view, const SectionGeometry& geometry) {
     for (const SectionSurface& surface : geometry.surfaces) {
+        if (surface.ideal_focal_length_mm != 0.0) {
+            draw_ideal_lens(svg, view, surface);
+        } else if (surface.is_phase) {
+            svg.path(view.to_page(surface.curve),
+                     {.stroke = kInk, .width = 2.0, .dashes = "1.5 1.5", .class_name = "grating"});
+        }
         if (surface.is_mirror) {
             svg.path(view.to_page(surface.curve), {.stroke = kInk, .width = 2.6, .class_name = "mirror"});
         }
         if (surface.is_stop) {
             draw_stop(svg, view, surface);
-        } else if ((!surface.is_glass && !surface.is_mirror) || !surface.is_exact) {
+        } else if ((!surface.is_glass && !surface.is_mirror && !surface.is_phase &&
+                    surface.ideal_focal_length_mm == 0.0) ||
+                   !surface.is_exact) {
             svg.path(view.to_page(surface.curve),
                      {.stroke = kQuiet, .width = 0.9, .dashes = "3 3", .class_name = "surface"});
         }

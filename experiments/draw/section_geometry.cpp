@@ -220,6 +220,8 @@ SectionGeometry section_geometry(const optics::Prescription& prescription, const
                                      .is_stop = row.is_stop,
                                      .is_mirror = row.is_mirror,
                                      .is_glass = glass_before || !row.medium.is_air(),
+                                     .ideal_focal_length_mm = row.ideal_focal_length_mm.value_or(0.0),
+                                     .is_phase = row.phase.has_value(),
                                      .is_exact = placed[i].is_exact});
     }
     for (std::size_t i = 0; i + 1 < placed.size(); ++i) {

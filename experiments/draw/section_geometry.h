@@ -24,8 +24,10 @@ struct SectionSurface {
     double semi_diameter = 0.0;
     bool is_stop = false;
     bool is_mirror = false;
-    bool is_glass = false;  // whether it bounds glass
-    bool is_exact = true;   // false: a stand-in, for the table's radius or aperture is no usable number
+    bool is_glass = false;               // whether it bounds glass
+    double ideal_focal_length_mm = 0.0;  // of an ideal lens there; 0: none
+    bool is_phase = false;               // a grating or a kinoform
+    bool is_exact = true;                // false: a stand-in, for the table's radius or aperture is no usable number
 };
 
 /// The glass between two surfaces.

@@ -77,6 +77,11 @@ void add_surface_losses(const optics::PrescribedSurface& row, int surface, std::
         throw InputError(fmt::format(
             "{} is a mirror, which a plain table of radii cannot say; convert to .toml or .zmx", row.where));
     }
+    if (row.is_thin_element()) {
+        throw InputError(fmt::format(
+            "{} is an ideal lens, a grating or a kinoform, which a plain table of radii cannot say; convert to .toml",
+            row.where));
+    }
     if (row.radius_x_mm) {
         add("lost-toroid", optics::Severity::warning, "a toroid or cylinder, written as a surface of revolution");
     }
@@ -141,6 +146,8 @@ std::vector<optics::Finding> losses_of_tables(const optics::Prescription& prescr
     add(prescription.object_distance_mm != kInfinity, "lost-object-distance", optics::Severity::info,
         fmt::format("the object's distance, {} mm, is left out", prescription.object_distance_mm));
     add(!prescription.fields.points.empty(), "lost-fields", optics::Severity::info, "the design's fields are left out");
+    add(!prescription.object_medium.is_air(), "lost-object-medium", optics::Severity::warning,
+        "that the object does not lie in air is left out");
     add(!prescription.wavelengths_nm.empty(), "lost-wavelengths", optics::Severity::info,
         "the wavelengths are left out");
     return losses;

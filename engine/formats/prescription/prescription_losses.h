@@ -27,7 +27,7 @@ void state_rims(optics::Prescription& prescription, std::vector<optics::Finding>
 std::pair<double, double> figures_of_table(const optics::StatedMedium& medium);
 
 /// What neither the CSV table nor pbrt's says: toroids, tilts, coatings, blades, groups, surroundings, claims. Throws
-/// InputError for a mirror, without which the rest is no lens.
+/// InputError for a mirror or a thin element, without which the rest is no lens.
 std::vector<optics::Finding> losses_of_tables(const optics::Prescription& prescription);
 
 }  // namespace lensproof::formats

@@ -65,7 +65,10 @@ class OptilandLens {
         for (std::size_t i = 1; i + 1 < surfaces.size(); ++i) {
             add_surface(surfaces[i], frames[i], frames[i + 1].origin.z - frames[i].origin.z);
         }
-        optics::set_mirror_media(lens_.surfaces);
+        if (says(surfaces.front(), "material_post")) {
+            read_material(surfaces.front().at("material_post"), 0, lens_.object_medium);
+        }
+        optics::set_mirror_media(lens_.surfaces, lens_.object_medium);
         lens_.object_distance_mm = frames[1].origin.z - frames[0].origin.z;
         if (!(std::isfinite(lens_.object_distance_mm) && lens_.object_distance_mm > 0.0)) {
             lens_.object_distance_mm = kInfinity;
@@ -112,9 +115,9 @@ class OptilandLens {
         read_geometry(value.at("geometry"), number, surface);
         read_material(value.at("material_post"), number, surface.medium);
         read_rim(value, number, surface);
-        surface.is_mirror =
-            read_interaction(value.has("interaction_model") ? value.at("interaction_model") : value, number);
-        const bool is_fold = surface.is_mirror && surface.is_flat() && surface.misalignment != optics::Misalignment{};
+        read_interaction(value.has("interaction_model") ? value.at("interaction_model") : value, number, surface);
+        const bool is_fold =
+            surface.is_mirror && surface.is_flat() && !surface.phase && surface.misalignment != optics::Misalignment{};
         if (is_fold) {
             remark("mirror", number, "a flat mirror that folds the axis, which is not unfolded here",
                    optics::Severity::error);
@@ -133,7 +136,9 @@ class OptilandLens {
         if (type == "Plane" || type == "StandardGeometry") {
             return;
         }
-        if (type == "EvenAsphere" || type == "OddAsphere") {
+        if (type == "PlaneGrating" || type == "StandardGratingGeometry") {
+            read_grating(geometry, number, surface);
+        } else if (type == "EvenAsphere" || type == "OddAsphere") {
             read_terms(geometry, "coefficients", type == "OddAsphere" ? 1 : 2, number, surface);
         } else if (type == "ForbesQNormalSlopeGeometry" || type == "ForbesQbfsGeometry") {
             read_forbes_terms(geometry.at("surface_config"), number, surface);
@@ -148,6 +153,20 @@ class OptilandLens {
             remark("shape-not-read", number,
                    fmt::format("a surface of the kind \"{}\" is not understood: its radius and conic alone are taken",
                                printable(type)),
+                   optics::Severity::error);
+        }
+    }
+
+    /// Lines along its x where the angle of the grooves is 0. The period is in µm.
+    void read_grating(const JsonNode& geometry, int number, optics::PrescribedSurface& surface) {
+        constexpr double kMmPerUm = 1e-3;
+        const double period_mm = kMmPerUm * any_number(geometry.at("period"));
+        optics::PhaseElement grating;
+        grating.order = any_number(geometry.at("order"));
+        grating.lines_per_mm = 1.0 / period_mm;
+        surface.phase = grating;
+        if (number_or(geometry, "angle", 0.0) != 0.0) {
+            remark("shape-not-read", number, "its grating's lines are turned about the axis, which is not followed",
                    optics::Severity::error);
         }
     }
@@ -260,8 +279,8 @@ class OptilandLens {
         }
     }
 
-    /// Returns whether it is a mirror.
-    bool read_interaction(const JsonNode& model, int number) {
+    /// Whether it is a mirror, or an ideal lens.
+    void read_interaction(const JsonNode& model, int number, optics::PrescribedSurface& surface) {
         if (model.has("coating")) {
             remark("coating-not-read", number, "its coating is left out");
         }
@@ -269,10 +288,13 @@ class OptilandLens {
             remark("not-read", number, "its scattering is left out");
         }
         const std::string type = text_or(model, "type", "RefractiveReflectiveModel");
-        if (type.find("Model") != std::string::npos && type != "RefractiveReflectiveModel") {
+        if (type == "ThinLensInteractionModel") {
+            surface.ideal_focal_length_mm = any_number(model.at("focal_length"));
+        } else if (type.find("Model") != std::string::npos && type != "RefractiveReflectiveModel" &&
+                   type != "DiffractiveInteractionModel") {
             remark("not-read", number, fmt::format("what \"{}\" does to rays is left out", printable(type)));
         }
-        return is_true(model, "is_reflective");
+        surface.is_mirror = is_true(model, "is_reflective");
     }
 
     void read_image(const JsonNode& image, const optics::Frame& frame) {

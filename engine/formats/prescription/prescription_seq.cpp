@@ -153,6 +153,10 @@ optics::PrescribedSurface read_row(const SeqFile& file, int number, const std::f
     if (const SeqSpecial* const special = find_special(surface.special)) {
         read_special(row, *special, surface, number, unit, remarks);
     }
+    row.phase = surface.kinoform;
+    for (int i = 0; row.phase && i < optics::kPhaseTerms; ++i) {
+        row.phase->radial[i] *= std::pow(unit, 1 - 2 * (i + 1));
+    }
     row.thickness_mm = surface.thickness * unit;
     row.semi_diameter_mm = length(surface.semi_diameter);
     if (surface.edge && surface.edge > surface.semi_diameter.value_or(0.0)) {
@@ -368,7 +372,8 @@ optics::Prescription parse_seq(const std::string& text, const std::filesystem::p
         prescription.surfaces.push_back(read_row(seq, number, file, remarks));
         row_of.push_back(number);
     }
-    optics::set_mirror_media(prescription.surfaces);
+    prescription.object_medium = read_medium(seq, seq.surfaces.front().glass, file.string() + ": SO");
+    optics::set_mirror_media(prescription.surfaces, prescription.object_medium);
     if (prescription.surfaces.empty()) {
         throw InputError(fmt::format("{}: holds no surface between object and image", file.string()));
     }

@@ -89,6 +89,33 @@ void read_forbes_terms(TomlTable& row, optics::PrescribedSurface& surface) {
     std::ranges::transform(surface.asphere, powers, surface.asphere.begin(), std::plus());
 }
 
+/// A grating, a kinoform, or both.
+std::optional<optics::PhaseElement> read_phase(TomlTable& row) {
+    const bool has_lines = row.has("grating_lines_per_mm");
+    const bool is_kinoform = row.has("kinoform");
+    if (!has_lines && !is_kinoform) {
+        for (const char* key : {"diffraction_order", "kinoform_nm"}) {
+            if (row.has(key)) {
+                row.fail(key, "stands without grating_lines_per_mm or kinoform");
+            }
+        }
+        return std::nullopt;
+    }
+    optics::PhaseElement phase;
+    phase.lines_per_mm = optional_stated_number(row, "grating_lines_per_mm").value_or(0.0);
+    phase.order = optional_stated_number(row, "diffraction_order").value_or(1.0);
+    if (is_kinoform) {
+        const std::vector<double> terms = row.numbers("kinoform", 0);
+        if (terms.size() > phase.radial.size()) {
+            row.fail("kinoform", fmt::format("holds {} coefficients, expected up to {}, of r^2 to r^{}", terms.size(),
+                                             phase.radial.size(), 2 * phase.radial.size()));
+        }
+        std::ranges::copy(terms, phase.radial.begin());
+        phase.design_wavelength_nm = row.number("kinoform_nm", kPositive);
+    }
+    return phase;
+}
+
 optics::PrescribedSurface read_surface(TomlTable& row) {
     optics::PrescribedSurface surface;
     surface.where = row.where();
@@ -113,6 +140,8 @@ optics::PrescribedSurface read_surface(TomlTable& row) {
         }
     }
     surface.medium = read_medium(row);
+    surface.ideal_focal_length_mm = optional_stated_number(row, "ideal_focal_length_mm");
+    surface.phase = read_phase(row);
     surface.coating = row.text_or("coating", "");
     surface.misalignment = read_misalignment(row);
     row.finish();
@@ -303,7 +332,11 @@ optics::Prescription parse_toml_prescription(const std::string& text, const std:
     for (TomlTable& row : top.tables("surfaces")) {
         prescription.surfaces.push_back(read_surface(row));
     }
-    optics::set_mirror_media(prescription.surfaces);
+    if (auto medium = top.optional_table("object_medium")) {
+        prescription.object_medium = read_medium(*medium);
+        medium->finish();
+    }
+    optics::set_mirror_media(prescription.surfaces, prescription.object_medium);
     if (prescription.surfaces.empty() || prescription.surfaces.size() > kMostSurfaces) {
         top.fail("surfaces",
                  fmt::format("holds {} surfaces, expected 1 to {}", prescription.surfaces.size(), kMostSurfaces));

@@ -167,6 +167,7 @@ class Writer {
     WrittenPrescription write() {
         write_head();
         write_surfaces();
+        write_object_medium();
         write_claims("stated", prescription_.stated);
         write_aperture("aperture", prescription_.aperture);
         write_fields();
@@ -258,12 +259,33 @@ class Writer {
         add_numbers(table, "semi_diameter_mm", [](const Row& row) { return row.semi_diameter_mm; });
         add_numbers(table, "rim_mm", [](const Row& row) { return row.rim_mm; });
         add_numbers(table, "barrel_mm", [](const Row& row) { return row.barrel_mm; });
+        add_numbers(table, "ideal_focal_length_mm", [](const Row& row) { return row.ideal_focal_length_mm; });
+        add_texts(table, [](const Row& row) { return phase_cell(row); });
         add_texts(table, [](const Row& row) {
             return row.coating.empty() ? std::string() : "coating = " + toml_string(row.coating);
         });
         add_texts(table, [&](const Row& row) { return shift_cell("decentre_mm", row.misalignment.decentre_mm, row); });
         add_texts(table, [&](const Row& row) { return shift_cell("tilt_deg", row.misalignment.tilt_deg, row); });
         text_ += "\nsurfaces = [\n" + table.text() + "]\n";
+    }
+
+    /// The lines of a grating, the terms of a kinoform, and their order.
+    static std::string phase_cell(const optics::PrescribedSurface& row) {
+        if (!row.phase) {
+            return {};
+        }
+        const auto& [order, lines_per_mm, radial, design_wavelength_nm] = *row.phase;
+        std::vector<std::string> keys;
+        if (lines_per_mm != 0.0 || radial == decltype(radial){}) {
+            keys.push_back("grating_lines_per_mm = " + number(lines_per_mm));
+        }
+        if (radial != decltype(radial){}) {
+            const auto* last = std::find_if(radial.rbegin(), radial.rend(), [](double c) { return c != 0.0; }).base();
+            keys.push_back("kinoform = " + number_list(std::vector<double>(radial.begin(), last)));
+            keys.push_back("kinoform_nm = " + number(design_wavelength_nm));
+        }
+        keys.push_back("diffraction_order = " + number(order));
+        return fmt::format("{}", fmt::join(keys, ", "));
     }
 
     /// `stop = true` stands in the place of a radius, since most stops have none.
@@ -332,6 +354,26 @@ class Writer {
         }
         if (!claims.empty()) {
             text_ += fmt::format("\n[{}]\n{}", table, claims);
+        }
+    }
+
+    void write_object_medium() {
+        const optics::StatedMedium& medium = prescription_.object_medium;
+        if (medium.is_air()) {
+            return;
+        }
+        text_ += "\n[object_medium]\n";
+        if (!medium.glass.empty()) {
+            line("glass", toml_string(medium.glass));
+        }
+        if (medium.n_d) {
+            line("n_d", number(*medium.n_d));
+        }
+        if (medium.n_d && medium.V_d) {
+            line("V_d", number(*medium.V_d));
+        }
+        if (!medium.indices.empty()) {
+            line("indices", pairs(medium.indices));
         }
     }
 

@@ -277,7 +277,8 @@ optics::Prescription parse_zmx(const std::string& text, const std::filesystem::p
             remarks.not_understood("STOP", number, zmx.surfaces[number].line, "the stop on a coordinate break");
         }
     }
-    optics::set_mirror_media(prescription.surfaces);
+    prescription.object_medium = zmx.surfaces.front().medium;
+    optics::set_mirror_media(prescription.surfaces, prescription.object_medium);
     if (prescription.surfaces.size() > kMostSurfaces) {
         throw InputError(fmt::format("{}: holds a lens of {} surfaces, expected up to {}", file.string(),
                                      prescription.surfaces.size(), kMostSurfaces));

@@ -214,6 +214,7 @@ class ZmxWriter {
         begin_surface("STANDARD");
         line("  CURV 0.0 0 0 0 0 \"\"");
         line("  DISZ {}", zmx_number(prescription_.object_distance_mm));
+        write_medium(prescription_.object_medium, 0);
         for (std::size_t i = 0; i < prescription_.surfaces.size(); ++i) {
             const optics::PrescribedSurface& row = prescription_.surfaces[i];
             const bool is_aligned = row.misalignment == optics::Misalignment{};
@@ -246,12 +247,17 @@ class ZmxWriter {
         const bool is_extended = !row.radius_x_mm && terms > kPlainTerms;
         const char* asphere =
             is_odd ? (is_extended ? "XOSPHERE" : "ODDASPHE") : (is_extended ? "XASPHERE" : "EVENASPH");
-        begin_surface(row.radius_x_mm ? "TOROIDAL" : (terms > 0 ? asphere : "STANDARD"));
+        const bool is_thin = write_thin_element(row, number);
+        if (is_thin) {
+            terms = 0;
+        } else {
+            begin_surface(row.radius_x_mm ? "TOROIDAL" : (terms > 0 ? asphere : "STANDARD"));
+        }
         if (row.is_stop) {
             line("  STOP");
         }
         line("  CURV {} 0 0 0 0 \"\"", row.curvature());
-        if (row.radius_x_mm) {
+        if (row.radius_x_mm && !is_thin) {
             line("  PARM 1 {}", std::isinf(*row.radius_x_mm) ? 0.0 : *row.radius_x_mm);
             for (int i = 0; i < std::min(terms, kToroidTerms); ++i) {
                 line("  PARM {} {}", i + 2, row.asphere[i]);
@@ -262,7 +268,7 @@ class ZmxWriter {
             if (row.has_odd_terms()) {
                 lose("lost-asphere", number, "a toroid's odd terms");
             }
-        } else if (is_extended) {
+        } else if (is_extended && !is_thin) {
             line("  XDAT 1 {} 0 0 1.0 0.0 0 \"\"", terms);
             line("  XDAT 2 1.0 0 0 1.0 0.0 0 \"\"");
             for (int i = 0; i < terms; ++i) {
@@ -300,6 +306,45 @@ class ZmxWriter {
             lose("lost-coating", number, fmt::format("what the coating {} is", row.coating));
         }
     }
+
+    /// Begins the surface if it has a thin element, and says what that is; false where it has none.
+    bool write_thin_element(const optics::PrescribedSurface& row, int number) {
+        if (row.ideal_focal_length_mm) {
+            begin_surface("PARAXIAL");
+            line("  PARM 1 {}", *row.ideal_focal_length_mm);
+            return true;
+        }
+        if (!row.phase) {
+            return false;
+        }
+        const auto& [order, lines_per_mm, radial, design_wavelength_nm] = *row.phase;
+        const bool is_kinoform = radial != decltype(radial){};
+        if (row.radius_x_mm || row.has_odd_terms() || (!is_kinoform && row.is_asphere())) {
+            lose("lost-asphere", number, "the shape of a surface with a grating or a kinoform beyond a conic");
+        }
+        if (!is_kinoform) {
+            begin_surface("DGRATING");
+            line("  PARM 1 {}", lines_per_mm * 1e-3);
+            line("  PARM 2 {}", order);
+            return true;
+        }
+        if (lines_per_mm != 0.0) {
+            lose("lost-grating", number, "the lines of a grating beside a kinoform");
+        }
+        begin_surface("BINARY_2");
+        line("  PARM 0 {}", order);
+        for (int power = 2; power <= 2 * kBinaryTerms; power += 2) {
+            line("  PARM {} {}", power / 2, row.term(power));
+        }
+        line("  XDAT 1 {} 0 0 1.0 0.0 0 \"\"", radial.size());
+        line("  XDAT 2 1.0 0 0 1.0 0.0 0 \"\"");
+        for (std::size_t i = 0; i < radial.size(); ++i) {
+            line("  XDAT {} {} 0 0 1.0 0.0 0 \"\"", i + 3,
+                 2.0 * std::numbers::pi * radial[i] / (design_wavelength_nm * 1e-6));
+        }
+        return true;
+    }
+    static constexpr int kBinaryTerms = 8;  // of its shape
 
     void write_medium(const optics::StatedMedium& medium, int number) {
         if (medium.is_air()) {

@@ -35,7 +35,7 @@ constexpr std::string_view kFields[] = {"XAN", "YAN", "XOB", "YOB", "XIM", "YIM"
                                         "XRI", "YRI", "VUX", "VLX", "VUY", "VLY"};
 constexpr std::string_view kSeqApertureShapes[] = {"REX", "REY", "ELX", "ELY", "CIG",
                                                    "REG", "ELG", "ADX", "ADY", "ARO"};
-constexpr std::string_view kDiffraction[] = {"DIF", "HOR", "HWL", "HCT", "HCO", "HCC", "GRT", "GRO", "GRS", "HOE"};
+constexpr std::string_view kOtherDiffraction[] = {"GRT", "GRO", "GRS", "GRX", "GRY", "GRZ", "HOE"};
 constexpr std::string_view kRadii[] = {"RDY", "RDX", "CUY", "CUX"};
 constexpr std::string_view kTypes[] = {"SPH", "CON", "ASP", "CYL", "YTO", "XTO"};
 constexpr std::string_view kOtherTypes[] = {"AAS", "XYP", "SPL", "UDS", "ZRN", "QBF", "QCN", "NSS", "GRN", "LEM"};
@@ -282,7 +282,7 @@ class SeqReader {
         }
         take_qualifiers();
         SeqSurface& surface = file_.surfaces[surface_];
-        if (read_shape(surface) || read_special(surface) || read_decentre(surface)) {
+        if (read_shape(surface) || read_special(surface) || read_decentre(surface) || read_kinoform(surface)) {
             return true;
         }
         if (here_.keyword == "STO") {
@@ -300,13 +300,17 @@ class SeqReader {
                         "makes the aperture no full circle about the vertex, and is left out");
         } else if (is_among(kSeqSolves, here_.keyword)) {
             report_solve();
-        } else if (is_among(kDiffraction, here_.keyword) || is_among(kOtherTypes, here_.keyword)) {
-            remarks_.at(here_, "surface-type", optics::Severity::error, surface_,
-                        "the surface is more than a conic, asphere or toroid; the rest is left out");
+        } else if (is_among(kOtherDiffraction, here_.keyword) || is_among(kOtherTypes, here_.keyword)) {
+            report_other_surface();
         } else {
             return false;
         }
         return true;
+    }
+
+    void report_other_surface() {
+        remarks_.at(here_, "surface-type", optics::Severity::error, surface_,
+                    "the surface is more than a conic, asphere or toroid; the rest is left out");
     }
 
     void report_solve() {
@@ -392,6 +396,50 @@ class SeqReader {
                                          special.first_power + special.step));
         }
         return number;
+    }
+
+    /// "DIF DOE", its order HOR, design wavelength HWL, HCT R for a phase that is round, and its path's coefficients of
+    /// r^(2i) at that wavelength, HCO C1, C2, … (in the file's unit). HCC says what an optimizer may vary.
+    bool read_kinoform(SeqSurface& surface) {
+        if (here_.keyword == "DIF" && here_.word(next_) == "DOE") {
+            surface.kinoform.emplace();
+            return true;
+        }
+        if (here_.keyword == "DIF") {
+            report_other_surface();
+            return true;
+        }
+        if (!surface.kinoform || !here_.keyword.starts_with('H')) {
+            return here_.keyword == "HCC";
+        }
+        if (here_.keyword == "HOR") {
+            surface.kinoform->order = here_.number(next_, "a diffraction order");
+        } else if (here_.keyword == "HWL") {
+            surface.kinoform->design_wavelength_nm = here_.number(next_, "a wavelength in nm");
+        } else if (here_.keyword == "HCO") {
+            read_kinoform_term(*surface.kinoform);
+        } else if (here_.keyword == "HCT" && here_.word(next_) != "R") {
+            remarks_.at(here_, "surface-type", optics::Severity::error, surface_,
+                        fmt::format("a kinoform's phase of the kind {} is not known; expected R, a round one",
+                                    printable(here_.word(next_))));
+        } else if (here_.keyword != "HCC" && here_.keyword != "HCT") {
+            return false;
+        }
+        return true;
+    }
+
+    void read_kinoform_term(optics::PhaseElement& kinoform) {
+        const std::string_view name = here_.word(next_);
+        const std::optional<double> number = name.starts_with('C') ? parse_number(name.substr(1)) : std::nullopt;
+        const int term = number ? whole_number_within(*number, 0, optics::kPhaseTerms + 1) : 0;
+        const double value = here_.number(next_ + 1, "a coefficient");
+        if (term >= 1 && term <= optics::kPhaseTerms) {
+            kinoform.radial[static_cast<std::size_t>(term) - 1] = value;
+        } else if (value != 0.0) {
+            remarks_.at(here_, "surface-type", optics::Severity::error, surface_,
+                        fmt::format("the kinoform's coefficient {} is left out: C1 to C{} are known", printable(name),
+                                    optics::kPhaseTerms));
+        }
     }
 
     bool read_decentre(SeqSurface& surface) {

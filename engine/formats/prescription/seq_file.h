@@ -59,6 +59,7 @@ struct SeqSurface {
     std::map<int, double> special_values;                 // SCO C1, C2, …
     std::optional<double> semi_diameter;                  // CIR
     std::optional<double> edge;                           // CIR EDG
+    std::optional<optics::PhaseElement> kinoform;         // DIF DOE, in the file's unit
     std::array<double, 3> decentre{};                     // XDE, YDE, ZDE
     std::array<double, 3> tilt_deg{};                     // ADE, BDE, CDE
     SeqDecentre decentre_kind = SeqDecentre::basic;

@@ -51,7 +51,7 @@ std::vector<int> unfold(std::vector<optics::PrescribedSurface>& rows, std::vecto
         ChainLink& link = links[i];
         optics::PrescribedSurface* row = i < rows.size() ? &rows[i] : nullptr;
         link.frame = moved(link.frame, unfolded);
-        const bool is_fold = row != nullptr && row->is_mirror && row->is_flat() && !row->is_asphere() &&
+        const bool is_fold = row != nullptr && row->is_mirror && row->is_flat() && !row->is_asphere() && !row->phase &&
                              !is_along_axis(link.frame.axes[2]);
         if (is_turned) {
             link.frame.axes[2] = -1.0 * link.frame.axes[2];

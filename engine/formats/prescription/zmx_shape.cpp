@@ -5,6 +5,7 @@
 
 #include <array>
 #include <cmath>
+#include <numbers>
 #include <string>
 #include <vector>
 
@@ -74,9 +75,44 @@ void read_forbes(optics::PrescribedSurface& row, const ZmxSurface& surface, int 
     row.asphere = row.along_normal ? powers_of_qbfs(a, radius) : powers_of_qcon(a, radius);
 }
 
+/// Binary 2: an even asphere's parameters, PARM 0 the order (0 says 1), XDAT 1 the number of terms, 2 the normalizing
+/// radius, from 3 on the phase's coefficients A_i of (r/R)^(2i) in radians, of any wavelength. A path of λ A / 2π at
+/// each.
+void read_binary(optics::PrescribedSurface& row, const ZmxSurface& surface, int number, double unit_mm,
+                 Remarks& remarks) {
+    constexpr int kFirstTerm = 3;
+    constexpr double kDesign_nm = 1000.0;  // whichever: λ over that times that wavelength's path is the same
+    const double radius = surface.extra_value(2) * unit_mm;
+    if (!(radius > 0.0)) {
+        surface_type_error(remarks, surface, number, "its phase has no normalizing radius, and is left out");
+        return;
+    }
+    optics::PhaseElement phase{.design_wavelength_nm = kDesign_nm};
+    phase.order = surface.parameter(0) == 0.0 ? 1.0 : surface.parameter(0);
+    for (const auto& [index, value] : surface.extra) {
+        const int term = index - kFirstTerm;
+        if (term < 0 || term >= surface.extra_value(1) || value == 0.0) {
+            continue;
+        }
+        if (term < optics::kPhaseTerms) {
+            phase.radial[term] =
+                value / (2.0 * std::numbers::pi) * kDesign_nm * 1e-6 / std::pow(radius, 2 * (term + 1));
+        } else {
+            surface_type_error(remarks, surface, number,
+                               fmt::format("its phase's term of r^{} is left out: terms to r^{} are known",
+                                           2 * (term + 1), 2 * optics::kPhaseTerms));
+        }
+    }
+    row.phase = phase;
+    for (int i = 1; i <= optics::kPhaseTerms - 2; ++i) {
+        set_term(row, 2 * i, surface.parameter(i), unit_mm, surface, number, remarks);
+    }
+}
+
 }  // namespace
 
-// OpticStudio's help, "Even Asphere", "Odd Asphere", "Extended Asphere", "Extended Odd Asphere", "Toroidal".
+// OpticStudio's help, "Even Asphere", "Odd Asphere", "Extended Asphere", "Extended Odd Asphere", "Toroidal",
+// "Paraxial", "Diffraction Grating" (lines parallel to the local x axis), "Binary 2".
 void read_zmx_shape(optics::PrescribedSurface& row, const ZmxSurface& surface, int number, double unit_mm,
                     Remarks& remarks) {
     constexpr int kParameterTerms = 8;
@@ -124,6 +160,13 @@ void read_zmx_shape(optics::PrescribedSurface& row, const ZmxSurface& surface, i
         if (surface.parameter(13) != 0.0 || surface.extra_value(1) != 0.0) {
             surface_type_error(remarks, surface, number, "the toroid's Zernike terms are left out");
         }
+    } else if (surface.type == "PARAXIAL") {
+        row.ideal_focal_length_mm = surface.parameter(1) * unit_mm;
+    } else if (surface.type == "DGRATING") {
+        constexpr double kPerMm = 1e3;  // of lines a µm, whatever the unit of lengths
+        row.phase = optics::PhaseElement{.order = surface.parameter(2), .lines_per_mm = kPerMm * surface.parameter(1)};
+    } else if (surface.type == "BINARY_2") {
+        read_binary(row, surface, number, unit_mm, remarks);
     } else if (surface.type == "QED_TYPE") {
         read_forbes(row, surface, number, unit_mm, remarks);
     } else {

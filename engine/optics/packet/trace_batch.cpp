@@ -46,10 +46,18 @@ T lane_coated_transmittance(const SpectralLens<T>& lens, int wavelength, int sur
 }
 
 template <class T>
+const ThinElement<T>& lane_thin_element(const SpectralLens<T>& lens, int wavelength, int surface) {
+    const TraceLens<T>& at = lens.at(wavelength);
+    return at.specials[static_cast<std::size_t>(at.surfaces[static_cast<std::size_t>(surface)].special)].thin;
+}
+
+template <class T>
 T lane_fading(T optical_depth) {
     return fading(optical_depth);
 }
 
+template const ThinElement<float>& lane_thin_element(const SpectralLens<float>&, int, int);
+template const ThinElement<double>& lane_thin_element(const SpectralLens<double>&, int, int);
 template float lane_fading(float);
 template double lane_fading(double);
 template float lane_mask_transmittance(const SpectralLens<float>&, int, float, float);

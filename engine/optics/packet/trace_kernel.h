@@ -136,7 +136,7 @@ class BlockTracer {
         return Numbers::iota() + Numbers(static_cast<Scalar>(packet * kLanes)) < Numbers(static_cast<Scalar>(count));
     }
 
-    template <bool per_lane>
+    template <bool per_lane, bool with_indices = carry != Carry::geometry>
     [[nodiscard]] Media media(int surface, int packet) const {
         const auto& of = lens_.indices[surface];
         const auto look_up = [&](const Scalar* table) {
@@ -147,7 +147,7 @@ class BlockTracer {
             }
         };
         Media found{.ratio = look_up(kForward ? of.forward_ratio : of.reverse_ratio), .before = {}, .after = {}};
-        if constexpr (carry != Carry::geometry) {
+        if constexpr (with_indices) {
             found.before = look_up(kForward ? of.before : of.after);
             found.after = look_up(kForward ? of.after : of.before);
         }
@@ -325,12 +325,21 @@ class BlockTracer {
             const State own{special.to_own(from_vertex(here, before) - vertex), special.to_own(before.direction)};
             Intersection<Numbers> met;
             Refraction<Numbers> bent;
+            Numbers added_path(Scalar(0));
+            Vec3<Numbers> normal;
             if (special.has_shape) {
-                Vec3<Numbers> normal;
                 std::tie(met, normal) = intersect(special.shape, own.origin, own.direction, heading());
-                bent = refract(own.direction, normal, met.cos_incidence, met.sin2_incidence, media.ratio);
             } else {
                 met = intersect(own.origin, own.direction, curvature(here), heading());
+            }
+            if (special.thin.kind != ThinKind::none) {
+                normal = special.has_shape ? normal : normal_of_sphere(met.point, curvature(here), heading());
+                const ThinBending<Numbers> thin = bent_thin<per_lane>(here, packet, own, met, normal);
+                bent = {.direction = thin.direction, .cos_refraction = {}, .transmitted = thin.passes};
+                added_path = thin.optical_path;
+            } else if (special.has_shape) {
+                bent = refract(own.direction, normal, met.cos_incidence, met.sin2_incidence, media.ratio);
+            } else {
                 bent = bent_at(here, own, met, media);
             }
             const Mask beyond = !is_inside(here, met);
@@ -341,11 +350,42 @@ class BlockTracer {
             add_path(packet, media, met.distance, fate.met);
             add_depth<per_lane>(here, packet, met.distance, fate.met);
             if constexpr (carry != Carry::geometry) {
-                const Numbers passing = special.coating.is_bare() ? fresnel(media, met, bent)
-                                                                  : coated_transmittances(here, packet, met, fate.on);
+                Numbers passing(Scalar(1));
+                if (!special.coating.is_bare()) {
+                    passing = coated_transmittances(here, packet, met, fate.on);
+                } else if (special.thin.kind == ThinKind::none) {
+                    passing = fresnel(media, met, bent);
+                }
                 add_loss(packet, passing * open, fate.on);
             }
+            if (special.thin.kind != ThinKind::none) {
+                add_path(packet, {.ratio = {}, .before = Numbers(Scalar(1)), .after = {}}, added_path, fate.on);
+            }
         }
+    }
+
+    /// At the surface's thin element, in its own axes.
+    template <bool per_lane>
+    ThinBending<Numbers> bent_thin(const Here& here, int packet, const State& own, const Intersection<Numbers>& met,
+                                   const Vec3<Numbers>& normal) const {
+        const Media media = this->template media<per_lane, true>(here.index, packet);
+        const ThinMeeting<Numbers> meeting{met.point,    own.direction, normal,   met.cos_incidence,
+                                           media.before, media.after,   heading()};
+        const ThinElement<Scalar>& thin = lens_.specials[here.surface.special].thin;
+        if (!per_lane || thin.kind == ThinKind::ideal_lens) {
+            return bend_at(thin, meeting);
+        }
+        Numbers linear;
+        std::array<Numbers, kPhaseTerms> radial;
+        for (int lane = 0; lane < kLanes; ++lane) {
+            const ThinElement<Scalar>& of_lane =
+                lane_thin_element(*lens_.lens, rays_.wavelength[at(packet) + lane], here.index);
+            linear.set(lane, of_lane.linear);
+            for (std::size_t i = 0; i < radial.size(); ++i) {
+                radial[i].set(lane, of_lane.radial[i]);
+            }
+        }
+        return bend_at_phase(linear, radial, meeting);
     }
 
     static Numbers fresnel(const Media& media, const Intersection<Numbers>& met, const Refraction<Numbers>& bent) {
@@ -394,13 +434,20 @@ class BlockTracer {
         const Mask on = inside && transmitted;
         mark(going && !met, packet, here.index, RayStatus::missed, false);
         mark(met && beyond, packet, here.index, here.surface.is_stop ? RayStatus::stopped : RayStatus::clipped, true);
-        mark(inside && !on, packet, here.index, RayStatus::total_internal_reflection, false);
+        mark(inside && !on, packet, here.index, why_it_ends(here), false);
         Vec3<Numbers> last = select(met, after.origin, before.origin);
         const Numbers global_z = last.z + select(met, Numbers(here.surface.vertex_z), Numbers(last_vertex_z_));
         last.z = select(going && !on, global_z, last.z);
         store(packet, {last, select(on, after.direction, before.direction)});
         set_going(packet, on);
         return {met, on};
+    }
+
+    /// Of a ray that is met and not let on.
+    RayStatus why_it_ends(const Here& here) const {
+        const bool is_thin =
+            here.surface.special >= 0 && lens_.specials[here.surface.special].thin.kind != ThinKind::none;
+        return is_thin ? RayStatus::evanescent : RayStatus::total_internal_reflection;
     }
 
     /// Notes the fate of the rays in `lanes`; of those that have none yet, if `only_first`.

@@ -37,12 +37,15 @@ struct KernelRays {
     int size;
 };
 
-/// `mask_transmittance`, `coated_transmittance` and `fading` of one ray. Not inline, so that they are compiled for any
-/// machine.
+/// `mask_transmittance`, `coated_transmittance` and `fading` of one ray, and its thin element. Not inline, so that they
+/// are compiled for any machine.
 template <class T>
 T lane_mask_transmittance(const SpectralLens<T>& lens, int surface, T x, T y);
 template <class T>
 T lane_coated_transmittance(const SpectralLens<T>& lens, int wavelength, int surface, bool forward, T cos_incidence);
+
+template <class T>
+const ThinElement<T>& lane_thin_element(const SpectralLens<T>& lens, int wavelength, int surface);
 
 template <class T>
 T lane_fading(T optical_depth);

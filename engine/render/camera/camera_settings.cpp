@@ -196,6 +196,8 @@ optics::Lens camera_lens(const CameraSettings& camera) {
         lens.stop_mask = optics::StopMask(*camera.blades);
     }
     lens.barrel = camera.barrel.value_or(lens.barrel);
+    optics::require_air_in_front(lens, "a camera");
+    optics::require_no_gratings(lens, "a camera's field");
     if (optics::refractive_index(lens.surfaces.back().medium.formula, spectral::kLineD) != 1.0) {
         throw InputError(fmt::format("{}: its last surface is followed by {}; cameras have their sensors in air",
                                      lens.name, lens.surfaces.back().medium.name));

@@ -202,7 +202,7 @@ LensProfile traced_profile(const optics::Lens& lens, const std::vector<double>& 
                         "exact model",
                         lens.name));
     }
-    optics::require_no_mirrors(lens, "a radial profile");
+    optics::require_refraction_alone(lens, "a radial profile");
     const auto count = static_cast<int>(wavelengths_nm.size());
     const int colours = std::min(count, kMostLightColours);
     std::vector<double> traced_nm;

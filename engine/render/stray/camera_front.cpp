@@ -14,7 +14,7 @@ CameraFront::CameraFront(const Camera& camera) : camera_(&camera) {
             fmt::format("the camera's model is \"{}\", expected \"exact\": in no other one does light go astray",
                         name_of(camera.settings().model)));
     }
-    optics::require_no_mirrors(camera.lens().value(), "stray light");
+    optics::require_refraction_alone(camera.lens().value(), "stray light");
     front_ = pupil::front_sphere(middle());
 }
 

@@ -49,7 +49,8 @@ std::vector<std::string> changes_in_words(const calibration::ExplainedLens& lens
 /// The lens with the pixel pitch that the profile has; nothing where it does not image the points.
 std::optional<FittedTwin> fit_at_pitch(const TwinSettings& settings, const optics::Lens& lens,
                                        const calibration::Profile& profile, double& scale) {
-    FittedTwin twin{.seen = calibration::seen_points({{settings.photos, profile}}), .camera = {}};
+    FittedTwin twin;
+    twin.seen = calibration::seen_points({{settings.photos, profile}});
     const calibration::ExplainedLens explained =
         calibration::explained_lens(lens, twin.seen, settings.free, settings.focus_distance_mm);
     twin.points_not_imaged = calibration::keep_imaged(explained, twin.seen);

@@ -144,9 +144,9 @@ std::array<Vec2d, 2> close_rays(const optics::TraceLens<long double>& lens, cons
     return slopes;
 }
 
-// How image points move with the offset, by the pencil and by close rays: sphere, conic, asphere, toroid, all of them
-// tilted and decentred. The remainder of the extrapolation is of order h⁴ = 1e-12 times a fifth derivative; noise is
-// 1e-19 · 100 / 1e-3.
+// How image points move with the offset, by the pencil and by close rays: sphere, conic, asphere, toroid, a kinoform
+// and an ideal lens, all of them tilted and decentred. The remainder of the extrapolation is of order h⁴ = 1e-12 times
+// a fifth derivative; noise is 1e-19 · 100 / 1e-3.
 TEST(RayPencil, MovesAsCloseRealRaysDo) {
     optics::Prescription prescription;
     prescription.surfaces = {surface(45.0, 6.0, 15.0, 1.6),  surface(-300.0, 5.0, 15.0), stop(4.0, 6.0),
@@ -156,12 +156,18 @@ TEST(RayPencil, MovesAsCloseRealRaysDo) {
     prescription.surfaces[3].asphere = {1e-4, 2e-6, -3e-9};
     prescription.surfaces[4].radius_x_mm = 120.0;
     prescription.surfaces[4].asphere = {0.0, 1e-6};
+    prescription.surfaces[4].phase =
+        optics::PhaseElement{.radial = {-1e-3, 4e-6, -1e-8}, .design_wavelength_nm = 500.0};
+    prescription.surfaces[6].thickness_mm = 10.0;
+    prescription.surfaces.push_back(surface(kInfinity, 60.0, 15.0));
+    prescription.surfaces[7].ideal_focal_length_mm = 90.0;
     for (const bool is_displaced : {false, true}) {
         if (is_displaced) {
             // Not in a chief ray's way at its vertex, where the third derivative jumps.
             prescription.surfaces[5].odd_asphere = {0.0, 2e-4, -3e-6};
             prescription.surfaces[5].misalignment.decentre_mm = {0.5, 0.3};
             prescription.surfaces[0].misalignment = {.decentre_mm = {0.2, -0.1}, .tilt_deg = {1.5, 0.5, 10.0}};
+            prescription.surfaces[7].misalignment = {.decentre_mm = {0.4, -0.5}, .tilt_deg = {3.0, -2.0, 5.0}};
             prescription.surfaces[4].misalignment = {.decentre_mm = {-0.3, 0.2}, .tilt_deg = {-2.0, 1.0, 25.0}};
         }
         const optics::Lens lens = optics::make_lens(prescription, {});

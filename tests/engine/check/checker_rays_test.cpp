@@ -203,7 +203,7 @@ TEST(CheckerRays, WhatIsNotAskedOfTiltedAndToroidalLensesIsSaid) {
     const CheckReport report = checked(clipped);
     EXPECT_EQ(find(report, "chief-ray"), nullptr);
     ASSERT_NE(find(report, "not-judged"), nullptr);
-    EXPECT_TRUE(says(find(report, "not-judged")->message, "tilted, shifted or toroidal"));
+    EXPECT_TRUE(says(find(report, "not-judged")->message, "tilted, shifted, toroidal or ruled"));
 }
 
 TEST(CheckerRays, WhatIsNotAskedOfAFiniteObjectsFieldIsSaid) {

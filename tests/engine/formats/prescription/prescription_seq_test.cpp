@@ -310,7 +310,7 @@ TEST(Seq, EveryLineEndIsOne) {
 
 TEST(Seq, NamesWhatItDoesNotUnderstand) {
     const optics::Prescription lens = parse(
-        "LEN\nQQQ 1\nVUY 0 0.2\nNAO 0.1\nSO 0.1 100\nS 50 2 517642\n STO; ZZZ 1; REX 3; CCY 0\n DIF DOE; HOR 1\n"
+        "LEN\nQQQ 1\nVUY 0 0.2\nNAO 0.1\nSO 0.1 100\nS 50 2 517642\n STO; ZZZ 1; REX 3; CCY 0\n DIF GRT; GRO 1\n"
         "S -0.01 3 REFL\n PIM; RET S1\nSI -0.01 0\n");
     EXPECT_TRUE(has_finding(lens, "not-understood", "line 2: QQQ"));
     EXPECT_TRUE(has_finding(lens, "not-understood", "line 7, surface 1 of the file: ZZZ"));
@@ -322,7 +322,7 @@ TEST(Seq, NamesWhatItDoesNotUnderstand) {
     EXPECT_TRUE(has_finding(lens, "object-shape", ""));
     EXPECT_TRUE(has_finding(lens, "image-shape", ""));
     EXPECT_TRUE(has_finding(lens, "radius-mode", "taken as radii"));
-    EXPECT_TRUE(has_finding(lens, "surface-type", "HOR"));
+    EXPECT_TRUE(has_finding(lens, "surface-type", "GRO"));
     EXPECT_EQ(lens.remarks.size(), 10U) << "each once";
     EXPECT_EQ(lens.surfaces[0].radius_mm, 50.0);
 }

@@ -35,7 +35,7 @@ std::vector<Ray<double>> rays_at(const Lens& lens, int count, double steepest) {
 }
 
 /// Which fates the rays had, so that a test can say that it saw them all.
-using Fates = std::array<int, 5>;
+using Fates = std::array<int, 6>;
 
 Fates operator+(const Fates& a, const Fates& b) {
     Fates sum{};
@@ -195,6 +195,24 @@ TEST(TracePacket, TracesMirrors) {
     const Fates fates = compare<Direction::forward>(at_three(lens), rays_at(lens, 400, 0.3));
     EXPECT_GT(fates[static_cast<std::size_t>(RayStatus::ok)], 20);
     EXPECT_GT(fates[static_cast<std::size_t>(RayStatus::clipped)], 20);
+}
+
+// An ideal lens behind a grating and a kinoform on a curved, tilted surface, at three wavelengths: their phases differ
+// from lane to lane, and some orders are evanescent.
+TEST(TracePacket, TracesThinElements) {
+    Prescription prescription{.name = "thin", .surfaces = {}};
+    PrescribedSurface ruled{.radius_mm = -60.0, .thickness_mm = 8.0, .semi_diameter_mm = 12.0, .medium = {}};
+    ruled.phase = PhaseElement{.order = 1.0, .lines_per_mm = 1500.0, .radial = {1e-3, -1e-7}};
+    ruled.phase->design_wavelength_nm = 600.0;
+    ruled.misalignment.tilt_deg = {10.0, 0.0, 30.0};
+    PrescribedSurface ideal{.thickness_mm = 40.0, .semi_diameter_mm = 9.0, .medium = {}, .is_stop = true};
+    ideal.ideal_focal_length_mm = 40.0;
+    prescription.surfaces = {ruled, ideal};
+    const Lens lens = make_lens(prescription, {});
+    const Fates fates = compare<Direction::forward>(at_three(lens), rays_at(lens, 600, 0.6));
+    for (const RayStatus status : {RayStatus::ok, RayStatus::clipped, RayStatus::evanescent}) {
+        EXPECT_GT(fates[static_cast<std::size_t>(status)], 10) << status_name(status);
+    }
 }
 
 // A shaped, displaced surface.
