@@ -14,6 +14,7 @@
 #include "engine/base/infinity.h"
 #include "engine/base/vec.h"
 #include "engine/optics/finding.h"
+#include "engine/optics/glass.h"
 #include "engine/optics/projection.h"
 #include "engine/optics/thin_element.h"
 #include "engine/optics/wall_finish.h"
@@ -290,6 +291,7 @@ struct Prescription {
     std::vector<double> wavelengths_nm;             // that a design program's file names, the
                                                     // reference first; may be empty
     std::vector<std::filesystem::path> catalogues;  // glass files of its own
+    std::vector<Glass> enclosed_glasses;            // that stand in the lens's own file
     std::vector<std::string> preferred_makers;      // whose glass a bare name means first
     bool figures_are_spare =
         false;                     // n_d and V_d beside a glass's name are no claim: they count where none has the name

@@ -35,6 +35,7 @@ optics::GlassCatalogue with_own_catalogues(optics::GlassCatalogue glasses, const
     for (const std::filesystem::path& file : prescription.catalogues) {
         glasses.add(read_glass_file(file).glasses);
     }
+    glasses.add(prescription.enclosed_glasses);
     return glasses;
 }
 

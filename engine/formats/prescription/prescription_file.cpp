@@ -26,6 +26,7 @@ constexpr Form kForms[] = {
     {".toml", parse_toml_prescription, to_toml},
     {".csv", parse_csv_prescription, to_csv},
     {".zmx", parse_zmx, to_zmx},
+    {".zar", parse_zar, nullptr},
     {".seq", parse_seq, nullptr},
     {".dat", parse_pbrt_lens, to_pbrt_lens},
     {".json", parse_optiland, nullptr},

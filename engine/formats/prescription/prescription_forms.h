@@ -38,6 +38,7 @@ inline constexpr std::array kFieldKinds = {
 optics::Prescription parse_toml_prescription(const std::string& text, const std::filesystem::path& file);
 optics::Prescription parse_csv_prescription(const std::string& text, const std::filesystem::path& file);
 optics::Prescription parse_zmx(const std::string& text, const std::filesystem::path& file);
+optics::Prescription parse_zar(const std::string& bytes, const std::filesystem::path& file);
 optics::Prescription parse_seq(const std::string& text, const std::filesystem::path& file);
 optics::Prescription parse_pbrt_lens(const std::string& text, const std::filesystem::path& file);
 optics::Prescription parse_optiland(const std::string& text, const std::filesystem::path& file);

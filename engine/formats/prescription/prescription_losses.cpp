@@ -136,8 +136,10 @@ std::vector<optics::Finding> losses_of_tables(const optics::Prescription& prescr
         "which groups move to focus is left out");
     add(prescription.surroundings == optics::Surroundings::vacuum, "lost-surroundings", optics::Severity::warning,
         "that the lens is in vacuum is left out");
-    add(!prescription.catalogues.empty() || !prescription.preferred_makers.empty(), "lost-catalogues",
-        optics::Severity::warning, "the lens's own glass catalogues and preferred makers are left out");
+    add(!prescription.catalogues.empty() || !prescription.enclosed_glasses.empty() ||
+            !prescription.preferred_makers.empty(),
+        "lost-catalogues", optics::Severity::warning,
+        "the lens's own glass catalogues and preferred makers are left out");
     add(prescription.projection != optics::Projection::rectilinear, "lost-projection", optics::Severity::info,
         fmt::format("the {} projection that the lens is meant to have is left out",
                     optics::projection_name(prescription.projection)));

@@ -213,6 +213,9 @@ class Writer {
             });
             line("catalogues", toml_strings(names));
         }
+        if (!lens.enclosed_glasses.empty()) {
+            lose("lost-catalogues", 0, "the glass catalogues that its file encloses");
+        }
         if (!lens.preferred_makers.empty()) {
             line("makers", toml_strings(lens.preferred_makers));
         }

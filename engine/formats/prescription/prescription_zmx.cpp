@@ -6,12 +6,16 @@
 #include <cmath>
 #include <set>
 
+#include "engine/base/file.h"
 #include "engine/base/infinity.h"
 #include "engine/base/input_error.h"
+#include "engine/base/text.h"
 #include "engine/base/text_encoding.h"
+#include "engine/formats/glass/glass_file.h"
 #include "engine/formats/prescription/design_program.h"
 #include "engine/formats/prescription/prescription_forms.h"
 #include "engine/formats/prescription/surface_chain.h"
+#include "engine/formats/prescription/zar_archive.h"
 #include "engine/formats/prescription/zmx_file.h"
 #include "engine/formats/prescription/zmx_shape.h"
 
@@ -308,6 +312,37 @@ optics::Prescription parse_zmx(const std::string& text, const std::filesystem::p
     prescription.preferred_makers = zmx.catalogues;
     prescription.figures_are_spare = true;  // Zemax takes a name's glass from its catalogue, whatever stands beside it
     prescription.remarks = remarks.renumbered(rows_of_surfaces(zmx));
+    return prescription;
+}
+
+optics::Prescription parse_zar(const std::string& bytes, const std::filesystem::path& file) {
+    constexpr std::size_t kMostCatalogues = 20;
+    std::vector<ZarMember> lenses;
+    std::vector<ZarMember> catalogues;
+    for (ZarMember& member : zar_members(bytes, file)) {
+        const std::string extension = lower_extension(member.name);
+        if (extension == ".zmx" || extension == ".agf") {
+            (extension == ".zmx" ? lenses : catalogues).push_back(std::move(member));
+        }
+    }
+    if (lenses.size() != 1 || catalogues.size() > kMostCatalogues) {
+        std::vector<std::string> names;
+        std::ranges::transform(lenses, std::back_inserter(names),
+                               [](const ZarMember& lens) { return printable(lens.name); });
+        throw InputError(fmt::format(
+            "{}: holds {} lenses{}{} and {} glass catalogues, expected one .zmx and up to {} .agf", file.string(),
+            names.size(), names.empty() ? "" : ": ", fmt::join(names, ", "), catalogues.size(), kMostCatalogues));
+    }
+    optics::Prescription prescription = parse_zmx(unpacked(lenses.front(), file), file);
+    for (const ZarMember& catalogue : catalogues) {
+        try {
+            std::ranges::move(parse_agf(unpacked(catalogue, file), file / catalogue.name).glasses,
+                              std::back_inserter(prescription.enclosed_glasses));
+        } catch (const InputError& error) {
+            prescription.remarks.push_back({"not-read", optics::Severity::warning, 0,
+                                            fmt::format("a glass catalogue is left out: {}", error.what())});
+        }
+    }
     return prescription;
 }
 

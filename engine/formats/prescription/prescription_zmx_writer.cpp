@@ -424,8 +424,8 @@ class ZmxWriter {
         if (original_.surroundings == optics::Surroundings::vacuum) {
             lose("lost-surroundings", 0, "that the lens stands in vacuum");
         }
-        if (!original_.catalogues.empty()) {
-            lose("lost-catalogues", 0, "where the lens's own glass files lie");
+        if (!original_.catalogues.empty() || !original_.enclosed_glasses.empty()) {
+            lose("lost-catalogues", 0, "the lens's own glass catalogues");
         }
         if (stated.efl_mm || stated.bfl_mm || stated.total_track_mm || stated.f_number ||
             stated.entrance_pupil_diameter_mm) {
