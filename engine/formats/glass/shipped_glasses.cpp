@@ -17,7 +17,7 @@ namespace lensproof::formats {
 namespace {
 
 // In the order in which names are looked up.
-constexpr std::array kTables = {"schott", "schott-obsolete", "ohara", "hoya", "hikari", "cdgm", "materials"};
+constexpr std::array kTables = {"schott", "schott-obsolete", "ohara", "hoya", "hikari", "cdgm", "materials", "daimon"};
 
 std::filesystem::path glass_folder() {
     return data_root() / "lenses" / "glass";
