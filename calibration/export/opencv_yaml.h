@@ -21,9 +21,8 @@ struct OpencvExport {
 /// k1 k2 k3 k4), avg_reprojection_error and largest_difference_px. OpenCV's pixels are the profile's: the centre of the
 /// top-left pixel is (0, 0).
 ///
-/// A Brown-Conrady or Kannala-Brandt profile is written as it is. Any other is fitted by all three models over the
-/// covered frame (linear least squares in px; the rational one by iterated reweighting after Sanathanan & Koerner
-/// 1963), and the closest is written. Throws InputError for a profile without geometry, and where none follows it.
+/// A Brown-Conrady or Kannala-Brandt profile is written as it is. Any other is fitted by all three models, and the
+/// closest is written (`opencv_camera`, which says how, and what it throws).
 OpencvExport opencv_export(const Profile& profile);
 
 }  // namespace lensproof::calibration

@@ -6,6 +6,7 @@
 
 #include "calibration/export/lensfun.h"
 #include "calibration/export/opencv_yaml.h"
+#include "calibration/export/robot_camera.h"
 #include "calibration/export/st_map.h"
 #include "calibration/profile/profile.h"
 #include "engine/base/input_error.h"
@@ -104,6 +105,19 @@ Written write_opencv(const ExportOptions& options, const calibration::Profile& p
     return {.files = {options.output}, .notes = result.notes, .largest_difference_px = result.largest_difference_px};
 }
 
+Written write_robot_camera(const ExportOptions& options, const calibration::Profile& profile) {
+    using calibration::RobotProgram;
+    const RobotProgram program = options.format == "mrcal" ? RobotProgram::mrcal
+                                 : options.format == "ros" ? RobotProgram::ros
+                                                           : RobotProgram::kalibr;
+    const calibration::RobotCameraExport result = calibration::robot_camera_export(profile, program);
+    write_file(options.output, result.text);
+    Written written{
+        .files = {options.output}, .notes = result.notes, .largest_difference_px = result.largest_difference_px};
+    written.notes.insert(written.notes.begin(), result.model);
+    return written;
+}
+
 /// maps.exr → maps_undistort.exr
 fs::path with_suffix(const fs::path& file, const std::string& suffix) {
     return file.parent_path() / (file.stem().string() + suffix + file.extension().string());
@@ -131,7 +145,10 @@ Written write_as(const ExportOptions& options, const calibration::Profile& profi
     if (options.format == "lensfun") {
         return write_lensfun(options, profile);
     }
-    return options.format == "opencv" ? write_opencv(options, profile) : write_st_maps(options, profile);
+    if (options.format == "opencv") {
+        return write_opencv(options, profile);
+    }
+    return options.format == "stmap" ? write_st_maps(options, profile) : write_robot_camera(options, profile);
 }
 
 /// The same; what cannot be exported is said of the profile's file, whose name inside may be a photo's.
@@ -170,15 +187,17 @@ int run_export(const ExportOptions& options) {
 
 void add_export_command(Program& program) {
     const auto options = std::make_shared<ExportOptions>();
-    Command command = program.add_command("export", "Write a measured profile for lensfun, OpenCV or compositing");
+    Command command = program.add_command(
+        "export", "Write a measured profile for lensfun, OpenCV, mrcal, ROS, Kalibr or compositing");
     command.footer(
         "Example: lensproof export profile.json --to lensfun --crop-factor 1.53 --focal-length-mm 18 -o lens.xml\n"
         "lensfun: XML for its database. opencv: YAML as cv::FileStorage reads it. stmap: two EXR maps,\n"
-        "FILE_undistort.exr and FILE_distort.exr (u and v from 0 to 1, origin at the lower left).");
+        "FILE_undistort.exr and FILE_distort.exr (u and v from 0 to 1, origin at the lower left).\n"
+        "mrcal: a .cameramodel. ros: the YAML of a camera_info. kalibr: a camchain.yaml of one camera.");
     command.add_option("PROFILE", options->profile, "A profile that measure wrote").required();
-    command.add_option("--to", options->format, "lensfun, opencv or stmap")
+    command.add_option("--to", options->format, "lensfun, opencv, stmap, mrcal, ros or kalibr")
         .required()
-        .check(one_of({"lensfun", "opencv", "stmap"}));
+        .check(one_of({"lensfun", "opencv", "stmap", "mrcal", "ros", "kalibr"}));
     command.add_option("-o,--output", options->output, "The file to write").required().type_name("FILE");
     command.add_option("--crop-factor", options->crop_factor, "lensfun: the camera's (default: the profile's)")
         .check(kPositiveOption);
