@@ -33,6 +33,7 @@ struct CompareOptions {
     double f_number = 8.0;
     double focus_mm = kInfinity;
     std::string response = "camera";
+    double pixel_pitch_um = 0.0;
     MeasuredOptions measured;
     PictureOptions pictures;
 };
@@ -45,14 +46,26 @@ bool is_lens(const std::string& name) {
     return name.find('.') == std::string::npos || has_extension(name, ".toml") || has_extension(name, ".csv");
 }
 
+/// A profile's file; where the pixel pitch was not known when it was measured, with that of the command.
+calibration::Profile read_profile(const std::string& file, const CompareOptions& options) {
+    calibration::Profile profile = calibration::read_profile(file);
+    if (options.pixel_pitch_um > 0.0) {
+        if (profile.pixel_pitch_um && *profile.pixel_pitch_um != options.pixel_pitch_um) {
+            throw InputError(fmt::format("--pixel-pitch {}: {} was measured with a pixel pitch of {} um",
+                                         options.pixel_pitch_um, file, *profile.pixel_pitch_um));
+        }
+        profile.pixel_pitch_um = options.pixel_pitch_um;
+    }
+    return profile;
+}
+
 /// The lens seen by the camera that `like` was taken with, and what is to be known of the lens.
 std::pair<calibration::Profile, std::vector<optics::Finding>> profile_of_lens(const std::string& lens,
                                                                               const calibration::Profile& like,
                                                                               const CompareOptions& options) {
     if (!like.pixel_pitch_um) {
         throw InputError(
-            fmt::format("{} has no pixel_pitch_um, which {} needs to be compared with it: measure with "
-                        "--pixel-pitch",
+            fmt::format("{} has no pixel_pitch_um, which {} needs to be compared with it: expected --pixel-pitch",
                         lens == options.a ? options.b : options.a, lens));
     }
     const render::CameraSettings camera{.lens = lens,
@@ -147,6 +160,9 @@ void check_limits(bool profiles, const CompareOptions& options) {
     if (profiles && options.pictures.is_shown()) {
         throw InputError(fmt::format("--maps and --report show pictures; {} and {} are not", options.a, options.b));
     }
+    if (!profiles && options.pixel_pitch_um > 0.0) {
+        throw InputError(fmt::format("--pixel-pitch is that of profiles; {} and {} are not", options.a, options.b));
+    }
     const std::vector<std::pair<const char*, double>> of_profiles = {
         {"--position-limit", options.position_limit_px},
         {"--distortion-limit", options.distortion_limit_percent},
@@ -184,16 +200,15 @@ int run_compare(const CompareOptions& options) {
         }
     }
     if (a_is_profile && b_is_profile) {
-        return compare_profiles(calibration::read_profile(options.a), calibration::read_profile(options.b), {},
-                                options);
+        return compare_profiles(read_profile(options.a, options), read_profile(options.b, options), {}, options);
     }
     if (a_is_profile && is_lens(options.b)) {
-        const calibration::Profile a = calibration::read_profile(options.a);
+        const calibration::Profile a = read_profile(options.a, options);
         const auto [lens, findings] = profile_of_lens(options.b, a, options);
         return compare_profiles(a, lens, findings, options);
     }
     if (b_is_profile && is_lens(options.a)) {
-        const calibration::Profile b = calibration::read_profile(options.b);
+        const calibration::Profile b = read_profile(options.b, options);
         const auto [lens, findings] = profile_of_lens(options.a, b, options);
         return compare_profiles(lens, b, findings, options);
     }
@@ -225,6 +240,11 @@ void add_compare_command(Program& program) {
         .check(either(kPositiveOption, one_of({"inf"})))
         .shows_default();
     command.add_option("--response", options->response, "Sensor response behind a lens").shows_default();
+    command
+        .add_option("--pixel-pitch", options->pixel_pitch_um,
+                    "Pixel pitch of a profile that was measured without one, um")
+        .check(kPositiveOption)
+        .type_name("UM");
     add_common_options(command, options->common);
     command.runs([options] { return run_compare(*options); });
 }

@@ -446,6 +446,21 @@ TEST(Run, WritesItsReportAndItsProfileReadsBack) {
         place.file("broken.json", content);
         expect_refused(place, {"compare", "broken.json", profile}, {"broken.json", word});
     }
+    // A profile that was measured without the pixel pitch is compared with that of the command, without a new
+    // measurement.
+    const double pitch = parsed["pixel_pitch_um"];
+    edited = parsed;
+    edited["pixel_pitch_um"] = nullptr;
+    place.file("no-pitch.json", edited.dump());
+    const std::vector<std::string> of_lens = {"compare", "tessar", "no-pitch.json", "--focus", "10000", "--json", "-"};
+    EXPECT_TRUE(says(place.run(of_lens).err, "expected --pixel-pitch"));
+    std::vector<std::string> with_pitch = of_lens;
+    with_pitch.insert(with_pitch.end(), {"--pixel-pitch", std::to_string(pitch)});
+    const Json found = Json::parse(place.run(with_pitch).out);
+    const Json stated = Json::parse(place.run({"compare", "tessar", profile, "--focus", "10000", "--json", "-"}).out);
+    EXPECT_EQ(found["curves"], stated["curves"]);
+    expect_refused(place, {"compare", "tessar", profile, "--focus", "10000", "--pixel-pitch", "1.5"},
+                   {"--pixel-pitch"});
     edited = parsed;
     edited["curves"] = Json::object();
     place.file("bare.json", edited.dump());
