@@ -33,6 +33,11 @@ struct Stretch {
 
 using Profile = std::array<double, 2 * kWidest_px + 1>;
 
+std::size_t place_of(int distance) {
+    const int place = distance + kWidest_px;
+    return static_cast<std::size_t>(place);
+}
+
 // The mean light at each distance across, from -kWidest_px on.
 Profile profile_across(const cv::Mat& plane, const EdgeRegion& region) {
     Profile light{};
@@ -44,7 +49,7 @@ Profile profile_across(const cv::Mat& plane, const EdgeRegion& region) {
             sum += light_at(plane, {region.centre_px.x + t * region.along.x + d * normal.x,
                                     region.centre_px.y + t * region.along.y + d * normal.y});
         }
-        light[static_cast<std::size_t>(d + kWidest_px)] = sum / (2 * reach + 1);
+        light[place_of(d)] = sum / (2 * reach + 1);
     }
     return light;
 }
@@ -63,7 +68,7 @@ struct Tones {
 // The tones between 0.6 and 1 of the width on either side.
 Tones tones(const Profile& light, int width) {
     const int from = static_cast<int>(std::ceil(0.6 * width));
-    const auto at = [&](int d) { return light[static_cast<std::size_t>(d + kWidest_px)]; };
+    const auto at = [&](int d) { return light[place_of(d)]; };
     Tones result;
     for (int d = from; d <= width; ++d) {
         result.low_side += at(-d) / (width - from + 1);

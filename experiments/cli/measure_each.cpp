@@ -101,7 +101,7 @@ OwnResult measure_one(const MeasureOptions& options, const calibration::ProfileS
             fs::create_directories(options.output);
             calibration::write_profile(*own.profile, fs::path(options.output) / (name + ".json"));
         }
-        if (!options.plots_folder.empty() && !own.profile->sharpness.empty()) {
+        if (!options.plots_folder.empty()) {
             write_measure_plots(fs::path(options.plots_folder) / name, *own.profile, input);
         }
     } catch (const InputError& e) {

@@ -57,7 +57,7 @@ int measure_each(const MeasureOptions& options, const calibration::ProfileSource
 calibration::Profile run_bands(const MeasureOptions& options, const calibration::ProfileSource& source);
 
 /// Writes into `folder`, which is made where it is missing: a CSV of the edges, for each channel a map of the sharpness
-/// over the frame, and each picture with its edges marked. Throws InputError where there are no edges.
+/// over the frame, and each picture with its edges marked; where there are none, says so on standard error.
 void write_measure_plots(const std::filesystem::path& folder, const calibration::Profile& profile,
                          const calibration::MeasureInput& input);
 

@@ -8,6 +8,7 @@
 #include "calibration/sharpness/sharpness_map.h"
 #include "engine/base/csv.h"
 #include "experiments/cli/measure_parts.h"
+#include "experiments/cli/terminal.h"
 #include "experiments/draw/analysis_plots.h"
 #include "experiments/draw/sharpness_plots.h"
 #include "experiments/findings/shown_picture.h"
@@ -36,6 +37,7 @@ std::vector<draw::MarkedEdge> marked(const std::vector<calibration::ProfileEdge>
 draw::FrameMap map_of(const calibration::Profile& profile, const std::string& channel,
                       const std::vector<calibration::ProfileEdge>& listed) {
     std::vector<calibration::EdgeMtf> edges;
+    edges.reserve(listed.size());
     for (const calibration::ProfileEdge& edge : listed) {
         edges.push_back(edge.edge);
     }
@@ -84,11 +86,12 @@ const std::string& shown_channel(const calibration::Profile& profile) {
 
 void write_measure_plots(const std::filesystem::path& folder, const calibration::Profile& profile,
                          const calibration::MeasureInput& input) {
-    std::map<std::string, std::string> files;
-    if (profile.sharpness.empty()) {
-        throw InputError(fmt::format("--plots: {} has no edges to draw: {}", profile.name,
-                                     why_not_measured(profile, calibration::part::kSharpness, "none was measured")));
+    if (std::ranges::all_of(profile.sharpness, [](const auto& channel) { return channel.second.empty(); })) {
+        print_message("lensproof: --plots: {} has no edges to draw: {}\n", profile.name,
+                      why_not_measured(profile, calibration::part::kSharpness, "none was measured"));
+        return;
     }
+    std::map<std::string, std::string> files;
     files["edges.csv"] = edges_csv(profile);
     for (const auto& [channel, edges] : profile.sharpness) {
         const std::vector<draw::MarkedEdge> all = marked(edges, "");

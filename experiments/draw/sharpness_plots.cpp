@@ -48,6 +48,7 @@ HeatMap colours_of(const AxisRange& range) {
 
 AxisRange sharpness_range(const std::vector<MarkedEdge>& edges) {
     std::vector<double> values;
+    values.reserve(edges.size());
     for (const MarkedEdge& edge : edges) {
         values.push_back(edge.mtf50_cycles_per_px);
     }

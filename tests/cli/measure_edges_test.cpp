@@ -106,6 +106,18 @@ TEST(MeasureEdges, ABoardThatFacesTheCamera) {
     EXPECT_EQ(held["model"]["parameters"]["centre_x_px"]["value"], 159.5);
 }
 
+// Discs have no edges that could be drawn; all else is measured as ever.
+TEST(MeasureEdges, SaysWhereThereAreNone) {
+    const Workplace place;
+    ASSERT_EQ(place.run({"chart", "disc-grid", "--dpi", "50", "-o", "discs.png", "--quiet"}).status, 0);
+    const Outcome outcome =
+        place.run({"measure", "discs.png", "--chart", "discs.toml", "--no-self-test", "--plots", "plots"});
+    EXPECT_EQ(outcome.status, 0) << outcome.err;
+    EXPECT_TRUE(says(outcome.err, "no edges to draw"));
+    EXPECT_TRUE(says(outcome.out, "distortion"));
+    EXPECT_FALSE(place.has("plots"));
+}
+
 TEST(MeasureEdges, RefusesWhatMakesNoSense) {
     const Workplace place;
     write_picture(place, "photo.png", 1);
