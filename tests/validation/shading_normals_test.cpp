@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/render/integrators/path_tracer.h"
 #include "tests/engine/scene/scene_shapes.h"
 #include "tests/validation/studio.h"
 
@@ -49,9 +50,10 @@ Seen seen_of(const SceneParts& parts, int paths) {
     Seen seen;
     constexpr int kSide = 61;
     for (int i = 0; i < kSide * kSide; ++i) {
-        const Ray<double> ray{
-            {210.0 * (i % kSide + 0.5) / kSide - 105.0, 210.0 * (i / kSide + 0.5) / kSide - 105.0, 500.0},
-            {0.0, 0.0, -1.0}};
+        const int column = i % kSide;
+        const int row = i / kSide;
+        const Ray<double> ray{{210.0 * (column + 0.5) / kSide - 105.0, 210.0 * (row + 0.5) / kSide - 105.0, 500.0},
+                              {0.0, 0.0, -1.0}};
         const auto hit = scene::intersect(*scene.geometry, ray.origin, ray.direction, 0.0, 1e9);
         if (!hit) {
             continue;

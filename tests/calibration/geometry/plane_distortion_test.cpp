@@ -34,6 +34,7 @@ const Pose kTilted{{0.5, -0.3, 0.1}, {-10.0, 5.0, 700.0}};
 TEST(PlaneDistortion, IsTheLensesWhateverThePose) {
     for (const std::vector<Pose>& poses : {std::vector{kFacing}, {kTilted}, {kFacing, kTilted}}) {
         std::vector<ChartView> views;
+        views.reserve(poses.size());
         for (const Pose& pose : poses) {
             views.push_back(view_of(centred_camera(), pose, kBoard));
         }
