@@ -125,11 +125,12 @@ int run_measure(const MeasureOptions& options) {
     if (options.chart.empty() == options.edges.empty()) {
         throw InputError("measure: expected --chart FILE, or --edge for pictures of edges without a chart");
     }
+    const scene::Chart chart = options.edges.empty() ? chart_to_find(options.chart) : scene::Chart{};
     const std::vector<std::filesystem::path> pictures = expanded(options.images);
     if (options.each) {
-        return measure_each(options, source, pictures);
+        return measure_each(options, source, chart, pictures);
     }
-    calibration::MeasureInput input = measure_input(options, source, options.images.front(), pictures);
+    const calibration::MeasureInput input = measure_input(options, source, chart, options.images.front(), pictures);
     const calibration::Profile profile = measure_pictures(options, input);
     write_and_print(options, profile);
     if (!options.plots_folder.empty()) {
@@ -141,12 +142,11 @@ int run_measure(const MeasureOptions& options) {
 }  // namespace
 
 calibration::MeasureInput measure_input(const MeasureOptions& options, const calibration::ProfileSource& source,
-                                        const std::string& name, const std::vector<std::filesystem::path>& pictures) {
+                                        const scene::Chart& chart, const std::string& name,
+                                        const std::vector<std::filesystem::path>& pictures) {
     calibration::MeasureInput input;
     input.name = name;
-    if (options.edges.empty()) {
-        input.chart = chart_to_find(options.chart);
-    }
+    input.chart = chart;
     input.model = calibration::model_kind(options.model);  // none for "auto"
     input.source = source;
     input.geometry.fit_board_shape = options.fit_board_shape;

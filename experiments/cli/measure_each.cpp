@@ -91,11 +91,11 @@ void print_line(const OwnResult& own) {
           mtf50 ? fmt::format("MTF50 {:.4f} cycles/px (median of {} edges)", *mtf50, edges) : "no edge was measured");
 }
 
-OwnResult measure_one(const MeasureOptions& options, const calibration::ProfileSource& source, const fs::path& picture,
-                      const std::string& name) {
+OwnResult measure_one(const MeasureOptions& options, const calibration::ProfileSource& source,
+                      const scene::Chart& chart, const fs::path& picture, const std::string& name) {
     OwnResult own{.image = picture.string(), .reason = {}, .profile = {}};
     try {
-        const calibration::MeasureInput input = measure_input(options, source, own.image, {picture});
+        const calibration::MeasureInput input = measure_input(options, source, chart, own.image, {picture});
         own.profile = measure_pictures(options, input);
         if (!options.output.empty()) {
             fs::create_directories(options.output);
@@ -133,7 +133,7 @@ void check_folder(const std::string& option, const std::string& folder) {
 
 }  // namespace
 
-int measure_each(const MeasureOptions& options, const calibration::ProfileSource& source,
+int measure_each(const MeasureOptions& options, const calibration::ProfileSource& source, const scene::Chart& chart,
                  const std::vector<fs::path>& pictures) {
     if (!options.focus_positions_mm.empty()) {
         throw InputError("--each: a focus series is measured together: expected no --focus-positions");
@@ -144,7 +144,7 @@ int measure_each(const MeasureOptions& options, const calibration::ProfileSource
     std::vector<OwnResult> results;
     for (const fs::path& picture : pictures) {
         progress.update(static_cast<double>(results.size()) / static_cast<double>(pictures.size()));
-        results.push_back(measure_one(options, source, picture, free_name(picture, taken)));
+        results.push_back(measure_one(options, source, chart, picture, free_name(picture, taken)));
     }
     if (std::ranges::none_of(results, [](const OwnResult& own) { return own.profile.has_value(); })) {
         throw InputError(

@@ -41,16 +41,18 @@ struct MeasureOptions {
 /// The chart of a file that has one. Throws InputError for a kind that is not measured.
 scene::Chart chart_to_find(const std::string& file);
 
-/// What the options say of these pictures. Throws InputError for an unusable one.
+/// What the options say of these pictures. `chart`: to be found in them, if they ask for one. Throws InputError for an
+/// unusable one.
 calibration::MeasureInput measure_input(const MeasureOptions& options, const calibration::ProfileSource& source,
-                                        const std::string& name, const std::vector<std::filesystem::path>& pictures);
+                                        const scene::Chart& chart, const std::string& name,
+                                        const std::vector<std::filesystem::path>& pictures);
 
 /// The profile, with the self-test that the options ask for, behind a progress bar.
 calibration::Profile measure_pictures(const MeasureOptions& options, calibration::MeasureInput input);
 
 /// `--each`: every picture by itself, and a line for each. Returns the exit status. Throws InputError where none can be
 /// measured.
-int measure_each(const MeasureOptions& options, const calibration::ProfileSource& source,
+int measure_each(const MeasureOptions& options, const calibration::ProfileSource& source, const scene::Chart& chart,
                  const std::vector<std::filesystem::path>& pictures);
 
 /// `--bands`: one scene in narrow bands.
