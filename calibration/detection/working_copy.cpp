@@ -51,6 +51,18 @@ cv::Mat detector_copy(const formats::Image& image) {
     return encoded;
 }
 
+double light_at(const cv::Mat& plane, const Vec2d& p) {
+    const double fx = std::floor(p.x);
+    const double fy = std::floor(p.y);
+    if (!(fx >= 0.0 && fy >= 0.0 && fx + 1.0 < plane.cols && fy + 1.0 < plane.rows)) {
+        return 0.0;
+    }
+    const int x = static_cast<int>(fx);
+    const int y = static_cast<int>(fy);
+    const auto at = [&](int i, int j) { return static_cast<double>(plane.at<float>(y + j, x + i)); };
+    return std::lerp(std::lerp(at(0, 0), at(1, 0), p.x - fx), std::lerp(at(0, 1), at(1, 1), p.x - fx), p.y - fy);
+}
+
 int reference_channel(const formats::Image& image) {
     const int green = formats::find_channel(image, "G");
     return green >= 0 ? green : image.channel_count() / 2;

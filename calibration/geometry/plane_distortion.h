@@ -13,7 +13,7 @@ namespace lensproof::calibration {
 ///     p = m + h q (1 + k1 |q|² + k2 |q|⁴ + …),   q = the homography of the point on the chart,
 ///
 /// m being the picture's middle and h half its diagonal, px. The homography's scale is that of the picture's middle, so
-/// q h is f tan θ of the lens there, as in ISO 17850 (2015).
+/// q h is f tan θ of the lens there.
 struct PlaneDistortion {
     std::vector<double> coefficients;                   // k1, k2, …
     std::vector<double> covariance;                     // row by row

@@ -188,7 +188,6 @@ void observe_picture(Observations& seen, PictureObservation& own, const Picture&
         return;
     }
     if (picture.role == PictureRole::edges && input.edges.empty()) {
-        own.reference_channel = image.channels[static_cast<std::size_t>(reference_channel(image))];
         own.chromatic_pairs = observe_any_edges(seen.sharpness, image, channels_that_differ(image),
                                                 reference_channel(image), picture.name);
         account.used = true;

@@ -7,7 +7,6 @@
 #include <optional>
 
 #include "calibration/detection/working_copy.h"
-#include "calibration/sharpness/star_outline.h"
 #include "engine/base/angle.h"
 
 namespace lensproof::calibration {

@@ -6,6 +6,7 @@
 #include <numbers>
 #include <vector>
 
+#include "calibration/detection/working_copy.h"
 #include "calibration/statistics/order_statistics.h"
 
 namespace lensproof::calibration {
@@ -46,18 +47,6 @@ std::optional<double> end_of_black(const cv::Mat& plane, const StarMap& map, dou
 }
 
 }  // namespace
-
-double light_at(const cv::Mat& plane, const Vec2d& p) {
-    const double fx = std::floor(p.x);
-    const double fy = std::floor(p.y);
-    if (!(fx >= 0.0 && fy >= 0.0 && fx + 1.0 < plane.cols && fy + 1.0 < plane.rows)) {
-        return 0.0;
-    }
-    const int x = static_cast<int>(fx);
-    const int y = static_cast<int>(fy);
-    const auto at = [&](int i, int j) { return static_cast<double>(plane.at<float>(y + j, x + i)); };
-    return std::lerp(std::lerp(at(0, 0), at(1, 0), p.x - fx), std::lerp(at(0, 1), at(1, 1), p.x - fx), p.y - fy);
-}
 
 bool fit_rim(const cv::Mat& plane, const scene::SiemensStar& star, std::optional<double> pattern_px, StarMap& map) {
     const double sector = 2.0 * std::numbers::pi / star.sectors;

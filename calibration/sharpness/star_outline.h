@@ -8,9 +8,6 @@
 
 namespace lensproof::calibration {
 
-/// Bilinear; 0 outside the picture. `plane` is CV_32F.
-double light_at(const cv::Mat& plane, const Vec2d& p);
-
 /// Scales A and sets the perspective from the ends of the black sectors, by least squares without outliers. They are
 /// looked for from a circle of the pattern outwards, `pattern_px` its radius; without it, from within the present rim.
 /// False where fewer than a third of the ends are seen.

@@ -1,12 +1,13 @@
 // experiments/cli/measure_each.cpp — `lensproof measure --each`: many pictures, each by itself.
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <optional>
 #include <set>
 
 #include "calibration/statistics/order_statistics.h"
 #include "engine/base/csv.h"
 #include "engine/base/input_error.h"
-#include "engine/base/visible.h"
 #include "experiments/cli/measure_parts.h"
 #include "experiments/cli/progress.h"
 #include "experiments/cli/terminal.h"
@@ -34,10 +35,15 @@ std::vector<std::string> summarised_curves(const std::string& channel) {
             kQuantities.sagittal_mtf50.key(channel)};
 }
 
-constexpr const char* kSummaryHeader =
-    "image,measured,reason,edges,mtf50_median_cycles_per_px,distortion_percent,at_image_height,vignetting_ev,"
-    "at_image_height_2,chromatic_shift_R_px,at_image_height_3,chromatic_shift_B_px,at_image_height_4,"
-    "mtf50_tangential_cycles_per_px,at_image_height_5,mtf50_sagittal_cycles_per_px,at_image_height_6\n";
+// The columns; a curve's of the picture's main channel without its name, which differs from picture to picture.
+std::string summary_header() {
+    std::string header = "image,measured,reason,edges,mtf50_median_cycles_per_px";
+    for (const char* curve : {"distortion_percent", "vignetting_ev", "chromatic_shift_R_px", "chromatic_shift_B_px",
+                              "mtf50_tangential_cycles_per_px", "mtf50_sagittal_cycles_per_px"}) {
+        header += fmt::format(",{0},{0}_at_image_height", curve);
+    }
+    return header + "\n";
+}
 
 // The channel that stands for the picture.
 std::string main_channel(const calibration::Profile& profile) {
@@ -83,11 +89,11 @@ std::string summary_row(const OwnResult& own) {
 
 void print_line(const OwnResult& own) {
     if (!own.profile) {
-        print("{}: left out: {}\n", visible(own.image), own.reason);
+        print("{}: left out: {}\n", own.image, own.reason);
         return;
     }
     const auto [edges, mtf50] = median_sharpness(*own.profile);
-    print("{}: {}\n", visible(own.image),
+    print("{}: {}\n", own.image,
           mtf50 ? fmt::format("MTF50 {:.4f} cycles/px (median of {} edges)", *mtf50, edges) : "no edge was measured");
 }
 
@@ -150,7 +156,7 @@ int measure_each(const MeasureOptions& options, const calibration::ProfileSource
         throw InputError(
             fmt::format("none of {} pictures can be measured: {}", results.size(), results.front().reason));
     }
-    std::string summary = kSummaryHeader;
+    std::string summary = summary_header();
     Json list = Json::list();
     for (const OwnResult& own : results) {
         if (prints_text(options.common)) {

@@ -136,9 +136,10 @@ void print_profile(const calibration::Profile& profile) {
     for (const std::string& warning : profile.warnings) {
         print("warning: {}\n", warning);
     }
-    const auto camera = profile.not_measured.find(calibration::part::kGeometry);
-    if (camera != profile.not_measured.end() && !profile.views.empty()) {
-        print("no camera: {}; what needs none is measured about the picture's middle\n", camera->second);
+    const bool lacks_camera = !profile.geometry && !profile.views.empty();
+    if (lacks_camera) {
+        print("no camera: {}; what needs none is measured about the picture's middle\n",
+              why_not_measured(profile, calibration::part::kGeometry, "it was not measured"));
     }
     print_account(profile);
     if (profile.geometry) {
@@ -193,7 +194,9 @@ void print_profile(const calibration::Profile& profile) {
     }
     print_sharpness(profile);
     for (const auto& [what, why] : profile.not_measured) {
-        print("{} not measured: {}\n", what, why);
+        if (!lacks_camera || what != calibration::part::kGeometry) {  // which stands first
+            print("{} not measured: {}\n", what, why);
+        }
     }
 }
 
