@@ -8,11 +8,11 @@
 #include <algorithm>
 #include <cerrno>
 #include <cstddef>
-#include <cstdlib>
 #include <fstream>
 #include <system_error>
 
 #include "engine/base/confined.h"
+#include "engine/base/data_root.h"
 #include "engine/base/input_error.h"
 #include "engine/base/text.h"
 
@@ -114,11 +114,6 @@ fs::path referred_file(const fs::path& from, const fs::path& name) {
 
 std::string lower_extension(const fs::path& file) {
     return lower_case(file.extension().string());
-}
-
-fs::path data_root() {
-    const char* home = std::getenv("LENSPROOF_HOME");
-    return home != nullptr && *home != '\0' ? fs::path(home) : fs::path(LENSPROOF_SOURCE_DIR);
 }
 
 }  // namespace lensproof

@@ -1,4 +1,4 @@
-// engine/base/file.h — whole-file reading, and where the project's own data lies.
+// engine/base/file.h — whole-file reading, and what files refer to.
 #pragma once
 #include <filesystem>
 #include <string>
@@ -26,8 +26,5 @@ std::filesystem::path referred_file(const std::filesystem::path& from, const std
 
 /// The name's extension with its dot, in small letters.
 std::string lower_extension(const std::filesystem::path& file);
-
-/// The folder that holds lenses/, experiments/ and reference_photos/: $LENSPROOF_HOME, else the source tree built from.
-std::filesystem::path data_root();
 
 }  // namespace lensproof

@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "engine/base/csv.h"
+#include "engine/base/data_root.h"
 #include "engine/base/file.h"
 #include "engine/base/input_error.h"
 #include "engine/base/text.h"

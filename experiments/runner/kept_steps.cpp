@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "engine/base/data_root.h"
 #include "engine/base/file.h"
 #include "engine/base/hash.h"
 #include "step_digest.h"

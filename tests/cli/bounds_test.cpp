@@ -3,6 +3,7 @@
 
 #include <chrono>
 
+#include "engine/base/data_root.h"
 #include "engine/base/file.h"
 #include "tests/cli/program.h"
 #include "tests/cli/trace_table.h"

@@ -8,7 +8,7 @@
 #include <memory>
 #include <thread>
 
-#include "engine/base/file.h"
+#include "engine/base/data_root.h"
 #include "tests/cli/program.h"
 #include "tests/complaint.h"
 

@@ -8,7 +8,7 @@
 #include <algorithm>
 
 #include "calibration/profile/curve_difference.h"
-#include "engine/base/file.h"
+#include "engine/base/data_root.h"
 #include "experiments/studies/cameras/simulations.h"
 
 namespace lensproof::closed_loop_test {

@@ -7,6 +7,7 @@
 #include <iterator>
 
 #include "engine/base/csv.h"
+#include "engine/base/data_root.h"
 #include "engine/base/file.h"
 #include "engine/base/text.h"
 #include "engine/formats/glass/glass_file.h"

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 
+#include "engine/base/data_root.h"
 #include "engine/base/file.h"
 #include "engine/base/input_error.h"
 #include "engine/base/nearest_name.h"

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <sstream>
 
-#include "engine/base/file.h"
+#include "engine/base/data_root.h"
 #include "engine/base/input_error.h"
 #include "engine/base/nearest_name.h"
 #include "engine/base/text.h"

@@ -6,7 +6,7 @@
 #include <charconv>
 
 #include "engine/base/csv.h"
-#include "engine/base/file.h"
+#include "engine/base/data_root.h"
 #include "engine/base/input_error.h"
 
 namespace lensproof::scene {

@@ -9,6 +9,7 @@
 #include <fstream>
 #include <vector>
 
+#include "engine/base/data_root.h"
 #include "engine/base/file.h"
 #include "engine/base/input_error.h"
 #include "engine/base/memory.h"

@@ -4,7 +4,7 @@
 #include <limits>
 #include <string>
 
-#include "engine/base/file.h"
+#include "engine/base/data_root.h"
 #include "engine/base/input_error.h"
 #include "engine/base/nearest_name.h"
 #include "engine/render/scene_setup.h"

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "engine/base/confined.h"
-#include "engine/base/file.h"
+#include "engine/base/data_root.h"
 #include "engine/base/input_error.h"
 
 namespace lensproof::formats::confined_picture_test {
